@@ -1,0 +1,79 @@
+// The run file run.h5: a temporal VTKHDF PolyData file plus our own root group /pbf.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lib/diag/measures.h"
+#include "lib/scene/scene.h"
+#include "lib/solver/snapshot.h"
+#include "lib/solver/solver.h"
+
+namespace pbf {
+
+/// Everything about a run that is known before its first update; goes to /pbf as attributes.
+struct RunInfo {
+  std::string scene_path, scene_text, resolved_scene;
+  std::vector<std::string> overrides;
+  std::string program_version, commit, compiler, build_flags;
+  std::string host, started;  ///< ISO 8601, UTC
+  std::string plan;           ///< text of the plan
+  SolverInfo solver;
+  Double3 domain_min{}, domain_max{};
+  double spacing = 0, smoothing_length = 0, rest_density = 0;
+  std::int64_t particles = 0;
+};
+
+/// One row of the log: the measures, and the seconds per stage since the row before.
+struct LogRow {
+  Measures measures;
+  int iterations = 0;
+  double dt = 0;
+  std::vector<StageTime> stages;  ///< the same names in every row of a run
+};
+
+/// Writes run.h5 from a thread of its own; all HDF5 calls of the writer happen there.
+/// Errors of that thread (disk full) are thrown as Error(io) by the next call from outside.
+class RunWriter {
+ public:
+  /// Creates the file (fails if it exists). gzip: shuffle + deflate level 1.
+  RunWriter(const std::string& path, const RunInfo& info, bool gzip);
+  ~RunWriter();
+  /// Queues a frame; blocks while more than 2 wait. A frame is durable (flushed, readable after
+  /// kill -9) once frames_written() counts it.
+  void write(Snapshot&& snapshot);
+  void log(const LogRow& row);
+  std::int64_t frames_written() const;
+  std::int64_t bytes_written() const;
+  /// Waits for the queue, writes /pbf status ("finished", "stopped", "diverged") and closes.
+  void finish(const std::string& status);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Reads a run file, also one still being written or cut off. Throws Error(io) with the reason.
+class RunReader {
+ public:
+  explicit RunReader(const std::string& path);
+  ~RunReader();
+  std::int64_t frames() const;
+  std::vector<double> times() const;                ///< s
+  std::vector<std::string> fields() const;          ///< without position and id
+  /// Frame k (0-based) with all its fields, "position" first; Error(bad_input) when out of range.
+  Snapshot frame(std::int64_t k) const;
+  RunInfo info() const;
+  std::string status() const;                       ///< running, finished, stopped, diverged
+  /// One column of the log ("compression_mean", "stage/lambda", ...); empty when not there.
+  std::vector<double> log_column(const std::string& name) const;
+  std::vector<std::string> log_columns() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pbf

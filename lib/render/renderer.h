@@ -1,0 +1,71 @@
+// Pictures of snapshots, rendered off screen. Nothing of OpenGL is linked: the GL library is opened
+// when the first Renderer is made.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lib/scene/scene.h"
+#include "lib/solver/snapshot.h"
+
+namespace pbf {
+
+/// 8-bit RGB, row-major, first row on top.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+/// What a picture needs to know beside the particles.
+struct View {
+  Double3 domain_min{}, domain_max{};  ///< m, drawn as 12 lines
+  Double3 up{0, 0, 1};                 ///< against gravity
+  double radius = 0.01;                ///< m, drawn radius of a particle
+  ColorBy color = ColorBy::speed;
+  std::array<double, 2> range{0, 1};   ///< of the colour bar, in the unit of the field
+  std::array<int, 2> size{1280, 720};
+  Camera camera;
+};
+
+/// View of a scene: default camera, radius d/2, and a colour range that holds for the whole run
+/// (speed: 0..sqrt(2 g H) of the box; density: 0.9..1.1 rho0; id: 0..n-1).
+View view_of(const Scene& scene, std::int64_t particles);
+
+/// Draws lit spheres (impostors), the box, a colour bar with unit, and the time.
+class Renderer {
+ public:
+  /// Opens OSMesa, else EGL surfaceless. Throws Error(unavailable) naming what was tried.
+  explicit Renderer(const View& view);
+  ~Renderer();
+  /// Error(bad_input) when the snapshot lacks the field that `color` needs.
+  Image draw(const Snapshot& snapshot);
+  std::string backend() const;  ///< e.g. "OSMesa llvmpipe"
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// PNG, level 1, SUB filter. Throws Error(io).
+void write_png(const std::string& path, const Image& image);
+
+/// Draws on a thread of its own and writes DIR/frame_000123.png (number = index of the picture).
+class RenderThread {
+ public:
+  RenderThread(const View& view, const std::string& dir);
+  ~RenderThread();
+  /// Queues a copy; blocks while more than 2 wait. Errors of the thread are thrown here or in
+  /// finish().
+  void draw(const Snapshot& snapshot, std::int64_t index);
+  void finish();
+  double seconds() const;  ///< spent drawing and writing
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pbf

@@ -1,0 +1,31 @@
+// Bodies of a scene -> particles.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lib/scene/scene.h"
+
+namespace pbf {
+
+/// Initial particles in id order, SI units.
+struct Particles {
+  std::vector<Double3> position;  ///< m
+  std::vector<Double3> velocity;  ///< m/s
+  std::size_t size() const { return position.size(); }
+};
+
+/// Number of particles the scene's bodies make, without making them (file bodies are opened).
+/// Throws Error(bad_input) when the number is 0 or above 2^31 - 1.
+std::int64_t count_particles(const Scene& scene, const std::string& scene_dir);
+
+/// Makes the particles of every body in order of the list. `scene_dir` anchors relative paths.
+/// Block: lattice points min + (i + 1/2) d for every cell of edge d that fits (to rounding);
+/// sphere: points of the lattice through its centre with |x - c| <= radius; random_box: SplitMix64
+/// seeded by `seed`, three draws per particle (x, y, z), 53-bit mantissa, the same on every machine.
+/// Throws Error(bad_input) for a particle outside the domain (naming body and particle), a file
+/// body that cannot be understood, non-finite values; Error(io) for one that cannot be read.
+Particles emit_particles(const Scene& scene, const std::string& scene_dir);
+
+}  // namespace pbf

@@ -1,0 +1,38 @@
+// Scene files: strict YAML in, Scene out; and back to YAML with every default filled in.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/scene/scene.h"
+
+namespace pbf {
+
+/// What was read, beside the scene: needed to write provenance.
+struct LoadedScene {
+  Scene scene;
+  std::string path;                    ///< of the scene file
+  std::string text;                    ///< the file as it stands
+  std::vector<std::string> overrides;  ///< the --set arguments
+};
+
+/// Reads `path`, applies `--set key.path=value` overrides, validates everything.
+/// Throws Error(bad_input) with one line per problem: "file:line:column: key: what, remedy";
+/// Error(bad_input) too when the file is missing, a directory, empty or not text.
+LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides);
+
+/// The same from text; `origin` stands for the file name in messages.
+Scene parse_scene(const std::string& text, const std::string& origin,
+                  const std::vector<std::string>& overrides);
+
+/// YAML of the whole scene, defaults filled in, which parse_scene reads back to an equal scene.
+/// Numbers keep all their digits (17).
+std::string resolved_yaml(const Scene& scene);
+
+/// The documented reference scene (every key, default, unit, meaning), from the table of keys.
+std::string reference_yaml();
+
+/// JSON Schema (draft 2020-12) of a scene file, from the table of keys.
+std::string json_schema();
+
+}  // namespace pbf

@@ -1,0 +1,127 @@
+// A scene as plain data: everything a run depends on, in SI units, with defaults.
+// The table of keys (keys.cpp) maps every field below to its YAML key, range and help text.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pbf {
+
+using Double3 = std::array<double, 3>;
+
+enum class Shape { block, sphere, random_box, file };
+enum class KernelMode { consistent, paper };        ///< density kernel and gradient kernel
+enum class ConstraintMode { one_sided, two_sided };  ///< C = max(rho/rho0 - 1, 0) or rho/rho0 - 1
+enum class BoundaryMode { density, clamp };          ///< walls with a density contribution, or bare
+enum class Precision { single, dbl };                ///< YAML: float, double
+enum class Backend { cpu, cuda };
+enum class ColorBy { speed, density, id };
+
+/// A body of fluid. Which members count depends on `shape`; the loader refuses the others.
+struct Body {
+  Shape shape = Shape::block;
+  Double3 min{}, max{};      ///< m, block (lattice of the spacing) and random_box
+  Double3 center{};          ///< m, sphere (lattice points inside)
+  double radius = 0;         ///< m, sphere
+  std::int64_t count = 0;    ///< random_box: number of particles, uniform in the box
+  std::uint64_t seed = 1;    ///< random_box: seed of the generator
+  std::string path;          ///< file: CSV (header x,y,z[,vx,vy,vz]) or HDF5 (position[,velocity]);
+                             ///< relative to the scene file
+  Double3 velocity{};        ///< m/s, added to every particle of the body
+};
+
+struct Domain {
+  Double3 min{}, max{1, 1, 1};  ///< m
+  std::vector<std::string> open;  ///< faces without a wall: x_min x_max y_min y_max z_min z_max
+};
+
+struct Fluid {
+  double rest_density = 1000;   ///< kg/m^3, rho0
+  double spacing = 0.02;        ///< m, d: edge of the rest lattice's cell
+  double smoothing_ratio = 2;   ///< h/d
+  std::optional<double> mass;   ///< kg per particle; absent: rho0 d^3, density sum calibrated so
+                                ///< that the rest lattice has density rho0; present: used as it is
+};
+
+struct Time {
+  double step = 0.002;   ///< s, dt of one update
+  double end = 1;        ///< s, rounded to whole updates
+};
+
+struct SolverSettings {
+  int iterations = 4;             ///< sweeps over the constraints per update
+  KernelMode kernels = KernelMode::consistent;
+  ConstraintMode constraint = ConstraintMode::one_sided;
+  double relaxation = 1e-4;       ///< dimensionless eps^ = eps h^2 in lambda's denominator
+  double step_length = 1;         ///< omega, factor on the position change of one sweep
+  BoundaryMode boundary = BoundaryMode::density;
+  double wall_margin = 0;         ///< m, distance to a wall at which particles are clamped
+  double velocity_damping = 1;    ///< factor on the velocity, once per update
+  bool fused = true;              ///< density and lambda in one loop over the neighbours
+};
+
+/// Artificial pressure (Macklin & Mueller 2013, eq. 13); s_corr = -k (W(r)/W(delta_q h))^n.
+struct Tensile {
+  double k = 1e-3;         ///< in units of h^2
+  double delta_q = 0.3;    ///< in units of h
+  int n = 4;               ///< exponent
+};
+
+/// XSPH viscosity (Schechter & Bridson 2012; Macklin & Mueller 2013, eq. 17).
+struct Viscosity {
+  double xsph = 0.05;      ///< c, 0..1 stable
+};
+
+/// Vorticity confinement (Macklin & Mueller 2013, eq. 15-16), in the stabilised form.
+struct Vorticity {
+  double epsilon = 0.1;    ///< dimensionless strength
+};
+
+struct Output {
+  double every = 0.02;                 ///< s between frames, rounded to whole updates
+  std::vector<std::string> fields{"velocity", "density"};  ///< besides position and id
+  Precision precision = Precision::single;                 ///< of floating-point fields on disk
+  bool gzip = false;                   ///< compression: none | gzip (shuffle + deflate 1)
+};
+
+struct Camera {
+  std::optional<Double3> position;  ///< m; absent: seen from outside the longest side
+  std::optional<Double3> target;    ///< m; absent: centre of the domain
+  double fov = 35;                  ///< degrees, vertical
+  double orbit = 0;                 ///< degrees per second of simulated time about `up`
+};
+
+struct Render {
+  double every = 0.1;            ///< s between pictures, rounded to whole frames of `output`
+  std::array<int, 2> size{1280, 720};
+  ColorBy color = ColorBy::speed;
+  std::optional<std::array<double, 2>> range;  ///< of the colour bar; absent: from the scene
+  double radius = 0;             ///< m, drawn radius of a particle; 0: half the spacing
+  Camera camera;
+};
+
+struct Scene {
+  std::string name = "scene";
+  Domain domain;
+  Fluid fluid;
+  std::vector<Body> bodies;
+  Double3 gravity{0, 0, -9.81};   ///< m/s^2
+  Time time;
+  SolverSettings solver;
+  std::optional<Tensile> tensile;
+  std::optional<Viscosity> viscosity;
+  std::optional<Vorticity> vorticity;
+  int measure_every = 10;          ///< updates between measures (log.measure_every)
+  std::optional<Output> output;
+  std::optional<Render> render;
+  Backend backend = Backend::cpu;
+  Precision precision = Precision::single;
+  int threads = 0;                ///< CPU threads; 0: all that the process may use
+
+  double h() const { return fluid.spacing * fluid.smoothing_ratio; }  ///< m, smoothing length
+};
+
+}  // namespace pbf

@@ -1,0 +1,57 @@
+// The interface between the program and a backend: called per step, never per particle.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lib/diag/measures.h"
+#include "lib/scene/emit.h"
+#include "lib/scene/scene.h"
+#include "lib/solver/snapshot.h"
+
+namespace pbf {
+
+struct Plan;
+
+/// Seconds spent in one stage since the solver was made. `name` is the name of the pass.
+struct StageTime {
+  std::string name;
+  double seconds = 0;
+  std::int64_t calls = 0;
+};
+
+/// What ran where; goes into the run file.
+struct SolverInfo {
+  std::string backend;    ///< cpu, cuda
+  std::string precision;  ///< float, double
+  std::string device;     ///< CPU model or GPU name
+  std::string driver;     ///< empty on the CPU
+  int threads = 0;
+  double vol = 0;         ///< m/(rho0 h^3) with the calibrated mass: the weight of one particle
+  double wall_scale = 0;  ///< factor on the walls' density, from the calibration
+  std::size_t bytes = 0;  ///< of the arrays held now (device memory on cuda)
+};
+
+/// One simulation. Two solvers may live in one process. Errors are thrown as Error.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  /// Advances by `updates` time steps.
+  virtual void step(int updates) = 0;
+  /// Copies the fields asked for (velocity, density; position and id always) to the host, in id
+  /// order, SI units, positions and floating-point fields as f32 or f64 as `type` says.
+  virtual Snapshot download(const std::vector<std::string>& fields, ScalarType type) = 0;
+  virtual Measures measure() = 0;
+  virtual std::vector<StageTime> timings() const = 0;
+  virtual SolverInfo info() const = 0;
+  virtual std::int64_t updates_done() const = 0;
+  virtual double time() const = 0;  ///< s
+};
+
+/// Throws Error(unavailable) when the backend, a device or memory is not there.
+std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan,
+                                    const Particles& particles);
+
+}  // namespace pbf
