@@ -1,0 +1,69 @@
+// The only timer of the program: a stopwatch, and seconds booked by stage name.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pbf {
+
+/// Seconds since it was made or last reset, on the monotonic clock.
+class Stopwatch {
+ public:
+  Stopwatch() : start_(std::chrono::steady_clock::now()) {}
+  void reset() { start_ = std::chrono::steady_clock::now(); }
+  double seconds() const {  ///< s
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  double lap() {  ///< s since the last lap (or the start); the next lap begins here
+    const auto now = std::chrono::steady_clock::now();
+    const double s = std::chrono::duration<double>(now - start_).count();
+    start_ = now;
+    return s;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// Books wall-clock time to named stages: begin(), then mark("grid") books what has passed since
+/// begin() or the last mark. Entries keep the order of their first mark. For one thread.
+class StageClock {
+ public:
+  struct Entry {
+    std::string name;
+    double seconds = 0;      ///< s
+    std::int64_t calls = 0;  ///< marks
+  };
+
+  /// Time before this call belongs to nobody.
+  void begin() { watch_.reset(); }
+
+  /// Books the time since begin() or the last mark to `stage`.
+  void mark(std::string_view stage) { add(stage, watch_.lap()); }
+
+  /// Books seconds measured elsewhere (a device, another thread).
+  void add(std::string_view stage, double seconds, std::int64_t calls = 1) {
+    Entry& e = entry(stage);
+    e.seconds += seconds;
+    e.calls += calls;
+  }
+
+  /// The entry of `stage`, made with zero seconds when new (so that names and order are fixed).
+  Entry& entry(std::string_view stage) {
+    for (Entry& e : entries_)
+      if (e.name == stage) return e;
+    entries_.push_back({std::string(stage), 0, 0});
+    return entries_.back();
+  }
+
+  const std::vector<Entry>& entries() const { return entries_; }
+
+ private:
+  Stopwatch watch_;
+  std::vector<Entry> entries_;  // a dozen: a linear search beats a map
+};
+
+}  // namespace pbf
