@@ -9,13 +9,13 @@ namespace pbf {
 /// Exit codes of `pbf`, the same for every command (listed in the README and in `pbf --help`).
 enum class ExitCode : int {
   done = 0,
-  internal = 1,      ///< a defect of the program itself
-  bad_input = 2,     ///< bad command line or scene
-  guard = 3,         ///< run stopped by the stability guard
-  unavailable = 4,   ///< backend, device or memory not available
-  io = 5,            ///< file cannot be read or written (disk full)
-  difference = 6,    ///< `compare` or a suite found a difference or a failure
-  resumable = 75,    ///< stopped early after saving
+  internal = 1,     ///< a defect of the program itself
+  bad_input = 2,    ///< bad command line or scene
+  guard = 3,        ///< run stopped by the stability guard
+  unavailable = 4,  ///< backend, device or memory not available
+  io = 5,           ///< file cannot be read or written (disk full)
+  difference = 6,   ///< `compare` or a suite found a difference or a failure
+  resumable = 75,   ///< stopped early after saving
 };
 
 /// Thrown by the library, caught once in main(): what() is printed after "pbf: error: ".

@@ -1,0 +1,115 @@
+#include "lib/base/log.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+
+namespace pbf {
+namespace {
+
+int stdout_errno = 0;  // of the first failed write; stdio forgets it
+
+void write_to(std::FILE* f, const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), f) == text.size() && std::fflush(f) == 0) return;
+  if (f == stdout && stdout_errno == 0) stdout_errno = errno;
+}
+
+}  // namespace
+
+Log::Log(bool quiet) : quiet_(quiet), terminal_(!quiet && isatty(STDERR_FILENO) == 1) {}
+
+Log::~Log() {
+  clear_transient();
+  if (file_) std::fclose(file_);
+}
+
+void Log::open(const std::string& path) {
+  path_ = path;
+  file_ = std::fopen(path.c_str(), "w");
+  if (!file_) throw Error(ExitCode::io, path + ": cannot be created: " + std::strerror(errno));
+}
+
+void Log::to_file(const std::string& text) {
+  if (!file_) return;
+  if (std::fwrite(text.data(), 1, text.size(), file_) != text.size() || std::fflush(file_) != 0)
+    throw Error(ExitCode::io, path_ + ": cannot be written: " + std::strerror(errno));
+}
+
+void Log::clear_transient() {
+  if (dirty_) write_to(stderr, "\r\033[K");
+  dirty_ = false;
+}
+
+void Log::note(const std::string& text) {
+  clear_transient();
+  if (!quiet_) write_to(stderr, text + "\n");
+  to_file(text + "\n");
+}
+
+void Log::result(const std::string& text) {
+  clear_transient();
+  write_to(stdout, text + "\n");
+  to_file(text + "\n");
+}
+
+void Log::transient(const std::string& text) {
+  if (!terminal_) return;
+  write_to(stderr, "\r\033[K" + text);
+  dirty_ = true;
+}
+
+void Log::close() {
+  clear_transient();
+  if (!file_) return;
+  const bool lost = std::fclose(file_) != 0;
+  file_ = nullptr;
+  if (lost) throw Error(ExitCode::io, path_ + ": cannot be written: " + std::strerror(errno));
+}
+
+std::string progress_line(const ProgressState& s, double wall, double wall_since,
+                          std::int64_t updates_since) {
+  const double part = s.updates > 0 ? double(s.update) / double(s.updates) : 1;
+  std::string line =
+      format("%3.0f %%  update %lld/%lld  t %.4g s", 100 * part, static_cast<long long>(s.update),
+             static_cast<long long>(s.updates), s.time);
+  if (wall_since > 0 && updates_since > 0)
+    line += "  " + si_number(double(updates_since) * double(s.particles) / wall_since) +
+            " particle-updates/s";
+  line += format("  compression mean %.2g %% max %.2g %%", 100 * s.compression_mean,
+                 100 * s.compression_max);
+  if (part > 0 && part < 1) line += "  ETA " + duration_text(wall * (1 - part) / part);
+  return line;
+}
+
+void Progress::update(const ProgressState& state) {
+  const double wall = watch_.seconds();
+  if (log_.terminal() && wall - last_wall_ >= 0.5) {
+    log_.transient(progress_line(state, wall, wall - last_wall_, state.update - last_update_));
+    last_wall_ = wall;
+    last_update_ = state.update;
+  }
+  // The plain lines also make up the log file of a run watched on a terminal.
+  const double since = wall - line_wall_;
+  const std::int64_t done = state.update - line_update_;
+  if (since < 10 && (since < 1 || done * 20 < state.updates)) return;
+  if (log_.terminal())
+    log_.file_only(progress_line(state, wall, since, done));
+  else
+    log_.note(progress_line(state, wall, since, done));
+  line_wall_ = wall;
+  line_update_ = state.update;
+}
+
+void finish_stdout() {
+  if (std::fflush(stdout) != 0 && stdout_errno == 0) stdout_errno = errno;
+  if (stdout_errno != 0 && stdout_errno != EPIPE)
+    throw Error(ExitCode::io,
+                std::string("standard output cannot be written: ") + std::strerror(stdout_errno));
+}
+
+}  // namespace pbf

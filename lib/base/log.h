@@ -1,0 +1,76 @@
+// Text for people: to the terminal and, the same, to the run's log file.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+#include "lib/base/stage_clock.h"
+
+namespace pbf {
+
+/// Notes and progress go to stderr, results to stdout, all of it to the log file once one is open.
+/// A closed pipe on either side is no error; finish_stdout() reports every other lost write.
+class Log {
+ public:
+  /// quiet: nothing but results and errors on the terminal. The file still gets everything.
+  explicit Log(bool quiet);
+  ~Log();
+  Log(const Log&) = delete;
+  Log& operator=(const Log&) = delete;
+
+  /// Creates (or empties) the log file. Throws Error(io) with the system's reason.
+  void open(const std::string& path);
+  /// Lines to stderr and the file. `text` ends without a newline.
+  void note(const std::string& text);
+  /// Lines to stdout and the file.
+  void result(const std::string& text);
+  /// A line that the next one overwrites on a terminal; the file does not get it.
+  void transient(const std::string& text);
+  /// A line for the file alone.
+  void file_only(const std::string& text) { to_file(text + "\n"); }
+  /// Closes the log file. Throws Error(io) when something could not be written (disk full).
+  void close();
+  bool terminal() const { return terminal_; }  ///< stderr is a terminal and not quiet
+
+ private:
+  void clear_transient();
+  void to_file(const std::string& text);
+
+  bool quiet_, terminal_, dirty_ = false;
+  std::string path_;
+  std::FILE* file_ = nullptr;
+};
+
+/// Where a run stands, for one line of progress.
+struct ProgressState {
+  std::int64_t update = 0, updates = 0;  ///< done, and in all
+  std::int64_t particles = 0;
+  double time = 0;                                   ///< s, simulated
+  double compression_mean = 0, compression_max = 0;  ///< of the last measure, 1
+};
+
+/// "  42 %  update 420/1000 ..." with particle-updates per second since the last line and the time
+/// left at the mean speed so far. Pure: `wall` and `wall_since`, `updates_since` are given.
+std::string progress_line(const ProgressState& s, double wall, double wall_since,
+                          std::int64_t updates_since);
+
+/// Decides when a line is due: on a terminal twice a second, rewritten; else a plain line every
+/// 10 s or 5 % of the updates, whichever comes first, but not more than one a second.
+class Progress {
+ public:
+  explicit Progress(Log& log) : log_(log) {}
+  void update(const ProgressState& state);
+
+ private:
+  Log& log_;
+  Stopwatch watch_;
+  double last_wall_ = 0, line_wall_ = 0;
+  std::int64_t last_update_ = 0, line_update_ = 0;
+};
+
+/// Flushes stdout at the end of the program. Throws Error(io) when results were lost (disk full);
+/// a reader that has gone away (`pbf ... | head`) is no error.
+void finish_stdout();
+
+}  // namespace pbf

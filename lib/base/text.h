@@ -1,0 +1,30 @@
+// Small helpers for text: formatting, numbers and durations for people, JSON pieces.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace pbf {
+
+/// printf into a string.
+[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
+
+/// 12345678 -> "12.3 M"; three digits and a decimal prefix (k M G T) from 1000 on.
+std::string si_number(double value);
+
+/// 1536 -> "1.5 KiB".
+std::string bytes_text(double bytes);
+
+/// Seconds for people: "0.4 s", "12 s", "3 min 20 s", "2 h 05 min".
+std::string duration_text(double seconds);
+
+/// "text" with quotes and control characters escaped.
+std::string json_string(std::string_view text);
+
+/// All 17 digits; null for what JSON cannot hold (nan, inf).
+std::string json_number(double value);
+
+/// Now, UTC, ISO 8601: "2024-05-01T12:00:00Z".
+std::string utc_now();
+
+}  // namespace pbf

@@ -1,0 +1,18 @@
+#include "lib/base/version.h"
+
+#include "pbf_build_info.h"  // the only source that sees it: a new commit recompiles this alone
+
+namespace pbf {
+
+BuildInfo build_info() {
+  BuildInfo info{PBF_VERSION,  PBF_COMMIT, PBF_BUILD_TYPE, PBF_COMPILER, PBF_BUILD_FLAGS,
+                 PBF_FEATURES, {}};
+  info.libraries = {{"HDF5", PBF_VERSION_HDF5},
+                    {"yaml-cpp", PBF_VERSION_YAML_CPP},
+                    {"CLI11", PBF_VERSION_CLI11},
+                    {"Eigen", PBF_VERSION_EIGEN}};
+  if (*PBF_VERSION_PNG) info.libraries.emplace_back("libpng", PBF_VERSION_PNG);
+  return info;
+}
+
+}  // namespace pbf

@@ -1,0 +1,23 @@
+// What this machine offers to run on.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace pbf {
+
+/// Model name of the CPU, "unknown CPU" when the system does not tell.
+std::string cpu_model();
+
+/// Threads that this process may use (its affinity mask, as a batch system sets it), at least 1.
+int usable_threads();
+
+/// Bytes of memory that can still be allocated without swapping: the machine's, or what is left
+/// of the control group's limit when that is smaller. 0 when the system does not tell.
+std::size_t available_memory();
+
+/// One line per CUDA device (name, memory, compute capability, driver), or one line that says why
+/// there is none: CUDA not compiled in, no driver, no device.
+std::string cuda_device_report();
+
+}  // namespace pbf
