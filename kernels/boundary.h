@@ -1,0 +1,92 @@
+// Planar walls: what the half space behind a wall, filled with fluid at rest, adds to the density,
+// in closed form, and the clamp that is the last resort. q = distance/h from the wall.
+#pragma once
+
+#include "kernels/params.h"
+#include "kernels/smoothing.h"
+
+namespace pbf {
+
+/// Density of the half space, as a fraction of rho0, and its gradient along the inward normal
+/// (negative: it decreases inward), both 0 for q >= 1. A particle on or behind the wall: q = 0.
+template <class Real>
+struct HalfSpace {
+  Real density = 0, slope = 0;
+};
+
+/// Spiky: D = (1-q)^5 (1+2q)/2; its derivative:
+/// D' = (1-q)^4 (-5(1+2q) + 2(1-q))/2 = -(3/2)(1-q)^4 (1+4q).
+template <class Real>
+PBF_HD HalfSpace<Real> half_space_spiky(Real q) {
+  if (!(q < Real(1))) return {};
+  q = max2(q, Real(0));
+  Real t = Real(1) - q, t2 = t * t, t4 = t2 * t2;
+  return {Real(0.5) * t4 * t * (Real(1) + q + q), Real(-1.5) * t4 * (Real(1) + Real(4) * q)};
+}
+
+/// Poly6: D = 1/2 - 315/256 (q - 4q^3/3 + 6q^5/5 - 4q^7/7 + q^9/9), D' = -315/256 (1-q^2)^4.
+template <class Real>
+PBF_HD HalfSpace<Real> half_space_poly6(Real q) {
+  if (!(q < Real(1))) return {};
+  q = max2(q, Real(0));
+  Real s = q * q, u = Real(1) - s, u2 = u * u;
+  Real p = Real(1) + s * (Real(-4.0 / 3.0) +
+                          s * (Real(6.0 / 5.0) + s * (Real(-4.0 / 7.0) + s * Real(1.0 / 9.0))));
+  Real a = Real(315.0 / 256.0);
+  return {max2(Real(0.5) - a * q * p, Real(0)), -a * u2 * u2};
+}
+
+/// Contribution of all walls at x: density in units of rho0 and gradient in rho0/h.
+template <class Real>
+struct WallTerm {
+  Real density = 0;
+  Vec3<Real> gradient;
+};
+
+/// The walls' union by inclusion-exclusion, 1 - prod(1 - D_k): exact for one wall, an
+/// approximation where two half spaces overlap (its error: tests/oracle). The density kernel's D
+/// in `paper` is Poly6's, the gradient there Spiky's, as for particles.
+template <class Real, Smoothing S>
+PBF_HD WallTerm<Real> wall_term(Vec3<Real> x, const Params<Real>& p) {
+  WallTerm<Real> w;
+  if (!p.wall_density) return w;
+  const Real one(1);
+  if (x.x >= one && x.y >= one && x.z >= one && x.x <= p.box.x - one && x.y <= p.box.y - one &&
+      x.z <= p.box.z - one)
+    return w;
+  const Real distance[6] = {x.x, p.box.x - x.x, x.y, p.box.y - x.y, x.z, p.box.z - x.z};
+  Real keep_density = one, free[3] = {one, one, one}, slope[3] = {0, 0, 0};
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const int face = 2 * axis + side;
+      if (!(p.walls & (1u << face)) || !(distance[face] < one)) continue;
+      HalfSpace<Real> g = half_space_spiky(distance[face]);
+      HalfSpace<Real> d = S == Smoothing::paper ? half_space_poly6(distance[face]) : g;
+      keep_density = keep_density * (one - p.wall_scale * d.density);
+      // Two opposite walls closer than 2h: product rule for the second one.
+      Real f = one - p.wall_scale * g.density, s = p.wall_scale * (side == 0 ? g.slope : -g.slope);
+      slope[axis] = slope[axis] * f + s * free[axis];
+      free[axis] = free[axis] * f;
+    }
+  w.density = one - keep_density;
+  w.gradient = {slope[0] * free[1] * free[2], slope[1] * free[0] * free[2],
+                slope[2] * free[0] * free[1]};
+  return w;
+}
+
+template <class Real>
+PBF_HD Real clamp_axis(Real x, Real low, Real high, bool wall_low, bool wall_high) {
+  if (wall_low && x < low) x = low;
+  if (wall_high && x > high) x = high;
+  return x;
+}
+
+/// x moved to the nearest place inside the walls.
+template <class Real>
+PBF_HD Vec3<Real> clamp_inside(Vec3<Real> x, const Params<Real>& p) {
+  return {clamp_axis(x.x, p.margin, p.box.x - p.margin, p.walls & x_min, p.walls & x_max),
+          clamp_axis(x.y, p.margin, p.box.y - p.margin, p.walls & y_min, p.walls & y_max),
+          clamp_axis(x.z, p.margin, p.box.z - p.margin, p.walls & z_min, p.walls & z_max)};
+}
+
+}  // namespace pbf

@@ -1,0 +1,37 @@
+// Parameters of a step, passed by value to every pass. Everything is in the internal frame:
+// length in units of h from the domain's lower corner, time in seconds, density in units of rho0.
+// So no power of h appears in any formula: nothing overflows for h from 1e-6 m to 1e6 m, and
+// positions keep their digits however far the domain lies from the origin.
+#pragma once
+
+#include "kernels/vec3.h"
+
+namespace pbf {
+
+enum WallBit : unsigned { x_min = 1, x_max = 2, y_min = 4, y_max = 8, z_min = 16, z_max = 32 };
+
+template <class Real>
+struct Params {
+  int n = 0;                 ///< particles
+  Real dt = 0, inv_dt = 0;   ///< s, 1/s
+  Vec3<Real> gravity;        ///< h/s^2
+  Real damping = 1;          ///< factor on the velocity, once per update
+  Vec3<Real> box;            ///< h, extent of the domain
+  Real margin = 0;           ///< h, distance to a wall at which particles are clamped
+  unsigned walls = 63;       ///< WallBit mask of the faces that are walls
+  bool wall_density = true;  ///< walls contribute to density (boundary: density)
+  Real wall_scale = 1;       ///< calibration of that contribution, kernels/README.md (9)
+  int cells_x = 1, cells_y = 1, cells_z = 1;
+  Real inv_cell = 1;       ///< 1/h, one over the edge of a cell (>= h)
+  Real vol = 1;            ///< m/(rho0 h^3), weight of one particle
+  bool two_sided = false;  ///< C = rho - 1 instead of max(rho - 1, 0)
+  Real relaxation = 0;     ///< eps^ = eps h^2
+  Real step_length = 1;    ///< omega
+  Real tensile_k = 0;      ///< h^2
+  Real tensile_inv_w = 0;  ///< 1/W(delta_q)
+  int tensile_n = 4;
+  Real xsph = 0;       ///< c
+  Real vorticity = 0;  ///< 1/s, epsilon
+};
+
+}  // namespace pbf

@@ -1,0 +1,65 @@
+// delta and move: the position correction of one Jacobi sweep. Macklin & Mueller 2013, eq. 12, 14;
+// artificial pressure eq. 13; walls as in boundary.h.
+#pragma once
+
+#include "kernels/boundary.h"
+#include "kernels/neighbors.h"
+
+namespace pbf {
+
+/// x^n for a small positive integer n, by squaring: the same operations on every backend.
+template <class Real>
+PBF_HD Real power(Real x, int n) {
+  Real r(1);
+  for (; n > 0; n >>= 1) {
+    if (n & 1) r = r * x;
+    x = x * x;
+  }
+  return r;
+}
+
+/// dx_i = omega [ sum_j (lambda_i + lambda_j + s_corr) grad W_ij vol + lambda_i grad wall ].
+/// The velocity takes dx/dt at once: after the last sweep it is (x* - x)/dt, without the
+/// cancellation of that difference.
+template <class Real, class Lists, Smoothing S, bool tensile>
+struct DeltaPass {
+  Params<Real> p;
+  Lists lists;
+  const Vec4<Real>* position;  ///< w = lambda
+  const Real* density;
+  Vec4<Real>* position_out;  ///< out; w = density
+  Vec4<Real>* velocity;      ///< in/out, h/s
+
+  PBF_HD void operator()(int i) const {
+    const Vec4<Real> own = position[i];
+    const Vec3<Real> xi = xyz(own);
+    Vec3<Real> sum;
+    lists.for_each(i, [&](int j) {
+      const Vec4<Real> other = position[j];
+      const Vec3<Real> d = xi - xyz(other);
+      const Real q2 = dot(d, d);
+      Real weight = own.w + other.w;
+      if constexpr (!tensile) {
+        if (weight == Real(0)) return;  // neither is compressed
+      }
+      const Real q = square_root(q2);
+      const Real t = Spiky<Real>::t(q);
+      if constexpr (tensile) {
+        const Real w = density_norm<Real, S>() * density_shape<Real, S>(q2, t);
+        weight -= p.tensile_k * power(w * p.tensile_inv_w, p.tensile_n);
+      }
+      const Vec3<Real> e =
+          q2 > coincident_q_squared<Real>() ? (Real(1) / q) * d : separation<Real>(i, j);
+      sum = sum + (weight * t * t) * e;
+    });
+    const Real a = p.vol * Spiky<Real>::gradient_norm;
+    const Vec3<Real> wall = own.w * wall_term<Real, S>(xi, p).gradient;
+    const Vec3<Real> free = p.step_length * (a * sum + wall);
+    const Vec3<Real> target = xi + free;
+    const Vec3<Real> x = clamp_inside(target, p);
+    position_out[i] = with_w(x, density[i]);
+    velocity[i] = with_w(xyz(velocity[i]) + p.inv_dt * (free + (x - target)), Real(0));
+  }
+};
+
+}  // namespace pbf

@@ -1,0 +1,56 @@
+// predict: v += dt g, x* = x + dt v, and the cell of x*. Macklin & Mueller 2013, algorithm 1, l.
+// 1-4.
+#pragma once
+
+#include "kernels/boundary.h"
+#include "kernels/cell_index.h"
+
+namespace pbf {
+
+/// Position is clamped to the walls, and the velocity follows what the clamp did: a particle never
+/// enters the constraint solve from behind a wall, also when there are no iterations.
+template <class Real>
+struct PredictPass {
+  Params<Real> p;
+  Vec4<Real>* position;  ///< in x, out x*; w = 1 (density, until a sweep replaces it)
+  Vec4<Real>* velocity;  ///< in/out, h/s
+  int* cell;             ///< out
+
+  PBF_HD void operator()(int i) const {
+    Vec3<Real> v = p.damping * xyz(velocity[i]) + p.dt * p.gravity;
+    const Vec3<Real> free = xyz(position[i]) + p.dt * v;
+    const Vec3<Real> x = clamp_inside(free, p);
+    // Only a clamped coordinate changes v: elsewhere x - free is exactly 0.
+    v = v + p.inv_dt * (x - free);
+    position[i] = with_w(x, Real(1));
+    velocity[i] = with_w(v, Real(0));
+    cell[i] = linear_cell(cell_of(x, p), p);
+  }
+};
+
+/// The cell of x as it is: for the state before the first update.
+template <class Real>
+struct BinPass {
+  Params<Real> p;
+  const Vec4<Real>* position;
+  int* cell;
+  PBF_HD void operator()(int i) const { cell[i] = linear_cell(cell_of(xyz(position[i]), p), p); }
+};
+
+/// Gathers the particles in cell order; order[i] is the old place of the new i-th particle.
+template <class Real>
+struct GatherPass {
+  const int* order;
+  const Vec4<Real>*position, *velocity;
+  const int* id;
+  Vec4<Real>*position_out, *velocity_out;
+  int* id_out;
+  PBF_HD void operator()(int i) const {
+    const int o = order[i];
+    position_out[i] = position[o];
+    velocity_out[i] = velocity[o];
+    id_out[i] = id[o];
+  }
+};
+
+}  // namespace pbf

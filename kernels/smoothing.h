@@ -1,0 +1,74 @@
+// Smoothing functions in units of h (q = r/h, 0 <= q <= 1), integral 1 over the unit ball.
+// Mueller, Charypar & Gross 2003, eq. 20 (Poly6) and 21 (Spiky).
+#pragma once
+
+#include "kernels/vec3.h"
+
+namespace pbf {
+
+/// Which pair of functions a scene uses; a template argument of the pair loops.
+/// consistent: Spiky for the density and, as its derivative, for the gradient;
+/// paper: Poly6 for the density, Spiky for the gradient (Macklin & Mueller 2013).
+enum class Smoothing { consistent, paper };
+
+constexpr double kPi = 3.14159265358979323846;
+
+template <class Real>
+struct Poly6 {
+  static constexpr Real norm = Real(315.0 / (64.0 * kPi));
+  /// (1 - q^2)^3, 0 beyond q = 1; times `norm` it is W.
+  static PBF_HD Real shape(Real q_squared) {
+    Real t = max2(Real(1) - q_squared, Real(0));
+    return t * t * t;
+  }
+};
+
+template <class Real>
+struct Spiky {
+  static constexpr Real norm = Real(15.0 / kPi);
+  static constexpr Real gradient_norm = Real(-45.0 / kPi);
+  /// 1 - q, 0 beyond q = 1; W = norm t^3, dW/dq = gradient_norm t^2.
+  static PBF_HD Real t(Real q) { return max2(Real(1) - q, Real(0)); }
+};
+
+template <class Real, Smoothing S>
+PBF_HD Real density_norm() {
+  return S == Smoothing::paper ? Poly6<Real>::norm : Spiky<Real>::norm;
+}
+
+/// The density kernel's shape from what a pair loop has at hand: q^2 and t = 1 - q (clamped).
+template <class Real, Smoothing S>
+PBF_HD Real density_shape(Real q_squared, Real t) {
+  if constexpr (S == Smoothing::paper) return Poly6<Real>::shape(q_squared);
+  return t * t * t;
+}
+
+/// Squared distance (in h^2) below which two particles count as coincident: their direction is
+/// then chosen, not computed. Far above the smallest normal number of float.
+template <class Real>
+PBF_HD Real coincident_q_squared() {
+  return Real(1e-24);
+}
+
+/// A unit vector for the coincident pair (i, j), the same for both but for the sign, from a small
+/// integer hash: the pair separates in the same way in every run and on every backend.
+template <class Real>
+PBF_HD Vec3<Real> separation(int i, int j) {
+  unsigned a = unsigned(i < j ? i : j), b = unsigned(i < j ? j : i);
+  unsigned k = a * 2654435761u ^ (b * 2246822519u + 374761393u);
+  k ^= k >> 15;
+  k *= 2654435761u;
+  k ^= k >> 13;
+  // A point of the unit sphere: z uniform, the angle through a rational parametrisation, so that
+  // no trigonometric function (differing between libraries) is needed.
+  Real z = Real(k & 1023u) * Real(2.0 / 1023.0) - Real(1);
+  Real u = Real((k >> 10) & 1023u) * Real(2.0 / 1023.0) - Real(1);
+  Real s = square_root(max2(Real(1) - z * z, Real(0)));
+  Real d = Real(1) / (Real(1) + u * u);
+  Real cx = (Real(1) - u * u) * d, cy = (u + u) * d;
+  if (k & (1u << 20)) cx = -cx;
+  Vec3<Real> e{s * cx, s * cy, z};
+  return i < j ? e : Real(-1) * e;
+}
+
+}  // namespace pbf

@@ -1,0 +1,117 @@
+// The CPU executor: OpenMP threads over particles. One thread is the sequential baseline; the
+// result does not depend on the number of threads (every particle's sums have one order, the sort
+// is stable, reductions have a fixed shape).
+#pragma once
+
+#include <omp.h>
+
+#include <cstring>
+#include <vector>
+
+#include "kernels/neighbors.h"
+#include "kernels/pass_measure.h"
+#include "lib/base/stage_clock.h"
+#include "lib/cpu/host_buffer.h"
+
+namespace pbf {
+
+class CpuExec {
+ public:
+  using Lists = ChunkedLists;
+  template <class T>
+  using Buffer = HostBuffer<T>;
+
+  /// threads >= 1.
+  explicit CpuExec(int threads) : threads_(threads), scratch_(std::size_t(threads)) {}
+
+  void begin() { clock_.begin(); }
+  void mark(const char* stage) { clock_.mark(stage); }
+  const StageClock& clock() const { return clock_; }
+  int threads() const { return threads_; }
+
+  template <class T>
+  void to_device(const T* host, HostBuffer<T>& to) {
+    if (to.size()) std::memcpy(to.data(), host, to.bytes());
+  }
+
+  /// pass(i) for i in 0..n-1. Dynamic pieces: particles at the surface have fewer neighbours.
+  template <class Pass>
+  void for_each(int n, const Pass& pass) {
+#pragma omp parallel for schedule(dynamic, 1024) num_threads(threads_) if (n > 1024)
+    for (int i = 0; i < n; ++i) pass(i);
+  }
+
+  /// Sum of pass(i): 1024 particles at a time, then over those sums in order.
+  template <class Pass>
+  MeasureSums reduce(int n, const Pass& pass) {
+    const int chunks = (n + kChunk - 1) / kChunk;
+    partial_.assign(std::size_t(chunks), MeasureSums{});
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (chunks > 1)
+    for (int c = 0; c < chunks; ++c)
+      for (int i = c * kChunk; i < n && i < (c + 1) * kChunk; ++i)
+        partial_[std::size_t(c)].add(pass(i));
+    MeasureSums total;
+    for (const MeasureSums& s : partial_) total.add(s);
+    return total;
+  }
+
+  /// Stable counting sort: order[k] = index of the k-th particle by (cell, index); start[c] = first
+  /// k of cell c, start[cells] = n.
+  void sort_by_cell(const int* cell, int n, int cells, int* order, int* start);
+
+  /// Exact lists of all pairs closer than h; grows as it must (std::bad_alloc when it cannot).
+  template <class Real>
+  Lists build_lists(const Vec4<Real>* position, const int* cell_start, const Params<Real>& p) {
+    const int chunks = (p.n + kChunk - 1) / kChunk;
+    chunks_.resize(std::size_t(chunks));
+    pointers_.resize(std::size_t(chunks));
+    begin_.resize(std::size_t(p.n));
+    count_.resize(std::size_t(p.n));
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (chunks > 1)
+    for (int c = 0; c < chunks; ++c) {
+      std::vector<int>& found = scratch_[std::size_t(omp_get_thread_num())];
+      std::size_t used = 0;
+      for (int i = c * kChunk; i < p.n && i < (c + 1) * kChunk; ++i) {
+        // Room for every candidate first, so that the loop below only writes and counts.
+        std::size_t candidates = 0;
+        for_each_run(cell_of(xyz(position[i]), p), cell_start, p,
+                     [&](int b, int e) { candidates += std::size_t(e - b); });
+        if (found.size() < used + candidates) found.resize((used + candidates) * 5 / 4 + 1024);
+        int* out = found.data() + used;
+        begin_[std::size_t(i)] = std::uint32_t(used);
+        const Vec3<Real> xi = xyz(position[i]);
+        for_each_run(cell_of(xi, p), cell_start, p, [&](int b, int e) {
+          for (int j = b; j < e; ++j) {
+            const Vec3<Real> d = xi - xyz(position[j]);
+            *out = j;
+            out += (dot(d, d) < Real(1)) & (j != i);
+          }
+        });
+        const std::size_t end = std::size_t(out - found.data());
+        count_[std::size_t(i)] = std::uint32_t(end - used);
+        used = end;
+      }
+      HostBuffer<int>& mine = chunks_[std::size_t(c)];
+      // Grow with some air, shrink only when far too large: sizes change little between updates.
+      if (mine.size() < used || mine.size() > 2 * used + 4096) mine.resize(used + used / 8 + 64);
+      std::memcpy(mine.data(), found.data(), used * sizeof(int));
+      pointers_[std::size_t(c)] = mine.data();
+    }
+    return {pointers_.data(), begin_.data(), count_.data()};
+  }
+
+  std::size_t list_bytes() const;
+
+ private:
+  static constexpr int kChunk = 1 << ChunkedLists::chunk_bits;
+  int threads_;
+  StageClock clock_;
+  std::vector<MeasureSums> partial_;
+  std::vector<std::vector<int>> scratch_;  ///< per thread
+  std::vector<HostBuffer<int>> chunks_;
+  std::vector<const int*> pointers_;
+  HostBuffer<std::uint32_t> begin_, count_;
+  std::vector<int> histogram_;  ///< threads x cells
+};
+
+}  // namespace pbf

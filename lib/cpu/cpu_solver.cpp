@@ -1,0 +1,120 @@
+#include "lib/cpu/cpu_solver.h"
+
+#include <fstream>
+#include <new>
+
+#include "lib/base/error.h"
+#include "lib/cpu/cpu_exec.h"
+#include "lib/solver/step_solver.h"
+
+namespace pbf {
+namespace {
+
+std::string cpu_model() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  return "unknown CPU";
+}
+
+template <class Real>
+class CpuSolver final : public Solver {
+ public:
+  CpuSolver(const Scene& scene, const Plan& plan, const Particles& particles)
+      : scene_(scene),
+        mass_(plan.mass),
+        vol_(plan.vol),
+        wall_scale_(plan.wall_scale),
+        n_(std::int64_t(particles.size())),
+        exec_(scene.threads > 0 ? scene.threads : omp_get_max_threads()) {
+    Stopwatch watch;
+    const InternalState<Real> s = to_internal<Real>(scene, particles);
+    stepper_ = std::make_unique<Stepper<Real, CpuExec>>(
+        exec_, make_params<Real>(scene, plan), scene.solver.kernels, scene.solver.iterations,
+        plan.fused, plan.tensile, s.position, s.velocity, s.id);
+    init_seconds_ = watch.seconds();
+    init_entries_ = exec_.clock().entries();
+  }
+
+  void step(int updates) override {
+    for (int k = 0; k < updates; ++k) stepper_->step();
+    updates_ += updates;
+  }
+
+  Snapshot download(const std::vector<std::string>& fields, ScalarType type) override {
+    SnapshotLayout layout;
+    Snapshot s = layout.make(fields, type, std::size_t(n_));
+    s.update = updates_;
+    s.time = time();
+    type == ScalarType::f64 ? fill<double>(s) : fill<float>(s);
+    return s;
+  }
+
+  Measures measure() override {
+    return to_measures(stepper_->measure(), scene_, mass_, n_, updates_, time());
+  }
+
+  std::vector<StageTime> timings() const override {
+    std::vector<StageTime> out{{"init", init_seconds_, 1}};
+    for (const auto& e : exec_.clock().entries()) {
+      double before = 0;  // sorting the first state is part of init, not of the updates
+      for (const auto& b : init_entries_)
+        if (b.name == e.name) before = b.seconds;
+      out.push_back({e.name, e.seconds - before, e.calls});
+    }
+    return out;
+  }
+
+  SolverInfo info() const override {
+    SolverInfo i;
+    i.backend = "cpu";
+    i.precision = sizeof(Real) == 8 ? "double" : "float";
+    i.device = cpu_model();
+    i.threads = exec_.threads();
+    i.vol = vol_;
+    i.wall_scale = wall_scale_;
+    i.bytes = stepper_->bytes();
+    return i;
+  }
+
+  std::int64_t updates_done() const override { return updates_; }
+  double time() const override { return double(updates_) * scene_.time.step; }
+
+ private:
+  template <class Out>
+  static Out* array(Snapshot& s, const char* name) {
+    for (auto& f : s.fields)
+      if (f.name == name) return f.as<Out>().data();
+    return nullptr;
+  }
+  template <class Out>
+  void fill(Snapshot& s) {
+    stepper_->export_to(scene_.h(), scene_.fluid.rest_density, scene_.domain.min,
+                        array<Out>(s, "position"), array<Out>(s, "velocity"),
+                        array<Out>(s, "density"));
+  }
+
+  Scene scene_;
+  double mass_, vol_, wall_scale_;
+  std::int64_t n_;
+  CpuExec exec_;
+  std::unique_ptr<Stepper<Real, CpuExec>> stepper_;
+  double init_seconds_ = 0;
+  std::vector<StageClock::Entry> init_entries_;
+  std::int64_t updates_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan,
+                                        const Particles& particles) try {
+  if (scene.precision == Precision::dbl)
+    return std::make_unique<CpuSolver<double>>(scene, plan, particles);
+  return std::make_unique<CpuSolver<float>>(scene, plan, particles);
+} catch (const std::bad_alloc&) {
+  throw Error(ExitCode::unavailable, "not enough memory for " + std::to_string(particles.size()) +
+                                         " particles; increase fluid.spacing, or use a machine "
+                                         "with more memory (pbf plan says how much)");
+}
+
+}  // namespace pbf

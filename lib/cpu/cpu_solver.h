@@ -1,0 +1,15 @@
+// The CPU backend behind the Solver interface.
+#pragma once
+
+#include <memory>
+
+#include "lib/solver/solver.h"
+
+namespace pbf {
+
+/// Runs with scene.threads threads (0: all that the process may use). Throws Error(unavailable)
+/// when there is not enough memory.
+std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan,
+                                        const Particles& particles);
+
+}  // namespace pbf

@@ -1,0 +1,58 @@
+// What a scene needs, computed before anything is allocated: passes, arrays, grid, features, and
+// what was left out. A pure function of the scene; everything downstream obeys it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lib/scene/scene.h"
+
+namespace pbf {
+
+/// One pass of an update, in order. `stage` is its timer's name.
+struct PlanPass {
+  std::string name, stage, reads, writes;
+  int per_update = 1;  ///< times per update
+};
+
+/// One array that lives as long as the solver.
+struct PlanArray {
+  std::string name, element;      ///< e.g. "position", "4 x float"
+  double bytes_per_particle = 0;  ///< 0 for arrays sized by the grid
+  std::int64_t bytes = 0;
+};
+
+struct PlanLeftOut {
+  std::string what, because;  ///< e.g. "xsph", "no key viscosity"
+};
+
+struct Plan {
+  std::int64_t particles = 0;
+  double cell_edge = 1;  ///< in h, >= 1: larger only where the box would need too many cells
+  int cells[3] = {1, 1, 1};
+  double vol = 1;  ///< m/(rho0 h^3), lib/solver/calibrate.h
+  double wall_scale = 1;
+  double mass = 0;                  ///< kg, of one particle as reported
+  bool needs_density_pass = false;  ///< density is summed apart from lambda
+  bool fused = true;
+  bool tensile = false, xsph = false, vorticity = false;
+  std::vector<PlanPass> passes;
+  std::vector<PlanArray> arrays;
+  std::vector<PlanLeftOut> left_out;
+  std::vector<std::string> files;  ///< with estimated sizes
+
+  std::int64_t bytes() const;  ///< sum over arrays
+};
+
+/// Pure: touches no file and no device. `particles` from count_particles().
+/// Throws Error(bad_input) where the grid of the scene cannot be numbered.
+Plan make_plan(const Scene& scene, std::int64_t particles);
+
+/// The plan for people: passes, arrays, files, what was left out and because of which key.
+std::string plan_text(const Plan& plan, const Scene& scene);
+
+/// The same as one JSON object.
+std::string plan_json(const Plan& plan, const Scene& scene);
+
+}  // namespace pbf

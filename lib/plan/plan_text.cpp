@@ -1,0 +1,90 @@
+// The plan as text and as JSON.
+#include <cstdio>
+
+#include "lib/plan/plan.h"
+
+namespace pbf {
+namespace {
+
+template <class... A>
+std::string format(const char* pattern, A... a) {
+  char buffer[512];
+  std::snprintf(buffer, sizeof buffer, pattern, a...);
+  return buffer;
+}
+
+std::string quoted(const std::string& s) {
+  std::string out = "\"";
+  for (char c : s) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < 0x20)
+      out += format("\\u%04x", c);
+    else
+      out += c;
+  }
+  return out + "\"";
+}
+
+/// "[a,b,...]" from one string per element.
+template <class Range, class F>
+std::string list(const Range& range, F&& f) {
+  std::string out = "[";
+  for (const auto& e : range) {
+    if (out.size() > 1) out += ',';
+    out += f(e);
+  }
+  return out + "]";
+}
+
+}  // namespace
+
+std::string plan_text(const Plan& plan, const Scene& s) {
+  std::string out = format("scene %s: %lld particles, h = %g m, d = %g m, %s, %s\n", s.name.c_str(),
+                           static_cast<long long>(plan.particles), s.h(), s.fluid.spacing,
+                           s.backend == Backend::cuda ? "cuda" : "cpu",
+                           s.precision == Precision::dbl ? "double" : "float");
+  out += format("grid %d x %d x %d cells of edge %g h\n", plan.cells[0], plan.cells[1],
+                plan.cells[2], plan.cell_edge);
+  out += "passes of one update\n";
+  for (const auto& p : plan.passes)
+    out += format("  %-22s x%-3d stage %-10s reads %-34s writes %s\n", p.name.c_str(), p.per_update,
+                  p.stage.c_str(), p.reads.c_str(), p.writes.c_str());
+  out += "arrays\n";
+  for (const auto& a : plan.arrays)
+    out += format("  %-28s %-12s %8.1f B/particle %10.3f MB\n", a.name.c_str(), a.element.c_str(),
+                  a.bytes_per_particle, double(a.bytes) / 1e6);
+  out += format("  %-28s %-12s %8.1f B/particle %10.3f MB\n", "total", "",
+                plan.particles ? double(plan.bytes()) / double(plan.particles) : 0.0,
+                double(plan.bytes()) / 1e6);
+  out += "files\n";
+  for (const auto& f : plan.files) out += "  " + f + "\n";
+  out += "left out\n";
+  for (const auto& l : plan.left_out) out += "  " + l.what + ": " + l.because + "\n";
+  return out;
+}
+
+std::string plan_json(const Plan& plan, const Scene& s) {
+  std::string out = "{\"scene\":" + quoted(s.name);
+  out += format(",\"particles\":%lld,\"bytes\":%lld,\"cells\":[%d,%d,%d],\"cell_edge_h\":%.17g",
+                static_cast<long long>(plan.particles), static_cast<long long>(plan.bytes()),
+                plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge);
+  out += format(",\"vol\":%.17g,\"wall_scale\":%.17g,\"mass_kg\":%.17g", plan.vol, plan.wall_scale,
+                plan.mass);
+  out += ",\"passes\":" + list(plan.passes, [](const PlanPass& p) {
+           return "{\"name\":" + quoted(p.name) + ",\"stage\":" + quoted(p.stage) +
+                  ",\"reads\":" + quoted(p.reads) + ",\"writes\":" + quoted(p.writes) +
+                  format(",\"per_update\":%d}", p.per_update);
+         });
+  out += ",\"arrays\":" + list(plan.arrays, [](const PlanArray& a) {
+           return "{\"name\":" + quoted(a.name) + ",\"element\":" + quoted(a.element) +
+                  format(",\"bytes_per_particle\":%g,\"bytes\":%lld}", a.bytes_per_particle,
+                         static_cast<long long>(a.bytes));
+         });
+  out += ",\"files\":" + list(plan.files, [](const std::string& f) { return quoted(f); });
+  out += ",\"left_out\":" + list(plan.left_out, [](const PlanLeftOut& l) {
+           return "{\"what\":" + quoted(l.what) + ",\"because\":" + quoted(l.because) + "}";
+         });
+  return out + "}";
+}
+
+}  // namespace pbf

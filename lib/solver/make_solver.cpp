@@ -1,0 +1,16 @@
+#include "lib/base/error.h"
+#include "lib/cpu/cpu_solver.h"
+#include "lib/plan/plan.h"
+#include "lib/solver/solver.h"
+
+namespace pbf {
+
+std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan,
+                                    const Particles& particles) {
+  if (scene.backend == Backend::cpu) return make_cpu_solver(scene, plan, particles);
+  throw Error(ExitCode::unavailable,
+              "this build has no CUDA backend; run with --backend cpu, or build with "
+              "-DPBF_CUDA=ON where a CUDA toolkit is installed");
+}
+
+}  // namespace pbf

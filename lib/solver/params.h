@@ -1,0 +1,50 @@
+// Scene (SI units) -> Params (internal frame).
+#pragma once
+
+#include "kernels/params.h"
+#include "kernels/smoothing.h"
+#include "lib/plan/plan.h"
+
+namespace pbf {
+
+template <class Real>
+Params<Real> make_params(const Scene& s, const Plan& plan) {
+  const double h = s.h();
+  Params<Real> p;
+  p.n = int(plan.particles);
+  p.dt = Real(s.time.step);
+  p.inv_dt = Real(1 / s.time.step);
+  p.gravity = {Real(s.gravity[0] / h), Real(s.gravity[1] / h), Real(s.gravity[2] / h)};
+  p.damping = Real(s.solver.velocity_damping);
+  p.box = {Real((s.domain.max[0] - s.domain.min[0]) / h),
+           Real((s.domain.max[1] - s.domain.min[1]) / h),
+           Real((s.domain.max[2] - s.domain.min[2]) / h)};
+  p.margin = Real(s.solver.wall_margin / h);
+  const char* faces[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+  for (const auto& open : s.domain.open)
+    for (int k = 0; k < 6; ++k)
+      if (open == faces[k]) p.walls &= ~(1u << k);
+  p.wall_density = s.solver.boundary == BoundaryMode::density && p.walls != 0;
+  p.wall_scale = Real(plan.wall_scale);
+  p.cells_x = plan.cells[0];
+  p.cells_y = plan.cells[1];
+  p.cells_z = plan.cells[2];
+  p.inv_cell = Real(1 / plan.cell_edge);
+  p.vol = Real(plan.vol);
+  p.two_sided = s.solver.constraint == ConstraintMode::two_sided;
+  p.relaxation = Real(s.solver.relaxation);
+  p.step_length = Real(s.solver.step_length);
+  if (s.tensile) {
+    p.tensile_k = Real(s.tensile->k);
+    const double q = s.tensile->delta_q, t = 1 - q;
+    p.tensile_inv_w = Real(1 / (s.solver.kernels == KernelMode::paper
+                                    ? Poly6<double>::norm * Poly6<double>::shape(q * q)
+                                    : Spiky<double>::norm * t * t * t));
+    p.tensile_n = s.tensile->n;
+  }
+  if (s.viscosity) p.xsph = Real(s.viscosity->xsph);
+  if (s.vorticity) p.vorticity = Real(s.vorticity->epsilon);
+  return p;
+}
+
+}  // namespace pbf

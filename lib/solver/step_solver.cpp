@@ -1,0 +1,58 @@
+#include "lib/solver/step_solver.h"
+
+#include "lib/base/error.h"
+
+namespace pbf {
+
+Measures to_measures(const MeasureSums& s, const Scene& scene, double mass, std::int64_t particles,
+                     std::int64_t update, double time) {
+  const double h = scene.h(), n = double(particles), counted = double(particles - s.non_finite);
+  Measures m;
+  m.time = time;
+  m.update = update;
+  m.compression_mean = s.compression / n;
+  m.compression_rms = std::sqrt(s.compression_squared / n);
+  m.compression_max = s.compression_max;
+  m.kinetic_energy = 0.5 * mass * h * h * s.speed_squared;
+  for (int k = 0; k < 3; ++k) {
+    m.potential_energy -= mass * scene.gravity[std::size_t(k)] * h * s.x[k];
+    m.momentum[k] = mass * h * s.v[k];
+    m.center_of_mass[k] =
+        scene.domain.min[std::size_t(k)] + h * s.x[k] / (counted > 0 ? counted : 1);
+    m.front[k] = scene.domain.min[std::size_t(k)] + h * s.front[k];
+  }
+  m.speed_max = h * std::sqrt(s.speed_squared_max);
+  m.neighbors_mean = double(s.neighbors) / n;
+  m.neighbors_max = s.neighbors_max;
+  m.outside = s.outside;
+  m.non_finite = s.non_finite;
+  return m;
+}
+
+Snapshot SnapshotLayout::make(const std::vector<std::string>& fields, ScalarType type,
+                              std::size_t n) {
+  velocity = density = false;
+  for (const std::string& f : fields) {
+    if (f == "velocity")
+      velocity = true;
+    else if (f == "density")
+      density = true;
+    else if (f != "position" && f != "id")
+      throw Error(ExitCode::bad_input, "no field \"" + f + "\"; there are velocity and density");
+  }
+  Snapshot s;
+  s.count = n;
+  auto add = [&](const char* name, const char* unit, ScalarType t, int components) {
+    s.fields.push_back({name, unit, t, components, {}});
+    s.fields.back().bytes.resize(n * std::size_t(components) * size_of(t));
+  };
+  add("position", "m", type, 3);
+  if (velocity) add("velocity", "m/s", type, 3);
+  if (density) add("density", "kg/m^3", type, 1);
+  add("id", "1", ScalarType::i32, 1);
+  auto id = s.fields.back().as<std::int32_t>();
+  for (std::size_t i = 0; i < n; ++i) id[i] = std::int32_t(i);
+  return s;
+}
+
+}  // namespace pbf

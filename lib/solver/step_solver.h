@@ -1,0 +1,50 @@
+// Solver over a Stepper: what the two backends share. Host side only.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "lib/solver/params.h"
+#include "lib/solver/solver.h"
+#include "lib/solver/stepper.h"
+
+namespace pbf {
+
+/// Positions and velocities of a scene in the internal frame, in the order of ids.
+template <class Real>
+struct InternalState {
+  std::vector<Vec4<Real>> position, velocity;
+  std::vector<int> id;
+};
+
+template <class Real>
+InternalState<Real> to_internal(const Scene& s, const Particles& particles) {
+  const std::size_t n = particles.size();
+  const double h = s.h();
+  InternalState<Real> out;
+  out.position.resize(n);
+  out.velocity.resize(n);
+  out.id.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Double3 &x = particles.position[i], &v = particles.velocity[i], &o = s.domain.min;
+    out.position[i] = {Real((x[0] - o[0]) / h), Real((x[1] - o[1]) / h), Real((x[2] - o[2]) / h),
+                       Real(1)};
+    out.velocity[i] = {Real(v[0] / h), Real(v[1] / h), Real(v[2] / h), Real(0)};
+    out.id[i] = int(i);
+  }
+  return out;
+}
+
+/// Sums in the internal frame -> Measures in SI units.
+Measures to_measures(const MeasureSums& sums, const Scene& scene, double mass,
+                     std::int64_t particles, std::int64_t update, double time);
+
+/// Names of the fields of a snapshot and whether they are asked for.
+struct SnapshotLayout {
+  bool velocity = false, density = false;
+  /// An empty snapshot with every array allocated; throws Error(bad_input) for an unknown field.
+  Snapshot make(const std::vector<std::string>& fields, ScalarType type, std::size_t n);
+};
+
+}  // namespace pbf

@@ -1,0 +1,185 @@
+// The step, written once, over an executor. An executor supplies: Lists (the neighbour policy),
+// Buffer<T>, for_each(n, pass), sort_by_cell, build_lists, reduce, to_host, and mark(stage).
+#pragma once
+
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "kernels/pass_delta.h"
+#include "kernels/pass_export.h"
+#include "kernels/pass_lambda.h"
+#include "kernels/pass_measure.h"
+#include "kernels/pass_predict.h"
+#include "kernels/pass_vorticity.h"
+#include "kernels/pass_xsph.h"
+#include "lib/scene/scene.h"
+
+namespace pbf {
+
+/// Calls f with the scene's choices as types, so that no pair loop tests them.
+template <class F>
+void with_smoothing(KernelMode mode, F&& f) {
+  if (mode == KernelMode::paper)
+    f(std::integral_constant<Smoothing, Smoothing::paper>{});
+  else
+    f(std::integral_constant<Smoothing, Smoothing::consistent>{});
+}
+template <class F>
+void with_bool(bool b, F&& f) {
+  b ? f(std::true_type{}) : f(std::false_type{});
+}
+
+template <class Real, class Exec>
+class Stepper {
+ public:
+  using Lists = typename Exec::Lists;
+  template <class T>
+  using Buffer = typename Exec::template Buffer<T>;
+
+  /// State in the internal frame. Positions and velocities are in the order of ids 0..n-1.
+  Stepper(Exec& exec, const Params<Real>& params, KernelMode mode, int iterations, bool fused,
+          bool tensile, const std::vector<Vec4<Real>>& position,
+          const std::vector<Vec4<Real>>& velocity, const std::vector<int>& id)
+      : exec_(exec),
+        p_(params),
+        mode_(mode),
+        iterations_(iterations),
+        fused_(fused),
+        tensile_(tensile) {
+    const std::size_t n = position.size();
+    for (auto* b : {&position_, &other_position_, &velocity_, &other_velocity_}) b->resize(n);
+    for (auto* b : {&id_, &other_id_, &cell_, &order_}) b->resize(n);
+    density_.resize(n);
+    cell_start_.resize(std::size_t(cells()) + 1);
+    if (p_.vorticity > Real(0)) curl_.resize(n);
+    exec_.to_device(position.data(), position_);
+    exec_.to_device(velocity.data(), velocity_);
+    exec_.to_device(id.data(), id_);
+    exec_.for_each(p_.n, BinPass<Real>{p_, position_.data(), cell_.data()});
+    sort_and_list();
+    sum_density();
+  }
+
+  /// One update (kernels/README.md, "The step").
+  void step() {
+    exec_.begin();
+    exec_.for_each(p_.n, PredictPass<Real>{p_, position_.data(), velocity_.data(), cell_.data()});
+    exec_.mark("predict");
+    sort_and_list();
+    with_smoothing(mode_, [&](auto s) {
+      for (int k = 0; k < iterations_; ++k) sweep<decltype(s)::value>();
+      if (p_.xsph > Real(0)) {
+        exec_.for_each(p_.n,
+                       XsphPass<Real, Lists, decltype(s)::value>{
+                           p_, lists_, position_.data(), velocity_.data(), other_velocity_.data()});
+        std::swap(velocity_, other_velocity_);
+        exec_.mark("xsph");
+      }
+    });
+    if (p_.vorticity > Real(0)) {
+      exec_.for_each(p_.n, CurlPass<Real, Lists>{p_, lists_, position_.data(), velocity_.data(),
+                                                 curl_.data()});
+      exec_.for_each(p_.n, VorticityPass<Real, Lists>{p_, lists_, position_.data(), curl_.data(),
+                                                      velocity_.data()});
+      exec_.mark("vorticity");
+    }
+    density_is_current_ = false;
+  }
+
+  /// Sums at the present positions. The lists are those of the update: making new ones would
+  /// reorder the particles, and how often a run is measured must not change it.
+  MeasureSums measure() {
+    exec_.begin();
+    sum_density();
+    auto sums = exec_.reduce(p_.n, MeasurePass<Real, Lists>{p_, lists_, position_.data(),
+                                                            velocity_.data(), density_.data()});
+    exec_.mark("measure");
+    return sums;
+  }
+
+  /// SI units, id order, into device-visible buffers; null where not asked for.
+  template <class Out>
+  void export_to(double h, double rest_density, const Double3& origin, Out* position, Out* velocity,
+                 Out* density) {
+    exec_.begin();
+    if (density) sum_density();
+    exec_.for_each(p_.n, ExportPass<Real, Out>{h,
+                                               rest_density,
+                                               {origin[0], origin[1], origin[2]},
+                                               position_.data(),
+                                               velocity_.data(),
+                                               density_.data(),
+                                               id_.data(),
+                                               position,
+                                               velocity,
+                                               density});
+    exec_.mark("download");
+  }
+
+  std::size_t bytes() const {
+    return position_.bytes() + other_position_.bytes() + velocity_.bytes() +
+           other_velocity_.bytes() + id_.bytes() + other_id_.bytes() + cell_.bytes() +
+           order_.bytes() + density_.bytes() + cell_start_.bytes() + curl_.bytes() +
+           exec_.list_bytes();
+  }
+
+ private:
+  int cells() const { return p_.cells_x * p_.cells_y * p_.cells_z; }
+
+  void sort_and_list() {
+    exec_.sort_by_cell(cell_.data(), p_.n, cells(), order_.data(), cell_start_.data());
+    exec_.for_each(
+        p_.n, GatherPass<Real>{order_.data(), position_.data(), velocity_.data(), id_.data(),
+                               other_position_.data(), other_velocity_.data(), other_id_.data()});
+    std::swap(position_, other_position_);
+    std::swap(velocity_, other_velocity_);
+    std::swap(id_, other_id_);
+    exec_.mark("grid");
+    lists_ = exec_.build_lists(position_.data(), cell_start_.data(), p_);
+    exec_.mark("neighbors");
+  }
+
+  template <Smoothing S>
+  void sweep() {
+    if (!fused_) {
+      exec_.for_each(p_.n,
+                     DensityPass<Real, Lists, S>{p_, lists_, position_.data(), density_.data()});
+      exec_.mark("density");
+    }
+    with_bool(fused_, [&](auto fused) {
+      exec_.for_each(p_.n,
+                     LambdaPass<Real, Lists, S, decltype(fused)::value>{
+                         p_, lists_, position_.data(), other_position_.data(), density_.data()});
+    });
+    exec_.mark("lambda");
+    with_bool(tensile_, [&](auto tensile) {
+      exec_.for_each(p_.n, DeltaPass<Real, Lists, S, decltype(tensile)::value>{
+                               p_, lists_, other_position_.data(), density_.data(),
+                               position_.data(), velocity_.data()});
+    });
+    exec_.mark("delta");
+  }
+
+  void sum_density() {
+    if (density_is_current_) return;
+    with_smoothing(mode_, [&](auto s) {
+      exec_.for_each(p_.n, DensityPass<Real, Lists, decltype(s)::value>{
+                               p_, lists_, position_.data(), density_.data()});
+    });
+    density_is_current_ = true;
+  }
+
+  Exec& exec_;
+  Params<Real> p_;
+  KernelMode mode_;
+  int iterations_;
+  bool fused_, tensile_;
+  bool density_is_current_ = false;
+  Lists lists_{};
+  Buffer<Vec4<Real>> position_, other_position_, velocity_, other_velocity_, curl_;
+  Buffer<Real> density_;
+  Buffer<int> id_, other_id_, cell_, order_, cell_start_;
+};
+
+}  // namespace pbf
