@@ -31,11 +31,13 @@ struct Body {
   std::string path;          ///< file: CSV (header x,y,z[,vx,vy,vz]) or HDF5 (position[,velocity]);
                              ///< relative to the scene file
   Double3 velocity{};        ///< m/s, added to every particle of the body
+  bool operator==(const Body&) const = default;
 };
 
 struct Domain {
   Double3 min{}, max{1, 1, 1};  ///< m
   std::vector<std::string> open;  ///< faces without a wall: x_min x_max y_min y_max z_min z_max
+  bool operator==(const Domain&) const = default;
 };
 
 struct Fluid {
@@ -44,11 +46,13 @@ struct Fluid {
   double smoothing_ratio = 2;   ///< h/d
   std::optional<double> mass;   ///< kg per particle; absent: rho0 d^3, density sum calibrated so
                                 ///< that the rest lattice has density rho0; present: used as it is
+  bool operator==(const Fluid&) const = default;
 };
 
 struct Time {
   double step = 0.002;   ///< s, dt of one update
   double end = 1;        ///< s, rounded to whole updates
+  bool operator==(const Time&) const = default;
 };
 
 struct SolverSettings {
@@ -61,6 +65,7 @@ struct SolverSettings {
   double wall_margin = 0;         ///< m, distance to a wall at which particles are clamped
   double velocity_damping = 1;    ///< factor on the velocity, once per update
   bool fused = true;              ///< density and lambda in one loop over the neighbours
+  bool operator==(const SolverSettings&) const = default;
 };
 
 /// Artificial pressure (Macklin & Mueller 2013, eq. 13); s_corr = -k (W(r)/W(delta_q h))^n.
@@ -68,16 +73,19 @@ struct Tensile {
   double k = 1e-3;         ///< in units of h^2
   double delta_q = 0.3;    ///< in units of h
   int n = 4;               ///< exponent
+  bool operator==(const Tensile&) const = default;
 };
 
 /// XSPH viscosity (Schechter & Bridson 2012; Macklin & Mueller 2013, eq. 17).
 struct Viscosity {
   double xsph = 0.05;      ///< c, 0..1 stable
+  bool operator==(const Viscosity&) const = default;
 };
 
 /// Vorticity confinement (Macklin & Mueller 2013, eq. 15-16), in the stabilised form.
 struct Vorticity {
   double epsilon = 0.1;    ///< dimensionless strength
+  bool operator==(const Vorticity&) const = default;
 };
 
 struct Output {
@@ -85,6 +93,7 @@ struct Output {
   std::vector<std::string> fields{"velocity", "density"};  ///< besides position and id
   Precision precision = Precision::single;                 ///< of floating-point fields on disk
   bool gzip = false;                   ///< compression: none | gzip (shuffle + deflate 1)
+  bool operator==(const Output&) const = default;
 };
 
 struct Camera {
@@ -92,6 +101,7 @@ struct Camera {
   std::optional<Double3> target;    ///< m; absent: centre of the domain
   double fov = 35;                  ///< degrees, vertical
   double orbit = 0;                 ///< degrees per second of simulated time about `up`
+  bool operator==(const Camera&) const = default;
 };
 
 struct Render {
@@ -101,6 +111,7 @@ struct Render {
   std::optional<std::array<double, 2>> range;  ///< of the colour bar; absent: from the scene
   double radius = 0;             ///< m, drawn radius of a particle; 0: half the spacing
   Camera camera;
+  bool operator==(const Render&) const = default;
 };
 
 struct Scene {
@@ -114,7 +125,7 @@ struct Scene {
   std::optional<Tensile> tensile;
   std::optional<Viscosity> viscosity;
   std::optional<Vorticity> vorticity;
-  int measure_every = 10;          ///< updates between measures (log.measure_every)
+  int measure_every = 10;          ///< updates between measures
   std::optional<Output> output;
   std::optional<Render> render;
   Backend backend = Backend::cpu;
@@ -122,6 +133,7 @@ struct Scene {
   int threads = 0;                ///< CPU threads; 0: all that the process may use
 
   double h() const { return fluid.spacing * fluid.smoothing_ratio; }  ///< m, smoothing length
+  bool operator==(const Scene&) const = default;
 };
 
 }  // namespace pbf

@@ -1,0 +1,60 @@
+// The lattices of block and sphere bodies: which points they hold, and how many. Header only.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "lib/scene/scene.h"
+
+namespace pbf {
+
+/// Largest number of particles of a scene: ids are 32-bit and signed.
+inline constexpr double kMaxParticles = 2147483647.0;
+
+/// Whole cells of edge d (m) along each axis of a block. A cell that is short by less than a
+/// millionth of d counts: (0.4 - 0) / 0.02 need not be 20 in binary. Doubles, for they may be
+/// beyond any integer.
+inline std::array<double, 3> block_cells(const Body& body, double d) {
+  std::array<double, 3> n{};
+  for (int a = 0; a < 3; ++a) n[a] = std::floor((body.max[a] - body.min[a]) / d + 1e-6);
+  return n;
+}
+
+/// Squared radius of a sphere in units of d, widened by rounding: lattice point (i, j, k) belongs
+/// to the sphere when i^2 + j^2 + k^2 <= sphere_limit.
+inline double sphere_limit(const Body& body, double d) {
+  const double r = body.radius / d;
+  return r * r * (1 + 1e-9);
+}
+
+/// Largest k >= 0 with k^2 <= rest, or -1 when rest < 0.
+inline std::int64_t half_width(double rest) {
+  if (rest < 0) return -1;
+  auto k = static_cast<std::int64_t>(std::sqrt(rest));
+  while (static_cast<double>(k) * static_cast<double>(k) > rest) --k;
+  while (static_cast<double>(k + 1) * static_cast<double>(k + 1) <= rest) ++k;
+  return k;
+}
+
+/// Number of particles of a body that is not read from a file; exact up to 2^53 for blocks and, for
+/// spheres, up to kMaxParticles (beyond it the volume's estimate). Makes nothing.
+inline double lattice_count(const Body& body, double d) {
+  if (body.shape == Shape::random_box) return static_cast<double>(body.count);
+  if (body.shape == Shape::block) {
+    const auto n = block_cells(body, d);
+    return std::fmax(n[0], 0) * std::fmax(n[1], 0) * std::fmax(n[2], 0);
+  }
+  const double limit = sphere_limit(body, d);
+  const double volume = 4.18879020478639098 * limit * std::sqrt(limit);
+  if (volume > 2 * kMaxParticles) return volume;
+  const std::int64_t n = half_width(limit);
+  double sum = 0;
+  for (std::int64_t k = -n; k <= n; ++k)
+    for (std::int64_t j = -n; j <= n; ++j)
+      sum += static_cast<double>(
+          2 * half_width(limit - static_cast<double>(k * k) - static_cast<double>(j * j)) + 1);
+  return sum;
+}
+
+}  // namespace pbf

@@ -1,0 +1,32 @@
+// Numbers as text, both ways, without locale: what scene files and messages show.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "lib/scene/scene.h"
+
+namespace pbf {
+
+/// Fewest digits that read back to the same double: 0.1, 1000, 1.0e-05. An exponent always comes
+/// with a point, for YAML 1.1 readers take 1e-05 for text.
+std::string to_text(double value);
+/// [x, y, z]
+std::string to_text(const Double3& value);
+
+/// What became of a text that should be a number.
+enum class NumberError { none, not_a_number, not_finite, too_large, too_small, not_whole };
+
+/// Decimal numbers only ([+-]digits[.digits][e[+-]digits]); no octal, hex, underscores. Denormal
+/// values are `too_small`: arithmetic on them loses digits and speed.
+NumberError read_double(const std::string& text, double& value);
+/// The same grammar; 1e3 and 4.0 are whole. Leading zeros are decimal: 010 is 10.
+NumberError read_integer(const std::string& text, std::int64_t& value);
+/// "is not finite" and the like, to follow the text itself in a message.
+std::string describe(NumberError error);
+
+/// Message for a scene with more particles than ids.
+std::string too_many_text(double count);
+
+}  // namespace pbf

@@ -1,0 +1,237 @@
+#include "lib/scene/value.h"
+
+#include <algorithm>
+#include <type_traits>
+
+#include "lib/scene/number.h"
+
+namespace pbf {
+namespace {
+
+std::string list_of(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::string instead_of(const std::string& wanted, const Node& node) {
+  return "expected " + wanted + ", got " + node.shown();
+}
+
+std::string check_range(const Key& key, double v, const Node& node) {
+  const Range& r = key.range;
+  const bool below = r.above_min ? v <= r.min : v < r.min;
+  const bool above = r.below_max ? v >= r.max : v > r.max;
+  if (!below && !above) return "";
+  const std::string unit = key.unit.empty() ? "" : " " + key.unit;
+  return node.shown() + " is out of range, allowed: " + range_text(key) + unit;
+}
+
+bool is_word(const Node& node, const char* word) {
+  return node.kind == Node::Kind::scalar && node.text == word;
+}
+
+/// One number, double or integer.
+template <class T>
+std::string read_number(const Key& key, const Node& node, T& out) {
+  constexpr bool whole = std::is_integral_v<T>;
+  const std::string wanted = std::string(whole ? "a whole number" : "a number") +
+                             (key.automatic ? " or auto" : "");
+  if (node.kind != Node::Kind::scalar) return instead_of(wanted, node);
+  if (node.quoted) return instead_of(wanted, node) + " in quotes; remove them";
+  std::conditional_t<whole, std::int64_t, double> v{};
+  NumberError error{};
+  if constexpr (whole)
+    error = read_integer(node.text, v);
+  else
+    error = read_double(node.text, v);
+  if (error == NumberError::not_a_number) return instead_of(wanted, node);
+  if (error != NumberError::none)
+    return node.shown() + " " + describe(error) + ", expected " + wanted;
+  const std::string problem = check_range(key, static_cast<double>(v), node);
+  if (problem.empty()) out = static_cast<T>(v);
+  return problem;
+}
+
+/// A list of N numbers, e.g. a vector.
+template <class T, std::size_t N>
+std::string read_numbers(const Key& key, const Node& node, std::array<T, N>& out) {
+  static const char* const kShape = N == 3 ? "[x, y, z]" : "[a, b]";
+  if (node.kind != Node::Kind::list || node.items.size() != N)
+    return instead_of(std::to_string(N) + " numbers " + kShape + (key.automatic ? " or auto" : ""),
+                      node);
+  std::array<T, N> values{};
+  Key element = key;
+  element.automatic = false;
+  for (std::size_t i = 0; i < N; ++i) {
+    const std::string problem = read_number(element, node.items[i], values[i]);
+    if (!problem.empty()) return "element " + std::to_string(i) + ": " + problem;
+  }
+  out = values;
+  return "";
+}
+
+std::string not_among(const std::vector<std::string>& choices, const Node& node) {
+  std::string text = node.shown() + " is not one of " + list_of(choices);
+  const std::string near =
+      node.kind == Node::Kind::scalar ? nearest_word(node.text, choices) : std::string();
+  return near.empty() ? text : text + "; did you mean " + near + "?";
+}
+
+/// Index of the word in the key's choices, or -1.
+int choice_of(const Key& key, const Node& node) {
+  if (node.kind != Node::Kind::scalar) return -1;
+  const auto it = std::find(key.choices.begin(), key.choices.end(), node.text);
+  return it == key.choices.end() ? -1 : static_cast<int>(it - key.choices.begin());
+}
+
+std::string read_text(const Node& node, std::string& out) {
+  if (node.kind != Node::Kind::scalar) return instead_of("text", node);
+  if (node.text.empty()) return "is empty, expected text";
+  if (node.text.size() > 1000) return "is longer than 1000 bytes";
+  for (char c : node.text)
+    if (static_cast<unsigned char>(c) < 32 || c == 127)
+      return node.shown() + " holds a control character (a line break, say), expected one line";
+  out = node.text;
+  return "";
+}
+
+std::string read_words(const Key& key, const Node& node, std::vector<std::string>& out) {
+  if (node.kind != Node::Kind::list)
+    return instead_of("a list of words such as [" + key.choices[0] + "]", node);
+  std::vector<std::string> words;
+  for (const Node& item : node.items) {
+    if (choice_of(key, item) < 0) return not_among(key.choices, item);
+    if (std::find(words.begin(), words.end(), item.text) != words.end())
+      return item.shown() + " is listed twice";
+    words.push_back(item.text);
+  }
+  out = words;
+  return "";
+}
+
+struct Reader {
+  const Key& key;
+  const Node& node;
+
+  template <class T>
+  std::string operator()(std::optional<T>* field) const {
+    if (is_word(node, "auto")) {
+      *field = std::nullopt;
+      return "";
+    }
+    T value{};
+    const std::string problem = (*this)(&value);
+    if (problem.empty()) *field = value;
+    return problem;
+  }
+  template <class T>
+    requires std::is_arithmetic_v<T>
+  std::string operator()(T* field) const {
+    if (key.automatic && is_word(node, "auto")) {
+      *field = 0;
+      return "";
+    }
+    return read_number(key, node, *field);
+  }
+  std::string operator()(bool* field) const {
+    const bool on = is_word(node, "true"), off = is_word(node, "false");
+    if (node.quoted || (!on && !off)) return instead_of("true or false", node);
+    *field = on;
+    return "";
+  }
+  template <class T, std::size_t N>
+  std::string operator()(std::array<T, N>* field) const {
+    return read_numbers(key, node, *field);
+  }
+  std::string operator()(std::string* field) const { return read_text(node, *field); }
+  std::string operator()(std::vector<std::string>* field) const {
+    return read_words(key, node, *field);
+  }
+  std::string operator()(const ChoiceField& field) const {
+    const int index = choice_of(key, node);
+    if (index < 0) return not_among(key.choices, node);
+    field.set(index);
+    return "";
+  }
+};
+
+struct Writer {
+  const Key& key;
+
+  template <class T>
+  std::string operator()(const std::optional<T>* field) const {
+    return *field ? Writer{key}.plain(**field) : "auto";
+  }
+  template <class T>
+    requires std::is_arithmetic_v<T>
+  std::string operator()(const T* field) const {
+    return key.automatic && *field == 0 ? "auto" : plain(*field);
+  }
+  std::string operator()(const bool* field) const { return *field ? "true" : "false"; }
+  template <class T, std::size_t N>
+  std::string operator()(const std::array<T, N>* field) const {
+    return plain(*field);
+  }
+  std::string operator()(const std::string* field) const { return quoted(*field); }
+  std::string operator()(const std::vector<std::string>* field) const {
+    return "[" + list_of(*field) + "]";
+  }
+  std::string operator()(const ChoiceField& field) const {
+    return key.choices[static_cast<std::size_t>(field.get())];
+  }
+
+  static std::string plain(double v) { return to_text(v); }
+  template <class T>
+    requires std::is_integral_v<T>
+  static std::string plain(T v) {
+    return std::to_string(v);
+  }
+  template <class T, std::size_t N>
+  static std::string plain(const std::array<T, N>& values) {
+    std::string text;
+    for (const T& v : values) text += (text.empty() ? "[" : ", ") + plain(v);
+    return text + "]";
+  }
+};
+
+}  // namespace
+
+bool is_numeric(const Field& field) {
+  return !std::holds_alternative<bool*>(field) && !std::holds_alternative<std::string*>(field) &&
+         !std::holds_alternative<std::vector<std::string>*>(field) &&
+         !std::holds_alternative<ChoiceField>(field);
+}
+
+std::string read_field(const Key& key, const Node& node, const Field& field) {
+  if (node.kind == Node::Kind::null) return "has no value; write one or remove the key";
+  return std::visit(Reader{key, node}, field);
+}
+
+std::string format_field(const Key& key, const Field& field) {
+  return std::visit(Writer{key}, field);
+}
+
+std::string quoted(const std::string& text) {
+  const auto safe = [](unsigned char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           c == '_' || c == '-' || c == '.' || c == '/';
+  };
+  const bool letter = !text.empty() && ((text[0] >= 'a' && text[0] <= 'z') ||
+                                        (text[0] >= 'A' && text[0] <= 'Z'));
+  static const std::vector<std::string> kReserved{"null", "Null", "NULL", "true", "True",  "TRUE",
+                                                  "false", "False", "FALSE", "yes", "Yes", "YES",
+                                                  "no",   "No",   "NO",   "on",   "On",    "ON",
+                                                  "off",  "Off",  "OFF",  "y",    "Y",     "n",
+                                                  "N"};
+  const bool reserved = std::find(kReserved.begin(), kReserved.end(), text) != kReserved.end();
+  if (letter && !reserved && std::all_of(text.begin(), text.end(), safe)) return text;
+  std::string out = "\"";
+  for (char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+}  // namespace pbf

@@ -1,0 +1,28 @@
+// One value between YAML and a field of the scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/scene/keys.h"
+#include "lib/scene/yaml_tree.h"
+
+namespace pbf {
+
+/// Whether the field is a number or a group of numbers.
+bool is_numeric(const Field& field);
+
+/// Reads `node` into `field`, checking type, choices and range of `key`. Returns what is wrong,
+/// with the remedy, or an empty string. The field is unchanged when something is wrong.
+std::string read_field(const Key& key, const Node& node, const Field& field);
+
+/// The field as YAML; read_field reads it back to the same value.
+std::string format_field(const Key& key, const Field& field);
+
+/// Text as a YAML scalar that reads back as this text: bare where that is safe, else in quotes.
+std::string quoted(const std::string& text);
+
+/// Nearest of `words`, or empty when nothing is near.
+std::string nearest_word(const std::string& word, const std::vector<std::string>& words);
+
+}  // namespace pbf

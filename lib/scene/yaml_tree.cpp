@@ -1,0 +1,170 @@
+#include "lib/scene/yaml_tree.h"
+
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <sstream>
+
+namespace pbf {
+namespace {
+
+struct Refused {
+  YAML::Mark mark;
+  std::string what;
+};
+
+/// Builds the tree from the parser's events; throws Refused for what scene files may not hold.
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  TreeBuilder(const std::string& origin, bool lines)
+      : origin_(std::make_shared<const std::string>(origin)), lines_(lines) {}
+
+  Node take() { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (documents_++ > 0)
+      throw Refused{mark, "a second document starts here; a scene file holds one"};
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    refuse_anchor(mark, anchor);
+    add(make(mark, Node::Kind::null));
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    throw Refused{mark, "aliases (*name) are not supported; write the value out"};
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    refuse_anchor(mark, anchor);
+    refuse_tag(mark, tag);
+    Node node = make(mark, Node::Kind::scalar);
+    node.text = value;
+    node.quoted = tag == "!";
+    add(std::move(node));
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(mark, tag, anchor, Node::Kind::list);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(mark, tag, anchor, Node::Kind::map);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  Node make(const YAML::Mark& mark, Node::Kind kind) const {
+    Node node;
+    node.kind = kind;
+    node.origin = origin_;
+    if (lines_) {
+      node.line = mark.line;
+      node.column = mark.column;
+    }
+    return node;
+  }
+  void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) const {
+    if (anchor != 0) throw Refused{mark, "anchors (&name) are not supported; write the value out"};
+  }
+  void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
+    if (!tag.empty() && tag != "?" && tag != "!")
+      throw Refused{mark, "tags (!name) are not supported; write the value alone"};
+  }
+  void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+            Node::Kind kind) {
+    refuse_anchor(mark, anchor);
+    refuse_tag(mark, tag);
+    // Thrown while the parser descends: this bounds its recursion as well as ours.
+    if (open_.size() >= kMaxYamlDepth)
+      throw Refused{mark, "nested deeper than " + std::to_string(kMaxYamlDepth) + " levels"};
+    open_.push_back(make(mark, kind));
+  }
+  void close() {
+    Node node = std::move(open_.back());
+    open_.pop_back();
+    add(std::move(node));
+  }
+  void add(Node&& node) {
+    if (open_.empty()) {
+      root_ = std::move(node);
+      return;
+    }
+    Node& parent = open_.back();
+    const bool is_key =
+        parent.kind == Node::Kind::map && parent.keys.size() == parent.items.size();
+    (is_key ? parent.keys : parent.items).push_back(std::move(node));
+  }
+
+  std::shared_ptr<const std::string> origin_;
+  bool lines_;
+  int documents_ = 0;
+  std::vector<Node> open_;
+  Node root_;
+};
+
+std::string place_of(const std::string& origin, bool lines, int line, int column) {
+  if (!lines || line < 0) return origin;
+  return origin + ":" + std::to_string(line + 1) + ":" + std::to_string(column + 1);
+}
+
+/// YAML forbids tabs as indentation; yaml-cpp's words for it do not say so.
+void refuse_tabs(const std::string& text, const std::string& origin, bool lines) {
+  int line = 0;
+  for (std::size_t start = 0; start < text.size(); ++line) {
+    std::size_t end = text.find('\n', start);
+    if (end == std::string::npos) end = text.size();
+    const std::size_t first = text.find_first_not_of(" \t\r", start);
+    const std::size_t tab = text.find('\t', start);
+    if (first < end && tab < first && text[first] != '#')
+      throw YamlError{place_of(origin, lines, line, static_cast<int>(tab - start)),
+                      "a tab indents this line; YAML allows spaces only"};
+    start = end + 1;
+  }
+}
+
+}  // namespace
+
+std::string Node::place() const {
+  return origin ? place_of(*origin, line >= 0, line, column) : std::string();
+}
+
+Node* Node::find(const std::string& key) {
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (keys[i].kind == Kind::scalar && keys[i].text == key) return &items[i];
+  return nullptr;
+}
+
+std::string Node::shown() const {
+  switch (kind) {
+    case Kind::null: return "nothing";
+    case Kind::list: return "a list of " + std::to_string(items.size());
+    case Kind::map: return "a block";
+    case Kind::scalar: break;
+  }
+  // Cut and cleaned: the text is anyone's, the message is one line.
+  std::string clean = text.size() > 60 ? text.substr(0, 60) + "..." : text;
+  for (char& c : clean)
+    if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
+  return "\"" + clean + "\"";
+}
+
+Node parse_yaml(const std::string& text, const std::string& origin, bool lines) {
+  refuse_tabs(text, origin, lines);
+  TreeBuilder builder(origin, lines);
+  try {
+    std::istringstream in(text);
+    YAML::Parser parser(in);
+    while (parser.HandleNextDocument(builder)) {
+    }
+  } catch (const Refused& e) {
+    throw YamlError{place_of(origin, lines, e.mark.line, e.mark.column), e.what};
+  } catch (const YAML::Exception& e) {
+    throw YamlError{place_of(origin, lines, e.mark.line, e.mark.column),
+                    "not valid YAML: " + e.msg};
+  }
+  return builder.take();
+}
+
+}  // namespace pbf

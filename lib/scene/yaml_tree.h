@@ -1,0 +1,41 @@
+// YAML text -> a plain tree that knows where everything stood. yaml-cpp is used behind this only.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace pbf {
+
+/// One value of a YAML document. Depth is limited to kMaxYamlDepth.
+struct Node {
+  enum class Kind { null, scalar, list, map };
+  Kind kind = Kind::null;
+  std::string text;         ///< scalar
+  bool quoted = false;      ///< scalar in quotes: text, never a number
+  std::vector<Node> keys;   ///< map: keys[i] belongs to items[i], in the order of the file
+  std::vector<Node> items;  ///< map and list
+  std::shared_ptr<const std::string> origin;  ///< file name, or the --set argument
+  int line = -1, column = -1;                 ///< from 0; -1: the origin alone is the place
+
+  /// "scene.yaml:12:5", or the origin alone.
+  std::string place() const;
+  /// Child of a map (the first of that name), or nullptr.
+  Node* find(const std::string& key);
+  /// For messages: "4", "a list", "a block", "nothing".
+  std::string shown() const;
+};
+
+inline constexpr int kMaxYamlDepth = 32;
+
+/// What is wrong with a text as YAML.
+struct YamlError {
+  std::string place, what;
+};
+
+/// Parses one document. Anchors, aliases (and with them documents that multiply when expanded),
+/// tags and further documents are refused. `lines`: places carry line and column, else the origin
+/// alone. Throws YamlError.
+Node parse_yaml(const std::string& text, const std::string& origin, bool lines);
+
+}  // namespace pbf
