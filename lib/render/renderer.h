@@ -25,7 +25,7 @@ struct View {
   Double3 up{0, 0, 1};                 ///< against gravity
   double radius = 0.01;                ///< m, drawn radius of a particle
   ColorBy color = ColorBy::speed;
-  std::array<double, 2> range{0, 1};   ///< of the colour bar, in the unit of the field
+  std::array<double, 2> range{0, 1};  ///< of the colour bar, in the unit of the field
   std::array<int, 2> size{1280, 720};
   Camera camera;
 };
@@ -37,9 +37,17 @@ View view_of(const Scene& scene, std::int64_t particles);
 /// Draws lit spheres (impostors), the box, a colour bar with unit, and the time.
 class Renderer {
  public:
-  /// Opens OSMesa, else EGL surfaceless. Throws Error(unavailable) naming what was tried.
-  explicit Renderer(const View& view);
+  /// Opens OSMesa, else EGL surfaceless, else an EGL device; the environment variable PBF_GL
+  /// (osmesa, egl, egl-device) asks for one of them. `threads`: cores that a software rasteriser
+  /// may take, 0 for all; LP_NUM_THREADS in the environment wins, and the first Renderer of a
+  /// process decides. Throws Error(unavailable) naming what was tried, Error(bad_input) for a view
+  /// that cannot be drawn.
+  explicit Renderer(const View& view, int threads = 0);
   ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+  /// From any thread, one at a time. Particles with a non-finite position are left out, those with
+  /// a non-finite value are magenta.
   /// Error(bad_input) when the snapshot lacks the field that `color` needs.
   Image draw(const Snapshot& snapshot);
   std::string backend() const;  ///< e.g. "OSMesa llvmpipe"
@@ -53,14 +61,20 @@ class Renderer {
 void write_png(const std::string& path, const Image& image);
 
 /// Draws on a thread of its own and writes DIR/frame_000123.png (number = index of the picture).
+/// The rasteriser gets one core, so that a CPU solver beside it is not stalled (LP_NUM_THREADS in
+/// the environment wins).
 class RenderThread {
  public:
+  /// Makes the folder and opens the GL library: throws Error(io) or Error(unavailable) at once.
   RenderThread(const View& view, const std::string& dir);
+  /// Draws what is queued; an error that finish() would have thrown is lost.
   ~RenderThread();
-  /// Queues a copy; blocks while more than 2 wait. Errors of the thread are thrown here or in
-  /// finish().
+  RenderThread(const RenderThread&) = delete;
+  RenderThread& operator=(const RenderThread&) = delete;
+  /// Queues a copy of the fields that the picture needs; blocks while 2 wait. An error of the
+  /// thread is thrown by the next draw() or by finish(), once; later pictures are dropped.
   void draw(const Snapshot& snapshot, std::int64_t index);
-  void finish();
+  void finish();           ///< waits until all queued pictures are written
   double seconds() const;  ///< spent drawing and writing
 
  private:

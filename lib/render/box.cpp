@@ -1,0 +1,84 @@
+#include "lib/render/box.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lib/render/vector3.h"
+
+namespace pbf {
+namespace {
+
+constexpr std::array<std::uint8_t, 4> kEdge{92, 102, 116, 0}, kFloor{218, 224, 230, 150};
+
+Double3 corner(const View& view, unsigned bits) {
+  Double3 p{};
+  for (unsigned k = 0; k < 3; ++k) p[k] = (bits >> k & 1 ? view.domain_max : view.domain_min)[k];
+  return p;
+}
+
+FlatVertex vertex(const Double3& v, std::array<std::uint8_t, 4> color, double u = 0, double w = 0) {
+  return {static_cast<float>(v[0]),
+          static_cast<float>(v[1]),
+          static_cast<float>(v[2]),
+          color,
+          {static_cast<float>(u), static_cast<float>(w)}};
+}
+
+void add_quad(const std::array<FlatVertex, 4>& q, std::vector<FlatVertex>& out) {
+  for (std::size_t i : {0, 1, 2, 2, 1, 3}) out.push_back(q[i]);
+}
+
+}  // namespace
+
+void add_box_edges(const View& view, const Projection& projection, double width, double near_depth,
+                   std::vector<FlatVertex>& out) {
+  for (unsigned axis = 0; axis < 3; ++axis)
+    for (unsigned from = 0; from < 8; ++from) {
+      if (from >> axis & 1) continue;
+      Double3 a = projection.to_view(corner(view, from));
+      Double3 b = projection.to_view(corner(view, from | 1u << axis));
+      if (a[2] > b[2]) std::swap(a, b);
+      if (b[2] <= near_depth) continue;
+      if (a[2] < near_depth) a = a + (near_depth - a[2]) / (b[2] - a[2]) * (b - a);
+      // Direction in the picture; an edge seen end-on has none, and is a dot of the line's width.
+      double dx = b[0] / b[2] - a[0] / a[2], dy = b[1] / b[2] - a[1] / a[2];
+      const double size = std::hypot(dx, dy);
+      if (size > 0)
+        dx /= size, dy /= size;
+      else
+        dx = 1;
+      const double half = 0.5 * width * projection.pixel();  // per unit of depth
+      const auto moved = [&](const Double3& p, double along, double aside) {
+        const double s = half * p[2];
+        return vertex(
+            {p[0] + s * (along * dx - aside * dy), p[1] + s * (along * dy + aside * dx), p[2]},
+            kEdge);
+      };
+      add_quad({moved(a, -1, -1), moved(a, -1, 1), moved(b, 1, -1), moved(b, 1, 1)}, out);
+    }
+}
+
+void add_floor(const View& view, const Projection& projection, std::vector<FlatVertex>& out) {
+  unsigned vertical = 0;
+  for (unsigned k = 1; k < 3; ++k)
+    if (std::abs(view.up[k]) > std::abs(view.up[vertical])) vertical = k;
+  const bool upward = view.up[vertical] > 0;
+  const double level = (upward ? view.domain_min : view.domain_max)[vertical];
+  if ((projection.eye[vertical] - level) * (upward ? 1 : -1) <= 0) return;
+  const unsigned u = (vertical + 1) % 3, w = (vertical + 2) % 3;
+  const Double3 box = view.domain_max - view.domain_min;
+  const double cell = std::max(box[u], box[w]) / 10;
+  std::array<FlatVertex, 4> quad;
+  for (unsigned i = 0; i < 4; ++i) {
+    const unsigned bits = (i & 1) << u | (i >> 1) << w | static_cast<unsigned>(!upward) << vertical;
+    Double3 p = corner(view, bits);
+    // A little below the box, so that its lowest edges are not half buried.
+    p[vertical] -= (upward ? 1 : -1) * 2e-3 * length(box);
+    quad[i] =
+        vertex(projection.to_view(p), kFloor, (i & 1) * box[u] / cell, (i >> 1) * box[w] / cell);
+  }
+  add_quad(quad, out);
+}
+
+}  // namespace pbf

@@ -1,0 +1,26 @@
+// The box of the domain and its floor as triangles in view space.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "lib/render/camera.h"
+
+namespace pbf {
+
+struct FlatVertex {
+  float x, y, depth;                  ///< view space, m
+  std::array<std::uint8_t, 4> color;  ///< red, green, blue, strength of the grid lines
+  std::array<float, 2> grid;          ///< place on the floor in cells of its grid
+};
+
+/// Appends the 12 edges of the box, `width` pixels wide, as triangles that face the eye; parts
+/// nearer than `near_depth` (m) are cut off.
+void add_box_edges(const View& view, const Projection& projection, double width, double near_depth,
+                   std::vector<FlatVertex>& out);
+
+/// Appends the lowest face of the box with its grid, when the eye is above it.
+void add_floor(const View& view, const Projection& projection, std::vector<FlatVertex>& out);
+
+}  // namespace pbf

@@ -1,0 +1,119 @@
+#include "lib/render/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lib/base/error.h"
+#include "lib/render/vector3.h"
+
+namespace pbf {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kElevation = 20 * kDegree, kBeside = 24 * kDegree;  // of the default view
+constexpr double kMargin = 0.92;    // share of the free part of the picture that the box may fill
+constexpr double kBarShare = 0.15;  // share of the width kept for the colour bar
+
+/// `v` turned about the unit axis by `angle` (Rodrigues).
+Double3 turned(const Double3& v, const Double3& axis, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return c * v + s * cross(axis, v) + (1 - c) * dot(axis, v) * axis;
+}
+
+/// Right, up and forward of an eye that looks along `forward` (not unit).
+void set_axes(Projection& p, const Double3& forward, const Double3& up) {
+  p.forward = unit(forward);
+  Double3 right = cross(p.forward, up);
+  if (length(right) < 1e-6) {  // looking straight up or down: any horizontal direction will do
+    right = cross(p.forward, {0, 1, 0});
+    if (length(right) < 1e-6) right = cross(p.forward, {1, 0, 0});
+  }
+  p.right = unit(right);
+  p.up = cross(p.right, p.forward);
+}
+
+/// From the target to the default eye, as a unit vector.
+Double3 default_direction(const View& view, const Double3& up) {
+  const Double3 box = view.domain_max - view.domain_min;
+  // The axis nearest to `up` is the vertical one; the longest of the others lies across the
+  // picture.
+  const std::size_t vertical = static_cast<std::size_t>(
+      std::max_element(up.begin(), up.end(),
+                       [](double a, double b) { return std::abs(a) < std::abs(b); }) -
+      up.begin());
+  const std::size_t a = vertical == 0 ? 1 : 0, b = vertical == 2 ? 1 : 2;
+  Double3 across{};
+  across[box[b] > box[a] ? b : a] = 1;
+  const Double3 side = unit(across - dot(across, up) * up);
+  const Double3 front = turned(cross(side, up), up, kBeside);
+  return std::cos(kElevation) * front + std::sin(kElevation) * up;
+}
+
+/// Least distance from the target at which the camera (axes set) sees the whole box.
+double fitting_distance(const Projection& p, const View& view, const Double3& target) {
+  const double aspect = static_cast<double>(p.size[0]) / p.size[1];
+  const double tan_x = kMargin * (1 - p.shift) * p.tan_half * aspect, tan_y = kMargin * p.tan_half;
+  double distance = 0;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    Double3 q{};
+    for (unsigned k = 0; k < 3; ++k)
+      q[k] = (corner >> k & 1 ? view.domain_max : view.domain_min)[k] - target[k];
+    const double need = std::max(std::abs(dot(q, p.right)) / tan_x, std::abs(dot(q, p.up)) / tan_y);
+    distance = std::max(distance, need - dot(q, p.forward));
+  }
+  return distance;
+}
+
+}  // namespace
+
+Double3 Projection::to_view(const Double3& p) const {
+  const Double3 q = p - eye;
+  return {dot(q, right), dot(q, up), dot(q, forward)};
+}
+
+std::array<double, 2> Projection::to_pixel(const Double3& p) const {
+  const Double3 v = to_view(p);
+  return {0.5 * size[0] * (1 - shift) + v[0] / (v[2] * pixel()),
+          0.5 * size[1] - v[1] / (v[2] * pixel())};
+}
+
+Projection projection_of(const View& view, double time) {
+  const auto bad = [](const std::string& what) { throw Error(ExitCode::bad_input, what); };
+  const Double3 box = view.domain_max - view.domain_min;
+  for (double edge : box)
+    if (!(edge > 0) || !std::isfinite(edge)) bad("the domain of the picture is empty");
+  if (!(view.camera.fov >= 1 && view.camera.fov <= 170))
+    bad("render.camera.fov: " + std::to_string(view.camera.fov) +
+        " is not a field of view; give 1 to 170 degrees");
+  if (!(length(view.up) > 0)) bad("the up direction of the picture is zero");
+
+  Projection p;
+  p.size = view.size;
+  p.tan_half = std::tan(view.camera.fov * kDegree / 2);
+  const Double3 up = unit(view.up);
+  const Double3 target = view.camera.target.value_or(0.5 * (view.domain_min + view.domain_max));
+  const double angle = view.camera.orbit * kDegree * time;
+  Double3 arm{};  // from the target to the eye, before it orbits
+  if (view.camera.position) {
+    arm = *view.camera.position - target;
+    if (!(length(arm) > 1e-9 * length(box)))
+      bad("render.camera.position: lies on the target; move one of them");
+  } else {
+    p.shift = kBarShare;
+    const Double3 direction = default_direction(view, up);
+    const int places = view.camera.orbit == 0 ? 1 : 72;
+    double distance = 0;
+    for (int i = 0; i < places; ++i) {
+      set_axes(p, turned(-1.0 * direction, up, 2 * std::numbers::pi * i / places), up);
+      distance = std::max(distance, fitting_distance(p, view, target));
+    }
+    arm = distance * direction;
+  }
+  arm = turned(arm, up, angle);
+  p.eye = target + arm;
+  set_axes(p, -1.0 * arm, up);
+  return p;
+}
+
+}  // namespace pbf

@@ -1,0 +1,32 @@
+// Where the camera of a picture stands and how it maps space to pixels.
+#pragma once
+
+#include <array>
+
+#include "lib/render/renderer.h"
+
+namespace pbf {
+
+/// A perspective camera. View space: x to the right, y up, z = depth away from the eye, in m.
+/// Pixels: x to the right, y down, (0, 0) at the outer corner of the first pixel.
+struct Projection {
+  Double3 eye{};                     ///< m
+  Double3 right{}, up{}, forward{};  ///< unit vectors, right-handed: right x up = -forward
+  double tan_half = 1;               ///< tangent of half the vertical field of view
+  std::array<int, 2> size{1, 1};     ///< pixels
+  double shift = 0;                  ///< of the picture to the left, in half widths: room for
+                                     ///< the colour bar beside a box in the default view
+
+  Double3 to_view(const Double3& p) const;                 ///< computed in double, eye first
+  std::array<double, 2> to_pixel(const Double3& p) const;  ///< of a point in front of the eye
+  /// Size of a pixel on the plane at unit depth (m per m).
+  double pixel() const { return 2 * tan_half / size[1]; }
+};
+
+/// Camera of `view` at `time` (s): the orbit turns it about `up` through the target. The default
+/// stands outside the longest horizontal side, a little above and beside, as near as it sees the
+/// whole box (at every time, when it orbits). Throws Error(bad_input) for an empty box or a camera
+/// that cannot look: fov outside 1..170 degrees, position on the target.
+Projection projection_of(const View& view, double time);
+
+}  // namespace pbf

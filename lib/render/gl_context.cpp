@@ -1,0 +1,75 @@
+#include "lib/render/gl_context.h"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+
+#include "lib/base/error.h"
+
+namespace pbf {
+namespace {
+
+// llvmpipe takes its number of threads from the environment when its screen is made, and nowhere
+// else; the variable is put back so that nothing started later inherits it.
+class RasterThreads {
+ public:
+  explicit RasterThreads(int threads) {
+    if (threads > 0 && !std::getenv(kName)) {
+      setenv(kName, std::to_string(threads).c_str(), 0);
+      set_ = true;
+    }
+  }
+  ~RasterThreads() {
+    if (set_) unsetenv(kName);
+  }
+  RasterThreads(const RasterThreads&) = delete;
+  RasterThreads& operator=(const RasterThreads&) = delete;
+
+ private:
+  static constexpr const char* kName = "LP_NUM_THREADS";
+  bool set_ = false;
+};
+
+}  // namespace
+
+void* open_library(const std::vector<std::string>& names, std::string& tried) {
+  for (const auto& name : names) {
+    if (void* library = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL)) return library;
+    tried += "\n  " + std::string(dlerror());
+  }
+  return nullptr;
+}
+
+GlContext::GlContext(int threads, const GlLibraries& libraries) {
+  const char* variable = std::getenv("PBF_GL");
+  const std::string wanted = variable ? variable : "";
+  if (!wanted.empty() && wanted != "osmesa" && wanted != "egl" && wanted != "egl-device")
+    throw Error(ExitCode::bad_input, "environment variable PBF_GL is \"" + wanted +
+                                         "\"; use osmesa, egl or egl-device, or unset it");
+  const auto may = [&](const char* name) {
+    return !platform_ && (wanted.empty() || wanted == name);
+  };
+  const RasterThreads limit(threads);
+  std::string tried, way;
+  if (may("osmesa")) platform_ = open_osmesa(libraries.osmesa, tried), way = "OSMesa";
+  if (may("egl")) platform_ = open_egl(libraries.egl, false, tried), way = "EGL surfaceless";
+  if (may("egl-device")) platform_ = open_egl(libraries.egl, true, tried), way = "EGL device";
+  if (!platform_)
+    throw Error(ExitCode::unavailable,
+                "pictures need OpenGL 3.3 and none could be opened; tried:" + tried +
+                    "\nInstall the package libosmesa6, or libegl1 and libgl1-mesa-dri" +
+                    (wanted.empty() ? "" : " (PBF_GL=" + wanted + " allows no other way)") +
+                    ", or leave pictures out (no `render` in the scene).");
+  const GlCurrent current(*this);
+#define PBF_GL_LOAD(result, name, parameters)                                             \
+  table_.name = reinterpret_cast<decltype(table_.name)>(platform_->function("gl" #name)); \
+  if (!table_.name) throw Error(ExitCode::unavailable, way + " lacks the function gl" #name);
+  PBF_GL_FUNCTIONS(PBF_GL_LOAD)
+#undef PBF_GL_LOAD
+  const auto* renderer = table_.GetString(gl::RENDERER);
+  backend_ = way + ", " + (renderer ? reinterpret_cast<const char*>(renderer) : "unknown renderer");
+}
+
+GlContext::~GlContext() = default;
+
+}  // namespace pbf

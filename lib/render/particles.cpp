@@ -1,0 +1,112 @@
+#include "lib/render/particles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/base/error.h"
+#include "lib/render/vector3.h"
+
+namespace pbf {
+namespace {
+
+/// Row i of a field in double, whatever its type.
+double value(const FieldArray& field, std::size_t i) {
+  switch (field.type) {
+    case ScalarType::f64:
+      return field.as<double>()[i];
+    case ScalarType::i32:
+      return field.as<std::int32_t>()[i];
+    case ScalarType::f32:
+      break;
+  }
+  return static_cast<double>(field.as<float>()[i]);
+}
+
+Double3 vector(const FieldArray& field, std::size_t i) {
+  return {value(field, 3 * i), value(field, 3 * i + 1), value(field, 3 * i + 2)};
+}
+
+/// Name of the field that gives the colour; "" when the row number does.
+const char* field_of(ColorBy color) {
+  switch (color) {
+    case ColorBy::speed:
+      return "velocity";
+    case ColorBy::density:
+      return "density";
+    case ColorBy::id:
+      break;
+  }
+  return "";
+}
+
+void check_field(const Snapshot& snapshot, const std::string& name, int components,
+                 const std::string& what) {
+  const FieldArray* field = snapshot.find(name);
+  if (!field) {
+    std::string has;
+    for (const auto& f : snapshot.fields) has += (has.empty() ? "" : ", ") + f.name;
+    throw Error(ExitCode::bad_input,
+                what + " needs the field " + name +
+                    ", but the snapshot has only: " + (has.empty() ? "nothing" : has) + "; add " +
+                    name + " to output.fields or choose another render.color");
+  }
+  if (field->components != components ||
+      field->bytes.size() !=
+          snapshot.count * static_cast<std::size_t>(components) * size_of(field->type))
+    throw Error(ExitCode::bad_input, "the field " + name + " has " +
+                                         std::to_string(field->components) + " components and " +
+                                         std::to_string(field->bytes.size()) + " bytes; " +
+                                         std::to_string(snapshot.count) + " particles with " +
+                                         std::to_string(components) + " components were expected");
+}
+
+}  // namespace
+
+void check_fields(const Snapshot& snapshot, ColorBy color) {
+  check_field(snapshot, "position", 3, "a picture");
+  if (color == ColorBy::speed) check_field(snapshot, "velocity", 3, "a picture coloured by speed");
+  if (color == ColorBy::density)
+    check_field(snapshot, "density", 1, "a picture coloured by density");
+}
+
+ColorTitle color_title(const Snapshot& snapshot, ColorBy color) {
+  const FieldArray* field = snapshot.find(field_of(color));
+  const std::string unit_text = field && field->unit != "1" ? field->unit : "";
+  if (color == ColorBy::id) return {"id", ""};
+  return {color == ColorBy::speed ? "speed" : "density", unit_text};
+}
+
+void collect(const Snapshot& snapshot, const View& view, const Projection& projection,
+             ParticleVertices& out) {
+  check_fields(snapshot, view.color);
+  const FieldArray& position = *snapshot.find("position");
+  const FieldArray* field = snapshot.find(field_of(view.color));
+  out = {std::move(out.list)};
+  out.list.clear();
+  out.list.reserve(snapshot.count);
+
+  const double r = view.radius, low = view.range[0], span = view.range[1] - view.range[0];
+  const double tan_y = projection.tan_half;
+  const double tan_x = tan_y * projection.size[0] / projection.size[1];
+  // Planes through the eye: left and right of the (shifted) picture, bottom and top.
+  const double left = -tan_x * (1 - projection.shift), right = tan_x * (1 + projection.shift);
+  const double reach_left = r * std::hypot(1, left), reach_right = r * std::hypot(1, right);
+  const double reach_y = r * std::hypot(1, tan_y);
+  for (std::size_t i = 0; i < snapshot.count; ++i) {
+    const Double3 v = projection.to_view(vector(position, i));
+    // Written so that NaN fails; a sphere around the eye would hide everything and is left out.
+    if (!(v[2] > -r && dot(v, v) > r * r && v[0] > left * v[2] - reach_left &&
+          v[0] < right * v[2] + reach_right && std::abs(v[1]) < tan_y * v[2] + reach_y &&
+          v[2] < 1e30))
+      continue;
+    double shown = static_cast<double>(i);
+    if (view.color == ColorBy::speed) shown = length(vector(*field, i));
+    if (view.color == ColorBy::density) shown = value(*field, i);
+    out.list.push_back({static_cast<float>(v[0]), static_cast<float>(v[1]),
+                        static_cast<float>(v[2]), viridis((shown - low) / span)});
+    out.nearest = std::min(out.nearest, v[2] - r);
+    out.farthest = std::max(out.farthest, v[2] + r);
+  }
+}
+
+}  // namespace pbf

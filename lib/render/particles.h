@@ -1,0 +1,38 @@
+// The particles of a snapshot as the graphics card wants them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lib/render/camera.h"
+#include "lib/render/colormap.h"
+#include "lib/render/renderer.h"
+
+namespace pbf {
+
+struct ParticleVertex {
+  float x, y, depth;  ///< centre in view space, m: subtracted and turned in double before rounding
+  Rgb color;
+  std::uint8_t unused = 0;
+};
+
+struct ParticleVertices {
+  std::vector<ParticleVertex> list;
+  double nearest = 1e300, farthest = 0;  ///< depth of the surfaces, m
+};
+
+/// Title and unit of the colour bar for `snapshot`.
+struct ColorTitle {
+  std::string title, unit;
+};
+ColorTitle color_title(const Snapshot& snapshot, ColorBy color);
+
+/// The particles in front of the eye and inside the picture, coloured. Particles with a position
+/// that is not finite are left out. Throws Error(bad_input) when a field is missing or misshapen.
+void collect(const Snapshot& snapshot, const View& view, const Projection& projection,
+             ParticleVertices& out);
+
+/// Throws Error(bad_input) unless `snapshot` has what a picture coloured by `color` reads.
+void check_fields(const Snapshot& snapshot, ColorBy color);
+
+}  // namespace pbf

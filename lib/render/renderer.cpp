@@ -1,0 +1,207 @@
+#include "lib/render/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include "lib/base/error.h"
+#include "lib/render/box.h"
+#include "lib/render/camera.h"
+#include "lib/render/gl_context.h"
+#include "lib/render/gl_objects.h"
+#include "lib/render/overlay.h"
+#include "lib/render/particles.h"
+#include "lib/render/shaders.h"
+#include "lib/render/vector3.h"
+
+namespace pbf {
+namespace {
+
+void check_view(const View& view) {
+  const auto bad = [](const std::string& what) { throw Error(ExitCode::bad_input, what); };
+  if (view.size[0] < 16 || view.size[1] < 16)
+    bad("render.size: " + std::to_string(view.size[0]) + " x " + std::to_string(view.size[1]) +
+        " is too small; give at least 16 x 16 pixels");
+  if (!(view.range[0] < view.range[1]) || !std::isfinite(view.range[1] - view.range[0]))
+    bad("render.range: " + std::to_string(view.range[0]) + " to " + std::to_string(view.range[1]) +
+        " is not a range; give two finite numbers, the smaller one first");
+  if (!(view.radius > 0) || !std::isfinite(view.radius))
+    bad("render.radius: " + std::to_string(view.radius) +
+        " is not a radius; give a length above 0");
+  projection_of(view, 0);  // throws for a camera that cannot look
+}
+
+/// 2 x 2 samples per pixel; 1 where that is more than the driver can hold.
+int samples_per_edge(const gl::Table& gl, std::array<int, 2> size) {
+  gl::Int texture = 0;
+  std::array<gl::Int, 2> viewport{};
+  gl.GetIntegerv(gl::MAX_TEXTURE_SIZE, &texture);
+  gl.GetIntegerv(gl::MAX_VIEWPORT_DIMS, viewport.data());
+  const int wide = std::min(texture, viewport[0]), high = std::min(texture, viewport[1]);
+  if (size[0] > wide || size[1] > high)
+    throw Error(ExitCode::bad_input, "render.size: " + std::to_string(size[0]) + " x " +
+                                         std::to_string(size[1]) + " is more than the " +
+                                         std::to_string(wide) + " x " + std::to_string(high) +
+                                         " pixels of this OpenGL driver");
+  return 2 * size[0] <= wide && 2 * size[1] <= high ? 2 : 1;
+}
+
+/// Everything that lives inside a context; destroyed while the context is current.
+struct Pipeline {
+  const gl::Table& gl;
+  int factor;
+  gl::Program spheres, flat, resolve;
+  gl::Buffer particle_buffer, flat_buffer, nothing;
+  gl::Target samples, picture;
+
+  Pipeline(const gl::Table& table, std::array<int, 2> size)
+      : gl(table),
+        factor(samples_per_edge(table, size)),
+        spheres(table, shaders::kSphereVertex, shaders::kSphereFragment),
+        flat(table, shaders::kFlatVertex, shaders::kFlatFragment),
+        resolve(table, shaders::kResolveVertex, shaders::kResolveFragment),
+        particle_buffer(table, sizeof(ParticleVertex),
+                        {{3, gl::FLOAT, 0, offsetof(ParticleVertex, x)},
+                         {4, gl::UNSIGNED_BYTE, 1, offsetof(ParticleVertex, color)}},
+                        1),
+        flat_buffer(table, sizeof(FlatVertex),
+                    {{3, gl::FLOAT, 0, offsetof(FlatVertex, x)},
+                     {4, gl::UNSIGNED_BYTE, 1, offsetof(FlatVertex, color)},
+                     {2, gl::FLOAT, 0, offsetof(FlatVertex, grid)}},
+                    0),
+        nothing(table, 4, {}, 0),
+        samples(table, factor * size[0], factor * size[1], true),
+        picture(table, size[0], size[1], false) {}
+
+  void set_lens(const gl::Program& program, const Projection& p, double depth_a, double depth_b) {
+    program.use();
+    const double aspect = static_cast<double>(p.size[0]) / p.size[1];
+    gl.Uniform4f(program.uniform("u_lens"), static_cast<float>(1 / (p.tan_half * aspect)),
+                 static_cast<float>(1 / p.tan_half), static_cast<float>(p.shift),
+                 static_cast<float>(p.pixel() / factor));
+    gl.Uniform2f(program.uniform("u_depth"), static_cast<float>(depth_a),
+                 static_cast<float>(depth_b));
+  }
+};
+
+}  // namespace
+
+struct Renderer::Impl {
+  View view;
+  GlContext context;
+  std::unique_ptr<Pipeline> pipeline;
+  ParticleVertices particles;
+  std::vector<FlatVertex> triangles;
+  std::vector<std::uint8_t> pixels;
+
+  Impl(const View& v, int threads) : view((check_view(v), v)), context(threads) {
+    const GlCurrent current(context);
+    pipeline = std::make_unique<Pipeline>(context.gl(), view.size);
+  }
+  ~Impl() {
+    const GlCurrent current(context);
+    pipeline.reset();
+  }
+
+  void draw_scene(const Projection& projection);
+  Image read_back();
+};
+
+void Renderer::Impl::draw_scene(const Projection& projection) {
+  const gl::Table& gl = context.gl();
+  Pipeline& p = *pipeline;
+  // As narrow a range of depths as the particles and the box leave: it decides the resolution.
+  const double diagonal = length(view.domain_max - view.domain_min);
+  double near = particles.nearest, far = particles.farthest;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    Double3 q{};
+    for (unsigned k = 0; k < 3; ++k)
+      q[k] = (corner >> k & 1 ? view.domain_max : view.domain_min)[k];
+    near = std::min(near, projection.to_view(q)[2]);
+    far = std::max(far, projection.to_view(q)[2]);
+  }
+  near = std::max(0.99 * near, 1e-3 * diagonal);
+  far = std::max(1.01 * far, 2 * near) + 0.01 * diagonal;
+  const double a = far / (far - near), b = a * near;
+
+  triangles.clear();
+  add_floor(view, projection, triangles);
+  add_box_edges(view, projection, 1.6 * std::max(1.0, view.size[1] / 720.0), near, triangles);
+
+  p.samples.draw_into();
+  gl.Enable(gl::DEPTH_TEST);
+  gl.DepthFunc(gl::LEQUAL);
+  gl.Clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+  p.set_lens(p.flat, projection, a, b);
+  p.flat_buffer.bind();
+  p.flat_buffer.fill(triangles.data(), triangles.size() * sizeof(FlatVertex));
+  gl.DrawArrays(gl::TRIANGLES, 0, static_cast<gl::Size>(triangles.size()));
+  if (!particles.list.empty()) {
+    p.set_lens(p.spheres, projection, a, b);
+    gl.Uniform1f(p.spheres.uniform("u_radius"), static_cast<float>(view.radius));
+    p.particle_buffer.bind();
+    p.particle_buffer.fill(particles.list.data(), particles.list.size() * sizeof(ParticleVertex));
+    gl.DrawArraysInstanced(gl::TRIANGLE_STRIP, 0, 4, static_cast<gl::Size>(particles.list.size()));
+  }
+
+  p.picture.draw_into();
+  gl.Disable(gl::DEPTH_TEST);
+  p.set_lens(p.resolve, projection, a, b);
+  gl.Uniform1i(p.resolve.uniform("u_factor"), p.factor);
+  gl.Uniform2f(p.resolve.uniform("u_size"), static_cast<float>(view.size[0]),
+               static_cast<float>(view.size[1]));
+  gl.Uniform1f(p.resolve.uniform("u_radius"), static_cast<float>(view.radius));
+  gl.Uniform1i(p.resolve.uniform("u_color"), 0);
+  gl.Uniform1i(p.resolve.uniform("u_stored"), 1);
+  gl.ActiveTexture(gl::TEXTURE0);
+  gl.BindTexture(gl::TEXTURE_2D, p.samples.color());
+  gl.ActiveTexture(gl::TEXTURE0 + 1);
+  gl.BindTexture(gl::TEXTURE_2D, p.samples.depth());
+  p.nothing.bind();
+  gl.DrawArrays(gl::TRIANGLES, 0, 3);
+}
+
+Image Renderer::Impl::read_back() {
+  const gl::Table& gl = context.gl();
+  const auto width = static_cast<std::size_t>(view.size[0]);
+  const auto height = static_cast<std::size_t>(view.size[1]);
+  pixels.resize(4 * width * height);
+  gl.PixelStorei(gl::PACK_ALIGNMENT, 1);
+  gl.ReadPixels(0, 0, view.size[0], view.size[1], gl::RGBA, gl::UNSIGNED_BYTE, pixels.data());
+  if (const gl::Enum error = gl.GetError(); error != gl::NO_ERROR)
+    throw Error(ExitCode::unavailable,
+                error == gl::OUT_OF_MEMORY
+                    ? "the OpenGL driver ran out of memory; choose a smaller render.size"
+                    : "OpenGL error " + std::to_string(error) + " while drawing");
+  Image image{view.size[0], view.size[1], std::vector<std::uint8_t>(3 * width * height)};
+  auto* to = image.rgb.data();
+  for (std::size_t y = height; y-- > 0;) {  // OpenGL's first row is the lowest
+    const auto* from = &pixels[4 * width * y];
+    for (std::size_t x = 0; x < width; ++x, from += 4) to = std::copy(from, from + 3, to);
+  }
+  return image;
+}
+
+Renderer::Renderer(const View& view, int threads) : impl_(std::make_unique<Impl>(view, threads)) {}
+
+Renderer::~Renderer() = default;
+
+Image Renderer::draw(const Snapshot& snapshot) {
+  const View& view = impl_->view;
+  const Projection projection = projection_of(view, snapshot.time);
+  collect(snapshot, view, projection, impl_->particles);
+  Image image;
+  {
+    const GlCurrent current(impl_->context);
+    impl_->draw_scene(projection);
+    image = impl_->read_back();
+  }
+  const ColorTitle bar = color_title(snapshot, view.color);
+  draw_overlay(image, bar.title, bar.unit, view.range, snapshot.time);
+  return image;
+}
+
+std::string Renderer::backend() const { return impl_->context.backend(); }
+
+}  // namespace pbf

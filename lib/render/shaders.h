@@ -1,0 +1,145 @@
+// The three GLSL programs. View space as in camera.h: x right, y up, z = depth, in m.
+#pragma once
+
+namespace pbf::shaders {
+
+/// In front of every shader.
+inline constexpr const char* kHead = R"(#version 330 core
+uniform vec4 u_lens;   // clip x and y of a tangent: scale x, scale y, shift x; w: tangent per sample
+uniform vec2 u_depth;  // stored depth = u_depth.x - u_depth.y / z
+)";
+
+// One quad per particle, just large enough for the perspective outline of the sphere.
+inline constexpr const char* kSphereVertex = R"(
+layout(location = 0) in vec3 a_center;
+layout(location = 1) in vec4 a_color;
+uniform float u_radius;
+flat out vec3 f_center;
+flat out vec3 f_color;
+flat out float f_radius;
+out vec2 f_ray;
+// The two tangents (x/z) of the lines from the eye that touch a circle: centre (x, z), radius r.
+vec2 touching(float x, float z, float r) {
+  float w = z * z - r * r;
+  float s = r * sqrt(max(x * x + w, 0.0));
+  return vec2(x * z - s, x * z + s) / w;
+}
+void main() {
+  f_center = a_center;
+  f_color = a_color.rgb;
+  f_radius = max(u_radius, 0.7 * u_lens.w * a_center.z);  // never below a sample: no holes far away
+  vec2 pick = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+  vec2 clip = 2.0 * pick - 1.0;  // a sphere beside the eye may cover everything
+  if (a_center.z > 1.01 * f_radius) {
+    vec2 tx = touching(a_center.x, a_center.z, f_radius);
+    vec2 ty = touching(a_center.y, a_center.z, f_radius);
+    clip = mix(vec2(tx.x, ty.x), vec2(tx.y, ty.y), pick) * u_lens.xy;
+    clip.x -= u_lens.z;
+  }
+  f_ray = vec2(clip.x + u_lens.z, clip.y) / u_lens.xy;
+  gl_Position = vec4(clip, 0.0, 1.0);
+}
+)";
+
+// Ray and sphere: exact outline, normal and depth. p, the ray's nearest point seen from the
+// centre, keeps the digits that |c|^2 - r^2 would lose for small spheres far away.
+inline constexpr const char* kSphereFragment = R"(
+flat in vec3 f_center;
+flat in vec3 f_color;
+flat in float f_radius;
+in vec2 f_ray;
+out vec4 o_color;
+const vec3 kLight = normalize(vec3(-0.45, 0.75, -0.75));
+void main() {
+  vec3 d = vec3(f_ray, 1.0);
+  float dd = dot(d, d);
+  vec3 p = (dot(d, f_center) / dd) * d - f_center;
+  float h2 = f_radius * f_radius - dot(p, p);
+  if (h2 <= 0.0) discard;
+  d *= inversesqrt(dd);
+  vec3 n = (p - sqrt(h2) * d) / f_radius;
+  float z = f_center.z + n.z * f_radius;
+  if (z <= 0.0) discard;
+  gl_FragDepth = u_depth.x - u_depth.y / z;
+  float diffuse = max(dot(n, kLight), 0.0);
+  float shine = max(dot(n, normalize(kLight - d)), 0.0);
+  shine *= shine; shine *= shine; shine *= shine; shine *= shine; shine *= shine;
+  o_color = vec4(f_color * (0.42 + 0.62 * diffuse) + 0.16 * shine, 1.0);
+}
+)";
+
+// Box lines and floor: triangles in view space. The floor carries its place in grid cells.
+inline constexpr const char* kFlatVertex = R"(
+layout(location = 0) in vec3 a_place;
+layout(location = 1) in vec4 a_color;
+layout(location = 2) in vec2 a_grid;
+flat out vec4 f_color;
+out vec2 f_grid;
+void main() {
+  f_color = a_color;
+  f_grid = a_grid;
+  gl_Position = vec4(a_place.xy * u_lens.xy - vec2(u_lens.z * a_place.z, 0.0),
+                     (2.0 * u_depth.x - 1.0) * a_place.z - 2.0 * u_depth.y, a_place.z);
+}
+)";
+inline constexpr const char* kFlatFragment = R"(
+flat in vec4 f_color;  // a: strength of the grid lines, 0 for none
+in vec2 f_grid;
+out vec4 o_color;
+void main() {
+  vec2 width = fwidth(f_grid);
+  vec2 from_line = abs(f_grid - round(f_grid)) / max(width, vec2(1e-6));
+  vec2 cover = clamp(1.5 - from_line, 0.0, 1.0) * clamp(0.35 / max(width, vec2(1e-6)), 0.0, 1.0);
+  float line = f_color.a * max(cover.x, cover.y);
+  o_color = vec4(mix(f_color.rgb, vec3(0.55, 0.60, 0.66), line), 1.0);
+}
+)";
+
+// Averages the samples of a pixel over the background and darkens what lies a little behind its
+// surroundings, which shows the shape of a heap of equal spheres.
+inline constexpr const char* kResolveVertex = R"(
+void main() {
+  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+)";
+inline constexpr const char* kResolveFragment = R"(
+uniform sampler2D u_color;
+uniform sampler2D u_stored;
+uniform int u_factor;    // samples per pixel and direction
+uniform vec2 u_size;     // of the picture, pixels
+uniform float u_radius;  // of a particle
+out vec4 o_color;
+float z_at(ivec2 s) {
+  s = clamp(s, ivec2(0), ivec2(u_size) * u_factor - 1);
+  return u_depth.y / (u_depth.x - texelFetch(u_stored, s, 0).r);
+}
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy) * u_factor;
+  vec3 back = mix(vec3(0.90, 0.92, 0.94), vec3(0.975, 0.98, 0.985), gl_FragCoord.y / u_size.y);
+  vec3 sum = vec3(0.0);
+  int covered = 0;
+  for (int j = 0; j < u_factor; ++j)
+    for (int i = 0; i < u_factor; ++i)
+      if (texelFetch(u_stored, at + ivec2(i, j), 0).r < 1.0) {
+        sum += texelFetch(u_color, at + ivec2(i, j), 0).rgb;
+        ++covered;
+      }
+  int all = u_factor * u_factor;
+  float open = 1.0;
+  if (covered > 0) {
+    float z = z_at(at + u_factor / 2);
+    float reach = clamp(3.0 * u_radius / (u_lens.w * z), 2.0 * float(u_factor),
+                        12.0 * float(u_factor));  // in samples
+    float scale = 1.0 / max(u_radius, 0.7 * u_lens.w * z), hidden = 0.0;
+    for (int k = 0; k < 12; ++k) {
+      float angle = 2.39996 * float(k), far = reach * sqrt((float(k) + 1.0) / 12.0);
+      float behind = (z - z_at(at + ivec2(far * cos(angle), far * sin(angle)))) * scale;
+      hidden += smoothstep(0.6, 4.0, behind) * (1.0 - smoothstep(12.0, 40.0, behind));
+    }
+    open = 1.0 - 0.75 * hidden / 12.0;
+  }
+  o_color = vec4((sum * open + float(all - covered) * back) / float(all), 1.0);
+}
+)";
+
+}  // namespace pbf::shaders

@@ -1,0 +1,26 @@
+// The little vector algebra that cameras need, in double.
+#pragma once
+
+#include <cmath>
+
+#include "lib/scene/scene.h"
+
+namespace pbf {
+
+inline Double3 operator+(const Double3& a, const Double3& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+inline Double3 operator-(const Double3& a, const Double3& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Double3 operator*(double s, const Double3& a) { return {s * a[0], s * a[1], s * a[2]}; }
+inline double dot(const Double3& a, const Double3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Double3 cross(const Double3& a, const Double3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline double length(const Double3& a) { return std::sqrt(dot(a, a)); }
+inline Double3 unit(const Double3& a) { return (1 / length(a)) * a; }
+
+}  // namespace pbf

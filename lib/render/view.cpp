@@ -1,0 +1,39 @@
+// The view that a scene asks for.
+#include <algorithm>
+#include <cmath>
+
+#include "lib/render/renderer.h"
+#include "lib/render/vector3.h"
+
+namespace pbf {
+
+View view_of(const Scene& scene, std::int64_t particles) {
+  const Render render = scene.render.value_or(Render{});
+  View view;
+  view.domain_min = scene.domain.min;
+  view.domain_max = scene.domain.max;
+  const double g = length(scene.gravity);
+  if (g > 0) view.up = (-1 / g) * scene.gravity;
+  view.radius = render.radius > 0 ? render.radius : 0.5 * scene.fluid.spacing;
+  view.color = render.color;
+  view.size = render.size;
+  view.camera = render.camera;
+  if (render.range) {
+    view.range = *render.range;
+  } else if (render.color == ColorBy::density) {
+    view.range = {0.9 * scene.fluid.rest_density, 1.1 * scene.fluid.rest_density};
+  } else if (render.color == ColorBy::id) {
+    view.range = {0.0, static_cast<double>(std::max<std::int64_t>(particles - 1, 1))};
+  } else {
+    // Free fall through the whole box, on top of the fastest body's own speed.
+    double fall = 0, start = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      fall += std::abs(view.up[k]) * (scene.domain.max[k] - scene.domain.min[k]);
+    for (const auto& body : scene.bodies) start = std::max(start, length(body.velocity));
+    const double fastest = std::sqrt(start * start + 2 * g * fall);
+    view.range = {0.0, fastest > 0 ? fastest : 1.0};
+  }
+  return view;
+}
+
+}  // namespace pbf
