@@ -1,0 +1,142 @@
+#include "lib/io/h5.h"
+
+#include <cstring>
+
+namespace pbf::h5 {
+namespace {
+
+std::mutex& process_mutex() {
+  static std::mutex m;
+  return m;
+}
+
+herr_t take_first(unsigned, const H5E_error2_t* error, void* out) {
+  auto& text = *static_cast<std::string*>(out);
+  if (text.empty() && error->desc) text = error->desc;
+  return 0;
+}
+
+}  // namespace
+
+Lock::Lock() : lock_(process_mutex()) {
+  static const bool once = [] {
+    H5dont_atexit();  // fails when HDF5 is already in use: then its own clean-up stays
+    return true;
+  }();
+  (void)once;
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // a setting of the calling thread's stack
+}
+
+std::string reason() {
+  std::string text;  // innermost entry first
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first, &text);
+  const std::string key = "error message = '";
+  if (const auto at = text.find(key); at != std::string::npos) {
+    const auto begin = at + key.size();
+    return text.substr(begin, text.find('\'', begin) - begin);
+  }
+  return text.empty() ? "HDF5 gives no reason" : text;
+}
+
+Properties file_access() {
+  Properties p(H5Pcreate(H5P_FILE_ACCESS));
+#if H5_VERSION_GE(1, 10, 7)
+  check(H5Pset_file_locking(p, false, true));
+#endif
+  return p;
+}
+
+Type string_type() {
+  Type t(H5Tcopy(H5T_C_S1));
+  check(H5Tset_size(t, H5T_VARIABLE));
+  check(H5Tset_cset(t, H5T_CSET_UTF8));
+  return t;
+}
+
+void write_text(hid_t object, const char* name, const std::string& value) {
+  const Type type = string_type();
+  const Space space(H5Screate(H5S_SCALAR));
+  const Attribute a(H5Aexists(object, name) > 0
+                        ? H5Aopen(object, name, H5P_DEFAULT)
+                        : H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
+  const char* text = value.c_str();
+  check(H5Awrite(a, type, &text));
+}
+
+void write_texts(hid_t object, const char* name, const std::vector<std::string>& values) {
+  const Type type = string_type();
+  const hsize_t count = values.size();
+  const Space space(H5Screate_simple(1, &count, nullptr));
+  const Attribute a(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
+  std::vector<const char*> texts;
+  for (const auto& v : values) texts.push_back(v.c_str());
+  if (count) check(H5Awrite(a, type, texts.data()));
+}
+
+void write_ascii(hid_t object, const char* name, const std::string& value) {
+  const Type type(H5Tcopy(H5T_C_S1));
+  check(H5Tset_size(type, value.size()));
+  check(H5Tset_strpad(type, H5T_STR_NULLPAD));
+  const Space space(H5Screate(H5S_SCALAR));
+  const Attribute a(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
+  check(H5Awrite(a, type, value.data()));
+}
+
+bool has_attribute(hid_t object, const char* name) { return H5Aexists(object, name) > 0; }
+
+bool has_link(hid_t group, const std::string& path) {
+  for (std::size_t at = 0; at != std::string::npos;) {
+    at = path.find('/', at + 1);
+    if (H5Lexists(group, path.substr(0, at).c_str(), H5P_DEFAULT) <= 0) return false;
+  }
+  return true;
+}
+
+std::vector<std::string> read_texts(hid_t object, const char* name) {
+  const Attribute a(H5Aopen(object, name, H5P_DEFAULT));
+  const Type stored(H5Aget_type(a));
+  if (H5Tis_variable_str(stored) <= 0)
+    throw Failure{std::string("attribute ") + name + " is not a string of variable length"};
+  const Space space(H5Aget_space(a));
+  std::vector<char*> texts(static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space))));
+  if (texts.empty()) return {};
+  const Type type = string_type();
+  check(H5Aread(a, type, texts.data()));
+  std::vector<std::string> values;
+  for (const char* t : texts) values.emplace_back(t ? t : "");
+  H5Dvlen_reclaim(type, space, H5P_DEFAULT, texts.data());
+  return values;
+}
+
+std::string read_text(hid_t object, const char* name) {
+  const auto values = read_texts(object, name);
+  if (values.size() != 1) throw Failure{std::string("attribute ") + name + " is not one string"};
+  return values[0];
+}
+
+std::vector<hsize_t> shape(hid_t dataset) {
+  const Space space(H5Dget_space(dataset));
+  std::vector<hsize_t> dims(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space))));
+  check(H5Sget_simple_extent_dims(space, dims.data(), nullptr));
+  return dims;
+}
+
+std::vector<std::string> children(hid_t group, H5O_type_t kind) {
+  std::vector<std::string> all;
+  const auto add = [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {
+    static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+    return 0;
+  };
+  check(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &all));
+  std::vector<std::string> wanted;
+  for (auto& name : all) {
+    const Object o(H5Oopen(group, name.c_str(), H5P_DEFAULT));
+    const H5I_type_t type = H5Iget_type(o);
+    if ((kind == H5O_TYPE_GROUP && type == H5I_GROUP) ||
+        (kind == H5O_TYPE_DATASET && type == H5I_DATASET))
+      wanted.push_back(std::move(name));
+  }
+  return wanted;
+}
+
+}  // namespace pbf::h5

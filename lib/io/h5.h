@@ -1,0 +1,133 @@
+// HDF5's C API with owning handles, one process-wide lock and errors as exceptions.
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace pbf::h5 {
+
+/// Held around every use of HDF5: the distributions build the library without thread safety. Not
+/// recursive. Also turns off HDF5's habit of printing its error stack and of cleaning up at exit
+/// (which cannot end well for a file on a full disk; every handle here is closed by its owner).
+class Lock {
+ public:
+  Lock();
+
+ private:
+  std::unique_lock<std::mutex> lock_;
+};
+
+/// The reason of the last failed HDF5 call of this thread, as short as it can be said: the
+/// operating system's message ("No space left on device") if there is one.
+std::string reason();
+
+/// Thrown by the helpers below when an HDF5 call fails; what() is reason(). Callers add the file
+/// and what they were doing, and throw pbf::Error.
+struct Failure {
+  std::string reason;
+};
+
+/// `id` itself, or Failure when it is negative: HDF5's way to report an error.
+template <class Id>
+Id check(Id id) {
+  if (id < 0) throw Failure{reason()};
+  return id;
+}
+
+/// Owns one HDF5 id; closes it with `Close`. Must be destroyed under a Lock.
+template <herr_t (*Close)(hid_t)>
+class Handle {
+ public:
+  Handle() = default;
+  explicit Handle(hid_t id) : id_(check(id)) {}  // takes the result of H5Xopen or H5Xcreate
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    if (this != &other) {
+      reset();
+      id_ = std::exchange(other.id_, -1);
+    }
+    return *this;
+  }
+  ~Handle() { reset(); }
+  /// Closes; the result tells whether that worked (a file: whether all of it reached the system).
+  bool reset() noexcept { return id_ < 0 || Close(std::exchange(id_, -1)) >= 0; }
+  operator hid_t() const { return id_; }
+  bool open() const { return id_ >= 0; }
+
+ private:
+  hid_t id_ = -1;
+};
+
+using File = Handle<H5Fclose>;
+using Group = Handle<H5Gclose>;
+using Dataset = Handle<H5Dclose>;
+using Space = Handle<H5Sclose>;
+using Type = Handle<H5Tclose>;
+using Attribute = Handle<H5Aclose>;
+using Properties = Handle<H5Pclose>;
+using Object = Handle<H5Oclose>;
+
+/// The memory type of a C++ scalar.
+template <class T>
+hid_t native() {
+  if constexpr (std::is_same_v<T, float>) return H5T_NATIVE_FLOAT;
+  if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<T, std::int32_t>) return H5T_NATIVE_INT32;
+  if constexpr (std::is_same_v<T, std::int64_t>) return H5T_NATIVE_INT64;
+  if constexpr (std::is_same_v<T, std::uint64_t>) return H5T_NATIVE_UINT64;
+}
+
+/// File access for run files: no file locks, so that a live file can be read.
+Properties file_access();
+/// The type of strings in memory and in the file: variable length, UTF-8 (h5py reads str).
+Type string_type();
+
+void write_text(hid_t object, const char* name, const std::string& value);
+void write_texts(hid_t object, const char* name, const std::vector<std::string>& values);
+/// A fixed-length ASCII attribute, for readers that accept nothing else (VTK).
+void write_ascii(hid_t object, const char* name, const std::string& value);
+
+/// Writes `values` as a scalar (count 0) or one-dimensional attribute; replaces nothing.
+template <class T>
+void write_numbers(hid_t object, const char* name, const T* values, hsize_t count = 0) {
+  const Space space(count ? H5Screate_simple(1, &count, nullptr) : H5Screate(H5S_SCALAR));
+  const Attribute a(H5Acreate2(object, name, native<T>(), space, H5P_DEFAULT, H5P_DEFAULT));
+  check(H5Awrite(a, native<T>(), values));
+}
+
+bool has_attribute(hid_t object, const char* name);
+bool has_link(hid_t group, const std::string& path);  ///< every part of the path is looked at
+std::string read_text(hid_t object, const char* name);
+std::vector<std::string> read_texts(hid_t object, const char* name);
+/// All numbers of an attribute or of a whole dataset, converted to T.
+template <class T>
+T read_number(hid_t object, const char* name) {
+  const Attribute a(H5Aopen(object, name, H5P_DEFAULT));
+  const Space space(H5Aget_space(a));
+  if (check(H5Sget_simple_extent_npoints(space)) != 1)
+    throw Failure{std::string("attribute ") + name + " is not one number"};
+  T value{};
+  check(H5Aread(a, native<T>(), &value));
+  return value;
+}
+std::vector<hsize_t> shape(hid_t dataset);
+template <class T>
+std::vector<T> read_all(hid_t group, const std::string& path) {
+  const Dataset d(H5Dopen2(group, path.c_str(), H5P_DEFAULT));
+  std::size_t count = 1;
+  for (const hsize_t n : shape(d)) count *= n;
+  std::vector<T> values(count);
+  if (count) check(H5Dread(d, native<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+  return values;
+}
+
+/// Names of the datasets (or of the groups) directly in a group, in alphabetical order.
+std::vector<std::string> children(hid_t group, H5O_type_t kind);
+
+}  // namespace pbf::h5

@@ -1,0 +1,41 @@
+#include "lib/io/h5_column.h"
+
+#include <algorithm>
+
+namespace pbf::h5 {
+
+Column::Column(hid_t parent, const std::string& path, hid_t type, const Layout& layout)
+    : chunk_rows_(std::max<hsize_t>(1, layout.chunk_rows)), components_(layout.components) {
+  const int rank = components_ ? 2 : 1;
+  const auto width = static_cast<hsize_t>(components_);
+  const hsize_t none[2] = {0, width}, unlimited[2] = {H5S_UNLIMITED, width};
+  const hsize_t chunk[2] = {chunk_rows_, width};
+  const Space space(H5Screate_simple(rank, none, unlimited));
+  const Properties create(H5Pcreate(H5P_DATASET_CREATE)), link(H5Pcreate(H5P_LINK_CREATE));
+  check(H5Pset_create_intermediate_group(link, 1));
+  check(H5Pset_chunk(create, rank, chunk));
+  if (layout.gzip) {
+    check(H5Pset_shuffle(create));
+    check(H5Pset_deflate(create, 1));
+  }
+  dataset_ = Dataset(H5Dcreate2(parent, path.c_str(), type, space, link, create, H5P_DEFAULT));
+  if (!layout.unit.empty()) write_text(dataset_, "units", layout.unit);
+}
+
+void Column::write(hsize_t first, hsize_t count, hid_t type, const void* values) {
+  if (!count) return;
+  const int rank = components_ ? 2 : 1;
+  const auto width = static_cast<hsize_t>(components_);
+  if (first + count > rows_) {
+    const hsize_t size[2] = {first + count, width};
+    check(H5Dset_extent(dataset_, size));
+    rows_ = size[0];
+  }
+  const Space file(H5Dget_space(dataset_));
+  const hsize_t start[2] = {first, 0}, block[2] = {count, width};
+  check(H5Sselect_hyperslab(file, H5S_SELECT_SET, start, nullptr, block, nullptr));
+  const Space memory(H5Screate_simple(rank, block, nullptr));
+  check(H5Dwrite(dataset_, type, memory, file, H5P_DEFAULT, values));
+}
+
+}  // namespace pbf::h5

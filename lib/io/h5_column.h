@@ -1,0 +1,47 @@
+// Extensible datasets: one-dimensional columns that grow by appending, and arrays of frames.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/io/h5.h"
+
+namespace pbf::h5 {
+
+/// How a growing dataset is laid out and labelled.
+struct Layout {
+  hsize_t chunk_rows = 512;
+  int components = 0;  ///< 0: one-dimensional; else rows of so many scalars
+  bool gzip = false;   ///< shuffle + deflate level 1
+  std::string unit;    ///< attribute "units" when not empty
+};
+
+/// A dataset whose first dimension grows. Rows are addressed by the caller; rows never written
+/// read as 0. All members throw Failure.
+class Column {
+ public:
+  Column() = default;
+  /// Creates `path` (with the groups on the way) under `parent`, empty, of the file type `type`.
+  Column(hid_t parent, const std::string& path, hid_t type, const Layout& layout);
+  hsize_t rows() const { return rows_; }
+  hsize_t chunk_rows() const { return chunk_rows_; }
+  bool open() const { return dataset_.open(); }
+  /// Writes `count` rows of memory type `type` at row `first`; the dataset grows as needed.
+  void write(hsize_t first, hsize_t count, hid_t type, const void* values);
+  template <class T>
+  void append(const std::vector<T>& values) {
+    write(rows_, values.size() / static_cast<hsize_t>(components_ ? components_ : 1), native<T>(),
+          values.data());
+  }
+  template <class T>
+  void append(T value) {
+    append(std::vector<T>{value});
+  }
+
+ private:
+  Dataset dataset_;
+  hsize_t rows_ = 0, chunk_rows_ = 0;
+  int components_ = 0;
+};
+
+}  // namespace pbf::h5

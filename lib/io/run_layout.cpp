@@ -1,0 +1,35 @@
+#include "lib/io/run_layout.h"
+
+namespace pbf::run_layout {
+
+const std::vector<LogColumn>& log_columns() {
+  using Row = const LogRow&;
+  static const std::vector<LogColumn> columns = {
+      {"time", "s", [](Row r) { return r.measures.time; }},
+      {"dt", "s", [](Row r) { return r.dt; }},
+      {"update", "1", nullptr, [](Row r) { return r.measures.update; }},
+      {"iterations", "1", nullptr, [](Row r) { return std::int64_t{r.iterations}; }},
+      {"compression_mean", "1", [](Row r) { return r.measures.compression_mean; }},
+      {"compression_rms", "1", [](Row r) { return r.measures.compression_rms; }},
+      {"compression_max", "1", [](Row r) { return r.measures.compression_max; }},
+      {"kinetic_energy", "J", [](Row r) { return r.measures.kinetic_energy; }},
+      {"potential_energy", "J", [](Row r) { return r.measures.potential_energy; }},
+      {"momentum_x", "kg m/s", [](Row r) { return r.measures.momentum[0]; }},
+      {"momentum_y", "kg m/s", [](Row r) { return r.measures.momentum[1]; }},
+      {"momentum_z", "kg m/s", [](Row r) { return r.measures.momentum[2]; }},
+      {"center_of_mass_x", "m", [](Row r) { return r.measures.center_of_mass[0]; }},
+      {"center_of_mass_y", "m", [](Row r) { return r.measures.center_of_mass[1]; }},
+      {"center_of_mass_z", "m", [](Row r) { return r.measures.center_of_mass[2]; }},
+      {"speed_max", "m/s", [](Row r) { return r.measures.speed_max; }},
+      {"front_x", "m", [](Row r) { return r.measures.front[0]; }},
+      {"front_y", "m", [](Row r) { return r.measures.front[1]; }},
+      {"front_z", "m", [](Row r) { return r.measures.front[2]; }},
+      {"neighbors_mean", "1", [](Row r) { return r.measures.neighbors_mean; }},
+      {"neighbors_max", "1", nullptr, [](Row r) { return r.measures.neighbors_max; }},
+      {"outside", "1", nullptr, [](Row r) { return r.measures.outside; }},
+      {"non_finite", "1", nullptr, [](Row r) { return r.measures.non_finite; }},
+  };
+  return columns;
+}
+
+}  // namespace pbf::run_layout

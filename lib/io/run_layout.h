@@ -1,0 +1,27 @@
+// What the writer and the reader of run.h5 agree on: names, versions, the columns of the log.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lib/io/run_file.h"
+
+namespace pbf::run_layout {
+
+/// Version of everything under /pbf. A reader refuses newer files.
+inline constexpr int format_version = 1;
+
+inline constexpr const char* topologies[4] = {"Vertices", "Lines", "Polygons", "Strips"};
+
+/// A column of the log as a number of a row: a float64 or an int64 dataset /pbf/log/<name>.
+struct LogColumn {
+  const char* name;
+  const char* unit;
+  double (*number)(const LogRow&);  ///< null for an integer column
+  std::int64_t (*integer)(const LogRow&) = nullptr;
+};
+
+/// All columns but the stages, in the order of their creation.
+const std::vector<LogColumn>& log_columns();
+
+}  // namespace pbf::run_layout

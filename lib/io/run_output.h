@@ -1,0 +1,78 @@
+// The file behind RunWriter: every HDF5 call that writes run.h5.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lib/base/stage_clock.h"
+#include "lib/io/h5_column.h"
+#include "lib/io/run_file.h"
+
+namespace pbf {
+
+/// A run file being written. Used, made and destroyed under an h5::Lock. Members throw h5::Failure
+/// when HDF5 or the disk fails and Error(internal) when a frame does not fit the ones before;
+/// after either the object may only be destroyed, which leaves the file as the last commit left it.
+class RunOutput {
+ public:
+  /// Creates the file; fails if it exists. gzip: shuffle + deflate level 1.
+  RunOutput(const std::string& path, const RunInfo& info, bool gzip);
+  ~RunOutput();
+  RunOutput(const RunOutput&) = delete;
+  /// Appends a frame and commits it: from the return on a killed process leaves it readable.
+  void write_frame(const Snapshot& snapshot);
+  /// Keeps the row until the next commit: a frame, close, or enough rows or seconds gathered.
+  void log(const LogRow& row);
+  /// Writes what waits and the status, and waits until the system has stored the file.
+  void close(const std::string& status);
+  std::int64_t frames() const { return frames_; }  ///< committed
+  std::int64_t bytes() const { return bytes_; }    ///< size of the file at the last commit
+
+ private:
+  explicit RunOutput(bool gzip) : gzip_(gzip) {}
+
+  struct Field {
+    std::string name, unit;
+    ScalarType type;
+    int components;
+    h5::Column data;     // /VTKHDF/Points or /VTKHDF/PointData/<name>
+    h5::Column offsets;  // /VTKHDF/Steps/PointDataOffsets/<name>; closed for Points
+  };
+  struct Part {  // a row of the tables of parts: frames of the same count share it
+    std::size_t count;
+    std::int64_t index, cell_offset;
+  };
+  struct Topology {  // one of Vertices, Lines, Polygons, Strips
+    h5::Column cells, ids, ends;
+  };
+
+  void create_steps();
+  void write_info(const RunInfo& info);
+  void create_fields(const Snapshot& first);
+  void check_fields(const Snapshot& snapshot) const;
+  Part part_of(std::size_t count);
+  void grow_ids(std::size_t count);
+  void write_log();
+  void write_stages();
+  void flush();
+
+  h5::File file_;  // first: destroyed last
+  bool gzip_ = false, closed_ = false;
+  std::int64_t frames_ = 0, bytes_ = 0;
+  std::size_t expected_ = 0;  // particles, from RunInfo
+  h5::Group vtk_, steps_, pbf_;
+  std::vector<Field> fields_;
+  hsize_t chunk_rows_ = 1, end_row_ = 0;
+  h5::Column ids_, id_offsets_, connectivity_, points_per_part_, updates_;
+  std::array<Topology, 4> topologies_;
+  std::vector<Part> parts_;
+  h5::Column times_, part_offsets_, part_counts_, point_offsets_, cell_offsets_, id_starts_;
+  std::vector<LogRow> waiting_;
+  Stopwatch since_log_;
+  std::map<std::string, h5::Column> log_, stages_;
+};
+
+}  // namespace pbf

@@ -1,0 +1,246 @@
+// RunReader: opens the file anew for every call, so that a file still growing is read as it is.
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <thread>
+
+#include "lib/base/error.h"
+#include "lib/io/h5.h"
+#include "lib/io/run_file.h"
+#include "lib/io/run_layout.h"
+
+namespace pbf {
+namespace {
+
+using h5::check;
+
+struct FieldPlace {
+  std::string name, unit, path;  ///< path under /VTKHDF
+  std::vector<std::int64_t> offsets;
+  ScalarType type = ScalarType::f32;
+  int components = 1;
+};
+
+ScalarType scalar_type(hid_t dataset, const std::string& path) {
+  const h5::Type type(H5Dget_type(dataset));
+  const bool real = H5Tget_class(type) == H5T_FLOAT;
+  const std::size_t size = H5Tget_size(type);
+  if (real && size == 8) return ScalarType::f64;
+  if (real && size == 4) return ScalarType::f32;
+  if (!real && H5Tget_class(type) == H5T_INTEGER && size == 4) return ScalarType::i32;
+  throw h5::Failure{path + " has a type that this program does not write"};
+}
+
+hid_t memory_type(ScalarType t) {
+  if (t == ScalarType::i32) return H5T_NATIVE_INT32;
+  return t == ScalarType::f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
+}
+
+FieldPlace describe(hid_t vtk, const std::string& name, const std::string& path) {
+  FieldPlace f{name, "", path, {}};
+  const h5::Dataset d(H5Dopen2(vtk, path.c_str(), H5P_DEFAULT));
+  f.type = scalar_type(d, path);
+  const auto dims = h5::shape(d);
+  if (dims.empty() || dims.size() > 2 || (dims.size() == 2 && (dims[1] < 1 || dims[1] > 64)))
+    throw h5::Failure{path + " has a shape that this program does not write"};
+  f.components = dims.size() == 2 ? static_cast<int>(dims[1]) : 1;
+  if (h5::has_attribute(d, "units")) f.unit = h5::read_text(d, "units");
+  f.offsets = h5::read_all<std::int64_t>(
+      vtk, name == "position" ? "Steps/PointOffsets" : "Steps/PointDataOffsets/" + name);
+  return f;
+}
+
+FieldArray read_rows(hid_t vtk, const FieldPlace& place, std::size_t frame, std::size_t count) {
+  FieldArray f{place.name, place.unit, place.type, place.components, {}};
+  const h5::Dataset d(H5Dopen2(vtk, place.path.c_str(), H5P_DEFAULT));
+  const auto dims = h5::shape(d);
+  const auto first = static_cast<hsize_t>(place.offsets[frame]);
+  if (place.offsets[frame] < 0 || first > dims[0] || count > dims[0] - first)
+    throw h5::Failure{place.path + " ends before the frame does"};
+  f.bytes.resize(count * static_cast<std::size_t>(f.components) * size_of(f.type));
+  if (!count) return f;
+  const hsize_t start[2] = {first, 0}, block[2] = {count, static_cast<hsize_t>(f.components)};
+  const h5::Space file(H5Dget_space(d));
+  check(H5Sselect_hyperslab(file, H5S_SELECT_SET, start, nullptr, block, nullptr));
+  const h5::Space memory(H5Screate_simple(static_cast<int>(dims.size()), block, nullptr));
+  check(H5Dread(d, memory_type(f.type), memory, file, H5P_DEFAULT, f.bytes.data()));
+  return f;
+}
+
+/// The `count` numbers of a small dataset under /pbf.
+void read_quantity(hid_t pbf, const char* name, double* out, std::size_t count) {
+  const auto values = h5::read_all<double>(pbf, name);
+  if (values.size() != count)
+    throw h5::Failure{std::string("/pbf/") + name + " has the wrong size"};
+  std::copy(values.begin(), values.end(), out);
+}
+
+RunInfo read_info(hid_t pbf) {
+  RunInfo info;
+  const std::pair<const char*, std::string*> texts[] = {{"scene_path", &info.scene_path},
+                                                        {"scene_text", &info.scene_text},
+                                                        {"resolved_scene", &info.resolved_scene},
+                                                        {"program_version", &info.program_version},
+                                                        {"commit", &info.commit},
+                                                        {"compiler", &info.compiler},
+                                                        {"build_flags", &info.build_flags},
+                                                        {"host", &info.host},
+                                                        {"started", &info.started},
+                                                        {"plan", &info.plan},
+                                                        {"backend", &info.solver.backend},
+                                                        {"precision", &info.solver.precision},
+                                                        {"device", &info.solver.device},
+                                                        {"driver", &info.solver.driver}};
+  for (const auto& [name, text] : texts) *text = h5::read_text(pbf, name);
+  info.overrides = h5::read_texts(pbf, "overrides");
+  info.solver.threads = static_cast<int>(h5::read_number<std::int64_t>(pbf, "threads"));
+  info.solver.bytes = h5::read_number<std::uint64_t>(pbf, "solver_bytes");
+  info.particles = h5::read_number<std::int64_t>(pbf, "particles");
+  read_quantity(pbf, "domain_min", info.domain_min.data(), 3);
+  read_quantity(pbf, "domain_max", info.domain_max.data(), 3);
+  const std::pair<const char*, double*> numbers[] = {{"spacing", &info.spacing},
+                                                     {"smoothing_length", &info.smoothing_length},
+                                                     {"rest_density", &info.rest_density},
+                                                     {"particle_weight", &info.solver.vol},
+                                                     {"wall_scale", &info.solver.wall_scale}};
+  for (const auto& [name, value] : numbers) read_quantity(pbf, name, value, 1);
+  return info;
+}
+
+}  // namespace
+
+struct RunReader::Impl {
+  std::string path;
+  std::vector<double> times;
+  std::vector<std::int64_t> counts, updates;  // per frame
+  std::vector<FieldPlace> fields;             // position first; those of PointData
+
+  /// Opens the file and runs `action(file)`. What a live file shows while its writer is in the
+  /// middle of a commit may not fit together, so a failure is final only when it repeats.
+  template <class Action>
+  auto with_file(const char* what, Action action) const {
+    for (int attempt = 1;; ++attempt) {
+      try {
+        const h5::Lock lock;
+        const h5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, h5::file_access()));
+        return action(file);
+      } catch (const h5::Failure& f) {
+        if (attempt == 3) throw Error(ExitCode::io, path + ": " + what + ": " + f.reason);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+
+  void scan(hid_t file);
+};
+
+void RunReader::Impl::scan(hid_t file) {
+  if (!h5::has_link(file, "pbf") || !h5::has_link(file, "VTKHDF/Steps"))
+    throw h5::Failure{"an HDF5 file, but not one that pbf wrote (no /pbf or no /VTKHDF/Steps)"};
+  const h5::Group pbf(H5Gopen2(file, "pbf", H5P_DEFAULT));
+  const h5::Group vtk(H5Gopen2(file, "VTKHDF", H5P_DEFAULT));
+  if (!h5::has_attribute(pbf, "format_version"))
+    throw h5::Failure{"an HDF5 file, but not one that pbf wrote (no /pbf format_version)"};
+  const auto version = h5::read_number<std::int64_t>(pbf, "format_version");
+  if (version != run_layout::format_version)
+    throw h5::Failure{"format version " + std::to_string(version) +
+                      "; this program reads version " + std::to_string(run_layout::format_version)};
+  const h5::Group steps(H5Gopen2(vtk, "Steps", H5P_DEFAULT));
+  std::size_t n = static_cast<std::size_t>(
+      std::max<std::int64_t>(0, h5::read_number<std::int64_t>(steps, "NSteps")));
+  times = h5::read_all<double>(steps, "Values");
+  updates = h5::read_all<std::int64_t>(pbf, "frames/update");
+  const auto parts = h5::read_all<std::int64_t>(steps, "PartOffsets");
+  const auto points = h5::read_all<std::int64_t>(vtk, "NumberOfPoints");
+  n = std::min({n, times.size(), updates.size(), parts.size()});
+  fields.clear();
+  if (n > 0) {
+    fields.push_back(describe(vtk, "position", "Points"));
+    const h5::Group data(H5Gopen2(vtk, "PointData", H5P_DEFAULT));
+    for (const auto& name : h5::children(data, H5O_TYPE_DATASET))
+      fields.push_back(describe(vtk, name, "PointData/" + name));
+  }
+  for (const auto& f : fields) n = std::min(n, f.offsets.size());
+  times.resize(n);
+  updates.resize(n);
+  counts.clear();
+  for (std::size_t k = 0; k < n; ++k) {
+    if (parts[k] < 0 || static_cast<std::size_t>(parts[k]) >= points.size() ||
+        points[static_cast<std::size_t>(parts[k])] < 0)
+      throw h5::Failure{"frame " + std::to_string(k) + " has no number of points"};
+    counts.push_back(points[static_cast<std::size_t>(parts[k])]);
+  }
+}
+
+RunReader::RunReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
+  impl_->path = path;
+  impl_->with_file("cannot read the run file", [&](const h5::File& file) { impl_->scan(file); });
+}
+RunReader::~RunReader() = default;
+
+std::int64_t RunReader::frames() const { return static_cast<std::int64_t>(impl_->times.size()); }
+std::vector<double> RunReader::times() const { return impl_->times; }
+
+std::vector<std::string> RunReader::fields() const {
+  std::vector<std::string> names;
+  for (const auto& f : impl_->fields)
+    if (f.name != "position" && f.name != "id") names.push_back(f.name);
+  return names;
+}
+
+Snapshot RunReader::frame(std::int64_t k) const {
+  if (k < 0 || k >= frames())
+    throw Error(ExitCode::bad_input,
+                impl_->path + ": there is no frame " + std::to_string(k) +
+                    (frames() ? "; the frames are 0.." + std::to_string(frames() - 1)
+                              : std::string("; the file has no frames yet")));
+  const auto at = static_cast<std::size_t>(k);
+  const auto count = static_cast<std::size_t>(impl_->counts[at]);
+  const std::string what = "cannot read frame " + std::to_string(k);
+  return impl_->with_file(what.c_str(), [&](const h5::File& file) {
+    const h5::Group vtk(H5Gopen2(file, "VTKHDF", H5P_DEFAULT));
+    Snapshot s{impl_->updates[at], impl_->times[at], count, {}};
+    for (const auto& f : impl_->fields) s.fields.push_back(read_rows(vtk, f, at, count));
+    return s;
+  });
+}
+
+RunInfo RunReader::info() const {
+  return impl_->with_file("cannot read what the run was", [](const h5::File& file) {
+    return read_info(h5::Group(H5Gopen2(file, "pbf", H5P_DEFAULT)));
+  });
+}
+
+std::string RunReader::status() const {
+  return impl_->with_file("cannot read the status", [](const h5::File& file) {
+    return h5::read_text(h5::Group(H5Gopen2(file, "pbf", H5P_DEFAULT)), "status");
+  });
+}
+
+std::vector<std::string> RunReader::log_columns() const {
+  return impl_->with_file("cannot read the log", [](const h5::File& file) {
+    const h5::Group log(H5Gopen2(file, "pbf/log", H5P_DEFAULT));
+    auto names = h5::children(log, H5O_TYPE_DATASET);
+    if (h5::has_link(log, "stage"))
+      for (const auto& s :
+           h5::children(h5::Group(H5Gopen2(log, "stage", H5P_DEFAULT)), H5O_TYPE_DATASET))
+        names.push_back("stage/" + s);
+    return names;
+  });
+}
+
+std::vector<double> RunReader::log_column(const std::string& name) const {
+  return impl_->with_file("cannot read the log", [&](const h5::File& file) -> std::vector<double> {
+    const h5::Group log(H5Gopen2(file, "pbf/log", H5P_DEFAULT));
+    if (name.empty() || !h5::has_link(log, name)) return {};
+    auto values = h5::read_all<double>(log, name);
+    // A process killed while it wrote the log may leave columns of different lengths.
+    for (const auto& c : run_layout::log_columns()) {
+      const h5::Dataset d(H5Dopen2(log, c.name, H5P_DEFAULT));
+      values.resize(std::min<std::size_t>(values.size(), h5::shape(d).at(0)));
+    }
+    return values;
+  });
+}
+
+}  // namespace pbf
