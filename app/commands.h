@@ -1,0 +1,45 @@
+// The commands behind the command line: options in, exit code out; errors are thrown as Error.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace pbf {
+
+struct RunOptions {
+  std::string scene;                   ///< path
+  std::string out;                     ///< run folder; empty: out/<scene name>
+  std::string backend, precision;      ///< empty: as the scene says
+  std::string threads;                 ///< empty: as the scene says; else a number from 1 on
+  std::vector<std::string> overrides;  ///< key.path=value
+  bool overwrite = false, resume = false, quiet = false;
+  std::string log_json;                ///< path, empty: none
+  double max_walltime = 0;             ///< s, 0: none
+};
+
+struct PlanOptions {
+  std::string scene;
+  std::vector<std::string> overrides;
+  bool resolved = false, json = false;
+};
+
+struct RenderOptions {
+  std::string run;           ///< path of run.h5
+  std::string frames = "all";  ///< k, a:b, a:b:step (b excluded, negative from the end) or all
+  std::string size;          ///< WxH, empty: as the scene says
+  std::string camera;        ///< position=x,y,z;target=x,y,z;fov=deg;orbit=deg/s
+  std::string color, range;  ///< empty: as the scene says
+  std::string out;           ///< folder, empty: render/ beside the run file
+};
+
+struct ConfigOptions {
+  bool schema = false, example = false;
+};
+
+int command_run(const RunOptions& options);
+int command_plan(const PlanOptions& options);
+int command_render(const RenderOptions& options);
+int command_config(const ConfigOptions& options);
+int command_info();
+
+}  // namespace pbf
