@@ -64,8 +64,8 @@ void hold_inside(const Domain& domain, std::size_t body, std::size_t first,
       if (!(x[i][a] >= domain.min[a] - slack && x[i][a] <= domain.max[a] + slack))
         throw Error(ExitCode::bad_input,
                     "bodies[" + std::to_string(body) + "]: particle " + std::to_string(i - first) +
-                        " at " + to_text(x[i]) + " is outside the domain along " + "xyz"[a] +
-                        " (" + to_text(domain.min[a]) + " .. " + to_text(domain.max[a]) +
+                        " at " + to_text(x[i]) + " is outside the domain along " + "xyz"[a] + " (" +
+                        to_text(domain.min[a]) + " .. " + to_text(domain.max[a]) +
                         " m); move the body or enlarge the domain");
       x[i][a] = std::clamp(x[i][a], domain.min[a], domain.max[a]);
     }
@@ -86,8 +86,9 @@ std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {
     sum += n;
   }
   if (sum < 1)
-    throw Error(ExitCode::bad_input, "bodies: the scene has 0 particles; add a body or lower "
-                                     "fluid.spacing");
+    throw Error(ExitCode::bad_input,
+                "bodies: the scene has 0 particles; add a body or lower "
+                "fluid.spacing");
   if (sum > kMaxParticles) throw Error(ExitCode::bad_input, "bodies: " + too_many_text(sum));
   return static_cast<std::int64_t>(sum);
 }
@@ -101,9 +102,15 @@ Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
     const Body& body = scene.bodies[b];
     const std::size_t first = all.size();
     switch (body.shape) {
-      case Shape::block: emit_block(body, scene.fluid.spacing, all.position); break;
-      case Shape::sphere: emit_sphere(body, scene.fluid.spacing, all.position); break;
-      case Shape::random_box: emit_random_box(body, all.position); break;
+      case Shape::block:
+        emit_block(body, scene.fluid.spacing, all.position);
+        break;
+      case Shape::sphere:
+        emit_sphere(body, scene.fluid.spacing, all.position);
+        break;
+      case Shape::random_box:
+        emit_random_box(body, all.position);
+        break;
       case Shape::file: {
         const Particles p = read_particle_file(resolved_path(body, scene_dir));
         all.position.insert(all.position.end(), p.position.begin(), p.position.end());

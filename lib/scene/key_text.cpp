@@ -98,8 +98,9 @@ std::string range_text(const Key& key) {
   };
   if (!unit_text(key).empty()) {
     const bool low = key.range.min > -std::numeric_limits<double>::infinity();
-    if (low) text = (key.range.above_min ? "> " : "") + to_text(key.range.min) + " .. " +
-                    (key.range.below_max ? "< " : "") + to_text(key.range.max);
+    if (low)
+      text = (key.range.above_min ? "> " : "") + to_text(key.range.min) + " .. " +
+             (key.range.below_max ? "< " : "") + to_text(key.range.max);
   }
   for (const std::string& word : key.choices) join(word);
   Scene scene = scene_with_all_blocks();

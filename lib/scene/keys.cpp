@@ -61,14 +61,13 @@ std::vector<Key> top_keys() {
 }
 
 std::vector<Key> domain_keys() {
-  return {
-      required(number("domain.min", "m", kCoordinate, "Lower corner of the box, [x, y, z].",
-                      SCENE(&s.domain.min))),
-      required(number("domain.max", "m", kCoordinate,
-                      "Upper corner of the box; above domain.min along every axis.",
-                      SCENE(&s.domain.max))),
-      words("domain.open", {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"},
-            "Faces of the box without a wall, as a list.", SCENE(&s.domain.open))};
+  return {required(number("domain.min", "m", kCoordinate, "Lower corner of the box, [x, y, z].",
+                          SCENE(&s.domain.min))),
+          required(number("domain.max", "m", kCoordinate,
+                          "Upper corner of the box; above domain.min along every axis.",
+                          SCENE(&s.domain.max))),
+          words("domain.open", {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"},
+                "Faces of the box without a wall, as a list.", SCENE(&s.domain.open))};
 }
 
 std::vector<Key> fluid_keys() {
@@ -99,9 +98,8 @@ std::vector<Key> body_keys() {
                                    BODY(&b.max)))),
       required(shapes(bit(Shape::sphere), number("bodies[].center", "m", kCoordinate,
                                                  "Centre of the sphere.", BODY(&b.center)))),
-      required(shapes(bit(Shape::sphere),
-                      number("bodies[].radius", "m", kLength, "Radius of the sphere.",
-                             BODY(&b.radius)))),
+      required(shapes(bit(Shape::sphere), number("bodies[].radius", "m", kLength,
+                                                 "Radius of the sphere.", BODY(&b.radius)))),
       required(shapes(bit(Shape::random_box),
                       number("bodies[].count", "", {1, 2147483647},
                              "Number of particles, uniformly distributed.", BODY(&b.count)))),
@@ -115,20 +113,20 @@ std::vector<Key> body_keys() {
                             "or x,y,z,vx,vy,vz, or HDF5 with datasets position (N, 3) and, if "
                             "wanted, velocity (N, 3).",
                             BODY(&b.path)))),
-      shapes(kEveryShape, number("bodies[].velocity", "m/s", kRate,
-                                 "Initial velocity, added to every particle of the body.",
-                                 BODY(&b.velocity)))};
+      shapes(kEveryShape,
+             number("bodies[].velocity", "m/s", kRate,
+                    "Initial velocity, added to every particle of the body.", BODY(&b.velocity)))};
 }
 
 std::vector<Key> time_keys() {
-  return {number("gravity", "m/s^2", kRate, "Acceleration of gravity, [x, y, z].",
-                 SCENE(&s.gravity)),
-          required(number("time.step", "s", kSeconds,
-                          "Time of one update, dt. About 0.03 sqrt(h/g) is safe.",
-                          SCENE(&s.time.step))),
-          required(number("time.end", "s", kSeconds,
-                          "Time simulated, rounded to whole updates; at least time.step.",
-                          SCENE(&s.time.end)))};
+  return {
+      number("gravity", "m/s^2", kRate, "Acceleration of gravity, [x, y, z].", SCENE(&s.gravity)),
+      required(number("time.step", "s", kSeconds,
+                      "Time of one update, dt. About 0.03 sqrt(h/g) is safe.",
+                      SCENE(&s.time.step))),
+      required(number("time.end", "s", kSeconds,
+                      "Time simulated, rounded to whole updates; at least time.step.",
+                      SCENE(&s.time.end)))};
 }
 
 std::vector<Key> solver_keys() {
@@ -147,9 +145,10 @@ std::vector<Key> solver_keys() {
              "eps h^2, in the denominator of lambda (constraint force mixing, made dimensionless). "
              "Larger is softer.",
              SCENE(&s.solver.relaxation)),
-      number("solver.step_length", "", {0, 2, true},
-             "Factor omega on the position change of one sweep; below 1 under-relaxes.",
-             SCENE(&s.solver.step_length)),
+      automatic(number("solver.step_length", "", {0, 2, true},
+                       "Factor omega on the position change of one sweep; below 1 under-relaxes. "
+                       "auto: min(1, (2.5 d/h)^2), since more neighbours need smaller steps.",
+                       SCENE(&s.solver.step_length))),
       words("solver.boundary", {"density", "clamp"},
             "density: walls count in the density like fluid behind them. clamp: particles are only "
             "put back into the box.",
@@ -164,18 +163,18 @@ std::vector<Key> solver_keys() {
 }
 
 std::vector<Key> force_keys() {
-  return {number("tensile.k", "h^2", {0, 1000}, "Strength; 1.0e-03 to 1.0e-02 is useful.",
-                 SCENE(&s.tensile->k)),
-          number("tensile.delta_q", "h", {0, 1, true, true},
-                 "Distance at which the artificial pressure has its strength.",
-                 SCENE(&s.tensile->delta_q)),
-          number("tensile.n", "", {1, 16}, "Exponent.", SCENE(&s.tensile->n)),
-          number("viscosity.xsph", "", {0, 10}, "Factor c; stable up to 1.",
-                 SCENE(&s.viscosity->xsph)),
-          number("vorticity.epsilon", "", {0, 1000}, "Strength.", SCENE(&s.vorticity->epsilon)),
-          number("measure_every", "", {1, 2147483647},
-                 "Updates between two measures (density error, energy, momentum, ...).",
-                 SCENE(&s.measure_every))};
+  return {
+      number("tensile.k", "h^2", {0, 1000}, "Strength; 1.0e-03 to 1.0e-02 is useful.",
+             SCENE(&s.tensile->k)),
+      number("tensile.delta_q", "h", {0, 1, true, true},
+             "Distance at which the artificial pressure has its strength.",
+             SCENE(&s.tensile->delta_q)),
+      number("tensile.n", "", {1, 16}, "Exponent.", SCENE(&s.tensile->n)),
+      number("viscosity.xsph", "", {0, 10}, "Factor c; stable up to 1.", SCENE(&s.viscosity->xsph)),
+      number("vorticity.epsilon", "", {0, 1000}, "Strength.", SCENE(&s.vorticity->epsilon)),
+      number("measure_every", "", {1, 2147483647},
+             "Updates between two measures (density error, energy, momentum, ...).",
+             SCENE(&s.measure_every))};
 }
 
 ChoiceField compression(Output& output) {
@@ -223,8 +222,8 @@ std::vector<Key> render_keys() {
              SCENE(&s.render->camera.orbit)),
       words("backend", {"cpu", "cuda"}, "Where the simulation runs.", SCENE(choice(s.backend))),
       words("precision", kFloats, "Of the computation.", SCENE(choice(s.precision))),
-      automatic(number("threads", "", {1, 4096},
-                       "CPU threads. auto: all that the process may use.", SCENE(&s.threads)))};
+      automatic(number("threads", "", {1, 4096}, "CPU threads. auto: all that the process may use.",
+                       SCENE(&s.threads)))};
 }
 
 #undef SCENE
@@ -234,8 +233,10 @@ template <class T>
 Block optional_block(const char* path, const char* help, std::optional<T> Scene::*member) {
   return {path, help, true, [member](const Scene& s) { return (s.*member).has_value(); },
           [member](Scene& s, bool on) {
-            if (!on) s.*member = std::nullopt;
-            else if (!(s.*member)) (s.*member).emplace();
+            if (!on)
+              s.*member = std::nullopt;
+            else if (!(s.*member))
+              (s.*member).emplace();
           }};
 }
 

@@ -20,10 +20,10 @@ struct ChoiceField {
 };
 
 /// Where a key's value lives in a Scene or Body.
-using Field = std::variant<double*, std::optional<double>*, int*, std::int64_t*, std::uint64_t*,
-                           bool*, std::string*, std::vector<std::string>*, Double3*,
-                           std::optional<Double3>*, std::optional<std::array<double, 2>>*,
-                           std::array<int, 2>*, ChoiceField>;
+using Field =
+    std::variant<double*, std::optional<double>*, int*, std::int64_t*, std::uint64_t*, bool*,
+                 std::string*, std::vector<std::string>*, Double3*, std::optional<Double3>*,
+                 std::optional<std::array<double, 2>>*, std::array<int, 2>*, ChoiceField>;
 
 /// Allowed values of every number of a key.
 struct Range {

@@ -41,7 +41,11 @@ bool names_non_finite(std::string s) {
 
 std::string to_text(double value) {
   char buffer[40];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+  const double size = std::fabs(value);
+  const bool fixed = size >= 1e-4 && size < 1e7;  // as people write them; else whatever is shorter
+  const auto end =
+      fixed ? std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed).ptr
+            : std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
   std::string text(buffer, end);
   const std::size_t e = text.find('e');
   if (e != std::string::npos && text.find('.') == std::string::npos) text.insert(e, ".0");
@@ -87,12 +91,18 @@ NumberError read_integer(const std::string& text, std::int64_t& value) {
 
 std::string describe(NumberError error) {
   switch (error) {
-    case NumberError::none: return "";
-    case NumberError::not_a_number: return "is not a number";
-    case NumberError::not_finite: return "is not finite";
-    case NumberError::too_large: return "is too large to be represented";
-    case NumberError::too_small: return "is too small to be represented; write 0";
-    case NumberError::not_whole: return "is not a whole number";
+    case NumberError::none:
+      return "";
+    case NumberError::not_a_number:
+      return "is not a number";
+    case NumberError::not_finite:
+      return "is not finite";
+    case NumberError::too_large:
+      return "is too large to be represented";
+    case NumberError::too_small:
+      return "is too small to be represented; write 0";
+    case NumberError::not_whole:
+      return "is not a whole number";
   }
   return "";
 }

@@ -155,8 +155,7 @@ std::int64_t read_rows(hid_t file, const std::string& path, const char* name,
   hsize_t dims[2] = {};
   if (H5Sget_simple_extent_ndims(space) != 2) bad(where, "has the wrong rank, expected (N, 3)");
   H5Sget_simple_extent_dims(space, dims, nullptr);
-  if (dims[1] != 3)
-    bad(where, "has " + std::to_string(dims[1]) + " columns, expected 3: x, y, z");
+  if (dims[1] != 3) bad(where, "has " + std::to_string(dims[1]) + " columns, expected 3: x, y, z");
   if (dims[0] > 2147483647u)
     bad(where, "has " + std::to_string(dims[0]) + " rows; at most 2147483647 particles fit");
   if (out != nullptr) {

@@ -13,7 +13,7 @@ namespace pbf {
 using Double3 = std::array<double, 3>;
 
 enum class Shape { block, sphere, random_box, file };
-enum class KernelMode { consistent, paper };        ///< density kernel and gradient kernel
+enum class KernelMode { consistent, paper };         ///< density kernel and gradient kernel
 enum class ConstraintMode { one_sided, two_sided };  ///< C = max(rho/rho0 - 1, 0) or rho/rho0 - 1
 enum class BoundaryMode { density, clamp };          ///< walls with a density contribution, or bare
 enum class Precision { single, dbl };                ///< YAML: float, double
@@ -23,76 +23,77 @@ enum class ColorBy { speed, density, id };
 /// A body of fluid. Which members count depends on `shape`; the loader refuses the others.
 struct Body {
   Shape shape = Shape::block;
-  Double3 min{}, max{};      ///< m, block (lattice of the spacing) and random_box
-  Double3 center{};          ///< m, sphere (lattice points inside)
-  double radius = 0;         ///< m, sphere
-  std::int64_t count = 0;    ///< random_box: number of particles, uniform in the box
-  std::uint64_t seed = 1;    ///< random_box: seed of the generator
-  std::string path;          ///< file: CSV (header x,y,z[,vx,vy,vz]) or HDF5 (position[,velocity]);
-                             ///< relative to the scene file
-  Double3 velocity{};        ///< m/s, added to every particle of the body
+  Double3 min{}, max{};    ///< m, block (lattice of the spacing) and random_box
+  Double3 center{};        ///< m, sphere (lattice points inside)
+  double radius = 0;       ///< m, sphere
+  std::int64_t count = 0;  ///< random_box: number of particles, uniform in the box
+  std::uint64_t seed = 1;  ///< random_box: seed of the generator
+  std::string path;        ///< file: CSV (header x,y,z[,vx,vy,vz]) or HDF5 (position[,velocity]);
+                           ///< relative to the scene file
+  Double3 velocity{};      ///< m/s, added to every particle of the body
   bool operator==(const Body&) const = default;
 };
 
 struct Domain {
-  Double3 min{}, max{1, 1, 1};  ///< m
+  Double3 min{}, max{1, 1, 1};    ///< m
   std::vector<std::string> open;  ///< faces without a wall: x_min x_max y_min y_max z_min z_max
   bool operator==(const Domain&) const = default;
 };
 
 struct Fluid {
-  double rest_density = 1000;   ///< kg/m^3, rho0
-  double spacing = 0.02;        ///< m, d: edge of the rest lattice's cell
-  double smoothing_ratio = 2;   ///< h/d
-  std::optional<double> mass;   ///< kg per particle; absent: rho0 d^3, density sum calibrated so
-                                ///< that the rest lattice has density rho0; present: used as it is
+  double rest_density = 1000;  ///< kg/m^3, rho0
+  double spacing = 0.02;       ///< m, d: edge of the rest lattice's cell
+  double smoothing_ratio = 2;  ///< h/d
+  std::optional<double> mass;  ///< kg per particle; absent: rho0 d^3, density sum calibrated so
+                               ///< that the rest lattice has density rho0; present: used as it is
   bool operator==(const Fluid&) const = default;
 };
 
 struct Time {
-  double step = 0.002;   ///< s, dt of one update
-  double end = 1;        ///< s, rounded to whole updates
+  double step = 0.002;  ///< s, dt of one update
+  double end = 1;       ///< s, rounded to whole updates
   bool operator==(const Time&) const = default;
 };
 
 struct SolverSettings {
-  int iterations = 4;             ///< sweeps over the constraints per update
+  int iterations = 4;  ///< sweeps over the constraints per update
   KernelMode kernels = KernelMode::consistent;
   ConstraintMode constraint = ConstraintMode::one_sided;
-  double relaxation = 1e-4;       ///< dimensionless eps^ = eps h^2 in lambda's denominator
-  double step_length = 1;         ///< omega, factor on the position change of one sweep
+  double relaxation = 1e-4;           ///< dimensionless eps^ = eps h^2 in lambda's denominator
+  std::optional<double> step_length;  ///< omega, factor on the position change of one sweep;
+                                      ///< absent: min(1, (2.5 d/h)^2), see lib/plan/plan.h
   BoundaryMode boundary = BoundaryMode::density;
-  double wall_margin = 0;         ///< m, distance to a wall at which particles are clamped
-  double velocity_damping = 1;    ///< factor on the velocity, once per update
-  bool fused = true;              ///< density and lambda in one loop over the neighbours
+  double wall_margin = 0;       ///< m, distance to a wall at which particles are clamped
+  double velocity_damping = 1;  ///< factor on the velocity, once per update
+  bool fused = true;            ///< density and lambda in one loop over the neighbours
   bool operator==(const SolverSettings&) const = default;
 };
 
 /// Artificial pressure (Macklin & Mueller 2013, eq. 13); s_corr = -k (W(r)/W(delta_q h))^n.
 struct Tensile {
-  double k = 1e-3;         ///< in units of h^2
-  double delta_q = 0.3;    ///< in units of h
-  int n = 4;               ///< exponent
+  double k = 1e-3;       ///< in units of h^2
+  double delta_q = 0.3;  ///< in units of h
+  int n = 4;             ///< exponent
   bool operator==(const Tensile&) const = default;
 };
 
 /// XSPH viscosity (Schechter & Bridson 2012; Macklin & Mueller 2013, eq. 17).
 struct Viscosity {
-  double xsph = 0.05;      ///< c, 0..1 stable
+  double xsph = 0.05;  ///< c, 0..1 stable
   bool operator==(const Viscosity&) const = default;
 };
 
 /// Vorticity confinement (Macklin & Mueller 2013, eq. 15-16), in the stabilised form.
 struct Vorticity {
-  double epsilon = 0.1;    ///< dimensionless strength
+  double epsilon = 0.1;  ///< dimensionless strength
   bool operator==(const Vorticity&) const = default;
 };
 
 struct Output {
-  double every = 0.02;                 ///< s between frames, rounded to whole updates
+  double every = 0.02;  ///< s between frames, rounded to whole updates
   std::vector<std::string> fields{"velocity", "density"};  ///< besides position and id
   Precision precision = Precision::single;                 ///< of floating-point fields on disk
-  bool gzip = false;                   ///< compression: none | gzip (shuffle + deflate 1)
+  bool gzip = false;  ///< compression: none | gzip (shuffle + deflate 1)
   bool operator==(const Output&) const = default;
 };
 
@@ -105,11 +106,11 @@ struct Camera {
 };
 
 struct Render {
-  double every = 0.1;            ///< s between pictures, rounded to whole frames of `output`
+  double every = 0.1;  ///< s between pictures, rounded to whole frames of `output`
   std::array<int, 2> size{1280, 720};
   ColorBy color = ColorBy::speed;
   std::optional<std::array<double, 2>> range;  ///< of the colour bar; absent: from the scene
-  double radius = 0;             ///< m, drawn radius of a particle; 0: half the spacing
+  double radius = 0;  ///< m, drawn radius of a particle; 0: half the spacing
   Camera camera;
   bool operator==(const Render&) const = default;
 };
@@ -119,18 +120,18 @@ struct Scene {
   Domain domain;
   Fluid fluid;
   std::vector<Body> bodies;
-  Double3 gravity{0, 0, -9.81};   ///< m/s^2
+  Double3 gravity{0, 0, -9.81};  ///< m/s^2
   Time time;
   SolverSettings solver;
   std::optional<Tensile> tensile;
   std::optional<Viscosity> viscosity;
   std::optional<Vorticity> vorticity;
-  int measure_every = 10;          ///< updates between measures
+  int measure_every = 10;  ///< updates between measures
   std::optional<Output> output;
   std::optional<Render> render;
   Backend backend = Backend::cpu;
   Precision precision = Precision::single;
-  int threads = 0;                ///< CPU threads; 0: all that the process may use
+  int threads = 0;  ///< CPU threads; 0: all that the process may use
 
   double h() const { return fluid.spacing * fluid.smoothing_ratio; }  ///< m, smoothing length
   bool operator==(const Scene&) const = default;

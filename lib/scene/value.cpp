@@ -35,8 +35,8 @@ bool is_word(const Node& node, const char* word) {
 template <class T>
 std::string read_number(const Key& key, const Node& node, T& out) {
   constexpr bool whole = std::is_integral_v<T>;
-  const std::string wanted = std::string(whole ? "a whole number" : "a number") +
-                             (key.automatic ? " or auto" : "");
+  const std::string wanted =
+      std::string(whole ? "a whole number" : "a number") + (key.automatic ? " or auto" : "");
   if (node.kind != Node::Kind::scalar) return instead_of(wanted, node);
   if (node.quoted) return instead_of(wanted, node) + " in quotes; remove them";
   std::conditional_t<whole, std::int64_t, double> v{};
@@ -126,8 +126,7 @@ struct Reader {
     return problem;
   }
   template <class T>
-    requires std::is_arithmetic_v<T>
-  std::string operator()(T* field) const {
+  requires std::is_arithmetic_v<T> std::string operator()(T* field) const {
     if (key.automatic && is_word(node, "auto")) {
       *field = 0;
       return "";
@@ -164,8 +163,7 @@ struct Writer {
     return *field ? Writer{key}.plain(**field) : "auto";
   }
   template <class T>
-    requires std::is_arithmetic_v<T>
-  std::string operator()(const T* field) const {
+  requires std::is_arithmetic_v<T> std::string operator()(const T* field) const {
     return key.automatic && *field == 0 ? "auto" : plain(*field);
   }
   std::string operator()(const bool* field) const { return *field ? "true" : "false"; }
@@ -173,7 +171,7 @@ struct Writer {
   std::string operator()(const std::array<T, N>* field) const {
     return plain(*field);
   }
-  std::string operator()(const std::string* field) const { return quoted(*field); }
+  std::string operator()(const std::string* field) const { return yaml_text(*field); }
   std::string operator()(const std::vector<std::string>* field) const {
     return "[" + list_of(*field) + "]";
   }
@@ -183,10 +181,8 @@ struct Writer {
 
   static std::string plain(double v) { return to_text(v); }
   template <class T>
-    requires std::is_integral_v<T>
-  static std::string plain(T v) {
-    return std::to_string(v);
-  }
+  requires std::is_integral_v<T>
+  static std::string plain(T v) { return std::to_string(v); }
   template <class T, std::size_t N>
   static std::string plain(const std::array<T, N>& values) {
     std::string text;
@@ -212,18 +208,17 @@ std::string format_field(const Key& key, const Field& field) {
   return std::visit(Writer{key}, field);
 }
 
-std::string quoted(const std::string& text) {
+std::string yaml_text(const std::string& text) {
   const auto safe = [](unsigned char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           c == '_' || c == '-' || c == '.' || c == '/';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.' || c == '/';
   };
-  const bool letter = !text.empty() && ((text[0] >= 'a' && text[0] <= 'z') ||
-                                        (text[0] >= 'A' && text[0] <= 'Z'));
-  static const std::vector<std::string> kReserved{"null", "Null", "NULL", "true", "True",  "TRUE",
-                                                  "false", "False", "FALSE", "yes", "Yes", "YES",
-                                                  "no",   "No",   "NO",   "on",   "On",    "ON",
-                                                  "off",  "Off",  "OFF",  "y",    "Y",     "n",
-                                                  "N"};
+  const bool letter =
+      !text.empty() && ((text[0] >= 'a' && text[0] <= 'z') || (text[0] >= 'A' && text[0] <= 'Z'));
+  static const std::vector<std::string> kReserved{
+      "null", "Null", "NULL", "true", "True", "TRUE", "false", "False", "FALSE",
+      "yes",  "Yes",  "YES",  "no",   "No",   "NO",   "on",    "On",    "ON",
+      "off",  "Off",  "OFF",  "y",    "Y",    "n",    "N"};
   const bool reserved = std::find(kReserved.begin(), kReserved.end(), text) != kReserved.end();
   if (letter && !reserved && std::all_of(text.begin(), text.end(), safe)) return text;
   std::string out = "\"";

@@ -20,7 +20,7 @@ std::string read_field(const Key& key, const Node& node, const Field& field);
 std::string format_field(const Key& key, const Field& field);
 
 /// Text as a YAML scalar that reads back as this text: bare where that is safe, else in quotes.
-std::string quoted(const std::string& text);
+std::string yaml_text(const std::string& text);
 
 /// Nearest of `words`, or empty when nothing is near.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& words);

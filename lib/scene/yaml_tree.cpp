@@ -92,8 +92,7 @@ class TreeBuilder : public YAML::EventHandler {
       return;
     }
     Node& parent = open_.back();
-    const bool is_key =
-        parent.kind == Node::Kind::map && parent.keys.size() == parent.items.size();
+    const bool is_key = parent.kind == Node::Kind::map && parent.keys.size() == parent.items.size();
     (is_key ? parent.keys : parent.items).push_back(std::move(node));
   }
 
@@ -138,10 +137,14 @@ Node* Node::find(const std::string& key) {
 
 std::string Node::shown() const {
   switch (kind) {
-    case Kind::null: return "nothing";
-    case Kind::list: return "a list of " + std::to_string(items.size());
-    case Kind::map: return "a block";
-    case Kind::scalar: break;
+    case Kind::null:
+      return "nothing";
+    case Kind::list:
+      return "a list of " + std::to_string(items.size());
+    case Kind::map:
+      return "a block";
+    case Kind::scalar:
+      break;
   }
   // Cut and cleaned: the text is anyone's, the message is one line.
   std::string clean = text.size() > 60 ? text.substr(0, 60) + "..." : text;

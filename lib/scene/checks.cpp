@@ -1,0 +1,164 @@
+// What holds between the keys of a scene.
+#include <algorithm>
+#include <cmath>
+
+#include "lib/scene/lattice.h"
+#include "lib/scene/number.h"
+#include "lib/scene/validate.h"
+
+namespace pbf {
+namespace {
+
+constexpr const char* kAxes[] = {"x", "y", "z"};
+
+class Checker {
+ public:
+  Checker(const PlacedScene& placed, Problems& problems)
+      : p_(placed), s_(placed.scene), problems_(problems) {}
+
+  void run() {
+    const bool domain = p_.good({"domain.min", "domain.max"}) &&
+                        above("domain.min", "domain.max", s_.domain.min, s_.domain.max);
+    if (domain) check_domain();
+    if (p_.good({"bodies"})) check_bodies(domain);
+    check_time();
+    check_render();
+  }
+
+ private:
+  void add(const std::string& key, const std::string& what) {
+    problems_.add(p_.place(key), key, what);
+  }
+
+  /// max > min along every axis.
+  bool above(const std::string& min_key, const std::string& max_key, const Double3& min,
+             const Double3& max) {
+    bool ok = true;
+    for (int a = 0; a < 3; ++a)
+      if (!(max[a] > min[a])) {
+        add(max_key, std::string(kAxes[a]) + " is " + to_text(max[a]) + ", not above " + min_key +
+                         " (" + to_text(min[a]) + "): the box is " +
+                         (max[a] < min[a] ? "inverted" : "empty") +
+                         "; give the lower corner as min, "
+                         "the upper as max");
+        ok = false;
+      }
+    return ok;
+  }
+
+  void check_domain() {
+    double thinnest = s_.domain.max[0] - s_.domain.min[0];
+    for (int a = 1; a < 3; ++a) thinnest = std::min(thinnest, s_.domain.max[a] - s_.domain.min[a]);
+    if (p_.good({"solver.wall_margin"}) && !(2 * s_.solver.wall_margin < thinnest))
+      add("solver.wall_margin", "is " + to_text(s_.solver.wall_margin) +
+                                    ", but must be below half the thinnest side of the domain (" +
+                                    to_text(thinnest / 2) + " m); lower it");
+    if (!p_.good({"fluid.spacing", "fluid.smoothing_ratio"})) return;
+    double cells = 1;
+    for (int a = 0; a < 3; ++a) cells *= std::ceil((s_.domain.max[a] - s_.domain.min[a]) / s_.h());
+    if (!(cells < 2147483648.0))
+      add("fluid.spacing", "the domain holds " + to_text(cells) +
+                               " cells of the smoothing length " + to_text(s_.h()) +
+                               " m, at most 2147483647 are possible; raise fluid.spacing or make "
+                               "the domain smaller");
+  }
+
+  void check_bodies(bool domain) {
+    double sum = 0;
+    bool known = p_.good({"fluid.spacing"});
+    for (std::size_t b = 0; b < s_.bodies.size(); ++b) {
+      const Body& body = s_.bodies[b];
+      const std::string key = "bodies[" + std::to_string(b) + "]";
+      if (body.shape == Shape::file || !check_place(body, key, domain)) {
+        known = known && body.shape == Shape::file;  // files are opened when particles are made
+        continue;
+      }
+      if (!p_.good({"fluid.spacing", key + ".count"})) continue;
+      const double n = lattice_count(body, s_.fluid.spacing);
+      if (n < 1)
+        add(key, "makes no particle: the block is thinner than fluid.spacing (" +
+                     to_text(s_.fluid.spacing) + " m); enlarge it or lower fluid.spacing");
+      sum += n;
+    }
+    if (known && sum > kMaxParticles) add("bodies", too_many_text(sum));
+  }
+
+  /// Box or sphere well formed and inside the domain.
+  bool check_place(const Body& body, const std::string& key, bool domain) {
+    Double3 low = body.min, high = body.max;
+    if (!p_.good({key + ".shape"})) return false;
+    const bool sphere = body.shape == Shape::sphere;
+    if (sphere) {
+      if (!p_.good({key + ".center", key + ".radius"})) return false;
+      for (int a = 0; a < 3; ++a) {
+        low[a] = body.center[a] - body.radius;
+        high[a] = body.center[a] + body.radius;
+      }
+    } else if (!p_.good({key + ".min", key + ".max"}) ||
+               !above(key + ".min", key + ".max", low, high)) {
+      return false;
+    }
+    bool inside = true;
+    for (int a = 0; a < 3 && domain; ++a) {
+      const double min = s_.domain.min[a], max = s_.domain.max[a], slack = 1e-9 * (max - min);
+      const bool below = low[a] < min - slack;
+      if (!below && high[a] <= max + slack) continue;
+      inside = false;
+      add(sphere ? key : key + (below ? ".min" : ".max"),
+          std::string("reaches ") + kAxes[a] + " = " + to_text(below ? low[a] : high[a]) +
+              ", outside the domain (" + kAxes[a] + " from " + to_text(min) + " to " +
+              to_text(max) + " m); move the body or enlarge the domain");
+    }
+    return inside;
+  }
+
+  void check_time() {
+    if (!p_.good({"time.step"})) return;
+    const double step = s_.time.step;
+    if (p_.good({"time.end"})) {
+      if (s_.time.end < step)
+        add("time.end", "is " + to_text(s_.time.end) + ", below time.step (" + to_text(step) +
+                            " s): no update would be done; raise it");
+      else if (s_.time.end / step > 2147483647.0)
+        add("time.end", "makes " + to_text(s_.time.end / step) +
+                            " updates, at most 2147483647 are possible; raise time.step or lower "
+                            "time.end");
+    }
+    const double least = step * (1 - 1e-9);
+    if (s_.output && p_.good({"output.every"}) && s_.output->every < least)
+      add("output.every", "is " + to_text(s_.output->every) + ", below time.step (" +
+                              to_text(step) + " s); raise it to at least that");
+    if (s_.render && p_.good({"render.every"}) && s_.render->every < least)
+      add("render.every", "is " + to_text(s_.render->every) + ", below time.step (" +
+                              to_text(step) + " s); raise it to at least that");
+  }
+
+  void check_render() {
+    if (!s_.render) return;
+    const Render& r = *s_.render;
+    if (r.range && p_.good({"render.range"}) && !((*r.range)[0] < (*r.range)[1]))
+      add("render.range", "the lower end " + to_text((*r.range)[0]) +
+                              " is not below the upper end " + to_text((*r.range)[1]) +
+                              "; give [low, high] or auto");
+    if (s_.output && p_.good({"render.every", "output.every"}) &&
+        r.every < s_.output->every * (1 - 1e-9))
+      add("render.every", "is " + to_text(r.every) + ", below output.every (" +
+                              to_text(s_.output->every) +
+                              " s): pictures are made of output frames; raise it or lower "
+                              "output.every");
+    if (r.camera.position && r.camera.target &&
+        p_.good({"render.camera.position", "render.camera.target"}) &&
+        *r.camera.position == *r.camera.target)
+      add("render.camera.target", "is where the camera is; move one of them");
+  }
+
+  const PlacedScene& p_;
+  const Scene& s_;
+  Problems& problems_;
+};
+
+}  // namespace
+
+void check_scene(const PlacedScene& placed, Problems& problems) { Checker(placed, problems).run(); }
+
+}  // namespace pbf

@@ -1,0 +1,99 @@
+#include "lib/scene/load.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "lib/base/error.h"
+#include "lib/scene/overrides.h"
+#include "lib/scene/validate.h"
+#include "lib/scene/yaml_tree.h"
+
+namespace pbf {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
+
+[[noreturn]] void bad(const std::string& place, const std::string& what) {
+  throw Error(ExitCode::bad_input, place + ": " + what);
+}
+
+/// Position of the first byte that is not UTF-8 text (a NUL, too), or npos.
+std::size_t find_binary(const std::string& text) {
+  const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned char c = byte(i);
+    const std::size_t more = c < 0x80             ? 0
+                             : (c & 0xE0) == 0xC0 ? 1
+                             : (c & 0xF0) == 0xE0 ? 2
+                             : (c & 0xF8) == 0xF0 ? 3
+                                                  : text.size();
+    if (c == 0 || i + more >= text.size()) return i;
+    for (std::size_t k = 1; k <= more; ++k)
+      if ((byte(i + k) & 0xC0) != 0x80) return i;
+    i += more + 1;
+  }
+  return std::string::npos;
+}
+
+void check_text(const std::string& text, const std::string& origin) {
+  if (text.size() > kMaxBytes)
+    bad(origin, "is larger than 4 MiB; many particles belong into a file body (shape: file)");
+  const std::size_t binary = find_binary(text);
+  if (binary != std::string::npos)
+    bad(origin, "is not a text file (byte " + std::to_string(binary) +
+                    " is not UTF-8 text); expected a scene in YAML");
+}
+
+std::string read_text_file(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code ec;
+  const fs::file_status status = fs::status(path, ec);
+  if (fs::is_directory(status)) bad(path, "is a directory, expected a scene file");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) bad(path, "cannot be opened: " + std::string(std::strerror(errno)));
+  // One byte more than allowed tells a file that is too large, without reading all of it.
+  std::string text(kMaxBytes + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (in.bad()) bad(path, "reading failed");
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::string& origin,
+                  const std::vector<std::string>& overrides) {
+  check_text(text, origin);
+  Node root;
+  try {
+    root = parse_yaml(text, origin, true);
+  } catch (const YamlError& e) {
+    bad(e.place, e.what);
+  }
+  if (root.kind == Node::Kind::null)
+    bad(origin, "is empty; `pbf config --example` prints a scene to start from");
+  Problems problems;
+  for (const std::string& argument : overrides) {
+    if (find_binary(argument) != std::string::npos)
+      problems.add("--set", "", "an argument is not UTF-8 text");
+    else
+      apply_override(root, argument, problems);
+  }
+  const PlacedScene placed = validate(root, problems);
+  check_scene(placed, problems);
+  problems.raise();
+  return placed.scene;
+}
+
+LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides) {
+  LoadedScene loaded;
+  loaded.path = path;
+  loaded.text = read_text_file(path);
+  loaded.overrides = overrides;
+  loaded.scene = parse_scene(loaded.text, path, overrides);
+  return loaded;
+}
+
+}  // namespace pbf

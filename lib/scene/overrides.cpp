@@ -1,0 +1,111 @@
+#include "lib/scene/overrides.h"
+
+#include <charconv>
+
+namespace pbf {
+namespace {
+
+/// "bodies[0].count" -> bodies, 0, count. Empty when a segment is.
+std::vector<std::string> segments(const std::string& path) {
+  std::string dotted;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (path[i] == '[') {
+      const std::size_t close = path.find(']', i);
+      if (close == std::string::npos || i == 0) return {};
+      if (close + 1 < path.size() && path[close + 1] != '.' && path[close + 1] != '[') return {};
+      dotted += '.';
+    } else if (path[i] != ']') {
+      dotted += path[i];
+    }
+  }
+  std::vector<std::string> parts;
+  for (std::size_t start = 0; start <= dotted.size();) {
+    std::size_t dot = dotted.find('.', start);
+    if (dot == std::string::npos) dot = dotted.size();
+    if (dot == start) return {};
+    parts.push_back(dotted.substr(start, dot - start));
+    start = dot + 1;
+  }
+  return parts;
+}
+
+Node made(const Node& like, Node::Kind kind, const std::string& text) {
+  Node node;
+  node.kind = kind;
+  node.text = text;
+  node.origin = like.origin;
+  return node;
+}
+
+/// What a block may be overwritten from: nothing, or the word that turns it off.
+bool is_absent(const Node& node) {
+  return node.kind == Node::Kind::null ||
+         (node.kind == Node::Kind::scalar && (node.text == "off" || node.text == "false"));
+}
+
+/// Child of `at` named by `segment`, made when a block lacks it; nullptr with the reason in `why`.
+Node* child(Node& at, const std::string& segment, const Node& value, const std::string& so_far,
+            std::string& why) {
+  const std::string here = so_far.empty() ? "the scene" : so_far;
+  if (at.kind == Node::Kind::list) {
+    std::size_t index = 0;
+    const char* end = segment.data() + segment.size();
+    const auto result = std::from_chars(segment.data(), end, index);
+    if (result.ec == std::errc{} && result.ptr == end && index < at.items.size())
+      return &at.items[index];
+    why = here + " is a list of " + std::to_string(at.items.size()) + ", \"" + segment +
+          "\" is no index of it (the first is 0)";
+    return nullptr;
+  }
+  if (is_absent(at)) at = made(value, Node::Kind::map, "");
+  if (at.kind != Node::Kind::map) {
+    why = here + " is no block, it has no key \"" + segment + "\"";
+    return nullptr;
+  }
+  if (Node* found = at.find(segment)) return found;
+  at.keys.push_back(made(value, Node::Kind::scalar, segment));
+  at.items.push_back(made(value, Node::Kind::null, ""));
+  return &at.items.back();
+}
+
+}  // namespace
+
+void apply_override(Node& root, const std::string& argument, Problems& problems) {
+  const std::string place = "--set " + argument;
+  const std::size_t equals = argument.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    problems.add(place, "", "expected key.path=value, e.g. --set solver.iterations=8");
+    return;
+  }
+  const std::string path = argument.substr(0, equals);
+  const auto parts = segments(path);
+  if (parts.empty() || parts.size() > 8) {
+    problems.add(place, "", "\"" + path + "\" is no path of keys such as bodies[0].count");
+    return;
+  }
+  Node value;
+  try {
+    value = parse_yaml(argument.substr(equals + 1), place, false);
+  } catch (const YamlError& e) {
+    problems.add(e.place, path, e.what);
+    return;
+  }
+  // An explicit null or ~ stays null: it removes an optional block.
+  if (argument.find_first_not_of(" \t", equals + 1) == std::string::npos) {
+    problems.add(place, path, "has no value; write " + path + "=VALUE");
+    return;
+  }
+  Node* at = &root;
+  std::string so_far, why;
+  for (const std::string& part : parts) {
+    at = child(*at, part, value, so_far, why);
+    if (at == nullptr) {
+      problems.add(place, path, why);
+      return;
+    }
+    so_far += (so_far.empty() ? "" : ".") + part;
+  }
+  *at = std::move(value);
+}
+
+}  // namespace pbf

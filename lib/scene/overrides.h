@@ -1,0 +1,16 @@
+// `--set key.path=value` put into the tree of a scene file, before anything is checked.
+#pragma once
+
+#include <string>
+
+#include "lib/scene/problems.h"
+#include "lib/scene/yaml_tree.h"
+
+namespace pbf {
+
+/// Replaces or creates the value at the key's path: "solver.iterations=8", "bodies.0.count=10",
+/// "bodies[0].count=10", "viscosity=off". The value is YAML. Blocks on the way are created. What
+/// cannot be placed goes to `problems`; whether the key exists is the validation's question.
+void apply_override(Node& root, const std::string& argument, Problems& problems);
+
+}  // namespace pbf

@@ -1,0 +1,37 @@
+// All that is wrong with a scene, gathered so that one try shows everything.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/base/error.h"
+
+namespace pbf {
+
+class Problems {
+ public:
+  /// One line: "place: key: what"; `key` may be empty.
+  void add(const std::string& place, const std::string& key, const std::string& what) {
+    lines_.push_back(place + ": " + (key.empty() ? "" : key + ": ") + what);
+  }
+
+  bool empty() const { return lines_.empty(); }
+
+  /// Throws Error(bad_input) with one line per problem, if there is any; at most kShown lines, for
+  /// a file that is no scene at all would fill the terminal.
+  void raise() const {
+    if (lines_.empty()) return;
+    std::string text;
+    for (std::size_t i = 0; i < lines_.size() && i < kShown; ++i)
+      text += (i > 0 ? "\n" : "") + lines_[i];
+    if (lines_.size() > kShown)
+      text += "\n... and " + std::to_string(lines_.size() - kShown) + " more problems";
+    throw Error(ExitCode::bad_input, text);
+  }
+
+ private:
+  static constexpr std::size_t kShown = 100;
+  std::vector<std::string> lines_;
+};
+
+}  // namespace pbf

@@ -1,0 +1,34 @@
+// Tree of a scene file -> Scene, by the table of keys.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "lib/scene/problems.h"
+#include "lib/scene/scene.h"
+#include "lib/scene/yaml_tree.h"
+
+namespace pbf {
+
+/// A scene with the memory of where each key stood.
+struct PlacedScene {
+  Scene scene;
+  std::map<std::string, std::string> places;  ///< of keys and blocks that were given
+  std::set<std::string> bad;                  ///< keys with a problem: nothing can be said of them
+
+  /// Place of a key, or of the nearest block around it that was given.
+  std::string place(const std::string& key) const;
+  /// Whether all of these were read without a problem.
+  bool good(std::initializer_list<std::string> keys) const;
+};
+
+/// Reads every key of the table, reports what is unknown, misplaced, doubled, missing, of the wrong
+/// type or out of range. Paths of bodies read "bodies[0].min".
+PlacedScene validate(const Node& root, Problems& problems);
+
+/// What holds between keys: boxes not inverted, bodies inside the domain, times in order, numbers
+/// of particles and cells within bounds. Skips what has a problem already.
+void check_scene(const PlacedScene& placed, Problems& problems);
+
+}  // namespace pbf
