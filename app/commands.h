@@ -13,8 +13,8 @@ struct RunOptions {
   std::string threads;                 ///< empty: as the scene says; else a number from 1 on
   std::vector<std::string> overrides;  ///< key.path=value
   bool overwrite = false, resume = false, quiet = false;
-  std::string log_json;                ///< path, empty: none
-  double max_walltime = 0;             ///< s, 0: none
+  std::string log_json;     ///< path, empty: none
+  double max_walltime = 0;  ///< s, 0: none
 };
 
 struct PlanOptions {
@@ -24,12 +24,12 @@ struct PlanOptions {
 };
 
 struct RenderOptions {
-  std::string run;           ///< path of run.h5
+  std::string run;             ///< path of run.h5
   std::string frames = "all";  ///< k, a:b, a:b:step (b excluded, negative from the end) or all
-  std::string size;          ///< WxH, empty: as the scene says
-  std::string camera;        ///< position=x,y,z;target=x,y,z;fov=deg;orbit=deg/s
-  std::string color, range;  ///< empty: as the scene says
-  std::string out;           ///< folder, empty: render/ beside the run file
+  std::string size;            ///< WxH, empty: as the scene says
+  std::string camera;          ///< position=x,y,z;target=x,y,z;fov=deg;orbit=deg/s
+  std::string color, range;    ///< empty: as the scene says
+  std::string out;             ///< folder, empty: render/ beside the run file
 };
 
 struct ConfigOptions {

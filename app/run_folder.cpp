@@ -26,16 +26,38 @@ bool own_picture(const std::string& name) {
 }
 
 bool own_file(const std::string& name) {
-  return name == "run.h5" || name == "scene.resolved.yaml" || name == "log.txt" ||
-         name == "DONE" || name == "checkpoint.h5" || name == "checkpoint_prev.h5" ||
-         name == "checkpoint.h5.tmp";
+  return name == "run.h5" || name == "scene.resolved.yaml" || name == "log.txt" || name == "DONE" ||
+         name == "checkpoint.h5" || name == "checkpoint_prev.h5" || name == "checkpoint.h5.tmp";
 }
 
 }  // namespace
 
-RunFolder::RunFolder(const std::string& path, ExistingFolder existing) : path_(path) {
+bool RunFolder::check_finished(const std::string& path, ExistingFolder existing) {
+  const fs::path folder(path);
   std::error_code error;
+  const fs::file_status status = fs::status(folder, error);
+  if (status.type() == fs::file_type::not_found) return false;
+  if (status.type() == fs::file_type::none)  // below a regular file, or no right to look
+    fail(folder, "the output folder cannot be used", error.message());
+  if (!fs::is_directory(status))
+    fail(folder, "the output folder cannot be used", "it is not a folder");
+  if (existing == ExistingFolder::refuse)
+    throw Error(ExitCode::bad_input,
+                path +
+                    ": the output folder exists; give --overwrite to replace the run in it, "
+                    "--resume to leave a finished run as it is, or another folder with --out");
+  if (existing == ExistingFolder::overwrite) return false;
+  if (fs::exists(folder / "DONE", error)) return true;
+  throw Error(ExitCode::bad_input,
+              path +
+                  ": holds no finished run (no file DONE), and this version cannot resume an "
+                  "unfinished one; give --overwrite to start it again");
+}
+
+RunFolder::RunFolder(const std::string& path, ExistingFolder existing) : path_(path) {
   if (!path_.has_filename()) path_ = path_.parent_path();  // "out/" means "out"
+  check_finished(path_.string(), existing);
+  std::error_code error;
   if (path_.has_parent_path()) {
     fs::create_directories(path_.parent_path(), error);
     if (error) fail(path_, "the output folder cannot be made", error.message());
@@ -43,28 +65,11 @@ RunFolder::RunFolder(const std::string& path, ExistingFolder existing) : path_(p
   // One mkdir decides: of two runs started at the same time only one gets the folder.
   const bool made = fs::create_directory(path_, error);
   if (error) fail(path_, "the output folder cannot be made", error.message());
-  if (!made) {
-    if (existing == ExistingFolder::refuse)
-      throw Error(ExitCode::bad_input,
-                  path_.string() +
-                      ": the output folder exists; give --overwrite to replace the run in it, "
-                      "--resume to continue it, or another folder with --out");
-    if (existing == ExistingFolder::resume) {
-      if (finished()) return;
-      throw Error(ExitCode::bad_input,
-                  path_.string() + ": holds no finished run (no file DONE), and this version "
-                                   "cannot resume an unfinished one; give --overwrite to start "
-                                   "it again");
-    }
-  }
+  if (!made && existing != ExistingFolder::overwrite)
+    throw Error(ExitCode::bad_input, path_.string() + ": another run has just taken this folder");
   if (access(path_.c_str(), W_OK | X_OK) != 0)
     fail(path_, "the output folder cannot be written", std::strerror(errno));
   if (!made) remove_own_files();
-}
-
-bool RunFolder::finished() const {
-  std::error_code ignored;
-  return fs::exists(path_ / "DONE", ignored);
 }
 
 void RunFolder::remove_own_files() const {

@@ -11,13 +11,16 @@ enum class ExistingFolder { refuse, overwrite, resume };
 
 class RunFolder {
  public:
-  /// Makes the folder. An existing one is refused with Error(bad_input); `overwrite` removes the
-  /// files that pbf itself writes and leaves everything else; `resume` accepts a finished one
-  /// (then finished() is true) and refuses an unfinished one, which this version cannot resume.
-  /// Throws Error(io) when the folder cannot be made or written.
+  /// Says whether a run may go there, before any work is done and without touching anything.
+  /// Throws Error(bad_input) for an existing folder when `refuse`, and for an unfinished one when
+  /// `resume`, which this version cannot resume; Error(io) for something that is no folder.
+  /// True when `resume` finds a finished run: there is nothing to do.
+  static bool check_finished(const std::string& path, ExistingFolder existing);
+
+  /// Makes the folder, after the same checks. `overwrite` removes the files that pbf itself writes
+  /// and leaves everything else. Throws Error(io) when it cannot be made or written.
   RunFolder(const std::string& path, ExistingFolder existing);
 
-  bool finished() const;  ///< DONE is there
   std::string file(const std::string& name) const { return (path_ / name).string(); }
   std::string path() const { return path_.string(); }
   /// Writes a text file. Throws Error(io).

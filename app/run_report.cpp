@@ -1,0 +1,131 @@
+#include "app/run_report.h"
+
+#include <sys/resource.h>
+
+#include "lib/base/text.h"
+
+namespace pbf {
+namespace {
+
+struct Group {
+  const char* name;
+  std::vector<std::string> stages;
+};
+
+const std::vector<Group>& groups() {
+  static const std::vector<Group> list{
+      {"initialization", {"init"}},
+      {"gridding/neighbours", {"grid", "neighbors"}},
+      {"densities", {"density"}},
+      {"lambdas", {"lambda"}},
+      {"deltas", {"delta"}},
+      {"position/velocity updates", {"predict", "xsph", "vorticity"}},
+      {"post-processing", {"measure", "download", "write", "render"}}};
+  return list;
+}
+
+double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+
+std::string row(const std::string& name, double seconds, double wall) {
+  return format("  %-28s %10.3f s  %5.1f %%\n", name.c_str(), seconds, percent(seconds, wall));
+}
+
+double booked(const RunTotals& t) {
+  double sum = 0;
+  for (const auto& s : t.stages) sum += s.seconds;
+  return sum;
+}
+
+double energy(const Measures& m) { return m.kinetic_energy + m.potential_energy; }
+
+}  // namespace
+
+std::string stage_table(const RunTotals& t) {
+  std::string out = "time per stage\n";
+  for (const auto& s : t.stages)
+    out += row(s.name + (s.name == "lambda" && t.fused ? " (with the density)" : ""), s.seconds,
+               t.wall);
+  out += row("other", t.wall - booked(t), t.wall);
+  out += row("total", t.wall, t.wall);
+  if (t.render_thread > 0)
+    out += format("  drawing took %.3f s on a thread of its own, beside the stages above\n",
+                  t.render_thread);
+  return out;
+}
+
+std::string group_table(const RunTotals& t) {
+  std::string out = "time per group of stages\n";
+  double rest = t.wall;
+  for (const Group& g : groups()) {
+    double sum = 0;
+    for (const auto& name : g.stages)
+      for (const auto& s : t.stages)
+        if (s.name == name) sum += s.seconds;
+    rest -= sum;
+    std::string name = g.name;
+    if (t.fused && name == "densities") name += " (in lambdas)";
+    out += row(name, sum, t.wall);
+  }
+  return out + row("other", rest, t.wall);
+}
+
+std::string run_summary(const RunTotals& t) {
+  std::string out = format(
+      "particles           %lld\n"
+      "updates             %lld  (%.6g s simulated)\n"
+      "wall time           %s  (%s in updates and output)\n"
+      "speed               %s particle-updates/s\n"
+      "compression         mean %.3g %%, max %.3g %% at the end; max %.3g %% over the run\n"
+      "energy              %.6g J at the end (kinetic %.3g J), %.6g J at the start\n"
+      "peak memory         %s\n",
+      static_cast<long long>(t.particles), static_cast<long long>(t.updates), t.simulated,
+      duration_text(t.wall).c_str(), duration_text(t.loop).c_str(),
+      t.loop > 0 ? si_number(double(t.particles) * double(t.updates) / t.loop).c_str() : "0",
+      100 * t.last.compression_mean, 100 * t.last.compression_max, 100 * t.compression_max,
+      energy(t.last), t.last.kinetic_energy, energy(t.first), bytes_text(peak_memory()).c_str());
+  out += stage_table(t) + group_table(t);
+  out += "files in            " + t.folder;
+  if (t.frames > 0)
+    out += format("\n  run.h5            %lld frames, %s", static_cast<long long>(t.frames),
+                  bytes_text(double(t.bytes)).c_str());
+  if (t.pictures > 0)
+    out += format("\n  frames/           %lld pictures", static_cast<long long>(t.pictures));
+  return out;
+}
+
+std::string measure_json(const Measures& m, double wall, const std::vector<StageTime>& stages) {
+  const auto item = [](const char* name, double value) {
+    return json_string(name) + ": " + json_number(value);
+  };
+  const auto triple = [](const char* name, const double(&v)[3]) {
+    return json_string(name) + ": [" + json_number(v[0]) + ", " + json_number(v[1]) + ", " +
+           json_number(v[2]) + "]";
+  };
+  std::string out = "{" + item("update", double(m.update)) + ", " + item("time", m.time) + ", " +
+                    item("wall", wall);
+  for (const auto& [name, value] :
+       {std::pair<const char*, double>{"compression_mean", m.compression_mean},
+        {"compression_rms", m.compression_rms},
+        {"compression_max", m.compression_max},
+        {"kinetic_energy", m.kinetic_energy},
+        {"potential_energy", m.potential_energy},
+        {"speed_max", m.speed_max},
+        {"neighbors_mean", m.neighbors_mean},
+        {"neighbors_max", double(m.neighbors_max)},
+        {"outside", double(m.outside)},
+        {"non_finite", double(m.non_finite)}})
+    out += ", " + item(name, value);
+  out += ", " + triple("momentum", m.momentum) + ", " + triple("center_of_mass", m.center_of_mass) +
+         ", " + triple("front", m.front) + ", \"stages\": {";
+  for (std::size_t i = 0; i < stages.size(); ++i)
+    out += (i ? ", " : "") + item(stages[i].name.c_str(), stages[i].seconds);
+  return out + "}}";
+}
+
+double peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * double(usage.ru_maxrss);  // Linux counts in KiB
+}
+
+}  // namespace pbf
