@@ -43,9 +43,11 @@ struct WallTerm {
   Vec3<Real> gradient;
 };
 
-/// The walls' union by inclusion-exclusion, 1 - prod(1 - D_k): exact for one wall, an
-/// approximation where two half spaces overlap (its error: tests/oracle). The density kernel's D
-/// in `paper` is Poly6's, the gradient there Spiky's, as for particles.
+/// Each wall adds A D(q/kappa), with amplitude A = wall_scale and range kappa = 1/wall_inv_range
+/// from lib/solver/calibrate.h. The walls' union is taken by inclusion-exclusion,
+/// 1 - prod(1 - A D_k): exact for one wall, an approximation where two half spaces overlap (its
+/// error: tests/oracle). In `paper` the density's D is Poly6's, the gradient's Spiky's, as for
+/// particles.
 template <class Real, Smoothing S>
 PBF_HD WallTerm<Real> wall_term(Vec3<Real> x, const Params<Real>& p) {
   WallTerm<Real> w;
@@ -55,22 +57,25 @@ PBF_HD WallTerm<Real> wall_term(Vec3<Real> x, const Params<Real>& p) {
       x.z <= p.box.z - one)
     return w;
   const Real distance[6] = {x.x, p.box.x - x.x, x.y, p.box.y - x.y, x.z, p.box.z - x.z};
-  Real keep_density = one, free[3] = {one, one, one}, slope[3] = {0, 0, 0};
+  Real keep_density = one, keep[3] = {one, one, one}, slope[3] = {0, 0, 0};
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) {
       const int face = 2 * axis + side;
-      if (!(p.walls & (1u << face)) || !(distance[face] < one)) continue;
-      HalfSpace<Real> g = half_space_spiky(distance[face]);
-      HalfSpace<Real> d = S == Smoothing::paper ? half_space_poly6(distance[face]) : g;
-      keep_density = keep_density * (one - p.wall_scale * d.density);
-      // Two opposite walls closer than 2h: product rule for the second one.
-      Real f = one - p.wall_scale * g.density, s = p.wall_scale * (side == 0 ? g.slope : -g.slope);
-      slope[axis] = slope[axis] * f + s * free[axis];
-      free[axis] = free[axis] * f;
+      const Real q = distance[face] * p.wall_inv_range;
+      if (!(p.walls & (1u << face)) || !(q < one)) continue;
+      const HalfSpace<Real> g = half_space_spiky(q);
+      const Real d = S == Smoothing::paper ? half_space_poly6(q).density : g.density;
+      keep_density = keep_density * (one - p.wall_scale * d);
+      // d/dx of 1 - A D(q/kappa), and the product rule where opposite walls are near each other.
+      const Real f = one - p.wall_scale * g.density;
+      const Real s = p.wall_scale * p.wall_inv_range * (side == 0 ? g.slope : -g.slope);
+      slope[axis] = slope[axis] * f - s * keep[axis];
+      keep[axis] = keep[axis] * f;
     }
+  // The gradient of 1 - prod(keep): minus the product rule's sum.
   w.density = one - keep_density;
-  w.gradient = {slope[0] * free[1] * free[2], slope[1] * free[0] * free[2],
-                slope[2] * free[0] * free[1]};
+  w.gradient = {-slope[0] * keep[1] * keep[2], -slope[1] * keep[0] * keep[2],
+                -slope[2] * keep[0] * keep[1]};
   return w;
 }
 

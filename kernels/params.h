@@ -20,7 +20,8 @@ struct Params {
   Real margin = 0;           ///< h, distance to a wall at which particles are clamped
   unsigned walls = 63;       ///< WallBit mask of the faces that are walls
   bool wall_density = true;  ///< walls contribute to density (boundary: density)
-  Real wall_scale = 1;       ///< calibration of that contribution, kernels/README.md (9)
+  Real wall_scale = 1;       ///< amplitude of that contribution, kernels/README.md (9)
+  Real wall_inv_range = 1;   ///< h over the range of that contribution
   int cells_x = 1, cells_y = 1, cells_z = 1;
   Real inv_cell = 1;       ///< 1/h, one over the edge of a cell (>= h)
   Real vol = 1;            ///< m/(rho0 h^3), weight of one particle

@@ -1,5 +1,6 @@
 #include "lib/plan/plan.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lib/base/error.h"
@@ -125,13 +126,16 @@ Plan make_plan(const Scene& s, std::int64_t particles) {
   if (s.fluid.mass) {
     plan.mass = *s.fluid.mass;
     plan.vol = plan.mass / (s.fluid.rest_density * h * h * h);
-    plan.wall_scale = 1;
+    plan.wall_scale = plan.wall_range = 1;
   } else {
     const Calibration c = calibrate(s.solver.kernels, s.fluid.smoothing_ratio);
     plan.mass = s.fluid.rest_density * std::pow(s.fluid.spacing, 3);
     plan.vol = c.vol;
     plan.wall_scale = c.wall_scale;
+    plan.wall_range = c.wall_range;
   }
+  const double crowd = 2.5 / s.fluid.smoothing_ratio;
+  plan.step_length = s.solver.step_length ? *s.solver.step_length : std::min(1.0, crowd * crowd);
   plan.fused = s.solver.fused;
   plan.tensile = s.tensile && s.tensile->k != 0;
   plan.xsph = s.viscosity && s.viscosity->xsph != 0;

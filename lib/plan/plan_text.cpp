@@ -68,8 +68,8 @@ std::string plan_json(const Plan& plan, const Scene& s) {
   out += format(",\"particles\":%lld,\"bytes\":%lld,\"cells\":[%d,%d,%d],\"cell_edge_h\":%.17g",
                 static_cast<long long>(plan.particles), static_cast<long long>(plan.bytes()),
                 plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge);
-  out += format(",\"vol\":%.17g,\"wall_scale\":%.17g,\"mass_kg\":%.17g", plan.vol, plan.wall_scale,
-                plan.mass);
+  out += format(",\"vol\":%.17g,\"wall_scale\":%.17g,\"wall_range_h\":%.17g,\"mass_kg\":%.17g",
+                plan.vol, plan.wall_scale, plan.wall_range, plan.mass);
   out += ",\"passes\":" + list(plan.passes, [](const PlanPass& p) {
            return "{\"name\":" + quoted(p.name) + ",\"stage\":" + quoted(p.stage) +
                   ",\"reads\":" + quoted(p.reads) + ",\"writes\":" + quoted(p.writes) +

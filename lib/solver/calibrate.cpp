@@ -28,7 +28,8 @@ Calibration calibrate(KernelMode mode, double ratio) {
       }
   Calibration c;
   c.vol = 1 / sum;
-  const double q = 0.5 / ratio;
+  c.wall_range = 0.7;
+  const double q = 0.5 / ratio / c.wall_range;
   const double half_space =
       (mode == KernelMode::paper ? half_space_poly6(q) : half_space_spiky(q)).density;
   c.wall_scale = (1 - c.vol * above) / half_space;

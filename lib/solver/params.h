@@ -26,6 +26,7 @@ Params<Real> make_params(const Scene& s, const Plan& plan) {
       if (open == faces[k]) p.walls &= ~(1u << k);
   p.wall_density = s.solver.boundary == BoundaryMode::density && p.walls != 0;
   p.wall_scale = Real(plan.wall_scale);
+  p.wall_inv_range = Real(1 / plan.wall_range);
   p.cells_x = plan.cells[0];
   p.cells_y = plan.cells[1];
   p.cells_z = plan.cells[2];
@@ -33,7 +34,7 @@ Params<Real> make_params(const Scene& s, const Plan& plan) {
   p.vol = Real(plan.vol);
   p.two_sided = s.solver.constraint == ConstraintMode::two_sided;
   p.relaxation = Real(s.solver.relaxation);
-  p.step_length = Real(s.solver.step_length);
+  p.step_length = Real(plan.step_length);
   if (s.tensile) {
     p.tensile_k = Real(s.tensile->k);
     const double q = s.tensile->delta_q, t = 1 - q;

@@ -1,0 +1,194 @@
+#include "tests/oracle/n2_update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace oracle {
+namespace {
+
+const Real pi = 3.141592653589793238462643383279502884L;
+
+Real length(const V& a) { return sqrtl(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+V sub(const V& a, const V& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+void axpy(V& y, Real a, const V& x) {
+  for (int k = 0; k < 3; ++k) y[k] += a * x[k];
+}
+V cross(const V& a, const V& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Real poly6(Real r, Real h) {
+  return r >= h ? 0 : 315 / (64 * pi * powl(h, 9)) * powl(h * h - r * r, 3);
+}
+Real spiky(Real r, Real h) { return r >= h ? 0 : 15 / (pi * powl(h, 6)) * powl(h - r, 3); }
+V spiky_gradient(const V& d, Real h) {
+  const Real r = length(d);
+  if (r >= h || r == 0) return {0, 0, 0};
+  V g{};
+  axpy(g, -45 / (pi * powl(h, 6)) * (h - r) * (h - r) / r, d);
+  return g;
+}
+
+/// Mass fraction of the kernel behind a plane at distance a: the integral over spherical caps,
+/// int_a^h W(r) 2 pi r (r - a) dr, by Gauss-Legendre (5 points, 64 panels): not a closed form.
+Real half_space(const std::function<Real(Real)>& w, Real a, Real h) {
+  a = std::max<Real>(a, 0);
+  if (a >= h) return 0;
+  static const Real node[3] = {0, 0.538469310105683091036314420700208805L,
+                               0.906179845938663992797626878299392965L};
+  static const Real weight[3] = {0.568888888888888888888888888888888889L,
+                                 0.478628670499366468041291514835638193L,
+                                 0.236926885056189087514264040719917363L};
+  const int panels = 64;
+  const Real half = (h - a) / panels / 2;
+  Real sum = 0;
+  for (int i = 0; i < panels; ++i)
+    for (int k = -2; k <= 2; ++k) {
+      const Real r = a + (2 * i + 1) * half + (k < 0 ? -1 : 1) * node[std::abs(k)] * half;
+      sum += weight[std::abs(k)] * half * w(r) * 2 * pi * r * (r - a);
+    }
+  return sum;
+}
+
+/// Derivative of the above with respect to a: -int_a^h W(r) 2 pi r dr.
+Real half_space_slope(Real a, Real h) {
+  a = std::max<Real>(a, 0);
+  if (a >= h) return 0;
+  // For Spiky: -30/h^6 int_a^h (h-r)^3 r dr = -30/h^6 [h s^4/4 - s^5/5], s = h - a.
+  const Real s = h - a;
+  return -30 / powl(h, 6) * (h * powl(s, 4) / 4 - powl(s, 5) / 5);
+}
+
+struct Wall {
+  Real density = 0;  // fraction of rho0
+  V gradient{};      // 1/m
+};
+
+Wall walls(const V& x, const Settings& c) {
+  Wall out;
+  if (!c.wall_density) return out;
+  auto kernel = [&](Real r) { return c.paper ? poly6(r, c.h) : spiky(r, c.h); };
+  auto gradient_kernel = [&](Real r) { return spiky(r, c.h); };
+  Real keep = 1, factor[6], slope[6];
+  for (int f = 0; f < 6; ++f) {
+    const int axis = f / 2;
+    const Real a = f % 2 ? c.high[axis] - x[axis] : x[axis] - c.low[axis];
+    keep *= 1 - c.wall_scale * half_space(kernel, a / c.wall_range, c.h);
+    factor[f] = 1 - c.wall_scale * half_space(gradient_kernel, a / c.wall_range, c.h);
+    slope[f] =
+        c.wall_scale / c.wall_range * half_space_slope(a / c.wall_range, c.h) * (f % 2 ? -1 : 1);
+  }
+  out.density = 1 - keep;
+  for (int f = 0; f < 6; ++f) {
+    Real others = 1;
+    for (int g = 0; g < 6; ++g)
+      if (g != f) others *= factor[g];
+    out.gradient[f / 2] += slope[f] * others;
+  }
+  return out;
+}
+
+void clamp(V& x, const Settings& c) {
+  for (int k = 0; k < 3; ++k)
+    x[k] = std::min(std::max(x[k], c.low[k] + c.margin), c.high[k] - c.margin);
+}
+
+}  // namespace
+
+std::vector<Real> densities(const std::vector<V>& x, const Settings& c) {
+  std::vector<Real> out;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    Real sum = 0;
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      const Real r = length(sub(x[i], x[j]));
+      sum += c.mass * (c.paper ? poly6(r, c.h) : spiky(r, c.h));
+    }
+    out.push_back(sum + c.rest_density * walls(x[i], c).density);
+  }
+  return out;
+}
+
+void update(State& s, const Settings& c) {
+  const std::size_t n = s.x.size();
+  const std::vector<V> old = s.x;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (int k = 0; k < 3; ++k) s.v[i][k] = c.damping * s.v[i][k] + c.dt * c.gravity[k];
+    axpy(s.x[i], c.dt, s.v[i]);
+    clamp(s.x[i], c);
+  }
+  // The pairs of an update are those closer than h here.
+  std::vector<std::vector<std::size_t>> pairs(n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      if (i != j && length(sub(s.x[i], s.x[j])) < c.h) pairs[i].push_back(j);
+
+  const Real m = c.mass / c.rest_density;  // volume, m^3
+  s.density.assign(n, c.rest_density);
+  auto kernel = [&](Real r) { return c.paper ? poly6(r, c.h) : spiky(r, c.h); };
+  for (int sweep = 0; sweep < c.iterations; ++sweep) {
+    std::vector<Real> lambda(n);
+    std::vector<Wall> wall(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      wall[i] = walls(s.x[i], c);
+      Real ratio = m * kernel(0) + wall[i].density, squares = 0;
+      V own = wall[i].gradient;
+      for (std::size_t j : pairs[i]) {
+        const V d = sub(s.x[i], s.x[j]);
+        ratio += m * kernel(length(d));
+        V g = spiky_gradient(d, c.h);
+        axpy(own, m, g);
+        squares += m * m * (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+      }
+      s.density[i] = c.rest_density * ratio;
+      const Real constraint = c.two_sided ? ratio - 1 : std::max<Real>(ratio - 1, 0);
+      squares += own[0] * own[0] + own[1] * own[1] + own[2] * own[2];
+      lambda[i] = -constraint / (squares + c.relaxation / (c.h * c.h));
+    }
+    std::vector<V> next = s.x;
+    for (std::size_t i = 0; i < n; ++i) {
+      V delta{};
+      for (std::size_t j : pairs[i]) {
+        const V d = sub(s.x[i], s.x[j]);
+        Real w = lambda[i] + lambda[j];
+        if (c.tensile_k != 0)
+          w -= c.tensile_k * c.h * c.h *
+               powl(kernel(length(d)) / kernel(c.tensile_q * c.h), c.tensile_n);
+        axpy(delta, m * w, spiky_gradient(d, c.h));
+      }
+      axpy(delta, lambda[i], wall[i].gradient);
+      axpy(next[i], c.step_length, delta);
+      clamp(next[i], c);
+    }
+    s.x = next;
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    for (int k = 0; k < 3; ++k) s.v[i][k] = (s.x[i][k] - old[i][k]) / c.dt;
+
+  if (c.xsph != 0) {
+    const std::vector<V> v = s.v;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j : pairs[i])
+        axpy(s.v[i], c.xsph * c.mass / s.density[j] * kernel(length(sub(s.x[i], s.x[j]))),
+             sub(v[j], v[i]));
+  }
+  if (c.vorticity != 0) {
+    std::vector<V> curl(n);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j : pairs[i])
+        axpy(curl[i], c.mass / s.density[j],
+             cross(spiky_gradient(sub(s.x[i], s.x[j]), c.h), sub(s.v[j], s.v[i])));
+    for (std::size_t i = 0; i < n; ++i) {
+      if (s.density[i] < 0.75L * c.rest_density) continue;
+      V eta{};
+      for (std::size_t j : pairs[i])
+        axpy(eta, c.mass / s.density[j] * (length(curl[j]) - length(curl[i])),
+             spiky_gradient(sub(s.x[i], s.x[j]), c.h));
+      const Real size = length(eta) + 0.1L * length(curl[i]) / c.h;
+      if (size == 0) continue;
+      axpy(s.v[i], std::min(c.dt * c.vorticity, 0.05L) * c.h / size, cross(eta, curl[i]));
+    }
+  }
+}
+
+}  // namespace oracle

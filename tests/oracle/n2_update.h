@@ -1,0 +1,36 @@
+// One update of Position Based Fluids by brute force: every pair, long double, SI units, formulas
+// written from the papers. Shares no code with kernels/ or lib/.
+#pragma once
+
+#include <array>
+#include <vector>
+
+namespace oracle {
+
+using Real = long double;
+using V = std::array<Real, 3>;
+
+/// SI units throughout; `mass` is the weight that enters density sums, in kg.
+struct Settings {
+  Real h = 0.04L, mass = 0, rest_density = 1000, dt = 0.002L, relaxation = 0;  // eps^, 1
+  Real step_length = 1, damping = 1, wall_scale = 0, wall_range = 1, margin = 0;
+  V gravity{0, 0, -9.81L}, low{0, 0, 0}, high{1, 1, 1};
+  int iterations = 4;
+  bool paper = false, two_sided = false, wall_density = true;
+  Real tensile_k = 0, tensile_q = 0.3L;  // k in h^2
+  int tensile_n = 4;
+  Real xsph = 0, vorticity = 0;  // 1, 1/s
+};
+
+struct State {
+  std::vector<V> x, v;
+  std::vector<Real> density;  ///< kg/m^3, of the last sweep
+};
+
+/// Advances by one update.
+void update(State& s, const Settings& c);
+
+/// Density at the present positions, kg/m^3, walls included.
+std::vector<Real> densities(const std::vector<V>& x, const Settings& c);
+
+}  // namespace oracle

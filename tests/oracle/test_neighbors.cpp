@@ -1,0 +1,121 @@
+// Neighbour lists of the CPU executor against all pairs.
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "lib/cpu/cpu_exec.h"
+#include "tests/catch.h"
+
+using namespace pbf;
+
+namespace {
+
+/// Positions in units of h; checks every list against brute force, in the same precision.
+template <class Real>
+void check_lists(std::vector<Vec4<Real>> x, Vec3<Real> box, int nx, int ny, int nz,
+                 int threads = 2) {
+  Params<Real> p;
+  p.n = int(x.size());
+  p.box = box;
+  p.cells_x = nx;
+  p.cells_y = ny;
+  p.cells_z = nz;
+  CpuExec exec(threads);
+  std::vector<int> cell(x.size()), order(x.size()), start(std::size_t(nx * ny * nz) + 1);
+  for (int i = 0; i < p.n; ++i)
+    cell[std::size_t(i)] = linear_cell(cell_of(xyz(x[std::size_t(i)]), p), p);
+  exec.sort_by_cell(cell.data(), p.n, nx * ny * nz, order.data(), start.data());
+
+  std::vector<Vec4<Real>> sorted(x.size());
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    sorted[k] = x[std::size_t(order[k])];
+    if (k > 0) {
+      const auto a = std::make_pair(cell[std::size_t(order[k - 1])], order[k - 1]);
+      const auto b = std::make_pair(cell[std::size_t(order[k])], order[k]);
+      REQUIRE(a < b);  // by cell, and stable within a cell
+    }
+  }
+  const auto lists = exec.build_lists(sorted.data(), start.data(), p);
+  for (int i = 0; i < p.n; ++i) {
+    std::vector<int> found, expected;
+    lists.for_each(i, [&](int j) { found.push_back(j); });
+    for (int j = 0; j < p.n; ++j) {
+      const auto &a = sorted[std::size_t(i)], &b = sorted[std::size_t(j)];
+      const Real dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+      if (i != j && dx * dx + dy * dy + dz * dz < Real(1)) expected.push_back(j);
+    }
+    REQUIRE(lists.size(i) == int(found.size()));
+    REQUIRE(found == expected);  // the order too: ascending
+  }
+}
+
+template <class Real>
+std::vector<Vec4<Real>> random_points(int n, double lo, double hi) {
+  std::mt19937 gen(7);
+  std::vector<Vec4<Real>> x;
+  auto r = [&] { return Real(lo + (hi - lo) * double(gen()) / 4294967295.0); };
+  for (int i = 0; i < n; ++i) {
+    const Real a = r(), b = r(), c = r();
+    x.push_back({a, b, c, 0});
+  }
+  return x;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("neighbour lists hold exactly the pairs closer than h", "", float, double) {
+  using R = TestType;
+  SECTION("random points") { check_lists<R>(random_points<R>(3000, 0, 5), {5, 5, 5}, 6, 6, 6); }
+  SECTION("random points, many more than one chunk and one cell") {
+    check_lists<R>(random_points<R>(4000, 0, 1.5), {2, 2, 2}, 3, 3, 3);
+  }
+  SECTION("negative coordinates and points far outside the grid") {
+    check_lists<R>(random_points<R>(1500, -4, 7), {3, 3, 3}, 3, 3, 3);
+  }
+  SECTION("a lattice on the faces and corners of the cells, pairs exactly at distance h") {
+    std::vector<Vec4<R>> x;
+    for (int k = 0; k < 1000; ++k)
+      x.push_back({R(k % 10) / 2, R(k / 10 % 10) / 2, R(k / 100) / 2, 0});
+    check_lists<R>(x, {5, 5, 5}, 6, 6, 6);
+  }
+  SECTION("coincident points: pairs, and 200 in one place") {
+    auto x = random_points<R>(300, 0, 3);
+    for (int i = 0; i < 300; ++i) x.push_back(x[std::size_t(i)]);
+    for (int i = 0; i < 200; ++i) x.push_back({1, 1, 1, 0});
+    check_lists<R>(x, {3, 3, 3}, 4, 4, 4);
+  }
+  SECTION("all in one cell, and a grid of one cell") {
+    check_lists<R>(random_points<R>(500, 0.1, 0.9), {1, 1, 1}, 1, 1, 1);
+    check_lists<R>(random_points<R>(500, 0, 2), {2, 2, 2}, 1, 1, 1);
+  }
+  SECTION("collinear and coplanar points") {
+    auto x = random_points<R>(400, 0, 6);
+    for (auto& p : x) p.y = p.z = 0;
+    check_lists<R>(x, {6, 1, 1}, 7, 2, 2);
+    x = random_points<R>(900, 0, 6);
+    for (auto& p : x) p.z = R(0.25);
+    check_lists<R>(x, {6, 6, 1}, 7, 7, 2);
+  }
+  SECTION("no particle and one particle") {
+    check_lists<R>({}, {1, 1, 1}, 2, 2, 2);
+    check_lists<R>({{R(0.5), R(0.5), R(0.5), 0}}, {1, 1, 1}, 2, 2, 2);
+  }
+}
+
+TEST_CASE("more than 16384 particles are sorted the same way by 1, 2 and 5 threads") {
+  std::mt19937 gen(3);
+  const int n = 40000, cells = 500;
+  std::vector<int> cell(n);
+  for (int& c : cell) c = int(gen() % cells);
+  std::vector<int> expected(n), start(cells + 1);
+  for (int i = 0; i < n; ++i) expected[std::size_t(i)] = i;
+  std::stable_sort(expected.begin(), expected.end(),
+                   [&](int a, int b) { return cell[std::size_t(a)] < cell[std::size_t(b)]; });
+  for (int threads : {1, 2, 5}) {
+    CpuExec exec(threads);
+    std::vector<int> order(n);
+    exec.sort_by_cell(cell.data(), n, cells, order.data(), start.data());
+    CHECK(order == expected);
+    CHECK(start[cells] == n);
+  }
+}

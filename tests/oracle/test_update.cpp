@@ -1,0 +1,182 @@
+// One update of the solver against the brute-force oracle, and the solver against itself.
+#include <cmath>
+
+#include "tests/catch.h"
+#include "tests/oracle/n2_update.h"
+#include "tests/oracle/states.h"
+
+using namespace oracle_test;
+
+namespace {
+
+oracle::Settings settings_of(const Case& c) {
+  const pbf::Scene& s = c.scene;
+  oracle::Settings o;
+  o.h = s.h();
+  o.rest_density = s.fluid.rest_density;
+  if (s.fluid.mass) {
+    o.mass = *s.fluid.mass;
+    o.wall_scale = 1;
+  } else {
+    const auto cal = pbf::calibrate(s.solver.kernels, s.fluid.smoothing_ratio);
+    o.mass = static_cast<long double>(cal.vol) * o.rest_density * o.h * o.h * o.h;
+    o.wall_scale = cal.wall_scale;
+    o.wall_range = cal.wall_range;
+  }
+  o.dt = s.time.step;
+  o.relaxation = s.solver.relaxation;
+  o.step_length = pbf::make_plan(s, std::int64_t(c.particles.size())).step_length;
+  o.damping = s.solver.velocity_damping;
+  o.margin = s.solver.wall_margin;
+  o.iterations = s.solver.iterations;
+  o.paper = s.solver.kernels == pbf::KernelMode::paper;
+  o.two_sided = s.solver.constraint == pbf::ConstraintMode::two_sided;
+  o.wall_density = s.solver.boundary == pbf::BoundaryMode::density;
+  for (int k = 0; k < 3; ++k) {
+    o.gravity[k] = s.gravity[k];
+    o.low[k] = s.domain.min[k];
+    o.high[k] = s.domain.max[k];
+  }
+  if (s.tensile) {
+    o.tensile_k = s.tensile->k;
+    o.tensile_q = s.tensile->delta_q;
+    o.tensile_n = s.tensile->n;
+  }
+  if (s.viscosity) o.xsph = s.viscosity->xsph;
+  if (s.vorticity) o.vorticity = s.vorticity->epsilon;
+  return o;
+}
+
+struct Difference {
+  double position = 0;  // in units of h
+  double velocity = 0;  // in units of h/dt
+};
+
+/// Largest difference after one update from the same state.
+Difference against_oracle(const Case& c) {
+  const oracle::Settings o = settings_of(c);
+  oracle::State s;
+  for (std::size_t i = 0; i < c.particles.size(); ++i) {
+    const auto &x = c.particles.position[i], &v = c.particles.velocity[i];
+    s.x.push_back({x[0], x[1], x[2]});
+    s.v.push_back({v[0], v[1], v[2]});
+  }
+  oracle::update(s, o);
+  auto solver = make(c);
+  solver->step(1);
+  const pbf::Snapshot snap = solver->download({"velocity"}, pbf::ScalarType::f64);
+  const auto x = snap.fields[0].as<double>(), v = snap.find("velocity")->as<double>();
+  Difference d;
+  for (std::size_t i = 0; i < s.x.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      d.position = std::max(d.position, double(fabsl(x[3 * i + k] - s.x[i][k]) / o.h));
+      d.velocity = std::max(d.velocity, double(fabsl(v[3 * i + k] - s.v[i][k]) * o.dt / o.h));
+    }
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("one update in double equals the brute-force oracle to rounding, feature by feature") {
+  Case c = jittered_block(6, 5, 7, 0.3, 0.4);
+  SECTION("defaults") {}
+  SECTION("the paper's kernels") { c.scene.solver.kernels = pbf::KernelMode::paper; }
+  SECTION("two-sided constraint") { c.scene.solver.constraint = pbf::ConstraintMode::two_sided; }
+  SECTION("walls that only clamp") { c.scene.solver.boundary = pbf::BoundaryMode::clamp; }
+  SECTION("a wall margin") { c.scene.solver.wall_margin = 0.01; }
+  SECTION("artificial pressure") { c.scene.tensile = pbf::Tensile{0.01, 0.25, 4}; }
+  SECTION("artificial pressure with an odd exponent") {
+    c.scene.tensile = pbf::Tensile{0.01, 0.2, 3};
+  }
+  SECTION("viscosity") { c.scene.viscosity = pbf::Viscosity{0.3}; }
+  SECTION("vorticity confinement") { c.scene.vorticity = pbf::Vorticity{20}; }
+  SECTION("vorticity confinement at its limit") { c.scene.vorticity = pbf::Vorticity{1000}; }
+  SECTION("everything at once, unfused, damped, other h/d and omega") {
+    c.scene.tensile = pbf::Tensile{0.002, 0.3, 4};
+    c.scene.viscosity = pbf::Viscosity{0.1};
+    c.scene.vorticity = pbf::Vorticity{5};
+    c.scene.solver.fused = false;
+    c.scene.solver.velocity_damping = 0.99;
+    c.scene.fluid.smoothing_ratio = 2.6;
+    c.scene.solver.step_length = 0.6;
+  }
+  SECTION("no iterations") {
+    c.scene.solver.iterations = 0;
+    c.scene.viscosity = pbf::Viscosity{0.3};
+  }
+  SECTION("a given mass") { c.scene.fluid.mass = 0.009; }
+  SECTION("gravity along y") { c.scene.gravity = {1, -9.8, 0}; }
+  const Difference d = against_oracle(c);
+  // Coordinates up to 50 h from the origin in SI: one rounding of them is 1e-14 h.
+  CHECK(d.position < 1e-12);
+  CHECK(d.velocity < 2e-12);
+}
+
+TEST_CASE("the default step is exact also for strongly squeezed states and single particles") {
+  SECTION("squeezed to 0.6 of the spacing") {
+    // One sweep: after it particles clamped to one corner coincide, and their directions are
+    // chosen.
+    Case c = jittered_block(6, 6, 6, 0.2, 0, 3, 0.6);
+    c.scene.solver.iterations = 1;
+    CHECK(against_oracle(c).position < 1e-11);
+  }
+  SECTION("one particle") { CHECK(against_oracle(jittered_block(1, 1, 1, 0, 1)).position < 1e-13); }
+  SECTION("two particles") {
+    CHECK(against_oracle(jittered_block(2, 1, 1, 0.4, 1)).position < 1e-13);
+  }
+}
+
+TEST_CASE("float follows double to single rounding over one update") {
+  Case c = jittered_block(8, 8, 8, 0.3, 0.4);
+  c.scene.viscosity = pbf::Viscosity{};
+  auto a = make(c);
+  c.scene.precision = pbf::Precision::single;
+  auto b = make(c);
+  a->step(1);
+  b->step(1);
+  const auto sa = a->download({}, pbf::ScalarType::f64), sb = b->download({}, pbf::ScalarType::f64);
+  const auto xa = sa.fields[0].as<double>(), xb = sb.fields[0].as<double>();
+  double sum = 0, worst = 0;
+  for (std::size_t k = 0; k < xa.size(); ++k) {
+    const double e = (xa[k] - xb[k]) / c.scene.h();
+    sum += e * e;
+    worst = std::max(worst, std::fabs(e));
+  }
+  CHECK(std::sqrt(sum / double(xa.size() / 3)) < 1e-6);  // measured 2e-7
+  CHECK(worst < 1e-5);
+  CHECK(worst > 0);  // else both ran in the same precision
+}
+
+TEST_CASE("1 and 2 threads give the same bits after 50 updates with every feature on") {
+  Case c = jittered_block(20, 20, 50, 0.3, 0.4);  // above the sizes at which threads are used
+  c.scene.precision = GENERATE(pbf::Precision::single, pbf::Precision::dbl);
+  c.scene.tensile = pbf::Tensile{};
+  c.scene.viscosity = pbf::Viscosity{};
+  c.scene.vorticity = pbf::Vorticity{};
+  c.scene.threads = 1;
+  auto a = make(c);
+  c.scene.threads = 2;
+  auto b = make(c);
+  a->step(50);
+  b->step(50);
+  const auto sa = a->download({"velocity", "density"}, pbf::ScalarType::f64);
+  const auto sb = b->download({"velocity", "density"}, pbf::ScalarType::f64);
+  for (std::size_t f = 0; f < sa.fields.size(); ++f)
+    CHECK(sa.fields[f].bytes == sb.fields[f].bytes);
+  const auto ma = a->measure(), mb = b->measure();
+  CHECK(ma.kinetic_energy == mb.kinetic_energy);
+  CHECK(ma.compression_mean == mb.compression_mean);
+}
+
+TEST_CASE("measuring and downloading do not change the trajectory") {
+  Case c = jittered_block(8, 8, 8, 0.3, 0.4);
+  auto a = make(c), b = make(c);
+  for (int k = 0; k < 20; ++k) {
+    a->step(1);
+    b->step(1);
+    b->measure();
+    b->download({"density"}, pbf::ScalarType::f32);
+  }
+  CHECK(a->download({}, pbf::ScalarType::f64).fields[0].bytes ==
+        b->download({}, pbf::ScalarType::f64).fields[0].bytes);
+}
