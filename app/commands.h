@@ -10,7 +10,7 @@ struct RunOptions {
   std::string scene;                   ///< path
   std::string out;                     ///< run folder; empty: out/<scene name>
   std::string backend, precision;      ///< empty: as the scene says
-  std::string threads;                 ///< empty: as the scene says; else a number from 1 on
+  int threads = 0;                     ///< 0: as the scene says
   std::vector<std::string> overrides;  ///< key.path=value
   bool overwrite = false, resume = false, quiet = false;
   std::string log_json;     ///< path, empty: none

@@ -1,0 +1,29 @@
+// pbf info: this build and this machine.
+#include "app/commands.h"
+#include "lib/base/log.h"
+#include "lib/base/text.h"
+#include "lib/base/version.h"
+#include "lib/solver/devices.h"
+
+namespace pbf {
+
+int command_info() {
+  const BuildInfo b = build_info();
+  std::string text = "pbf " + b.version + "\n";
+  const auto line = [&](const std::string& name, const std::string& value) {
+    text += format("%-12s ", name.c_str()) + value + "\n";
+  };
+  line("commit", b.commit);
+  line("build", b.type + ", " + b.compiler + ", " + b.flags);
+  line("features", b.features);
+  for (const auto& [name, version] : b.libraries) line(name, version);
+  line("cpu", cpu_model());
+  line("threads", std::to_string(usable_threads()));
+  line("memory", bytes_text(double(available_memory())) + " available");
+  line("cuda", cuda_device_report());
+  text.pop_back();
+  Log(false).result(text);
+  return 0;
+}
+
+}  // namespace pbf

@@ -1,0 +1,199 @@
+// pbf run: a scene in, a run folder out.
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/run_folder.h"
+#include "app/run_loop.h"
+#include "app/signals.h"
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+#include "lib/base/version.h"
+#include "lib/scene/emit.h"
+#include "lib/scene/load.h"
+#include "lib/solver/devices.h"
+
+namespace pbf {
+namespace {
+
+std::vector<std::string> all_overrides(const RunOptions& o) {
+  std::vector<std::string> list = o.overrides;  // the options win: they come last
+  if (!o.backend.empty()) list.push_back("backend=" + o.backend);
+  if (!o.precision.empty()) list.push_back("precision=" + o.precision);
+  if (o.threads > 0) list.push_back("threads=" + std::to_string(o.threads));
+  return list;
+}
+
+/// Refuses what cannot fit before anything large is allocated: an allocation the system cannot
+/// back succeeds at first, and the process is killed later without a word.
+void check_memory(const Plan& plan, const Scene& scene) {
+  const double emitted = 48.0 * double(plan.particles);  // host copies while the solver is made
+  const double needed = (scene.backend == Backend::cpu ? double(plan.bytes()) : 0) + emitted;
+  const auto available = double(available_memory());
+  if (available > 0 && needed > available)
+    throw Error(ExitCode::unavailable,
+                format("the scene needs about %s of memory for %lld particles, %s are available; "
+                       "increase fluid.spacing, or use a machine with more memory",
+                       bytes_text(needed).c_str(), static_cast<long long>(plan.particles),
+                       bytes_text(available).c_str()));
+}
+
+RunInfo run_info(const LoadedScene& loaded, const Plan& plan, const Solver& solver,
+                 const std::string& started) {
+  const BuildInfo build = build_info();
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  RunInfo info;
+  info.scene_path = loaded.path;
+  info.scene_text = loaded.text;
+  info.resolved_scene = resolved_yaml(loaded.scene);
+  info.overrides = loaded.overrides;
+  info.program_version = build.version;
+  info.commit = build.commit;
+  info.compiler = build.compiler;
+  info.build_flags = build.flags;
+  info.host = host;
+  info.started = started;
+  info.plan = plan_text(plan, loaded.scene);
+  info.solver = solver.info();
+  info.domain_min = loaded.scene.domain.min;
+  info.domain_max = loaded.scene.domain.max;
+  info.spacing = loaded.scene.fluid.spacing;
+  info.smoothing_length = loaded.scene.h();
+  info.rest_density = loaded.scene.fluid.rest_density;
+  info.particles = plan.particles;
+  return info;
+}
+
+RunSinks open_sinks(const LoadedScene& loaded, const Plan& plan, const Solver& solver,
+                    const RunFolder& folder, std::FILE* json, const std::string& started) {
+  const Scene& scene = loaded.scene;
+  RunSinks sinks;
+  sinks.json = json;
+  if (scene.output)
+    sinks.writer = std::make_unique<RunWriter>(
+        folder.file("run.h5"), run_info(loaded, plan, solver, started), scene.output->gzip);
+#ifdef PBF_HAS_RENDER
+  if (scene.render) {
+    folder.make_frames_folder();
+    sinks.pictures =
+        std::make_unique<RenderThread>(view_of(scene, plan.particles), folder.file("frames"));
+  }
+#endif
+  return sinks;
+}
+
+std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
+                   const std::string& folder) {
+  const SolverInfo i = solver.info();
+  const BuildInfo build = build_info();
+  std::string where = i.backend + " " + i.precision;
+  if (i.backend == "cpu") where += format(", %d thread%s", i.threads, i.threads == 1 ? "" : "s");
+  return format("pbf %s (%s)  scene %s: %lld particles, %lld updates of %.4g s\n%s on %s, %s -> %s",
+                build.version.c_str(), build.commit.c_str(), scene.name.c_str(),
+                static_cast<long long>(plan.particles),
+                static_cast<long long>(make_schedule(scene).updates), scene.time.step,
+                where.c_str(), i.device.c_str(), bytes_text(double(i.bytes)).c_str(),
+                folder.c_str());
+}
+
+[[noreturn]] void report_divergence(const Measures& m, const std::string& folder) {
+  throw Error(ExitCode::guard,
+              format("the run diverged: at update %lld, t = %.6g s, %lld particles are not finite "
+                     "and %lld are outside the box; lower time.step or raise solver.iterations. "
+                     "What was computed until then is in %s",
+                     static_cast<long long>(m.update), m.time, static_cast<long long>(m.non_finite),
+                     static_cast<long long>(m.outside), folder.c_str()));
+}
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+File open_json(const std::string& path) {
+  File file(path.empty() ? nullptr : std::fopen(path.c_str(), "w"), std::fclose);
+  if (!path.empty() && !file)
+    throw Error(ExitCode::io,
+                "--log-json " + path + ": cannot be created: " + std::strerror(errno));
+  return file;
+}
+
+/// Everything from the made folder on, so that its log.txt also gets the error that ends it.
+int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver> solver,
+             const RunFolder& folder, Log& log, StageClock& clock, const Stopwatch& wall,
+             const RunOptions& options) {
+  const std::string started = utc_now();
+  const File json = open_json(options.log_json);
+  folder.write_text("scene.resolved.yaml", resolved_yaml(loaded.scene));
+  log.note(banner(loaded.scene, plan, *solver, folder.path()));
+  RunSinks sinks = open_sinks(loaded, plan, *solver, folder, json.get(), started);
+  clock.mark("init");
+  RunLoop loop(loaded.scene, plan, *solver, std::move(sinks), log, clock, wall,
+               options.max_walltime);
+  const RunEnd end = loop.run();
+  RunTotals totals = loop.totals();
+  totals.folder = folder.path();
+  log.result(run_summary(totals));
+  if (end == RunEnd::diverged) report_divergence(totals.last, folder.path());
+  if (end == RunEnd::stopped) {
+    log.note(
+        format("pbf: stopped early by %s after update %lld of %lld, after saving; the files "
+               "in %s hold the run up to there",
+               loop.stop_reason().c_str(), static_cast<long long>(totals.updates),
+               static_cast<long long>(make_schedule(loaded.scene).updates), folder.path().c_str()));
+    log.close();
+    return static_cast<int>(ExitCode::resumable);
+  }
+  log.close();
+  folder.write_text("DONE", "finished " + utc_now() + "\n");
+  return 0;
+}
+
+}  // namespace
+
+int command_run(const RunOptions& options) {
+  const Stopwatch wall;
+  StageClock clock;
+  const LoadedScene loaded = load_scene(options.scene, all_overrides(options));
+  const Scene& scene = loaded.scene;
+#ifndef PBF_HAS_RENDER
+  if (scene.render)
+    throw Error(ExitCode::unavailable,
+                "render: this build draws no pictures; remove the key, or build with "
+                "-DPBF_RENDER=ON");
+#endif
+  const std::string out = options.out.empty() ? "out/" + scene.name : options.out;
+  const ExistingFolder existing = options.overwrite ? ExistingFolder::overwrite
+                                  : options.resume  ? ExistingFolder::resume
+                                                    : ExistingFolder::refuse;
+  Log log(options.quiet);
+  if (RunFolder::check_finished(out, existing)) {
+    log.note(out + ": the run is finished (DONE is there); nothing to do");
+    return 0;
+  }
+  const std::string dir = std::filesystem::path(loaded.path).parent_path().string();
+  const Plan plan = make_plan(scene, count_particles(scene, dir));
+  check_memory(plan, scene);
+  watch_signals();
+  // The folder comes last: a scene that cannot run leaves nothing behind.
+  auto solver = make_solver(scene, plan, emit_particles(scene, dir));
+  double solver_init = 0;  // the solver reports its own part of "init"
+  for (const StageTime& s : solver->timings()) solver_init += s.name == "init" ? s.seconds : 0;
+  clock.add("init", wall.seconds() - solver_init);
+  clock.begin();
+  const RunFolder folder(out, existing);
+  log.open(folder.file("log.txt"));
+  try {
+    return simulate(loaded, plan, std::move(solver), folder, log, clock, wall, options);
+  } catch (const std::exception& e) {
+    try {
+      log.file_only(std::string("pbf: error: ") + e.what());
+    } catch (const Error&) {  // a full disk: the first error is the one to tell
+    }
+    throw;
+  }
+}
+
+}  // namespace pbf

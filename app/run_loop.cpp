@@ -1,0 +1,204 @@
+#include "app/run_loop.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "app/signals.h"
+#include "lib/base/error.h"
+
+namespace pbf {
+namespace {
+
+bool has(const std::vector<std::string>& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+}  // namespace
+
+const char* status_name(RunEnd end) {
+  switch (end) {
+    case RunEnd::finished:
+      return "finished";
+    case RunEnd::stopped:
+      return "stopped";
+    case RunEnd::diverged:
+      return "diverged";
+  }
+  return "";
+}
+
+RunLoop::RunLoop(const Scene& scene, const Plan& plan, Solver& solver, RunSinks sinks, Log& log,
+                 StageClock& clock, const Stopwatch& wall, double max_walltime)
+    : scene_(scene),
+      plan_(plan),
+      solver_(solver),
+      sinks_(std::move(sinks)),
+      log_(log),
+      clock_(clock),
+      wall_(wall),
+      max_walltime_(max_walltime),
+      schedule_(make_schedule(scene)),
+      progress_(log) {
+  if (scene.output) fields_ = scene.output->fields;
+  if (scene.render && scene.render->color != ColorBy::id) {
+    const char* needed = scene.render->color == ColorBy::speed ? "velocity" : "density";
+    if (!has(fields_, needed)) fields_.push_back(needed), extra_.push_back(needed);
+  }
+}
+
+RunEnd RunLoop::run() {
+  const Stopwatch loop;
+  measure();
+  first_ = last_;
+  outputs(0, false);
+  std::int64_t u = 0;
+  double per_update = 0;  // s, of the last call of step()
+  while (u < schedule_.updates && !diverged_ && !must_stop()) {
+    // Short calls, so that a signal or the wall-time limit waits a quarter of a second at most
+    // (or one update), yet few calls when an update takes microseconds.
+    std::int64_t n = 1;
+    if (per_update > 0) n = std::max<std::int64_t>(1, std::int64_t(0.25 / per_update));
+    n = std::min({n, schedule_.next_event(u) - u, std::int64_t(1 << 20)});
+    const Stopwatch watch;
+    solver_.step(static_cast<int>(n));
+    per_update = watch.seconds() / double(n);
+    u += n;
+    if (schedule_.measures(u)) measure();
+    if (!diverged_) outputs(u, false);
+    progress_.update({u, schedule_.updates, plan_.particles, solver_.time(), last_.compression_mean,
+                      last_.compression_max});
+  }
+  if (last_measure_ != u) measure();  // stopped between two measures
+  outputs(u, true);
+  const RunEnd end = diverged_               ? RunEnd::diverged
+                     : u < schedule_.updates ? RunEnd::stopped
+                                             : RunEnd::finished;
+  close(end);
+  loop_seconds_ = loop.seconds();
+  return end;
+}
+
+bool RunLoop::must_stop() {
+  stop_reason_ = signal_seen();
+  if (stop_reason_.empty() && max_walltime_ > 0 && wall_.seconds() >= max_walltime_)
+    stop_reason_ = "--max-walltime";
+  return !stop_reason_.empty();
+}
+
+void RunLoop::measure() {
+  last_ = solver_.measure();
+  last_measure_ = last_.update;
+  compression_max_ = std::max(compression_max_, last_.compression_max);
+  diverged_ = last_.non_finite > 0 || last_.outside > 0;
+  const std::vector<StageTime> since = stages_since_last_row();
+  clock_.begin();
+  if (sinks_.writer) {
+    sinks_.writer->log({last_, scene_.solver.iterations, scene_.time.step, since});
+    clock_.mark("write");
+  }
+  if (sinks_.json) {
+    const std::string line = measure_json(last_, wall_.seconds(), since) + "\n";
+    if (std::fwrite(line.data(), 1, line.size(), sinks_.json) != line.size() ||
+        std::fflush(sinks_.json) != 0)
+      throw Error(ExitCode::io,
+                  std::string("--log-json: cannot be written: ") + std::strerror(errno));
+    clock_.mark("write");
+  }
+}
+
+void RunLoop::outputs(std::int64_t u, bool last) {
+  const bool write = schedule_.frame_every > 0 && (last || schedule_.writes(u)) && last_frame_ != u;
+  bool draw = !last && schedule_.draws(u);
+#ifndef PBF_HAS_RENDER
+  draw = false;  // refused before the run began
+#endif
+  if (!write && !draw) return;
+  const bool wide = scene_.output && scene_.output->precision == Precision::dbl;
+  Snapshot snapshot = solver_.download(fields_, wide ? ScalarType::f64 : ScalarType::f32);
+  clock_.begin();
+#ifdef PBF_HAS_RENDER
+  if (draw) {
+    sinks_.pictures->draw(snapshot, pictures_++);
+    clock_.mark("render");
+  }
+#endif
+  if (write) {
+    for (const std::string& name : extra_)
+      std::erase_if(snapshot.fields, [&](const FieldArray& f) { return f.name == name; });
+    sinks_.writer->write(std::move(snapshot));
+    last_frame_ = u;
+    clock_.mark("write");
+  }
+}
+
+void RunLoop::close(RunEnd end) {
+  clock_.begin();
+#ifdef PBF_HAS_RENDER
+  if (sinks_.pictures) {
+    sinks_.pictures->finish();
+    render_thread_ = sinks_.pictures->seconds();
+    clock_.mark("render");
+  }
+#endif
+  if (sinks_.writer) {
+    sinks_.writer->finish(status_name(end));
+    frames_ = sinks_.writer->frames_written();
+    bytes_ = sinks_.writer->bytes_written();
+    clock_.mark("write");
+  }
+}
+
+std::vector<StageTime> RunLoop::stages() const {
+  // The names of the whole run from the start, so that every row of the log has the same columns.
+  std::vector<StageTime> out;
+  const auto add = [&](const std::string& name, double seconds, std::int64_t calls) {
+    for (auto& s : out) {
+      if (s.name != name) continue;
+      s.seconds += seconds;
+      s.calls += calls;
+      return;
+    }
+    out.push_back({name, seconds, calls});
+  };
+  add("init", 0, 0);
+  for (const PlanPass& pass : plan_.passes) add(pass.stage, 0, 0);
+  add("measure", 0, 0);
+  if (scene_.output || scene_.render) add("download", 0, 0);
+  if (scene_.output || sinks_.json) add("write", 0, 0);
+  if (scene_.render) add("render", 0, 0);
+  for (const StageTime& s : solver_.timings()) add(s.name, s.seconds, s.calls);
+  for (const auto& e : clock_.entries()) add(e.name, e.seconds, e.calls);
+  return out;
+}
+
+std::vector<StageTime> RunLoop::stages_since_last_row() {
+  std::vector<StageTime> now = stages(), since = now;
+  for (auto& s : since)
+    for (const auto& before : row_stages_)
+      if (before.name == s.name) s.seconds -= before.seconds, s.calls -= before.calls;
+  row_stages_ = std::move(now);
+  return since;
+}
+
+RunTotals RunLoop::totals() const {
+  RunTotals t;
+  t.particles = plan_.particles;
+  t.updates = solver_.updates_done();
+  t.simulated = solver_.time();
+  t.wall = wall_.seconds();
+  t.loop = loop_seconds_;
+  t.stages = stages();
+  t.render_thread = render_thread_;
+  t.fused = plan_.fused;
+  t.first = first_;
+  t.last = last_;
+  t.compression_max = compression_max_;
+  t.frames = frames_;
+  t.pictures = pictures_;
+  t.bytes = bytes_;
+  return t;
+}
+
+}  // namespace pbf

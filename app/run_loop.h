@@ -1,0 +1,77 @@
+// The loop of one run: updates, measures, frames, pictures, and when to stop.
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/run_report.h"
+#include "app/schedule.h"
+#include "lib/base/log.h"
+#include "lib/base/stage_clock.h"
+#include "lib/io/run_file.h"
+#include "lib/plan/plan.h"
+#include "lib/scene/scene.h"
+#include "lib/solver/solver.h"
+#ifdef PBF_HAS_RENDER
+#include "lib/render/renderer.h"
+#endif
+
+namespace pbf {
+
+/// Why a run ended; the name is the status in run.h5.
+enum class RunEnd { finished, stopped, diverged };
+const char* status_name(RunEnd end);
+
+/// Where a loop writes to; null: not at all.
+struct RunSinks {
+  std::unique_ptr<RunWriter> writer;
+#ifdef PBF_HAS_RENDER
+  std::unique_ptr<RenderThread> pictures;
+#endif
+  std::FILE* json = nullptr;  ///< one line per measure; owned by the caller
+};
+
+class RunLoop {
+ public:
+  /// `wall` has been running since the start of the command.
+  RunLoop(const Scene& scene, const Plan& plan, Solver& solver, RunSinks sinks, Log& log,
+          StageClock& clock, const Stopwatch& wall, double max_walltime);
+
+  /// Runs to the end, a signal, the wall-time limit or divergence, then writes the last frame and
+  /// closes every file. Errors of writing and drawing are thrown.
+  RunEnd run();
+
+  RunTotals totals() const;
+  const std::string& stop_reason() const { return stop_reason_; }  ///< "SIGTERM", ...
+
+ private:
+  void outputs(std::int64_t update, bool last);
+  void measure();
+  bool must_stop();
+  std::vector<StageTime> stages() const;
+  std::vector<StageTime> stages_since_last_row();
+  void close(RunEnd end);
+
+  const Scene& scene_;
+  const Plan& plan_;
+  Solver& solver_;
+  RunSinks sinks_;
+  Log& log_;
+  StageClock& clock_;
+  const Stopwatch& wall_;
+  double max_walltime_;
+  Schedule schedule_;
+  Progress progress_;
+  std::vector<std::string> fields_;    // downloaded
+  std::vector<std::string> extra_;     // downloaded for the pictures, not written
+  std::vector<StageTime> row_stages_;  // at the last row of the log
+  Measures first_, last_;
+  double compression_max_ = 0, loop_seconds_ = 0, render_thread_ = 0;
+  std::int64_t frames_ = 0, pictures_ = 0, bytes_ = 0, last_frame_ = -1, last_measure_ = -1;
+  bool diverged_ = false;
+  std::string stop_reason_;
+};
+
+}  // namespace pbf
