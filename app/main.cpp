@@ -1,0 +1,159 @@
+// The command line of pbf; every error ends here, as one message and an exit code.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <functional>
+#include <new>
+
+#include "app/commands.h"
+#include "app/signals.h"
+#include "lib/base/error.h"
+#include "lib/base/log.h"
+#include "lib/base/version.h"
+
+namespace pbf {
+namespace {
+
+constexpr const char* kExitCodes =
+    "Exit codes:\n"
+    "  0   done\n"
+    "  1   internal error\n"
+    "  2   bad command line or scene\n"
+    "  3   run stopped by the stability guard\n"
+    "  4   backend, device or memory not available\n"
+    "  5   file cannot be read or written (disk full)\n"
+    "  75  stopped early by a signal or the wall-time limit, after saving\n\n"
+    "Example: pbf run configs/dam_break.yaml --out out/dam_break";
+
+using Command = std::function<int()>;
+
+void add_overrides(CLI::App* c, std::vector<std::string>& overrides) {
+  c->add_option("--set", overrides, "Replace one key of the scene, KEY.PATH=VALUE; repeatable")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+void add_run(CLI::App& app, RunOptions& o, Command& command) {
+  CLI::App* c = app.add_subcommand("run", "Simulate a scene: run.h5 and pictures in one folder");
+  c->add_option("SCENE", o.scene, "Scene file (YAML)")->required();
+  c->add_option("--out", o.out, "Run folder; out/<scene name> when not given");
+  c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember({"cpu", "cuda"}));
+  c->add_option("--precision", o.precision, "Of the computation")
+      ->check(CLI::IsMember({"float", "double"}));
+  c->add_option("--threads", o.threads, "CPU threads")->check(CLI::Range(1, 4096));
+  add_overrides(c, o.overrides);
+  CLI::Option* overwrite =
+      c->add_flag("--overwrite", o.overwrite, "Replace the run in an existing folder");
+  c->add_flag("--resume", o.resume,
+              "Leave a finished run as it is and exit 0; start it when the folder is not there")
+      ->excludes(overwrite);
+  c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  c->add_option("--log-json", o.log_json, "One JSON object per line and measure, into this file");
+  c->add_option("--max-walltime", o.max_walltime, "Stop after so many seconds, save, exit 75")
+      ->check(CLI::PositiveNumber);
+  c->footer(
+      "Examples:\n"
+      "  pbf run configs/dam_break.yaml\n"
+      "  pbf run configs/dam_break.yaml --out out/fine --set fluid.spacing=0.01 --threads 8\n"
+      "Exit codes are listed in pbf --help.");
+  c->callback([&] { command = [&] { return command_run(o); }; });
+}
+
+void add_plan(CLI::App& app, PlanOptions& o, Command& command) {
+  CLI::App* c = app.add_subcommand(
+      "plan", "Passes, arrays, memory and files of a scene, and what is left out; runs nothing");
+  c->add_option("SCENE", o.scene, "Scene file (YAML)")->required();
+  add_overrides(c, o.overrides);
+  CLI::Option* resolved =
+      c->add_flag("--resolved", o.resolved, "Print the scene with every default filled in");
+  c->add_flag("--json", o.json, "Print the plan as one JSON object")->excludes(resolved);
+  c->footer("Example:\n  pbf plan configs/dam_break.yaml --set fluid.spacing=0.005");
+  c->callback([&] { command = [&] { return command_plan(o); }; });
+}
+
+void add_render(CLI::App& app, RenderOptions& o, Command& command) {
+  CLI::App* c = app.add_subcommand("render", "Pictures from the frames of a run file");
+  c->add_option("RUN", o.run, "Run file (run.h5)")->required();
+  c->add_option("--frames", o.frames, "all, k, a:b or a:b:step; b excluded, negative from the end");
+  c->add_option("--size", o.size, "WIDTHxHEIGHT in pixels");
+  c->add_option("--camera", o.camera, "position=x,y,z;target=x,y,z;fov=degrees;orbit=degrees/s");
+  c->add_option("--color", o.color, "What colours the particles")
+      ->check(CLI::IsMember({"speed", "density", "id"}));
+  c->add_option("--range", o.range, "LOW,HIGH of the colour bar, in the unit of the field");
+  c->add_option("--out", o.out, "Folder of the pictures; render/ beside the run file");
+  c->footer(
+      "Example:\n"
+      "  pbf render out/dam_break/run.h5 --frames 0:-1:5 --size 1920x1080 --color density \\\n"
+      "      --camera 'position=3,-4,2;fov=30'");
+  c->callback([&] { command = [&] { return command_render(o); }; });
+}
+
+void add_config(CLI::App& app, ConfigOptions& o, Command& command) {
+  CLI::App* c = app.add_subcommand("config", "The scene format");
+  CLI::Option_group* one = c->add_option_group("what");
+  one->add_flag("--example", o.example, "The reference scene: every key, default, unit, meaning");
+  one->add_flag("--schema", o.schema, "JSON Schema of a scene file, for editors");
+  one->require_option(1);
+  c->footer("Example:\n  pbf config --example > my_scene.yaml");
+  c->callback([&] { command = [&] { return command_config(o); }; });
+}
+
+void add_info(CLI::App& app, Command& command) {
+  CLI::App* c = app.add_subcommand("info", "Version, build features, libraries, devices");
+  c->footer("Example:\n  pbf info");
+  c->callback([&] { command = command_info; });
+}
+
+int run_main(int argc, char** argv) {
+  CLI::App app("pbf: Position Based Fluids, from a scene file to HDF5 and pictures.", "pbf");
+  app.set_version_flag("--version", "pbf " + build_info().version);
+  app.require_subcommand(1);
+  app.footer(kExitCodes);
+  RunOptions run;
+  PlanOptions plan;
+  RenderOptions render;
+  ConfigOptions config;
+  Command command;
+  add_run(app, run, command);
+  add_plan(app, plan, command);
+  add_render(app, render, command);
+  add_config(app, config, command);
+  add_info(app, command);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+    std::string help = "pbf --help";
+    for (const CLI::App* sub : app.get_subcommands()) help = "pbf " + sub->get_name() + " --help";
+    throw Error(ExitCode::bad_input, std::string(e.what()) + "\nSee " + help);
+  }
+  return command();
+}
+
+int fail(ExitCode code, const std::string& message) {
+  std::fprintf(stderr, "pbf: error: %s\n", message.c_str());
+  return static_cast<int>(code);
+}
+
+int guarded(int argc, char** argv) {
+  try {
+    const int code = run_main(argc, argv);
+    finish_stdout();
+    return code;
+  } catch (const Error& e) {
+    return fail(e.code(), e.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ExitCode::unavailable,
+                "not enough memory; use fewer particles (a larger fluid.spacing) or a machine "
+                "with more memory (pbf plan says how much a scene needs)");
+  } catch (const std::exception& e) {
+    return fail(ExitCode::internal, std::string("internal error: ") + e.what());
+  }
+}
+
+}  // namespace
+}  // namespace pbf
+
+int main(int argc, char** argv) {
+  pbf::ignore_closed_pipes();
+  return pbf::guarded(argc, argv);
+}

@@ -1,0 +1,54 @@
+// pbf render: pictures from the frames of a run file.
+#include <filesystem>
+
+#include "app/commands.h"
+#include "app/render_options.h"
+#include "lib/base/error.h"
+#include "lib/base/log.h"
+#include "lib/base/stage_clock.h"
+#include "lib/base/text.h"
+#include "lib/io/run_file.h"
+#include "lib/scene/load.h"
+#ifdef PBF_HAS_RENDER
+#include "lib/render/renderer.h"
+#endif
+
+namespace pbf {
+
+#ifndef PBF_HAS_RENDER
+int command_render(const RenderOptions&) {
+  throw Error(ExitCode::unavailable, "this build draws no pictures; build with -DPBF_RENDER=ON");
+}
+#else
+int command_render(const RenderOptions& options) {
+  const RunReader reader(options.run);
+  const RunInfo info = reader.info();
+  Scene scene = parse_scene(info.resolved_scene, options.run + " (the scene stored in it)", {});
+  apply_render_options(options, scene);
+  const auto frames = select_frames(options.frames, reader.frames());
+  const std::filesystem::path folder =
+      options.out.empty() ? std::filesystem::path(options.run).parent_path() / "render"
+                          : std::filesystem::path(options.out);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw Error(ExitCode::io, folder.string() + ": cannot be made: " + error.message() +
+                                  "; choose another folder with --out");
+  Log log(false);
+  const View view = view_of(scene, info.particles);
+  Renderer renderer(view);
+  log.note(format("%zu pictures of %dx%d with %s", frames.size(), view.size[0], view.size[1],
+                  renderer.backend().c_str()));
+  for (const std::int64_t k : frames) {
+    Stopwatch watch;
+    const Snapshot snapshot = reader.frame(k);
+    const std::string file =
+        (folder / format("frame_%06lld.png", static_cast<long long>(k))).string();
+    write_png(file, renderer.draw(snapshot));
+    log.result(format("%s  t = %.6g s  (%.2f s)", file.c_str(), snapshot.time, watch.seconds()));
+  }
+  return 0;
+}
+#endif
+
+}  // namespace pbf

@@ -1,0 +1,133 @@
+#include "app/render_options.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+
+#include "lib/base/error.h"
+
+namespace pbf {
+namespace {
+
+[[noreturn]] void bad(const std::string& option, const std::string& text, const std::string& want) {
+  throw Error(ExitCode::bad_input, option + " " + text + ": give " + want);
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts{""};
+  for (const char c : text)
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
+}
+
+/// Exactly `n` finite numbers separated by `separator`; false for anything else.
+bool read_numbers(const std::string& text, char separator, std::size_t n, double* out) {
+  const auto parts = split(text, separator);
+  if (parts.size() != n) return false;
+  for (std::size_t i = 0; i < n; ++i) {
+    char* end = nullptr;
+    out[i] = std::strtod(parts[i].c_str(), &end);
+    if (parts[i].empty() || *end != '\0' || !std::isfinite(out[i])) return false;
+  }
+  return true;
+}
+
+bool read_integer(const std::string& text, std::int64_t& value) {
+  char* end = nullptr;
+  errno = 0;
+  value = std::strtoll(text.c_str(), &end, 10);
+  return !text.empty() && *end == '\0' && errno == 0;
+}
+
+void read_camera(const std::string& text, Camera& camera) {
+  const char* want =
+      "position=x,y,z;target=x,y,z;fov=degrees;orbit=degrees_per_second, any of them";
+  for (const std::string& part : split(text, ';')) {
+    if (part.empty()) continue;
+    const auto equals = part.find('=');
+    if (equals == std::string::npos) bad("--camera", text, want);
+    const std::string key = part.substr(0, equals), value = part.substr(equals + 1);
+    Double3 triple{};
+    double number = 0;
+    if (key == "position" && read_numbers(value, ',', 3, triple.data()))
+      camera.position = triple;
+    else if (key == "target" && read_numbers(value, ',', 3, triple.data()))
+      camera.target = triple;
+    else if (key == "fov" && read_numbers(value, ',', 1, &number) && number >= 1 && number <= 170)
+      camera.fov = number;
+    else if (key == "orbit" && read_numbers(value, ',', 1, &number))
+      camera.orbit = number;
+    else
+      bad("--camera", part, std::string(want) + " (fov from 1 to 170)");
+  }
+}
+
+}  // namespace
+
+std::vector<std::int64_t> select_frames(const std::string& text, std::int64_t frames) {
+  const char* want = "all, k, a:b or a:b:step (b excluded, negative counts from the end)";
+  if (frames == 0) throw Error(ExitCode::bad_input, "the run file holds no frame yet");
+  std::vector<std::int64_t> out;
+  const auto parts = split(text, ':');
+  const std::int64_t bounds[2] = {0, frames};
+  std::int64_t range[2] = {0, frames}, step = 1;
+  if (text != "all") {
+    if (parts.size() > 3) bad("--frames", text, want);
+    for (std::size_t i = 0; i < std::min<std::size_t>(2, parts.size()); ++i) {
+      if (parts[i].empty() && parts.size() > 1) {
+        range[i] = bounds[i];
+        continue;
+      }
+      if (!read_integer(parts[i], range[i])) bad("--frames", text, want);
+      if (range[i] < 0) range[i] += frames;
+    }
+    if (parts.size() == 1) {
+      if (range[0] < 0 || range[0] >= frames)
+        bad("--frames", text, "a frame from 0 to " + std::to_string(frames - 1));
+      return {range[0]};
+    }
+    if (parts.size() == 3 && (!read_integer(parts[2], step) || step < 1))
+      bad("--frames", text, want);
+  }
+  range[0] = std::max<std::int64_t>(0, range[0]);
+  range[1] = std::min(frames, range[1]);
+  for (std::int64_t k = range[0]; k < range[1]; k += std::min(step, frames)) out.push_back(k);
+  if (out.empty())
+    bad("--frames", text,
+        "a range that selects something; the run file holds frames 0 to " +
+            std::to_string(frames - 1));
+  return out;
+}
+
+void apply_render_options(const RenderOptions& o, Scene& scene) {
+  if (!scene.render) scene.render.emplace();
+  Render& render = *scene.render;
+  if (!o.size.empty()) {
+    double size[2];
+    if (!read_numbers(o.size, 'x', 2, size) || size[0] != std::floor(size[0]) ||
+        size[1] != std::floor(size[1]) || std::min(size[0], size[1]) < 16 ||
+        std::max(size[0], size[1]) > 16384)
+      bad("--size", o.size, "WIDTHxHEIGHT in pixels, each from 16 to 16384, e.g. 1280x720");
+    render.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
+  }
+  if (!o.color.empty()) {
+    const ColorBy color = o.color == "speed"     ? ColorBy::speed
+                          : o.color == "density" ? ColorBy::density
+                                                 : ColorBy::id;
+    if (color != render.color) render.range.reset();
+    render.color = color;
+  }
+  if (!o.range.empty()) {
+    double range[2];
+    if (!read_numbers(o.range, ',', 2, range) || range[0] >= range[1])
+      bad("--range", o.range, "LOW,HIGH with LOW below HIGH, in the unit of the field");
+    render.range = {{range[0], range[1]}};
+  }
+  if (!o.camera.empty()) read_camera(o.camera, render.camera);
+}
+
+}  // namespace pbf

@@ -1,0 +1,22 @@
+// The options of `pbf render` as text -> numbers. Every error is Error(bad_input) naming the
+// option.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/commands.h"
+#include "lib/scene/scene.h"
+
+namespace pbf {
+
+/// "all", "k", "a:b" or "a:b:step", as Python slices: b excluded, negative from the end, empty for
+/// the ends. Refuses what selects nothing of `frames` frames.
+std::vector<std::int64_t> select_frames(const std::string& text, std::int64_t frames);
+
+/// Replaces what --size, --camera, --color and --range say in the scene's render settings. A new
+/// colour without a range gets that field's own range.
+void apply_render_options(const RenderOptions& options, Scene& scene);
+
+}  // namespace pbf
