@@ -12,9 +12,10 @@ namespace pbf {
 /// Neighbour policy: lists in chunks of 1024 particles, each chunk contiguous (the CPU's layout).
 struct ChunkedLists {
   static constexpr int chunk_bits = 10;
-  const int* const* chunk;     ///< first entry of each chunk
-  const std::uint32_t* begin;  ///< per particle, within its chunk
-  const std::uint32_t* count;  ///< per particle
+  static constexpr bool skip_inactive = true;  ///< a branch per pair pays on the CPU
+  const int* const* chunk;                     ///< first entry of each chunk
+  const std::uint32_t* begin;                  ///< per particle, within its chunk
+  const std::uint32_t* count;                  ///< per particle
 
   /// f(j) for every neighbour j of i.
   template <class F>
@@ -33,7 +34,7 @@ PBF_HD void find_neighbors(int i, const Vec4<Real>* position, const int* cell_st
   const Vec3<Real> xi = xyz(position[i]);
   for_each_run(cell_of(xi, p), cell_start, p, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {
-      const Vec3<Real> d = xi - xyz(position[j]);
+      const Vec3<Real> d = xi - xyz(load(position, j));
       if (dot(d, d) < Real(1) && j != i) hit(j);
     }
   });

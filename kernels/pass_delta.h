@@ -35,21 +35,21 @@ struct DeltaPass {
     const Vec3<Real> xi = xyz(own);
     Vec3<Real> sum;
     lists.for_each(i, [&](int j) {
-      const Vec4<Real> other = position[j];
+      const Vec4<Real> other = load(position, j);
       const Vec3<Real> d = xi - xyz(other);
       const Real q2 = dot(d, d);
       Real weight = own.w + other.w;
-      if constexpr (!tensile) {
+      if constexpr (!tensile && Lists::skip_inactive) {
         if (weight == Real(0)) return;  // neither is compressed
       }
-      const Real q = square_root(q2);
-      const Real t = Spiky<Real>::t(q);
+      const Root<Real> root = root_of(q2);
+      const Real t = Spiky<Real>::t(root.q);
       if constexpr (tensile) {
         const Real w = density_norm<Real, S>() * density_shape<Real, S>(q2, t);
         weight -= p.tensile_k * power(w * p.tensile_inv_w, p.tensile_n);
       }
       const Vec3<Real> e =
-          q2 > coincident_q_squared<Real>() ? (Real(1) / q) * d : separation<Real>(i, j);
+          q2 > coincident_q_squared<Real>() ? root.inverse * d : separation<Real>(i, j);
       sum = sum + (weight * t * t) * e;
     });
     const Real a = p.vol * Spiky<Real>::gradient_norm;

@@ -18,10 +18,10 @@ struct DensityPass {
     const Vec3<Real> xi = xyz(position[i]);
     Real sum(1);  // the particle itself
     lists.for_each(i, [&](int j) {
-      const Vec3<Real> d = xi - xyz(position[j]);
+      const Vec3<Real> d = xi - xyz(load(position, j));
       const Real q2 = dot(d, d);
       sum += density_shape<Real, S>(
-          q2, S == Smoothing::paper ? Real(0) : Spiky<Real>::t(square_root(q2)));
+          q2, S == Smoothing::paper ? Real(0) : Spiky<Real>::t(root_of(q2).q));
     });
     density[i] = p.vol * density_norm<Real, S>() * sum + wall_term<Real, S>(xi, p).density;
   }
@@ -49,14 +49,15 @@ struct LambdaPass {
     Real sum(1), squares(0);
     Vec3<Real> g;
     lists.for_each(i, [&](int j) {
-      const Vec3<Real> d = xi - xyz(position[j]);
+      const Vec3<Real> d = xi - xyz(load(position, j));
       const Real q2 = dot(d, d);
-      const Real q = square_root(q2);
-      const Real t = Spiky<Real>::t(q), t2 = t * t;
+      const Root<Real> root = root_of(q2);
+      const Real t = Spiky<Real>::t(root.q), t2 = t * t;
       if constexpr (with_density) sum += density_shape<Real, S>(q2, t);
       squares += t2 * t2;
-      // A coincident pair has no direction: its gradients cancel in the mean over directions.
-      if (q2 > coincident_q_squared<Real>()) g = g + (t2 / q) * d;
+      // A coincident pair has no direction, d = 0: its gradients cancel in the mean over
+      // directions.
+      g = g + (t2 * root.inverse) * d;
     });
     const WallTerm<Real> wall = wall_term<Real, S>(xi, p);
     Real rho;

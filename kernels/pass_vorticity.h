@@ -11,9 +11,9 @@ namespace pbf {
 template <class Real>
 PBF_HD Vec3<Real> weighted_gradient(Vec3<Real> d, Real rho_j, const Params<Real>& p) {
   const Real q2 = dot(d, d);
-  if (!(q2 > coincident_q_squared<Real>())) return {};
-  const Real q = square_root(q2), t = Spiky<Real>::t(q);
-  return (p.vol * Spiky<Real>::gradient_norm * t * t / (q * rho_j)) * d;
+  const Root<Real> root = root_of(q2);
+  const Real t = Spiky<Real>::t(root.q);
+  return (p.vol * Spiky<Real>::gradient_norm * t * t * root.inverse / rho_j) * d;
 }
 
 /// omega_i = sum_j m/rho_j grad W_ij x (v_j - v_i), 1/s; w = |omega_i|.
@@ -29,8 +29,9 @@ struct CurlPass {
     const Vec3<Real> xi = xyz(position[i]), vi = xyz(velocity[i]);
     Vec3<Real> sum;
     lists.for_each(i, [&](int j) {
-      const Vec4<Real> other = position[j];
-      sum = sum + cross(weighted_gradient(xi - xyz(other), other.w, p), xyz(velocity[j]) - vi);
+      const Vec4<Real> other = load(position, j);
+      sum =
+          sum + cross(weighted_gradient(xi - xyz(other), other.w, p), xyz(load(velocity, j)) - vi);
     });
     curl[i] = with_w(sum, square_root(dot(sum, sum)));
   }
@@ -55,8 +56,8 @@ struct VorticityPass {
     const Real magnitude = curl[i].w;
     Vec3<Real> eta;
     lists.for_each(i, [&](int j) {
-      const Vec4<Real> other = position[j];
-      eta = eta + (curl[j].w - magnitude) * weighted_gradient(xi - xyz(other), other.w, p);
+      const Vec4<Real> other = load(position, j);
+      eta = eta + (load(curl, j).w - magnitude) * weighted_gradient(xi - xyz(other), other.w, p);
     });
     const Real size = square_root(dot(eta, eta)) + Real(0.1) * magnitude + Real(1e-20);
     const Real gain = min2(p.dt * p.vorticity, Real(0.05)) / size;

@@ -19,12 +19,12 @@ struct XsphPass {
     const Vec3<Real> xi = xyz(position[i]), vi = xyz(velocity[i]);
     Vec3<Real> sum;
     lists.for_each(i, [&](int j) {
-      const Vec4<Real> other = position[j];
+      const Vec4<Real> other = load(position, j);
       const Vec3<Real> d = xi - xyz(other);
       const Real q2 = dot(d, d);
       const Real shape = density_shape<Real, S>(
-          q2, S == Smoothing::paper ? Real(0) : Spiky<Real>::t(square_root(q2)));
-      sum = sum + (shape / other.w) * (xyz(velocity[j]) - vi);
+          q2, S == Smoothing::paper ? Real(0) : Spiky<Real>::t(root_of(q2).q));
+      sum = sum + (shape / other.w) * (xyz(load(velocity, j)) - vi);
     });
     const Real a = p.xsph * p.vol * density_norm<Real, S>();
     velocity_out[i] = with_w(vi + a * sum, Real(0));

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include <cstddef>
+
 #include "kernels/hd.h"
 
 namespace pbf {
@@ -34,6 +36,43 @@ template <class R> PBF_HD R min2(R a, R b) { return a < b ? a : b; }
 
 PBF_HD float square_root(float x) { return sqrtf(x); }
 PBF_HD double square_root(double x) { return sqrt(x); }
+
+/// q and 1/q from q^2 for a pair loop; q^2 below 1e-30 counts as 1e-30, so that a coincident pair
+/// gives q = 1e-15 and, with its zero distance vector, a zero gradient instead of 0/0.
+/// Device code takes the hardware's reciprocal root (2 ulp in float) and one multiplication.
+template <class Real>
+struct Root {
+  Real q, inverse;
+};
+template <class Real>
+PBF_HD Root<Real> root_of(Real q_squared) {
+  q_squared = max2(q_squared, Real(1e-30));
+#if defined(__CUDA_ARCH__)
+  const Real inverse = rsqrt(q_squared);
+  return {q_squared * inverse, inverse};
+#else
+  const Real q = square_root(q_squared);
+  return {q, Real(1) / q};
+#endif
+}
+
+/// a[i] for an array that the present pass does not write: on the device through the read-only
+/// path, 16 bytes at a time.
+template <class Real>
+PBF_HD Vec4<Real> load(const Vec4<Real>* a, int i) {
+#if defined(__CUDA_ARCH__)
+  if constexpr (sizeof(Real) == 4) {
+    const float4 v = __ldg(reinterpret_cast<const float4*>(a) + i);
+    return {v.x, v.y, v.z, v.w};
+  } else {
+    const double2 v = __ldg(reinterpret_cast<const double2*>(a) + 2 * std::size_t(i));
+    const double2 w = __ldg(reinterpret_cast<const double2*>(a) + 2 * std::size_t(i) + 1);
+    return {v.x, v.y, w.x, w.y};
+  }
+#else
+  return a[i];
+#endif
+}
 
 /// False for NaN and infinities, without a library call (x - x is 0 only for finite x).
 template <class Real>

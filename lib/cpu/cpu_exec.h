@@ -18,6 +18,7 @@ namespace pbf {
 class CpuExec {
  public:
   using Lists = ChunkedLists;
+  static constexpr std::size_t padding = 0;
   template <class T>
   using Buffer = HostBuffer<T>;
 
@@ -29,9 +30,10 @@ class CpuExec {
   const StageClock& clock() const { return clock_; }
   int threads() const { return threads_; }
 
+  /// Copies n elements to an array of this executor.
   template <class T>
-  void to_device(const T* host, HostBuffer<T>& to) {
-    if (to.size()) std::memcpy(to.data(), host, to.bytes());
+  void to_device(const T* host, std::size_t n, T* to) {
+    if (n) std::memcpy(to, host, n * sizeof(T));
   }
 
   /// pass(i) for i in 0..n-1. Dynamic pieces: particles at the surface have fewer neighbours.

@@ -48,14 +48,22 @@ class Stepper {
         fused_(fused),
         tensile_(tensile) {
     const std::size_t n = position.size();
-    for (auto* b : {&position_, &other_position_, &velocity_, &other_velocity_}) b->resize(n);
+    // Executors whose lists are padded read one particle more, infinitely far away for any kernel.
+    const std::size_t padded = n + Exec::padding;
+    for (auto* b : {&position_, &other_position_, &velocity_, &other_velocity_}) b->resize(padded);
     for (auto* b : {&id_, &other_id_, &cell_, &order_}) b->resize(n);
     density_.resize(n);
     cell_start_.resize(std::size_t(cells()) + 1);
-    if (p_.vorticity > Real(0)) curl_.resize(n);
-    exec_.to_device(position.data(), position_);
-    exec_.to_device(velocity.data(), velocity_);
-    exec_.to_device(id.data(), id_);
+    if (p_.vorticity > Real(0)) curl_.resize(padded);
+    if (Exec::padding) {
+      const Vec4<Real> far{Real(1e9), Real(1e9), Real(1e9), Real(1)}, zero{0, 0, 0, 0};
+      for (auto* b : {&position_, &other_position_}) exec_.to_device(&far, 1, b->data() + n);
+      for (auto* b : {&velocity_, &other_velocity_}) exec_.to_device(&zero, 1, b->data() + n);
+      if (curl_.size()) exec_.to_device(&zero, 1, curl_.data() + n);
+    }
+    exec_.to_device(position.data(), n, position_.data());
+    exec_.to_device(velocity.data(), n, velocity_.data());
+    exec_.to_device(id.data(), n, id_.data());
     exec_.for_each(p_.n, BinPass<Real>{p_, position_.data(), cell_.data()});
     sort_and_list();
     sum_density();
