@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kEdge{92, 102, 116, 0}, kFloor{218, 224, 230, 150};
 
+// Edges are drawn on the same lines of sight, nearer by this factor: they win over the floor.
+constexpr double kNearer = 0.999;
+
 Double3 corner(const View& view, unsigned bits) {
   Double3 p{};
   for (unsigned k = 0; k < 3; ++k) p[k] = (bits >> k & 1 ? view.domain_max : view.domain_min)[k];
@@ -51,9 +54,9 @@ void add_box_edges(const View& view, const Projection& projection, double width,
       const double half = 0.5 * width * projection.pixel();  // per unit of depth
       const auto moved = [&](const Double3& p, double along, double aside) {
         const double s = half * p[2];
-        return vertex(
-            {p[0] + s * (along * dx - aside * dy), p[1] + s * (along * dy + aside * dx), p[2]},
-            kEdge);
+        const Double3 place{p[0] + s * (along * dx - aside * dy),
+                            p[1] + s * (along * dy + aside * dx), p[2]};
+        return vertex(kNearer * place, kEdge);
       };
       add_quad({moved(a, -1, -1), moved(a, -1, 1), moved(b, 1, -1), moved(b, 1, 1)}, out);
     }
@@ -72,9 +75,7 @@ void add_floor(const View& view, const Projection& projection, std::vector<FlatV
   std::array<FlatVertex, 4> quad;
   for (unsigned i = 0; i < 4; ++i) {
     const unsigned bits = (i & 1) << u | (i >> 1) << w | static_cast<unsigned>(!upward) << vertical;
-    Double3 p = corner(view, bits);
-    // A little below the box, so that its lowest edges are not half buried.
-    p[vertical] -= (upward ? 1 : -1) * 2e-3 * length(box);
+    const Double3 p = corner(view, bits);
     quad[i] =
         vertex(projection.to_view(p), kFloor, (i & 1) * box[u] / cell, (i >> 1) * box[w] / cell);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "lib/base/error.h"
 #include "lib/render/vector3.h"
@@ -13,7 +14,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kElevation = 20 * kDegree, kBeside = 24 * kDegree;  // of the default view
 constexpr double kMargin = 0.92;    // share of the free part of the picture that the box may fill
-constexpr double kBarShare = 0.15;  // share of the width kept for the colour bar
+constexpr double kBarShare = 0.12;  // share of the width kept for the colour bar
 
 /// `v` turned about the unit axis by `angle` (Rodrigues).
 Double3 turned(const Double3& v, const Double3& axis, double angle) {
@@ -50,19 +51,48 @@ Double3 default_direction(const View& view, const Double3& up) {
   return std::cos(kElevation) * front + std::sin(kElevation) * up;
 }
 
-/// Least distance from the target at which the camera (axes set) sees the whole box.
-double fitting_distance(const Projection& p, const View& view, const Double3& target) {
-  const double aspect = static_cast<double>(p.size[0]) / p.size[1];
-  const double tan_x = kMargin * (1 - p.shift) * p.tan_half * aspect, tan_y = kMargin * p.tan_half;
-  double distance = 0;
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    Double3 q{};
-    for (unsigned k = 0; k < 3; ++k)
-      q[k] = (corner >> k & 1 ? view.domain_max : view.domain_min)[k] - target[k];
-    const double need = std::max(std::abs(dot(q, p.right)) / tan_x, std::abs(dot(q, p.up)) / tan_y);
-    distance = std::max(distance, need - dot(q, p.forward));
+/// What the box covers of the picture plane at unit depth, for a camera that looks at `target` from
+/// `distance` with the given axes: the least and largest x, then y.
+struct Extent {
+  double x0 = 1e300, x1 = -1e300, y0 = 1e300, y1 = -1e300;
+  void add(const Projection& axes, const View& view, const Double3& target, double distance) {
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      Double3 q{};
+      for (unsigned k = 0; k < 3; ++k)
+        q[k] = (corner >> k & 1 ? view.domain_max : view.domain_min)[k] - target[k];
+      const double depth = distance + dot(q, axes.forward);
+      if (depth <= 0) x1 = y1 = 1e300, x0 = y0 = -1e300;  // behind the eye: far too near
+      x0 = std::min(x0, dot(q, axes.right) / depth);
+      x1 = std::max(x1, dot(q, axes.right) / depth);
+      y0 = std::min(y0, dot(q, axes.up) / depth);
+      y1 = std::max(y1, dot(q, axes.up) / depth);
+    }
   }
-  return distance;
+};
+
+/// Least distance from the target at which the box fits the free part of the picture for every one
+/// of the axes; sets the shift that centres it there.
+double fit(Projection& p, const std::vector<Projection>& axes, const View& view,
+           const Double3& target) {
+  const double aspect = static_cast<double>(p.size[0]) / p.size[1];
+  const double half_x = p.tan_half * aspect, half_y = p.tan_half;
+  const auto extent = [&](double distance) {
+    Extent e;
+    for (const auto& a : axes) e.add(a, view, target, distance);
+    return e;
+  };
+  const Double3 box = view.domain_max - view.domain_min;
+  double low = 0, high = length(box);
+  const auto fits = [&](double distance) {
+    const Extent e = extent(distance);
+    return e.x1 - e.x0 <= 2 * kMargin * (1 - kBarShare) * half_x &&
+           e.y1 - e.y0 <= 2 * kMargin * half_y;
+  };
+  while (!fits(high)) low = high, high *= 2;  // ends: the extent falls with the distance
+  for (int i = 0; i < 40; ++i) (fits(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
+  const Extent e = extent(high);
+  p.shift = {kBarShare + 0.5 * (e.x0 + e.x1) / half_x, 0.5 * (e.y0 + e.y1) / half_y};
+  return high;
 }
 
 }  // namespace
@@ -74,8 +104,8 @@ Double3 Projection::to_view(const Double3& p) const {
 
 std::array<double, 2> Projection::to_pixel(const Double3& p) const {
   const Double3 v = to_view(p);
-  return {0.5 * size[0] * (1 - shift) + v[0] / (v[2] * pixel()),
-          0.5 * size[1] - v[1] / (v[2] * pixel())};
+  return {0.5 * size[0] * (1 - shift[0]) + v[0] / (v[2] * pixel()),
+          0.5 * size[1] * (1 + shift[1]) - v[1] / (v[2] * pixel())};
 }
 
 Projection projection_of(const View& view, double time) {
@@ -100,14 +130,13 @@ Projection projection_of(const View& view, double time) {
     if (!(length(arm) > 1e-9 * length(box)))
       bad("render.camera.position: lies on the target; move one of them");
   } else {
-    p.shift = kBarShare;
     const Double3 direction = default_direction(view, up);
-    const int places = view.camera.orbit == 0 ? 1 : 72;
-    double distance = 0;
-    for (int i = 0; i < places; ++i) {
-      set_axes(p, turned(-1.0 * direction, up, 2 * std::numbers::pi * i / places), up);
-      distance = std::max(distance, fitting_distance(p, view, target));
+    std::vector<Projection> axes(view.camera.orbit == 0 ? 1 : 72);
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      const double turn = 2 * std::numbers::pi * static_cast<double>(i) / 72;
+      set_axes(axes[i], turned(-1.0 * direction, up, turn), up);
     }
+    const double distance = fit(p, axes, view, target);
     arm = distance * direction;
   }
   arm = turned(arm, up, angle);

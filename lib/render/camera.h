@@ -14,8 +14,9 @@ struct Projection {
   Double3 right{}, up{}, forward{};  ///< unit vectors, right-handed: right x up = -forward
   double tan_half = 1;               ///< tangent of half the vertical field of view
   std::array<int, 2> size{1, 1};     ///< pixels
-  double shift = 0;                  ///< of the picture to the left, in half widths: room for
-                                     ///< the colour bar beside a box in the default view
+  std::array<double, 2> shift{};     ///< of the picture to the left and down, in half widths and
+                                     ///< half heights: the default view centres the box beside
+                                     ///< the colour bar
 
   Double3 to_view(const Double3& p) const;                 ///< computed in double, eye first
   std::array<double, 2> to_pixel(const Double3& p) const;  ///< of a point in front of the eye

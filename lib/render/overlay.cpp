@@ -90,12 +90,10 @@ void draw_overlay(Image& image, const std::string& title, const std::string& uni
     draw_text(image, tick.label, bar.x1 + 5.5 * bar.dot, std::round(y - 3.5 * bar.dot), bar.dot,
               kInk);
   }
-  const auto above = [&](const std::string& text, double lines) {
-    const double x = std::min(bar.x0, image.width - 6 * bar.dot - text_width(text, bar.dot));
-    draw_text(image, text, x, bar.y0 - (11 * lines + 1) * bar.dot, bar.dot, kInk);
-  };
-  above(title, unit.empty() ? 1 : 2);
-  above(unit, 1);
+  const double wide = std::max(text_width(title, bar.dot), text_width(unit, bar.dot));
+  const double left = std::min(bar.x0, image.width - 6 * bar.dot - wide);
+  draw_text(image, title, left, bar.y0 - (unit.empty() ? 14 : 26) * bar.dot, bar.dot, kInk);
+  draw_text(image, unit, left, bar.y0 - 14 * bar.dot, bar.dot, kInk);
   draw_text(image, time_text(time), 12 * bar.dot, 12 * bar.dot, bar.dot, kInk);
 }
 

@@ -88,16 +88,18 @@ void collect(const Snapshot& snapshot, const View& view, const Projection& proje
   const double r = view.radius, low = view.range[0], span = view.range[1] - view.range[0];
   const double tan_y = projection.tan_half;
   const double tan_x = tan_y * projection.size[0] / projection.size[1];
-  // Planes through the eye: left and right of the (shifted) picture, bottom and top.
-  const double left = -tan_x * (1 - projection.shift), right = tan_x * (1 + projection.shift);
+  // Planes through the eye: left and right, bottom and top of the (shifted) picture.
+  const auto [shift_x, shift_y] = projection.shift;
+  const double left = -tan_x * (1 - shift_x), right = tan_x * (1 + shift_x);
+  const double bottom = -tan_y * (1 - shift_y), top = tan_y * (1 + shift_y);
   const double reach_left = r * std::hypot(1, left), reach_right = r * std::hypot(1, right);
-  const double reach_y = r * std::hypot(1, tan_y);
+  const double reach_bottom = r * std::hypot(1, bottom), reach_top = r * std::hypot(1, top);
   for (std::size_t i = 0; i < snapshot.count; ++i) {
     const Double3 v = projection.to_view(vector(position, i));
     // Written so that NaN fails; a sphere around the eye would hide everything and is left out.
     if (!(v[2] > -r && dot(v, v) > r * r && v[0] > left * v[2] - reach_left &&
-          v[0] < right * v[2] + reach_right && std::abs(v[1]) < tan_y * v[2] + reach_y &&
-          v[2] < 1e30))
+          v[0] < right * v[2] + reach_right && v[1] > bottom * v[2] - reach_bottom &&
+          v[1] < top * v[2] + reach_top && v[2] < 1e30))
       continue;
     double shown = static_cast<double>(i);
     if (view.color == ColorBy::speed) shown = length(vector(*field, i));

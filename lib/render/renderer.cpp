@@ -78,8 +78,9 @@ struct Pipeline {
     program.use();
     const double aspect = static_cast<double>(p.size[0]) / p.size[1];
     gl.Uniform4f(program.uniform("u_lens"), static_cast<float>(1 / (p.tan_half * aspect)),
-                 static_cast<float>(1 / p.tan_half), static_cast<float>(p.shift),
-                 static_cast<float>(p.pixel() / factor));
+                 static_cast<float>(1 / p.tan_half), static_cast<float>(p.shift[0]),
+                 static_cast<float>(p.shift[1]));
+    gl.Uniform1f(program.uniform("u_step"), static_cast<float>(p.pixel() / factor));
     gl.Uniform2f(program.uniform("u_depth"), static_cast<float>(depth_a),
                  static_cast<float>(depth_b));
   }

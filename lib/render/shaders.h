@@ -5,7 +5,8 @@ namespace pbf::shaders {
 
 /// In front of every shader.
 inline constexpr const char* kHead = R"(#version 330 core
-uniform vec4 u_lens;   // clip x and y of a tangent: scale x, scale y, shift x; w: tangent per sample
+uniform vec4 u_lens;   // clip = tangent * u_lens.xy - u_lens.zw
+uniform float u_step;  // tangent per sample
 uniform vec2 u_depth;  // stored depth = u_depth.x - u_depth.y / z
 )";
 
@@ -27,16 +28,15 @@ vec2 touching(float x, float z, float r) {
 void main() {
   f_center = a_center;
   f_color = a_color.rgb;
-  f_radius = max(u_radius, 0.7 * u_lens.w * a_center.z);  // never below a sample: no holes far away
+  f_radius = max(u_radius, 0.7 * u_step * a_center.z);  // never below a sample: no holes far away
   vec2 pick = vec2(gl_VertexID & 1, gl_VertexID >> 1);
   vec2 clip = 2.0 * pick - 1.0;  // a sphere beside the eye may cover everything
   if (a_center.z > 1.01 * f_radius) {
     vec2 tx = touching(a_center.x, a_center.z, f_radius);
     vec2 ty = touching(a_center.y, a_center.z, f_radius);
-    clip = mix(vec2(tx.x, ty.x), vec2(tx.y, ty.y), pick) * u_lens.xy;
-    clip.x -= u_lens.z;
+    clip = mix(vec2(tx.x, ty.x), vec2(tx.y, ty.y), pick) * u_lens.xy - u_lens.zw;
   }
-  f_ray = vec2(clip.x + u_lens.z, clip.y) / u_lens.xy;
+  f_ray = (clip + u_lens.zw) / u_lens.xy;
   gl_Position = vec4(clip, 0.0, 1.0);
 }
 )";
@@ -64,7 +64,7 @@ void main() {
   float diffuse = max(dot(n, kLight), 0.0);
   float shine = max(dot(n, normalize(kLight - d)), 0.0);
   shine *= shine; shine *= shine; shine *= shine; shine *= shine; shine *= shine;
-  o_color = vec4(f_color * (0.42 + 0.62 * diffuse) + 0.16 * shine, 1.0);
+  o_color = vec4(f_color * (0.48 + 0.62 * diffuse) + 0.16 * shine, 1.0);
 }
 )";
 
@@ -78,7 +78,7 @@ out vec2 f_grid;
 void main() {
   f_color = a_color;
   f_grid = a_grid;
-  gl_Position = vec4(a_place.xy * u_lens.xy - vec2(u_lens.z * a_place.z, 0.0),
+  gl_Position = vec4(a_place.xy * u_lens.xy - u_lens.zw * a_place.z,
                      (2.0 * u_depth.x - 1.0) * a_place.z - 2.0 * u_depth.y, a_place.z);
 }
 )";
@@ -128,15 +128,15 @@ void main() {
   float open = 1.0;
   if (covered > 0) {
     float z = z_at(at + u_factor / 2);
-    float reach = clamp(3.0 * u_radius / (u_lens.w * z), 2.0 * float(u_factor),
+    float reach = clamp(3.0 * u_radius / (u_step * z), 2.0 * float(u_factor),
                         12.0 * float(u_factor));  // in samples
-    float scale = 1.0 / max(u_radius, 0.7 * u_lens.w * z), hidden = 0.0;
+    float scale = 1.0 / max(u_radius, 0.7 * u_step * z), hidden = 0.0;
     for (int k = 0; k < 12; ++k) {
       float angle = 2.39996 * float(k), far = reach * sqrt((float(k) + 1.0) / 12.0);
       float behind = (z - z_at(at + ivec2(far * cos(angle), far * sin(angle)))) * scale;
       hidden += smoothstep(0.6, 4.0, behind) * (1.0 - smoothstep(12.0, 40.0, behind));
     }
-    open = 1.0 - 0.75 * hidden / 12.0;
+    open = 1.0 - 0.65 * hidden / 12.0;
   }
   o_color = vec4((sum * open + float(all - covered) * back) / float(all), 1.0);
 }
