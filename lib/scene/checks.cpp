@@ -57,7 +57,7 @@ class Checker {
     double cells = 1;
     for (int a = 0; a < 3; ++a) cells *= std::ceil((s_.domain.max[a] - s_.domain.min[a]) / s_.h());
     if (!(cells < 2147483648.0))
-      add("fluid.spacing", "the domain holds " + to_text(cells) +
+      add("fluid.spacing", "the domain holds " + count_text(cells) +
                                " cells of the smoothing length " + to_text(s_.h()) +
                                " m, at most 2147483647 are possible; raise fluid.spacing or make "
                                "the domain smaller");
@@ -120,7 +120,7 @@ class Checker {
         add("time.end", "is " + to_text(s_.time.end) + ", below time.step (" + to_text(step) +
                             " s): no update would be done; raise it");
       else if (s_.time.end / step > 2147483647.0)
-        add("time.end", "makes " + to_text(s_.time.end / step) +
+        add("time.end", "makes " + count_text(s_.time.end / step) +
                             " updates, at most 2147483647 are possible; raise time.step or lower "
                             "time.end");
     }

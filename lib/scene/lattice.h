@@ -52,8 +52,10 @@ inline double lattice_count(const Body& body, double d) {
   double sum = 0;
   for (std::int64_t k = -n; k <= n; ++k)
     for (std::int64_t j = -n; j <= n; ++j)
-      sum += static_cast<double>(
-          2 * half_width(limit - static_cast<double>(k * k) - static_cast<double>(j * j)) + 1);
+      if (const auto w =
+              half_width(limit - static_cast<double>(k * k) - static_cast<double>(j * j));
+          w >= 0)
+        sum += static_cast<double>(2 * w + 1);
   return sum;
 }
 

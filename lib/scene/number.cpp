@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lib/base/text.h"
+
 namespace pbf {
 namespace {
 
@@ -107,8 +109,10 @@ std::string describe(NumberError error) {
   return "";
 }
 
+std::string count_text(double count) { return format(count < 1e10 ? "%.0f" : "%.3g", count); }
+
 std::string too_many_text(double count) {
-  return "the scene would have " + to_text(count) +
+  return "the scene would have " + count_text(count) +
          " particles, at most 2147483647 are possible; raise fluid.spacing (twice the spacing: an "
          "eighth of the particles) or make the bodies smaller";
 }

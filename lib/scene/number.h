@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "lib/scene/scene.h"
@@ -25,6 +24,9 @@ NumberError read_double(const std::string& text, double& value);
 NumberError read_integer(const std::string& text, std::int64_t& value);
 /// "is not finite" and the like, to follow the text itself in a message.
 std::string describe(NumberError error);
+
+/// A whole number for messages: all digits below 1e10, else three of them, 6.4e+13.
+std::string count_text(double count);
 
 /// Message for a scene with more particles than ids.
 std::string too_many_text(double count);

@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>

@@ -16,6 +16,8 @@ class Problems {
   }
 
   bool empty() const { return lines_.empty(); }
+  /// Whether further problems would not be shown: no need to think long about them.
+  bool full() const { return lines_.size() > kShown; }
 
   /// Throws Error(bad_input) with one line per problem, if there is any; at most kShown lines, for
   /// a file that is no scene at all would fill the terminal.

@@ -91,15 +91,14 @@ class Validator {
       return read_child(*block, path, value);
     const Key* key = find_key(table);
     if (key == nullptr) {
-      Node shown = name;
       std::string what = "unknown key";
-      std::string near = nearest_path(table);
+      std::string near = problems_.full() ? "" : nearest_path(table);
       const std::size_t list = near.find("[]");
       if (list != std::string::npos && body != nullptr)  // say which body, as the path does
         near = path.substr(0, path.find('.')) + near.substr(list + 2);
       if (!near.empty()) what += ", did you mean " + near + "?";
       // The name may be anything: no line breaks in a message, no page of text.
-      std::string clean = shown.shown();
+      std::string clean = name.shown();
       clean = clean.substr(1, clean.size() - 2);
       const std::string parent = path.substr(0, path.size() - name.text.size());
       return report(name.place(), parent + clean, what);

@@ -147,7 +147,12 @@ std::string Node::shown() const {
       break;
   }
   // Cut and cleaned: the text is anyone's, the message is one line.
-  std::string clean = text.size() > 60 ? text.substr(0, 60) + "..." : text;
+  std::string clean = text;
+  if (clean.size() > 60) {
+    std::size_t end = 60;
+    while ((static_cast<unsigned char>(clean[end]) & 0xC0) == 0x80) --end;  // whole characters
+    clean = clean.substr(0, end) + "...";
+  }
   for (char& c : clean)
     if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
   return "\"" + clean + "\"";
@@ -157,7 +162,8 @@ Node parse_yaml(const std::string& text, const std::string& origin, bool lines) 
   refuse_tabs(text, origin, lines);
   TreeBuilder builder(origin, lines);
   try {
-    std::istringstream in(text);
+    // Without the blank end: behind it yaml-cpp 0.7 does not miss the closing quote of a text.
+    std::istringstream in(text.substr(0, text.find_last_not_of(" \t\r\n") + 1));
     YAML::Parser parser(in);
     while (parser.HandleNextDocument(builder)) {
     }

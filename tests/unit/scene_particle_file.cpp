@@ -1,0 +1,143 @@
+// Particle files: CSV and HDF5, read strictly.
+#include <hdf5.h>
+
+#include <limits>
+
+#include "lib/scene/emit.h"
+#include "lib/scene/particle_file.h"
+#include "tests/catch.h"
+#include "tests/unit/scene_samples.h"
+
+namespace pbf::scene_test {
+namespace {
+
+std::string read_error(const std::string& path) {
+  return error_of([&] { read_particle_file(path); });
+}
+
+/// Writes `values` as a dataset of the given shape.
+void put(hid_t file, const char* name, std::vector<hsize_t> dims,
+         const std::vector<double>& values) {
+  const hid_t space = H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr);
+  const hid_t data =
+      H5Dcreate2(file, name, H5T_IEEE_F32LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  if (!values.empty())
+    H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  H5Dclose(data);
+  H5Sclose(space);
+}
+
+struct Dataset {
+  const char* name;
+  std::vector<hsize_t> dims;
+  std::vector<double> values;
+};
+
+std::string write_h5(const Folder& folder, const std::vector<Dataset>& datasets) {
+  const std::string path = (folder.path / "p.h5").string();
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  for (const Dataset& d : datasets) put(file, d.name, d.dims, d.values);
+  H5Fclose(file);
+  return path;
+}
+
+}  // namespace
+
+TEST_CASE("CSV: positions and velocities, in the order of the lines") {
+  const Folder folder;
+  const Particles p = read_particle_file(
+      folder.write("p.csv", "x,y,z,vx,vy,vz\n0.1,0.2,0.3,1,-2,3e-1\n.5,+0.6,7e-1,0,0,0\n"));
+  REQUIRE(p.size() == 2);
+  CHECK(p.position[0] == Double3{0.1, 0.2, 0.3});
+  CHECK(p.velocity[0] == Double3{1, -2, 0.3});
+  CHECK(p.position[1] == Double3{0.5, 0.6, 0.7});
+}
+
+TEST_CASE("CSV: blanks, CRLF, empty lines and a missing last line end are tolerated") {
+  const Folder folder;
+  const std::string path = folder.write("p.csv", "\xEF\xBB\xBF x , y,z\r\n 1 ,\t2, 3\r\n\r\n4,5,6");
+  const Particles p = read_particle_file(path);
+  REQUIRE(p.size() == 2);
+  CHECK(p.position[1] == Double3{4, 5, 6});
+  CHECK(p.velocity[1] == Double3{0, 0, 0});
+  CHECK(count_particle_file(path) == 2);
+}
+
+TEST_CASE("CSV: what is wrong is named with its line") {
+  const Folder folder;
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"", "p.csv: empty, expected a header"},
+      {"1,2,3\n", "p.csv:1: the header is \"1,2,3\", expected x,y,z or x,y,z,vx,vy,vz"},
+      {"x;y;z\n", "p.csv:1: the header is"},
+      {"x,y,z\n1,2,3\n1,2\n", "p.csv:3: 2 columns, the header has 3"},
+      {"x,y,z\n1,2,3,4\n", "p.csv:2: 4 columns, the header has 3"},
+      {"x,y,z\n1,2,3,\n", "p.csv:2: 4 columns"},
+      {"x,y,z\n1,,3\n", "p.csv:2: y: empty, expected a number"},
+      {"x,y,z\n1,2,abc\n", "p.csv:2: z: \"abc\" is not a number"},
+      {"x,y,z\n1,2,3 4\n", "p.csv:2: z: \"3 4\" is not a number"},
+      {"x,y,z\n1,2,0x3\n", "is not a number"},
+      {"x,y,z\n1,2,+-3\n", "is not a number"},
+      {"x,y,z\n\n1,2,nan\n", "p.csv:3: z: \"nan\" is not finite"},
+      {"x,y,z\n-inf,2,3\n", "p.csv:2: x: \"-inf\" is not finite"},
+      {"x,y,z\n1e999,2,3\n", "p.csv:2: x: \"1e999\" does not fit a double"},
+      {"x,y,z,vx,vy,vz\n1,2,3,4,5,inf\n", "p.csv:2: vz: \"inf\" is not finite"},
+  };
+  for (const auto& [text, message] : cases) {
+    const std::string error = read_error(folder.write("p.csv", text));
+    CAPTURE(text, error);
+    CHECK(contains(error, message));
+    CHECK(error[0] == '2');
+  }
+}
+
+TEST_CASE("HDF5: positions, velocities if there, any number type") {
+  const Folder folder;
+  const Particles p =
+      read_particle_file(write_h5(folder, {{"position", {2, 3}, {0, 0.5, 1, 2, 3, 4}},
+                                           {"velocity", {2, 3}, {1, 2, 3, 4, 5, 6}}}));
+  REQUIRE(p.size() == 2);
+  CHECK(p.position[0] == Double3{0, 0.5, 1});
+  CHECK(p.velocity[1] == Double3{4, 5, 6});
+  const std::string path = write_h5(folder, {{"position", {1, 3}, {1, 2, 3}}});
+  CHECK(read_particle_file(path).velocity == std::vector<Double3>{{0, 0, 0}});
+  CHECK(count_particle_file(path) == 1);
+}
+
+TEST_CASE("HDF5: what is wrong is named with its dataset") {
+  const Folder folder;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto error = [&](const std::vector<Dataset>& d) { return read_error(write_h5(folder, d)); };
+  CHECK(contains(error({}), "p.h5: dataset position: is missing"));
+  CHECK(contains(error({{"position", {3}, {1, 2, 3}}}), "position: has the wrong rank"));
+  CHECK(contains(error({{"position", {1, 2}, {1, 2}}}), "has 2 columns, expected 3"));
+  CHECK(contains(error({{"position", {2, 3}, {1, 2, 3, 4, 5, nan}}}), "row 1 is not finite"));
+  CHECK(contains(error({{"position", {1, 3}, {1, 2, 3}}, {"velocity", {2, 3}, {1, 2, 3, 4, 5, 6}}}),
+                 "position has 1 rows, velocity 2"));
+  // A file cut off after its signature; HDF5 itself stays silent.
+  const std::string cut = folder.write("cut.h5", std::string("\x89HDF\r\n\x1a\n", 8) + "rest");
+  CHECK(contains(read_error(cut), "5 " + cut + ": HDF5 cannot open it"));
+}
+
+TEST_CASE("particle files: missing ones and directories are I/O errors") {
+  const Folder folder;
+  CHECK(contains(read_error((folder.path / "no.csv").string()), "cannot be opened"));
+  CHECK(read_error((folder.path / "no.csv").string())[0] == '5');
+  CHECK(contains(read_error(folder.path.string()), "is a directory"));
+}
+
+TEST_CASE("file body: path relative to the scene file, velocity added, domain enforced") {
+  const Folder folder;
+  folder.write("p.csv", "x,y,z,vx,vy,vz\n0.5,0.5,0.5,1,0,0\n");
+  const Scene s = parse(with_bodies("[{shape: file, path: p.csv, velocity: [0, 0, 2]}]"));
+  const Particles p = emit_particles(s, folder.path.string());
+  REQUIRE(p.size() == 1);
+  CHECK(p.velocity[0] == Double3{1, 0, 2});
+  folder.write("p.csv", "x,y,z\n0.5,0.5,0.5\n0.5,0.5,-0.1\n");
+  CHECK(contains(error_of([&] { emit_particles(s, folder.path.string()); }),
+                 "bodies[0]: particle 1 at [0.5, 0.5, -0.1] is outside the domain along z"));
+  folder.write("p.csv", "x,y,z\n");
+  CHECK(
+      contains(error_of([&] { count_particles(s, folder.path.string()); }), "holds no particles"));
+}
+
+}  // namespace pbf::scene_test

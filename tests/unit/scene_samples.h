@@ -1,0 +1,82 @@
+// Scenes and files for the tests of lib/scene.
+#pragma once
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "lib/base/error.h"
+#include "lib/scene/load.h"
+
+namespace pbf::scene_test {
+
+/// The smallest scene: 10 x 10 x 5 particles. Seven lines; what is appended starts at line 6.
+inline const std::string kMinimal =
+    "domain: {min: [0, 0, 0], max: [1, 1, 1]}\n"
+    "fluid: {spacing: 0.1}\n"
+    "bodies:\n"
+    "  - {shape: block, min: [0, 0, 0], max: [1, 1, 0.5]}\n"
+    "time: {step: 0.01, end: 1}\n";
+
+/// kMinimal with other bodies.
+inline std::string with_bodies(const std::string& bodies) {
+  return "domain: {min: [0, 0, 0], max: [1, 1, 1]}\nfluid: {spacing: 0.1}\nbodies: " + bodies +
+         "\ntime: {step: 0.01, end: 1}\n";
+}
+
+inline Scene parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return parse_scene(text, "scene.yaml", overrides);
+}
+
+/// Runs `action`; the message of the Error it throws, with its exit code in front: "2 message".
+/// "no error" when it throws none.
+template <class Action>
+std::string error_of(Action action) {
+  try {
+    action();
+  } catch (const Error& e) {
+    return std::to_string(static_cast<int>(e.code())) + " " + e.what();
+  }
+  return "no error";
+}
+
+inline std::string parse_error(const std::string& text,
+                               const std::vector<std::string>& overrides = {}) {
+  return error_of([&] { parse(text, overrides); });
+}
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+inline std::string read_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+/// A folder of its own that goes with the object.
+struct Folder {
+  std::filesystem::path path;
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "pbf-scene-XXXXXX").string();
+    if (!mkdtemp(name.data())) std::abort();
+    path = name;
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  /// Path of a file in the folder, written with `text`.
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path / name, std::ios::binary) << text;
+    return (path / name).string();
+  }
+};
+
+}  // namespace pbf::scene_test
