@@ -94,7 +94,7 @@ void draw_overlay(Image& image, const std::string& title, const std::string& uni
   const double left = std::min(bar.x0, image.width - 6 * bar.dot - wide);
   draw_text(image, title, left, bar.y0 - (unit.empty() ? 14 : 26) * bar.dot, bar.dot, kInk);
   draw_text(image, unit, left, bar.y0 - 14 * bar.dot, bar.dot, kInk);
-  draw_text(image, time_text(time), 12 * bar.dot, 12 * bar.dot, bar.dot, kInk);
+  draw_text(image, time_text(time), 8 * bar.dot, 6 * bar.dot, bar.dot, kInk);
 }
 
 }  // namespace pbf
