@@ -1,21 +1,14 @@
 #include "lib/cpu/cpu_solver.h"
 
-#include <fstream>
 #include <new>
 
 #include "lib/base/error.h"
 #include "lib/cpu/cpu_exec.h"
+#include "lib/solver/devices.h"
 #include "lib/solver/step_solver.h"
 
 namespace pbf {
 namespace {
-
-std::string cpu_model() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  return "unknown CPU";
-}
 
 template <class Real>
 class CpuSolver final : public Solver {
@@ -26,7 +19,7 @@ class CpuSolver final : public Solver {
         vol_(plan.vol),
         wall_scale_(plan.wall_scale),
         n_(std::int64_t(particles.size())),
-        exec_(scene.threads > 0 ? scene.threads : omp_get_max_threads()) {
+        exec_(scene.threads > 0 ? scene.threads : usable_threads()) {
     Stopwatch watch;
     const InternalState<Real> s = to_internal<Real>(scene, particles);
     stepper_ = std::make_unique<Stepper<Real, CpuExec>>(

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lib/diag/measures.h"
@@ -43,11 +44,20 @@ class Solver {
   /// Copies the fields asked for (velocity, density; position and id always) to the host, in id
   /// order, SI units, positions and floating-point fields as f32 or f64 as `type` says.
   virtual Snapshot download(const std::vector<std::string>& fields, ScalarType type) = 0;
+  /// The same in two halves, so that updates may run while the copy is under way: at most one
+  /// download at a time; finish_download() waits for the copy, not for later updates.
+  virtual void start_download(const std::vector<std::string>& fields, ScalarType type) {
+    started_ = download(fields, type);
+  }
+  virtual Snapshot finish_download() { return std::move(started_); }
   virtual Measures measure() = 0;
   virtual std::vector<StageTime> timings() const = 0;
   virtual SolverInfo info() const = 0;
   virtual std::int64_t updates_done() const = 0;
   virtual double time() const = 0;  ///< s
+
+ private:
+  Snapshot started_;
 };
 
 /// Throws Error(unavailable) when the backend, a device or memory is not there.

@@ -125,6 +125,39 @@ class Stepper {
     exec_.mark("download");
   }
 
+  /// What a replay of recorded updates (an even number of them) leaves behind on the host.
+  void replayed() { density_is_current_ = false; }
+
+  /// New lists at the present positions, after the executor has been given more room for them.
+  void relist() {
+    lists_ = exec_.build_lists(position_.data(), cell_start_.data(), p_);
+    density_is_current_ = false;
+    sum_density();
+  }
+
+  /// A copy of the state, from which the updates since can be repeated.
+  struct Saved {
+    Buffer<Vec4<Real>> position, velocity;
+    Buffer<int> id;
+    std::size_t bytes() const { return position.bytes() + velocity.bytes() + id.bytes(); }
+  };
+  void save(Saved& s) {
+    const std::size_t n = std::size_t(p_.n);
+    s.position.resize(n);
+    s.velocity.resize(n);
+    s.id.resize(n);
+    exec_.copy(position_.data(), n, s.position.data());
+    exec_.copy(velocity_.data(), n, s.velocity.data());
+    exec_.copy(id_.data(), n, s.id.data());
+  }
+  void restore(const Saved& s) {
+    const std::size_t n = std::size_t(p_.n);
+    exec_.copy(s.position.data(), n, position_.data());
+    exec_.copy(s.velocity.data(), n, velocity_.data());
+    exec_.copy(s.id.data(), n, id_.data());
+    density_is_current_ = false;
+  }
+
   std::size_t bytes() const {
     return position_.bytes() + other_position_.bytes() + velocity_.bytes() +
            other_velocity_.bytes() + id_.bytes() + other_id_.bytes() + cell_.bytes() +

@@ -1,0 +1,58 @@
+#include "lib/cuda/cuda_exec.cuh"
+
+namespace pbf {
+
+void CudaExec::begin() {
+  if (!profiling_) return;
+  stages_.clear();
+  mark("");
+}
+
+void CudaExec::mark(const char* stage) {
+  if (!profiling_) return;
+  if (events_.size() <= stages_.size()) {
+    events_.emplace_back();
+    PBF_CUDA_CHECK(cudaEventCreate(&events_.back()));
+  }
+  PBF_CUDA_CHECK(cudaEventRecord(events_[stages_.size()], stream_));
+  stages_.push_back(stage);
+}
+
+void CudaExec::book(double scale) {
+  synchronize();
+  for (std::size_t k = 1; k < stages_.size(); ++k) {
+    float ms = 0;
+    PBF_CUDA_CHECK(cudaEventElapsedTime(&ms, events_[k - 1], events_[k]));
+    clock_.add(stages_[k], double(ms) * 1e-3 * scale);
+  }
+  stages_.clear();
+}
+
+void CudaExec::sort_by_cell(const int* cell, int n, int cells, int* order, int* start) {
+  counts_.resize(std::size_t(cells) + 1);
+  slot_.resize(std::size_t(n));
+  PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), stream_));
+  for_each(n, CountPass{cell, counts_.data(), order});
+  // The count behind the last cell is 0, so the scan ends with n.
+  std::size_t bytes = 0;
+  PBF_CUDA_CHECK(
+      cub::DeviceScan::ExclusiveSum(nullptr, bytes, counts_.data(), start, cells + 1, stream_));
+  if (scan_.size() < bytes) scan_.resize(bytes);
+  PBF_CUDA_CHECK(cub::DeviceScan::ExclusiveSum(scan_.data(), bytes, counts_.data(), start,
+                                               cells + 1, stream_));
+  for_each(n, PlacePass{cell, start, order, slot_.data()});
+  for_each(n, StablePass{cell, start, slot_.data(), order});
+}
+
+void CudaExec::clear_overflow() {
+  PBF_CUDA_CHECK(cudaMemsetAsync(longest_.data(), 0, sizeof(int), stream_));
+}
+
+int CudaExec::overflow() {
+  PBF_CUDA_CHECK(cudaMemcpyAsync(longest_host_.data(), longest_.data(), sizeof(int),
+                                 cudaMemcpyDeviceToHost, stream_));
+  synchronize();
+  return *longest_host_.data();
+}
+
+}  // namespace pbf

@@ -1,0 +1,249 @@
+#include "lib/cuda/cuda_solver.h"
+
+#include <algorithm>
+
+#include "lib/cuda/cuda_exec.cuh"
+#include "lib/solver/step_solver.h"
+
+namespace pbf {
+namespace {
+
+/// Updates after which the host looks whether a list outgrew its room (and waits for the device).
+int batch_of(int n) { return n < 100000 ? 64 : 16; }
+
+/// Room for the lists at first: the densest rest packing of the scene's h/d and a third more.
+int capacity_of(const Scene& s) {
+  const double neighbors = 4.0 / 3.0 * kPi * std::pow(s.fluid.smoothing_ratio, 3);
+  return (int(neighbors * 1.35) + 7) / 8 * 8;
+}
+
+void refuse_if_too_large(const Scene& s, const Plan& plan, int capacity) {
+  const double real = s.precision == Precision::dbl ? 8 : 4, n = double(plan.particles);
+  const double cells = double(plan.cells[0]) * plan.cells[1] * plan.cells[2];
+  const double state = (4 * 4 + 1) * real + 6 * 4 + 4 * capacity + (plan.vorticity ? 4 * real : 0);
+  const double saved = 2 * 4 * real + 4, staging = s.output ? 7 * 8 : 0;
+  const double bytes = n * (state + saved + staging) + 9 * cells;
+  std::size_t free = 0, total = 0;
+  PBF_CUDA_CHECK(cudaMemGetInfo(&free, &total));
+  if (bytes > double(free))
+    throw Error(ExitCode::unavailable,
+                "not enough device memory: " + std::to_string(plan.particles) + " particles need " +
+                    std::to_string(std::int64_t(bytes)) + " bytes, " + std::to_string(free) +
+                    " of " + std::to_string(total) +
+                    " are free; increase fluid.spacing or use --precision float");
+}
+
+template <class Real>
+class CudaSolver final : public Solver {
+ public:
+  CudaSolver(const Scene& scene, const Plan& plan, const Particles& particles, int capacity)
+      : scene_(scene), plan_(plan), n_(int(particles.size())), exec_(capacity) {
+    Stopwatch watch;
+    const InternalState<Real> s = to_internal<Real>(scene, particles);
+    stepper_ = std::make_unique<Stepper<Real, CudaExec>>(
+        exec_, make_params<Real>(scene, plan), scene.solver.kernels, scene.solver.iterations,
+        plan.fused, plan.tensile, s.position, s.velocity, s.id);
+    while (grow_if_needed()) stepper_->relist();
+    init_seconds_ = watch.seconds();
+  }
+  ~CudaSolver() override {
+    cudaStreamSynchronize(exec_.stream());
+    drop_graphs();
+  }
+
+  void step(int updates) override {
+    while (updates > 0) {
+      const int batch = std::min(updates, batch_of(n_));
+      stepper_->save(saved_);
+      run(batch);
+      while (grow_if_needed()) {  // nothing was lost: the batch is done again with more room
+        drop_graphs();
+        stepper_->restore(saved_);
+        ++repeats_;
+        run(batch);
+      }
+      updates_ += batch;
+      updates -= batch;
+    }
+  }
+
+  Snapshot download(const std::vector<std::string>& fields, ScalarType type) override {
+    start_download(fields, type);
+    return finish_download();
+  }
+
+  void start_download(const std::vector<std::string>& fields, ScalarType type) override {
+    SnapshotLayout layout;
+    pending_ = layout.make(fields, type, std::size_t(n_));
+    pending_.update = updates_;
+    pending_.time = time();
+    type == ScalarType::f64 ? stage<double>() : stage<float>();
+    PBF_CUDA_CHECK(cudaEventRecord(exported_, exec_.stream()));
+    PBF_CUDA_CHECK(cudaStreamWaitEvent(copy_stream_, exported_, 0));
+    PBF_CUDA_CHECK(cudaMemcpyAsync(staging_host_.data(), staging_.data(), staging_.bytes(),
+                                   cudaMemcpyDeviceToHost, copy_stream_));
+  }
+
+  Snapshot finish_download() override {
+    PBF_CUDA_CHECK(cudaStreamSynchronize(copy_stream_));
+    const char* from = staging_host_.data();
+    for (FieldArray& f : pending_.fields) {
+      if (f.name == "id") continue;
+      std::copy_n(from, f.bytes.size(), reinterpret_cast<char*>(f.bytes.data()));
+      from += f.bytes.size();
+    }
+    return std::move(pending_);
+  }
+
+  Measures measure() override {
+    return to_measures(stepper_->measure(), scene_, plan_.mass, n_, updates_, time());
+  }
+
+  std::vector<StageTime> timings() const override {
+    std::vector<StageTime> out{{"init", init_seconds_, 1}};
+    for (const auto& e : exec_.clock().entries()) out.push_back({e.name, e.seconds, e.calls});
+    return out;
+  }
+
+  SolverInfo info() const override {
+    SolverInfo i;
+    int device = 0, driver = 0;
+    cudaDeviceProp p{};
+    PBF_CUDA_CHECK(cudaGetDevice(&device));
+    PBF_CUDA_CHECK(cudaGetDeviceProperties(&p, device));
+    PBF_CUDA_CHECK(cudaDriverGetVersion(&driver));
+    i.backend = "cuda";
+    i.precision = sizeof(Real) == 8 ? "double" : "float";
+    i.device = p.name;
+    i.driver = "CUDA " + std::to_string(driver / 1000) + "." + std::to_string(driver % 100 / 10);
+    i.vol = plan_.vol;
+    i.wall_scale = plan_.wall_scale;
+    i.bytes = stepper_->bytes() + saved_.bytes() + staging_.bytes();
+    return i;
+  }
+
+  std::int64_t updates_done() const override { return updates_; }
+  double time() const override { return double(updates_) * scene_.time.step; }
+
+ private:
+  /// One update in a while is timed stage by stage, outside the graph; it stands for the others.
+  static constexpr int kProfileEvery = 64;
+
+  void run(int batch) {
+    int left = batch;
+    if (since_profile_ <= 0) {
+      exec_.set_profiling(true);
+      direct_step();
+      exec_.book(kProfileEvery);
+      exec_.set_profiling(false);
+      since_profile_ = kProfileEvery;
+      --left;
+    }
+    since_profile_ -= batch;
+    for (; left >= 2; left -= 2) {
+      if (!graph_[parity_]) capture();
+      PBF_CUDA_CHECK(cudaGraphLaunch(graph_[parity_], exec_.stream()));
+      stepper_->replayed();
+    }
+    if (left) direct_step();
+  }
+
+  void direct_step() {
+    stepper_->step();
+    parity_ ^= 1;
+  }
+
+  /// Buffers trade places in an update, so a graph that can be replayed holds two of them, and
+  /// there is one for either way round.
+  void capture() {
+    cudaGraph_t graph = nullptr;
+    PBF_CUDA_CHECK(cudaStreamBeginCapture(exec_.stream(), cudaStreamCaptureModeThreadLocal));
+    stepper_->step();
+    stepper_->step();
+    PBF_CUDA_CHECK(cudaStreamEndCapture(exec_.stream(), &graph));
+    const cudaError_t made = cudaGraphInstantiate(&graph_[parity_], graph, 0);
+    cudaGraphDestroy(graph);
+    PBF_CUDA_CHECK(made);
+  }
+  void drop_graphs() {
+    for (cudaGraphExec_t& g : graph_) {
+      if (g) cudaGraphExecDestroy(g);
+      g = nullptr;
+    }
+  }
+
+  bool grow_if_needed() {
+    const int longest = exec_.overflow();
+    if (longest <= exec_.capacity()) return false;
+    exec_.set_capacity((longest + longest / 8 + 7) / 8 * 8);
+    exec_.clear_overflow();
+    return true;
+  }
+
+  template <class Out>
+  void stage() {
+    std::size_t bytes = 0;
+    for (const FieldArray& f : pending_.fields)
+      if (f.name != "id") bytes += f.bytes.size();
+    if (!copy_stream_) {
+      PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&copy_stream_, cudaStreamNonBlocking));
+      PBF_CUDA_CHECK(cudaEventCreateWithFlags(&exported_, cudaEventDisableTiming));
+    }
+    staging_.resize(bytes);
+    staging_host_.resize(bytes);
+    Out *at = reinterpret_cast<Out*>(staging_.data()), *position = at, *velocity = nullptr,
+        *density = nullptr;
+    at += 3 * std::size_t(n_);
+    if (pending_.find("velocity")) {
+      velocity = at;
+      at += 3 * std::size_t(n_);
+    }
+    if (pending_.find("density")) density = at;
+    stepper_->export_to(scene_.h(), scene_.fluid.rest_density, scene_.domain.min, position,
+                        velocity, density);
+  }
+
+  Scene scene_;
+  Plan plan_;
+  int n_;
+  CudaExec exec_;
+  std::unique_ptr<Stepper<Real, CudaExec>> stepper_;
+  typename Stepper<Real, CudaExec>::Saved saved_;
+  cudaGraphExec_t graph_[2] = {nullptr, nullptr};
+  int parity_ = 0;
+  cudaStream_t copy_stream_ = nullptr;
+  cudaEvent_t exported_ = nullptr;
+  DeviceBuffer<char> staging_;
+  PinnedBuffer<char> staging_host_;
+  Snapshot pending_;
+  double init_seconds_ = 0;
+  std::int64_t updates_ = 0;
+  int since_profile_ = 0;
+  int repeats_ = 0;
+};
+
+}  // namespace
+
+bool cuda_available(std::string* why) {
+  int count = 0;
+  const cudaError_t e = cudaGetDeviceCount(&count);
+  if (e == cudaSuccess && count > 0) return true;
+  if (why) *why = e == cudaSuccess ? "no CUDA device" : cudaGetErrorString(e);
+  return false;
+}
+
+std::unique_ptr<Solver> make_cuda_solver(const Scene& scene, const Plan& plan,
+                                         const Particles& particles, int first_capacity) {
+  std::string why;
+  if (!cuda_available(&why))
+    throw Error(ExitCode::unavailable,
+                "backend cuda: no usable GPU here (" + why +
+                    "); run with --backend cpu, or where `nvidia-smi` lists a device");
+  const int capacity = first_capacity > 0 ? first_capacity : capacity_of(scene);
+  refuse_if_too_large(scene, plan, capacity);
+  if (scene.precision == Precision::dbl)
+    return std::make_unique<CudaSolver<double>>(scene, plan, particles, capacity);
+  return std::make_unique<CudaSolver<float>>(scene, plan, particles, capacity);
+}
+
+}  // namespace pbf

@@ -1,0 +1,40 @@
+// Runs the tests on one backend and precision, `--on cuda:float`. Exit code 77 (ctest: skipped)
+// when that is a GPU and there is none.
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#ifdef PBF_CATCH3
+#include <catch2/catch_session.hpp>
+#else
+#define CATCH_CONFIG_RUNNER
+#include <catch2/catch.hpp>
+#endif
+
+#include "tests/backend/backend.h"
+#ifdef PBF_HAS_CUDA
+#include "lib/cuda/cuda_solver.h"
+#endif
+
+int main(int argc, char** argv) {
+  std::vector<char*> rest;
+  for (int k = 0; k < argc; ++k) {
+    if (std::strcmp(argv[k], "--on") == 0 && k + 1 < argc) {
+      const std::string on = argv[++k];
+      if (on.rfind("cuda:", 0) == 0) backend_test::backend() = pbf::Backend::cuda;
+      if (on.find(":double") != std::string::npos) backend_test::precision() = pbf::Precision::dbl;
+    } else {
+      rest.push_back(argv[k]);
+    }
+  }
+  if (backend_test::backend() == pbf::Backend::cuda) {
+    std::string why = "this build has no CUDA backend";
+#ifdef PBF_HAS_CUDA
+    if (pbf::cuda_available(&why)) return Catch::Session().run(int(rest.size()), rest.data());
+#endif
+    std::printf("skipped: %s\n", why.c_str());
+    return 77;
+  }
+  return Catch::Session().run(int(rest.size()), rest.data());
+}

@@ -1,0 +1,219 @@
+// Every backend and precision against the same oracles, and against the CPU.
+#include "tests/backend/backend.h"
+#include "tests/catch.h"
+#ifdef PBF_HAS_CUDA
+#include "lib/base/error.h"
+#include "lib/cuda/cuda_solver.h"
+#endif
+
+using namespace oracle_test;
+using backend_test::here;
+using backend_test::is_double;
+
+namespace {
+
+void everything_on(pbf::Scene& s) {
+  s.tensile = pbf::Tensile{};
+  s.viscosity = pbf::Viscosity{};
+  s.vorticity = pbf::Vorticity{};
+}
+
+std::vector<double> positions(pbf::Solver& s) {
+  const auto snap = s.download({}, pbf::ScalarType::f64);
+  const auto x = snap.fields[0].as<double>();
+  return {x.begin(), x.end()};
+}
+
+bool same_bytes(const pbf::Snapshot& a, const pbf::Snapshot& b) {
+  if (a.fields.size() != b.fields.size()) return false;
+  for (std::size_t f = 0; f < a.fields.size(); ++f)
+    if (a.fields[f].bytes != b.fields[f].bytes) return false;
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("one update equals the brute-force oracle, feature by feature") {
+  Case c = here(jittered_block(6, 5, 7, 0.3, 0.4));
+  SECTION("defaults") {}
+  SECTION("the paper's kernels") { c.scene.solver.kernels = pbf::KernelMode::paper; }
+  SECTION("two-sided, walls that only clamp, a margin") {
+    c.scene.solver.constraint = pbf::ConstraintMode::two_sided;
+    c.scene.solver.boundary = pbf::BoundaryMode::clamp;
+    c.scene.solver.wall_margin = 0.01;
+  }
+  SECTION("artificial pressure") { c.scene.tensile = pbf::Tensile{0.01, 0.25, 4}; }
+  SECTION("viscosity") { c.scene.viscosity = pbf::Viscosity{0.3}; }
+  SECTION("vorticity confinement") { c.scene.vorticity = pbf::Vorticity{20}; }
+  SECTION("unfused") { c.scene.solver.fused = false; }
+  SECTION("no iterations") { c.scene.solver.iterations = 0; }
+  SECTION("everything, the paper's kernels, h = 3 d") {
+    everything_on(c.scene);
+    c.scene.solver.kernels = pbf::KernelMode::paper;
+    c.scene.fluid.smoothing_ratio = 3;
+  }
+  const Difference d = against_oracle(c);
+  CHECK(d.position < (is_double() ? 1e-12 : 2e-5));
+  CHECK(d.velocity < (is_double() ? 3e-12 : 4e-5));
+}
+
+TEST_CASE("the density and the neighbour counts of a state equal brute force over all pairs") {
+  Case c = here(jittered_block(9, 8, 7, 0.4, 0));
+  auto s = make(c);
+  const auto snap = s->download({"density"}, pbf::ScalarType::f64);
+  const auto x = snap.fields[0].as<double>(), density = snap.find("density")->as<double>();
+  std::vector<oracle::V> points;
+  for (std::size_t i = 0; i < snap.count; ++i)
+    points.push_back({x[3 * i], x[3 * i + 1], x[3 * i + 2]});
+  const auto expected = oracle::densities(points, settings_of(c));
+  for (std::size_t i = 0; i < snap.count; ++i)
+    REQUIRE(density[i] == Approx(double(expected[i])).epsilon(is_double() ? 1e-10 : 1e-5));
+  std::int64_t pairs = 0, most = 0;
+  for (std::size_t i = 0; i < snap.count; ++i) {
+    std::int64_t mine = 0;
+    for (std::size_t j = 0; j < snap.count; ++j)
+      if (i != j && std::hypot(x[3 * i] - x[3 * j], x[3 * i + 1] - x[3 * j + 1],
+                               x[3 * i + 2] - x[3 * j + 2]) < c.scene.h())
+        ++mine;
+    pairs += mine;
+    most = std::max(most, mine);
+  }
+  const auto m = s->measure();
+  CHECK(m.neighbors_mean * double(snap.count) == Approx(double(pairs)).margin(is_double() ? 0 : 4));
+  CHECK(m.neighbors_max == most);
+}
+
+TEST_CASE("100 updates stay near the CPU in the measures that chaos does not touch") {
+  Case c = here(jittered_block(16, 16, 24, 0.1, 0));
+  c.scene.domain.max[0] += 0.4;
+  everything_on(c.scene);
+  auto a = make(c);
+  c.scene.backend = pbf::Backend::cpu;
+  c.scene.precision = pbf::Precision::dbl;
+  auto b = make(c);
+  a->step(100);
+  b->step(100);
+  const auto m = a->measure(), r = b->measure();
+  const double energy = r.potential_energy + r.kinetic_energy;
+  CHECK(std::fabs(m.potential_energy + m.kinetic_energy - energy) < 1e-3 * energy);
+  for (int k = 0; k < 3; ++k)
+    CHECK(m.center_of_mass[k] == Approx(r.center_of_mass[k]).margin(1e-3 * c.scene.h()));
+  CHECK(m.compression_mean == Approx(r.compression_mean).epsilon(0.02));
+  CHECK(m.outside == 0);
+  CHECK(m.non_finite == 0);
+}
+
+TEST_CASE("10 updates move every particle as the CPU in double does, to the precision in use") {
+  Case c = here(jittered_block(12, 12, 20, 0.2, 0.2));
+  everything_on(c.scene);
+  auto a = make(c);
+  c.scene.backend = pbf::Backend::cpu;
+  c.scene.precision = pbf::Precision::dbl;
+  auto b = make(c);
+  a->step(10);
+  b->step(10);
+  const auto x = positions(*a), y = positions(*b);
+  double worst = 0;
+  for (std::size_t k = 0; k < x.size(); ++k)
+    worst = std::max(worst, std::fabs(x[k] - y[k]) / c.scene.h());
+  CHECK(worst < (is_double() ? 1e-10 : 1e-3));
+}
+
+TEST_CASE("two runs of one scene give the same bytes") {
+  Case c = here(jittered_block(16, 16, 16, 0.3, 0.4));
+  everything_on(c.scene);
+  auto a = make(c), b = make(c);
+  a->step(75);                                 // in one piece
+  for (int k : {1, 2, 7, 13, 52}) b->step(k);  // and in several
+  CHECK(same_bytes(a->download({"velocity", "density"}, pbf::ScalarType::f32),
+                   b->download({"velocity", "density"}, pbf::ScalarType::f32)));
+}
+
+TEST_CASE("a download started before further updates holds the state of its start") {
+  Case c = here(jittered_block(8, 8, 8, 0.3, 0.4));
+  auto a = make(c), b = make(c);
+  a->step(5);
+  b->step(5);
+  const auto expected = a->download({"velocity"}, pbf::ScalarType::f32);
+  b->start_download({"velocity"}, pbf::ScalarType::f32);
+  b->step(30);
+  const auto got = b->finish_download();
+  CHECK(same_bytes(expected, got));
+  CHECK(got.update == 5);
+  CHECK(b->updates_done() == 35);
+}
+
+TEST_CASE("degenerate states stay finite and inside") {
+  Case c = here(jittered_block(1, 1, 1, 0, 0));
+  c.scene.domain.max = {0.1, 0.5, -1.8};
+  const auto one = c.particles.position[0];
+  SECTION("one particle") {}
+  SECTION("two in one place") { c.particles.position.assign(2, one); }
+  SECTION("300 in one place") { c.particles.position.assign(300, one); }
+  SECTION("in all corners") {
+    c.particles.position.clear();
+    for (int k = 0; k < 64; ++k)
+      c.particles.position.push_back({(k & 1 ? c.scene.domain.max : c.scene.domain.min)[0],
+                                      (k & 2 ? c.scene.domain.max : c.scene.domain.min)[1],
+                                      (k & 4 ? c.scene.domain.max : c.scene.domain.min)[2]});
+  }
+  SECTION("crossing 100 boxes in one update") { c.particles.velocity[0] = {1e4, -1e4, 5e3}; }
+  c.particles.velocity.resize(c.particles.position.size());
+  auto s = make(c);
+  s->step(50);
+  const auto m = s->measure();
+  CHECK(m.non_finite == 0);
+  CHECK(m.outside == 0);
+}
+
+#ifdef PBF_HAS_CUDA
+TEST_CASE("lists that outgrow their room grow, and the result is the same") {
+  if (backend_test::backend() != pbf::Backend::cuda) return;
+  Case c = here(jittered_block(12, 12, 12, 0.3, 0.4, 5, 0.7));
+  const auto plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
+  auto roomy = pbf::make_cuda_solver(c.scene, plan, c.particles, 512);
+  auto tight = pbf::make_cuda_solver(c.scene, plan, c.particles, 4);
+  CHECK(roomy->measure().neighbors_max == tight->measure().neighbors_max);
+  CHECK(tight->measure().neighbors_max > 60);
+  roomy->step(40);
+  tight->step(40);
+  CHECK(same_bytes(roomy->download({"velocity"}, pbf::ScalarType::f32),
+                   tight->download({"velocity"}, pbf::ScalarType::f32)));
+  CHECK(tight->info().bytes < roomy->info().bytes);
+}
+
+TEST_CASE("lists that outgrow their room in the middle of a run grow, and nothing is lost") {
+  if (backend_test::backend() != pbf::Backend::cuda) return;
+  // A blob falls into its own lower half: the counts rise long after the start.
+  Case c = here(jittered_block(10, 10, 20, 0.3, 0));
+  for (std::size_t i = 0; i < c.particles.size(); ++i)
+    c.particles.velocity[i] = {0, 0, c.particles.position[i][2] > -1.8 ? -30.0 : 30.0};
+  const auto plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
+  auto roomy = pbf::make_cuda_solver(c.scene, plan, c.particles, 1024);
+  auto tight = pbf::make_cuda_solver(c.scene, plan, c.particles, 40);
+  const auto at_start = tight->measure().neighbors_max;
+  std::int64_t most = 0;
+  for (int k = 0; k < 12; ++k) {
+    roomy->step(5);
+    tight->step(5);
+    most = std::max(most, roomy->measure().neighbors_max);
+  }
+  CHECK(most > at_start);
+  CHECK(same_bytes(roomy->download({"velocity"}, pbf::ScalarType::f32),
+                   tight->download({"velocity"}, pbf::ScalarType::f32)));
+}
+
+TEST_CASE("more particles than the device's memory holds are refused before the run") {
+  if (backend_test::backend() != pbf::Backend::cuda) return;
+  Case c = here(jittered_block(4, 4, 4, 0, 0));
+  auto plan = pbf::make_plan(c.scene, 2000000000);
+  try {
+    pbf::make_cuda_solver(c.scene, plan, c.particles);
+    FAIL("not refused");
+  } catch (const pbf::Error& e) {
+    CHECK(e.code() == pbf::ExitCode::unavailable);
+    CHECK(std::string(e.what()).find("2000000000 particles need") != std::string::npos);
+    CHECK(std::string(e.what()).find("are free") != std::string::npos);
+  }
+}
+#endif
