@@ -55,7 +55,7 @@ std::string to_text(double value) {
 }
 
 std::string to_text(const Double3& v) {
-  return "[" + to_text(v[0]) + ", " + to_text(v[1]) + ", " + to_text(v[2]) + "]";
+  return std::string("[") + to_text(v[0]) + ", " + to_text(v[1]) + ", " + to_text(v[2]) + "]";
 }
 
 NumberError read_double(const std::string& text, double& value) {

@@ -74,7 +74,7 @@ void parse_row(std::string_view line, int columns, const std::string& where, dou
       if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
       const char* end = digits.data() + digits.size();
       const auto [stop, ec] = std::from_chars(digits.data(), end, row[column]);
-      const std::string value = "\"" + std::string(cell.substr(0, 40)) + "\"";
+      const std::string value = std::string("\"").append(cell.substr(0, 40)) + "\"";
       if (cell.empty()) bad(where, std::string(kNames[column]) + ": empty, expected a number");
       if (ec == std::errc::result_out_of_range)
         bad(where, std::string(kNames[column]) + ": " + value + " does not fit a double");

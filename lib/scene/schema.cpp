@@ -10,7 +10,8 @@ namespace {
 
 std::string enumeration(const std::vector<std::string>& words) {
   std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ",") + json_string(word);
+  for (const std::string& word : words)
+    text.append(text.empty() ? "" : ",").append(json_string(word));
   return "\"enum\":[" + text + "]";
 }
 
@@ -67,8 +68,8 @@ std::string key_schema(const Key& key) {
     if (const auto* list = std::get_if<std::vector<std::string>*>(&field)) {
       value.clear();
       for (const std::string& word : **list)
-        value += (value.empty() ? "" : ",") + json_string(word);
-      value = "[" + value + "]";
+        value.append(value.empty() ? "" : ",").append(json_string(word));
+      value = std::string("[").append(value).append("]");
     } else if (!is_numeric(field) && !std::holds_alternative<bool*>(field)) {
       value = json_string(value);
     } else if (value == "auto") {
@@ -92,7 +93,7 @@ std::string block_schema(const Block& block) {
 std::string bodies_schema() {
   std::string shapes;
   for (std::size_t s = 0; s < shape_names().size(); ++s)
-    shapes += (s > 0 ? "," : "") + object_schema("bodies[]", static_cast<int>(s));
+    shapes.append(s > 0 ? "," : "").append(object_schema("bodies[]", static_cast<int>(s)));
   return "{\"description\":\"Bodies of fluid.\",\"type\":\"array\",\"minItems\":1,\"items\":"
          "{\"oneOf\":[" +
          shapes + "]}}";
@@ -104,7 +105,7 @@ std::string object_schema(const std::string& block, int shape) {
     properties += (properties.empty() ? "" : ",\n") + json_string(name) + ":" + schema;
   };
   const auto require = [&required](const std::string& name) {
-    required += (required.empty() ? "" : ",") + json_string(name);
+    required.append(required.empty() ? "" : ",").append(json_string(name));
   };
   for (const Key& key : scene_keys()) {
     if (key.block() != block) continue;

@@ -173,7 +173,7 @@ struct Writer {
   }
   std::string operator()(const std::string* field) const { return yaml_text(*field); }
   std::string operator()(const std::vector<std::string>* field) const {
-    return "[" + list_of(*field) + "]";
+    return std::string("[").append(list_of(*field)).append("]");
   }
   std::string operator()(const ChoiceField& field) const {
     return key.choices[static_cast<std::size_t>(field.get())];

@@ -170,7 +170,8 @@ TEST_CASE("schema: balanced JSON that has every key and refuses the others") {
   CHECK(depth == 0);
   CHECK(lowest == 1);
   CHECK_FALSE(in_string);
-  for (const Key& key : scene_keys()) CHECK(contains(text, "\"" + key.leaf() + "\":{"));
+  for (const Key& key : scene_keys())
+    CHECK(contains(text, std::string("\"").append(key.leaf()).append("\":{")));
   std::size_t objects = 0, closed = 0;
   for (std::size_t p = 0; (p = text.find("\"type\":\"object\"", p)) != std::string::npos; ++p)
     ++objects;
