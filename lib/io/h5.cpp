@@ -96,7 +96,7 @@ std::vector<std::string> read_texts(hid_t object, const char* name) {
   const Attribute a(H5Aopen(object, name, H5P_DEFAULT));
   const Type stored(H5Aget_type(a));
   if (H5Tis_variable_str(stored) <= 0)
-    throw Failure{std::string("attribute ") + name + " is not a string of variable length"};
+    throw Failure(std::string("attribute ") + name + " is not a string of variable length");
   const Space space(H5Aget_space(a));
   std::vector<char*> texts(static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space))));
   if (texts.empty()) return {};
@@ -110,7 +110,7 @@ std::vector<std::string> read_texts(hid_t object, const char* name) {
 
 std::string read_text(hid_t object, const char* name) {
   const auto values = read_texts(object, name);
-  if (values.size() != 1) throw Failure{std::string("attribute ") + name + " is not one string"};
+  if (values.size() != 1) throw Failure(std::string("attribute ") + name + " is not one string");
   return values[0];
 }
 

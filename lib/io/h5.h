@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -27,16 +28,16 @@ class Lock {
 /// operating system's message ("No space left on device") if there is one.
 std::string reason();
 
-/// Thrown by the helpers below when an HDF5 call fails; what() is reason(). Callers add the file
+/// Thrown by the helpers below when an HDF5 call fails; what() is the reason. Callers add the file
 /// and what they were doing, and throw pbf::Error.
-struct Failure {
-  std::string reason;
+struct Failure : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 /// `id` itself, or Failure when it is negative: HDF5's way to report an error.
 template <class Id>
 Id check(Id id) {
-  if (id < 0) throw Failure{reason()};
+  if (id < 0) throw Failure(reason());
   return id;
 }
 
@@ -105,25 +106,34 @@ bool has_attribute(hid_t object, const char* name);
 bool has_link(hid_t group, const std::string& path);  ///< every part of the path is looked at
 std::string read_text(hid_t object, const char* name);
 std::vector<std::string> read_texts(hid_t object, const char* name);
-/// All numbers of an attribute or of a whole dataset, converted to T.
+/// The number in an attribute, converted to T.
 template <class T>
 T read_number(hid_t object, const char* name) {
   const Attribute a(H5Aopen(object, name, H5P_DEFAULT));
   const Space space(H5Aget_space(a));
   if (check(H5Sget_simple_extent_npoints(space)) != 1)
-    throw Failure{std::string("attribute ") + name + " is not one number"};
+    throw Failure(std::string("attribute ") + name + " is not one number");
   T value{};
   check(H5Aread(a, native<T>(), &value));
   return value;
 }
 std::vector<hsize_t> shape(hid_t dataset);
+/// The first rows (all, or at most `rows`) of a dataset, converted to T, row by row.
 template <class T>
-std::vector<T> read_all(hid_t group, const std::string& path) {
+std::vector<T> read_all(hid_t group, const std::string& path, hsize_t rows = ~hsize_t{0}) {
   const Dataset d(H5Dopen2(group, path.c_str(), H5P_DEFAULT));
-  std::size_t count = 1;
-  for (const hsize_t n : shape(d)) count *= n;
-  std::vector<T> values(count);
-  if (count) check(H5Dread(d, native<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+  std::vector<hsize_t> count = shape(d);
+  const std::vector<hsize_t> start(count.size(), 0);
+  if (!count.empty() && rows < count[0]) count[0] = rows;
+  std::size_t numbers = 1;
+  for (const hsize_t n : count) numbers *= n;
+  std::vector<T> values(numbers);
+  if (values.empty()) return values;
+  const Space file(H5Dget_space(d));
+  const Space memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr));
+  if (!count.empty())
+    check(H5Sselect_hyperslab(file, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
+  check(H5Dread(d, native<T>(), memory, file, H5P_DEFAULT, values.data()));
   return values;
 }
 

@@ -19,7 +19,14 @@ using h5::check;
 using h5::Column;
 using h5::Layout;
 
-constexpr hsize_t max_chunk_rows = hsize_t{1} << 20;  // 12 MB of float positions
+constexpr hsize_t max_chunk_rows = hsize_t{1} << 22;  // 50 MB of float positions
+// Half the number of chunks that one node of a dataset's index holds. A node that is full splits,
+// which HDF5 does in an order that makes the dataset unreadable for the microseconds in between;
+// a process killed there loses it. With frames of one chunk no node splits before frame 512, at
+// the price of 17 kB a dataset. The tables of steps have their first chunk full at that frame.
+constexpr unsigned index_rank = 256;
+constexpr hsize_t step_rows = 512;  // chunks of the tables of steps
+constexpr hsize_t log_rows = 1024;  // chunks of the log's columns
 constexpr std::size_t max_waiting_rows = 256;
 constexpr double max_waiting_seconds = 5;
 
@@ -33,9 +40,11 @@ hid_t memory_type(ScalarType t) {
   return t == ScalarType::f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
 }
 
-/// Metadata stays in memory between flushes: what is on disk is always the state of the last one.
+/// Rows go to the disk at once, so that a full disk is noticed before anything refers to them; what
+/// refers to them stays in memory until a flush, so that the file is as the last flush left it.
 h5::Properties writer_access() {
   h5::Properties p = h5::file_access();
+  check(H5Pset_cache(p, 0, 0, 0, 0));
   H5AC_cache_config_t cache;
   cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
   check(H5Pget_mdc_config(p, &cache));
@@ -63,6 +72,7 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
     : RunOutput(gzip) {  // from here on the destructor runs when this throws
   expected_ = static_cast<std::size_t>(std::max<std::int64_t>(0, info.particles));
   const h5::Properties create(H5Pcreate(H5P_FILE_CREATE));
+  check(H5Pset_istore_k(create, index_rank));
   const h5::Properties access = writer_access();
   file_ = h5::File(H5Fcreate(path.c_str(), H5F_ACC_EXCL, create, access));
   vtk_ = make_group(file_, "VTKHDF");
@@ -72,10 +82,10 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
   create_steps();
   pbf_ = make_group(file_, "pbf");
   write_info(info);
-  updates_ = Column(pbf_, "frames/update", H5T_STD_I64LE, {128, 0, false, "1"});
+  updates_ = Column(pbf_, "frames/update", H5T_STD_I64LE, {step_rows, 0, false, "1"});
   for (const auto& c : run_layout::log_columns())
     log_[c.name] = Column(pbf_, std::string("log/") + c.name,
-                          c.number ? H5T_IEEE_F64LE : H5T_STD_I64LE, {512, 0, false, c.unit});
+                          c.number ? H5T_IEEE_F64LE : H5T_STD_I64LE, {log_rows, 0, false, c.unit});
   flush();
 }
 
@@ -102,9 +112,9 @@ void RunOutput::create_steps() {
   steps_ = make_group(vtk_, "Steps");
   h5::write_numbers(steps_, "NSteps", &none);
   const auto table = [](hid_t parent, const std::string& name, int components = 0) {
-    return Column(parent, name, H5T_STD_I64LE, {128, components, false, ""});
+    return Column(parent, name, H5T_STD_I64LE, {step_rows, components, false, ""});
   };
-  times_ = Column(steps_, "Values", H5T_IEEE_F64LE, {128, 0, false, "s"});
+  times_ = Column(steps_, "Values", H5T_IEEE_F64LE, {step_rows, 0, false, "s"});
   part_offsets_ = table(steps_, "PartOffsets");
   part_counts_ = table(steps_, "NumberOfParts");
   point_offsets_ = table(steps_, "PointOffsets");
@@ -167,7 +177,7 @@ void RunOutput::create_fields(const Snapshot& first) {
   const hsize_t chunks = (rows + max_chunk_rows - 1) / max_chunk_rows;
   chunk_rows_ = (rows + chunks - 1) / chunks;
   const auto offsets = [this](const std::string& name) {
-    return Column(steps_, "PointDataOffsets/" + name, H5T_STD_I64LE, {128, 0, false, ""});
+    return Column(steps_, "PointDataOffsets/" + name, H5T_STD_I64LE, {step_rows, 0, false, ""});
   };
   for (const FieldArray& f : first.fields) {
     if (f.name == "id") continue;
@@ -304,7 +314,7 @@ void RunOutput::write_stages() {
   for (const LogRow& row : waiting_)
     for (const StageTime& stage : row.stages)
       if (Column& column = stages_[stage.name]; !column.open())
-        column = Column(pbf_, "log/stage/" + stage.name, H5T_IEEE_F64LE, {512, 0, false, "s"});
+        column = Column(pbf_, "log/stage/" + stage.name, H5T_IEEE_F64LE, {log_rows, 0, false, "s"});
   for (auto& [name, column] : stages_) {
     std::vector<double> seconds;
     for (const LogRow& row : waiting_) {
@@ -316,11 +326,19 @@ void RunOutput::write_stages() {
   }
 }
 
+/// Writes what HDF5 holds in memory. It goes on after a failed write and would leave a file that
+/// refers to what is not there, so the space is made sure of first: nothing can fail after that.
 void RunOutput::flush() {
+  haddr_t end = 0;
+  check(H5Fget_eoa(file_, &end));
+  const int fd = descriptor(file_);
+  const off_t size = ::lseek(fd, 0, SEEK_END), wanted = static_cast<off_t>(end);
+  if (size < 0) throw h5::Failure(std::strerror(errno));
+  if (wanted > size && ::fallocate(fd, 0, size, wanted - size) != 0 &&
+      !(errno == EOPNOTSUPP && ::ftruncate(fd, wanted) == 0))
+    throw h5::Failure(std::strerror(errno));
   check(H5Fflush(file_, H5F_SCOPE_GLOBAL));
-  hsize_t size = 0;
-  check(H5Fget_filesize(file_, &size));
-  bytes_ = static_cast<std::int64_t>(size);
+  bytes_ = static_cast<std::int64_t>(end);
 }
 
 void RunOutput::close(const std::string& status) {
@@ -329,7 +347,7 @@ void RunOutput::close(const std::string& status) {
   h5::write_text(pbf_, "status", status);
   flush();
   // Network file systems and quotas report a full disk only here.
-  if (fsync(descriptor(file_)) != 0) throw h5::Failure{std::strerror(errno)};
+  if (fsync(descriptor(file_)) != 0) throw h5::Failure(std::strerror(errno));
   closed_ = true;
 }
 

@@ -28,7 +28,7 @@ ScalarType scalar_type(hid_t dataset, const std::string& path) {
   if (real && size == 8) return ScalarType::f64;
   if (real && size == 4) return ScalarType::f32;
   if (!real && H5Tget_class(type) == H5T_INTEGER && size == 4) return ScalarType::i32;
-  throw h5::Failure{path + " has a type that this program does not write"};
+  throw h5::Failure(path + " has a type that this program does not write");
 }
 
 hid_t memory_type(ScalarType t) {
@@ -36,17 +36,17 @@ hid_t memory_type(ScalarType t) {
   return t == ScalarType::f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
 }
 
-FieldPlace describe(hid_t vtk, const std::string& name, const std::string& path) {
+FieldPlace describe(hid_t vtk, const std::string& name, const std::string& path, std::size_t n) {
   FieldPlace f{name, "", path, {}};
   const h5::Dataset d(H5Dopen2(vtk, path.c_str(), H5P_DEFAULT));
   f.type = scalar_type(d, path);
   const auto dims = h5::shape(d);
   if (dims.empty() || dims.size() > 2 || (dims.size() == 2 && (dims[1] < 1 || dims[1] > 64)))
-    throw h5::Failure{path + " has a shape that this program does not write"};
+    throw h5::Failure(path + " has a shape that this program does not write");
   f.components = dims.size() == 2 ? static_cast<int>(dims[1]) : 1;
   if (h5::has_attribute(d, "units")) f.unit = h5::read_text(d, "units");
   f.offsets = h5::read_all<std::int64_t>(
-      vtk, name == "position" ? "Steps/PointOffsets" : "Steps/PointDataOffsets/" + name);
+      vtk, name == "position" ? "Steps/PointOffsets" : "Steps/PointDataOffsets/" + name, n);
   return f;
 }
 
@@ -56,7 +56,7 @@ FieldArray read_rows(hid_t vtk, const FieldPlace& place, std::size_t frame, std:
   const auto dims = h5::shape(d);
   const auto first = static_cast<hsize_t>(place.offsets[frame]);
   if (place.offsets[frame] < 0 || first > dims[0] || count > dims[0] - first)
-    throw h5::Failure{place.path + " ends before the frame does"};
+    throw h5::Failure(place.path + " ends before the frame does");
   f.bytes.resize(count * static_cast<std::size_t>(f.components) * size_of(f.type));
   if (!count) return f;
   const hsize_t start[2] = {first, 0}, block[2] = {count, static_cast<hsize_t>(f.components)};
@@ -71,7 +71,7 @@ FieldArray read_rows(hid_t vtk, const FieldPlace& place, std::size_t frame, std:
 void read_quantity(hid_t pbf, const char* name, double* out, std::size_t count) {
   const auto values = h5::read_all<double>(pbf, name);
   if (values.size() != count)
-    throw h5::Failure{std::string("/pbf/") + name + " has the wrong size"};
+    throw h5::Failure(std::string("/pbf/") + name + " has the wrong size");
   std::copy(values.begin(), values.end(), out);
 }
 
@@ -125,7 +125,7 @@ struct RunReader::Impl {
         const h5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, h5::file_access()));
         return action(file);
       } catch (const h5::Failure& f) {
-        if (attempt == 3) throw Error(ExitCode::io, path + ": " + what + ": " + f.reason);
+        if (attempt == 3) throw Error(ExitCode::io, path + ": " + what + ": " + f.what());
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
@@ -136,29 +136,30 @@ struct RunReader::Impl {
 
 void RunReader::Impl::scan(hid_t file) {
   if (!h5::has_link(file, "pbf") || !h5::has_link(file, "VTKHDF/Steps"))
-    throw h5::Failure{"an HDF5 file, but not one that pbf wrote (no /pbf or no /VTKHDF/Steps)"};
+    throw h5::Failure("an HDF5 file, but not one that pbf wrote (no /pbf or no /VTKHDF/Steps)");
   const h5::Group pbf(H5Gopen2(file, "pbf", H5P_DEFAULT));
   const h5::Group vtk(H5Gopen2(file, "VTKHDF", H5P_DEFAULT));
   if (!h5::has_attribute(pbf, "format_version"))
-    throw h5::Failure{"an HDF5 file, but not one that pbf wrote (no /pbf format_version)"};
+    throw h5::Failure("an HDF5 file, but not one that pbf wrote (no /pbf format_version)");
   const auto version = h5::read_number<std::int64_t>(pbf, "format_version");
   if (version != run_layout::format_version)
-    throw h5::Failure{"format version " + std::to_string(version) +
-                      "; this program reads version " + std::to_string(run_layout::format_version)};
+    throw h5::Failure("format version " + std::to_string(version) +
+                      "; this program reads version " + std::to_string(run_layout::format_version));
   const h5::Group steps(H5Gopen2(vtk, "Steps", H5P_DEFAULT));
-  std::size_t n = static_cast<std::size_t>(
+  // What lies beyond the NSteps committed rows may be half written: it is not looked at.
+  auto n = static_cast<std::size_t>(
       std::max<std::int64_t>(0, h5::read_number<std::int64_t>(steps, "NSteps")));
-  times = h5::read_all<double>(steps, "Values");
-  updates = h5::read_all<std::int64_t>(pbf, "frames/update");
-  const auto parts = h5::read_all<std::int64_t>(steps, "PartOffsets");
+  times = h5::read_all<double>(steps, "Values", n);
+  updates = h5::read_all<std::int64_t>(pbf, "frames/update", n);
+  const auto parts = h5::read_all<std::int64_t>(steps, "PartOffsets", n);
   const auto points = h5::read_all<std::int64_t>(vtk, "NumberOfPoints");
   n = std::min({n, times.size(), updates.size(), parts.size()});
   fields.clear();
   if (n > 0) {
-    fields.push_back(describe(vtk, "position", "Points"));
+    fields.push_back(describe(vtk, "position", "Points", n));
     const h5::Group data(H5Gopen2(vtk, "PointData", H5P_DEFAULT));
     for (const auto& name : h5::children(data, H5O_TYPE_DATASET))
-      fields.push_back(describe(vtk, name, "PointData/" + name));
+      fields.push_back(describe(vtk, name, "PointData/" + name, n));
   }
   for (const auto& f : fields) n = std::min(n, f.offsets.size());
   times.resize(n);
@@ -167,7 +168,7 @@ void RunReader::Impl::scan(hid_t file) {
   for (std::size_t k = 0; k < n; ++k) {
     if (parts[k] < 0 || static_cast<std::size_t>(parts[k]) >= points.size() ||
         points[static_cast<std::size_t>(parts[k])] < 0)
-      throw h5::Failure{"frame " + std::to_string(k) + " has no number of points"};
+      throw h5::Failure("frame " + std::to_string(k) + " has no number of points");
     counts.push_back(points[static_cast<std::size_t>(parts[k])]);
   }
 }

@@ -94,7 +94,7 @@ struct RunWriter::Impl {
       std::string kept;
       if (frames_ == 1) kept = "; frame 0 is kept";
       if (frames_ > 1) kept = "; frames 0.." + std::to_string(frames_ - 1) + " are kept";
-      throw Error(ExitCode::io, path_ + ": " + what + ": " + f.reason + kept);
+      throw Error(ExitCode::io, path_ + ": " + what + ": " + f.what() + kept);
     } catch (...) {
       out_.reset();
       throw;

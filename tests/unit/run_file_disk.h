@@ -1,0 +1,31 @@
+// A view of what the process writes to one file, write by write, and a disk that can be full.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pbf::test {
+
+/// One change of the watched file.
+struct DiskOperation {
+  enum Kind { write, resize, mark } kind;
+  std::int64_t offset = 0;       ///< bytes; of a resize: the new size; of a mark: its number
+  std::vector<std::byte> bytes;  ///< of a write
+};
+
+/// While it lives, writes and resizes of the file at `path` by this process are recorded, and fail
+/// with ENOSPC where they would make the file longer than `capacity` bytes. One at a time.
+class WatchedDisk {
+ public:
+  explicit WatchedDisk(const std::string& path, std::int64_t capacity = INT64_MAX,
+                       bool record = true);
+  ~WatchedDisk();
+  WatchedDisk(const WatchedDisk&) = delete;
+  void mark(std::int64_t number);  ///< puts a mark between the operations
+  std::vector<DiskOperation> operations() const;
+  std::int64_t refused() const;  ///< writes that found the disk full
+};
+
+}  // namespace pbf::test
