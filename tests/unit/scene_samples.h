@@ -14,7 +14,7 @@
 
 namespace pbf::scene_test {
 
-/// The smallest scene: 10 x 10 x 5 particles. Seven lines; what is appended starts at line 6.
+/// The smallest scene: 10 x 10 x 5 particles. Five lines: what is appended starts at line 6.
 inline const std::string kMinimal =
     "domain: {min: [0, 0, 0], max: [1, 1, 1]}\n"
     "fluid: {spacing: 0.1}\n"
