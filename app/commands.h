@@ -1,6 +1,7 @@
 // The commands behind the command line: options in, exit code out; errors are thrown as Error.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -36,10 +37,21 @@ struct ConfigOptions {
   bool schema = false, example = false;
 };
 
+struct BenchOptions {
+  std::vector<std::string> scenes;  ///< paths; empty: the built-in dam break
+  std::vector<std::int64_t> particles{10000, 100000};
+  std::vector<std::string> backends{"cpu"}, precisions{"float"};
+  std::vector<int> threads{0};  ///< 0: all that the process may use
+  std::vector<std::string> overrides;
+  int warmup = 400, updates = 64, repeats = 5;
+  std::string csv, json;  ///< paths, empty: none
+};
+
 int command_run(const RunOptions& options);
 int command_plan(const PlanOptions& options);
 int command_render(const RenderOptions& options);
 int command_config(const ConfigOptions& options);
 int command_info();
+int command_bench(const BenchOptions& options);
 
 }  // namespace pbf

@@ -97,6 +97,38 @@ void add_config(CLI::App& app, ConfigOptions& o, Command& command) {
   c->callback([&] { command = [&] { return command_config(o); }; });
 }
 
+void add_bench(CLI::App& app, BenchOptions& o, Command& command) {
+  CLI::App* c = app.add_subcommand(
+      "bench", "Time per update and per stage over sizes, backends, precisions and threads");
+  c->add_option("SCENE", o.scenes, "Scene files; a built-in dam break when none is given");
+  c->add_option("--n", o.particles, "Numbers of particles, separated by commas")
+      ->delimiter(',')
+      ->check(CLI::Range(std::int64_t(1), std::int64_t(2147483647)));
+  c->add_option("--backend", o.backends, "cpu, cuda or both, separated by commas")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"cpu", "cuda"}));
+  c->add_option("--precision", o.precisions, "float, double or both")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"float", "double"}));
+  c->add_option("--threads", o.threads, "Numbers of CPU threads; all when not given")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 4096));
+  add_overrides(c, o.overrides);
+  c->add_option("--warmup", o.warmup, "Updates before the state counts as late")
+      ->check(CLI::NonNegativeNumber);
+  c->add_option("--updates", o.updates, "Updates of one repeat")->check(CLI::PositiveNumber);
+  c->add_option("--repeats", o.repeats, "Repeats; the median counts")->check(CLI::PositiveNumber);
+  c->add_option("--csv", o.csv, "Write the table to this file");
+  c->add_option("--json", o.json, "Write the table to this file, as a JSON array");
+  c->footer(
+      "Two lines per case: from the first updates on (start), and after the warm-up (late).\n"
+      "Stage times on cuda are those of one update in 64, timed by device events.\n"
+      "Example:\n"
+      "  pbf bench --n 10000,100000 --backend cpu --threads 1,2 --precision float,double \\\n"
+      "      --csv bench.csv");
+  c->callback([&] { command = [&] { return command_bench(o); }; });
+}
+
 void add_info(CLI::App& app, Command& command) {
   CLI::App* c = app.add_subcommand("info", "Version, build features, libraries, devices");
   c->footer("Example:\n  pbf info");
@@ -112,11 +144,13 @@ int run_main(int argc, char** argv) {
   PlanOptions plan;
   RenderOptions render;
   ConfigOptions config;
+  BenchOptions bench;
   Command command;
   add_run(app, run, command);
   add_plan(app, plan, command);
   add_render(app, render, command);
   add_config(app, config, command);
+  add_bench(app, bench, command);
   add_info(app, command);
   try {
     app.parse(argc, argv);

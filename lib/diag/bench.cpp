@@ -1,0 +1,110 @@
+#include "lib/diag/bench.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/base/stage_clock.h"
+#include "lib/plan/plan.h"
+#include "lib/scene/emit.h"
+
+namespace pbf {
+
+std::string bench_scene_yaml() {
+  return R"(name: bench
+domain: {min: [0, 0, 0], max: [2, 1, 1.25]}
+fluid: {spacing: 0.02}
+bodies:
+  - {shape: block, min: [0, 0, 0], max: [1, 1, 1]}
+time: {step: 0.002, end: 1}
+solver: {iterations: 4}
+tensile: {k: 0.001}
+viscosity: {xsph: 0.05}
+)";
+}
+
+Scene scaled_to(const Scene& scene, std::int64_t n, const std::string& dir) {
+  Scene s = scene;
+  std::int64_t random = 0;
+  for (const Body& b : s.bodies)
+    if (b.shape == Shape::random_box) random += b.count;
+  if (random > 0) {
+    for (Body& b : s.bodies) b.count = b.count * n / random;
+    return s;
+  }
+  // A few rounds, since lattice points come in whole layers.
+  for (int round = 0; round < 4; ++round) {
+    const double now = double(count_particles(s, dir));
+    s.fluid.spacing *= std::cbrt(now / double(n));
+  }
+  s.time.step = scene.time.step * std::sqrt(s.h() / scene.h());
+  return s;
+}
+
+namespace {
+
+std::vector<StageTime> per_update(const std::vector<StageTime>& before,
+                                  const std::vector<StageTime>& after, double updates) {
+  std::vector<StageTime> out;
+  for (const StageTime& a : after) {
+    if (a.name == "init" || a.name == "measure" || a.name == "download") continue;
+    double seconds = a.seconds;
+    for (const StageTime& b : before)
+      if (b.name == a.name) seconds -= b.seconds;
+    out.push_back({a.name, seconds / updates, 1});
+  }
+  return out;
+}
+
+void time_state(Solver& solver, const BenchSettings& s, BenchRow& row) {
+  row.first_update = solver.updates_done();
+  const auto before = solver.timings();
+  std::vector<double> ms;
+  for (int r = 0; r < s.repeats; ++r) {
+    const Stopwatch watch;
+    solver.step(s.updates);  // returns when the device has done them
+    ms.push_back(watch.seconds() * 1e3 / s.updates);
+  }
+  std::sort(ms.begin(), ms.end());
+  row.ms_median = ms[ms.size() / 2];
+  row.ms_min = ms.front();
+  row.ms_max = ms.back();
+  row.stages = per_update(before, solver.timings(), double(s.updates) * s.repeats);
+  row.measures = solver.measure();
+  row.solver = solver.info();
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  row.peak_mb = double(usage.ru_maxrss) / 1024;
+}
+
+}  // namespace
+
+std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const BenchSettings& s) {
+  const std::int64_t n = count_particles(scene, dir);
+  const Plan plan = make_plan(scene, n);
+  std::unique_ptr<Solver> solver;
+  {
+    const Particles particles = emit_particles(scene, dir);
+    solver = make_solver(scene, plan, particles);
+  }
+  BenchRow row;
+  row.particles = n;
+  row.settings = s;
+  row.iterations = scene.solver.iterations;
+  row.dt = scene.time.step;
+  row.h = scene.h();
+  solver->step(2);  // first use of every kernel
+  std::vector<BenchRow> rows;
+  row.state = "start";
+  time_state(*solver, s, row);
+  rows.push_back(row);
+  const std::int64_t left = s.warmup - solver->updates_done();
+  if (left > 0) solver->step(int(left));
+  row.state = "late";
+  time_state(*solver, s, row);
+  rows.push_back(row);
+  return rows;
+}
+
+}  // namespace pbf
