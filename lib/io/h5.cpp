@@ -53,6 +53,10 @@ Type string_type() {
   return t;
 }
 
+Group make_group(hid_t parent, const char* name) {
+  return Group(H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+}
+
 void write_text(hid_t object, const char* name, const std::string& value) {
   const Type type = string_type();
   const Space space(H5Screate(H5S_SCALAR));

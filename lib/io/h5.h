@@ -89,6 +89,7 @@ Properties file_access();
 /// The type of strings in memory and in the file: variable length, UTF-8 (h5py reads str).
 Type string_type();
 
+Group make_group(hid_t parent, const char* name);
 void write_text(hid_t object, const char* name, const std::string& value);
 void write_texts(hid_t object, const char* name, const std::vector<std::string>& values);
 /// A fixed-length ASCII attribute, for readers that accept nothing else (VTK).

@@ -11,6 +11,9 @@ namespace pbf::run_layout {
 /// Version of everything under /pbf. A reader refuses newer files.
 inline constexpr int format_version = 1;
 
+/// Rows in a chunk of the tables of steps (/VTKHDF/Steps) and of the columns of the log.
+inline constexpr unsigned step_rows = 512, log_rows = 1024;
+
 inline constexpr const char* topologies[4] = {"Vertices", "Lines", "Polygons", "Strips"};
 
 /// A column of the log as a number of a row: a float64 or an int64 dataset /pbf/log/<name>.
