@@ -17,6 +17,9 @@ set(PBF_FEATURES "openmp")
 if(PBF_RENDER)
   string(APPEND PBF_FEATURES " render")
 endif()
+if(PBF_HAS_CUDA)
+  string(APPEND PBF_FEATURES " cuda")
+endif()
 set(PBF_COMMIT "@PBF_COMMIT@")  # filled in by write_commit.cmake
 configure_file(${CMAKE_CURRENT_LIST_DIR}/build_info.h.in
                ${PROJECT_BINARY_DIR}/build_info.h.in @ONLY)

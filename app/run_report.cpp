@@ -117,8 +117,10 @@ std::string measure_json(const Measures& m, double wall, const std::vector<Stage
     out += ", " + item(name, value);
   out += ", " + triple("momentum", m.momentum) + ", " + triple("center_of_mass", m.center_of_mass) +
          ", " + triple("front", m.front) + ", \"stages\": {";
-  for (std::size_t i = 0; i < stages.size(); ++i)
-    out += (i ? ", " : "") + item(stages[i].name.c_str(), stages[i].seconds);
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    if (i > 0) out += ", ";
+    out += item(stages[i].name.c_str(), stages[i].seconds);
+  }
   return out + "}}";
 }
 
