@@ -12,7 +12,7 @@ namespace pbf {
 template <class Real>
 struct PredictPass {
   Params<Real> p;
-  Vec4<Real>* position;  ///< in x, out x*; w = 1 (density, until a sweep replaces it)
+  Vec4<Real>* position;  ///< in x, out x*; w = 1 (1/density, until a sweep replaces it)
   Vec4<Real>* velocity;  ///< in/out, h/s
   int* cell;             ///< out
 

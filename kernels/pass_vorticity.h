@@ -9,11 +9,11 @@ namespace pbf {
 
 /// grad W_ij vol/rho_j, in 1/h; zero for a coincident pair.
 template <class Real>
-PBF_HD Vec3<Real> weighted_gradient(Vec3<Real> d, Real rho_j, const Params<Real>& p) {
+PBF_HD Vec3<Real> weighted_gradient(Vec3<Real> d, Real inv_rho_j, const Params<Real>& p) {
   const Real q2 = dot(d, d);
   const Root<Real> root = root_of(q2);
   const Real t = Spiky<Real>::t(root.q);
-  return (p.vol * Spiky<Real>::gradient_norm * t * t * root.inverse / rho_j) * d;
+  return (p.vol * Spiky<Real>::gradient_norm * t * t * root.inverse * inv_rho_j) * d;
 }
 
 /// omega_i = sum_j m/rho_j grad W_ij x (v_j - v_i), 1/s; w = |omega_i|.
@@ -21,7 +21,7 @@ template <class Real, class Lists>
 struct CurlPass {
   Params<Real> p;
   Lists lists;
-  const Vec4<Real>* position;  ///< w = density
+  const Vec4<Real>* position;  ///< w = 1/density
   const Vec4<Real>* velocity;
   Vec4<Real>* curl;  ///< out
 
@@ -45,13 +45,13 @@ template <class Real, class Lists>
 struct VorticityPass {
   Params<Real> p;
   Lists lists;
-  const Vec4<Real>* position;  ///< w = density
+  const Vec4<Real>* position;  ///< w = 1/density
   const Vec4<Real>* curl;
   Vec4<Real>* velocity;  ///< in/out
 
   PBF_HD void operator()(int i) const {
     const Vec4<Real> own = position[i];
-    if (own.w < Real(0.75)) return;
+    if (own.w * Real(0.75) > Real(1)) return;
     const Vec3<Real> xi = xyz(own), omega = xyz(curl[i]);
     const Real magnitude = curl[i].w;
     Vec3<Real> eta;

@@ -11,7 +11,7 @@ template <class Real, class Lists, Smoothing S>
 struct XsphPass {
   Params<Real> p;
   Lists lists;
-  const Vec4<Real>* position;  ///< w = density
+  const Vec4<Real>* position;  ///< w = 1/density
   const Vec4<Real>* velocity;  ///< h/s
   Vec4<Real>* velocity_out;
 
@@ -24,7 +24,7 @@ struct XsphPass {
       const Real q2 = dot(d, d);
       const Real shape = density_shape<Real, S>(
           q2, S == Smoothing::paper ? Real(0) : Spiky<Real>::t(root_of(q2).q));
-      sum = sum + (shape / other.w) * (xyz(load(velocity, j)) - vi);
+      sum = sum + (shape * other.w) * (xyz(load(velocity, j)) - vi);
     });
     const Real a = p.xsph * p.vol * density_norm<Real, S>();
     velocity_out[i] = with_w(vi + a * sum, Real(0));

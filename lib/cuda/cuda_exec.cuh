@@ -56,6 +56,16 @@ struct StablePass {
   }
 };
 
+/// The sign bit of x as the lowest bit of `mask`, the others one place up.
+__device__ __forceinline__ unsigned push_sign(float x, unsigned mask) {
+  return __funnelshift_l(__float_as_uint(x), mask, 1);
+}
+__device__ __forceinline__ unsigned push_sign(double x, unsigned mask) {
+  return __funnelshift_l(unsigned(__double2hiint(x)), mask, 1);
+}
+
+/// find_neighbors (kernels/neighbors.h) without a branch per candidate: the hits of up to 32
+/// candidates are collected as bits, then taken out in order.
 template <class Real>
 struct ListPass {
   Params<Real> p;
@@ -66,7 +76,25 @@ struct ListPass {
   int stride, capacity;
   __device__ void operator()(int i) const {
     WordWriter writer{words + i, stride, capacity};
-    find_neighbors(i, position, cell_start, p, writer);
+    const Vec3<Real> xi = xyz(position[i]);
+    for_each_run(cell_of(xi, p), cell_start, p, [&](int begin, int end) {
+      for (int first = begin; first < end; first += 32) {
+        const int n = min(32, end - first);
+        unsigned hits = 0;
+#pragma unroll 4
+        for (int k = 0; k < n; ++k) {
+          const Vec3<Real> d = xi - xyz(load(position, first + k));
+          hits = push_sign(dot(d, d) - Real(1), hits);
+        }
+        hits <<= 32 - n;  // the first candidate on top
+        if (unsigned(i - first) < unsigned(n)) hits &= ~(0x80000000u >> (i - first));
+        while (hits) {
+          const int k = __clz(int(hits));
+          hits &= ~(0x80000000u >> k);
+          writer(first + k);
+        }
+      }
+    });
     const int all = writer.finish(p.n);
     count[i] = all < capacity ? all : capacity;
     if (all > capacity) atomicMax(longest, all);
