@@ -14,6 +14,7 @@ Column::Column(hid_t parent, const std::string& path, hid_t type, const Layout& 
   const Properties create(H5Pcreate(H5P_DATASET_CREATE)), link(H5Pcreate(H5P_LINK_CREATE));
   check(H5Pset_create_intermediate_group(link, 1));
   check(H5Pset_chunk(create, rank, chunk));
+  check(H5Pset_fill_time(create, H5D_FILL_TIME_NEVER));  // else every write copies a whole chunk
   if (layout.gzip) {
     check(H5Pset_shuffle(create));
     check(H5Pset_deflate(create, 1));

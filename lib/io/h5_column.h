@@ -17,7 +17,7 @@ struct Layout {
 };
 
 /// A dataset whose first dimension grows. Rows are addressed by the caller; rows never written
-/// read as 0. All members throw Failure.
+/// hold anything. All members throw Failure.
 class Column {
  public:
   Column() = default;

@@ -47,8 +47,10 @@ void RunOutput::write_stages() {
   const hsize_t first = log_.at("time").rows() - waiting_.size();
   for (const LogRow& row : waiting_)
     for (const StageTime& stage : row.stages)
-      if (Column& column = stages_[stage.name]; !column.open())
+      if (Column& column = stages_[stage.name]; !column.open()) {
         column = Column(pbf_, "log/stage/" + stage.name, H5T_IEEE_F64LE, {log_rows, 0, false, "s"});
+        column.append(std::vector<double>(first, 0.0));
+      }
   for (auto& [name, column] : stages_) {
     std::vector<double> seconds;
     for (const LogRow& row : waiting_) {
