@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernels/boundary.h"
-#include "kernels/neighbors.h"
+#include "kernels/pair_sum.h"
 
 namespace pbf {
 
@@ -34,36 +34,45 @@ struct DeltaPass {
   Vec4<Real>* position_out;  ///< out; w = 1/density
   Vec4<Real>* velocity;      ///< in/out, h/s
 
-  PBF_HD void operator()(int i) const {
-    const Vec4<Real> own = position[i];
-    const Vec3<Real> xi = xyz(own);
-    Vec3<Real> sum;
-    lists.for_each(i, [&](int j) {
-      const Vec4<Real> other = load(position, j);
-      const Vec3<Real> d = xi - xyz(other);
-      const Real q2 = dot(d, d);
-      Real weight = own.w + other.w;
-      if constexpr (!tensile && Lists::skip_inactive) {
-        if (weight == Real(0)) return;  // neither is compressed
-      }
-      const Root<Real> root = root_of(q2);
-      const Real t = Spiky<Real>::t(root.q);
-      if constexpr (tensile) {
-        const Real w = density_norm<Real, S>() * density_shape<Real, S>(q2, t);
-        weight -= p.tensile_k * power(w * p.tensile_inv_w, p.tensile_n);
-      }
-      const Vec3<Real> e =
-          q2 > coincident_q_squared<Real>() ? root.inverse * d : separation<Real>(i, j);
-      sum = sum + (weight * t * t) * e;
-    });
-    const Real a = p.vol * Spiky<Real>::gradient_norm;
-    const Vec3<Real> wall = own.w * wall_term<Real, S>(xi, p).gradient;
-    const Vec3<Real> free = p.step_length * (a * sum + wall);
-    const Vec3<Real> target = xi + free;
-    const Vec3<Real> x = clamp_inside(target, p);
-    position_out[i] = with_w(x, Real(1) / density[i]);
-    velocity[i] = with_w(xyz(velocity[i]) + p.inv_dt * (free + (x - target)), Real(0));
+  using Own = Vec4<Real>;
+  using Other = Vec4<Real>;
+  struct Sum {
+    Vec3<Real> move;
+    template <class F>
+    PBF_HD void each(F&& f) {
+      each_component(move, f);
+    }
+  };
+  PBF_HD Own own(int i) const { return position[i]; }
+  PBF_HD Other other(int j) const { return load(position, j); }
+  PBF_HD void add(Sum& s, const Own& x, const Other& y, int i, int j, bool on) const {
+    Real weight = x.w + y.w;
+    if constexpr (!tensile && Lists::skip_inactive) {
+      if (weight == Real(0)) return;  // neither is compressed
+    }
+    const Vec3<Real> d = xyz(x) - xyz(y);
+    const Real q2 = pair_q_squared(d, on);
+    const Root<Real> root = root_of(q2);
+    const Real t = Spiky<Real>::t(root.q);
+    if constexpr (tensile) {
+      const Real w = density_norm<Real, S>() * density_shape<Real, S>(q2, t);
+      weight -= p.tensile_k * power(w * p.tensile_inv_w, p.tensile_n);
+    }
+    const Vec3<Real> e =
+        q2 > coincident_q_squared<Real>() ? root.inverse * d : separation<Real>(i, j);
+    s.move = s.move + (weight * t * t) * e;
   }
+  PBF_HD void finish(int i, const Own& own, const Sum& s) const {
+    const Vec3<Real> x = xyz(own);
+    const Real a = p.vol * Spiky<Real>::gradient_norm;
+    const Vec3<Real> wall = own.w * wall_term<Real, S>(x, p).gradient;
+    const Vec3<Real> free = p.step_length * (a * s.move + wall);
+    const Vec3<Real> target = x + free;
+    const Vec3<Real> inside = clamp_inside(target, p);
+    position_out[i] = with_w(inside, Real(1) / density[i]);
+    velocity[i] = with_w(xyz(velocity[i]) + p.inv_dt * (free + (inside - target)), Real(0));
+  }
+  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 }  // namespace pbf

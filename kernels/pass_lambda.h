@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/boundary.h"
-#include "kernels/neighbors.h"
+#include "kernels/pair_sum.h"
 
 namespace pbf {
 
@@ -14,17 +14,28 @@ struct DensityPass {
   const Vec4<Real>* position;
   Real* density;  ///< out
 
-  PBF_HD void operator()(int i) const {
-    const Vec3<Real> xi = xyz(position[i]);
-    Real sum(1);  // the particle itself
-    lists.for_each(i, [&](int j) {
-      const Vec3<Real> d = xi - xyz(load(position, j));
-      const Real q2 = dot(d, d);
-      sum += density_shape<Real, S>(
-          q2, S == Smoothing::paper ? Real(0) : Spiky<Real>::t(root_of(q2).q));
-    });
-    density[i] = p.vol * density_norm<Real, S>() * sum + wall_term<Real, S>(xi, p).density;
+  using Own = Vec3<Real>;
+  using Other = Vec3<Real>;
+  struct Sum {
+    Real shape = 0;
+    template <class F>
+    PBF_HD void each(F&& f) {
+      f(shape);
+    }
+  };
+  PBF_HD Own own(int i) const { return xyz(position[i]); }
+  PBF_HD Other other(int j) const { return xyz(load(position, j)); }
+  PBF_HD void add(Sum& s, const Own& x, const Other& y, int, int, bool on) const {
+    const Real q2 = pair_q_squared(x - y, on);
+    s.shape +=
+        density_shape<Real, S>(q2, S == Smoothing::paper ? Real(0) : Spiky<Real>::t(root_of(q2).q));
   }
+  PBF_HD void finish(int i, const Own& x, const Sum& s) const {
+    // 1: the particle itself.
+    density[i] =
+        p.vol * density_norm<Real, S>() * (Real(1) + s.shape) + wall_term<Real, S>(x, p).density;
+  }
+  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 /// C from the density: one-sided by default (only compression is corrected).
@@ -44,36 +55,48 @@ struct LambdaPass {
   Vec4<Real>* position_out;  ///< out: the same position with w = lambda
   Real* density;             ///< out when with_density, else in
 
-  PBF_HD void operator()(int i) const {
-    const Vec3<Real> xi = xyz(position[i]);
-    Real sum(1), squares(0);
-    Vec3<Real> g;
-    lists.for_each(i, [&](int j) {
-      const Vec3<Real> d = xi - xyz(load(position, j));
-      const Real q2 = dot(d, d);
-      const Root<Real> root = root_of(q2);
-      const Real t = Spiky<Real>::t(root.q), t2 = t * t;
-      if constexpr (with_density) sum += density_shape<Real, S>(q2, t);
-      squares += t2 * t2;
-      // A coincident pair has no direction, d = 0: its gradients cancel in the mean over
-      // directions.
-      g = g + (t2 * root.inverse) * d;
-    });
-    const WallTerm<Real> wall = wall_term<Real, S>(xi, p);
+  using Own = Vec3<Real>;
+  using Other = Vec3<Real>;
+  struct Sum {
+    Real shape = 0, squares = 0;
+    Vec3<Real> gradient;
+    template <class F>
+    PBF_HD void each(F&& f) {
+      if constexpr (with_density) f(shape);
+      f(squares);
+      each_component(gradient, f);
+    }
+  };
+  PBF_HD Own own(int i) const { return xyz(position[i]); }
+  PBF_HD Other other(int j) const { return xyz(load(position, j)); }
+  PBF_HD void add(Sum& s, const Own& x, const Other& y, int, int, bool on) const {
+    const Vec3<Real> d = x - y;
+    const Real q2 = pair_q_squared(d, on);
+    const Root<Real> root = root_of(q2);
+    const Real t = Spiky<Real>::t(root.q), t2 = t * t;
+    if constexpr (with_density) s.shape += density_shape<Real, S>(q2, t);
+    s.squares += t2 * t2;
+    // A coincident pair has no direction, d = 0: its gradients cancel in the mean over directions.
+    s.gradient = s.gradient + (t2 * root.inverse) * d;
+  }
+  PBF_HD void finish(int i, const Own& x, const Sum& s) const {
+    const WallTerm<Real> wall = wall_term<Real, S>(x, p);
     Real rho;
     if constexpr (with_density) {
-      rho = p.vol * density_norm<Real, S>() * sum + wall.density;
+      rho = p.vol * density_norm<Real, S>() * (Real(1) + s.shape) + wall.density;
       density[i] = rho;
     } else {
       rho = density[i];
     }
     const Real a = p.vol * Spiky<Real>::gradient_norm;
-    const Vec3<Real> own = a * g + wall.gradient;
-    const Real c = constraint(rho, p), denominator = a * a * squares + dot(own, own) + p.relaxation;
+    const Vec3<Real> own_gradient = a * s.gradient + wall.gradient;
+    const Real c = constraint(rho, p);
+    const Real denominator = a * a * s.squares + dot(own_gradient, own_gradient) + p.relaxation;
     // No neighbour, no wall and no relaxation: nothing to move along.
     const Real lambda = denominator > Real(0) ? -c / denominator : Real(0);
-    position_out[i] = with_w(xi, lambda);
+    position_out[i] = with_w(x, lambda);
   }
+  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 }  // namespace pbf

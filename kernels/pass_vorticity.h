@@ -2,15 +2,14 @@
 // Macklin & Mueller 2013, eq. 15 and 16, stabilised as kernels/README.md (13) says.
 #pragma once
 
-#include "kernels/neighbors.h"
-#include "kernels/smoothing.h"
+#include "kernels/pair_sum.h"
 
 namespace pbf {
 
-/// grad W_ij vol/rho_j, in 1/h; zero for a coincident pair.
+/// grad W_ij vol/rho_j, in 1/h; zero for a coincident pair, and when not `on`.
 template <class Real>
-PBF_HD Vec3<Real> weighted_gradient(Vec3<Real> d, Real inv_rho_j, const Params<Real>& p) {
-  const Real q2 = dot(d, d);
+PBF_HD Vec3<Real> weighted_gradient(Vec3<Real> d, Real inv_rho_j, const Params<Real>& p, bool on) {
+  const Real q2 = pair_q_squared(d, on);
   const Root<Real> root = root_of(q2);
   const Real t = Spiky<Real>::t(root.q);
   return (p.vol * Spiky<Real>::gradient_norm * t * t * root.inverse * inv_rho_j) * d;
@@ -25,16 +24,28 @@ struct CurlPass {
   const Vec4<Real>* velocity;
   Vec4<Real>* curl;  ///< out
 
-  PBF_HD void operator()(int i) const {
-    const Vec3<Real> xi = xyz(position[i]), vi = xyz(velocity[i]);
-    Vec3<Real> sum;
-    lists.for_each(i, [&](int j) {
-      const Vec4<Real> other = load(position, j);
-      sum =
-          sum + cross(weighted_gradient(xi - xyz(other), other.w, p), xyz(load(velocity, j)) - vi);
-    });
-    curl[i] = with_w(sum, square_root(dot(sum, sum)));
+  struct Own {
+    Vec3<Real> x, v;
+  };
+  struct Other {
+    Vec4<Real> x, v;
+  };
+  struct Sum {
+    Vec3<Real> curl;
+    template <class F>
+    PBF_HD void each(F&& f) {
+      each_component(curl, f);
+    }
+  };
+  PBF_HD Own own(int i) const { return {xyz(position[i]), xyz(velocity[i])}; }
+  PBF_HD Other other(int j) const { return {load(position, j), load(velocity, j)}; }
+  PBF_HD void add(Sum& s, const Own& a, const Other& b, int, int, bool on) const {
+    s.curl = s.curl + cross(weighted_gradient(a.x - xyz(b.x), b.x.w, p, on), xyz(b.v) - a.v);
   }
+  PBF_HD void finish(int i, const Own&, const Sum& s) const {
+    curl[i] = with_w(s.curl, square_root(dot(s.curl, s.curl)));
+  }
+  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 /// v += min(dt eps, 0.05) h (N x omega), N = eta/(|eta| + 0.1 |omega|/h + tiny), eta = grad
@@ -49,20 +60,32 @@ struct VorticityPass {
   const Vec4<Real>* curl;
   Vec4<Real>* velocity;  ///< in/out
 
-  PBF_HD void operator()(int i) const {
-    const Vec4<Real> own = position[i];
-    if (own.w * Real(0.75) > Real(1)) return;
-    const Vec3<Real> xi = xyz(own), omega = xyz(curl[i]);
-    const Real magnitude = curl[i].w;
+  struct Own {
+    Vec4<Real> x, curl;
+  };
+  struct Other {
+    Vec4<Real> x;
+    Real magnitude;
+  };
+  struct Sum {
     Vec3<Real> eta;
-    lists.for_each(i, [&](int j) {
-      const Vec4<Real> other = load(position, j);
-      eta = eta + (load(curl, j).w - magnitude) * weighted_gradient(xi - xyz(other), other.w, p);
-    });
-    const Real size = square_root(dot(eta, eta)) + Real(0.1) * magnitude + Real(1e-20);
-    const Real gain = min2(p.dt * p.vorticity, Real(0.05)) / size;
-    velocity[i] = with_w(xyz(velocity[i]) + gain * cross(eta, omega), Real(0));
+    template <class F>
+    PBF_HD void each(F&& f) {
+      each_component(eta, f);
+    }
+  };
+  PBF_HD Own own(int i) const { return {position[i], curl[i]}; }
+  PBF_HD Other other(int j) const { return {load(position, j), load(curl, j).w}; }
+  PBF_HD void add(Sum& s, const Own& a, const Other& b, int, int, bool on) const {
+    s.eta = s.eta + (b.magnitude - a.curl.w) * weighted_gradient(xyz(a.x) - xyz(b.x), b.x.w, p, on);
   }
+  PBF_HD void finish(int i, const Own& a, const Sum& s) const {
+    if (a.x.w * Real(0.75) > Real(1)) return;
+    const Real size = square_root(dot(s.eta, s.eta)) + Real(0.1) * a.curl.w + Real(1e-20);
+    const Real gain = min2(p.dt * p.vorticity, Real(0.05)) / size;
+    velocity[i] = with_w(xyz(velocity[i]) + gain * cross(s.eta, xyz(a.curl)), Real(0));
+  }
+  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 }  // namespace pbf

@@ -1,8 +1,7 @@
 // XSPH viscosity. Schechter & Bridson 2012, eq. 6; Macklin & Mueller 2013, eq. 17.
 #pragma once
 
-#include "kernels/neighbors.h"
-#include "kernels/smoothing.h"
+#include "kernels/pair_sum.h"
 
 namespace pbf {
 
@@ -15,20 +14,31 @@ struct XsphPass {
   const Vec4<Real>* velocity;  ///< h/s
   Vec4<Real>* velocity_out;
 
-  PBF_HD void operator()(int i) const {
-    const Vec3<Real> xi = xyz(position[i]), vi = xyz(velocity[i]);
-    Vec3<Real> sum;
-    lists.for_each(i, [&](int j) {
-      const Vec4<Real> other = load(position, j);
-      const Vec3<Real> d = xi - xyz(other);
-      const Real q2 = dot(d, d);
-      const Real shape = density_shape<Real, S>(
-          q2, S == Smoothing::paper ? Real(0) : Spiky<Real>::t(root_of(q2).q));
-      sum = sum + (shape * other.w) * (xyz(load(velocity, j)) - vi);
-    });
-    const Real a = p.xsph * p.vol * density_norm<Real, S>();
-    velocity_out[i] = with_w(vi + a * sum, Real(0));
+  struct Own {
+    Vec3<Real> x, v;
+  };
+  struct Other {
+    Vec4<Real> x, v;
+  };
+  struct Sum {
+    Vec3<Real> v;
+    template <class F>
+    PBF_HD void each(F&& f) {
+      each_component(v, f);
+    }
+  };
+  PBF_HD Own own(int i) const { return {xyz(position[i]), xyz(velocity[i])}; }
+  PBF_HD Other other(int j) const { return {load(position, j), load(velocity, j)}; }
+  PBF_HD void add(Sum& s, const Own& a, const Other& b, int, int, bool on) const {
+    const Real q2 = pair_q_squared(a.x - xyz(b.x), on);
+    const Real shape =
+        density_shape<Real, S>(q2, S == Smoothing::paper ? Real(0) : Spiky<Real>::t(root_of(q2).q));
+    s.v = s.v + (shape * b.x.w) * (xyz(b.v) - a.v);
   }
+  PBF_HD void finish(int i, const Own& a, const Sum& s) const {
+    velocity_out[i] = with_w(a.v + (p.xsph * p.vol * density_norm<Real, S>()) * s.v, Real(0));
+  }
+  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 }  // namespace pbf
