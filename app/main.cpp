@@ -1,6 +1,7 @@
 // The command line of pbf; every error ends here, as one message and an exit code.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <new>
 
@@ -49,7 +50,12 @@ void add_run(CLI::App& app, RunOptions& o, Command& command) {
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
   c->add_option("--log-json", o.log_json, "One JSON object per line and measure, into this file");
   c->add_option("--max-walltime", o.max_walltime, "Stop after so many seconds, save, exit 75")
-      ->check(CLI::PositiveNumber);
+      ->check([](const std::string& text) {
+        char* end = nullptr;
+        const double s = std::strtod(text.c_str(), &end);
+        return *end == '\0' && s > 0 && s < 1e300 ? std::string()
+                                                  : text + " is not a number of seconds above 0";
+      });
   c->footer(
       "Examples:\n"
       "  pbf run configs/dam_break.yaml\n"
@@ -135,6 +141,19 @@ void add_info(CLI::App& app, Command& command) {
   c->callback([&] { command = command_info; });
 }
 
+/// CLI11's message, the unknown command by its name, and where to read on.
+std::string explain(const CLI::App& app, const CLI::ParseError& e, int argc, char** argv) {
+  const auto chosen = app.get_subcommands();
+  if (!chosen.empty())
+    return std::string(e.what()) + "\nSee pbf " + chosen[0]->get_name() + " --help";
+  std::string message = e.what();
+  if (argc > 1 && argv[1][0] != '-') message = std::string(argv[1]) + ": unknown command";
+  message += "; the commands are";
+  for (const CLI::App* c : app.get_subcommands([](const CLI::App*) { return true; }))
+    message += " " + c->get_name();
+  return message + "\nSee pbf --help";
+}
+
 int run_main(int argc, char** argv) {
   CLI::App app("pbf: Position Based Fluids, from a scene file to HDF5 and pictures.", "pbf");
   app.set_version_flag("--version", "pbf " + build_info().version);
@@ -156,9 +175,7 @@ int run_main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
-    std::string help = "pbf --help";
-    for (const CLI::App* sub : app.get_subcommands()) help = "pbf " + sub->get_name() + " --help";
-    throw Error(ExitCode::bad_input, std::string(e.what()) + "\nSee " + help);
+    throw Error(ExitCode::bad_input, explain(app, e, argc, argv));
   }
   return command();
 }

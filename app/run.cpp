@@ -110,6 +110,18 @@ std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
                      static_cast<long long>(m.outside), folder.c_str()));
 }
 
+/// A folder that is missing is told before the run folder is made. It may be the run folder itself.
+void check_json_folder(const std::string& path, const std::string& out) {
+  namespace fs = std::filesystem;
+  const fs::path parent = fs::path(path).parent_path();
+  std::error_code error;
+  if (parent.empty() || fs::is_directory(parent, error) ||
+      fs::absolute(parent).lexically_normal() == fs::absolute(out).lexically_normal())
+    return;
+  throw Error(ExitCode::io, "--log-json " + path + ": the folder " + parent.string() +
+                                " is not there; make it first");
+}
+
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 File open_json(const std::string& path) {
@@ -173,6 +185,7 @@ int command_run(const RunOptions& options) {
     log.note(out + ": the run is finished (DONE is there); nothing to do");
     return 0;
   }
+  check_json_folder(options.log_json, out);
   const std::string dir = std::filesystem::path(loaded.path).parent_path().string();
   const Plan plan = make_plan(scene, count_particles(scene, dir));
   check_memory(plan, scene);

@@ -101,8 +101,8 @@ std::string measure_json(const Measures& m, double wall, const std::vector<Stage
     return json_string(name) + ": [" + json_number(v[0]) + ", " + json_number(v[1]) + ", " +
            json_number(v[2]) + "]";
   };
-  std::string out = "{" + item("update", double(m.update)) + ", " + item("time", m.time) + ", " +
-                    item("wall", wall);
+  std::string out = "{";  // appended to: GCC 12 warns of overlap when a literal comes first
+  out += item("update", double(m.update)) + ", " + item("time", m.time) + ", " + item("wall", wall);
   for (const auto& [name, value] :
        {std::pair<const char*, double>{"compression_mean", m.compression_mean},
         {"compression_rms", m.compression_rms},
@@ -114,9 +114,10 @@ std::string measure_json(const Measures& m, double wall, const std::vector<Stage
         {"neighbors_max", double(m.neighbors_max)},
         {"outside", double(m.outside)},
         {"non_finite", double(m.non_finite)}})
-    out += ", " + item(name, value);
-  out += ", " + triple("momentum", m.momentum) + ", " + triple("center_of_mass", m.center_of_mass) +
-         ", " + triple("front", m.front) + ", \"stages\": {";
+    (out += ", ") += item(name, value);
+  (out += ", ") += triple("momentum", m.momentum) + ", " +
+                   triple("center_of_mass", m.center_of_mass) + ", " + triple("front", m.front) +
+                   ", \"stages\": {";
   for (std::size_t i = 0; i < stages.size(); ++i) {
     if (i > 0) out += ", ";
     out += item(stages[i].name.c_str(), stages[i].seconds);
