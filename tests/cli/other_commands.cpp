@@ -1,0 +1,137 @@
+// plan, render, info, config and the help texts.
+#include "lib/io/run_file.h"
+#include "tests/catch.h"
+#include "tests/cli/process.h"
+
+using namespace pbf::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("the help of every command has an example, and the main help the exit codes") {
+  const Scratch folder;
+  const Outcome main = pbf::test::pbf({"--help"}, folder.path());
+  CHECK(main.code == 0);
+  for (const char* part : {"Exit codes", "  75 ", "Example: pbf run"}) CHECK(has(main.out, part));
+  for (const char* command : {"run", "plan", "render", "info", "config"}) {
+    CAPTURE(command);
+    CHECK(has(main.out, std::string("\n  ") + command + " "));
+    const Outcome o = pbf::test::pbf({command, "--help"}, folder.path());
+    CHECK(o.code == 0);
+    CHECK(has(o.out, "Example"));
+    CHECK(has(o.out, std::string("\n  pbf ") + command));
+  }
+}
+
+TEST_CASE("config --example prints the reference scene of the repository, which pbf accepts") {
+  const Scratch folder;
+  const Outcome o = pbf::test::pbf({"config", "--example"}, folder.path());
+  CHECK(o.code == 0);
+  CHECK(o.out == read_text(fs::path(PBF_SOURCE_DIR) / "configs/reference.yaml"));
+  CHECK(pbf::test::pbf({"plan", folder.write("r.yaml", o.out)}, folder.path()).code == 0);
+}
+
+TEST_CASE("config --schema prints a JSON Schema with the keys of a scene") {
+  const Scratch folder;
+  const Outcome o = pbf::test::pbf({"config", "--schema"}, folder.path());
+  CHECK(o.code == 0);
+  CHECK(o.out.rfind("{", 0) == 0);
+  CHECK(has(o.out, "\"smoothing_ratio\""));
+}
+
+TEST_CASE("info names version, libraries and devices") {
+  const Scratch folder;
+  const Outcome o = pbf::test::pbf({"info"}, folder.path());
+  CHECK(o.code == 0);
+  for (const char* part : {"commit ", "HDF5 ", "yaml-cpp ", "cpu ", "threads ", "cuda "})
+    CHECK(has(o.out, part));
+  const Outcome version = pbf::test::pbf({"--version"}, folder.path());
+  CHECK(o.out.rfind(version.out.substr(0, version.out.find('\n')), 0) == 0);
+}
+
+TEST_CASE("plan runs nothing, names what is left out, and prints a scene that resolves to itself") {
+  const Scratch folder;
+  const std::string scene = folder.write("tiny.yaml", tiny_scene());
+  const Outcome text = pbf::test::pbf({"plan", scene}, folder.path());
+  CHECK(text.code == 0);
+  CHECK(has(text.out, "64 particles"));
+  CHECK(has(text.out, "left out"));
+  CHECK(has(text.out, "no key viscosity"));
+  const Outcome with =
+      pbf::test::pbf({"plan", scene, "--set", "viscosity.xsph=0.1"}, folder.path());
+  CHECK_FALSE(has(with.out, "no key viscosity"));
+  CHECK(pbf::test::pbf({"plan", scene, "--json"}, folder.path()).out.rfind("{", 0) == 0);
+  const Outcome resolved = pbf::test::pbf({"plan", scene, "--resolved"}, folder.path());
+  const std::string again = folder.write("again.yaml", resolved.out);
+  CHECK(pbf::test::pbf({"plan", again, "--resolved"}, folder.path()).out == resolved.out);
+  CHECK_FALSE(fs::exists(folder / "out"));
+}
+
+TEST_CASE("a scene too large for the memory of any machine exits 4 before anything is made") {
+  const Scratch folder;
+  const std::string scene = folder.write("tiny.yaml", tiny_scene());
+  // 2.1e9 particles can be numbered; with 4188 neighbours each they need 40 TB.
+  const Outcome o = pbf::test::pbf(
+      {"run", scene, "--set", "fluid.spacing=0.00031", "--set", "fluid.smoothing_ratio=10"},
+      folder.path());
+  CAPTURE(o.err);
+  CHECK(o.code == 4);
+  CHECK(has(o.err, "memory"));
+  CHECK(has(o.err, "fluid.spacing"));
+  CHECK_FALSE(fs::exists(folder / "out"));
+}
+
+#ifdef PBF_HAS_RENDER
+TEST_CASE("pictures are drawn by a run and, later, from its file") {
+  const Scratch folder;
+  const std::string scene = folder.write(
+      "tiny.yaml", tiny_scene("render: {every: 0.04, size: [64, 48], color: density}\n"));
+  const Outcome run = pbf::test::pbf(
+      {"run", scene, "--out", "o", "--set", "output.fields=[velocity]"}, folder.path());
+  if (run.code == 4) {  // pictures are the one feature whose library is looked for at run time
+    CHECK(has(run.err, "OSMesa"));
+    WARN("no off-screen GL library here: not tested");
+    return;
+  }
+  CAPTURE(run.err);
+  REQUIRE(run.code == 0);
+  for (const char* name : {"frame_000000.png", "frame_000001.png", "frame_000002.png"})
+    CHECK(fs::file_size(folder / "o/frames" / name) > 100);
+  CHECK_FALSE(fs::exists(folder / "o/frames/frame_000003.png"));
+  const pbf::RunReader reader((folder / "o/run.h5").string());
+  CHECK(reader.fields() == std::vector<std::string>{"velocity"});  // density was for pictures only
+
+  const auto render = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", "o/run.h5"});
+    return pbf::test::pbf(more, folder.path());
+  };
+  const Outcome drawn = render({"--frames", "1:-1:2", "--color", "speed", "--range", "0,2",
+                                "--size", "80x60", "--camera", "position=3,-3,2;fov=40"});
+  CAPTURE(drawn.err);
+  CHECK(drawn.code == 0);
+  CHECK(fs::exists(folder / "o/render/frame_000001.png"));
+  CHECK(fs::exists(folder / "o/render/frame_000003.png"));
+  CHECK(std::distance(fs::directory_iterator(folder / "o/render"), {}) == 2);
+
+  const std::vector<std::pair<std::vector<std::string>, std::string>> bad{
+      {{"--color", "density"}, "density"}, {{"--frames", "9"}, "0 to 5"},
+      {{"--frames", "4:2"}, "--frames"},   {{"--frames", "a"}, "--frames"},
+      {{"--size", "80"}, "--size"},        {{"--size", "8x8"}, "--size"},
+      {{"--range", "2,1"}, "--range"},     {{"--camera", "fov=500"}, "fov"},
+      {{"--camera", "zoom=2"}, "zoom"},    {{"--color", "pressure"}, "pressure"}};
+  for (const auto& [args, fragment] : bad) {
+    CAPTURE(args);
+    auto all = args;
+    if (args[1] != "density") all.insert(all.end(), {"--out", "p"});
+    const Outcome o = render(all);
+    CHECK(o.code == 2);
+    CHECK(has(o.err, fragment));
+  }
+}
+#endif

@@ -1,0 +1,81 @@
+#include "tests/cli/process.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+namespace pbf::test {
+namespace fs = std::filesystem;
+
+Process::Process(const std::vector<std::string>& args, const fs::path& folder)
+    : out_(folder / ".stdout"), err_(folder / ".stderr") {
+  std::vector<char*> argv{const_cast<char*>(PBF_BINARY)};
+  for (const auto& a : args) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+  const std::string out = out_.string(), err = err_.string(), dir = folder.string();
+  pid_ = fork();
+  if (pid_ < 0) throw std::runtime_error("fork failed");
+  if (pid_ > 0) return;
+  const int flags = O_WRONLY | O_CREAT | O_TRUNC;
+  const int o = open(out.c_str(), flags, 0600), e = open(err.c_str(), flags, 0600);
+  if (o < 0 || e < 0 || dup2(o, 1) < 0 || dup2(e, 2) < 0 || chdir(dir.c_str()) != 0) _exit(126);
+  execv(PBF_BINARY, argv.data());
+  _exit(127);
+}
+
+void Process::send(int signal) const { kill(pid_, signal); }
+
+Outcome Process::wait() {
+  int status = 0;
+  while (waitpid(pid_, &status, 0) < 0)
+    if (errno != EINTR) throw std::runtime_error("waitpid failed");
+  Outcome o;
+  o.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  o.out = read_text(out_);
+  o.err = read_text(err_);
+  return o;
+}
+
+Outcome pbf(const std::vector<std::string>& args, const fs::path& folder) {
+  return Process(args, folder).wait();
+}
+
+Scratch::Scratch() {
+  std::string name = (fs::temp_directory_path() / "pbf_cli_XXXXXX").string();
+  if (!mkdtemp(name.data())) throw std::runtime_error("mkdtemp failed");
+  path_ = name;
+}
+
+Scratch::~Scratch() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+std::string Scratch::write(const std::string& name, const std::string& text) const {
+  std::ofstream(path_ / name, std::ios::binary) << text;
+  return (path_ / name).string();
+}
+
+std::string read_text(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string tiny_scene(const std::string& more) {
+  return "name: tiny\n"
+         "domain: {min: [0, 0, 0], max: [1, 1, 1]}\n"
+         "fluid: {spacing: 0.1}\n"
+         "bodies:\n"
+         "  - {shape: block, min: [0, 0, 0], max: [0.4, 0.4, 0.4]}\n"
+         "time: {step: 0.005, end: 0.1}\n"
+         "output: {every: 0.02}\n" +
+         more;
+}
+
+}  // namespace pbf::test

@@ -1,0 +1,53 @@
+// Runs the real program as a user does, and a scratch folder to run it in.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace pbf::test {
+
+struct Outcome {
+  int code = -1;         ///< exit code; 128 + signal when a signal ended it
+  std::string out, err;  ///< stdout and stderr
+};
+
+/// A program under way; its output goes to files in the folder it runs in.
+class Process {
+ public:
+  /// Starts `pbf args...` with `folder` as its working directory.
+  Process(const std::vector<std::string>& args, const std::filesystem::path& folder);
+  void send(int signal) const;
+  Outcome wait();
+  pid_t id() const { return pid_; }
+
+ private:
+  pid_t pid_ = -1;
+  std::filesystem::path out_, err_;
+};
+
+/// Runs `pbf args...` to its end.
+Outcome pbf(const std::vector<std::string>& args, const std::filesystem::path& folder);
+
+/// An empty folder of its own, removed with everything in it at the end.
+class Scratch {
+ public:
+  Scratch();
+  ~Scratch();
+  std::filesystem::path path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  /// Writes a file and returns its path.
+  std::string write(const std::string& name, const std::string& text) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string read_text(const std::filesystem::path& path);
+
+/// A scene of 64 particles and 20 updates with frames; `more` is appended.
+std::string tiny_scene(const std::string& more = "");
+
+}  // namespace pbf::test

@@ -1,0 +1,169 @@
+// pbf run: what a run leaves behind, and what happens to folders that are there already.
+#include <sys/wait.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "lib/io/run_file.h"
+#include "tests/catch.h"
+#include "tests/cli/process.h"
+
+using namespace pbf::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a run leaves its file, resolved scene, log and DONE, and says so") {
+  const Scratch folder;
+  const std::string scene = folder.write("tiny.yaml", tiny_scene());
+  const Outcome o =
+      pbf::test::pbf({"run", scene, "--log-json", "m.json", "--threads", "1"}, folder.path());
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  const fs::path run = folder / "out/tiny";
+  for (const char* name : {"run.h5", "scene.resolved.yaml", "log.txt", "DONE"}) {
+    CAPTURE(name);
+    CHECK(fs::is_regular_file(run / name));
+  }
+  CHECK_FALSE(fs::exists(run / "frames"));
+  const pbf::RunReader reader((run / "run.h5").string());
+  CHECK(reader.status() == "finished");
+  CHECK(reader.times().size() == 6);  // 0, 0.02 ... 0.1
+  CHECK(reader.frame(5).time == Approx(0.1));
+  CHECK(reader.frame(5).count == 64);
+  CHECK(reader.log_column("update") == std::vector<double>{0, 10, 20});
+  CHECK(reader.info().overrides == std::vector<std::string>{"threads=1"});
+  for (const char* part : {"particles           64", "updates             20", "lambda",
+                           "particle-updates/s", "gridding/neighbours", "peak memory", "out/tiny"})
+    CHECK(has(o.out, part));
+  CHECK(has(read_text(run / "log.txt"), o.out));  // the summary, word for word
+  CHECK(has(read_text(run / "log.txt"), o.err));
+  const std::string json = read_text(folder / "m.json");
+  CHECK(std::count(json.begin(), json.end(), '\n') == 3);
+  CHECK(has(json, "{\"update\": 20, "));
+}
+
+TEST_CASE("the resolved scene of a run gives the same run again") {
+  const Scratch folder;
+  const std::string scene = folder.write("tiny.yaml", tiny_scene());
+  REQUIRE(
+      pbf::test::pbf({"run", scene, "--out", "a", "--set", "solver.iterations=2"}, folder.path())
+          .code == 0);
+  REQUIRE(pbf::test::pbf({"run", "a/scene.resolved.yaml", "--out", "b"}, folder.path()).code == 0);
+  const pbf::RunReader a((folder / "a/run.h5").string()), b((folder / "b/run.h5").string());
+  REQUIRE(a.frames() == b.frames());
+  CHECK(a.frame(a.frames() - 1).fields[0].bytes == b.frame(b.frames() - 1).fields[0].bytes);
+}
+
+TEST_CASE("a scene without output and pictures writes no run file and no folder of pictures") {
+  const Scratch folder;
+  std::string text = tiny_scene();
+  text.erase(text.find("output:"));
+  const Outcome o =
+      pbf::test::pbf({"run", folder.write("s.yaml", text), "--out", "o", "--quiet"}, folder.path());
+  CHECK(o.code == 0);
+  CHECK(o.err.empty());
+  CHECK(fs::exists(folder / "o/DONE"));
+  CHECK_FALSE(fs::exists(folder / "o/run.h5"));
+  CHECK_FALSE(fs::exists(folder / "o/frames"));
+  CHECK_FALSE(has(o.out, "download"));
+}
+
+TEST_CASE("the last state is written even when it falls between two frames") {
+  const Scratch folder;
+  const std::string scene = folder.write("tiny.yaml", tiny_scene());
+  REQUIRE(pbf::test::pbf({"run", scene, "--out", "o", "--set", "output.every=0.03"}, folder.path())
+              .code == 0);
+  const pbf::RunReader reader((folder / "o/run.h5").string());
+  CHECK(reader.times().size() == 5);  // 0, 0.03, 0.06, 0.09, 0.1
+  CHECK(reader.times().back() == Approx(0.1));
+}
+
+TEST_CASE("--overwrite replaces the files of pbf and leaves everything else") {
+  const Scratch folder;
+  const std::string scene = folder.write("tiny.yaml", tiny_scene());
+  REQUIRE(pbf::test::pbf({"run", scene, "--out", "o"}, folder.path()).code == 0);
+  fs::create_directories(folder / "o/frames/mine");
+  folder.write("o/notes.md", "mine");
+  folder.write("o/frames/frame_000007.png", "stale");
+  folder.write("o/frames/sketch.png", "mine");
+  const Outcome refused = pbf::test::pbf({"run", scene, "--out", "o"}, folder.path());
+  CHECK(refused.code == 2);
+  CHECK(fs::exists(folder / "o/frames/frame_000007.png"));
+  REQUIRE(pbf::test::pbf({"run", scene, "--out", "o/", "--overwrite", "--set", "time.end=0.05"},
+                         folder.path())
+              .code == 0);
+  CHECK(read_text(folder / "o/notes.md") == "mine");
+  CHECK(read_text(folder / "o/frames/sketch.png") == "mine");
+  CHECK(fs::is_directory(folder / "o/frames/mine"));
+  CHECK_FALSE(fs::exists(folder / "o/frames/frame_000007.png"));
+  CHECK(pbf::RunReader((folder / "o/run.h5").string()).times().back() == Approx(0.05));
+}
+
+TEST_CASE("--resume leaves a finished run untouched and starts one that is not there") {
+  const Scratch folder;
+  const std::string scene = folder.write("tiny.yaml", tiny_scene());
+  REQUIRE(pbf::test::pbf({"run", scene, "--out", "o", "--resume"}, folder.path()).code == 0);
+  const auto before = fs::last_write_time(folder / "o/run.h5");
+  const Outcome again = pbf::test::pbf({"run", scene, "--out", "o", "--resume"}, folder.path());
+  CHECK(again.code == 0);
+  CHECK(again.out.empty());
+  CHECK(has(again.err, "finished"));
+  CHECK(fs::last_write_time(folder / "o/run.h5") == before);
+}
+
+namespace {
+
+/// Far too many updates to finish, so that only being stopped ends it.
+std::string endless(const Scratch& folder) {
+  return folder.write("long.yaml", tiny_scene() + "measure_every: 1000000\n");
+}
+const std::vector<std::string> kEndless{"run",       "long.yaml", "--out", "o",
+                                        "--threads", "1",         "--set", "time.end=100000"};
+
+void wait_for(const fs::path& path) {
+  for (int i = 0; i < 500 && !fs::exists(path); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+}
+
+}  // namespace
+
+TEST_CASE("SIGTERM, SIGINT and SIGUSR1 end a run with exit code 75 and a readable file") {
+  for (const int signal : {SIGTERM, SIGINT, SIGUSR1}) {
+    CAPTURE(signal);
+    const Scratch folder;
+    endless(folder);
+    Process run(kEndless, folder.path());
+    wait_for(folder / "o/run.h5");
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    run.send(signal);
+    const Outcome o = run.wait();
+    CAPTURE(o.err);
+    CHECK(o.code == 75);
+    CHECK(has(o.err, "stopped early by SIG"));
+    CHECK_FALSE(fs::exists(folder / "o/DONE"));
+    const pbf::RunReader reader((folder / "o/run.h5").string());
+    CHECK(reader.status() == "stopped");
+    REQUIRE(reader.frames() >= 1);
+    CHECK(reader.frame(reader.frames() - 1).count == 64);
+    CHECK(pbf::test::pbf({"run", "long.yaml", "--out", "o", "--resume"}, folder.path()).code == 2);
+  }
+}
+
+TEST_CASE("--max-walltime ends a run in time with exit code 75") {
+  const Scratch folder;
+  endless(folder);
+  auto args = kEndless;
+  args.insert(args.end(), {"--max-walltime", "0.3"});
+  const Outcome o = pbf::test::pbf(args, folder.path());
+  CHECK(o.code == 75);
+  CHECK(has(o.err, "--max-walltime"));
+  CHECK(pbf::RunReader((folder / "o/run.h5").string()).status() == "stopped");
+}
