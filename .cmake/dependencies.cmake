@@ -1,4 +1,7 @@
 # Kept libraries, from the distribution's packages (tools/setup installs them).
+if(PBF_STATIC)
+  include(${CMAKE_CURRENT_LIST_DIR}/static.cmake)  # before the search for OpenMP
+endif()
 find_package(Threads REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(HDF5 REQUIRED COMPONENTS C)
@@ -13,9 +16,20 @@ else()
   set(PBF_YAML yaml-cpp)
 endif()
 target_link_libraries(pbf_dependencies INTERFACE
-  Threads::Threads OpenMP::OpenMP_CXX hdf5::hdf5 ${PBF_YAML} CLI11::CLI11 Eigen3::Eigen
-  ${CMAKE_DL_LIBS})
+  Threads::Threads OpenMP::OpenMP_CXX CLI11::CLI11 Eigen3::Eigen ${CMAKE_DL_LIBS})
+
+# pbf_link(TARGET ARCHIVE...): links the imported target; with PBF_STATIC its archives by name.
+function(pbf_link target)
+  if(PBF_STATIC)
+    pbf_link_archives(${target} ${ARGN})
+  else()
+    target_link_libraries(pbf_dependencies INTERFACE ${target})
+  endif()
+endfunction()
+
+pbf_link(hdf5::hdf5 hdf5 sz aec z)
+pbf_link(${PBF_YAML} yaml-cpp)
 if(PBF_RENDER)
   find_package(PNG REQUIRED)
-  target_link_libraries(pbf_dependencies INTERFACE PNG::PNG)
+  pbf_link(PNG::PNG png z)
 endif()
