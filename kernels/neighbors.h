@@ -27,17 +27,4 @@ struct ChunkedLists {
   PBF_HD int size(int i) const { return int(count[i]); }
 };
 
-/// Calls hit(j) for every neighbour j of i in ascending order of j within each run.
-template <class Real, class Hit>
-PBF_HD void find_neighbors(int i, const Vec4<Real>* position, const int* cell_start,
-                           const Params<Real>& p, Hit&& hit) {
-  const Vec3<Real> xi = xyz(position[i]);
-  for_each_run(cell_of(xi, p), cell_start, p, [&](int begin, int end) {
-    for (int j = begin; j < end; ++j) {
-      const Vec3<Real> d = xi - xyz(load(position, j));
-      if (dot(d, d) < Real(1) && j != i) hit(j);
-    }
-  });
-}
-
 }  // namespace pbf

@@ -22,14 +22,14 @@ struct Params {
   bool wall_density = true;  ///< walls contribute to density (boundary: density)
   Real wall_scale = 1;       ///< amplitude of that contribution, kernels/README.md (9)
   Real wall_inv_range = 1;   ///< h over the range of that contribution
-  int cells_x = 1, cells_y = 1, cells_z = 1;
-  Real inv_cell = 1;       ///< 1/h, one over the edge of a cell (>= h)
-  Real vol = 1;            ///< m/(rho0 h^3), weight of one particle
-  bool two_sided = false;  ///< C = rho - 1 instead of max(rho - 1, 0)
-  Real relaxation = 0;     ///< eps^ = eps h^2
-  Real step_length = 1;    ///< omega
-  Real tensile_k = 0;      ///< h^2
-  Real tensile_inv_w = 0;  ///< 1/W(delta_q)
+  int cells_x = 1, cells_y = 1, cells_z = 1;  ///< cells_x counts half cells
+  Real inv_cell = 1;                          ///< 1/h, one over the edge of a cell (>= h)
+  Real vol = 1;                               ///< m/(rho0 h^3), weight of one particle
+  bool two_sided = false;                     ///< C = rho - 1 instead of max(rho - 1, 0)
+  Real relaxation = 0;                        ///< eps^ = eps h^2
+  Real step_length = 1;                       ///< omega
+  Real tensile_k = 0;                         ///< h^2
+  Real tensile_scale = 0;                     ///< 1/shape(delta_q)
   int tensile_n = 4;
   Real xsph = 0;       ///< c
   Real vorticity = 0;  ///< 1/s, epsilon

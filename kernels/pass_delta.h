@@ -38,41 +38,58 @@ struct DeltaPass {
   using Other = Vec4<Real>;
   struct Sum {
     Vec3<Real> move;
+    Real coincident = 0;  ///< neighbours in the same place
     template <class F>
     PBF_HD void each(F&& f) {
       each_component(move, f);
+      f(coincident);
     }
   };
   PBF_HD Own own(int i) const { return position[i]; }
   PBF_HD Other other(int j) const { return load(position, j); }
-  PBF_HD void add(Sum& s, const Own& x, const Other& y, int i, int j, bool on) const {
-    Real weight = x.w + y.w;
+  PBF_HD Real weight(const Own& x, const Other& y, Real q2, Real t) const {
+    Real w = x.w + y.w;
+    if constexpr (tensile)
+      w -= p.tensile_k * power(density_shape<Real, S>(q2, t) * p.tensile_scale, p.tensile_n);
+    return w;
+  }
+  PBF_HD void add(Sum& s, const Own& x, const Other& y, int, int, bool on) const {
     if constexpr (!tensile && Lists::skip_inactive) {
-      if (weight == Real(0)) return;  // neither is compressed
+      if (x.w + y.w == Real(0)) return;  // neither is compressed
     }
     const Vec3<Real> d = xyz(x) - xyz(y);
     const Real q2 = pair_q_squared(d, on);
     const Root<Real> root = root_of(q2);
     const Real t = Spiky<Real>::t(root.q);
-    if constexpr (tensile) {
-      const Real w = density_norm<Real, S>() * density_shape<Real, S>(q2, t);
-      weight -= p.tensile_k * power(w * p.tensile_inv_w, p.tensile_n);
-    }
-    const Vec3<Real> e =
-        q2 > coincident_q_squared<Real>() ? root.inverse * d : separation<Real>(i, j);
-    s.move = s.move + (weight * t * t) * e;
+    s.move = s.move + (weight(x, y, q2, t) * t * t * root.inverse) * d;
+    s.coincident += q2 > coincident_q_squared<Real>() ? Real(0) : Real(1);
   }
   PBF_HD void finish(int i, const Own& own, const Sum& s) const {
     const Vec3<Real> x = xyz(own);
+    const Vec3<Real> move = s.coincident > Real(0) ? s.move + separate(i, own) : s.move;
     const Real a = p.vol * Spiky<Real>::gradient_norm;
     const Vec3<Real> wall = own.w * wall_term<Real, S>(x, p).gradient;
-    const Vec3<Real> free = p.step_length * (a * s.move + wall);
+    const Vec3<Real> free = p.step_length * (a * move + wall);
     const Vec3<Real> target = x + free;
     const Vec3<Real> inside = clamp_inside(target, p);
     position_out[i] = with_w(inside, Real(1) / density[i]);
     velocity[i] = with_w(xyz(velocity[i]) + p.inv_dt * (free + (inside - target)), Real(0));
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
+
+  /// The share of the neighbours in the same place, whose zero distance vectors left no direction:
+  /// a loop of its own, so that the pair loop need not choose.
+  PBF_HD Vec3<Real> separate(int i, const Own& own) const {
+    Vec3<Real> sum;
+    lists.for_each(i, [&](int j) {
+      const Other y = load(position, j);
+      const Vec3<Real> d = xyz(own) - xyz(y);
+      const Real q2 = dot(d, d);
+      if (q2 <= coincident_q_squared<Real>())
+        sum = sum + weight(own, y, Real(0), Real(1)) * separation<Real>(i, j);
+    });
+    return sum;
+  }
 };
 
 }  // namespace pbf

@@ -1,4 +1,4 @@
-// predict: v += dt g, x* = x + dt v, and the cell of x*. Macklin & Mueller 2013, algorithm 1, l.
+// predict: v += dt g, x* = x + dt v, and the bin of x*. Macklin & Mueller 2013, algorithm 1, l.
 // 1-4.
 #pragma once
 
@@ -14,7 +14,7 @@ struct PredictPass {
   Params<Real> p;
   Vec4<Real>* position;  ///< in x, out x*; w = 1 (1/density, until a sweep replaces it)
   Vec4<Real>* velocity;  ///< in/out, h/s
-  int* cell;             ///< out
+  int* bin;              ///< out
 
   PBF_HD void operator()(int i) const {
     Vec3<Real> v = p.damping * xyz(velocity[i]) + p.dt * p.gravity;
@@ -24,20 +24,20 @@ struct PredictPass {
     v = v + p.inv_dt * (x - free);
     position[i] = with_w(x, Real(1));
     velocity[i] = with_w(v, Real(0));
-    cell[i] = linear_cell(cell_of(x, p), p);
+    bin[i] = bin_of(x, p);
   }
 };
 
-/// The cell of x as it is: for the state before the first update.
+/// The bin of x as it is: for the state before the first update.
 template <class Real>
 struct BinPass {
   Params<Real> p;
   const Vec4<Real>* position;
-  int* cell;
-  PBF_HD void operator()(int i) const { cell[i] = linear_cell(cell_of(xyz(position[i]), p), p); }
+  int* bin;
+  PBF_HD void operator()(int i) const { bin[i] = bin_of(xyz(position[i]), p); }
 };
 
-/// Gathers the particles in cell order; order[i] is the old place of the new i-th particle.
+/// Gathers the particles in the order of bins; order[i] is the old place of the new i-th particle.
 template <class Real>
 struct GatherPass {
   const int* order;

@@ -48,7 +48,12 @@ template <class Real>
 PBF_HD Root<Real> root_of(Real q_squared) {
   q_squared = max2(q_squared, Real(1e-30));
 #if defined(__CUDA_ARCH__)
-  const Real inverse = rsqrt(q_squared);
+  Real inverse;
+  if constexpr (sizeof(Real) ==
+                4)  // never denormal here: one instruction, without the check for it
+    asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(q_squared));
+  else
+    inverse = rsqrt(q_squared);
   return {q_squared * inverse, inverse};
 #else
   const Real q = square_root(q_squared);

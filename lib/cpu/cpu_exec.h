@@ -62,13 +62,13 @@ class CpuExec {
     return total;
   }
 
-  /// Stable counting sort: order[k] = index of the k-th particle by (cell, index); start[c] = first
-  /// k of cell c, start[cells] = n.
-  void sort_by_cell(const int* cell, int n, int cells, int* order, int* start);
+  /// Stable counting sort: order[k] = index of the k-th particle by (bin, index); start[b] = first
+  /// k of bin b, start[bins] = n.
+  void sort_by_bin(const int* bin, int n, int bins, int* order, int* start);
 
   /// Exact lists of all pairs closer than h; grows as it must (std::bad_alloc when it cannot).
   template <class Real>
-  Lists build_lists(const Vec4<Real>* position, const int* cell_start, const Params<Real>& p) {
+  Lists build_lists(const Vec4<Real>* position, const int* bin_start, const Params<Real>& p) {
     const int chunks = (p.n + kChunk - 1) / kChunk;
     chunks_.resize(std::size_t(chunks));
     pointers_.resize(std::size_t(chunks));
@@ -81,13 +81,13 @@ class CpuExec {
       for (int i = c * kChunk; i < p.n && i < (c + 1) * kChunk; ++i) {
         // Room for every candidate first, so that the loop below only writes and counts.
         std::size_t candidates = 0;
-        for_each_run(cell_of(xyz(position[i]), p), cell_start, p,
+        for_each_run(xyz(position[i]), bin_start, p,
                      [&](int b, int e) { candidates += std::size_t(e - b); });
         if (found.size() < used + candidates) found.resize((used + candidates) * 5 / 4 + 1024);
         int* out = found.data() + used;
         begin_[std::size_t(i)] = std::uint32_t(used);
         const Vec3<Real> xi = xyz(position[i]);
-        for_each_run(cell_of(xi, p), cell_start, p, [&](int b, int e) {
+        for_each_run(xi, bin_start, p, [&](int b, int e) {
           for (int j = b; j < e; ++j) {
             const Vec3<Real> d = xi - xyz(position[j]);
             *out = j;
@@ -118,7 +118,7 @@ class CpuExec {
   std::vector<HostBuffer<int>> chunks_;
   std::vector<const int*> pointers_;
   HostBuffer<std::uint32_t> begin_, count_;
-  std::vector<int> histogram_;  ///< threads x cells
+  std::vector<int> histogram_;  ///< threads x bins
 };
 
 }  // namespace pbf

@@ -28,20 +28,20 @@ void CudaExec::book(double scale) {
   stages_.clear();
 }
 
-void CudaExec::sort_by_cell(const int* cell, int n, int cells, int* order, int* start) {
-  counts_.resize(std::size_t(cells) + 1);
+void CudaExec::sort_by_bin(const int* bin, int n, int bins, int* order, int* start) {
+  counts_.resize(std::size_t(bins) + 1);
   slot_.resize(std::size_t(n));
   PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), stream_));
-  for_each(n, CountPass{cell, counts_.data(), order});
-  // The count behind the last cell is 0, so the scan ends with n.
+  for_each(n, CountPass{bin, counts_.data(), order});
+  // The count behind the last bin is 0, so the scan ends with n.
   std::size_t bytes = 0;
   PBF_CUDA_CHECK(
-      cub::DeviceScan::ExclusiveSum(nullptr, bytes, counts_.data(), start, cells + 1, stream_));
+      cub::DeviceScan::ExclusiveSum(nullptr, bytes, counts_.data(), start, bins + 1, stream_));
   if (scan_.size() < bytes) scan_.resize(bytes);
-  PBF_CUDA_CHECK(cub::DeviceScan::ExclusiveSum(scan_.data(), bytes, counts_.data(), start,
-                                               cells + 1, stream_));
-  for_each(n, PlacePass{cell, start, order, slot_.data()});
-  for_each(n, StablePass{cell, start, slot_.data(), order});
+  PBF_CUDA_CHECK(
+      cub::DeviceScan::ExclusiveSum(scan_.data(), bytes, counts_.data(), start, bins + 1, stream_));
+  for_each(n, PlacePass{bin, start, order, slot_.data()});
+  for_each(n, StablePass{bin, start, slot_.data(), order});
 }
 
 void CudaExec::clear_overflow() {

@@ -1,4 +1,5 @@
-// The CUDA executor: one thread per particle, one stream.
+// The CUDA executor: one stream; a thread per particle, or eight for neighbour sums where there are
+// few particles.
 #pragma once
 
 #include <cub/device/device_scan.cuh>
@@ -7,11 +8,13 @@
 #include "kernels/pass_measure.h"
 #include "lib/base/stage_clock.h"
 #include "lib/cuda/device_buffer.h"
-#include "lib/cuda/transposed_lists.cuh"
+#include "lib/cuda/list_pass.cuh"
 
 namespace pbf {
 
 constexpr int kBlock = 128;
+/// Up to so many particles eight threads share each neighbour sum.
+constexpr int kFew = 60000;
 
 template <class Pass>
 __global__ void __launch_bounds__(kBlock) apply_kernel(int n, Pass pass) {
@@ -32,74 +35,39 @@ __global__ void __launch_bounds__(kBlock) reduce_kernel(int n, Pass pass, Measur
   if (threadIdx.x == 0) out[blockIdx.x] = part[0];
 }
 
-/// The place of a particle among those of its cell, in order of arrival.
+/// The place of a particle among those of its bin, in order of arrival.
 struct CountPass {
-  const int* cell;
+  const int* bin;
   int *count, *arrival;
-  __device__ void operator()(int i) const { arrival[i] = atomicAdd(&count[cell[i]], 1); }
+  __device__ void operator()(int i) const { arrival[i] = atomicAdd(&count[bin[i]], 1); }
 };
 struct PlacePass {
-  const int *cell, *start, *arrival;
+  const int *bin, *start, *arrival;
   int* slot;
-  __device__ void operator()(int i) const { slot[start[cell[i]] + arrival[i]] = i; }
+  __device__ void operator()(int i) const { slot[start[bin[i]] + arrival[i]] = i; }
 };
-/// Orders the particles of a cell by index, which makes the sort stable and the run reproducible:
-/// each one counts those of its cell that come before it.
+/// Orders the particles of a bin by index, which makes the sort stable and the run reproducible:
+/// each one counts those of its bin that come before it.
 struct StablePass {
-  const int *cell, *start, *slot;
+  const int *bin, *start, *slot;
   int* order;
   __device__ void operator()(int k) const {
-    const int i = slot[k], c = cell[i], end = start[c + 1];
+    const int i = slot[k], c = bin[i], end = start[c + 1];
     int place = start[c];
     for (int m = place; m < end; ++m) place += slot[m] < i ? 1 : 0;
     order[place] = i;
   }
 };
 
-/// The sign bit of x as the lowest bit of `mask`, the others one place up.
-__device__ __forceinline__ unsigned push_sign(float x, unsigned mask) {
-  return __funnelshift_l(__float_as_uint(x), mask, 1);
+/// A neighbour sum by several threads per particle.
+template <class Pass>
+__global__ void __launch_bounds__(kBlock) lanes_kernel(int n, Pass pass) {
+  sum_over_neighbors_by_lanes<8>(pass, blockIdx.x * kBlock + threadIdx.x, n);
 }
-__device__ __forceinline__ unsigned push_sign(double x, unsigned mask) {
-  return __funnelshift_l(unsigned(__double2hiint(x)), mask, 1);
-}
-
-/// find_neighbors (kernels/neighbors.h) without a branch per candidate: the hits of up to 32
-/// candidates are collected as bits, then taken out in order.
 template <class Real>
-struct ListPass {
-  Params<Real> p;
-  const Vec4<Real>* position;
-  const int* cell_start;
-  int4* words;
-  int *count, *longest;
-  int stride, capacity;
-  __device__ void operator()(int i) const {
-    WordWriter writer{words + i, stride, capacity};
-    const Vec3<Real> xi = xyz(position[i]);
-    for_each_run(cell_of(xi, p), cell_start, p, [&](int begin, int end) {
-      for (int first = begin; first < end; first += 32) {
-        const int n = min(32, end - first);
-        unsigned hits = 0;
-#pragma unroll 4
-        for (int k = 0; k < n; ++k) {
-          const Vec3<Real> d = xi - xyz(load(position, first + k));
-          hits = push_sign(dot(d, d) - Real(1), hits);
-        }
-        hits <<= 32 - n;  // the first candidate on top
-        if (unsigned(i - first) < unsigned(n)) hits &= ~(0x80000000u >> (i - first));
-        while (hits) {
-          const int k = __clz(int(hits));
-          hits &= ~(0x80000000u >> k);
-          writer(first + k);
-        }
-      }
-    });
-    const int all = writer.finish(p.n);
-    count[i] = all < capacity ? all : capacity;
-    if (all > capacity) atomicMax(longest, all);
-  }
-};
+__global__ void __launch_bounds__(kBlock) lanes_kernel(ListPass<Real> pass) {
+  pass.by_lanes(blockIdx.x * kBlock + threadIdx.x);
+}
 
 class CudaExec {
  public:
@@ -146,6 +114,13 @@ class CudaExec {
   template <class Pass>
   void for_each(int n, const Pass& pass) {
     if (n == 0) return;
+    if constexpr (requires { typename Pass::Sum; }) {
+      if (n <= kFew) {
+        lanes_kernel<<<(8 * n + kBlock - 1) / kBlock, kBlock, 0, stream_>>>(n, pass);
+        PBF_CUDA_CHECK(cudaGetLastError());
+        return;
+      }
+    }
     apply_kernel<<<(n + kBlock - 1) / kBlock, kBlock, 0, stream_>>>(n, pass);
     PBF_CUDA_CHECK(cudaGetLastError());
   }
@@ -166,15 +141,21 @@ class CudaExec {
   }
 
   /// Stable counting sort (see CpuExec).
-  void sort_by_cell(const int* cell, int n, int cells, int* order, int* start);
+  void sort_by_bin(const int* bin, int n, int bins, int* order, int* start);
 
   template <class Real>
-  Lists build_lists(const Vec4<Real>* position, const int* cell_start, const Params<Real>& p) {
+  Lists build_lists(const Vec4<Real>* position, const int* bin_start, const Params<Real>& p) {
     const int stride = (p.n + 31) / 32 * 32;
     words_.resize(std::size_t(stride) * std::size_t(capacity_ / 4));
     count_.resize(std::size_t(p.n));
-    for_each(p.n, ListPass<Real>{p, position, cell_start, words_.data(), count_.data(),
-                                 longest_.data(), stride, capacity_});
+    const ListPass<Real> pass{
+        p, position, bin_start, words_.data(), count_.data(), longest_.data(), stride, capacity_};
+    if (p.n <= kFew) {
+      lanes_kernel<<<(8 * p.n + kBlock - 1) / kBlock, kBlock, 0, stream_>>>(pass);
+      PBF_CUDA_CHECK(cudaGetLastError());
+    } else {
+      for_each(p.n, pass);
+    }
     return {words_.data(), count_.data(), stride};
   }
 

@@ -22,7 +22,7 @@ void refuse_if_too_large(const Scene& s, const Plan& plan, int capacity) {
   const double cells = double(plan.cells[0]) * plan.cells[1] * plan.cells[2];
   const double state = (4 * 4 + 1) * real + 6 * 4 + 4 * capacity + (plan.vorticity ? 4 * real : 0);
   const double saved = 2 * 4 * real + 4, staging = s.output ? 7 * 8 : 0;
-  const double bytes = n * (state + saved + staging) + 9 * cells;
+  const double bytes = n * (state + saved + staging) + 9 * 4 * cells;
   std::size_t free = 0, total = 0;
   PBF_CUDA_CHECK(cudaMemGetInfo(&free, &total));
   if (bytes > double(free))

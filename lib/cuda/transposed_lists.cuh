@@ -2,7 +2,7 @@
 // entries[4 (k stride + i)], so the lanes of a warp read adjacent 16-byte words.
 #pragma once
 
-#include "kernels/neighbors.h"
+#include "kernels/pair_sum.h"
 
 namespace pbf {
 
@@ -14,11 +14,12 @@ struct TransposedLists {
   const int* count = nullptr;  ///< neighbours stored for each particle
   int stride = 0;              ///< words between word k and k + 1 of one particle
 
+  /// f(j) for every neighbour j of i, or for the share of one of `lanes` threads.
   template <class F>
-  __device__ __forceinline__ void for_each(int i, F&& f) const {
+  __device__ __forceinline__ void for_each(int i, F&& f, int lane = 0, int lanes = 1) const {
     const int n = (count[i] + 3) >> 2;
-    const int4* w = words + i;
-    for (int k = 0; k < n; ++k, w += stride) {
+    const int4* w = words + i + std::size_t(lane) * stride;
+    for (int k = lane; k < n; k += lanes, w += std::size_t(lanes) * stride) {
       const int4 j = __ldg(w);
       f(j.x);
       f(j.y);
@@ -29,27 +30,24 @@ struct TransposedLists {
   __device__ __forceinline__ int size(int i) const { return count[i]; }
 };
 
-/// Packs neighbours four at a time in registers and writes whole words.
-struct WordWriter {
-  int4* out;
-  int stride, capacity, found = 0;
-  int4 word{0, 0, 0, 0};
-
-  __device__ __forceinline__ void operator()(int j) {
-    word = {word.y, word.z, word.w, j};
-    ++found;
-    if ((found & 3) == 0 && found <= capacity) {
-      *out = word;
-      out += stride;
-    }
+/// Several threads share the neighbours of one particle: for few particles, where a pass waits for
+/// memory rather than for arithmetic. Their sums are added in a tree of fixed shape.
+template <int lanes, class Pass>
+__device__ __forceinline__ void sum_over_neighbors_by_lanes(const Pass& pass, int thread, int n) {
+  const int i = thread / lanes, lane = thread % lanes;
+  const bool valid = i < n;  // every lane of the warp takes part in the shuffles
+  typename Pass::Own own{};
+  typename Pass::Sum sum{};
+  if (valid) {
+    own = pass.own(i);
+    pass.lists.for_each(
+        i, [&](int j) { pass.add(sum, own, pass.other(j), i, j, true); }, lane, lanes);
   }
-  /// Fills up the last word with `far`; returns the number of neighbours.
-  __device__ __forceinline__ int finish(int far) {
-    const int all = found;
-    if (all < capacity)
-      while (found & 3) (*this)(far);
-    return all;
-  }
-};
+  sum.each([](auto& x) {
+#pragma unroll
+    for (int half = lanes / 2; half > 0; half /= 2) x += __shfl_xor_sync(0xffffffffu, x, half);
+  });
+  if (valid && lane == 0) pass.finish(i, own, sum);
+}
 
 }  // namespace pbf

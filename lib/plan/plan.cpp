@@ -12,21 +12,21 @@ namespace {
 /// Cells of one h where their number is in proportion to the particles, else larger ones: a nearly
 /// empty box must not cost more memory than its fluid.
 void plan_grid(Plan& plan, const Scene& s) {
-  double box[3], volume = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    box[k] = (s.domain.max[k] - s.domain.min[k]) / s.h();
-    volume *= std::floor(box[k]) + 1;
-  }
-  const double limit = std::min(8 * double(plan.particles) + 65536, 1e9);
+  double box[3];
+  for (std::size_t k = 0; k < 3; ++k) box[k] = (s.domain.max[k] - s.domain.min[k]) / s.h();
+  const auto number = [&](double edge) {
+    return (std::floor(2 * box[0] / edge) + 1) / 2 * (std::floor(box[1] / edge) + 1) *
+           (std::floor(box[2] / edge) + 1);
+  };
+  const double limit = std::min(double(plan.particles) + 65536, 2e8);
   plan.cell_edge = 1;
-  while (volume > limit) {
-    plan.cell_edge *= std::max(1.01, std::cbrt(volume / limit));
-    volume = 1;
-    for (double b : box) volume *= std::floor(b / plan.cell_edge) + 1;
+  while (number(plan.cell_edge) > limit) {
+    plan.cell_edge *= std::max(1.01, std::cbrt(number(plan.cell_edge) / limit));
     if (!std::isfinite(plan.cell_edge))
       throw Error(ExitCode::bad_input, "domain: too large for its smoothing length");
   }
-  for (int k = 0; k < 3; ++k) plan.cells[k] = int(box[k] / plan.cell_edge) + 1;
+  plan.cells[0] = int(2 * box[0] / plan.cell_edge) + 1;
+  for (int k = 1; k < 3; ++k) plan.cells[k] = int(box[k] / plan.cell_edge) + 1;
 }
 
 void plan_passes(Plan& plan, const Scene& s) {
@@ -35,10 +35,10 @@ void plan_passes(Plan& plan, const Scene& s) {
                  int times = 1) {
     plan.passes.push_back({name, stage, reads, writes, times});
   };
-  add("predict", "predict", "position velocity", "position velocity cell");
-  add("sort", "grid", "cell", "order cell_start");
+  add("predict", "predict", "position velocity", "position velocity bin");
+  add("sort", "grid", "bin", "order bin_start");
   add("gather", "grid", "order position velocity id", "position' velocity' id'");
-  add("lists", "neighbors", "position cell_start", "lists");
+  add("lists", "neighbors", "position bin_start", "lists");
   if (k > 0 && !plan.fused) add("density", "density", "position lists", "density", k);
   if (k > 0) {
     add(plan.fused ? "density+lambda" : "lambda", "lambda",
@@ -65,14 +65,14 @@ void plan_arrays(Plan& plan, const Scene& s) {
   for (const char* name : {"position", "position'", "velocity", "velocity'"})
     add(name, "4 x " + real, 4 * r);
   add("density", real, r);
-  for (const char* name : {"id", "id'", "cell", "order"}) add(name, "int32", 4);
+  for (const char* name : {"id", "id'", "bin", "order"}) add(name, "int32", 4);
   if (plan.vorticity) add("curl", "4 x " + real, 4 * r);
   // At rest the unit ball holds (4/3) pi (h/d)^3 particles; the lists keep 12.5 % of air.
   const double neighbors = 4.0 / 3.0 * 3.14159265358979 * std::pow(s.fluid.smoothing_ratio, 3) - 1;
   add("lists (at rest density)", "int32", 4 * neighbors * 1.125 + 8);
-  const std::int64_t cells = std::int64_t(plan.cells[0]) * plan.cells[1] * plan.cells[2];
-  plan.arrays.push_back({"cell_start", "int32", 0, 4 * (cells + 1)});
-  plan.arrays.push_back({"cell histogram (per thread)", "int32", 0, 4 * cells});
+  const std::int64_t bins = std::int64_t(plan.cells[0]) * plan.cells[1] * plan.cells[2] * 4;
+  plan.arrays.push_back({"bin_start", "int32", 0, 4 * (bins + 1)});
+  plan.arrays.push_back({"bin histogram (per thread)", "int32", 0, 4 * bins});
 }
 
 void plan_left_out(Plan& plan, const Scene& s) {

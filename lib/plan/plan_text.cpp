@@ -43,7 +43,7 @@ std::string plan_text(const Plan& plan, const Scene& s) {
                            static_cast<long long>(plan.particles), s.h(), s.fluid.spacing,
                            s.backend == Backend::cuda ? "cuda" : "cpu",
                            s.precision == Precision::dbl ? "double" : "float");
-  out += format("grid %d x %d x %d cells of edge %g h\n", plan.cells[0], plan.cells[1],
+  out += format("grid %d (half) x %d x %d cells of edge %g h\n", plan.cells[0], plan.cells[1],
                 plan.cells[2], plan.cell_edge);
   out += "passes of one update\n";
   for (const auto& p : plan.passes)

@@ -38,9 +38,9 @@ Params<Real> make_params(const Scene& s, const Plan& plan) {
   if (s.tensile) {
     p.tensile_k = Real(s.tensile->k);
     const double q = s.tensile->delta_q, t = 1 - q;
-    p.tensile_inv_w = Real(1 / (s.solver.kernels == KernelMode::paper
-                                    ? Poly6<double>::norm * Poly6<double>::shape(q * q)
-                                    : Spiky<double>::norm * t * t * t));
+    // The norms cancel in W(q)/W(delta_q).
+    p.tensile_scale =
+        Real(1 / (s.solver.kernels == KernelMode::paper ? Poly6<double>::shape(q * q) : t * t * t));
     p.tensile_n = s.tensile->n;
   }
   if (s.viscosity) p.xsph = Real(s.viscosity->xsph);

@@ -1,5 +1,5 @@
 // The step, written once, over an executor. An executor supplies: Lists (the neighbour policy),
-// Buffer<T>, for_each(n, pass), sort_by_cell, build_lists, reduce, to_host, and mark(stage).
+// Buffer<T>, for_each(n, pass), sort_by_bin, build_lists, reduce, to_host, and mark(stage).
 #pragma once
 
 #include <type_traits>
@@ -51,9 +51,9 @@ class Stepper {
     // Executors whose lists are padded read one particle more, infinitely far away for any kernel.
     const std::size_t padded = n + Exec::padding;
     for (auto* b : {&position_, &other_position_, &velocity_, &other_velocity_}) b->resize(padded);
-    for (auto* b : {&id_, &other_id_, &cell_, &order_}) b->resize(n);
+    for (auto* b : {&id_, &other_id_, &bin_, &order_}) b->resize(n);
     density_.resize(n);
-    cell_start_.resize(std::size_t(cells()) + 1);
+    bin_start_.resize(std::size_t(bin_count(p_)) + 1);
     if (p_.vorticity > Real(0)) curl_.resize(padded);
     if (Exec::padding) {
       const Vec4<Real> far{Real(1e9), Real(1e9), Real(1e9), Real(1)}, zero{0, 0, 0, 0};
@@ -64,7 +64,7 @@ class Stepper {
     exec_.to_device(position.data(), n, position_.data());
     exec_.to_device(velocity.data(), n, velocity_.data());
     exec_.to_device(id.data(), n, id_.data());
-    exec_.for_each(p_.n, BinPass<Real>{p_, position_.data(), cell_.data()});
+    exec_.for_each(p_.n, BinPass<Real>{p_, position_.data(), bin_.data()});
     sort_and_list();
     sum_density();
   }
@@ -72,7 +72,7 @@ class Stepper {
   /// One update (kernels/README.md, "The step").
   void step() {
     exec_.begin();
-    exec_.for_each(p_.n, PredictPass<Real>{p_, position_.data(), velocity_.data(), cell_.data()});
+    exec_.for_each(p_.n, PredictPass<Real>{p_, position_.data(), velocity_.data(), bin_.data()});
     exec_.mark("predict");
     sort_and_list();
     with_smoothing(mode_, [&](auto s) {
@@ -130,7 +130,7 @@ class Stepper {
 
   /// New lists at the present positions, after the executor has been given more room for them.
   void relist() {
-    lists_ = exec_.build_lists(position_.data(), cell_start_.data(), p_);
+    lists_ = exec_.build_lists(position_.data(), bin_start_.data(), p_);
     density_is_current_ = false;
     sum_density();
   }
@@ -160,16 +160,14 @@ class Stepper {
 
   std::size_t bytes() const {
     return position_.bytes() + other_position_.bytes() + velocity_.bytes() +
-           other_velocity_.bytes() + id_.bytes() + other_id_.bytes() + cell_.bytes() +
-           order_.bytes() + density_.bytes() + cell_start_.bytes() + curl_.bytes() +
+           other_velocity_.bytes() + id_.bytes() + other_id_.bytes() + bin_.bytes() +
+           order_.bytes() + density_.bytes() + bin_start_.bytes() + curl_.bytes() +
            exec_.list_bytes();
   }
 
  private:
-  int cells() const { return p_.cells_x * p_.cells_y * p_.cells_z; }
-
   void sort_and_list() {
-    exec_.sort_by_cell(cell_.data(), p_.n, cells(), order_.data(), cell_start_.data());
+    exec_.sort_by_bin(bin_.data(), p_.n, bin_count(p_), order_.data(), bin_start_.data());
     exec_.for_each(
         p_.n, GatherPass<Real>{order_.data(), position_.data(), velocity_.data(), id_.data(),
                                other_position_.data(), other_velocity_.data(), other_id_.data()});
@@ -177,7 +175,7 @@ class Stepper {
     std::swap(velocity_, other_velocity_);
     std::swap(id_, other_id_);
     exec_.mark("grid");
-    lists_ = exec_.build_lists(position_.data(), cell_start_.data(), p_);
+    lists_ = exec_.build_lists(position_.data(), bin_start_.data(), p_);
     exec_.mark("neighbors");
   }
 
@@ -220,7 +218,7 @@ class Stepper {
   Lists lists_{};
   Buffer<Vec4<Real>> position_, other_position_, velocity_, other_velocity_, curl_;
   Buffer<Real> density_;
-  Buffer<int> id_, other_id_, cell_, order_, cell_start_;
+  Buffer<int> id_, other_id_, bin_, order_, bin_start_;
 };
 
 }  // namespace pbf

@@ -119,6 +119,24 @@ TEST_CASE("10 updates move every particle as the CPU in double does, to the prec
   CHECK(worst < (is_double() ? 1e-10 : 1e-3));
 }
 
+TEST_CASE("5 updates of 64000 particles, more than share threads on a device, follow the CPU too") {
+  Case c = here(jittered_block(40, 40, 40, 0.2, 0.2));
+  everything_on(c.scene);
+  auto a = make(c);
+  c.scene.backend = pbf::Backend::cpu;
+  c.scene.precision = pbf::Precision::dbl;
+  auto b = make(c);
+  a->step(5);
+  b->step(5);
+  const auto x = positions(*a), y = positions(*b);
+  double worst = 0;
+  for (std::size_t k = 0; k < x.size(); ++k)
+    worst = std::max(worst, std::fabs(x[k] - y[k]) / c.scene.h());
+  CHECK(worst < (is_double() ? 1e-10 : 1e-3));
+  const auto m = a->measure(), r = b->measure();
+  CHECK(m.neighbors_mean == Approx(r.neighbors_mean).epsilon(is_double() ? 1e-12 : 1e-4));
+}
+
 TEST_CASE("two runs of one scene give the same bytes") {
   Case c = here(jittered_block(16, 16, 16, 0.3, 0.4));
   everything_on(c.scene);

@@ -17,14 +17,13 @@ void check_lists(std::vector<Vec4<Real>> x, Vec3<Real> box, int nx, int ny, int 
   Params<Real> p;
   p.n = int(x.size());
   p.box = box;
-  p.cells_x = nx;
+  p.cells_x = 2 * nx;
   p.cells_y = ny;
   p.cells_z = nz;
   CpuExec exec(threads);
-  std::vector<int> cell(x.size()), order(x.size()), start(std::size_t(nx * ny * nz) + 1);
-  for (int i = 0; i < p.n; ++i)
-    cell[std::size_t(i)] = linear_cell(cell_of(xyz(x[std::size_t(i)]), p), p);
-  exec.sort_by_cell(cell.data(), p.n, nx * ny * nz, order.data(), start.data());
+  std::vector<int> cell(x.size()), order(x.size()), start(std::size_t(bin_count(p)) + 1);
+  for (int i = 0; i < p.n; ++i) cell[std::size_t(i)] = bin_of(xyz(x[std::size_t(i)]), p);
+  exec.sort_by_bin(cell.data(), p.n, bin_count(p), order.data(), start.data());
 
   std::vector<Vec4<Real>> sorted(x.size());
   for (std::size_t k = 0; k < x.size(); ++k) {
@@ -32,7 +31,7 @@ void check_lists(std::vector<Vec4<Real>> x, Vec3<Real> box, int nx, int ny, int 
     if (k > 0) {
       const auto a = std::make_pair(cell[std::size_t(order[k - 1])], order[k - 1]);
       const auto b = std::make_pair(cell[std::size_t(order[k])], order[k]);
-      REQUIRE(a < b);  // by cell, and stable within a cell
+      REQUIRE(a < b);  // by bin, and stable within a bin
     }
   }
   const auto lists = exec.build_lists(sorted.data(), start.data(), p);
@@ -114,7 +113,7 @@ TEST_CASE("more than 16384 particles are sorted the same way by 1, 2 and 5 threa
   for (int threads : {1, 2, 5}) {
     CpuExec exec(threads);
     std::vector<int> order(n);
-    exec.sort_by_cell(cell.data(), n, cells, order.data(), start.data());
+    exec.sort_by_bin(cell.data(), n, cells, order.data(), start.data());
     CHECK(order == expected);
     CHECK(start[cells] == n);
   }
