@@ -61,12 +61,12 @@ class RunReader {
   explicit RunReader(const std::string& path);
   ~RunReader();
   std::int64_t frames() const;
-  std::vector<double> times() const;                ///< s
-  std::vector<std::string> fields() const;          ///< without position and id
+  std::vector<double> times() const;        ///< s
+  std::vector<std::string> fields() const;  ///< without position and id
   /// Frame k (0-based) with all its fields, "position" first; Error(bad_input) when out of range.
   Snapshot frame(std::int64_t k) const;
   RunInfo info() const;
-  std::string status() const;                       ///< running, finished, stopped, diverged
+  std::string status() const;  ///< running, finished, stopped, diverged
   /// One column of the log ("compression_mean", "stage/lambda", ...); empty when not there.
   std::vector<double> log_column(const std::string& name) const;
   std::vector<std::string> log_columns() const;
