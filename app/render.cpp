@@ -37,8 +37,8 @@ int command_render(const RenderOptions& options) {
   Log log(false);
   const View view = view_of(scene, info.particles);
   Renderer renderer(view);
-  log.note(format("%zu pictures of %dx%d with %s", frames.size(), view.size[0], view.size[1],
-                  renderer.backend().c_str()));
+  log.note(format("%zu picture%s of %dx%d with %s", frames.size(), frames.size() == 1 ? "" : "s",
+                  view.size[0], view.size[1], renderer.backend().c_str()));
   for (const std::int64_t k : frames) {
     Stopwatch watch;
     const Snapshot snapshot = reader.frame(k);

@@ -83,6 +83,9 @@ std::string run_summary(const RunTotals& t) {
       t.loop > 0 ? si_number(double(t.particles) * double(t.updates) / t.loop).c_str() : "0",
       100 * t.last.compression_mean, 100 * t.last.compression_max, 100 * t.compression_max,
       energy(t.last), t.last.kinetic_energy, energy(t.first), bytes_text(peak_memory()).c_str());
+  if (t.last.non_finite > 0)
+    out += format("not finite          %lld particles at the end, left out of the figures above\n",
+                  static_cast<long long>(t.last.non_finite));
   out += stage_table(t) + group_table(t);
   out += "files in            " + t.folder;
   if (t.frames > 0)

@@ -157,6 +157,38 @@ TEST_CASE("SIGTERM, SIGINT and SIGUSR1 end a run with exit code 75 and a readabl
   }
 }
 
+TEST_CASE("a second signal ends a run at once") {
+  const Scratch folder;
+  // One update takes many seconds, so the first signal is still waiting for it.
+  folder.write("slow.yaml", tiny_scene("solver: {iterations: 100000}\n"));
+  Process run({"run", "slow.yaml", "--out", "o", "--threads", "1", "--set", "fluid.spacing=0.02"},
+              folder.path());
+  wait_for(folder / "o/run.h5");
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  run.send(SIGTERM);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  run.send(SIGTERM);
+  CHECK(run.wait().code == 128 + SIGTERM);
+}
+
+TEST_CASE("a run that diverges exits 3, names update and count, and keeps what it has") {
+  const Scratch folder;
+  // Falls out of an open floor until the square of its speed overflows a float.
+  const std::string scene = folder.write("tiny.yaml", tiny_scene("measure_every: 5\n"));
+  const Outcome o = pbf::test::pbf(
+      {"run", scene, "--out", "o", "--set", "domain.open=[z_min]", "--set", "gravity=[0, 0, -1e12]",
+       "--set", "time.step=1e6", "--set", "time.end=1e9", "--set", "output.every=1e8"},
+      folder.path());
+  CAPTURE(o.err);
+  CHECK(o.code == 3);
+  for (const char* part : {"diverged", "update 5,", "64 particles", "time.step", "iterations"})
+    CHECK(has(o.err, part));
+  CHECK(has(o.out, "not finite          64"));
+  CHECK_FALSE(fs::exists(folder / "o/DONE"));
+  CHECK(has(read_text(folder / "o/log.txt"), "pbf: error: the run diverged"));
+  CHECK(pbf::RunReader((folder / "o/run.h5").string()).status() == "diverged");
+}
+
 TEST_CASE("--max-walltime ends a run in time with exit code 75") {
   const Scratch folder;
   endless(folder);
