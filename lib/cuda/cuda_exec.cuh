@@ -69,6 +69,13 @@ __global__ void __launch_bounds__(kBlock) lanes_kernel(ListPass<Real> pass) {
   pass.by_lanes(blockIdx.x * kBlock + threadIdx.x);
 }
 
+/// The whole stable counting sort in one block, for few particles and bins: `bins` counters in
+/// shared memory. `order` holds the arrivals in between.
+__global__ void small_sort_kernel(const int* bin, int n, int bins, int* order, int* slot,
+                                  int* start);
+constexpr int kSortThreads = 1024;
+constexpr int kSortParticles = 16384, kSortBins = 48 * 1024;
+
 class CudaExec {
  public:
   using Lists = TransposedLists;

@@ -140,11 +140,13 @@ class CudaSolver final : public Solver {
       --left;
     }
     since_profile_ -= batch;
-    for (; left >= 2; left -= 2) {
-      if (!graph_[parity_]) capture();
-      PBF_CUDA_CHECK(cudaGraphLaunch(graph_[parity_], exec_.stream()));
-      stepper_->replayed();
-    }
+    for (const int size : {0, 1})
+      for (; left >= kGraphUpdates[size]; left -= kGraphUpdates[size]) {
+        cudaGraphExec_t& graph = graph_[size][parity_];
+        if (!graph) capture(graph, kGraphUpdates[size]);
+        PBF_CUDA_CHECK(cudaGraphLaunch(graph, exec_.stream()));
+        stepper_->replayed();
+      }
     if (left) direct_step();
   }
 
@@ -153,23 +155,24 @@ class CudaSolver final : public Solver {
     parity_ ^= 1;
   }
 
-  /// Buffers trade places in an update, so a graph that can be replayed holds two of them, and
-  /// there is one for either way round.
-  void capture() {
+  /// Buffers trade places in an update, so a graph that can be replayed holds an even number of
+  /// them, and there is one for either way round. The long one spares the gap between graphs.
+  static constexpr int kGraphUpdates[2] = {16, 2};
+  void capture(cudaGraphExec_t& out, int updates) {
     cudaGraph_t graph = nullptr;
     PBF_CUDA_CHECK(cudaStreamBeginCapture(exec_.stream(), cudaStreamCaptureModeThreadLocal));
-    stepper_->step();
-    stepper_->step();
+    for (int k = 0; k < updates; ++k) stepper_->step();
     PBF_CUDA_CHECK(cudaStreamEndCapture(exec_.stream(), &graph));
-    const cudaError_t made = cudaGraphInstantiate(&graph_[parity_], graph, 0);
+    const cudaError_t made = cudaGraphInstantiate(&out, graph, 0);
     cudaGraphDestroy(graph);
     PBF_CUDA_CHECK(made);
   }
   void drop_graphs() {
-    for (cudaGraphExec_t& g : graph_) {
-      if (g) cudaGraphExecDestroy(g);
-      g = nullptr;
-    }
+    for (auto& size : graph_)
+      for (cudaGraphExec_t& g : size) {
+        if (g) cudaGraphExecDestroy(g);
+        g = nullptr;
+      }
   }
 
   bool grow_if_needed() {
@@ -209,7 +212,7 @@ class CudaSolver final : public Solver {
   CudaExec exec_;
   std::unique_ptr<Stepper<Real, CudaExec>> stepper_;
   typename Stepper<Real, CudaExec>::Saved saved_;
-  cudaGraphExec_t graph_[2] = {nullptr, nullptr};
+  cudaGraphExec_t graph_[2][2] = {};  ///< by size and parity
   int parity_ = 0;
   cudaStream_t copy_stream_ = nullptr;
   cudaEvent_t exported_ = nullptr;

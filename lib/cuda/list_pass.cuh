@@ -69,23 +69,17 @@ struct ListPass {
     finish(i, all);
   }
 
-  /// Eight threads make it: one or two rows of candidates each, counted first, then written in
-  /// order. For few particles.
+  /// Eight threads make it: a row of candidates each (the last one two), counted first, then
+  /// written in order. For few particles.
   __device__ void by_lanes(int thread) const {
     const int i = thread / 8, lane = thread % 8;
     const bool valid = i < p.n;
     const Vec3<Real> xi = xyz(position[valid ? i : 0]);
-    int run = 0, mine = 0;
-    const auto for_my_runs = [&](auto&& f) {
-      run = 0;
-      if (valid)
-        for_each_run(xi, bin_start, p, [&](int begin, int end) {
-          if (min(run++, 7) == lane) f(begin, end);
-        });
-    };
-    for_my_runs([&](int begin, int end) {
-      scan(i, xi, begin, end, [&](int, unsigned bits) { mine += __popc(bits); });
-    });
+    const Cell c = cell_of(xi, p);
+    Row a = row_of(c, valid ? lane : 9), b = row_of(c, valid && lane == 7 ? 8 : 9);
+    count_row(i, xi, a);
+    count_row(i, xi, b);
+    const int mine = a.found + b.found;
     int place = mine;  // inclusive prefix over the eight, then exclusive
 #pragma unroll
     for (int d = 1; d < 8; d *= 2) {
@@ -94,26 +88,51 @@ struct ListPass {
     }
     const int all = __shfl_sync(0xffffffffu, place, 7, 8);
     place -= mine;
-    int* entries = reinterpret_cast<int*>(words);
-    const auto put = [&](int at, int j) {
-      if (at < capacity)
-        entries[4 * (std::size_t(at >> 2) * stride + std::size_t(i)) + std::size_t(at & 3)] = j;
-    };
-    for_my_runs([&](int begin, int end) {
-      scan(i, xi, begin, end, [&](int first, unsigned bits) {
-        while (bits) {
-          const int k = __clz(int(bits));
-          bits &= ~(0x80000000u >> k);
-          put(place++, first + k);
-        }
-      });
-    });
+    place = write_row(i, xi, a, place);
+    write_row(i, xi, b, place);
     if (!valid || lane != 7) return;
-    for (int at = all; at & 3; ++at) put(at, p.n);
+    for (int at = all; at & 3; ++at) put(i, at, p.n);
     finish(i, all);
   }
 
  private:
+  /// One of the nine rows around a cell (for_each_run's order), and its hits where they fit a word.
+  struct Row {
+    int begin = 0, end = 0, found = 0;
+    unsigned bits = 0;
+  };
+  __device__ __forceinline__ Row row_of(Cell c, int r) const {
+    const int y = c.y + r % 3 - 1, z = c.z + r / 3 - 1;
+    if (r >= 9 || y < 0 || z < 0 || y >= p.cells_y || z >= p.cells_z) return {};
+    const int row = (z * p.cells_y + y) * p.cells_x;
+    return {bin_start[(row + max(c.x - 2, 0)) * kBinsPerCell],
+            bin_start[(row + min(c.x + 2, p.cells_x - 1) + 1) * kBinsPerCell]};
+  }
+  __device__ __forceinline__ void count_row(int i, Vec3<Real> xi, Row& r) const {
+    scan(i, xi, r.begin, r.end, [&](int, unsigned bits) {
+      r.found += __popc(bits);
+      r.bits = bits;
+    });
+  }
+  __device__ __forceinline__ int write_bits(int i, int first, unsigned bits, int place) const {
+    while (bits) {
+      const int k = __clz(int(bits));
+      bits &= ~(0x80000000u >> k);
+      put(i, place++, first + k);
+    }
+    return place;
+  }
+  __device__ __forceinline__ int write_row(int i, Vec3<Real> xi, const Row& r, int place) const {
+    if (r.end - r.begin <= 32) return write_bits(i, r.begin, r.bits, place);
+    scan(i, xi, r.begin, r.end,
+         [&](int first, unsigned bits) { place = write_bits(i, first, bits, place); });
+    return place;
+  }
+  __device__ __forceinline__ void put(int i, int at, int j) const {
+    if (at < capacity)
+      reinterpret_cast<int*>(
+          words)[4 * (std::size_t(at >> 2) * stride + std::size_t(i)) + std::size_t(at & 3)] = j;
+  }
   __device__ __forceinline__ void finish(int i, int all) const {
     count[i] = all < capacity ? all : capacity;
     if (all > capacity) atomicMax(longest, all);

@@ -86,7 +86,7 @@ TEST_CASE("the last state is written even when it falls between two frames") {
   CHECK(reader.times().back() == Approx(0.1));
 }
 
-TEST_CASE("--overwrite replaces the files of pbf and leaves everything else") {
+TEST_CASE("option --overwrite replaces the files of pbf and leaves everything else") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());
   REQUIRE(pbf::test::pbf({"run", scene, "--out", "o"}, folder.path()).code == 0);
@@ -107,7 +107,7 @@ TEST_CASE("--overwrite replaces the files of pbf and leaves everything else") {
   CHECK(pbf::RunReader((folder / "o/run.h5").string()).times().back() == Approx(0.05));
 }
 
-TEST_CASE("--resume leaves a finished run untouched and starts one that is not there") {
+TEST_CASE("option --resume leaves a finished run untouched and starts one that is not there") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());
   REQUIRE(pbf::test::pbf({"run", scene, "--out", "o", "--resume"}, folder.path()).code == 0);
@@ -189,7 +189,7 @@ TEST_CASE("a run that diverges exits 3, names update and count, and keeps what i
   CHECK(pbf::RunReader((folder / "o/run.h5").string()).status() == "diverged");
 }
 
-TEST_CASE("--max-walltime ends a run in time with exit code 75") {
+TEST_CASE("option --max-walltime ends a run in time with exit code 75") {
   const Scratch folder;
   endless(folder);
   auto args = kEndless;

@@ -4,7 +4,7 @@
 
 namespace pbf::scene_test {
 
-TEST_CASE("--set: replaces and creates values, the last one wins") {
+TEST_CASE("option --set: replaces and creates values, the last one wins") {
   const Scene s = parse(kMinimal + "solver: {iterations: 2}\n",
                         {"solver.iterations=8", "solver.iterations=9", "gravity=[0, -9.8, 0]",
                          "name=x", "fluid.mass=0.5", "threads=3"});
@@ -15,7 +15,7 @@ TEST_CASE("--set: replaces and creates values, the last one wins") {
   CHECK(s.threads == 3);
 }
 
-TEST_CASE("--set: bodies are named by index, in two spellings") {
+TEST_CASE("option --set: bodies are named by index, in two spellings") {
   const std::string text = with_bodies(
       "[{shape: block, min: [0, 0, 0], max: [1, 1, 0.5]}, "
       "{shape: random_box, min: [0, 0, 0.5], max: [1, 1, 1], count: 5}]");
@@ -26,7 +26,7 @@ TEST_CASE("--set: bodies are named by index, in two spellings") {
         1);
 }
 
-TEST_CASE("--set: makes and removes optional blocks") {
+TEST_CASE("option --set: makes and removes optional blocks") {
   CHECK_FALSE(parse(kMinimal).viscosity);
   CHECK(parse(kMinimal, {"viscosity.xsph=0.2"}).viscosity->xsph == 0.2);
   CHECK(parse(kMinimal, {"render.camera.fov=50"}).render->camera.fov == 50);
@@ -36,7 +36,7 @@ TEST_CASE("--set: makes and removes optional blocks") {
     CHECK_FALSE(parse(kMinimal + "viscosity: {xsph: 0.1}\n", {off}).viscosity);
 }
 
-TEST_CASE("--set: may supply what the file lacks") {
+TEST_CASE("option --set: may supply what the file lacks") {
   const Scene expected = parse(kMinimal + "name: x\n");
   CHECK(parse("name: x\n",
               {"domain={min: [0, 0, 0], max: [1, 1, 1]}", "fluid.spacing=0.1", "time.step=0.01",
@@ -44,7 +44,7 @@ TEST_CASE("--set: may supply what the file lacks") {
         expected);
 }
 
-TEST_CASE("--set: what is wrong is reported with the argument as its place") {
+TEST_CASE("option --set: what is wrong is reported with the argument as its place") {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"solver.iterations=x",
        "2 --set solver.iterations=x: solver.iterations: expected a whole number, got \"x\""},
