@@ -1,7 +1,4 @@
 # Kept libraries, from the distribution's packages (tools/setup installs them).
-if(PBF_STATIC)
-  include(${CMAKE_CURRENT_LIST_DIR}/static.cmake)  # before the search for OpenMP
-endif()
 find_package(Threads REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(HDF5 REQUIRED COMPONENTS C)
@@ -16,8 +13,11 @@ else()
   set(PBF_YAML yaml-cpp)
 endif()
 target_link_libraries(pbf_dependencies INTERFACE
-  Threads::Threads OpenMP::OpenMP_CXX CLI11::CLI11 Eigen3::Eigen ${CMAKE_DL_LIBS})
+  Threads::Threads CLI11::CLI11 Eigen3::Eigen ${CMAKE_DL_LIBS})
 
+if(PBF_STATIC)
+  include(${CMAKE_CURRENT_LIST_DIR}/static.cmake)
+endif()
 # pbf_link(TARGET ARCHIVE...): links the imported target; with PBF_STATIC its archives by name.
 function(pbf_link target)
   if(PBF_STATIC)
@@ -27,6 +27,7 @@ function(pbf_link target)
   endif()
 endfunction()
 
+pbf_link(OpenMP::OpenMP_CXX gomp)
 pbf_link(hdf5::hdf5 hdf5 sz aec z)
 pbf_link(${PBF_YAML} yaml-cpp)
 if(PBF_RENDER)

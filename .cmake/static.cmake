@@ -1,7 +1,7 @@
 # PBF_STATIC, for tools/bundle: everything but glibc goes into the executables, by the names of the
 # archives. The imported targets name shared libraries, and HDF5's also names curl and crypto: only
 # its S3 driver needs these (H5FDros3.o, H5FDs3comms.o), which no other object of the archive refers
-# to, so that the link leaves them out. Should another HDF5 refer to them, the link fails and says so.
+# to, so that the link leaves them out. With an HDF5 that refers to them the link fails and says so.
 # CUDA's runtime is static in every build. What is opened at run time (GL, the driver) stays so.
 if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   message(FATAL_ERROR "PBF_STATIC=ON is written for g++ and its libgomp, not for "
@@ -22,8 +22,10 @@ function(pbf_find_archive var name)
   set(${var} ${PBF_ARCHIVE_${name}} PARENT_SCOPE)
 endfunction()
 
-# pbf_link_archives(TARGET NAME...): the headers of the imported target, the archives libNAME.a.
+# pbf_link_archives(TARGET NAME...): compiles as the imported target asks, links libNAME.a.
 function(pbf_link_archives target)
+  target_compile_options(pbf_dependencies INTERFACE
+    $<TARGET_PROPERTY:${target},INTERFACE_COMPILE_OPTIONS>)
   target_include_directories(pbf_dependencies SYSTEM INTERFACE
     $<TARGET_PROPERTY:${target},INTERFACE_INCLUDE_DIRECTORIES>)
   foreach(name IN LISTS ARGN)
@@ -32,7 +34,6 @@ function(pbf_link_archives target)
   endforeach()
 endfunction()
 
-pbf_find_archive(OpenMP_gomp_LIBRARY gomp)  # FindOpenMP takes it instead of searching
 # Nothing of the archives is exported: a library that is opened later keeps its own libstdc++.
 add_link_options(-static-libstdc++ -static-libgcc LINKER:--exclude-libs,ALL)
 # Messages name sources from the root of the repository, wherever the bundle was built.
