@@ -37,19 +37,17 @@ struct BinPass {
   PBF_HD void operator()(int i) const { bin[i] = bin_of(xyz(position[i]), p); }
 };
 
-/// Gathers the particles in the order of bins; order[i] is the old place of the new i-th particle.
+/// Puts the particles in the order of bins.
 template <class Real>
 struct GatherPass {
-  const int* order;
   const Vec4<Real>*position, *velocity;
   const int* id;
   Vec4<Real>*position_out, *velocity_out;
   int* id_out;
-  PBF_HD void operator()(int i) const {
-    const int o = order[i];
-    position_out[i] = position[o];
-    velocity_out[i] = velocity[o];
-    id_out[i] = id[o];
+  PBF_HD void operator()(int from, int to) const {
+    position_out[to] = position[from];
+    velocity_out[to] = velocity[from];
+    id_out[to] = id[from];
   }
 };
 

@@ -4,7 +4,7 @@
 
 namespace pbf {
 
-void CpuExec::sort_by_bin(const int* bin, int n, int bins, int* order, int* start) {
+void CpuExec::sort(const int* bin, int n, int bins, int* order, int* start) {
   // Every thread counts and places its own contiguous share of the particles, in order: stable.
   // At most 4: each has a histogram of its own, and the sort is a small part of an update.
   const int threads = n > 16384 ? std::min(threads_, 4) : 1;

@@ -2,6 +2,22 @@
 
 namespace pbf {
 
+CudaExec::CudaExec(int capacity) : capacity_(capacity) {
+  int device = 0, major = 0;
+  PBF_CUDA_CHECK(cudaGetDevice(&device));
+  PBF_CUDA_CHECK(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device));
+  overlap_ = major >= 9;
+  PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
+  longest_.resize(1);
+  longest_host_.resize(1);
+  clear_overflow();
+}
+
+CudaExec::~CudaExec() {
+  for (cudaEvent_t e : events_) cudaEventDestroy(e);
+  if (stream_) cudaStreamDestroy(stream_);
+}
+
 void CudaExec::begin() {
   if (!profiling_) return;
   stages_.clear();
@@ -29,13 +45,14 @@ void CudaExec::book(double scale) {
 }
 
 __global__ void __launch_bounds__(kSortThreads)
-    small_sort_kernel(const int* bin, int n, int bins, int* order, int* slot, int* start) {
+    small_sort_kernel(const int* bin, int n, int bins, int* arrival, int* slot, int* start) {
+  wait_for_previous();
   extern __shared__ int count[];  // bins
   __shared__ int warp_sum[32];
   const int t = threadIdx.x;
   for (int b = t; b < bins; b += kSortThreads) count[b] = 0;
   __syncthreads();
-  for (int i = t; i < n; i += kSortThreads) order[i] = atomicAdd(&count[bin[i]], 1);
+  for (int i = t; i < n; i += kSortThreads) arrival[i] = atomicAdd(&count[bin[i]], 1);
   __syncthreads();
   // Exclusive scan: a run of bins per thread (an odd number, against bank conflicts), then the
   // threads' sums within warps, then the warps'.
@@ -68,39 +85,16 @@ __global__ void __launch_bounds__(kSortThreads)
   }
   if (t == 0) start[bins] = n;
   __syncthreads();
-  for (int i = t; i < n; i += kSortThreads) slot[count[bin[i]] + order[i]] = i;
-  __syncthreads();
-  for (int k = t; k < n; k += kSortThreads) {
-    const int i = slot[k], b = bin[i], end = b + 1 < bins ? count[b + 1] : n;
-    int place = count[b];
-    for (int m = place; m < end; ++m) place += slot[m] < i ? 1 : 0;
-    order[place] = i;
-  }
+  for (int i = t; i < n; i += kSortThreads) slot[count[bin[i]] + arrival[i]] = i;
 }
 
-void CudaExec::sort_by_bin(const int* bin, int n, int bins, int* order, int* start) {
-  counts_.resize(std::size_t(bins) + 1);
-  slot_.resize(std::size_t(n));
-  if (n <= kSortParticles && bins <= kSortBins) {
-    const int bytes = bins * int(sizeof(int));
-    PBF_CUDA_CHECK(cudaFuncSetAttribute(small_sort_kernel,
-                                        cudaFuncAttributeMaxDynamicSharedMemorySize, bytes));
-    small_sort_kernel<<<1, kSortThreads, std::size_t(bytes), stream_>>>(bin, n, bins, order,
-                                                                        slot_.data(), start);
-    PBF_CUDA_CHECK(cudaGetLastError());
-    return;
-  }
-  PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), stream_));
-  for_each(n, CountPass{bin, counts_.data(), order});
-  // The count behind the last bin is 0, so the scan ends with n.
+void CudaExec::scan(int n, int* start) {
+  // The count behind the last bin is 0, so the scan ends with the number of particles.
   std::size_t bytes = 0;
-  PBF_CUDA_CHECK(
-      cub::DeviceScan::ExclusiveSum(nullptr, bytes, counts_.data(), start, bins + 1, stream_));
+  PBF_CUDA_CHECK(cub::DeviceScan::ExclusiveSum(nullptr, bytes, counts_.data(), start, n, stream_));
   if (scan_.size() < bytes) scan_.resize(bytes);
   PBF_CUDA_CHECK(
-      cub::DeviceScan::ExclusiveSum(scan_.data(), bytes, counts_.data(), start, bins + 1, stream_));
-  for_each(n, PlacePass{bin, start, order, slot_.data()});
-  for_each(n, StablePass{bin, start, slot_.data(), order});
+      cub::DeviceScan::ExclusiveSum(scan_.data(), bytes, counts_.data(), start, n, stream_));
 }
 
 void CudaExec::clear_overflow() {

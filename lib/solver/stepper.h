@@ -64,17 +64,14 @@ class Stepper {
     exec_.to_device(position.data(), n, position_.data());
     exec_.to_device(velocity.data(), n, velocity_.data());
     exec_.to_device(id.data(), n, id_.data());
-    exec_.for_each(p_.n, BinPass<Real>{p_, position_.data(), bin_.data()});
-    sort_and_list();
+    reorder("grid", BinPass<Real>{p_, position_.data(), bin_.data()});
     sum_density();
   }
 
   /// One update (kernels/README.md, "The step").
   void step() {
     exec_.begin();
-    exec_.for_each(p_.n, PredictPass<Real>{p_, position_.data(), velocity_.data(), bin_.data()});
-    exec_.mark("predict");
-    sort_and_list();
+    reorder("predict", PredictPass<Real>{p_, position_.data(), velocity_.data(), bin_.data()});
     with_smoothing(mode_, [&](auto s) {
       for (int k = 0; k < iterations_; ++k) sweep<decltype(s)::value>();
       if (p_.xsph > Real(0)) {
@@ -166,11 +163,14 @@ class Stepper {
   }
 
  private:
-  void sort_and_list() {
-    exec_.sort_by_bin(bin_.data(), p_.n, bin_count(p_), order_.data(), bin_start_.data());
-    exec_.for_each(
-        p_.n, GatherPass<Real>{order_.data(), position_.data(), velocity_.data(), id_.data(),
-                               other_position_.data(), other_velocity_.data(), other_id_.data()});
+  /// Runs the pass that gives every particle its bin, sorts and gathers the particles by bin, makes
+  /// the lists.
+  template <class First>
+  void reorder(const char* stage, const First& first) {
+    exec_.sort_by_bin(
+        stage, first, p_.n, bin_count(p_), order_.data(), bin_start_.data(),
+        GatherPass<Real>{position_.data(), velocity_.data(), id_.data(), other_position_.data(),
+                         other_velocity_.data(), other_id_.data()});
     std::swap(position_, other_position_);
     std::swap(velocity_, other_velocity_);
     std::swap(id_, other_id_);

@@ -23,7 +23,7 @@ void check_lists(std::vector<Vec4<Real>> x, Vec3<Real> box, int nx, int ny, int 
   CpuExec exec(threads);
   std::vector<int> cell(x.size()), order(x.size()), start(std::size_t(bin_count(p)) + 1);
   for (int i = 0; i < p.n; ++i) cell[std::size_t(i)] = bin_of(xyz(x[std::size_t(i)]), p);
-  exec.sort_by_bin(cell.data(), p.n, bin_count(p), order.data(), start.data());
+  exec.sort(cell.data(), p.n, bin_count(p), order.data(), start.data());
 
   std::vector<Vec4<Real>> sorted(x.size());
   for (std::size_t k = 0; k < x.size(); ++k) {
@@ -113,7 +113,7 @@ TEST_CASE("more than 16384 particles are sorted the same way by 1, 2 and 5 threa
   for (int threads : {1, 2, 5}) {
     CpuExec exec(threads);
     std::vector<int> order(n);
-    exec.sort_by_bin(cell.data(), n, cells, order.data(), start.data());
+    exec.sort(cell.data(), n, cells, order.data(), start.data());
     CHECK(order == expected);
     CHECK(start[cells] == n);
   }
