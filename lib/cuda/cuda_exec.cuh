@@ -15,6 +15,8 @@ namespace pbf {
 constexpr int kBlock = 128;
 /// Up to so many particles eight threads share each neighbour sum.
 constexpr int kFew = 60000;
+/// ... and up to so many sixteen.
+constexpr int kVeryFew = 4000;
 
 /// First statement of every kernel: it is set up while the kernel before it ends, and waits here
 /// until that one is done (programmatic dependent launch, from sm_90 on). An explicit early trigger
@@ -78,10 +80,10 @@ struct StablePass {
 };
 
 /// A neighbour sum by several threads per particle.
-template <class Pass>
+template <int lanes, class Pass>
 __global__ void __launch_bounds__(kBlock) lanes_kernel(int n, Pass pass) {
   wait_for_previous();
-  sum_over_neighbors_by_lanes<8>(pass, blockIdx.x * kBlock + threadIdx.x, n);
+  sum_over_neighbors_by_lanes<lanes>(pass, blockIdx.x * kBlock + threadIdx.x, n);
 }
 template <class Real>
 __global__ void __launch_bounds__(kBlock) list_lanes_kernel(ListPass<Real> pass) {
@@ -132,7 +134,8 @@ class CudaExec {
   template <class Pass>
   void for_each(int n, const Pass& pass) {
     if constexpr (requires { typename Pass::Sum; }) {
-      if (n <= kFew) return launch(lanes_kernel<Pass>, 8 * n, kBlock, 0, n, pass);
+      if (n <= kVeryFew) return launch(lanes_kernel<16, Pass>, 16 * n, kBlock, 0, n, pass);
+      if (n <= kFew) return launch(lanes_kernel<8, Pass>, 8 * n, kBlock, 0, n, pass);
     }
     launch(apply_kernel<Pass>, n, kBlock, 0, n, pass);
   }

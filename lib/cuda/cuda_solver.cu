@@ -9,7 +9,7 @@ namespace pbf {
 namespace {
 
 /// Updates after which the host looks whether a list outgrew its room (and waits for the device).
-int batch_of(int n) { return n < 100000 ? 64 : 16; }
+int batch_of(int n) { return n < 500000 ? 64 : 16; }
 
 /// Room for the lists at first: the densest rest packing of the scene's h/d and a third more.
 int capacity_of(const Scene& s) {
@@ -127,16 +127,16 @@ class CudaSolver final : public Solver {
 
  private:
   /// One update in a while is timed stage by stage, outside the graph; it stands for the others.
-  static constexpr int kProfileEvery = 64;
+  int profile_every() const { return n_ < 100000 ? 256 : 64; }
 
   void run(int batch) {
     int left = batch;
     if (since_profile_ <= 0) {
       exec_.set_profiling(true);
       direct_step();
-      exec_.book(kProfileEvery);
+      exec_.book(profile_every());
       exec_.set_profiling(false);
-      since_profile_ = kProfileEvery;
+      since_profile_ = profile_every();
       --left;
     }
     since_profile_ -= batch;
