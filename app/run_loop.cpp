@@ -64,6 +64,7 @@ RunEnd RunLoop::run() {
     const Stopwatch watch;
     solver_.step(static_cast<int>(n));
     per_update = watch.seconds() / double(n);
+    hand_over();  // what was being copied while the updates ran
     u += n;
     if (schedule_.measures(u)) measure();
     if (!diverged_) outputs(u, false);
@@ -116,8 +117,20 @@ void RunLoop::outputs(std::int64_t u, bool last) {
 #endif
   if (!write && !draw) return;
   const bool wide = scene_.output && scene_.output->precision == Precision::dbl;
-  Snapshot snapshot = solver_.download(fields_, wide ? ScalarType::f64 : ScalarType::f32);
+  hand_over();
+  solver_.start_download(fields_, wide ? ScalarType::f64 : ScalarType::f32);
+  under_way_ = {true, write, draw};
+  if (write) last_frame_ = u;
+  if (last || diverged_) hand_over();
+}
+
+void RunLoop::hand_over() {
+  if (!under_way_.active) return;
+  const bool write = under_way_.write, draw = under_way_.draw;
+  under_way_ = {};
+  Snapshot snapshot = solver_.finish_download();
   clock_.begin();
+  (void)draw;  // without pictures
 #ifdef PBF_HAS_RENDER
   if (draw) {
     sinks_.pictures->draw(snapshot, pictures_++);
@@ -128,12 +141,12 @@ void RunLoop::outputs(std::int64_t u, bool last) {
     for (const std::string& name : extra_)
       std::erase_if(snapshot.fields, [&](const FieldArray& f) { return f.name == name; });
     sinks_.writer->write(std::move(snapshot));
-    last_frame_ = u;
     clock_.mark("write");
   }
 }
 
 void RunLoop::close(RunEnd end) {
+  hand_over();
   clock_.begin();
 #ifdef PBF_HAS_RENDER
   if (sinks_.pictures) {

@@ -48,6 +48,9 @@ class RunLoop {
 
  private:
   void outputs(std::int64_t update, bool last);
+  /// Gives the snapshot that is being copied from the solver, if any, to the writer and the
+  /// pictures.
+  void hand_over();
   void measure();
   bool must_stop();
   std::vector<StageTime> stages() const;
@@ -71,6 +74,11 @@ class RunLoop {
   double compression_max_ = 0, loop_seconds_ = 0, render_thread_ = 0;
   std::int64_t frames_ = 0, pictures_ = 0, bytes_ = 0, last_frame_ = -1, last_measure_ = -1;
   bool diverged_ = false;
+  /// A download that was started and is finished after the next updates: on a device the copy
+  /// runs beside them.
+  struct {
+    bool active = false, write = false, draw = false;
+  } under_way_;
   std::string stop_reason_;
 };
 

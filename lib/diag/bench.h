@@ -39,7 +39,8 @@ std::string bench_scene_yaml();
 /// and the time step with sqrt(h), so that dt sqrt(g/h) stays. `dir` anchors file bodies.
 Scene scaled_to(const Scene& scene, std::int64_t n, const std::string& dir);
 
-/// Runs the scene: one row for the first updates, one for the state after the warm-up.
+/// Runs the scene: one row for the first updates, one for the state after the warm-up (none with a
+/// warm-up of 0).
 std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const BenchSettings& s);
 
 }  // namespace pbf
