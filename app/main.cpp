@@ -128,7 +128,8 @@ void add_bench(CLI::App& app, BenchOptions& o, Command& command) {
   c->add_option("--json", o.json, "Write the table to this file, as a JSON array");
   c->footer(
       "Two lines per case: from the first updates on (start), and after the warm-up (late).\n"
-      "Stage times on cuda are those of one update in 64 to 256, timed by device events.\n"
+      "Stage times on cuda are those of one update in 64 to 1024, timed by\n"
+      "device events, and share the time of all.\n"
       "Example:\n"
       "  pbf bench --n 10000,100000 --backend cpu --threads 1,2 --precision float,double \\\n"
       "      --csv bench.csv");

@@ -44,50 +44,6 @@ void CudaExec::book(double scale) {
   stages_.clear();
 }
 
-__global__ void __launch_bounds__(kSortThreads)
-    small_sort_kernel(const int* bin, int n, int bins, int* arrival, int* slot, int* start) {
-  wait_for_previous();
-  extern __shared__ int count[];  // bins
-  __shared__ int warp_sum[32];
-  const int t = threadIdx.x;
-  for (int b = t; b < bins; b += kSortThreads) count[b] = 0;
-  __syncthreads();
-  for (int i = t; i < n; i += kSortThreads) arrival[i] = atomicAdd(&count[bin[i]], 1);
-  __syncthreads();
-  // Exclusive scan: a run of bins per thread (an odd number, against bank conflicts), then the
-  // threads' sums within warps, then the warps'.
-  const int run = ((bins + kSortThreads - 1) / kSortThreads) | 1;
-  const int first = min(t * run, bins), last = min(first + run, bins);
-  int sum = 0;
-  for (int b = first; b < last; ++b) sum += count[b];
-  int before = sum;
-  for (int d = 1; d < 32; d *= 2) {
-    const int other = __shfl_up_sync(0xffffffffu, before, d);
-    if (t % 32 >= d) before += other;
-  }
-  if (t % 32 == 31) warp_sum[t / 32] = before;
-  __syncthreads();
-  if (t < 32) {
-    const int mine = warp_sum[t];
-    int all = mine;
-    for (int d = 1; d < 32; d *= 2) {
-      const int other = __shfl_up_sync(0xffffffffu, all, d);
-      if (t >= d) all += other;
-    }
-    warp_sum[t] = all - mine;
-  }
-  __syncthreads();
-  before += warp_sum[t / 32] - sum;
-  for (int b = first; b < last; ++b) {
-    const int mine = count[b];
-    count[b] = start[b] = before;
-    before += mine;
-  }
-  if (t == 0) start[bins] = n;
-  __syncthreads();
-  for (int i = t; i < n; i += kSortThreads) slot[count[bin[i]] + arrival[i]] = i;
-}
-
 void CudaExec::scan(int n, int* start) {
   // The count behind the last bin is 0, so the scan ends with the number of particles.
   std::size_t bytes = 0;

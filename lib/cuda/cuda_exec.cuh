@@ -1,5 +1,5 @@
-// The CUDA executor: one stream; a thread per particle, or eight for neighbour sums where there are
-// few particles.
+// The CUDA executor: one stream; a thread per particle, or several for a neighbour sum where there
+// are few particles.
 #pragma once
 
 #include <cub/device/device_scan.cuh>
@@ -13,10 +13,9 @@
 namespace pbf {
 
 constexpr int kBlock = 128;
-/// Up to so many particles eight threads share each neighbour sum.
-constexpr int kFew = 60000;
-/// ... and up to so many sixteen.
-constexpr int kVeryFew = 4000;
+/// How many threads share a neighbour sum, by number of particles, and up to which number eight
+/// share the making of a list: measured on an H200 (kernels/PERFORMANCE.md).
+constexpr int kSixteenLanes = 4000, kEightLanes = 12000, kFourLanes = 40000, kTwoLanes = 100000;
 
 /// First statement of every kernel: it is set up while the kernel before it ends, and waits here
 /// until that one is done (programmatic dependent launch, from sm_90 on). An explicit early trigger
@@ -94,8 +93,55 @@ __global__ void __launch_bounds__(kBlock) list_lanes_kernel(ListPass<Real> pass)
 /// Up to so many particles and bins one block sorts them, with the counters in 48 KiB of shared
 /// memory, which every device has.
 constexpr int kSortThreads = 1024, kSortParticles = 3000, kSortBins = 12 * 1024;
-__global__ void small_sort_kernel(const int* bin, int n, int bins, int* arrival, int* slot,
-                                  int* start);
+/// Runs `first` (see CountPass) as well.
+template <class First>
+__global__ void __launch_bounds__(kSortThreads)
+    small_sort_kernel(First first_pass, int n, int bins, int* arrival, int* slot, int* start) {
+  wait_for_previous();
+  extern __shared__ int count[];  // bins
+  __shared__ int warp_sum[32];
+  const int t = threadIdx.x;
+  const int* bin = first_pass.bin;
+  for (int b = t; b < bins; b += kSortThreads) count[b] = 0;
+  __syncthreads();
+  for (int i = t; i < n; i += kSortThreads) {
+    first_pass(i);
+    arrival[i] = atomicAdd(&count[bin[i]], 1);
+  }
+  __syncthreads();
+  // Exclusive scan: a run of bins per thread (an odd number, against bank conflicts), then the
+  // threads' sums within warps, then the warps'.
+  const int run = ((bins + kSortThreads - 1) / kSortThreads) | 1;
+  const int first = min(t * run, bins), last = min(first + run, bins);
+  int sum = 0;
+  for (int b = first; b < last; ++b) sum += count[b];
+  int before = sum;
+  for (int d = 1; d < 32; d *= 2) {
+    const int other = __shfl_up_sync(0xffffffffu, before, d);
+    if (t % 32 >= d) before += other;
+  }
+  if (t % 32 == 31) warp_sum[t / 32] = before;
+  __syncthreads();
+  if (t < 32) {
+    const int mine = warp_sum[t];
+    int all = mine;
+    for (int d = 1; d < 32; d *= 2) {
+      const int other = __shfl_up_sync(0xffffffffu, all, d);
+      if (t >= d) all += other;
+    }
+    warp_sum[t] = all - mine;
+  }
+  __syncthreads();
+  before += warp_sum[t / 32] - sum;
+  for (int b = first; b < last; ++b) {
+    const int mine = count[b];
+    count[b] = start[b] = before;
+    before += mine;
+  }
+  if (t == 0) start[bins] = n;
+  __syncthreads();
+  for (int i = t; i < n; i += kSortThreads) slot[count[bin[i]] + arrival[i]] = i;
+}
 
 class CudaExec {
  public:
@@ -134,8 +180,10 @@ class CudaExec {
   template <class Pass>
   void for_each(int n, const Pass& pass) {
     if constexpr (requires { typename Pass::Sum; }) {
-      if (n <= kVeryFew) return launch(lanes_kernel<16, Pass>, 16 * n, kBlock, 0, n, pass);
-      if (n <= kFew) return launch(lanes_kernel<8, Pass>, 8 * n, kBlock, 0, n, pass);
+      if (n <= kSixteenLanes) return launch(lanes_kernel<16, Pass>, 16 * n, kBlock, 0, n, pass);
+      if (n <= kEightLanes) return launch(lanes_kernel<8, Pass>, 8 * n, kBlock, 0, n, pass);
+      if (n <= kFourLanes) return launch(lanes_kernel<4, Pass>, 4 * n, kBlock, 0, n, pass);
+      if (n <= kTwoLanes) return launch(lanes_kernel<2, Pass>, 2 * n, kBlock, 0, n, pass);
     }
     launch(apply_kernel<Pass>, n, kBlock, 0, n, pass);
   }
@@ -161,10 +209,8 @@ class CudaExec {
     counts_.resize(std::size_t(bins) + 1);
     slot_.resize(std::size_t(n));
     if (n <= kSortParticles && bins <= kSortBins) {
-      for_each(n, first);
-      mark(stage);
-      launch(small_sort_kernel, kSortThreads, kSortThreads, std::size_t(bins) * sizeof(int),
-             first.bin, n, bins, order, slot_.data(), start);
+      launch(small_sort_kernel<First>, kSortThreads, kSortThreads, std::size_t(bins) * sizeof(int),
+             first, n, bins, order, slot_.data(), start);
     } else {
       PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), stream_));
       for_each(n, CountPass<First>{first, counts_.data(), order});
@@ -182,7 +228,7 @@ class CudaExec {
     count_.resize(std::size_t(p.n));
     const ListPass<Real> pass{
         p, position, bin_start, words_.data(), count_.data(), longest_.data(), stride, capacity_};
-    if (p.n <= kFew)
+    if (p.n <= kFourLanes)
       launch(list_lanes_kernel<Real>, 8 * p.n, kBlock, 0, pass);
     else
       for_each(p.n, pass);

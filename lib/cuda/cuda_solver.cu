@@ -9,7 +9,7 @@ namespace pbf {
 namespace {
 
 /// Updates after which the host looks whether a list outgrew its room (and waits for the device).
-int batch_of(int n) { return n < 500000 ? 64 : 16; }
+int batch_of(int n) { return n < 20000 ? 256 : n < 500000 ? 64 : 16; }
 
 /// Room for the lists at first: the densest rest packing of the scene's h/d and a third more.
 int capacity_of(const Scene& s) {
@@ -52,6 +52,7 @@ class CudaSolver final : public Solver {
   }
 
   void step(int updates) override {
+    const Stopwatch watch;
     while (updates > 0) {
       const int batch = std::min(updates, batch_of(n_));
       stepper_->save(saved_);
@@ -65,6 +66,7 @@ class CudaSolver final : public Solver {
       updates_ += batch;
       updates -= batch;
     }
+    step_seconds_ += watch.seconds();
   }
 
   Snapshot download(const std::vector<std::string>& fields, ScalarType type) override {
@@ -101,7 +103,12 @@ class CudaSolver final : public Solver {
 
   std::vector<StageTime> timings() const override {
     std::vector<StageTime> out{{"init", init_seconds_, 1}};
-    for (const auto& e : exec_.clock().entries()) out.push_back({e.name, e.seconds, e.calls});
+    // The stages of the sampled updates, which run without the graph and so take longer, share the
+    // time that all updates took.
+    double sampled = 0;
+    for (const auto& e : exec_.clock().entries()) sampled += e.seconds;
+    for (const auto& e : exec_.clock().entries())
+      out.push_back({e.name, e.seconds * (step_seconds_ / sampled), e.calls});
     return out;
   }
 
@@ -127,7 +134,7 @@ class CudaSolver final : public Solver {
 
  private:
   /// One update in a while is timed stage by stage, outside the graph; it stands for the others.
-  int profile_every() const { return n_ < 100000 ? 256 : 64; }
+  int profile_every() const { return n_ < 100000 ? 1024 : 64; }
 
   void run(int batch) {
     int left = batch;
@@ -140,7 +147,7 @@ class CudaSolver final : public Solver {
       --left;
     }
     since_profile_ -= batch;
-    for (const int size : {0, 1})
+    for (const int size : {0, 1, 2})
       for (; left >= kGraphUpdates[size]; left -= kGraphUpdates[size]) {
         cudaGraphExec_t& graph = graph_[size][parity_];
         if (!graph) capture(graph, kGraphUpdates[size]);
@@ -156,8 +163,8 @@ class CudaSolver final : public Solver {
   }
 
   /// Buffers trade places in an update, so a graph that can be replayed holds an even number of
-  /// them, and there is one for either way round. The long one spares the gap between graphs.
-  static constexpr int kGraphUpdates[2] = {16, 2};
+  /// them, and there is one for either way round. Long ones spare the gaps between graphs.
+  static constexpr int kGraphUpdates[3] = {64, 8, 2};
   void capture(cudaGraphExec_t& out, int updates) {
     cudaGraph_t graph = nullptr;
     PBF_CUDA_CHECK(cudaStreamBeginCapture(exec_.stream(), cudaStreamCaptureModeThreadLocal));
@@ -178,7 +185,8 @@ class CudaSolver final : public Solver {
   bool grow_if_needed() {
     const int longest = exec_.overflow();
     if (longest <= exec_.capacity()) return false;
-    exec_.set_capacity((longest + longest / 8 + 7) / 8 * 8);
+    // Air for what may come; little where it would cost gigabytes.
+    exec_.set_capacity((longest + (n_ < 10000000 ? longest / 8 : 0) + 7) / 8 * 8);
     exec_.clear_overflow();
     return true;
   }
@@ -212,14 +220,14 @@ class CudaSolver final : public Solver {
   CudaExec exec_;
   std::unique_ptr<Stepper<Real, CudaExec>> stepper_;
   typename Stepper<Real, CudaExec>::Saved saved_;
-  cudaGraphExec_t graph_[2][2] = {};  ///< by size and parity
+  cudaGraphExec_t graph_[3][2] = {};  ///< by size and parity
   int parity_ = 0;
   cudaStream_t copy_stream_ = nullptr;
   cudaEvent_t exported_ = nullptr;
   DeviceBuffer<char> staging_;
   PinnedBuffer<char> staging_host_;
   Snapshot pending_;
-  double init_seconds_ = 0;
+  double init_seconds_ = 0, step_seconds_ = 0;
   std::int64_t updates_ = 0;
   int since_profile_ = 0;
   int repeats_ = 0;

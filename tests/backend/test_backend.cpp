@@ -119,8 +119,10 @@ TEST_CASE("10 updates move every particle as the CPU in double does, to the prec
   CHECK(worst < (is_double() ? 1e-10 : 1e-3));
 }
 
-TEST_CASE("5 updates of 64000 particles, more than share threads on a device, follow the CPU too") {
-  Case c = here(jittered_block(40, 40, 40, 0.2, 0.2));
+TEST_CASE("5 updates of 10648, 29791, 64000 and 125000 particles follow the CPU too") {
+  // A device shares neighbour sums among 8, 4, 2 and 1 threads at these sizes, 16 at smaller ones.
+  const int edge = GENERATE(22, 31, 40, 50);
+  Case c = here(jittered_block(edge, edge, edge, 0.2, 0.2));
   everything_on(c.scene);
   auto a = make(c);
   c.scene.backend = pbf::Backend::cpu;
@@ -129,10 +131,16 @@ TEST_CASE("5 updates of 64000 particles, more than share threads on a device, fo
   a->step(5);
   b->step(5);
   const auto x = positions(*a), y = positions(*b);
-  double worst = 0;
-  for (std::size_t k = 0; k < x.size(); ++k)
-    worst = std::max(worst, std::fabs(x[k] - y[k]) / c.scene.h());
-  CHECK(worst < (is_double() ? 1e-10 : 1e-3));
+  double worst = 0, squares = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double e = std::fabs(x[k] - y[k]) / c.scene.h();
+    worst = std::max(worst, e);
+    squares += e * e;
+  }
+  // In float the worst of up to 375000 coordinates is one of a particle thrown off the surface:
+  // 1.4e-3 on either backend.
+  CHECK(std::sqrt(squares / double(x.size())) < (is_double() ? 1e-12 : 1e-5));
+  CHECK(worst < (is_double() ? 1e-10 : 5e-3));
   const auto m = a->measure(), r = b->measure();
   CHECK(m.neighbors_mean == Approx(r.neighbors_mean).epsilon(is_double() ? 1e-12 : 1e-4));
 }
