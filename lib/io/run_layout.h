@@ -27,4 +27,24 @@ struct LogColumn {
 /// All columns but the stages, in the order of their creation.
 const std::vector<LogColumn>& log_columns();
 
+/// f(attribute name, text) for every text of a RunInfo (const or not): one list for both
+/// directions.
+template <class Info, class F>
+void for_each_text(Info& info, F&& f) {
+  f("scene_path", info.scene_path);
+  f("scene_text", info.scene_text);
+  f("resolved_scene", info.resolved_scene);
+  f("program_version", info.program_version);
+  f("commit", info.commit);
+  f("compiler", info.compiler);
+  f("build_flags", info.build_flags);
+  f("host", info.host);
+  f("started", info.started);
+  f("plan", info.plan);
+  f("backend", info.solver.backend);
+  f("precision", info.solver.precision);
+  f("device", info.solver.device);
+  f("driver", info.solver.driver);
+}
+
 }  // namespace pbf::run_layout

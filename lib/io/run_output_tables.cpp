@@ -46,24 +46,10 @@ void RunOutput::create_steps() {
 }
 
 void RunOutput::write_info(const RunInfo& info) {
-  const std::pair<const char*, const std::string*> texts[] = {
-      {"scene_path", &info.scene_path},
-      {"scene_text", &info.scene_text},
-      {"resolved_scene", &info.resolved_scene},
-      {"program_version", &info.program_version},
-      {"commit", &info.commit},
-      {"compiler", &info.compiler},
-      {"build_flags", &info.build_flags},
-      {"host", &info.host},
-      {"started", &info.started},
-      {"plan", &info.plan},
-      {"backend", &info.solver.backend},
-      {"precision", &info.solver.precision},
-      {"device", &info.solver.device},
-      {"driver", &info.solver.driver}};
   h5::write_text(pbf_, "status", "running");
   h5::write_numbers(pbf_, "format_version", &run_layout::format_version);
-  for (const auto& [name, text] : texts) h5::write_text(pbf_, name, *text);
+  run_layout::for_each_text(
+      info, [&](const char* name, const std::string& text) { h5::write_text(pbf_, name, text); });
   h5::write_texts(pbf_, "overrides", info.overrides);
   const std::int64_t threads = info.solver.threads;
   const std::uint64_t bytes = info.solver.bytes;

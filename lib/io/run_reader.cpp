@@ -77,21 +77,8 @@ void read_quantity(hid_t pbf, const char* name, double* out, std::size_t count) 
 
 RunInfo read_info(hid_t pbf) {
   RunInfo info;
-  const std::pair<const char*, std::string*> texts[] = {{"scene_path", &info.scene_path},
-                                                        {"scene_text", &info.scene_text},
-                                                        {"resolved_scene", &info.resolved_scene},
-                                                        {"program_version", &info.program_version},
-                                                        {"commit", &info.commit},
-                                                        {"compiler", &info.compiler},
-                                                        {"build_flags", &info.build_flags},
-                                                        {"host", &info.host},
-                                                        {"started", &info.started},
-                                                        {"plan", &info.plan},
-                                                        {"backend", &info.solver.backend},
-                                                        {"precision", &info.solver.precision},
-                                                        {"device", &info.solver.device},
-                                                        {"driver", &info.solver.driver}};
-  for (const auto& [name, text] : texts) *text = h5::read_text(pbf, name);
+  run_layout::for_each_text(
+      info, [&](const char* name, std::string& text) { text = h5::read_text(pbf, name); });
   info.overrides = h5::read_texts(pbf, "overrides");
   info.solver.threads = static_cast<int>(h5::read_number<std::int64_t>(pbf, "threads"));
   info.solver.bytes = h5::read_number<std::uint64_t>(pbf, "solver_bytes");

@@ -1,29 +1,9 @@
 // The plan as text and as JSON.
-#include <cstdio>
-
+#include "lib/base/text.h"
 #include "lib/plan/plan.h"
 
 namespace pbf {
 namespace {
-
-template <class... A>
-std::string format(const char* pattern, A... a) {
-  char buffer[512];
-  std::snprintf(buffer, sizeof buffer, pattern, a...);
-  return buffer;
-}
-
-std::string quoted(const std::string& s) {
-  std::string out = "\"";
-  for (char c : s) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (static_cast<unsigned char>(c) < 0x20)
-      out += format("\\u%04x", c);
-    else
-      out += c;
-  }
-  return out + "\"";
-}
 
 /// "[a,b,...]" from one string per element.
 template <class Range, class F>
@@ -64,26 +44,27 @@ std::string plan_text(const Plan& plan, const Scene& s) {
 }
 
 std::string plan_json(const Plan& plan, const Scene& s) {
-  std::string out = "{\"scene\":" + quoted(s.name);
+  std::string out = "{\"scene\":" + json_string(s.name);
   out += format(",\"particles\":%lld,\"bytes\":%lld,\"cells\":[%d,%d,%d],\"cell_edge_h\":%.17g",
                 static_cast<long long>(plan.particles), static_cast<long long>(plan.bytes()),
                 plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge);
   out += format(",\"vol\":%.17g,\"wall_scale\":%.17g,\"wall_range_h\":%.17g,\"mass_kg\":%.17g",
                 plan.vol, plan.wall_scale, plan.wall_range, plan.mass);
   out += ",\"passes\":" + list(plan.passes, [](const PlanPass& p) {
-           return "{\"name\":" + quoted(p.name) + ",\"stage\":" + quoted(p.stage) +
-                  ",\"reads\":" + quoted(p.reads) + ",\"writes\":" + quoted(p.writes) +
+           return "{\"name\":" + json_string(p.name) + ",\"stage\":" + json_string(p.stage) +
+                  ",\"reads\":" + json_string(p.reads) + ",\"writes\":" + json_string(p.writes) +
                   format(",\"per_update\":%d}", p.per_update);
          });
   out += ",\"arrays\":" + list(plan.arrays, [](const PlanArray& a) {
-           return "{\"name\":" + quoted(a.name) + ",\"element\":" + quoted(a.element) +
+           return "{\"name\":" + json_string(a.name) + ",\"element\":" + json_string(a.element) +
                   format(",\"bytes_per_particle\":%g,\"bytes\":%lld}", a.bytes_per_particle,
                          static_cast<long long>(a.bytes));
          });
-  out += ",\"files\":" + list(plan.files, [](const std::string& f) { return quoted(f); });
-  out += ",\"left_out\":" + list(plan.left_out, [](const PlanLeftOut& l) {
-           return "{\"what\":" + quoted(l.what) + ",\"because\":" + quoted(l.because) + "}";
-         });
+  out += ",\"files\":" + list(plan.files, [](const std::string& f) { return json_string(f); });
+  out +=
+      ",\"left_out\":" + list(plan.left_out, [](const PlanLeftOut& l) {
+        return "{\"what\":" + json_string(l.what) + ",\"because\":" + json_string(l.because) + "}";
+      });
   return out + "}";
 }
 

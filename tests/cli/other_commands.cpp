@@ -6,14 +6,6 @@
 using namespace pbf::test;
 namespace fs = std::filesystem;
 
-namespace {
-
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-}  // namespace
-
 TEST_CASE("the help of every command has an example, and the main help the exit codes") {
   const Scratch folder;
   const Outcome main = pbf::test::pbf({"--help"}, folder.path());

@@ -50,4 +50,9 @@ std::string read_text(const std::filesystem::path& path);
 /// A scene of 64 particles and 20 updates with frames; `more` is appended.
 std::string tiny_scene(const std::string& more = "");
 
+/// Whether `part` stands somewhere in `text`.
+inline bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
 }  // namespace pbf::test

@@ -12,14 +12,6 @@
 using namespace pbf::test;
 namespace fs = std::filesystem;
 
-namespace {
-
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-}  // namespace
-
 TEST_CASE("a run leaves its file, resolved scene, log and DONE, and says so") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());
