@@ -38,4 +38,24 @@ PBF_HD void each_component(Vec3<Real>& v, F&& f) {
   f(v.z);
 }
 
+/// A sum of one vector.
+template <class Real>
+struct VectorSum {
+  Vec3<Real> v;
+  template <class F>
+  PBF_HD void each(F&& f) {
+    each_component(v, f);
+  }
+};
+
+/// What the two sides bring to a sum over velocity differences.
+template <class Real>
+struct MovingOwn {
+  Vec3<Real> x, v;
+};
+template <class Real>
+struct MovingOther {
+  Vec4<Real> x, v;  ///< x.w = 1/density
+};
+
 }  // namespace pbf

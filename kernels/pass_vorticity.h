@@ -24,26 +24,16 @@ struct CurlPass {
   const Vec4<Real>* velocity;
   Vec4<Real>* curl;  ///< out
 
-  struct Own {
-    Vec3<Real> x, v;
-  };
-  struct Other {
-    Vec4<Real> x, v;
-  };
-  struct Sum {
-    Vec3<Real> curl;
-    template <class F>
-    PBF_HD void each(F&& f) {
-      each_component(curl, f);
-    }
-  };
+  using Own = MovingOwn<Real>;
+  using Other = MovingOther<Real>;
+  using Sum = VectorSum<Real>;
   PBF_HD Own own(int i) const { return {xyz(position[i]), xyz(velocity[i])}; }
   PBF_HD Other other(int j) const { return {load(position, j), load(velocity, j)}; }
   PBF_HD void add(Sum& s, const Own& a, const Other& b, int, int, bool on) const {
-    s.curl = s.curl + cross(weighted_gradient(a.x - xyz(b.x), b.x.w, p, on), xyz(b.v) - a.v);
+    s.v = s.v + cross(weighted_gradient(a.x - xyz(b.x), b.x.w, p, on), xyz(b.v) - a.v);
   }
   PBF_HD void finish(int i, const Own&, const Sum& s) const {
-    curl[i] = with_w(s.curl, square_root(dot(s.curl, s.curl)));
+    curl[i] = with_w(s.v, square_root(dot(s.v, s.v)));
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
@@ -67,23 +57,17 @@ struct VorticityPass {
     Vec4<Real> x;
     Real magnitude;
   };
-  struct Sum {
-    Vec3<Real> eta;
-    template <class F>
-    PBF_HD void each(F&& f) {
-      each_component(eta, f);
-    }
-  };
+  using Sum = VectorSum<Real>;  ///< eta
   PBF_HD Own own(int i) const { return {position[i], curl[i]}; }
   PBF_HD Other other(int j) const { return {load(position, j), load(curl, j).w}; }
   PBF_HD void add(Sum& s, const Own& a, const Other& b, int, int, bool on) const {
-    s.eta = s.eta + (b.magnitude - a.curl.w) * weighted_gradient(xyz(a.x) - xyz(b.x), b.x.w, p, on);
+    s.v = s.v + (b.magnitude - a.curl.w) * weighted_gradient(xyz(a.x) - xyz(b.x), b.x.w, p, on);
   }
   PBF_HD void finish(int i, const Own& a, const Sum& s) const {
     if (a.x.w * Real(0.75) > Real(1)) return;
-    const Real size = square_root(dot(s.eta, s.eta)) + Real(0.1) * a.curl.w + Real(1e-20);
+    const Real size = square_root(dot(s.v, s.v)) + Real(0.1) * a.curl.w + Real(1e-20);
     const Real gain = min2(p.dt * p.vorticity, Real(0.05)) / size;
-    velocity[i] = with_w(xyz(velocity[i]) + gain * cross(s.eta, xyz(a.curl)), Real(0));
+    velocity[i] = with_w(xyz(velocity[i]) + gain * cross(s.v, xyz(a.curl)), Real(0));
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };

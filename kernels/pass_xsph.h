@@ -14,19 +14,9 @@ struct XsphPass {
   const Vec4<Real>* velocity;  ///< h/s
   Vec4<Real>* velocity_out;
 
-  struct Own {
-    Vec3<Real> x, v;
-  };
-  struct Other {
-    Vec4<Real> x, v;
-  };
-  struct Sum {
-    Vec3<Real> v;
-    template <class F>
-    PBF_HD void each(F&& f) {
-      each_component(v, f);
-    }
-  };
+  using Own = MovingOwn<Real>;
+  using Other = MovingOther<Real>;
+  using Sum = VectorSum<Real>;
   PBF_HD Own own(int i) const { return {xyz(position[i]), xyz(velocity[i])}; }
   PBF_HD Other other(int j) const { return {load(position, j), load(velocity, j)}; }
   PBF_HD void add(Sum& s, const Own& a, const Other& b, int, int, bool on) const {

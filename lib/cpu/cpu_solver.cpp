@@ -35,10 +35,7 @@ class CpuSolver final : public Solver {
   }
 
   Snapshot download(const std::vector<std::string>& fields, ScalarType type) override {
-    SnapshotLayout layout;
-    Snapshot s = layout.make(fields, type, std::size_t(n_));
-    s.update = updates_;
-    s.time = time();
+    Snapshot s = empty_snapshot(fields, type, std::size_t(n_), updates_, time());
     type == ScalarType::f64 ? fill<double>(s) : fill<float>(s);
     return s;
   }

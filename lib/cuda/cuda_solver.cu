@@ -49,6 +49,11 @@ class CudaSolver final : public Solver {
   ~CudaSolver() override {
     cudaStreamSynchronize(exec_.stream());
     drop_graphs();
+    if (copy_stream_) {
+      cudaStreamSynchronize(copy_stream_);
+      cudaEventDestroy(exported_);
+      cudaStreamDestroy(copy_stream_);
+    }
   }
 
   void step(int updates) override {
@@ -60,7 +65,6 @@ class CudaSolver final : public Solver {
       while (grow_if_needed()) {  // nothing was lost: the batch is done again with more room
         drop_graphs();
         stepper_->restore(saved_);
-        ++repeats_;
         run(batch);
       }
       updates_ += batch;
@@ -75,10 +79,7 @@ class CudaSolver final : public Solver {
   }
 
   void start_download(const std::vector<std::string>& fields, ScalarType type) override {
-    SnapshotLayout layout;
-    pending_ = layout.make(fields, type, std::size_t(n_));
-    pending_.update = updates_;
-    pending_.time = time();
+    pending_ = empty_snapshot(fields, type, std::size_t(n_), updates_, time());
     type == ScalarType::f64 ? stage<double>() : stage<float>();
     PBF_CUDA_CHECK(cudaEventRecord(exported_, exec_.stream()));
     PBF_CUDA_CHECK(cudaStreamWaitEvent(copy_stream_, exported_, 0));
@@ -230,7 +231,6 @@ class CudaSolver final : public Solver {
   double init_seconds_ = 0, step_seconds_ = 0;
   std::int64_t updates_ = 0;
   int since_profile_ = 0;
-  int repeats_ = 0;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/smoothing.h"
 #include "lib/base/error.h"
 #include "lib/solver/calibrate.h"
 
@@ -68,7 +69,7 @@ void plan_arrays(Plan& plan, const Scene& s) {
   for (const char* name : {"id", "id'", "bin", "order"}) add(name, "int32", 4);
   if (plan.vorticity) add("curl", "4 x " + real, 4 * r);
   // At rest the unit ball holds (4/3) pi (h/d)^3 particles; the lists keep 12.5 % of air.
-  const double neighbors = 4.0 / 3.0 * 3.14159265358979 * std::pow(s.fluid.smoothing_ratio, 3) - 1;
+  const double neighbors = 4.0 / 3.0 * kPi * std::pow(s.fluid.smoothing_ratio, 3) - 1;
   add("lists (at rest density)", "int32", 4 * neighbors * 1.125 + 8);
   const std::int64_t bins = std::int64_t(plan.cells[0]) * plan.cells[1] * plan.cells[2] * 4;
   plan.arrays.push_back({"bin_start", "int32", 0, 4 * (bins + 1)});

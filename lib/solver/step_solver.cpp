@@ -29,9 +29,9 @@ Measures to_measures(const MeasureSums& s, const Scene& scene, double mass, std:
   return m;
 }
 
-Snapshot SnapshotLayout::make(const std::vector<std::string>& fields, ScalarType type,
-                              std::size_t n) {
-  velocity = density = false;
+Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type, std::size_t n,
+                        std::int64_t update, double time) {
+  bool velocity = false, density = false;
   for (const std::string& f : fields) {
     if (f == "velocity")
       velocity = true;
@@ -41,6 +41,8 @@ Snapshot SnapshotLayout::make(const std::vector<std::string>& fields, ScalarType
       throw Error(ExitCode::bad_input, "no field \"" + f + "\"; there are velocity and density");
   }
   Snapshot s;
+  s.update = update;
+  s.time = time;
   s.count = n;
   auto add = [&](const char* name, const char* unit, ScalarType t, int components) {
     s.fields.push_back({name, unit, t, components, {}});

@@ -40,11 +40,9 @@ InternalState<Real> to_internal(const Scene& s, const Particles& particles) {
 Measures to_measures(const MeasureSums& sums, const Scene& scene, double mass,
                      std::int64_t particles, std::int64_t update, double time);
 
-/// Names of the fields of a snapshot and whether they are asked for.
-struct SnapshotLayout {
-  bool velocity = false, density = false;
-  /// An empty snapshot with every array allocated; throws Error(bad_input) for an unknown field.
-  Snapshot make(const std::vector<std::string>& fields, ScalarType type, std::size_t n);
-};
+/// An empty snapshot of n particles with every array allocated and the ids filled in; position and
+/// id always, velocity and density where `fields` names them. Error(bad_input) for another name.
+Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type, std::size_t n,
+                        std::int64_t update, double time);
 
 }  // namespace pbf
