@@ -5,7 +5,7 @@
 #include "kernels/params.h"
 #include "kernels/smoothing.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// Density of the half space, as a fraction of rho0, and its gradient along the inward normal
 /// (negative: it decreases inward), both 0 for q >= 1. A particle on or behind the wall: q = 0.
@@ -94,4 +94,4 @@ PBF_HD Vec3<Real> clamp_inside(Vec3<Real> x, const Params<Real>& p) {
           clamp_axis(x.z, p.margin, p.box.z - p.margin, p.walls & z_min, p.walls & z_max)};
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

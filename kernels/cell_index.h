@@ -3,7 +3,7 @@
 
 #include "kernels/params.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// Cell coordinate of x along one axis, clamped to the grid; NaN goes to 0. The clamp keeps the
 /// search exact for particles outside the grid: the map is monotone, so two particles closer than
@@ -71,4 +71,4 @@ PBF_HD void for_each_run(Vec3<Real> x, const int* bin_start, const Params<Real>&
   for_each_run(c.x, c.x, c.y, c.z, bin_start, p, f);
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

@@ -1,8 +1,16 @@
-// What lets one source compile for the host and, under nvcc, for the device.
+// What lets one source compile for the host and, under nvcc, for the device; and more than once
+// into one program.
 #pragma once
 
 #if defined(__CUDACC__)
 #define PBF_HD __host__ __device__ __forceinline__
 #else
 #define PBF_HD inline __attribute__((always_inline))
+#endif
+
+// Everything that holds arithmetic on particles lives in this inline namespace. A second
+// compilation under another name (with other floating-point options, say) can then be linked beside
+// the first: its types and functions are different ones.
+#ifndef PBF_VARIANT
+#define PBF_VARIANT plain
 #endif

@@ -7,7 +7,7 @@
 
 #include "kernels/cell_index.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// Neighbour policy: lists in chunks of 1024 particles, each chunk contiguous (the CPU's layout).
 struct ChunkedLists {
@@ -27,4 +27,4 @@ struct ChunkedLists {
   PBF_HD int size(int i) const { return int(count[i]); }
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

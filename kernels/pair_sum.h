@@ -12,7 +12,7 @@
 #include "kernels/neighbors.h"
 #include "kernels/smoothing.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// One particle on one thread: the sequential form, and the reference for the others.
 template <class Pass>
@@ -58,4 +58,4 @@ struct MovingOther {
   Vec4<Real> x, v;  ///< x.w = 1/density
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

@@ -6,7 +6,7 @@
 
 #include "kernels/vec3.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 enum WallBit : unsigned { x_min = 1, x_max = 2, y_min = 4, y_max = 8, z_min = 16, z_max = 32 };
 
@@ -35,4 +35,4 @@ struct Params {
   Real vorticity = 0;  ///< 1/s, epsilon
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

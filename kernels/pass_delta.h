@@ -5,7 +5,7 @@
 #include "kernels/boundary.h"
 #include "kernels/pair_sum.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// x^n for a small positive integer n, by squaring: the same operations on every backend.
 template <class Real>
@@ -92,4 +92,4 @@ struct DeltaPass {
   }
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

@@ -5,7 +5,7 @@
 
 #include "kernels/params.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// position (3), and where the pointers are set velocity (3) and density (1); row = id.
 template <class Real, class Out>
@@ -32,4 +32,4 @@ struct ExportPass {
   }
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

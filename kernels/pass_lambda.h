@@ -4,7 +4,7 @@
 #include "kernels/boundary.h"
 #include "kernels/pair_sum.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// Density in units of rho0 at the present positions, walls included.
 template <class Real, class Lists, Smoothing S>
@@ -99,4 +99,4 @@ struct LambdaPass {
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

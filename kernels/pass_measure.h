@@ -1,36 +1,10 @@
-// Sums over all particles that a run reports, in double on every backend and in both precisions.
+// One particle's share of the sums that a run reports.
 #pragma once
 
-#include <cstdint>
-
+#include "kernels/measure_sums.h"
 #include "kernels/params.h"
 
-namespace pbf {
-
-/// Partial sums in the internal frame (h, s, rho0); lib/diag turns the total into SI units.
-struct MeasureSums {
-  double compression = 0, compression_squared = 0, compression_max = 0;
-  double speed_squared = 0, speed_squared_max = 0;
-  double x[3] = {0, 0, 0}, v[3] = {0, 0, 0}, front[3] = {-1e300, -1e300, -1e300};
-  std::int64_t neighbors = 0, neighbors_max = 0, outside = 0, non_finite = 0;
-
-  PBF_HD void add(const MeasureSums& o) {
-    compression += o.compression;
-    compression_squared += o.compression_squared;
-    compression_max = max2(compression_max, o.compression_max);
-    speed_squared += o.speed_squared;
-    speed_squared_max = max2(speed_squared_max, o.speed_squared_max);
-    for (int k = 0; k < 3; ++k) {
-      x[k] += o.x[k];
-      v[k] += o.v[k];
-      front[k] = max2(front[k], o.front[k]);
-    }
-    neighbors += o.neighbors;
-    neighbors_max = max2(neighbors_max, o.neighbors_max);
-    outside += o.outside;
-    non_finite += o.non_finite;
-  }
-};
+namespace pbf::inline PBF_VARIANT {
 
 /// One particle's share. A non-finite particle counts as such and nowhere else.
 template <class Real, class Lists>
@@ -67,4 +41,4 @@ struct MeasurePass {
   }
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

@@ -5,7 +5,7 @@
 #include "kernels/boundary.h"
 #include "kernels/cell_index.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// Position is clamped to the walls, and the velocity follows what the clamp did: a particle never
 /// enters the constraint solve from behind a wall, also when there are no iterations.
@@ -51,4 +51,4 @@ struct GatherPass {
   }
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

@@ -4,7 +4,7 @@
 
 #include "kernels/pair_sum.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// grad W_ij vol/rho_j, in 1/h; zero for a coincident pair, and when not `on`.
 template <class Real>
@@ -72,4 +72,4 @@ struct VorticityPass {
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

@@ -3,7 +3,7 @@
 
 #include "kernels/pair_sum.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// v_i += c sum_j m/rho_j (v_j - v_i) W_ij, with the density of the last sweep.
 template <class Real, class Lists, Smoothing S>
@@ -31,4 +31,4 @@ struct XsphPass {
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

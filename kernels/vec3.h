@@ -7,7 +7,7 @@
 
 #include "kernels/hd.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 template <class Real>
 struct Vec3 {
@@ -85,4 +85,4 @@ PBF_HD bool is_finite(Real x) {
   return x - x == Real(0);
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 void CpuExec::sort(const int* bin, int n, int bins, int* order, int* start) {
   // Every thread counts and places its own contiguous share of the particles, in order: stable.
@@ -41,4 +41,4 @@ std::size_t CpuExec::list_bytes() const {
   return sum;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

@@ -13,7 +13,7 @@
 #include "lib/base/stage_clock.h"
 #include "lib/cpu/host_buffer.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 class CpuExec {
  public:
@@ -131,4 +131,4 @@ class CpuExec {
   std::vector<int> histogram_;  ///< threads x bins
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

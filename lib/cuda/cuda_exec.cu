@@ -1,6 +1,6 @@
 #include "lib/cuda/cuda_exec.cuh"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 CudaExec::CudaExec(int capacity) : capacity_(capacity) {
   int device = 0, major = 0;
@@ -64,4 +64,4 @@ int CudaExec::overflow() {
   return *longest_host_.data();
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

@@ -10,7 +10,7 @@
 #include "lib/cuda/device_buffer.h"
 #include "lib/cuda/list_pass.cuh"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 constexpr int kBlock = 128;
 /// How many threads share a neighbour sum, by number of particles, and up to which number eight
@@ -288,4 +288,4 @@ class CudaExec {
   DeviceBuffer<char> scan_;
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

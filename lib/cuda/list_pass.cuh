@@ -4,7 +4,7 @@
 
 #include "lib/cuda/transposed_lists.cuh"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// The sign bit of x as the lowest bit of `mask`, the others one place up.
 __device__ __forceinline__ unsigned push_sign(float x, unsigned mask) {
@@ -139,4 +139,4 @@ struct ListPass {
   }
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

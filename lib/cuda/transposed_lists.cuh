@@ -4,7 +4,7 @@
 
 #include "kernels/pair_sum.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// Neighbour policy. Unused entries of the last word name the far particle (index n), whose
 /// contribution to every sum is zero: no test per entry.
@@ -50,4 +50,4 @@ __device__ __forceinline__ void sum_over_neighbors_by_lanes(const Pass& pass, in
   if (valid && lane == 0) pass.finish(i, own, sum);
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

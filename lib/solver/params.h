@@ -5,7 +5,7 @@
 #include "kernels/smoothing.h"
 #include "lib/plan/plan.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 template <class Real>
 Params<Real> make_params(const Scene& s, const Plan& plan) {
@@ -48,4 +48,4 @@ Params<Real> make_params(const Scene& s, const Plan& plan) {
   return p;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

@@ -10,6 +10,7 @@
 #include "lib/solver/stepper.h"
 
 namespace pbf {
+inline namespace PBF_VARIANT {
 
 /// Positions and velocities of a scene in the internal frame, in the order of ids.
 template <class Real>
@@ -35,6 +36,8 @@ InternalState<Real> to_internal(const Scene& s, const Particles& particles) {
   }
   return out;
 }
+
+}  // namespace PBF_VARIANT
 
 /// Sums in the internal frame -> Measures in SI units.
 Measures to_measures(const MeasureSums& sums, const Scene& scene, double mass,

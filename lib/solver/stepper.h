@@ -15,7 +15,7 @@
 #include "kernels/pass_xsph.h"
 #include "lib/scene/scene.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// Calls f with the scene's choices as types, so that no pair loop tests them.
 template <class F>
@@ -221,4 +221,4 @@ class Stepper {
   Buffer<int> id_, other_id_, bin_, order_, bin_start_;
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

@@ -1,0 +1,36 @@
+// What a measure adds up over all particles, in double on every backend and in both precisions.
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/hd.h"
+
+namespace pbf {
+
+/// Partial sums in the internal frame (h, s, rho0); lib/diag turns the total into SI units.
+struct MeasureSums {
+  double compression = 0, compression_squared = 0, compression_max = 0;
+  double speed_squared = 0, speed_squared_max = 0;
+  double x[3] = {0, 0, 0}, v[3] = {0, 0, 0}, front[3] = {-1e300, -1e300, -1e300};
+  std::int64_t neighbors = 0, neighbors_max = 0, outside = 0, non_finite = 0;
+
+  PBF_HD void add(const MeasureSums& o) {
+    const auto take_larger = [](auto& a, auto b) { a = a > b ? a : b; };
+    compression += o.compression;
+    compression_squared += o.compression_squared;
+    take_larger(compression_max, o.compression_max);
+    speed_squared += o.speed_squared;
+    take_larger(speed_squared_max, o.speed_squared_max);
+    for (int k = 0; k < 3; ++k) {
+      x[k] += o.x[k];
+      v[k] += o.v[k];
+      take_larger(front[k], o.front[k]);
+    }
+    neighbors += o.neighbors;
+    take_larger(neighbors_max, o.neighbors_max);
+    outside += o.outside;
+    non_finite += o.non_finite;
+  }
+};
+
+}  // namespace pbf
