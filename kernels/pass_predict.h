@@ -7,24 +7,31 @@
 
 namespace pbf::inline PBF_VARIANT {
 
+template <class Real>
+struct Moving {
+  Vec3<Real> x, v;  ///< h, h/s
+};
+
 /// Position is clamped to the walls, and the velocity follows what the clamp did: a particle never
 /// enters the constraint solve from behind a wall, also when there are no iterations.
 template <class Real>
+PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p) {
+  v = mul_add(p.damping, v, p.dt * p.gravity);
+  const Vec3<Real> free = mul_add(p.dt, v, x);
+  x = clamp_inside(free, p);
+  // Only a clamped coordinate changes v: elsewhere x - free is exactly 0.
+  return {x, mul_add(p.inv_dt, x - free, v)};
+}
+
+/// The bin of x*. x* itself is computed once more where the particles are gathered, which is
+/// cheaper than writing and reading it.
+template <class Real>
 struct PredictPass {
   Params<Real> p;
-  Vec4<Real>* position;  ///< in x, out x*; w = 1 (1/density, until a sweep replaces it)
-  Vec4<Real>* velocity;  ///< in/out, h/s
-  int* bin;              ///< out
-
+  const Vec4<Real>*position, *velocity;
+  int* bin;  ///< out
   PBF_HD void operator()(int i) const {
-    Vec3<Real> v = p.damping * xyz(velocity[i]) + p.dt * p.gravity;
-    const Vec3<Real> free = xyz(position[i]) + p.dt * v;
-    const Vec3<Real> x = clamp_inside(free, p);
-    // Only a clamped coordinate changes v: elsewhere x - free is exactly 0.
-    v = v + p.inv_dt * (x - free);
-    position[i] = with_w(x, Real(1));
-    velocity[i] = with_w(v, Real(0));
-    bin[i] = bin_of(x, p);
+    bin[i] = bin_of(predict(xyz(position[i]), xyz(velocity[i]), p).x, p);
   }
 };
 
@@ -33,20 +40,24 @@ template <class Real>
 struct BinPass {
   Params<Real> p;
   const Vec4<Real>* position;
-  int* bin;
+  int* bin;  ///< out
   PBF_HD void operator()(int i) const { bin[i] = bin_of(xyz(position[i]), p); }
 };
 
-/// Puts the particles in the order of bins.
-template <class Real>
+/// Puts the particles in the order of bins; with `moving`, as predicted. Position's w = 1
+/// (1/density, until a sweep replaces it).
+template <class Real, bool moving>
 struct GatherPass {
+  Params<Real> p;
   const Vec4<Real>*position, *velocity;
   const int* id;
   Vec4<Real>*position_out, *velocity_out;
   int* id_out;
   PBF_HD void operator()(int from, int to) const {
-    position_out[to] = position[from];
-    velocity_out[to] = velocity[from];
+    Moving<Real> m{xyz(position[from]), xyz(velocity[from])};
+    if constexpr (moving) m = predict(m.x, m.v, p);
+    position_out[to] = with_w(m.x, Real(1));
+    velocity_out[to] = with_w(m.v, Real(0));
     id_out[to] = id[from];
   }
 };

@@ -2,17 +2,20 @@
 #pragma once
 
 #include "kernels/pair_sum.h"
+#include "kernels/pass_predict.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-/// v_i += c sum_j m/rho_j (v_j - v_i) W_ij, with the density of the last sweep.
-template <class Real, class Lists, Smoothing S>
+/// v_i += c sum_j m/rho_j (v_j - v_i) W_ij, with the density of the last sweep. With
+/// `more_to_come` it also gives the particle its bin in the next update: that update's `predict`.
+template <class Real, class Lists, Smoothing S, bool more_to_come>
 struct XsphPass {
   Params<Real> p;
   Lists lists;
   const Vec4<Real>* position;  ///< w = 1/density
   const Vec4<Real>* velocity;  ///< h/s
   Vec4<Real>* velocity_out;
+  int* bin;  ///< out
 
   using Own = MovingOwn<Real>;
   using Other = MovingOther<Real>;
@@ -26,7 +29,9 @@ struct XsphPass {
     s.v = s.v + (shape * b.x.w) * (xyz(b.v) - a.v);
   }
   PBF_HD void finish(int i, const Own& a, const Sum& s) const {
-    velocity_out[i] = with_w(a.v + (p.xsph * p.vol * density_norm<Real, S>()) * s.v, Real(0));
+    const Vec3<Real> v = a.v + (p.xsph * p.vol * density_norm<Real, S>()) * s.v;
+    velocity_out[i] = with_w(v, Real(0));
+    if constexpr (more_to_come) bin[i] = bin_of(predict(a.x, v, p).x, p);
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };

@@ -37,6 +37,24 @@ template <class R> PBF_HD R min2(R a, R b) { return a < b ? a : b; }
 PBF_HD float square_root(float x) { return sqrtf(x); }
 PBF_HD double square_root(double x) { return sqrt(x); }
 
+/// a b + c, for what two kernels must compute alike: the device's compiler may fuse a product and a
+/// sum in one kernel and not in the other. Host: rounded twice.
+template <class Real>
+PBF_HD Real mul_add(Real a, Real b, Real c) {
+#if defined(__CUDA_ARCH__)
+  if constexpr (sizeof(Real) == 4)
+    return __fmaf_rn(a, b, c);
+  else
+    return __fma_rn(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+template <class Real>
+PBF_HD Vec3<Real> mul_add(Real a, Vec3<Real> b, Vec3<Real> c) {
+  return {mul_add(a, b.x, c.x), mul_add(a, b.y, c.y), mul_add(a, b.z, c.z)};
+}
+
 /// q and 1/q from q^2 for a pair loop; q^2 below 1e-30 counts as 1e-30, so that a coincident pair
 /// gives q = 1e-15 and, with its zero distance vector, a zero gradient instead of 0/0.
 /// Device code takes the hardware's reciprocal root (2 ulp in float) and one multiplication.

@@ -30,7 +30,7 @@ class CpuSolver final : public Solver {
   }
 
   void step(int updates) override {
-    for (int k = 0; k < updates; ++k) stepper_->step();
+    stepper_->step(updates);
     updates_ += updates;
   }
 

@@ -2,14 +2,14 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-CudaExec::CudaExec(int capacity) : capacity_(capacity) {
+CudaExec::CudaExec(ListRoom room) : room_(room) {
   int device = 0, major = 0;
   PBF_CUDA_CHECK(cudaGetDevice(&device));
   PBF_CUDA_CHECK(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device));
   overlap_ = major >= 9;
   PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
-  longest_.resize(1);
-  longest_host_.resize(1);
+  list_state_.resize(1);
+  list_state_host_.resize(1);
   clear_overflow();
 }
 
@@ -53,15 +53,29 @@ void CudaExec::scan(int n, int* start) {
       cub::DeviceScan::ExclusiveSum(scan_.data(), bytes, counts_.data(), start, n, stream_));
 }
 
-void CudaExec::clear_overflow() {
-  PBF_CUDA_CHECK(cudaMemsetAsync(longest_.data(), 0, sizeof(int), stream_));
+void CudaExec::allocate_lists(int n) {
+  words_.resize(std::size_t(stride(n)) * std::size_t(room_.first));
+  tails_.resize(std::size_t(room_.tails) * std::size_t(room_.tail));
+  count_.resize(std::size_t(n));
+  tail_of_.resize(std::size_t(n));
 }
 
-int CudaExec::overflow() {
-  PBF_CUDA_CHECK(cudaMemcpyAsync(longest_host_.data(), longest_.data(), sizeof(int),
+void CudaExec::set_room(int n, ListRoom room) {
+  room_ = room;
+  words_.resize(0);  // first, so that the old and the new lists need not fit together
+  tails_.resize(0);
+  allocate_lists(n);
+}
+
+void CudaExec::clear_overflow() {
+  PBF_CUDA_CHECK(cudaMemsetAsync(list_state_.data(), 0, sizeof(ListState), stream_));
+}
+
+ListState CudaExec::overflow() {
+  PBF_CUDA_CHECK(cudaMemcpyAsync(list_state_host_.data(), list_state_.data(), sizeof(ListState),
                                  cudaMemcpyDeviceToHost, stream_));
   synchronize();
-  return *longest_host_.data();
+  return *list_state_host_.data();
 }
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -51,18 +51,34 @@ __global__ void __launch_bounds__(kBlock) reduce_kernel(int n, Pass pass, Measur
 /// The pass that gives a particle its bin, then its place among those of the bin in order of
 /// arrival.
 template <class First>
-struct CountPass {
-  First first;
+struct CountPass : First {
   int *count, *arrival;
   __device__ void operator()(int i) const {
-    first(i);
-    arrival[i] = atomicAdd(&count[first.bin[i]], 1);
+    if constexpr (requires { typename First::Sum; }) {
+      sum_over_neighbors(*this, i);
+    } else {
+      First::operator()(i);
+      arrive(i);
+    }
   }
+  template <class Own, class Sum>
+  __device__ void finish(int i, const Own& own, const Sum& sum) const {
+    First::finish(i, own, sum);
+    arrive(i);
+  }
+  __device__ void arrive(int i) const { arrival[i] = atomicAdd(&count[First::bin[i]], 1); }
 };
+/// Also clears the counters for the next sort, and the use of the lists' tails.
 struct PlacePass {
   const int *bin, *start, *arrival;
-  int* slot;
-  __device__ void operator()(int i) const { slot[start[bin[i]] + arrival[i]] = i; }
+  int *slot, *count;
+  ListState* lists;
+  int n, bins;
+  __device__ void operator()(int i) const {
+    slot[start[bin[i]] + arrival[i]] = i;
+    for (int b = i; b < bins; b += n) count[b] = 0;
+    if (i == 0) lists->used = 0;
+  }
 };
 /// Moves the particles of a bin in the order of their index, which makes the sort stable and the
 /// run reproducible: each one counts those of its bin that come before it.
@@ -93,15 +109,16 @@ __global__ void __launch_bounds__(kBlock) list_lanes_kernel(ListPass<Real> pass)
 /// Up to so many particles and bins one block sorts them, with the counters in 48 KiB of shared
 /// memory, which every device has.
 constexpr int kSortThreads = 1024, kSortParticles = 3000, kSortBins = 12 * 1024;
-/// Runs `first` (see CountPass) as well.
-template <class First>
+/// Runs `first` (see CountPass) as well, and gathers.
+template <class First, class Gather>
 __global__ void __launch_bounds__(kSortThreads)
-    small_sort_kernel(First first_pass, int n, int bins, int* arrival, int* slot, int* start) {
+    small_sort_kernel(First first_pass, int n, int bins, int* arrival, int* slot, int* start,
+                      ListState* lists, StablePass<Gather> place) {
   wait_for_previous();
   extern __shared__ int count[];  // bins
   __shared__ int warp_sum[32];
   const int t = threadIdx.x;
-  const int* bin = first_pass.bin;
+  const int* bin = place.bin;
   for (int b = t; b < bins; b += kSortThreads) count[b] = 0;
   __syncthreads();
   for (int i = t; i < n; i += kSortThreads) {
@@ -138,10 +155,19 @@ __global__ void __launch_bounds__(kSortThreads)
     count[b] = start[b] = before;
     before += mine;
   }
-  if (t == 0) start[bins] = n;
+  if (t == 0) {
+    start[bins] = n;
+    lists->used = 0;
+  }
   __syncthreads();
   for (int i = t; i < n; i += kSortThreads) slot[count[bin[i]] + arrival[i]] = i;
+  __syncthreads();
+  for (int k = t; k < n; k += kSortThreads) place(k);
 }
+/// For particles that have their bin already.
+struct NothingFirst {
+  __device__ void operator()(int) const {}
+};
 
 class CudaExec {
  public:
@@ -150,8 +176,8 @@ class CudaExec {
   template <class T>
   using Buffer = DeviceBuffer<T>;
 
-  /// capacity: entries per particle that the lists have room for at first (multiple of 4).
-  explicit CudaExec(int capacity);
+  /// room: for the lists at first.
+  explicit CudaExec(ListRoom room);
   ~CudaExec();
   CudaExec(const CudaExec&) = delete;
   CudaExec& operator=(const CudaExec&) = delete;
@@ -206,50 +232,67 @@ class CudaExec {
   template <class First, class Gather>
   void sort_by_bin(const char* stage, const First& first, int n, int bins, int* order, int* start,
                    const Gather& gather) {
-    counts_.resize(std::size_t(bins) + 1);
     slot_.resize(std::size_t(n));
+    const StablePass<Gather> stable{first.bin, start, slot_.data(), gather};
     if (n <= kSortParticles && bins <= kSortBins) {
-      launch(small_sort_kernel<First>, kSortThreads, kSortThreads, std::size_t(bins) * sizeof(int),
-             first, n, bins, order, slot_.data(), start);
-    } else {
-      PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), stream_));
-      for_each(n, CountPass<First>{first, counts_.data(), order});
-      mark(stage);
-      scan(bins + 1, start);
-      for_each(n, PlacePass{first.bin, start, order, slot_.data()});
+      const auto sort = [&](const auto& before) {
+        launch(small_sort_kernel<std::decay_t<decltype(before)>, Gather>, kSortThreads,
+               kSortThreads, std::size_t(bins) * sizeof(int), before, n, bins, order, slot_.data(),
+               start, list_state_.data(), stable);
+      };
+      if constexpr (requires { typename First::Sum; }) {
+        for_each(n, first);
+        mark(stage);
+        sort(NothingFirst{});
+      } else {
+        sort(first);
+      }
+      return;
     }
-    for_each(n, StablePass<Gather>{first.bin, start, slot_.data(), gather});
+    if (counts_.size() != std::size_t(bins) + 1) {
+      counts_.resize(std::size_t(bins) + 1);
+      PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), stream_));
+    }
+    for_each(n, CountPass<First>{first, counts_.data(), order});
+    mark(stage);
+    scan(bins + 1, start);
+    for_each(n, PlacePass{first.bin, start, order, slot_.data(), counts_.data(), list_state_.data(),
+                          n, bins + 1});
+    for_each(n, stable);
   }
 
   template <class Real>
   Lists build_lists(const Vec4<Real>* position, const int* bin_start, const Params<Real>& p) {
-    const int stride = (p.n + 31) / 32 * 32;
-    words_.resize(std::size_t(stride) * std::size_t(capacity_ / 4));
-    count_.resize(std::size_t(p.n));
-    const ListPass<Real> pass{
-        p, position, bin_start, words_.data(), count_.data(), longest_.data(), stride, capacity_};
+    allocate_lists(p.n);
+    const ListPass<Real> pass{p,
+                              position,
+                              bin_start,
+                              words_.data(),
+                              tails_.data(),
+                              count_.data(),
+                              tail_of_.data(),
+                              list_state_.data(),
+                              room_,
+                              stride(p.n)};
     if (p.n <= kFourLanes)
       launch(list_lanes_kernel<Real>, 8 * p.n, kBlock, 0, pass);
     else
       for_each(p.n, pass);
-    return {words_.data(), count_.data(), stride};
+    return {words_.data(), tails_.data(), count_.data(), tail_of_.data(),
+            pass.stride,   room_.first,   room_.tail};
   }
 
-  // Lists that outgrow their room: the build records the longest one, nothing is written beyond
-  // the room, and the caller repeats the updates with more.
-  int capacity() const { return capacity_; }
-  void set_capacity(int entries) {
-    const std::size_t stride = words_.size() / std::size_t(capacity_ / 4);
-    capacity_ = entries;
-    words_.resize(0);  // first, so that the old and the new lists need not fit together
-    words_.resize(stride * std::size_t(capacity_ / 4));
-  }
+  // Lists that outgrow their room: the build records by how much, nothing is written beyond the
+  // room, and the caller repeats the updates with more.
+  ListRoom room() const { return room_; }
+  void set_room(int n, ListRoom room);
   void clear_overflow();
-  int overflow();  ///< waits; length of the longest list that did not fit, 0 when all did
+  /// Waits; what did not fit since clear_overflow(), zeros when all did.
+  ListState overflow();
 
   std::size_t list_bytes() const {
-    return words_.bytes() + count_.bytes() + counts_.bytes() + slot_.bytes() + scan_.bytes() +
-           partial_.bytes();
+    return words_.bytes() + tails_.bytes() + tail_of_.bytes() + count_.bytes() + counts_.bytes() +
+           slot_.bytes() + scan_.bytes() + partial_.bytes();
   }
 
  private:
@@ -270,21 +313,24 @@ class CudaExec {
     config.numAttrs = overlap_ ? 1 : 0;
     PBF_CUDA_CHECK(cudaLaunchKernelEx(&config, kernel, P(args)...));
   }
+  static int stride(int n) { return (n + 31) / 32 * 32; }
+  void allocate_lists(int n);
   /// Exclusive sums of the counts.
   void scan(int n, int* start);
 
   cudaStream_t stream_ = nullptr;
   bool overlap_ = false;  ///< the device knows programmatic dependent launch
-  int capacity_;
+  ListRoom room_;
   bool profiling_ = false;
   StageClock clock_;
   std::vector<cudaEvent_t> events_;
   std::vector<const char*> stages_;  ///< of the marks since begin()
   DeviceBuffer<MeasureSums> partial_;
   PinnedBuffer<MeasureSums> partial_host_;
-  DeviceBuffer<int4> words_;
-  DeviceBuffer<int> count_, counts_, slot_, longest_;
-  PinnedBuffer<int> longest_host_;
+  DeviceBuffer<int4> words_, tails_;
+  DeviceBuffer<int> count_, tail_of_, counts_, slot_;
+  DeviceBuffer<ListState> list_state_;
+  PinnedBuffer<ListState> list_state_host_;
   DeviceBuffer<char> scan_;
 };
 

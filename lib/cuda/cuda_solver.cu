@@ -11,18 +11,33 @@ namespace {
 /// Updates after which the host looks whether a list outgrew its room (and waits for the device).
 int batch_of(int n) { return n < 20000 ? 256 : n < 500000 ? 64 : 16; }
 
-/// Room for the lists at first: the densest rest packing of the scene's h/d and a third more.
-int capacity_of(const Scene& s) {
+/// Room for the lists at first: for the densest rest packing of the scene's h/d and a seventh more;
+/// an eighth of the lists may be up to 32 entries longer. first_entries > 0: that many instead.
+ListRoom first_room(const Scene& s, std::int64_t n, int first_entries) {
   const double neighbors = 4.0 / 3.0 * kPi * std::pow(s.fluid.smoothing_ratio, 3);
-  return (int(neighbors * 1.35) + 7) / 8 * 8;
+  const int first = first_entries > 0 ? first_entries : int(neighbors * 1.15);
+  return {(first + 3) / 4, 8, int(n / 8) + 32};
 }
 
-void refuse_if_too_large(const Scene& s, const Plan& plan, int capacity) {
+/// More room, with air for what may come.
+ListRoom larger(ListRoom room, const ListState& short_of, int n) {
+  if (short_of.longest > room.longest())
+    room.tail = (short_of.longest + short_of.longest / 8) / 4 + 1 - room.first;
+  if (short_of.wanted > n / 2 && room.first < 64)  // not a few long lists: most are
+    room.first += (room.first + 1) / 2;
+  else if (short_of.wanted > room.tails)
+    room.tails = short_of.wanted + short_of.wanted / 4;
+  return room;
+}
+
+void refuse_if_too_large(const Scene& s, const Plan& plan, ListRoom room) {
   const double real = s.precision == Precision::dbl ? 8 : 4, n = double(plan.particles);
   const double cells = double(plan.cells[0]) * plan.cells[1] * plan.cells[2];
-  const double state = (4 * 4 + 1) * real + 6 * 4 + 4 * capacity + (plan.vorticity ? 4 * real : 0);
+  const double state =
+      (4 * 4 + 1) * real + 7 * 4 + 16 * room.first + (plan.vorticity ? 4 * real : 0);
   const double saved = 2 * 4 * real + 4, staging = s.output ? 7 * 8 : 0;
-  const double bytes = n * (state + saved + staging) + 9 * 4 * cells;
+  const double bytes =
+      n * (state + saved + staging) + 16.0 * room.tail * room.tails + 9 * 4 * cells;
   std::size_t free = 0, total = 0;
   PBF_CUDA_CHECK(cudaMemGetInfo(&free, &total));
   if (bytes > double(free))
@@ -36,8 +51,8 @@ void refuse_if_too_large(const Scene& s, const Plan& plan, int capacity) {
 template <class Real>
 class CudaSolver final : public Solver {
  public:
-  CudaSolver(const Scene& scene, const Plan& plan, const Particles& particles, int capacity)
-      : scene_(scene), plan_(plan), n_(int(particles.size())), exec_(capacity) {
+  CudaSolver(const Scene& scene, const Plan& plan, const Particles& particles, ListRoom room)
+      : scene_(scene), plan_(plan), n_(int(particles.size())), exec_(room) {
     Stopwatch watch;
     const InternalState<Real> s = to_internal<Real>(scene, particles);
     stepper_ = std::make_unique<Stepper<Real, CudaExec>>(
@@ -159,7 +174,7 @@ class CudaSolver final : public Solver {
   }
 
   void direct_step() {
-    stepper_->step();
+    stepper_->step(1);
     parity_ ^= 1;
   }
 
@@ -169,7 +184,7 @@ class CudaSolver final : public Solver {
   void capture(cudaGraphExec_t& out, int updates) {
     cudaGraph_t graph = nullptr;
     PBF_CUDA_CHECK(cudaStreamBeginCapture(exec_.stream(), cudaStreamCaptureModeThreadLocal));
-    for (int k = 0; k < updates; ++k) stepper_->step();
+    stepper_->step(updates);
     PBF_CUDA_CHECK(cudaStreamEndCapture(exec_.stream(), &graph));
     const cudaError_t made = cudaGraphInstantiate(&out, graph, 0);
     cudaGraphDestroy(graph);
@@ -184,10 +199,9 @@ class CudaSolver final : public Solver {
   }
 
   bool grow_if_needed() {
-    const int longest = exec_.overflow();
-    if (longest <= exec_.capacity()) return false;
-    // Air for what may come; little where it would cost gigabytes.
-    exec_.set_capacity((longest + (n_ < 10000000 ? longest / 8 : 0) + 7) / 8 * 8);
+    const ListState short_of = exec_.overflow();
+    if (short_of.wanted == 0 && short_of.longest == 0) return false;
+    exec_.set_room(n_, larger(exec_.room(), short_of, n_));
     exec_.clear_overflow();
     return true;
   }
@@ -244,17 +258,17 @@ bool cuda_available(std::string* why) {
 }
 
 std::unique_ptr<Solver> make_cuda_solver(const Scene& scene, const Plan& plan,
-                                         const Particles& particles, int first_capacity) {
+                                         const Particles& particles, int first_entries) {
   std::string why;
   if (!cuda_available(&why))
     throw Error(ExitCode::unavailable,
                 "backend cuda: no usable GPU here (" + why +
                     "); run with --backend cpu, or where `nvidia-smi` lists a device");
-  const int capacity = first_capacity > 0 ? first_capacity : capacity_of(scene);
-  refuse_if_too_large(scene, plan, capacity);
+  const ListRoom room = first_room(scene, plan.particles, first_entries);
+  refuse_if_too_large(scene, plan, room);
   if (scene.precision == Precision::dbl)
-    return std::make_unique<CudaSolver<double>>(scene, plan, particles, capacity);
-  return std::make_unique<CudaSolver<float>>(scene, plan, particles, capacity);
+    return std::make_unique<CudaSolver<double>>(scene, plan, particles, room);
+  return std::make_unique<CudaSolver<float>>(scene, plan, particles, room);
 }
 
 }  // namespace pbf

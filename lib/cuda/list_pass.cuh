@@ -14,14 +14,23 @@ __device__ __forceinline__ unsigned push_sign(double x, unsigned mask) {
   return __funnelshift_l(unsigned(__double2hiint(x)), mask, 1);
 }
 
+/// What the making of lists tells the host, on the device.
+struct ListState {
+  int used;     ///< tails taken in this update
+  int wanted;   ///< tails asked for in any update that had too few
+  int longest;  ///< list that did not fit in any update, with its tail
+};
+
 template <class Real>
 struct ListPass {
   Params<Real> p;
   const Vec4<Real>* position;
   const int* bin_start;
-  int4* words;
-  int *count, *longest;
-  int stride, capacity;
+  int4 *words, *tails;
+  int *count, *tail_of;
+  ListState* state;
+  ListRoom room;
+  int stride;
 
   /// hits(first, bits): bit 31 - k set where candidate first + k is a neighbour of i.
   template <class F>
@@ -44,15 +53,21 @@ struct ListPass {
   __device__ void operator()(int i) const {
     const Vec3<Real> xi = xyz(position[i]);
     int4* out = words + i;
+    std::size_t step = std::size_t(stride);
     int4 word{0, 0, 0, 0};
-    int found = 0;
+    int found = 0, limit = room.first + room.tail;
     const auto put = [&](int j) {
       word = {word.y, word.z, word.w, j};
-      ++found;
-      if ((found & 3) == 0 && found <= capacity) {
-        *out = word;
-        out += stride;
+      if (++found & 3) return;
+      const int k = (found >> 2) - 1;
+      if (k == room.first) {
+        out = take_tail(i);
+        step = 1;
+        if (!out) limit = k;
       }
+      if (k >= limit) return;
+      *out = word;
+      out += step;
     };
     for_each_run(xi, bin_start, p, [&](int begin, int end) {
       scan(i, xi, begin, end, [&](int first, unsigned bits) {
@@ -64,9 +79,8 @@ struct ListPass {
       });
     });
     const int all = found;
-    if (all < capacity)
-      while (found & 3) put(p.n);  // the far particle
-    finish(i, all);
+    while (found & 3) put(p.n);  // the far particle
+    finish(i, all, limit);
   }
 
   /// Eight threads make it: a row of candidates each (the last one two), counted first, then
@@ -88,11 +102,17 @@ struct ListPass {
     }
     const int all = __shfl_sync(0xffffffffu, place, 7, 8);
     place -= mine;
-    place = write_row(i, xi, a, place);
-    write_row(i, xi, b, place);
+    int4* tail = nullptr;
+    if (lane == 7 && all > 4 * room.first) tail = take_tail(i);
+    // A pointer travels as two words.
+    tail = reinterpret_cast<int4*>(
+        __shfl_sync(0xffffffffu, reinterpret_cast<std::uint64_t>(tail), 7, 8));
+    const List list{words + i, tail};
+    place = write_row(i, xi, a, place, list);
+    write_row(i, xi, b, place, list);
     if (!valid || lane != 7) return;
-    for (int at = all; at & 3; ++at) put(i, at, p.n);
-    finish(i, all);
+    for (int at = all; at & 3; ++at) put(list, at, p.n);
+    finish(i, all, room.first + (tail ? room.tail : 0));
   }
 
  private:
@@ -114,28 +134,47 @@ struct ListPass {
       r.bits = bits;
     });
   }
-  __device__ __forceinline__ int write_bits(int i, int first, unsigned bits, int place) const {
+  /// Where the words of a list are; tail is null where it needs none or gets none.
+  struct List {
+    int4 *words, *tail;
+  };
+  __device__ __forceinline__ int write_bits(int first, unsigned bits, int place,
+                                            const List& list) const {
     while (bits) {
       const int k = __clz(int(bits));
       bits &= ~(0x80000000u >> k);
-      put(i, place++, first + k);
+      put(list, place++, first + k);
     }
     return place;
   }
-  __device__ __forceinline__ int write_row(int i, Vec3<Real> xi, const Row& r, int place) const {
-    if (r.end - r.begin <= 32) return write_bits(i, r.begin, r.bits, place);
+  __device__ __forceinline__ int write_row(int i, Vec3<Real> xi, const Row& r, int place,
+                                           const List& list) const {
+    if (r.end - r.begin <= 32) return write_bits(r.begin, r.bits, place, list);
     scan(i, xi, r.begin, r.end,
-         [&](int first, unsigned bits) { place = write_bits(i, first, bits, place); });
+         [&](int first, unsigned bits) { place = write_bits(first, bits, place, list); });
     return place;
   }
-  __device__ __forceinline__ void put(int i, int at, int j) const {
-    if (at < capacity)
-      reinterpret_cast<int*>(
-          words)[4 * (std::size_t(at >> 2) * stride + std::size_t(i)) + std::size_t(at & 3)] = j;
+  __device__ __forceinline__ void put(const List& list, int at, int j) const {
+    const int k = at >> 2;
+    int4* word = k < room.first                            ? list.words + std::size_t(k) * stride
+                 : list.tail && k < room.first + room.tail ? list.tail + (k - room.first)
+                                                           : nullptr;
+    if (word) reinterpret_cast<int*>(word)[at & 3] = j;
   }
-  __device__ __forceinline__ void finish(int i, int all) const {
-    count[i] = all < capacity ? all : capacity;
-    if (all > capacity) atomicMax(longest, all);
+  /// Null when there is none left.
+  __device__ __forceinline__ int4* take_tail(int i) const {
+    const int mine = atomicAdd(&state->used, 1);
+    if (mine >= room.tails) {
+      atomicMax(&state->wanted, mine + 1);
+      return nullptr;
+    }
+    tail_of[i] = mine;
+    return tails + std::size_t(mine) * room.tail;
+  }
+  /// limit: words that were kept.
+  __device__ __forceinline__ void finish(int i, int all, int limit) const {
+    count[i] = min(all, 4 * limit);
+    if (all > room.longest()) atomicMax(&state->longest, all);
   }
 };
 

@@ -1,25 +1,42 @@
 // Neighbour lists for coalesced reading: word k of 4 entries of particle i lies at
-// entries[4 (k stride + i)], so the lanes of a warp read adjacent 16-byte words.
+// words[k stride + i], so the lanes of a warp read adjacent 16-byte words. Few lists are longer
+// than most, so there is room of one length for all, and a list that outgrows it takes a tail of
+// its own from a common pool.
 #pragma once
 
 #include "kernels/pair_sum.h"
 
 namespace pbf::inline PBF_VARIANT {
 
+/// How much room there is, in words of 4 entries.
+struct ListRoom {
+  int first = 0;  ///< words every list has
+  int tail = 0;   ///< words of one tail
+  int tails = 0;  ///< tails in the pool
+  __host__ __device__ int longest() const { return 4 * (first + tail); }
+};
+
 /// Neighbour policy. Unused entries of the last word name the far particle (index n), whose
 /// contribution to every sum is zero: no test per entry.
 struct TransposedLists {
   static constexpr bool skip_inactive = false;  ///< a branch per pair costs more than the pair
-  const int4* words = nullptr;
-  const int* count = nullptr;  ///< neighbours stored for each particle
-  int stride = 0;              ///< words between word k and k + 1 of one particle
+  const int4 *words = nullptr, *tails = nullptr;
+  const int* count = nullptr;    ///< neighbours stored for each particle
+  const int* tail_of = nullptr;  ///< which tail, where count is above 4 first
+  int stride = 0;                ///< words between word k and k + 1 of one particle
+  int first = 0, tail = 0;       ///< see ListRoom
 
   /// f(j) for every neighbour j of i, or for the share of one of `lanes` threads.
   template <class F>
   __device__ __forceinline__ void for_each(int i, F&& f, int lane = 0, int lanes = 1) const {
     const int n = (count[i] + 3) >> 2;
     const int4* w = words + i + std::size_t(lane) * stride;
-    for (int k = lane; k < n; k += lanes, w += std::size_t(lanes) * stride) {
+    std::size_t step = std::size_t(lanes) * stride;
+    for (int k = lane; k < n; k += lanes, w += step) {
+      if (k >= first && k < first + lanes) {
+        w = tails + std::size_t(tail_of[i]) * tail + (k - first);
+        step = lanes;
+      }
       const int4 j = __ldg(w);
       f(j.x);
       f(j.y);

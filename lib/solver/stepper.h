@@ -64,30 +64,32 @@ class Stepper {
     exec_.to_device(position.data(), n, position_.data());
     exec_.to_device(velocity.data(), n, velocity_.data());
     exec_.to_device(id.data(), n, id_.data());
-    reorder("grid", BinPass<Real>{p_, position_.data(), bin_.data()});
+    reorder<false>("grid", BinPass<Real>{p_, position_.data(), bin_.data()});
     sum_density();
   }
 
-  /// One update (kernels/README.md, "The step").
-  void step() {
+  /// Updates (kernels/README.md, "The step"). Where only viscosity lies between a sweep and the
+  /// next update, one pass does both that and the next bins.
+  void step(int updates) {
+    if (updates <= 0) return;
     exec_.begin();
-    reorder("predict", PredictPass<Real>{p_, position_.data(), velocity_.data(), bin_.data()});
-    with_smoothing(mode_, [&](auto s) {
-      for (int k = 0; k < iterations_; ++k) sweep<decltype(s)::value>();
-      if (p_.xsph > Real(0)) {
-        exec_.for_each(p_.n,
-                       XsphPass<Real, Lists, decltype(s)::value>{
-                           p_, lists_, position_.data(), velocity_.data(), other_velocity_.data()});
-        std::swap(velocity_, other_velocity_);
-        exec_.mark("xsph");
-      }
-    });
-    if (p_.vorticity > Real(0)) {
-      exec_.for_each(p_.n, CurlPass<Real, Lists>{p_, lists_, position_.data(), velocity_.data(),
-                                                 curl_.data()});
-      exec_.for_each(p_.n, VorticityPass<Real, Lists>{p_, lists_, position_.data(), curl_.data(),
-                                                      velocity_.data()});
-      exec_.mark("vorticity");
+    bool moved_on = false;
+    for (int left = updates - 1; left >= 0; --left) {
+      if (!moved_on)
+        reorder<true>("predict",
+                      PredictPass<Real>{p_, position_.data(), velocity_.data(), bin_.data()});
+      moved_on = left > 0 && p_.xsph > Real(0) && !(p_.vorticity > Real(0));
+      with_smoothing(mode_, [&](auto s) {
+        constexpr Smoothing S = decltype(s)::value;
+        for (int k = 0; k < iterations_; ++k) sweep<S>();
+        if (moved_on) {
+          reorder<true>("xsph", xsph<S, true>());
+        } else if (p_.xsph > Real(0)) {
+          exec_.for_each(p_.n, xsph<S, false>());
+          exec_.mark("xsph");
+        }
+      });
+      if (p_.vorticity > Real(0)) confine_vorticity();
     }
     density_is_current_ = false;
   }
@@ -163,14 +165,14 @@ class Stepper {
   }
 
  private:
-  /// Runs the pass that gives every particle its bin, sorts and gathers the particles by bin, makes
-  /// the lists.
-  template <class First>
+  /// Runs the pass that gives every particle its bin, sorts and gathers the particles by bin (as
+  /// predicted, with `moving`), makes the lists.
+  template <bool moving, class First>
   void reorder(const char* stage, const First& first) {
     exec_.sort_by_bin(
         stage, first, p_.n, bin_count(p_), order_.data(), bin_start_.data(),
-        GatherPass<Real>{position_.data(), velocity_.data(), id_.data(), other_position_.data(),
-                         other_velocity_.data(), other_id_.data()});
+        GatherPass<Real, moving>{p_, position_.data(), velocity_.data(), id_.data(),
+                                 other_position_.data(), other_velocity_.data(), other_id_.data()});
     std::swap(position_, other_position_);
     std::swap(velocity_, other_velocity_);
     std::swap(id_, other_id_);
@@ -198,6 +200,21 @@ class Stepper {
                                position_.data(), velocity_.data()});
     });
     exec_.mark("delta");
+  }
+
+  /// The pass over the present velocities, which it leaves behind in the other array.
+  template <Smoothing S, bool more_to_come>
+  XsphPass<Real, Lists, S, more_to_come> xsph() {
+    std::swap(velocity_, other_velocity_);
+    return {p_, lists_, position_.data(), other_velocity_.data(), velocity_.data(), bin_.data()};
+  }
+
+  void confine_vorticity() {
+    exec_.for_each(
+        p_.n, CurlPass<Real, Lists>{p_, lists_, position_.data(), velocity_.data(), curl_.data()});
+    exec_.for_each(p_.n, VorticityPass<Real, Lists>{p_, lists_, position_.data(), curl_.data(),
+                                                    velocity_.data()});
+    exec_.mark("vorticity");
   }
 
   void sum_density() {
