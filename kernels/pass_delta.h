@@ -38,11 +38,12 @@ struct DeltaPass {
   using Other = Vec4<Real>;
   struct Sum {
     Vec3<Real> move;
-    Real coincident = 0;  ///< neighbours in the same place
+    Real closeness =
+        0;  ///< sum of 1/q: beyond any other sum where a neighbour is in the same place
     template <class F>
     PBF_HD void each(F&& f) {
       each_component(move, f);
-      f(coincident);
+      f(closeness);
     }
   };
   PBF_HD Own own(int i) const { return position[i]; }
@@ -62,11 +63,11 @@ struct DeltaPass {
     const Root<Real> root = root_of(q2);
     const Real t = Spiky<Real>::t(root.q);
     s.move = s.move + (weight(x, y, q2, t) * t * t * root.inverse) * d;
-    s.coincident += q2 > coincident_q_squared<Real>() ? Real(0) : Real(1);
+    s.closeness += root.inverse;
   }
   PBF_HD void finish(int i, const Own& own, const Sum& s) const {
     const Vec3<Real> x = xyz(own);
-    const Vec3<Real> move = s.coincident > Real(0) ? s.move + separate(i, own) : s.move;
+    const Vec3<Real> move = s.closeness > Real(0.5e12) ? s.move + separate(i, own) : s.move;
     const Real a = p.vol * Spiky<Real>::gradient_norm;
     const Vec3<Real> wall = own.w * wall_term<Real, S>(x, p).gradient;
     const Vec3<Real> free = p.step_length * (a * move + wall);
