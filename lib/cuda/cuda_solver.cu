@@ -9,7 +9,10 @@ namespace pbf {
 namespace {
 
 /// Updates after which the host looks whether a list outgrew its room (and waits for the device).
-int batch_of(int n) { return n < 20000 ? 256 : n < 500000 ? 64 : 16; }
+/// Few at first and after lists grew, for lists that grow once often do so again, and what is done
+/// again then is short.
+constexpr int kFirstBatch = 8;
+int largest_batch(int n) { return n < 20000 ? 256 : n < 500000 ? 64 : 16; }
 
 /// Room for the lists at first: for the densest rest packing of the scene's h/d and a seventh more;
 /// an eighth of the lists may be up to 32 entries longer. first_entries > 0: that many instead.
@@ -19,14 +22,18 @@ ListRoom first_room(const Scene& s, std::int64_t n, int first_entries) {
   return {(first + 3) / 4, 8, int(n / 8) + 32};
 }
 
-/// More room, with air for what may come.
+/// More room, with air for what may come: longer lists for all while many outgrow theirs, or more
+/// tails; and longer ones, but then no more of them than are in use, for one very long list (a
+/// clump of thousands of particles) must not cost every tail its length.
 ListRoom larger(ListRoom room, const ListState& short_of, int n) {
+  const int tails = std::max(short_of.used, short_of.wanted);
+  if (tails > n / 8 + 32 && room.first < 96) {
+    room.first += (room.first + 1) / 2;
+    return room;
+  }
   if (short_of.longest > room.longest())
     room.tail = (short_of.longest + short_of.longest / 8) / 4 + 1 - room.first;
-  if (short_of.wanted > n / 2 && room.first < 64)  // not a few long lists: most are
-    room.first += (room.first + 1) / 2;
-  else if (short_of.wanted > room.tails)
-    room.tails = short_of.wanted + short_of.wanted / 4;
+  room.tails = tails + tails / 4 + 32;
   return room;
 }
 
@@ -74,16 +81,18 @@ class CudaSolver final : public Solver {
   void step(int updates) override {
     const Stopwatch watch;
     while (updates > 0) {
-      const int batch = std::min(updates, batch_of(n_));
+      int batch = std::min(updates, batch_);
       stepper_->save(saved_);
       run(batch);
       while (grow_if_needed()) {  // nothing was lost: the batch is done again with more room
         drop_graphs();
         stepper_->restore(saved_);
+        batch = batch_ = std::min(batch, kFirstBatch);
         run(batch);
       }
       updates_ += batch;
       updates -= batch;
+      batch_ = std::min(2 * batch_, largest_batch(n_));
     }
     step_seconds_ += watch.seconds();
   }
@@ -236,7 +245,7 @@ class CudaSolver final : public Solver {
   std::unique_ptr<Stepper<Real, CudaExec>> stepper_;
   typename Stepper<Real, CudaExec>::Saved saved_;
   cudaGraphExec_t graph_[3][2] = {};  ///< by size and parity
-  int parity_ = 0;
+  int parity_ = 0, batch_ = kFirstBatch;
   cudaStream_t copy_stream_ = nullptr;
   cudaEvent_t exported_ = nullptr;
   DeviceBuffer<char> staging_;
