@@ -14,3 +14,9 @@
 #ifndef PBF_VARIANT
 #define PBF_VARIANT plain
 #endif
+
+// The variant `pinned` (PBF_PINNED, compiled without contraction) gives the host's bits on the
+// device. Otherwise the device takes its fast root and fused products.
+#if defined(__CUDA_ARCH__) && !defined(PBF_PINNED)
+#define PBF_FAST_DEVICE 1
+#endif

@@ -7,6 +7,9 @@
 
 namespace pbf {
 
+/// Particles that a reduction adds in a tree before it adds such sums in order: on every backend.
+constexpr int kMeasureBlock = 128;
+
 /// Partial sums in the internal frame (h, s, rho0); lib/diag turns the total into SI units.
 struct MeasureSums {
   double compression = 0, compression_squared = 0, compression_max = 0;

@@ -38,10 +38,10 @@ PBF_HD float square_root(float x) { return sqrtf(x); }
 PBF_HD double square_root(double x) { return sqrt(x); }
 
 /// a b + c, for what two kernels must compute alike: the device's compiler may fuse a product and a
-/// sum in one kernel and not in the other. Host: rounded twice.
+/// sum in one kernel and not in the other. Elsewhere rounded twice.
 template <class Real>
 PBF_HD Real mul_add(Real a, Real b, Real c) {
-#if defined(__CUDA_ARCH__)
+#if defined(PBF_FAST_DEVICE)
   if constexpr (sizeof(Real) == 4)
     return __fmaf_rn(a, b, c);
   else
@@ -57,7 +57,7 @@ PBF_HD Vec3<Real> mul_add(Real a, Vec3<Real> b, Vec3<Real> c) {
 
 /// q and 1/q from q^2 for a pair loop; q^2 below 1e-30 counts as 1e-30, so that a coincident pair
 /// gives q = 1e-15 and, with its zero distance vector, a zero gradient instead of 0/0.
-/// Device code takes the hardware's reciprocal root (2 ulp in float) and one multiplication.
+/// Fast device code takes the hardware's reciprocal root (2 ulp in float) and one multiplication.
 template <class Real>
 struct Root {
   Real q, inverse;
@@ -65,7 +65,7 @@ struct Root {
 template <class Real>
 PBF_HD Root<Real> root_of(Real q_squared) {
   q_squared = max2(q_squared, Real(1e-30));
-#if defined(__CUDA_ARCH__)
+#if defined(PBF_FAST_DEVICE)
   Real inverse;
   if constexpr (sizeof(Real) ==
                 4)  // never denormal here: one instruction, without the check for it

@@ -48,15 +48,20 @@ class CpuExec {
     for (int i = 0; i < n; ++i) pass(i);
   }
 
-  /// Sum of pass(i): 1024 particles at a time, then over those sums in order.
+  /// Sum of pass(i): a tree over every kMeasureBlock particles, then those sums in order.
   template <class Pass>
   MeasureSums reduce(int n, const Pass& pass) {
-    const int chunks = (n + kChunk - 1) / kChunk;
-    partial_.assign(std::size_t(chunks), MeasureSums{});
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (chunks > 1)
-    for (int c = 0; c < chunks; ++c)
-      for (int i = c * kChunk; i < n && i < (c + 1) * kChunk; ++i)
-        partial_[std::size_t(c)].add(pass(i));
+    const int blocks = (n + kMeasureBlock - 1) / kMeasureBlock;
+    partial_.resize(std::size_t(blocks));
+#pragma omp parallel for schedule(dynamic, 8) num_threads(threads_) if (blocks > 8)
+    for (int b = 0; b < blocks; ++b) {
+      MeasureSums part[kMeasureBlock];
+      for (int t = 0, i = b * kMeasureBlock; t < kMeasureBlock && i < n; ++t, ++i)
+        part[t] = pass(i);
+      for (int half = kMeasureBlock / 2; half > 0; half /= 2)
+        for (int t = 0; t < half; ++t) part[t].add(part[t + half]);
+      partial_[std::size_t(b)] = part[0];
+    }
     MeasureSums total;
     for (const MeasureSums& s : partial_) total.add(s);
     return total;

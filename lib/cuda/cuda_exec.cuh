@@ -12,10 +12,15 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-constexpr int kBlock = 128;
-/// How many threads share a neighbour sum, by number of particles, and up to which number eight
-/// share the making of a list: measured on an H200 (kernels/PERFORMANCE.md).
+constexpr int kBlock = kMeasureBlock;
+/// Up to how many particles so many threads share a neighbour sum, and up to how many eight share
+/// the making of a list: measured on an H200 (kernels/PERFORMANCE.md).
+#ifdef PBF_PINNED
+constexpr int kSixteenLanes = 6000, kEightLanes = 24000, kFourLanes = 0, kTwoLanes = 0;
+#else
 constexpr int kSixteenLanes = 4000, kEightLanes = 12000, kFourLanes = 40000, kTwoLanes = 100000;
+#endif
+constexpr int kListLanes = 40000;
 
 /// First statement of every kernel: it is set up while the kernel before it ends, and waits here
 /// until that one is done (programmatic dependent launch, from sm_90 on). An explicit early trigger
@@ -98,7 +103,11 @@ struct StablePass {
 template <int lanes, class Pass>
 __global__ void __launch_bounds__(kBlock) lanes_kernel(int n, Pass pass) {
   wait_for_previous();
+#ifdef PBF_PINNED
+  sum_in_order_by_lanes<lanes, kBlock>(pass, blockIdx.x * kBlock + threadIdx.x, n);
+#else
   sum_over_neighbors_by_lanes<lanes>(pass, blockIdx.x * kBlock + threadIdx.x, n);
+#endif
 }
 template <class Real>
 __global__ void __launch_bounds__(kBlock) list_lanes_kernel(ListPass<Real> pass) {
@@ -274,7 +283,7 @@ class CudaExec {
                               list_state_.data(),
                               room_,
                               stride(p.n)};
-    if (p.n <= kFourLanes)
+    if (p.n <= kListLanes)
       launch(list_lanes_kernel<Real>, 8 * p.n, kBlock, 0, pass);
     else
       for_each(p.n, pass);

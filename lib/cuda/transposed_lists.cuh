@@ -4,17 +4,12 @@
 // its own from a common pool.
 #pragma once
 
+#include <type_traits>
+
 #include "kernels/pair_sum.h"
+#include "lib/cuda/list_room.h"
 
 namespace pbf::inline PBF_VARIANT {
-
-/// How much room there is, in words of 4 entries.
-struct ListRoom {
-  int first = 0;  ///< words every list has
-  int tail = 0;   ///< words of one tail
-  int tails = 0;  ///< tails in the pool
-  __host__ __device__ int longest() const { return 4 * (first + tail); }
-};
 
 /// A word that this pass reads once and no pass reads soon: it takes no room in L1 from the
 /// positions.
@@ -54,6 +49,11 @@ struct TransposedLists {
       f(j.w);
     }
   }
+  /// Word k of particle i.
+  __device__ __forceinline__ int4 word(int i, int k) const {
+    return load_once(k < first ? words + i + std::size_t(k) * stride
+                               : tails + std::size_t(tail_of[i]) * tail + (k - first));
+  }
   __device__ __forceinline__ int size(int i) const { return count[i]; }
 };
 
@@ -75,6 +75,49 @@ __device__ __forceinline__ void sum_over_neighbors_by_lanes(const Pass& pass, in
     for (int half = lanes / 2; half > 0; half /= 2) x += __shfl_xor_sync(0xffffffffu, x, half);
   });
   if (valid && lane == 0) pass.finish(i, own, sum);
+}
+
+/// The same with the bits of one thread's sum: the threads compute the terms, 4 lanes of them at a
+/// time, and leave them in shared memory; then each adds one component in the order of the list.
+template <int lanes, int block, class Pass>
+__device__ __forceinline__ void sum_in_order_by_lanes(const Pass& pass, int thread, int n) {
+  using Real = std::remove_cv_t<decltype(pass.p.dt)>;
+  using Sum = typename Pass::Sum;
+  constexpr int parts = sizeof(Sum) / sizeof(Real), entries = 4 * lanes;
+  __shared__ Real terms[block / lanes][entries][parts];
+  auto& mine = terms[threadIdx.x / lanes];
+  const int i = thread / lanes, lane = thread % lanes;
+  const bool valid = i < n;
+  const int words = valid ? (pass.lists.size(i) + 3) >> 2 : 0;
+  typename Pass::Own own{};
+  if (valid) own = pass.own(i);
+  Real total[(parts + lanes - 1) / lanes] = {};
+  // Every lane of the warp goes through as many rounds as the longest list of the warp needs.
+  for (int first = 0; __any_sync(0xffffffffu, first < words); first += lanes) {
+    if (first + lane < words) {
+      const int4 word = pass.lists.word(i, first + lane);
+      const int j[4] = {word.x, word.y, word.z, word.w};
+#pragma unroll
+      for (int e = 0; e < 4; ++e) {
+        Sum term{};
+        pass.add(term, own, pass.other(j[e]), i, j[e], true);
+        const Real* part = reinterpret_cast<const Real*>(&term);
+        for (int c = 0; c < parts; ++c) mine[4 * lane + e][c] = part[c];
+      }
+    }
+    __syncwarp();
+    const int there = min(lanes, words - first) * 4;
+    for (int c = lane, k = 0; c < parts; c += lanes, ++k)
+#pragma unroll 8
+      for (int e = 0; e < there; ++e) total[k] += mine[e][c];
+    __syncwarp();
+  }
+  for (int c = lane, k = 0; c < parts; c += lanes, ++k) mine[0][c] = total[k];
+  __syncwarp();
+  if (!valid || lane != 0) return;
+  Sum sum;
+  for (int c = 0; c < parts; ++c) reinterpret_cast<Real*>(&sum)[c] = mine[0][c];
+  pass.finish(i, own, sum);
 }
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -159,7 +159,10 @@ std::vector<Key> solver_keys() {
              "Factor on every velocity, once per update. 1: no damping.",
              SCENE(&s.solver.velocity_damping)),
       words("solver.fused", {}, "Density and lambda in one loop over the neighbours.",
-            SCENE(&s.solver.fused))};
+            SCENE(&s.solver.fused)),
+      words("solver.reproducible", {},
+            "The GPU gives the CPU's results bit for bit, more slowly. The CPU always does.",
+            SCENE(&s.solver.reproducible))};
 }
 
 std::vector<Key> force_keys() {

@@ -66,6 +66,7 @@ struct SolverSettings {
   double wall_margin = 0;       ///< m, distance to a wall at which particles are clamped
   double velocity_damping = 1;  ///< factor on the velocity, once per update
   bool fused = true;            ///< density and lambda in one loop over the neighbours
+  bool reproducible = false;    ///< cuda: the CPU's bits, at a price (kernels/README.md, "Bits")
   bool operator==(const SolverSettings&) const = default;
 };
 

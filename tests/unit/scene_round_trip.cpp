@@ -46,6 +46,7 @@ Scene unlike_default() {
   s.solver.wall_margin = 0.01;
   s.solver.velocity_damping = 0.999;
   s.solver.fused = false;
+  s.solver.reproducible = true;
   s.tensile = Tensile{0.01, 0.2, 6};
   s.viscosity = Viscosity{0.125};
   s.vorticity = Vorticity{2.5};
