@@ -14,6 +14,9 @@ COMMANDS = {
     "plot-speedup": "speed-up of one backend over another against the number of particles",
     "plot-stages": "share of every stage in the time of an update, stacked",
     "plot-energy": "energies of runs over time",
+    "plot-study": "error against run time, with the Pareto front",
+    "plot-map": "which settings run stably, which degrade, which are stopped",
+    "plot-front": "front of a dam break against experiments",
 }
 
 
