@@ -17,6 +17,11 @@ COMMANDS = {
     "plot-study": "error against run time, with the Pareto front",
     "plot-map": "which settings run stably, which degrade, which are stopped",
     "plot-front": "front of a dam break against experiments",
+    "compare": "differences of two run files",
+    "video": "film from the pictures of a run",
+    "to-csv": "frames, the log or a track as CSV; frames as extended XYZ",
+    "make-scene": "scene from a shape, a picture or a mesh",
+    "surface": "surface of the fluid as triangles",
 }
 
 

@@ -5,13 +5,17 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import h5py
 import numpy as np
 
 from . import index
-from .errors import BadInput, FileError
+from .errors import BadInput, MissingPackage
 from .table import Table
+
+if TYPE_CHECKING:
+    import pyvista
 
 
 class Field:
@@ -102,6 +106,19 @@ class Frame:
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self._run[name][self.k]
+
+    def polydata(self) -> pyvista.PolyData:
+        """The frame for PyVista, all fields as point data: `run.frames[-1].polydata().plot(
+        scalars="velocity")` colours by speed. MissingPackage without PyVista."""
+        try:
+            import pyvista
+        except ImportError:
+            raise MissingPackage("PyVista is not installed: pip install pyvista") from None
+        data = pyvista.PolyData(self["position"])
+        for name in self._run.fields:
+            if name != "position":
+                data[name] = self[name]
+        return data
 
     def __repr__(self) -> str:
         return f"<frame {self.k}: t = {self.time:g} s, {self.count} particles>"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import matplotlib
@@ -53,7 +52,8 @@ def figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (6.4, 4.
 
 def title(axes: Axes, text: str, detail: str = "") -> None:
     """What is shown in bold; below it, smaller, with which scene, backend and device."""
-    axes.set_title(text, loc="left", fontweight="bold", pad=18 if detail else 6)
+    lines = detail.count("\n") + 1 if detail else 0
+    axes.set_title(text, loc="left", fontweight="bold", pad=6 + 12 * lines)
     if detail:
         axes.text(0, 1.015, detail, transform=axes.transAxes, fontsize=8, color="#444444",
                   va="bottom")
@@ -108,7 +108,6 @@ def save(fig: Figure, args: argparse.Namespace) -> None:
     if not 10 <= args.dpi <= 2400:
         raise BadInput(f"--dpi {args.dpi:g}: give a number from 10 to 2400")
     try:
-        Path(args.out).parent.mkdir(parents=True, exist_ok=True)
         fig.savefig(args.out, dpi=args.dpi)
     except OSError as problem:
         raise FileError(f"{args.out}: cannot write the picture: {problem.strerror}") from None
