@@ -40,8 +40,8 @@ def numbers(text: str) -> list[float]:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("shape", choices=SHAPES)
     parser.add_argument("-o", "--out", required=True, metavar="SCENE", help="scene file to write")
-    parser.add_argument("--count", type=int, metavar="N",
-                        help="particles, about (blob, stream, block; default 16384)")
+    parser.add_argument("--count", type=int, metavar="N", help="particles, as near as a lattice "
+                        "comes (blob, stream, block; default 16384)")
     parser.add_argument("--size", type=numbers, default=[0.4, 0.4, 0.8], metavar="X,Y,Z",
                         help="of the block, m (default 0.4,0.4,0.8)")
     parser.add_argument("--box", type=numbers, metavar="X,Y,Z",
@@ -70,7 +70,7 @@ def scene_text(name: str, box: tuple[list[float], list[float]], spacing: float, 
     return (f"# Made by: python -m pbf_tools make-scene\n"
             f"name: {name}\n"
             f"domain: {{min: [{low}], max: [{high}]}}\n"
-            f"fluid: {{spacing: {spacing:.9g}}}\n"
+            f"fluid: {{spacing: {spacing:.12g}}}\n"
             f"bodies:\n  - {body}\n"
             f"gravity: {gravity}\n"
             f"time: {{step: {step:.9g}, end: {end:.9g}}}\n"
@@ -89,9 +89,9 @@ def run(args: argparse.Namespace) -> int:
         count = 16384 if args.count is None else args.count
         if count < 1:
             raise BadInput("--count must be at least 1")
-        text = _block(args, out.stem, count)
+        text, count = _block(args, out.stem, count)
     write_text(out, text)
-    print(f"wrote {out}: about {count} particles; try: pbf plan {out}")
+    print(f"wrote {out}: {count} particles; try: pbf plan {out}")
     return 0
 
 
@@ -101,7 +101,7 @@ SEED_FLUID = {"blob": ([-1.0, 1.0, -0.5], [0.0, 4.0, 0.5]),
               "stream": ([-0.1, 1.0, -0.1], [0.1, 7.0, 0.1])}
 
 
-def _block(args: argparse.Namespace, name: str, count: int) -> str:
+def _block(args: argparse.Namespace, name: str, count: int) -> tuple[str, int]:
     """A lattice of particles in a box-shaped body."""
     if args.shape == "block":
         box, (low, high) = args.box or [1.6, 0.4, 1.0], ([0, 0, 0], args.size)
@@ -110,10 +110,28 @@ def _block(args: argparse.Namespace, name: str, count: int) -> str:
         domain, gravity = ([0, 0, 0], box), "[0, 0, -9.81]"
     else:
         domain, (low, high), gravity = SEED_BOX, SEED_FLUID[args.shape], "[0, -9.81, 0]"
-    spacing = float(np.prod(np.subtract(high, low)) / count) ** (1 / 3)
+    spacing, count = lattice_spacing(np.subtract(high, low), count)
     corners = [", ".join(f"{v:.9g}" for v in corner) for corner in (low, high)]
     body = f"{{shape: block, min: [{corners[0]}], max: [{corners[1]}]}}"
-    return scene_text(name, domain, spacing, body, gravity, args.end)
+    return scene_text(name, domain, spacing, body, gravity, args.end), count
+
+
+def lattice_spacing(size: np.ndarray, count: int) -> tuple[float, int]:
+    """The spacing (m) whose lattice in a block of this size (3,) holds nearest to `count` particles,
+    and how many it holds; it fills the block exactly along one axis.
+
+    >>> lattice_spacing(np.array([0.4, 0.4, 0.8]), 2000)
+    (0.04, 2000)
+    """
+    near = float(np.prod(size) / count) ** (1 / 3)
+    # Whole cells, as lib/scene/lattice.h counts them.
+    def cells(d: float) -> int:
+        return int(np.prod(np.floor(size / d + 1e-6)))
+    choices = {round(float(s) / k, 12) for s in size
+               for k in range(max(1, int(0.7 * s / near)), int(1.4 * s / near) + 2)}
+    # A spacing as wide as the block's thinnest side at most, so that there is a particle.
+    best = min((d for d in choices if cells(d) > 0), key=lambda d: (abs(cells(d) - count), d))
+    return best, cells(best)
 
 
 def _filled(args: argparse.Namespace, out: Path) -> tuple[str, int]:
