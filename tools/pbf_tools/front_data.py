@@ -17,15 +17,18 @@ FOLDER = Path(__file__).parent / "data"
 
 @dataclass(frozen=True)
 class Reference:
-    """One measured front: its file, what a legend calls it, the column's height over its width."""
+    """One measured front: its file, what a legend calls it, the column's height over its width, and
+    the Z at which the experiment's far wall stopped it."""
 
     file: str
     label: str
     ratio: float
+    wall: float = float("inf")
 
     def read(self) -> Table:
-        """Columns T and Z."""
-        return read_csv(FOLDER / self.file)
+        """Columns T and Z, before the far wall."""
+        table = read_csv(FOLDER / self.file)
+        return table.where(table["Z"] < self.wall)
 
 
 REFERENCES = {
@@ -40,5 +43,6 @@ REFERENCES = {
                                  "Koshizuka & Oka 1996 (2nd digitisation)", 2),
     "martin-moyce-square": Reference("martin_moyce_1952_front_n2_1_a2.25in.csv",
                                      "Martin & Moyce 1952, square, a = 2.25 in", 1),
-    "lobovsky": Reference("lobovsky_2014_front_h600.csv", "Lobovsky et al. 2014, 0.6 m square", 1),
+    "lobovsky": Reference("lobovsky_2014_front_h600.csv", "Lobovsky et al. 2014, 0.6 m square", 1,
+                          wall=2.68),
 }

@@ -75,7 +75,7 @@ class Field:
         elif parts:
             out = np.stack(parts)
         else:
-            out = np.empty((0, *self.shape[1:]), self.dtype)
+            out = np.empty((0, self.shape[1] or 0, *self.shape[2:]), self.dtype)[:, rows]
         return out[(..., *keys[2:])] if len(keys) > 2 else out
 
     def _frame(self, file: h5py.File, k: int, rows: object) -> np.ndarray:

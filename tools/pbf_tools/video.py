@@ -100,8 +100,12 @@ def _animation(files: list[Path], out: Path, args: argparse.Namespace) -> None:
     try:
         images = [load(file) for file in files]
         if out.suffix == ".gif":
-            # One palette for all pictures, from the middle one: colours do not flicker.
-            palette = images[len(images) // 2].quantize(256)
+            # One palette for all, from up to 9 of them one below the other: colours do not flicker.
+            some = images[::max(1, len(images) // 8)]
+            strip = Image.new("RGB", (images[0].width, sum(image.height for image in some)))
+            for k, image in enumerate(some):
+                strip.paste(image, (0, sum(other.height for other in some[:k])))
+            palette = strip.quantize(256)
             images = [image.quantize(palette=palette) for image in images]
         images[0].save(out, save_all=True, append_images=images[1:], loop=0,
                        duration=1000 / args.fps)
