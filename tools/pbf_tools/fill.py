@@ -49,12 +49,10 @@ def image_brightness(path: str) -> np.ndarray:
     pixels = np.asarray(pixels, float)
     if pixels.ndim == 2:
         return pixels
-    color, alpha = pixels[..., :3] @ [0.299, 0.587, 0.114], 1.0
-    if pixels.shape[2] == 2:
-        color, alpha = pixels[..., 0], pixels[..., 1]
-    elif pixels.shape[2] == 4:
-        alpha = pixels[..., 3]
-    return color * alpha + (1 - alpha)
+    gray, has_alpha = pixels.shape[2] < 3, pixels.shape[2] in (2, 4)
+    bright = pixels[..., 0] if gray else pixels[..., :3] @ [0.299, 0.587, 0.114]
+    alpha = pixels[..., -1] if has_alpha else np.ones(bright.shape)
+    return bright * alpha + (1 - alpha)
 
 
 def fill_mesh(path: str, width: float, spacing: float) -> np.ndarray:

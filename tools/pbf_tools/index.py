@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import h5py
 import numpy as np
@@ -37,7 +37,7 @@ class Index:
     updates: np.ndarray  # (frames,)
     counts: np.ndarray  # (frames,), particles
     fields: dict[str, Place]
-    info: dict[str, object]
+    info: dict[str, Any]
     units: dict[str, str] = field(default_factory=dict)
 
 
@@ -115,8 +115,8 @@ def _text(value: object) -> str:
     return value.decode() if isinstance(value, bytes) else str(value)
 
 
-def _info(pbf: h5py.Group) -> tuple[dict[str, object], dict[str, str]]:
-    info: dict[str, object] = {}
+def _info(pbf: h5py.Group) -> tuple[dict[str, Any], dict[str, str]]:
+    info: dict[str, Any] = {}
     units: dict[str, str] = {}
     for key, value in pbf.attrs.items():
         if isinstance(value, np.ndarray):

@@ -50,7 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--file", metavar="FILE", help="picture or mesh")
     parser.add_argument("--width", type=float, metavar="M", help="of picture or mesh along x")
     parser.add_argument("--depth", type=float, metavar="M",
-                        help="of the fluid behind a picture, along y (default: a quarter of --width)")
+                        help="of the fluid behind a picture, along y (default: --width / 4)")
     parser.add_argument("--threshold", type=float, default=0.5, metavar="B",
                         help="pixels darker than this are fluid, 0..1 (default 0.5)")
     parser.add_argument("--invert", action="store_true", help="bright pixels are fluid")
@@ -104,12 +104,13 @@ SEED_FLUID = {"blob": ([-1.0, 1.0, -0.5], [0.0, 4.0, 0.5]),
 def _block(args: argparse.Namespace, name: str, count: int) -> tuple[str, int]:
     """A lattice of particles in a box-shaped body."""
     if args.shape == "block":
-        box, (low, high) = args.box or [1.6, 0.4, 1.0], ([0, 0, 0], args.size)
+        box, low, high = args.box or [1.6, 0.4, 1.0], [0.0, 0.0, 0.0], args.size
         if any(s > b for s, b in zip(args.size, box)):
             raise BadInput("--size is larger than --box")
-        domain, gravity = ([0, 0, 0], box), "[0, 0, -9.81]"
+        domain, gravity = ([0.0, 0.0, 0.0], box), "[0, 0, -9.81]"
     else:
-        domain, (low, high), gravity = SEED_BOX, SEED_FLUID[args.shape], "[0, -9.81, 0]"
+        low, high = SEED_FLUID[args.shape]
+        domain, gravity = SEED_BOX, "[0, -9.81, 0]"
     spacing, count = lattice_spacing(np.subtract(high, low), count)
     corners = [", ".join(f"{v:.9g}" for v in corner) for corner in (low, high)]
     body = f"{{shape: block, min: [{corners[0]}], max: [{corners[1]}]}}"
@@ -117,19 +118,19 @@ def _block(args: argparse.Namespace, name: str, count: int) -> tuple[str, int]:
 
 
 def lattice_spacing(size: np.ndarray, count: int) -> tuple[float, int]:
-    """The spacing (m) whose lattice in a block of this size (3,) holds nearest to `count` particles,
-    and how many it holds; it fills the block exactly along one axis.
+    """The spacing (m) whose lattice in a block of this size (3,), m, holds nearest to `count`
+    particles, and how many it holds. It fills the block exactly along one axis.
 
     >>> lattice_spacing(np.array([0.4, 0.4, 0.8]), 2000)
     (0.04, 2000)
     """
     near = float(np.prod(size) / count) ** (1 / 3)
-    # Whole cells, as lib/scene/lattice.h counts them.
-    def cells(d: float) -> int:
+
+    def cells(d: float) -> int:  # whole ones, as lib/scene/lattice.h counts them
         return int(np.prod(np.floor(size / d + 1e-6)))
+
     choices = {round(float(s) / k, 12) for s in size
                for k in range(max(1, int(0.7 * s / near)), int(1.4 * s / near) + 2)}
-    # A spacing as wide as the block's thinnest side at most, so that there is a particle.
     best = min((d for d in choices if cells(d) > 0), key=lambda d: (abs(cells(d) - count), d))
     return best, cells(best)
 
@@ -141,7 +142,9 @@ def _filled(args: argparse.Namespace, out: Path) -> tuple[str, int]:
     if not 0 < args.spacing < args.width < 1e12:
         raise BadInput("--spacing must be above 0 and below --width")
     if args.shape == "image":
-        depth = args.depth or args.width / 4
+        depth = args.width / 4 if args.depth is None else args.depth
+        if not 0 < depth < 1e12:
+            raise BadInput("--depth must be above 0")
         x = fill_image(args.file, args.width, depth, args.spacing, args.threshold, args.invert)
     else:
         x = fill_mesh(args.file, args.width, args.spacing)

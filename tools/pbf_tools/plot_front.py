@@ -45,7 +45,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--reference", action="append", choices=list(REFERENCES), metavar="NAME",
                         help="experiment (repeatable; default: all of the column's shape): "
                              + ", ".join(REFERENCES))
-    parser.add_argument("--width", type=float, metavar="M", help="a; default: from the first frame")
+    parser.add_argument("--width", type=float, metavar="M",
+                        help="of the column, a; default: from the first frame")
     parser.add_argument("--height", type=float, metavar="M",
                         help="of the column; default: from the first frame")
     parser.add_argument("--gravity", type=float, metavar="M/S2",
@@ -71,11 +72,11 @@ def best_shift(t: np.ndarray, z: np.ndarray, table: Table) -> tuple[float, float
     """The shift of T in -0.5..0.5 with the least RMS deviation, and that deviation."""
     points = deviation(t, z, table)[1]
     shifts = np.round(np.linspace(-0.5, 0.5, 101), 2)
-    found = [(deviation(t, z, table, s), s) for s in shifts]
+    tried = [(*deviation(t, z, table, s), s) for s in shifts.tolist()]
     # A shift must not gain by pushing measured points out of the run's range.
-    found = [(rms, abs(s), s) for (rms, n), s in found if n >= points > 0]
-    rms, _, shift = min(found, default=(float("nan"), 0, 0.0))
-    return float(shift), rms
+    rms, _, shift = min(((rms, abs(s), s) for rms, n, s in tried if n >= points > 0),
+                        default=(float("nan"), 0.0, 0.0))
+    return shift, rms
 
 
 def read_front(path: str, args: argparse.Namespace) -> Front:
@@ -86,8 +87,9 @@ def read_front(path: str, args: argparse.Namespace) -> Front:
         if args.width is None or args.height is None:
             raise BadInput(f"{path}: a table does not say how large the column was: give --width "
                            "and --height")
-        log, back, wall, half, g = read_csv(path), 0.0, np.inf, 0.0, args.gravity or 9.81
-        width, height, title, label = args.width, args.height, Path(path).stem, Path(path).stem
+        log, back, wall, half, own_g = read_csv(path), 0.0, np.inf, 0.0, 9.81
+        own_width, own_height, title, label = args.width, args.height, Path(path).stem, \
+            Path(path).stem
     else:
         r = Run(path)
         if not len(r.frames):
@@ -101,9 +103,11 @@ def read_front(path: str, args: argparse.Namespace) -> Front:
         size = high - low + d
         half, back = d / 2, float(low[axis]) - d / 2
         wall = float(r.info["domain_max"][axis]) - float(r.info["smoothing_length"])
-        width, height = args.width or float(size[axis]), args.height or float(size[up])
-        g, log, title = args.gravity or float(np.abs(gravity[up])), r.log, r.title
+        own_width, own_height, own_g = float(size[axis]), float(size[up]), float(abs(gravity[up]))
+        log, title = r.log, r.title
     need(log, ["time", column], path)
+    width, height, g = (own if given is None else given for given, own in
+                        ((args.width, own_width), (args.height, own_height), (args.gravity, own_g)))
     if not (width > 0 and height > 0 and g > 0):
         raise BadInput(f"{path}: width, height and gravity must be above 0")
     x = log[column] + half
@@ -118,7 +122,7 @@ def read_front(path: str, args: argparse.Namespace) -> Front:
 def _gravity(scene: str, path: str) -> np.ndarray:
     match = re.search(r"^gravity: *\[([^]]*)\]", scene, re.MULTILINE)
     if not match:
-        raise BadInput(f"{path}: the scene in it says no gravity; give it as a table (to-csv --log)")
+        raise BadInput(f"{path}: the scene in it says no gravity; make a table of the log (to-csv)")
     return np.array([float(v) for v in match[1].split(",")])
 
 

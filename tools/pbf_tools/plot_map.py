@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     down = -(-len(groups) // across)
     xs, ys = np.unique(table[args.x]), np.unique(table[args.y])
     width, height = max(2.2, 0.62 * len(xs)), max(1.8, 0.46 * len(ys))
-    fig, panels = style.figure(down, across, size=(1.3 + (width + 0.5) * across,
+    fig, panels = style.figure(down, across, size=(2.3 + (width + 0.5) * across,
                                                    1.3 + (height + 0.9) * down))
     for axes, (name, rows) in zip(panels.flat, groups):
         _draw(axes, rows, args, verdict, xs, ys)
@@ -60,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
         axes.set_ylabel(_name(table, args.y_name, args.y, "y"))
     handles = [panels[0, 0].scatter([], [], marker=sign, s=60, color=color, edgecolor="black",
                                     linewidth=0.6) for color, sign in CLASSES.values()]
-    fig.legend(handles, list(CLASSES), loc="outside lower center", ncols=3)
+    style.side_legend(panels[0, -1], handles, list(CLASSES))
     fig.suptitle(args.title or _title(table, args.value), fontweight="bold")
     style.save(fig, args)
     for name in CLASSES:
@@ -86,10 +86,11 @@ def _draw(axes, rows: Table, args: argparse.Namespace, verdict: str, xs, ys) -> 
         color, sign = CLASSES[name]
         axes.fill([a - .5, a + .5, a + .5, a - .5], [b - .5, b - .5, b + .5, b + .5], color=color,
                   edgecolor="white", linewidth=1)
-        number = values is not None and np.isfinite(values[k]) and name != "stopped"
-        axes.plot(a, b + (0.2 if number else 0), sign, color="black", markersize=5, alpha=0.75)
-        if number:
-            axes.text(a, b - 0.22, f"{100 * values[k]:.2g}", ha="center", va="center", fontsize=6.5)
+        value = np.nan if values is None or name == "stopped" else values[k]
+        shown = bool(np.isfinite(value))
+        axes.plot(a, b + (0.2 if shown else 0), sign, color="black", markersize=5, alpha=0.75)
+        if shown:
+            axes.text(a, b - 0.22, f"{100 * value:.2g}", ha="center", va="center", fontsize=6.5)
     labels = [_short(x) for x in xs]
     hat = rows.columns.get(args.dt_hat)
     if hat is not None:

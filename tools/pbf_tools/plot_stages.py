@@ -96,7 +96,7 @@ def run(args: argparse.Namespace) -> int:
             for scene in scenes]
     fig, panels = style.figure(len(scenes), len(setups), sharey=True,
                                size=(1.5 + 3.9 * len(setups), 0.9 + 2.6 * len(scenes)))
-    handles = {}
+    handles: dict[str, object] = {}
     for i, scene in enumerate(scenes):
         for j, setup in enumerate(setups):
             axes, here = panels[i, j], rows[i][j]
@@ -110,7 +110,7 @@ def run(args: argparse.Namespace) -> int:
                 axes.set_xlabel("particles")
             if j == 0:
                 axes.set_ylabel("share of an update (%)")
-    _finish(fig, handles, args, "Time per stage")
+    _finish(fig, panels[0, -1], handles, args, "Time per stage")
     return 0
 
 
@@ -132,14 +132,13 @@ def _run_file(args: argparse.Namespace) -> int:
     handles = draw(axes, [f"{run_file.info['particles']} particles"],
                    [(stages, sum(stages.values()))], "s", args.grouped)
     axes.set_ylabel("share of the time of all stages (%)")
-    _finish(fig, handles, args, f"Time per stage\n{run_file.title}")
+    _finish(fig, axes, handles, args, f"Time per stage\n{run_file.title}")
     return 0
 
 
-def _finish(fig, handles: dict[str, object], args: argparse.Namespace, text: str) -> None:
+def _finish(fig, axes, handles: dict[str, object], args: argparse.Namespace, text: str) -> None:
     names = {"lambda": "lambda (with density)"} if "density" not in handles else {}
     order = list(reversed(handles))  # as they are stacked
-    fig.legend([handles[n] for n in order], [names.get(n, n) for n in order],
-               loc="outside right center")
+    style.side_legend(axes, [handles[n] for n in order], [names.get(n, n) for n in order])
     fig.suptitle(args.title or text, fontweight="bold")
     style.save(fig, args)

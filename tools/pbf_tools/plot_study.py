@@ -25,8 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--x", default="seconds_median", metavar="COLUMN",
                         help="run time, s (default %(default)s)")
     parser.add_argument("--x-spread", default="seconds_spread", metavar="COLUMN",
-                        help="greatest less least time of the repeats, s; the bar is centred on the "
-                             "median and so long (default %(default)s; left out when not there)")
+                        help="greatest less least time of the repeats, s: the length of the bar "
+                             "about the median (default %(default)s; no bar when not there)")
     parser.add_argument("--y", default="compression_mean", metavar="COLUMN",
                         help="error (default %(default)s)")
     parser.add_argument("--series", default="method,backend,precision", metavar="COLUMNS",
@@ -83,7 +83,7 @@ def run(args: argparse.Namespace) -> int:
               markeredgewidth=0.9, zorder=4)
     axes.set(xscale="log", yscale="log", xlabel=_label(args.x, "s"),
              ylabel=_label(args.y, "%" if percent else "1"))
-    fig.legend(loc="outside right upper")
+    style.side_legend(axes)
     style.title(axes, args.title or "Error against run time", _detail(table))
     style.save(fig, args)
     for i in at:

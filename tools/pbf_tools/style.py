@@ -59,6 +59,11 @@ def title(axes: Axes, text: str, detail: str = "") -> None:
                   va="bottom")
 
 
+def side_legend(axes: Axes, *handles_and_labels, **more) -> None:
+    """A legend right of the axes, where it covers nothing."""
+    axes.legend(*handles_and_labels, loc="upper left", bbox_to_anchor=(1.01, 1.02), **more)
+
+
 def cycle(k: int) -> dict[str, object]:
     """Colour and marker of the k-th series; they also differ by shape, for print in grey."""
     return {"color": COLORS[k % len(COLORS)], "marker": MARKERS[k % len(MARKERS)]}

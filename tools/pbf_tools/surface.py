@@ -1,7 +1,7 @@
 """The surface of the fluid as triangles, a .ply file per frame (needs pysplashsurf).
 
-Marching cubes over the SPH colour field, then smoothing that keeps the volume (Loeschner, Boettcher,
-Jeske & Bender 2023). The files open in ParaView, Blender, MeshLab, PyVista.
+Marching cubes over the SPH colour field, then smoothing that keeps the volume (Loeschner,
+Boettcher, Jeske & Bender 2023). The files open in ParaView, Blender, MeshLab, PyVista.
 """
 
 from __future__ import annotations
@@ -50,7 +50,8 @@ def write_ply(path: Path, vertices: np.ndarray, triangles: np.ndarray) -> None:
     header = ("ply\nformat binary_little_endian 1.0\ncomment metres\n"
               f"element vertex {len(vertices)}\n"
               "property float x\nproperty float y\nproperty float z\n"
-              f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n")
+              f"element face {len(triangles)}\n"
+              "property list uchar int vertex_indices\nend_header\n")
     faces = np.empty(len(triangles), dtype=[("n", "u1"), ("v", "<i4", 3)])
     faces["n"], faces["v"] = 3, triangles
     try:

@@ -12,7 +12,8 @@ import numpy as np
 
 from . import frame_range
 from .errors import BadInput
-from .run import Frame, Run
+from .fields import Frame
+from .run import Run
 from .table import Table, write_text
 
 EXAMPLE = """examples:

@@ -48,8 +48,9 @@ def pictures(source: str) -> list[Path]:
 
 
 def run(args: argparse.Namespace) -> int:
-    if not 0 < args.fps <= 1000 or args.every < 1 or (args.width or 16) < 16:
-        raise BadInput("--fps goes from above 0 to 1000, --every from 1, --width from 16")
+    if not 0 < args.fps <= 1000 or args.every < 1 or \
+            (args.width is not None and not 16 <= args.width <= 16384):
+        raise BadInput("--fps goes from above 0 to 1000, --every from 1, --width from 16 to 16384")
     files = pictures(args.source)[::args.every]
     ffmpeg = shutil.which(args.ffmpeg)
     name = files[0].parent if files[0].parent.name not in ("frames", "render") \
@@ -57,8 +58,8 @@ def run(args: argparse.Namespace) -> int:
     out = Path(args.out or f"{name.resolve().name}{'.mp4' if ffmpeg else '.gif'}")
     if out.suffix in FILMS:
         if not ffmpeg:
-            raise MissingPackage(f"{args.ffmpeg}: not found, and {out.suffix} needs ffmpeg; install "
-                                 f"it, or write {out.with_suffix('.gif')}")
+            raise MissingPackage(f"{args.ffmpeg}: not found, and {out.suffix} needs ffmpeg; "
+                                 f"install it, or write {out.with_suffix('.gif')}")
         _film(ffmpeg, files, out, args)
     elif out.suffix in ANIMATIONS:
         _animation(files, out, args)
@@ -75,6 +76,7 @@ def _film(ffmpeg: str, files: list[Path], out: Path, args: argparse.Namespace) -
     command = [ffmpeg, "-y", "-loglevel", "error", "-f", "image2pipe", "-framerate", str(args.fps),
                "-i", "-", "-vf", scale, "-pix_fmt", "yuv420p", str(out)]
     process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert process.stdin is not None
     try:
         for file in files:
             process.stdin.write(file.read_bytes())
@@ -92,10 +94,11 @@ def _animation(files: list[Path], out: Path, args: argparse.Namespace) -> None:
         raise MissingPackage("Pillow is not installed: pip install pillow") from None
 
     def load(file: Path) -> Image.Image:
-        with Image.open(file) as image:
-            image = image.convert("RGB")
+        with Image.open(file) as opened:
+            image = opened.convert("RGB")
         width = args.width or min(640, image.width)
-        return image.resize((width, round(image.height * width / image.width)), Image.LANCZOS)
+        height = max(1, round(image.height * width / image.width))
+        return image.resize((width, height), Image.Resampling.LANCZOS)
 
     try:
         images = [load(file) for file in files]
