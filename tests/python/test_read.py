@@ -118,6 +118,12 @@ def test_log_info_and_units_are_those_of_the_run(samples):
         log["speed"]
 
 
+def test_a_file_that_the_script_has_open_in_h5py_can_be_read_too(samples):
+    with h5py.File(samples / "constant.h5") as file:
+        run = pbf_tools.open(samples / "constant.h5")
+        assert run["position"].shape == (8, 1000, 3) and len(file["VTKHDF/Points"]) == 8000
+
+
 def test_what_is_not_there_is_named(samples):
     run = pbf_tools.open(samples / "constant.h5")
     with pytest.raises(pbf_tools.BadInput, match="no field pressure; the fields are position"):

@@ -47,11 +47,15 @@ def read(path: Path, action: Callable[[h5py.File], T], what: str) -> T:
     Opened anew every time and without locks, because the file may still grow. What a live file
     shows while its writer commits may not fit together, so a failure is final when it repeats.
     """
+    options = {"locking": False}
     for attempt in (1, 2, 3):
         try:
-            with h5py.File(path, "r", locking=False) as file:
+            with h5py.File(path, "r", **options) as file:
                 return action(file)
         except (OSError, KeyError, RuntimeError, ValueError) as problem:
+            if "locking flag" in str(problem):  # this process has it open already, with locks
+                options = {}
+                continue
             if attempt == 3 or not os.access(path, os.R_OK):
                 raise FileError(f"{path}: {what}: {_reason(path, problem)}") from None
         time.sleep(0.02)
