@@ -56,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
         axes.errorbar(n, ratio, yerr=spread, label=scene, **style.cycle(k))
         sizes.append(n)
         for row in points:
-            print(f"{scene:12} {row[0]:10.0f} particles  {row[1]:8.1f} x")
+            print(f"{scene:12} {row[0]:10.0f} particles  {row[1]:8.4g} x")
     axes.set_yscale("log")
     style.plain_log(axes.yaxis)
     style.particle_axis(axes, np.concatenate(sizes))
