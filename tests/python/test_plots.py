@@ -110,6 +110,11 @@ def test_a_stability_map_counts_its_classes_and_refuses_unknown_or_double_ones(t
     bad = stability_map(tmp_path / "bad.csv", lambda row: row.replace("stopped", "exploded"))
     code, _, err = tools("plot-map", bad, "-o", tmp_path / "b.png")
     assert code == 2 and "exploded" in err and "the classes are stable" in err
+    code, out, _ = tools("plot-map", table, "--x", "iterations", "--panels", "y", "--y", "x", "-o",
+                         tmp_path / "turned.png")
+    assert code == 0 and drawn(tmp_path / "turned.png")
+    code, out, _ = tools("plot-map", table, "--x", "iterations", "-o", tmp_path / "b.png")
+    assert code == 2  # three values of x in one cell
     code, _, err = tools("plot-map", table, table, "-o", tmp_path / "c.png")
     assert code == 2 and "two runs have the same" in err
 

@@ -175,6 +175,18 @@ def test_a_run_file_without_its_parts_is_refused(samples, tmp_path):
         reason(path)
 
 
+def test_offsets_beyond_the_data_are_refused_not_followed(samples, tmp_path):
+    path = shutil.copy(samples / "constant.h5", tmp_path / "offsets.h5")
+    with h5py.File(path, "r+") as file:
+        file["VTKHDF/Steps/PointOffsets"][3] = 7500
+        file["VTKHDF/Steps/PointDataOffsets/id"][3] = -5
+    run = pbf_tools.open(path)
+    assert run["position"][2].shape == (1000, 3)
+    for read in (lambda: run["position"][3], lambda: run["id"][3], lambda: run.track(5)):
+        with pytest.raises(pbf_tools.FileError, match="ends before frame 3 does"):
+            read()
+
+
 def test_a_truncated_file_is_refused_or_read_right(samples, tmp_path):
     data, refused = (samples / "constant.h5").read_bytes(), 0
     whole = pbf_tools.open(samples / "constant.h5")["position"][:]

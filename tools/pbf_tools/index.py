@@ -52,7 +52,7 @@ def read(path: Path, action: Callable[[h5py.File], T], what: str) -> T:
         try:
             with h5py.File(path, "r", **options) as file:
                 return action(file)
-        except (OSError, KeyError, RuntimeError, ValueError) as problem:
+        except (OSError, KeyError, RuntimeError, ValueError, MemoryError) as problem:
             if "locking flag" in str(problem):  # this process has it open already, with locks
                 options = {}
                 continue

@@ -44,7 +44,7 @@ def run(args: argparse.Namespace) -> int:
     if unknown:
         raise BadInput(f"{what}: column {verdict} holds {', '.join(map(str, sorted(unknown)))}; "
                        f"the classes are {', '.join(CLASSES)}")
-    groups = _panels(table, args.panels)
+    groups = _panels(table, args)
     across = min(len(groups), 3)
     down = -(-len(groups) // across)
     xs, ys = np.unique(table[args.x]), np.unique(table[args.y])
@@ -68,8 +68,11 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _panels(table: Table, column: str) -> list[tuple[str, Table]]:
-    if column not in table.columns:
+def _panels(table: Table, args: argparse.Namespace) -> list[tuple[str, Table]]:
+    column = args.panels
+    axes = (table[args.x], table[args.y])
+    # The panels' setting may be along an axis already.
+    if column not in table.columns or any(np.array_equal(table[column], a) for a in axes):
         return [("", table)]
     values = np.unique(table[column])
     return [(f"{column} {v:g}" if table[column].dtype.kind == "f" else str(v),

@@ -126,6 +126,8 @@ class Run:
         """Row of a particle in frame k; rows are in ascending order of ids."""
         place, n = self._index.fields["id"], int(self.counts[k])
         ids, first = file[place.path], int(place.offsets[k])
+        if first < 0 or first + n > len(ids):
+            raise ValueError(f"id ends before frame {k} does")
         if 0 <= particle < n and ids[first + particle] == particle:
             return particle
         values = ids[first:first + n]
