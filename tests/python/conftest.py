@@ -1,0 +1,52 @@
+"""What the tests share: the program, the run files that it and the C++ tests wrote."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+os.environ["OMP_WAIT_POLICY"] = "passive"  # tests run side by side
+
+collect_ignore = ["check_run_file.py", "check_vtk.py", "run_pytest.py"]
+
+
+@pytest.fixture(scope="session")
+def pbf():
+    """Path of the program."""
+    return Path(os.environ["PBF_BINARY"]).resolve()
+
+
+@pytest.fixture(scope="session")
+def samples():
+    """Folder of constant.h5, varying.h5, gzip_double.h5 (tests/unit/run_file_sample_for_python)."""
+    return Path(os.environ["PBF_SAMPLE_FOLDER"]).resolve()
+
+
+@pytest.fixture(scope="session")
+def minimal(pbf, tmp_path_factory):
+    """run.h5 of configs/minimal.yaml with frames: 4000 particles, 26 frames; pictures not drawn."""
+    folder = tmp_path_factory.mktemp("minimal")
+    subprocess.run([pbf, "run", ROOT / "configs/minimal.yaml", "--set", "output={}", "--quiet",
+                    "--threads", "2", "--out", folder / "run"], check=True, capture_output=True)
+    return folder / "run/run.h5"
+
+
+@pytest.fixture
+def tools(capsys):
+    """tools("to-csv", ...) -> (exit code, stdout, stderr), as from a shell."""
+    from pbf_tools.__main__ import main
+
+    def call(*arguments):
+        capsys.readouterr()
+        try:
+            code = main([str(a) for a in arguments])
+        except SystemExit as end:
+            code = end.code
+        out = capsys.readouterr()
+        return code, out.out, out.err
+
+    return call

@@ -1,0 +1,10 @@
+"""Reads, plots and compares the run files of pbf. Start with `pbf_tools.open("run.h5")`."""
+
+from .errors import BadInput, FileError, MissingPackage, ToolError
+from .fields import Field, Frame
+from .run import Run, open
+from .table import Table, read_csv
+
+__all__ = ["BadInput", "Field", "FileError", "Frame", "MissingPackage", "Run", "Table",
+           "ToolError", "open", "read_csv"]
+__version__ = "0.1.0"

@@ -1,0 +1,66 @@
+"""The command line: python -m pbf_tools COMMAND ..."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+
+from .errors import ToolError
+
+# Command -> what it does; the module has the same name with _ for -.
+COMMANDS = {
+    "plot-speedup": "speed-up of one backend over another against the number of particles",
+    "plot-stages": "share of every stage in the time of an update, stacked",
+    "plot-energy": "energies of runs over time",
+    "plot-study": "error against run time, with the Pareto front",
+    "plot-map": "which settings run stably, which degrade, which are stopped",
+    "plot-front": "front of a dam break against experiments",
+    "compare": "differences of two run files",
+    "video": "film from the pictures of a run",
+    "to-csv": "frames, the log or a track as CSV; frames as extended XYZ",
+    "make-scene": "scene from a shape, a picture or a mesh",
+    "surface": "surface of the fluid as triangles",
+}
+
+
+class Formatter(argparse.RawDescriptionHelpFormatter):
+    """Keeps the lines of examples."""
+
+
+def parser() -> argparse.ArgumentParser:
+    """The whole command line, with `run` of the chosen command as a default."""
+    top = argparse.ArgumentParser(
+        prog="pbf_tools", formatter_class=Formatter,
+        description="Plots, compares and converts what pbf writes.",
+        epilog="Exit codes: 0 done, 1 internal error, 2 bad command line or table, 4 package not\n"
+               "installed, 5 file cannot be read or written, 6 difference found (compare).\n\n"
+               "Example: python -m pbf_tools plot-energy out/dam_break/run.h5 -o energy.png")
+    commands = top.add_subparsers(metavar="COMMAND", required=True)
+    for name, summary in COMMANDS.items():
+        module = importlib.import_module("." + name.replace("-", "_"), __package__)
+        sub = commands.add_parser(name, help=summary, description=module.__doc__,
+                                  epilog=module.EXAMPLE, formatter_class=Formatter)
+        module.add_arguments(sub)
+        sub.set_defaults(run=module.run)
+    return top
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Runs one command; an error a user can mend is one line on stderr and its exit code."""
+    args = parser().parse_args(arguments)
+    try:
+        code = args.run(args) or 0
+        sys.stdout.flush()
+        return code
+    except ToolError as error:
+        print(f"pbf_tools: error: {error}", file=sys.stderr)
+        return error.exit_code
+    except BrokenPipeError:  # `pbf_tools ... | head`: nobody reads on, which is no error
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,119 @@
+"""Differences of two run files: per-particle distances in every common frame, measures over time.
+
+Frames belong together when their times agree to a thousandth of the step between frames; particles
+by their ids. Distances are in smoothing lengths h of the first run. Two runs of chaotic flow drift
+apart particle by particle even when both are right: judge long runs by the measures.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+import numpy as np
+
+from . import style
+from .errors import BadInput
+from .run import Run
+from .table import Table, write_text
+
+EXAMPLE = """examples:
+  python -m pbf_tools compare out/float/run.h5 out/double/run.h5
+  python -m pbf_tools compare a/run.h5 b/run.h5 --max-rms 0.01 --csv diff.csv --out diff.png"""
+MEASURES = ("compression_mean", "kinetic_energy", "potential_energy")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("a", metavar="A", help="run file")
+    parser.add_argument("b", metavar="B", help="run file")
+    parser.add_argument("--max-rms", type=float, metavar="H",
+                        help="exit 6 when the RMS distance of a frame exceeds this many h")
+    parser.add_argument("--csv", metavar="FILE", help="write the table to this file")
+    style.add_output(parser, "")
+
+
+def matching(a: np.ndarray, b: np.ndarray) -> list[tuple[int, int]]:
+    """Pairs of frames at the same time.
+
+    >>> matching(np.array([0., .1, .2]), np.array([0., .2]))
+    [(0, 0), (2, 1)]
+    """
+    if not len(a) or not len(b):
+        return []
+    steps = np.concatenate([np.diff(a), np.diff(b)])
+    tolerance = 1e-3 * steps.min() if len(steps) else 1e-9
+    nearest = np.abs(a[:, None] - b[None, :]).argmin(axis=1)
+    return [(i, int(j)) for i, j in enumerate(nearest) if abs(a[i] - b[j]) <= tolerance]
+
+
+def distances(a: Run, b: Run) -> Table:
+    """One row per common frame: time (s), common particles, particles that only one run has,
+    mean, rms and max distance (h), distance of the centres of mass (h)."""
+    h = float(a.info["smoothing_length"])
+    rows = []
+    for i, j in matching(a.times, b.times):
+        fa, fb = a.frames[i], b.frames[j]
+        common, ia, ib = np.intersect1d(fa["id"], fb["id"], return_indices=True)
+        if not len(common):
+            raise BadInput(f"{a.path} and {b.path} have no particle in common at {fa.time:g} s")
+        xa, xb = fa["position"][ia].astype(float), fb["position"][ib].astype(float)
+        off = np.linalg.norm(xa - xb, axis=1) / h
+        centres = float(np.linalg.norm(xa.mean(axis=0) - xb.mean(axis=0)) / h)
+        rows.append((fa.time, len(common), fa.count + fb.count - 2 * len(common), off.mean(),
+                     np.sqrt(np.mean(off**2)), off.max(), centres))
+    if not rows:
+        raise BadInput(f"{a.path} and {b.path} have no frame at the same time")
+    names = ("time", "particles", "unmatched", "mean", "rms", "max", "centers")
+    units = dict(zip(names, ("s", "1", "1", "h", "h", "h", "h")))
+    return Table({n: np.array(v) for n, v in zip(names, zip(*rows))}, units)
+
+
+def run(args: argparse.Namespace) -> int:
+    a, b = Run(args.a), Run(args.b)
+    table = distances(a, b)
+    print(f"A {a.title}\nB {b.title}\ndistances in h = {a.info['smoothing_length']:g} m")
+    print(f"{'time s':>10} {'particles':>10} {'mean':>10} {'rms':>10} {'max':>10} {'centres':>10}")
+    every = max(1, len(table) // 20)
+    for k in sorted({*range(0, len(table), every), len(table) - 1}):
+        print(f"{table['time'][k]:10.4g} {table['particles'][k]:10d} " + " ".join(
+            f"{table[c][k]:10.3g}" for c in ("mean", "rms", "max", "centers")))
+    if np.any(table["unmatched"] > 0):
+        print(f"{table['unmatched'].max()} particles at most are in one run only")
+    for name in MEASURES:
+        la, lb = a.log, b.log
+        if len(la) and len(lb):
+            t = la["time"][la["time"] <= lb["time"][-1]]
+            va, vb = la[name][:len(t)], np.interp(t, lb["time"], lb[name])
+            print(f"{name:18} A {va[-1]:.6g}, B {vb[-1]:.6g} at {t[-1]:g} s; largest difference "
+                  f"{np.abs(va - vb).max():.3g} {la.units[name].replace('1', '')}".rstrip())
+    if args.csv:
+        write_text(args.csv, table.csv())
+    if args.out:
+        _draw(a, b, table, args)
+    if args.max_rms is not None and not table["rms"].max() <= args.max_rms:
+        k = int(np.argmax(~(table["rms"] <= args.max_rms)))
+        print(f"different: RMS distance {table['rms'][k]:.3g} h at {table['time'][k]:g} s is above "
+              f"{args.max_rms:g} h")
+        return 6
+    return 0
+
+
+def _draw(a: Run, b: Run, table: Table, args: argparse.Namespace) -> None:
+    fig, panels = style.figure(3, 1, size=(6.4, 7.2), sharex=True)
+    distance, compression, energy = panels[:, 0]
+    for k, name in enumerate(("max", "rms", "mean")):
+        shown = table[name] > 0
+        distance.plot(table["time"][shown], table[name][shown], label=name, **style.cycle(k))
+    if any(np.any(table[name] > 0) for name in ("max", "rms", "mean")):
+        distance.set_yscale("log")
+    distance.set_ylabel("distance (h)")
+    for k, (run_file, label) in enumerate(((a, "A"), (b, "B"))):
+        log, look = run_file.log, {"color": style.COLORS[k], "linestyle": ("-", "--")[k]}
+        compression.plot(log["time"], 100 * log["compression_mean"], label=label, **look)
+        energy.plot(log["time"], log["kinetic_energy"] + log["potential_energy"], label=label,
+                    **look)
+    compression.set_ylabel("mean compression (%)")
+    energy.set(ylabel="total energy (J)", xlabel="time (s)")
+    for axes in panels[:, 0]:
+        axes.legend()
+    style.title(distance, args.title or "Two runs compared", f"A: {a.title}\nB: {b.title}")
+    style.save(fig, args)

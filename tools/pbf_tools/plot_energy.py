@@ -1,0 +1,86 @@
+"""Kinetic, potential and total energy of a run over time; of several runs, the total of each.
+
+Energies are measured from the domain's lower corner. The total of several runs is drawn relative
+to its value at the start, so that a gain shows as a curve above 1. Takes run files, or CSV
+tables with the columns time, kinetic_energy, potential_energy (to-csv --log).
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from . import style
+from .errors import BadInput
+from .run import Run
+from .table import Table, need, read_csv
+
+EXAMPLE = """examples:
+  python -m pbf_tools plot-energy out/dam_break/run.h5 -o energy.png
+  python -m pbf_tools plot-energy out/float/run.h5 out/double/run.h5 -o energies.png"""
+COLUMNS = ["time", "kinetic_energy", "potential_energy"]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("runs", nargs="+", metavar="RUN", help="run files or CSV tables")
+    style.add_output(parser, "energy.png")
+
+
+def read_log(path: str) -> tuple[Table, str]:
+    """The log of a run file or a CSV table, and a title for it."""
+    if path.endswith(".csv"):
+        log, name = read_csv(path), Path(path).stem
+    else:
+        run_file = Run(path)
+        log, name = run_file.log, run_file.title
+    need(log, COLUMNS, path)
+    return log, name
+
+
+def run(args: argparse.Namespace) -> int:
+    logs = [read_log(path) for path in args.runs]
+    fig, ((axes,),) = style.figure()
+    if len(logs) == 1:
+        detail = _one(axes, logs[0][0], logs[0][1])
+    else:
+        detail = _many(axes, logs, args.runs)
+    axes.set_xlabel("time (s)")
+    style.title(axes, args.title or "Energy", detail)
+    style.save(fig, args)
+    return 0
+
+
+def _one(axes, log: Table, name: str) -> str:
+    t, kinetic, potential = (log[c] for c in COLUMNS)
+    for k, (label, values) in enumerate((("total", kinetic + potential), ("potential", potential),
+                                         ("kinetic", kinetic))):
+        axes.plot(t, values, label=label, color=style.COLORS[k],
+                  linestyle=("-", "--", "-.")[k])
+    axes.set_ylabel("energy (J)")
+    axes.set_ylim(bottom=min(0, float(np.nanmin(potential))))
+    axes.legend()
+    total = kinetic + potential
+    print(f"total energy: {total[0]:.6g} J at the start, {np.nanmax(total):.6g} J at most, "
+          f"{total[-1]:.6g} J at the end")
+    return name
+
+
+def _many(axes, logs: list[tuple[Table, str]], paths: list[str]) -> str:
+    labels = [Path(p).parent.name or Path(p).stem for p in paths]
+    if len(set(labels)) < len(labels):
+        labels = paths
+    for k, ((log, _), label) in enumerate(zip(logs, labels)):
+        total = log["kinetic_energy"] + log["potential_energy"]
+        if not total[0] > 0:
+            raise BadInput(f"{paths[k]}: the energy at the start is not above 0, so nothing can be "
+                           "drawn relative to it; draw this run by itself")
+        axes.plot(log["time"], total / total[0], label=label, color=style.COLORS[k % 8],
+                  linestyle=("-", "--", "-.", ":")[k % 4])
+        print(f"{label:24} energy, relative to the start: {np.nanmax(total) / total[0]:.6g} at "
+              f"most, {total[-1] / total[0]:.6g} at the end")
+    axes.axhline(1, color=style.GREY, linewidth=0.8)
+    axes.set_ylabel("total energy / energy at the start (1)")
+    axes.legend()
+    return "; ".join(dict.fromkeys(name for _, name in logs)) if len(logs) < 3 else ""

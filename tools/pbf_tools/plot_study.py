@@ -1,0 +1,135 @@
+"""Error against run time over the settings of a study, on logarithmic axes.
+
+One curve per series (method, backend, precision) through its best settings, the other settings as
+faint points; the settings that no other beats in both time and error, the Pareto front, are joined
+by a thick grey line. Bars show the spread of the repeats.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+import numpy as np
+
+from . import style
+from .errors import BadInput
+from .table import Table, need, read_csvs
+
+EXAMPLE = """example:
+  python -m pbf_tools plot-study study.csv --y compression_mean -o study.png"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("csv", nargs="+", metavar="CSV", help="tables written by pbf study --csv")
+    parser.add_argument("--x", default="seconds_median", metavar="COLUMN",
+                        help="run time, s (default %(default)s)")
+    parser.add_argument("--x-spread", default="seconds_spread", metavar="COLUMN",
+                        help="greatest less least time of the repeats, s: the length of the bar "
+                             "about the median (default %(default)s; no bar when not there)")
+    parser.add_argument("--y", default="compression_mean", metavar="COLUMN",
+                        help="error (default %(default)s)")
+    parser.add_argument("--series", default="method,backend,precision", metavar="COLUMNS",
+                        help="columns that tell the curves apart (default %(default)s)")
+    parser.add_argument("--pareto", default="pareto", metavar="COLUMN",
+                        help="1 where a setting is on the front (default %(default)s); computed "
+                             "from --x and --y when not there, or with --pareto compute")
+    parser.add_argument("--percent", action=argparse.BooleanOptionalAction, default=None,
+                        help="draw the error in percent (default: for compression columns)")
+    style.add_output(parser, "study.png")
+
+
+def front(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Which points no other point beats in both x and y, as a mask of shape (points,).
+
+    >>> front(np.array([1., 2., 3., 4.]), np.array([9., 4., 5., 1.])).tolist()
+    [True, True, False, True]
+    """
+    order = np.lexsort((y, x))
+    best = np.minimum.accumulate(np.concatenate([[np.inf], y[order][:-1]]))
+    mask = np.zeros(len(x), bool)
+    mask[order] = y[order] < best
+    return mask
+
+
+def run(args: argparse.Namespace) -> int:
+    table = read_csvs(args.csv)
+    need(table, [args.x, args.y], ", ".join(args.csv))
+    for name in (args.x, args.y):
+        if table[name].dtype.kind != "f":
+            raise BadInput(f"column {name} is not one of numbers")
+    good = np.isfinite(table[args.x]) & (table[args.x] > 0) & (table[args.y] > 0) \
+        & np.isfinite(table[args.y])
+    if not good.any():
+        raise BadInput(f"no row has both {args.x} and {args.y} above 0")
+    if not good.all():
+        print(f"left out: {np.count_nonzero(~good)} rows whose {args.x} or {args.y} is missing or "
+              "not above 0, which a logarithmic axis cannot show", file=sys.stderr)
+    table = table.where(good)
+    percent = args.y.startswith("compression") if args.percent is None else args.percent
+    x, y = table[args.x], table[args.y] * (100 if percent else 1)
+    spread = table.columns.get(args.x_spread)
+    keys = [c for c in args.series.split(",") if c in table.columns]
+    names = np.array([", ".join(_text(table[c][i]) for c in keys) for i in range(len(table))])
+
+    fig, ((axes,),) = style.figure(size=(7, 4.8))
+    best = _pareto(table, args.pareto, x, y)
+    at = np.flatnonzero(best)[np.argsort(x[best])]
+    axes.plot(x[at], y[at], color="#BBBBBB", linewidth=7, solid_capstyle="round", zorder=1,
+              label="Pareto front")
+    for k, name in enumerate(dict.fromkeys(names.tolist())):
+        _series(axes, x, y, spread, np.flatnonzero(names == name), name, style.cycle(k))
+    axes.plot(x[at], y[at], "o", markersize=11, markerfacecolor="none", markeredgecolor="black",
+              markeredgewidth=0.9, zorder=4)
+    axes.set(xscale="log", yscale="log", xlabel=_label(args.x, "s"),
+             ylabel=_label(args.y, "%" if percent else "1"))
+    style.side_legend(axes)
+    style.title(axes, args.title or "Error against run time", _detail(table))
+    style.save(fig, args)
+    for i in at:
+        print(f"{x[i]:10.4g} s  {args.y} {y[i]:.3g}{' %' if percent else ''}  {names[i]}")
+    return 0
+
+
+def _series(axes, x, y, spread, rows: np.ndarray, name: str, look: dict[str, object]) -> None:
+    own = front(x[rows], y[rows])
+    line = rows[own][np.argsort(x[rows[own]])]
+    axes.plot(x[line], y[line], label=name or None, zorder=3, linewidth=1.4, **look)
+    rest = rows[~own]
+    axes.plot(x[rest], y[rest], linestyle="", alpha=0.35, zorder=2, **look)
+    if spread is not None:
+        bar = np.where(np.isfinite(spread[rows]), spread[rows] / 2, 0)
+        axes.errorbar(x[rows], y[rows], xerr=np.minimum(bar, 0.999 * x[rows]), linestyle="",
+                      color=look["color"], alpha=0.6, linewidth=1, zorder=2)
+
+
+def _pareto(table: Table, column: str, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    marks = table.columns.get(column)
+    if column == "compute" or marks is None:
+        return front(x, y)
+    if marks.dtype.kind == "U":
+        return np.isin(marks, ("1", "true", "True"))
+    return marks == 1
+
+
+def _text(value: object) -> str:
+    return value if isinstance(value, str) else f"{value:g}"
+
+
+def _label(column: str, unit: str) -> str:
+    name = "run time, median" if column == "seconds_median" else column.replace("_", " ")
+    return f"{name} ({unit})"
+
+
+def _detail(table: Table) -> str:
+    """What is the same in all rows."""
+    parts = []
+    for name, unit in (("scene", ""), ("device", ""), ("backend", ""), ("precision", ""),
+                       ("threads", " threads"), ("particles", " particles")):
+        values = set(table[name].tolist()) if name in table.columns else set()
+        if len(values) == 1:
+            text = _text(values.pop())
+            if (name, text) == ("threads", "1"):
+                unit = " thread"
+            parts += [text + unit] if text not in ("", "0", "nan") else []
+    return ", ".join(parts)

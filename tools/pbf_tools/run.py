@@ -1,0 +1,182 @@
+"""Reading run.h5: frames, fields, tracks, the log; nothing is loaded before it is asked for."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, TypeVar
+
+import h5py
+import numpy as np
+
+from . import index
+from .errors import BadInput
+from .fields import Field, Frames
+from .table import Table
+
+T = TypeVar("T")
+
+
+class Run:
+    """A run file, finished, still being written or cut off by a crash; see `open`."""
+
+    def __init__(self, path: str | os.PathLike[str]):
+        self.path = Path(path)
+        self.refresh()
+
+    def refresh(self) -> Run:
+        """Looks at the file again: frames that were written meanwhile appear."""
+        self._index = self._read(index.scan, "cannot read the run file")
+        return self
+
+    @property
+    def times(self) -> np.ndarray:
+        """Simulated time of every frame, shape (frames,), s."""
+        return self._index.times
+
+    @property
+    def updates(self) -> np.ndarray:
+        """Updates done at every frame, shape (frames,)."""
+        return self._index.updates
+
+    @property
+    def counts(self) -> np.ndarray:
+        """Particles in every frame, shape (frames,)."""
+        return self._index.counts
+
+    @property
+    def frames(self) -> Frames:
+        return Frames(self)
+
+    @property
+    def fields(self) -> list[str]:
+        """Names of the fields, position first; empty before the first frame."""
+        return list(self._index.fields)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of every field and of every quantity in `info` that has one."""
+        return self._index.units
+
+    @property
+    def info(self) -> dict[str, Any]:
+        """The run's attributes: backend, device, precision, threads, commit, spacing, domain..."""
+        return self._index.info
+
+    @property
+    def scene(self) -> str:
+        """The scene with every default filled in, as YAML text."""
+        return str(self.info["resolved_scene"])
+
+    @property
+    def name(self) -> str:
+        """Name of the scene: the scene file's without its ending."""
+        return Path(str(self.info["scene_path"])).stem
+
+    @property
+    def status(self) -> str:
+        """running, finished, stopped or diverged, at the last look at the file."""
+        return str(self.info["status"])
+
+    @property
+    def title(self) -> str:
+        """Scene, particles, backend, precision and device, for the title of a plot."""
+        i = self.info
+        return f"{self.name}, {i['particles']} particles, {i['backend']} {i['precision']} " \
+               f"({i['device']})"
+
+    def __getitem__(self, name: str) -> Field:
+        if name not in self._index.fields:
+            there = ", ".join(self.fields) or "none yet"
+            raise BadInput(f"{self.path}: no field {name}; the fields are {there}")
+        return Field(self, name, self._index.fields[name])
+
+    def track(self, particle: int, *fields: str) -> Table:
+        """One particle by its id: time (s), position and the fields asked for (all by default).
+
+        One row per frame; nan in the frames that the particle is not in. BadInput for an id that
+        no frame has.
+
+        >>> track = open("run.h5").track(17, "velocity")
+        >>> list(track), track["velocity"].shape, track.units["position"]
+        (['time', 'position', 'velocity'], (26, 3), 'm')
+        """
+        names = ["position", *(fields or (f for f in self.fields if f not in ("position", "id")))]
+        places = {name: self[name]._place for name in dict.fromkeys(names)}
+        columns = {name: np.full((len(self.times), p.components), np.nan,
+                                 np.result_type(p.dtype, np.float32))
+                   for name, p in places.items()}
+
+        def fill(file: h5py.File) -> bool:
+            found = False
+            for k in range(len(self.times)):
+                row = self._row(file, k, particle)
+                for name, p in places.items() if row is not None else ():
+                    columns[name][k] = file[p.path][p.offsets[k] + row]
+                    found = True
+            return found
+
+        if not self._read(fill, "cannot read a track"):
+            raise BadInput(f"{self.path}: no particle with id {particle} in any frame")
+        columns = {name: v if v.shape[1] > 1 else v[:, 0] for name, v in columns.items()}
+        return Table({"time": self.times, **columns}, {"time": "s", **self.units})
+
+    def _row(self, file: h5py.File, k: int, particle: int) -> int | None:
+        """Row of a particle in frame k; rows are in ascending order of ids."""
+        place, n = self._index.fields["id"], int(self.counts[k])
+        ids, first = file[place.path], int(place.offsets[k])
+        if first < 0 or first + n > len(ids):
+            raise ValueError(f"id ends before frame {k} does")
+        if 0 <= particle < n and ids[first + particle] == particle:
+            return particle
+        values = ids[first:first + n]
+        row = int(np.searchsorted(values, particle))
+        return row if row < n and values[row] == particle else None
+
+    @property
+    def log(self) -> Table:
+        """Measures and seconds per stage ("stage/lambda"), one row per measure; with units.
+
+        >>> log = open("run.h5").log
+        >>> log["time"][:2], log.units["kinetic_energy"], "stage/lambda" in log
+        (array([0.  , 0.02]), 'J', True)
+        """
+        return self._read(_log, "cannot read the log")
+
+    def _read(self, action: Callable[[h5py.File], T], what: str) -> T:
+        return index.read(self.path, action, what)
+
+    def __repr__(self) -> str:
+        return f"<run {self.title}: {len(self.times)} frames, {self.status}>"
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.fields)
+
+
+def _log(file: h5py.File) -> Table:
+    group = file["pbf/log"]
+    data = {name: d for name, d in group.items() if isinstance(d, h5py.Dataset)}
+    data.update({f"stage/{name}": d for name, d in group.get("stage", {}).items()})
+    # A process killed while it wrote the log may leave columns of different lengths.
+    rows = min((len(d) for d in data.values()), default=0)
+    order = ["time"] + [name for name in data if name != "time"]
+    return Table({name: data[name][:rows] for name in order if name in data},
+                 {name: index._text(d.attrs.get("units", "1")) for name, d in data.items()})
+
+
+def open(path: str | os.PathLike[str]) -> Run:  # noqa: A001, as in h5py and gzip
+    """Opens a run file. Works on one still being written (`refresh` shows new frames) and on one
+    that a crash cut off: every frame that was reported is there.
+
+    FileError with the reason when it is not a run file that this version reads.
+
+    >>> run = open("run.h5")
+    >>> run.status, len(run.frames), run.fields
+    ('finished', 26, ['position', 'density', 'id', 'velocity'])
+    >>> run.times[:3], run.units["velocity"]
+    (array([0.  , 0.02, 0.04]), 'm/s')
+    >>> run["position"][-1].shape
+    (4000, 3)
+    """
+    return Run(path)

@@ -1,0 +1,121 @@
+"""One look for all plots: colour-blind-safe colours (Okabe & Ito 2008), readable sizes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
+
+from .errors import BadInput, FileError
+
+if TYPE_CHECKING:
+    import argparse
+
+    from matplotlib.axes import Axes
+
+# Okabe & Ito, "Color Universal Design"; yellow last, it is faint on white.
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000", "#F0E442")
+MARKERS = "osD^vPX*"
+GREY = "#8A8A8A"
+
+# A stage has one colour in every plot; `other` is what no stage booked.
+STAGES = {"init": "#000000", "predict": "#F0E442", "grid": "#E69F00", "neighbors": "#D55E00",
+          "density": "#009E73", "lambda": "#0072B2", "delta": "#56B4E9", "xsph": "#CC79A7",
+          "vorticity": "#7A3E9D", "measure": "#B0B0B0", "download": "#8A8A8A", "write": "#666666",
+          "render": "#444444", "other": "#D9D9D9"}
+
+# The seven groups in the summary of `pbf run` (README, "Stages").
+GROUPS = {"initialization": ("init",), "gridding/neighbours": ("grid", "neighbors"),
+          "densities": ("density",), "lambdas": ("lambda",), "deltas": ("delta",),
+          "position/velocity updates": ("predict", "xsph", "vorticity"),
+          "post-processing": ("measure", "download", "write", "render")}
+GROUP_COLORS = dict(zip(GROUPS, ("#000000", "#D55E00", "#009E73", "#0072B2", "#56B4E9", "#CC79A7",
+                                 "#8A8A8A")))
+
+matplotlib.rcParams.update({
+    "font.size": 10, "axes.titlesize": 10, "axes.labelsize": 10, "legend.fontsize": 8.5,
+    "xtick.labelsize": 9, "ytick.labelsize": 9, "figure.titlesize": 11, "axes.grid": True,
+    "grid.color": "#DDDDDD", "grid.linewidth": 0.6, "axes.axisbelow": True, "lines.markersize": 5,
+    "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False,
+    "errorbar.capsize": 3})
+
+
+def figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (6.4, 4.2),
+           **grid) -> tuple[Figure, np.ndarray]:
+    """A figure (inches) with a grid of axes, shape (rows, columns); no window, no global state."""
+    fig = Figure(figsize=size, layout="constrained")
+    return fig, fig.subplots(rows, columns, squeeze=False, **grid)
+
+
+def title(axes: Axes, text: str, detail: str = "") -> None:
+    """What is shown in bold; below it, smaller, with which scene, backend and device."""
+    lines = detail.count("\n") + 1 if detail else 0
+    axes.set_title(text, loc="left", fontweight="bold", pad=6 + 12 * lines)
+    if detail:
+        axes.text(0, 1.015, detail, transform=axes.transAxes, fontsize=8, color="#444444",
+                  va="bottom")
+
+
+def side_legend(axes: Axes, *handles_and_labels, **more) -> None:
+    """A legend right of the axes, where it covers nothing."""
+    axes.legend(*handles_and_labels, loc="upper left", bbox_to_anchor=(1.01, 1.02), **more)
+
+
+def cycle(k: int) -> dict[str, object]:
+    """Colour and marker of the k-th series; they also differ by shape, for print in grey."""
+    return {"color": COLORS[k % len(COLORS)], "marker": MARKERS[k % len(MARKERS)]}
+
+
+def count_text(n: float) -> str:
+    """A number of particles in few characters.
+
+    >>> [count_text(n) for n in (512, 1024, 131072, 1000000, 2500000)]
+    ['512', '1024', '131k', '1M', '2.5M']
+    """
+    for limit, unit in ((1e6, "M"), (1e4, "k")):
+        if n >= limit:
+            scaled = n / (1e6 if unit == "M" else 1e3)
+            return f"{scaled:.3g}{unit}"
+    return f"{n:g}"
+
+
+def particle_axis(axes: Axes, counts: np.ndarray) -> None:
+    """Logarithmic axis of particle counts, marked at the counts that were measured."""
+    axes.set_xscale("log")
+    ticks = np.unique(counts)
+    if len(ticks) <= 10:
+        axes.set_xticks(ticks)
+        axes.xaxis.set_minor_locator(NullLocator())
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda n, _: count_text(n)))
+    axes.set_xlabel("particles")
+
+
+def plain_log(axis) -> None:
+    """Plain numbers at 1, 2, 5, 10 ... along a logarithmic axis of a few decades."""
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.set_minor_formatter(NullFormatter())
+    axis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
+
+
+def add_output(parser: argparse.ArgumentParser, default: str) -> None:
+    """The options that every plot has."""
+    parser.add_argument("-o", "--out", default=default, metavar="FILE",
+                        help="picture to write; .png, .svg or .pdf (default %(default)s)")
+    parser.add_argument("--title", help="title instead of the one made from the data")
+    parser.add_argument("--dpi", type=float, default=150, help="dots per inch of a .png")
+
+
+def save(fig: Figure, args: argparse.Namespace) -> None:
+    """Writes the figure where `--out` says, and prints the path."""
+    if not 10 <= args.dpi <= 2400:
+        raise BadInput(f"--dpi {args.dpi:g}: give a number from 10 to 2400")
+    try:
+        fig.savefig(args.out, dpi=args.dpi)
+    except OSError as problem:
+        raise FileError(f"{args.out}: cannot write the picture: {problem.strerror}") from None
+    except ValueError as problem:
+        raise BadInput(f"{args.out}: {problem}") from None
+    print(f"wrote {args.out}")
