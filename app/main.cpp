@@ -176,6 +176,7 @@ void add_study(CLI::App& app, StudyOptions& o, Command& command) {
           "  targets: [0.01, 0.001]             # of the error [default]\n"
           "  from: 0.1                          # s, measures count from here [0]\n"
           "  repeats: 3                         # of the timing [default]\n"
+          "  clock: wall                        # or cpu, of all threads: on busy machines\n"
           "  energy_limit: 0.03                 # larger energy_rise: no verdict [default]\n"
           "  projection: [0.2, 0.4]             # s, compare with the exact projection\n"
           "  reference: {solver.iterations: 64} # keys; reference_distance to this run\n"

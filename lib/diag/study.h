@@ -33,6 +33,7 @@ struct Study {
   double from = 0;                           ///< s, measures before do not count
   double energy_limit = 0.03;                ///< largest energy_rise of a valid run
   int repeats = 3;                           ///< of the timing, the whole run counts as one
+  bool cpu_clock = false;                    ///< seconds are the process's CPU time, not the wall's
   std::vector<double> projection;            ///< s, when the exact projection is compared
   std::optional<Front> front;
 };

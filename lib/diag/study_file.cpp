@@ -270,6 +270,10 @@ void Reader::make_members(const Node& scene, const std::vector<std::string>& ove
       study_.members.back().values = values;
       study_.members.back().label = label.empty() ? study_.name : label;
     }
+  for (const StudyMember& m : study_.members)
+    if (study_.cpu_clock && m.scene.backend == Backend::cuda)
+      problems_.add(root_.find("clock")->place(), "clock",
+                    "cpu does not count the time of a GPU (" + m.label + "); use wall");
   if (has_reference_) {
     study_.reference = member(base, reference_);
     study_.reference->label = "reference";
@@ -292,6 +296,12 @@ Study Reader::read(const std::vector<std::string>& overrides) {
             {"variants", [&](const Node& n) { variants(n); }},
             {"grid", [&](const Node& n) { grid(n); }},
             {"repeats", [&](const Node& n) { number(n, "repeats", 1, 1000, repeats); }},
+            {"clock",
+             [&](const Node& n) {
+               study_.cpu_clock = n.text == "cpu";
+               if (n.text != "cpu" && n.text != "wall")
+                 bad(n, "clock", "is " + n.shown() + ", expected wall or cpu");
+             }},
             {"error", [&](const Node& n) { text(n, "error", study_.error); }},
             {"targets", [&](const Node& n) { numbers(n, "targets", 0, study_.targets); }},
             {"from", [&](const Node& n) { number(n, "from", 0, 1e9, study_.from); }},
@@ -308,6 +318,8 @@ Study Reader::read(const std::vector<std::string>& overrides) {
   if (!has_scene)
     problems_.add(path_, "scene", "is missing: the scene to vary, a path from this file's folder");
   problems_.raise();
+  study_.scene_dir = fs::path(scene_path_).parent_path().string();
+  make_members(load_tree(scene_path_, "scene"), overrides);
   const auto known = study_error_measures(study_);
   if (std::find(known.begin(), known.end(), study_.error) == known.end()) {
     const std::string near = nearest_word(study_.error, known);
@@ -317,8 +329,6 @@ Study Reader::read(const std::vector<std::string>& overrides) {
                   "\"" + study_.error + "\" is no measure of this study" +
                       (near.empty() ? "; there are" + all : ", did you mean " + near + "?"));
   }
-  study_.scene_dir = fs::path(scene_path_).parent_path().string();
-  make_members(load_tree(scene_path_, "scene"), overrides);
   problems_.raise();
   for (const StudyMember& m : study_.members)
     if (study_.from >= m.scene.time.end)

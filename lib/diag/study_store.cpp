@@ -37,6 +37,16 @@ class Hash {
   std::uint64_t value_ = 14695981039346656037u;
 };
 
+/// Names the program: version and commit, and where these do not, its bytes.
+std::string program_text() {
+  const BuildInfo build = build_info();
+  std::string text = build.version + " " + build.commit;
+  if (build.commit != "unknown" && build.commit.find('+') == std::string::npos) return text;
+  Hash hash;
+  hash.add_file("/proc/self/exe");
+  return text += hash.text();
+}
+
 std::string numbers(const std::vector<double>& values) {
   std::string out = "[";
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -101,12 +111,8 @@ Node& child(Node& n, const std::string& key) {
 std::string member_key(const Study& study, const StudyMember& m) {
   Hash hash;
   hash.add("1");  // of the format below
-  const BuildInfo build = build_info();
-  hash.add(build.version + " " + build.commit);
-  // Only a commit without changes names the program.
-  if (build.commit.size() < 7 || build.commit.find('+') != std::string::npos ||
-      build.commit == "unknown")
-    hash.add_file("/proc/self/exe");
+  static const std::string program = program_text();
+  hash.add(program);
   hash.add(m.scene.backend == Backend::cuda ? cuda_device_report() : cpu_model());
   hash.add(std::to_string(usable_threads()));
   Scene scene = m.scene;
@@ -116,6 +122,7 @@ std::string member_key(const Study& study, const StudyMember& m) {
     if (b.shape == Shape::file)
       hash.add_file((std::filesystem::path(study.scene_dir) / b.path).string());
   hash.add(std::to_string(study.repeats));
+  hash.add(study.cpu_clock ? "cpu" : "wall");
   hash.add(numbers(study.projection));
   return hash.text();
 }
