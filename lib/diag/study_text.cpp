@@ -27,6 +27,7 @@ bool is_share(const std::string& measure) {
 }
 
 std::string error_text(const std::string& measure, double value) {
+  if (std::isnan(value)) return "-";
   return is_share(measure) ? format("%.3g %%", 100 * value) : format("%.3g", value);
 }
 

@@ -129,7 +129,7 @@ TEST_CASE("percentile and shares of a random state are those of its sorted densi
   check_compression(here(jittered_block(8, 8, 8, 0.3, 0, 7, 0.6)));
 }
 
-TEST_CASE("a pool at rest keeps its height and its hydrostatic profile; a sunken one does not") {
+TEST_CASE("a pool at rest keeps its height and its hydrostatic profile, a sunken one does not") {
   const double rounding = is_double() ? 1e-12 : 1e-6;
   for (const int layers : {9, 16, 40}) {
     Case c = pool(layers);

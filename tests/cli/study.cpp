@@ -92,7 +92,7 @@ TEST_CASE("a killed study goes on where it was, and SIGTERM stops it with 75") {
   CHECK(count(rest.err, "kept from before") >= 2);
 }
 
-TEST_CASE("--list shows the runs and makes nothing; wrong studies exit 2 before anything is made") {
+TEST_CASE("study --list makes nothing, and a wrong study exits 2 before anything is made") {
   const Folder folder("grid: {solver.iterations: [1, 2]}\n");
   const Outcome list = folder.run({"--list"});
   CHECK(list.code == 0);

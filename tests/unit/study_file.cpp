@@ -28,7 +28,7 @@ TEST_CASE("a study makes every combination of its grid for every variant") {
   CHECK(s.members[10].values == std::vector<std::string>{"4", "0.001", "10"});
 }
 
-TEST_CASE("a block as grid: every key by itself; --set comes before variants and grid") {
+TEST_CASE("a block as grid varies every key by itself, and --set comes before variants and grid") {
   const StudyFolder folder;
   const std::string path = folder.write(
       "s.yaml",
