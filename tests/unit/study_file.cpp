@@ -1,4 +1,7 @@
 // Study files: what runs they make, and what is said of wrong ones.
+#include <filesystem>
+#include <iterator>
+
 #include "lib/base/error.h"
 #include "tests/catch.h"
 #include "tests/unit/study_support.h"
@@ -126,4 +129,19 @@ TEST_CASE("what is wrong with a study is said with file, line and column, all at
                            "measure_every: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10], threads: "
                            "[1, 2]}\n"))
             .find("makes more than 10000 runs") != std::string::npos);
+}
+
+TEST_CASE("shipped studies are valid and say how to run them") {
+  int found = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(PBF_SOURCE_DIR "/configs/study")) {
+    CAPTURE(entry.path().string());
+    CHECK(load_study(entry.path().string(), {}).members.size() > 2);
+    std::ifstream in(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    CHECK(text.rfind("# ", 0) == 0);
+    CHECK(text.find("pbf study configs/study/" + entry.path().filename().string()) !=
+          std::string::npos);
+    ++found;
+  }
+  CHECK(found >= 5);
 }
