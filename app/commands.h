@@ -47,11 +47,20 @@ struct BenchOptions {
   std::string csv, json;  ///< paths, empty: none
 };
 
+struct StudyOptions {
+  std::string study;                   ///< path of the study file
+  std::string out;                     ///< folder; empty: out/study_<name>
+  std::vector<std::string> overrides;  ///< key.path=value, for every run
+  int repeats = 0;                     ///< 0: as the study says
+  bool list = false, quiet = false;
+};
+
 int command_run(const RunOptions& options);
 int command_plan(const PlanOptions& options);
 int command_render(const RenderOptions& options);
 int command_config(const ConfigOptions& options);
 int command_info();
 int command_bench(const BenchOptions& options);
+int command_study(const StudyOptions& options);
 
 }  // namespace pbf

@@ -25,6 +25,18 @@ constexpr const char* kExitCodes =
     "  75  stopped early by a signal or the wall-time limit, after saving\n\n"
     "Example: pbf run configs/dam_break.yaml --out out/dam_break";
 
+constexpr const char* kMeasures =
+    "Measures (formulas: lib/diag/README.md; c = max(rho/rho0 - 1, 0) of a particle, walls\n"
+    "included; H0 = volume of the fluid / area of the floor):\n"
+    "  compression_mean, _rms, _p99, _max   sum c/N, sqrt(sum c^2/N), 99th percentile, max c [1]\n"
+    "  share_above_1, share_above_10        particles with c > 1 %, c > 10 % [1]\n"
+    "  height_kept            2 x height of the centre of mass above the floor / H0 [1]\n"
+    "  hydrostatic_deviation  RMS of (weight above z - rho0 g (H0 - z)) / (rho0 g H0) [1]\n"
+    "  energy_drift           (E - E0)/E0, E above the box's lowest corner [1]\n"
+    "  energy_rise            largest E - (lowest E before), over E0 [1]\n"
+    "  momentum [kg m/s], front (largest coordinate) [m], speed_max [m/s]\n"
+    "  penetration            farthest that a particle is behind its clamp at a wall [m]\n";
+
 using Command = std::function<int()>;
 
 void add_overrides(CLI::App* c, std::vector<std::string>& overrides) {
@@ -56,11 +68,11 @@ void add_run(CLI::App& app, RunOptions& o, Command& command) {
         return *end == '\0' && s > 0 && s < 1e300 ? std::string()
                                                   : text + " is not a number of seconds above 0";
       });
-  c->footer(
-      "Examples:\n"
-      "  pbf run configs/dam_break.yaml\n"
-      "  pbf run configs/dam_break.yaml --out out/fine --set fluid.spacing=0.01 --threads 8\n"
-      "Exit codes are listed in pbf --help.");
+  c->footer(std::string("Examples:\n") +
+            "  pbf run configs/dam_break.yaml\n"
+            "  pbf run configs/dam_break.yaml --out out/fine --set fluid.spacing=0.01 --threads 8\n"
+            "Exit codes are listed in pbf --help.\n\n" +
+            kMeasures);
   c->callback([&] { command = [&] { return command_run(o); }; });
 }
 
@@ -136,6 +148,55 @@ void add_bench(CLI::App& app, BenchOptions& o, Command& command) {
   c->callback([&] { command = [&] { return command_bench(o); }; });
 }
 
+void add_study(CLI::App& app, StudyOptions& o, Command& command) {
+  CLI::App* c = app.add_subcommand("study", "Error against run time over a grid of settings");
+  c->add_option("STUDY", o.study, "Study file (YAML)")->required();
+  c->add_option("--out", o.out, "Folder of the tables; out/study_<name> when not given");
+  c->add_option("--set", o.overrides,
+                "Replace one key of the scene in every run, KEY.PATH=VALUE; the study's variants "
+                "and grid come after it")
+      ->take_all()
+      ->allow_extra_args(false);
+  c->add_option("--repeats", o.repeats, "Repeats of the timing; as the study says when not given")
+      ->check(CLI::Range(1, 1000));
+  c->add_flag("--list", o.list, "Print the runs and do nothing");
+  c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  c->footer(
+      std::string(
+          "A study file:\n"
+          "  scene: ../dam_break.yaml           # from this file's folder\n"
+          "  set: {time.end: 0.5, render: off}  # keys of the scene, for every run\n"
+          "  variants:                          # curves; each a set of keys\n"
+          "    - {name: paper, set: {solver.kernels: paper}}\n"
+          "    - {name: consistent}\n"
+          "  grid:                              # every combination of these entries;\n"
+          "    - {solver.iterations: [1, 4]}    # keys of one entry vary together\n"
+          "    - {time.step: [0.002, 0.001], measure_every: [10, 20]}\n"
+          "  error: compression_mean            # set against the run time [default]\n"
+          "  targets: [0.01, 0.001]             # of the error [default]\n"
+          "  from: 0.1                          # s, measures count from here [0]\n"
+          "  repeats: 3                         # of the timing [default]\n"
+          "  clock: wall                        # or cpu, of all threads: on busy machines\n"
+          "  energy_limit: 0.03                 # larger energy_rise: no verdict [default]\n"
+          "  projection: [0.2, 0.4]             # s, compare with the exact projection\n"
+          "  reference: {solver.iterations: 64} # keys; reference_distance to this run\n"
+          "  front: {axis: x, length: 0.1, factor: 2, data: [front.csv]}\n"
+          "                                     # T = t sqrt(factor g/length), Z = x/length\n"
+          "Results are kept per run in OUT/members: the same command goes on where a killed\n"
+          "one ended, and runs only what is new. OUT/study.csv and study.json hold the table:\n"
+          "compression and pool measures are means over time (compression_rms: root of the\n"
+          "mean square, maxima: the largest) from `from` on, seconds_median those of all\n"
+          "updates. * in the table on the terminal: no other run is both faster and better.\n"
+          "\n") +
+      kMeasures +
+      "  projection_mean, _rms, _max  distance of one update from the exact projection [spacings]\n"
+      "  reference_distance     RMS distance of the centres of mass / (volume)^(1/3) [1]\n"
+      "  front_rms_<data>       RMS of Z - Z published [1]; all fronts in OUT/front.csv\n\n"
+      "Example:\n"
+      "  pbf study configs/study/dam_break.yaml --out out/study --set threads=2");
+  c->callback([&] { command = [&] { return command_study(o); }; });
+}
+
 void add_info(CLI::App& app, Command& command) {
   CLI::App* c = app.add_subcommand("info", "Version, build features, libraries, devices");
   c->footer("Example:\n  pbf info");
@@ -165,12 +226,14 @@ int run_main(int argc, char** argv) {
   RenderOptions render;
   ConfigOptions config;
   BenchOptions bench;
+  StudyOptions study;
   Command command;
   add_run(app, run, command);
   add_plan(app, plan, command);
   add_render(app, render, command);
   add_config(app, config, command);
   add_bench(app, bench, command);
+  add_study(app, study, command);
   add_info(app, command);
   try {
     app.parse(argc, argv);

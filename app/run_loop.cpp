@@ -90,6 +90,7 @@ bool RunLoop::must_stop() {
 
 void RunLoop::measure() {
   last_ = solver_.measure();
+  energy_.follow(last_);
   last_measure_ = last_.update;
   compression_max_ = std::max(compression_max_, last_.compression_max);
   diverged_ = last_.non_finite > 0 || last_.outside > 0;

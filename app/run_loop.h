@@ -71,6 +71,7 @@ class RunLoop {
   std::vector<std::string> extra_;     // downloaded for the pictures, not written
   std::vector<StageTime> row_stages_;  // at the last row of the log
   Measures first_, last_;
+  EnergyTrack energy_;
   double compression_max_ = 0, loop_seconds_ = 0, render_thread_ = 0;
   std::int64_t frames_ = 0, pictures_ = 0, bytes_ = 0, last_frame_ = -1, last_measure_ = -1;
   bool diverged_ = false;

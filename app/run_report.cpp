@@ -2,6 +2,8 @@
 
 #include <sys/resource.h>
 
+#include <cmath>
+
 #include "lib/base/text.h"
 
 namespace pbf {
@@ -36,7 +38,14 @@ double booked(const RunTotals& t) {
   return sum;
 }
 
-double energy(const Measures& m) { return m.kinetic_energy + m.potential_energy; }
+/// Nothing when the scene does not define the measure.
+std::string pool_line(const Measures& m) {
+  if (std::isnan(m.height_kept)) return {};
+  return format(
+      "height kept         %.4f of the depth at rest, deviation from hydrostatic %.2g %% (both for "
+      "a pool at rest)\n",
+      m.height_kept, 100 * m.hydrostatic_deviation);
+}
 
 }  // namespace
 
@@ -75,14 +84,21 @@ std::string run_summary(const RunTotals& t) {
       "updates             %lld  (%.6g s simulated)\n"
       "wall time           %s  (%s in updates and output)\n"
       "speed               %s particle-updates/s\n"
-      "compression         mean %.3g %%, max %.3g %% at the end; max %.3g %% over the run\n"
-      "energy              %.6g J at the end (kinetic %.3g J), %.6g J at the start\n"
+      "compression         mean %.3g %%, RMS %.3g %%, 99th percentile %.3g %%, max %.3g %% at the "
+      "end; max %.3g %% over the run\n"
+      "                    above 1 %%: %.3g %% of the particles, above 10 %%: %.3g %%\n"
+      "energy              %.6g J at the end (kinetic %.3g J), %.6g J at the start: drift %+.3g "
+      "%%, "
+      "largest rise %.3g %%\n"
       "peak memory         %s\n",
       static_cast<long long>(t.particles), static_cast<long long>(t.updates), t.simulated,
       duration_text(t.wall).c_str(), duration_text(t.loop).c_str(),
       t.loop > 0 ? si_number(double(t.particles) * double(t.updates) / t.loop).c_str() : "0",
-      100 * t.last.compression_mean, 100 * t.last.compression_max, 100 * t.compression_max,
-      energy(t.last), t.last.kinetic_energy, energy(t.first), bytes_text(peak_memory()).c_str());
+      100 * t.last.compression_mean, 100 * t.last.compression_rms, 100 * t.last.compression_p99,
+      100 * t.last.compression_max, 100 * t.compression_max, 100 * t.last.share_above_1,
+      100 * t.last.share_above_10, t.last.energy, t.last.kinetic_energy, t.first.energy,
+      100 * t.last.energy_drift, 100 * t.last.energy_rise, bytes_text(peak_memory()).c_str());
+  out += pool_line(t.last);
   if (t.last.non_finite > 0)
     out += format("not finite          %lld particles at the end, left out of the figures above\n",
                   static_cast<long long>(t.last.non_finite));
@@ -109,10 +125,19 @@ std::string measure_json(const Measures& m, double wall, const std::vector<Stage
   for (const auto& [name, value] :
        {std::pair<const char*, double>{"compression_mean", m.compression_mean},
         {"compression_rms", m.compression_rms},
+        {"compression_p99", m.compression_p99},
         {"compression_max", m.compression_max},
+        {"share_above_1", m.share_above_1},
+        {"share_above_10", m.share_above_10},
+        {"height_kept", m.height_kept},
+        {"hydrostatic_deviation", m.hydrostatic_deviation},
         {"kinetic_energy", m.kinetic_energy},
         {"potential_energy", m.potential_energy},
+        {"energy", m.energy},
+        {"energy_drift", m.energy_drift},
+        {"energy_rise", m.energy_rise},
         {"speed_max", m.speed_max},
+        {"penetration", m.penetration},
         {"neighbors_mean", m.neighbors_mean},
         {"neighbors_max", double(m.neighbors_max)},
         {"outside", double(m.outside)},

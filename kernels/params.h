@@ -10,6 +10,15 @@ namespace pbf::inline PBF_VARIANT {
 
 enum WallBit : unsigned { x_min = 1, x_max = 2, y_min = 4, y_max = 8, z_min = 16, z_max = 32 };
 
+/// Where all the fluid would rest, for the measures: on the wall that gravity points at, between
+/// walls on all four sides. axis -1: there is no such place.
+struct RestPool {
+  int axis = -1;
+  double floor = 0, up = 1;  ///< h, coordinate of the floor; +1 or -1, away from it
+  double depth = 0;          ///< h, volume of the fluid over the floor's area
+  double spacing = 0;        ///< h, of the rest lattice
+};
+
 template <class Real>
 struct Params {
   int n = 0;                 ///< particles
@@ -33,6 +42,7 @@ struct Params {
   int tensile_n = 4;
   Real xsph = 0;       ///< c
   Real vorticity = 0;  ///< 1/s, epsilon
+  RestPool rest;
 };
 
 }  // namespace pbf::inline PBF_VARIANT

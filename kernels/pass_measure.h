@@ -32,6 +32,22 @@ struct MeasurePass {
       s.x[k] = s.front[k] = xs[k];
       s.v[k] = vs[k];
     }
+    s.above_1 = c > 0.01 ? 1 : 0;
+    s.above_10 = c > 0.1 ? 1 : 0;
+    if (p.rest.axis >= 0) {
+      const double height = p.rest.up * (xs[p.rest.axis] - p.rest.floor);
+      for (int k = 0; k < MeasureSums::levels; ++k) {
+        const double level = p.rest.depth * (k + 1) / MeasureSums::levels;
+        s.below[k] = min2(max2((level - height) / p.rest.spacing + 0.5, 0.0), 1.0);
+      }
+    }
+    const double high[3] = {p.box.x, p.box.y, p.box.z};
+    for (int k = 0; k < 3; ++k) {
+      const double margin = p.margin;
+      if (p.walls & (1u << (2 * k))) s.penetration = max2(s.penetration, margin - xs[k]);
+      if (p.walls & (2u << (2 * k)))
+        s.penetration = max2(s.penetration, xs[k] - (high[k] - margin));
+    }
     s.neighbors = s.neighbors_max = lists.size(i);
     const bool out = ((p.walls & x_min) && x.x < Real(0)) || ((p.walls & x_max) && x.x > p.box.x) ||
                      ((p.walls & y_min) && x.y < Real(0)) || ((p.walls & y_max) && x.y > p.box.y) ||

@@ -67,6 +67,22 @@ class CpuExec {
     return total;
   }
 
+  /// How many particles pass(i) puts into each of `bins` bins; none for a negative bin.
+  template <class Pass>
+  const std::vector<std::int64_t>& count_in_bins(int n, int bins, const Pass& pass) {
+    in_bins_.assign(std::size_t(bins), 0);
+#pragma omp parallel num_threads(threads_) if (n > kChunk)
+    {
+      std::vector<std::int64_t> mine(std::size_t(bins), 0);
+#pragma omp for schedule(static) nowait
+      for (int i = 0; i < n; ++i)
+        if (const int b = pass(i); b >= 0) ++mine[std::size_t(b)];
+#pragma omp critical(pbf_count_in_bins)
+      for (std::size_t b = 0; b < mine.size(); ++b) in_bins_[b] += mine[b];
+    }
+    return in_bins_;
+  }
+
   /// first(i) for every particle, which writes first.bin[i]; a stable counting sort by bin
   /// (start[b] = first place of bin b, start[bins] = n); gather(from, to) for every particle.
   /// Marks `stage` after `first`.
@@ -129,6 +145,7 @@ class CpuExec {
   int threads_;
   StageClock clock_;
   std::vector<MeasureSums> partial_;
+  std::vector<std::int64_t> in_bins_;
   std::vector<std::vector<int>> scratch_;  ///< per thread
   std::vector<HostBuffer<int>> chunks_;
   std::vector<const int*> pointers_;

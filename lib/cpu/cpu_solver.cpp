@@ -15,9 +15,7 @@ class CpuSolver final : public Solver {
  public:
   CpuSolver(const Scene& scene, const Plan& plan, const Particles& particles)
       : scene_(scene),
-        mass_(plan.mass),
-        vol_(plan.vol),
-        wall_scale_(plan.wall_scale),
+        plan_(plan),
         n_(std::int64_t(particles.size())),
         exec_(scene.threads > 0 ? scene.threads : usable_threads()) {
     Stopwatch watch;
@@ -41,7 +39,7 @@ class CpuSolver final : public Solver {
   }
 
   Measures measure() override {
-    return to_measures(stepper_->measure(), scene_, mass_, n_, updates_, time());
+    return to_measures(stepper_->measure(), scene_, plan_, updates_, time());
   }
 
   std::vector<StageTime> timings() const override {
@@ -61,8 +59,8 @@ class CpuSolver final : public Solver {
     i.precision = sizeof(Real) == 8 ? "double" : "float";
     i.device = cpu_model();
     i.threads = exec_.threads();
-    i.vol = vol_;
-    i.wall_scale = wall_scale_;
+    i.vol = plan_.vol;
+    i.wall_scale = plan_.wall_scale;
     i.bytes = stepper_->bytes();
     return i;
   }
@@ -85,7 +83,7 @@ class CpuSolver final : public Solver {
   }
 
   Scene scene_;
-  double mass_, vol_, wall_scale_;
+  Plan plan_;
   std::int64_t n_;
   CpuExec exec_;
   std::unique_ptr<Stepper<Real, CpuExec>> stepper_;

@@ -2,6 +2,7 @@
 // are few particles.
 #pragma once
 
+#include <algorithm>
 #include <cub/device/device_scan.cuh>
 #include <vector>
 
@@ -51,6 +52,24 @@ __global__ void __launch_bounds__(kBlock) reduce_kernel(int n, Pass pass, Measur
     if (threadIdx.x < half) part[threadIdx.x].add(part[threadIdx.x + half]);
   }
   if (threadIdx.x == 0) out[blockIdx.x] = part[0];
+}
+
+/// Adds the number of particles that pass(i) puts into each bin: in shared memory first, since most
+/// particles of a fluid share few bins. Integers: the order of the additions does not matter.
+constexpr int kBinBlock = 256, kBinBlocks = 512;
+template <class Pass>
+__global__ void __launch_bounds__(kBinBlock)
+    count_in_bins_kernel(int n, int bins, Pass pass, unsigned long long* out) {
+  wait_for_previous();
+  extern __shared__ unsigned in_bin[];  // bins
+  for (int b = threadIdx.x; b < bins; b += kBinBlock) in_bin[b] = 0;
+  __syncthreads();
+  for (std::int64_t i = blockIdx.x * kBinBlock + threadIdx.x; i < n;
+       i += std::int64_t(gridDim.x) * kBinBlock)
+    if (const int b = pass(int(i)); b >= 0) atomicAdd(&in_bin[b], 1u);
+  __syncthreads();
+  for (int b = threadIdx.x; b < bins; b += kBinBlock)
+    if (in_bin[b]) atomicAdd(&out[b], static_cast<unsigned long long>(in_bin[b]));
 }
 
 /// The pass that gives a particle its bin, then its place among those of the bin in order of
@@ -237,6 +256,21 @@ class CudaExec {
     return total;
   }
 
+  /// See CpuExec. At most 12000 bins: their counters lie in shared memory.
+  template <class Pass>
+  const std::vector<std::int64_t>& count_in_bins(int n, int bins, const Pass& pass) {
+    in_bins_.resize(std::size_t(bins));
+    in_bins_host_.resize(std::size_t(bins));
+    PBF_CUDA_CHECK(cudaMemsetAsync(in_bins_.data(), 0, in_bins_.bytes(), stream_));
+    launch(count_in_bins_kernel<Pass>, std::min(n, kBinBlock * kBinBlocks), kBinBlock,
+           std::size_t(bins) * sizeof(unsigned), n, bins, pass, in_bins_.data());
+    PBF_CUDA_CHECK(cudaMemcpyAsync(in_bins_host_.data(), in_bins_.data(), in_bins_.bytes(),
+                                   cudaMemcpyDeviceToHost, stream_));
+    synchronize();
+    counted_.assign(in_bins_host_.data(), in_bins_host_.data() + bins);
+    return counted_;
+  }
+
   /// See CpuExec; `order` is room for the arrivals.
   template <class First, class Gather>
   void sort_by_bin(const char* stage, const First& first, int n, int bins, int* order, int* start,
@@ -336,6 +370,9 @@ class CudaExec {
   std::vector<const char*> stages_;  ///< of the marks since begin()
   DeviceBuffer<MeasureSums> partial_;
   PinnedBuffer<MeasureSums> partial_host_;
+  DeviceBuffer<unsigned long long> in_bins_;
+  PinnedBuffer<unsigned long long> in_bins_host_;
+  std::vector<std::int64_t> counted_;
   DeviceBuffer<int4> words_, tails_;
   DeviceBuffer<int> count_, tail_of_, counts_, slot_;
   DeviceBuffer<ListState> list_state_;

@@ -97,7 +97,7 @@ class CudaSolver final : public Solver {
   }
 
   Measures measure() override {
-    return to_measures(stepper_->measure(), scene_, plan_.mass, n_, updates_, time());
+    return to_measures(stepper_->measure(), scene_, plan_, updates_, time());
   }
 
   std::vector<StageTime> timings() const override {

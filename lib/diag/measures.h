@@ -1,27 +1,58 @@
 // What a run reports about its own state: scalars over all particles.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace pbf {
 
 /// SI units. Compression of a particle: c = max(rho/rho0 - 1, 0), walls' contribution included.
+/// Formulas: README.md beside this file. NaN: the scene does not define the measure.
 struct Measures {
   double time = 0;  ///< s
   std::int64_t update = 0;
-  double compression_mean = 0;           ///< 1
-  double compression_rms = 0;            ///< 1
-  double compression_max = 0;            ///< 1
-  double kinetic_energy = 0;             ///< J
-  double potential_energy = 0;           ///< J, -m g.x relative to the domain's lower corner
-  double momentum[3] = {0, 0, 0};        ///< kg m/s
+  double compression_mean = 0;       ///< 1
+  double compression_rms = 0;        ///< 1
+  double compression_p99 = 0;        ///< 1, 99 % of the particles are at or below it
+  double compression_max = 0;        ///< 1
+  double share_above_1 = 0;          ///< 1, of the particles compressed by more than 1 %
+  double share_above_10 = 0;         ///< 1, by more than 10 %
+  double height_kept = 0;            ///< 1, twice the height of the centre over the rest depth
+  double hydrostatic_deviation = 0;  ///< 1, of the weight above eight levels, RMS
+  double kinetic_energy = 0;         ///< J
+  double potential_energy = 0;       ///< J, -m g.x relative to the domain's lower corner
+  double energy = 0;                 ///< J, kinetic and potential above the box's lowest corner
+  double energy_drift = 0;           ///< 1, (E - E0)/E0; EnergyTrack
+  double energy_rise = 0;            ///< 1, largest rise over any earlier E, over E0; EnergyTrack
+  double momentum[3] = {0, 0, 0};    ///< kg m/s
   double center_of_mass[3] = {0, 0, 0};  ///< m
   double speed_max = 0;                  ///< m/s
   double front[3] = {0, 0, 0};           ///< m, largest coordinate along each axis
+  double penetration = 0;                ///< m, farthest that a particle is behind its clamp
   double neighbors_mean = 0;             ///< without the particle itself
   std::int64_t neighbors_max = 0;
   std::int64_t outside = 0;     ///< particles beyond a wall
   std::int64_t non_finite = 0;  ///< particles with a non-finite position or velocity
+};
+
+/// Follows the energy of one simulation from its first measure on. The walls do not move and do no
+/// work, so whatever rises was made by the method.
+class EnergyTrack {
+ public:
+  /// Fills m.energy_drift and m.energy_rise. To be called with every measure, in order.
+  void follow(Measures& m) {
+    if (!started_) first_ = lowest_ = m.energy;
+    started_ = true;
+    rise_ = std::max(rise_, relative(m.energy - lowest_));
+    lowest_ = std::min(lowest_, m.energy);
+    m.energy_drift = relative(m.energy - first_);
+    m.energy_rise = rise_;
+  }
+
+ private:
+  double relative(double e) const { return e == 0 ? 0 : e / first_; }
+  bool started_ = false;
+  double first_ = 0, lowest_ = 0, rise_ = 0;
 };
 
 }  // namespace pbf

@@ -39,9 +39,9 @@ InternalState<Real> to_internal(const Scene& s, const Particles& particles) {
 
 }  // namespace PBF_VARIANT
 
-/// Sums in the internal frame -> Measures in SI units.
-Measures to_measures(const MeasureSums& sums, const Scene& scene, double mass,
-                     std::int64_t particles, std::int64_t update, double time);
+/// Sums in the internal frame -> Measures in SI units (lib/diag/README.md).
+Measures to_measures(const MeasureSums& sums, const Scene& scene, const Plan& plan,
+                     std::int64_t update, double time);
 
 /// An empty snapshot of n particles with every array allocated and the ids filled in; position and
 /// id always, velocity and density where `fields` names them. Error(bad_input) for another name.

@@ -2,10 +2,12 @@
 // Buffer<T>, for_each(n, pass), sort_by_bin, build_lists, reduce, to_host, and mark(stage).
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "kernels/compression_bins.h"
 #include "kernels/pass_delta.h"
 #include "kernels/pass_export.h"
 #include "kernels/pass_lambda.h"
@@ -28,6 +30,18 @@ void with_smoothing(KernelMode mode, F&& f) {
 template <class F>
 void with_bool(bool b, F&& f) {
   b ? f(std::true_type{}) : f(std::false_type{});
+}
+
+/// The compression that at least `count` of n particles do not exceed: the upper end of its bin, at
+/// most 1/32 too large, and no more than the maximum.
+inline double percentile(const std::vector<std::int64_t>& in_bin, std::int64_t count,
+                         std::int64_t n, double max) {
+  std::int64_t above = 0;
+  for (int b = kCompressionBins - 1; b >= 0; --b) {
+    above += in_bin[std::size_t(b)];
+    if (n - above < count) return std::min(compression_bin_end(b), max);
+  }
+  return 0;
 }
 
 template <class Real, class Exec>
@@ -101,6 +115,9 @@ class Stepper {
     sum_density();
     auto sums = exec_.reduce(p_.n, MeasurePass<Real, Lists>{p_, lists_, position_.data(),
                                                             velocity_.data(), density_.data()});
+    sums.compression_p99 = percentile(
+        exec_.count_in_bins(p_.n, kCompressionBins, CompressionBinPass<Real>{density_.data()}),
+        p_.n - p_.n / 100, p_.n, sums.compression_max);
     exec_.mark("measure");
     return sums;
   }

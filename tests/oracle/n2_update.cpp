@@ -60,10 +60,12 @@ Real half_space_slope(Real a, Real h) {
   return -30 / powl(h, 6) * (h * powl(s, 4) / 4 - powl(s, 5) / 5);
 }
 
-struct Wall {
-  Real density = 0;  // fraction of rho0
-  V gradient{};      // 1/m
-};
+void clamp(V& x, const Settings& c) {
+  for (int k = 0; k < 3; ++k)
+    x[k] = std::min(std::max(x[k], c.low[k] + c.margin), c.high[k] - c.margin);
+}
+
+}  // namespace
 
 Wall walls(const V& x, const Settings& c) {
   Wall out;
@@ -88,13 +90,6 @@ Wall walls(const V& x, const Settings& c) {
   }
   return out;
 }
-
-void clamp(V& x, const Settings& c) {
-  for (int k = 0; k < 3; ++k)
-    x[k] = std::min(std::max(x[k], c.low[k] + c.margin), c.high[k] - c.margin);
-}
-
-}  // namespace
 
 std::vector<Real> densities(const std::vector<V>& x, const Settings& c) {
   std::vector<Real> out;

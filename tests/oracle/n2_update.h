@@ -33,4 +33,11 @@ void update(State& s, const Settings& c);
 /// Density at the present positions, kg/m^3, walls included.
 std::vector<Real> densities(const std::vector<V>& x, const Settings& c);
 
+/// What all walls add to the density at x, and its gradient (that of the Spiky kernel).
+struct Wall {
+  Real density = 0;  ///< fraction of rho0
+  V gradient{};      ///< 1/m
+};
+Wall walls(const V& x, const Settings& c);
+
 }  // namespace oracle

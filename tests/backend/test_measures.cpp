@@ -1,0 +1,207 @@
+// The measures of states with known answers, on every backend and precision.
+#include <cmath>
+#include <numeric>
+
+#include "tests/backend/backend.h"
+#include "tests/catch.h"
+
+using namespace oracle_test;
+using backend_test::here;
+using backend_test::is_double;
+
+namespace {
+
+/// Measures by the definitions of lib/diag/README.md, from brute-force densities.
+struct Expected {
+  double mean = 0, rms = 0, p99 = 0, max = 0, above_1 = 0, above_10 = 0;
+};
+Expected expected(const Case& c) {
+  std::vector<oracle::V> x;
+  for (const auto& p : c.particles.position) x.push_back({p[0], p[1], p[2]});
+  std::vector<double> compression;
+  for (const auto rho : oracle::densities(x, settings_of(c)))
+    compression.push_back(std::max(double(rho / 1000) - 1, 0.0));
+  std::sort(compression.begin(), compression.end());
+  const double n = double(compression.size());
+  Expected e;
+  for (const double v : compression) {
+    e.mean += v / n;
+    e.rms += v * v / n;
+    e.above_1 += v > 0.01 ? 1 / n : 0;
+    e.above_10 += v > 0.1 ? 1 / n : 0;
+  }
+  e.rms = std::sqrt(e.rms);
+  e.max = compression.back();
+  e.p99 = compression[std::size_t(std::ceil(0.99 * n)) - 1];  // 99 % are at or below it
+  return e;
+}
+
+void check_compression(const Case& c) {
+  const Expected e = expected(c);
+  const pbf::Measures m = make(c)->measure();
+  const double tolerance = is_double() ? 1e-10 : 3e-6;
+  CHECK(m.compression_mean == Approx(e.mean).margin(tolerance));
+  CHECK(m.compression_rms == Approx(e.rms).margin(tolerance));
+  CHECK(m.compression_max == Approx(e.max).margin(tolerance));
+  CHECK(m.compression_p99 >= e.p99 - tolerance);
+  CHECK(m.compression_p99 <= e.p99 * (1 + 1.0 / 32) + tolerance);
+  // A particle within rounding of the limit may count on either side.
+  const double one = is_double() ? 1e-12 : 1.5 / double(c.particles.size());
+  CHECK(m.share_above_1 == Approx(e.above_1).margin(one));
+  CHECK(m.share_above_10 == Approx(e.above_10).margin(one));
+}
+
+/// A lattice of spacing `scale` d in the middle of a box three smoothing lengths away.
+Case free_lattice(int n, double scale) {
+  Case c = here(jittered_block(n, n, n, 0, 0, 1, scale));
+  for (std::size_t k = 0; k < 3; ++k) {
+    c.scene.domain.min[k] -= 0.12;
+    c.scene.domain.max[k] += 0.12;
+  }
+  return c;
+}
+
+/// A pool at rest that fills the floor of its box from wall to wall, gravity along -z.
+Case pool(int layers) {
+  Case c = here(jittered_block(6, 5, layers, 0, 0));
+  c.scene.domain.max[0] = c.scene.domain.min[0] + 6 * c.scene.fluid.spacing;
+  return c;
+}
+
+/// The hydrostatic deviation from its definition: each particle a slab of thickness d.
+double deviation(const Case& c, double depth) {
+  double squares = 0;
+  for (int k = 1; k <= 8; ++k) {
+    double below = 0;
+    for (const auto& p : c.particles.position) {
+      const double z = (p[2] - c.scene.domain.min[2]) / c.scene.fluid.spacing;
+      const double level = k / 8.0 * depth / c.scene.fluid.spacing;
+      below += std::min(std::max(level - (z - 0.5), 0.0), 1.0);
+    }
+    const double e = k / 8.0 - below / double(c.particles.size());
+    squares += e * e / 8;
+  }
+  return std::sqrt(squares);
+}
+
+}  // namespace
+
+TEST_CASE("a lattice is not compressed, neither free nor between walls away from edges") {
+  const pbf::Measures free = make(free_lattice(12, 1))->measure();
+  const double rounding = is_double() ? 1e-13 : 1e-6;
+  CHECK(free.compression_max < rounding);
+  CHECK(free.compression_p99 < rounding);
+  CHECK(free.share_above_1 == 0);
+  CHECK(free.penetration == 0);
+  check_compression(pool(12));
+}
+
+TEST_CASE("a lattice compressed by 1 % in volume reads 0.774 %, the sum over its kernel") {
+  const double scale = std::cbrt(1 / 1.01);
+  const Case c = free_lattice(14, scale);
+  // Of the 1 % the particle's own share of the sum, W(0), feels nothing.
+  const auto sum = [](double spacing) {
+    double all = 0;
+    for (int z = -2; z <= 2; ++z)
+      for (int y = -2; y <= 2; ++y)
+        for (int x = -2; x <= 2; ++x)
+          all += std::pow(std::max(1 - spacing / 2 * std::sqrt(x * x + y * y + z * z), 0.0), 3);
+    return all;
+  };
+  const double inside = sum(scale) / sum(1) - 1;
+  CHECK(inside == Approx(0.00774).epsilon(1e-3));
+  CHECK(make(c)->measure().compression_max == Approx(inside).epsilon(is_double() ? 1e-9 : 1e-3));
+  check_compression(c);
+}
+
+TEST_CASE("one displaced particle compresses its neighbours as brute force says, and no other") {
+  Case c = free_lattice(12, 1);
+  c.particles.position[5 * 144 + 5 * 12 + 5][0] += 0.4 * c.scene.fluid.spacing;
+  check_compression(c);
+  const pbf::Measures m = make(c)->measure();
+  CHECK(m.compression_max > 0.01);
+  CHECK(m.share_above_1 * 1728 < 34);
+  CHECK(m.compression_p99 < m.compression_max);
+}
+
+TEST_CASE("percentile and shares of a random state are those of its sorted densities") {
+  check_compression(here(jittered_block(11, 9, 13, 0.45, 0)));
+  check_compression(here(jittered_block(8, 8, 8, 0.3, 0, 7, 0.6)));
+}
+
+TEST_CASE("a pool at rest keeps its height and its hydrostatic profile, a sunken one does not") {
+  const double rounding = is_double() ? 1e-12 : 1e-6;
+  for (const int layers : {9, 16, 40}) {
+    Case c = pool(layers);
+    const pbf::Measures m = make(c)->measure();
+    CHECK(m.height_kept == Approx(1).margin(rounding));
+    CHECK(m.hydrostatic_deviation < rounding);
+    const double depth = layers * c.scene.fluid.spacing, low = c.scene.domain.min[2];
+    for (auto& p : c.particles.position) p[2] = low + 0.9 * (p[2] - low);
+    const pbf::Measures sunken = make(c)->measure();
+    CHECK(sunken.height_kept == Approx(0.9).margin(rounding));
+    CHECK(sunken.hydrostatic_deviation == Approx(deviation(c, depth)).margin(10 * rounding));
+    CHECK(sunken.hydrostatic_deviation > 0.04);
+  }
+}
+
+TEST_CASE("the pool may rest on any wall that gravity points at, and must have one") {
+  Case c = pool(12);
+  const pbf::Measures down = make(c)->measure();
+  // Upside down: mirrored in z, gravity up.
+  Case up = c;
+  for (auto& p : up.particles.position) p[2] = c.scene.domain.min[2] + c.scene.domain.max[2] - p[2];
+  up.scene.gravity = {0, 0, 9.81};
+  const pbf::Measures mirrored = make(up)->measure();
+  CHECK(mirrored.height_kept == Approx(1).margin(2e-6));
+  CHECK(mirrored.hydrostatic_deviation < 2e-6);
+  CHECK(mirrored.energy == Approx(down.energy).epsilon(1e-5));
+  const auto undefined = [](const Case& with) {
+    const pbf::Measures m = make(with)->measure();
+    return std::isnan(m.height_kept) && std::isnan(m.hydrostatic_deviation);
+  };
+  Case other = c;
+  other.scene.gravity = {1, 0, -9.81};
+  CHECK(undefined(other));
+  other.scene.gravity = {0, 0, 0};
+  CHECK(undefined(other));
+  other = c;
+  other.scene.domain.open = {"z_min"};
+  CHECK(undefined(other));
+  other.scene.domain.open = {"x_max"};
+  CHECK(undefined(other));
+  other.scene.domain.open = {"z_max"};
+  CHECK_FALSE(undefined(other));
+}
+
+TEST_CASE("the energy is M g z + K above the lowest corner of the box") {
+  Case c = here(jittered_block(6, 5, 7, 0.2, 0.5));
+  double expected_energy = 0;
+  const double mass = 1000 * std::pow(c.scene.fluid.spacing, 3);
+  c.scene.gravity = {2, 0, -9.81};
+  for (std::size_t i = 0; i < c.particles.size(); ++i) {
+    const auto &x = c.particles.position[i], &v = c.particles.velocity[i];
+    expected_energy +=
+        mass * (9.81 * (x[2] - c.scene.domain.min[2]) + 2 * (c.scene.domain.max[0] - x[0]) +
+                0.5 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+  }
+  CHECK(make(c)->measure().energy == Approx(expected_energy).epsilon(is_double() ? 1e-12 : 1e-5));
+}
+
+TEST_CASE("penetration is the distance behind the clamp, whichever wall it is") {
+  Case c = free_lattice(4, 1);
+  const double d = c.scene.fluid.spacing;
+  const std::size_t axis = GENERATE(0u, 1u, 2u);
+  SECTION("behind the lower wall") {
+    c.particles.position[7][axis] = c.scene.domain.min[axis] - 0.3 * d;
+  }
+  SECTION("behind the upper wall") {
+    c.particles.position[7][axis] = c.scene.domain.max[axis] + 0.3 * d;
+  }
+  CHECK(make(c)->measure().penetration == Approx(0.3 * d).epsilon(1e-4));
+  c.scene.solver.wall_margin = 0.2 * d;
+  CHECK(make(c)->measure().penetration == Approx(0.5 * d).epsilon(1e-4));
+  CHECK(make(c)->measure().outside == 1);
+  c.scene.domain.open = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+  CHECK(make(c)->measure().penetration == 0);
+}

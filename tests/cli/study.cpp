@@ -1,0 +1,127 @@
+// pbf study as a user runs it: tables, going on after a stop, what cannot run here.
+#include <csignal>
+#include <thread>
+
+#include "tests/catch.h"
+#include "tests/cli/process.h"
+
+using namespace pbf::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A folder with the tiny scene and a study of it.
+struct Folder : Scratch {
+  explicit Folder(const std::string& study) {
+    write("tiny.yaml", tiny_scene());
+    write("study.yaml", "scene: tiny.yaml\nset: {output: off, threads: 1}\n" + study);
+  }
+  Outcome run(std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"study", "study.yaml", "--out", "o"});
+    return pbf::test::pbf(more, path());
+  }
+};
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("a study writes its tables, keeps its runs, and does only what is missing") {
+  const Folder folder(
+      "repeats: 2\ngrid: {solver.iterations: [1, 2], precision: [float, double]}\n");
+  const Outcome first = folder.run();
+  CAPTURE(first.err);
+  REQUIRE(first.code == 0);
+  CHECK(count(first.err, "kept from before") == 0);
+  for (const char* part : {"Pareto", "cheapest setting for compression_mean <= 1 %", "* "})
+    CHECK(has(first.out, part));
+  const std::string csv = read_text(folder / "o/study.csv");
+  CHECK(csv.rfind("solver.iterations,backend,precision,threads,particles,", 0) == 0);
+  CHECK(count(csv, "\n") == 5);
+  CHECK(count(csv, ",finished,") == 4);
+  CHECK(count(csv, ",double,") == 2);
+  CHECK(has(read_text(folder / "o/study.json"), "\"cheapest\""));
+
+  const Outcome again = folder.run();
+  CHECK(again.code == 0);
+  CHECK(count(again.err, "kept from before") == 4);
+  CHECK(again.out == first.out);
+  CHECK(read_text(folder / "o/study.csv") == csv);
+  fs::remove(fs::directory_iterator(folder / "o/members")->path());
+  CHECK(count(folder.run().err, "kept from before") == 3);
+  // A damaged result is said to be, and made again.
+  const auto member = fs::directory_iterator(folder / "o/members")->path();
+  folder.write("o/members/" + member.filename().string(), "{\"status\": ");
+  const Outcome mended = folder.run();
+  CHECK(mended.code == 0);
+  CHECK(count(mended.err, "kept from before") == 3);
+  CHECK(has(mended.err, "damaged"));
+}
+
+TEST_CASE("a killed study goes on where it was, and SIGTERM stops it with 75") {
+  const Folder folder(
+      "repeats: 1\ngrid: {solver.iterations: [1, 2, 3, 4, 5, 6]}\nset: {time.end: 1}\n");
+  fs::remove(folder / "study.yaml");
+  folder.write("study.yaml",
+               "scene: tiny.yaml\nrepeats: 1\nset: {output: off, threads: 1, time.end: 8}\n"
+               "grid: {solver.iterations: [1, 2, 3, 4, 5, 6]}\n");
+  const auto until_one_is_done = [&](int signal) {
+    Process study({"study", "study.yaml", "--out", "o"}, folder.path());
+    const auto done = [&] {
+      std::error_code none;
+      return std::distance(fs::directory_iterator(folder / "o/members", none), {});
+    };
+    const auto before = fs::exists(folder / "o/members") ? done() : 0;
+    for (int k = 0; k < 2000 && (!fs::exists(folder / "o/members") || done() <= before); ++k)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    study.send(signal);
+    return study.wait();
+  };
+  CHECK(until_one_is_done(SIGKILL).code == 128 + SIGKILL);
+  const Outcome stopped = until_one_is_done(SIGTERM);
+  CAPTURE(stopped.err);
+  CHECK(stopped.code == 75);
+  CHECK(has(stopped.err, "kept from before"));
+  CHECK(has(stopped.err, "stopped early by SIGTERM"));
+  const Outcome rest = folder.run({"--set", "time.end=8"});
+  CHECK(rest.code == 0);
+  CHECK(count(rest.err, "kept from before") >= 2);
+}
+
+TEST_CASE("study --list makes nothing, and a wrong study exits 2 before anything is made") {
+  const Folder folder("grid: {solver.iterations: [1, 2]}\n");
+  const Outcome list = folder.run({"--list"});
+  CHECK(list.code == 0);
+  CHECK(has(list.out, "2 runs"));
+  CHECK(has(list.out, "solver.iterations=2"));
+  const Outcome bad = folder.run({"--set", "solver.iteratons=3"});
+  CHECK(bad.code == 2);
+  CHECK(has(bad.err, "did you mean solver.iterations?"));
+  const Outcome missing = pbf::test::pbf({"study", "no.yaml"}, folder.path());
+  CHECK(missing.code == 2);
+  CHECK(has(missing.err, "no.yaml: cannot be opened"));
+  CHECK_FALSE(fs::exists(folder / "o"));
+  folder.write("file", "");
+  const Outcome blocked = pbf::test::pbf({"study", "study.yaml", "--out", "file/o"}, folder.path());
+  CHECK(blocked.code == 5);
+}
+
+TEST_CASE("a backend that is not here is a row that says so, and exit code 4") {
+  const Folder folder("repeats: 1\ngrid: {backend: [cpu, cuda]}\n");
+  const Outcome o = folder.run();
+  const std::string csv = read_text(folder / "o/study.csv");
+  CHECK(count(csv, "\n") == 3);
+  if (o.code == 0) {
+    CHECK(count(csv, ",finished,") == 2);  // there is a GPU
+    return;
+  }
+  CHECK(o.code == 4);
+  CHECK(count(csv, ",finished,") == 1);
+  CHECK(has(csv, "cuda,float,0,0,0,,"));
+  CHECK(has(csv, ",unavailable,"));
+  CHECK(has(o.err, "1 of 2 runs could not run here"));
+}
