@@ -58,6 +58,7 @@ class CudaSolver final : public Solver {
 
   void step(int updates) override {
     const Stopwatch watch;
+    if (updates > 0) stepper_->unsort();
     while (updates > 0) {
       const int batch = std::min(updates, batch_of(n_));
       stepper_->save(saved_);
@@ -100,6 +101,27 @@ class CudaSolver final : public Solver {
 
   Measures measure() override {
     return to_measures(stepper_->measure(), scene_, plan_.mass, n_, updates_, time());
+  }
+
+  SolverState state() override { return stepper_->state(updates_); }
+  void set_state(const SolverState& s) override {
+    check_state(s, n_);
+    stepper_->set_state(s);
+    while (grow_if_needed()) stepper_->relist();
+    drop_graphs();  // the sort has changed which buffer is which
+    updates_ = s.updates;
+  }
+  StepTrace trace(const Roundings& roundings) override {
+    stepper_->unsort();
+    stepper_->save(saved_);
+    StepTrace t = traced_step(roundings);
+    while (grow_if_needed()) {
+      drop_graphs();
+      stepper_->restore(saved_);
+      t = traced_step(roundings);
+    }
+    ++updates_;
+    return t;
   }
 
   std::vector<StageTime> timings() const override {
@@ -161,6 +183,11 @@ class CudaSolver final : public Solver {
   void direct_step() {
     stepper_->step();
     parity_ ^= 1;
+  }
+
+  StepTrace traced_step(const Roundings& roundings) {
+    parity_ ^= 1;
+    return stepper_->trace(roundings);
   }
 
   /// Buffers trade places in an update, so a graph that can be replayed holds an even number of

@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <cmath>
+
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+#include "lib/diag/compare_parts.h"
+#include "lib/scene/emit.h"
+#ifdef PBF_HAS_DEFECT
+#include "lib/solver/defect.h"
+#endif
+
+namespace pbf {
+namespace {
+
+Scene on(const Scene& scene, const CompareSide& side) {
+  Scene s = scene;
+  s.backend = side.backend;
+  s.precision = side.precision;
+  if (side.threads > 0) s.threads = side.threads;
+  return s;
+}
+
+std::unique_ptr<Solver> make(const Scene& scene, const Particles& particles, bool variant) {
+  const Plan plan = make_plan(scene, std::int64_t(particles.size()));
+#ifdef PBF_HAS_DEFECT
+  if (variant) return make_defect_solver(scene, plan, particles);
+#endif
+  if (variant) throw Error(ExitCode::unavailable, "cpu+defect is not in this build");
+  return make_solver(scene, plan, particles);
+}
+
+double roundoff(Precision p) { return p == Precision::dbl ? 0x1p-53 : 0x1p-24; }
+
+void round_to_float(SolverState& s) {
+  for (auto* v : {&s.position, &s.velocity})
+    for (double& x : *v) x = double(float(x));
+}
+
+}  // namespace
+
+CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const std::string& dir,
+                              const CompareSettings& settings,
+                              const std::function<void(const std::string&)>& progress) {
+  const Particles particles = emit_particles(scene_a, dir);
+  const Scene on_a = on(scene_a, settings.a), on_b = on(scene_b, settings.b);
+  const std::unique_ptr<Solver> a = make(on_a, particles, settings.a.variant);
+  const std::unique_ptr<Solver> b = make(on_b, particles, settings.b.variant);
+  Scene plain = on(scene_a, {Backend::cpu, Precision::dbl, 0, false});
+  plain.solver.fused = false;  // a stored density can be rounded; its bits are the same
+  const std::unique_ptr<Solver> reference = make(plain, particles, false);
+  const Plan plan = make_plan(on_a, std::int64_t(particles.size()));
+
+  Comparison c;
+  c.settings = &settings;
+  c.plan = &plan;
+  c.scene = &on_a;
+  c.a = a.get();
+  c.b = b.get();
+  c.reference = reference.get();
+  c.u = std::max(roundoff(settings.a.precision), roundoff(settings.b.precision));
+  c.sides = settings.a.precision == settings.b.precision ? 2 : 1;
+  c.same_bits = settings.a.backend == settings.b.backend && c.sides == 2 && !settings.a.variant &&
+                !settings.b.variant;
+  c.progress = progress;
+  if (!c.same_bits)
+    for (int m = 0; m < settings.members; ++m) c.members.push_back(make(plain, particles, false));
+
+  CompareResult result;
+  result.a = settings.a.name();
+  result.b = settings.b.name();
+  result.notes.push_back(format("scene %s, %zu particles, %d updates on %s before the frozen step",
+                                scene_a.name.c_str(), particles.size(), settings.warmup,
+                                result.a.c_str()));
+  if (progress) progress(format("%d updates of warm-up on %s", settings.warmup, result.a.c_str()));
+  a->step(settings.warmup);
+  SolverState start = a->state();
+  if (c.u == roundoff(Precision::single)) round_to_float(start);
+  result.parts.push_back(compare_stages(c, start, result));
+  if (progress) progress("frozen step: " + result.parts[0].finding);
+  std::int64_t failure = -1;
+  for (auto& part : compare_course(c, start, result, failure))
+    result.parts.push_back(std::move(part));
+  if (result.stage.empty() && failure > 1) {
+    // The frozen step missed it: another one, from A's state just before distances went wrong.
+    a->set_state(start);
+    a->step(int(failure) - 1);
+    SolverState later = a->state();
+    if (c.u == roundoff(Precision::single)) round_to_float(later);
+    ComparePart part = compare_stages(c, later, result);
+    part.name = format("frozen step at update %lld", static_cast<long long>(later.updates));
+    result.parts.push_back(std::move(part));
+  }
+  return result;
+}
+
+}  // namespace pbf
