@@ -139,7 +139,8 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
   c.b->set_state(start);
   if (!c.same_bits) {
     c.reference->set_state(start);
-    for (const auto& m : c.members) m->set_state(start);
+    for (std::size_t m = 0; m < c.members.size(); ++m)
+      c.members[m]->set_state(rounded(start, c.u, c.settings->seed + m));
   }
   Samples samples(c);
   Curve rms{"A to B, rms", {}, {}}, worst{"A to B, largest", {}, {}},

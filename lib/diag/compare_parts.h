@@ -34,6 +34,9 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
 std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& start,
                                         CompareResult& result, std::int64_t& first_failure);
 
+/// The state with every number rounded at random: value (1 + r u), r uniform in [-1, 1).
+SolverState rounded(const SolverState& s, double u, std::uint64_t seed);
+
 /// Unit in the last place of `value` for a unit roundoff u.
 double ulp(double value, double u);
 

@@ -44,7 +44,7 @@ bool same_kind(const TraceArray& x, const TraceArray& y) {
 
 /// Terms of the sums of a stage: rounding within them is not in the ensemble.
 double terms_of(const TraceArray& t, const StepTrace& trace) {
-  if (t.stage == "predict" || t.stage == "grid") return 4;
+  if (t.stage == "predict" || t.stage == "grid" || t.quantity == "position") return 4;
   std::int64_t most = 0;
   for (std::size_t i = 0; i + 1 < trace.neighbor_begin.size(); ++i)
     most = std::max(most, trace.neighbor_begin[i + 1] - trace.neighbor_begin[i]);
@@ -58,7 +58,7 @@ std::vector<double> noise_floor(const Comparison& c, const SolverState& start,
   reference = c.reference->trace();
   std::vector<double> noise(reference.arrays.size(), 0);
   for (std::size_t m = 0; m < c.members.size(); ++m) {
-    c.members[m]->set_state(start);
+    c.members[m]->set_state(rounded(start, c.u, c.settings->seed + m));
     const StepTrace t = c.members[m]->trace({c.u, c.settings->seed + m});
     for (std::size_t k = 0; k < noise.size(); ++k)
       noise[k] =
@@ -136,8 +136,9 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
       c.same_bits
           ? std::string("0: both sides promise the same bits")
           : format(
-                "%g x the largest change over %zu references in double, whose every stored value "
-                "is rounded at random to u = %.3g, + (terms of the stage's sums) u max|value|%s",
+                "%g x the largest change over %zu references in double, whose constants, start "
+                "and every stored value are rounded at random to u = %.3g, + (terms of the stage's "
+                "sums) u max|value|%s",
                 kNoiseFactor, c.members.size(), c.u,
                 c.sides > 1 ? "; twice that, since both sides round" : "");
   result.stage.clear();

@@ -13,6 +13,14 @@ namespace {
 constexpr Rgb kInk{31, 41, 55}, kGrey{214, 218, 224}, kGood{22, 163, 74}, kBad{220, 38, 38};
 constexpr Rgb kCurves[] = {{37, 99, 235}, {147, 180, 245}, {217, 119, 6}};
 
+/// With what the font has.
+std::string plain(std::string s) {
+  std::erase(s, '`');
+  for (const auto& [from, to] : {std::pair{';', ','}, {'[', '('}, {']', ')'}})
+    std::replace(s.begin(), s.end(), from, to);
+  return s;
+}
+
 void box(Image& image, double x0, double y0, double x1, double y1, Rgb color) {
   const auto edge = [](double v, int end) { return std::clamp(int(std::lround(v)), 0, end); };
   for (int y = edge(y0, image.height); y < edge(y1, image.height); ++y)
@@ -87,17 +95,17 @@ Image compare_picture(const CompareResult& r) {
   Image image{1280, 800, std::vector<std::uint8_t>(std::size_t(3) * 1280 * 800, 255)};
   draw_text(image, r.same() ? "same" : "DIFFERENT" + (r.stage.empty() ? "" : ", stage " + r.stage),
             24, 20, 3, r.same() ? kGood : kBad);
-  draw_text(image, "A  " + r.a, 24, 54, 1.8, kInk);
-  draw_text(image, "B  " + r.b, 24, 74, 1.8, kInk);
+  draw_text(image, plain("A  " + r.a), 24, 54, 1.8, kInk);
+  draw_text(image, plain("B  " + r.b), 24, 74, 1.8, kInk);
   for (std::size_t k = 0; k < r.notes.size() && k < 2; ++k)
-    draw_text(image, r.notes[k], 24, 94 + 18 * double(k), 1.5, kInk);
+    draw_text(image, plain(r.notes[k]), 24, 94 + 18 * double(k), 1.5, kInk);
   const ComparePart* bars = nullptr;
   double y = 470;
   for (const ComparePart& p : r.parts) {
     if (!p.rows.empty() && !bars) bars = &p;
     draw_text(image, p.name + ": " + verdict_name(p.verdict), 664, y, 2,
               p.verdict == Verdict::differs ? kBad : kInk);
-    std::string rest = p.finding;
+    std::string rest = plain(p.finding);
     for (y += 22; !rest.empty(); y += 18) {
       std::size_t end = rest.size();
       while (text_width(rest.substr(0, end), 1.5) > 590) end = rest.rfind(' ', end - 1);
