@@ -50,9 +50,9 @@ class CpuSolver final : public Solver {
     stepper_->set_state(s);
     updates_ = s.updates;
   }
-  StepTrace trace(const Roundings& roundings) override {
+  StepTrace trace(const TraceOptions& options) override {
     ++updates_;
-    return stepper_->trace(roundings);
+    return stepper_->trace(options);
   }
 
   std::vector<StageTime> timings() const override {

@@ -111,14 +111,14 @@ class CudaSolver final : public Solver {
     drop_graphs();  // the sort has changed which buffer is which
     updates_ = s.updates;
   }
-  StepTrace trace(const Roundings& roundings) override {
+  StepTrace trace(const TraceOptions& options) override {
     stepper_->unsort();
     stepper_->save(saved_);
-    StepTrace t = traced_step(roundings);
+    StepTrace t = traced_step(options);
     while (grow_if_needed()) {
       drop_graphs();
       stepper_->restore(saved_);
-      t = traced_step(roundings);
+      t = traced_step(options);
     }
     ++updates_;
     return t;
@@ -185,9 +185,9 @@ class CudaSolver final : public Solver {
     parity_ ^= 1;
   }
 
-  StepTrace traced_step(const Roundings& roundings) {
+  StepTrace traced_step(const TraceOptions& options) {
     parity_ ^= 1;
-    return stepper_->trace(roundings);
+    return stepper_->trace(options);
   }
 
   /// Buffers trade places in an update, so a graph that can be replayed holds an even number of

@@ -71,6 +71,13 @@ SolverState rounded(const SolverState& s, double u, std::uint64_t seed) {
 CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const std::string& dir,
                               const CompareSettings& settings,
                               const std::function<void(const std::string&)>& progress) {
+  if (scene_a.bodies != scene_b.bodies || scene_a.fluid.spacing != scene_b.fluid.spacing ||
+      scene_a.fluid.smoothing_ratio != scene_b.fluid.smoothing_ratio ||
+      scene_a.domain.min != scene_b.domain.min)
+    throw Error(ExitCode::bad_input,
+                "--set-b: both sides start from the same particles, so bodies, fluid.spacing, "
+                "fluid.smoothing_ratio and domain.min must stay; give these to both with --set, or "
+                "compare two run files");
   const Particles particles = emit_particles(scene_a, dir);
   const Scene on_a = on(scene_a, settings.a), on_b = on(scene_b, settings.b);
   const std::unique_ptr<Solver> a = make(on_a, particles, settings.a.variant);

@@ -162,7 +162,7 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
       const std::vector<double> r = positions(*c.reference);
       for (std::size_t m = 0; m < c.members.size(); ++m) {
         // Every update its own roundings.
-        c.members[m]->trace({c.u, c.settings->seed + 1000 * std::uint64_t(t) + m});
+        c.members[m]->trace({c.u, c.settings->seed + 1000 * std::uint64_t(t) + m, nullptr});
         now = std::max(now, distance(positions(*c.members[m]), r).rms);
       }
       spread = std::max(spread, now);

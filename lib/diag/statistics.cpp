@@ -118,16 +118,17 @@ double ks_critical(double alpha, std::size_t n, std::size_t m) {
 }
 
 double e_folding(const std::vector<double>& x, const std::vector<double>& y, double upper) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, first = HUGE_VAL, last = -HUGE_VAL;
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (!(y[k] > 0 && y[k] < upper)) continue;
     const double l = std::log(y[k]);
+    first = std::min(first, x[k]), last = std::max(last, x[k]);
     n += 1, sx += x[k], sy += l, sxx += x[k] * x[k], sxy += x[k] * l;
   }
   const double spread = n * sxx - sx * sx;
   if (n < 3 || !(spread > 0)) return 0;
   const double slope = (n * sxy - sx * sy) / spread;
-  return slope > 0 ? 1 / slope : 0;
+  return slope * (last - first) > 0.01 ? 1 / slope : 0;
 }
 
 }  // namespace pbf

@@ -46,7 +46,7 @@ double ks_distance(const std::vector<double>& a, const std::vector<double>& b);
 double ks_critical(double alpha, std::size_t n, std::size_t m);
 
 /// Least squares of ln y = c + x/e over the points with 0 < y < upper; e, or 0 where there are
-/// fewer than 3 points or no growth.
+/// fewer than 3 points or less than 1 % of growth.
 double e_folding(const std::vector<double>& x, const std::vector<double>& y, double upper);
 
 }  // namespace pbf

@@ -60,8 +60,8 @@ class Solver {
   virtual SolverState state() = 0;
   virtual void set_state(const SolverState& state) = 0;
   /// One update, with what each pass left behind, on the host: some ten times slower than step(1),
-  /// whose bits it gives unless `roundings` asks for others.
-  virtual StepTrace trace(const Roundings& roundings = {}) = 0;
+  /// whose bits it gives unless `options` ask for others.
+  virtual StepTrace trace(const TraceOptions& options = {}) = 0;
   virtual std::vector<StageTime> timings() const = 0;
   virtual SolverInfo info() const = 0;
   virtual std::int64_t updates_done() const = 0;

@@ -39,12 +39,17 @@ struct StepTrace {
   std::vector<std::int32_t> neighbors;       ///< ids, ascending for each particle
 };
 
-/// Random rounding of everything that a pass stores, after Parker, Pierce & Eggert 2000, "Monte
-/// Carlo arithmetic": value * (1 + r u), r uniform in [-1, 1). Sums over neighbours carry
-/// sqrt(terms) u. unit_roundoff 0: none, and the update is step(1) to the last bit.
-struct Roundings {
-  double unit_roundoff = 0;  ///< u: 2^-24 for float, 2^-53 for double
+/// How an update is traced. As it stands, the update is step(1) to the last bit.
+struct TraceOptions {
+  /// Rounds everything that a pass stores at random, after Parker, Pierce & Eggert 2000, "Monte
+  /// Carlo arithmetic": value * (1 + r u), r uniform in [-1, 1). Sums over neighbours carry
+  /// sqrt(terms) u. 0: none; 2^-24 stands for float, 2^-53 for double.
+  double unit_roundoff = 0;
   std::uint64_t seed = 1;
+  /// After every stage its arrays are recorded, then replaced by these values of another trace of
+  /// the same state, so that each stage is seen alone: no error is inherited. Ends where the two
+  /// traces cease to have the same arrays.
+  const StepTrace* follow = nullptr;
 };
 
 }  // namespace pbf

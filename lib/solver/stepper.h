@@ -106,8 +106,8 @@ class Stepper {
   }
 
   /// One update, with what each stage left behind.
-  StepTrace trace(const Roundings& roundings) {
-    Tracer<Real, Exec> t(exec_, p_.n, roundings);
+  StepTrace trace(const TraceOptions& options) {
+    Tracer<Real, Exec> t(exec_, p_.n, options);
     step([&](const std::string& stage, int sweep) { record(t, stage, sweep); });
     return t.result();
   }

@@ -1,10 +1,11 @@
-// Copies to the host what the passes of one update leave behind, and rounds it at random where
-// asked to.
+// Copies to the host what the passes of one update leave behind; rounds it at random or replaces it
+// where asked to.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -41,45 +42,28 @@ struct FlatListPass {
 template <class Real, class Exec>
 class Tracer {
  public:
-  Tracer(Exec& exec, int n, const Roundings& roundings)
-      : exec_(exec), n_(std::size_t(n)), roundings_(roundings), random_(roundings.seed) {}
+  Tracer(Exec& exec, int n, const TraceOptions& options)
+      : exec_(exec), n_(std::size_t(n)), options_(options), random_(options.seed) {}
 
   /// Names the stage of what follows. `terms`: those of the sums that it stores.
   void stage(const std::string& name, int sweep, double terms = 1) {
     stage_ = name;
     sweep_ = sweep;
-    amplitude_ = roundings_.unit_roundoff * std::sqrt(terms);
+    amplitude_ = options_.unit_roundoff * std::sqrt(terms);
   }
   double mean_terms() const { return mean_terms_; }
 
   /// Row k belongs to id[k], both in device-visible memory.
   void vectors(const char* quantity, const char* unit, Vec4<Real>* from, const int* id) {
-    std::vector<Vec4<Real>> v = host(from);
-    for (Vec4<Real>& x : v) x = {rounded(x.x), rounded(x.y), rounded(x.z), rounded(x.w)};
-    give_back(v, from);
-    double* to = add(quantity, unit, 3, id);
-    for (std::size_t k = 0; k < n_; ++k) {
-      const std::size_t row = 3 * std::size_t(id_[k]);
-      to[row] = double(v[k].x), to[row + 1] = double(v[k].y), to[row + 2] = double(v[k].z);
-    }
+    array(quantity, unit, 3, from, id, [](Vec4<Real>& x, int c) -> Real& { return (&x.x)[c]; });
   }
   /// The fourth component.
   void fourth(const char* quantity, const char* unit, Vec4<Real>* from, const int* id) {
-    std::vector<Vec4<Real>> v = host(from);
-    for (Vec4<Real>& x : v) x.w = rounded(x.w);
-    give_back(v, from);
-    double* to = add(quantity, unit, 1, id);
-    for (std::size_t k = 0; k < n_; ++k) to[id_[k]] = double(v[k].w);
+    array(quantity, unit, 1, from, id, [](Vec4<Real>& x, int) -> Real& { return x.w; });
   }
   template <class T>
   void scalars(const char* quantity, const char* unit, T* from, const int* id) {
-    std::vector<T> v = host(from);
-    if constexpr (!std::is_integral_v<T>) {
-      for (T& x : v) x = rounded(x);
-      give_back(v, from);
-    }
-    double* to = add(quantity, unit, 1, id);
-    for (std::size_t k = 0; k < n_; ++k) to[id_[k]] = double(v[k]);
+    array(quantity, unit, 1, from, id, [](T& x, int) -> T& { return x; });
   }
 
   template <class Lists>
@@ -110,19 +94,48 @@ class Tracer {
     exec_.to_host(from, n_, v.data());
     return v;
   }
-  template <class T>
-  void give_back(const std::vector<T>& v, T* to) {
-    if (amplitude_ > 0) exec_.to_device(v.data(), n_, to);
+  /// Records n rows of `components` scalars, component(row, c) of what lies at `from`; rounds them
+  /// and puts the values to follow in their place, where asked to.
+  template <class T, class Component>
+  void array(const char* quantity, const char* unit, int components, T* from, const int* id,
+             const Component& component) {
+    std::vector<T> v = host(from);
+    id_ = host(id);
+    trace_.arrays.push_back({stage_, sweep_, quantity, unit, components, {}});
+    TraceArray& to = trace_.arrays.back();
+    to.values.resize(n_ * std::size_t(components));
+    const TraceArray* follow = followed(to);
+    using Scalar = std::remove_reference_t<decltype(component(v[0], 0))>;
+    for (std::size_t k = 0; k < n_; ++k)
+      for (int c = 0; c < components; ++c) {
+        Scalar& x = component(v[k], c);
+        const std::size_t row = std::size_t(id_[k]) * std::size_t(components) + std::size_t(c);
+        if constexpr (std::is_integral_v<Scalar>) {
+          to.values[row] = double(x);
+        } else {
+          x = rounded(x);
+          to.values[row] = double(x);
+          if (follow) x = rounded(Real(follow->values[row]));
+        }
+      }
+    if (!std::is_integral_v<Scalar> && (amplitude_ > 0 || follow))
+      exec_.to_device(v.data(), n_, from);
+  }
+  /// The array of the other trace that belongs to the present one.
+  const TraceArray* followed(const TraceArray& mine) {
+    const std::size_t at = trace_.arrays.size() - 1;
+    if (!options_.follow) return nullptr;
+    if (at < options_.follow->arrays.size()) {
+      const TraceArray& other = options_.follow->arrays[at];
+      if (other.stage == mine.stage && other.sweep == mine.sweep &&
+          other.quantity == mine.quantity && other.values.size() == mine.values.size())
+        return &other;
+    }
+    options_.follow = nullptr;
+    return nullptr;
   }
   Real rounded(Real x) {
     return amplitude_ > 0 ? Real(double(x) * (1 + amplitude_ * (2 * random_.uniform() - 1))) : x;
-  }
-  double* add(const char* quantity, const char* unit, int components, const int* id) {
-    id_ = host(id);
-    trace_.arrays.push_back({stage_, sweep_, quantity, unit, components, {}});
-    auto& values = trace_.arrays.back().values;
-    values.resize(n_ * std::size_t(components));
-    return values.data();
   }
   void by_id(const std::vector<int>& sizes, const std::vector<int>& starts,
              const std::vector<int>& all) {
@@ -140,7 +153,7 @@ class Tracer {
 
   Exec& exec_;
   std::size_t n_;
-  Roundings roundings_;
+  TraceOptions options_;
   SplitMix64 random_;
   std::string stage_;
   int sweep_ = 0;
