@@ -43,7 +43,9 @@ struct StepTrace {
 struct TraceOptions {
   /// Rounds everything that a pass stores at random, after Parker, Pierce & Eggert 2000, "Monte
   /// Carlo arithmetic": value * (1 + r u), r uniform in [-1, 1). Sums over neighbours carry
-  /// sqrt(terms) u. 0: none; 2^-24 stands for float, 2^-53 for double.
+  /// (4 + sqrt(terms)) u: factors that all terms share, and a random walk over those of the longest
+  /// sum. 0: none; 2^-24 stands for float, 2^-53 for
+  /// double.
   double unit_roundoff = 0;
   std::uint64_t seed = 1;
   /// After every stage its arrays are recorded, then replaced by these values of another trace of

@@ -273,7 +273,7 @@ class Stepper {
   /// the "other" ones.
   void record(Tracer<Real, Exec>& t, const std::string& stage, int sweep) {
     const int* id = id_.data();
-    t.stage(stage, sweep, t.mean_terms());
+    t.stage(stage, sweep, t.most_terms());
     if (stage == "neighbors") {
       t.stage("predict", 0);
       t.vectors("position", "h", other_position_.data(), other_id_.data());
@@ -287,10 +287,10 @@ class Stepper {
       t.scalars("density", "rho0", density_.data(), id);
     } else if (stage == "lambda") {
       if (fused_) {
-        t.stage("density", sweep, t.mean_terms());
+        t.stage("density", sweep, t.most_terms());
         t.scalars("density", "rho0", density_.data(), id);
       }
-      t.stage("lambda", sweep, t.mean_terms());
+      t.stage("lambda", sweep, t.most_terms());
       t.fourth("lambda", "h^2", other_position_.data(), id);
     } else if (stage == "delta") {
       t.stage("delta", sweep);
@@ -298,7 +298,7 @@ class Stepper {
       t.fourth("inverse density", "1/rho0", position_.data(), id);
       t.vectors("velocity", "h/s", velocity_.data(), id);
     } else if (stage == "curl") {
-      t.stage("vorticity", 0, t.mean_terms());
+      t.stage("vorticity", 0, t.most_terms());
       t.vectors("curl", "1/s", curl_.data(), id);
     } else {
       t.stage(stage, 0);

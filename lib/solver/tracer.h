@@ -45,13 +45,14 @@ class Tracer {
   Tracer(Exec& exec, int n, const TraceOptions& options)
       : exec_(exec), n_(std::size_t(n)), options_(options), random_(options.seed) {}
 
-  /// Names the stage of what follows. `terms`: those of the sums that it stores.
-  void stage(const std::string& name, int sweep, double terms = 1) {
+  /// Names the stage of what follows. `terms`: those of the sums that it stores, 0: none.
+  void stage(const std::string& name, int sweep, double terms = 0) {
     stage_ = name;
     sweep_ = sweep;
-    amplitude_ = options_.unit_roundoff * std::sqrt(terms);
+    amplitude_ = options_.unit_roundoff * (terms > 0 ? 4 + std::sqrt(terms) : 1);
   }
-  double mean_terms() const { return mean_terms_; }
+  /// Of the longest sum over neighbours, once lists() has seen them.
+  double most_terms() const { return most_terms_; }
 
   /// Row k belongs to id[k], both in device-visible memory.
   void vectors(const char* quantity, const char* unit, Vec4<Real>* from, const int* id) {
@@ -74,7 +75,7 @@ class Tracer {
     std::vector<int> sizes = host(size.data()), starts(n_);
     int sum = 0;
     for (std::size_t k = 0; k < n_; ++k) starts[k] = sum, sum += sizes[k];
-    mean_terms_ = 1 + double(sum) / double(std::max<std::size_t>(n_, 1));
+    if (n_ > 0) most_terms_ = 1 + *std::max_element(sizes.begin(), sizes.end());
     begin.resize(n_);
     exec_.to_device(starts.data(), n_, begin.data());
     flat.resize(std::size_t(sum) + 1);
@@ -157,7 +158,7 @@ class Tracer {
   SplitMix64 random_;
   std::string stage_;
   int sweep_ = 0;
-  double amplitude_ = 0, mean_terms_ = 1;
+  double amplitude_ = 0, most_terms_ = 0;
   std::vector<int> id_;
   StepTrace trace_;
 };
