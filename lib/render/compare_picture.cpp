@@ -15,7 +15,7 @@ constexpr Rgb kCurves[] = {{37, 99, 235}, {147, 180, 245}, {217, 119, 6}};
 
 /// With what the font has.
 std::string plain(std::string s) {
-  std::erase(s, '`');
+  for (const char c : {'`', '"'}) std::erase(s, c);
   for (const auto& [from, to] : {std::pair{';', ','}, {'[', '('}, {']', ')'}})
     std::replace(s.begin(), s.end(), from, to);
   return s;

@@ -295,7 +295,7 @@ class Stepper {
     } else if (stage == "delta") {
       t.stage("delta", sweep);
       t.vectors("position", "h", position_.data(), id);
-      t.fourth("inverse density", "1/rho0", position_.data(), id);
+      t.fourth("1/density", "1/rho0", position_.data(), id);
       t.vectors("velocity", "h/s", velocity_.data(), id);
     } else if (stage == "curl") {
       t.stage("vorticity", 0, t.most_terms());
