@@ -119,10 +119,11 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   std::int64_t failure = -1;
   for (auto& part : compare_course(c, start, result, failure))
     result.parts.push_back(std::move(part));
-  if (result.stage.empty() && failure > 1) {
-    // The frozen step missed it: another one, from A's state just before distances went wrong.
+  // The frozen step missed it: others, from A's state just before it showed and from the last one.
+  for (const std::int64_t after : {failure - 1, std::int64_t(settings.updates)}) {
+    if (!result.stage.empty() || failure < 1) break;
     a->set_state(start);
-    a->step(int(failure) - 1);
+    a->step(int(after));
     SolverState later = a->state();
     if (c.u == roundoff(Precision::single)) round_to_float(later);
     ComparePart part = compare_stages(c, later, result);

@@ -1,7 +1,6 @@
 // The updates after the frozen step: how far particles drift apart, and what stays the same.
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "lib/base/text.h"
 #include "lib/diag/compare_parts.h"
@@ -45,8 +44,10 @@ struct Watched {
 class Samples {
  public:
   explicit Samples(const Comparison& c) : c_(c) {}
+  std::int64_t first_failure = -1;  ///< update of the first sample outside a tolerance
 
-  void take() {
+  void take(std::int64_t update) {
+    update_ = update;
     const FrameStatistics a = of(*c_.a), b = of(*c_.b);
     FrameStatistics r;
     std::vector<FrameStatistics> members;
@@ -124,10 +125,13 @@ class Samples {
       at->row.ulps = scale > 0 ? error / ulp(scale, c_.u) : 0;
       at->row.tolerance = tolerance;
     }
-    if (!(error <= tolerance)) at->row.verdict = Verdict::differs;
+    if (error <= tolerance) return;
+    at->row.verdict = Verdict::differs;
+    if (first_failure < 0) first_failure = update_;
   }
 
   const Comparison& c_;
+  std::int64_t update_ = 0;
   std::vector<Watched> watched_;
 };
 
@@ -178,7 +182,7 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
       if (s > share) share = s, row.error = d.rms, row.rms = d.rms, row.tolerance = tolerance;
       if (s > 1 && first_failure < 0) first_failure = t;
     }
-    if (t % every == 0 || t == updates) samples.take();
+    if (t % every == 0 || t == updates) samples.take(t);
     if (c.progress && t % every == 0)
       c.progress(format("update %d/%d: particles %.2g h apart (rms)", t, updates, d.rms));
   }
@@ -212,6 +216,7 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
   if (first_failure >= 0)
     near.finding += format("; outside the tolerance from update %lld on",
                            static_cast<long long>(first_failure));
+  if (first_failure < 0) first_failure = samples.first_failure;
   Diagram diagram{"Distance of each particle on A and on B", "update", "h", {rms, worst}};
   if (!c.same_bits) diagram.curves.push_back(chaos);
   result.diagrams.push_back(diagram);

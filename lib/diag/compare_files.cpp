@@ -1,7 +1,6 @@
 // Two run files: what they say about themselves, then frame by frame.
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <sstream>
 
@@ -209,15 +208,13 @@ CompareResult compare_files(const std::string& path_a, const std::string& path_b
   Curve rms{"A to B, rms", {}, {}}, worst{"A to B, largest", {}, {}};
   const double h = a.scene.h(), d = a.scene.fluid.spacing;
   bool paired = a.info.particles == b.info.particles, bytes = true;
-  double first = -1, last = 0;
+  double last = 0;
   for (const auto& [i, k] : frames) {
     const Snapshot x = a.reader.frame(i), y = b.reader.frame(k);
     paired = paired && x.count == y.count;
-    const double t = a.times[std::size_t(i)];
     if (paired) {
       const Distance e = distance(x, y);
       bytes = bytes && same_bytes(x, y);
-      if (first < 0) first = e.worst;
       last = e.rms / h;
       const double update = double(x.update);
       rms.x.push_back(update), rms.y.push_back(e.rms / h);
@@ -230,7 +227,6 @@ CompareResult compare_files(const std::string& path_a, const std::string& path_b
         note(near, "initial positions", "m", e.worst, largest, exact ? 0 : largest * 0x1p-22);
       }
     }
-    (void)t;
     const auto statistics = [&](const Opened& o, const Snapshot& s) {
       return frame_statistics(s, o.scene.domain.min, o.scene.gravity, o.scene.fluid.rest_density);
     };

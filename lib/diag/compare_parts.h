@@ -29,8 +29,8 @@ struct Comparison {
 ComparePart compare_stages(const Comparison& c, const SolverState& start, CompareResult& result);
 
 /// settings->updates updates from `start`: per-particle distances (second part) and statistics
-/// (third part), each against the ensemble. first_failure: update at which the distances left their
-/// tolerance, -1: never.
+/// (third part), each against the ensemble. first_failure: update at which the distances, or else
+/// the statistics, left their tolerance, -1: never.
 std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& start,
                                         CompareResult& result, std::int64_t& first_failure);
 

@@ -99,6 +99,22 @@ TEST_CASE("two doubles of different arithmetic promise nothing, yet a key of 1e-
   CHECK(r.stage == "predict");
 }
 
+TEST_CASE("a difference that shows only later is traced in the update where it begins",
+          "[compare]") {
+  // The far wall is elsewhere on B, in the same cell: nobody is near it at first.
+  CompareSettings s = settings("cpu:double", "cpu:float");
+  s.warmup = 0;
+  s.updates = 40;
+  const CompareResult r = compare(scene({"domain.max=[0.431,0.16,0.4]", "threads=1"}),
+                                  scene({"domain.max=[0.439,0.16,0.4]", "threads=1"}), s);
+  REQUIRE(r.parts.size() >= 4);
+  CHECK(r.parts[0].verdict == Verdict::same);
+  CHECK(r.parts[2].verdict == Verdict::differs);
+  CHECK(r.parts.back().name.rfind("frozen step at update ", 0) == 0);
+  CHECK(r.parts.back().verdict == Verdict::differs);
+  CHECK(r.stage == "density");  // the wall's share of it
+}
+
 TEST_CASE("reports hold every part, and the page needs nothing from elsewhere", "[compare]") {
   CompareResult r;
   r.a = "cpu:double <1>";
