@@ -46,8 +46,12 @@ class Samples {
   explicit Samples(const Comparison& c) : c_(c) {}
   std::int64_t first_failure = -1;  ///< update of the first sample outside a tolerance
 
+  /// `update`: counted from the frozen step on.
   void take(std::int64_t update) {
     update_ = update;
+    // Random roundings average out over the particles; real ones may all go the same way, as where
+    // a slow particle's step is less than the last place of its position.
+    const double roundings = 4 + double(update);
     const FrameStatistics a = of(*c_.a), b = of(*c_.b);
     FrameStatistics r;
     std::vector<FrameStatistics> members;
@@ -61,7 +65,7 @@ class Samples {
         spread = std::max(spread, std::fabs(m.numbers[k].value - r.numbers[k].value));
       const double scale = std::max(std::fabs(a.numbers[k].value), std::fabs(b.numbers[k].value));
       note(a.numbers[k].name, a.numbers[k].unit, std::fabs(a.numbers[k].value - b.numbers[k].value),
-           scale, spread, 4 * c_.u * scale);
+           scale, spread, roundings * c_.u * scale);
     }
     for (std::size_t k = 0; k < a.distributions.size(); ++k) {
       double spread = 0;
@@ -83,7 +87,7 @@ class Samples {
             ? std::string("0: both sides promise the same bits")
             : format(
                   "%g x the largest change so far over the %zu randomly rounded references (what "
-                  "chaos alone makes), + 4 u |value| or two particles",
+                  "chaos alone makes), + (4 + updates) u |value| or two particles",
                   kNoiseFactor, c_.members.size());
     p.verdict = Verdict::same;
     double worst = 0;
