@@ -8,8 +8,9 @@ namespace pbf {
 
 /// A tolerance is kNoiseFactor times the largest change that the ensemble of randomly rounded
 /// references shows: the ensemble rounds what a pass stores, a solver of that precision rounds
-/// inside its passes too, and the largest of a few members is an estimate. The ratio of error to
-/// ensemble over 100 clean pairs stays below 1.7 (tests/regression/defects).
+/// inside its passes too, and the largest of a few members is an estimate. Over 128 clean
+/// pairs the largest error was 0.27 of its tolerance in the frozen step, 0.34 in the short horizon,
+/// 0.8 in the distributions (tests/regression/defects).
 inline constexpr double kNoiseFactor = 4;
 
 struct Comparison {
