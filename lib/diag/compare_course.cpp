@@ -88,7 +88,7 @@ class Samples {
             : format(
                   "%g x the largest change so far over the %zu randomly rounded references (what "
                   "chaos alone makes), + (4 + updates) u |value| or two particles",
-                  kNoiseFactor, c_.members.size());
+                  kSpreadFactor, c_.members.size());
     p.verdict = Verdict::same;
     double worst = 0;
     std::string name;
@@ -120,7 +120,7 @@ class Samples {
       at->row.verdict = Verdict::same;
     }
     at->spread = std::max(at->spread, spread);
-    const double tolerance = c_.same_bits ? 0 : c_.sides * (kNoiseFactor * at->spread + floor);
+    const double tolerance = c_.same_bits ? 0 : c_.sides * (kSpreadFactor * at->spread + floor);
     const double share = error == 0 ? 0 : tolerance > 0 ? error / tolerance : HUGE_VAL;
     if (!(share <= at->worst)) {
       at->worst = share;

@@ -8,10 +8,13 @@ namespace pbf {
 
 /// A tolerance is kNoiseFactor times the largest change that the ensemble of randomly rounded
 /// references shows: the ensemble rounds what a pass stores, a solver of that precision rounds
-/// inside its passes too, and the largest of a few members is an estimate. Over 128 clean
-/// pairs the largest error was 0.27 of its tolerance in the frozen step, 0.34 in the short horizon,
-/// 0.8 in the distributions (tests/regression/defects).
+/// inside its passes too, and the largest of a few members is an estimate. What clean
+/// pairs need of it: tests/regression/defects.
 inline constexpr double kNoiseFactor = 4;
+
+/// The same for the statistics of the third part: single numbers, not the largest over thousands of
+/// particles, whose largest change over a few members is a poorer estimate.
+inline constexpr double kSpreadFactor = 8;
 
 struct Comparison {
   const CompareSettings* settings;
