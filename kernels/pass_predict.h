@@ -35,6 +35,18 @@ struct PredictPass {
   }
 };
 
+/// x* and the velocity that goes with it, in place: for looking at this step alone.
+template <class Real>
+struct MovePass {
+  Params<Real> p;
+  Vec4<Real>*position, *velocity;  ///< in/out
+  PBF_HD void operator()(int i) const {
+    const Moving<Real> m = predict(xyz(position[i]), xyz(velocity[i]), p);
+    position[i] = with_w(m.x, Real(1));
+    velocity[i] = with_w(m.v, Real(0));
+  }
+};
+
 /// The bin of x as it is: for the state before the first update.
 template <class Real>
 struct BinPass {
