@@ -96,8 +96,9 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   c.reference = reference.get();
   c.u = std::max(roundoff(settings.a.precision), roundoff(settings.b.precision));
   c.sides = settings.a.precision == settings.b.precision ? 2 : 1;
-  c.same_bits = settings.a.backend == settings.b.backend && c.sides == 2 && !settings.a.variant &&
-                !settings.b.variant;
+  const bool promised = settings.a.backend == settings.b.backend ||
+                        (on_a.solver.reproducible && on_b.solver.reproducible);
+  c.same_bits = promised && c.sides == 2 && !settings.a.variant && !settings.b.variant;
   c.progress = progress;
   if (!c.same_bits)
     for (int m = 0; m < settings.members; ++m)
