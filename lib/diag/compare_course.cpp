@@ -63,7 +63,8 @@ class Samples {
       double spread = 0;
       for (const auto& m : members)
         spread = std::max(spread, std::fabs(m.numbers[k].value - r.numbers[k].value));
-      const double scale = std::max(std::fabs(a.numbers[k].value), std::fabs(b.numbers[k].value));
+      const double scale = std::max(
+          {std::fabs(a.numbers[k].value), std::fabs(b.numbers[k].value), a.numbers[k].scale});
       note(a.numbers[k].name, a.numbers[k].unit, std::fabs(a.numbers[k].value - b.numbers[k].value),
            scale, spread, roundings * c_.u * scale);
     }
@@ -87,7 +88,8 @@ class Samples {
             ? std::string("0: both sides promise the same bits")
             : format(
                   "%g x the largest change so far over the %zu randomly rounded references (what "
-                  "chaos alone makes), + (4 + updates) u |value| or two particles",
+                  "chaos alone makes), + (4 + updates) u |value| (of a momentum: of the mean "
+                  "speed) or two particles",
                   kSpreadFactor, c_.members.size());
     p.verdict = Verdict::same;
     double worst = 0;

@@ -27,7 +27,7 @@ Statistic mean(const std::string& name, const std::string& unit, const std::vect
   for (const double x : v) sum += x;
   const double n = double(v.size()), m = sum / n;
   for (const double x : v) squares += (x - m) * (x - m);
-  return {name, unit, m, kSigmas * std::sqrt(squares / n / n)};
+  return {name, unit, m, kSigmas * std::sqrt(squares / n / n), 0};
 }
 
 /// `v` sorted. The value at ceil(p n), counted from 1.
@@ -39,7 +39,7 @@ double at(const std::vector<double>& v, double p) {
 Statistic quantile(const std::string& name, const std::string& unit, const std::vector<double>& v,
                    double p) {
   const double d = kSigmas * std::sqrt(p * (1 - p) / double(v.size())), q = at(v, p);
-  return {name, unit, q, std::max(at(v, p + d) - q, q - at(v, p - d))};
+  return {name, unit, q, std::max(at(v, p + d) - q, q - at(v, p - d)), 0};
 }
 
 }  // namespace
@@ -80,9 +80,13 @@ FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const
     };
     out.numbers.push_back(
         mean("kinetic energy", "J/kg", column([&](std::size_t i) { return 0.5 * squared(i); })));
-    for (std::size_t k = 0; k < 3; ++k)
+    const double speed =
+        mean("", "", column([&](std::size_t i) { return std::sqrt(squared(i)); })).value;
+    for (std::size_t k = 0; k < 3; ++k) {
       out.numbers.push_back(mean(std::string("momentum ") + axes[k], "m/s",
                                  column([&](std::size_t i) { return v[3 * i + k]; })));
+      out.numbers.back().scale = speed;
+    }
     distribute("speed", "m/s", column([&](std::size_t i) { return std::sqrt(squared(i)); }));
   }
   if (const FieldArray* f = s.find("density")) {

@@ -16,6 +16,9 @@ struct Statistic {
   /// What the choice of the particles leaves open, at kSigmas standard errors: of a mean
   /// std/sqrt(n), of a quantile the order statistics at p +- kSigmas sqrt(p (1 - p)/n).
   double uncertainty = 0;
+  /// What rounding is relative to where that is more than |value|: for the mean of one component of
+  /// a vector, the mean length, because a rotation of the axes changes no particle's rounding.
+  double scale = 0;
 };
 
 /// Five standard errors: one false alarm in 1.7 million for a mean.
