@@ -35,7 +35,8 @@ struct PredictPass {
   }
 };
 
-/// x* and the velocity that goes with it, in place: for looking at this step alone.
+/// x* and the velocity that goes with it, in place: for further substeps, and for
+/// looking at this step alone.
 template <class Real>
 struct MovePass {
   Params<Real> p;

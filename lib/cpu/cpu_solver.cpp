@@ -21,8 +21,8 @@ class CpuSolver final : public Solver {
     Stopwatch watch;
     const InternalState<Real> s = to_internal<Real>(scene, particles);
     stepper_ = std::make_unique<Stepper<Real, CpuExec>>(
-        exec_, make_params<Real>(scene, plan), scene.solver.kernels, scene.solver.iterations,
-        plan.fused, plan.tensile, s.position, s.velocity, s.id);
+        exec_, make_params<Real>(scene, plan), scene.solver.kernels, scene.solver.iterations, plan,
+        s.position, s.velocity, s.id);
     init_seconds_ = watch.seconds();
     init_entries_ = exec_.clock().entries();
   }

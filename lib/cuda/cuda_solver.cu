@@ -37,8 +37,8 @@ class CudaSolver final : public Solver {
     Stopwatch watch;
     const InternalState<Real> s = to_internal<Real>(scene, particles);
     stepper_ = std::make_unique<Stepper<Real, CudaExec>>(
-        exec_, make_params<Real>(scene, plan), scene.solver.kernels, scene.solver.iterations,
-        plan.fused, plan.tensile, s.position, s.velocity, s.id);
+        exec_, make_params<Real>(scene, plan), scene.solver.kernels, scene.solver.iterations, plan,
+        s.position, s.velocity, s.id);
     while (grow_if_needed()) stepper_->relist();
     init_seconds_ = watch.seconds();
   }

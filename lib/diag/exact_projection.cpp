@@ -7,6 +7,7 @@
 
 #include "kernels/boundary.h"
 #include "kernels/pass_predict.h"
+#include "lib/base/error.h"
 #include "lib/cpu/cpu_exec.h"
 #include "lib/diag/active_set.h"
 #include "lib/solver/params.h"
@@ -259,6 +260,9 @@ Projection project_exactly(const Scene& scene, const Plan& plan, const std::vect
 }
 
 ProjectionError projection_error(Solver& solver, const Scene& scene, const Plan& plan) {
+  if (scene.solver.substeps != 1)
+    throw Error(ExitCode::bad_input,
+                "projection: one update is compared with one projection; set solver.substeps to 1");
   const Snapshot before = solver.download({"velocity"}, ScalarType::f64);
   const auto start = predicted_positions(scene, plan, positions(before.fields[0]),
                                          positions(*before.find("velocity")));

@@ -30,13 +30,35 @@ void plan_grid(Plan& plan, const Scene& s) {
   for (int k = 1; k < 3; ++k) plan.cells[k] = int(box[k] / plan.cell_edge) + 1;
 }
 
+/// 2/((b + a) + (b - a) cos((2 m - 1) pi/2K)), m = 1..K: the steps of the first-order Richardson
+/// iteration whose error polynomial is Chebyshev's on [a, b] = [1/2, 3/2] (Young 1954, On
+/// Richardson's method). Large and small ones alternate, because each alone may amplify; the
+/// smallest comes late, because it smooths. Measured (column of 48 layers and dam break, h = 2 d):
+/// against omega = 1, mean compression x 0.77 and 0.68 with 2 sweeps, 0.79 and 0.62 with 4, 0.74
+/// and 0.50 with 8, and energy rises no more; from a = 0.4 on down the column heats with 2 or 3
+/// sweeps.
+std::vector<double> chebyshev_factors(int sweeps) {
+  constexpr double a = 0.5, b = 1.5;
+  std::vector<double> rising, out;
+  for (int m = 1; m <= sweeps; ++m)
+    rising.push_back(2 / ((b + a) + (b - a) * std::cos((2 * m - 1) * kPi / (2 * sweeps))));
+  int low = sweeps / 2 - 1, high = sweeps - 1;
+  while (int(out.size()) < sweeps) {
+    if (high >= sweeps / 2) out.push_back(rising[std::size_t(high--)]);
+    if (low >= 0) out.push_back(rising[std::size_t(low--)]);
+  }
+  return out;
+}
+
 void plan_passes(Plan& plan, const Scene& s) {
-  const int k = s.solver.iterations;
+  const int k = s.solver.iterations * plan.substeps;
   auto add = [&](const char* name, const char* stage, const char* reads, const char* writes,
                  int times = 1) {
     plan.passes.push_back({name, stage, reads, writes, times});
   };
   add("predict", "predict", "position velocity", "position velocity bin");
+  if (plan.substeps > 1)
+    add("move", "predict", "position velocity", "position velocity", plan.substeps - 1);
   add("sort", "grid", "bin", "order bin_start");
   add("gather", "grid", "order position velocity id", "position' velocity' id'");
   add("lists", "neighbors", "position bin_start", "lists");
@@ -137,6 +159,9 @@ Plan make_plan(const Scene& s, std::int64_t particles) {
   }
   const double crowd = 2.5 / s.fluid.smoothing_ratio;
   plan.step_length = s.solver.step_length ? *s.solver.step_length : std::min(1.0, crowd * crowd);
+  if (s.solver.method == SolverMethod::chebyshev)
+    plan.sweep_factors = chebyshev_factors(s.solver.iterations);
+  plan.substeps = s.solver.substeps;
   plan.fused = s.solver.fused;
   plan.tensile = s.tensile && s.tensile->k != 0;
   plan.xsph = s.viscosity && s.viscosity->xsph != 0;

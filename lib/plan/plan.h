@@ -38,6 +38,9 @@ struct Plan {
   /// column of 24 layers: 1 is stable at h = 2.5 d and throws particles up at 3 d, 0.7 is stable at
   /// 3 d and 0.3 at 4 d.
   double step_length = 1;
+  /// Factors on omega, one per sweep of a substep; empty: 1 in all (solver.method: jacobi).
+  std::vector<double> sweep_factors;
+  int substeps = 1;
   double mass = 0;  ///< kg, of one particle as reported
   bool fused = true;
   bool tensile = false, xsph = false, vorticity = false;

@@ -131,8 +131,17 @@ std::vector<Key> time_keys() {
 
 std::vector<Key> solver_keys() {
   return {
-      number("solver.iterations", "", {0, 100000}, "Sweeps over the constraints per update.",
+      number("solver.iterations", "", {0, 100000}, "Sweeps over the constraints per substep.",
              SCENE(&s.solver.iterations)),
+      number("solver.substeps", "", {1, 1000},
+             "Time steps of time.step/substeps that share one update's sort and neighbour lists; "
+             "viscosity and vorticity act once per update.",
+             SCENE(&s.solver.substeps)),
+      words("solver.method", {"jacobi", "chebyshev"},
+            "jacobi: every sweep with omega = step_length. chebyshev: omega follows Chebyshev's "
+            "steps for eigenvalues from 1/2 to 3/2 of Jacobi's matrix, large ones first: less "
+            "error for the same work from 2 iterations on.",
+            SCENE(choice(s.solver.method))),
       words("solver.kernels", {"consistent", "paper"},
             "consistent: one kernel (Spiky) for density and its gradient. paper: Poly6 for the "
             "density, Spiky for the gradient (Macklin & Mueller 2013).",

@@ -16,6 +16,7 @@ enum class Shape { block, sphere, random_box, file };
 enum class KernelMode { consistent, paper };         ///< density kernel and gradient kernel
 enum class ConstraintMode { one_sided, two_sided };  ///< C = max(rho/rho0 - 1, 0) or rho/rho0 - 1
 enum class BoundaryMode { density, clamp };          ///< walls with a density contribution, or bare
+enum class SolverMethod { jacobi, chebyshev };       ///< omega of a sweep: constant, or a sequence
 enum class Precision { single, dbl };                ///< YAML: float, double
 enum class Backend { cpu, cuda };
 enum class ColorBy { speed, density, id };
@@ -56,7 +57,9 @@ struct Time {
 };
 
 struct SolverSettings {
-  int iterations = 4;  ///< sweeps over the constraints per update
+  int iterations = 4;  ///< sweeps over the constraints per substep
+  int substeps = 1;    ///< time steps of time.step/substeps that share one update's neighbour lists
+  SolverMethod method = SolverMethod::jacobi;
   KernelMode kernels = KernelMode::consistent;
   ConstraintMode constraint = ConstraintMode::one_sided;
   double relaxation = 1e-4;           ///< dimensionless eps^ = eps h^2 in lambda's denominator

@@ -1,6 +1,8 @@
 // Scene (SI units) -> Params (internal frame).
 #pragma once
 
+#include <cmath>
+
 #include "kernels/params.h"
 #include "kernels/smoothing.h"
 #include "lib/plan/plan.h"
@@ -38,10 +40,12 @@ Params<Real> make_params(const Scene& s, const Plan& plan) {
   const double h = s.h();
   Params<Real> p;
   p.n = int(plan.particles);
-  p.dt = Real(s.time.step);
-  p.inv_dt = Real(1 / s.time.step);
+  const double dt = s.time.step / plan.substeps;
+  p.dt = Real(dt);
+  p.inv_dt = Real(1 / dt);
   p.gravity = {Real(s.gravity[0] / h), Real(s.gravity[1] / h), Real(s.gravity[2] / h)};
-  p.damping = Real(s.solver.velocity_damping);
+  p.damping = Real(plan.substeps == 1 ? s.solver.velocity_damping
+                                      : std::pow(s.solver.velocity_damping, 1.0 / plan.substeps));
   p.box = {Real((s.domain.max[0] - s.domain.min[0]) / h),
            Real((s.domain.max[1] - s.domain.min[1]) / h),
            Real((s.domain.max[2] - s.domain.min[2]) / h)};

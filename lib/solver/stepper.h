@@ -54,15 +54,20 @@ class Stepper {
   using Buffer = typename Exec::template Buffer<T>;
 
   /// State in the internal frame. Positions and velocities are in the order of ids 0..n-1.
-  Stepper(Exec& exec, const Params<Real>& params, KernelMode mode, int iterations, bool fused,
-          bool tensile, const std::vector<Vec4<Real>>& position,
-          const std::vector<Vec4<Real>>& velocity, const std::vector<int>& id)
+  Stepper(Exec& exec, const Params<Real>& params, KernelMode mode, int iterations, const Plan& plan,
+          const std::vector<Vec4<Real>>& position, const std::vector<Vec4<Real>>& velocity,
+          const std::vector<int>& id)
       : exec_(exec),
         p_(params),
         mode_(mode),
         iterations_(iterations),
-        fused_(fused),
-        tensile_(tensile) {
+        substeps_(plan.substeps),
+        fused_(plan.fused),
+        tensile_(plan.tensile) {
+    for (int k = 0; k < iterations; ++k)
+      step_length_.push_back(
+          Real(plan.step_length *
+               (plan.sweep_factors.empty() ? 1 : plan.sweep_factors[std::size_t(k)])));
     const std::size_t n = position.size();
     // Executors whose lists are padded read one particle more, infinitely far away for any kernel.
     const std::size_t padded = n + Exec::padding;
@@ -259,12 +264,23 @@ class Stepper {
     exec_.mark("neighbors");
   }
 
-  /// The sweeps. `seen(stage, sweep)` may look at what each stage left behind.
+  /// The sweeps of the first substep, whose x* is there already, then the other substeps with the
+  /// same lists. `seen(stage, sweep)` may look at what each stage left behind.
   template <class Seen>
   void solve(const Seen& seen) {
-    with_smoothing(mode_, [&](auto s) {
-      for (int k = 0; k < iterations_; ++k) sweep<decltype(s)::value>(seen, k + 1);
-    });
+    for (int s = 0; s < substeps_; ++s) {
+      if (s > 0) {
+        exec_.for_each(p_.n, MovePass<Real>{p_, position_.data(), velocity_.data()});
+        exec_.mark("predict");
+        seen("predict", s);
+      }
+      with_smoothing(mode_, [&](auto smoothing) {
+        for (int k = 0; k < iterations_; ++k) {
+          p_.step_length = step_length_[std::size_t(k)];
+          sweep<decltype(smoothing)::value>(seen, s * iterations_ + k + 1);
+        }
+      });
+    }
   }
 
   /// What comes after the sweeps, in passes of their own.
@@ -365,7 +381,8 @@ class Stepper {
   Exec& exec_;
   Params<Real> p_;
   KernelMode mode_;
-  int iterations_;
+  int iterations_, substeps_;
+  std::vector<Real> step_length_;  ///< of each sweep
   bool fused_, tensile_;
   bool density_is_current_ = false;
   Lists lists_{};

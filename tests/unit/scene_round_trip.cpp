@@ -38,6 +38,8 @@ Scene unlike_default() {
   s.gravity = {1.0 / 3, -9.8, 5e-300};
   s.time = {1.0 / 60, 500.0 / 60};
   s.solver.iterations = 7;
+  s.solver.substeps = 3;
+  s.solver.method = SolverMethod::chebyshev;
   s.solver.kernels = KernelMode::paper;
   s.solver.constraint = ConstraintMode::two_sided;
   s.solver.relaxation = 100.0 / 3;

@@ -77,7 +77,7 @@ seeded_defect(s_corr_exponent delta kernels/pass_delta.h
 seeded_defect(inverse_density_missing delta kernels/pass_delta.h
   [[with_w(inside, Real(1) / density[i])]] [[with_w(inside, Real(1))]])
 seeded_defect(one_iteration_less iterations lib/solver/stepper.h
-  [[for (int k = 0; k < iterations_; ++k)]] [[for (int k = 0; k + 1 < iterations_; ++k)]])
+  [[for (int k = 0; k < iterations_; ++k) {]] [[for (int k = 0; k + 1 < iterations_; ++k) {]])
 
 # xsph, vorticity
 seeded_defect(xsph_without_density xsph kernels/pass_xsph.h [[(shape * b.x.w)]] [[shape]])
