@@ -168,6 +168,12 @@ TEST_CASE("with solver.reproducible the CPU's bytes come out, on 1 thread or mor
     c.scene.solver.fused = false;
     c.scene.viscosity = pbf::Viscosity{0.3};
   }
+  SECTION("Chebyshev's steps, three substeps") {
+    c.scene.solver.method = pbf::SolverMethod::chebyshev;
+    c.scene.solver.substeps = 3;
+    c.scene.solver.velocity_damping = 0.99;
+    c.scene.viscosity = pbf::Viscosity{0.3};
+  }
   SECTION("particles in one place") {
     for (std::size_t i = 1; i < c.particles.size(); i += 97)
       c.particles.position[i] = c.particles.position[i - 1];
