@@ -9,7 +9,6 @@ namespace pbf {
 
 /// Runs with scene.threads threads (0: all that the process may use). Throws Error(unavailable)
 /// when there is not enough memory.
-std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan,
-                                        const Particles& particles);
+std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan, Particles particles);
 
 }  // namespace pbf

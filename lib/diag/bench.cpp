@@ -83,11 +83,8 @@ void time_state(Solver& solver, const BenchSettings& s, BenchRow& row) {
 std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const BenchSettings& s) {
   const std::int64_t n = count_particles(scene, dir);
   const Plan plan = make_plan(scene, n);
-  std::unique_ptr<Solver> solver;
-  {
-    const Particles particles = emit_particles(scene, dir);
-    solver = make_solver(scene, plan, particles);
-  }
+  refuse_if_too_large(scene, plan);
+  const std::unique_ptr<Solver> solver = make_solver(scene, plan, emit_particles(scene, dir));
   BenchRow row;
   row.particles = n;
   row.settings = s;

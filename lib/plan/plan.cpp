@@ -55,27 +55,6 @@ void plan_passes(Plan& plan, const Scene& s) {
   }
 }
 
-void plan_arrays(Plan& plan, const Scene& s) {
-  const bool dbl = s.precision == Precision::dbl;
-  const std::string real = dbl ? "double" : "float";
-  const double r = dbl ? 8 : 4;
-  auto add = [&](const char* name, const std::string& element, double bytes) {
-    plan.arrays.push_back(
-        {name, element, bytes, std::int64_t(std::ceil(bytes * double(plan.particles)))});
-  };
-  for (const char* name : {"position", "position'", "velocity", "velocity'"})
-    add(name, "4 x " + real, 4 * r);
-  add("density", real, r);
-  for (const char* name : {"id", "id'", "bin", "order"}) add(name, "int32", 4);
-  if (plan.vorticity) add("curl", "4 x " + real, 4 * r);
-  // At rest the unit ball holds (4/3) pi (h/d)^3 particles; the lists keep 12.5 % of air.
-  const double neighbors = 4.0 / 3.0 * kPi * std::pow(s.fluid.smoothing_ratio, 3) - 1;
-  add("lists (at rest density)", "int32", 4 * neighbors * 1.125 + 8);
-  const std::int64_t bins = std::int64_t(plan.cells[0]) * plan.cells[1] * plan.cells[2] * 4;
-  plan.arrays.push_back({"bin_start", "int32", 0, 4 * (bins + 1)});
-  plan.arrays.push_back({"bin histogram (per thread)", "int32", 0, 4 * bins});
-}
-
 void plan_left_out(Plan& plan, const Scene& s) {
   auto out = [&](bool absent, const char* what, const char* why) {
     if (absent) plan.left_out.push_back({what, why});
@@ -114,12 +93,6 @@ void plan_files(Plan& plan, const Scene& s) {
 
 }  // namespace
 
-std::int64_t Plan::bytes() const {
-  std::int64_t sum = 0;
-  for (const PlanArray& a : arrays) sum += a.bytes;
-  return sum;
-}
-
 Plan make_plan(const Scene& s, std::int64_t particles) {
   Plan plan;
   plan.particles = particles;
@@ -143,7 +116,7 @@ Plan make_plan(const Scene& s, std::int64_t particles) {
   plan.vorticity = s.vorticity && s.vorticity->epsilon != 0;
   plan_grid(plan, s);
   plan_passes(plan, s);
-  plan_arrays(plan, s);
+  plan.memory = plan_memory(s, plan);
   plan_left_out(plan, s);
   plan_files(plan, s);
   return plan;

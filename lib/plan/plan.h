@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/plan/memory.h"
 #include "lib/scene/scene.h"
 
 namespace pbf {
@@ -14,13 +15,6 @@ namespace pbf {
 struct PlanPass {
   std::string name, stage, reads, writes;
   int per_update = 1;  ///< times per update
-};
-
-/// One array that lives as long as the solver.
-struct PlanArray {
-  std::string name, element;      ///< e.g. "position", "4 x float"
-  double bytes_per_particle = 0;  ///< 0 for arrays sized by the grid
-  std::int64_t bytes = 0;
 };
 
 struct PlanLeftOut {
@@ -42,11 +36,11 @@ struct Plan {
   bool fused = true;
   bool tensile = false, xsph = false, vorticity = false;
   std::vector<PlanPass> passes;
-  std::vector<PlanArray> arrays;
+  MemoryPlan memory;
   std::vector<PlanLeftOut> left_out;
   std::vector<std::string> files;  ///< with estimated sizes
 
-  std::int64_t bytes() const;  ///< sum over arrays
+  std::int64_t bytes() const { return memory.solver_bytes(); }
 };
 
 /// Pure: touches no file and no device. `particles` from count_particles().

@@ -60,8 +60,13 @@ class Solver {
   Snapshot started_;
 };
 
-/// Throws Error(unavailable) when the backend, a device or memory is not there.
-std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan,
-                                    const Particles& particles);
+/// Throws Error(unavailable) when the plan's peak of host memory is more than what is available
+/// here: an allocation that the system cannot back succeeds at first, and the process is killed
+/// later without a word. The memory of a device is checked by make_solver.
+void refuse_if_too_large(const Scene& scene, const Plan& plan);
+
+/// Throws Error(unavailable) when the backend, a device or memory is not there. Takes the particles
+/// and lets go of them as it goes.
+std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles);
 
 }  // namespace pbf
