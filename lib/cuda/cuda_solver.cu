@@ -126,6 +126,7 @@ class CudaSolver final : public Solver {
     i.vol = plan_.vol;
     i.wall_scale = plan_.wall_scale;
     i.bytes = stepper_->bytes() + saved_.bytes() + staging_.bytes();
+    i.launches = launches_;
     return i;
   }
 
@@ -170,6 +171,9 @@ class CudaSolver final : public Solver {
     PBF_CUDA_CHECK(cudaStreamBeginCapture(exec_.stream(), cudaStreamCaptureModeThreadLocal));
     stepper_->step(updates);
     PBF_CUDA_CHECK(cudaStreamEndCapture(exec_.stream(), &graph));
+    std::size_t nodes = 0;
+    PBF_CUDA_CHECK(cudaGraphGetNodes(graph, nullptr, &nodes));
+    launches_ = double(nodes) / updates;
     const cudaError_t made = cudaGraphInstantiate(&out, graph, 0);
     cudaGraphDestroy(graph);
     PBF_CUDA_CHECK(made);
@@ -226,7 +230,7 @@ class CudaSolver final : public Solver {
   DeviceBuffer<char> staging_;
   PinnedBuffer<char> staging_host_;
   Snapshot pending_;
-  double init_seconds_ = 0, step_seconds_ = 0;
+  double init_seconds_ = 0, step_seconds_ = 0, launches_ = 0;
   std::int64_t updates_ = 0;
   int since_profile_ = 0;
 };

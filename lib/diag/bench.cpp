@@ -1,13 +1,12 @@
 #include "lib/diag/bench.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "lib/base/stage_clock.h"
 #include "lib/plan/plan.h"
 #include "lib/scene/emit.h"
+#include "lib/solver/devices.h"
 
 namespace pbf {
 
@@ -73,9 +72,7 @@ void time_state(Solver& solver, const BenchSettings& s, BenchRow& row) {
   row.stages = per_update(before, solver.timings(), double(s.updates) * s.repeats);
   row.measures = solver.measure();
   row.solver = solver.info();
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  row.peak_mb = double(usage.ru_maxrss) / 1024;
+  row.peak_mb = double(peak_memory()) / (1 << 20);
 }
 
 }  // namespace

@@ -21,6 +21,13 @@ struct PlanLeftOut {
   std::string what, because;  ///< e.g. "xsph", "no key viscosity"
 };
 
+/// Files of one kind that the run leaves behind, with their estimated size.
+struct PlanFile {
+  std::string name;  ///< "run.h5", "frames/frame_*.png"
+  std::int64_t number = 1, bytes = 0;
+  std::string note;  ///< "101 frames"
+};
+
 struct Plan {
   std::int64_t particles = 0;
   double cell_edge = 1;      ///< in h, >= 1: larger only where the box would need too many cells
@@ -38,7 +45,7 @@ struct Plan {
   std::vector<PlanPass> passes;
   MemoryPlan memory;
   std::vector<PlanLeftOut> left_out;
-  std::vector<std::string> files;  ///< with estimated sizes
+  std::vector<PlanFile> files;
 
   std::int64_t bytes() const { return memory.solver_bytes(); }
 };
@@ -50,7 +57,7 @@ Plan make_plan(const Scene& scene, std::int64_t particles);
 /// The plan for people: passes, arrays, files, what was left out and because of which key.
 std::string plan_text(const Plan& plan, const Scene& scene);
 
-/// The same as one JSON object.
-std::string plan_json(const Plan& plan, const Scene& scene);
+/// The same as one JSON object. `members`: more of them, as JSON text, each with a comma in front.
+std::string plan_json(const Plan& plan, const Scene& scene, const std::string& members = {});
 
 }  // namespace pbf

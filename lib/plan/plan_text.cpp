@@ -88,10 +88,10 @@ std::string plan_text(const Plan& plan, const Scene& s) {
                   p.stage.c_str(), p.reads.c_str(), p.writes.c_str());
   out += format("arrays, %s\n", backend_text(s).c_str());
   for (const PlanArray& a : plan.memory.arrays)
-    out += format("  %-33s %d x %-7s %-7s %-6s %12.6f MB %8.1f B/particle\n", a.name.c_str(),
+    out += format("  %-33s %2d x %-6s  %-6s  %-6s %11.3f MB %8.1f B/particle\n", a.name.c_str(),
                   a.components, a.type.c_str(), held_name(a.held), a.on_device ? "device" : "host",
                   double(a.bytes) / 1e6, double(a.bytes) / double(plan.particles));
-  out += format("  %-33s %31s %12.6f MB %8.1f B/particle\n", "held by the solver", "",
+  out += format("  %-33s %30s %11.3f MB %8.1f B/particle\n", "held by the solver", "",
                 double(plan.bytes()) / 1e6, double(plan.bytes()) / double(plan.particles));
   out += "fixed memory\n";
   for (const FixedMemory& f : plan.memory.fixed)
@@ -105,13 +105,16 @@ std::string plan_text(const Plan& plan, const Scene& s) {
     out += "\n";
   });
   out += "files\n";
-  for (const auto& f : plan.files) out += "  " + f + "\n";
+  for (const PlanFile& f : plan.files)
+    out +=
+        format("  %-22s %6lld x %9.3f MB  %s\n", f.name.c_str(), static_cast<long long>(f.number),
+               double(f.bytes) / double(f.number) / 1e6, f.note.c_str());
   out += "left out\n";
   for (const auto& l : plan.left_out) out += "  " + l.what + ": " + l.because + "\n";
   return out;
 }
 
-std::string plan_json(const Plan& plan, const Scene& s) {
+std::string plan_json(const Plan& plan, const Scene& s, const std::string& members) {
   std::string out = "{\"scene\":" + json_string(s.name);
   out += format(",\"particles\":%lld,\"bytes\":%lld,\"cells\":[%d,%d,%d],\"cell_edge_h\":%.17g",
                 static_cast<long long>(plan.particles), static_cast<long long>(plan.bytes()),
@@ -124,12 +127,16 @@ std::string plan_json(const Plan& plan, const Scene& s) {
                   format(",\"per_update\":%d}", p.per_update);
          });
   out += ",\"memory\":" + memory_json(plan, s);
-  out += ",\"files\":" + list(plan.files, [](const std::string& f) { return json_string(f); });
+  out += ",\"files\":" + list(plan.files, [](const PlanFile& f) {
+           return "{\"name\":" + json_string(f.name) +
+                  format(",\"number\":%lld,\"bytes\":%lld}", static_cast<long long>(f.number),
+                         static_cast<long long>(f.bytes));
+         });
   out +=
       ",\"left_out\":" + list(plan.left_out, [](const PlanLeftOut& l) {
         return "{\"what\":" + json_string(l.what) + ",\"because\":" + json_string(l.because) + "}";
       });
-  return out + "}";
+  return out + members + "}";
 }
 
 }  // namespace pbf

@@ -33,6 +33,7 @@ struct SolverInfo {
   double vol = 0;         ///< m/(rho0 h^3) with the calibrated mass: the weight of one particle
   double wall_scale = 0;  ///< factor on the walls' density, from the calibration
   std::size_t bytes = 0;  ///< of the arrays held now (device memory on cuda)
+  double launches = 0;    ///< cuda: kernels and fills of one update; 0 before one was recorded
 };
 
 /// One simulation. Two solvers may live in one process. Errors are thrown as Error.
