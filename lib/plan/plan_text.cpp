@@ -106,9 +106,9 @@ std::string plan_text(const Plan& plan, const Scene& s) {
   });
   out += "files\n";
   for (const PlanFile& f : plan.files)
-    out +=
-        format("  %-22s %6lld x %9.3f MB  %s\n", f.name.c_str(), static_cast<long long>(f.number),
-               double(f.bytes) / double(f.number) / 1e6, f.note.c_str());
+    out += format("  %-22s %6lld x %9.3f MB", f.name.c_str(), static_cast<long long>(f.number),
+                  double(f.bytes) / double(f.number) / 1e6) +
+           (f.note.empty() ? "\n" : "  (" + f.note + ")\n");
   out += "left out\n";
   for (const auto& l : plan.left_out) out += "  " + l.what + ": " + l.because + "\n";
   return out;
