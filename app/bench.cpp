@@ -7,6 +7,7 @@
 #include "lib/base/text.h"
 #include "lib/base/version.h"
 #include "lib/diag/bench.h"
+#include "lib/diag/calibration.h"
 #include "lib/io/report.h"
 #include "lib/scene/load.h"
 
@@ -40,7 +41,8 @@ std::vector<std::string> columns() {
                              "density_error_avg",
                              "density_error_max",
                              "bytes_per_particle",
-                             "peak_mb"};
+                             "peak_mb",
+                             "launches_per_update"};
   for (const char* s : kStages) c.push_back(std::string("ms_") + s);
   return c;
 }
@@ -71,7 +73,8 @@ std::vector<Cell> cells(const std::string& scene, const BenchRow& r) {
                       r.measures.compression_mean,
                       r.measures.compression_max,
                       double(r.solver.bytes) / n,
-                      r.peak_mb};
+                      r.peak_mb,
+                      r.solver.launches > 0 ? Cell(r.solver.launches) : Cell()};
   for (const char* name : kStages) {
     Cell value;  // empty: the scene has no such stage
     for (const StageTime& s : r.stages)
@@ -101,10 +104,13 @@ int command_bench(const BenchOptions& o) {
   CsvTable table(columns());
   std::vector<std::pair<Scene, std::string>> scenes;  // with the folder of the file
   if (o.scenes.empty())
-    scenes.push_back({parse_scene(bench_scene_yaml(), "built-in scene", o.overrides), "."});
+    scenes.push_back({parse_scene(o.calibrate ? calibration_scene_yaml() : bench_scene_yaml(),
+                                  "built-in scene", o.overrides),
+                      "."});
   for (const std::string& path : o.scenes)
     scenes.push_back(
         {load_scene(path, o.overrides).scene, std::filesystem::path(path).parent_path().string()});
+  std::vector<StageCosts> costs;
   const BenchSettings settings{o.warmup, o.updates, o.repeats};
   for (const auto& [base, dir] : scenes)
     for (const std::int64_t n : o.particles)
@@ -117,7 +123,9 @@ int command_bench(const BenchOptions& o) {
             s.backend = backend == "cuda" ? Backend::cuda : Backend::cpu;
             s.precision = precision == "double" ? Precision::dbl : Precision::single;
             s.threads = threads;
-            for (const BenchRow& row : bench(s, dir, settings)) {
+            const std::vector<BenchRow> rows = bench(s, dir, settings);
+            if (o.calibrate) costs.push_back(calibration_of(rows.back()));
+            for (const BenchRow& row : rows) {
               table.add(cells(s.name, row));
               log.result(line(s.name, row));
               // After every row, so that a long benchmark that is cut off leaves its results.
@@ -126,6 +134,10 @@ int command_bench(const BenchOptions& o) {
             }
           }
         }
+  if (o.calibrate) {
+    store_calibration(calibration_path(), costs);
+    log.note("stored in " + calibration_path());
+  }
   return 0;
 }
 

@@ -44,7 +44,8 @@ struct BenchOptions {
   std::vector<int> threads{0};  ///< 0: all that the process may use
   std::vector<std::string> overrides;
   int warmup = 400, updates = 64, repeats = 5;
-  std::string csv, json;  ///< paths, empty: none
+  std::string csv, json;   ///< paths, empty: none
+  bool calibrate = false;  ///< store the costs of the stages for `pbf plan`
 };
 
 struct StudyOptions {

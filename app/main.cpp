@@ -85,7 +85,10 @@ void add_plan(CLI::App& app, PlanOptions& o, Command& command) {
   CLI::Option* resolved =
       c->add_flag("--resolved", o.resolved, "Print the scene with every default filled in");
   c->add_flag("--json", o.json, "Print the plan as one JSON object")->excludes(resolved);
-  c->footer("Example:\n  pbf plan configs/dam_break.yaml --set fluid.spacing=0.005");
+  c->footer(
+      "The time per update is an estimate from what `pbf bench --calibrate` has stored on this\n"
+      "machine; without it none is printed.\n"
+      "Example:\n  pbf plan configs/dam_break.yaml --set fluid.spacing=0.005");
   c->callback([&] { command = [&] { return command_plan(o); }; });
 }
 
@@ -151,7 +154,12 @@ void add_config(CLI::App& app, ConfigOptions& o, Command& command) {
 void add_bench(CLI::App& app, BenchOptions& o, Command& command) {
   CLI::App* c = app.add_subcommand(
       "bench", "Time per update and per stage over sizes, backends, precisions and threads");
-  c->add_option("SCENE", o.scenes, "Scene files; a built-in dam break when none is given");
+  CLI::Option* scenes =
+      c->add_option("SCENE", o.scenes, "Scene files; a built-in dam break when none is given");
+  c->add_flag("--calibrate", o.calibrate,
+              "Time every pass of the built-in scene and store it, for the times of pbf plan, in "
+              "$PBF_CALIBRATION, else ~/.local/share/pbf/calibration.csv")
+      ->excludes(scenes);
   c->add_option("--n", o.particles, "Numbers of particles, separated by commas")
       ->delimiter(',')
       ->check(CLI::Range(std::int64_t(1), std::int64_t(2147483647)));
@@ -175,9 +183,10 @@ void add_bench(CLI::App& app, BenchOptions& o, Command& command) {
       "Two lines per case: from the first updates on (start), and after the warm-up (late).\n"
       "Stage times on cuda are those of one update in 64 to 1024, timed by\n"
       "device events, and share the time of all.\n"
-      "Example:\n"
+      "Examples:\n"
       "  pbf bench --n 10000,100000 --backend cpu --threads 1,2 --precision float,double \\\n"
-      "      --csv bench.csv");
+      "      --csv bench.csv\n"
+      "  pbf bench --calibrate --n 10000,100000 --warmup 100 --updates 20");
   c->callback([&] { command = [&] { return command_bench(o); }; });
 }
 

@@ -2,13 +2,34 @@
 #include "lib/plan/plan.h"
 
 #include <filesystem>
+#include <optional>
 
 #include "app/commands.h"
 #include "lib/base/log.h"
+#include "lib/base/text.h"
+#include "lib/diag/calibration.h"
 #include "lib/scene/emit.h"
 #include "lib/scene/load.h"
+#include "lib/solver/devices.h"
 
 namespace pbf {
+namespace {
+
+std::string time_text(const std::optional<TimeEstimate>& time) {
+  if (!time)
+    return "time per update\n  not known: nothing is stored for this backend, precision, CPU and "
+           "number of threads; pbf bench --calibrate measures it";
+  return format("time per update\n  about %.4g ms, from pbf bench --calibrate on %s", time->ms,
+                time->basis.c_str());
+}
+
+std::string time_json(const std::optional<TimeEstimate>& time) {
+  if (!time) return ",\"time_per_update_ms\":null";
+  return format(",\"time_per_update_ms\":%.6g,\"time_measured_on\":", time->ms) +
+         json_string(time->basis);
+}
+
+}  // namespace
 
 int command_plan(const PlanOptions& options) {
   const LoadedScene loaded = load_scene(options.scene, options.overrides);
@@ -16,9 +37,12 @@ int command_plan(const PlanOptions& options) {
   const std::string dir = std::filesystem::path(loaded.path).parent_path().string();
   // Counted for --resolved too: a scene that cannot run is an error in every form of the answer.
   const Plan plan = make_plan(loaded.scene, count_particles(loaded.scene, dir));
+  const int threads = loaded.scene.threads > 0 ? loaded.scene.threads : usable_threads();
+  const std::vector<StageCosts> costs = read_calibration(calibration_path());
+  const auto time = estimate_time(plan, loaded.scene, costs, threads, cpu_model());
   std::string text = options.resolved ? resolved_yaml(loaded.scene)
-                     : options.json   ? plan_json(plan, loaded.scene)
-                                      : plan_text(plan, loaded.scene);
+                     : options.json   ? plan_json(plan, loaded.scene, time_json(time))
+                                      : plan_text(plan, loaded.scene) + time_text(time);
   while (!text.empty() && text.back() == '\n') text.pop_back();
   log.result(text);
   return 0;

@@ -15,7 +15,6 @@
 #include "lib/base/version.h"
 #include "lib/scene/emit.h"
 #include "lib/scene/load.h"
-#include "lib/solver/devices.h"
 
 namespace pbf {
 namespace {
@@ -26,20 +25,6 @@ std::vector<std::string> all_overrides(const RunOptions& o) {
   if (!o.precision.empty()) list.push_back("precision=" + o.precision);
   if (o.threads > 0) list.push_back("threads=" + std::to_string(o.threads));
   return list;
-}
-
-/// Refuses what cannot fit before anything large is allocated: an allocation the system cannot
-/// back succeeds at first, and the process is killed later without a word.
-void check_memory(const Plan& plan, const Scene& scene) {
-  const double emitted = 48.0 * double(plan.particles);  // host copies while the solver is made
-  const double needed = (scene.backend == Backend::cpu ? double(plan.bytes()) : 0) + emitted;
-  const auto available = double(available_memory());
-  if (available > 0 && needed > available)
-    throw Error(ExitCode::unavailable,
-                format("the scene needs about %s of memory for %lld particles, %s are available; "
-                       "increase fluid.spacing, or use a machine with more memory",
-                       bytes_text(needed).c_str(), static_cast<long long>(plan.particles),
-                       bytes_text(available).c_str()));
 }
 
 RunInfo run_info(const LoadedScene& loaded, const Plan& plan, const Solver& solver,
@@ -188,7 +173,7 @@ int command_run(const RunOptions& options) {
   check_json_folder(options.log_json, out);
   const std::string dir = std::filesystem::path(loaded.path).parent_path().string();
   const Plan plan = make_plan(scene, count_particles(scene, dir));
-  check_memory(plan, scene);
+  refuse_if_too_large(scene, plan);
   watch_signals();
   // The folder comes last: a scene that cannot run leaves nothing behind.
   auto solver = make_solver(scene, plan, emit_particles(scene, dir));

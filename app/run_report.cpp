@@ -1,10 +1,9 @@
 #include "app/run_report.h"
 
-#include <sys/resource.h>
-
 #include <cmath>
 
 #include "lib/base/text.h"
+#include "lib/solver/devices.h"
 
 namespace pbf {
 namespace {
@@ -97,7 +96,8 @@ std::string run_summary(const RunTotals& t) {
       100 * t.last.compression_mean, 100 * t.last.compression_rms, 100 * t.last.compression_p99,
       100 * t.last.compression_max, 100 * t.compression_max, 100 * t.last.share_above_1,
       100 * t.last.share_above_10, t.last.energy, t.last.kinetic_energy, t.first.energy,
-      100 * t.last.energy_drift, 100 * t.last.energy_rise, bytes_text(peak_memory()).c_str());
+      100 * t.last.energy_drift, 100 * t.last.energy_rise,
+      bytes_text(double(peak_memory())).c_str());
   out += pool_line(t.last);
   if (t.last.non_finite > 0)
     out += format("not finite          %lld particles at the end, left out of the figures above\n",
@@ -151,12 +151,6 @@ std::string measure_json(const Measures& m, double wall, const std::vector<Stage
     out += item(stages[i].name.c_str(), stages[i].seconds);
   }
   return out + "}}";
-}
-
-double peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return 1024.0 * double(usage.ru_maxrss);  // Linux counts in KiB
 }
 
 }  // namespace pbf

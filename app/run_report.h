@@ -37,7 +37,4 @@ std::string run_summary(const RunTotals& totals);
 std::string measure_json(const Measures& measures, double wall,
                          const std::vector<StageTime>& stages);
 
-/// Largest resident size of this process so far, bytes.
-double peak_memory();
-
 }  // namespace pbf

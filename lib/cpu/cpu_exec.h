@@ -5,6 +5,7 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "kernels/pass_measure.h"
 #include "lib/base/stage_clock.h"
 #include "lib/cpu/host_buffer.h"
+#include "lib/plan/memory.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -22,8 +24,10 @@ class CpuExec {
   template <class T>
   using Buffer = HostBuffer<T>;
 
-  /// threads >= 1.
-  explicit CpuExec(int threads) : threads_(threads), scratch_(std::size_t(threads)) {}
+  /// threads >= 1. list_entries: room per particle for its neighbours, at first
+  /// (lib/plan/memory.h); pages that stay empty are never touched.
+  explicit CpuExec(int threads, int list_entries = 34)
+      : threads_(threads), list_entries_(list_entries), scratch_(std::size_t(threads)) {}
 
   void begin() { clock_.begin(); }
   void mark(const char* stage) { clock_.mark(stage); }
@@ -114,13 +118,14 @@ class CpuExec {
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (chunks > 1)
     for (int c = 0; c < chunks; ++c) {
       std::vector<int>& found = scratch_[std::size_t(omp_get_thread_num())];
+      if (found.empty()) found.resize(std::size_t(cpu_scratch_entries(list_entries_)));
       std::size_t used = 0;
       for (int i = c * kChunk; i < p.n && i < (c + 1) * kChunk; ++i) {
         // Room for every candidate first, so that the loop below only writes and counts.
         std::size_t candidates = 0;
         for_each_run(xyz(position[i]), bin_start, p,
                      [&](int b, int e) { candidates += std::size_t(e - b); });
-        if (found.size() < used + candidates) found.resize((used + candidates) * 5 / 4 + 1024);
+        if (found.size() < used + candidates) found.resize((used + candidates) * 5 / 4);
         int* out = found.data() + used;
         begin_[std::size_t(i)] = std::uint32_t(used);
         const Vec3<Real> xi = xyz(position[i]);
@@ -137,7 +142,9 @@ class CpuExec {
       }
       HostBuffer<int>& mine = chunks_[std::size_t(c)];
       // Grow with some air, shrink only when far too large: sizes change little between updates.
-      if (mine.size() < used || mine.size() > 2 * used + 4096) mine.resize(used + used / 8 + 64);
+      const std::size_t room = std::size_t(std::min(kChunk, p.n - c * kChunk) * list_entries_);
+      if (mine.size() < used || mine.size() > 2 * std::max(used, room))
+        mine.resize(used > room ? used + used / 8 : room);
       std::memcpy(mine.data(), found.data(), used * sizeof(int));
       pointers_[std::size_t(c)] = mine.data();
     }
@@ -148,7 +155,7 @@ class CpuExec {
 
  private:
   static constexpr int kChunk = 1 << ChunkedLists::chunk_bits;
-  int threads_;
+  int threads_, list_entries_;
   StageClock clock_;
   std::vector<MeasureSums> partial_;
   std::vector<std::int64_t> in_bins_;

@@ -1,6 +1,7 @@
 #include "lib/cpu/cpu_solver.h"
 
 #include <new>
+#include <utility>
 
 #include "lib/base/error.h"
 #include "lib/cpu/cpu_exec.h"
@@ -13,16 +14,16 @@ namespace {
 template <class Real>
 class CpuSolver final : public Solver {
  public:
-  CpuSolver(const Scene& scene, const Plan& plan, const Particles& particles)
+  CpuSolver(const Scene& scene, const Plan& plan, Particles particles)
       : scene_(scene),
         plan_(plan),
         n_(std::int64_t(particles.size())),
-        exec_(scene.threads > 0 ? scene.threads : usable_threads()) {
+        exec_(scene.threads > 0 ? scene.threads : usable_threads(), cpu_list_entries(scene)) {
     Stopwatch watch;
-    const InternalState<Real> s = to_internal<Real>(scene, particles);
+    InternalState<Real> s = to_internal<Real>(scene, std::move(particles));
     stepper_ = std::make_unique<Stepper<Real, CpuExec>>(
         exec_, make_params<Real>(scene, plan), scene.solver.kernels, scene.solver.iterations, plan,
-        s.position, s.velocity, s.id);
+        std::move(s.position), std::move(s.velocity), std::move(s.id));
     init_seconds_ = watch.seconds();
     init_entries_ = exec_.clock().entries();
   }
@@ -106,12 +107,12 @@ class CpuSolver final : public Solver {
 }  // namespace
 
 std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan,
-                                        const Particles& particles) try {
+                                        Particles particles) try {
   if (scene.precision == Precision::dbl)
-    return std::make_unique<CpuSolver<double>>(scene, plan, particles);
-  return std::make_unique<CpuSolver<float>>(scene, plan, particles);
+    return std::make_unique<CpuSolver<double>>(scene, plan, std::move(particles));
+  return std::make_unique<CpuSolver<float>>(scene, plan, std::move(particles));
 } catch (const std::bad_alloc&) {
-  throw Error(ExitCode::unavailable, "not enough memory for " + std::to_string(particles.size()) +
+  throw Error(ExitCode::unavailable, "not enough memory for " + std::to_string(plan.particles) +
                                          " particles; increase fluid.spacing, or use a machine "
                                          "with more memory (pbf plan says how much)");
 }

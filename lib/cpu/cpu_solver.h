@@ -10,7 +10,6 @@ namespace pbf::inline PBF_VARIANT {
 
 /// Runs with scene.threads threads (0: all that the process may use). Throws Error(unavailable)
 /// when there is not enough memory.
-std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan,
-                                        const Particles& particles);
+std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan, Particles particles);
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -134,10 +134,8 @@ __global__ void __launch_bounds__(kBlock) list_lanes_kernel(ListPass<Real> pass)
   pass.by_lanes(blockIdx.x * kBlock + threadIdx.x);
 }
 
-/// Up to so many particles and bins one block sorts them, with the counters in 48 KiB of shared
-/// memory, which every device has.
-constexpr int kSortThreads = 1024, kSortParticles = 3000, kSortBins = 12 * 1024;
-/// Runs `first` (see CountPass) as well, and gathers.
+/// One block sorts few particles (kSortParticles, kSortBins). Runs `first` (see CountPass) as well,
+/// and gathers.
 template <class First, class Gather>
 __global__ void __launch_bounds__(kSortThreads)
     small_sort_kernel(First first_pass, int n, int bins, int* arrival, int* slot, int* start,
@@ -340,7 +338,7 @@ class CudaExec {
 
   std::size_t list_bytes() const {
     return words_.bytes() + tails_.bytes() + tail_of_.bytes() + count_.bytes() + counts_.bytes() +
-           slot_.bytes() + scan_.bytes() + partial_.bytes();
+           slot_.bytes() + scan_.bytes() + partial_.bytes() + in_bins_.bytes();
   }
 
  private:
@@ -361,7 +359,7 @@ class CudaExec {
     config.numAttrs = overlap_ ? 1 : 0;
     PBF_CUDA_CHECK(cudaLaunchKernelEx(&config, kernel, P(args)...));
   }
-  static int stride(int n) { return (n + 31) / 32 * 32; }
+  static int stride(int n) { return list_stride(n); }
   void allocate_lists(int n);
   /// Exclusive sums of the counts.
   void scan(int n, int* start);

@@ -1,5 +1,6 @@
 // The CUDA solver; compiled once for each variant of the arithmetic (kernels/hd.h).
 #include <algorithm>
+#include <utility>
 
 #include "lib/cuda/cuda_exec.cuh"
 #include "lib/cuda/cuda_variants.h"
@@ -32,13 +33,13 @@ ListRoom larger(ListRoom room, const ListState& short_of, int n) {
 template <class Real>
 class CudaSolver final : public Solver {
  public:
-  CudaSolver(const Scene& scene, const Plan& plan, const Particles& particles, ListRoom room)
+  CudaSolver(const Scene& scene, const Plan& plan, Particles particles, ListRoom room)
       : scene_(scene), plan_(plan), n_(int(particles.size())), exec_(room) {
     Stopwatch watch;
-    const InternalState<Real> s = to_internal<Real>(scene, particles);
+    InternalState<Real> s = to_internal<Real>(scene, std::move(particles));
     stepper_ = std::make_unique<Stepper<Real, CudaExec>>(
         exec_, make_params<Real>(scene, plan), scene.solver.kernels, scene.solver.iterations, plan,
-        s.position, s.velocity, s.id);
+        std::move(s.position), std::move(s.velocity), std::move(s.id));
     while (grow_if_needed()) stepper_->relist();
     init_seconds_ = watch.seconds();
   }
@@ -147,6 +148,7 @@ class CudaSolver final : public Solver {
     i.vol = plan_.vol;
     i.wall_scale = plan_.wall_scale;
     i.bytes = stepper_->bytes() + saved_.bytes() + staging_.bytes();
+    i.launches = launches_;
     return i;
   }
 
@@ -196,6 +198,9 @@ class CudaSolver final : public Solver {
     PBF_CUDA_CHECK(cudaStreamBeginCapture(exec_.stream(), cudaStreamCaptureModeThreadLocal));
     stepper_->step(updates);
     PBF_CUDA_CHECK(cudaStreamEndCapture(exec_.stream(), &graph));
+    std::size_t nodes = 0;
+    PBF_CUDA_CHECK(cudaGraphGetNodes(graph, nullptr, &nodes));
+    launches_ = double(nodes) / updates;
     const cudaError_t made = cudaGraphInstantiate(&out, graph, 0);
     cudaGraphDestroy(graph);
     PBF_CUDA_CHECK(made);
@@ -252,7 +257,7 @@ class CudaSolver final : public Solver {
   DeviceBuffer<char> staging_;
   PinnedBuffer<char> staging_host_;
   Snapshot pending_;
-  double init_seconds_ = 0, step_seconds_ = 0;
+  double init_seconds_ = 0, step_seconds_ = 0, launches_ = 0;
   std::int64_t updates_ = 0;
   int since_profile_ = 0;
 };
@@ -260,10 +265,10 @@ class CudaSolver final : public Solver {
 }  // namespace
 
 std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& plan,
-                                             const Particles& particles, ListRoom room) {
+                                             Particles particles, ListRoom room) {
   if (scene.precision == Precision::dbl)
-    return std::make_unique<CudaSolver<double>>(scene, plan, particles, room);
-  return std::make_unique<CudaSolver<float>>(scene, plan, particles, room);
+    return std::make_unique<CudaSolver<double>>(scene, plan, std::move(particles), room);
+  return std::make_unique<CudaSolver<float>>(scene, plan, std::move(particles), room);
 }
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -10,11 +10,11 @@ namespace pbf {
 
 inline namespace plain {
 std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& plan,
-                                             const Particles& particles, ListRoom room);
+                                             Particles particles, ListRoom room);
 }
 namespace pinned {
 std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& plan,
-                                             const Particles& particles, ListRoom room);
+                                             Particles particles, ListRoom room);
 }
 
 }  // namespace pbf

@@ -1,14 +1,31 @@
-// How much room the neighbour lists on the device have.
+// What decides the size of arrays on the device; no CUDA header is needed to include this.
 #pragma once
+
+#include <cstdint>
 
 namespace pbf {
 
-/// In words of 4 entries.
+/// How much room the neighbour lists on the device have, in words of 4 entries.
 struct ListRoom {
   int first = 0;  ///< words every list has
   int tail = 0;   ///< words of one tail
   int tails = 0;  ///< tails in the pool
   constexpr int longest() const { return 4 * (first + tail); }
 };
+
+/// Room at first for lists that hold `rest_neighbors` at rest: a seventh more for all, and an
+/// eighth of the lists may be up to 32 entries longer. first_entries > 0: that many for all
+/// instead.
+inline ListRoom first_list_room(double rest_neighbors, std::int64_t n, int first_entries = 0) {
+  const int first = first_entries > 0 ? first_entries : int(rest_neighbors * 1.15);
+  return {(first + 3) / 4, 8, int(n / 8) + 32};
+}
+
+/// Words between word k and k + 1 of one particle: whole warps.
+constexpr int list_stride(int n) { return (n + 31) / 32 * 32; }
+
+/// Up to so many particles and bins one block sorts them, with the counters in 48 KiB of shared
+/// memory, which every device has.
+constexpr int kSortThreads = 1024, kSortParticles = 3000, kSortBins = 12 * 1024;
 
 }  // namespace pbf

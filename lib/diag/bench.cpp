@@ -1,13 +1,12 @@
 #include "lib/diag/bench.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "lib/base/stage_clock.h"
 #include "lib/plan/plan.h"
 #include "lib/scene/emit.h"
+#include "lib/solver/devices.h"
 
 namespace pbf {
 
@@ -73,9 +72,7 @@ void time_state(Solver& solver, const BenchSettings& s, BenchRow& row) {
   row.stages = per_update(before, solver.timings(), double(s.updates) * s.repeats);
   row.measures = solver.measure();
   row.solver = solver.info();
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  row.peak_mb = double(usage.ru_maxrss) / 1024;
+  row.peak_mb = double(peak_memory()) / (1 << 20);
 }
 
 }  // namespace
@@ -83,11 +80,8 @@ void time_state(Solver& solver, const BenchSettings& s, BenchRow& row) {
 std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const BenchSettings& s) {
   const std::int64_t n = count_particles(scene, dir);
   const Plan plan = make_plan(scene, n);
-  std::unique_ptr<Solver> solver;
-  {
-    const Particles particles = emit_particles(scene, dir);
-    solver = make_solver(scene, plan, particles);
-  }
+  refuse_if_too_large(scene, plan);
+  const std::unique_ptr<Solver> solver = make_solver(scene, plan, emit_particles(scene, dir));
   BenchRow row;
   row.particles = n;
   row.settings = s;

@@ -27,7 +27,7 @@ struct BenchRow {
   double dt = 0, h = 0;  ///< s, m
   double ms_median = 0, ms_min = 0, ms_max = 0;
   Measures measures;
-  double peak_mb = 0;             ///< host memory of the process so far, MB
+  double peak_mb = 0;             ///< host memory of the process so far, MiB
   std::vector<StageTime> stages;  ///< seconds per update (`calls`: 1)
 };
 

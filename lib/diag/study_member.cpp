@@ -31,7 +31,8 @@ class Simulation {
       : scene_(member.scene),
         cpu_clock_(study.cpu_clock),
         plan_(make_plan(scene_, count_particles(scene_, study.scene_dir))),
-        solver_(make_solver(scene_, plan_, emit_particles(scene_, study.scene_dir))) {}
+        solver_((refuse_if_too_large(scene_, plan_),
+                 make_solver(scene_, plan_, emit_particles(scene_, study.scene_dir)))) {}
 
   /// Seconds that n updates took, by the clock of the study.
   double step(std::int64_t n) {

@@ -5,6 +5,7 @@
 
 #include "kernels/smoothing.h"
 #include "lib/base/error.h"
+#include "lib/scene/load.h"
 #include "lib/solver/calibrate.h"
 
 namespace pbf {
@@ -77,27 +78,6 @@ void plan_passes(Plan& plan, const Scene& s) {
   }
 }
 
-void plan_arrays(Plan& plan, const Scene& s) {
-  const bool dbl = s.precision == Precision::dbl;
-  const std::string real = dbl ? "double" : "float";
-  const double r = dbl ? 8 : 4;
-  auto add = [&](const char* name, const std::string& element, double bytes) {
-    plan.arrays.push_back(
-        {name, element, bytes, std::int64_t(std::ceil(bytes * double(plan.particles)))});
-  };
-  for (const char* name : {"position", "position'", "velocity", "velocity'"})
-    add(name, "4 x " + real, 4 * r);
-  add("density", real, r);
-  for (const char* name : {"id", "id'", "bin", "order"}) add(name, "int32", 4);
-  if (plan.vorticity) add("curl", "4 x " + real, 4 * r);
-  // At rest the unit ball holds (4/3) pi (h/d)^3 particles; the lists keep 12.5 % of air.
-  const double neighbors = 4.0 / 3.0 * kPi * std::pow(s.fluid.smoothing_ratio, 3) - 1;
-  add("lists (at rest density)", "int32", 4 * neighbors * 1.125 + 8);
-  const std::int64_t bins = std::int64_t(plan.cells[0]) * plan.cells[1] * plan.cells[2] * 4;
-  plan.arrays.push_back({"bin_start", "int32", 0, 4 * (bins + 1)});
-  plan.arrays.push_back({"bin histogram (per thread)", "int32", 0, 4 * bins});
-}
-
 void plan_left_out(Plan& plan, const Scene& s) {
   auto out = [&](bool absent, const char* what, const char* why) {
     if (absent) plan.left_out.push_back({what, why});
@@ -106,41 +86,52 @@ void plan_left_out(Plan& plan, const Scene& s) {
   out(!plan.tensile, "artificial pressure in the delta loop", "no key tensile");
   out(!plan.vorticity, "curl and confinement passes, curl array", "no key vorticity");
   out(plan.fused, "density pass of its own", "solver.fused is true");
+  out(s.solver.kernels == KernelMode::consistent, "the second smoothing function (Poly6)",
+      "solver.kernels is consistent");
   out(s.solver.boundary == BoundaryMode::clamp, "wall density", "solver.boundary is clamp");
+  out(s.domain.open.size() == 6, "walls: their density and the clamp", "domain.open names all six");
   out(s.solver.iterations == 0, "lambda and delta passes", "solver.iterations is 0");
-  out(!s.output, "run.h5, its writer thread and downloads", "no key output");
+  out(!s.output, "run.h5, its writer thread and its downloads", "no key output");
   out(!s.render, "pictures, the GL library and its thread", "no key render");
-  out(s.backend == Backend::cpu, "CUDA context", "backend is cpu");
+  out(!s.output && !s.render, "copies of the particles in SI units", "no keys output, render");
+  out(s.backend == Backend::cpu, "CUDA context and driver", "backend is cpu");
+  out(s.backend == Backend::cuda && !s.output && !s.render, "staging of downloads on the device",
+      "no keys output, render");
+  out(!s.solver.reproducible && s.backend == Backend::cuda, "the host's arithmetic on the device",
+      "solver.reproducible is false");
 }
 
 void plan_files(Plan& plan, const Scene& s) {
-  plan.files.push_back("scene.resolved.yaml, log.txt");
+  const auto n = double(plan.particles);
+  const auto add = [&](const char* name, double number, double bytes,
+                       const std::string& note = {}) {
+    plan.files.push_back({name, std::int64_t(number), std::int64_t(bytes), note});
+  };
+  add("scene.resolved.yaml", 1, double(resolved_yaml(s).size()));
+  add("log.txt", 1, 2500);
+  add("DONE", 1, 30);
+  const double all = std::max(1.0, std::round(s.time.end / s.time.step));
   if (s.output) {
     const double scalar = s.output->precision == Precision::dbl ? 8 : 4;
-    double row = 3 * scalar + 4;
+    double row = 3 * scalar;  // position
     for (const auto& f : s.output->fields) row += (f == "velocity" ? 3 : 1) * scalar;
     const double updates = std::max(1.0, std::round(s.output->every / s.time.step));
-    const double all = std::round(s.time.end / s.time.step);
     const double frames = std::floor(all / updates) + 1 + (std::fmod(all, updates) != 0 ? 1 : 0);
-    const double mb = (frames * row + 4) * double(plan.particles) / 1e6;
-    plan.files.push_back("run.h5: " + std::to_string(std::int64_t(frames)) + " frames, about " +
-                         std::to_string(std::int64_t(std::ceil(mb))) + " MB" +
-                         (s.output->gzip ? " before compression" : ""));
+    // Ids and the numbers of the vertices once; 1.66 MB of tables and the first 1024 rows of the
+    // log, measured; 45 columns of the log. gzip: 1.45 times smaller, measured.
+    const double rows = all / s.measure_every + 1;
+    const double bytes = (frames * row + 12) * n / (s.output->gzip ? 1.45 : 1) + 1.66e6 +
+                         std::floor(rows / 1024) * 1024 * 8 * 45;
+    add("run.h5", 1, bytes, std::to_string(std::int64_t(frames)) + " frames");
   }
-  if (s.render)
-    plan.files.push_back(
-        "frames/frame_*.png: about " +
-        std::to_string(std::int64_t(std::floor(s.time.end / s.render->every + 1e-9)) + 1) +
-        " pictures");
+  if (s.render) {
+    const double pictures = std::floor(s.time.end / s.render->every + 1e-9) + 1;
+    const double pixels = double(s.render->size[0]) * s.render->size[1];
+    add("frames/frame_*.png", pictures, pictures * 0.32 * pixels, "0.32 bytes a pixel");
+  }
 }
 
 }  // namespace
-
-std::int64_t Plan::bytes() const {
-  std::int64_t sum = 0;
-  for (const PlanArray& a : arrays) sum += a.bytes;
-  return sum;
-}
 
 Plan make_plan(const Scene& s, std::int64_t particles) {
   Plan plan;
@@ -168,7 +159,7 @@ Plan make_plan(const Scene& s, std::int64_t particles) {
   plan.vorticity = s.vorticity && s.vorticity->epsilon != 0;
   plan_grid(plan, s);
   plan_passes(plan, s);
-  plan_arrays(plan, s);
+  plan.memory = plan_memory(s, plan);
   plan_left_out(plan, s);
   plan_files(plan, s);
   return plan;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/plan/memory.h"
 #include "lib/scene/scene.h"
 
 namespace pbf {
@@ -16,15 +17,15 @@ struct PlanPass {
   int per_update = 1;  ///< times per update
 };
 
-/// One array that lives as long as the solver.
-struct PlanArray {
-  std::string name, element;      ///< e.g. "position", "4 x float"
-  double bytes_per_particle = 0;  ///< 0 for arrays sized by the grid
-  std::int64_t bytes = 0;
-};
-
 struct PlanLeftOut {
   std::string what, because;  ///< e.g. "xsph", "no key viscosity"
+};
+
+/// Files of one kind that the run leaves behind, with their estimated size.
+struct PlanFile {
+  std::string name;  ///< "run.h5", "frames/frame_*.png"
+  std::int64_t number = 1, bytes = 0;
+  std::string note;  ///< "101 frames"
 };
 
 struct Plan {
@@ -45,11 +46,11 @@ struct Plan {
   bool fused = true;
   bool tensile = false, xsph = false, vorticity = false;
   std::vector<PlanPass> passes;
-  std::vector<PlanArray> arrays;
+  MemoryPlan memory;
   std::vector<PlanLeftOut> left_out;
-  std::vector<std::string> files;  ///< with estimated sizes
+  std::vector<PlanFile> files;
 
-  std::int64_t bytes() const;  ///< sum over arrays
+  std::int64_t bytes() const { return memory.solver_bytes(); }
 };
 
 /// Pure: touches no file and no device. `particles` from count_particles().
@@ -59,7 +60,7 @@ Plan make_plan(const Scene& scene, std::int64_t particles);
 /// The plan for people: passes, arrays, files, what was left out and because of which key.
 std::string plan_text(const Plan& plan, const Scene& scene);
 
-/// The same as one JSON object.
-std::string plan_json(const Plan& plan, const Scene& scene);
+/// The same as one JSON object. `members`: more of them, as JSON text, each with a comma in front.
+std::string plan_json(const Plan& plan, const Scene& scene, const std::string& members = {});
 
 }  // namespace pbf

@@ -16,15 +16,11 @@ bool read_number(const std::string& path, std::size_t& value) {
   return static_cast<bool>(in >> value);
 }
 
-/// "MemAvailable:   123 kB" -> bytes.
-std::size_t machine_memory() {
-  std::ifstream in("/proc/meminfo");
-  std::string key, unit;
-  std::size_t kib = 0;
-  while (in >> key >> kib) {
-    std::getline(in, unit);
-    if (key == "MemAvailable:") return kib * 1024;
-  }
+/// "MemAvailable:   123 kB" -> bytes; 0 when there is no such line.
+std::size_t memory_line(const char* file, const std::string& wanted) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind(wanted, 0) == 0) return std::stoull(line.substr(wanted.size())) * 1024;
   return 0;
 }
 
@@ -48,7 +44,7 @@ int usable_threads() {
 }
 
 std::size_t available_memory() {
-  std::size_t free = machine_memory();
+  std::size_t free = memory_line("/proc/meminfo", "MemAvailable:");
   // Version 2 of control groups, as seen from inside a container; a batch job nested deeper is not
   // covered, there the allocation itself fails or the system ends the job.
   std::size_t limit = 0, used = 0;
@@ -59,6 +55,8 @@ std::size_t available_memory() {
   }
   return free;
 }
+
+std::size_t peak_memory() { return memory_line("/proc/self/status", "VmHWM:"); }
 
 #ifndef PBF_HAS_CUDA
 std::string cuda_device_report() { return "CUDA is not compiled into this program"; }

@@ -16,6 +16,10 @@ int usable_threads();
 /// of the control group's limit when that is smaller. 0 when the system does not tell.
 std::size_t available_memory();
 
+/// Bytes of memory that this process has held at most (VmHWM). Not getrusage's figure, which starts
+/// with what the program that started this one held.
+std::size_t peak_memory();
+
 /// One line per CUDA device (name, memory, compute capability, driver), or one line that says why
 /// there is none: CUDA not compiled in, no driver, no device.
 std::string cuda_device_report();

@@ -34,6 +34,7 @@ struct SolverInfo {
   double vol = 0;         ///< m/(rho0 h^3) with the calibrated mass: the weight of one particle
   double wall_scale = 0;  ///< factor on the walls' density, from the calibration
   std::size_t bytes = 0;  ///< of the arrays held now (device memory on cuda)
+  double launches = 0;    ///< cuda: kernels and fills of one update; 0 before one was recorded
 };
 
 /// One simulation. Two solvers may live in one process. Errors are thrown as Error.
@@ -74,8 +75,13 @@ class Solver {
 /// Throws Error(internal) for a state that a solver of n particles cannot take over.
 void check_state(const SolverState& state, std::int64_t n);
 
-/// Throws Error(unavailable) when the backend, a device or memory is not there.
-std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan,
-                                    const Particles& particles);
+/// Throws Error(unavailable) when the plan's peak of host memory is more than what is available
+/// here: an allocation that the system cannot back succeeds at first, and the process is killed
+/// later without a word. The memory of a device is checked by make_solver.
+void refuse_if_too_large(const Scene& scene, const Plan& plan);
+
+/// Throws Error(unavailable) when the backend, a device or memory is not there. Takes the particles
+/// and lets go of them as it goes.
+std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles);
 
 }  // namespace pbf

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "lib/solver/params.h"
@@ -19,21 +20,29 @@ struct InternalState {
   std::vector<int> id;
 };
 
+/// Takes the particles, and lets go of each of their arrays as soon as it is converted: while a
+/// solver is made no more memory is held than it needs later.
 template <class Real>
-InternalState<Real> to_internal(const Scene& s, const Particles& particles) {
+InternalState<Real> to_internal(const Scene& s, Particles particles) {
   const std::size_t n = particles.size();
   const double h = s.h();
   InternalState<Real> out;
+  const Double3& o = s.domain.min;
   out.position.resize(n);
-  out.velocity.resize(n);
-  out.id.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const Double3 &x = particles.position[i], &v = particles.velocity[i], &o = s.domain.min;
+    const Double3& x = particles.position[i];
     out.position[i] = {Real((x[0] - o[0]) / h), Real((x[1] - o[1]) / h), Real((x[2] - o[2]) / h),
                        Real(1)};
-    out.velocity[i] = {Real(v[0] / h), Real(v[1] / h), Real(v[2] / h), Real(0)};
-    out.id[i] = int(i);
   }
+  release(particles.position);
+  out.velocity.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Double3& v = particles.velocity[i];
+    out.velocity[i] = {Real(v[0] / h), Real(v[1] / h), Real(v[2] / h), Real(0)};
+  }
+  release(particles.velocity);
+  out.id.resize(n);
+  std::iota(out.id.begin(), out.id.end(), 0);
   return out;
 }
 

@@ -46,6 +46,12 @@ inline double percentile(const std::vector<std::int64_t>& in_bin, std::int64_t c
   return 0;
 }
 
+/// Empties a vector and gives its memory back (`= {}` would keep it).
+template <class T>
+void release(std::vector<T>& v) {
+  std::vector<T>().swap(v);
+}
+
 template <class Real, class Exec>
 class Stepper {
  public:
@@ -55,8 +61,7 @@ class Stepper {
 
   /// State in the internal frame. Positions and velocities are in the order of ids 0..n-1.
   Stepper(Exec& exec, const Params<Real>& params, KernelMode mode, int iterations, const Plan& plan,
-          const std::vector<Vec4<Real>>& position, const std::vector<Vec4<Real>>& velocity,
-          const std::vector<int>& id)
+          std::vector<Vec4<Real>> position, std::vector<Vec4<Real>> velocity, std::vector<int> id)
       : exec_(exec),
         p_(params),
         mode_(mode),
@@ -85,6 +90,9 @@ class Stepper {
     exec_.to_device(position.data(), n, position_.data());
     exec_.to_device(velocity.data(), n, velocity_.data());
     exec_.to_device(id.data(), n, id_.data());
+    release(position);  // before the lists are made
+    release(velocity);
+    release(id);
     reorder<false>("grid", BinPass<Real>{p_, position_.data(), bin_.data()});
     sum_density();
   }

@@ -279,4 +279,12 @@ TEST_CASE("scene: every key of the table can be misspelt and is found again") {
   }
 }
 
+TEST_CASE("a scene in two dimensions is refused with what to do, not as a misspelt key") {
+  const std::string error = parse_error(kMinimal + "dimensions: 2\n");
+  CAPTURE(error);
+  CHECK(contains(error, "2 scene.yaml:6:1: dimensions: "));
+  CHECK(contains(error, "three dimensions"));
+  CHECK_FALSE(contains(error, "unknown key"));
+}
+
 }  // namespace pbf::scene_test

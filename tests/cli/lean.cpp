@@ -1,0 +1,198 @@
+// What a scene does not ask for is not loaded, not started and not written: of real processes.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "tests/catch.h"
+#include "tests/cli/process.h"
+
+using namespace pbf::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A scene that is still running when it is looked at; `more` is appended.
+std::string long_scene(const std::string& more = "") {
+  return "domain: {min: [0, 0, 0], max: [1, 1, 1]}\n"
+         "fluid: {spacing: 0.1}\n"
+         "bodies: [{shape: block, min: [0, 0, 0], max: [0.4, 0.4, 0.4]}]\n"
+         "time: {step: 0.001, end: 10000}\n"
+         "threads: 1\n" +
+         more;
+}
+
+struct Look {
+  std::string maps;  ///< /proc/PID/maps
+  long threads = 0;
+  Outcome outcome;
+};
+
+/// Starts a run, looks at it when it has written its resolved scene and done some updates, ends it.
+Look look_at(const Scratch& folder, const std::string& scene, bool first_picture = false) {
+  Process run({"run", folder.write("long.yaml", scene), "--out", "o", "--quiet"}, folder.path());
+  const fs::path proc = "/proc/" + std::to_string(run.id());
+  const fs::path sign =
+      folder / (first_picture ? "o/frames/frame_000000.png" : "o/scene.resolved.yaml");
+  for (int k = 0; k < 400 && !fs::exists(sign) && fs::exists(proc / "maps"); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  Look look;
+  look.maps = read_text(proc / "maps");
+  std::error_code gone;
+  look.threads = std::distance(fs::directory_iterator(proc / "task", gone), {});
+  run.send(15);
+  look.outcome = run.wait();
+  return look;
+}
+
+/// File names of the shared libraries in a text of /proc/PID/maps or of the loader's trace.
+std::set<std::string> libraries(const std::string& text) {
+  std::set<std::string> names;
+  std::istringstream in(text);
+  for (std::string word; in >> word;)
+    if (word[0] == '/' && has(word, ".so")) names.insert(fs::path(word).filename().string());
+  return names;
+}
+
+/// What the loader maps before main(), links resolved to the files that maps names.
+std::set<std::string> linked_libraries() {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(
+      popen("LD_TRACE_LOADED_OBJECTS=1 '" PBF_BINARY "'", "r"), pclose);
+  std::string text;
+  std::array<char, 512> line{};
+  while (std::fgets(line.data(), line.size(), pipe.get())) text += line.data();
+  std::set<std::string> names;
+  std::istringstream in(text);
+  for (std::string word; in >> word;)
+    if (word[0] == '/') names.insert(fs::canonical(word).filename().string());
+  return names;
+}
+
+double mib_of_peak(const std::string& summary) {
+  const auto at = summary.find("peak memory");
+  std::istringstream in(summary.substr(at + 11));
+  double value = 0;
+  std::string unit;
+  in >> value >> unit;
+  return unit == "GiB" ? value * 1024 : value;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a bare run maps what it is linked with and no more, in one thread, and writes no frames") {
+  const Scratch folder;
+  const Look bare = look_at(folder, long_scene());
+  CAPTURE(bare.outcome.err);
+  REQUIRE(bare.outcome.code == 75);
+  const auto mapped = libraries(bare.maps), linked = linked_libraries();
+  CHECK(std::includes(linked.begin(), linked.end(), mapped.begin(), mapped.end()));
+  for (const char* absent : {"OSMesa", "LLVM", "libGL", "libEGL", "libcuda", "libnvidia"}) {
+    CAPTURE(absent);
+    CHECK_FALSE(has(bare.maps, absent));
+  }
+  CHECK(bare.threads == 1);
+  CHECK_FALSE(fs::exists(folder / "o/run.h5"));
+  CHECK_FALSE(fs::exists(folder / "o/frames"));
+  for (const char* stage : {"download", "write  ", "render", "xsph", "vorticity"}) {
+    CAPTURE(stage);
+    CHECK_FALSE(has(bare.outcome.out, std::string("\n  ") + stage));
+  }
+}
+
+TEST_CASE("the writer's thread comes with the key output, and with it the stages of a frame") {
+  const Scratch folder;
+  const Look look = look_at(folder, long_scene("output: {every: 1}\n"));
+  CAPTURE(look.outcome.err);
+  REQUIRE(look.outcome.code == 75);
+  CHECK(look.threads == 2);
+  CHECK(fs::exists(folder / "o/run.h5"));
+  for (const char* stage : {"download", "write  "})
+    CHECK(has(look.outcome.out, std::string("\n  ") + stage));
+  CHECK_FALSE(has(look.maps, "LLVM"));
+}
+
+#ifdef PBF_HAS_RENDER
+TEST_CASE("the OpenGL library is mapped by a run that draws: the control of the test without") {
+  const Scratch folder;
+  const Look look = look_at(folder, long_scene("render: {every: 100, size: [64, 48]}\n"), true);
+  if (look.outcome.code == 4) {
+    WARN("no off-screen GL library here: not tested");
+    return;
+  }
+  CAPTURE(look.outcome.err);
+  REQUIRE(look.outcome.code == 75);
+  CHECK((has(look.maps, "OSMesa") || has(look.maps, "libEGL")));
+  CHECK(look.threads > 1);
+}
+#endif
+
+TEST_CASE("the peak memory of a run is that of one particle and the arrays of the plan, to 5 %") {
+  const Scratch folder;
+  const auto scene = [&](const std::string& count, const std::string& spacing) {
+    return folder.write(
+        "n" + count + ".yaml",
+        "domain: {min: [0, 0, 0], max: [1.6, 1, 1.5]}\n"
+        "fluid: {spacing: " +
+            spacing +
+            "}\n"
+            "bodies: [{shape: random_box, min: [0, 0, 0], max: [0.8, 0.8, 1], count: " +
+            count +
+            "}]\n"
+            "time: {step: 0.001, end: 0.004}\n"
+            "threads: 2\n");
+  };
+  const auto peak = [&](const std::string& path) {
+    const Outcome o =
+        pbf::test::pbf({"run", path, "--out", "o", "--overwrite", "--quiet"}, folder.path());
+    REQUIRE(o.code == 0);
+    return mib_of_peak(o.out) * 1.048576;  // MB
+  };
+  const double base = peak(scene("1", "0.1"));
+  for (const auto& [count, spacing] :
+       {std::pair{"1000", "0.0862"}, {"10000", "0.04"}, {"80000", "0.02"}}) {
+    CAPTURE(count);
+    const std::string path = scene(count, spacing);
+    const Outcome plan = pbf::test::pbf({"plan", path, "--json"}, folder.path());
+    const std::string member = "\"host_arrays\":";
+    const double arrays = std::stod(plan.out.substr(plan.out.find(member) + member.size())) / 1e6;
+    const double measured = peak(path);
+    CHECK(measured == Approx(base + arrays).epsilon(0.05));
+  }
+}
+
+TEST_CASE("bench --calibrate stores what plan estimates the time of an update from") {
+  const Scratch folder;
+  const std::string store = "PBF_CALIBRATION", path = (folder / "sub/calibration.csv").string();
+  setenv(store.c_str(), path.c_str(), 1);
+  const std::string scene = folder.write("tiny.yaml", tiny_scene("threads: 1\n"));
+  const Outcome before = pbf::test::pbf({"plan", scene}, folder.path());
+  const Outcome bench = pbf::test::pbf({"bench", "--calibrate", "--n", "64,1000", "--threads", "1",
+                                        "--warmup", "2", "--updates", "2", "--repeats", "1"},
+                                       folder.path());
+  const Outcome after = pbf::test::pbf({"plan", scene}, folder.path());
+  const Outcome json = pbf::test::pbf({"plan", scene, "--json"}, folder.path());
+  const Outcome other = pbf::test::pbf({"plan", scene, "--set", "precision=double"}, folder.path());
+  std::string text = read_text(path);
+  folder.write("bad.csv", text + "cpu,float,none\n");
+  setenv(store.c_str(), (folder / "bad.csv").c_str(), 1);
+  const Outcome bad = pbf::test::pbf({"plan", scene}, folder.path());
+  unsetenv(store.c_str());
+  CAPTURE(bench.err);
+  CHECK(bench.code == 0);
+  CHECK(has(bench.err, path));
+  CHECK(has(before.out, "not known"));
+  CHECK(has(before.out, "--calibrate"));
+  CHECK(has(after.out, " ms, from"));
+  CHECK(has(json.out, "\"time_per_update_ms\":0."));
+  CHECK(has(other.out, "not known"));  // another precision: no guess
+  CHECK(bad.code == 2);
+  CHECK(has(bad.err, "not a line of a calibration"));
+  CHECK(has(bad.err, "bad.csv:"));
+}

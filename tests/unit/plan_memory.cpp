@@ -1,0 +1,171 @@
+// The plan's count of arrays against what the CPU solver holds, and against measured figures.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include "lib/plan/plan.h"
+#include "lib/scene/emit.h"
+#include "lib/solver/solver.h"
+#include "tests/catch.h"
+#include "tests/unit/scene_samples.h"
+
+namespace {
+
+using namespace pbf;
+
+struct Made {
+  Scene scene;
+  Plan plan;
+  std::unique_ptr<Solver> solver;
+};
+
+Scene block(double spacing, const std::vector<std::string>& overrides) {
+  return scene_test::parse(
+      "domain: {min: [0, 0, 0], max: [2, 1, 1.25]}\n"
+      "fluid: {spacing: " +
+          std::to_string(spacing) +
+          "}\n"
+          "bodies: [{shape: block, min: [0, 0, 0], max: [1, 1, 1]}]\n"
+          "time: {step: 0.001, end: 1}\n"
+          "threads: 2\n",
+      overrides);
+}
+
+Made make(double spacing, const std::vector<std::string>& overrides, int updates) {
+  Made m{block(spacing, overrides), {}, {}};
+  m.plan = make_plan(m.scene, count_particles(m.scene, "."));
+  m.solver = make_solver(m.scene, m.plan, emit_particles(m.scene, "."));
+  m.solver->step(updates);
+  m.solver->measure();
+  return m;
+}
+
+std::int64_t bytes_of(const MemoryPlan& m, const std::string& name) {
+  for (const PlanArray& a : m.arrays)
+    if (a.name == name) return a.bytes;
+  return 0;
+}
+
+bool has_pass(const Plan& plan, const std::string& name) {
+  return std::any_of(plan.passes.begin(), plan.passes.end(),
+                     [&](const PlanPass& p) { return p.name == name; });
+}
+
+std::int64_t calls(const Solver& solver, const std::string& stage) {
+  for (const StageTime& s : solver.timings())
+    if (s.name == stage) return s.calls;
+  return 0;
+}
+
+const std::vector<std::vector<std::string>> kFeatures{
+    {},
+    {"tensile={}"},
+    {"viscosity={}"},
+    {"vorticity={}"},
+    {"solver.fused=false"},
+    {"solver.kernels=paper", "fluid.smoothing_ratio=3"},
+    {"solver.iterations=0"},
+    {"gravity=[0, 0, 0]"},
+    {"domain.open=[x_min, x_max, y_min, y_max, z_min, z_max]"},
+    {"tensile={}", "viscosity={}", "vorticity={}", "precision=double"}};
+
+}  // namespace
+
+TEST_CASE("the plan counts the bytes that the CPU solver holds, to 5 %, for sizes and features") {
+  for (const double spacing : {0.5, 0.1, 0.04}) {  // 8, 1000 and 15625 particles
+    for (const auto& f : kFeatures) {
+      CAPTURE(spacing, f);
+      const Made m = make(spacing, f, 2);
+      CHECK(double(m.solver->info().bytes) == Approx(double(m.plan.bytes())).epsilon(0.05));
+    }
+  }
+  const Made large = make(0.0357, {}, 1);  // above the size from which each thread counts bins
+  CHECK(large.plan.particles > 16384);
+  CHECK(double(large.solver->info().bytes) == Approx(double(large.plan.bytes())).epsilon(0.05));
+}
+
+TEST_CASE("every stage that the plan names runs as often as it says, and no other runs") {
+  constexpr int updates = 3;
+  for (const auto& f : kFeatures) {
+    CAPTURE(f);
+    const Made m = make(0.1, f, updates);
+    std::set<std::string> planned{"init", "measure"}, ran;
+    for (const PlanPass& p : m.plan.passes) planned.insert(p.stage);
+    for (const StageTime& s : m.solver->timings())
+      if (s.calls > 0) ran.insert(s.name);
+    CHECK(ran == planned);
+    const int k = m.scene.solver.iterations;
+    CHECK(calls(*m.solver, "lambda") == k * updates);
+    CHECK(calls(*m.solver, "delta") == k * updates);
+    CHECK(calls(*m.solver, "density") == (m.plan.fused ? 0 : k * updates));
+    CHECK(calls(*m.solver, "xsph") == (m.plan.xsph ? updates : 0));
+    CHECK(calls(*m.solver, "vorticity") == (m.plan.vorticity ? updates : 0));
+  }
+}
+
+TEST_CASE(
+    "a feature adds its passes and arrays to the plan, and its absence is named with the key") {
+  const auto plan = [](std::vector<std::string> f) {
+    const Scene s = block(0.1, f);
+    return make_plan(s, 1000);
+  };
+  const Plan bare = plan({});
+  const auto names_key = [](const Plan& p, const std::string& key) {
+    return std::any_of(p.left_out.begin(), p.left_out.end(),
+                       [&](const PlanLeftOut& l) { return l.because.find(key) != l.because.npos; });
+  };
+  for (const char* key : {"viscosity", "tensile", "vorticity", "output", "render"}) {
+    CAPTURE(key);
+    CHECK(names_key(bare, std::string("no key ") + key));
+    CHECK_FALSE(names_key(plan({std::string(key) + "={}"}), std::string("no key ") + key));
+  }
+  CHECK_FALSE(has_pass(bare, "xsph"));
+  CHECK_FALSE(has_pass(bare, "density"));
+  CHECK(has_pass(bare, "delta+move"));
+  CHECK(has_pass(plan({"tensile={}"}), "delta+move (tensile)"));
+  CHECK(bytes_of(bare.memory, "curl") == 0);
+  CHECK(bytes_of(plan({"vorticity={}"}).memory, "curl") == 16000);
+  // Viscosity works on the arrays that are there: no byte more.
+  CHECK(plan({"viscosity={}"}).bytes() == bare.bytes());
+  CHECK(plan({"tensile={}"}).bytes() == bare.bytes());
+  CHECK(bytes_of(bare.memory, "frames under way") == 0);
+  const Plan frames = plan({"output.fields=[density]", "output.precision=double"});
+  CHECK(bytes_of(frames.memory, "frames under way") == 4 * 8 * 1000);
+  // A feature switched on with strength zero is not there either.
+  CHECK(plan({"viscosity.xsph=0", "vorticity.epsilon=0", "tensile.k=0"}).passes.size() ==
+        bare.passes.size());
+}
+
+TEST_CASE("the plan's device bytes are those measured on an H200, to 1 %") {
+  // tests/regression/bench/nvidia_h200.csv, column bytes_per_particle, the benchmark's scene.
+  struct Row {
+    std::int64_t n;
+    double single, dbl;
+  };
+  for (const Row& row : {Row{1000, 331.268, 431.332}, Row{132651, 329.868, 429.869},
+                         Row{1000000, 329.803, 429.803}, Row{9938375, 329.413, 429.413}}) {
+    for (const bool dbl : {false, true}) {
+      CAPTURE(row.n, dbl);
+      Scene s = block(std::cbrt(1.0 / double(row.n)), {"tensile={}", "viscosity={}"});
+      s.backend = Backend::cuda;
+      s.precision = dbl ? Precision::dbl : Precision::single;
+      const Plan plan = make_plan(s, row.n);
+      // What is counted since: the histogram of compression.
+      const double bytes = double(plan.bytes()) - 8 * 1024;
+      CHECK(bytes / double(row.n) == Approx(dbl ? row.dbl : row.single).epsilon(0.01));
+    }
+  }
+}
+
+TEST_CASE("a scene that cannot fit is refused before a particle is made") {
+  const Scene s = block(0.001, {"fluid.smoothing_ratio=10"});
+  const Plan plan = make_plan(s, 1000000000);
+  CHECK(plan.memory.host_arrays > std::int64_t(16) * 1000000000000);
+  const std::string error = scene_test::error_of([&] { refuse_if_too_large(s, plan); });
+  CAPTURE(error);
+  CHECK(scene_test::contains(error, "4 "));
+  CHECK(scene_test::contains(error, "fluid.spacing"));
+  const Plan small = make_plan(block(0.5, {}), 8);
+  CHECK(scene_test::error_of([&] { refuse_if_too_large(s, small); }) == "no error");
+}
