@@ -55,9 +55,20 @@ struct StudyOptions {
   bool list = false, quiet = false;
 };
 
+struct CompareOptions {
+  std::vector<std::string> inputs;                  ///< two run files, or one scene with `between`
+  std::vector<std::string> between;                 ///< two sides, BACKEND:PRECISION[@THREADS]
+  std::vector<std::string> overrides, overrides_b;  ///< of both sides, of B alone
+  int warmup = 50, updates = 100, members = 8;
+  std::uint64_t seed = 1;
+  std::string report;  ///< path, .html .json .png; empty: none
+  bool quiet = false;
+};
+
 int command_run(const RunOptions& options);
 int command_plan(const PlanOptions& options);
 int command_render(const RenderOptions& options);
+int command_compare(const CompareOptions& options);
 int command_config(const ConfigOptions& options);
 int command_info();
 int command_bench(const BenchOptions& options);

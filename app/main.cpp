@@ -22,6 +22,7 @@ constexpr const char* kExitCodes =
     "  3   run stopped by the stability guard\n"
     "  4   backend, device or memory not available\n"
     "  5   file cannot be read or written (disk full)\n"
+    "  6   compare found a difference\n"
     "  75  stopped early by a signal or the wall-time limit, after saving\n\n"
     "Example: pbf run configs/dam_break.yaml --out out/dam_break";
 
@@ -103,6 +104,38 @@ void add_render(CLI::App& app, RenderOptions& o, Command& command) {
       "  pbf render out/dam_break/run.h5 --frames 0:-1:5 --size 1920x1080 --color density \\\n"
       "      --camera 'position=3,-4,2;fov=30'");
   c->callback([&] { command = [&] { return command_render(o); }; });
+}
+
+void add_compare(CLI::App& app, CompareOptions& o, Command& command) {
+  CLI::App* c = app.add_subcommand(
+      "compare", "Whether two runs, or one scene on two backends, differ by more than rounding");
+  c->add_option("INPUT", o.inputs, "Two run files (run.h5), or one scene file with --between")
+      ->required();
+  c->add_option("--between", o.between,
+                "A,B: two sides BACKEND:PRECISION or BACKEND:PRECISION@THREADS")
+      ->delimiter(',');
+  add_overrides(c, o.overrides);
+  c->add_option("--set-b", o.overrides_b, "The same for B alone, to see what a key changes")
+      ->take_all()
+      ->allow_extra_args(false);
+  c->add_option("--warmup", o.warmup, "Updates on A before the frozen step")
+      ->check(CLI::Range(0, 1000000000));
+  c->add_option("--updates", o.updates, "Updates after it")->check(CLI::Range(1, 1000000000));
+  c->add_option("--members", o.members, "Randomly rounded references that give the tolerances")
+      ->check(CLI::Range(2, 1000));
+  c->add_option("--seed", o.seed, "Of the random roundings");
+  c->add_option("--report", o.report, "Write the result to this file: .html, .json or .png");
+  c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  c->footer(
+      "With --between: one update from one state, stage by stage; then how far particles drift\n"
+      "apart; then statistics that chaos leaves alone. Each against what rounding at random does\n"
+      "to references in double on the CPU (so allow for their time: the number of --members).\n"
+      "Exit code 0 when nothing differs by more, 6 when something does.\n"
+      "Examples:\n"
+      "  pbf compare configs/minimal.yaml --between cpu:double,cuda:float --report compare.html\n"
+      "  pbf compare configs/minimal.yaml --between cpu:float@1,cpu:float@2\n"
+      "  pbf compare out/a/run.h5 out/b/run.h5");
+  c->callback([&] { command = [&] { return command_compare(o); }; });
 }
 
 void add_config(CLI::App& app, ConfigOptions& o, Command& command) {
@@ -224,6 +257,7 @@ int run_main(int argc, char** argv) {
   RunOptions run;
   PlanOptions plan;
   RenderOptions render;
+  CompareOptions compare;
   ConfigOptions config;
   BenchOptions bench;
   StudyOptions study;
@@ -231,6 +265,7 @@ int run_main(int argc, char** argv) {
   add_run(app, run, command);
   add_plan(app, plan, command);
   add_render(app, render, command);
+  add_compare(app, compare, command);
   add_config(app, config, command);
   add_bench(app, bench, command);
   add_study(app, study, command);

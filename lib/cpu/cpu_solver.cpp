@@ -7,7 +7,7 @@
 #include "lib/solver/devices.h"
 #include "lib/solver/step_solver.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 namespace {
 
 template <class Real>
@@ -40,6 +40,17 @@ class CpuSolver final : public Solver {
 
   Measures measure() override {
     return to_measures(stepper_->measure(), scene_, plan_, updates_, time());
+  }
+
+  SolverState state() override { return stepper_->state(updates_); }
+  void set_state(const SolverState& s) override {
+    check_state(s, n_);
+    stepper_->set_state(s);
+    updates_ = s.updates;
+  }
+  StepTrace trace(const TraceOptions& options) override {
+    ++updates_;
+    return stepper_->trace(options);
   }
 
   std::vector<StageTime> timings() const override {
@@ -105,4 +116,4 @@ std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan,
                                          "with more memory (pbf plan says how much)");
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

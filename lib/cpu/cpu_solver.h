@@ -3,13 +3,14 @@
 
 #include <memory>
 
+#include "kernels/hd.h"
 #include "lib/solver/solver.h"
 
-namespace pbf {
+namespace pbf::inline PBF_VARIANT {
 
 /// Runs with scene.threads threads (0: all that the process may use). Throws Error(unavailable)
 /// when there is not enough memory.
 std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan,
                                         const Particles& particles);
 
-}  // namespace pbf
+}  // namespace pbf::inline PBF_VARIANT

@@ -54,6 +54,7 @@ class CudaSolver final : public Solver {
 
   void step(int updates) override {
     const Stopwatch watch;
+    if (updates > 0) stepper_->unsort();
     while (updates > 0) {
       int batch = std::min(updates, batch_);
       stepper_->save(saved_);
@@ -98,6 +99,27 @@ class CudaSolver final : public Solver {
 
   Measures measure() override {
     return to_measures(stepper_->measure(), scene_, plan_, updates_, time());
+  }
+
+  SolverState state() override { return stepper_->state(updates_); }
+  void set_state(const SolverState& s) override {
+    check_state(s, n_);
+    stepper_->set_state(s);
+    while (grow_if_needed()) stepper_->relist();
+    drop_graphs();  // the sort has changed which buffer is which
+    updates_ = s.updates;
+  }
+  StepTrace trace(const TraceOptions& options) override {
+    stepper_->unsort();
+    stepper_->save(saved_);
+    StepTrace t = traced_step(options);
+    while (grow_if_needed()) {
+      drop_graphs();
+      stepper_->restore(saved_);
+      t = traced_step(options);
+    }
+    ++updates_;
+    return t;
   }
 
   std::vector<StageTime> timings() const override {
@@ -159,6 +181,11 @@ class CudaSolver final : public Solver {
   void direct_step() {
     stepper_->step(1);
     parity_ ^= 1;
+  }
+
+  StepTrace traced_step(const TraceOptions& options) {
+    parity_ ^= 1;
+    return stepper_->trace(options);
   }
 
   /// Buffers trade places in an update, so a graph that can be replayed holds an even number of

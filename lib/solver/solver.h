@@ -11,6 +11,7 @@
 #include "lib/scene/emit.h"
 #include "lib/scene/scene.h"
 #include "lib/solver/snapshot.h"
+#include "lib/solver/step_trace.h"
 
 namespace pbf {
 
@@ -51,6 +52,16 @@ class Solver {
   }
   virtual Snapshot finish_download() { return std::move(started_); }
   virtual Measures measure() = 0;
+  /// The state as it is now. set_state() of it, in this or in another solver of the same scene and
+  /// precision, continues to the last bit. Positions and velocities of a double are rounded where
+  /// they go into a solver of float. What is measured or downloaded between set_state() and the
+  /// next update uses lists made from the state itself. Error(internal) when the number of
+  /// particles differs or the ids are not 0..n-1 in some order.
+  virtual SolverState state() = 0;
+  virtual void set_state(const SolverState& state) = 0;
+  /// One update, with what each pass left behind, on the host: some ten times slower than step(1),
+  /// whose bits it gives unless `options` ask for others.
+  virtual StepTrace trace(const TraceOptions& options = {}) = 0;
   virtual std::vector<StageTime> timings() const = 0;
   virtual SolverInfo info() const = 0;
   virtual std::int64_t updates_done() const = 0;
@@ -59,6 +70,9 @@ class Solver {
  private:
   Snapshot started_;
 };
+
+/// Throws Error(internal) for a state that a solver of n particles cannot take over.
+void check_state(const SolverState& state, std::int64_t n);
 
 /// Throws Error(unavailable) when the backend, a device or memory is not there.
 std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan,

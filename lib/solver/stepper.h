@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "kernels/pass_vorticity.h"
 #include "kernels/pass_xsph.h"
 #include "lib/scene/scene.h"
+#include "lib/solver/tracer.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -85,27 +87,90 @@ class Stepper {
   /// Updates (kernels/README.md, "The step"). Where only viscosity lies between a sweep and the
   /// next update, one pass does both that and the next bins.
   void step(int updates) {
+    step(updates, [](auto&&...) {});
+  }
+
+  /// The same; `probe(stage, sweep)` sees what each stage left behind. For one update at a time: a
+  /// pass that does two stages shows neither.
+  template <class Probe>
+  void step(int updates, const Probe& probe) {
     if (updates <= 0) return;
+    unsort();
     exec_.begin();
     bool moved_on = false;
     for (int left = updates - 1; left >= 0; --left) {
       if (!moved_on)
         reorder<true>("predict",
                       PredictPass<Real>{p_, position_.data(), velocity_.data(), bin_.data()});
+      probe("neighbors", 0);
       moved_on = left > 0 && p_.xsph > Real(0) && !(p_.vorticity > Real(0));
       with_smoothing(mode_, [&](auto s) {
         constexpr Smoothing S = decltype(s)::value;
-        for (int k = 0; k < iterations_; ++k) sweep<S>();
+        for (int k = 0; k < iterations_; ++k) sweep<S>(probe, k + 1);
         if (moved_on) {
           reorder<true>("xsph", xsph<S, true>());
         } else if (p_.xsph > Real(0)) {
           exec_.for_each(p_.n, xsph<S, false>());
           exec_.mark("xsph");
+          probe("xsph", 0);
         }
       });
-      if (p_.vorticity > Real(0)) confine_vorticity();
+      if (p_.vorticity > Real(0)) confine_vorticity(probe);
     }
     density_is_current_ = false;
+  }
+
+  /// One update, with what each stage left behind.
+  StepTrace trace(const TraceOptions& options) {
+    Tracer<Real, Exec> t(exec_, p_.n, options);
+    step(1, [&](const std::string& stage, int sweep) { record(t, stage, sweep); });
+    return t.result();
+  }
+
+  SolverState state(std::int64_t updates) {
+    const std::size_t n = std::size_t(p_.n);
+    const bool sorted_since = unsorted_.id.size() > 0;
+    SolverState s;
+    s.precision = sizeof(Real) == 8 ? Precision::dbl : Precision::single;
+    s.updates = updates;
+    const auto copy = [&](const Vec4<Real>* from, std::vector<double>& to) {
+      std::vector<Vec4<Real>> host(n);
+      exec_.to_host(from, n, host.data());
+      to.resize(3 * n);
+      for (std::size_t k = 0; k < n; ++k)
+        to[3 * k] = host[k].x, to[3 * k + 1] = host[k].y, to[3 * k + 2] = host[k].z;
+    };
+    copy((sorted_since ? unsorted_.position : position_).data(), s.position);
+    copy((sorted_since ? unsorted_.velocity : velocity_).data(), s.velocity);
+    s.id.resize(n);
+    exec_.to_host((sorted_since ? unsorted_.id : id_).data(), n, s.id.data());
+    return s;
+  }
+
+  /// Takes over a state of as many particles. What measures it before the next update needs lists,
+  /// and these a sort; the order of the state itself comes back with the update.
+  void set_state(const SolverState& s) {
+    const std::size_t n = std::size_t(p_.n);
+    const auto copy = [&](const std::vector<double>& from, Vec4<Real>* to, Real w) {
+      std::vector<Vec4<Real>> host(n);
+      for (std::size_t k = 0; k < n; ++k)
+        host[k] = {Real(from[3 * k]), Real(from[3 * k + 1]), Real(from[3 * k + 2]), w};
+      exec_.to_device(host.data(), n, to);
+    };
+    copy(s.position, position_.data(), Real(1));
+    copy(s.velocity, velocity_.data(), Real(0));
+    exec_.to_device(s.id.data(), n, id_.data());
+    save(unsorted_);
+    reorder<false>("grid", BinPass<Real>{p_, position_.data(), bin_.data()});
+    density_is_current_ = false;
+    sum_density();
+  }
+
+  /// Puts the particles back into the order in which set_state() got them, if they are not.
+  void unsort() {
+    if (unsorted_.id.size() == 0) return;
+    restore(unsorted_);
+    unsorted_ = {};
   }
 
   /// Sums at the present positions. The lists are those of the update: making new ones would
@@ -178,7 +243,7 @@ class Stepper {
     return position_.bytes() + other_position_.bytes() + velocity_.bytes() +
            other_velocity_.bytes() + id_.bytes() + other_id_.bytes() + bin_.bytes() +
            order_.bytes() + density_.bytes() + bin_start_.bytes() + curl_.bytes() +
-           exec_.list_bytes();
+           unsorted_.bytes() + exec_.list_bytes();
   }
 
  private:
@@ -198,12 +263,13 @@ class Stepper {
     exec_.mark("neighbors");
   }
 
-  template <Smoothing S>
-  void sweep() {
+  template <Smoothing S, class Probe>
+  void sweep(const Probe& probe, int number) {
     if (!fused_) {
       exec_.for_each(p_.n,
                      DensityPass<Real, Lists, S>{p_, lists_, position_.data(), density_.data()});
       exec_.mark("density");
+      probe("density", number);
     }
     with_bool(fused_, [&](auto fused) {
       exec_.for_each(p_.n,
@@ -211,12 +277,50 @@ class Stepper {
                          p_, lists_, position_.data(), other_position_.data(), density_.data()});
     });
     exec_.mark("lambda");
+    probe("lambda", number);
     with_bool(tensile_, [&](auto tensile) {
       exec_.for_each(p_.n, DeltaPass<Real, Lists, S, decltype(tensile)::value>{
                                p_, lists_, other_position_.data(), density_.data(),
                                position_.data(), velocity_.data()});
     });
     exec_.mark("delta");
+    probe("delta", number);
+  }
+
+  /// Gives the tracer the arrays of a stage. The order before the sort is in the "other" ids.
+  void record(Tracer<Real, Exec>& t, const std::string& stage, int sweep) {
+    const int* id = id_.data();
+    t.stage(stage, sweep, t.most_terms());
+    if (stage == "neighbors") {
+      t.stage("predict", 0);
+      t.vectors("position", "h", position_.data(), id);  // predicted while they are gathered
+      t.vectors("velocity", "h/s", velocity_.data(), id);
+      t.stage("grid", 0);
+      t.scalars("bin", "1", bin_.data(), other_id_.data());
+      t.vectors("position", "h", position_.data(), id);
+      t.vectors("velocity", "h/s", velocity_.data(), id);
+      t.lists(lists_, id);
+    } else if (stage == "density") {
+      t.scalars("density", "rho0", density_.data(), id);
+    } else if (stage == "lambda") {
+      if (fused_) {
+        t.stage("density", sweep, t.most_terms());
+        t.scalars("density", "rho0", density_.data(), id);
+      }
+      t.stage("lambda", sweep, t.most_terms());
+      t.fourth("lambda", "h^2", other_position_.data(), id);
+    } else if (stage == "delta") {
+      t.stage("delta", sweep);
+      t.vectors("position", "h", position_.data(), id);
+      t.fourth("1/density", "1/rho0", position_.data(), id);
+      t.vectors("velocity", "h/s", velocity_.data(), id);
+    } else if (stage == "curl") {
+      t.stage("vorticity", 0, t.most_terms());
+      t.vectors("curl", "1/s", curl_.data(), id);
+    } else {
+      t.stage(stage, 0);
+      t.vectors("velocity", "h/s", velocity_.data(), id);
+    }
   }
 
   /// The pass over the present velocities, which it leaves behind in the other array.
@@ -226,12 +330,15 @@ class Stepper {
     return {p_, lists_, position_.data(), other_velocity_.data(), velocity_.data(), bin_.data()};
   }
 
-  void confine_vorticity() {
+  template <class Probe>
+  void confine_vorticity(const Probe& probe) {
     exec_.for_each(
         p_.n, CurlPass<Real, Lists>{p_, lists_, position_.data(), velocity_.data(), curl_.data()});
+    probe("curl", 0);
     exec_.for_each(p_.n, VorticityPass<Real, Lists>{p_, lists_, position_.data(), curl_.data(),
                                                     velocity_.data()});
     exec_.mark("vorticity");
+    probe("vorticity", 0);
   }
 
   void sum_density() {
@@ -253,6 +360,7 @@ class Stepper {
   Buffer<Vec4<Real>> position_, other_position_, velocity_, other_velocity_, curl_;
   Buffer<Real> density_;
   Buffer<int> id_, other_id_, bin_, order_, bin_start_;
+  Saved unsorted_;  ///< the state as set_state() got it, until the next update; else empty
 };
 
 }  // namespace pbf::inline PBF_VARIANT

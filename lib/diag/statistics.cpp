@@ -1,0 +1,134 @@
+#include "lib/diag/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace pbf {
+namespace {
+
+std::vector<double> numbers_of(const FieldArray& f) {
+  std::vector<double> out;
+  if (f.type == ScalarType::f64)
+    out.assign(f.as<double>().begin(), f.as<double>().end());
+  else
+    out.assign(f.as<float>().begin(), f.as<float>().end());
+  return out;
+}
+
+/// NaN behind everything, so that the order is total.
+void sort(std::vector<double>& v) {
+  std::sort(v.begin(), v.end(),
+            [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; });
+}
+
+Statistic mean(const std::string& name, const std::string& unit, const std::vector<double>& v) {
+  double sum = 0, squares = 0;
+  for (const double x : v) sum += x;
+  const double n = double(v.size()), m = sum / n;
+  for (const double x : v) squares += (x - m) * (x - m);
+  return {name, unit, m, kSigmas * std::sqrt(squares / n / n)};
+}
+
+/// `v` sorted. The value at ceil(p n), counted from 1.
+double at(const std::vector<double>& v, double p) {
+  const double k = std::ceil(std::clamp(p, 0.0, 1.0) * double(v.size()));
+  return v[std::size_t(std::max(k, 1.0)) - 1];
+}
+
+Statistic quantile(const std::string& name, const std::string& unit, const std::vector<double>& v,
+                   double p) {
+  const double d = kSigmas * std::sqrt(p * (1 - p) / double(v.size())), q = at(v, p);
+  return {name, unit, q, std::max(at(v, p + d) - q, q - at(v, p - d))};
+}
+
+}  // namespace
+
+FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const Double3& gravity,
+                                 double rest_density) {
+  FrameStatistics out;
+  if (s.count == 0) return out;
+  const std::vector<double> x = numbers_of(s.fields[0]);
+  const auto column = [&](const std::function<double(std::size_t)>& f) {
+    std::vector<double> v(s.count);
+    for (std::size_t i = 0; i < s.count; ++i) v[i] = f(i);
+    return v;
+  };
+  const auto distribute = [&](const char* name, const char* unit, std::vector<double> v) {
+    sort(v);
+    out.distributions.push_back({name, unit, std::move(v)});
+    return &out.distributions.back().values;
+  };
+  const char* axes[] = {"x", "y", "z"};
+  out.numbers.push_back(mean("potential energy", "J/kg", column([&](std::size_t i) {
+                               double e = 0;
+                               for (std::size_t k = 0; k < 3; ++k)
+                                 e -= gravity[k] * (x[3 * i + k] - origin[k]);
+                               return e;
+                             })));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::string axis = axes[k];
+    auto v = column([&](std::size_t i) { return x[3 * i + k] - origin[k]; });
+    out.numbers.push_back(mean("centre of mass " + axis, "m", v));
+    out.numbers.push_back(
+        quantile("front " + axis + " (99.9 %)", "m", *distribute(axes[k], "m", v), 0.999));
+  }
+  if (const FieldArray* f = s.find("velocity")) {
+    const std::vector<double> v = numbers_of(*f);
+    const auto squared = [&](std::size_t i) {
+      return v[3 * i] * v[3 * i] + v[3 * i + 1] * v[3 * i + 1] + v[3 * i + 2] * v[3 * i + 2];
+    };
+    out.numbers.push_back(
+        mean("kinetic energy", "J/kg", column([&](std::size_t i) { return 0.5 * squared(i); })));
+    for (std::size_t k = 0; k < 3; ++k)
+      out.numbers.push_back(mean(std::string("momentum ") + axes[k], "m/s",
+                                 column([&](std::size_t i) { return v[3 * i + k]; })));
+    distribute("speed", "m/s", column([&](std::size_t i) { return std::sqrt(squared(i)); }));
+  }
+  if (const FieldArray* f = s.find("density")) {
+    const std::vector<double> rho = numbers_of(*f);
+    out.numbers.push_back(mean("volume", "rest volumes",
+                               column([&](std::size_t i) { return rest_density / rho[i]; })));
+    const auto* error = distribute(
+        "density error", "1", column([&](std::size_t i) { return rho[i] / rest_density - 1; }));
+    for (const auto& [name, p] : {std::pair<const char*, double>{"density error 50 %", 0.5},
+                                  {"density error 90 %", 0.9},
+                                  {"density error 99 %", 0.99}})
+      out.numbers.push_back(quantile(name, "1", *error, p));
+  }
+  return out;
+}
+
+double ks_distance(const std::vector<double>& a, const std::vector<double>& b) {
+  const auto before = [](double x, double y) { return std::isnan(y) ? !std::isnan(x) : x < y; };
+  std::size_t i = 0, k = 0;
+  double largest = 0;
+  while (i < a.size() && k < b.size()) {
+    const double x = before(b[k], a[i]) ? b[k] : a[i];
+    while (i < a.size() && !before(x, a[i])) ++i;
+    while (k < b.size() && !before(x, b[k])) ++k;
+    largest =
+        std::max(largest, std::fabs(double(i) / double(a.size()) - double(k) / double(b.size())));
+  }
+  return largest;
+}
+
+double ks_critical(double alpha, std::size_t n, std::size_t m) {
+  return std::sqrt(-0.5 * std::log(alpha / 2) * (double(n) + double(m)) / (double(n) * double(m)));
+}
+
+double e_folding(const std::vector<double>& x, const std::vector<double>& y, double upper) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, first = HUGE_VAL, last = -HUGE_VAL;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (!(y[k] > 0 && y[k] < upper)) continue;
+    const double l = std::log(y[k]);
+    first = std::min(first, x[k]), last = std::max(last, x[k]);
+    n += 1, sx += x[k], sy += l, sxx += x[k] * x[k], sxy += x[k] * l;
+  }
+  const double spread = n * sxx - sx * sx;
+  if (n < 3 || !(spread > 0)) return 0;
+  const double slope = (n * sxy - sx * sy) / spread;
+  return slope * (last - first) > 0.01 ? 1 / slope : 0;
+}
+
+}  // namespace pbf

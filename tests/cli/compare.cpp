@@ -1,0 +1,159 @@
+// pbf compare as a user runs it: two run files, or one scene on two sides.
+#include <fstream>
+
+#include "tests/catch.h"
+#include "tests/cli/process.h"
+
+using namespace pbf::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Runs the tiny scene into `out`; the path of its run file.
+std::string run(const Scratch& folder, const std::string& out, std::vector<std::string> more = {}) {
+  folder.write("tiny.yaml", tiny_scene());
+  more.insert(more.begin(), {"run", "tiny.yaml", "--quiet", "--out", out});
+  const Outcome o = pbf::test::pbf(more, folder.path());
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  return out + "/run.h5";
+}
+
+Outcome compare(const Scratch& folder, std::vector<std::string> args) {
+  args.insert(args.begin(), "compare");
+  return pbf::test::pbf(args, folder.path());
+}
+
+}  // namespace
+
+TEST_CASE("compare: two runs of one scene are the same bytes, with other threads too") {
+  const Scratch folder;
+  const std::string a = run(folder, "a", {"--threads", "1"}),
+                    b = run(folder, "b", {"--threads", "2"});
+  const Outcome o = compare(folder, {a, b});
+  CAPTURE(o.out, o.err);
+  CHECK(o.code == 0);
+  CHECK(has(o.out, "same to the last byte"));
+  CHECK(has(o.out, "6 common frames"));
+  CHECK(has(o.out, "scene: same"));
+}
+
+TEST_CASE("compare: float and double of one scene cannot be told apart as samples") {
+  const Scratch folder;
+  const std::string a = run(folder, "a"), b = run(folder, "b", {"--precision", "double"});
+  const Outcome o = compare(folder, {a, b});
+  CAPTURE(o.out, o.err);
+  CHECK(o.code == 0);
+  CHECK(has(o.out, "not judged"));
+  CHECK(has(o.out, "no two samples can be told apart"));
+}
+
+TEST_CASE("compare: run files of other scenes, particles, frames or fields say what differs") {
+  const Scratch folder;
+  const std::string a = run(folder, "a");
+  std::vector<std::string> key;
+  std::vector<std::string> fragments;
+  int code = 6;
+  SECTION("another scene") {
+    key = {"--set", "gravity=[0,0,-20]"};
+    fragments = {"scene: DIFFERS", "-9.8", "-20"};
+  }
+  SECTION("another number of particles") {
+    key = {"--set", "bodies.0.max=[0.4,0.4,0.5]"};
+    fragments = {"A holds 64 particles, B 80"};
+  }
+  SECTION("another cadence") {
+    key = {"--set", "output.every=0.05"};
+    fragments = {"2 frames are at a time of both files (A has 6, B 3)"};
+    code = 0;
+  }
+  SECTION("a field missing") {
+    key = {"--set", "output.fields=[velocity]"};
+    fragments = {"b/run.h5 has no field density", "output.fields"};
+    code = 0;
+  }
+  SECTION("a shorter run") {
+    key = {"--set", "time.end=0.05"};
+    fragments = {"A has 6, B 4"};
+    code = 0;
+  }
+  key.insert(key.begin(), {"--precision", "float"});
+  const Outcome o = compare(folder, {a, run(folder, "b", key)});
+  CAPTURE(o.out, o.err);
+  CHECK(o.code == code);
+  for (const auto& f : fragments) CHECK(has(o.out, f));
+}
+
+TEST_CASE("compare: one scene on two sides, with reports") {
+  const Scratch folder;
+  const std::string scene = folder.write("tiny.yaml", tiny_scene());
+  for (const char* report : {"r.html", "r.json"}) {
+    const Outcome o =
+        compare(folder, {scene, "--between", "cpu:double,cpu:float", "--updates", "10", "--warmup",
+                         "5", "--members", "3", "--report", report});
+    CAPTURE(o.out, o.err);
+    CHECK(o.code == 0);
+    CHECK(has(o.out, "frozen step: same"));
+    CHECK(has(o.err, "update 10/10"));
+    CHECK(fs::file_size(folder / report) > 2000);
+  }
+  const Outcome o = compare(folder, {scene, "--between", "cpu:float@1,cpu:float@2", "--quiet",
+                                     "--updates", "3", "--set-b", "gravity=[0,0,-9.82]"});
+  CHECK(o.code == 6);
+  CHECK(o.err.empty());
+  CHECK(has(o.out, "first in stage `predict`"));
+  CHECK(has(o.out, "on B alone: gravity"));
+}
+
+#ifdef PBF_HAS_RENDER
+TEST_CASE("compare: a report as a picture") {
+  const Scratch folder;
+  const std::string scene = folder.write("tiny.yaml", tiny_scene());
+  const Outcome o = compare(folder, {scene, "--between", "cpu:double,cpu:float", "--updates", "5",
+                                     "--quiet", "--report", "r.png"});
+  CHECK(o.code == 0);
+  CHECK(read_text(folder / "r.png").rfind("\x89PNG", 0) == 0);
+}
+#endif
+
+TEST_CASE("compare: what cannot be compared gets its exit code and a message that names it") {
+  const Scratch folder;
+  const std::string a = run(folder, "a");
+  const std::string scene = (folder / "tiny.yaml").string();
+  const std::string whole = read_text(folder / a);
+  folder.write("cut.h5", whole.substr(0, whole.size() / 2));
+  folder.write("foreign.h5", "not HDF5 at all");
+  fs::copy_file(folder / a, folder / "late.h5");
+  struct Wrong {
+    std::vector<std::string> args;
+    int code;
+    std::vector<std::string> fragments;
+  };
+  const std::vector<Wrong> cases{
+      {{a, "none.h5"}, 5, {"none.h5"}},
+      {{a, "foreign.h5"}, 5, {"foreign.h5"}},
+      {{a, "cut.h5"}, 5, {"cut.h5"}},
+      {{a, scene}, 5, {"tiny.yaml"}},
+      {{a}, 2, {"two run files", "--between"}},
+      {{a, a, a}, 2, {"two run files", "3 given"}},
+      {{a, a, "--set", "time.end=1"}, 2, {"--set", "--between"}},
+      {{a, a, "--report", "r.txt"}, 2, {"r.txt", ".html"}},
+      {{scene, "--between", "cpu:double"}, 2, {"--between", "two sides"}},
+      {{scene, "--between", "cpu:double,gpu:float"}, 2, {"gpu:float", "cuda"}},
+      {{scene, "--between", "cpu:double,cpu+defect:float"}, 2, {"PBF_DEFECT"}},
+      {{scene, a, "--between", "cpu:double,cpu:float"}, 2, {"one scene", "2 files"}},
+      {{scene, "--between", "cpu:double,cuda:float"}, 4, {"--backend cpu"}},
+      {{scene, "--between", "cpu:double,cpu:float", "--set-b", "fluid.spacing=0.05"},
+       2,
+       {"--set-b", "particles"}},
+      {{scene, "--between", "cpu:double,cpu:float", "--updates", "0"}, 2, {"--updates"}},
+      {{scene, "--between", "cpu:double,cpu:float", "--members", "1"}, 2, {"--members"}}};
+  for (const Wrong& w : cases) {
+    CAPTURE(w.args);
+    const Outcome o = compare(folder, w.args);
+    CAPTURE(o.out, o.err);
+    CHECK(o.code == w.code);
+    CHECK(o.err.find("pbf: error: ") != std::string::npos);
+    for (const auto& f : w.fragments) CHECK(has(o.err, f));
+  }
+}

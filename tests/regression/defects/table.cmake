@@ -1,0 +1,101 @@
+# The seeded defects: one textual change each to a copy of the physics or of the CPU backend, from
+# which a second CPU solver is compiled beside the right one (configure with -DPBF_DEFECT=NAME).
+# seeded_defect(NAME STAGE FILE OLD NEW): OLD stands in FILE exactly once; STAGE is where `pbf
+# compare` should find it, "none" for a change that only rounds differently and must raise no alarm.
+
+# predict
+seeded_defect(gravity_twice predict kernels/pass_predict.h
+  [[+ p.dt * p.gravity]] [[+ (p.dt + p.dt) * p.gravity]])
+seeded_defect(wrong_dt predict kernels/pass_predict.h
+  [[xyz(position[i]) + p.dt * v]] [[xyz(position[i]) + (Real(1.001) * p.dt) * v]])
+seeded_defect(damping_ignored predict kernels/pass_predict.h
+  [[p.damping * xyz(velocity[i])]] [[xyz(velocity[i])]])
+seeded_defect(frozen_particle predict kernels/pass_predict.h
+  [[position[i] = with_w(x, Real(1));]] [[if (i != 7) position[i] = with_w(x, Real(1));]])
+seeded_defect(predict_clamp_dropped predict kernels/pass_predict.h
+  [[clamp_inside(free, p)]] [[free]])
+
+# grid
+seeded_defect(stale_bins grid kernels/pass_predict.h
+  [[bin[i] = bin_of(x, p);]] [[bin[i] = bin_of(x - p.dt * v, p);]])
+seeded_defect(gather_wrong_order grid kernels/pass_predict.h
+  [[velocity_out[to] = velocity[from];]] [[velocity_out[to] = velocity[to];]])
+
+# neighbors
+seeded_defect(missing_neighbour_cell neighbors kernels/cell_index.h
+  [[y1 = y + 1 < p.cells_y ? y + 1 : p.cells_y - 1;]] [[y1 = y;]])
+seeded_defect(last_cell_off_by_one neighbors kernels/cell_index.h
+  [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 1;]]
+  [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 2;]])
+seeded_defect(stale_grid neighbors lib/solver/stepper.h
+  [[exec_.mark("grid");
+    lists_ = exec_.build_lists(position_.data()]]
+  [[exec_.mark("grid");
+    lists_ = exec_.build_lists(other_position_.data()]])
+seeded_defect(last_neighbour_skipped neighbors kernels/neighbors.h
+  [[const int* end = e + count[i];]] [[const int* end = e + (count[i] ? count[i] - 1 : 0);]])
+seeded_defect(short_cutoff neighbors lib/cpu/cpu_exec.h
+  [[(dot(d, d) < Real(1))]] [[(dot(d, d) < Real(0.98))]])
+
+# density
+seeded_defect(kernel_constant density kernels/smoothing.h
+  [[norm = Real(15.0 / kPi)]] [[norm = Real(15.1 / kPi)]])
+seeded_defect(self_term_missing density kernels/pass_lambda.h
+  [[rho = p.vol * density_norm<Real, S>() * (Real(1) + s.shape)]]
+  [[rho = p.vol * density_norm<Real, S>() * s.shape]])
+seeded_defect(wrong_mass density lib/solver/params.h
+  [[p.vol = Real(plan.vol);]] [[p.vol = Real(1.001 * plan.vol);]])
+seeded_defect(wall_density_missing density kernels/pass_lambda.h
+  [[(Real(1) + s.shape) + wall.density;]] [[(Real(1) + s.shape);]])
+seeded_defect(float_for_double density kernels/pass_lambda.h
+  [[if constexpr (with_density) s.shape += density_shape<Real, S>(q2, t);]]
+  [[if constexpr (with_density) s.shape += Real(float(density_shape<Real, S>(q2, t)));]])
+
+# lambda
+seeded_defect(lambda_sign lambda kernels/pass_lambda.h
+  [[-c / denominator]] [[c / denominator]])
+seeded_defect(relaxation_missing lambda kernels/pass_lambda.h
+  [[dot(own_gradient, own_gradient) + p.relaxation;]] [[dot(own_gradient, own_gradient);]])
+seeded_defect(wall_gradient_missing lambda kernels/pass_lambda.h
+  [[a * s.gradient + wall.gradient;]] [[a * s.gradient;]])
+seeded_defect(wall_gradient_side lambda kernels/boundary.h
+  [[(side == 0 ? g.slope : -g.slope)]] [[g.slope]])
+seeded_defect(two_sided_by_mistake lambda kernels/pass_lambda.h
+  [[p.two_sided ? c : max2(c, Real(0))]] [[c]])
+
+# delta
+seeded_defect(s_corr_sign delta kernels/pass_delta.h [[w -= p.tensile_k]] [[w += p.tensile_k]])
+seeded_defect(wall_clamp_dropped delta kernels/pass_delta.h
+  [[inside = clamp_inside(target, p);]] [[inside = target;]])
+seeded_defect(velocity_not_updated delta kernels/pass_delta.h
+  [[xyz(velocity[i]) + p.inv_dt * (free + (inside - target))]] [[xyz(velocity[i])]])
+seeded_defect(neighbours_lambda_missing delta kernels/pass_delta.h
+  [[Real w = x.w + y.w;]] [[Real w = x.w + x.w;]])
+seeded_defect(s_corr_exponent delta kernels/pass_delta.h
+  [[x = x * x;
+    return x * x;]] [[return x * x;]])
+seeded_defect(inverse_density_missing delta kernels/pass_delta.h
+  [[with_w(inside, Real(1) / density[i])]] [[with_w(inside, Real(1))]])
+seeded_defect(one_iteration_less iterations lib/solver/stepper.h
+  [[for (int k = 0; k < iterations_; ++k)]] [[for (int k = 0; k + 1 < iterations_; ++k)]])
+
+# xsph, vorticity
+seeded_defect(xsph_without_density xsph kernels/pass_xsph.h [[(shape * b.x.w)]] [[shape]])
+seeded_defect(xsph_sign xsph kernels/pass_xsph.h [[(xyz(b.v) - a.v)]] [[(a.v - xyz(b.v))]])
+seeded_defect(curl_sign vorticity kernels/pass_vorticity.h
+  [[p, on), xyz(b.v) - a.v);]] [[p, on), a.v - xyz(b.v));]])
+seeded_defect(vorticity_sign vorticity kernels/pass_vorticity.h
+  [[+ gain * cross]] [[- gain * cross]])
+seeded_defect(vorticity_at_surface vorticity kernels/pass_vorticity.h
+  [[a.x.w * Real(0.75) > Real(1)]] [[a.x.w * Real(0.5) > Real(1)]])
+
+# Other arithmetic, as another backend may have it.
+seeded_defect(clean_reverse_sums none kernels/neighbors.h
+  [[for (; e != end; ++e) f(*e);]] [[while (end != e) f(*--end);]])
+seeded_defect(clean_reciprocal_root none kernels/vec3.h
+  [[const Real q = square_root(q_squared);
+  return {q, Real(1) / q};]]
+  [[const Real inverse = Real(1) / square_root(q_squared);
+  return {q_squared * inverse, inverse};]])
+seeded_defect(clean_unfused_division none kernels/pass_lambda.h
+  [[-c / denominator]] [[-c * (Real(1) / denominator)]])
