@@ -48,7 +48,8 @@ void add_overrides(CLI::App* c, std::vector<std::string>& overrides) {
 
 void add_run(CLI::App& app, RunOptions& o, Command& command) {
   CLI::App* c = app.add_subcommand("run", "Simulate a scene: run.h5 and pictures in one folder");
-  c->add_option("SCENE", o.scene, "Scene file (YAML)")->required();
+  c->add_option("SCENE", o.scene, "Scene file (YAML), or the run file of a run to repeat")
+      ->required();
   c->add_option("--out", o.out, "Run folder; out/<scene name> when not given");
   c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember({"cpu", "cuda"}));
   c->add_option("--precision", o.precision, "Of the computation")
@@ -57,8 +58,10 @@ void add_run(CLI::App& app, RunOptions& o, Command& command) {
   add_overrides(c, o.overrides);
   CLI::Option* overwrite =
       c->add_flag("--overwrite", o.overwrite, "Replace the run in an existing folder");
-  c->add_flag("--resume", o.resume,
-              "Leave a finished run as it is and exit 0; start it when the folder is not there")
+  c->add_flag(
+       "--resume", o.resume,
+       "Go on from the last checkpoint; leave a finished run as it is and exit 0, or prolong "
+       "it to a later time.end; start it when the folder is not there")
       ->excludes(overwrite);
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
   c->add_option("--log-json", o.log_json, "One JSON object per line and measure, into this file");
@@ -69,11 +72,16 @@ void add_run(CLI::App& app, RunOptions& o, Command& command) {
         return *end == '\0' && s > 0 && s < 1e300 ? std::string()
                                                   : text + " is not a number of seconds above 0";
       });
-  c->footer(std::string("Examples:\n") +
-            "  pbf run configs/dam_break.yaml\n"
-            "  pbf run configs/dam_break.yaml --out out/fine --set fluid.spacing=0.01 --threads 8\n"
-            "Exit codes are listed in pbf --help.\n\n" +
-            kMeasures);
+  c->footer(
+      std::string("Examples:\n") +
+      "  pbf run configs/dam_break.yaml\n"
+      "  pbf run configs/dam_break.yaml --out out/fine --set fluid.spacing=0.01 --threads 8\n"
+      "  pbf run configs/dam_break.yaml --set checkpoint.every=60 --resume\n"
+      "  pbf run out/fine/run.h5 --out out/again\n"
+      "SIGTERM and SIGINT finish the update, save a checkpoint and exit 75, as --max-walltime\n"
+      "does; a second one ends at once. SIGUSR1 saves a checkpoint and goes on.\n"
+      "Exit codes are listed in pbf --help.\n\n" +
+      kMeasures);
   c->callback([&] { command = [&] { return command_run(o); }; });
 }
 

@@ -112,6 +112,21 @@ std::vector<std::string> read_texts(hid_t object, const char* name) {
   return values;
 }
 
+std::vector<std::string> read_fixed_texts(hid_t group, const std::string& path, std::size_t size) {
+  const Dataset d(H5Dopen2(group, path.c_str(), H5P_DEFAULT));
+  const Type stored(H5Dget_type(d));
+  const auto dims = shape(d);
+  if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) != 0 ||
+      H5Tget_size(stored) != size || dims.size() != 1)
+    throw Failure(path + " does not hold texts of " + std::to_string(size) + " bytes");
+  std::vector<char> bytes(dims[0] * size);
+  if (!bytes.empty()) check(H5Dread(d, stored, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()));
+  std::vector<std::string> texts;
+  for (hsize_t k = 0; k < dims[0]; ++k)
+    texts.emplace_back(bytes.data() + k * size, strnlen(bytes.data() + k * size, size));
+  return texts;
+}
+
 std::string read_text(hid_t object, const char* name) {
   const auto values = read_texts(object, name);
   if (values.size() != 1) throw Failure(std::string("attribute ") + name + " is not one string");

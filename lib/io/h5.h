@@ -105,6 +105,8 @@ void write_numbers(hid_t object, const char* name, const T* values, hsize_t coun
 
 bool has_attribute(hid_t object, const char* name);
 bool has_link(hid_t group, const std::string& path);  ///< every part of the path is looked at
+/// A one-dimensional dataset of texts of `size` bytes, padded with zeros.
+std::vector<std::string> read_fixed_texts(hid_t group, const std::string& path, std::size_t size);
 std::string read_text(hid_t object, const char* name);
 std::vector<std::string> read_texts(hid_t object, const char* name);
 /// The number in an attribute, converted to T.

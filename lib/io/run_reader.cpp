@@ -205,6 +205,28 @@ std::string RunReader::status() const {
   });
 }
 
+std::vector<std::int64_t> RunReader::updates() const { return impl_->updates; }
+
+std::vector<RunSession> RunReader::sessions() const {
+  return impl_->with_file("cannot read the sessions", [](const h5::File& file) {
+    std::vector<RunSession> all;
+    if (!h5::has_link(file, "pbf/sessions")) return all;
+    const h5::Group group(H5Gopen2(file, "pbf/sessions", H5P_DEFAULT));
+    all.resize(h5::read_all<std::int64_t>(group, "last_update").size());  // written last
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      run_layout::for_each_text(all[k], [&](const char* name, std::string& text) {
+        const auto column = h5::read_fixed_texts(group, name, run_layout::session_text);
+        if (k < column.size()) text = column[k];
+      });
+      run_layout::for_each_integer(all[k], [&](const char* name, std::int64_t& value) {
+        const auto column = h5::read_all<std::int64_t>(group, name);
+        if (k < column.size()) value = column[k];
+      });
+    }
+    return all;
+  });
+}
+
 std::vector<std::string> RunReader::log_columns() const {
   return impl_->with_file("cannot read the log", [](const h5::File& file) {
     const h5::Group log(H5Gopen2(file, "pbf/log", H5P_DEFAULT));
