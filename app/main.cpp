@@ -40,6 +40,13 @@ constexpr const char* kMeasures =
 
 using Command = std::function<int()>;
 
+std::string positive_seconds(const std::string& text) {
+  char* end = nullptr;
+  const double s = std::strtod(text.c_str(), &end);
+  return *end == '\0' && s > 0 && s < 1e300 ? std::string()
+                                            : text + " is not a number of seconds above 0";
+}
+
 void add_overrides(CLI::App* c, std::vector<std::string>& overrides) {
   c->add_option("--set", overrides, "Replace one key of the scene, KEY.PATH=VALUE; repeatable")
       ->take_all()
@@ -66,12 +73,7 @@ void add_run(CLI::App& app, RunOptions& o, Command& command) {
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
   c->add_option("--log-json", o.log_json, "One JSON object per line and measure, into this file");
   c->add_option("--max-walltime", o.max_walltime, "Stop after so many seconds, save, exit 75")
-      ->check([](const std::string& text) {
-        char* end = nullptr;
-        const double s = std::strtod(text.c_str(), &end);
-        return *end == '\0' && s > 0 && s < 1e300 ? std::string()
-                                                  : text + " is not a number of seconds above 0";
-      });
+      ->check(positive_seconds);
   c->footer(
       std::string("Examples:\n") +
       "  pbf run configs/dam_break.yaml\n"
@@ -189,6 +191,45 @@ void add_bench(CLI::App& app, BenchOptions& o, Command& command) {
   c->callback([&] { command = [&] { return command_bench(o); }; });
 }
 
+void add_batch(CLI::App& app, BatchOptions& o, Command& command) {
+  CLI::App* c = app.add_subcommand(
+      "batch", "Many scenes, or one with a grid of settings: each run in a process of its own");
+  c->add_option("INPUT", o.input,
+                "Folder of scenes (*.yaml), a scene, or a list: a scene on each line, then "
+                "KEY.PATH=VALUE where wanted")
+      ->required();
+  c->add_option("--out", o.out, "Folder of the run folders; out/batch_<name> when not given");
+  c->add_option("--grid", o.grid,
+                "KEY=V1,V2,...: a run for every value; repeatable, then for every combination")
+      ->take_all()
+      ->allow_extra_args(false);
+  add_overrides(c, o.overrides);
+  c->add_option("--jobs", o.jobs, "Runs at a time")->check(CLI::Range(1, 4096));
+  c->add_option("--threads", o.threads, "CPU threads of a run; all, shared among --jobs")
+      ->check(CLI::Range(1, 4096));
+  c->add_option("--max-walltime", o.max_walltime, "Stop all after so many seconds, save, exit 75")
+      ->check(positive_seconds);
+  CLI::Option* only = c->add_option("--only", o.only, "Run this one alone, counted from 0")
+                          ->check(CLI::NonNegativeNumber);
+  c->add_flag("--collect", o.collect, "Run nothing, write the summary of what is there")
+      ->excludes(only);
+  c->add_flag("--list", o.list, "Print the runs and do nothing");
+  c->add_flag("--slurm", o.slurm, "Print a Slurm array script and do nothing");
+  c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  c->footer(
+      "Every run is `pbf run --resume` in a folder of its own: what is finished is left alone,\n"
+      "what was stopped or killed goes on, so the same command can be given again until all is\n"
+      "done. OUT/summary.csv has a row per run: why it ended, its last measures. SIGTERM, SIGINT\n"
+      "and --max-walltime save all runs.\n"
+      "Exit code 0 when all are finished, 75 when some are to go on, 6 when some failed.\n"
+      "Examples:\n"
+      "  pbf batch configs/dam_break.yaml --grid solver.iterations=2,4,8 \\\n"
+      "      --grid time.step=0.002,0.001 --jobs 2\n"
+      "  pbf batch scenes/ --out out/scenes --set checkpoint.every=60\n"
+      "  pbf batch scenes/ --out out/scenes --slurm > job.sh; sbatch job.sh");
+  c->callback([&] { command = [&] { return command_batch(o); }; });
+}
+
 void add_study(CLI::App& app, StudyOptions& o, Command& command) {
   CLI::App* c = app.add_subcommand("study", "Error against run time over a grid of settings");
   c->add_option("STUDY", o.study, "Study file (YAML)")->required();
@@ -269,6 +310,7 @@ int run_main(int argc, char** argv) {
   ConfigOptions config;
   BenchOptions bench;
   StudyOptions study;
+  BatchOptions batch;
   Command command;
   add_run(app, run, command);
   add_plan(app, plan, command);
@@ -277,6 +319,7 @@ int run_main(int argc, char** argv) {
   add_config(app, config, command);
   add_bench(app, bench, command);
   add_study(app, study, command);
+  add_batch(app, batch, command);
   add_info(app, command);
   try {
     app.parse(argc, argv);

@@ -4,11 +4,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <filesystem>
 
 #include "app/schedule.h"
 #include "lib/base/error.h"
+#include "lib/base/hash.h"
 #include "lib/base/text.h"
 #include "lib/io/run_file.h"
 #include "lib/scene/difference.h"
@@ -17,10 +17,17 @@
 namespace pbf {
 namespace {
 
-/// The scene that the folder's run was begun with.
-Scene begun_scene(const RunFolder& folder) {
-  const std::string path = folder.file("scene.resolved.yaml");
-  return load_scene(path, {}).scene;
+constexpr const char* kFilesMark = "# particle files ";
+
+std::string files_line(const Scene& scene, const std::string& dir) {
+  Hash hash;
+  bool any = false;
+  for (const Body& b : scene.bodies)
+    if (b.shape == Shape::file) {
+      hash.add_file((std::filesystem::path(dir) / b.path).string());
+      any = true;
+    }
+  return any ? kFilesMark + hash.text() + "\n" : std::string();
 }
 
 /// Runs of such scenes give the same bits with one program, whatever the machine.
@@ -39,13 +46,29 @@ std::int64_t prefix(const Values& values, std::int64_t last, const Expected& exp
 
 class Finder {
  public:
-  Finder(const RunFolder& folder, const Scene& scene, const std::string& commit)
-      : folder_(folder), scene_(scene), commit_(commit), schedule_(make_schedule(scene)) {}
+  Finder(const RunFolder& folder, const Scene& scene, const std::string& dir,
+         const std::string& commit)
+      : folder_(folder),
+        scene_(scene),
+        dir_(dir),
+        commit_(commit),
+        schedule_(make_schedule(scene)) {}
 
   ResumePoint find(std::int64_t particles) {
-    if (!folder_.has("scene.resolved.yaml")) return {};  // killed before it had begun
-    const Scene before = begun_scene(folder_);
-    const std::string difference = physics_difference(before, scene_);
+    if (!folder_.has("scene.resolved.yaml")) {
+      if (folder_.holds_other_files())
+        throw Error(ExitCode::bad_input,
+                    folder_.path() +
+                        ": holds no run to resume, but other files; give another folder with "
+                        "--out");
+      return {};  // killed before it had begun
+    }
+    const LoadedScene record = load_scene(folder_.file("scene.resolved.yaml"), {});
+    const Scene& before = record.scene;
+    std::string difference = physics_difference(before, scene_);
+    const std::string files = files_line(scene_, dir_);
+    if (difference.empty() && !files.empty() && record.text.find(files) == std::string::npos)
+      difference = "bodies: the contents of a particle file have changed";
     if (!difference.empty())
       throw Error(ExitCode::bad_input,
                   folder_.path() + ": cannot resume: " + difference +
@@ -127,7 +150,7 @@ class Finder {
 
   const RunFolder& folder_;
   const Scene& scene_;
-  const std::string& commit_;
+  const std::string &dir_, &commit_;
   Schedule schedule_;
   ResumePoint point_;
   bool damaged_ = false;
@@ -135,9 +158,13 @@ class Finder {
 
 }  // namespace
 
-ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene, std::int64_t particles,
-                              const std::string& commit) {
-  return Finder(folder, scene, commit).find(particles);
+ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene, const std::string& dir,
+                              std::int64_t particles, const std::string& commit) {
+  return Finder(folder, scene, dir, commit).find(particles);
+}
+
+std::string scene_record(const Scene& scene, const std::string& dir) {
+  return files_line(scene, dir) + resolved_yaml(scene);
 }
 
 void prepare_resume(const RunFolder& folder, const ResumePoint& from) {

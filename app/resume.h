@@ -23,12 +23,17 @@ struct ResumePoint {
   std::int64_t update() const { return saved ? saved->state.updates : 0; }
 };
 
-/// Looks at a folder that this process has locked. `commit`: of this program. Throws
+/// Looks at a folder that this process has locked. `dir`: folder of the scene's particle files;
+/// `commit`: of this program. Throws
 /// Error(bad_input) naming the key when the scene is not the one that the folder's run was begun
 /// with (only what physics_difference() leaves out may change), or its end lies before what is
 /// done; Error(io) when a checkpoint cannot be read.
-ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene, std::int64_t particles,
-                              const std::string& commit);
+ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene, const std::string& dir,
+                              std::int64_t particles, const std::string& commit);
+
+/// scene.resolved.yaml of a run folder: the scene, and a hash of the particle files that it names
+/// (`dir`: their folder), so that a run is not resumed with other particles.
+std::string scene_record(const Scene& scene, const std::string& dir);
 
 /// Makes the folder ready to go on: removes DONE, and moves a damaged run.h5 aside.
 void prepare_resume(const RunFolder& folder, const ResumePoint& from);

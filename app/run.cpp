@@ -148,7 +148,9 @@ int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver
   const std::string started = utc_now();
   const File json = open_json(options.log_json, from.started);
   if (from.started) prepare_resume(folder, from);
-  folder.write_text("scene.resolved.yaml", resolved_yaml(loaded.scene));
+  folder.write_text(
+      "scene.resolved.yaml",
+      scene_record(loaded.scene, std::filesystem::path(loaded.path).parent_path().string()));
   log.note(banner(loaded.scene, plan, *solver, folder.path()));
   for (const std::string& note : from.notes) log.note("pbf: " + note);
   if (from.saved) {
@@ -208,7 +210,7 @@ int command_run(const RunOptions& options) {
   ResumePoint from;
   if (there && existing == ExistingFolder::resume) {
     folder = std::make_unique<RunFolder>(out, existing);
-    from = find_resume_point(*folder, scene, plan.particles, build_info().commit);
+    from = find_resume_point(*folder, scene, dir, plan.particles, build_info().commit);
     if (from.finished) {
       for (const std::string& note : from.notes) log.note("pbf: " + note);
       log.note(out + ": the run is finished (DONE is there); nothing to do");

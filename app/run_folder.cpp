@@ -126,6 +126,15 @@ bool RunFolder::has(const std::string& name) const {
   return fs::exists(path_ / name, error);
 }
 
+bool RunFolder::holds_other_files() const {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path_, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!own_file(name) && name != ".lock" && name != "frames") return true;
+  }
+  return false;
+}
+
 void RunFolder::remove(const std::string& name) const {
   std::error_code error;
   fs::remove(path_ / name, error);

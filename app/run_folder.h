@@ -26,6 +26,8 @@ class RunFolder {
   std::string file(const std::string& name) const { return (path_ / name).string(); }
   std::string path() const { return path_.string(); }
   bool has(const std::string& name) const;
+  /// Whether there is anything in it that pbf did not write.
+  bool holds_other_files() const;
   /// Writes a text file, which nobody sees half written. Throws Error(io).
   void write_text(const std::string& name, const std::string& text) const;
   void remove(const std::string& name) const;  ///< where it is there; Error(io)
