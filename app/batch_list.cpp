@@ -86,7 +86,8 @@ void name_all(std::vector<BatchMember>& all) {
     for (const std::string& o : m.overrides) {
       const std::size_t equals = o.find('=');
       const std::size_t dot = o.rfind('.', equals);
-      name += "_" + o.substr(dot == std::string::npos ? 0 : dot + 1);
+      name += '_';
+      name += o.substr(dot == std::string::npos ? 0 : dot + 1);
     }
     name = plain(name);
     if (name.empty() || name[0] == '.') name.insert(0, "run");

@@ -23,6 +23,7 @@ bool is_hdf5(const std::string& path) {
 
 LoadedScene load_scene_or_run(const std::string& path, const std::vector<std::string>& overrides) {
   if (!is_hdf5(path)) return load_scene(path, overrides);
+  try_run_file(path);
   const RunInfo info = RunReader(path).info();
   LoadedScene loaded;
   loaded.scene = parse_scene(info.resolved_scene, path + ": its scene", overrides);

@@ -22,7 +22,7 @@ constexpr const char* kExitCodes =
     "  3   run stopped by the stability guard\n"
     "  4   backend, device or memory not available\n"
     "  5   file cannot be read or written (disk full)\n"
-    "  6   compare found a difference\n"
+    "  6   compare found a difference, batch has failed runs\n"
     "  75  stopped early by a signal or the wall-time limit, after saving\n\n"
     "Example: pbf run configs/dam_break.yaml --out out/dam_break";
 

@@ -116,6 +116,7 @@ class Finder {
     std::optional<RunReader> file;
     RunInfo info;
     try {
+      try_run_file(folder_.file("run.h5"));
       file.emplace(folder_.file("run.h5"));
       info = file->info();
     } catch (const Error& e) {

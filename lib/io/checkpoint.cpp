@@ -42,7 +42,7 @@ void read_rows(hid_t file, const char* name, std::int64_t n, std::size_t compone
   const std::vector<hsize_t> size = h5::shape(d);
   if (size != std::vector<hsize_t>{static_cast<hsize_t>(n), components})
     throw h5::Failure(std::string("dataset ") + name + " has the wrong size");
-  values.resize(static_cast<std::size_t>(n) * components);
+  values.resize(h5::claimed(d, size, sizeof(T)));
   if (!values.empty())
     check(H5Dread(d, h5::native<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
 }

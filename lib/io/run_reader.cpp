@@ -6,6 +6,7 @@
 
 #include "lib/base/error.h"
 #include "lib/io/h5.h"
+#include "lib/io/h5_trial.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
 
@@ -57,7 +58,8 @@ FieldArray read_rows(hid_t vtk, const FieldPlace& place, std::size_t frame, std:
   const auto first = static_cast<hsize_t>(place.offsets[frame]);
   if (place.offsets[frame] < 0 || first > dims[0] || count > dims[0] - first)
     throw h5::Failure(place.path + " ends before the frame does");
-  f.bytes.resize(count * static_cast<std::size_t>(f.components) * size_of(f.type));
+  f.bytes.resize(h5::claimed(d, {count, static_cast<hsize_t>(f.components)}, size_of(f.type)) *
+                 size_of(f.type));
   if (!count) return f;
   const hsize_t start[2] = {first, 0}, block[2] = {count, static_cast<hsize_t>(f.components)};
   const h5::Space file(H5Dget_space(d));
@@ -158,6 +160,20 @@ void RunReader::Impl::scan(hid_t file) {
       throw h5::Failure("frame " + std::to_string(k) + " has no number of points");
     counts.push_back(points[static_cast<std::size_t>(parts[k])]);
   }
+}
+
+void try_run_file(const std::string& path) {
+  h5::trial(path, [&path] {
+    const RunReader run(path);
+    run.info();
+    run.status();
+    run.sessions();
+    for (const std::string& name : run.log_columns()) run.log_column(name);
+    if (run.frames() > 0) {
+      run.frame(0);
+      run.frame(run.frames() - 1);
+    }
+  });
 }
 
 RunReader::RunReader(const std::string& path) : impl_(std::make_unique<Impl>()) {

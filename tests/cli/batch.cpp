@@ -167,7 +167,7 @@ TEST_CASE("the Slurm script of a batch runs every run as a task and requeues tho
   std::string late = o.out;
   const std::string end = " --only ";
   late.replace(late.find(end + "\"$SLURM"), end.size(),
-               " --set time.end=9000 --out o2 --max-walltime 0.2 --only ");
+               " --set time.end=9000 --max-walltime 0.2 --only ");
   folder.write("job.sh", late);
   CHECK(task(1, "") == 75);
   CHECK(read_text(folder / "requeued") == "requeue 7_1\n");
