@@ -149,7 +149,7 @@ std::size_t claimed(hid_t dataset, const std::vector<hsize_t>& block, std::size_
     fits = !__builtin_mul_overflow(values, static_cast<std::size_t>(n), &values) && fits;
   fits = !__builtin_mul_overflow(values, size, &bytes) && fits;
   hsize_t file = 0;
-  check(H5Fget_filesize(dataset, &file));
+  check(H5Fget_filesize(File(H5Iget_file_id(dataset)), &file));
   // Integers are stored in 4 bytes and read as 8 at most.
   constexpr hsize_t most = 2 * 1032;
   if (!fits || bytes / most > file)

@@ -1,6 +1,7 @@
 // RunReader: opens the file anew for every call, so that a file still growing is read as it is.
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <limits>
 #include <thread>
 
@@ -114,10 +115,19 @@ struct RunReader::Impl {
         const h5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, h5::file_access()));
         return action(file);
       } catch (const h5::Failure& f) {
-        if (attempt == 3) throw Error(ExitCode::io, path + ": " + what + ": " + f.what());
+        if (attempt == 3 || !alive())
+          throw Error(ExitCode::io, path + ": " + what + ": " + f.what());
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
+  }
+
+  /// Whether somebody may be writing the file: the last write was a short while ago.
+  bool alive() const {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const auto written = fs::last_write_time(path, error);
+    return !error && fs::file_time_type::clock::now() - written < std::chrono::minutes(1);
   }
 
   void scan(hid_t file);

@@ -87,6 +87,7 @@ void plan_left_out(Plan& plan, const Scene& s) {
   out(s.solver.boundary == BoundaryMode::clamp, "wall density", "solver.boundary is clamp");
   out(s.solver.iterations == 0, "lambda and delta passes", "solver.iterations is 0");
   out(!s.output, "run.h5, its writer thread and downloads", "no key output");
+  out(!s.checkpoint, "checkpoints, but where the run is stopped", "no key checkpoint");
   out(!s.render, "pictures, the GL library and its thread", "no key render");
   out(s.backend == Backend::cpu, "CUDA context", "backend is cpu");
 }
@@ -104,6 +105,12 @@ void plan_files(Plan& plan, const Scene& s) {
     plan.files.push_back("run.h5: " + std::to_string(std::int64_t(frames)) + " frames, about " +
                          std::to_string(std::int64_t(std::ceil(mb))) + " MB" +
                          (s.output->gzip ? " before compression" : ""));
+  }
+  if (s.checkpoint) {
+    const double row = 6 * (s.precision == Precision::dbl ? 8 : 4) + 4;
+    plan.files.push_back(
+        "checkpoint.h5, checkpoint_prev.h5: about " +
+        std::to_string(std::int64_t(std::ceil(row * double(plan.particles) / 1e6))) + " MB each");
   }
   if (s.render)
     plan.files.push_back(
