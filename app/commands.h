@@ -56,6 +56,16 @@ struct StudyOptions {
   bool list = false, quiet = false;
 };
 
+struct BatchOptions {
+  std::string input;                         ///< folder, scene or list
+  std::string out;                           ///< folder of the runs; empty: out/batch_<name>
+  std::vector<std::string> grid, overrides;  ///< key=v1,v2; key.path=value
+  int jobs = 1, threads = 0;                 ///< at a time; CPU threads of each, 0: all / jobs
+  std::int64_t only = -1;                    ///< this run alone, from 0
+  double max_walltime = 0;                   ///< s, 0: none
+  bool list = false, slurm = false, collect = false, quiet = false;
+};
+
 struct CompareOptions {
   std::vector<std::string> inputs;                  ///< two run files, or one scene with `between`
   std::vector<std::string> between;                 ///< two sides, BACKEND:PRECISION[@THREADS]
@@ -73,6 +83,7 @@ int command_compare(const CompareOptions& options);
 int command_config(const ConfigOptions& options);
 int command_info();
 int command_bench(const BenchOptions& options);
+int command_batch(const BatchOptions& options);
 int command_study(const StudyOptions& options);
 
 }  // namespace pbf

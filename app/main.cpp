@@ -22,7 +22,7 @@ constexpr const char* kExitCodes =
     "  3   run stopped by the stability guard\n"
     "  4   backend, device or memory not available\n"
     "  5   file cannot be read or written (disk full)\n"
-    "  6   compare found a difference\n"
+    "  6   compare found a difference, batch has failed runs\n"
     "  75  stopped early by a signal or the wall-time limit, after saving\n\n"
     "Example: pbf run configs/dam_break.yaml --out out/dam_break";
 
@@ -40,6 +40,13 @@ constexpr const char* kMeasures =
 
 using Command = std::function<int()>;
 
+std::string positive_seconds(const std::string& text) {
+  char* end = nullptr;
+  const double s = std::strtod(text.c_str(), &end);
+  return *end == '\0' && s > 0 && s < 1e300 ? std::string()
+                                            : text + " is not a number of seconds above 0";
+}
+
 void add_overrides(CLI::App* c, std::vector<std::string>& overrides) {
   c->add_option("--set", overrides, "Replace one key of the scene, KEY.PATH=VALUE; repeatable")
       ->take_all()
@@ -48,7 +55,8 @@ void add_overrides(CLI::App* c, std::vector<std::string>& overrides) {
 
 void add_run(CLI::App& app, RunOptions& o, Command& command) {
   CLI::App* c = app.add_subcommand("run", "Simulate a scene: run.h5 and pictures in one folder");
-  c->add_option("SCENE", o.scene, "Scene file (YAML)")->required();
+  c->add_option("SCENE", o.scene, "Scene file (YAML), or the run file of a run to repeat")
+      ->required();
   c->add_option("--out", o.out, "Run folder; out/<scene name> when not given");
   c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember({"cpu", "cuda"}));
   c->add_option("--precision", o.precision, "Of the computation")
@@ -57,23 +65,25 @@ void add_run(CLI::App& app, RunOptions& o, Command& command) {
   add_overrides(c, o.overrides);
   CLI::Option* overwrite =
       c->add_flag("--overwrite", o.overwrite, "Replace the run in an existing folder");
-  c->add_flag("--resume", o.resume,
-              "Leave a finished run as it is and exit 0; start it when the folder is not there")
+  c->add_flag(
+       "--resume", o.resume,
+       "Go on from the last checkpoint; leave a finished run as it is and exit 0, or prolong "
+       "it to a later time.end; start it when the folder is not there")
       ->excludes(overwrite);
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
   c->add_option("--log-json", o.log_json, "One JSON object per line and measure, into this file");
   c->add_option("--max-walltime", o.max_walltime, "Stop after so many seconds, save, exit 75")
-      ->check([](const std::string& text) {
-        char* end = nullptr;
-        const double s = std::strtod(text.c_str(), &end);
-        return *end == '\0' && s > 0 && s < 1e300 ? std::string()
-                                                  : text + " is not a number of seconds above 0";
-      });
-  c->footer(std::string("Examples:\n") +
-            "  pbf run configs/dam_break.yaml\n"
-            "  pbf run configs/dam_break.yaml --out out/fine --set fluid.spacing=0.01 --threads 8\n"
-            "Exit codes are listed in pbf --help.\n\n" +
-            kMeasures);
+      ->check(positive_seconds);
+  c->footer(
+      std::string("Examples:\n") +
+      "  pbf run configs/dam_break.yaml\n"
+      "  pbf run configs/dam_break.yaml --out out/fine --set fluid.spacing=0.01 --threads 8\n"
+      "  pbf run configs/dam_break.yaml --set checkpoint.every=60 --resume\n"
+      "  pbf run out/fine/run.h5 --out out/again\n"
+      "SIGTERM and SIGINT finish the update, save a checkpoint and exit 75, as --max-walltime\n"
+      "does; a second one ends at once. SIGUSR1 saves a checkpoint and goes on.\n"
+      "Exit codes are listed in pbf --help.\n\n" +
+      kMeasures);
   c->callback([&] { command = [&] { return command_run(o); }; });
 }
 
@@ -190,6 +200,45 @@ void add_bench(CLI::App& app, BenchOptions& o, Command& command) {
   c->callback([&] { command = [&] { return command_bench(o); }; });
 }
 
+void add_batch(CLI::App& app, BatchOptions& o, Command& command) {
+  CLI::App* c = app.add_subcommand(
+      "batch", "Many scenes, or one with a grid of settings: each run in a process of its own");
+  c->add_option("INPUT", o.input,
+                "Folder of scenes (*.yaml), a scene, or a list: a scene on each line, then "
+                "KEY.PATH=VALUE where wanted")
+      ->required();
+  c->add_option("--out", o.out, "Folder of the run folders; out/batch_<name> when not given");
+  c->add_option("--grid", o.grid,
+                "KEY=V1,V2,...: a run for every value; repeatable, then for every combination")
+      ->take_all()
+      ->allow_extra_args(false);
+  add_overrides(c, o.overrides);
+  c->add_option("--jobs", o.jobs, "Runs at a time")->check(CLI::Range(1, 4096));
+  c->add_option("--threads", o.threads, "CPU threads of a run; all, shared among --jobs")
+      ->check(CLI::Range(1, 4096));
+  c->add_option("--max-walltime", o.max_walltime, "Stop all after so many seconds, save, exit 75")
+      ->check(positive_seconds);
+  CLI::Option* only = c->add_option("--only", o.only, "Run this one alone, counted from 0")
+                          ->check(CLI::NonNegativeNumber);
+  c->add_flag("--collect", o.collect, "Run nothing, write the summary of what is there")
+      ->excludes(only);
+  c->add_flag("--list", o.list, "Print the runs and do nothing");
+  c->add_flag("--slurm", o.slurm, "Print a Slurm array script and do nothing");
+  c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  c->footer(
+      "Every run is `pbf run --resume` in a folder of its own: what is finished is left alone,\n"
+      "what was stopped or killed goes on, so the same command can be given again until all is\n"
+      "done. OUT/summary.csv has a row per run: why it ended, its last measures. SIGTERM, SIGINT\n"
+      "and --max-walltime save all runs.\n"
+      "Exit code 0 when all are finished, 75 when some are to go on, 6 when some failed.\n"
+      "Examples:\n"
+      "  pbf batch configs/dam_break.yaml --grid solver.iterations=2,4,8 \\\n"
+      "      --grid time.step=0.002,0.001 --jobs 2\n"
+      "  pbf batch scenes/ --out out/scenes --set checkpoint.every=60\n"
+      "  pbf batch scenes/ --out out/scenes --slurm > job.sh; sbatch job.sh");
+  c->callback([&] { command = [&] { return command_batch(o); }; });
+}
+
 void add_study(CLI::App& app, StudyOptions& o, Command& command) {
   CLI::App* c = app.add_subcommand("study", "Error against run time over a grid of settings");
   c->add_option("STUDY", o.study, "Study file (YAML)")->required();
@@ -270,6 +319,7 @@ int run_main(int argc, char** argv) {
   ConfigOptions config;
   BenchOptions bench;
   StudyOptions study;
+  BatchOptions batch;
   Command command;
   add_run(app, run, command);
   add_plan(app, plan, command);
@@ -278,6 +328,7 @@ int run_main(int argc, char** argv) {
   add_config(app, config, command);
   add_bench(app, bench, command);
   add_study(app, study, command);
+  add_batch(app, batch, command);
   add_info(app, command);
   try {
     app.parse(argc, argv);

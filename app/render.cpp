@@ -21,6 +21,7 @@ int command_render(const RenderOptions&) {
 }
 #else
 int command_render(const RenderOptions& options) {
+  try_run_file(options.run);
   const RunReader reader(options.run);
   const RunInfo info = reader.info();
   Scene scene = parse_scene(info.resolved_scene, options.run + " (the scene stored in it)", {});

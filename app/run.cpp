@@ -7,6 +7,8 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/load_run.h"
+#include "app/resume.h"
 #include "app/run_folder.h"
 #include "app/run_loop.h"
 #include "app/signals.h"
@@ -28,7 +30,7 @@ std::vector<std::string> all_overrides(const RunOptions& o) {
 }
 
 RunInfo run_info(const LoadedScene& loaded, const Plan& plan, const Solver& solver,
-                 const std::string& started) {
+                 const std::string& started, std::int64_t first_update) {
   const BuildInfo build = build_info();
   char host[256] = "";
   gethostname(host, sizeof host - 1);
@@ -51,17 +53,24 @@ RunInfo run_info(const LoadedScene& loaded, const Plan& plan, const Solver& solv
   info.smoothing_length = loaded.scene.h();
   info.rest_density = loaded.scene.fluid.rest_density;
   info.particles = plan.particles;
+  info.first_update = first_update;
   return info;
 }
 
 RunSinks open_sinks(const LoadedScene& loaded, const Plan& plan, const Solver& solver,
-                    const RunFolder& folder, std::FILE* json, const std::string& started) {
+                    const RunFolder& folder, std::FILE* json, const std::string& started,
+                    const ResumePoint& from) {
   const Scene& scene = loaded.scene;
   RunSinks sinks;
   sinks.json = json;
-  if (scene.output)
-    sinks.writer = std::make_unique<RunWriter>(
-        folder.file("run.h5"), run_info(loaded, plan, solver, started), scene.output->gzip);
+  sinks.checkpoints = folder.path();
+  if (scene.output) {
+    const std::string path = folder.file("run.h5");
+    const RunInfo info = run_info(loaded, plan, solver, started, from.update());
+    sinks.writer = from.keep_file ? std::make_unique<RunWriter>(path, info, scene.output->gzip,
+                                                                from.frames, from.rows)
+                                  : std::make_unique<RunWriter>(path, info, scene.output->gzip);
+  }
 #ifdef PBF_HAS_RENDER
   if (scene.render) {
     folder.make_frames_folder();
@@ -109,8 +118,8 @@ void check_json_folder(const std::string& path, const std::string& out) {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-File open_json(const std::string& path) {
-  File file(path.empty() ? nullptr : std::fopen(path.c_str(), "w"), std::fclose);
+File open_json(const std::string& path, bool append) {
+  File file(path.empty() ? nullptr : std::fopen(path.c_str(), append ? "a" : "w"), std::fclose);
   if (!path.empty() && !file)
     throw Error(ExitCode::io,
                 "--log-json " + path + ": cannot be created: " + std::strerror(errno));
@@ -119,16 +128,27 @@ File open_json(const std::string& path) {
 
 /// Everything from the made folder on, so that its log.txt also gets the error that ends it.
 int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver> solver,
-             const RunFolder& folder, Log& log, StageClock& clock, const Stopwatch& wall,
-             const RunOptions& options) {
+             const RunFolder& folder, const ResumePoint& from, Log& log, StageClock& clock,
+             const Stopwatch& wall, const RunOptions& options) {
   const std::string started = utc_now();
-  const File json = open_json(options.log_json);
-  folder.write_text("scene.resolved.yaml", resolved_yaml(loaded.scene));
+  const File json = open_json(options.log_json, from.started);
+  if (from.started) prepare_resume(folder, from);
+  folder.write_text(
+      "scene.resolved.yaml",
+      scene_record(loaded.scene, std::filesystem::path(loaded.path).parent_path().string()));
   log.note(banner(loaded.scene, plan, *solver, folder.path()));
-  RunSinks sinks = open_sinks(loaded, plan, *solver, folder, json.get(), started);
+  for (const std::string& note : from.notes) log.note("pbf: " + note);
+  if (from.saved) {
+    solver->set_state(from.saved->state);
+    log.note(format("pbf: goes on from the checkpoint of update %lld",
+                    static_cast<long long>(from.update())));
+  }
+  RunSinks sinks = open_sinks(loaded, plan, *solver, folder, json.get(), started, from);
   clock.mark("init");
   RunLoop loop(loaded.scene, plan, *solver, std::move(sinks), log, clock, wall,
                options.max_walltime);
+  if (from.saved) loop.go_on_from(*from.saved);
+  loop.keep_frames(from.frames);
   const RunEnd end = loop.run();
   RunTotals totals = loop.totals();
   totals.folder = folder.path();
@@ -137,7 +157,7 @@ int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver
   if (end == RunEnd::stopped) {
     log.note(
         format("pbf: stopped early by %s after update %lld of %lld, after saving; the files "
-               "in %s hold the run up to there",
+               "in %s hold the run up to there: the same command with --resume goes on",
                loop.stop_reason().c_str(), static_cast<long long>(totals.updates),
                static_cast<long long>(make_schedule(loaded.scene).updates), folder.path().c_str()));
     log.close();
@@ -153,7 +173,7 @@ int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver
 int command_run(const RunOptions& options) {
   const Stopwatch wall;
   StageClock clock;
-  const LoadedScene loaded = load_scene(options.scene, all_overrides(options));
+  const LoadedScene loaded = load_scene_or_run(options.scene, all_overrides(options));
   const Scene& scene = loaded.scene;
 #ifndef PBF_HAS_RENDER
   if (scene.render)
@@ -166,25 +186,33 @@ int command_run(const RunOptions& options) {
                                   : options.resume  ? ExistingFolder::resume
                                                     : ExistingFolder::refuse;
   Log log(options.quiet);
-  if (RunFolder::check_finished(out, existing)) {
-    log.note(out + ": the run is finished (DONE is there); nothing to do");
-    return 0;
-  }
+  const bool there = RunFolder::check(out, existing);
   check_json_folder(options.log_json, out);
   const std::string dir = std::filesystem::path(loaded.path).parent_path().string();
   const Plan plan = make_plan(scene, count_particles(scene, dir));
   refuse_if_too_large(scene, plan);
+  std::unique_ptr<RunFolder> folder;
+  ResumePoint from;
+  if (there && existing == ExistingFolder::resume) {
+    folder = std::make_unique<RunFolder>(out, existing);
+    from = find_resume_point(*folder, scene, dir, plan.particles, build_info().commit);
+    if (from.finished) {
+      for (const std::string& note : from.notes) log.note("pbf: " + note);
+      log.note(out + ": the run is finished (DONE is there); nothing to do");
+      return 0;
+    }
+  }
   watch_signals();
-  // The folder comes last: a scene that cannot run leaves nothing behind.
+  // A new folder comes last: a scene that cannot run leaves nothing behind.
   auto solver = make_solver(scene, plan, emit_particles(scene, dir));
   double solver_init = 0;  // the solver reports its own part of "init"
   for (const StageTime& s : solver->timings()) solver_init += s.name == "init" ? s.seconds : 0;
   clock.add("init", wall.seconds() - solver_init);
   clock.begin();
-  const RunFolder folder(out, existing);
-  log.open(folder.file("log.txt"));
+  if (!folder) folder = std::make_unique<RunFolder>(out, existing);
+  log.open(folder->file("log.txt"), from.started);
   try {
-    return simulate(loaded, plan, std::move(solver), folder, log, clock, wall, options);
+    return simulate(loaded, plan, std::move(solver), *folder, from, log, clock, wall, options);
   } catch (const std::exception& e) {
     try {
       log.file_only(std::string("pbf: error: ") + e.what());

@@ -1,14 +1,19 @@
 #include "app/run_folder.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "lib/base/error.h"
+#include "lib/io/report.h"
 
 namespace pbf {
 namespace fs = std::filesystem;
@@ -26,13 +31,22 @@ bool own_picture(const std::string& name) {
 }
 
 bool own_file(const std::string& name) {
-  return name == "run.h5" || name == "scene.resolved.yaml" || name == "log.txt" || name == "DONE" ||
-         name == "checkpoint.h5" || name == "checkpoint_prev.h5" || name == "checkpoint.h5.tmp";
+  static const char* const kNames[] = {"run.h5",
+                                       "run.damaged.h5",
+                                       "scene.resolved.yaml",
+                                       "log.txt",
+                                       "DONE",
+                                       "checkpoint.h5",
+                                       "checkpoint_prev.h5",
+                                       "checkpoint.h5.tmp",
+                                       "scene.resolved.yaml.tmp",
+                                       "DONE.tmp"};
+  return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
 }
 
 }  // namespace
 
-bool RunFolder::check_finished(const std::string& path, ExistingFolder existing) {
+bool RunFolder::check(const std::string& path, ExistingFolder existing) {
   const fs::path folder(path);
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
@@ -45,18 +59,13 @@ bool RunFolder::check_finished(const std::string& path, ExistingFolder existing)
     throw Error(ExitCode::bad_input,
                 path +
                     ": the output folder exists; give --overwrite to replace the run in it, "
-                    "--resume to leave a finished run as it is, or another folder with --out");
-  if (existing == ExistingFolder::overwrite) return false;
-  if (fs::exists(folder / "DONE", error)) return true;
-  throw Error(ExitCode::bad_input,
-              path +
-                  ": holds no finished run (no file DONE), and this version cannot resume an "
-                  "unfinished one; give --overwrite to start it again");
+                    "--resume to go on with it, or another folder with --out");
+  return true;
 }
 
 RunFolder::RunFolder(const std::string& path, ExistingFolder existing) : path_(path) {
   if (!path_.has_filename()) path_ = path_.parent_path();  // "out/" means "out"
-  check_finished(path_.string(), existing);
+  check(path_.string(), existing);
   std::error_code error;
   if (path_.has_parent_path()) {
     fs::create_directories(path_.parent_path(), error);
@@ -65,11 +74,71 @@ RunFolder::RunFolder(const std::string& path, ExistingFolder existing) : path_(p
   // One mkdir decides: of two runs started at the same time only one gets the folder.
   const bool made = fs::create_directory(path_, error);
   if (error) fail(path_, "the output folder cannot be made", error.message());
-  if (!made && existing != ExistingFolder::overwrite)
+  if (!made && existing == ExistingFolder::refuse)
     throw Error(ExitCode::bad_input, path_.string() + ": another run has just taken this folder");
   if (access(path_.c_str(), W_OK | X_OK) != 0)
     fail(path_, "the output folder cannot be written", std::strerror(errno));
-  if (!made) remove_own_files();
+  lock();
+  if (!made && existing == ExistingFolder::overwrite) remove_own_files();
+}
+
+RunFolder::~RunFolder() {
+  if (lock_ < 0) return;
+  ::unlink(file(".lock").c_str());  // while it is held: the next one makes a new file
+  ::close(lock_);
+}
+
+/// The system drops the lock with the process, however that ends.
+void RunFolder::lock() {
+  for (;;) {
+    lock_ = ::open(file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (lock_ < 0) fail(path_ / ".lock", "cannot be made", std::strerror(errno));
+    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+      const int reason = errno;
+      char who[200] = "";
+      const ssize_t size = ::pread(lock_, who, sizeof who - 1, 0);
+      ::close(std::exchange(lock_, -1));
+      if (reason != EWOULDBLOCK)
+        fail(path_ / ".lock", "this file system has no locks (flock)", std::strerror(reason));
+      throw Error(ExitCode::bad_input,
+                  path_.string() + ": another run writes here" +
+                      (size > 0 ? " (" + std::string(who) + ")" : std::string()) +
+                      "; wait for its end, stop it, or give another folder with --out");
+    }
+    // The one before may have unlinked it between our open and our lock.
+    struct stat mine {
+    }, there{};
+    if (::fstat(lock_, &mine) == 0 && ::stat(file(".lock").c_str(), &there) == 0 &&
+        mine.st_ino == there.st_ino)
+      break;
+    ::close(std::exchange(lock_, -1));
+  }
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  const std::string who = "process " + std::to_string(getpid()) + " on " + host;
+  if (::ftruncate(lock_, 0) != 0 ||
+      ::pwrite(lock_, who.data(), who.size(), 0) != static_cast<ssize_t>(who.size()))
+    errno = 0;  // only what a second run would be told; a full disk is noticed soon enough
+}
+
+bool RunFolder::has(const std::string& name) const {
+  std::error_code error;
+  return fs::exists(path_ / name, error);
+}
+
+bool RunFolder::holds_other_files() const {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path_, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!own_file(name) && name != ".lock" && name != "frames") return true;
+  }
+  return false;
+}
+
+void RunFolder::remove(const std::string& name) const {
+  std::error_code error;
+  fs::remove(path_ / name, error);
+  if (error) fail(path_ / name, "cannot be removed", error.message());
 }
 
 void RunFolder::remove_own_files() const {
@@ -93,10 +162,7 @@ void RunFolder::remove_own_files() const {
 }
 
 void RunFolder::write_text(const std::string& name, const std::string& text) const {
-  std::ofstream out(path_ / name, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.close();
-  if (!out) fail(path_ / name, "cannot be written", std::strerror(errno));
+  write_text_file(file(name), text);
 }
 
 void RunFolder::make_frames_folder() const {

@@ -1,4 +1,5 @@
-// The folder of one run: run.h5, scene.resolved.yaml, log.txt, frames/, DONE written last.
+// The folder of one run: run.h5, checkpoints, scene.resolved.yaml, log.txt, frames/, DONE written
+// last. Whoever writes there holds the lock .lock.
 #pragma once
 
 #include <filesystem>
@@ -11,25 +12,32 @@ enum class ExistingFolder { refuse, overwrite, resume };
 
 class RunFolder {
  public:
-  /// Says whether a run may go there, before any work is done and without touching anything.
-  /// Throws Error(bad_input) for an existing folder when `refuse`, and for an unfinished one when
-  /// `resume`, which this version cannot resume; Error(io) for something that is no folder.
-  /// True when `resume` finds a finished run: there is nothing to do.
-  static bool check_finished(const std::string& path, ExistingFolder existing);
+  /// Whether the folder is there, before any work is done and without touching anything. Throws
+  /// Error(bad_input) for an existing one when `refuse`; Error(io) for something that is no folder.
+  static bool check(const std::string& path, ExistingFolder existing);
 
-  /// Makes the folder, after the same checks. `overwrite` removes the files that pbf itself writes
-  /// and leaves everything else. Throws Error(io) when it cannot be made or written.
+  /// Makes or opens the folder, after the same checks, and locks it: Error(bad_input) when another
+  /// run writes there. `overwrite` removes the files that pbf itself writes and leaves everything
+  /// else. Throws Error(io) when it cannot be made or written.
   RunFolder(const std::string& path, ExistingFolder existing);
+  ~RunFolder();
+  RunFolder(const RunFolder&) = delete;
 
   std::string file(const std::string& name) const { return (path_ / name).string(); }
   std::string path() const { return path_.string(); }
-  /// Writes a text file. Throws Error(io).
+  bool has(const std::string& name) const;
+  /// Whether there is anything in it that pbf did not write.
+  bool holds_other_files() const;
+  /// Writes a text file, which nobody sees half written. Throws Error(io).
   void write_text(const std::string& name, const std::string& text) const;
+  void remove(const std::string& name) const;  ///< where it is there; Error(io)
   void make_frames_folder() const;
 
  private:
+  void lock();
   void remove_own_files() const;
   std::filesystem::path path_;
+  int lock_ = -1;
 };
 
 }  // namespace pbf

@@ -48,12 +48,27 @@ RunLoop::RunLoop(const Scene& scene, const Plan& plan, Solver& solver, RunSinks 
   }
 }
 
+void RunLoop::go_on_from(const SavedRun& saved) {
+  const std::int64_t u = saved.state.updates;
+  due_.energy = saved.energy;
+  due_.compression_max = compression_max_ = saved.compression_max;
+  energy_ = EnergyTrack(saved.energy);
+  first_.energy = saved.energy.first;
+  seen_frames_ = schedule_.frames_until(u);
+  pictures_ = schedule_.pictures_until(u);
+  start_ = last_frame_ = u;
+  if (schedule_.measures(u)) last_measure_ = u;
+  progress_.start_at(u);
+}
+
 RunEnd RunLoop::run() {
   const Stopwatch loop;
-  measure();
-  first_ = last_;
-  outputs(0, false);
-  std::int64_t u = 0;
+  std::int64_t u = start_;
+  measure(u == 0);  // later only for what is shown: the row is in the log
+  if (u == 0) {
+    first_ = last_;
+    outputs(0, false);
+  }
   double per_update = 0;  // s, of the last call of step()
   while (u < schedule_.updates && !diverged_ && !must_stop()) {
     // Short calls, so that a signal or the wall-time limit waits a quarter of a second at most
@@ -69,14 +84,17 @@ RunEnd RunLoop::run() {
     if (schedule_.measures(u)) measure();
     if (!diverged_) outputs(u, false);
     progress_.update({u, schedule_.updates, plan_.particles, solver_.time(), last_.compression_mean,
-                      last_.compression_max});
+                      last_.compression_max, start_});
+    if (!diverged_ && u < schedule_.updates && checkpoint_due()) save();
   }
+  if (!diverged_ && u < schedule_.updates) save();
   if (last_measure_ != u) measure();  // stopped between two measures
   outputs(u, true);
   const RunEnd end = diverged_               ? RunEnd::diverged
                      : u < schedule_.updates ? RunEnd::stopped
                                              : RunEnd::finished;
   close(end);
+  if (end == RunEnd::finished && scene_.checkpoint) save();
   loop_seconds_ = loop.seconds();
   return end;
 }
@@ -88,12 +106,40 @@ bool RunLoop::must_stop() {
   return !stop_reason_.empty();
 }
 
-void RunLoop::measure() {
+bool RunLoop::checkpoint_due() {
+  return save_asked() || (scene_.checkpoint && since_save_.seconds() >= scene_.checkpoint->every);
+}
+
+/// All that comes before the state is on the disk before the checkpoint is.
+void RunLoop::save() {
+  hand_over();
+  clock_.begin();
+  if (!closed_) {
+#ifdef PBF_HAS_RENDER
+    if (sinks_.pictures) sinks_.pictures->wait();
+#endif
+    if (sinks_.writer) sinks_.writer->sync();
+  }
+  due_.state = solver_.state();
+  due_.particles = plan_.particles;
+  write_checkpoint(sinks_.checkpoints, due_);
+  due_.state = {};
+  clock_.mark("write");
+  since_save_.reset();
+}
+
+void RunLoop::measure(bool logged) {
   last_ = solver_.measure();
-  energy_.follow(last_);
+  EnergyTrack seen = energy_;
+  (logged ? energy_ : seen).follow(last_);
+  diverged_ = last_.non_finite > 0 || last_.outside > 0;
+  if (!logged) return;
   last_measure_ = last_.update;
   compression_max_ = std::max(compression_max_, last_.compression_max);
-  diverged_ = last_.non_finite > 0 || last_.outside > 0;
+  if (last_.update % schedule_.measure_every == 0) {
+    due_.energy = energy_.history();
+    due_.compression_max = compression_max_;
+  }
   const std::vector<StageTime> since = stages_since_last_row();
   clock_.begin();
   if (sinks_.writer) {
@@ -101,7 +147,8 @@ void RunLoop::measure() {
     clock_.mark("write");
   }
   if (sinks_.json) {
-    const std::string line = measure_json(last_, wall_.seconds(), since) + "\n";
+    const std::int64_t frames = sinks_.writer ? sinks_.writer->frames_written() : 0;
+    const std::string line = measure_json(last_, wall_.seconds(), frames, since) + "\n";
     if (std::fwrite(line.data(), 1, line.size(), sinks_.json) != line.size() ||
         std::fflush(sinks_.json) != 0)
       throw Error(ExitCode::io,
@@ -111,11 +158,16 @@ void RunLoop::measure() {
 }
 
 void RunLoop::outputs(std::int64_t u, bool last) {
-  const bool write = schedule_.frame_every > 0 && (last || schedule_.writes(u)) && last_frame_ != u;
+  bool write = schedule_.frame_every > 0 && (last || schedule_.writes(u)) && last_frame_ != u;
   bool draw = !last && schedule_.draws(u);
 #ifndef PBF_HAS_RENDER
   draw = false;  // refused before the run began
 #endif
+  if (write && !last) ++seen_frames_;
+  if (write && seen_frames_ <= kept_frames_) {
+    write = false;
+    last_frame_ = u;
+  }
   if (!write && !draw) return;
   const bool wide = scene_.output && scene_.output->precision == Precision::dbl;
   hand_over();
@@ -148,6 +200,7 @@ void RunLoop::hand_over() {
 
 void RunLoop::close(RunEnd end) {
   hand_over();
+  closed_ = true;
   clock_.begin();
 #ifdef PBF_HAS_RENDER
   if (sinks_.pictures) {
@@ -157,7 +210,7 @@ void RunLoop::close(RunEnd end) {
   }
 #endif
   if (sinks_.writer) {
-    sinks_.writer->finish(status_name(end));
+    sinks_.writer->finish(status_name(end), stop_reason_, solver_.updates_done());
     frames_ = sinks_.writer->frames_written();
     bytes_ = sinks_.writer->bytes_written();
     clock_.mark("write");
@@ -200,6 +253,7 @@ RunTotals RunLoop::totals() const {
   RunTotals t;
   t.particles = plan_.particles;
   t.updates = solver_.updates_done();
+  t.first_update = start_;
   t.simulated = solver_.time();
   t.wall = wall_.seconds();
   t.loop = loop_seconds_;

@@ -10,6 +10,7 @@
 #include "app/schedule.h"
 #include "lib/base/log.h"
 #include "lib/base/stage_clock.h"
+#include "lib/io/checkpoint.h"
 #include "lib/io/run_file.h"
 #include "lib/plan/plan.h"
 #include "lib/scene/scene.h"
@@ -31,6 +32,7 @@ struct RunSinks {
   std::unique_ptr<RenderThread> pictures;
 #endif
   std::FILE* json = nullptr;  ///< one line per measure; owned by the caller
+  std::string checkpoints;    ///< folder
 };
 
 class RunLoop {
@@ -38,6 +40,11 @@ class RunLoop {
   /// `wall` has been running since the start of the command.
   RunLoop(const Scene& scene, const Plan& plan, Solver& solver, RunSinks sinks, Log& log,
           StageClock& clock, const Stopwatch& wall, double max_walltime);
+
+  /// Before run(): goes on from a state that the solver has already been given.
+  void go_on_from(const SavedRun& saved);
+  /// Before run(): the first frames are in the file.
+  void keep_frames(std::int64_t frames) { kept_frames_ = frames; }
 
   /// Runs to the end, a signal, the wall-time limit or divergence, then writes the last frame and
   /// closes every file. Errors of writing and drawing are thrown.
@@ -51,8 +58,11 @@ class RunLoop {
   /// Gives the snapshot that is being copied from the solver, if any, to the writer and the
   /// pictures.
   void hand_over();
-  void measure();
+  /// `logged`: into the log and the JSON file.
+  void measure(bool logged = true);
   bool must_stop();
+  bool checkpoint_due();
+  void save();
   std::vector<StageTime> stages() const;
   std::vector<StageTime> stages_since_last_row();
   void close(RunEnd end);
@@ -72,9 +82,12 @@ class RunLoop {
   std::vector<StageTime> row_stages_;  // at the last row of the log
   Measures first_, last_;
   EnergyTrack energy_;
+  SavedRun due_;  // energy and compression of the measures that are due, for checkpoints
+  Stopwatch since_save_;
+  std::int64_t start_ = 0, kept_frames_ = 0, seen_frames_ = 0;  // first update; in the file; due
   double compression_max_ = 0, loop_seconds_ = 0, render_thread_ = 0;
   std::int64_t frames_ = 0, pictures_ = 0, bytes_ = 0, last_frame_ = -1, last_measure_ = -1;
-  bool diverged_ = false;
+  bool diverged_ = false, closed_ = false;
   /// A download that was started and is finished after the next updates: on a device the copy
   /// runs beside them.
   struct {

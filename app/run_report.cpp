@@ -92,7 +92,9 @@ std::string run_summary(const RunTotals& t) {
       "peak memory         %s\n",
       static_cast<long long>(t.particles), static_cast<long long>(t.updates), t.simulated,
       duration_text(t.wall).c_str(), duration_text(t.loop).c_str(),
-      t.loop > 0 ? si_number(double(t.particles) * double(t.updates) / t.loop).c_str() : "0",
+      t.loop > 0
+          ? si_number(double(t.particles) * double(t.updates - t.first_update) / t.loop).c_str()
+          : "0",
       100 * t.last.compression_mean, 100 * t.last.compression_rms, 100 * t.last.compression_p99,
       100 * t.last.compression_max, 100 * t.compression_max, 100 * t.last.share_above_1,
       100 * t.last.share_above_10, t.last.energy, t.last.kinetic_energy, t.first.energy,
@@ -112,7 +114,8 @@ std::string run_summary(const RunTotals& t) {
   return out;
 }
 
-std::string measure_json(const Measures& m, double wall, const std::vector<StageTime>& stages) {
+std::string measure_json(const Measures& m, double wall, std::int64_t frames,
+                         const std::vector<StageTime>& stages) {
   const auto item = [](const char* name, double value) {
     return json_string(name) + ": " + json_number(value);
   };
@@ -121,7 +124,8 @@ std::string measure_json(const Measures& m, double wall, const std::vector<Stage
            json_number(v[2]) + "]";
   };
   std::string out = "{";  // appended to: GCC 12 warns of overlap when a literal comes first
-  out += item("update", double(m.update)) + ", " + item("time", m.time) + ", " + item("wall", wall);
+  out += item("update", double(m.update)) + ", " + item("time", m.time) + ", " +
+         item("wall", wall) + ", " + item("frames", double(frames));
   for (const auto& [name, value] :
        {std::pair<const char*, double>{"compression_mean", m.compression_mean},
         {"compression_rms", m.compression_rms},

@@ -13,6 +13,7 @@ namespace pbf {
 /// Everything the summary needs.
 struct RunTotals {
   std::int64_t particles = 0, updates = 0;
+  std::int64_t first_update = 0;  ///< a resumed run went on from there
   double simulated = 0;           ///< s
   double wall = 0;                ///< s, the whole command
   double loop = 0;                ///< s, the updates with their output
@@ -33,8 +34,9 @@ std::string group_table(const RunTotals& totals);
 
 std::string run_summary(const RunTotals& totals);
 
-/// One JSON object on one line: the measures, wall-clock seconds, seconds per stage.
-std::string measure_json(const Measures& measures, double wall,
+/// One JSON object on one line: the measures, wall-clock seconds, frames that are safe on the disk,
+/// seconds per stage.
+std::string measure_json(const Measures& measures, double wall, std::int64_t frames,
                          const std::vector<StageTime>& stages);
 
 }  // namespace pbf

@@ -17,10 +17,25 @@ struct Schedule {
   bool measures(std::int64_t u) const { return due(u, measure_every) || u == updates; }
   bool writes(std::int64_t u) const { return due(u, frame_every) || (frame_every && u == updates); }
   bool draws(std::int64_t u) const { return due(u, picture_every); }
+  /// Numbers of measures, frames and pictures up to update u, the one after which a run that goes
+  /// on does no more of them for u.
+  std::int64_t measures_until(std::int64_t u) const { return count(u, measure_every, true); }
+  std::int64_t frames_until(std::int64_t u) const { return count(u, frame_every, true); }
+  std::int64_t pictures_until(std::int64_t u) const { return count(u, picture_every, false); }
+  /// The update of the k-th measure and frame (from 0).
+  std::int64_t update_of_measure(std::int64_t k) const { return at(k, measure_every); }
+  std::int64_t update_of_frame(std::int64_t k) const { return at(k, frame_every); }
   /// The first update after u at which something is due, at most the last one.
   std::int64_t next_event(std::int64_t u) const;
 
  private:
+  std::int64_t count(std::int64_t u, std::int64_t every, bool end) const {
+    if (every <= 0) return 0;
+    return u / every + 1 + (end && u >= updates && u % every != 0);
+  }
+  std::int64_t at(std::int64_t k, std::int64_t every) const {
+    return k > updates / every ? updates : k * every;
+  }
   static bool due(std::int64_t u, std::int64_t every) { return every > 0 && u % every == 0; }
 };
 

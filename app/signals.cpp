@@ -5,36 +5,36 @@
 namespace pbf {
 namespace {
 
-constexpr int kWatched[] = {SIGTERM, SIGINT, SIGUSR1};
-volatile std::sig_atomic_t seen = 0;
+constexpr int kStopping[] = {SIGTERM, SIGINT};
+volatile std::sig_atomic_t seen = 0, save = 0;
 
-extern "C" void pbf_on_signal(int number) {
+extern "C" void pbf_on_stop(int number) {
   seen = number;
-  for (const int s : kWatched) std::signal(s, SIG_DFL);  // async-signal-safe
+  for (const int s : kStopping) std::signal(s, SIG_DFL);  // async-signal-safe
+}
+
+extern "C" void pbf_on_save(int) { save = 1; }
+
+void watch(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;  // a write that is under way goes on
+  sigaction(signal, &action, nullptr);
 }
 
 }  // namespace
 
 void watch_signals() {
-  for (const int s : kWatched) {
-    struct sigaction action {};
-    action.sa_handler = pbf_on_signal;
-    action.sa_flags = SA_RESTART;  // a write that is under way goes on
-    sigaction(s, &action, nullptr);
-  }
+  for (const int s : kStopping) watch(s, pbf_on_stop);
+  watch(SIGUSR1, pbf_on_save);
 }
 
-std::string signal_seen() {
-  switch (seen) {
-    case SIGTERM:
-      return "SIGTERM";
-    case SIGINT:
-      return "SIGINT";
-    case SIGUSR1:
-      return "SIGUSR1";
-    default:
-      return "";
-  }
+std::string signal_seen() { return seen == 0 ? "" : seen == SIGTERM ? "SIGTERM" : "SIGINT"; }
+
+bool save_asked() {
+  const bool asked = save != 0;
+  save = 0;
+  return asked;
 }
 
 void ignore_closed_pipes() { std::signal(SIGPIPE, SIG_IGN); }

@@ -1,15 +1,20 @@
-// Asking a run to stop: SIGTERM, SIGINT and SIGUSR1 (Slurm's warning) set a flag.
+// Asking a run to stop (SIGTERM, SIGINT) or to save its state (SIGUSR1, as Slurm's --signal sends
+// it) sets a flag.
 #pragma once
 
 #include <string>
 
 namespace pbf {
 
-/// From now on the first of the signals sets the flag; a second one ends the program at once.
+/// From now on SIGTERM or SIGINT sets the flag of signal_seen(); a second one ends the program at
+/// once. SIGUSR1 sets that of save_asked().
 void watch_signals();
 
-/// Name of the signal that came ("SIGTERM"), empty when none did.
+/// Name of the signal that asked to stop ("SIGTERM"), empty when none did.
 std::string signal_seen();
+
+/// Whether SIGUSR1 came since the last call.
+bool save_asked();
 
 /// Writing to a pipe whose reader has gone gives an error instead of ending the program.
 void ignore_closed_pipes();

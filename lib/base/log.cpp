@@ -28,9 +28,9 @@ Log::~Log() {
   if (file_) std::fclose(file_);
 }
 
-void Log::open(const std::string& path) {
+void Log::open(const std::string& path, bool append) {
   path_ = path;
-  file_ = std::fopen(path.c_str(), "w");
+  file_ = std::fopen(path.c_str(), append ? "a" : "w");
   if (!file_) throw Error(ExitCode::io, path + ": cannot be created: " + std::strerror(errno));
 }
 
@@ -82,7 +82,9 @@ std::string progress_line(const ProgressState& s, double wall, double wall_since
             " particle-updates/s";
   line += format("  compression mean %.2g %% max %.2g %%", 100 * s.compression_mean,
                  100 * s.compression_max);
-  if (part > 0 && part < 1) line += "  ETA " + duration_text(wall * (1 - part) / part);
+  const std::int64_t own = s.update - s.first_update;
+  if (own > 0 && part < 1)
+    line += "  ETA " + duration_text(wall * double(s.updates - s.update) / double(own));
   return line;
 }
 

@@ -19,8 +19,9 @@ class Log {
   Log(const Log&) = delete;
   Log& operator=(const Log&) = delete;
 
-  /// Creates (or empties) the log file. Throws Error(io) with the system's reason.
-  void open(const std::string& path);
+  /// Creates (or empties, or with `append` goes on with) the log file. Throws Error(io) with the
+  /// system's reason.
+  void open(const std::string& path, bool append = false);
   /// Lines to stderr and the file. `text` ends without a newline.
   void note(const std::string& text);
   /// Lines to stdout and the file.
@@ -48,6 +49,7 @@ struct ProgressState {
   std::int64_t particles = 0;
   double time = 0;                                   ///< s, simulated
   double compression_mean = 0, compression_max = 0;  ///< of the last measure, 1
+  std::int64_t first_update = 0;  ///< those before it were done by another process
 };
 
 /// "  42 %  update 420/1000 ..." with particle-updates per second since the last line and the time
@@ -60,6 +62,8 @@ std::string progress_line(const ProgressState& s, double wall, double wall_since
 class Progress {
  public:
   explicit Progress(Log& log) : log_(log) {}
+  /// Updates before this one were done by another process.
+  void start_at(std::int64_t update) { last_update_ = line_update_ = update; }
   void update(const ProgressState& state);
 
  private:

@@ -22,7 +22,7 @@ struct Opened {
   std::vector<double> times;
   explicit Opened(const std::string& p)
       : path(p),
-        reader(p),
+        reader((try_run_file(p), p)),
         info(reader.info()),
         scene(parse_scene(info.resolved_scene, p + " (the scene stored in it)", {})),
         times(reader.times()) {}
@@ -45,6 +45,7 @@ Scene physics_of(Scene s) {
   s.measure_every = 1;
   s.output.reset();
   s.render.reset();
+  s.checkpoint.reset();
   s.time.end = s.time.step;
   s.solver.fused = true;
   return s;

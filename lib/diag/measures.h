@@ -35,24 +35,31 @@ struct Measures {
   std::int64_t non_finite = 0;  ///< particles with a non-finite position or velocity
 };
 
+/// What an EnergyTrack knows: enough to go on from a checkpoint. J.
+struct EnergyHistory {
+  bool started = false;
+  double first = 0, lowest = 0, rise = 0;
+};
+
 /// Follows the energy of one simulation from its first measure on. The walls do not move and do no
 /// work, so whatever rises was made by the method.
 class EnergyTrack {
  public:
+  explicit EnergyTrack(const EnergyHistory& before = {}) : h_(before) {}
   /// Fills m.energy_drift and m.energy_rise. To be called with every measure, in order.
   void follow(Measures& m) {
-    if (!started_) first_ = lowest_ = m.energy;
-    started_ = true;
-    rise_ = std::max(rise_, relative(m.energy - lowest_));
-    lowest_ = std::min(lowest_, m.energy);
-    m.energy_drift = relative(m.energy - first_);
-    m.energy_rise = rise_;
+    if (!h_.started) h_.first = h_.lowest = m.energy;
+    h_.started = true;
+    h_.rise = std::max(h_.rise, relative(m.energy - h_.lowest));
+    h_.lowest = std::min(h_.lowest, m.energy);
+    m.energy_drift = relative(m.energy - h_.first);
+    m.energy_rise = h_.rise;
   }
+  const EnergyHistory& history() const { return h_; }
 
  private:
-  double relative(double e) const { return e == 0 ? 0 : e / first_; }
-  bool started_ = false;
-  double first_ = 0, lowest_ = 0, rise_ = 0;
+  double relative(double e) const { return e == 0 ? 0 : e / h_.first; }
+  EnergyHistory h_;
 };
 
 }  // namespace pbf

@@ -2,11 +2,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 #include "lib/base/error.h"
+#include "lib/base/hash.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
 #include "lib/diag/study_member.h"
@@ -17,25 +16,6 @@
 
 namespace pbf {
 namespace {
-
-/// FNV-1a, 64 bits.
-class Hash {
- public:
-  void add(const std::string& text) {
-    for (const char c : text) value_ = (value_ ^ static_cast<unsigned char>(c)) * 1099511628211u;
-    value_ = (value_ ^ 256u) * 1099511628211u;  // so that "ab", "c" and "a", "bc" differ
-  }
-  void add_file(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
-    add(text.str());
-  }
-  std::string text() const { return format("%016llx", static_cast<unsigned long long>(value_)); }
-
- private:
-  std::uint64_t value_ = 14695981039346656037u;
-};
 
 /// Names the program: version and commit, and where these do not, its bytes.
 std::string program_text() {

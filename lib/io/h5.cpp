@@ -102,7 +102,9 @@ std::vector<std::string> read_texts(hid_t object, const char* name) {
   if (H5Tis_variable_str(stored) <= 0)
     throw Failure(std::string("attribute ") + name + " is not a string of variable length");
   const Space space(H5Aget_space(a));
-  std::vector<char*> texts(static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space))));
+  const auto count = check(H5Sget_simple_extent_npoints(space));
+  if (count > 1 << 20) throw Failure(std::string("attribute ") + name + " has too many texts");
+  std::vector<char*> texts(static_cast<std::size_t>(count));
   if (texts.empty()) return {};
   const Type type = string_type();
   check(H5Aread(a, type, texts.data()));
@@ -110,6 +112,21 @@ std::vector<std::string> read_texts(hid_t object, const char* name) {
   for (const char* t : texts) values.emplace_back(t ? t : "");
   H5Dvlen_reclaim(type, space, H5P_DEFAULT, texts.data());
   return values;
+}
+
+std::vector<std::string> read_fixed_texts(hid_t group, const std::string& path, std::size_t size) {
+  const Dataset d(H5Dopen2(group, path.c_str(), H5P_DEFAULT));
+  const Type stored(H5Dget_type(d));
+  const auto dims = shape(d);
+  if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) != 0 ||
+      H5Tget_size(stored) != size || dims.size() != 1)
+    throw Failure(path + " does not hold texts of " + std::to_string(size) + " bytes");
+  std::vector<char> bytes(claimed(d, dims, size) * size);
+  if (!bytes.empty()) check(H5Dread(d, stored, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()));
+  std::vector<std::string> texts;
+  for (hsize_t k = 0; k < dims[0]; ++k)
+    texts.emplace_back(bytes.data() + k * size, strnlen(bytes.data() + k * size, size));
+  return texts;
 }
 
 std::string read_text(hid_t object, const char* name) {
@@ -123,6 +140,21 @@ std::vector<hsize_t> shape(hid_t dataset) {
   std::vector<hsize_t> dims(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space))));
   check(H5Sget_simple_extent_dims(space, dims.data(), nullptr));
   return dims;
+}
+
+std::size_t claimed(hid_t dataset, const std::vector<hsize_t>& block, std::size_t size) {
+  std::size_t values = 1, bytes = 0;
+  bool fits = true;
+  for (const hsize_t n : block)
+    fits = !__builtin_mul_overflow(values, static_cast<std::size_t>(n), &values) && fits;
+  fits = !__builtin_mul_overflow(values, size, &bytes) && fits;
+  hsize_t file = 0;
+  check(H5Fget_filesize(File(H5Iget_file_id(dataset)), &file));
+  // Integers are stored in 4 bytes and read as 8 at most.
+  constexpr hsize_t most = 2 * 1032;
+  if (!fits || bytes / most > file)
+    throw Failure("a dataset claims more rows than the file can hold; it is damaged");
+  return values;
 }
 
 std::vector<std::string> children(hid_t group, H5O_type_t kind) {

@@ -105,6 +105,8 @@ void write_numbers(hid_t object, const char* name, const T* values, hsize_t coun
 
 bool has_attribute(hid_t object, const char* name);
 bool has_link(hid_t group, const std::string& path);  ///< every part of the path is looked at
+/// A one-dimensional dataset of texts of `size` bytes, padded with zeros.
+std::vector<std::string> read_fixed_texts(hid_t group, const std::string& path, std::size_t size);
 std::string read_text(hid_t object, const char* name);
 std::vector<std::string> read_texts(hid_t object, const char* name);
 /// The number in an attribute, converted to T.
@@ -119,6 +121,9 @@ T read_number(hid_t object, const char* name) {
   return value;
 }
 std::vector<hsize_t> shape(hid_t dataset);
+/// Number of values in a block of a dataset, `size` bytes each in memory. Failure, before memory is
+/// taken for them, when they are more than the file can hold: deflate makes 1 byte of at most 1032.
+std::size_t claimed(hid_t dataset, const std::vector<hsize_t>& block, std::size_t size);
 /// The first rows (all, or at most `rows`) of a dataset, converted to T, row by row.
 template <class T>
 std::vector<T> read_all(hid_t group, const std::string& path, hsize_t rows = ~hsize_t{0}) {
@@ -126,9 +131,7 @@ std::vector<T> read_all(hid_t group, const std::string& path, hsize_t rows = ~hs
   std::vector<hsize_t> count = shape(d);
   const std::vector<hsize_t> start(count.size(), 0);
   if (!count.empty() && rows < count[0]) count[0] = rows;
-  std::size_t numbers = 1;
-  for (const hsize_t n : count) numbers *= n;
-  std::vector<T> values(numbers);
+  std::vector<T> values(claimed(d, count, sizeof(T)));
   if (values.empty()) return values;
   const Space file(H5Dget_space(d));
   const Space memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr));

@@ -23,6 +23,29 @@ Column::Column(hid_t parent, const std::string& path, hid_t type, const Layout& 
   if (!layout.unit.empty()) write_text(dataset_, "units", layout.unit);
 }
 
+Column Column::existing(hid_t parent, const std::string& path) {
+  Column c;
+  c.dataset_ = Dataset(H5Dopen2(parent, path.c_str(), H5P_DEFAULT));
+  const auto dims = shape(c.dataset_);
+  hsize_t chunk[2] = {1, 1};
+  const Properties create(H5Dget_create_plist(c.dataset_));
+  if (dims.empty() || dims.size() > 2 || (dims.size() == 2 && dims[1] > 64) ||
+      H5Pget_layout(create) != H5D_CHUNKED || H5Pget_chunk(create, 2, chunk) < 1)
+    throw Failure(path + " has a shape that this program does not write");
+  c.rows_ = dims[0];
+  c.chunk_rows_ = chunk[0];
+  c.components_ = dims.size() == 2 ? static_cast<int>(dims[1]) : 0;
+  return c;
+}
+
+void Column::truncate(hsize_t rows) {
+  if (rows > rows_) throw Failure("a dataset ends before what the file says it holds");
+  if (rows == rows_) return;
+  const hsize_t size[2] = {rows, static_cast<hsize_t>(components_)};
+  check(H5Dset_extent(dataset_, size));
+  rows_ = rows;
+}
+
 void Column::write(hsize_t first, hsize_t count, hid_t type, const void* values) {
   if (!count) return;
   const int rank = components_ ? 2 : 1;

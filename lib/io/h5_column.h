@@ -23,6 +23,10 @@ class Column {
   Column() = default;
   /// Creates `path` (with the groups on the way) under `parent`, empty, of the file type `type`.
   Column(hid_t parent, const std::string& path, hid_t type, const Layout& layout);
+  /// Opens `path` as such a constructor has left it. Failure when it has another shape.
+  static Column existing(hid_t parent, const std::string& path);
+  /// Drops what lies behind the first `rows` rows. Failure when there are fewer.
+  void truncate(hsize_t rows);
   hsize_t rows() const { return rows_; }
   hsize_t chunk_rows() const { return chunk_rows_; }
   bool open() const { return dataset_.open(); }

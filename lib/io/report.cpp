@@ -141,6 +141,7 @@ void write_text_file(const std::string& path, const std::string& text) {
     }
     done += static_cast<std::size_t>(n);
   }
+  if (::fsync(fd) != 0 && errno != EINVAL) fail("write the file");  // EINVAL: a pipe, a device
   if (::close(fd) != 0) fail("write the file");
   if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("move the file into place");
 }

@@ -13,6 +13,16 @@
 
 namespace pbf {
 
+/// One process that worked on a run: started it, or resumed it. A row of the tables in
+/// /pbf/sessions.
+struct RunSession {
+  std::string started, ended;  ///< ISO 8601, UTC; ended is empty while it runs or when killed
+  std::string reason;          ///< finished, SIGTERM, --max-walltime, diverged ...; as `ended`
+  std::string host, device, program;  ///< program: version (commit)
+  std::int64_t threads = 0;
+  std::int64_t first_update = 0, last_update = 0;  ///< where it began and ended
+};
+
 /// Everything about a run that is known before its first update; goes to /pbf as attributes.
 struct RunInfo {
   std::string scene_path, scene_text, resolved_scene;
@@ -24,6 +34,7 @@ struct RunInfo {
   Double3 domain_min{}, domain_max{};
   double spacing = 0, smoothing_length = 0, rest_density = 0;
   std::int64_t particles = 0;
+  std::int64_t first_update = 0;  ///< of this session
 };
 
 /// One row of the log: the measures, and the seconds per stage since the row before.
@@ -40,6 +51,10 @@ class RunWriter {
  public:
   /// Creates the file (fails if it exists). gzip: shuffle + deflate level 1.
   RunWriter(const std::string& path, const RunInfo& info, bool gzip);
+  /// Goes on in a file that a stopped or killed run has left: the first `frames` frames and `rows`
+  /// rows of the log are kept, what lies behind them is dropped.
+  RunWriter(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
+            std::int64_t rows);
   ~RunWriter();
   /// Queues a frame; blocks while more than 2 wait. A frame is durable (flushed, readable after
   /// kill -9) once frames_written() counts it.
@@ -47,13 +62,21 @@ class RunWriter {
   void log(const LogRow& row);
   std::int64_t frames_written() const;
   std::int64_t bytes_written() const;
-  /// Waits for the queue, writes /pbf status ("finished", "stopped", "diverged") and closes.
-  void finish(const std::string& status);
+  /// Waits until all that was queued, the log too, is on the disk: fsync.
+  void sync();
+  /// Waits for the queue, writes /pbf status ("finished", "stopped", "diverged") with the end of
+  /// the session, and closes. `reason`: of the session's end, the status when empty.
+  void finish(const std::string& status, const std::string& reason = "",
+              std::int64_t last_update = 0);
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Has a child process read all of a run file but its frames: Error(io) for one on which HDF5
+/// crashes or does not come to an end. For files from elsewhere, before a RunReader.
+void try_run_file(const std::string& path);
 
 /// Reads a run file, also one still being written or cut off. Throws Error(io) with the reason.
 class RunReader {
@@ -66,7 +89,9 @@ class RunReader {
   /// Frame k (0-based) with all its fields, "position" first; Error(bad_input) when out of range.
   Snapshot frame(std::int64_t k) const;
   RunInfo info() const;
-  std::string status() const;  ///< running, finished, stopped, diverged
+  std::string status() const;                 ///< running, finished, stopped, diverged
+  std::vector<std::int64_t> updates() const;  ///< of each frame
+  std::vector<RunSession> sessions() const;   ///< empty in files of older versions
   /// One column of the log ("compression_mean", "stage/lambda", ...); empty when not there.
   std::vector<double> log_column(const std::string& name) const;
   std::vector<std::string> log_columns() const;

@@ -14,6 +14,9 @@ inline constexpr int format_version = 1;
 /// Rows in a chunk of the tables of steps (/VTKHDF/Steps) and of the columns of the log.
 inline constexpr unsigned step_rows = 512, log_rows = 1024;
 
+/// Rows in a chunk of the table of sessions, and bytes of its texts.
+inline constexpr unsigned session_rows = 16, session_text = 96;
+
 inline constexpr const char* topologies[4] = {"Vertices", "Lines", "Polygons", "Strips"};
 
 /// A column of the log as a number of a row: a float64 or an int64 dataset /pbf/log/<name>.
@@ -26,6 +29,24 @@ struct LogColumn {
 
 /// All columns but the stages, in the order of their creation.
 const std::vector<LogColumn>& log_columns();
+
+/// f(column name, value) for every text, and every integer, of a RunSession: one list for both
+/// directions.
+template <class F>
+void for_each_text(RunSession& s, F&& f) {
+  f("started", s.started);
+  f("ended", s.ended);
+  f("reason", s.reason);
+  f("host", s.host);
+  f("device", s.device);
+  f("program", s.program);
+}
+template <class F>
+void for_each_integer(RunSession& s, F&& f) {
+  f("threads", s.threads);
+  f("first_update", s.first_update);
+  f("last_update", s.last_update);
+}
 
 /// f(attribute name, text) for every text of a RunInfo (const or not): one list for both
 /// directions.

@@ -1,14 +1,9 @@
 #include "lib/io/run_output.h"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 
 #include "lib/base/error.h"
+#include "lib/io/h5_output.h"
 #include "lib/io/run_layout.h"
 
 namespace pbf {
@@ -29,28 +24,6 @@ hid_t memory_type(ScalarType t) {
   return t == ScalarType::f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
 }
 
-/// Rows go to the disk at once, so that a full disk is noticed before anything refers to them; what
-/// refers to them stays in memory until a flush, so that the file is as the last flush left it.
-h5::Properties writer_access() {
-  h5::Properties p = h5::file_access();
-  check(H5Pset_cache(p, 0, 0, 0, 0));
-  H5AC_cache_config_t cache;
-  cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
-  check(H5Pget_mdc_config(p, &cache));
-  cache.evictions_enabled = false;
-  cache.incr_mode = H5C_incr__off;
-  cache.flash_incr_mode = H5C_flash_incr__off;
-  cache.decr_mode = H5C_decr__off;
-  check(H5Pset_mdc_config(p, &cache));
-  return p;
-}
-
-int descriptor(hid_t file) {
-  void* handle = nullptr;
-  check(H5Fget_vfd_handle(file, H5P_DEFAULT, &handle));
-  return *static_cast<int*>(handle);
-}
-
 }  // namespace
 
 RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
@@ -58,7 +31,7 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
   expected_ = static_cast<std::size_t>(std::max<std::int64_t>(0, info.particles));
   const h5::Properties create(H5Pcreate(H5P_FILE_CREATE));
   check(H5Pset_istore_k(create, index_rank));
-  const h5::Properties access = writer_access();
+  const h5::Properties access = h5::writer_access();
   file_ = h5::File(H5Fcreate(path.c_str(), H5F_ACC_EXCL, create, access));
   vtk_ = h5::make_group(file_, "VTKHDF");
   const std::int64_t version[2] = {2, 2};
@@ -72,25 +45,13 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
     log_[c.name] =
         Column(pbf_, std::string("log/") + c.name, c.number ? H5T_IEEE_F64LE : H5T_STD_I64LE,
                {run_layout::log_rows, 0, false, c.unit});
+  make_sessions();
+  begin_session(info);
   flush();
 }
 
 RunOutput::~RunOutput() {
-  if (closed_ || !file_.open()) return;
-  // Not ended by close(): a failure. HDF5 insists on writing what it still holds and can neither
-  // be told to forget it nor end cleanly when it fails again (a full disk), so its descriptor is
-  // turned away from the file first.
-  try {
-    const int fd = descriptor(file_);
-    int elsewhere = memfd_create("pbf-abandoned", 0);
-    if (elsewhere < 0) elsewhere = ::open("/dev/null", O_RDWR);
-    if (elsewhere >= 0) {
-      dup2(elsewhere, fd);
-      ::close(elsewhere);
-    }
-  } catch (const h5::Failure&) {
-    // no descriptor: nothing to turn away
-  }
+  if (!closed_ && file_.open()) h5::abandon(file_);  // not ended by close(): a failure
 }
 
 void RunOutput::write_frame(const Snapshot& s) {
@@ -127,28 +88,22 @@ void RunOutput::write_frame(const Snapshot& s) {
   frames_ = steps;
 }
 
-/// Writes what HDF5 holds in memory. It goes on after a failed write and would leave a file that
-/// refers to what is not there, so the space is made sure of first: nothing can fail after that.
-void RunOutput::flush() {
-  haddr_t end = 0;
-  check(H5Fget_eoa(file_, &end));
-  const int fd = descriptor(file_);
-  const off_t size = ::lseek(fd, 0, SEEK_END), wanted = static_cast<off_t>(end);
-  if (size < 0) throw h5::Failure(std::strerror(errno));
-  if (wanted > size && ::fallocate(fd, 0, size, wanted - size) != 0 &&
-      !(errno == EOPNOTSUPP && ::ftruncate(fd, wanted) == 0))
-    throw h5::Failure(std::strerror(errno));
-  check(H5Fflush(file_, H5F_SCOPE_GLOBAL));
-  bytes_ = static_cast<std::int64_t>(end);
-}
+void RunOutput::flush() { bytes_ = h5::flush_reserved(file_); }
 
-void RunOutput::close(const std::string& status) {
+void RunOutput::sync() {
   write_log();
   flush();
+  h5::sync(file_);
+}
+
+void RunOutput::close(const std::string& status, const std::string& reason,
+                      std::int64_t last_update) {
+  write_log();
+  flush();
+  end_session(reason.empty() ? status : reason, last_update);
   h5::write_text(pbf_, "status", status);
   flush();
-  // Network file systems and quotas report a full disk only here.
-  if (fsync(descriptor(file_)) != 0) throw h5::Failure(std::strerror(errno));
+  h5::sync(file_);
   closed_ = true;
 }
 

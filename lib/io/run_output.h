@@ -20,14 +20,20 @@ class RunOutput {
  public:
   /// Creates the file; fails if it exists. gzip: shuffle + deflate level 1.
   RunOutput(const std::string& path, const RunInfo& info, bool gzip);
+  /// Goes on in a file that another RunOutput, ended or not, has left; see RunWriter.
+  RunOutput(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
+            std::int64_t rows);
   ~RunOutput();
   RunOutput(const RunOutput&) = delete;
   /// Appends a frame and commits it: from the return on a killed process leaves it readable.
   void write_frame(const Snapshot& snapshot);
   /// Keeps the row until the next commit: a frame, close, or enough rows or seconds gathered.
   void log(const LogRow& row);
-  /// Writes what waits and the status, and waits until the system has stored the file.
-  void close(const std::string& status);
+  /// Writes what waits and waits until the disk has stored it.
+  void sync();
+  /// The same with the status and the end of the session (`reason` empty: the status).
+  void close(const std::string& status, const std::string& reason = "",
+             std::int64_t last_update = 0);
   std::int64_t frames() const { return frames_; }  ///< committed
   std::int64_t bytes() const { return bytes_; }    ///< size of the file at the last commit
 
@@ -51,6 +57,13 @@ class RunOutput {
 
   void create_steps();
   void write_info(const RunInfo& info);
+  void make_sessions();
+  void begin_session(const RunInfo& info);
+  void end_session(const std::string& reason, std::int64_t last_update);
+  void open_steps(std::int64_t frames);
+  void open_parts(const std::vector<std::int64_t>& counts, std::int64_t parts);
+  void open_fields(std::int64_t frames);
+  void open_log(std::int64_t rows);
   void create_fields(const Snapshot& first);
   void check_fields(const Snapshot& snapshot) const;
   Part part_of(std::size_t count);
@@ -72,7 +85,7 @@ class RunOutput {
   h5::Column times_, part_offsets_, part_counts_, point_offsets_, cell_offsets_, id_starts_;
   std::vector<LogRow> waiting_;
   Stopwatch since_log_;
-  std::map<std::string, h5::Column> log_, stages_;
+  std::map<std::string, h5::Column> log_, stages_, sessions_;
 };
 
 }  // namespace pbf

@@ -1,11 +1,13 @@
 // RunReader: opens the file anew for every call, so that a file still growing is read as it is.
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <limits>
 #include <thread>
 
 #include "lib/base/error.h"
 #include "lib/io/h5.h"
+#include "lib/io/h5_trial.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
 
@@ -57,7 +59,8 @@ FieldArray read_rows(hid_t vtk, const FieldPlace& place, std::size_t frame, std:
   const auto first = static_cast<hsize_t>(place.offsets[frame]);
   if (place.offsets[frame] < 0 || first > dims[0] || count > dims[0] - first)
     throw h5::Failure(place.path + " ends before the frame does");
-  f.bytes.resize(count * static_cast<std::size_t>(f.components) * size_of(f.type));
+  f.bytes.resize(h5::claimed(d, {count, static_cast<hsize_t>(f.components)}, size_of(f.type)) *
+                 size_of(f.type));
   if (!count) return f;
   const hsize_t start[2] = {first, 0}, block[2] = {count, static_cast<hsize_t>(f.components)};
   const h5::Space file(H5Dget_space(d));
@@ -112,10 +115,19 @@ struct RunReader::Impl {
         const h5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, h5::file_access()));
         return action(file);
       } catch (const h5::Failure& f) {
-        if (attempt == 3) throw Error(ExitCode::io, path + ": " + what + ": " + f.what());
+        if (attempt == 3 || !alive())
+          throw Error(ExitCode::io, path + ": " + what + ": " + f.what());
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
+  }
+
+  /// Whether somebody may be writing the file: the last write was a short while ago.
+  bool alive() const {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const auto written = fs::last_write_time(path, error);
+    return !error && fs::file_time_type::clock::now() - written < std::chrono::minutes(1);
   }
 
   void scan(hid_t file);
@@ -160,6 +172,20 @@ void RunReader::Impl::scan(hid_t file) {
   }
 }
 
+void try_run_file(const std::string& path) {
+  h5::trial(path, [&path] {
+    const RunReader run(path);
+    run.info();
+    run.status();
+    run.sessions();
+    for (const std::string& name : run.log_columns()) run.log_column(name);
+    if (run.frames() > 0) {
+      run.frame(0);
+      run.frame(run.frames() - 1);
+    }
+  });
+}
+
 RunReader::RunReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
   impl_->path = path;
   impl_->with_file("cannot read the run file", [&](const h5::File& file) { impl_->scan(file); });
@@ -202,6 +228,28 @@ RunInfo RunReader::info() const {
 std::string RunReader::status() const {
   return impl_->with_file("cannot read the status", [](const h5::File& file) {
     return h5::read_text(h5::Group(H5Gopen2(file, "pbf", H5P_DEFAULT)), "status");
+  });
+}
+
+std::vector<std::int64_t> RunReader::updates() const { return impl_->updates; }
+
+std::vector<RunSession> RunReader::sessions() const {
+  return impl_->with_file("cannot read the sessions", [](const h5::File& file) {
+    std::vector<RunSession> all;
+    if (!h5::has_link(file, "pbf/sessions")) return all;
+    const h5::Group group(H5Gopen2(file, "pbf/sessions", H5P_DEFAULT));
+    all.resize(h5::read_all<std::int64_t>(group, "last_update").size());  // written last
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      run_layout::for_each_text(all[k], [&](const char* name, std::string& text) {
+        const auto column = h5::read_fixed_texts(group, name, run_layout::session_text);
+        if (k < column.size()) text = column[k];
+      });
+      run_layout::for_each_integer(all[k], [&](const char* name, std::int64_t& value) {
+        const auto column = h5::read_all<std::int64_t>(group, name);
+        if (k < column.size()) value = column[k];
+      });
+    }
+    return all;
   });
 }
 

@@ -3,6 +3,7 @@
 #include <condition_variable>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <thread>
 #include <variant>
@@ -15,14 +16,17 @@
 namespace pbf {
 
 struct RunWriter::Impl {
+  struct Sync {};
   struct Finish {
-    std::string status;
+    std::string status, reason;
+    std::int64_t last_update = 0;
   };
-  using Job = std::variant<Snapshot, LogRow, Finish>;
+  using Job = std::variant<Snapshot, LogRow, Sync, Finish>;
+  using Open = std::function<std::unique_ptr<RunOutput>()>;
   static constexpr int max_snapshots = 2;
 
-  Impl(const std::string& path, const RunInfo& info, bool gzip)
-      : path_(path), thread_([this, info, gzip] { work(info, gzip); }) {
+  Impl(const std::string& path, const std::string& opening, const Open& open)
+      : path_(path), thread_([this, opening, open] { work(opening, open); }) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return failure_ || created_; });
     if (!failure_) return;
@@ -33,7 +37,7 @@ struct RunWriter::Impl {
 
   ~Impl() {
     if (!thread_.joinable()) return;
-    push(Finish{"stopped"});
+    push(Finish{"stopped", "", 0});
     thread_.join();
   }
 
@@ -55,9 +59,17 @@ struct RunWriter::Impl {
     throw Error(ExitCode::internal, path_ + ": written to after its end");
   }
 
-  void finish(const std::string& status) {
+  void sync() {
+    push_or_throw(Sync{});
+    std::unique_lock lock(mutex_);
+    const std::int64_t mine = ++syncs_asked_;
+    changed_.wait(lock, [&] { return failure_ || syncs_done_ >= mine; });
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+  void finish(Finish&& end) {
     if (thread_.joinable()) {
-      push(Finish{status});
+      push(std::move(end));
       thread_.join();
     }
     if (failure_) std::rethrow_exception(failure_);
@@ -105,13 +117,19 @@ struct RunWriter::Impl {
     for (;;) {
       Job job = pop();
       if (const auto* end = std::get_if<Finish>(&job)) {
-        on_file("cannot finish the file", [&] { out_->close(end->status); });
+        on_file("cannot finish the file",
+                [&] { out_->close(end->status, end->reason, end->last_update); });
         const h5::Lock lock;
         out_.reset();
         return;
       }
       if (const auto* row = std::get_if<LogRow>(&job)) {
         on_file("cannot write the log", [&] { out_->log(*row); });
+      } else if (std::holds_alternative<Sync>(job)) {
+        on_file("cannot write the log", [&] { out_->sync(); });
+        const std::lock_guard lock(mutex_);
+        ++syncs_done_;
+        changed_.notify_all();
       } else {
         on_file("cannot write frame " + std::to_string(frames_),
                 [&] { out_->write_frame(std::get<Snapshot>(job)); });
@@ -120,10 +138,9 @@ struct RunWriter::Impl {
     }
   }
 
-  void work(const RunInfo& info, bool gzip) noexcept {
+  void work(const std::string& opening, const Open& open) noexcept {
     try {
-      on_file("cannot create the file",
-              [&] { out_ = std::make_unique<RunOutput>(path_, info, gzip); });
+      on_file(opening, [&] { out_ = open(); });
       {
         const std::lock_guard lock(mutex_);
         created_ = true;
@@ -143,6 +160,7 @@ struct RunWriter::Impl {
   std::condition_variable changed_;
   std::deque<Job> queue_;
   int snapshots_ = 0;  // waiting or being written
+  std::int64_t syncs_asked_ = 0, syncs_done_ = 0;
   bool created_ = false;
   std::exception_ptr failure_;
   std::unique_ptr<RunOutput> out_;  // the thread's
@@ -150,12 +168,23 @@ struct RunWriter::Impl {
 };
 
 RunWriter::RunWriter(const std::string& path, const RunInfo& info, bool gzip)
-    : impl_(std::make_unique<Impl>(path, info, gzip)) {}
+    : impl_(std::make_unique<Impl>(path, "cannot create the file",
+                                   [=] { return std::make_unique<RunOutput>(path, info, gzip); })) {
+}
+RunWriter::RunWriter(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
+                     std::int64_t rows)
+    : impl_(std::make_unique<Impl>(path, "cannot go on in the file", [=] {
+        return std::make_unique<RunOutput>(path, info, gzip, frames, rows);
+      })) {}
 RunWriter::~RunWriter() = default;
 void RunWriter::write(Snapshot&& snapshot) { impl_->push_or_throw(std::move(snapshot)); }
 void RunWriter::log(const LogRow& row) { impl_->push_or_throw(LogRow(row)); }
 std::int64_t RunWriter::frames_written() const { return impl_->frames_; }
 std::int64_t RunWriter::bytes_written() const { return impl_->bytes_; }
-void RunWriter::finish(const std::string& status) { impl_->finish(status); }
+void RunWriter::sync() { impl_->sync(); }
+void RunWriter::finish(const std::string& status, const std::string& reason,
+                       std::int64_t last_update) {
+  impl_->finish({status, reason, last_update});
+}
 
 }  // namespace pbf

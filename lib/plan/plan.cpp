@@ -92,6 +92,7 @@ void plan_left_out(Plan& plan, const Scene& s) {
   out(s.domain.open.size() == 6, "walls: their density and the clamp", "domain.open names all six");
   out(s.solver.iterations == 0, "lambda and delta passes", "solver.iterations is 0");
   out(!s.output, "run.h5, its writer thread and its downloads", "no key output");
+  out(!s.checkpoint, "checkpoints, but where the run is stopped", "no key checkpoint");
   out(!s.render, "pictures, the GL library and its thread", "no key render");
   out(!s.output && !s.render, "copies of the particles in SI units", "no keys output, render");
   out(s.backend == Backend::cpu, "CUDA context and driver", "backend is cpu");
@@ -129,6 +130,9 @@ void plan_files(Plan& plan, const Scene& s) {
     const double pixels = double(s.render->size[0]) * s.render->size[1];
     add("frames/frame_*.png", pictures, pictures * 0.32 * pixels, "0.32 bytes a pixel");
   }
+  if (s.checkpoint)
+    add("checkpoint.h5, checkpoint_prev.h5", 2,
+        2 * (6 * (s.precision == Precision::dbl ? 8 : 4) + 4) * n + 2e4);
 }
 
 }  // namespace

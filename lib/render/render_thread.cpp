@@ -46,7 +46,7 @@ struct RenderThread::Impl {
   std::condition_variable changed;
   std::deque<std::pair<Snapshot, std::int64_t>> queue;
   std::exception_ptr error;
-  bool failed = false, ending = false;
+  bool failed = false, ending = false, busy = false;
   std::atomic<double> seconds = 0;
   std::thread thread;  // last: it uses all of the above
 
@@ -62,6 +62,7 @@ struct RenderThread::Impl {
       queue.pop_front();
       changed.notify_all();
       if (failed) continue;
+      busy = true;
       lock.unlock();
       std::exception_ptr caught;
       const auto start = std::chrono::steady_clock::now();
@@ -73,11 +74,12 @@ struct RenderThread::Impl {
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
       seconds = seconds + spent.count();
       lock.lock();
+      busy = false;
       if (caught) {
         error = caught;
         failed = true;
-        changed.notify_all();
       }
+      changed.notify_all();
     }
   }
 
@@ -118,6 +120,13 @@ void RenderThread::draw(const Snapshot& snapshot, std::int64_t index) {
   if (impl_->ending) throw Error(ExitCode::internal, "RenderThread::draw after finish");
   impl_->queue.emplace_back(std::move(part), index);
   impl_->changed.notify_all();
+}
+
+void RenderThread::wait() {
+  std::unique_lock lock(impl_->mutex);
+  impl_->changed.wait(lock,
+                      [this] { return (impl_->queue.empty() && !impl_->busy) || impl_->failed; });
+  impl_->rethrow();
 }
 
 void RenderThread::finish() {

@@ -74,6 +74,7 @@ class RenderThread {
   /// Queues a copy of the fields that the picture needs; blocks while 2 wait. An error of the
   /// thread is thrown by the next draw() or by finish(), once; later pictures are dropped.
   void draw(const Snapshot& snapshot, std::int64_t index);
+  void wait();             ///< until all queued pictures are written; throws as draw() does
   void finish();           ///< waits until all queued pictures are written
   double seconds() const;  ///< spent drawing and writing
 

@@ -203,7 +203,10 @@ std::vector<Key> output_keys() {
                 SCENE(choice(s.output->precision))),
           words("output.compression", {"none", "gzip"},
                 "gzip: files about 1.45 times smaller, written more slowly.",
-                SCENE(compression(*s.output)))};
+                SCENE(compression(*s.output))),
+          number("checkpoint.every", "s", {1e-3, 1e9},
+                 "Wall time between checkpoints, from which --resume goes on after a crash.",
+                 SCENE(&s.checkpoint->every))};
 }
 
 std::vector<Key> render_keys() {
@@ -281,6 +284,10 @@ const std::vector<Block>& scene_blocks() {
       optional_block("viscosity", "XSPH viscosity.", &Scene::viscosity),
       optional_block("vorticity", "Vorticity confinement.", &Scene::vorticity),
       optional_block("output", "Frames in run.h5.", &Scene::output),
+      optional_block("checkpoint",
+                     "The whole state, now and then and at the end. A run that a signal or the "
+                     "wall-time limit stops saves it also without this block.",
+                     &Scene::checkpoint),
       optional_block("render", "Pictures, drawn while the simulation runs.", &Scene::render),
       plain_block("render.camera", "The camera of the pictures.")};
   return blocks;

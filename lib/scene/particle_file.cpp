@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "lib/base/error.h"
+#include "lib/io/h5_trial.h"
 
 namespace pbf {
 namespace {
@@ -159,6 +160,10 @@ std::int64_t read_rows(hid_t file, const std::string& path, const char* name,
   if (dims[1] != 3) bad(where, "has " + std::to_string(dims[1]) + " columns, expected 3: x, y, z");
   if (dims[0] > 2147483647u)
     bad(where, "has " + std::to_string(dims[0]) + " rows; at most 2147483647 particles fit");
+  hsize_t bytes = 0;  // compression makes at most 1032 of 1
+  if (H5Fget_filesize(file, &bytes) < 0 || dims[0] / 1032 > bytes)
+    bad(where,
+        "claims " + std::to_string(dims[0]) + " rows, more than the file can hold; it is damaged");
   if (out != nullptr) {
     out->resize(dims[0]);
     if (dims[0] > 0 &&
@@ -206,7 +211,13 @@ Particles read_particle_file(const std::string& path) {
 }
 
 std::int64_t count_particle_file(const std::string& path) {
-  if (is_hdf5(path)) return read_hdf5(path, nullptr);
+  if (is_hdf5(path)) {
+    h5::trial(path, [&path] {
+      Particles p;
+      read_hdf5(path, &p);
+    });
+    return read_hdf5(path, nullptr);
+  }
   std::int64_t count = 0;
   for_each_csv_row(path, [&count](std::string_view, int, const std::string&) { ++count; });
   return count;

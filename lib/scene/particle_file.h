@@ -17,7 +17,8 @@ namespace pbf {
 Particles read_particle_file(const std::string& path);
 
 /// Number of particles read_particle_file would give, without keeping them. HDF5: from the shape of
-/// the dataset; CSV: lines are counted, not parsed. Same errors for what it looks at.
+/// the dataset; CSV: lines are counted, not parsed. Same errors for what it looks at;
+/// an HDF5 file is read by a child process first, and Error(io) when HDF5 crashes on it.
 std::int64_t count_particle_file(const std::string& path);
 
 }  // namespace pbf

@@ -101,6 +101,12 @@ struct Output {
   bool operator==(const Output&) const = default;
 };
 
+/// Checkpoints besides those that a stopped run leaves behind in any case.
+struct Checkpoint {
+  double every = 60;  ///< s of wall time
+  bool operator==(const Checkpoint&) const = default;
+};
+
 struct Camera {
   std::optional<Double3> position;  ///< m; absent: seen from outside the longest side
   std::optional<Double3> target;    ///< m; absent: centre of the domain
@@ -132,6 +138,7 @@ struct Scene {
   std::optional<Vorticity> vorticity;
   int measure_every = 10;  ///< updates between measures
   std::optional<Output> output;
+  std::optional<Checkpoint> checkpoint;
   std::optional<Render> render;
   Backend backend = Backend::cpu;
   Precision precision = Precision::single;

@@ -127,8 +127,8 @@ void wait_for(const fs::path& path) {
 
 }  // namespace
 
-TEST_CASE("SIGTERM, SIGINT and SIGUSR1 end a run with exit code 75 and a readable file") {
-  for (const int signal : {SIGTERM, SIGINT, SIGUSR1}) {
+TEST_CASE("SIGTERM and SIGINT end a run with exit code 75, a checkpoint and a readable file") {
+  for (const int signal : {SIGTERM, SIGINT}) {
     CAPTURE(signal);
     const Scratch folder;
     endless(folder);
@@ -140,13 +140,35 @@ TEST_CASE("SIGTERM, SIGINT and SIGUSR1 end a run with exit code 75 and a readabl
     CAPTURE(o.err);
     CHECK(o.code == 75);
     CHECK(has(o.err, "stopped early by SIG"));
+    CHECK(has(o.err, "--resume"));
     CHECK_FALSE(fs::exists(folder / "o/DONE"));
+    CHECK(fs::exists(folder / "o/checkpoint.h5"));
     const pbf::RunReader reader((folder / "o/run.h5").string());
     CHECK(reader.status() == "stopped");
     REQUIRE(reader.frames() >= 1);
     CHECK(reader.frame(reader.frames() - 1).count == 64);
-    CHECK(pbf::test::pbf({"run", "long.yaml", "--out", "o", "--resume"}, folder.path()).code == 2);
+    const auto sessions = reader.sessions();
+    REQUIRE(sessions.size() == 1);
+    CHECK(sessions[0].reason == (signal == SIGTERM ? "SIGTERM" : "SIGINT"));
+    CHECK(sessions[0].ended >= sessions[0].started);
+    CHECK(sessions[0].last_update > 0);
+    CHECK(sessions[0].threads == 1);
   }
+}
+
+TEST_CASE("SIGUSR1 saves a checkpoint, and the run goes on") {
+  const Scratch folder;
+  endless(folder);
+  Process run(kEndless, folder.path());
+  wait_for(folder / "o/run.h5");
+  run.send(SIGUSR1);
+  wait_for(folder / "o/checkpoint.h5");
+  CHECK(fs::exists(folder / "o/checkpoint.h5"));
+  run.send(SIGUSR1);
+  wait_for(folder / "o/checkpoint_prev.h5");
+  CHECK(fs::exists(folder / "o/checkpoint_prev.h5"));
+  run.send(SIGTERM);
+  CHECK(run.wait().code == 75);
 }
 
 TEST_CASE("a second signal ends a run at once") {

@@ -73,9 +73,12 @@ TEST_CASE("a killed study goes on where it was, and SIGTERM stops it with 75") {
     Process study({"study", "study.yaml", "--out", "o"}, folder.path());
     const auto done = [&] {
       std::error_code none;
-      return std::distance(fs::directory_iterator(folder / "o/members", none), {});
+      std::ptrdiff_t n = 0;
+      for (const auto& file : fs::directory_iterator(folder / "o/members", none))
+        n += file.path().extension() == ".json";
+      return n;
     };
-    const auto before = fs::exists(folder / "o/members") ? done() : 0;
+    const auto before = fs::exists(folder / "o/members") ? done() : std::ptrdiff_t{0};
     for (int k = 0; k < 2000 && (!fs::exists(folder / "o/members") || done() <= before); ++k)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     study.send(signal);

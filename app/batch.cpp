@@ -1,0 +1,189 @@
+// pbf batch: many scenes, each in a process and a folder of its own; what is finished is skipped,
+// what was stopped or killed goes on.
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "app/batch_jobs.h"
+#include "app/batch_list.h"
+#include "app/batch_summary.h"
+#include "app/commands.h"
+#include "app/signals.h"
+#include "lib/base/error.h"
+#include "lib/base/log.h"
+#include "lib/base/stage_clock.h"
+#include "lib/base/text.h"
+#include "lib/io/report.h"
+#include "lib/solver/devices.h"
+
+namespace pbf {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._=/,"
+                             "+:@%-") == std::string::npos &&
+      !text.empty())
+    return text;
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out += "'";
+}
+
+/// The command again, for a script that runs elsewhere: absolute paths.
+std::string command_text(const BatchOptions& o, const std::string& out) {
+  std::string text = quoted(fs::read_symlink("/proc/self/exe").string()) + " batch " +
+                     quoted(fs::absolute(o.input).string()) + " --out " +
+                     quoted(fs::absolute(out).string());
+  for (const std::string& g : o.grid) text += " --grid " + quoted(g);
+  for (const std::string& s : o.overrides) text += " --set " + quoted(s);
+  return text;
+}
+
+/// sbatch sends TERM two minutes before the time is up, so that runs save and exit 75; such tasks
+/// go back into the queue.
+std::string slurm_script(const BatchOptions& o, const std::string& out, std::size_t count) {
+  const std::string command = command_text(o, out);
+  return format(
+             "#!/bin/bash\n"
+             "#SBATCH --job-name=pbf\n"
+             "#SBATCH --array=0-%zu\n"
+             "#SBATCH --cpus-per-task=4\n"
+             "#SBATCH --time=01:00:00\n"
+             "#SBATCH --signal=TERM@120\n"
+             "#SBATCH --requeue\n"
+             "#SBATCH --open-mode=append\n",
+             count - 1) +
+         "# Adapt the lines above (--partition, --gres=gpu:1 for --set backend=cuda), then: sbatch "
+         "FILE\n"
+         "# A task whose time is up saves its run and goes back into the queue.\n"
+         "# When all is done, the summary: " +
+         command +
+         " --collect\n"
+         "export OMP_WAIT_POLICY=passive\n"
+         "srun " +
+         command +
+         " --only \"$SLURM_ARRAY_TASK_ID\" --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n"
+         "code=$?\n"
+         "if [ \"$code\" -eq 75 ]; then\n"
+         "  scontrol requeue \"${SLURM_ARRAY_JOB_ID}_${SLURM_ARRAY_TASK_ID}\"\n"
+         "fi\n"
+         "exit \"$code\"\n";
+}
+
+std::string list_text(const std::vector<BatchMember>& members) {
+  std::string text = format("%zu runs", members.size());
+  for (std::size_t k = 0; k < members.size(); ++k)
+    text += format("\n  %3zu  ", k) + members[k].name + "  (" + members[k].scene + ")";
+  return text;
+}
+
+class Batch {
+ public:
+  Batch(const BatchOptions& o, std::vector<BatchMember> members, const std::string& out, Log& log)
+      : o_(o), members_(std::move(members)), out_(out), log_(log) {
+    threads_ = o.threads;
+    if (threads_ == 0 && o.jobs > 1) threads_ = std::max(1, usable_threads() / o.jobs);
+  }
+
+  void run() {
+    if (o_.jobs > 1) setenv("OMP_WAIT_POLICY", "passive", 0);  // waiting threads must not spin
+    const auto stop = [this] { return !signal_seen().empty() || time_is_up(); };
+    JobPool(o_.jobs).run(
+        members_.size(), [this](std::size_t k) { return arguments(members_[k]); }, stop,
+        [this](std::size_t k, const JobEnd& end) { ended(members_[k], end); });
+  }
+
+  /// What became of each run, without running it: from DONE and the status in run.h5.
+  void collect() {
+    for (const BatchMember& m : members_)
+      if (fs::exists(out_ + "/" + m.name + "/DONE")) ends_[m.name] = {0, ""};
+  }
+
+  /// Exit code of the only run.
+  int code() const {
+    return ends_.empty() ? static_cast<int>(ExitCode::resumable) : ends_.begin()->second.code;
+  }
+
+  int finish() {
+    write_text_file(out_ + "/summary.csv", batch_summary(members_, ends_, out_));
+    std::size_t finished = 0, failed = 0;
+    for (const auto& [name, end] : ends_) {
+      finished += end.code == 0;
+      failed += end.code != 0 && resumable(end.code) == false;
+    }
+    const std::size_t open = members_.size() - finished - failed;
+    log_.result(format("%zu runs: %zu finished, %zu failed, %zu to go on with; %s/summary.csv",
+                       members_.size(), finished, failed, open, out_.c_str()));
+    if (open > 0) {
+      log_.note("pbf: the same command goes on from there");
+      return static_cast<int>(ExitCode::resumable);
+    }
+    return static_cast<int>(failed > 0 ? ExitCode::difference : ExitCode::done);
+  }
+
+ private:
+  static bool resumable(int code) {
+    return code == static_cast<int>(ExitCode::resumable) || code > 128;
+  }
+  bool time_is_up() const { return o_.max_walltime > 0 && wall_.seconds() >= o_.max_walltime; }
+
+  std::vector<std::string> arguments(const BatchMember& m) const {
+    std::vector<std::string> args{"run",     m.scene,   "--out", out_ + "/" + m.name,
+                                  "--quiet", "--resume"};
+    for (const std::string& s : o_.overrides) args.insert(args.end(), {"--set", s});
+    for (const std::string& s : m.overrides) args.insert(args.end(), {"--set", s});
+    if (threads_ > 0) args.insert(args.end(), {"--threads", std::to_string(threads_)});
+    if (o_.max_walltime > 0)
+      args.insert(args.end(), {"--max-walltime",
+                               format("%.3f", std::max(0.001, o_.max_walltime - wall_.seconds()))});
+    return args;
+  }
+
+  void ended(const BatchMember& m, const JobEnd& end) {
+    ends_[m.name] = end;
+    std::string line =
+        format("[%zu/%zu] ", ends_.size(), members_.size()) + m.name + ": " + exit_reason(end.code);
+    if (!end.message.empty()) line += ": " + end.message;
+    log_.note(line);
+  }
+
+  const BatchOptions& o_;
+  std::vector<BatchMember> members_;
+  std::string out_;
+  Log& log_;
+  Stopwatch wall_;
+  int threads_ = 0;
+  std::map<std::string, JobEnd> ends_;
+};
+
+}  // namespace
+
+int command_batch(const BatchOptions& o) {
+  std::vector<BatchAxis> axes;
+  for (const std::string& g : o.grid) axes.push_back(parse_axis(g));
+  std::vector<BatchMember> members = batch_members(o.input, axes);
+  const fs::path input(o.input);
+  const std::string stem = (input.has_filename() ? input : input.parent_path()).stem().string();
+  const std::string out = o.out.empty() ? "out/batch_" + stem : o.out;
+  Log log(o.quiet);
+  if (o.list || o.slurm) {
+    log.result(o.list ? list_text(members) : slurm_script(o, out, members.size()));
+    return 0;
+  }
+  if (o.only >= std::int64_t(members.size()))
+    throw Error(ExitCode::bad_input, format("--only %lld: there are %zu runs, counted from 0",
+                                            static_cast<long long>(o.only), members.size()));
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) throw Error(ExitCode::io, out + ": the folder cannot be made: " + error.message());
+  watch_signals();
+  const bool one = o.only >= 0;  // a task of an array: no summary, others write beside it
+  if (one) members = {members[static_cast<std::size_t>(o.only)]};
+  Batch batch(o, members, out, log);
+  o.collect ? batch.collect() : batch.run();
+  return one ? batch.code() : batch.finish();
+}
+
+}  // namespace pbf

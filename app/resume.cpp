@@ -1,0 +1,180 @@
+#include "app/resume.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "app/schedule.h"
+#include "lib/base/error.h"
+#include "lib/base/hash.h"
+#include "lib/base/text.h"
+#include "lib/io/run_file.h"
+#include "lib/scene/difference.h"
+#include "lib/scene/load.h"
+
+namespace pbf {
+namespace {
+
+constexpr const char* kFilesMark = "# particle files ";
+
+std::string files_line(const Scene& scene, const std::string& dir) {
+  Hash hash;
+  bool any = false;
+  for (const Body& b : scene.bodies)
+    if (b.shape == Shape::file) {
+      hash.add_file((std::filesystem::path(dir) / b.path).string());
+      any = true;
+    }
+  return any ? kFilesMark + hash.text() + "\n" : std::string();
+}
+
+/// Runs of such scenes give the same bits with one program, whatever the machine.
+bool exact(const Scene& s) { return s.backend == Backend::cpu || s.solver.reproducible; }
+
+/// How many of the values stand where the schedule has them, from the first on.
+template <class Values, class Expected>
+std::int64_t prefix(const Values& values, std::int64_t last, const Expected& expected) {
+  std::int64_t k = 0;
+  for (const auto v : values) {
+    if (std::int64_t(v) > last || std::int64_t(v) != expected(k)) break;
+    ++k;
+  }
+  return k;
+}
+
+class Finder {
+ public:
+  Finder(const RunFolder& folder, const Scene& scene, const std::string& dir,
+         const std::string& commit)
+      : folder_(folder),
+        scene_(scene),
+        dir_(dir),
+        commit_(commit),
+        schedule_(make_schedule(scene)) {}
+
+  ResumePoint find(std::int64_t particles) {
+    if (!folder_.has("scene.resolved.yaml")) {
+      if (folder_.holds_other_files())
+        throw Error(ExitCode::bad_input,
+                    folder_.path() +
+                        ": holds no run to resume, but other files; give another folder with "
+                        "--out");
+      return {};  // killed before it had begun
+    }
+    const LoadedScene record = load_scene(folder_.file("scene.resolved.yaml"), {});
+    const Scene& before = record.scene;
+    std::string difference = physics_difference(before, scene_);
+    const std::string files = files_line(scene_, dir_);
+    if (difference.empty() && !files.empty() && record.text.find(files) == std::string::npos)
+      difference = "bodies: the contents of a particle file have changed";
+    if (!difference.empty())
+      throw Error(ExitCode::bad_input,
+                  folder_.path() + ": cannot resume: " + difference +
+                      "; only time.end, checkpoint, threads and backend may change. Restore the "
+                      "key, or start again with --overwrite");
+    const std::int64_t done = make_schedule(before).updates;
+    if (folder_.has("DONE") && schedule_.updates <= done) {
+      if (schedule_.updates < done)
+        point_.notes.push_back(
+            format("%s: the run is finished up to update %lld, beyond the end "
+                   "that the scene now has",
+                   folder_.path().c_str(), static_cast<long long>(done)));
+      point_.finished = true;
+      return point_;
+    }
+    point_.started = true;
+    point_.saved = read_checkpoint(folder_.path(), point_.notes);
+    check_checkpoint(particles);
+    if (scene_.output) look_at_file(before);
+    if (!point_.saved)
+      point_.notes.push_back("there is no checkpoint: the run starts again from its first update" +
+                             (point_.frames > 0 ? format("; the %lld frames that are there stay",
+                                                         static_cast<long long>(point_.frames))
+                                                : std::string()));
+    return point_;
+  }
+
+ private:
+  void check_checkpoint(std::int64_t particles) const {
+    if (!point_.saved) return;
+    const SavedRun& s = *point_.saved;
+    if (s.particles != particles || s.state.precision != scene_.precision)
+      throw Error(ExitCode::io, folder_.path() +
+                                    "/checkpoint.h5: holds another number of particles or another "
+                                    "precision than the scene; remove it to start again");
+    if (s.state.updates > schedule_.updates)
+      throw Error(ExitCode::bad_input,
+                  folder_.path() + ": cannot resume: time.end ends after update " +
+                      std::to_string(schedule_.updates) + ", the checkpoint is of update " +
+                      std::to_string(s.state.updates) + "; raise time.end");
+  }
+
+  void look_at_file(const Scene& before) {
+    if (!folder_.has("run.h5")) return forget("run.h5 is missing");
+    std::optional<RunReader> file;
+    RunInfo info;
+    try {
+      try_run_file(folder_.file("run.h5"));
+      file.emplace(folder_.file("run.h5"));
+      info = file->info();
+    } catch (const Error& e) {
+      damaged_ = true;
+      return forget(std::string(e.what()) + "; it becomes run.damaged.h5");
+    }
+    if (file->frames() == 0) return forget("");
+    point_.keep_file = true;
+    const std::int64_t u = point_.update();
+    point_.rows = point_.saved ? prefix(file->log_column("update"), u,
+                                        [&](std::int64_t k) { return update_of_row(k); })
+                               : 0;
+    // Frames behind the checkpoint stay when the run to come writes the same.
+    const bool same = exact(before) && exact(scene_) && info.commit == commit_;
+    point_.frames = prefix(file->updates(), same ? schedule_.updates : u,
+                           [&](std::int64_t k) { return schedule_.update_of_frame(k); });
+    if (point_.saved &&
+        (point_.frames < schedule_.frames_until(u) || point_.rows < schedule_.measures_until(u)))
+      forget("run.h5 ends before the checkpoint");
+  }
+  std::int64_t update_of_row(std::int64_t k) const { return schedule_.update_of_measure(k); }
+
+  /// Without what came before it in run.h5 a checkpoint is of no use.
+  void forget(const std::string& why) {
+    if (point_.saved && !why.empty())
+      point_.notes.push_back(why + ": the checkpoint is not used");
+    else if (!why.empty() && damaged_)
+      point_.notes.push_back(why);
+    point_.saved.reset();
+    point_.rows = 0;
+  }
+
+  const RunFolder& folder_;
+  const Scene& scene_;
+  const std::string &dir_, &commit_;
+  Schedule schedule_;
+  ResumePoint point_;
+  bool damaged_ = false;
+};
+
+}  // namespace
+
+ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene, const std::string& dir,
+                              std::int64_t particles, const std::string& commit) {
+  return Finder(folder, scene, dir, commit).find(particles);
+}
+
+std::string scene_record(const Scene& scene, const std::string& dir) {
+  return files_line(scene, dir) + resolved_yaml(scene);
+}
+
+void prepare_resume(const RunFolder& folder, const ResumePoint& from) {
+  folder.remove("DONE");
+  if (!from.keep_file && folder.has("run.h5")) {
+    const std::string aside = folder.file("run.damaged.h5");
+    if (std::rename(folder.file("run.h5").c_str(), aside.c_str()) != 0)
+      throw Error(ExitCode::io, aside + ": cannot be made: " + std::strerror(errno));
+  }
+}
+
+}  // namespace pbf

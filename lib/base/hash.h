@@ -1,0 +1,40 @@
+// A short name for contents: FNV-1a, 64 bits (Fowler, Noll, Vo; RFC draft eastlake-fnv). Not
+// against an adversary.
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "lib/base/text.h"
+
+namespace pbf {
+
+class Hash {
+ public:
+  /// Adds a text and its end, so that "ab", "c" and "a", "bc" differ.
+  void add(std::string_view text) {
+    bytes(text);
+    value_ = (value_ ^ 256u) * kPrime;
+  }
+  /// Adds the contents of a file; one that cannot be read counts as empty.
+  void add_file(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    char block[1 << 16];
+    while (in.read(block, sizeof block), in.gcount() > 0)
+      bytes({block, static_cast<std::size_t>(in.gcount())});
+    value_ = (value_ ^ 256u) * kPrime;
+  }
+  /// 16 hexadecimal digits.
+  std::string text() const { return format("%016llx", static_cast<unsigned long long>(value_)); }
+
+ private:
+  static constexpr std::uint64_t kPrime = 1099511628211u;
+  void bytes(std::string_view text) {
+    for (const char c : text) value_ = (value_ ^ static_cast<unsigned char>(c)) * kPrime;
+  }
+  std::uint64_t value_ = 14695981039346656037u;
+};
+
+}  // namespace pbf

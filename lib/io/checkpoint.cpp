@@ -1,0 +1,157 @@
+#include "lib/io/checkpoint.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "lib/base/error.h"
+#include "lib/io/h5_output.h"
+
+namespace pbf {
+namespace {
+
+namespace fs = std::filesystem;
+using h5::check;
+
+constexpr std::int64_t kFormat = 1;
+constexpr hsize_t kChunkRows = hsize_t{1} << 18;
+
+/// Rows of `components` numbers, with a checksum per chunk (Fletcher 32).
+template <class T>
+void write_rows(hid_t file, const char* name, const char* unit, hid_t type, hsize_t components,
+                const std::vector<T>& values) {
+  const hsize_t rows = values.size() / components, size[2] = {rows, components};
+  const hsize_t chunk[2] = {std::clamp<hsize_t>(rows, 1, kChunkRows), components};
+  const h5::Space space(H5Screate_simple(2, size, nullptr));
+  const h5::Properties create(H5Pcreate(H5P_DATASET_CREATE));
+  check(H5Pset_chunk(create, 2, chunk));
+  check(H5Pset_fletcher32(create));
+  const h5::Dataset d(H5Dcreate2(file, name, type, space, H5P_DEFAULT, create, H5P_DEFAULT));
+  if (rows > 0) check(H5Dwrite(d, h5::native<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+  h5::write_text(d, "units", unit);
+}
+
+template <class T>
+void read_rows(hid_t file, const char* name, std::int64_t n, std::size_t components,
+               std::vector<T>& values) {
+  const h5::Dataset d(H5Dopen2(file, name, H5P_DEFAULT));
+  const std::vector<hsize_t> size = h5::shape(d);
+  if (size != std::vector<hsize_t>{static_cast<hsize_t>(n), components})
+    throw h5::Failure(std::string("dataset ") + name + " has the wrong size");
+  values.resize(h5::claimed(d, size, sizeof(T)));
+  if (!values.empty())
+    check(H5Dread(d, h5::native<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+}
+
+/// f(attribute name, number) of the members that are doubles: one list for both directions.
+template <class Saved, class F>
+void for_each_number(Saved& s, F&& f) {
+  f("energy_first", s.energy.first);
+  f("energy_lowest", s.energy.lowest);
+  f("energy_rise", s.energy.rise);
+  f("compression_max", s.compression_max);
+}
+
+void write_file(const std::string& path, const SavedRun& s) {
+  const h5::Properties access = h5::writer_access();
+  h5::File file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access));
+  try {
+    const bool wide = s.state.precision == Precision::dbl;
+    const hid_t real = wide ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+    write_rows(file, "position", "h", real, 3, s.state.position);
+    write_rows(file, "velocity", "h/s", real, 3, s.state.velocity);
+    write_rows(file, "id", "1", H5T_STD_I32LE, 1, s.state.id);
+    const std::int64_t started = s.energy.started;
+    h5::write_numbers(file, "format_version", &kFormat);
+    h5::write_text(file, "precision", wide ? "double" : "float");
+    h5::write_numbers(file, "update", &s.state.updates);
+    h5::write_numbers(file, "particles", &s.particles);
+    h5::write_numbers(file, "energy_started", &started);
+    for_each_number(s, [&](const char* name, double v) { h5::write_numbers(file, name, &v); });
+    h5::flush_reserved(file);
+    h5::sync(file);
+  } catch (...) {
+    h5::abandon(file);
+    throw;
+  }
+  if (!file.reset()) throw h5::Failure(h5::reason());
+}
+
+SavedRun read_file(const std::string& path) {
+  const h5::Lock lock;
+  const h5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, h5::file_access()));
+  const auto format = h5::read_number<std::int64_t>(file, "format_version");
+  if (format != kFormat)
+    throw h5::Failure("format version " + std::to_string(format) + "; this program reads version " +
+                      std::to_string(kFormat));
+  SavedRun s;
+  s.state.precision =
+      h5::read_text(file, "precision") == "double" ? Precision::dbl : Precision::single;
+  s.state.updates = h5::read_number<std::int64_t>(file, "update");
+  s.particles = h5::read_number<std::int64_t>(file, "particles");
+  s.energy.started = h5::read_number<std::int64_t>(file, "energy_started") != 0;
+  for_each_number(s, [&](const char* name, double& v) { v = h5::read_number<double>(file, name); });
+  if (s.particles < 0 || s.particles > 2147483647 || s.state.updates < 0)
+    throw h5::Failure("a number of particles or updates that cannot be");
+  read_rows(file, "position", s.particles, 3, s.state.position);
+  read_rows(file, "velocity", s.particles, 3, s.state.velocity);
+  read_rows(file, "id", s.particles, 1, s.state.id);
+  return s;
+}
+
+void rename_or_fail(const std::string& from, const std::string& to) {
+  if (std::rename(from.c_str(), to.c_str()) != 0) throw h5::Failure(std::strerror(errno));
+}
+
+/// The names in a folder reach the disk with it.
+void sync_folder(const std::string& folder) {
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return;  // not everywhere possible; the files themselves are safe
+  ::fsync(fd);
+  ::close(fd);
+}
+
+}  // namespace
+
+void write_checkpoint(const std::string& folder, const SavedRun& saved) {
+  const std::string path = folder + "/checkpoint.h5", temporary = path + ".tmp";
+  try {
+    {
+      const h5::Lock lock;
+      write_file(temporary, saved);
+    }
+    if (fs::exists(path)) rename_or_fail(path, folder + "/checkpoint_prev.h5");
+    rename_or_fail(temporary, path);
+    sync_folder(folder);
+  } catch (const h5::Failure& f) {
+    ::unlink(temporary.c_str());
+    throw Error(ExitCode::io, path + ": cannot write the checkpoint: " + f.what() +
+                                  "; free space and give --resume to go on from the one before");
+  }
+}
+
+std::optional<SavedRun> read_checkpoint(const std::string& folder,
+                                        std::vector<std::string>& notes) {
+  std::string damaged;
+  for (const char* name : {"checkpoint.h5", "checkpoint_prev.h5"}) {
+    const std::string path = folder + "/" + name;
+    std::error_code error;
+    if (!fs::exists(path, error)) continue;
+    try {
+      SavedRun saved = read_file(path);
+      if (!damaged.empty()) notes.push_back(damaged + "; the one before it is taken");
+      return saved;
+    } catch (const h5::Failure& f) {
+      damaged += (damaged.empty() ? "" : "; ") + path;
+      damaged += std::string(": the checkpoint cannot be read: ") + f.what();
+    }
+  }
+  if (damaged.empty()) return std::nullopt;
+  throw Error(ExitCode::io, damaged + "; remove it to start again from the first update");
+}
+
+}  // namespace pbf

@@ -1,0 +1,31 @@
+// checkpoint.h5: the whole state of a run in working precision, from which it goes on to the last
+// bit. The one before is kept beside it as checkpoint_prev.h5.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lib/diag/measures.h"
+#include "lib/solver/step_trace.h"
+
+namespace pbf {
+
+/// A run as it stands after some update.
+struct SavedRun {
+  SolverState state;
+  EnergyHistory energy;        ///< of the measures that are due until then
+  double compression_max = 0;  ///< 1, largest of the measures that are due until then
+  std::int64_t particles = 0;
+};
+
+/// Writes `folder`/checkpoint.h5 by way of checkpoint.h5.tmp, which has reached the disk before it
+/// takes the place of the one before. Throws Error(io), having left the checkpoints as they were.
+void write_checkpoint(const std::string& folder, const SavedRun& saved);
+
+/// The newest checkpoint of a folder; nothing when there is none. One that is damaged (every part
+/// carries a checksum) is told in `notes` and the one before is taken; Error(io) when no other is
+/// there.
+std::optional<SavedRun> read_checkpoint(const std::string& folder, std::vector<std::string>& notes);
+
+}  // namespace pbf

@@ -1,0 +1,66 @@
+#include "lib/io/h5_output.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace pbf::h5 {
+namespace {
+
+int descriptor(hid_t file) {
+  void* handle = nullptr;
+  check(H5Fget_vfd_handle(file, H5P_DEFAULT, &handle));
+  return *static_cast<int*>(handle);
+}
+
+}  // namespace
+
+Properties writer_access() {
+  Properties p = file_access();
+  check(H5Pset_cache(p, 0, 0, 0, 0));
+  H5AC_cache_config_t cache;
+  cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+  check(H5Pget_mdc_config(p, &cache));
+  cache.evictions_enabled = false;
+  cache.incr_mode = H5C_incr__off;
+  cache.flash_incr_mode = H5C_flash_incr__off;
+  cache.decr_mode = H5C_decr__off;
+  check(H5Pset_mdc_config(p, &cache));
+  return p;
+}
+
+std::int64_t flush_reserved(hid_t file) {
+  haddr_t end = 0;
+  check(H5Fget_eoa(file, &end));
+  const int fd = descriptor(file);
+  const off_t size = ::lseek(fd, 0, SEEK_END), wanted = static_cast<off_t>(end);
+  if (size < 0) throw Failure(std::strerror(errno));
+  if (wanted > size && ::fallocate(fd, 0, size, wanted - size) != 0 &&
+      !(errno == EOPNOTSUPP && ::ftruncate(fd, wanted) == 0))
+    throw Failure(std::strerror(errno));
+  check(H5Fflush(file, H5F_SCOPE_GLOBAL));
+  return static_cast<std::int64_t>(end);
+}
+
+void sync(hid_t file) {
+  if (::fsync(descriptor(file)) != 0) throw Failure(std::strerror(errno));
+}
+
+void abandon(hid_t file) noexcept {
+  try {
+    const int fd = descriptor(file);
+    int elsewhere = memfd_create("pbf-abandoned", 0);
+    if (elsewhere < 0) elsewhere = ::open("/dev/null", O_RDWR);
+    if (elsewhere >= 0) {
+      dup2(elsewhere, fd);
+      ::close(elsewhere);
+    }
+  } catch (const Failure&) {
+    // no descriptor: nothing to turn away
+  }
+}
+
+}  // namespace pbf::h5

@@ -1,0 +1,29 @@
+// Writing HDF5 files that a crash or a full disk cannot spoil. To be used under an h5::Lock.
+#pragma once
+
+#include <cstdint>
+
+#include "lib/io/h5.h"
+
+namespace pbf::h5 {
+
+/// File access for writers. Rows go to the disk at once, so that a full disk is noticed before
+/// anything refers to them; what refers to them stays in memory until a flush, so that the file is
+/// as the last flush left it.
+Properties writer_access();
+
+/// Writes what HDF5 holds in memory; the size of the file in bytes. HDF5 goes on after a failed
+/// write and would leave a file that refers to what is not there, so the space is made sure of
+/// first: nothing can fail after that. Failure with the system's reason.
+std::int64_t flush_reserved(hid_t file);
+
+/// Waits until the disk has stored the file. Network file systems and quotas report a full disk
+/// only here. Failure with the system's reason.
+void sync(hid_t file);
+
+/// After a failure: HDF5 insists on writing what it still holds and can neither be told to forget
+/// it nor end cleanly when it fails again (a full disk), so its descriptor is turned away from the
+/// file. All that may follow is closing.
+void abandon(hid_t file) noexcept;
+
+}  // namespace pbf::h5

@@ -1,0 +1,49 @@
+#include "lib/io/h5_trial.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <optional>
+
+#include "lib/base/error.h"
+#include "lib/io/h5.h"
+
+namespace pbf::h5 {
+
+void trial(const std::string& path, const std::function<void()>& action, unsigned seconds) {
+  std::optional<Lock> held;
+  held.emplace();  // no other thread is inside HDF5 while the process is copied
+  const pid_t child = fork();
+  held.reset();
+  if (child < 0) return;  // no process to be had: the file is read without a trial
+  if (child == 0) {
+    const rlimit cpu{seconds, seconds}, core{0, 0};
+    setrlimit(RLIMIT_CPU, &cpu);
+    setrlimit(RLIMIT_CORE, &core);
+    for (const int s : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGTERM, SIGINT, SIGUSR1})
+      std::signal(s, SIG_DFL);
+    try {
+      action();
+    } catch (...) {  // told by the next one who reads
+    }
+    _exit(0);
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) return;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  if (signal == SIGINT || signal == SIGTERM) {  // meant for the whole program
+    raise(signal);
+    return;
+  }
+  const bool endless = signal == SIGKILL || signal == SIGXCPU;
+  throw Error(ExitCode::io, path + ": the file is damaged: HDF5 " +
+                                (endless ? "does not come to an end with it" : "crashes on it") +
+                                "; copy or make it anew");
+}
+
+}  // namespace pbf::h5

@@ -1,0 +1,15 @@
+// HDF5 files from elsewhere: HDF5 1.10 loops, or crashes, on some damaged bytes.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace pbf::h5 {
+
+/// Lets a child process do `action` (which reads the file at `path`) first, so that a file on which
+/// HDF5 crashes, or goes on for more than `seconds` of CPU time, is an Error(io) here and not the
+/// end of the program. Errors that the action throws are left to whoever does it next. Not to be
+/// called under a Lock.
+void trial(const std::string& path, const std::function<void()>& action, unsigned seconds = 60);
+
+}  // namespace pbf::h5

@@ -1,0 +1,205 @@
+// RunOutput: going on in a file that is there, and the table of the processes that wrote it.
+#include <algorithm>
+
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+#include "lib/io/h5_output.h"
+#include "lib/io/run_layout.h"
+#include "lib/io/run_output.h"
+
+namespace pbf {
+namespace {
+
+using h5::check;
+using h5::Column;
+
+/// What a process killed in the middle of a commit has left may lie behind the end that the file
+/// knows of; space is taken only behind that.
+h5::File open_again(const std::string& path) {
+  h5::File file(H5Fopen(path.c_str(), H5F_ACC_RDWR, h5::writer_access()));
+  check(H5Fincrement_filesize(file, 0));
+  return file;
+}
+
+h5::Type session_text() {
+  h5::Type t(H5Tcopy(H5T_C_S1));
+  check(H5Tset_size(t, run_layout::session_text));
+  check(H5Tset_strpad(t, H5T_STR_NULLPAD));
+  check(H5Tset_cset(t, H5T_CSET_UTF8));
+  return t;
+}
+
+void put_text(Column& column, hsize_t row, const std::string& text) {
+  char bytes[run_layout::session_text] = {};
+  std::size_t size = std::min(text.size(), sizeof bytes);
+  while (size < text.size() && size > 0 && (static_cast<unsigned char>(text[size]) & 0xC0) == 0x80)
+    --size;  // whole characters
+  text.copy(bytes, size);
+  column.write(row, 1, session_text(), bytes);
+}
+
+}  // namespace
+
+RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
+                     std::int64_t rows)
+    : RunOutput(gzip) {
+  expected_ = static_cast<std::size_t>(std::max<std::int64_t>(0, info.particles));
+  file_ = open_again(path);
+  vtk_ = h5::Group(H5Gopen2(file_, "VTKHDF", H5P_DEFAULT));
+  steps_ = h5::Group(H5Gopen2(vtk_, "Steps", H5P_DEFAULT));
+  pbf_ = h5::Group(H5Gopen2(file_, "pbf", H5P_DEFAULT));
+  open_steps(frames);
+  open_log(rows);
+  flush();  // Values is never longer than NSteps
+  const h5::Attribute count(H5Aopen(steps_, "NSteps", H5P_DEFAULT));
+  check(H5Awrite(count, H5T_NATIVE_INT64, &frames));
+  frames_ = frames;
+  h5::write_text(pbf_, "status", "running");
+  if (h5::read_text(pbf_, "resolved_scene") != info.resolved_scene) {  // a later end
+    h5::write_text(pbf_, "resolved_scene", info.resolved_scene);
+    h5::write_text(pbf_, "plan", info.plan);
+  }
+  make_sessions();
+  begin_session(info);
+  flush();
+}
+
+void RunOutput::open_steps(std::int64_t frames) {
+  const auto n = static_cast<hsize_t>(frames);
+  const auto table = [&](hid_t parent, const std::string& name, hsize_t rows) {
+    Column c = Column::existing(parent, name);
+    c.truncate(rows);
+    return c;
+  };
+  times_ = table(steps_, "Values", n);
+  part_offsets_ = table(steps_, "PartOffsets", n);
+  part_counts_ = table(steps_, "NumberOfParts", n);
+  point_offsets_ = table(steps_, "PointOffsets", n);
+  cell_offsets_ = table(steps_, "CellOffsets", n);
+  id_starts_ = table(steps_, "ConnectivityIdOffsets", n);
+  updates_ = table(pbf_, "frames/update", n);
+  const auto parts = h5::read_all<std::int64_t>(steps_, "PartOffsets");
+  const auto points = h5::read_all<std::int64_t>(vtk_, "NumberOfPoints");
+  std::int64_t used = 0;
+  for (const std::int64_t p : parts) {
+    if (p < 0 || static_cast<std::size_t>(p) >= points.size() ||
+        points[static_cast<std::size_t>(p)] < 0)
+      throw h5::Failure("a frame has no number of points");
+    used = std::max(used, p + 1);
+  }
+  open_parts(points, used);
+  open_fields(frames);
+}
+
+void RunOutput::open_parts(const std::vector<std::int64_t>& counts, std::int64_t parts) {
+  const auto n = static_cast<hsize_t>(parts);
+  points_per_part_ = Column::existing(vtk_, "NumberOfPoints");
+  points_per_part_.truncate(n);
+  for (std::size_t t = 0; t < topologies_.size(); ++t) {
+    const std::string group = run_layout::topologies[t];
+    topologies_[t].cells = Column::existing(vtk_, group + "/NumberOfCells");
+    topologies_[t].ids = Column::existing(vtk_, group + "/NumberOfConnectivityIds");
+    topologies_[t].ends = Column::existing(vtk_, group + "/Offsets");
+    topologies_[t].cells.truncate(n);
+    topologies_[t].ids.truncate(n);
+    topologies_[t].ends.truncate(t == 0 ? 2 * n : n);
+  }
+  for (std::int64_t k = 0; k < parts; ++k)
+    parts_.push_back({static_cast<std::size_t>(counts[static_cast<std::size_t>(k)]), k, k});
+}
+
+void RunOutput::open_fields(std::int64_t frames) {
+  if (frames == 0) return;
+  const auto n = static_cast<hsize_t>(frames);
+  const auto starts = h5::read_all<std::int64_t>(steps_, "PointOffsets");
+  const auto parts = h5::read_all<std::int64_t>(steps_, "PartOffsets");
+  std::size_t most = 0;
+  for (const std::int64_t p : parts)
+    most = std::max(most, parts_[static_cast<std::size_t>(p)].count);
+  end_row_ =
+      static_cast<hsize_t>(starts.back()) + parts_[static_cast<std::size_t>(parts.back())].count;
+  const auto open = [&](const std::string& name, const std::string& path) {
+    const h5::Dataset d(H5Dopen2(vtk_, path.c_str(), H5P_DEFAULT));
+    const h5::Type type(H5Dget_type(d));
+    const bool wide = H5Tget_size(type) == 8, real = H5Tget_class(type) == H5T_FLOAT;
+    const auto dims = h5::shape(d);
+    Field f{name,
+            "",
+            !real  ? ScalarType::i32
+            : wide ? ScalarType::f64
+                   : ScalarType::f32,
+            dims.size() == 2 ? static_cast<int>(dims[1]) : 1,
+            Column::existing(vtk_, path),
+            Column()};
+    f.data.truncate(end_row_);
+    if (name != "position") {
+      f.offsets = Column::existing(steps_, "PointDataOffsets/" + name);
+      f.offsets.truncate(n);
+    }
+    return f;
+  };
+  fields_.push_back(open("position", "Points"));
+  chunk_rows_ = fields_[0].data.chunk_rows();
+  // In the order in which a snapshot has them (empty_snapshot()).
+  for (const char* name : {"velocity", "density"})
+    if (h5::has_link(vtk_, std::string("PointData/") + name))
+      fields_.push_back(open(name, std::string("PointData/") + name));
+  ids_ = Column::existing(vtk_, "PointData/id");
+  id_offsets_ = Column::existing(steps_, "PointDataOffsets/id");
+  connectivity_ = Column::existing(vtk_, "Vertices/Connectivity");
+  ids_.truncate(most);
+  id_offsets_.truncate(n);
+  connectivity_.truncate(most);
+}
+
+void RunOutput::open_log(std::int64_t rows) {
+  const auto n = static_cast<hsize_t>(rows);
+  for (const auto& c : run_layout::log_columns())
+    (log_[c.name] = Column::existing(pbf_, std::string("log/") + c.name)).truncate(n);
+  if (!h5::has_link(pbf_, "log/stage")) return;
+  const h5::Group group(H5Gopen2(pbf_, "log/stage", H5P_DEFAULT));
+  for (const auto& name : h5::children(group, H5O_TYPE_DATASET))
+    (stages_[name] = Column::existing(group, name)).truncate(n);
+}
+
+void RunOutput::make_sessions() {
+  const bool there = h5::has_link(pbf_, "sessions");
+  const h5::Layout layout{run_layout::session_rows, 0, false, ""};
+  const auto column = [&](const char* name, hid_t type) {
+    const std::string path = std::string("sessions/") + name;
+    sessions_[name] = there ? Column::existing(pbf_, path) : Column(pbf_, path, type, layout);
+  };
+  RunSession none;
+  run_layout::for_each_text(none,
+                            [&](const char* name, const auto&) { column(name, session_text()); });
+  run_layout::for_each_integer(none,
+                               [&](const char* name, const auto&) { column(name, H5T_STD_I64LE); });
+}
+
+void RunOutput::begin_session(const RunInfo& info) {
+  RunSession s;
+  s.started = info.started;
+  s.host = info.host;
+  s.device = info.solver.backend;
+  s.device += " " + info.solver.precision + ", " + info.solver.device;
+  s.program = info.program_version;
+  s.program += " (" + info.commit + ")";
+  s.threads = info.solver.threads;
+  s.first_update = s.last_update = info.first_update;
+  const hsize_t row = sessions_.at("started").rows();
+  run_layout::for_each_text(s, [&](const char* name, const std::string& text) {
+    put_text(sessions_.at(name), row, text);
+  });
+  run_layout::for_each_integer(s, [&](const char* name, const std::int64_t& value) {
+    sessions_.at(name).write(row, 1, H5T_NATIVE_INT64, &value);
+  });
+}
+
+void RunOutput::end_session(const std::string& reason, std::int64_t last_update) {
+  const hsize_t row = sessions_.at("started").rows() - 1;
+  put_text(sessions_.at("ended"), row, utc_now());
+  put_text(sessions_.at("reason"), row, reason);
+  sessions_.at("last_update").write(row, 1, H5T_NATIVE_INT64, &last_update);
+}
+
+}  // namespace pbf

@@ -1,0 +1,116 @@
+// SIGKILL at random moments: no frame that was reported is lost, every file opens, and the run that
+// is resumed ends in the bytes of the undisturbed one. tests/regression/kill_runs does more of it.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <random>
+#include <sstream>
+#include <thread>
+
+#include "lib/io/run_file.h"
+#include "tests/catch.h"
+#include "tests/cli/process.h"
+#include "tests/cli/same_run.h"
+
+using namespace pbf::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// 600 updates with a frame after every second one; checkpoints often enough to be hit as well.
+std::string scene(const Scratch& folder) {
+  return folder.write("s.yaml",
+                      "name: s\n"
+                      "domain: {min: [0, 0, 0], max: [1, 0.6, 1]}\n"
+                      "fluid: {spacing: 0.05}\n"
+                      "bodies:\n"
+                      "  - {shape: block, min: [0, 0, 0], max: [0.4, 0.6, 0.6]}\n"
+                      "time: {step: 0.002, end: 1.2}\n"
+                      "viscosity: {}\n"
+                      "measure_every: 4\n"
+                      "checkpoint: {every: 0.05}\n"
+                      "output: {every: 0.004}\n");
+}
+
+int number(const char* name, int otherwise) {
+  const char* text = std::getenv(name);
+  return text ? std::atoi(text) : otherwise;
+}
+
+/// The largest number of frames that the lines of --log-json called safe.
+std::int64_t reported(const fs::path& json) {
+  std::istringstream lines(read_text(json));
+  std::int64_t most = 0;
+  const std::string key = "\"frames\": ";
+  for (std::string line; std::getline(lines, line);)
+    if (const std::size_t at = line.find(key); at != std::string::npos && line.back() == '}')
+      most = std::max(most, std::int64_t(std::atoll(line.c_str() + at + key.size())));
+  return most;
+}
+
+/// Opens the file with h5py, where PBF_H5PY names a Python that has it; true when there is none.
+bool opens_in_h5py(const fs::path& file, std::int64_t frames) {
+  const char* python = std::getenv("PBF_H5PY");
+  if (!python) return true;
+  const std::string command = std::string(python) + " -c 'import h5py, sys; f = h5py.File(\"" +
+                              file.string() + "\", \"r\"); s = f[\"VTKHDF/Steps\"]; " +
+                              "n = int(s.attrs[\"NSteps\"]); k = s[\"PointOffsets\"][n - 1]; " +
+                              "x = f[\"VTKHDF/Points\"][k:k + 10]; " + "sys.exit(n < " +
+                              std::to_string(frames) + " or len(x) != 10)'";
+  return std::system(command.c_str()) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("runs killed at random moments lose no reported frame and end in the same bytes") {
+  const int kills = number("PBF_KILLS", 6);
+  const unsigned seed = static_cast<unsigned>(number("PBF_SEED", 1));
+  std::mt19937 random(seed);
+  const Scratch folder;
+  scene(folder);
+  const std::string gzip = number("PBF_GZIP", 0) ? "gzip" : "none";
+  const std::vector<std::string> args{
+      "run",       "s.yaml", "--resume", "--quiet",
+      "--threads", "1",      "--set",    "output.compression=" + gzip};
+  auto undisturbed = args, killed = args;
+  undisturbed.insert(undisturbed.end(), {"--out", "a"});
+  killed.insert(killed.end(), {"--out", "b", "--log-json", "b.json"});
+  const auto start = std::chrono::steady_clock::now();
+  REQUIRE(pbf::test::pbf(undisturbed, folder.path()).code == 0);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  int done = 0, rounds = 0, hit = 0;
+  while (done < kills) {
+    // A run that was killed often enough is finished, compared, and a new one is begun.
+    Process p(killed, folder.path());
+    const double wait = std::uniform_real_distribution<>(0.01, 0.6 * seconds)(random);
+    std::this_thread::sleep_for(std::chrono::duration<double>(wait));
+    p.send(SIGKILL);
+    const int code = p.wait().code;
+    CAPTURE(seed, done, wait);
+    REQUIRE((code == 128 + SIGKILL || code == 0));
+    if (code != 0) ++done;
+    const std::int64_t safe = reported(folder / "b.json");
+    if (safe > 0) {
+      const pbf::RunReader reader((folder / "b/run.h5").string());
+      REQUIRE(reader.frames() >= safe);
+      REQUIRE(reader.frame(reader.frames() - 1).count == reader.frame(0).count);
+      REQUIRE(opens_in_h5py(folder / "b/run.h5", safe));
+      ++hit;
+    }
+    if (code == 0 || (done == kills)) {
+      REQUIRE(pbf::test::pbf(killed, folder.path()).code == 0);
+      REQUIRE(run_difference(folder / "a/run.h5", folder / "b/run.h5") == "");
+      fs::remove_all(folder / "b");
+      fs::remove(folder / "b.json");
+      ++rounds;
+    }
+  }
+  WARN(done << " kills, " << hit << " files with reported frames looked at, " << rounds
+            << " resumed runs ended in the bytes of the undisturbed run");
+  CHECK(hit > 0);
+}

@@ -1,0 +1,211 @@
+// pbf run --resume: a run that was stopped or killed becomes the run that nobody disturbed.
+#include <sys/wait.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "lib/io/run_file.h"
+#include "tests/catch.h"
+#include "tests/cli/process.h"
+#include "tests/cli/same_run.h"
+
+using namespace pbf::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// 400 updates with everything that keeps a memory: log, energies, frames at odd times.
+std::string scene(const Scratch& folder) {
+  return folder.write("s.yaml",
+                      "name: s\n"
+                      "domain: {min: [0, 0, 0], max: [1, 0.6, 1]}\n"
+                      "fluid: {spacing: 0.05}\n"
+                      "bodies:\n"
+                      "  - {shape: block, min: [0, 0, 0], max: [0.4, 0.6, 0.6]}\n"
+                      "time: {step: 0.002, end: 0.8}\n"
+                      "viscosity: {xsph: 0.05}\n"
+                      "tensile: {}\n"
+                      "measure_every: 7\n"
+                      "output: {every: 0.01}\n");
+}
+
+using Args = std::vector<std::string>;
+Outcome run(const Scratch& folder, const std::string& out, const Args& more) {
+  Args args{"run", "s.yaml", "--out", out, "--threads", "1", "--quiet"};
+  args.insert(args.end(), more.begin(), more.end());
+  return pbf::test::pbf(args, folder.path());
+}
+std::string difference(const Scratch& folder, const std::string& a, const std::string& b) {
+  return run_difference(folder / (a + "/run.h5"), folder / (b + "/run.h5"));
+}
+
+/// Starts a run and sends it a signal when it has at least so many frames.
+Outcome end_by(const Scratch& folder, const Args& args, int signal, std::int64_t frames) {
+  Process p(args, folder.path());
+  for (int i = 0; i < 2000; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    try {
+      if (pbf::RunReader((folder / "b/run.h5").string()).frames() >= frames) break;
+    } catch (const std::exception&) {  // not there yet
+    }
+  }
+  p.send(signal);
+  return p.wait();
+}
+
+}  // namespace
+
+TEST_CASE("a run stopped again and again ends in the bytes of the undisturbed run") {
+  const Scratch folder;
+  scene(folder);
+  const std::string precision = GENERATE("float", "double");
+  REQUIRE(run(folder, "a", {"--precision", precision}).code == 0);
+  int stops = 0, code = 75;
+  while (code == 75 && stops < 100) {
+    // Wherever the wall-time limit falls; threads do not change bits.
+    const Outcome o =
+        pbf::test::pbf({"run", "s.yaml", "--out", "b", "--quiet", "--resume", "--precision",
+                        precision, "--max-walltime", "0.15", "--threads", stops % 2 ? "2" : "1"},
+                       folder.path());
+    CAPTURE(o.err);
+    code = o.code;
+    REQUIRE((code == 75 || code == 0));
+    stops += code == 75;
+  }
+  REQUIRE(code == 0);
+  CAPTURE(stops);
+  CHECK(stops >= 1);
+  CHECK(difference(folder, "a", "b") == "");
+  const auto sessions = pbf::RunReader((folder / "b/run.h5").string()).sessions();
+  REQUIRE(sessions.size() == std::size_t(stops) + 1);
+  for (std::size_t k = 0; k + 1 < sessions.size(); ++k) {
+    CHECK(sessions[k].reason == "--max-walltime");
+    CHECK(sessions[k].last_update == sessions[k + 1].first_update);
+  }
+  CHECK(sessions.back().reason == "finished");
+  CHECK(sessions.back().last_update == 400);
+}
+
+TEST_CASE("a killed run keeps its frames and ends in the same bytes, with and without checkpoint") {
+  const Scratch folder;
+  scene(folder);
+  const bool checkpoint = GENERATE(false, true);
+  const std::string set = checkpoint ? "checkpoint.every=0.02" : "checkpoint=off";
+  REQUIRE(run(folder, "a", {"--set", set}).code == 0);
+  const Args args{"run",     "s.yaml",    "--out", "b",     "--resume",
+                  "--quiet", "--threads", "1",     "--set", set};
+  std::int64_t before = 0;
+  for (const std::int64_t frames : {3, 9, 20}) {
+    CHECK(end_by(folder, args, SIGKILL, frames).code == 128 + SIGKILL);
+    const pbf::RunReader reader((folder / "b/run.h5").string());
+    CHECK(reader.frames() >= std::max(frames, before));
+    before = reader.frames();
+    CHECK(reader.status() == "running");
+    CHECK(reader.sessions().back().ended.empty());
+  }
+  CHECK(fs::exists(folder / "b/checkpoint.h5") == checkpoint);
+  REQUIRE(run(folder, "b", {"--resume", "--set", set}).code == 0);
+  CHECK(difference(folder, "a", "b") == "");
+}
+
+TEST_CASE("a finished run can be prolonged, to the bytes of the long run") {
+  const Scratch folder;
+  scene(folder);
+  const std::string end = GENERATE("0.113", "0.12");  // not at, and at, a frame
+  for (const char* set : {"checkpoint={}", "checkpoint=off"}) {
+    CAPTURE(set, end);
+    fs::remove_all(folder / "a");
+    fs::remove_all(folder / "b");
+    REQUIRE(run(folder, "a", {"--set", "time.end=0.2", "--set", set}).code == 0);
+    REQUIRE(run(folder, "b", {"--set", "time.end=" + end, "--set", set}).code == 0);
+    const Outcome o = run(folder, "b", {"--set", "time.end=0.2", "--set", set, "--resume"});
+    CAPTURE(o.err);
+    REQUIRE(o.code == 0);
+    CHECK(difference(folder, "a", "b") == "");
+    CHECK(run(folder, "b", {"--set", "time.end=0.1", "--resume"}).code == 0);  // it is done
+  }
+}
+
+TEST_CASE("a changed physics key is an error that names it, and other keys may change") {
+  const Scratch folder;
+  scene(folder);
+  REQUIRE(run(folder, "b", {"--max-walltime", "0.02"}).code == 75);
+  const std::vector<std::pair<std::string, std::string>> bad{
+      {"solver.iterations=5", "solver.iterations: 4 before, 5 now"},
+      {"viscosity=off", "viscosity: on before, off now"},
+      {"bodies.0.max=[0.4,0.6,0.7]", "bodies[0].max"},
+      {"precision=double", "precision: float before, double now"},
+      {"output.every=0.02", "output.every"}};
+  for (const auto& [set, text] : bad) {
+    const Outcome o = run(folder, "b", {"--resume", "--set", set});
+    CAPTURE(o.err);
+    CHECK(o.code == 2);
+    CHECK(has(o.err, text));
+    CHECK(has(o.err, "--overwrite"));
+  }
+  CHECK(run(folder, "b",
+            {"--resume", "--set", "threads=2", "--set", "checkpoint.every=5", "--set",
+             "time.end=0.9", "--set", "name=other"})
+            .code == 0);
+}
+
+TEST_CASE("a damaged checkpoint is told and the one before it is taken") {
+  const Scratch folder;
+  scene(folder);
+  REQUIRE(run(folder, "a", {}).code == 0);
+  REQUIRE(run(folder, "b", {"--max-walltime", "0.1"}).code == 75);
+  REQUIRE(run(folder, "b", {"--max-walltime", "0.1", "--resume"}).code == 75);
+  REQUIRE(fs::exists(folder / "b/checkpoint_prev.h5"));
+  const fs::path newest = folder / "b/checkpoint.h5";
+  std::string bytes = read_text(newest);
+  const std::string one(bytes, bytes.size() / 4, 1);  // in the middle of the positions
+  bytes[bytes.size() / 4] = char(one[0] ^ 16);
+  folder.write("b/checkpoint.h5", bytes);
+  const Outcome o =
+      pbf::test::pbf({"run", "s.yaml", "--out", "b", "--threads", "1", "--resume"}, folder.path());
+  CAPTURE(o.err);
+  CHECK(o.code == 0);
+  CHECK(has(o.err, "cannot be read"));
+  CHECK(difference(folder, "a", "b") == "");
+  // Both damaged: no silent start from the beginning.
+  REQUIRE(run(folder, "c", {"--max-walltime", "0.1"}).code == 75);
+  fs::resize_file(folder / "c/checkpoint.h5", 1000);
+  const Outcome none = run(folder, "c", {"--resume"});
+  CHECK(none.code == 5);
+  CHECK(has(none.err, "checkpoint.h5"));
+  CHECK(has(none.err, "remove it"));
+}
+
+TEST_CASE("two runs cannot write to one folder") {
+  const Scratch folder;
+  scene(folder);
+  Process first({"run", "s.yaml", "--out", "b", "--quiet", "--set", "time.end=1000"},
+                folder.path());
+  for (int i = 0; i < 500 && !fs::exists(folder / "b/run.h5"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const Scratch other;  // its own stderr
+  for (const char* how : {"--resume", "--overwrite"}) {
+    const Outcome o = pbf::test::pbf(
+        {"run", (folder / "s.yaml").string(), "--out", (folder / "b").string(), how}, other.path());
+    CAPTURE(o.err);
+    CHECK(o.code == 2);
+    CHECK(has(o.err, "another run writes here (process " + std::to_string(first.id())));
+  }
+  first.send(SIGKILL);
+  first.wait();
+  CHECK(run(folder, "b", {"--overwrite"}).code == 0);  // the lock went with the process
+  CHECK_FALSE(fs::exists(folder / "b/.lock"));
+}
+
+TEST_CASE("a run file runs again to the same bytes") {
+  const Scratch folder;
+  scene(folder);
+  REQUIRE(run(folder, "a", {"--set", "solver.iterations=2"}).code == 0);
+  const Outcome o = pbf::test::pbf({"run", "a/run.h5", "--out", "b", "--quiet"}, folder.path());
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  CHECK(difference(folder, "a", "b") == "");
+  folder.write("x.h5", std::string("\x89HDF\r\n\x1a\n", 8) + "and nothing else");
+  CHECK(pbf::test::pbf({"run", "x.h5"}, folder.path()).code == 5);
+}

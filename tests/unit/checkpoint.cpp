@@ -1,0 +1,75 @@
+#include "lib/io/checkpoint.h"
+
+#include <filesystem>
+
+#include "lib/base/error.h"
+#include "tests/catch.h"
+#include "tests/unit/run_file_disk.h"
+#include "tests/unit/run_file_samples.h"
+
+using namespace pbf;
+using namespace pbf::test;
+
+namespace {
+
+SavedRun saved(Precision precision, std::int64_t update) {
+  SavedRun s;
+  s.particles = 3;
+  s.state.precision = precision;
+  s.state.updates = update;
+  for (int k = 0; k < 9; ++k) {
+    s.state.position.push_back(precision == Precision::dbl ? 0.1 * k : double(0.1f * float(k)));
+    s.state.velocity.push_back(-1.5 * k);
+  }
+  s.state.id = {2, 0, 1};
+  s.energy = {true, 1.25, 0.1, 1e-300};
+  s.compression_max = 0.3;
+  return s;
+}
+
+bool same(const SavedRun& a, const SavedRun& b) {
+  return a.state.precision == b.state.precision && a.state.updates == b.state.updates &&
+         a.state.position == b.state.position && a.state.velocity == b.state.velocity &&
+         a.state.id == b.state.id && a.energy.started == b.energy.started &&
+         a.energy.first == b.energy.first && a.energy.lowest == b.energy.lowest &&
+         a.energy.rise == b.energy.rise && a.compression_max == b.compression_max &&
+         a.particles == b.particles;
+}
+
+}  // namespace
+
+TEST_CASE("a checkpoint comes back to the last bit, and the one before is kept") {
+  const TemporaryFolder folder;
+  std::vector<std::string> notes;
+  CHECK_FALSE(read_checkpoint(folder.path, notes));
+  for (const Precision p : {Precision::single, Precision::dbl}) {
+    write_checkpoint(folder.path, saved(p, 5));
+    write_checkpoint(folder.path, saved(p, 7));
+    const auto read = read_checkpoint(folder.path, notes);
+    REQUIRE(read);
+    CHECK(same(*read, saved(p, 7)));
+    std::filesystem::remove(folder / "checkpoint.h5");
+    CHECK(same(*read_checkpoint(folder.path, notes), saved(p, 5)));
+    CHECK(notes.empty());
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "checkpoint.h5.tmp"));
+}
+
+TEST_CASE("a disk that is full leaves the checkpoint before") {
+  const TemporaryFolder folder;
+  write_checkpoint(folder.path, saved(Precision::dbl, 5));
+  std::vector<std::string> notes;
+  for (const std::int64_t capacity : {0, 100, 1000, 3000}) {
+    CAPTURE(capacity);
+    const WatchedDisk disk(folder / "checkpoint.h5.tmp", capacity, false);
+    try {
+      write_checkpoint(folder.path, saved(Precision::dbl, 7));
+      FAIL("written to a full disk");
+    } catch (const Error& e) {
+      CHECK(e.code() == ExitCode::io);
+      CHECK(std::string(e.what()).find("No space left") != std::string::npos);
+    }
+    CHECK(same(*read_checkpoint(folder.path, notes), saved(Precision::dbl, 5)));
+    CHECK_FALSE(std::filesystem::exists(folder / "checkpoint.h5.tmp"));
+  }
+}
