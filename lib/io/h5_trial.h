@@ -1,4 +1,6 @@
-// HDF5 files from elsewhere: HDF5 1.10 loops, or crashes, on some damaged bytes.
+// HDF5 files from elsewhere. On some damaged bytes HDF5 1.10.8 goes on for ever, asks for memory
+// without measure, or reads beyond a chunk that is shorter than the dataset says (fuzzing found it
+// in H5Dread); most of that ends in its own errors, some in a crash.
 #pragma once
 
 #include <functional>
