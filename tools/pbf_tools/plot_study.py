@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                              "about the median (default %(default)s; no bar when not there)")
     parser.add_argument("--y", default="compression_mean", metavar="COLUMN",
                         help="error (default %(default)s)")
-    parser.add_argument("--series", default="method,backend,precision", metavar="COLUMNS",
+    parser.add_argument("--series", default="variant,method,backend,precision", metavar="COLUMNS",
                         help="columns that tell the curves apart (default %(default)s)")
     parser.add_argument("--pareto", default="pareto", metavar="COLUMN",
                         help="1 where a setting is on the front (default %(default)s); computed "
@@ -66,6 +66,11 @@ def run(args: argparse.Namespace) -> int:
         print(f"left out: {np.count_nonzero(~good)} rows whose {args.x} or {args.y} is missing or "
               "not above 0, which a logarithmic axis cannot show", file=sys.stderr)
     table = table.where(good)
+    status = table.columns.get("status")
+    if status is not None and (status != "finished").any():
+        print(f"left out: {np.count_nonzero(status != 'finished')} rows that did not finish or made "
+              "energy", file=sys.stderr)
+        table = table.where(status == "finished")
     percent = args.y.startswith("compression") if args.percent is None else args.percent
     x, y = table[args.x], table[args.y] * (100 if percent else 1)
     spread = table.columns.get(args.x_spread)
