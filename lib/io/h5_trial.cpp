@@ -41,10 +41,9 @@ void trial(const std::string& path, const std::function<void()>& action, unsigne
     return;
   }
   const bool endless = signal == SIGKILL || signal == SIGXCPU;
-  throw Error(ExitCode::io,
-              path + ": the file is damaged: HDF5 " +
-                  (endless ? "does not come to an end with it" : "crashes on it") +
-                  "; copy or make it anew");
+  throw Error(ExitCode::io, path + ": the file is damaged: HDF5 " +
+                                (endless ? "does not come to an end with it" : "crashes on it") +
+                                "; copy or make it anew");
 }
 
 }  // namespace pbf::h5

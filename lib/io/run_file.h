@@ -74,8 +74,8 @@ class RunWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Has a child process read all of a run file but its frames: Error(io) for one on which HDF5 crashes
-/// or does not come to an end. For files from elsewhere, before a RunReader.
+/// Has a child process read all of a run file but its frames: Error(io) for one on which HDF5
+/// crashes or does not come to an end. For files from elsewhere, before a RunReader.
 void try_run_file(const std::string& path);
 
 /// Reads a run file, also one still being written or cut off. Throws Error(io) with the reason.

@@ -1,5 +1,5 @@
-// The bytes of a fuzzer as a file that has a path. HDF5 asks for the real path, which memfd_create()
-// does not give, so it lies in /dev/shm.
+// The bytes of a fuzzer as a file that has a path. HDF5 asks for the real path, which
+// memfd_create() does not give, so it lies in /dev/shm.
 #pragma once
 
 #include <fcntl.h>
