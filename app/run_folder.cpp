@@ -27,7 +27,8 @@ bool own_picture(const std::string& name) {
 
 bool own_file(const std::string& name) {
   return name == "run.h5" || name == "scene.resolved.yaml" || name == "log.txt" || name == "DONE" ||
-         name == "checkpoint.h5" || name == "checkpoint_prev.h5" || name == "checkpoint.h5.tmp";
+         name == "checkpoint.h5" || name == "checkpoint_prev.h5" || name == "checkpoint.h5.tmp" ||
+         name == "guard_state.h5" || name == "guard_scene.yaml";
 }
 
 }  // namespace

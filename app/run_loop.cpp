@@ -55,7 +55,7 @@ RunEnd RunLoop::run() {
   outputs(0, false);
   std::int64_t u = 0;
   double per_update = 0;  // s, of the last call of step()
-  while (u < schedule_.updates && !diverged_ && !must_stop()) {
+  while (u < schedule_.updates && !event_ && !must_stop()) {
     // Short calls, so that a signal or the wall-time limit waits a quarter of a second at most
     // (or one update), yet few calls when an update takes microseconds.
     std::int64_t n = 1;
@@ -67,13 +67,14 @@ RunEnd RunLoop::run() {
     hand_over();  // what was being copied while the updates ran
     u += n;
     if (schedule_.measures(u)) measure();
-    if (!diverged_) outputs(u, false);
+    if (!event_) outputs(u, false);
     progress_.update({u, schedule_.updates, plan_.particles, solver_.time(), last_.compression_mean,
                       last_.compression_max});
   }
   if (last_measure_ != u) measure();  // stopped between two measures
+  if (event_) u = solver_.updates_done();  // the guard has gone back to what it found
   outputs(u, true);
-  const RunEnd end = diverged_               ? RunEnd::diverged
+  const RunEnd end = event_                  ? RunEnd::diverged
                      : u < schedule_.updates ? RunEnd::stopped
                                              : RunEnd::finished;
   close(end);
@@ -92,7 +93,6 @@ void RunLoop::measure() {
   last_ = solver_.measure();
   last_measure_ = last_.update;
   compression_max_ = std::max(compression_max_, last_.compression_max);
-  diverged_ = last_.non_finite > 0 || last_.outside > 0;
   const std::vector<StageTime> since = stages_since_last_row();
   clock_.begin();
   if (sinks_.writer) {
@@ -107,10 +107,15 @@ void RunLoop::measure() {
                   std::string("--log-json: cannot be written: ") + std::strerror(errno));
     clock_.mark("write");
   }
+  if (!scene_.guard) return;
+  clock_.begin();
+  if (!guard_) guard_.emplace(scene_, plan_, solver_, last_);
+  event_ = guard_->check(last_);
+  clock_.mark("guard");
 }
 
 void RunLoop::outputs(std::int64_t u, bool last) {
-  const bool write = schedule_.frame_every > 0 && (last || schedule_.writes(u)) && last_frame_ != u;
+  const bool write = schedule_.frame_every > 0 && (last || schedule_.writes(u)) && last_frame_ < u;
   bool draw = !last && schedule_.draws(u);
 #ifndef PBF_HAS_RENDER
   draw = false;  // refused before the run began
@@ -121,7 +126,7 @@ void RunLoop::outputs(std::int64_t u, bool last) {
   solver_.start_download(fields_, wide ? ScalarType::f64 : ScalarType::f32);
   under_way_ = {true, write, draw};
   if (write) last_frame_ = u;
-  if (last || diverged_) hand_over();
+  if (last) hand_over();
 }
 
 void RunLoop::hand_over() {
@@ -178,6 +183,7 @@ std::vector<StageTime> RunLoop::stages() const {
   add("init", 0, 0);
   for (const PlanPass& pass : plan_.passes) add(pass.stage, 0, 0);
   add("measure", 0, 0);
+  if (scene_.guard) add("guard", 0, 0);
   if (scene_.output || scene_.render) add("download", 0, 0);
   if (scene_.output || sinks_.json) add("write", 0, 0);
   if (scene_.render) add("render", 0, 0);
@@ -206,6 +212,7 @@ RunTotals RunLoop::totals() const {
   t.render_thread = render_thread_;
   t.fused = plan_.fused;
   t.first = first_;
+  t.speed_limit = scene_.solver.speed_limit * scene_.h() / scene_.time.step;
   t.last = last_;
   t.compression_max = compression_max_;
   t.frames = frames_;

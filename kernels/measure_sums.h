@@ -16,6 +16,7 @@ struct MeasureSums {
   double speed_squared = 0, speed_squared_max = 0;
   double x[3] = {0, 0, 0}, v[3] = {0, 0, 0}, front[3] = {-1e300, -1e300, -1e300};
   std::int64_t neighbors = 0, neighbors_max = 0, outside = 0, non_finite = 0;
+  std::int64_t fast = 0;  ///< particle-updates above the watched speed so far
 
   PBF_HD void add(const MeasureSums& o) {
     const auto take_larger = [](auto& a, auto b) { a = a > b ? a : b; };
@@ -33,6 +34,7 @@ struct MeasureSums {
     take_larger(neighbors_max, o.neighbors_max);
     outside += o.outside;
     non_finite += o.non_finite;
+    fast += o.fast;
   }
 };
 

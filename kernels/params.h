@@ -16,6 +16,8 @@ struct Params {
   Real dt = 0, inv_dt = 0;   ///< s, 1/s
   Vec3<Real> gravity;        ///< h/s^2
   Real damping = 1;          ///< factor on the velocity, once per update
+  Real speed_squared = Real(1e30);  ///< (h/s)^2, faster particles are counted ...
+  bool limit_speed = false;         ///< ... and slowed down to it
   Vec3<Real> box;            ///< h, extent of the domain
   Real margin = 0;           ///< h, distance to a wall at which particles are clamped
   unsigned walls = 63;       ///< WallBit mask of the faces that are walls

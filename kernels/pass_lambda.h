@@ -38,11 +38,12 @@ struct DensityPass {
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
-/// C from the density: one-sided by default (only compression is corrected).
+/// C from the density: one-sided by default (only compression is corrected). NaN stays NaN, so that
+/// it is seen.
 template <class Real>
 PBF_HD Real constraint(Real density, const Params<Real>& p) {
   const Real c = density - Real(1);
-  return p.two_sided ? c : max2(c, Real(0));
+  return !p.two_sided && c < Real(0) ? Real(0) : c;
 }
 
 /// lambda_i = -C_i / (sum_k |grad_k C_i|^2 + eps^), in h^2. with_density: the density is summed in

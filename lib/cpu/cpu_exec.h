@@ -36,6 +36,12 @@ class CpuExec {
     if (n) std::memcpy(to, host, n * sizeof(T));
   }
 
+  /// Copies n elements of an array of this executor.
+  template <class T>
+  void to_host(const T* from, std::size_t n, T* host) {
+    if (n) std::memcpy(host, from, n * sizeof(T));
+  }
+
   template <class T>
   void copy(const T* from, std::size_t n, T* to) {
     if (n) std::memcpy(to, from, n * sizeof(T));

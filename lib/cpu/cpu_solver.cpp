@@ -30,6 +30,10 @@ class CpuSolver final : public Solver {
   }
 
   void step(int updates) override {
+    if (fault_) {
+      for (int k = 0; k < updates; ++k) stepper_->step_checked(++updates_, nullptr, &*fault_);
+      return;
+    }
     stepper_->step(updates);
     updates_ += updates;
   }
@@ -43,6 +47,26 @@ class CpuSolver final : public Solver {
   Measures measure() override {
     return to_measures(stepper_->measure(), scene_, mass_, n_, updates_, time());
   }
+
+  SolverState state() override { return stepper_->state(updates_); }
+  void set_state(const SolverState& s) override {
+    check_state(s, n_);
+    stepper_->set_state(s);
+    updates_ = s.updates;
+  }
+  void keep() override {
+    stepper_->save(kept_);
+    kept_updates_ = updates_;
+  }
+  SolverState kept() override {
+    if (kept_.id.size() == 0) throw Error(ExitCode::internal, "kept() before keep()");
+    return stepper_->state(kept_, kept_updates_);
+  }
+  void watch_speed(double speed) override { stepper_->watch_speed(speed / scene_.h()); }
+  std::optional<StageEvent> step_checked(const StageLimits& limits) override {
+    return stepper_->step_checked(++updates_, &limits, fault_ ? &*fault_ : nullptr);
+  }
+  void inject(const Fault& fault) override { fault_ = fault; }
 
   std::vector<StageTime> timings() const override {
     std::vector<StageTime> out{{"init", init_seconds_, 1}};
@@ -63,7 +87,7 @@ class CpuSolver final : public Solver {
     i.threads = exec_.threads();
     i.vol = vol_;
     i.wall_scale = wall_scale_;
-    i.bytes = stepper_->bytes();
+    i.bytes = stepper_->bytes() + kept_.bytes();
     return i;
   }
 
@@ -91,7 +115,9 @@ class CpuSolver final : public Solver {
   std::unique_ptr<Stepper<Real, CpuExec>> stepper_;
   double init_seconds_ = 0;
   std::vector<StageClock::Entry> init_entries_;
-  std::int64_t updates_ = 0;
+  std::int64_t updates_ = 0, kept_updates_ = 0;
+  typename Stepper<Real, CpuExec>::Saved kept_;
+  std::optional<Fault> fault_;
 };
 
 }  // namespace

@@ -208,6 +208,11 @@ class CudaExec {
     synchronize();
   }
   template <class T>
+  void to_host(const T* from, std::size_t n, T* host) {
+    PBF_CUDA_CHECK(cudaMemcpyAsync(host, from, n * sizeof(T), cudaMemcpyDeviceToHost, stream_));
+    synchronize();
+  }
+  template <class T>
   void copy(const T* from, std::size_t n, T* to) {
     PBF_CUDA_CHECK(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDeviceToDevice, stream_));
   }

@@ -23,7 +23,7 @@ void refuse_if_too_large(const Scene& s, const Plan& plan, ListRoom room) {
   const double cells = double(plan.cells[0]) * plan.cells[1] * plan.cells[2];
   const double state =
       (4 * 4 + 1) * real + 7 * 4 + 16 * room.first + (plan.vorticity ? 4 * real : 0);
-  const double saved = 2 * 4 * real + 4, staging = s.output ? 7 * 8 : 0;
+  const double saved = (s.guard ? 2 : 1) * (2 * 4 * real + 4), staging = s.output ? 7 * 8 : 0;
   const double bytes =
       n * (state + saved + staging) + 16.0 * room.tail * room.tails + 9 * 4 * cells;
   std::size_t free = 0, total = 0;

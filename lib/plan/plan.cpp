@@ -68,6 +68,7 @@ void plan_arrays(Plan& plan, const Scene& s) {
   add("density", real, r);
   for (const char* name : {"id", "id'", "bin", "order"}) add(name, "int32", 4);
   if (plan.vorticity) add("curl", "4 x " + real, 4 * r);
+  if (s.guard) add("kept for the guard", "state", 8 * r + 4);
   // At rest the unit ball holds (4/3) pi (h/d)^3 particles; the lists keep 12.5 % of air.
   const double neighbors = 4.0 / 3.0 * kPi * std::pow(s.fluid.smoothing_ratio, 3) - 1;
   add("lists (at rest density)", "int32", 4 * neighbors * 1.125 + 8);
@@ -86,6 +87,8 @@ void plan_left_out(Plan& plan, const Scene& s) {
   out(plan.fused, "density pass of its own", "solver.fused is true");
   out(s.solver.boundary == BoundaryMode::clamp, "wall density", "solver.boundary is clamp");
   out(s.solver.iterations == 0, "lambda and delta passes", "solver.iterations is 0");
+  out(!s.guard, "the guard and its copy of the state", "guard is off");
+  out(s.solver.speed_limit == 0, "limit on the speed", "solver.speed_limit is 0");
   out(!s.output, "run.h5, its writer thread and downloads", "no key output");
   out(!s.render, "pictures, the GL library and its thread", "no key render");
   out(s.backend == Backend::cpu, "CUDA context", "backend is cpu");

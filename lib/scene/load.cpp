@@ -13,7 +13,12 @@
 namespace pbf {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
+constexpr std::size_t kMaxBytes = std::size_t{4} << 20;     // of a scene or a study
+constexpr std::size_t kMaxResult = std::size_t{256} << 20;  // of what pbf itself wrote
+
+std::size_t limit_of(const std::string& what) {
+  return what == "scene" || what == "study" ? kMaxBytes : kMaxResult;
+}
 
 [[noreturn]] void bad(const std::string& place, const std::string& what) {
   throw Error(ExitCode::bad_input, place + ": " + what);
@@ -37,43 +42,58 @@ std::size_t find_binary(const std::string& text) {
   return std::string::npos;
 }
 
-void check_text(const std::string& text, const std::string& origin) {
-  if (text.size() > kMaxBytes)
+void check_text(const std::string& text, const std::string& origin, const std::string& what) {
+  if (text.size() > limit_of(what))
     bad(origin, "is larger than 4 MiB; many particles belong into a file body (shape: file)");
   const std::size_t binary = find_binary(text);
   if (binary != std::string::npos)
     bad(origin, "is not a text file (byte " + std::to_string(binary) +
-                    " is not UTF-8 text); expected a scene in YAML");
+                    " is not UTF-8 text); expected a " + what + " in YAML");
 }
 
-std::string read_text_file(const std::string& path) {
+std::string read_text_file(const std::string& path, const std::string& what) {
   namespace fs = std::filesystem;
   std::error_code ec;
   const fs::file_status status = fs::status(path, ec);
-  if (fs::is_directory(status)) bad(path, "is a directory, expected a scene file");
+  if (fs::is_directory(status)) bad(path, "is a directory, expected a " + what + " file");
   std::ifstream in(path, std::ios::binary);
   if (!in) bad(path, "cannot be opened: " + std::string(std::strerror(errno)));
   // One byte more than allowed tells a file that is too large, without reading all of it.
-  std::string text(kMaxBytes + 1, '\0');
+  std::string text(limit_of(what) + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (in.bad()) bad(path, "reading failed");
   text.resize(static_cast<std::size_t>(in.gcount()));
   return text;
 }
 
-}  // namespace
-
-Scene parse_scene(const std::string& text, const std::string& origin,
-                  const std::vector<std::string>& overrides) {
-  check_text(text, origin);
-  Node root;
+Node tree_of(const std::string& text, const std::string& origin, const std::string& what) {
+  check_text(text, origin, what);
   try {
-    root = parse_yaml(text, origin, true);
+    Node root = parse_yaml(text, origin, true);
+    if (root.kind != Node::Kind::null) return root;
   } catch (const YamlError& e) {
     bad(e.place, e.what);
   }
-  if (root.kind == Node::Kind::null)
-    bad(origin, "is empty; `pbf config --example` prints a scene to start from");
+  bad(origin, "is empty" + std::string(what == "scene" ? "; `pbf config --example` prints a scene "
+                                                         "to start from"
+                                                       : ""));
+}
+
+}  // namespace
+
+Node load_tree(const std::string& path, const std::string& what) {
+  return tree_of(read_text_file(path, what), path, what);
+}
+
+Scene scene_of_tree(const Node& root, Problems& problems) {
+  const PlacedScene placed = validate(root, problems);
+  check_scene(placed, problems);
+  return placed.scene;
+}
+
+Scene parse_scene(const std::string& text, const std::string& origin,
+                  const std::vector<std::string>& overrides) {
+  Node root = tree_of(text, origin, "scene");
   Problems problems;
   for (const std::string& argument : overrides) {
     if (find_binary(argument) != std::string::npos)
@@ -81,16 +101,15 @@ Scene parse_scene(const std::string& text, const std::string& origin,
     else
       apply_override(root, argument, problems);
   }
-  const PlacedScene placed = validate(root, problems);
-  check_scene(placed, problems);
+  const Scene scene = scene_of_tree(root, problems);
   problems.raise();
-  return placed.scene;
+  return scene;
 }
 
 LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides) {
   LoadedScene loaded;
   loaded.path = path;
-  loaded.text = read_text_file(path);
+  loaded.text = read_text_file(path, "scene");
   loaded.overrides = overrides;
   loaded.scene = parse_scene(loaded.text, path, overrides);
   return loaded;

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "lib/scene/problems.h"
 #include "lib/scene/scene.h"
+#include "lib/scene/yaml_tree.h"
 
 namespace pbf {
 
@@ -24,6 +26,12 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
 /// The same from text; `origin` stands for the file name in messages.
 Scene parse_scene(const std::string& text, const std::string& origin,
                   const std::vector<std::string>& overrides);
+
+/// The two halves of load_scene, for those who change values in between: the tree of a YAML file
+/// (`what` it should be, for messages: "scene"), and the scene of a tree, with what is wrong added
+/// to `problems` (the scene is of no use then).
+Node load_tree(const std::string& path, const std::string& what);
+Scene scene_of_tree(const Node& root, Problems& problems);
 
 /// YAML of the whole scene, defaults filled in, which parse_scene reads back to an equal scene.
 /// Numbers keep all their digits (17).

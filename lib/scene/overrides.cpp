@@ -34,6 +34,8 @@ Node made(const Node& like, Node::Kind kind, const std::string& text) {
   node.kind = kind;
   node.text = text;
   node.origin = like.origin;
+  node.line = like.line;
+  node.column = like.column;
   return node;
 }
 
@@ -68,6 +70,28 @@ Node* child(Node& at, const std::string& segment, const Node& value, const std::
   return &at.items.back();
 }
 
+bool is_path(const std::string& path, const std::string& place, Problems& problems) {
+  const auto parts = segments(path);
+  if (!parts.empty() && parts.size() <= 8) return true;
+  problems.add(place, "", "\"" + path + "\" is no path of keys such as bodies[0].count");
+  return false;
+}
+
+void put(Node& root, const std::string& path, const Node& value, const std::string& place,
+         Problems& problems) {
+  Node* at = &root;
+  std::string so_far, why;
+  for (const std::string& part : segments(path)) {
+    at = child(*at, part, value, so_far, why);
+    if (at == nullptr) {
+      problems.add(place, path, why);
+      return;
+    }
+    so_far += (so_far.empty() ? "" : ".") + part;
+  }
+  *at = value;
+}
+
 }  // namespace
 
 void apply_override(Node& root, const std::string& argument, Problems& problems) {
@@ -78,11 +102,7 @@ void apply_override(Node& root, const std::string& argument, Problems& problems)
     return;
   }
   const std::string path = argument.substr(0, equals);
-  const auto parts = segments(path);
-  if (parts.empty() || parts.size() > 8) {
-    problems.add(place, "", "\"" + path + "\" is no path of keys such as bodies[0].count");
-    return;
-  }
+  if (!is_path(path, place, problems)) return;
   Node value;
   try {
     value = parse_yaml(argument.substr(equals + 1), place, false);
@@ -95,17 +115,11 @@ void apply_override(Node& root, const std::string& argument, Problems& problems)
     problems.add(place, path, "has no value; write " + path + "=VALUE");
     return;
   }
-  Node* at = &root;
-  std::string so_far, why;
-  for (const std::string& part : parts) {
-    at = child(*at, part, value, so_far, why);
-    if (at == nullptr) {
-      problems.add(place, path, why);
-      return;
-    }
-    so_far += (so_far.empty() ? "" : ".") + part;
-  }
-  *at = std::move(value);
+  put(root, path, value, place, problems);
+}
+
+void set_value(Node& root, const std::string& path, const Node& value, Problems& problems) {
+  if (is_path(path, value.place(), problems)) put(root, path, value, value.place(), problems);
 }
 
 }  // namespace pbf

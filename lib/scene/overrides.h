@@ -13,4 +13,7 @@ namespace pbf {
 /// cannot be placed goes to `problems`; whether the key exists is the validation's question.
 void apply_override(Node& root, const std::string& argument, Problems& problems);
 
+/// The same with a value that was read already: messages name the place where it stands.
+void set_value(Node& root, const std::string& path, const Node& value, Problems& problems);
+
 }  // namespace pbf

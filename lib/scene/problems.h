@@ -1,6 +1,7 @@
 // All that is wrong with a scene, gathered so that one try shows everything.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,10 @@ namespace pbf {
 
 class Problems {
  public:
-  /// One line: "place: key: what"; `key` may be empty.
+  /// One line: "place: key: what"; `key` may be empty. Said once: the runs of a study share places.
   void add(const std::string& place, const std::string& key, const std::string& what) {
-    lines_.push_back(place + ": " + (key.empty() ? "" : key + ": ") + what);
+    const std::string line = place + ": " + (key.empty() ? "" : key + ": ") + what;
+    if (std::find(lines_.begin(), lines_.end(), line) == lines_.end()) lines_.push_back(line);
   }
 
   bool empty() const { return lines_.empty(); }

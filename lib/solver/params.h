@@ -1,6 +1,8 @@
 // Scene (SI units) -> Params (internal frame).
 #pragma once
 
+#include <cmath>
+
 #include "kernels/params.h"
 #include "kernels/smoothing.h"
 #include "lib/plan/plan.h"
@@ -16,6 +18,11 @@ Params<Real> make_params(const Scene& s, const Plan& plan) {
   p.inv_dt = Real(1 / s.time.step);
   p.gravity = {Real(s.gravity[0] / h), Real(s.gravity[1] / h), Real(s.gravity[2] / h)};
   p.damping = Real(s.solver.velocity_damping);
+  // The guard's limit depends on the first measure, so it comes later (Stepper::watch_speed).
+  if (s.solver.speed_limit > 0) {
+    p.limit_speed = true;
+    p.speed_squared = Real(std::pow(s.solver.speed_limit / s.time.step, 2));
+  }
   p.box = {Real((s.domain.max[0] - s.domain.min[0]) / h),
            Real((s.domain.max[1] - s.domain.min[1]) / h),
            Real((s.domain.max[2] - s.domain.min[2]) / h)};

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "lib/scene/emit.h"
 #include "lib/scene/scene.h"
 #include "lib/solver/snapshot.h"
+#include "lib/solver/stage_event.h"
+#include "lib/solver/step_trace.h"
 
 namespace pbf {
 
@@ -51,6 +54,24 @@ class Solver {
   }
   virtual Snapshot finish_download() { return std::move(started_); }
   virtual Measures measure() = 0;
+  /// The state as it is now. set_state() of it, in this or in another solver of the same scene and
+  /// precision, continues to the last bit. Positions and velocities of a double are rounded where
+  /// they go into a solver of float. What is measured or downloaded between set_state() and the
+  /// next update uses lists made from the state itself. Error(internal) when the number of
+  /// particles differs or the ids are not 0..n-1 in some order.
+  virtual SolverState state() = 0;
+  virtual void set_state(const SolverState& state) = 0;
+  /// Keeps a copy of the state where the solver's arrays are, in place of the one before: cheap
+  /// enough for every measure. kept() brings it to the host; Error(internal) when there is none.
+  virtual void keep() = 0;
+  virtual SolverState kept() = 0;
+  /// Counts particles faster than `speed` (m/s) in Measures::fast from now on. Without effect where
+  /// the scene has a solver.speed_limit: then those above it are counted.
+  virtual void watch_speed(double speed) = 0;
+  /// One update like step(1), looking at what each stage left behind: some ten times slower.
+  virtual std::optional<StageEvent> step_checked(const StageLimits& limits) = 0;
+  /// For tests: updates from now on put this fault in when its time comes, also repeated ones.
+  virtual void inject(const Fault& fault) = 0;
   virtual std::vector<StageTime> timings() const = 0;
   virtual SolverInfo info() const = 0;
   virtual std::int64_t updates_done() const = 0;
@@ -59,6 +80,9 @@ class Solver {
  private:
   Snapshot started_;
 };
+
+/// Throws Error(internal) for a state that a solver of n particles cannot take over.
+void check_state(const SolverState& state, std::int64_t n);
 
 /// Throws Error(unavailable) when the backend, a device or memory is not there.
 std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan,

@@ -26,7 +26,24 @@ Measures to_measures(const MeasureSums& s, const Scene& scene, double mass, std:
   m.neighbors_max = s.neighbors_max;
   m.outside = s.outside;
   m.non_finite = s.non_finite;
+  m.fast = s.fast;
   return m;
+}
+
+void check_state(const SolverState& s, std::int64_t n) {
+  const std::size_t count = std::size_t(n);
+  std::vector<bool> seen(count, false);
+  bool good =
+      s.id.size() == count && s.position.size() == 3 * count && s.velocity.size() == 3 * count;
+  for (std::size_t k = 0; good && k < count; ++k) {
+    const auto id = std::size_t(s.id[k]);
+    good = s.id[k] >= 0 && id < count && !seen[id];
+    if (good) seen[id] = true;
+  }
+  if (!good)
+    throw Error(ExitCode::internal, "a state of " + std::to_string(s.id.size()) +
+                                        " particles does not fit a solver of " + std::to_string(n) +
+                                        ", or its ids are not 0..n-1");
 }
 
 Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type, std::size_t n,

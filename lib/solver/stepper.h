@@ -2,6 +2,7 @@
 // Buffer<T>, for_each(n, pass), sort_by_bin, build_lists, reduce, to_host, and mark(stage).
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -14,6 +15,8 @@
 #include "kernels/pass_vorticity.h"
 #include "kernels/pass_xsph.h"
 #include "lib/scene/scene.h"
+#include "lib/solver/stage_check.h"
+#include "lib/solver/step_trace.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -53,6 +56,9 @@ class Stepper {
     for (auto* b : {&position_, &other_position_, &velocity_, &other_velocity_}) b->resize(padded);
     for (auto* b : {&id_, &other_id_, &bin_, &order_}) b->resize(n);
     density_.resize(n);
+    fast_.resize(1);
+    const FastCount none = 0;
+    exec_.to_device(&none, 1, fast_.data());
     bin_start_.resize(std::size_t(bin_count(p_)) + 1);
     if (p_.vorticity > Real(0)) curl_.resize(padded);
     if (Exec::padding) {
@@ -71,25 +77,55 @@ class Stepper {
   /// Updates (kernels/README.md, "The step"). Where only viscosity lies between a sweep and the
   /// next update, one pass does both that and the next bins.
   void step(int updates) {
+    step(updates, [](const char*, int) {});
+  }
+
+  /// One update, looking at what each stage left behind and putting a fault in, where these are not
+  /// null. `update`: its number, the first is 1.
+  std::optional<StageEvent> step_checked(std::int64_t update, const StageLimits* limits,
+                                         const Fault* fault) {
+    StageCheck<Real, Exec> check(exec_, p_, update, limits, fault);
+    step(1, [&](const std::string& stage, int sweep) {
+      const bool lists = stage == "neighbors";
+      if (lists)
+        exec_.for_each(p_.n, NeighborCountPass<Lists>{lists_, order_.data()});  // free by now
+      check.look(stage, sweep,
+                 {(stage == "lambda" ? other_position_ : position_).data(), velocity_.data(),
+                  stage == "density" ? density_.data() : nullptr, id_.data(),
+                  lists ? order_.data() : nullptr});
+    });
+    return check.event();
+  }
+
+  /// The same as step(); `probe(stage, sweep)` is called when a stage is done.
+  template <class Probe>
+  void step(int updates, const Probe& probe) {
     if (updates <= 0) return;
+    unsort();
     exec_.begin();
     bool moved_on = false;
     for (int left = updates - 1; left >= 0; --left) {
       if (!moved_on)
         reorder<true>("predict",
                       PredictPass<Real>{p_, position_.data(), velocity_.data(), bin_.data()});
+      // The gather of the sort stores what `predict` gives.
+      for (const char* stage : {"predict", "grid", "neighbors"}) probe(stage, 0);
       moved_on = left > 0 && p_.xsph > Real(0) && !(p_.vorticity > Real(0));
       with_smoothing(mode_, [&](auto s) {
         constexpr Smoothing S = decltype(s)::value;
-        for (int k = 0; k < iterations_; ++k) sweep<S>();
+        for (int k = 0; k < iterations_; ++k) sweep<S>(probe, k + 1);
         if (moved_on) {
           reorder<true>("xsph", xsph<S, true>());
         } else if (p_.xsph > Real(0)) {
           exec_.for_each(p_.n, xsph<S, false>());
           exec_.mark("xsph");
+          probe("xsph", 0);
         }
       });
-      if (p_.vorticity > Real(0)) confine_vorticity();
+      if (p_.vorticity > Real(0)) {
+        confine_vorticity();
+        probe("vorticity", 0);
+      }
     }
     density_is_current_ = false;
   }
@@ -100,7 +136,7 @@ class Stepper {
     exec_.begin();
     sum_density();
     auto sums = exec_.reduce(p_.n, MeasurePass<Real, Lists>{p_, lists_, position_.data(),
-                                                            velocity_.data(), density_.data()});
+                                                            velocity_.data(), density_.data(), fast_.data()});
     exec_.mark("measure");
     return sums;
   }
@@ -138,6 +174,7 @@ class Stepper {
   struct Saved {
     Buffer<Vec4<Real>> position, velocity;
     Buffer<int> id;
+    Buffer<FastCount> fast;
     std::size_t bytes() const { return position.bytes() + velocity.bytes() + id.bytes(); }
   };
   void save(Saved& s) {
@@ -145,26 +182,88 @@ class Stepper {
     s.position.resize(n);
     s.velocity.resize(n);
     s.id.resize(n);
+    s.fast.resize(1);
     exec_.copy(position_.data(), n, s.position.data());
     exec_.copy(velocity_.data(), n, s.velocity.data());
     exec_.copy(id_.data(), n, s.id.data());
+    exec_.copy(fast_.data(), 1, s.fast.data());
   }
   void restore(const Saved& s) {
     const std::size_t n = std::size_t(p_.n);
     exec_.copy(s.position.data(), n, position_.data());
     exec_.copy(s.velocity.data(), n, velocity_.data());
     exec_.copy(s.id.data(), n, id_.data());
+    exec_.copy(s.fast.data(), 1, fast_.data());
     density_is_current_ = false;
+  }
+
+  SolverState state(std::int64_t updates) {
+    if (unsorted_.id.size() > 0) return state(unsorted_, updates);
+    return state(position_.data(), velocity_.data(), id_.data(), updates);
+  }
+  SolverState state(const Saved& s, std::int64_t updates) {
+    return state(s.position.data(), s.velocity.data(), s.id.data(), updates);
+  }
+
+  /// Takes over a state of as many particles. What measures it before the next update needs lists,
+  /// and these a sort; the order of the state itself comes back with the update.
+  void set_state(const SolverState& s) {
+    const std::size_t n = std::size_t(p_.n);
+    const auto copy = [&](const std::vector<double>& from, Vec4<Real>* to, Real w) {
+      std::vector<Vec4<Real>> host(n);
+      for (std::size_t k = 0; k < n; ++k)
+        host[k] = {Real(from[3 * k]), Real(from[3 * k + 1]), Real(from[3 * k + 2]), w};
+      exec_.to_device(host.data(), n, to);
+    };
+    copy(s.position, position_.data(), Real(1));
+    copy(s.velocity, velocity_.data(), Real(0));
+    exec_.to_device(s.id.data(), n, id_.data());
+    save(unsorted_);
+    reorder<false>("grid", BinPass<Real>{p_, position_.data(), bin_.data()});
+    density_is_current_ = false;
+    sum_density();
+  }
+
+  /// Particles faster than `speed` (h/s) are counted; no effect where the scene limits the speed.
+  void watch_speed(double speed) {
+    if (!p_.limit_speed) p_.speed_squared = Real(std::min(speed * speed, 1e30));
+  }
+
+  /// Puts the particles back into the order in which set_state() got them, if they are not.
+  void unsort() {
+    if (unsorted_.id.size() == 0) return;
+    restore(unsorted_);
+    unsorted_ = {};
   }
 
   std::size_t bytes() const {
     return position_.bytes() + other_position_.bytes() + velocity_.bytes() +
            other_velocity_.bytes() + id_.bytes() + other_id_.bytes() + bin_.bytes() +
            order_.bytes() + density_.bytes() + bin_start_.bytes() + curl_.bytes() +
-           exec_.list_bytes();
+           unsorted_.bytes() + exec_.list_bytes();
   }
 
  private:
+  SolverState state(const Vec4<Real>* position, const Vec4<Real>* velocity, const int* id,
+                    std::int64_t updates) {
+    const std::size_t n = std::size_t(p_.n);
+    SolverState s;
+    s.precision = sizeof(Real) == 8 ? Precision::dbl : Precision::single;
+    s.updates = updates;
+    const auto copy = [&](const Vec4<Real>* from, std::vector<double>& to) {
+      std::vector<Vec4<Real>> host(n);
+      exec_.to_host(from, n, host.data());
+      to.resize(3 * n);
+      for (std::size_t k = 0; k < n; ++k)
+        to[3 * k] = host[k].x, to[3 * k + 1] = host[k].y, to[3 * k + 2] = host[k].z;
+    };
+    copy(position, s.position);
+    copy(velocity, s.velocity);
+    s.id.resize(n);
+    exec_.to_host(id, n, s.id.data());
+    return s;
+  }
+
   /// Runs the pass that gives every particle its bin, sorts and gathers the particles by bin (as
   /// predicted, with `moving`), makes the lists.
   template <bool moving, class First>
@@ -172,7 +271,8 @@ class Stepper {
     exec_.sort_by_bin(
         stage, first, p_.n, bin_count(p_), order_.data(), bin_start_.data(),
         GatherPass<Real, moving>{p_, position_.data(), velocity_.data(), id_.data(),
-                                 other_position_.data(), other_velocity_.data(), other_id_.data()});
+                                 other_position_.data(), other_velocity_.data(), other_id_.data(),
+                                 fast_.data()});
     std::swap(position_, other_position_);
     std::swap(velocity_, other_velocity_);
     std::swap(id_, other_id_);
@@ -181,12 +281,13 @@ class Stepper {
     exec_.mark("neighbors");
   }
 
-  template <Smoothing S>
-  void sweep() {
+  template <Smoothing S, class Probe>
+  void sweep(const Probe& probe, int number) {
     if (!fused_) {
       exec_.for_each(p_.n,
                      DensityPass<Real, Lists, S>{p_, lists_, position_.data(), density_.data()});
       exec_.mark("density");
+      probe("density", number);
     }
     with_bool(fused_, [&](auto fused) {
       exec_.for_each(p_.n,
@@ -194,12 +295,14 @@ class Stepper {
                          p_, lists_, position_.data(), other_position_.data(), density_.data()});
     });
     exec_.mark("lambda");
+    probe("lambda", number);
     with_bool(tensile_, [&](auto tensile) {
       exec_.for_each(p_.n, DeltaPass<Real, Lists, S, decltype(tensile)::value>{
                                p_, lists_, other_position_.data(), density_.data(),
                                position_.data(), velocity_.data()});
     });
     exec_.mark("delta");
+    probe("delta", number);
   }
 
   /// The pass over the present velocities, which it leaves behind in the other array.
@@ -236,6 +339,8 @@ class Stepper {
   Buffer<Vec4<Real>> position_, other_position_, velocity_, other_velocity_, curl_;
   Buffer<Real> density_;
   Buffer<int> id_, other_id_, bin_, order_, bin_start_;
+  Buffer<FastCount> fast_;  ///< one: particles above the watched speed
+  Saved unsorted_;  ///< the state as set_state() got it, until the next update; else empty
 };
 
 }  // namespace pbf::inline PBF_VARIANT
