@@ -75,19 +75,22 @@ std::string cut(const std::string& text, std::size_t width) {
 }
 
 std::string row_text(const StabilityRow& r) {
-  return format("%-24s %-4s %6.1f s  %s\n%34s-> %s", r.name.c_str(), r.good ? "ok" : "FAIL",
-                r.seconds, r.must.c_str(), "", cut(r.happened, 150).c_str());
+  // By how much: the criterion nearest to its limit, as a share of the limit.
+  const std::string margin =
+      r.used > 0 ? format("%3.0f %% of %s", 100 * r.used, r.tightest.c_str()) : std::string();
+  return format("%-24s %-4s  %-16s must  %s\n%49s %s", r.name.c_str(), r.good ? "ok" : "FAIL",
+                margin.c_str(), r.must.c_str(), "did ", cut(r.happened, 150).c_str());
 }
 
 void write_csv(const std::string& path, const std::vector<StabilityRow>& rows,
                const StabilityCommandOptions& o) {
   CsvTable table({"case", "group", "backend", "precision", "size", "particles", "updates", "dt_hat",
-                  "verdict", "must", "happened", "speed_max", "energy_rise", "compression_mean",
+                  "verdict", "used", "tightest", "must", "happened", "speed_max", "energy_rise", "compression_mean",
                   "compression_max", "nearest", "slowed_down", "seconds"});
   for (const StabilityRow& r : rows)
     table.add({r.name, r.group, o.backend, o.precision,
                std::string(o.reduced ? "reduced" : "full"), r.particles, r.updates, r.dt_hat,
-               std::string(r.good ? "ok" : "fail"), r.must, r.happened, r.speed_max, r.energy_rise,
+               std::string(r.good ? "ok" : "fail"), r.used, r.tightest, r.must, r.happened, r.speed_max, r.energy_rise,
                r.compression_mean, r.compression_max, r.nearest, r.fast, r.seconds});
   write_text_file(path, table.text());
 }

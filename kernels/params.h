@@ -30,6 +30,7 @@ struct Params {
   bool two_sided = false;                     ///< C = rho - 1 instead of max(rho - 1, 0)
   Real relaxation = 0;                        ///< eps^ = eps h^2
   Real step_length = 1;                       ///< omega
+  bool ease_crowds = false;                   ///< smaller steps where the density is above 1
   Real tensile_k = 0;                         ///< h^2
   Real tensile_scale = 0;                     ///< 1/shape(delta_q)
   int tensile_n = 4;

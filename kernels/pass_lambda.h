@@ -46,7 +46,17 @@ PBF_HD Real constraint(Real density, const Params<Real>& p) {
   return !p.two_sided && c < Real(0) ? Real(0) : c;
 }
 
-/// lambda_i = -C_i / (sum_k |grad_k C_i|^2 + eps^), in h^2. with_density: the density is summed in
+/// What lambda is divided by where the scene leaves the step length to the program: 1 at the rest
+/// density, and the density's cube above it (twice its square from 2 on, for a clump is to part
+/// within a second). As omega falls with the number of neighbours at rest (lib/plan/plan.h), so it
+/// falls here with their number where there are too many: Jacobi sweeps overshoot with them.
+template <class Real>
+PBF_HD Real crowd(Real density, const Params<Real>& p) {
+  if (!p.ease_crowds || !(density > Real(1))) return Real(1);
+  return density * density * min2(density, Real(2));
+}
+
+/// lambda_i = -C_i / (sum_k |grad_k C_i|^2 + eps^) / crowd(rho_i), in h^2. with_density: the density is summed in
 /// the same loop (fused); otherwise it is read.
 template <class Real, class Lists, Smoothing S, bool with_density>
 struct LambdaPass {
@@ -94,7 +104,7 @@ struct LambdaPass {
     const Real c = constraint(rho, p);
     const Real denominator = a * a * s.squares + dot(own_gradient, own_gradient) + p.relaxation;
     // No neighbour, no wall and no relaxation: nothing to move along.
-    const Real lambda = denominator > Real(0) ? -c / denominator : Real(0);
+    const Real lambda = denominator > Real(0) ? -c / (crowd(rho, p) * denominator) : Real(0);
     position_out[i] = with_w(x, lambda);
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }

@@ -61,17 +61,23 @@ double energy_scale(const Measures& m, const Scene& s, double mass, std::int64_t
   return scale;
 }
 
+double released_energy(const Measures& first, const Scene& s, const Plan& plan) {
+  const double per_update = s.h() / s.time.step;
+  const double share = std::max(first.compression_mean - 0.01, 0.0) +
+                       (s.solver.constraint == ConstraintMode::two_sided ? 1 : 0);
+  return 0.5 * mass_of(plan) * per_update * per_update * share;
+}
+
 GuardLimits guard_limits(const Scene& s, const Plan& plan, const Measures& first) {
   const GuardSettings& g = *s.guard;
   const double per_update = s.h() / s.time.step, mass = mass_of(plan);
   const double scale = energy_scale(first, s, plan.mass, plan.particles);
-  const double compressed = 0.5 * mass * per_update * per_update * first.compression_mean;
   const double rounding = 0.5 * mass * std::pow(0.01 * per_update, 2);
   const double at_rest = 4.0 / 3.0 * kPi * std::pow(s.fluid.smoothing_ratio, 3);
   GuardLimits l;
   l.speed = g.speed ? *g.speed : 10 * (first.speed_max + fall_speed(s) + per_update);
   l.energy =
-      total_energy(first) + (g.energy ? *g.energy * scale : 0.1 * scale + compressed + rounding);
+      total_energy(first) + (g.energy ? *g.energy * scale : 0.1 * scale + released_energy(first, s, plan) + rounding);
   l.neighbors = g.neighbors > 0 ? g.neighbors
                                 : std::max(4 * first.neighbors_max, std::int64_t(64 * at_rest));
   return l;
@@ -156,6 +162,8 @@ std::string Guard::text(const GuardEvent& e) const {
                   "(%.4g m/s), %s",
                   e.stage->id, e.position[0], e.position[1], e.position[2], v[0], v[1], v[2],
                   length(v), w.what);
+  } else if (e.last_good.updates == e.measure.update) {
+    out += format("at the start, before the first update, a particle %s", w.what);
   } else {
     out += format("between the updates %lld and %lld (the repeated updates did not show it again) "
                   "a particle %s",

@@ -16,6 +16,11 @@ double total_energy(const Measures& m);
 /// the domain towards which gravity pulls. mass: of one particle, kg.
 double energy_scale(const Measures& m, const Scene& scene, double mass, std::int64_t particles);
 
+/// What a compressed start may give back, J: (compression_mean - 1 %) M (h/dt)^2/2, for its particles
+/// leave each other by up to h in an update. Without `one_sided`, a free surface is pulled as well: as if
+/// the mean were 1 more.
+double released_energy(const Measures& first, const Scene& scene, const Plan& plan);
+
 /// Limits of a run, SI units.
 struct GuardLimits {
   double speed = 0;             ///< m/s
@@ -25,8 +30,7 @@ struct GuardLimits {
 
 /// Limits from the scene's guard block and the first measure of the run. Where a key is `auto`:
 /// speed: 10 (fastest at the start + fall through the domain + h/dt): no flow from that start
-/// reaches it. energy: that of the start, + 0.1 energy_scale, + compression_mean M (h/dt)^2/2,
-/// which a compressed start gives back as particles leave each other by up to h in an update,
+/// reaches it. energy: that of the start, + 0.1 energy_scale + released_energy
 /// + M (0.01 h/dt)^2/2 of rounding. neighbors: 4 times the most at the start, at least 64 times
 /// the (4/3) pi (h/d)^3 at rest.
 GuardLimits guard_limits(const Scene& scene, const Plan& plan, const Measures& first);

@@ -17,7 +17,7 @@ namespace pbf {
 /// finite and inside, none is lost, and the guard does not stop the run.
 struct Criteria {
   std::optional<double> speed;             ///< m/s, fastest particle of any measure
-  double energy = 0.03;                    ///< rise above the start, share of energy_scale()
+  double energy = 0.03;  ///< rise above the start and released_energy(), share of energy_scale()
   std::optional<double> compression_mean;  ///< mean over the settled part: the last quarter
   std::optional<double> compression_max;   ///< largest in the settled part
   std::optional<double> nearest;           ///< least distance of two particles at the end, spacings
@@ -53,6 +53,8 @@ struct StabilityCheck {
 struct StabilityRow {
   std::string name, group, must, happened;
   bool good = false;
+  double used = 0;       ///< largest value over its limit: below 1 where the case is good
+  std::string tightest;  ///< the criterion that this is of
   std::vector<StabilityCheck> checks;  ///< empty where the run did not come to its end
   std::int64_t particles = 0, updates = 0, fast = 0;
   double dt_hat = 0;  ///< dt sqrt(|g|/h)
@@ -82,7 +84,8 @@ void judge_likeness(const std::vector<StabilityCase>& cases, std::vector<Stabili
 /// What a run went through, of what the criteria ask for.
 struct Course {
   Measures first, last;
-  double scale = 0;  ///< J, energy_scale() at the start
+  double scale = 0;     ///< J, energy_scale() at the start
+  double released = 0;  ///< released_energy(), share of scale
   double speed_max = 0, energy_rise = 0;  ///< m/s; share of scale
   double compression_mean = 0, compression_max = 0;  ///< of the last quarter of the measures
   std::int64_t particles = 0, updates = 0;

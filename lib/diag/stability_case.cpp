@@ -38,7 +38,7 @@ std::string must_text(const Criteria& m) {
   std::string out = "finite, inside";
   const auto add = [&out](const char* what, double limit) { out += what + number(limit); };
   if (m.speed) add(", speed<=", *m.speed);
-  add(", E<=+", m.energy);
+  add(", E<=", m.energy);
   if (m.compression_mean) add(", c<=", *m.compression_mean);
   if (m.compression_max) add(", cmax<=", *m.compression_max);
   if (m.nearest) add(", near>=", *m.nearest);
@@ -69,10 +69,9 @@ void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s
   const auto at_most = [&](const char* name, double value, double limit) {
     row.checks.push_back({name, value, limit, value <= limit});
   };
-  at_most("not finite", double(c.last.non_finite), 0);
-  at_most("outside", double(c.last.outside), 0);
+  at_most("lost", double(c.last.non_finite + c.last.outside), 0);
   if (m.speed) at_most("speed", c.speed_max, *m.speed);
-  at_most("E", c.energy_rise, m.energy);
+  at_most("E", c.energy_rise, m.energy + c.released);
   if (m.compression_mean) at_most("c", c.compression_mean, *m.compression_mean);
   if (m.compression_max) at_most("cmax", c.compression_max, *m.compression_max);
   if (m.nearest)
@@ -84,7 +83,13 @@ void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s
     at_most("momentum", momentum_drift(c, mass), *m.momentum);
   }
   for (const StabilityCheck& check : row.checks) {
+    const bool least = check.name == std::string("near");
+    if (check.limit > 0 && (least || check.value > 0)) {
+      const double used = least ? check.limit / check.value : check.value / check.limit;
+      if (used > row.used) row.used = used, row.tightest = check.name;
+    }
     row.happened += (row.happened.empty() ? "" : ", ") + check.name + " " + number(check.value);
+    if (check.name == "E" && c.released > 0.01) row.happened += " of " + number(check.limit);
     if (!check.good) row.happened += " (!)";
     row.good = row.good && check.good;
   }

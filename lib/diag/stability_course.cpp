@@ -18,6 +18,7 @@ Course run_course(const Scene& scene, const std::string& dir,
       std::max<std::int64_t>(1, std::llround(scene.time.end / scene.time.step));
   c.first = c.last = solver->measure();
   c.scale = energy_scale(c.first, scene, plan.mass, c.particles);
+  c.released = released_energy(c.first, scene, plan) / (c.scale > 0 ? c.scale : 1);
   std::optional<Guard> guard;
   if (scene.guard) guard.emplace(scene, plan, *solver, c.first);
   std::vector<std::pair<double, double>> compression;

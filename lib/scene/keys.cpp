@@ -147,7 +147,8 @@ std::vector<Key> solver_keys() {
              SCENE(&s.solver.relaxation)),
       automatic(number("solver.step_length", "", {0, 2, true},
                        "Factor omega on the position change of one sweep; below 1 under-relaxes. "
-                       "auto: min(1, (2.5 d/h)^2), since more neighbours need smaller steps.",
+                       "auto: min(1, (2.5 d/h)^2), since more neighbours need smaller steps, and less "
+                       "where the density is above rest_density.",
                        SCENE(&s.solver.step_length))),
       words("solver.boundary", {"density", "clamp"},
             "density: walls count in the density like fluid behind them. clamp: particles are only "

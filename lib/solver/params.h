@@ -42,6 +42,7 @@ Params<Real> make_params(const Scene& s, const Plan& plan) {
   p.two_sided = s.solver.constraint == ConstraintMode::two_sided;
   p.relaxation = Real(s.solver.relaxation);
   p.step_length = Real(plan.step_length);
+  p.ease_crowds = !s.solver.step_length;
   if (s.tensile) {
     p.tensile_k = Real(s.tensile->k);
     const double q = s.tensile->delta_q, t = 1 - q;
