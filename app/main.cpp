@@ -140,8 +140,9 @@ void add_bench(CLI::App& app, BenchOptions& o, Command& command) {
 void add_stability(CLI::App& app, StabilityCommandOptions& o, Command& command) {
   CLI::App* c = app.add_subcommand(
       "stability", "Stiff and extreme cases, a verdict for each; maps of where a scene is stable");
-  c->add_option("CASE", o.cases, "Cases or groups of the suite, all when none is given; with --map "
-                                 "the scene file (configs/stiff/pool.yaml)");
+  c->add_option("CASE", o.cases,
+                "Cases or groups of the suite, all when none is given; with --map "
+                "the scene file (configs/stiff/pool.yaml)");
   c->add_option("--suite", o.suite, "Suite file (configs/stability.yaml)");
   c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember({"cpu", "cuda"}));
   c->add_option("--precision", o.precision, "Of the computation")

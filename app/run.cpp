@@ -108,12 +108,12 @@ std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
   write_particle_file(folder.file("guard_state.h5"), to_particles(e.last_good, scene),
                       e.last_good.id);
   folder.write_text("guard_scene.yaml", resolved_yaml(guard.repeating_scene(e, "guard_state.h5")));
-  throw Error(ExitCode::guard,
-              guard.text(e) +
-                  format(". %s holds the run up to there, guard_state.h5 the last good state "
-                         "(update %lld); to repeat: pbf run %s",
-                         folder.path().c_str(), static_cast<long long>(e.last_good.updates),
-                         folder.file("guard_scene.yaml").c_str()));
+  throw Error(
+      ExitCode::guard,
+      guard.text(e) + format(". %s holds the run up to there, guard_state.h5 the last good state "
+                             "(update %lld); to repeat: pbf run %s",
+                             folder.path().c_str(), static_cast<long long>(e.last_good.updates),
+                             folder.file("guard_scene.yaml").c_str()));
 }
 
 /// A folder that is missing is told before the run folder is made. It may be the run folder itself.
@@ -154,8 +154,7 @@ int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver
   RunTotals totals = loop.totals();
   totals.folder = folder.path();
   log.result(run_summary(totals));
-  if (loop.guard_event())
-    report_alarm(*loop.guard_event(), loop.guard(), loaded.scene, folder);
+  if (loop.guard_event()) report_alarm(*loop.guard_event(), loop.guard(), loaded.scene, folder);
   if (end == RunEnd::stopped) {
     log.note(
         format("pbf: stopped early by %s after update %lld of %lld, after saving; the files "

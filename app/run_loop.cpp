@@ -71,7 +71,7 @@ RunEnd RunLoop::run() {
     progress_.update({u, schedule_.updates, plan_.particles, solver_.time(), last_.compression_mean,
                       last_.compression_max});
   }
-  if (last_measure_ != u) measure();  // stopped between two measures
+  if (last_measure_ != u) measure();       // stopped between two measures
   if (event_) u = solver_.updates_done();  // the guard has gone back to what it found
   outputs(u, true);
   const RunEnd end = event_                  ? RunEnd::diverged

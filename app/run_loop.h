@@ -41,8 +41,8 @@ class RunLoop {
   RunLoop(const Scene& scene, const Plan& plan, Solver& solver, RunSinks sinks, Log& log,
           StageClock& clock, const Stopwatch& wall, double max_walltime);
 
-  /// Runs to the end, a signal, the wall-time limit or an alarm of the guard, then writes the last frame and
-  /// closes every file. Errors of writing and drawing are thrown.
+  /// Runs to the end, a signal, the wall-time limit or an alarm of the guard, then writes the last
+  /// frame and closes every file. Errors of writing and drawing are thrown.
   RunEnd run();
 
   RunTotals totals() const;

@@ -84,14 +84,47 @@ std::string row_text(const StabilityRow& r) {
 
 void write_csv(const std::string& path, const std::vector<StabilityRow>& rows,
                const StabilityCommandOptions& o) {
-  CsvTable table({"case", "group", "backend", "precision", "size", "particles", "updates", "dt_hat",
-                  "verdict", "used", "tightest", "must", "happened", "speed_max", "energy_rise", "compression_mean",
-                  "compression_max", "nearest", "slowed_down", "seconds"});
+  CsvTable table({"case",
+                  "group",
+                  "backend",
+                  "precision",
+                  "size",
+                  "particles",
+                  "updates",
+                  "dt_hat",
+                  "verdict",
+                  "used",
+                  "tightest",
+                  "must",
+                  "happened",
+                  "speed_max",
+                  "energy_rise",
+                  "compression_mean",
+                  "compression_max",
+                  "nearest",
+                  "slowed_down",
+                  "seconds"});
   for (const StabilityRow& r : rows)
-    table.add({r.name, r.group, o.backend, o.precision,
-               std::string(o.reduced ? "reduced" : "full"), r.particles, r.updates, r.dt_hat,
-               std::string(r.good ? "ok" : "fail"), r.used, r.tightest, r.must, r.happened, r.speed_max, r.energy_rise,
-               r.compression_mean, r.compression_max, r.nearest, r.fast, r.seconds});
+    table.add({r.name,
+               r.group,
+               o.backend,
+               o.precision,
+               std::string(o.reduced ? "reduced" : "full"),
+               r.particles,
+               r.updates,
+               r.dt_hat,
+               std::string(r.good ? "ok" : "fail"),
+               r.used,
+               r.tightest,
+               r.must,
+               r.happened,
+               r.speed_max,
+               r.energy_rise,
+               r.compression_mean,
+               r.compression_max,
+               r.nearest,
+               r.fast,
+               r.seconds});
   write_text_file(path, table.text());
 }
 
@@ -127,8 +160,8 @@ int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int
 
 int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int jobs) {
   if (o.cases.size() > 1)
-    throw Error(ExitCode::bad_input, "--map takes one scene file, not " +
-                                         std::to_string(o.cases.size()));
+    throw Error(ExitCode::bad_input,
+                "--map takes one scene file, not " + std::to_string(o.cases.size()));
   StabilityMap map;
   map.scene = o.cases.empty() ? "configs/stiff/pool.yaml" : o.cases[0];
   map.limit = o.limit;
@@ -154,8 +187,9 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
     cells[k] = std::move(cell);
     log.transient(format("%zu of %zu runs, %.0f s", ++done, grid.size(), watch.seconds()));
   });
-  CsvTable table({"scene", "backend", "precision", "x_key", "y_key", "x", "y", "iterations", "class",
-                  "dt_hat", "compression_mean", "compression_max", "energy_rise", "stopped_for"});
+  CsvTable table({"scene", "backend", "precision", "x_key", "y_key", "x", "y", "iterations",
+                  "class", "dt_hat", "compression_mean", "compression_max", "energy_rise",
+                  "stopped_for"});
   std::int64_t count[3] = {0, 0, 0};
   for (const MapCell& c : cells) {
     ++count[static_cast<int>(c.verdict)];

@@ -56,8 +56,8 @@ PBF_HD Real crowd(Real density, const Params<Real>& p) {
   return density * density * min2(density, Real(2));
 }
 
-/// lambda_i = -C_i / (sum_k |grad_k C_i|^2 + eps^) / crowd(rho_i), in h^2. with_density: the density is summed in
-/// the same loop (fused); otherwise it is read.
+/// lambda_i = -C_i / (sum_k |grad_k C_i|^2 + eps^) / crowd(rho_i), in h^2. with_density: the
+/// density is summed in the same loop (fused); otherwise it is read.
 template <class Real, class Lists, Smoothing S, bool with_density>
 struct LambdaPass {
   Params<Real> p;

@@ -1,8 +1,8 @@
 // The CUDA solver; compiled once for each variant of the arithmetic (kernels/hd.h).
 #include <algorithm>
 
-#include "lib/cuda/cuda_exec.cuh"
 #include "lib/base/error.h"
+#include "lib/cuda/cuda_exec.cuh"
 #include "lib/cuda/cuda_variants.h"
 #include "lib/solver/step_solver.h"
 

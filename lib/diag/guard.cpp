@@ -77,9 +77,10 @@ GuardLimits guard_limits(const Scene& s, const Plan& plan, const Measures& first
   GuardLimits l;
   l.speed = g.speed ? *g.speed : 10 * (first.speed_max + fall_speed(s) + per_update);
   l.energy =
-      total_energy(first) + (g.energy ? *g.energy * scale : 0.1 * scale + released_energy(first, s, plan) + rounding);
-  l.neighbors = g.neighbors > 0 ? g.neighbors
-                                : std::max(4 * first.neighbors_max, std::int64_t(64 * at_rest));
+      total_energy(first) +
+      (g.energy ? *g.energy * scale : 0.1 * scale + released_energy(first, s, plan) + rounding);
+  l.neighbors =
+      g.neighbors > 0 ? g.neighbors : std::max(4 * first.neighbors_max, std::int64_t(64 * at_rest));
   return l;
 }
 
@@ -158,17 +159,19 @@ std::string Guard::text(const GuardEvent& e) const {
     out += format("at update %lld, in stage %s", static_cast<long long>(e.stage->update),
                   e.stage->stage.c_str());
     if (e.stage->sweep > 0) out += format(" of sweep %d", e.stage->sweep);
-    out += format(", particle %d at (%.6g, %.6g, %.6g) m, velocity (%.4g, %.4g, %.4g) m/s "
-                  "(%.4g m/s), %s",
-                  e.stage->id, e.position[0], e.position[1], e.position[2], v[0], v[1], v[2],
-                  length(v), w.what);
+    out += format(
+        ", particle %d at (%.6g, %.6g, %.6g) m, velocity (%.4g, %.4g, %.4g) m/s "
+        "(%.4g m/s), %s",
+        e.stage->id, e.position[0], e.position[1], e.position[2], v[0], v[1], v[2], length(v),
+        w.what);
   } else if (e.last_good.updates == e.measure.update) {
     out += format("at the start, before the first update, a particle %s", w.what);
   } else {
-    out += format("between the updates %lld and %lld (the repeated updates did not show it again) "
-                  "a particle %s",
-                  static_cast<long long>(e.last_good.updates),
-                  static_cast<long long>(e.measure.update), w.what);
+    out += format(
+        "between the updates %lld and %lld (the repeated updates did not show it again) "
+        "a particle %s",
+        static_cast<long long>(e.last_good.updates), static_cast<long long>(e.measure.update),
+        w.what);
   }
   const std::string unit = w.unit[0] ? std::string(" ").append(w.unit) : std::string();
   out += format(": %.6g%s", e.value, unit.c_str());
@@ -192,8 +195,7 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
   s.guard->speed = limits_.speed;
   s.guard->neighbors = limits_.neighbors;
   const double scale = energy_scale(good_, s, plan_.mass, plan_.particles);
-  if (scale > 0)
-    s.guard->energy = std::max((limits_.energy - total_energy(good_)) / scale, 1e-12);
+  if (scale > 0) s.guard->energy = std::max((limits_.energy - total_energy(good_)) / scale, 1e-12);
   return s;
 }
 

@@ -16,16 +16,16 @@ double total_energy(const Measures& m);
 /// the domain towards which gravity pulls. mass: of one particle, kg.
 double energy_scale(const Measures& m, const Scene& scene, double mass, std::int64_t particles);
 
-/// What a compressed start may give back, J: (compression_mean - 1 %) M (h/dt)^2/2, for its particles
-/// leave each other by up to h in an update. Without `one_sided`, a free surface is pulled as well: as if
-/// the mean were 1 more.
+/// What a compressed start may give back, J: (compression_mean - 1 %) M (h/dt)^2/2, for its
+/// particles leave each other by up to h in an update. Without `one_sided`, a free surface is
+/// pulled as well: as if the mean were 1 more.
 double released_energy(const Measures& first, const Scene& scene, const Plan& plan);
 
 /// Limits of a run, SI units.
 struct GuardLimits {
-  double speed = 0;             ///< m/s
-  double energy = 0;            ///< J, kinetic plus potential
-  std::int64_t neighbors = 0;   ///< of one particle
+  double speed = 0;            ///< m/s
+  double energy = 0;           ///< J, kinetic plus potential
+  std::int64_t neighbors = 0;  ///< of one particle
 };
 
 /// Limits from the scene's guard block and the first measure of the run. Where a key is `auto`:
@@ -38,8 +38,8 @@ GuardLimits guard_limits(const Scene& scene, const Plan& plan, const Measures& f
 /// Why a run was stopped, SI units.
 struct GuardEvent {
   Alarm alarm = Alarm::non_finite;
-  Measures measure;            ///< the measure that showed it
-  double value = 0, limit = 0; ///< of what the alarm is about
+  Measures measure;             ///< the measure that showed it
+  double value = 0, limit = 0;  ///< of what the alarm is about
   /// The first stage at fault; absent where repeating the updates did not show it again.
   std::optional<StageEvent> stage;
   Double3 position{}, velocity{};  ///< of the particle in `stage`, m and m/s

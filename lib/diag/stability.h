@@ -16,7 +16,7 @@ namespace pbf {
 /// What must happen in a case. Always, unless an error or the guard must end it: every particle is
 /// finite and inside, none is lost, and the guard does not stop the run.
 struct Criteria {
-  std::optional<double> speed;             ///< m/s, fastest particle of any measure
+  std::optional<double> speed;  ///< m/s, fastest particle of any measure
   double energy = 0.03;  ///< rise above the start and released_energy(), share of energy_scale()
   std::optional<double> compression_mean;  ///< mean over the settled part: the last quarter
   std::optional<double> compression_max;   ///< largest in the settled part
@@ -84,9 +84,9 @@ void judge_likeness(const std::vector<StabilityCase>& cases, std::vector<Stabili
 /// What a run went through, of what the criteria ask for.
 struct Course {
   Measures first, last;
-  double scale = 0;     ///< J, energy_scale() at the start
-  double released = 0;  ///< released_energy(), share of scale
-  double speed_max = 0, energy_rise = 0;  ///< m/s; share of scale
+  double scale = 0;                                  ///< J, energy_scale() at the start
+  double released = 0;                               ///< released_energy(), share of scale
+  double speed_max = 0, energy_rise = 0;             ///< m/s; share of scale
   double compression_mean = 0, compression_max = 0;  ///< of the last quarter of the measures
   std::int64_t particles = 0, updates = 0;
   std::optional<GuardEvent> event;

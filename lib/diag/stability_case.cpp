@@ -74,8 +74,7 @@ void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s
   at_most("E", c.energy_rise, m.energy + c.released);
   if (m.compression_mean) at_most("c", c.compression_mean, *m.compression_mean);
   if (m.compression_max) at_most("cmax", c.compression_max, *m.compression_max);
-  if (m.nearest)
-    row.checks.push_back({"near", row.nearest, *m.nearest, row.nearest >= *m.nearest});
+  if (m.nearest) row.checks.push_back({"near", row.nearest, *m.nearest, row.nearest >= *m.nearest});
   if (m.still) at_most("Ekin", c.last.kinetic_energy / c.scale, *m.still);
   if (m.height) at_most("height lost", height_lost(c, s), *m.height);
   if (m.momentum) {

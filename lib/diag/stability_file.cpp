@@ -51,7 +51,8 @@ class SuiteReader {
         std::vector<std::string> words;
         for (const auto& k : keys) words.push_back(k.first);
         const std::string near = nearest_word(key.text, words);
-        problem(key, key.text, "unknown key" + (near.empty() ? "" : ", did you mean " + near + "?"));
+        problem(key, key.text,
+                "unknown key" + (near.empty() ? "" : ", did you mean " + near + "?"));
       } else if (!seen.insert(key.text).second) {
         problem(key, key.text, "given twice");
       } else {
@@ -90,29 +91,28 @@ class SuiteReader {
     StabilityCase c;
     Criteria& m = c.must;
     double error = -1;
-    const auto seen = block(
-        n, "cases",
-        {{"name", text(c.name)},
-         {"group", text(c.group)},
-         {"about", text(c.about)},
-         {"scene", text(c.scene)},
-         {"set", settings(c.set)},
-         {"reduced", settings(c.small)},
-         {"must", [&](const Node& must) {
-            block(must, "must",
-                  {{"speed", number(m.speed)},
-                   {"energy", number(m.energy)},
-                   {"compression_mean", number(m.compression_mean)},
-                   {"compression_max", number(m.compression_max)},
-                   {"nearest", number(m.nearest)},
-                   {"still", number(m.still)},
-                   {"height", number(m.height)},
-                   {"momentum", number(m.momentum)},
-                   {"like", text(m.like)},
-                   {"error", number(error)},
-                   {"says", text(m.says)},
-                   {"guard", text(m.guard)}});
-          }}});
+    const auto seen = block(n, "cases",
+                            {{"name", text(c.name)},
+                             {"group", text(c.group)},
+                             {"about", text(c.about)},
+                             {"scene", text(c.scene)},
+                             {"set", settings(c.set)},
+                             {"reduced", settings(c.small)},
+                             {"must", [&](const Node& must) {
+                                block(must, "must",
+                                      {{"speed", number(m.speed)},
+                                       {"energy", number(m.energy)},
+                                       {"compression_mean", number(m.compression_mean)},
+                                       {"compression_max", number(m.compression_max)},
+                                       {"nearest", number(m.nearest)},
+                                       {"still", number(m.still)},
+                                       {"height", number(m.height)},
+                                       {"momentum", number(m.momentum)},
+                                       {"like", text(m.like)},
+                                       {"error", number(error)},
+                                       {"says", text(m.says)},
+                                       {"guard", text(m.guard)}});
+                              }}});
     for (const char* key : {"name", "group", "scene", "must"})
       if (!seen.count(key)) problem(n, key, "missing; required");
     if (error >= 0) m.error = static_cast<int>(error);

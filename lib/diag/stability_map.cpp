@@ -134,8 +134,7 @@ MapCell run_map_cell(const StabilityMap& m, MapCell c) {
   s.measure_every = std::max(1, int(s.time.end / s.time.step / 200));
   c.scene = s.name;
   c.dt_hat = s.time.step * std::sqrt(g / s.h());
-  const Course course =
-      run_course(s, std::filesystem::path(m.scene).parent_path().string());
+  const Course course = run_course(s, std::filesystem::path(m.scene).parent_path().string());
   c.compression_mean = course.compression_mean;
   c.compression_max = course.compression_max;
   c.energy_rise = course.energy_rise;

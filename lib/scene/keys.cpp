@@ -145,11 +145,12 @@ std::vector<Key> solver_keys() {
              "eps h^2, in the denominator of lambda (constraint force mixing, made dimensionless). "
              "Larger is softer.",
              SCENE(&s.solver.relaxation)),
-      automatic(number("solver.step_length", "", {0, 2, true},
-                       "Factor omega on the position change of one sweep; below 1 under-relaxes. "
-                       "auto: min(1, (2.5 d/h)^2), since more neighbours need smaller steps, and less "
-                       "where the density is above rest_density.",
-                       SCENE(&s.solver.step_length))),
+      automatic(
+          number("solver.step_length", "", {0, 2, true},
+                 "Factor omega on the position change of one sweep; below 1 under-relaxes. "
+                 "auto: min(1, (2.5 d/h)^2), since more neighbours need smaller steps, and less "
+                 "where the density is above rest_density.",
+                 SCENE(&s.solver.step_length))),
       words("solver.boundary", {"density", "clamp"},
             "density: walls count in the density like fluid behind them. clamp: particles are only "
             "put back into the box.",
@@ -186,20 +187,21 @@ std::vector<Key> force_keys() {
 }
 
 std::vector<Key> guard_keys() {
-  return {automatic(number("guard.speed", "m/s", {0, 1e30, true},
-                           "Fastest speed allowed, in any update. auto: 10 times the sum of the "
-                           "fastest speed at the start, that of a fall through the domain, and h "
-                           "per update. With solver.speed_limit, only speeds at a measure count.",
-                           SCENE(&s.guard->speed))),
-          automatic(number("guard.energy", "", {0, 1e30, true},
-                           "Growth of kinetic plus potential energy allowed, as a share of what "
-                           "it was above the floor at the start. auto: 0.1, and more for a start "
-                           "that is compressed.",
-                           SCENE(&s.guard->energy))),
-          automatic(number("guard.neighbors", "", {0, 2147483647, true},
-                           "Neighbours of one particle allowed. auto: 4 times the most at the start, "
-                           "at least 64 times those at rest.",
-                           SCENE(&s.guard->neighbors)))};
+  return {
+      automatic(number("guard.speed", "m/s", {0, 1e30, true},
+                       "Fastest speed allowed, in any update. auto: 10 times the sum of the "
+                       "fastest speed at the start, that of a fall through the domain, and h "
+                       "per update. With solver.speed_limit, only speeds at a measure count.",
+                       SCENE(&s.guard->speed))),
+      automatic(number("guard.energy", "", {0, 1e30, true},
+                       "Growth of kinetic plus potential energy allowed, as a share of what "
+                       "it was above the floor at the start. auto: 0.1, and more for a start "
+                       "that is compressed.",
+                       SCENE(&s.guard->energy))),
+      automatic(number("guard.neighbors", "", {0, 2147483647, true},
+                       "Neighbours of one particle allowed. auto: 4 times the most at the start, "
+                       "at least 64 times those at rest.",
+                       SCENE(&s.guard->neighbors)))};
 }
 
 ChoiceField compression(Output& output) {
@@ -279,8 +281,9 @@ Block plain_block(const char* path, const char* help) {
 const std::vector<Key>& scene_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> all;
-    for (const auto& part : {top_keys(), domain_keys(), fluid_keys(), body_keys(), time_keys(),
-                             solver_keys(), force_keys(), guard_keys(), output_keys(), render_keys()})
+    for (const auto& part :
+         {top_keys(), domain_keys(), fluid_keys(), body_keys(), time_keys(), solver_keys(),
+          force_keys(), guard_keys(), output_keys(), render_keys()})
       all.insert(all.end(), part.begin(), part.end());
     return all;
   }();

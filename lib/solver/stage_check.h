@@ -100,8 +100,8 @@ class StageCheck {
         break;
       }
       if (!finite) continue;
-      const double speed = std::sqrt(values[4] * values[4] + values[5] * values[5] +
-                                     values[6] * values[6]);
+      const double speed =
+          std::sqrt(values[4] * values[4] + values[5] * values[5] + values[6] * values[6]);
       if (is_outside(x[k])) found(Alarm::outside, k, speed);
       if (speed > limits_->speed) found(Alarm::speed, k, speed);
       if (a.neighbors && neighbors[k] > limits_->neighbors)

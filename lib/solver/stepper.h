@@ -135,8 +135,9 @@ class Stepper {
   MeasureSums measure() {
     exec_.begin();
     sum_density();
-    auto sums = exec_.reduce(p_.n, MeasurePass<Real, Lists>{p_, lists_, position_.data(),
-                                                            velocity_.data(), density_.data(), fast_.data()});
+    auto sums =
+        exec_.reduce(p_.n, MeasurePass<Real, Lists>{p_, lists_, position_.data(), velocity_.data(),
+                                                    density_.data(), fast_.data()});
     exec_.mark("measure");
     return sums;
   }
@@ -268,11 +269,10 @@ class Stepper {
   /// predicted, with `moving`), makes the lists.
   template <bool moving, class First>
   void reorder(const char* stage, const First& first) {
-    exec_.sort_by_bin(
-        stage, first, p_.n, bin_count(p_), order_.data(), bin_start_.data(),
-        GatherPass<Real, moving>{p_, position_.data(), velocity_.data(), id_.data(),
-                                 other_position_.data(), other_velocity_.data(), other_id_.data(),
-                                 fast_.data()});
+    exec_.sort_by_bin(stage, first, p_.n, bin_count(p_), order_.data(), bin_start_.data(),
+                      GatherPass<Real, moving>{p_, position_.data(), velocity_.data(), id_.data(),
+                                               other_position_.data(), other_velocity_.data(),
+                                               other_id_.data(), fast_.data()});
     std::swap(position_, other_position_);
     std::swap(velocity_, other_velocity_);
     std::swap(id_, other_id_);
@@ -340,7 +340,7 @@ class Stepper {
   Buffer<Real> density_;
   Buffer<int> id_, other_id_, bin_, order_, bin_start_;
   Buffer<FastCount> fast_;  ///< one: particles above the watched speed
-  Saved unsorted_;  ///< the state as set_state() got it, until the next update; else empty
+  Saved unsorted_;          ///< the state as set_state() got it, until the next update; else empty
 };
 
 }  // namespace pbf::inline PBF_VARIANT
