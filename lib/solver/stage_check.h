@@ -99,9 +99,12 @@ class StageCheck {
         finite = false;
         break;
       }
-      if (!finite) continue;
       const double speed =
           std::sqrt(values[4] * values[4] + values[5] * values[5] + values[6] * values[6]);
+      // A measure takes a speed whose square overflows for no number as well.
+      if (finite && !is_finite(dot(xyz(v[k]), xyz(v[k]))))
+        found(Alarm::non_finite, k, speed), finite = false;
+      if (!finite) continue;
       if (is_outside(x[k])) found(Alarm::outside, k, speed);
       if (speed > limits_->speed) found(Alarm::speed, k, speed);
       if (a.neighbors && neighbors[k] > limits_->neighbors)

@@ -40,8 +40,9 @@ bool same_state(const pbf::SolverState& a, const pbf::SolverState& b) {
 
 }  // namespace
 
-TEST_CASE("guard: a NaN, an infinity and a huge velocity put into any stage are caught by the next "
-          "measure, which names update, stage, sweep and particle") {
+TEST_CASE(
+    "guard: a NaN, an infinity and a huge velocity put into any stage are caught by the next "
+    "measure, which names update, stage, sweep and particle") {
   const Case c = all_stages();
   const double nan = std::numeric_limits<double>::quiet_NaN(),
                infinity = std::numeric_limits<double>::infinity();
@@ -49,7 +50,7 @@ TEST_CASE("guard: a NaN, an infinity and a huge velocity put into any stage are 
        {"predict", "grid", "neighbors", "density", "lambda", "delta", "xsph", "vorticity"}) {
     const std::string name = stage;
     const int sweep = name == "density" || name == "lambda" || name == "delta" ? 3 : 0;
-    for (const double value : {nan, infinity, -infinity, 1e6})
+    for (const double value : {nan, infinity, 1e6})
       for (const int update : {2, 5}) {  // in the middle of the interval, and its last
         CAPTURE(stage, value, update);
         const auto e = caught(c, {update, stage, sweep, 40, value}, 5);
@@ -65,7 +66,8 @@ TEST_CASE("guard: a NaN, an infinity and a huge velocity put into any stage are 
   }
 }
 
-TEST_CASE("guard: a run without a fault raises no alarm, and looking at every stage changes no bit") {
+TEST_CASE(
+    "guard: a run without a fault raises no alarm, and looking at every stage changes no bit") {
   const Case c = all_stages();
   auto guarded = make(c), looked_at = make(c), bare = make(c);
   pbf::Guard guard(c.scene, plan_of(c), *guarded, guarded->measure());

@@ -41,10 +41,10 @@ TEST_CASE("stability: a table and a CSV with a verdict per case, exit 6 when one
 TEST_CASE("stability: a map is a CSV with a class per run") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());
-  const Outcome o = pbf::test::pbf({"stability", "tiny.yaml", "--map", "time.step,gravity", "--x",
-                                    "0.002,0.004", "--y", "5,10", "--iterations", "2", "--csv",
-                                    "map.csv", "--quiet"},
-                                   folder.path());
+  const Outcome o =
+      pbf::test::pbf({"stability", "tiny.yaml", "--map", "time.step,gravity", "--x", "0.002,0.004",
+                      "--y", "5,10", "--iterations", "2", "--csv", "map.csv", "--quiet"},
+                     folder.path());
   CHECK(o.code == 0);
   CHECK(has(o.out, "4 runs: "));
   const std::string csv = read_text(folder / "map.csv");
@@ -58,8 +58,9 @@ TEST_CASE("stability: a map is a CSV with a class per run") {
   }
 }
 
-TEST_CASE("guard: a run that blows up ends with exit 3, says where, and leaves a scene that repeats "
-          "it; without the guard it goes on") {
+TEST_CASE(
+    "guard: a run that blows up ends with exit 3, says where, and leaves a scene that repeats "
+    "it; without the guard it goes on") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());
   const std::vector<std::string> blow{"run", scene, "--out", "o", "--set", "tensile.k=1000"};
@@ -86,10 +87,10 @@ TEST_CASE("guard: a run that blows up ends with exit 3, says where, and leaves a
 TEST_CASE("speed limit: the summary says how often a particle was slowed down") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());
-  const Outcome o = pbf::test::pbf({"run", scene, "--out", "o", "--set",
-                                    "bodies[0].velocity=[3,0,0]", "--set",
-                                    "solver.speed_limit=0.01"},
-                                   folder.path());
+  const Outcome o =
+      pbf::test::pbf({"run", scene, "--out", "o", "--set", "bodies[0].velocity=[3,0,0]", "--set",
+                      "solver.speed_limit=0.01"},
+                     folder.path());
   CHECK(o.code == 0);
   CHECK(has(o.out, "times a particle was slowed down to"));
 }

@@ -33,8 +33,9 @@ StabilityRow run_one(const std::string& must, const std::string& set = "time.end
 
 }  // namespace
 
-TEST_CASE("stability suite: the shipped one has at least 30 cases, in both sizes valid scenes or "
-          "refused ones") {
+TEST_CASE(
+    "stability suite: the shipped one has at least 30 cases, in both sizes valid scenes or "
+    "refused ones") {
   const auto cases = read_stability_suite(PBF_SOURCE_DIR "/configs/stability.yaml");
   CHECK(cases.size() >= 30);
   for (const StabilityCase& c : cases) {
@@ -47,7 +48,7 @@ TEST_CASE("stability suite: the shipped one has at least 30 cases, in both sizes
 TEST_CASE("stability suite: whatever is wrong in the file is told with its place") {
   CHECK(suite_error(kCase) == "no error");
   CHECK(contains(suite_error("cases:\n  - {name: a, group: g, scene: s.yaml, must: {sped: 3}}\n"),
-                 "suite.yaml:2:52: sped: unknown key, did you mean speed?"));
+                 "suite.yaml:2:47: sped: unknown key, did you mean speed?"));
   CHECK(contains(suite_error("cases:\n  - {name: a, group: g, must: {}}\n"),
                  "suite.yaml:2:5: scene: missing; required"));
   CHECK(contains(suite_error("cases:\n  - {name: a, group: g, scene: s, must: {speed: fast}}\n"),
@@ -77,8 +78,9 @@ TEST_CASE("stability case: a criterion that is not met fails the case, and says 
   CHECK_FALSE(run_one("error: 2").good);
 }
 
-TEST_CASE("stability case: an error or a stop by the guard counts where it must happen, and only "
-          "then") {
+TEST_CASE(
+    "stability case: an error or a stop by the guard counts where it must happen, and only "
+    "then") {
   CHECK(run_one("error: 2, says: time.step", "time.step: .nan").good);
   CHECK_FALSE(run_one("error: 2, says: gravity", "time.step: .nan").good);
   CHECK_FALSE(run_one("error: 3", "time.step: .nan").good);
@@ -120,8 +122,9 @@ TEST_CASE("nearest distance: as brute force finds it") {
   CHECK(nearest_distance({1, 2, 3, 1, 2, 3}) == 0);
 }
 
-TEST_CASE("stability map: values from lists and ranges, the scene's own by default; wrong ones are "
-          "refused") {
+TEST_CASE(
+    "stability map: values from lists and ranges, the scene's own by default; wrong ones are "
+    "refused") {
   const Folder folder;
   const std::string s = folder.write("s.yaml", kMinimal);
   const auto values = [&](const std::string& key, const std::string& text) {
@@ -135,7 +138,11 @@ TEST_CASE("stability map: values from lists and ranges, the scene's own by defau
   CHECK(values("gravity", "")[2] == 9.81);
   for (const char* text : {"1:2", "2:1:3", "1:2:1", "a,b", "1,,2", ".nan"})
     CHECK(contains(error_of([&] { values("time.step", text); }), "2 values of time.step"));
-  CHECK(contains(error_of([&] { values("name", "1"); values("name", ""); }), "is not a number"));
+  CHECK(contains(error_of([&] {
+                   values("name", "1");
+                   values("name", "");
+                 }),
+                 "is not a number"));
   CHECK(contains(error_of([&] { values("time.stp", ""); }), "is no key"));
 }
 
