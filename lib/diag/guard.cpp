@@ -80,7 +80,7 @@ GuardLimits guard_limits(const Scene& s, const Plan& plan, const Measures& first
       total_energy(first) +
       (g.energy ? *g.energy * scale : 0.1 * scale + released_energy(first, s, plan) + rounding);
   l.neighbors =
-      g.neighbors > 0 ? g.neighbors : std::max(4 * first.neighbors_max, std::int64_t(64 * at_rest));
+      g.neighbors > 0 ? g.neighbors : std::max(4 * first.neighbors_max, std::int64_t(16 * at_rest));
   return l;
 }
 

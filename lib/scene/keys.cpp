@@ -200,7 +200,7 @@ std::vector<Key> guard_keys() {
                        SCENE(&s.guard->energy))),
       automatic(number("guard.neighbors", "", {0, 2147483647, true},
                        "Neighbours of one particle allowed. auto: 4 times the most at the start, "
-                       "at least 64 times those at rest.",
+                       "at least 16 times those at rest.",
                        SCENE(&s.guard->neighbors)))};
 }
 

@@ -79,8 +79,7 @@ TEST_CASE(
   };
   CHECK(told(o.err) == told(again.err));
   std::vector<std::string> off = blow;
-  off[3] = "q";
-  off.insert(off.end(), {"--set", "guard=off"});
+  off.insert(off.end(), {"--overwrite", "--set", "guard=off"});
   CHECK(pbf::test::pbf(off, folder.path()).code == 0);
 }
 

@@ -145,7 +145,7 @@ void update(State& s, const Settings& c) {
       squares += own[0] * own[0] + own[1] * own[1] + own[2] * own[2];
       lambda[i] = -constraint / (squares + c.relaxation / (c.h * c.h));
       if (c.smaller_steps_in_crowds && ratio > 1)
-        lambda[i] /= ratio < 2 ? ratio * ratio * ratio : 2 * ratio * ratio;
+        lambda[i] /= std::min<Real>(1 + 3 * (ratio - 1), 2);
     }
     std::vector<V> next = s.x;
     for (std::size_t i = 0; i < n; ++i) {

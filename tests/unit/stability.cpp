@@ -94,12 +94,12 @@ TEST_CASE(
 
 TEST_CASE("stability case: likeness compares centres of mass in h") {
   StabilityCase a, b;
-  a.name = "a";
-  b.name = "b";
-  b.must.like = "a";
+  a.name = std::string("a");
+  b.name = std::string("b");
+  b.must.like = a.name;
   std::vector<StabilityRow> rows(2);
-  rows[0].name = "a";
-  rows[1].name = "b";
+  rows[0].name = std::string("a");
+  rows[1].name = std::string("b");
   rows[1].good = true;
   rows[1].center = {0.04, 0, 0};
   judge_likeness({a, b}, rows);
