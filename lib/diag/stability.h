@@ -84,10 +84,11 @@ void judge_likeness(const std::vector<StabilityCase>& cases, std::vector<Stabili
 /// What a run went through, of what the criteria ask for.
 struct Course {
   Measures first, last;
-  double scale = 0;                                  ///< J, energy_scale() at the start
-  double released = 0;                               ///< released_energy(), share of scale
-  double speed_max = 0, energy_rise = 0;             ///< m/s; share of scale
-  double compression_mean = 0, compression_max = 0;  ///< of the last quarter of the measures
+  double scale = 0;                       ///< J, energy_scale() at the start
+  double released = 0;                    ///< released_energy(), share of scale
+  double speed_max = 0, energy_rise = 0;  ///< m/s; share of scale
+  /// Of the last quarter of the measures, or of the last state with new lists where that is more.
+  double compression_mean = 0, compression_max = 0;
   std::int64_t particles = 0, updates = 0;
   std::optional<GuardEvent> event;
   std::string guard_text;
