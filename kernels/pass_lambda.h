@@ -48,9 +48,9 @@ PBF_HD Real constraint(Real density, const Params<Real>& p) {
 
 /// What lambda is divided by where the scene leaves the step length to the program: 1 + 3 C above
 /// the rest density, at most 2. As omega falls with the number of neighbours at rest
-/// (lib/plan/plan.h), so it falls here with their number where there are too many, for Jacobi sweeps
-/// overshoot with them. At most 2: with 1 + 3 C without end, or rho^3, a pool under large steps
-/// collapsed.
+/// (lib/plan/plan.h), so it falls here with their number where there are too many, for Jacobi
+/// sweeps overshoot with them. At most 2: with 1 + 3 C without end, or rho^3, a pool under large
+/// steps collapsed.
 template <class Real>
 PBF_HD Real crowd(Real density, const Params<Real>& p) {
   if (!p.ease_crowds || !(density > Real(1))) return Real(1);
