@@ -180,7 +180,6 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
   std::mutex mutex;
   std::size_t done = 0;
   const Stopwatch watch;
-  Progress progress(log);
   in_parallel(grid.size(), jobs, [&](std::size_t k) {
     MapCell cell = run_map_cell(map, grid[k]);
     const std::lock_guard lock(mutex);
