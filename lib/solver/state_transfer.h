@@ -16,6 +16,18 @@ struct StateArrays {
   FastCount* fast;  ///< one
 };
 
+/// A copy in one pass: a guarded run of few particles makes one at every measure.
+template <class Real>
+struct CopyStatePass {
+  StateArrays<Real> from, to;
+  PBF_HD void operator()(int i) const {
+    to.position[i] = from.position[i];
+    to.velocity[i] = from.velocity[i];
+    to.id[i] = from.id[i];
+    if (i == 0) *to.fast = *from.fast;
+  }
+};
+
 template <class Real, class Exec>
 SolverState download_state(Exec& exec, std::size_t n, const StateArrays<Real>& from,
                            std::int64_t updates) {

@@ -207,6 +207,9 @@ class Stepper {
     Buffer<Vec4<Real>> position, velocity;
     Buffer<int> id;
     Buffer<FastCount> fast;
+    StateArrays<Real> arrays() {
+      return {position.data(), velocity.data(), id.data(), fast.data()};
+    }
     std::size_t bytes() const { return position.bytes() + velocity.bytes() + id.bytes(); }
   };
   void save(Saved& s) {
@@ -215,23 +218,14 @@ class Stepper {
     s.velocity.resize(n);
     s.id.resize(n);
     s.fast.resize(1);
-    exec_.copy(position_.data(), n, s.position.data());
-    exec_.copy(velocity_.data(), n, s.velocity.data());
-    exec_.copy(id_.data(), n, s.id.data());
-    exec_.copy(fast_.data(), 1, s.fast.data());
+    exec_.for_each(p_.n, CopyStatePass<Real>{arrays(), s.arrays()});
   }
-  void restore(const Saved& s) {
-    const std::size_t n = std::size_t(p_.n);
-    exec_.copy(s.position.data(), n, position_.data());
-    exec_.copy(s.velocity.data(), n, velocity_.data());
-    exec_.copy(s.id.data(), n, id_.data());
-    exec_.copy(s.fast.data(), 1, fast_.data());
+  void restore(Saved& s) {
+    exec_.for_each(p_.n, CopyStatePass<Real>{s.arrays(), arrays()});
     density_is_current_ = false;
   }
   SolverState state(Saved& s, std::int64_t updates) {
-    return download_state<Real>(exec_, std::size_t(p_.n),
-                                {s.position.data(), s.velocity.data(), s.id.data(), s.fast.data()},
-                                updates);
+    return download_state<Real>(exec_, std::size_t(p_.n), s.arrays(), updates);
   }
 
   std::size_t bytes() const {
