@@ -128,10 +128,12 @@ def _gravity(scene: str, path: str) -> np.ndarray:
 
 def run(args: argparse.Namespace) -> int:
     fronts = [read_front(path, args) for path in args.runs]
-    ratio = fronts[0].ratio
-    names = args.reference or [n for n, r in REFERENCES.items() if abs(r.ratio - ratio) < 0.1]
+    def same_shape(name: str, front: Front) -> bool:
+        return abs(REFERENCES[name].ratio - front.ratio) < 0.1
+
+    names = args.reference or [n for n in REFERENCES if any(same_shape(n, f) for f in fronts)]
     if not names:
-        raise BadInput(f"the column is {ratio:.3g} times as high as wide; the experiments here had "
+        raise BadInput(f"the column is {fronts[0].ratio:.3g} times as high as wide; the experiments here had "
                        "1 and 2. Choose some anyway with --reference")
     fig, ((axes,),) = style.figure(size=(6.6, 5))
     for k, front in enumerate(fronts):
@@ -139,10 +141,12 @@ def run(args: argparse.Namespace) -> int:
                   linestyle=("-", "--", "-.", ":")[k % 4], linewidth=2)
     for k, name in enumerate(names):
         data = REFERENCES[name].read()
-        axes.plot(data["T"], data["Z"], linestyle="", color=style.COLORS[(k + 1) % 8],
+        axes.plot(data["T"], data["Z"], linestyle="", color=style.COLORS[(k + len(fronts)) % 8],
                   marker=style.MARKERS[k % 8], label=REFERENCES[name].label, alpha=0.85,
                   markersize=3 if len(data) > 50 else 5)
         for front in fronts:
+            if not (args.reference or same_shape(name, front)):
+                continue
             rms, n = deviation(front.t, front.z, data)
             shift, least = best_shift(front.t, front.z, data)
             print(f"{front.label}: {REFERENCES[name].label}: RMS deviation of Z {rms:.3f} over {n} "
@@ -152,7 +156,8 @@ def run(args: argparse.Namespace) -> int:
     axes.set_xlabel(r"$T = t\,\sqrt{n^2 g/a}$ (1)")
     axes.set_ylabel(r"front $Z = x/a$ (1)")
     axes.legend(loc="upper left")
-    style.title(axes, args.title or f"Dam-break front, column {ratio:.3g} times as high as wide",
+    ratios = " and ".join(f"{r:.3g}" for r in sorted({round(f.ratio, 2) for f in fronts}))
+    style.title(axes, args.title or f"Dam-break front, column {ratios} times as high as wide",
                 fronts[0].title if len(fronts) == 1 else "")
     style.save(fig, args)
     return 0
