@@ -1,0 +1,18 @@
+// The long texts of --help.
+#pragma once
+
+namespace pbf::help {
+
+extern const char* const kExitCodes;
+extern const char* const kMeasures;
+extern const char* const kPlanHelp;
+extern const char* const kRenderHelp;
+extern const char* const kCompareHelp;
+extern const char* const kBenchHelp;
+extern const char* const kBatchHelp;
+extern const char* const kStabilityHelp;
+extern const char* const kRunHelp;
+extern const char* const kStudyHelp;
+extern const char* const kStudyMeasures;
+
+}  // namespace pbf::help
