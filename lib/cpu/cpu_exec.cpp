@@ -36,11 +36,11 @@ void CpuExec::sort(const int* bin, int n, int bins, int* order, int* start) {
 
 std::size_t CpuExec::list_bytes() const {
   std::size_t sum =
-      begin_.bytes() + count_.bytes() + histogram_.capacity() * sizeof(int) +
+      groups_.bytes() + count_.bytes() + histogram_.capacity() * sizeof(int) +
       chunks_.capacity() * sizeof chunks_[0] + pointers_.capacity() * sizeof pointers_[0] +
       partial_.capacity() * sizeof partial_[0] + in_bins_.capacity() * sizeof in_bins_[0];
   for (const auto& c : chunks_) sum += c.bytes();
-  for (const auto& s : scratch_) sum += s.capacity() * sizeof(int);
+  for (const auto& s : scratch_) sum += s.bytes();
   return sum;
 }
 

@@ -82,10 +82,14 @@ class Stepper {
     bin_start_.resize(std::size_t(bin_count(p_)) + 1);
     if (p_.vorticity > Real(0)) curl_.resize(padded);
     if (Exec::padding) {
-      const Vec4<Real> far{Real(1e9), Real(1e9), Real(1e9), Real(1)}, zero{0, 0, 0, 0};
-      for (auto* b : {&position_, &other_position_}) exec_.to_device(&far, 1, b->data() + n);
-      for (auto* b : {&velocity_, &other_velocity_}) exec_.to_device(&zero, 1, b->data() + n);
-      if (curl_.size()) exec_.to_device(&zero, 1, curl_.data() + n);
+      const std::vector<Vec4<Real>> far(Exec::padding, {Real(1e9), Real(1e9), Real(1e9), Real(1)}),
+          zero(Exec::padding, {0, 0, 0, 0});
+      const auto fill = [&](const auto& rows, auto& b) {
+        exec_.to_device(rows.data(), rows.size(), b.data() + n);
+      };
+      for (auto* b : {&position_, &other_position_}) fill(far, *b);
+      for (auto* b : {&velocity_, &other_velocity_}) fill(zero, *b);
+      if (curl_.size()) fill(zero, curl_);
     }
     exec_.to_device(position.data(), n, position_.data());
     exec_.to_device(velocity.data(), n, velocity_.data());
