@@ -25,16 +25,18 @@ class CpuExec {
   /// Rows that the lanes of the last group may read; the lists are filled up with the first of
   /// them.
   static constexpr std::size_t padding = 16;
+  /// The order of a sort may stand where its gather writes the ids: each is read before.
+  static constexpr bool order_in_place = true;
   template <class T>
   using Buffer = HostBuffer<T>;
 
   /// threads >= 1. list_entries: room per particle for its neighbours, at first
   /// (lib/plan/memory.h); pages that stay empty are never touched.
-  explicit CpuExec(int threads, int list_entries = 34, Simd simd = chosen_simd())
+  explicit CpuExec(int threads, int list_entries = 37, Simd simd = chosen_simd())
       : threads_(threads),
         list_entries_(list_entries),
         simd_(simd),
-        scratch_(std::size_t(threads)) {}
+        scratch_(std::size_t(threads), ListScratch(list_entries)) {}
 
   void begin() { clock_.begin(); }
   void mark(const char* stage) { clock_.mark(stage); }
@@ -129,23 +131,22 @@ class CpuExec {
     chunks_.resize(std::size_t(chunks));
     pointers_.resize(std::size_t(chunks));
     groups_.resize(std::size_t(chunks) * std::size_t(groups_per_chunk));
-    count_.resize(std::size_t(p.n));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (chunks > 1)
     for (int c = 0; c < chunks; ++c) {
       ListScratch& scratch = scratch_[std::size_t(omp_get_thread_num())];
       const int first = c * kChunk, last = std::min(p.n - first, kChunk) + first;
-      const std::size_t used = make_lists(
-          simd_, position, bin_start, p, first, last,
-          groups_.data() + std::size_t(c) * std::size_t(groups_per_chunk), count_.data(), scratch);
+      const std::size_t used =
+          make_lists(simd_, position, bin_start, p, first, last,
+                     groups_.data() + std::size_t(c) * std::size_t(groups_per_chunk), scratch);
       HostBuffer<int>& mine = chunks_[std::size_t(c)];
       // Grow with some air, shrink only when far too large: sizes change little between updates.
       const std::size_t room = std::size_t(std::min(kChunk, p.n - c * kChunk) * list_entries_);
       if (mine.size() < used || mine.size() > 2 * std::max(used, room))
-        mine.resize(used > room ? used + used / 8 : room);
+        mine.resize(used > room ? used + used / 16 : room);
       std::memcpy(mine.data(), scratch.found.data(), used * sizeof(int));
       pointers_[std::size_t(c)] = mine.data();
     }
-    return {pointers_.data(), groups_.data(), count_.data(), bits};
+    return {pointers_.data(), groups_.data(), bits, p.n};
   }
 
   std::size_t list_bytes() const;
@@ -161,8 +162,6 @@ class CpuExec {
   std::vector<HostBuffer<int>> chunks_;
   std::vector<const int*> pointers_;
   HostBuffer<ChunkedLists::Group> groups_;
-  HostBuffer<std::uint32_t> count_;
-  std::vector<int> histogram_;  ///< threads x bins
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -54,42 +54,43 @@ class NearbyParticles {
   Candidates<Real> candidates_{};
 };
 
-/// One thread's room.
+/// One thread's room; `list_entries` of a list to begin with (cpu_scratch_entries).
 struct ListScratch {
+  explicit ListScratch(int list_entries)
+      : single(32 * std::size_t(list_entries)), found(1024 * std::size_t(list_entries)) {}
   std::vector<int> single;  ///< lists of one group, one behind the other
   std::vector<int> found;   ///< interleaved lists of a chunk
   std::size_t bytes() const { return (single.capacity() + found.capacity()) * sizeof(int); }
 };
 
 /// The lists of particles first..last-1, of one chunk, into `room.found`; returns how many entries
-/// that are, padding included. groups: those of the chunk's particles; count: of all particles.
+/// that are, padding included. groups: those of the chunk's particles.
 template <class Real>
 std::size_t make_lists(Simd simd, const Vec4<Real>* position, const int* bin_start,
                        const Params<Real>& p, int first, int last, ChunkedLists::Group* groups,
-                       std::uint32_t* count, ListScratch& room) {
+                       ListScratch& room) {
   const int bits = lane_bits(simd, sizeof(Real)), width = 1 << bits;
   NearbyParticles<Real> nearby;
   std::size_t used = 0;
   for (int i = first; i < last; i += width) {
-    std::size_t begin[16], longest = 0, at = 0;
+    std::size_t begin[17], longest = 0, at = 0;
     for (int l = 0; l < width; ++l) {
-      begin[l] = at;
+      begin[l] = begin[l + 1] = at;
       if (i + l >= last) continue;
       const Vec3<Real> x = xyz(position[i + l]);
       const Candidates<Real>& c = nearby.of(x, position, bin_start, p);
       make_room(room.single, at + std::size_t(c.count) + c.block);
       int* out = room.single.data() + at;
       const std::size_t n = std::size_t(close_to(simd, c, x, i + l, out) - out);
-      count[i + l] = std::uint32_t(n);
       longest = std::max(longest, n);
-      at += n;
+      at = begin[l + 1] = at + n;
     }
     groups[(i - first) >> bits] = {std::uint32_t(used), std::uint32_t(longest)};
     make_room(room.found, used + longest * std::size_t(width));
     for (int l = 0; l < width; ++l) {
       int* to = room.found.data() + used + l;
       const int* from = room.single.data() + begin[l];
-      const std::size_t n = i + l < last ? count[i + l] : 0;
+      const std::size_t n = begin[l + 1] - begin[l];
       for (std::size_t k = 0; k < n; ++k) to[k << bits] = from[k];
       for (std::size_t k = n; k < longest; ++k) to[k << bits] = p.n;
     }

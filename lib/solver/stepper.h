@@ -77,7 +77,8 @@ class Stepper {
     // Executors whose lists are padded read one particle more, infinitely far away for any kernel.
     const std::size_t padded = n + Exec::padding;
     for (auto* b : {&position_, &other_position_, &velocity_, &other_velocity_}) b->resize(padded);
-    for (auto* b : {&id_, &other_id_, &bin_, &order_}) b->resize(n);
+    for (auto* b : {&id_, &other_id_, &bin_}) b->resize(n);
+    if (!Exec::order_in_place) order_.resize(n);
     density_.resize(n);
     bin_start_.resize(std::size_t(bin_count(p_)) + 1);
     if (p_.vorticity > Real(0)) curl_.resize(padded);
@@ -265,7 +266,8 @@ class Stepper {
   template <bool moving, class First>
   void reorder(const char* stage, const First& first) {
     exec_.sort_by_bin(
-        stage, first, p_.n, bin_count(p_), order_.data(), bin_start_.data(),
+        stage, first, p_.n, bin_count(p_), (Exec::order_in_place ? other_id_ : order_).data(),
+        bin_start_.data(),
         GatherPass<Real, moving>{p_, position_.data(), velocity_.data(), id_.data(),
                                  other_position_.data(), other_velocity_.data(), other_id_.data()});
     std::swap(position_, other_position_);
