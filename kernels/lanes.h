@@ -19,7 +19,10 @@ struct Lanes {
   Vector v;
 
   Lanes() = default;  ///< value-initialised to zero, as Real is
-  PBF_HD Lanes(Real x) : Lanes(x, std::make_integer_sequence<int, W>{}) {}
+  /// The sum, since compilers make one addition and a broadcast of it, where they insert W times
+  /// for a plain copy if this is inlined into a function for wider registers. It turns -0 into 0,
+  /// which no sum over neighbours can tell.
+  PBF_HD Lanes(Real x) : v(Vector{} + x) {}
   PBF_HD Lanes(const Vector& x) : v(x) {}
   /// from[0] .. from[W - 1], at any address.
   static PBF_HD Lanes at(const Real* from) {
@@ -37,14 +40,6 @@ struct Lanes {
  private:
   typedef Real Anywhere
       __attribute__((vector_size(W * sizeof(Real)), aligned(sizeof(Real)), may_alias));
-  // A shuffle, since compilers make a broadcast of it also where this is inlined into a function
-  // for wider registers; `x - Vector{}` becomes W insertions there.
-  template <int... l>
-  PBF_HD Lanes(Real x, std::integer_sequence<int, l...>) {
-    typedef Real Four __attribute__((vector_size(4 * sizeof(Real))));
-    const Four one{x};
-    v = __builtin_shufflevector(one, one, (l * 0)...);
-  }
 };
 
 template <class Real, int W>

@@ -24,6 +24,47 @@ struct Candidates {
   int count;
 };
 
+/// Where the copies of candidates go.
+template <class Real>
+struct CandidateCopy {
+  Real *x, *y, *z;
+  int* index;
+};
+
+/// Particles b..e-1 of n, side by side; writes up to W - 1 entries more.
+template <int W, class Real>
+PBF_HD void copy_run_by_lanes(const Vec4<Real>* position, int b, int e, int n,
+                              const CandidateCopy<Real>& to) {
+  int j = b;
+  for (; j < e && j + W <= n; j += W) {
+    const Vec4<Lanes<Real, W>> from = load(position, Adjacent<W>{j});
+    from.x.to(to.x + (j - b));
+    from.y.to(to.y + (j - b));
+    from.z.to(to.z + (j - b));
+    for (int l = 0; l < W; ++l) to.index[j - b + l] = j + l;
+  }
+  for (; j < e; ++j) {
+    const Vec4<Real>& from = position[j];
+    to.x[j - b] = from.x, to.y[j - b] = from.y, to.z[j - b] = from.z, to.index[j - b] = j;
+  }
+}
+#ifdef PBF_HAS_AVX
+template <class Real>
+PBF_AVX2 void copy_run_by_avx2(const Vec4<Real>* position, int b, int e, int n,
+                               const CandidateCopy<Real>& to) {
+  copy_run_by_lanes<32 / int(sizeof(Real))>(position, b, e, n, to);
+}
+#endif
+template <class Real>
+void copy_run(Simd simd, const Vec4<Real>* position, int b, int e, int n,
+              const CandidateCopy<Real>& to) {
+#ifdef PBF_HAS_AVX
+  // Runs are short: wider blocks would be half empty.
+  if (simd >= Simd::avx2) return copy_run_by_avx2(position, b, e, n, to);
+#endif
+  copy_run_by_lanes<16 / int(sizeof(Real))>(position, b, e, n, to);
+}
+
 /// Squared distances of candidates k, k + 1, ... from x.
 template <class Real, int W>
 PBF_HD Lanes<Real, W> squared_distances(const Candidates<Real>& c, int k, Vec3<Real> x) {

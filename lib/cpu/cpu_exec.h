@@ -36,7 +36,7 @@ class CpuExec {
       : threads_(threads),
         list_entries_(list_entries),
         simd_(simd),
-        scratch_(std::size_t(threads), ListScratch(list_entries)) {}
+        scratch_(std::size_t(threads)) {}
 
   void begin() { clock_.begin(); }
   void mark(const char* stage) { clock_.mark(stage); }
@@ -134,6 +134,7 @@ class CpuExec {
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (chunks > 1)
     for (int c = 0; c < chunks; ++c) {
       ListScratch& scratch = scratch_[std::size_t(omp_get_thread_num())];
+      scratch.reserve(list_entries_);
       const int first = c * kChunk, last = std::min(p.n - first, kChunk) + first;
       const std::size_t used =
           make_lists(simd_, position, bin_start, p, first, last,

@@ -21,8 +21,8 @@ void make_room(std::vector<T>& v, std::size_t n) {
 template <class Real>
 class NearbyParticles {
  public:
-  const Candidates<Real>& of(Vec3<Real> x, const Vec4<Real>* position, const int* bin_start,
-                             const Params<Real>& p) {
+  const Candidates<Real>& of(Simd simd, Vec3<Real> x, const Vec4<Real>* position,
+                             const int* bin_start, const Params<Real>& p) {
     const Cell cell = cell_of(x, p);
     if (cell.x == cell_.x && cell.y == cell_.y && cell.z == cell_.z) return candidates_;
     cell_ = cell;
@@ -30,14 +30,12 @@ class NearbyParticles {
     std::size_t n = 0;
     for_each_run(x, bin_start, p, [&](int b, int e) { n += std::size_t(e - b); });
     const std::size_t padded = (n + block - 1) / block * block;
-    for (auto* v : {&x_, &y_, &z_}) make_room(*v, padded);
-    make_room(index_, padded);
+    for (auto* v : {&x_, &y_, &z_}) make_room(*v, padded + block);  // copies overrun
+    make_room(index_, padded + block);
     std::size_t k = 0;
     for_each_run(x, bin_start, p, [&](int b, int e) {
-      for (int j = b; j < e; ++j, ++k) {
-        const Vec4<Real>& other = position[j];
-        x_[k] = other.x, y_[k] = other.y, z_[k] = other.z, index_[k] = j;
-      }
+      copy_run(simd, position, b, e, p.n, {&x_[k], &y_[k], &z_[k], &index_[k]});
+      k += std::size_t(e - b);
     });
     for (; k < padded; ++k) {
       x_[k] = y_[k] = z_[k] = std::numeric_limits<Real>::quiet_NaN();
@@ -51,13 +49,16 @@ class NearbyParticles {
   Cell cell_{-1, -1, -1};
   std::vector<Real> x_, y_, z_;
   std::vector<int> index_;
-  Candidates<Real> candidates_{};
+  Candidates<Real> candidates_{};  ///< of `cell_`
 };
 
-/// One thread's room; `list_entries` of a list to begin with (cpu_scratch_entries).
+/// One thread's room.
 struct ListScratch {
-  explicit ListScratch(int list_entries)
-      : single(32 * std::size_t(list_entries)), found(1024 * std::size_t(list_entries)) {}
+  /// To begin with; `entries` of one list (cpu_scratch_entries).
+  void reserve(int entries) {
+    single.resize(std::max(single.size(), 32 * std::size_t(entries)));
+    found.resize(std::max(found.size(), 1024 * std::size_t(entries)));
+  }
   std::vector<int> single;  ///< lists of one group, one behind the other
   std::vector<int> found;   ///< interleaved lists of a chunk
   std::size_t bytes() const { return (single.capacity() + found.capacity()) * sizeof(int); }
@@ -78,7 +79,7 @@ std::size_t make_lists(Simd simd, const Vec4<Real>* position, const int* bin_sta
       begin[l] = begin[l + 1] = at;
       if (i + l >= last) continue;
       const Vec3<Real> x = xyz(position[i + l]);
-      const Candidates<Real>& c = nearby.of(x, position, bin_start, p);
+      const Candidates<Real>& c = nearby.of(simd, x, position, bin_start, p);
       make_room(room.single, at + std::size_t(c.count) + c.block);
       int* out = room.single.data() + at;
       const std::size_t n = std::size_t(close_to(simd, c, x, i + l, out) - out);

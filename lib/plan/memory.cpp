@@ -67,7 +67,8 @@ void add_cpu_lists(const Scene& s, const Plan& plan, std::int64_t bins, const Ad
   add("lists", "int32", 1, n * entries);
   add("groups of lists", "int32", 2, chunks * 1024 / 8);
   add("table of lists", "int64", 3, chunks);
-  add("neighbours found by each thread", "int32", 1, threads * cpu_scratch_entries(entries));
+  add("neighbours found by each thread", "int32", 1,
+      std::min<std::int64_t>(threads, chunks) * cpu_scratch_entries(entries));
 }
 
 void add_cuda_lists(const Scene& s, const Plan& plan, std::int64_t bins, const std::string& real,
