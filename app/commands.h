@@ -76,6 +76,19 @@ struct CompareOptions {
   bool quiet = false;
 };
 
+struct StabilityCommandOptions {
+  std::vector<std::string> cases;  ///< names or groups, empty: all; of a map: the scene's path
+  std::string suite = "configs/stability.yaml";
+  std::string backend = "cpu", precision = "float";
+  bool reduced = false, quiet = false;
+  int jobs = 0;  ///< cases at once; 0: as many as there are threads on cpu, 1 on cuda
+  std::vector<std::string> overrides;
+  std::string csv;        ///< path, empty: none
+  std::string map, x, y;  ///< X_KEY,Y_KEY and their values; empty: no map
+  std::vector<int> iterations{1, 2, 4, 8, 16};
+  double limit = 0.01;  ///< mean compression above which a run of a map is degraded
+};
+
 int command_run(const RunOptions& options);
 int command_plan(const PlanOptions& options);
 int command_render(const RenderOptions& options);
@@ -85,5 +98,6 @@ int command_info();
 int command_bench(const BenchOptions& options);
 int command_batch(const BatchOptions& options);
 int command_study(const StudyOptions& options);
+int command_stability(const StabilityCommandOptions& options);
 
 }  // namespace pbf

@@ -22,7 +22,7 @@ constexpr const char* kExitCodes =
     "  3   run stopped by the stability guard\n"
     "  4   backend, device or memory not available\n"
     "  5   file cannot be read or written (disk full)\n"
-    "  6   compare found a difference, batch has failed runs\n"
+    "  6   compare found a difference, batch has failed runs, a suite found a failure\n"
     "  75  stopped early by a signal or the wall-time limit, after saving\n\n"
     "Example: pbf run configs/dam_break.yaml --out out/dam_break";
 
@@ -288,6 +288,46 @@ void add_study(CLI::App& app, StudyOptions& o, Command& command) {
   c->callback([&] { command = [&] { return command_study(o); }; });
 }
 
+void add_stability(CLI::App& app, StabilityCommandOptions& o, Command& command) {
+  CLI::App* c = app.add_subcommand(
+      "stability", "Stiff and extreme cases, a verdict for each; maps of where a scene is stable");
+  c->add_option("CASE", o.cases,
+                "Cases or groups of the suite, all when none is given; with --map "
+                "the scene file (configs/stiff/pool.yaml)");
+  c->add_option("--suite", o.suite, "Suite file (configs/stability.yaml)");
+  c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember({"cpu", "cuda"}));
+  c->add_option("--precision", o.precision, "Of the computation")
+      ->check(CLI::IsMember({"float", "double"}));
+  c->add_flag("--reduced", o.reduced, "Fewer particles and updates, where the suite says so");
+  c->add_option("--jobs", o.jobs, "Cases at once; all CPU threads when not given, 1 on cuda")
+      ->check(CLI::Range(1, 4096));
+  add_overrides(c, o.overrides);
+  c->add_option("--csv", o.csv, "Write the table to this file");
+  c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  CLI::Option* map = c->add_option(
+      "--map", o.map, "X_KEY,Y_KEY: run a scene over a grid of two of its keys instead");
+  for (const auto& [name, values] : {std::pair{"--x", &o.x}, {"--y", &o.y}})
+    c->add_option(name, *values,
+                  "Values along this axis of the map: a,b,c or LOW:HIGH:COUNT in equal ratios; the "
+                  "scene's own times 1/4 ... 8 when not given")
+        ->needs(map);
+  c->add_option("--iterations", o.iterations, "Of the map, separated by commas")
+      ->delimiter(',')
+      ->check(CLI::Range(0, 100000))
+      ->needs(map);
+  c->add_option("--limit", o.limit, "Mean compression above which a run of a map is degraded")
+      ->check(CLI::NonNegativeNumber)
+      ->needs(map);
+  c->footer(
+      "Exit code 6 when a case is not as it must be.\n"
+      "Examples:\n"
+      "  pbf stability --reduced --csv stability.csv\n"
+      "  pbf stability stiffness column_48 --precision double\n"
+      "  pbf stability --map time.step,gravity --x 0.001:0.05:6 --y 1,10,100 --csv map.csv\n"
+      "  python -m pbf_tools plot-map map.csv -o map.png");
+  c->callback([&] { command = [&] { return command_stability(o); }; });
+}
+
 void add_info(CLI::App& app, Command& command) {
   CLI::App* c = app.add_subcommand("info", "Version, build features, libraries, devices");
   c->footer("Example:\n  pbf info");
@@ -320,6 +360,7 @@ int run_main(int argc, char** argv) {
   BenchOptions bench;
   StudyOptions study;
   BatchOptions batch;
+  StabilityCommandOptions stability;
   Command command;
   add_run(app, run, command);
   add_plan(app, plan, command);
@@ -329,6 +370,7 @@ int run_main(int argc, char** argv) {
   add_bench(app, bench, command);
   add_study(app, study, command);
   add_batch(app, batch, command);
+  add_stability(app, stability, command);
   add_info(app, command);
   try {
     app.parse(argc, argv);

@@ -15,6 +15,7 @@
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
+#include "lib/io/particle_output.h"
 #include "lib/scene/emit.h"
 #include "lib/scene/load.h"
 
@@ -95,13 +96,18 @@ std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
                 folder.c_str());
 }
 
-[[noreturn]] void report_divergence(const Measures& m, const std::string& folder) {
-  throw Error(ExitCode::guard,
-              format("the run diverged: at update %lld, t = %.6g s, %lld particles are not finite "
-                     "and %lld are outside the box; lower time.step or raise solver.iterations. "
-                     "What was computed until then is in %s",
-                     static_cast<long long>(m.update), m.time, static_cast<long long>(m.non_finite),
-                     static_cast<long long>(m.outside), folder.c_str()));
+/// Saves the last good state and a scene that goes on from it, and ends the run.
+[[noreturn]] void report_alarm(const GuardEvent& e, const Guard& guard, const Scene& scene,
+                               const RunFolder& folder) {
+  write_particle_file(folder.file("guard_state.h5"), to_particles(e.last_good, scene),
+                      e.last_good.id);
+  folder.write_text("guard_scene.yaml", resolved_yaml(guard.repeating_scene(e, "guard_state.h5")));
+  throw Error(
+      ExitCode::guard,
+      guard.text(e) + format(". %s holds the run up to there, guard_state.h5 the last good state "
+                             "(update %lld); to repeat: pbf run %s",
+                             folder.path().c_str(), static_cast<long long>(e.last_good.updates),
+                             folder.file("guard_scene.yaml").c_str()));
 }
 
 /// A folder that is missing is told before the run folder is made. It may be the run folder itself.
@@ -153,7 +159,7 @@ int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver
   RunTotals totals = loop.totals();
   totals.folder = folder.path();
   log.result(run_summary(totals));
-  if (end == RunEnd::diverged) report_divergence(totals.last, folder.path());
+  if (loop.guard_event()) report_alarm(*loop.guard_event(), loop.guard(), loaded.scene, folder);
   if (end == RunEnd::stopped) {
     log.note(
         format("pbf: stopped early by %s after update %lld of %lld, after saving; the files "

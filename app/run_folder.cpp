@@ -40,7 +40,9 @@ bool own_file(const std::string& name) {
                                        "checkpoint_prev.h5",
                                        "checkpoint.h5.tmp",
                                        "scene.resolved.yaml.tmp",
-                                       "DONE.tmp"};
+                                       "DONE.tmp",
+                                       "guard_state.h5",
+                                       "guard_scene.yaml"};
   return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
 }
 

@@ -53,6 +53,7 @@ void RunLoop::go_on_from(const SavedRun& saved) {
   due_.energy = saved.energy;
   due_.compression_max = compression_max_ = saved.compression_max;
   energy_ = EnergyTrack(saved.energy);
+  first_ = due_.first = saved.first;
   first_.energy = saved.energy.first;
   seen_frames_ = schedule_.frames_until(u);
   pictures_ = schedule_.pictures_until(u);
@@ -66,11 +67,12 @@ RunEnd RunLoop::run() {
   std::int64_t u = start_;
   measure(u == 0);  // later only for what is shown: the row is in the log
   if (u == 0) {
-    first_ = last_;
+    first_ = due_.first = last_;
     outputs(0, false);
   }
+  if (scene_.guard && !guard_) guard_.emplace(scene_, plan_, solver_, first_, last_);
   double per_update = 0;  // s, of the last call of step()
-  while (u < schedule_.updates && !diverged_ && !must_stop()) {
+  while (u < schedule_.updates && !event_ && !must_stop()) {
     // Short calls, so that a signal or the wall-time limit waits a quarter of a second at most
     // (or one update), yet few calls when an update takes microseconds.
     std::int64_t n = 1;
@@ -82,15 +84,16 @@ RunEnd RunLoop::run() {
     hand_over();  // what was being copied while the updates ran
     u += n;
     if (schedule_.measures(u)) measure();
-    if (!diverged_) outputs(u, false);
+    if (!event_) outputs(u, false);
     progress_.update({u, schedule_.updates, plan_.particles, solver_.time(), last_.compression_mean,
                       last_.compression_max, start_});
-    if (!diverged_ && u < schedule_.updates && checkpoint_due()) save();
+    if (!event_ && u < schedule_.updates && checkpoint_due()) save();
   }
-  if (!diverged_ && u < schedule_.updates) save();
-  if (last_measure_ != u) measure();  // stopped between two measures
+  if (!event_ && u < schedule_.updates) save();
+  if (!event_ && last_measure_ != u) measure();  // stopped between two measures
+  if (event_) u = solver_.updates_done();        // the guard has gone back to what it found
   outputs(u, true);
-  const RunEnd end = diverged_               ? RunEnd::diverged
+  const RunEnd end = event_                  ? RunEnd::diverged
                      : u < schedule_.updates ? RunEnd::stopped
                                              : RunEnd::finished;
   close(end);
@@ -110,9 +113,12 @@ bool RunLoop::checkpoint_due() {
   return save_asked() || (scene_.checkpoint && since_save_.seconds() >= scene_.checkpoint->every);
 }
 
-/// All that comes before the state is on the disk before the checkpoint is.
+/// All that comes before the state is on the disk before the checkpoint is. A state that the guard
+/// objects to is not saved: no run could go on from it.
 void RunLoop::save() {
   hand_over();
+  if (guard_ && last_measure_ != solver_.updates_done()) look(solver_.measure());
+  if (event_) return;
   clock_.begin();
   if (!closed_) {
 #ifdef PBF_HAS_RENDER
@@ -132,7 +138,6 @@ void RunLoop::measure(bool logged) {
   last_ = solver_.measure();
   EnergyTrack seen = energy_;
   (logged ? energy_ : seen).follow(last_);
-  diverged_ = last_.non_finite > 0 || last_.outside > 0;
   if (!logged) return;
   last_measure_ = last_.update;
   compression_max_ = std::max(compression_max_, last_.compression_max);
@@ -155,10 +160,19 @@ void RunLoop::measure(bool logged) {
                   std::string("--log-json: cannot be written: ") + std::strerror(errno));
     clock_.mark("write");
   }
+  if (!scene_.guard) return;
+  if (!guard_) guard_.emplace(scene_, plan_, solver_, last_, last_);
+  look(last_);
+}
+
+void RunLoop::look(const Measures& m) {
+  clock_.begin();
+  event_ = guard_->check(m);
+  clock_.mark("guard");
 }
 
 void RunLoop::outputs(std::int64_t u, bool last) {
-  bool write = schedule_.frame_every > 0 && (last || schedule_.writes(u)) && last_frame_ != u;
+  bool write = schedule_.frame_every > 0 && (last || schedule_.writes(u)) && last_frame_ < u;
   bool draw = !last && schedule_.draws(u);
 #ifndef PBF_HAS_RENDER
   draw = false;  // refused before the run began
@@ -174,7 +188,7 @@ void RunLoop::outputs(std::int64_t u, bool last) {
   solver_.start_download(fields_, wide ? ScalarType::f64 : ScalarType::f32);
   under_way_ = {true, write, draw};
   if (write) last_frame_ = u;
-  if (last || diverged_) hand_over();
+  if (last) hand_over();
 }
 
 void RunLoop::hand_over() {
@@ -232,6 +246,7 @@ std::vector<StageTime> RunLoop::stages() const {
   add("init", 0, 0);
   for (const PlanPass& pass : plan_.passes) add(pass.stage, 0, 0);
   add("measure", 0, 0);
+  if (scene_.guard) add("guard", 0, 0);
   if (scene_.output || scene_.render) add("download", 0, 0);
   if (scene_.output || sinks_.json) add("write", 0, 0);
   if (scene_.render) add("render", 0, 0);
@@ -261,6 +276,7 @@ RunTotals RunLoop::totals() const {
   t.render_thread = render_thread_;
   t.fused = plan_.fused;
   t.first = first_;
+  t.speed_limit = scene_.solver.speed_limit * scene_.h() / scene_.time.step;
   t.last = last_;
   t.compression_max = compression_max_;
   t.frames = frames_;

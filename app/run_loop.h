@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "app/schedule.h"
 #include "lib/base/log.h"
 #include "lib/base/stage_clock.h"
+#include "lib/diag/guard.h"
 #include "lib/io/checkpoint.h"
 #include "lib/io/run_file.h"
 #include "lib/plan/plan.h"
@@ -46,12 +48,15 @@ class RunLoop {
   /// Before run(): the first frames are in the file.
   void keep_frames(std::int64_t frames) { kept_frames_ = frames; }
 
-  /// Runs to the end, a signal, the wall-time limit or divergence, then writes the last frame and
-  /// closes every file. Errors of writing and drawing are thrown.
+  /// Runs to the end, a signal, the wall-time limit or an alarm of the guard, then writes the last
+  /// frame and closes every file. Errors of writing and drawing are thrown.
   RunEnd run();
 
   RunTotals totals() const;
   const std::string& stop_reason() const { return stop_reason_; }  ///< "SIGTERM", ...
+  /// What the guard stopped the run for; null unless it did.
+  const GuardEvent* guard_event() const { return event_ ? &*event_ : nullptr; }
+  const Guard& guard() const { return *guard_; }
 
  private:
   void outputs(std::int64_t update, bool last);
@@ -63,6 +68,7 @@ class RunLoop {
   bool must_stop();
   bool checkpoint_due();
   void save();
+  void look(const Measures& m);  // what the guard says to it
   std::vector<StageTime> stages() const;
   std::vector<StageTime> stages_since_last_row();
   void close(RunEnd end);
@@ -87,7 +93,9 @@ class RunLoop {
   std::int64_t start_ = 0, kept_frames_ = 0, seen_frames_ = 0;  // first update; in the file; due
   double compression_max_ = 0, loop_seconds_ = 0, render_thread_ = 0;
   std::int64_t frames_ = 0, pictures_ = 0, bytes_ = 0, last_frame_ = -1, last_measure_ = -1;
-  bool diverged_ = false, closed_ = false;
+  bool closed_ = false;
+  std::optional<Guard> guard_;
+  std::optional<GuardEvent> event_;
   /// A download that was started and is finished after the next updates: on a device the copy
   /// runs beside them.
   struct {

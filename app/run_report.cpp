@@ -21,7 +21,7 @@ const std::vector<Group>& groups() {
       {"lambdas", {"lambda"}},
       {"deltas", {"delta"}},
       {"position/velocity updates", {"predict", "xsph", "vorticity"}},
-      {"post-processing", {"measure", "download", "write", "render"}}};
+      {"post-processing", {"measure", "guard", "download", "write", "render"}}};
   return list;
 }
 
@@ -104,6 +104,9 @@ std::string run_summary(const RunTotals& t) {
   if (t.last.non_finite > 0)
     out += format("not finite          %lld particles at the end, left out of the figures above\n",
                   static_cast<long long>(t.last.non_finite));
+  if (t.speed_limit > 0)
+    out += format("speed limit         %lld times a particle was slowed down to %.4g m/s\n",
+                  static_cast<long long>(t.last.fast), t.speed_limit);
   out += stage_table(t) + group_table(t);
   out += "files in            " + t.folder;
   if (t.frames > 0)
@@ -145,7 +148,8 @@ std::string measure_json(const Measures& m, double wall, std::int64_t frames,
         {"neighbors_mean", m.neighbors_mean},
         {"neighbors_max", double(m.neighbors_max)},
         {"outside", double(m.outside)},
-        {"non_finite", double(m.non_finite)}})
+        {"non_finite", double(m.non_finite)},
+        {"fast", double(m.fast)}})
     (out += ", ") += item(name, value);
   (out += ", ") += triple("momentum", m.momentum) + ", " +
                    triple("center_of_mass", m.center_of_mass) + ", " + triple("front", m.front) +

@@ -21,22 +21,25 @@ struct RestPool {
 
 template <class Real>
 struct Params {
-  int n = 0;                 ///< particles
-  Real dt = 0, inv_dt = 0;   ///< s, 1/s
-  Vec3<Real> gravity;        ///< h/s^2
-  Real damping = 1;          ///< factor on the velocity, once per update
-  Vec3<Real> box;            ///< h, extent of the domain
-  Real margin = 0;           ///< h, distance to a wall at which particles are clamped
-  unsigned walls = 63;       ///< WallBit mask of the faces that are walls
-  bool wall_density = true;  ///< walls contribute to density (boundary: density)
-  Real wall_scale = 1;       ///< amplitude of that contribution, kernels/README.md (9)
-  Real wall_inv_range = 1;   ///< h over the range of that contribution
+  int n = 0;                        ///< particles
+  Real dt = 0, inv_dt = 0;          ///< s, 1/s
+  Vec3<Real> gravity;               ///< h/s^2
+  Real damping = 1;                 ///< factor on the velocity, once per update
+  Real speed_squared = Real(1e30);  ///< (h/s)^2, faster particles are counted ...
+  bool limit_speed = false;         ///< ... and slowed down to it
+  Vec3<Real> box;                   ///< h, extent of the domain
+  Real margin = 0;                  ///< h, distance to a wall at which particles are clamped
+  unsigned walls = 63;              ///< WallBit mask of the faces that are walls
+  bool wall_density = true;         ///< walls contribute to density (boundary: density)
+  Real wall_scale = 1;              ///< amplitude of that contribution, kernels/README.md (9)
+  Real wall_inv_range = 1;          ///< h over the range of that contribution
   int cells_x = 1, cells_y = 1, cells_z = 1;  ///< cells_x counts half cells
   Real inv_cell = 1;                          ///< 1/h, one over the edge of a cell (>= h)
   Real vol = 1;                               ///< m/(rho0 h^3), weight of one particle
   bool two_sided = false;                     ///< C = rho - 1 instead of max(rho - 1, 0)
   Real relaxation = 0;                        ///< eps^ = eps h^2
   Real step_length = 1;                       ///< omega
+  bool ease_crowds = false;                   ///< smaller steps where the density is above 1
   Real tensile_k = 0;                         ///< h^2
   Real tensile_scale = 0;                     ///< 1/shape(delta_q)
   int tensile_n = 4;

@@ -46,15 +46,27 @@ struct DensityPass {
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
-/// C from the density: one-sided by default (only compression is corrected).
+/// C from the density: one-sided by default (only compression is corrected). NaN stays NaN, so that
+/// it is seen.
 template <class Real>
 PBF_HD Real constraint(Real density, const Params<Real>& p) {
   const Real c = density - Real(1);
-  return p.two_sided ? c : max2(c, Real(0));
+  return !p.two_sided && c < Real(0) ? Real(0) : c;
 }
 
-/// lambda_i = -C_i / (sum_k |grad_k C_i|^2 + eps^), in h^2. with_density: the density is summed in
-/// the same loop (fused); otherwise it is read.
+/// What lambda is divided by where the scene leaves the step length to the program: 1 + 3 C above
+/// the rest density, at most 2. As omega falls with the number of neighbours at rest
+/// (lib/plan/plan.h), so it falls here with their number where there are too many, for Jacobi
+/// sweeps overshoot with them. At most 2: with 1 + 3 C without end, or rho^3, a pool under large
+/// steps collapsed.
+template <class Real>
+PBF_HD Real crowd(Real density, const Params<Real>& p) {
+  if (!p.ease_crowds || !(density > Real(1))) return Real(1);
+  return min2(Real(3) * density - Real(2), Real(2));
+}
+
+/// lambda_i = -C_i / (sum_k |grad_k C_i|^2 + eps^) / crowd(rho_i), in h^2. with_density: the
+/// density is summed in the same loop (fused); otherwise it is read.
 template <class Real, class Lists, Smoothing S, bool with_density>
 struct LambdaPass {
   Params<Real> p;
@@ -109,7 +121,7 @@ struct LambdaPass {
     const Real c = constraint(rho, p);
     const Real denominator = a * a * s.squares + dot(own_gradient, own_gradient) + p.relaxation;
     // No neighbour, no wall and no relaxation: nothing to move along.
-    const Real lambda = denominator > Real(0) ? -c / denominator : Real(0);
+    const Real lambda = denominator > Real(0) ? -c / (crowd(rho, p) * denominator) : Real(0);
     position_out[i] = with_w(x, lambda);
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }

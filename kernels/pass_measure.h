@@ -13,9 +13,11 @@ struct MeasurePass {
   Lists lists;
   const Vec4<Real>*position, *velocity;
   const Real* density;
+  const unsigned long long* fast;  ///< counter of kernels/pass_predict.h
 
   PBF_HD MeasureSums operator()(int i) const {
     MeasureSums s;
+    if (i == 0) s.fast = std::int64_t(*fast);
     const Vec3<Real> x = xyz(position[i]), v = xyz(velocity[i]);
     if (!is_finite(x.x + x.y + x.z) || !is_finite(dot(v, v)) || !is_finite(density[i])) {
       s.non_finite = 1;

@@ -10,6 +10,7 @@ namespace pbf::inline PBF_VARIANT {
 template <class Real>
 struct Moving {
   Vec3<Real> x, v;  ///< h, h/s
+  bool fast;        ///< faster than the speed that is watched, before it was limited
 };
 
 /// Position is clamped to the walls, and the velocity follows what the clamp did: a particle never
@@ -17,10 +18,13 @@ struct Moving {
 template <class Real>
 PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p) {
   v = mul_add(p.damping, v, p.dt * p.gravity);
+  const Real speed_squared = dot(v, v);
+  const bool fast = speed_squared > p.speed_squared;
+  if (p.limit_speed && fast) v = square_root(p.speed_squared / speed_squared) * v;
   const Vec3<Real> free = mul_add(p.dt, v, x);
   x = clamp_inside(free, p);
   // Only a clamped coordinate changes v: elsewhere x - free is exactly 0.
-  return {x, mul_add(p.inv_dt, x - free, v)};
+  return {x, mul_add(p.inv_dt, x - free, v), fast};
 }
 
 /// The bin of x*. x* itself is computed once more where the particles are gathered, which is
@@ -35,14 +39,26 @@ struct PredictPass {
   }
 };
 
+/// Particles that were too fast, counted since the solver was made. Rare: an atomic costs nothing.
+using FastCount = unsigned long long;
+PBF_HD void count_one(FastCount* count) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(count, 1ull);
+#elif !defined(__CUDACC__)
+  __atomic_fetch_add(count, 1ull, __ATOMIC_RELAXED);
+#endif
+}
+
 /// x* and the velocity that goes with it, in place: for further substeps, and for
 /// looking at this step alone.
 template <class Real>
 struct MovePass {
   Params<Real> p;
   Vec4<Real>*position, *velocity;  ///< in/out
+  FastCount* fast;
   PBF_HD void operator()(int i) const {
     const Moving<Real> m = predict(xyz(position[i]), xyz(velocity[i]), p);
+    if (m.fast) count_one(fast);
     position[i] = with_w(m.x, Real(1));
     velocity[i] = with_w(m.v, Real(0));
   }
@@ -66,9 +82,11 @@ struct GatherPass {
   const int* id;
   Vec4<Real>*position_out, *velocity_out;
   int* id_out;
+  FastCount* fast;
   PBF_HD void operator()(int from, int to) const {
-    Moving<Real> m{xyz(position[from]), xyz(velocity[from])};
+    Moving<Real> m{xyz(position[from]), xyz(velocity[from]), false};
     if constexpr (moving) m = predict(m.x, m.v, p);
+    if (m.fast) count_one(fast);
     position_out[to] = with_w(m.x, Real(1));
     velocity_out[to] = with_w(m.v, Real(0));
     id_out[to] = id[from];

@@ -56,11 +56,6 @@ class CpuExec {
     if (n) std::memcpy(host, from, n * sizeof(T));
   }
 
-  template <class T>
-  void copy(const T* from, std::size_t n, T* to) {
-    if (n) std::memcpy(to, from, n * sizeof(T));
-  }
-
   /// pass(i) for i in 0..n-1. Dynamic pieces: particles at the surface have fewer neighbours.
   template <class Pass>
   void for_each(int n, const Pass& pass) {

@@ -29,6 +29,10 @@ class CpuSolver final : public Solver {
   }
 
   void step(int updates) override {
+    if (fault_) {
+      for (int k = 0; k < updates; ++k) stepper_->step_checked(++updates_, nullptr, &*fault_);
+      return;
+    }
     stepper_->step(updates);
     updates_ += updates;
   }
@@ -54,6 +58,20 @@ class CpuSolver final : public Solver {
     return stepper_->trace(options);
   }
 
+  void keep() override {
+    stepper_->save(kept_);
+    kept_updates_ = updates_;
+  }
+  SolverState kept() override {
+    if (kept_.id.size() == 0) throw Error(ExitCode::internal, "kept() before keep()");
+    return stepper_->state(kept_, kept_updates_);
+  }
+  void watch_speed(double speed) override { stepper_->watch_speed(speed / scene_.h()); }
+  std::optional<StageEvent> step_checked(const StageLimits& limits) override {
+    return stepper_->step_checked(++updates_, &limits, fault_ ? &*fault_ : nullptr);
+  }
+  void inject(const Fault& fault) override { fault_ = fault; }
+
   std::vector<StageTime> timings() const override {
     std::vector<StageTime> out{{"init", init_seconds_, 1}};
     for (const auto& e : exec_.clock().entries()) {
@@ -74,7 +92,7 @@ class CpuSolver final : public Solver {
     i.threads = exec_.threads();
     i.vol = plan_.vol;
     i.wall_scale = plan_.wall_scale;
-    i.bytes = stepper_->bytes();
+    i.bytes = stepper_->bytes() + kept_.bytes();
     return i;
   }
 
@@ -102,7 +120,9 @@ class CpuSolver final : public Solver {
   std::unique_ptr<Stepper<Real, CpuExec>> stepper_;
   double init_seconds_ = 0;
   std::vector<StageClock::Entry> init_entries_;
-  std::int64_t updates_ = 0;
+  std::int64_t updates_ = 0, kept_updates_ = 0;
+  typename Stepper<Real, CpuExec>::Saved kept_;
+  std::optional<Fault> fault_;
 };
 
 }  // namespace

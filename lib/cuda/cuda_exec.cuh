@@ -230,10 +230,6 @@ class CudaExec {
     PBF_CUDA_CHECK(cudaMemcpyAsync(host, from, n * sizeof(T), cudaMemcpyDeviceToHost, stream_));
     synchronize();
   }
-  template <class T>
-  void copy(const T* from, std::size_t n, T* to) {
-    PBF_CUDA_CHECK(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDeviceToDevice, stream_));
-  }
 
   template <class Pass>
   void for_each(int n, const Pass& pass) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "lib/base/error.h"
 #include "lib/cuda/cuda_exec.cuh"
 #include "lib/cuda/cuda_variants.h"
 #include "lib/solver/step_solver.h"
@@ -56,6 +57,7 @@ class CudaSolver final : public Solver {
   void step(int updates) override {
     const Stopwatch watch;
     if (updates > 0) stepper_->unsort();
+    for (; fault_ && updates > 0; --updates) checked_step(nullptr);
     while (updates > 0) {
       int batch = std::min(updates, batch_);
       stepper_->save(saved_);
@@ -123,6 +125,23 @@ class CudaSolver final : public Solver {
     return t;
   }
 
+  void keep() override {
+    stepper_->save(kept_);
+    kept_updates_ = updates_;
+  }
+  SolverState kept() override {
+    if (kept_.id.size() == 0) throw Error(ExitCode::internal, "kept() before keep()");
+    return stepper_->state(kept_, kept_updates_);
+  }
+  void watch_speed(double speed) override {
+    stepper_->watch_speed(speed / scene_.h());
+    drop_graphs();  // they hold the parameters
+  }
+  std::optional<StageEvent> step_checked(const StageLimits& limits) override {
+    return checked_step(&limits);
+  }
+  void inject(const Fault& fault) override { fault_ = fault; }
+
   std::vector<StageTime> timings() const override {
     std::vector<StageTime> out{{"init", init_seconds_, 1}};
     // The stages of the sampled updates, which run without the graph and so take longer, share the
@@ -147,7 +166,7 @@ class CudaSolver final : public Solver {
     i.driver = "CUDA " + std::to_string(driver / 1000) + "." + std::to_string(driver % 100 / 10);
     i.vol = plan_.vol;
     i.wall_scale = plan_.wall_scale;
-    i.bytes = stepper_->bytes() + saved_.bytes() + staging_.bytes();
+    i.bytes = stepper_->bytes() + saved_.bytes() + kept_.bytes() + staging_.bytes();
     i.launches = launches_;
     return i;
   }
@@ -178,6 +197,20 @@ class CudaSolver final : public Solver {
         stepper_->replayed();
       }
     if (left) direct_step();
+  }
+
+  /// limits may be null. Done again where lists outgrew their room.
+  std::optional<StageEvent> checked_step(const StageLimits* limits) {
+    const Fault* fault = fault_ ? &*fault_ : nullptr;
+    std::optional<StageEvent> event;
+    stepper_->unsort();
+    stepper_->save(saved_);
+    do {
+      event = stepper_->step_checked(updates_ + 1, limits, fault);
+      parity_ ^= 1;
+    } while (grow_if_needed() && (drop_graphs(), stepper_->restore(saved_), true));
+    ++updates_;
+    return event;
   }
 
   void direct_step() {
@@ -249,7 +282,8 @@ class CudaSolver final : public Solver {
   int n_;
   CudaExec exec_;
   std::unique_ptr<Stepper<Real, CudaExec>> stepper_;
-  typename Stepper<Real, CudaExec>::Saved saved_;
+  typename Stepper<Real, CudaExec>::Saved saved_, kept_;
+  std::optional<Fault> fault_;
   cudaGraphExec_t graph_[3][2] = {};  ///< by size and parity
   int parity_ = 0, batch_ = kFirstBatch;
   cudaStream_t copy_stream_ = nullptr;
@@ -258,7 +292,7 @@ class CudaSolver final : public Solver {
   PinnedBuffer<char> staging_host_;
   Snapshot pending_;
   double init_seconds_ = 0, step_seconds_ = 0, launches_ = 0;
-  std::int64_t updates_ = 0;
+  std::int64_t updates_ = 0, kept_updates_ = 0;
   int since_profile_ = 0;
 };
 

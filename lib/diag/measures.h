@@ -33,6 +33,9 @@ struct Measures {
   std::int64_t neighbors_max = 0;
   std::int64_t outside = 0;     ///< particles beyond a wall
   std::int64_t non_finite = 0;  ///< particles with a non-finite position or velocity
+  /// Particles times updates, since the start, above solver.speed_limit (which were slowed down to
+  /// it), or without one above guard.speed.
+  std::int64_t fast = 0;
 };
 
 /// What an EnergyTrack knows: enough to go on from a checkpoint. J.

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using h5::check;
 
-constexpr std::int64_t kFormat = 1;
+constexpr std::int64_t kFormat = 2;
 constexpr hsize_t kChunkRows = hsize_t{1} << 18;
 
 /// Rows of `components` numbers, with a checksum per chunk (Fletcher 32).
@@ -54,6 +54,13 @@ void for_each_number(Saved& s, F&& f) {
   f("energy_lowest", s.energy.lowest);
   f("energy_rise", s.energy.rise);
   f("compression_max", s.compression_max);
+  f("first_kinetic_energy", s.first.kinetic_energy);
+  f("first_potential_energy", s.first.potential_energy);
+  f("first_compression_mean", s.first.compression_mean);
+  f("first_speed_max", s.first.speed_max);
+  f("first_center_of_mass_x", s.first.center_of_mass[0]);
+  f("first_center_of_mass_y", s.first.center_of_mass[1]);
+  f("first_center_of_mass_z", s.first.center_of_mass[2]);
 }
 
 void write_file(const std::string& path, const SavedRun& s) {
@@ -70,6 +77,8 @@ void write_file(const std::string& path, const SavedRun& s) {
     h5::write_text(file, "precision", wide ? "double" : "float");
     h5::write_numbers(file, "update", &s.state.updates);
     h5::write_numbers(file, "particles", &s.particles);
+    h5::write_numbers(file, "fast", &s.state.fast);
+    h5::write_numbers(file, "first_neighbors_max", &s.first.neighbors_max);
     h5::write_numbers(file, "energy_started", &started);
     for_each_number(s, [&](const char* name, double v) { h5::write_numbers(file, name, &v); });
     h5::flush_reserved(file);
@@ -93,6 +102,8 @@ SavedRun read_file(const std::string& path) {
       h5::read_text(file, "precision") == "double" ? Precision::dbl : Precision::single;
   s.state.updates = h5::read_number<std::int64_t>(file, "update");
   s.particles = h5::read_number<std::int64_t>(file, "particles");
+  s.state.fast = h5::read_number<std::int64_t>(file, "fast");
+  s.first.neighbors_max = h5::read_number<std::int64_t>(file, "first_neighbors_max");
   s.energy.started = h5::read_number<std::int64_t>(file, "energy_started") != 0;
   for_each_number(s, [&](const char* name, double& v) { v = h5::read_number<double>(file, name); });
   if (s.particles < 0 || s.particles > 2147483647 || s.state.updates < 0)

@@ -16,6 +16,7 @@ struct SavedRun {
   SolverState state;
   EnergyHistory energy;        ///< of the measures that are due until then
   double compression_max = 0;  ///< 1, largest of the measures that are due until then
+  Measures first;              ///< of the run: what guard_limits() needs of it, lib/diag/guard.h
   std::int64_t particles = 0;
 };
 

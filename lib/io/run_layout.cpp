@@ -37,6 +37,7 @@ const std::vector<LogColumn>& log_columns() {
       {"neighbors_max", "1", nullptr, [](Row r) { return r.measures.neighbors_max; }},
       {"outside", "1", nullptr, [](Row r) { return r.measures.outside; }},
       {"non_finite", "1", nullptr, [](Row r) { return r.measures.non_finite; }},
+      {"fast", "1", nullptr, [](Row r) { return r.measures.fast; }},
   };
   return columns;
 }

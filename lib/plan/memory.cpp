@@ -46,7 +46,7 @@ int downloaded_scalars(const Scene& s) {
   return 3 + (has_field(s, "velocity") ? 3 : 0) + (has_field(s, "density") ? 1 : 0);
 }
 
-void add_state(const Plan& plan, const std::string& real, const Adder& add) {
+void add_state(const Plan& plan, bool guard, const std::string& real, const Adder& add) {
   // The lists name one particle more, far away, and lanes read further (padding of the executors).
   const std::int64_t n = plan.particles, padded = n + (add.on_device ? 1 : 16);
   for (const char* name : {"position", "position'", "velocity", "velocity'"})
@@ -56,6 +56,11 @@ void add_state(const Plan& plan, const std::string& real, const Adder& add) {
   for (const char* name : {"id", "id'", "bin"}) add(name, "int32", 1, n);
   if (add.on_device) add("order", "int32", 1, n);  // else it stands in id'
   const std::int64_t blocks = (n + kMeasureBlock - 1) / kMeasureBlock;
+  if (guard) {  // the last good state
+    add("kept position", real, 4, n);
+    add("kept velocity", real, 4, n);
+    add("kept id", "int32", 1, n);
+  }
   add("partial sums of a measure", "double", int(sizeof(MeasureSums) / 8), blocks);
   add("histogram of compression", "int64", 1, kCompressionBins);
 }
@@ -198,7 +203,7 @@ MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
   const std::string real = s.precision == Precision::dbl ? "double" : "float";
   const std::int64_t bins = std::int64_t(plan.cells[0]) * plan.cells[1] * plan.cells[2] * 4;
   const Adder solver{memory, cuda, Held::solver};
-  add_state(plan, real, solver);
+  add_state(plan, bool(s.guard), real, solver);
   if (cuda)
     add_cuda_lists(s, plan, bins, real, solver);
   else

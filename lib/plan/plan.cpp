@@ -91,6 +91,8 @@ void plan_left_out(Plan& plan, const Scene& s) {
   out(s.solver.boundary == BoundaryMode::clamp, "wall density", "solver.boundary is clamp");
   out(s.domain.open.size() == 6, "walls: their density and the clamp", "domain.open names all six");
   out(s.solver.iterations == 0, "lambda and delta passes", "solver.iterations is 0");
+  out(!s.guard, "the guard and its copy of the state", "guard is off");
+  out(s.solver.speed_limit == 0, "limit on the speed", "solver.speed_limit is 0");
   out(!s.output, "run.h5, its writer thread and its downloads", "no key output");
   out(!s.checkpoint, "checkpoints, but where the run is stopped", "no key checkpoint");
   out(!s.render, "pictures, the GL library and its thread", "no key render");

@@ -8,8 +8,15 @@ namespace pbf {
 namespace {
 
 bool is_free(const std::string& path) {
-  static const char* const kFree[] = {
-      "name", "time.end", "threads", "backend", "solver.reproducible", "checkpoint.every"};
+  static const char* const kFree[] = {"name",
+                                      "time.end",
+                                      "threads",
+                                      "backend",
+                                      "solver.reproducible",
+                                      "checkpoint.every",
+                                      "guard.speed",
+                                      "guard.energy",
+                                      "guard.neighbors"};
   return std::find(std::begin(kFree), std::end(kFree), path) != std::end(kFree);
 }
 
@@ -38,7 +45,7 @@ std::string body_difference(const Scene& before, const Scene& now) {
 
 std::string physics_difference(const Scene& before, const Scene& now) {
   for (const Block& block : scene_blocks()) {
-    if (!block.optional || block.path == "checkpoint") continue;
+    if (!block.optional || block.path == "checkpoint" || block.path == "guard") continue;
     const bool was = block.present(before), is = block.present(now);
     if (was != is) return changed(block.path, was ? "on" : "off", is ? "on" : "off");
   }

@@ -154,10 +154,12 @@ std::vector<Key> solver_keys() {
              "eps h^2, in the denominator of lambda (constraint force mixing, made dimensionless). "
              "Larger is softer.",
              SCENE(&s.solver.relaxation)),
-      automatic(number("solver.step_length", "", {0, 2, true},
-                       "Factor omega on the position change of one sweep; below 1 under-relaxes. "
-                       "auto: min(1, (2.5 d/h)^2), since more neighbours need smaller steps.",
-                       SCENE(&s.solver.step_length))),
+      automatic(
+          number("solver.step_length", "", {0, 2, true},
+                 "Factor omega on the position change of one sweep; below 1 under-relaxes. "
+                 "auto: min(1, (2.5 d/h)^2), since more neighbours need smaller steps, and less "
+                 "where the density is above rest_density.",
+                 SCENE(&s.solver.step_length))),
       words("solver.boundary", {"density", "clamp"},
             "density: walls count in the density like fluid behind them. clamp: particles are only "
             "put back into the box.",
@@ -167,6 +169,10 @@ std::vector<Key> solver_keys() {
       number("solver.velocity_damping", "", {0, 1},
              "Factor on every velocity, once per update. 1: no damping.",
              SCENE(&s.solver.velocity_damping)),
+      number("solver.speed_limit", "h per update", {0, 1e6},
+             "Particles that would move farther than this in one update are slowed down to it; how "
+             "often is counted and reported. 0: no limit.",
+             SCENE(&s.solver.speed_limit)),
       words("solver.fused", {}, "Density and lambda in one loop over the neighbours.",
             SCENE(&s.solver.fused)),
       words("solver.reproducible", {},
@@ -187,6 +193,24 @@ std::vector<Key> force_keys() {
       number("measure_every", "", {1, 2147483647},
              "Updates between two measures (density error, energy, momentum, ...).",
              SCENE(&s.measure_every))};
+}
+
+std::vector<Key> guard_keys() {
+  return {
+      automatic(number("guard.speed", "m/s", {0, 1e30, true},
+                       "Fastest speed allowed, in any update. auto: 10 times the sum of the "
+                       "fastest speed at the start, that of a fall through the domain, and h "
+                       "per update. With solver.speed_limit, only speeds at a measure count.",
+                       SCENE(&s.guard->speed))),
+      automatic(number("guard.energy", "", {0, 1e30, true},
+                       "Growth of kinetic plus potential energy allowed, as a share of what "
+                       "it was above the floor at the start. auto: 0.1, and more for a start "
+                       "that is compressed.",
+                       SCENE(&s.guard->energy))),
+      automatic(number("guard.neighbors", "", {0, 2147483647, true},
+                       "Neighbours of one particle allowed. auto: 4 times the most at the start, "
+                       "at least 16 times those at rest.",
+                       SCENE(&s.guard->neighbors)))};
 }
 
 ChoiceField compression(Output& output) {
@@ -255,6 +279,11 @@ Block optional_block(const char* path, const char* help, std::optional<T> Scene:
           }};
 }
 
+Block on_by_default(Block block) {
+  block.on_by_default = true;
+  return block;
+}
+
 Block plain_block(const char* path, const char* help) {
   return {path, help, false, [](const Scene&) { return true; }, [](Scene&, bool) {}};
 }
@@ -264,8 +293,9 @@ Block plain_block(const char* path, const char* help) {
 const std::vector<Key>& scene_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> all;
-    for (const auto& part : {top_keys(), domain_keys(), fluid_keys(), body_keys(), time_keys(),
-                             solver_keys(), force_keys(), output_keys(), render_keys()})
+    for (const auto& part :
+         {top_keys(), domain_keys(), fluid_keys(), body_keys(), time_keys(), solver_keys(),
+          force_keys(), guard_keys(), output_keys(), render_keys()})
       all.insert(all.end(), part.begin(), part.end());
     return all;
   }();
@@ -283,6 +313,9 @@ const std::vector<Block>& scene_blocks() {
       optional_block("tensile", "Artificial pressure against clusters (s_corr).", &Scene::tensile),
       optional_block("viscosity", "XSPH viscosity.", &Scene::viscosity),
       optional_block("vorticity", "Vorticity confinement.", &Scene::vorticity),
+      on_by_default(optional_block(
+          "guard", "Stops a run at a measure that makes no sense, and names the culprit.",
+          &Scene::guard)),
       optional_block("output", "Frames in run.h5.", &Scene::output),
       optional_block("checkpoint",
                      "The whole state, now and then and at the end. A run that a signal or the "

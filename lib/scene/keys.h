@@ -55,6 +55,7 @@ struct Block {
   bool optional = false;  ///< absent or `off`: the feature is off; {}: on with the defaults
   std::function<bool(const Scene&)> present;
   std::function<void(Scene&, bool)> set_present;
+  bool on_by_default = false;  ///< optional, but on where the scene does not mention it
 };
 
 /// All keys, in the order of the reference scene. The top level's keys come with block "".

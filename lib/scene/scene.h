@@ -68,6 +68,7 @@ struct SolverSettings {
   BoundaryMode boundary = BoundaryMode::density;
   double wall_margin = 0;       ///< m, distance to a wall at which particles are clamped
   double velocity_damping = 1;  ///< factor on the velocity, once per update
+  double speed_limit = 0;       ///< h per update, faster particles are slowed down; 0: no limit
   bool fused = true;            ///< density and lambda in one loop over the neighbours
   bool reproducible = false;    ///< cuda: the CPU's bits, at a price (kernels/README.md, "Bits")
   bool operator==(const SolverSettings&) const = default;
@@ -91,6 +92,15 @@ struct Viscosity {
 struct Vorticity {
   double epsilon = 0.1;  ///< dimensionless strength
   bool operator==(const Vorticity&) const = default;
+};
+
+/// What stops a run before it wastes time on nonsense; lib/diag/guard.h says how it is told.
+struct GuardSettings {
+  std::optional<double> speed;   ///< m/s; absent: from the scene and the start
+  std::optional<double> energy;  ///< growth, as a share of the energy at the start; absent: 0.1 and
+                                 ///< what a compressed start may release
+  std::int64_t neighbors = 0;    ///< of one particle; 0: from the start
+  bool operator==(const GuardSettings&) const = default;
 };
 
 struct Output {
@@ -137,6 +147,7 @@ struct Scene {
   std::optional<Viscosity> viscosity;
   std::optional<Vorticity> vorticity;
   int measure_every = 10;  ///< updates between measures
+  std::optional<GuardSettings> guard = GuardSettings{};
   std::optional<Output> output;
   std::optional<Checkpoint> checkpoint;
   std::optional<Render> render;

@@ -88,12 +88,15 @@ class Writer {
       return;
     }
     if (comments_)
-      out_ +=
-          comment(entry.help + (entry.optional ? " Optional: without this block, or with `" + leaf +
-                                                     ": off`, it is off; {} turns it on "
-                                                     "with the defaults."
-                                               : ""),
-                  indent);
+      out_ += comment(
+          entry.help + (entry.on_by_default ? " Optional: on with the defaults without this "
+                                              "block; off with `" +
+                                                  leaf + ": off`."
+                        : entry.optional ? " Optional: without this block, or with `" + leaf +
+                                               ": off`, it is off; {} turns it on "
+                                               "with the defaults."
+                                         : ""),
+          indent);
     out_ += indent + leaf + ":\n";
   }
 

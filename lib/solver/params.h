@@ -46,6 +46,11 @@ Params<Real> make_params(const Scene& s, const Plan& plan) {
   p.gravity = {Real(s.gravity[0] / h), Real(s.gravity[1] / h), Real(s.gravity[2] / h)};
   p.damping = Real(plan.substeps == 1 ? s.solver.velocity_damping
                                       : std::pow(s.solver.velocity_damping, 1.0 / plan.substeps));
+  // The guard's limit depends on the first measure, so it comes later (Stepper::watch_speed).
+  if (s.solver.speed_limit > 0) {
+    p.limit_speed = true;
+    p.speed_squared = Real(std::pow(s.solver.speed_limit / s.time.step, 2));
+  }
   p.box = {Real((s.domain.max[0] - s.domain.min[0]) / h),
            Real((s.domain.max[1] - s.domain.min[1]) / h),
            Real((s.domain.max[2] - s.domain.min[2]) / h)};
@@ -65,6 +70,7 @@ Params<Real> make_params(const Scene& s, const Plan& plan) {
   p.two_sided = s.solver.constraint == ConstraintMode::two_sided;
   p.relaxation = Real(s.solver.relaxation);
   p.step_length = Real(plan.step_length);
+  p.ease_crowds = !s.solver.step_length;
   if (s.tensile) {
     p.tensile_k = Real(s.tensile->k);
     const double q = s.tensile->delta_q, t = 1 - q;

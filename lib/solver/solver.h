@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "lib/scene/emit.h"
 #include "lib/scene/scene.h"
 #include "lib/solver/snapshot.h"
+#include "lib/solver/stage_event.h"
 #include "lib/solver/step_trace.h"
 
 namespace pbf {
@@ -63,6 +65,17 @@ class Solver {
   /// One update, with what each pass left behind, on the host: some ten times slower than step(1),
   /// whose bits it gives unless `options` ask for others.
   virtual StepTrace trace(const TraceOptions& options = {}) = 0;
+  /// Keeps a copy of the state where the solver's arrays are, in place of the one before: cheap
+  /// enough for every measure. kept() brings it to the host; Error(internal) when there is none.
+  virtual void keep() = 0;
+  virtual SolverState kept() = 0;
+  /// Counts particles faster than `speed` (m/s) in Measures::fast from now on. Without effect where
+  /// the scene has a solver.speed_limit: then those above it are counted.
+  virtual void watch_speed(double speed) = 0;
+  /// One update like step(1), looking at what each stage left behind: some ten times slower.
+  virtual std::optional<StageEvent> step_checked(const StageLimits& limits) = 0;
+  /// For tests: updates from now on put this fault in when its time comes, also repeated ones.
+  virtual void inject(const Fault& fault) = 0;
   virtual std::vector<StageTime> timings() const = 0;
   virtual SolverInfo info() const = 0;
   virtual std::int64_t updates_done() const = 0;

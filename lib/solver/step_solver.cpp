@@ -59,6 +59,7 @@ Measures to_measures(const MeasureSums& s, const Scene& scene, const Plan& plan,
   m.neighbors_max = s.neighbors_max;
   m.outside = s.outside;
   m.non_finite = s.non_finite;
+  m.fast = s.fast;
   return m;
 }
 

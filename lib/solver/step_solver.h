@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "lib/base/release.h"
 #include "lib/solver/params.h"
 #include "lib/solver/solver.h"
 #include "lib/solver/stepper.h"

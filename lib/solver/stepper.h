@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/compression_bins.h"
 #include "kernels/pass_delta.h"
 #include "kernels/pass_export.h"
 #include "kernels/pass_lambda.h"
@@ -16,7 +15,11 @@
 #include "kernels/pass_predict.h"
 #include "kernels/pass_vorticity.h"
 #include "kernels/pass_xsph.h"
+#include "lib/base/release.h"
 #include "lib/scene/scene.h"
+#include "lib/solver/compression_percentile.h"
+#include "lib/solver/stage_check.h"
+#include "lib/solver/state_transfer.h"
 #include "lib/solver/tracer.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -32,24 +35,6 @@ void with_smoothing(KernelMode mode, F&& f) {
 template <class F>
 void with_bool(bool b, F&& f) {
   b ? f(std::true_type{}) : f(std::false_type{});
-}
-
-/// The compression that at least `count` of n particles do not exceed: the upper end of its bin, at
-/// most 1/32 too large, and no more than the maximum.
-inline double percentile(const std::vector<std::int64_t>& in_bin, std::int64_t count,
-                         std::int64_t n, double max) {
-  std::int64_t above = 0;
-  for (int b = kCompressionBins - 1; b >= 0; --b) {
-    above += in_bin[std::size_t(b)];
-    if (n - above < count) return std::min(compression_bin_end(b), max);
-  }
-  return 0;
-}
-
-/// Empties a vector and gives its memory back (`= {}` would keep it).
-template <class T>
-void release(std::vector<T>& v) {
-  std::vector<T>().swap(v);
 }
 
 template <class Real, class Exec>
@@ -80,6 +65,9 @@ class Stepper {
     for (auto* b : {&id_, &other_id_, &bin_}) b->resize(n);
     if (!Exec::order_in_place) order_.resize(n);
     density_.resize(n);
+    fast_.resize(1);
+    const FastCount none = 0;
+    exec_.to_device(&none, 1, fast_.data());
     bin_start_.resize(std::size_t(bin_count(p_)) + 1);
     if (p_.vorticity > Real(0)) curl_.resize(padded);
     if (Exec::padding) {
@@ -125,55 +113,43 @@ class Stepper {
     density_is_current_ = false;
   }
 
-  /// One update, with what each stage left behind, one pass after the other: the same bits.
+  /// One update, with what each stage left behind.
   StepTrace trace(const TraceOptions& options) {
     Tracer<Real, Exec> t(exec_, p_.n, options);
-    const auto seen = [&](const char* stage, int sweep) { record(t, stage, sweep); };
-    unsort();
-    exec_.begin();
-    exec_.for_each(p_.n, MovePass<Real>{p_, position_.data(), velocity_.data()});
-    seen("predict", 0);
-    reorder<false>("predict", BinPass<Real>{p_, position_.data(), bin_.data()});
-    seen("grid", 0);
-    solve(seen);
-    finish_update(seen);
-    density_is_current_ = false;
+    step_seen([&](const char* stage, int sweep) { record(t, stage, sweep); });
     return t.result();
   }
 
+  /// One update, looking at what each stage left behind and putting a fault in, where these are not
+  /// null. `update`: its number, the first is 1.
+  std::optional<StageEvent> step_checked(std::int64_t update, const StageLimits* limits,
+                                         const Fault* fault) {
+    StageCheck<Real, Exec> check(exec_, p_, update, limits, fault);
+    step_seen([&](const std::string& stage, int sweep) {
+      const bool lists = stage == "neighbors";
+      if (lists) exec_.for_each(p_.n, ListSizePass<Lists>{lists_, order_.data()});  // free by now
+      check.look(stage, sweep,
+                 {(stage == "lambda" ? other_position_ : position_).data(), velocity_.data(),
+                  stage == "density" ? density_.data() : nullptr, id_.data(),
+                  lists ? order_.data() : nullptr});
+    });
+    return check.event();
+  }
+
+  /// Particles faster than `speed` (h/s) are counted; no effect where the scene limits the speed.
+  void watch_speed(double speed) {
+    if (!p_.limit_speed) p_.speed_squared = Real(std::min(speed * speed, 1e30));
+  }
+
   SolverState state(std::int64_t updates) {
-    const std::size_t n = std::size_t(p_.n);
-    const bool sorted_since = unsorted_.id.size() > 0;
-    SolverState s;
-    s.precision = sizeof(Real) == 8 ? Precision::dbl : Precision::single;
-    s.updates = updates;
-    const auto copy = [&](const Vec4<Real>* from, std::vector<double>& to) {
-      std::vector<Vec4<Real>> host(n);
-      exec_.to_host(from, n, host.data());
-      to.resize(3 * n);
-      for (std::size_t k = 0; k < n; ++k)
-        to[3 * k] = host[k].x, to[3 * k + 1] = host[k].y, to[3 * k + 2] = host[k].z;
-    };
-    copy((sorted_since ? unsorted_.position : position_).data(), s.position);
-    copy((sorted_since ? unsorted_.velocity : velocity_).data(), s.velocity);
-    s.id.resize(n);
-    exec_.to_host((sorted_since ? unsorted_.id : id_).data(), n, s.id.data());
-    return s;
+    if (unsorted_.id.size() > 0) return state(unsorted_, updates);
+    return download_state<Real>(exec_, std::size_t(p_.n), arrays(), updates);
   }
 
   /// Takes over a state of as many particles. What measures it before the next update needs lists,
   /// and these a sort; the order of the state itself comes back with the update.
   void set_state(const SolverState& s) {
-    const std::size_t n = std::size_t(p_.n);
-    const auto copy = [&](const std::vector<double>& from, Vec4<Real>* to, Real w) {
-      std::vector<Vec4<Real>> host(n);
-      for (std::size_t k = 0; k < n; ++k)
-        host[k] = {Real(from[3 * k]), Real(from[3 * k + 1]), Real(from[3 * k + 2]), w};
-      exec_.to_device(host.data(), n, to);
-    };
-    copy(s.position, position_.data(), Real(1));
-    copy(s.velocity, velocity_.data(), Real(0));
-    exec_.to_device(s.id.data(), n, id_.data());
+    upload_state<Real>(exec_, s, arrays());
     save(unsorted_);
     reorder<false>("grid", BinPass<Real>{p_, position_.data(), bin_.data()});
     density_is_current_ = false;
@@ -192,9 +168,10 @@ class Stepper {
   MeasureSums measure() {
     exec_.begin();
     sum_density();
-    auto sums = exec_.reduce(p_.n, MeasurePass<Real, Lists>{p_, lists_, position_.data(),
-                                                            velocity_.data(), density_.data()});
-    sums.compression_p99 = percentile(
+    auto sums =
+        exec_.reduce(p_.n, MeasurePass<Real, Lists>{p_, lists_, position_.data(), velocity_.data(),
+                                                    density_.data(), fast_.data()});
+    sums.compression_p99 = compression_percentile(
         exec_.count_in_bins(p_.n, kCompressionBins, CompressionBinPass<Real>{density_.data()}),
         p_.n - p_.n / 100, p_.n, sums.compression_max);
     exec_.mark("measure");
@@ -234,6 +211,10 @@ class Stepper {
   struct Saved {
     Buffer<Vec4<Real>> position, velocity;
     Buffer<int> id;
+    Buffer<FastCount> fast;
+    StateArrays<Real> arrays() {
+      return {position.data(), velocity.data(), id.data(), fast.data()};
+    }
     std::size_t bytes() const { return position.bytes() + velocity.bytes() + id.bytes(); }
   };
   void save(Saved& s) {
@@ -241,16 +222,15 @@ class Stepper {
     s.position.resize(n);
     s.velocity.resize(n);
     s.id.resize(n);
-    exec_.copy(position_.data(), n, s.position.data());
-    exec_.copy(velocity_.data(), n, s.velocity.data());
-    exec_.copy(id_.data(), n, s.id.data());
+    s.fast.resize(1);
+    exec_.for_each(p_.n, CopyStatePass<Real>{arrays(), s.arrays()});
   }
-  void restore(const Saved& s) {
-    const std::size_t n = std::size_t(p_.n);
-    exec_.copy(s.position.data(), n, position_.data());
-    exec_.copy(s.velocity.data(), n, velocity_.data());
-    exec_.copy(s.id.data(), n, id_.data());
+  void restore(Saved& s) {
+    exec_.for_each(p_.n, CopyStatePass<Real>{s.arrays(), arrays()});
     density_is_current_ = false;
+  }
+  SolverState state(Saved& s, std::int64_t updates) {
+    return download_state<Real>(exec_, std::size_t(p_.n), s.arrays(), updates);
   }
 
   std::size_t bytes() const {
@@ -261,15 +241,35 @@ class Stepper {
   }
 
  private:
+  StateArrays<Real> arrays() {
+    return {position_.data(), velocity_.data(), id_.data(), fast_.data()};
+  }
+
+  /// One update, one pass after the other: the bits of step(1). `seen(stage, sweep)` may look at
+  /// what each stage left behind.
+  template <class Seen>
+  void step_seen(const Seen& seen) {
+    unsort();
+    exec_.begin();
+    exec_.for_each(p_.n, MovePass<Real>{p_, position_.data(), velocity_.data(), fast_.data()});
+    seen("predict", 0);
+    reorder<false>("predict", BinPass<Real>{p_, position_.data(), bin_.data()});
+    seen("grid", 0);
+    seen("neighbors", 0);
+    solve(seen);
+    finish_update(seen);
+    density_is_current_ = false;
+  }
+
   /// Runs the pass that gives every particle its bin, sorts and gathers the particles by bin (as
   /// predicted, with `moving`), makes the lists.
   template <bool moving, class First>
   void reorder(const char* stage, const First& first) {
-    exec_.sort_by_bin(
-        stage, first, p_.n, bin_count(p_), (Exec::order_in_place ? other_id_ : order_).data(),
-        bin_start_.data(),
-        GatherPass<Real, moving>{p_, position_.data(), velocity_.data(), id_.data(),
-                                 other_position_.data(), other_velocity_.data(), other_id_.data()});
+    exec_.sort_by_bin(stage, first, p_.n, bin_count(p_),
+                      (Exec::order_in_place ? other_id_ : order_).data(), bin_start_.data(),
+                      GatherPass<Real, moving>{p_, position_.data(), velocity_.data(), id_.data(),
+                                               other_position_.data(), other_velocity_.data(),
+                                               other_id_.data(), fast_.data()});
     std::swap(position_, other_position_);
     std::swap(velocity_, other_velocity_);
     std::swap(id_, other_id_);
@@ -284,7 +284,7 @@ class Stepper {
   void solve(const Seen& seen) {
     for (int s = 0; s < substeps_; ++s) {
       if (s > 0) {
-        exec_.for_each(p_.n, MovePass<Real>{p_, position_.data(), velocity_.data()});
+        exec_.for_each(p_.n, MovePass<Real>{p_, position_.data(), velocity_.data(), fast_.data()});
         exec_.mark("predict");
         seen("predict", s);
       }
@@ -340,40 +340,11 @@ class Stepper {
     seen("delta", number);
   }
 
-  /// Gives the tracer the arrays of a stage. The arrays before the sort, in their old order, are
-  /// the "other" ones.
   void record(Tracer<Real, Exec>& t, const std::string& stage, int sweep) {
-    const int* id = id_.data();
-    t.stage(stage, sweep, t.most_terms());
-    if (stage == "predict") {
-      t.vectors("position", "h", position_.data(), id);
-      t.vectors("velocity", "h/s", velocity_.data(), id);
-    } else if (stage == "grid") {
-      t.scalars("bin", "1", bin_.data(), other_id_.data());
-      t.vectors("position", "h", position_.data(), id);
-      t.vectors("velocity", "h/s", velocity_.data(), id);
-      t.lists(lists_, id);
-    } else if (stage == "density") {
-      t.scalars("density", "rho0", density_.data(), id);
-    } else if (stage == "lambda") {
-      if (fused_) {
-        t.stage("density", sweep, t.most_terms());
-        t.scalars("density", "rho0", density_.data(), id);
-      }
-      t.stage("lambda", sweep, t.most_terms());
-      t.fourth("lambda", "h^2", other_position_.data(), id);
-    } else if (stage == "delta") {
-      t.stage("delta", sweep);
-      t.vectors("position", "h", position_.data(), id);
-      t.fourth("1/density", "1/rho0", position_.data(), id);
-      t.vectors("velocity", "h/s", velocity_.data(), id);
-    } else if (stage == "curl") {
-      t.stage("vorticity", 0, t.most_terms());
-      t.vectors("curl", "1/s", curl_.data(), id);
-    } else {
-      t.stage(stage, 0);
-      t.vectors("velocity", "h/s", velocity_.data(), id);
-    }
+    t.record(stage, sweep,
+             {position_.data(), other_position_.data(), velocity_.data(), curl_.data(),
+              density_.data(), bin_.data(), id_.data(), other_id_.data(), fused_},
+             lists_);
   }
 
   /// The pass over the present velocities, which it leaves behind in the other array.
@@ -403,7 +374,8 @@ class Stepper {
   Buffer<Vec4<Real>> position_, other_position_, velocity_, other_velocity_, curl_;
   Buffer<Real> density_;
   Buffer<int> id_, other_id_, bin_, order_, bin_start_;
-  Saved unsorted_;  ///< the state as set_state() got it, until the next update; else empty
+  Buffer<FastCount> fast_;  ///< one: particles above the watched speed
+  Saved unsorted_;          ///< the state as set_state() got it, until the next update; else empty
 };
 
 }  // namespace pbf::inline PBF_VARIANT

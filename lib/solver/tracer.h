@@ -39,21 +39,67 @@ struct FlatListPass {
   }
 };
 
+/// The arrays of the step, in device-visible memory; row k belongs to particle id[k].
+template <class Real>
+struct TracedArrays {
+  Vec4<Real>*position, *other_position, *velocity, *curl;
+  Real* density;
+  int *bin, *id, *other_id;  ///< of what lies in the order before the sort: other_id
+  bool fused;                ///< the lambda pass has summed the density
+};
+
 template <class Real, class Exec>
 class Tracer {
  public:
   Tracer(Exec& exec, int n, const TraceOptions& options)
       : exec_(exec), n_(std::size_t(n)), options_(options), random_(options.seed) {}
 
+  /// Records what a stage has left behind.
+  template <class Lists>
+  void record(const std::string& stage, int sweep, const TracedArrays<Real>& a,
+              const Lists& neighbors) {
+    this->stage(stage, sweep, most_terms_);
+    if (stage == "predict") {
+      vectors("position", "h", a.position, a.id);
+      vectors("velocity", "h/s", a.velocity, a.id);
+    } else if (stage == "grid") {
+      scalars("bin", "1", a.bin, a.other_id);
+      vectors("position", "h", a.position, a.id);
+      vectors("velocity", "h/s", a.velocity, a.id);
+    } else if (stage == "neighbors") {
+      lists(neighbors, a.id);
+    } else if (stage == "density") {
+      scalars("density", "rho0", a.density, a.id);
+    } else if (stage == "lambda") {
+      if (a.fused) {
+        this->stage("density", sweep, most_terms_);
+        scalars("density", "rho0", a.density, a.id);
+        this->stage("lambda", sweep, most_terms_);
+      }
+      fourth("lambda", "h^2", a.other_position, a.id);
+    } else if (stage == "delta") {
+      this->stage("delta", sweep);
+      vectors("position", "h", a.position, a.id);
+      fourth("1/density", "1/rho0", a.position, a.id);
+      vectors("velocity", "h/s", a.velocity, a.id);
+    } else if (stage == "curl") {
+      this->stage("vorticity", 0, most_terms_);
+      vectors("curl", "1/s", a.curl, a.id);
+    } else {
+      this->stage(stage, 0);
+      vectors("velocity", "h/s", a.velocity, a.id);
+    }
+  }
+
+  StepTrace result() { return std::move(trace_); }
+
+ private:
   /// Names the stage of what follows. `terms`: those of the sums that it stores, 0: none.
   void stage(const std::string& name, int sweep, double terms = 0) {
     stage_ = name;
     sweep_ = sweep;
     amplitude_ = options_.unit_roundoff * (terms > 0 ? 4 + std::sqrt(terms) : 1);
   }
-  /// Of the longest sum over neighbours, once lists() has seen them.
-  double most_terms() const { return most_terms_; }
-
   /// Row k belongs to id[k], both in device-visible memory.
   void vectors(const char* quantity, const char* unit, Vec4<Real>* from, const int* id) {
     array(quantity, unit, 3, from, id, [](Vec4<Real>& x, int c) -> Real& { return (&x.x)[c]; });
@@ -86,9 +132,6 @@ class Tracer {
     by_id(sizes, starts, all);
   }
 
-  StepTrace result() { return std::move(trace_); }
-
- private:
   template <class T>
   std::vector<T> host(const T* from) {
     std::vector<T> v(n_);
@@ -158,7 +201,8 @@ class Tracer {
   SplitMix64 random_;
   std::string stage_;
   int sweep_ = 0;
-  double amplitude_ = 0, most_terms_ = 0;
+  double amplitude_ = 0;
+  double most_terms_ = 0;  ///< of the longest sum over neighbours, once lists() has seen them
   std::vector<int> id_;
   StepTrace trace_;
 };

@@ -11,7 +11,7 @@ TEST_CASE("the help of every command has an example, and the main help the exit 
   const Outcome main = pbf::test::pbf({"--help"}, folder.path());
   CHECK(main.code == 0);
   for (const char* part : {"Exit codes", "  75 ", "Example: pbf run"}) CHECK(has(main.out, part));
-  for (const char* command : {"run", "plan", "render", "info", "config", "study"}) {
+  for (const char* command : {"run", "plan", "render", "config", "study", "stability", "info"}) {
     CAPTURE(command);
     CHECK(has(main.out, std::string("\n  ") + command + " "));
     const Outcome o = pbf::test::pbf({command, "--help"}, folder.path());

@@ -185,7 +185,7 @@ TEST_CASE("a second signal ends a run at once") {
   CHECK(run.wait().code == 128 + SIGTERM);
 }
 
-TEST_CASE("a run that diverges exits 3, names update and count, and keeps what it has") {
+TEST_CASE("a run that diverges exits 3, names update, stage and particle, and keeps what it has") {
   const Scratch folder;
   // Falls out of an open floor until the square of its speed overflows a float.
   const std::string scene = folder.write("tiny.yaml", tiny_scene("measure_every: 5\n"));
@@ -195,11 +195,12 @@ TEST_CASE("a run that diverges exits 3, names update and count, and keeps what i
       folder.path());
   CAPTURE(o.err);
   CHECK(o.code == 3);
-  for (const char* part : {"diverged", "update 5,", "64 particles", "time.step", "iterations"})
+  for (const char* part : {"stopped by the guard: at update ", "stage predict", "particle 0 ",
+                           "time.step", "iterations"})
     CHECK(has(o.err, part));
   CHECK(has(o.out, "not finite          64"));
   CHECK_FALSE(fs::exists(folder / "o/DONE"));
-  CHECK(has(read_text(folder / "o/log.txt"), "pbf: error: the run diverged"));
+  CHECK(has(read_text(folder / "o/log.txt"), "pbf: error: stopped by the guard"));
   CHECK(pbf::RunReader((folder / "o/run.h5").string()).status() == "diverged");
 }
 

@@ -26,6 +26,7 @@ inline oracle::Settings settings_of(const Case& c) {
   o.dt = s.time.step;
   o.relaxation = s.solver.relaxation;
   o.step_length = pbf::make_plan(s, std::int64_t(c.particles.size())).step_length;
+  o.smaller_steps_in_crowds = !s.solver.step_length;
   o.damping = s.solver.velocity_damping;
   o.margin = s.solver.wall_margin;
   o.iterations = s.solver.iterations;

@@ -139,6 +139,8 @@ void update(State& s, const Settings& c) {
       const Real constraint = c.two_sided ? ratio - 1 : std::max<Real>(ratio - 1, 0);
       squares += own[0] * own[0] + own[1] * own[1] + own[2] * own[2];
       lambda[i] = -constraint / (squares + c.relaxation / (c.h * c.h));
+      if (c.smaller_steps_in_crowds && ratio > 1)
+        lambda[i] /= std::min<Real>(1 + 3 * (ratio - 1), 2);
     }
     std::vector<V> next = s.x;
     for (std::size_t i = 0; i < n; ++i) {

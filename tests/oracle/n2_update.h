@@ -16,7 +16,7 @@ struct Settings {
   Real step_length = 1, damping = 1, wall_scale = 0, wall_range = 1, margin = 0;
   V gravity{0, 0, -9.81L}, low{0, 0, 0}, high{1, 1, 1};
   int iterations = 4;
-  bool paper = false, two_sided = false, wall_density = true;
+  bool paper = false, two_sided = false, wall_density = true, smaller_steps_in_crowds = false;
   Real tensile_k = 0, tensile_q = 0.3L;  // k in h^2
   int tensile_n = 4;
   Real xsph = 0, vorticity = 0;  // 1, 1/s

@@ -1,4 +1,6 @@
 #include "lib/io/checkpoint.h"
+#include "lib/diag/guard.h"
+#include "lib/scene/load.h"
 
 #include <filesystem>
 
@@ -24,6 +26,13 @@ SavedRun saved(Precision precision, std::int64_t update) {
   s.state.id = {2, 0, 1};
   s.energy = {true, 1.25, 0.1, 1e-300};
   s.compression_max = 0.3;
+  s.state.fast = 7;
+  s.first.kinetic_energy = 0.1;
+  s.first.potential_energy = -3;
+  s.first.compression_mean = 17.5;
+  s.first.speed_max = 4.1;
+  for (int k = 0; k < 3; ++k) s.first.center_of_mass[k] = 0.1 + k;
+  s.first.neighbors_max = 400;
   return s;
 }
 
@@ -33,10 +42,28 @@ bool same(const SavedRun& a, const SavedRun& b) {
          a.state.id == b.state.id && a.energy.started == b.energy.started &&
          a.energy.first == b.energy.first && a.energy.lowest == b.energy.lowest &&
          a.energy.rise == b.energy.rise && a.compression_max == b.compression_max &&
-         a.particles == b.particles;
+         a.particles == b.particles && a.state.fast == b.state.fast;
+}
+
+bool same(const GuardLimits& a, const GuardLimits& b) {
+  return a.speed == b.speed && a.energy == b.energy && a.neighbors == b.neighbors;
 }
 
 }  // namespace
+
+TEST_CASE("the guard of a resumed run has the limits of the run from its start") {
+  const TemporaryFolder folder;
+  std::vector<std::string> notes;
+  const Scene scene = load_scene(PBF_SOURCE_DIR "/configs/dam_break.yaml", {}).scene;
+  const Plan plan = make_plan(scene, 3);
+  const SavedRun first = saved(Precision::dbl, 10);
+  write_checkpoint(folder.path, first);
+  const auto read = read_checkpoint(folder.path, notes);
+  REQUIRE(read);
+  const GuardLimits limits = guard_limits(scene, plan, first.first);
+  CHECK(same(limits, guard_limits(scene, plan, read->first)));
+  CHECK_FALSE(same(limits, guard_limits(scene, plan, Measures{})));
+}
 
 TEST_CASE("a checkpoint comes back to the last bit, and the one before is kept") {
   const TemporaryFolder folder;

@@ -47,12 +47,14 @@ Scene unlike_default() {
   s.solver.boundary = BoundaryMode::clamp;
   s.solver.wall_margin = 0.01;
   s.solver.velocity_damping = 0.999;
+  s.solver.speed_limit = 0.25;
   s.solver.fused = false;
   s.solver.reproducible = true;
   s.tensile = Tensile{0.01, 0.2, 6};
   s.viscosity = Viscosity{0.125};
   s.vorticity = Vorticity{2.5};
   s.measure_every = 17;
+  s.guard = GuardSettings{1000.5, 0.25, 999};
   s.output = Output{1.0 / 30, {"density"}, Precision::dbl, true};
   s.render = Render{0.5,
                     {640, 480},
@@ -94,6 +96,10 @@ TEST_CASE("resolved scene: absent blocks are written as off") {
   const std::string text = resolved_yaml(parse(kMinimal));
   for (const char* block : {"tensile", "viscosity", "vorticity", "output", "render"})
     CHECK(contains(text, std::string("\n") + block + ": off\n"));
+  CHECK(contains(text, "\nguard:\n"));  // on where the scene does not mention it
+  const std::string off = resolved_yaml(parse(kMinimal + "guard: off\n"));
+  CHECK(contains(off, "\nguard: off\n"));
+  CHECK_FALSE(parse(off).guard);
   CHECK_FALSE(contains(text, "camera"));
 }
 

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+namespace pbf {
+
+/// Empties a vector and gives its memory back (`= {}` would keep it).
+template <class T>
+void release(std::vector<T>& v) {
+  std::vector<T>().swap(v);
+}
+
+}  // namespace pbf

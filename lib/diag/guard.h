@@ -1,0 +1,81 @@
+// The guard: decides from a measure whether a run still makes sense, and finds out which update,
+// stage and particle spoilt it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "lib/plan/plan.h"
+#include "lib/solver/solver.h"
+
+namespace pbf {
+
+/// Kinetic and potential energy as the guard and the stability suite count it, J.
+double total_energy(const Measures& m);
+/// What growth is measured by, J: the kinetic energy, and the potential energy above the face of
+/// the domain towards which gravity pulls. mass: of one particle, kg.
+double energy_scale(const Measures& m, const Scene& scene, double mass, std::int64_t particles);
+
+/// What a compressed start may give back, J: (compression_mean - 1 %) M (h/dt)^2/2, for its
+/// particles leave each other by up to h in a step of dt (of one substep). Without `one_sided`, a
+/// free surface is pulled as well: as if the mean were 1 more.
+double released_energy(const Measures& first, const Scene& scene, const Plan& plan);
+
+/// Limits of a run, SI units.
+struct GuardLimits {
+  double speed = 0;            ///< m/s
+  double energy = 0;           ///< J, kinetic plus potential
+  std::int64_t neighbors = 0;  ///< of one particle
+};
+
+/// Limits from the scene's guard block and the first measure of the run. Where a key is `auto`:
+/// speed: 10 (fastest at the start + fall through the domain + h/dt): no flow from that start
+/// reaches it. energy: that of the start, + 0.1 energy_scale + released_energy
+/// + M (0.01 h/dt)^2/2 of rounding. neighbors: 4 times the most at the start, at least 16 times
+/// the (4/3) pi (h/d)^3 at rest.
+GuardLimits guard_limits(const Scene& scene, const Plan& plan, const Measures& first);
+
+/// Why a run was stopped, SI units.
+struct GuardEvent {
+  Alarm alarm = Alarm::non_finite;
+  Measures measure;             ///< the measure that showed it
+  double value = 0, limit = 0;  ///< of what the alarm is about
+  /// The first stage at fault; absent where repeating the updates did not show it again.
+  std::optional<StageEvent> stage;
+  Double3 position{}, velocity{};  ///< of the particle in `stage`, m and m/s
+  SolverState last_good;           ///< at the last measure without an alarm
+};
+
+class Guard {
+ public:
+  /// scene.guard must be there. Tells the solver which speed to watch and keeps its state.
+  /// `first`: the measure that the run began with, `now`: that of the present state.
+  Guard(const Scene& scene, const Plan& plan, Solver& solver, const Measures& first,
+        const Measures& now);
+
+  /// Looks at a new measure: nothing, and the state is kept as the last good one; or what is wrong,
+  /// found by repeating the updates since then stage by stage. The solver has then gone back.
+  std::optional<GuardEvent> check(const Measures& m);
+
+  const GuardLimits& limits() const { return limits_; }
+  /// One paragraph: update, stage, particle, position, value, limit, and the keys to change.
+  std::string text(const GuardEvent& e) const;
+  /// A scene that repeats the event from the last good state, which lies in particle file `path`.
+  Scene repeating_scene(const GuardEvent& e, const std::string& path) const;
+
+ private:
+  std::optional<Alarm> alarm(const Measures& m) const;
+  void locate(GuardEvent& e);
+
+  const Scene scene_;
+  const Plan plan_;
+  Solver& solver_;
+  GuardLimits limits_;
+  Measures good_;
+};
+
+/// Positions and velocities of a state, SI units, in its own order. What rounding has put beyond a
+/// face of the domain is put on it.
+Particles to_particles(const SolverState& state, const Scene& scene);
+
+}  // namespace pbf

@@ -1,0 +1,70 @@
+// A state between the arrays of a step and the host.
+#pragma once
+
+#include <vector>
+
+#include "kernels/pass_predict.h"
+#include "lib/solver/step_trace.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// What the state of n particles consists of, in memory that the executor's copies reach.
+template <class Real>
+struct StateArrays {
+  Vec4<Real>*position, *velocity;
+  int* id;
+  FastCount* fast;  ///< one
+};
+
+/// A copy in one pass: a guarded run of few particles makes one at every measure.
+template <class Real>
+struct CopyStatePass {
+  StateArrays<Real> from, to;
+  PBF_HD void operator()(int i) const {
+    to.position[i] = from.position[i];
+    to.velocity[i] = from.velocity[i];
+    to.id[i] = from.id[i];
+    if (i == 0) *to.fast = *from.fast;
+  }
+};
+
+template <class Real, class Exec>
+SolverState download_state(Exec& exec, std::size_t n, const StateArrays<Real>& from,
+                           std::int64_t updates) {
+  SolverState s;
+  s.precision = sizeof(Real) == 8 ? Precision::dbl : Precision::single;
+  s.updates = updates;
+  const auto copy = [&](const Vec4<Real>* rows, std::vector<double>& to) {
+    std::vector<Vec4<Real>> host(n);
+    exec.to_host(rows, n, host.data());
+    to.resize(3 * n);
+    for (std::size_t k = 0; k < n; ++k)
+      to[3 * k] = host[k].x, to[3 * k + 1] = host[k].y, to[3 * k + 2] = host[k].z;
+  };
+  copy(from.position, s.position);
+  copy(from.velocity, s.velocity);
+  s.id.resize(n);
+  exec.to_host(from.id, n, s.id.data());
+  FastCount fast = 0;
+  exec.to_host(from.fast, 1, &fast);
+  s.fast = std::int64_t(fast);
+  return s;
+}
+
+template <class Real, class Exec>
+void upload_state(Exec& exec, const SolverState& s, const StateArrays<Real>& to) {
+  const std::size_t n = s.id.size();
+  const auto copy = [&](const std::vector<double>& from, Vec4<Real>* rows, Real w) {
+    std::vector<Vec4<Real>> host(n);
+    for (std::size_t k = 0; k < n; ++k)
+      host[k] = {Real(from[3 * k]), Real(from[3 * k + 1]), Real(from[3 * k + 2]), w};
+    exec.to_device(host.data(), n, rows);
+  };
+  copy(s.position, to.position, Real(1));
+  copy(s.velocity, to.velocity, Real(0));
+  exec.to_device(s.id.data(), n, to.id);
+  const FastCount fast = FastCount(s.fast);
+  exec.to_device(&fast, 1, to.fast);
+}
+
+}  // namespace pbf::inline PBF_VARIANT

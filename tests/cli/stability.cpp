@@ -1,0 +1,95 @@
+// pbf stability, and what the guard leaves behind in a run folder.
+#include "lib/io/run_file.h"
+#include "tests/catch.h"
+#include "tests/cli/process.h"
+
+using namespace pbf::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+const char* const kSuite =
+    "cases:\n"
+    "  - {name: good, group: one, scene: tiny.yaml, must: {speed: 100}}\n"
+    "  - {name: bad, group: two, scene: tiny.yaml, must: {speed: 1.0e-6}}\n";
+
+}  // namespace
+
+TEST_CASE("stability: a table and a CSV with a verdict per case, exit 6 when one fails") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  folder.write("suite.yaml", kSuite);
+  const Outcome good =
+      pbf::test::pbf({"stability", "one", "--suite", "suite.yaml", "--quiet"}, folder.path());
+  CHECK(good.code == 0);
+  CHECK(has(good.out, "1 cases on cpu float: 0 failed"));
+  const Outcome all = pbf::test::pbf(
+      {"stability", "--suite", "suite.yaml", "--csv", "t.csv", "--jobs", "2"}, folder.path());
+  CHECK(all.code == 6);
+  CHECK(has(all.out, "FAIL"));
+  const std::string csv = read_text(folder / "t.csv");
+  CHECK(has(csv, "case,group,backend,precision"));
+  CHECK(has(csv, "good,one,cpu,float,full,64,20,"));
+  CHECK(has(csv, "bad,two,"));
+  const Outcome none =
+      pbf::test::pbf({"stability", "three", "--suite", "suite.yaml"}, folder.path());
+  CHECK(none.code == 2);
+  CHECK(has(none.err, "no case or group three"));
+  CHECK(pbf::test::pbf({"stability"}, folder.path()).code == 2);  // no suite here
+}
+
+TEST_CASE("stability: a map is a CSV with a class per run") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  const Outcome o =
+      pbf::test::pbf({"stability", "tiny.yaml", "--map", "time.step,gravity", "--x", "0.002,0.004",
+                      "--y", "5,10", "--iterations", "2", "--csv", "map.csv", "--quiet"},
+                     folder.path());
+  CHECK(o.code == 0);
+  CHECK(has(o.out, "4 runs: "));
+  const std::string csv = read_text(folder / "map.csv");
+  CHECK(has(csv, "x_key,y_key,x,y,iterations,class,dt_hat,compression_mean"));
+  CHECK(has(csv, "time.step,gravity,0.002,5"));
+  for (const char* map : {"time.step", "time.step,gravity,x", "time.stp,gravity", "name,gravity"}) {
+    const Outcome wrong =
+        pbf::test::pbf({"stability", "tiny.yaml", "--map", map, "--quiet"}, folder.path());
+    CHECK(wrong.code == 2);
+    CHECK(has(wrong.err, "--map"));
+  }
+}
+
+TEST_CASE(
+    "guard: a run that blows up ends with exit 3, says where, and leaves a scene that repeats "
+    "it; without the guard it goes on") {
+  const Scratch folder;
+  const std::string scene = folder.write("tiny.yaml", tiny_scene());
+  const std::vector<std::string> blow{"run", scene, "--out", "o", "--set", "tensile.k=1000"};
+  const Outcome o = pbf::test::pbf(blow, folder.path());
+  CHECK(o.code == 3);
+  for (const char* part : {"stopped by the guard: at update ", ", in stage delta of sweep ",
+                           ", particle ", " m, velocity (", "time.step", "guard_scene.yaml"})
+    CHECK(has(o.err, part));
+  CHECK(has(read_text(folder / "o/log.txt"), "stopped by the guard"));
+  CHECK(pbf::RunReader((folder / "o/run.h5").string()).status() == "diverged");
+  CHECK_FALSE(fs::exists(folder / "o/DONE"));
+  const Outcome again = pbf::test::pbf({"run", "o/guard_scene.yaml", "--out", "p"}, folder.path());
+  CHECK(again.code == 3);
+  const auto told = [](const std::string& text) {
+    return text.substr(text.find(", in stage"), 28);
+  };
+  CHECK(told(o.err) == told(again.err));
+  std::vector<std::string> off = blow;
+  off.insert(off.end(), {"--overwrite", "--set", "guard=off"});
+  CHECK(pbf::test::pbf(off, folder.path()).code == 0);
+}
+
+TEST_CASE("speed limit: the summary says how often a particle was slowed down") {
+  const Scratch folder;
+  const std::string scene = folder.write("tiny.yaml", tiny_scene());
+  const Outcome o =
+      pbf::test::pbf({"run", scene, "--out", "o", "--set", "bodies[0].velocity=[3,0,0]", "--set",
+                      "solver.speed_limit=0.01"},
+                     folder.path());
+  CHECK(o.code == 0);
+  CHECK(has(o.out, "times a particle was slowed down to"));
+}
