@@ -56,12 +56,13 @@ class CpuExec {
     if (n) std::memcpy(host, from, n * sizeof(T));
   }
 
-  /// pass(i) for i in 0..n-1. Dynamic pieces: particles at the surface have fewer neighbours.
+  /// pass(i) for i in 0..n-1. Dynamic pieces: particles at the surface have fewer neighbours, and
+  /// another program may take a core for a while.
   template <class Pass>
   void for_each(int n, const Pass& pass) {
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (n > kChunk)
-    for (int first = 0; first < n; first += kChunk) {
-      const int last = std::min(n - first, kChunk) + first;
+    for (int first = 0; first < n; first += kPiece) {
+      const int last = std::min(n - first, kPiece) + first;
       if constexpr (requires { typename Pass::Sum; })
         sum_over_neighbors(simd_, pass, first, last);
       else
@@ -149,6 +150,7 @@ class CpuExec {
 
  private:
   static constexpr int kChunk = 1 << ChunkedLists::chunk_bits;
+  static constexpr int kPiece = 256;  ///< of a pass: whole groups of lists, a few microseconds
   int threads_, list_entries_;
   Simd simd_;
   StageClock clock_;
