@@ -77,13 +77,14 @@ PBF_HD Lanes<Real, W> squared_distances(const Candidates<Real>& c, int k, Vec3<R
 /// the end of them; up to 16 entries beyond that end are overwritten.
 template <class Real>
 int* close_to(const Candidates<Real>& c, Vec3<Real> x, int self, int* out) {
-  for (int k = 0; k < c.count; k += c.block) {
-    Real q2[c.block];
-    for (int m = 0; m < c.block; ++m) {
+  constexpr int block = Candidates<Real>::block;
+  for (int k = 0; k < c.count; k += block) {
+    Real q2[block];
+    for (int m = 0; m < block; ++m) {
       const Vec3<Real> d = x - Vec3<Real>{c.x[k + m], c.y[k + m], c.z[k + m]};
       q2[m] = dot(d, d);
     }
-    for (int m = 0; m < c.block; ++m) {
+    for (int m = 0; m < block; ++m) {
       *out = c.index[k + m];
       out += (q2[m] < Real(kCutoffSquared)) & (c.index[k + m] != self);
     }
