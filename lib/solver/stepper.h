@@ -127,11 +127,11 @@ class Stepper {
     StageCheck<Real, Exec> check(exec_, p_, update, limits, fault);
     step_seen([&](const std::string& stage, int sweep) {
       const bool lists = stage == "neighbors";
-      if (lists) exec_.for_each(p_.n, ListSizePass<Lists>{lists_, order_.data()});  // free by now
-      check.look(stage, sweep,
-                 {(stage == "lambda" ? other_position_ : position_).data(), velocity_.data(),
-                  stage == "density" ? density_.data() : nullptr, id_.data(),
-                  lists ? order_.data() : nullptr});
+      if (lists) exec_.for_each(p_.n, ListSizePass<Lists>{lists_, order()});  // free by now
+      check.look(
+          stage, sweep,
+          {(stage == "lambda" ? other_position_ : position_).data(), velocity_.data(),
+           stage == "density" ? density_.data() : nullptr, id_.data(), lists ? order() : nullptr});
     });
     return check.event();
   }
@@ -261,12 +261,14 @@ class Stepper {
     density_is_current_ = false;
   }
 
+  /// n numbers: the order of a sort, free after it.
+  int* order() { return (Exec::order_in_place ? other_id_ : order_).data(); }
+
   /// Runs the pass that gives every particle its bin, sorts and gathers the particles by bin (as
   /// predicted, with `moving`), makes the lists.
   template <bool moving, class First>
   void reorder(const char* stage, const First& first) {
-    exec_.sort_by_bin(stage, first, p_.n, bin_count(p_),
-                      (Exec::order_in_place ? other_id_ : order_).data(), bin_start_.data(),
+    exec_.sort_by_bin(stage, first, p_.n, bin_count(p_), order(), bin_start_.data(),
                       GatherPass<Real, moving>{p_, position_.data(), velocity_.data(), id_.data(),
                                                other_position_.data(), other_velocity_.data(),
                                                other_id_.data(), fast_.data()});
