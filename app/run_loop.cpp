@@ -276,6 +276,9 @@ RunTotals RunLoop::totals() const {
   t.render_thread = render_thread_;
   t.fused = plan_.fused;
   t.first = first_;
+  t.tolerance = plan_.tolerance;
+  t.substeps = plan_.substeps;
+  t.max_sweeps = scene_.solver.iterations * (1 + plan_.more_rounds);
   t.speed_limit = scene_.solver.speed_limit * scene_.h() / scene_.time.step;
   t.last = last_;
   t.compression_max = compression_max_;

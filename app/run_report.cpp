@@ -18,7 +18,7 @@ const std::vector<Group>& groups() {
       {"initialization", {"init"}},
       {"gridding/neighbours", {"grid", "neighbors"}},
       {"densities", {"density"}},
-      {"lambdas", {"lambda"}},
+      {"lambdas", {"lambda", "residual"}},
       {"deltas", {"delta"}},
       {"position/velocity updates", {"predict", "xsph", "vorticity"}},
       {"post-processing", {"measure", "guard", "download", "write", "render"}}};
@@ -104,6 +104,10 @@ std::string run_summary(const RunTotals& t) {
   if (t.last.non_finite > 0)
     out += format("not finite          %lld particles at the end, left out of the figures above\n",
                   static_cast<long long>(t.last.non_finite));
+  if (t.tolerance > 0)
+    out += format(
+        "sweeps              %.3g per substep on average, at most %d, for a tolerance of %.4g %%\n",
+        double(t.last.sweeps) / (double(t.updates) * t.substeps), t.max_sweeps, 100 * t.tolerance);
   if (t.speed_limit > 0)
     out += format("speed limit         %lld times a particle was slowed down to %.4g m/s\n",
                   static_cast<long long>(t.last.fast), t.speed_limit);
@@ -149,7 +153,8 @@ std::string measure_json(const Measures& m, double wall, std::int64_t frames,
         {"neighbors_max", double(m.neighbors_max)},
         {"outside", double(m.outside)},
         {"non_finite", double(m.non_finite)},
-        {"fast", double(m.fast)}})
+        {"fast", double(m.fast)},
+        {"sweeps", double(m.sweeps)}})
     (out += ", ") += item(name, value);
   (out += ", ") += triple("momentum", m.momentum) + ", " +
                    triple("center_of_mass", m.center_of_mass) + ", " + triple("front", m.front) +

@@ -21,8 +21,10 @@ struct RunTotals {
   double render_thread = 0;       ///< s, spent drawing beside the run
   bool fused = true;              ///< density summed in lambda's loop
   Measures first, last;
-  double speed_limit = 0;      ///< m/s, 0: none
-  double compression_max = 0;  ///< largest over all measures
+  double speed_limit = 0;            ///< m/s, 0: none
+  double tolerance = 0;              ///< mean compression, 0: none
+  int substeps = 1, max_sweeps = 0;  ///< per update; per substep
+  double compression_max = 0;        ///< largest over all measures
   std::int64_t frames = 0, pictures = 0, bytes = 0;
   std::string folder;
 };

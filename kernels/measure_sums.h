@@ -21,7 +21,7 @@ struct MeasureSums {
   double penetration = 0;  ///< largest distance behind the limit where particles are clamped
   std::int64_t above_1 = 0, above_10 = 0;  ///< particles compressed by more than 1 %, 10 %
   std::int64_t neighbors = 0, neighbors_max = 0, outside = 0, non_finite = 0;
-  std::int64_t fast = 0;       ///< particle-updates above the watched speed so far
+  std::int64_t fast = 0, rounds = 0;  ///< StepCounts so far
   double compression_p99 = 0;  ///< of the total only: from the histogram (compression_bins.h)
 
   PBF_HD void add(const MeasureSums& o) {
@@ -45,6 +45,7 @@ struct MeasureSums {
     outside += o.outside;
     non_finite += o.non_finite;
     fast += o.fast;
+    rounds += o.rounds;
   }
 };
 

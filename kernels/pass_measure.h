@@ -3,6 +3,7 @@
 
 #include "kernels/measure_sums.h"
 #include "kernels/params.h"
+#include "kernels/step_counts.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -13,11 +14,14 @@ struct MeasurePass {
   Lists lists;
   const Vec4<Real>*position, *velocity;
   const Real* density;
-  const unsigned long long* fast;  ///< counter of kernels/pass_predict.h
+  const StepCounts* counts;
 
   PBF_HD MeasureSums operator()(int i) const {
     MeasureSums s;
-    if (i == 0) s.fast = std::int64_t(*fast);
+    if (i == 0) {
+      s.fast = std::int64_t(counts->fast);
+      s.rounds = std::int64_t(counts->rounds);
+    }
     const Vec3<Real> x = xyz(position[i]), v = xyz(velocity[i]);
     if (!is_finite(x.x + x.y + x.z) || !is_finite(dot(v, v)) || !is_finite(density[i])) {
       s.non_finite = 1;

@@ -4,6 +4,7 @@
 
 #include "kernels/boundary.h"
 #include "kernels/cell_index.h"
+#include "kernels/step_counts.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -39,26 +40,16 @@ struct PredictPass {
   }
 };
 
-/// Particles that were too fast, counted since the solver was made. Rare: an atomic costs nothing.
-using FastCount = unsigned long long;
-PBF_HD void count_one(FastCount* count) {
-#if defined(__CUDA_ARCH__)
-  atomicAdd(count, 1ull);
-#elif !defined(__CUDACC__)
-  __atomic_fetch_add(count, 1ull, __ATOMIC_RELAXED);
-#endif
-}
-
 /// x* and the velocity that goes with it, in place: for further substeps, and for
 /// looking at this step alone.
 template <class Real>
 struct MovePass {
   Params<Real> p;
   Vec4<Real>*position, *velocity;  ///< in/out
-  FastCount* fast;
+  StepCounts* counts;
   PBF_HD void operator()(int i) const {
     const Moving<Real> m = predict(xyz(position[i]), xyz(velocity[i]), p);
-    if (m.fast) count_one(fast);
+    if (m.fast) count_one(&counts->fast);
     position[i] = with_w(m.x, Real(1));
     velocity[i] = with_w(m.v, Real(0));
   }
@@ -82,11 +73,11 @@ struct GatherPass {
   const int* id;
   Vec4<Real>*position_out, *velocity_out;
   int* id_out;
-  FastCount* fast;
+  StepCounts* counts;
   PBF_HD void operator()(int from, int to) const {
     Moving<Real> m{xyz(position[from]), xyz(velocity[from]), false};
     if constexpr (moving) m = predict(m.x, m.v, p);
-    if (m.fast) count_one(fast);
+    if (m.fast) count_one(&counts->fast);
     position_out[to] = with_w(m.x, Real(1));
     velocity_out[to] = with_w(m.v, Real(0));
     id_out[to] = id[from];

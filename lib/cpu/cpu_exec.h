@@ -89,6 +89,22 @@ class CpuExec {
     return total;
   }
 
+  /// Calls body() while the sum of pass(i) is above `limit`, at most `times` times, and counts the
+  /// calls in *rounds. Marks `stage` after every sum.
+  template <class Pass, class Body>
+  void repeat_while(const char* stage, int n, int times, const Pass& pass, std::uint64_t limit,
+                    unsigned long long* rounds, const Body& body) {
+    for (int k = 0; k < times; ++k) {
+      std::uint64_t sum = 0;
+#pragma omp parallel for schedule(static) reduction(+ : sum) num_threads(threads_) if (n > 4096)
+      for (int i = 0; i < n; ++i) sum += pass(i);
+      mark(stage);
+      if (sum <= limit) return;
+      ++*rounds;
+      body();
+    }
+  }
+
   /// How many particles pass(i) puts into each of `bins` bins; none for a negative bin.
   template <class Pass>
   const std::vector<std::int64_t>& count_in_bins(int n, int bins, const Pass& pass) {

@@ -16,6 +16,7 @@ CudaExec::CudaExec(ListRoom room) : room_(room) {
 CudaExec::~CudaExec() {
   for (cudaEvent_t e : events_) cudaEventDestroy(e);
   if (stream_) cudaStreamDestroy(stream_);
+  if (other_stream_) cudaStreamDestroy(other_stream_);
 }
 
 void CudaExec::begin() {
@@ -51,6 +52,53 @@ void CudaExec::scan(int n, int* start) {
   if (scan_.size() < bytes) scan_.resize(bytes);
   PBF_CUDA_CHECK(
       cub::DeviceScan::ExclusiveSum(scan_.data(), bytes, counts_.data(), start, n, stream_));
+}
+
+bool CudaExec::new_condition(cudaGraphConditionalHandle& handle) {
+  cudaStreamCaptureStatus status;
+  cudaGraph_t graph = nullptr;
+  PBF_CUDA_CHECK(cudaStreamGetCaptureInfo(stream_, &status, nullptr, &graph));
+  if (status != cudaStreamCaptureStatusActive) return false;
+  PBF_CUDA_CHECK(cudaGraphConditionalHandleCreate(&handle, graph));
+  return true;
+}
+
+void CudaExec::begin_repeated(cudaGraphConditionalHandle handle) {
+  cudaStreamCaptureStatus status;
+  cudaGraph_t graph = nullptr;
+  const cudaGraphNode_t* before = nullptr;
+  const cudaGraphEdgeData* edges = nullptr;
+  std::size_t count = 0;
+  PBF_CUDA_CHECK(
+      cudaStreamGetCaptureInfo(stream_, &status, nullptr, &graph, &before, &edges, &count));
+  cudaGraphNodeParams params{};
+  params.type = cudaGraphNodeTypeConditional;
+  params.conditional.handle = handle;
+  params.conditional.type = cudaGraphCondTypeWhile;
+  params.conditional.size = 1;
+  cudaGraphNode_t node = nullptr;
+  PBF_CUDA_CHECK(cudaGraphAddNode(&node, graph, before, edges, count, &params));
+  PBF_CUDA_CHECK(cudaStreamUpdateCaptureDependencies(stream_, &node, nullptr, 1,
+                                                     cudaStreamSetCaptureDependencies));
+  if (!other_stream_)
+    PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&other_stream_, cudaStreamNonBlocking));
+  std::swap(stream_, other_stream_);
+  after_condition_ = true;
+  PBF_CUDA_CHECK(cudaStreamBeginCaptureToGraph(stream_, params.conditional.phGraph_out[0], nullptr,
+                                               nullptr, 0, cudaStreamCaptureModeThreadLocal));
+}
+
+void CudaExec::end_repeated() {
+  cudaGraph_t body = nullptr;
+  PBF_CUDA_CHECK(cudaStreamEndCapture(stream_, &body));
+  std::swap(stream_, other_stream_);
+  after_condition_ = true;
+}
+
+bool CudaExec::asked_to_repeat() {
+  unsigned go = 0;
+  to_host(&repeat_.data()->go, 1, &go);
+  return go != 0;
 }
 
 void CudaExec::allocate_lists(int n) {

@@ -9,11 +9,13 @@
 #include "kernels/pass_measure.h"
 #include "lib/base/stage_clock.h"
 #include "lib/cuda/device_buffer.h"
+#include "lib/cuda/kernel_start.cuh"
 #include "lib/cuda/list_pass.cuh"
+#include "lib/cuda/repeat.cuh"
+#include "lib/cuda/sort_kernels.cuh"
 
 namespace pbf::inline PBF_VARIANT {
 
-constexpr int kBlock = kMeasureBlock;
 /// Up to how many particles so many threads share a neighbour sum, and up to how many eight share
 /// the making of a list: measured on an H200 (kernels/PERFORMANCE.md).
 #ifdef PBF_PINNED
@@ -22,16 +24,7 @@ constexpr int kSixteenLanes = 6000, kEightLanes = 24000, kFourLanes = 0, kTwoLan
 constexpr int kSixteenLanes = 4000, kEightLanes = 12000, kFourLanes = 40000, kTwoLanes = 100000;
 #endif
 constexpr int kListLanes = 40000;
-
-/// First statement of every kernel: it is set up while the kernel before it ends, and waits here
-/// until that one is done (programmatic dependent launch, from sm_90 on). An explicit early trigger
-/// would let its blocks take the places of blocks still to run: measured 28 % slower at 131 k
-/// particles.
-__device__ __forceinline__ void wait_for_previous() {
-#if __CUDA_ARCH__ >= 900
-  cudaGridDependencySynchronize();
-#endif
-}
+constexpr int kRepeatBlocks = 512;
 
 template <class Pass>
 __global__ void __launch_bounds__(kBlock) apply_kernel(int n, Pass pass) {
@@ -72,52 +65,6 @@ __global__ void __launch_bounds__(kBinBlock)
     if (in_bin[b]) atomicAdd(&out[b], static_cast<unsigned long long>(in_bin[b]));
 }
 
-/// The pass that gives a particle its bin, then its place among those of the bin in order of
-/// arrival.
-template <class First>
-struct CountPass : First {
-  int *count, *arrival;
-  __device__ void operator()(int i) const {
-    if constexpr (requires { typename First::Sum; }) {
-      sum_over_neighbors(*this, i);
-    } else {
-      First::operator()(i);
-      arrive(i);
-    }
-  }
-  template <class Own, class Sum>
-  __device__ void finish(int i, const Own& own, const Sum& sum) const {
-    First::finish(i, own, sum);
-    arrive(i);
-  }
-  __device__ void arrive(int i) const { arrival[i] = atomicAdd(&count[First::bin[i]], 1); }
-};
-/// Also clears the counters for the next sort, and the use of the lists' tails.
-struct PlacePass {
-  const int *bin, *start, *arrival;
-  int *slot, *count;
-  ListState* lists;
-  int n, bins;
-  __device__ void operator()(int i) const {
-    slot[start[bin[i]] + arrival[i]] = i;
-    for (int b = i; b < bins; b += n) count[b] = 0;
-    if (i == 0) lists->used = 0;
-  }
-};
-/// Moves the particles of a bin in the order of their index, which makes the sort stable and the
-/// run reproducible: each one counts those of its bin that come before it.
-template <class Gather>
-struct StablePass {
-  const int *bin, *start, *slot;
-  Gather gather;
-  __device__ void operator()(int k) const {
-    const int i = slot[k], b = bin[i], end = start[b + 1];
-    int place = start[b];
-    for (int m = place; m < end; ++m) place += slot[m] < i ? 1 : 0;
-    gather(i, place);
-  }
-};
-
 /// A neighbour sum by several threads per particle.
 template <int lanes, class Pass>
 __global__ void __launch_bounds__(kBlock) lanes_kernel(int n, Pass pass) {
@@ -133,67 +80,6 @@ __global__ void __launch_bounds__(kBlock) list_lanes_kernel(ListPass<Real> pass)
   wait_for_previous();
   pass.by_lanes(blockIdx.x * kBlock + threadIdx.x);
 }
-
-/// One block sorts few particles (kSortParticles, kSortBins). Runs `first` (see CountPass) as well,
-/// and gathers.
-template <class First, class Gather>
-__global__ void __launch_bounds__(kSortThreads)
-    small_sort_kernel(First first_pass, int n, int bins, int* arrival, int* slot, int* start,
-                      ListState* lists, StablePass<Gather> place) {
-  wait_for_previous();
-  extern __shared__ int count[];  // bins
-  __shared__ int warp_sum[32];
-  const int t = threadIdx.x;
-  const int* bin = place.bin;
-  for (int b = t; b < bins; b += kSortThreads) count[b] = 0;
-  __syncthreads();
-  for (int i = t; i < n; i += kSortThreads) {
-    first_pass(i);
-    arrival[i] = atomicAdd(&count[bin[i]], 1);
-  }
-  __syncthreads();
-  // Exclusive scan: a run of bins per thread (an odd number, against bank conflicts), then the
-  // threads' sums within warps, then the warps'.
-  const int run = ((bins + kSortThreads - 1) / kSortThreads) | 1;
-  const int first = min(t * run, bins), last = min(first + run, bins);
-  int sum = 0;
-  for (int b = first; b < last; ++b) sum += count[b];
-  int before = sum;
-  for (int d = 1; d < 32; d *= 2) {
-    const int other = __shfl_up_sync(0xffffffffu, before, d);
-    if (t % 32 >= d) before += other;
-  }
-  if (t % 32 == 31) warp_sum[t / 32] = before;
-  __syncthreads();
-  if (t < 32) {
-    const int mine = warp_sum[t];
-    int all = mine;
-    for (int d = 1; d < 32; d *= 2) {
-      const int other = __shfl_up_sync(0xffffffffu, all, d);
-      if (t >= d) all += other;
-    }
-    warp_sum[t] = all - mine;
-  }
-  __syncthreads();
-  before += warp_sum[t / 32] - sum;
-  for (int b = first; b < last; ++b) {
-    const int mine = count[b];
-    count[b] = start[b] = before;
-    before += mine;
-  }
-  if (t == 0) {
-    start[bins] = n;
-    lists->used = 0;
-  }
-  __syncthreads();
-  for (int i = t; i < n; i += kSortThreads) slot[count[bin[i]] + arrival[i]] = i;
-  __syncthreads();
-  for (int k = t; k < n; k += kSortThreads) place(k);
-}
-/// For particles that have their bin already.
-struct NothingFirst {
-  __device__ void operator()(int) const {}
-};
 
 class CudaExec {
  public:
@@ -271,6 +157,33 @@ class CudaExec {
     return counted_;
   }
 
+  /// See CpuExec. While a graph is captured the body becomes part of it, and the device repeats it
+  /// without asking the host; else the host waits for every sum.
+  template <class Pass, class Body>
+  void repeat_while(const char* stage, int n, int times, const Pass& pass, std::uint64_t limit,
+                    unsigned long long* rounds, const Body& body) {
+    if (repeat_.size() == 0) {
+      repeat_.resize(1);
+      PBF_CUDA_CHECK(cudaMemsetAsync(repeat_.data(), 0, repeat_.bytes(), stream_));
+    }
+    Repetition r{repeat_.data(), rounds, limit, unsigned(times), true, false, {}};
+    const auto decide = [&] {
+      launch(repeat_kernel<Pass>, std::min(n, kBlock * kRepeatBlocks), kBlock, 0, n, pass, r);
+      mark(stage);
+      r.first = false;
+    };
+    r.in_graph = new_condition(r.handle);
+    decide();
+    if (r.in_graph) {
+      begin_repeated(r.handle);
+      body();
+      decide();
+      end_repeated();
+    } else {
+      for (; asked_to_repeat(); decide()) body();
+    }
+  }
+
   /// See CpuExec; `order` is room for the arrivals.
   template <class First, class Gather>
   void sort_by_bin(const char* stage, const First& first, int n, int bins, int* order, int* start,
@@ -335,7 +248,7 @@ class CudaExec {
 
   std::size_t list_bytes() const {
     return words_.bytes() + tails_.bytes() + tail_of_.bytes() + count_.bytes() + counts_.bytes() +
-           slot_.bytes() + scan_.bytes() + partial_.bytes() + in_bins_.bytes();
+           slot_.bytes() + scan_.bytes() + partial_.bytes() + in_bins_.bytes() + repeat_.bytes();
   }
 
  private:
@@ -353,16 +266,25 @@ class CudaExec {
     overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
     overlap.val.programmaticStreamSerializationAllowed = 1;
     config.attrs = &overlap;
-    config.numAttrs = overlap_ ? 1 : 0;
+    config.numAttrs = overlap_ && !after_condition_ ? 1 : 0;
+    after_condition_ = false;
     PBF_CUDA_CHECK(cudaLaunchKernelEx(&config, kernel, P(args)...));
   }
   static int stride(int n) { return list_stride(n); }
   void allocate_lists(int n);
+  /// Makes a condition in the graph that is being captured; false where none is.
+  bool new_condition(cudaGraphConditionalHandle& handle);
+  /// What is launched in between is captured as the body that the condition repeats.
+  void begin_repeated(cudaGraphConditionalHandle handle);
+  void end_repeated();
+  bool asked_to_repeat();
   /// Exclusive sums of the counts.
   void scan(int n, int* start);
 
   cudaStream_t stream_ = nullptr;
-  bool overlap_ = false;  ///< the device knows programmatic dependent launch
+  cudaStream_t other_stream_ = nullptr;  ///< while a repeated body is captured: that of the graph
+  bool overlap_ = false;                 ///< the device knows programmatic dependent launch
+  bool after_condition_ = false;         ///< ... which is for kernels behind kernels
   ListRoom room_;
   bool profiling_ = false;
   StageClock clock_;
@@ -378,6 +300,7 @@ class CudaExec {
   DeviceBuffer<ListState> list_state_;
   PinnedBuffer<ListState> list_state_host_;
   DeviceBuffer<char> scan_;
+  DeviceBuffer<RepeatState> repeat_;
 };
 
 }  // namespace pbf::inline PBF_VARIANT

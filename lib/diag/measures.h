@@ -36,6 +36,7 @@ struct Measures {
   /// Particles times updates, since the start, above solver.speed_limit (which were slowed down to
   /// it), or without one above guard.speed.
   std::int64_t fast = 0;
+  std::int64_t sweeps = 0;  ///< over the constraints since the start
 };
 
 /// What an EnergyTrack knows: enough to go on from a checkpoint. J.

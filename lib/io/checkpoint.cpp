@@ -78,6 +78,7 @@ void write_file(const std::string& path, const SavedRun& s) {
     h5::write_numbers(file, "update", &s.state.updates);
     h5::write_numbers(file, "particles", &s.particles);
     h5::write_numbers(file, "fast", &s.state.fast);
+    h5::write_numbers(file, "rounds", &s.state.rounds);
     h5::write_numbers(file, "first_neighbors_max", &s.first.neighbors_max);
     h5::write_numbers(file, "energy_started", &started);
     for_each_number(s, [&](const char* name, double v) { h5::write_numbers(file, name, &v); });
@@ -103,6 +104,7 @@ SavedRun read_file(const std::string& path) {
   s.state.updates = h5::read_number<std::int64_t>(file, "update");
   s.particles = h5::read_number<std::int64_t>(file, "particles");
   s.state.fast = h5::read_number<std::int64_t>(file, "fast");
+  s.state.rounds = h5::read_number<std::int64_t>(file, "rounds");
   s.first.neighbors_max = h5::read_number<std::int64_t>(file, "first_neighbors_max");
   s.energy.started = h5::read_number<std::int64_t>(file, "energy_started") != 0;
   for_each_number(s, [&](const char* name, double& v) { v = h5::read_number<double>(file, name); });

@@ -38,6 +38,7 @@ const std::vector<LogColumn>& log_columns() {
       {"outside", "1", nullptr, [](Row r) { return r.measures.outside; }},
       {"non_finite", "1", nullptr, [](Row r) { return r.measures.non_finite; }},
       {"fast", "1", nullptr, [](Row r) { return r.measures.fast; }},
+      {"sweeps", "1", nullptr, [](Row r) { return r.measures.sweeps; }},
   };
   return columns;
 }

@@ -52,7 +52,7 @@ std::vector<double> chebyshev_factors(int sweeps) {
 }
 
 void plan_passes(Plan& plan, const Scene& s) {
-  const int k = s.solver.iterations * plan.substeps;
+  const int k = s.solver.iterations * plan.substeps * (1 + plan.more_rounds);  // at most
   auto add = [&](const char* name, const char* stage, const char* reads, const char* writes,
                  int times = 1) {
     plan.passes.push_back({name, stage, reads, writes, times});
@@ -71,6 +71,8 @@ void plan_passes(Plan& plan, const Scene& s) {
     add(plan.tensile ? "delta+move (tensile)" : "delta+move", "delta",
         "position' lists density velocity", "position velocity", k);
   }
+  if (plan.more_rounds > 0)
+    add("mean compression", "residual", "density", "", plan.substeps * plan.more_rounds);
   if (plan.xsph) add("xsph", "xsph", "position velocity lists", "velocity'");
   if (plan.vorticity) {
     add("curl", "vorticity", "position velocity lists", "curl");
@@ -90,6 +92,7 @@ void plan_left_out(Plan& plan, const Scene& s) {
       "solver.kernels is consistent");
   out(s.solver.boundary == BoundaryMode::clamp, "wall density", "solver.boundary is clamp");
   out(s.domain.open.size() == 6, "walls: their density and the clamp", "domain.open names all six");
+  out(plan.more_rounds == 0, "sweeps until a tolerance is met", "solver.tolerance is 0");
   out(s.solver.iterations == 0, "lambda and delta passes", "solver.iterations is 0");
   out(!s.guard, "the guard and its copy of the state", "guard is off");
   out(s.solver.speed_limit == 0, "limit on the speed", "solver.speed_limit is 0");
@@ -159,6 +162,10 @@ Plan make_plan(const Scene& s, std::int64_t particles) {
   if (s.solver.method == SolverMethod::chebyshev)
     plan.sweep_factors = chebyshev_factors(s.solver.iterations);
   plan.substeps = s.solver.substeps;
+  if (s.solver.tolerance > 0 && s.solver.iterations > 0) {
+    plan.tolerance = s.solver.tolerance;
+    plan.more_rounds = s.solver.max_iterations / s.solver.iterations - 1;
+  }
   plan.fused = s.solver.fused;
   plan.tensile = s.tensile && s.tensile->k != 0;
   plan.xsph = s.viscosity && s.viscosity->xsph != 0;

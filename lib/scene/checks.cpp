@@ -22,6 +22,7 @@ class Checker {
     if (domain) check_domain();
     if (p_.good({"bodies"})) check_bodies(domain);
     check_time();
+    check_solver();
     check_render();
   }
 
@@ -44,6 +45,18 @@ class Checker {
         ok = false;
       }
     return ok;
+  }
+
+  void check_solver() {
+    if (!p_.good({"solver.tolerance", "solver.iterations", "solver.max_iterations"}) ||
+        s_.solver.tolerance == 0)
+      return;
+    if (s_.solver.iterations == 0)
+      add("solver.tolerance", "nothing can meet it with solver.iterations 0; give at least 1");
+    if (s_.solver.max_iterations < s_.solver.iterations)
+      add("solver.max_iterations",
+          "is " + std::to_string(s_.solver.max_iterations) + ", below solver.iterations (" +
+              std::to_string(s_.solver.iterations) + "), which make one round; raise it");
   }
 
   void check_domain() {

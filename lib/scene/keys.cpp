@@ -131,8 +131,16 @@ std::vector<Key> time_keys() {
 
 std::vector<Key> solver_keys() {
   return {
-      number("solver.iterations", "", {0, 100000}, "Sweeps over the constraints per substep.",
+      number("solver.iterations", "", {0, 100000},
+             "Sweeps over the constraints per substep; with a tolerance, in a round of them.",
              SCENE(&s.solver.iterations)),
+      number("solver.tolerance", "", {0, 1},
+             "Rounds of sweeps are repeated while the mean compression that the last sweep found, "
+             "before it moved the particles, is above this. 0: one round.",
+             SCENE(&s.solver.tolerance)),
+      number("solver.max_iterations", "", {1, 100000},
+             "Sweeps per substep at most, in whole rounds, where there is a tolerance.",
+             SCENE(&s.solver.max_iterations)),
       number("solver.substeps", "", {1, 1000},
              "Time steps of time.step/substeps that share one update's sort and neighbour lists; "
              "viscosity and vorticity act once per update.",

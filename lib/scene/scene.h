@@ -57,8 +57,10 @@ struct Time {
 };
 
 struct SolverSettings {
-  int iterations = 4;  ///< sweeps over the constraints per substep
-  int substeps = 1;    ///< time steps of time.step/substeps that share one update's neighbour lists
+  int iterations = 4;       ///< sweeps over the constraints per substep; at least, with a tolerance
+  double tolerance = 0;     ///< mean compression above which more sweeps follow; 0: none do
+  int max_iterations = 32;  ///< sweeps per substep at most, with a tolerance
+  int substeps = 1;  ///< time steps of time.step/substeps that share one update's neighbour lists
   SolverMethod method = SolverMethod::jacobi;
   KernelMode kernels = KernelMode::consistent;
   ConstraintMode constraint = ConstraintMode::one_sided;

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "kernels/pass_predict.h"
+#include "kernels/step_counts.h"
+#include "kernels/vec3.h"
 #include "lib/solver/step_trace.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -13,7 +14,7 @@ template <class Real>
 struct StateArrays {
   Vec4<Real>*position, *velocity;
   int* id;
-  FastCount* fast;  ///< one
+  StepCounts* counts;  ///< one
 };
 
 /// A copy in one pass: a guarded run of few particles makes one at every measure.
@@ -24,7 +25,7 @@ struct CopyStatePass {
     to.position[i] = from.position[i];
     to.velocity[i] = from.velocity[i];
     to.id[i] = from.id[i];
-    if (i == 0) *to.fast = *from.fast;
+    if (i == 0) *to.counts = *from.counts;
   }
 };
 
@@ -45,9 +46,10 @@ SolverState download_state(Exec& exec, std::size_t n, const StateArrays<Real>& f
   copy(from.velocity, s.velocity);
   s.id.resize(n);
   exec.to_host(from.id, n, s.id.data());
-  FastCount fast = 0;
-  exec.to_host(from.fast, 1, &fast);
-  s.fast = std::int64_t(fast);
+  StepCounts counts;
+  exec.to_host(from.counts, 1, &counts);
+  s.fast = std::int64_t(counts.fast);
+  s.rounds = std::int64_t(counts.rounds);
   return s;
 }
 
@@ -63,8 +65,10 @@ void upload_state(Exec& exec, const SolverState& s, const StateArrays<Real>& to)
   copy(s.position, to.position, Real(1));
   copy(s.velocity, to.velocity, Real(0));
   exec.to_device(s.id.data(), n, to.id);
-  const FastCount fast = FastCount(s.fast);
-  exec.to_device(&fast, 1, to.fast);
+  StepCounts counts;
+  counts.fast = std::uint64_t(s.fast);
+  counts.rounds = std::uint64_t(s.rounds);
+  exec.to_device(&counts, 1, to.counts);
 }
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -60,6 +60,7 @@ Measures to_measures(const MeasureSums& s, const Scene& scene, const Plan& plan,
   m.outside = s.outside;
   m.non_finite = s.non_finite;
   m.fast = s.fast;
+  m.sweeps = scene.solver.iterations * (plan.substeps * update + s.rounds);
   return m;
 }
 

@@ -19,7 +19,7 @@ struct SolverState {
   std::vector<double> position;          ///< 3n, h
   std::vector<double> velocity;          ///< 3n, h/s
   std::vector<std::int32_t> id;          ///< n
-  std::int64_t fast = 0;                 ///< particle-updates above the watched speed so far
+  std::int64_t fast = 0, rounds = 0;     ///< kernels/step_counts.h, so far
 };
 
 /// One array that a pass left behind; row = particle id.

@@ -13,6 +13,7 @@
 #include "kernels/pass_lambda.h"
 #include "kernels/pass_measure.h"
 #include "kernels/pass_predict.h"
+#include "kernels/pass_residual.h"
 #include "kernels/pass_vorticity.h"
 #include "kernels/pass_xsph.h"
 #include "lib/base/release.h"
@@ -52,6 +53,8 @@ class Stepper {
         mode_(mode),
         iterations_(iterations),
         substeps_(plan.substeps),
+        more_rounds_(plan.more_rounds),
+        residual_limit_(residual_limit(plan.tolerance, params.n)),
         fused_(plan.fused),
         tensile_(plan.tensile) {
     for (int k = 0; k < iterations; ++k)
@@ -65,9 +68,9 @@ class Stepper {
     for (auto* b : {&id_, &other_id_, &bin_}) b->resize(n);
     if (!Exec::order_in_place) order_.resize(n);
     density_.resize(n);
-    fast_.resize(1);
-    const FastCount none = 0;
-    exec_.to_device(&none, 1, fast_.data());
+    counts_.resize(1);
+    const StepCounts none;
+    exec_.to_device(&none, 1, counts_.data());
     bin_start_.resize(std::size_t(bin_count(p_)) + 1);
     if (p_.vorticity > Real(0)) curl_.resize(padded);
     if (Exec::padding) {
@@ -170,7 +173,7 @@ class Stepper {
     sum_density();
     auto sums =
         exec_.reduce(p_.n, MeasurePass<Real, Lists>{p_, lists_, position_.data(), velocity_.data(),
-                                                    density_.data(), fast_.data()});
+                                                    density_.data(), counts_.data()});
     sums.compression_p99 = compression_percentile(
         exec_.count_in_bins(p_.n, kCompressionBins, CompressionBinPass<Real>{density_.data()}),
         p_.n - p_.n / 100, p_.n, sums.compression_max);
@@ -211,9 +214,9 @@ class Stepper {
   struct Saved {
     Buffer<Vec4<Real>> position, velocity;
     Buffer<int> id;
-    Buffer<FastCount> fast;
+    Buffer<StepCounts> counts;
     StateArrays<Real> arrays() {
-      return {position.data(), velocity.data(), id.data(), fast.data()};
+      return {position.data(), velocity.data(), id.data(), counts.data()};
     }
     std::size_t bytes() const { return position.bytes() + velocity.bytes() + id.bytes(); }
   };
@@ -222,7 +225,7 @@ class Stepper {
     s.position.resize(n);
     s.velocity.resize(n);
     s.id.resize(n);
-    s.fast.resize(1);
+    s.counts.resize(1);
     exec_.for_each(p_.n, CopyStatePass<Real>{arrays(), s.arrays()});
   }
   void restore(Saved& s) {
@@ -242,7 +245,7 @@ class Stepper {
 
  private:
   StateArrays<Real> arrays() {
-    return {position_.data(), velocity_.data(), id_.data(), fast_.data()};
+    return {position_.data(), velocity_.data(), id_.data(), counts_.data()};
   }
 
   /// One update, one pass after the other: the bits of step(1). `seen(stage, sweep)` may look at
@@ -251,7 +254,7 @@ class Stepper {
   void step_seen(const Seen& seen) {
     unsort();
     exec_.begin();
-    exec_.for_each(p_.n, MovePass<Real>{p_, position_.data(), velocity_.data(), fast_.data()});
+    exec_.for_each(p_.n, MovePass<Real>{p_, position_.data(), velocity_.data(), counts_.data()});
     seen("predict", 0);
     reorder<false>("predict", BinPass<Real>{p_, position_.data(), bin_.data()});
     seen("grid", 0);
@@ -271,7 +274,7 @@ class Stepper {
     exec_.sort_by_bin(stage, first, p_.n, bin_count(p_), order(), bin_start_.data(),
                       GatherPass<Real, moving>{p_, position_.data(), velocity_.data(), id_.data(),
                                                other_position_.data(), other_velocity_.data(),
-                                               other_id_.data(), fast_.data()});
+                                               other_id_.data(), counts_.data()});
     std::swap(position_, other_position_);
     std::swap(velocity_, other_velocity_);
     std::swap(id_, other_id_);
@@ -281,20 +284,29 @@ class Stepper {
   }
 
   /// The sweeps of the first substep, whose x* is there already, then the other substeps with the
-  /// same lists. `seen(stage, sweep)` may look at what each stage left behind.
+  /// same lists. Rounds of sweeps go on while the mean compression that the last sweep found is
+  /// above the tolerance. `seen(stage, sweep)` may look at what each stage left behind.
   template <class Seen>
   void solve(const Seen& seen) {
+    int number = 0;
     for (int s = 0; s < substeps_; ++s) {
       if (s > 0) {
-        exec_.for_each(p_.n, MovePass<Real>{p_, position_.data(), velocity_.data(), fast_.data()});
+        exec_.for_each(p_.n,
+                       MovePass<Real>{p_, position_.data(), velocity_.data(), counts_.data()});
         exec_.mark("predict");
         seen("predict", s);
       }
       with_smoothing(mode_, [&](auto smoothing) {
-        for (int k = 0; k < iterations_; ++k) {
-          p_.step_length = step_length_[std::size_t(k)];
-          sweep<decltype(smoothing)::value>(seen, s * iterations_ + k + 1);
-        }
+        const auto round = [&] {
+          for (int k = 0; k < iterations_; ++k) {
+            p_.step_length = step_length_[std::size_t(k)];
+            sweep<decltype(smoothing)::value>(seen, ++number);
+          }
+        };
+        round();
+        if (more_rounds_ > 0)
+          exec_.repeat_while("residual", p_.n, more_rounds_, ResidualPass<Real>{density_.data()},
+                             residual_limit_, &counts_.data()->rounds, round);
       });
     }
   }
@@ -368,7 +380,8 @@ class Stepper {
   Exec& exec_;
   Params<Real> p_;
   KernelMode mode_;
-  int iterations_, substeps_;
+  int iterations_, substeps_, more_rounds_;
+  std::uint64_t residual_limit_;
   std::vector<Real> step_length_;  ///< of each sweep
   bool fused_, tensile_;
   bool density_is_current_ = false;
@@ -376,8 +389,8 @@ class Stepper {
   Buffer<Vec4<Real>> position_, other_position_, velocity_, other_velocity_, curl_;
   Buffer<Real> density_;
   Buffer<int> id_, other_id_, bin_, order_, bin_start_;
-  Buffer<FastCount> fast_;  ///< one: particles above the watched speed
-  Saved unsorted_;          ///< the state as set_state() got it, until the next update; else empty
+  Buffer<StepCounts> counts_;  ///< one
+  Saved unsorted_;  ///< the state as set_state() got it, until the next update; else empty
 };
 
 }  // namespace pbf::inline PBF_VARIANT

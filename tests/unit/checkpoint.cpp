@@ -27,6 +27,7 @@ SavedRun saved(Precision precision, std::int64_t update) {
   s.energy = {true, 1.25, 0.1, 1e-300};
   s.compression_max = 0.3;
   s.state.fast = 7;
+  s.state.rounds = 1000;
   s.first.kinetic_energy = 0.1;
   s.first.potential_energy = -3;
   s.first.compression_mean = 17.5;
@@ -42,7 +43,8 @@ bool same(const SavedRun& a, const SavedRun& b) {
          a.state.id == b.state.id && a.energy.started == b.energy.started &&
          a.energy.first == b.energy.first && a.energy.lowest == b.energy.lowest &&
          a.energy.rise == b.energy.rise && a.compression_max == b.compression_max &&
-         a.particles == b.particles && a.state.fast == b.state.fast;
+         a.particles == b.particles && a.state.fast == b.state.fast &&
+         a.state.rounds == b.state.rounds;
 }
 
 bool same(const GuardLimits& a, const GuardLimits& b) {

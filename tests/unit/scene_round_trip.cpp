@@ -39,6 +39,8 @@ Scene unlike_default() {
   s.time = {1.0 / 60, 500.0 / 60};
   s.solver.iterations = 7;
   s.solver.substeps = 3;
+  s.solver.tolerance = 0.001;
+  s.solver.max_iterations = 24;
   s.solver.method = SolverMethod::chebyshev;
   s.solver.kernels = KernelMode::paper;
   s.solver.constraint = ConstraintMode::two_sided;
