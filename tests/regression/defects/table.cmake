@@ -54,7 +54,7 @@ seeded_defect(float_for_double density kernels/pass_lambda.h
 
 # lambda
 seeded_defect(lambda_sign lambda kernels/pass_lambda.h
-  [[-c / denominator]] [[c / denominator]])
+  [[? -c / (]] [[? c / (]])
 seeded_defect(relaxation_missing lambda kernels/pass_lambda.h
   [[dot(own_gradient, own_gradient) + p.relaxation;]] [[dot(own_gradient, own_gradient);]])
 seeded_defect(wall_gradient_missing lambda kernels/pass_lambda.h
@@ -62,7 +62,7 @@ seeded_defect(wall_gradient_missing lambda kernels/pass_lambda.h
 seeded_defect(wall_gradient_side lambda kernels/boundary.h
   [[(side == 0 ? g.slope : -g.slope)]] [[g.slope]])
 seeded_defect(two_sided_by_mistake lambda kernels/pass_lambda.h
-  [[p.two_sided ? c : max2(c, Real(0))]] [[c]])
+  [[return !p.two_sided && c < Real(0) ? Real(0) : c;]] [[return c;]])
 
 # delta
 seeded_defect(s_corr_sign delta kernels/pass_delta.h [[w -= p.tensile_k]] [[w += p.tensile_k]])
@@ -104,4 +104,5 @@ seeded_defect(clean_reciprocal_root none kernels/vec3.h
   [[const Real inverse = Real(1) / square_root(q_squared);
   return {q_squared * inverse, inverse};]])
 seeded_defect(clean_unfused_division none kernels/pass_lambda.h
-  [[-c / denominator]] [[-c * (Real(1) / denominator)]])
+  [[-c / (crowd(rho, p) * denominator)]]
+  [[-c * (Real(1) / (crowd(rho, p) * denominator))]])
