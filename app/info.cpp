@@ -3,6 +3,7 @@
 #include "lib/base/log.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
+#include "lib/cpu/simd.h"
 #include "lib/solver/devices.h"
 
 namespace pbf {
@@ -13,11 +14,14 @@ int command_info() {
   const auto line = [&](const std::string& name, const std::string& value) {
     text += format("%-12s ", name.c_str()) + value + "\n";
   };
+  std::string usable;
+  for (const Simd simd : usable_simd()) usable.append(" ").append(simd_name(simd));
   line("commit", b.commit);
   line("build", b.type + ", " + b.compiler + ", " + b.flags);
   line("features", b.features);
   for (const auto& [name, version] : b.libraries) line(name, version);
   line("cpu", cpu_model());
+  line("simd", std::string(simd_name(chosen_simd())) + ", of" + usable);
   line("threads", std::to_string(usable_threads()));
   line("memory", bytes_text(double(available_memory())) + " available");
   line("cuda", cuda_device_report());

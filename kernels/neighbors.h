@@ -9,22 +9,39 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Neighbour policy: lists in chunks of 1024 particles, each chunk contiguous (the CPU's layout).
+/// Neighbour policy of the CPU. `width` = 2^width_bits adjacent particles make a group, whose lists
+/// are interleaved: entry k of its particle l stands at group[k width + l]. Shorter lists of a
+/// group are filled up with index `far`, a particle whose share of every sum is zero. Groups lie
+/// one behind the other in chunks of 1024 particles.
 struct ChunkedLists {
   static constexpr int chunk_bits = 10;
-  static constexpr bool skip_inactive = true;  ///< a branch per pair pays on the CPU
-  const int* const* chunk;                     ///< first entry of each chunk
-  const std::uint32_t* begin;                  ///< per particle, within its chunk
-  const std::uint32_t* count;                  ///< per particle
+  static constexpr bool skip_inactive = true;  ///< a branch per pair pays for one particle alone
+  struct Group {
+    std::uint32_t begin, rounds;  ///< first entry within the chunk; length of the longest list
+  };
+  const int* const* chunk;  ///< first entry of each chunk
+  const Group* groups;      ///< per group
+  int width_bits, far;
 
   /// f(j) for every neighbour j of i.
   template <class F>
   PBF_HD void for_each(int i, F&& f) const {
-    const int* e = chunk[i >> chunk_bits] + begin[i];
-    const int* end = e + count[i];
-    for (; e != end; ++e) f(*e);
+    const int width = 1 << width_bits;
+    const int* e = group(i) + (i & (width - 1));
+    const int* end = e + std::ptrdiff_t(rounds(i)) * width;
+    for (; e != end && *e != far; e += width) f(*e);
   }
-  PBF_HD int size(int i) const { return int(count[i]); }
+  PBF_HD int size(int i) const {
+    int n = 0;
+    for_each(i, [&](int) { ++n; });
+    return n;
+  }
+
+  /// The lists of the group that i begins, and how many entries each has.
+  PBF_HD const int* group(int i) const {
+    return chunk[i >> chunk_bits] + groups[i >> width_bits].begin;
+  }
+  PBF_HD int rounds(int i) const { return int(groups[i >> width_bits].rounds); }
 };
 
 }  // namespace pbf::inline PBF_VARIANT

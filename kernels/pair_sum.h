@@ -2,11 +2,13 @@
 // are shared among threads (one particle each, two particles each, several lanes for one).
 //
 // Such a pass has
-//   Own own(int i) const               what particle i brings: position, lambda, ...
-//   Other other(int j) const           what is gathered from a neighbour
-//   Sum (value-initialised to zero)    and Sum::each(f): f(scalar&) for every member
-//   add(Sum&, Own, Other, i, j, on)    one neighbour's share; none when `on` is false
+//   own(i) const                       what particle i brings: position, lambda, ...
+//   other(j) const                     what is gathered from a neighbour
+//   SumOf<V> (value-initialised to 0)  and each(f): f(V&) for every member
+//   add(SumOf<V>&, own, other, i, j, on)  one neighbour's share; none when `on` is false
 //   finish(i, Own, Sum) const          writes the result
+// where V is Real for one particle, Lanes for several at once (kernels/lanes.h), and Own, Sum are
+// those of one particle.
 #pragma once
 
 #include "kernels/neighbors.h"
@@ -25,23 +27,23 @@ PBF_HD void sum_over_neighbors(const Pass& pass, int i) {
 
 /// |d|^2 in h^2, or a value beyond every kernel for a pair that is switched off: selecting here
 /// costs one instruction and makes every term of the pair zero.
-template <class Real>
-PBF_HD Real pair_q_squared(Vec3<Real> d, bool on) {
-  const Real q2 = dot(d, d);
-  return on ? q2 : Real(4);
+template <class V>
+PBF_HD V pair_q_squared(Vec3<V> d, bool on) {
+  const V q2 = dot(d, d);
+  return on ? q2 : V(4);
 }
 
-template <class Real, class F>
-PBF_HD void each_component(Vec3<Real>& v, F&& f) {
+template <class V, class F>
+PBF_HD void each_component(Vec3<V>& v, F&& f) {
   f(v.x);
   f(v.y);
   f(v.z);
 }
 
 /// A sum of one vector.
-template <class Real>
+template <class V>
 struct VectorSum {
-  Vec3<Real> v;
+  Vec3<V> v;
   template <class F>
   PBF_HD void each(F&& f) {
     each_component(v, f);
@@ -49,13 +51,21 @@ struct VectorSum {
 };
 
 /// What the two sides bring to a sum over velocity differences.
-template <class Real>
+template <class V>
 struct MovingOwn {
-  Vec3<Real> x, v;
+  Vec3<V> x, v;
 };
-template <class Real>
+template <class V>
+PBF_HD MovingOwn<V> moving_own(const Vec4<V>& x, const Vec4<V>& v) {
+  return {xyz(x), xyz(v)};
+}
+template <class V>
 struct MovingOther {
-  Vec4<Real> x, v;  ///< x.w = 1/density
+  Vec4<V> x, v;  ///< x.w = 1/density
 };
+template <class V>
+PBF_HD MovingOther<V> moving_other(const Vec4<V>& x, const Vec4<V>& v) {
+  return {x, v};
+}
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -35,33 +35,41 @@ struct DeltaPass {
   Vec4<Real>* velocity;      ///< in/out, h/s
 
   using Own = Vec4<Real>;
-  using Other = Vec4<Real>;
-  struct Sum {
-    Vec3<Real> move;
-    Real closeness =
-        0;  ///< sum of 1/q: beyond any other sum where a neighbour is in the same place
+  template <class V>
+  struct SumOf {
+    Vec3<V> move;
+    V closeness{};  ///< sum of 1/q: beyond any other sum where a neighbour is in the same place
     template <class F>
     PBF_HD void each(F&& f) {
       each_component(move, f);
       f(closeness);
     }
   };
-  PBF_HD Own own(int i) const { return position[i]; }
-  PBF_HD Other other(int j) const { return load(position, j); }
-  PBF_HD Real weight(const Own& x, const Other& y, Real q2, Real t) const {
-    Real w = x.w + y.w;
+  using Sum = SumOf<Real>;
+  template <class Index>
+  PBF_HD auto own(Index i) const {
+    return load(position, i);
+  }
+  template <class Index>
+  PBF_HD auto other(Index j) const {
+    return load(position, j);
+  }
+  template <class V>
+  PBF_HD V weight(const Vec4<V>& x, const Vec4<V>& y, V q2, V t) const {
+    V w = x.w + y.w;
     if constexpr (tensile)
       w -= p.tensile_k * power(density_shape<Real, S>(q2, t) * p.tensile_scale, p.tensile_n);
     return w;
   }
-  PBF_HD void add(Sum& s, const Own& x, const Other& y, int, int, bool on) const {
-    if constexpr (!tensile && Lists::skip_inactive) {
-      if (x.w + y.w == Real(0)) return;  // neither is compressed
+  template <class V>
+  PBF_HD void add(SumOf<V>& s, const Vec4<V>& x, const Vec4<V>& y, int, int, bool on) const {
+    if constexpr (!tensile && Lists::skip_inactive && sizeof(V) == sizeof(Real)) {
+      if (x.w + y.w == V(0)) return;  // neither is compressed
     }
-    const Vec3<Real> d = xyz(x) - xyz(y);
-    const Real q2 = pair_q_squared(d, on);
-    const Root<Real> root = root_of(q2);
-    const Real t = Spiky<Real>::t(root.q);
+    const Vec3<V> d = xyz(x) - xyz(y);
+    const V q2 = pair_q_squared(d, on);
+    const Root<V> root = root_of(q2);
+    const V t = Spiky<Real>::t(root.q);
     s.move = s.move + (weight(x, y, q2, t) * t * t * root.inverse) * d;
     s.closeness += root.inverse;
   }
@@ -83,7 +91,7 @@ struct DeltaPass {
   PBF_HD Vec3<Real> separate(int i, const Own& own) const {
     Vec3<Real> sum;
     lists.for_each(i, [&](int j) {
-      const Other y = load(position, j);
+      const Vec4<Real> y = load(position, j);
       const Vec3<Real> d = xyz(own) - xyz(y);
       const Real q2 = dot(d, d);
       if (q2 <= coincident_q_squared<Real>())

@@ -15,20 +15,28 @@ struct DensityPass {
   Real* density;  ///< out
 
   using Own = Vec3<Real>;
-  using Other = Vec3<Real>;
-  struct Sum {
-    Real shape = 0;
+  template <class V>
+  struct SumOf {
+    V shape{};
     template <class F>
     PBF_HD void each(F&& f) {
       f(shape);
     }
   };
-  PBF_HD Own own(int i) const { return xyz(position[i]); }
-  PBF_HD Other other(int j) const { return xyz(load(position, j)); }
-  PBF_HD void add(Sum& s, const Own& x, const Other& y, int, int, bool on) const {
-    const Real q2 = pair_q_squared(x - y, on);
+  using Sum = SumOf<Real>;
+  template <class Index>
+  PBF_HD auto own(Index i) const {
+    return xyz(load(position, i));
+  }
+  template <class Index>
+  PBF_HD auto other(Index j) const {
+    return xyz(load(position, j));
+  }
+  template <class V>
+  PBF_HD void add(SumOf<V>& s, const Vec3<V>& x, const Vec3<V>& y, int, int, bool on) const {
+    const V q2 = pair_q_squared(x - y, on);
     s.shape +=
-        density_shape<Real, S>(q2, S == Smoothing::paper ? Real(0) : Spiky<Real>::t(root_of(q2).q));
+        density_shape<Real, S>(q2, S == Smoothing::paper ? V(0) : Spiky<Real>::t(root_of(q2).q));
   }
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
     // 1: the particle itself.
@@ -68,10 +76,10 @@ struct LambdaPass {
   Real* density;             ///< out when with_density, else in
 
   using Own = Vec3<Real>;
-  using Other = Vec3<Real>;
-  struct Sum {
-    Real shape = 0, squares = 0;
-    Vec3<Real> gradient;
+  template <class V>
+  struct SumOf {
+    V shape{}, squares{};
+    Vec3<V> gradient;
     template <class F>
     PBF_HD void each(F&& f) {
       if constexpr (with_density) f(shape);
@@ -79,13 +87,21 @@ struct LambdaPass {
       each_component(gradient, f);
     }
   };
-  PBF_HD Own own(int i) const { return xyz(position[i]); }
-  PBF_HD Other other(int j) const { return xyz(load(position, j)); }
-  PBF_HD void add(Sum& s, const Own& x, const Other& y, int, int, bool on) const {
-    const Vec3<Real> d = x - y;
-    const Real q2 = pair_q_squared(d, on);
-    const Root<Real> root = root_of(q2);
-    const Real t = Spiky<Real>::t(root.q), t2 = t * t;
+  using Sum = SumOf<Real>;
+  template <class Index>
+  PBF_HD auto own(Index i) const {
+    return xyz(load(position, i));
+  }
+  template <class Index>
+  PBF_HD auto other(Index j) const {
+    return xyz(load(position, j));
+  }
+  template <class V>
+  PBF_HD void add(SumOf<V>& s, const Vec3<V>& x, const Vec3<V>& y, int, int, bool on) const {
+    const Vec3<V> d = x - y;
+    const V q2 = pair_q_squared(d, on);
+    const Root<V> root = root_of(q2);
+    const V t = Spiky<Real>::t(root.q), t2 = t * t;
     if constexpr (with_density) s.shape += density_shape<Real, S>(q2, t);
     s.squares += t2 * t2;
     // A coincident pair has no direction, d = 0: its gradients cancel in the mean over directions.

@@ -7,11 +7,11 @@
 namespace pbf::inline PBF_VARIANT {
 
 /// grad W_ij vol/rho_j, in 1/h; zero for a coincident pair, and when not `on`.
-template <class Real>
-PBF_HD Vec3<Real> weighted_gradient(Vec3<Real> d, Real inv_rho_j, const Params<Real>& p, bool on) {
-  const Real q2 = pair_q_squared(d, on);
-  const Root<Real> root = root_of(q2);
-  const Real t = Spiky<Real>::t(root.q);
+template <class Real, class V>
+PBF_HD Vec3<V> weighted_gradient(Vec3<V> d, V inv_rho_j, const Params<Real>& p, bool on) {
+  const V q2 = pair_q_squared(d, on);
+  const Root<V> root = root_of(q2);
+  const V t = Spiky<Real>::t(root.q);
   return (p.vol * Spiky<Real>::gradient_norm * t * t * root.inverse * inv_rho_j) * d;
 }
 
@@ -25,11 +25,20 @@ struct CurlPass {
   Vec4<Real>* curl;  ///< out
 
   using Own = MovingOwn<Real>;
-  using Other = MovingOther<Real>;
+  template <class V>
+  using SumOf = VectorSum<V>;
   using Sum = VectorSum<Real>;
-  PBF_HD Own own(int i) const { return {xyz(position[i]), xyz(velocity[i])}; }
-  PBF_HD Other other(int j) const { return {load(position, j), load(velocity, j)}; }
-  PBF_HD void add(Sum& s, const Own& a, const Other& b, int, int, bool on) const {
+  template <class Index>
+  PBF_HD auto own(Index i) const {
+    return moving_own(load(position, i), load(velocity, i));
+  }
+  template <class Index>
+  PBF_HD auto other(Index j) const {
+    return moving_other(load(position, j), load(velocity, j));
+  }
+  template <class V>
+  PBF_HD void add(VectorSum<V>& s, const MovingOwn<V>& a, const MovingOther<V>& b, int, int,
+                  bool on) const {
     s.v = s.v + cross(weighted_gradient(a.x - xyz(b.x), b.x.w, p, on), xyz(b.v) - a.v);
   }
   PBF_HD void finish(int i, const Own&, const Sum& s) const {
@@ -37,6 +46,25 @@ struct CurlPass {
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
+
+/// What the two sides bring to the gradient of |omega|; x.w = 1/density.
+template <class V>
+struct CurlOwn {
+  Vec4<V> x, curl;
+};
+template <class V>
+PBF_HD CurlOwn<V> curl_own(const Vec4<V>& x, const Vec4<V>& curl) {
+  return {x, curl};
+}
+template <class V>
+struct CurlOther {
+  Vec4<V> x;
+  V magnitude;
+};
+template <class V>
+PBF_HD CurlOther<V> curl_other(const Vec4<V>& x, V magnitude) {
+  return {x, magnitude};
+}
 
 /// v += min(dt eps, 0.05) h (N x omega), N = eta/(|eta| + 0.1 |omega|/h + tiny), eta = grad
 /// |omega|. Left out at the surface (density below 0.75 rho0), where the gradient is that of the
@@ -50,17 +78,21 @@ struct VorticityPass {
   const Vec4<Real>* curl;
   Vec4<Real>* velocity;  ///< in/out
 
-  struct Own {
-    Vec4<Real> x, curl;
-  };
-  struct Other {
-    Vec4<Real> x;
-    Real magnitude;
-  };
-  using Sum = VectorSum<Real>;  ///< eta
-  PBF_HD Own own(int i) const { return {position[i], curl[i]}; }
-  PBF_HD Other other(int j) const { return {load(position, j), load(curl, j).w}; }
-  PBF_HD void add(Sum& s, const Own& a, const Other& b, int, int, bool on) const {
+  using Own = CurlOwn<Real>;
+  template <class V>
+  using SumOf = VectorSum<V>;  ///< eta
+  using Sum = VectorSum<Real>;
+  template <class Index>
+  PBF_HD auto own(Index i) const {
+    return curl_own(load(position, i), load(curl, i));
+  }
+  template <class Index>
+  PBF_HD auto other(Index j) const {
+    return curl_other(load(position, j), load(curl, j).w);
+  }
+  template <class V>
+  PBF_HD void add(VectorSum<V>& s, const CurlOwn<V>& a, const CurlOther<V>& b, int, int,
+                  bool on) const {
     s.v = s.v + (b.magnitude - a.curl.w) * weighted_gradient(xyz(a.x) - xyz(b.x), b.x.w, p, on);
   }
   PBF_HD void finish(int i, const Own& a, const Sum& s) const {

@@ -18,14 +18,23 @@ struct XsphPass {
   int* bin;  ///< out
 
   using Own = MovingOwn<Real>;
-  using Other = MovingOther<Real>;
+  template <class V>
+  using SumOf = VectorSum<V>;
   using Sum = VectorSum<Real>;
-  PBF_HD Own own(int i) const { return {xyz(position[i]), xyz(velocity[i])}; }
-  PBF_HD Other other(int j) const { return {load(position, j), load(velocity, j)}; }
-  PBF_HD void add(Sum& s, const Own& a, const Other& b, int, int, bool on) const {
-    const Real q2 = pair_q_squared(a.x - xyz(b.x), on);
-    const Real shape =
-        density_shape<Real, S>(q2, S == Smoothing::paper ? Real(0) : Spiky<Real>::t(root_of(q2).q));
+  template <class Index>
+  PBF_HD auto own(Index i) const {
+    return moving_own(load(position, i), load(velocity, i));
+  }
+  template <class Index>
+  PBF_HD auto other(Index j) const {
+    return moving_other(load(position, j), load(velocity, j));
+  }
+  template <class V>
+  PBF_HD void add(VectorSum<V>& s, const MovingOwn<V>& a, const MovingOther<V>& b, int, int,
+                  bool on) const {
+    const V q2 = pair_q_squared(a.x - xyz(b.x), on);
+    const V shape =
+        density_shape<Real, S>(q2, S == Smoothing::paper ? V(0) : Spiky<Real>::t(root_of(q2).q));
     s.v = s.v + (shape * b.x.w) * (xyz(b.v) - a.v);
   }
   PBF_HD void finish(int i, const Own& a, const Sum& s) const {

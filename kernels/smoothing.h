@@ -1,5 +1,6 @@
 // Smoothing functions in units of h (q = r/h, 0 <= q <= 1), integral 1 over the unit ball.
-// Mueller, Charypar & Gross 2003, eq. 20 (Poly6) and 21 (Spiky).
+// Mueller, Charypar & Gross 2003, eq. 20 (Poly6) and 21 (Spiky). V: Real, or several of them
+// (kernels/lanes.h).
 #pragma once
 
 #include "kernels/vec3.h"
@@ -17,8 +18,9 @@ template <class Real>
 struct Poly6 {
   static constexpr Real norm = Real(315.0 / (64.0 * kPi));
   /// (1 - q^2)^3, 0 beyond q = 1; times `norm` it is W.
-  static PBF_HD Real shape(Real q_squared) {
-    Real t = max2(Real(1) - q_squared, Real(0));
+  template <class V>
+  static PBF_HD V shape(V q_squared) {
+    const V t = max2(V(1) - q_squared, V(0));
     return t * t * t;
   }
 };
@@ -28,7 +30,10 @@ struct Spiky {
   static constexpr Real norm = Real(15.0 / kPi);
   static constexpr Real gradient_norm = Real(-45.0 / kPi);
   /// 1 - q, 0 beyond q = 1; W = norm t^3, dW/dq = gradient_norm t^2.
-  static PBF_HD Real t(Real q) { return max2(Real(1) - q, Real(0)); }
+  template <class V>
+  static PBF_HD V t(V q) {
+    return max2(V(1) - q, V(0));
+  }
 };
 
 template <class Real, Smoothing S>
@@ -37,8 +42,8 @@ PBF_HD Real density_norm() {
 }
 
 /// The density kernel's shape from what a pair loop has at hand: q^2 and t = 1 - q (clamped).
-template <class Real, Smoothing S>
-PBF_HD Real density_shape(Real q_squared, Real t) {
+template <class Real, Smoothing S, class V>
+PBF_HD V density_shape(V q_squared, V t) {
   if constexpr (S == Smoothing::paper) return Poly6<Real>::shape(q_squared);
   return t * t * t;
 }

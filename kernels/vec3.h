@@ -11,7 +11,7 @@ namespace pbf::inline PBF_VARIANT {
 
 template <class Real>
 struct Vec3 {
-  Real x = 0, y = 0, z = 0;
+  Real x{}, y{}, z{};
 };
 
 /// Four scalars moved by one 16- or 32-byte access; what w holds is said where it is used.

@@ -1,46 +1,51 @@
 #include "lib/cpu/cpu_exec.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace pbf::inline PBF_VARIANT {
 
 void CpuExec::sort(const int* bin, int n, int bins, int* order, int* start) {
-  // Every thread counts and places its own contiguous share of the particles, in order: stable.
-  // At most 4: each has a histogram of its own, and the sort is a small part of an update.
+  // Every thread counts and places the particles of its own range of bins, in order: stable, and
+  // `start` is all the room it takes. Particles are nearly in the order of the last sort, so bins
+  // met at equal distances divide the work about equally. At most 4 threads, since each looks at
+  // every particle; the sort is a small part of an update.
   const int threads = n > 16384 ? std::min(threads_, 4) : 1;
-  histogram_.assign(std::size_t(threads) * std::size_t(bins), 0);
-#pragma omp parallel num_threads(threads)
-  {
-    const int t = omp_get_thread_num(), all = omp_get_num_threads();
-    const int first = int(std::int64_t(n) * t / all), last = int(std::int64_t(n) * (t + 1) / all);
-    int* mine = histogram_.data() + std::size_t(t) * std::size_t(bins);
-    for (int i = first; i < last; ++i) ++mine[bin[i]];
-#pragma omp barrier
-#pragma omp single
-    {
-      int sum = 0;
-      for (int c = 0; c < bins; ++c) {
-        start[c] = sum;
-        for (int k = 0; k < all; ++k) {
-          int& h = histogram_[std::size_t(k) * std::size_t(bins) + std::size_t(c)];
-          const int count = h;
-          h = sum;
-          sum += count;
-        }
-      }
-      start[bins] = n;
-    }
-    for (int i = first; i < last; ++i) order[mine[bin[i]]++] = i;
+  int low[5] = {0}, placed[4] = {0};
+  for (int t = 1; t < threads; ++t)
+    low[t] = std::max(low[t - 1], bin[std::int64_t(n) * t / threads]);
+  low[threads] = bins;
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+  for (int t = 0; t < threads; ++t) {
+    std::fill(start + low[t], start + low[t + 1], 0);
+    const auto size = unsigned(low[t + 1] - low[t]);
+    int count = 0;
+    for (int i = 0; i < n; ++i)
+      if (unsigned(bin[i] - low[t]) < size) ++start[bin[i]], ++count;
+    placed[t] = count;
   }
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+  for (int t = 0; t < threads; ++t) {
+    const auto size = unsigned(low[t + 1] - low[t]);
+    if (size == 0) continue;
+    const int first = std::accumulate(placed, placed + t, 0);
+    std::exclusive_scan(start + low[t], start + low[t + 1], start + low[t], first);
+    for (int i = 0; i < n; ++i)
+      if (unsigned(bin[i] - low[t]) < size) order[start[bin[i]]++] = i;
+    // Every start has moved to that of the next bin.
+    std::copy_backward(start + low[t], start + low[t + 1] - 1, start + low[t + 1]);
+    start[low[t]] = first;
+  }
+  start[bins] = n;
 }
 
 std::size_t CpuExec::list_bytes() const {
-  std::size_t sum =
-      begin_.bytes() + count_.bytes() + histogram_.capacity() * sizeof(int) +
-      chunks_.capacity() * sizeof chunks_[0] + pointers_.capacity() * sizeof pointers_[0] +
-      partial_.capacity() * sizeof partial_[0] + in_bins_.capacity() * sizeof in_bins_[0];
+  std::size_t sum = groups_.bytes() + chunks_.capacity() * sizeof chunks_[0] +
+                    pointers_.capacity() * sizeof pointers_[0] +
+                    partial_.capacity() * sizeof partial_[0] +
+                    in_bins_.capacity() * sizeof in_bins_[0];
   for (const auto& c : chunks_) sum += c.bytes();
-  for (const auto& s : scratch_) sum += s.capacity() * sizeof(int);
+  for (const auto& s : scratch_) sum += s.bytes();
   return sum;
 }
 

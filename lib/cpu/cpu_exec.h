@@ -13,6 +13,8 @@
 #include "kernels/pass_measure.h"
 #include "lib/base/stage_clock.h"
 #include "lib/cpu/host_buffer.h"
+#include "lib/cpu/lane_sums.h"
+#include "lib/cpu/list_maker.h"
 #include "lib/plan/memory.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -20,19 +22,27 @@ namespace pbf::inline PBF_VARIANT {
 class CpuExec {
  public:
   using Lists = ChunkedLists;
-  static constexpr std::size_t padding = 0;
+  /// Rows that the lanes of the last group may read; the lists are filled up with the first of
+  /// them.
+  static constexpr std::size_t padding = 16;
+  /// The order of a sort may stand where its gather writes the ids: each is read before.
+  static constexpr bool order_in_place = true;
   template <class T>
   using Buffer = HostBuffer<T>;
 
   /// threads >= 1. list_entries: room per particle for its neighbours, at first
   /// (lib/plan/memory.h); pages that stay empty are never touched.
-  explicit CpuExec(int threads, int list_entries = 34)
-      : threads_(threads), list_entries_(list_entries), scratch_(std::size_t(threads)) {}
+  explicit CpuExec(int threads, int list_entries = 37, Simd simd = chosen_simd())
+      : threads_(threads),
+        list_entries_(list_entries),
+        simd_(simd),
+        scratch_(std::size_t(threads)) {}
 
   void begin() { clock_.begin(); }
   void mark(const char* stage) { clock_.mark(stage); }
   const StageClock& clock() const { return clock_; }
   int threads() const { return threads_; }
+  Simd simd() const { return simd_; }
 
   /// Copies n elements to an array of this executor.
   template <class T>
@@ -46,11 +56,18 @@ class CpuExec {
     if (n) std::memcpy(host, from, n * sizeof(T));
   }
 
-  /// pass(i) for i in 0..n-1. Dynamic pieces: particles at the surface have fewer neighbours.
+  /// pass(i) for i in 0..n-1. Dynamic pieces: particles at the surface have fewer neighbours, and
+  /// another program may take a core for a while.
   template <class Pass>
   void for_each(int n, const Pass& pass) {
-#pragma omp parallel for schedule(dynamic, 1024) num_threads(threads_) if (n > 1024)
-    for (int i = 0; i < n; ++i) pass(i);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (n > kChunk)
+    for (int first = 0; first < n; first += kPiece) {
+      const int last = std::min(n - first, kPiece) + first;
+      if constexpr (requires { typename Pass::Sum; })
+        sum_over_neighbors(simd_, pass, first, last);
+      else
+        for (int i = first; i < last; ++i) pass(i);
+    }
   }
 
   /// Sum of pass(i): a tree over every kMeasureBlock particles, then those sums in order.
@@ -122,59 +139,43 @@ class CpuExec {
   template <class Real>
   Lists build_lists(const Vec4<Real>* position, const int* bin_start, const Params<Real>& p) {
     const int chunks = (p.n + kChunk - 1) / kChunk;
+    const int bits = lane_bits(simd_, sizeof(Real)), groups_per_chunk = kChunk >> bits;
     chunks_.resize(std::size_t(chunks));
     pointers_.resize(std::size_t(chunks));
-    begin_.resize(std::size_t(p.n));
-    count_.resize(std::size_t(p.n));
+    groups_.resize(std::size_t(chunks) * std::size_t(groups_per_chunk));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (chunks > 1)
     for (int c = 0; c < chunks; ++c) {
-      std::vector<int>& found = scratch_[std::size_t(omp_get_thread_num())];
-      if (found.empty()) found.resize(std::size_t(cpu_scratch_entries(list_entries_)));
-      std::size_t used = 0;
-      for (int i = c * kChunk; i < p.n && i < (c + 1) * kChunk; ++i) {
-        // Room for every candidate first, so that the loop below only writes and counts.
-        std::size_t candidates = 0;
-        for_each_run(xyz(position[i]), bin_start, p,
-                     [&](int b, int e) { candidates += std::size_t(e - b); });
-        if (found.size() < used + candidates) found.resize((used + candidates) * 5 / 4);
-        int* out = found.data() + used;
-        begin_[std::size_t(i)] = std::uint32_t(used);
-        const Vec3<Real> xi = xyz(position[i]);
-        for_each_run(xi, bin_start, p, [&](int b, int e) {
-          for (int j = b; j < e; ++j) {
-            const Vec3<Real> d = xi - xyz(position[j]);
-            *out = j;
-            out += (dot(d, d) < Real(1)) & (j != i);
-          }
-        });
-        const std::size_t end = std::size_t(out - found.data());
-        count_[std::size_t(i)] = std::uint32_t(end - used);
-        used = end;
-      }
+      ListScratch& scratch = scratch_[std::size_t(omp_get_thread_num())];
+      scratch.reserve(list_entries_);
+      const int first = c * kChunk, last = std::min(p.n - first, kChunk) + first;
+      const std::size_t used =
+          make_lists(simd_, position, bin_start, p, first, last,
+                     groups_.data() + std::size_t(c) * std::size_t(groups_per_chunk), scratch);
       HostBuffer<int>& mine = chunks_[std::size_t(c)];
       // Grow with some air, shrink only when far too large: sizes change little between updates.
       const std::size_t room = std::size_t(std::min(kChunk, p.n - c * kChunk) * list_entries_);
       if (mine.size() < used || mine.size() > 2 * std::max(used, room))
-        mine.resize(used > room ? used + used / 8 : room);
-      std::memcpy(mine.data(), found.data(), used * sizeof(int));
+        mine.resize(used > room ? used + used / 16 : room);
+      std::memcpy(mine.data(), scratch.found.data(), used * sizeof(int));
       pointers_[std::size_t(c)] = mine.data();
     }
-    return {pointers_.data(), begin_.data(), count_.data()};
+    return {pointers_.data(), groups_.data(), bits, p.n};
   }
 
   std::size_t list_bytes() const;
 
  private:
   static constexpr int kChunk = 1 << ChunkedLists::chunk_bits;
+  static constexpr int kPiece = 256;  ///< of a pass: whole groups of lists, a few microseconds
   int threads_, list_entries_;
+  Simd simd_;
   StageClock clock_;
   std::vector<MeasureSums> partial_;
   std::vector<std::int64_t> in_bins_;
-  std::vector<std::vector<int>> scratch_;  ///< per thread
+  std::vector<ListScratch> scratch_;  ///< per thread
   std::vector<HostBuffer<int>> chunks_;
   std::vector<const int*> pointers_;
-  HostBuffer<std::uint32_t> begin_, count_;
-  std::vector<int> histogram_;  ///< threads x bins
+  HostBuffer<ChunkedLists::Group> groups_;
 };
 
 }  // namespace pbf::inline PBF_VARIANT

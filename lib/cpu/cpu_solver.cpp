@@ -88,6 +88,7 @@ class CpuSolver final : public Solver {
     i.backend = "cpu";
     i.precision = sizeof(Real) == 8 ? "double" : "float";
     i.device = cpu_model();
+    i.driver = simd_name(exec_.simd());
     i.threads = exec_.threads();
     i.vol = plan_.vol;
     i.wall_scale = plan_.wall_scale;

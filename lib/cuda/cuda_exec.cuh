@@ -85,6 +85,7 @@ class CudaExec {
  public:
   using Lists = TransposedLists;
   static constexpr std::size_t padding = 1;
+  static constexpr bool order_in_place = false;
   template <class T>
   using Buffer = DeviceBuffer<T>;
 

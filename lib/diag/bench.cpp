@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 
 #include "lib/base/stage_clock.h"
 #include "lib/plan/plan.h"
@@ -59,13 +60,17 @@ std::vector<StageTime> per_update(const std::vector<StageTime>& before,
 void time_state(Solver& solver, const BenchSettings& s, BenchRow& row) {
   row.first_update = solver.updates_done();
   const auto before = solver.timings();
-  std::vector<double> ms;
+  std::vector<double> ms, cpu_ms;
   for (int r = 0; r < s.repeats; ++r) {
     const Stopwatch watch;
+    const std::clock_t cpu = std::clock();
     solver.step(s.updates);  // returns when the device has done them
     ms.push_back(watch.seconds() * 1e3 / s.updates);
+    cpu_ms.push_back(double(std::clock() - cpu) * 1e3 / CLOCKS_PER_SEC / s.updates);
   }
   std::sort(ms.begin(), ms.end());
+  std::sort(cpu_ms.begin(), cpu_ms.end());
+  row.cpu_ms_median = cpu_ms[cpu_ms.size() / 2];
   row.ms_median = ms[ms.size() / 2];
   row.ms_min = ms.front();
   row.ms_max = ms.back();

@@ -9,7 +9,7 @@
 
 #ifdef PBF_HAS_DEFECT
 namespace pbf::defect {  // compiled a second time, from changed sources (.cmake/defect.cmake)
-std::unique_ptr<Solver> make_cpu_solver(const Scene&, const Plan&, const Particles&);
+std::unique_ptr<Solver> make_cpu_solver(const Scene&, const Plan&, Particles);
 }
 #endif
 

@@ -47,13 +47,14 @@ int downloaded_scalars(const Scene& s) {
 }
 
 void add_state(const Plan& plan, bool guard, const std::string& real, const Adder& add) {
-  // The lists on the device name one particle more, far away (CudaExec::padding).
-  const std::int64_t n = plan.particles, padded = n + (add.on_device ? 1 : 0);
+  // The lists name one particle more, far away, and lanes read further (padding of the executors).
+  const std::int64_t n = plan.particles, padded = n + (add.on_device ? 1 : 16);
   for (const char* name : {"position", "position'", "velocity", "velocity'"})
     add(name, real, 4, padded);
   if (plan.vorticity) add("curl", real, 4, padded);
   add("density", real, 1, n);
-  for (const char* name : {"id", "id'", "bin", "order"}) add(name, "int32", 1, n);
+  for (const char* name : {"id", "id'", "bin"}) add(name, "int32", 1, n);
+  if (add.on_device) add("order", "int32", 1, n);  // else it stands in id'
   const std::int64_t blocks = (n + kMeasureBlock - 1) / kMeasureBlock;
   if (guard) {  // the last good state
     add("kept position", real, 4, n);
@@ -68,10 +69,8 @@ void add_cpu_lists(const Scene& s, const Plan& plan, std::int64_t bins, const Ad
   const std::int64_t n = plan.particles, chunks = (n + 1023) / 1024;
   const int entries = cpu_list_entries(s), threads = s.threads > 0 ? s.threads : usable_threads();
   add("bin_start", "int32", 1, bins + 1);
-  add("bin histogram of each thread", "int32", 1, bins * (n > 16384 ? std::min(threads, 4) : 1));
   add("lists", "int32", 1, n * entries);
-  add("begin of a list", "uint32", 1, n);
-  add("length of a list", "uint32", 1, n);
+  add("groups of lists", "int32", 2, chunks * 1024 / 8);
   add("table of lists", "int64", 3, chunks);
   add("neighbours found by each thread", "int32", 1,
       std::min<std::int64_t>(threads, chunks) * cpu_scratch_entries(entries));
@@ -195,7 +194,7 @@ double rest_neighbors(const Scene& s) {
 }
 
 int cpu_list_entries(const Scene& s) {
-  return std::clamp(int(std::ceil(rest_neighbors(s))), 1, 1 << 20);
+  return std::clamp(int(std::ceil(1.1 * rest_neighbors(s))), 1, 1 << 20);
 }
 
 MemoryPlan plan_memory(const Scene& s, const Plan& plan) {

@@ -52,12 +52,13 @@ struct MemoryPlan {
 /// (4/3) pi (h/d)^3 particles of spacing d.
 double rest_neighbors(const Scene& scene);
 
-/// Room of one list on the CPU: `rest_neighbors`. Lists of 1024 particles share theirs, so it is
-/// the mean that counts; where the fluid is denser the executor takes more.
+/// Room of one list on the CPU: `rest_neighbors`, and a tenth for what fills up groups of lists.
+/// Lists of 1024 particles share theirs, so it is the mean that counts; where the fluid is denser
+/// the executor takes more.
 int cpu_list_entries(const Scene& scene);
-/// Room for what one thread finds in 1024 particles.
+/// Room for the lists that one thread makes: those of 1024 particles, and of one group.
 constexpr std::int64_t cpu_scratch_entries(int list_entries) {
-  return 1024 * std::int64_t(list_entries) + 8 * std::int64_t(list_entries) + 4096;
+  return (1024 + 32) * std::int64_t(list_entries);
 }
 
 /// For the scene's backend and precision (change them in a copy for the others). Pure but for the

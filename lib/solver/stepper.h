@@ -65,7 +65,8 @@ class Stepper {
     // Executors whose lists are padded read one particle more, infinitely far away for any kernel.
     const std::size_t padded = n + Exec::padding;
     for (auto* b : {&position_, &other_position_, &velocity_, &other_velocity_}) b->resize(padded);
-    for (auto* b : {&id_, &other_id_, &bin_, &order_}) b->resize(n);
+    for (auto* b : {&id_, &other_id_, &bin_}) b->resize(n);
+    if (!Exec::order_in_place) order_.resize(n);
     density_.resize(n);
     counts_.resize(1);
     const StepCounts none;
@@ -73,10 +74,14 @@ class Stepper {
     bin_start_.resize(std::size_t(bin_count(p_)) + 1);
     if (p_.vorticity > Real(0)) curl_.resize(padded);
     if (Exec::padding) {
-      const Vec4<Real> far{Real(1e9), Real(1e9), Real(1e9), Real(1)}, zero{0, 0, 0, 0};
-      for (auto* b : {&position_, &other_position_}) exec_.to_device(&far, 1, b->data() + n);
-      for (auto* b : {&velocity_, &other_velocity_}) exec_.to_device(&zero, 1, b->data() + n);
-      if (curl_.size()) exec_.to_device(&zero, 1, curl_.data() + n);
+      const std::vector<Vec4<Real>> far(Exec::padding, {Real(1e9), Real(1e9), Real(1e9), Real(1)}),
+          zero(Exec::padding, {0, 0, 0, 0});
+      const auto fill = [&](const auto& rows, auto& b) {
+        exec_.to_device(rows.data(), rows.size(), b.data() + n);
+      };
+      for (auto* b : {&position_, &other_position_}) fill(far, *b);
+      for (auto* b : {&velocity_, &other_velocity_}) fill(zero, *b);
+      if (curl_.size()) fill(zero, curl_);
     }
     exec_.to_device(position.data(), n, position_.data());
     exec_.to_device(velocity.data(), n, velocity_.data());
@@ -125,11 +130,11 @@ class Stepper {
     StageCheck<Real, Exec> check(exec_, p_, update, limits, fault);
     step_seen([&](const std::string& stage, int sweep) {
       const bool lists = stage == "neighbors";
-      if (lists) exec_.for_each(p_.n, ListSizePass<Lists>{lists_, order_.data()});  // free by now
-      check.look(stage, sweep,
-                 {(stage == "lambda" ? other_position_ : position_).data(), velocity_.data(),
-                  stage == "density" ? density_.data() : nullptr, id_.data(),
-                  lists ? order_.data() : nullptr});
+      if (lists) exec_.for_each(p_.n, ListSizePass<Lists>{lists_, order()});  // free by now
+      check.look(
+          stage, sweep,
+          {(stage == "lambda" ? other_position_ : position_).data(), velocity_.data(),
+           stage == "density" ? density_.data() : nullptr, id_.data(), lists ? order() : nullptr});
     });
     return check.event();
   }
@@ -259,11 +264,14 @@ class Stepper {
     density_is_current_ = false;
   }
 
+  /// n numbers: the order of a sort, free after it.
+  int* order() { return (Exec::order_in_place ? other_id_ : order_).data(); }
+
   /// Runs the pass that gives every particle its bin, sorts and gathers the particles by bin (as
   /// predicted, with `moving`), makes the lists.
   template <bool moving, class First>
   void reorder(const char* stage, const First& first) {
-    exec_.sort_by_bin(stage, first, p_.n, bin_count(p_), order_.data(), bin_start_.data(),
+    exec_.sort_by_bin(stage, first, p_.n, bin_count(p_), order(), bin_start_.data(),
                       GatherPass<Real, moving>{p_, position_.data(), velocity_.data(), id_.data(),
                                                other_position_.data(), other_velocity_.data(),
                                                other_id_.data(), counts_.data()});

@@ -12,15 +12,15 @@ namespace {
 
 /// Positions in units of h; checks every list against brute force, in the same precision.
 template <class Real>
-void check_lists(std::vector<Vec4<Real>> x, Vec3<Real> box, int nx, int ny, int nz,
-                 int threads = 2) {
+void check_lists(Simd simd, const std::vector<Vec4<Real>>& x, Vec3<Real> box, int nx, int ny,
+                 int nz, int threads) {
   Params<Real> p;
   p.n = int(x.size());
   p.box = box;
   p.cells_x = 2 * nx;
   p.cells_y = ny;
   p.cells_z = nz;
-  CpuExec exec(threads);
+  CpuExec exec(threads, 37, simd);
   std::vector<int> cell(x.size()), order(x.size()), start(std::size_t(bin_count(p)) + 1);
   for (int i = 0; i < p.n; ++i) cell[std::size_t(i)] = bin_of(xyz(x[std::size_t(i)]), p);
   exec.sort(cell.data(), p.n, bin_count(p), order.data(), start.data());
@@ -45,6 +45,16 @@ void check_lists(std::vector<Vec4<Real>> x, Vec3<Real> box, int nx, int ny, int 
     }
     REQUIRE(lists.size(i) == int(found.size()));
     REQUIRE(found == expected);  // the order too: ascending
+  }
+}
+
+/// With all vector instructions that there are.
+template <class Real>
+void check_lists(const std::vector<Vec4<Real>>& x, Vec3<Real> box, int nx, int ny, int nz,
+                 int threads = 2) {
+  for (const Simd simd : usable_simd()) {
+    CAPTURE(simd_name(simd));
+    check_lists(simd, x, box, nx, ny, nz, threads);
   }
 }
 

@@ -30,10 +30,11 @@ seeded_defect(stale_grid neighbors lib/solver/stepper.h
     lists_ = exec_.build_lists(position_.data()]]
   [[exec_.mark("grid");
     lists_ = exec_.build_lists(other_position_.data()]])
-seeded_defect(last_neighbour_skipped neighbors kernels/neighbors.h
-  [[const int* end = e + count[i];]] [[const int* end = e + (count[i] ? count[i] - 1 : 0);]])
-seeded_defect(short_cutoff neighbors lib/cpu/cpu_exec.h
-  [[(dot(d, d) < Real(1))]] [[(dot(d, d) < Real(0.98))]])
+seeded_defect(last_neighbour_skipped neighbors lib/cpu/list_maker.h
+  [[close_to(simd, c, x, i + l, out) - out);]]
+  [[std::max<std::ptrdiff_t>(close_to(simd, c, x, i + l, out) - out, 1) - 1);]])
+seeded_defect(short_cutoff neighbors lib/cpu/close_pairs.h
+  [[kCutoffSquared = 1;]] [[kCutoffSquared = 0.98f;]])
 
 # density
 seeded_defect(kernel_constant density kernels/smoothing.h
@@ -46,12 +47,14 @@ seeded_defect(wrong_mass density lib/solver/params.h
 seeded_defect(wall_density_missing density kernels/pass_lambda.h
   [[(Real(1) + s.shape) + wall.density;]] [[(Real(1) + s.shape);]])
 seeded_defect(float_for_double density kernels/pass_lambda.h
-  [[if constexpr (with_density) s.shape += density_shape<Real, S>(q2, t);]]
-  [[if constexpr (with_density) s.shape += Real(float(density_shape<Real, S>(q2, t)));]])
+  [[(Real(1) + s.shape) + wall.density;
+      density[i] = rho;]]
+  [[Real(float(Real(1) + s.shape)) + wall.density;
+      density[i] = rho;]])
 
 # lambda
 seeded_defect(lambda_sign lambda kernels/pass_lambda.h
-  [[-c / denominator]] [[c / denominator]])
+  [[? -c / (]] [[? c / (]])
 seeded_defect(relaxation_missing lambda kernels/pass_lambda.h
   [[dot(own_gradient, own_gradient) + p.relaxation;]] [[dot(own_gradient, own_gradient);]])
 seeded_defect(wall_gradient_missing lambda kernels/pass_lambda.h
@@ -59,7 +62,7 @@ seeded_defect(wall_gradient_missing lambda kernels/pass_lambda.h
 seeded_defect(wall_gradient_side lambda kernels/boundary.h
   [[(side == 0 ? g.slope : -g.slope)]] [[g.slope]])
 seeded_defect(two_sided_by_mistake lambda kernels/pass_lambda.h
-  [[p.two_sided ? c : max2(c, Real(0))]] [[c]])
+  [[return !p.two_sided && c < Real(0) ? Real(0) : c;]] [[return c;]])
 
 # delta
 seeded_defect(s_corr_sign delta kernels/pass_delta.h [[w -= p.tensile_k]] [[w += p.tensile_k]])
@@ -70,7 +73,7 @@ seeded_defect(wall_clamp_dropped delta kernels/pass_delta.h
 seeded_defect(velocity_not_updated delta kernels/pass_delta.h
   [[xyz(velocity[i]) + p.inv_dt * (free + (inside - target))]] [[xyz(velocity[i])]])
 seeded_defect(neighbours_lambda_missing delta kernels/pass_delta.h
-  [[Real w = x.w + y.w;]] [[Real w = x.w + x.w;]])
+  [[V w = x.w + y.w;]] [[V w = x.w + x.w;]])
 seeded_defect(s_corr_exponent delta kernels/pass_delta.h
   [[x = x * x;
     return x * x;]] [[return x * x;]])
@@ -90,12 +93,16 @@ seeded_defect(vorticity_at_surface vorticity kernels/pass_vorticity.h
   [[a.x.w * Real(0.75) > Real(1)]] [[a.x.w * Real(0.5) > Real(1)]])
 
 # Other arithmetic, as another backend may have it.
-seeded_defect(clean_reverse_sums none kernels/neighbors.h
-  [[for (; e != end; ++e) f(*e);]] [[while (end != e) f(*--end);]])
+seeded_defect(clean_reverse_sums none kernels/lanes.h
+  [[pass.lists.group(i);
+  for (int left = pass.lists.rounds(i); left > 0; --left, entry += W)]]
+  [[pass.lists.group(i) + pass.lists.rounds(i) * W;
+  for (int left = pass.lists.rounds(i); left > 0 && (entry -= W); --left)]])
 seeded_defect(clean_reciprocal_root none kernels/vec3.h
   [[const Real q = square_root(q_squared);
   return {q, Real(1) / q};]]
   [[const Real inverse = Real(1) / square_root(q_squared);
   return {q_squared * inverse, inverse};]])
 seeded_defect(clean_unfused_division none kernels/pass_lambda.h
-  [[-c / denominator]] [[-c * (Real(1) / denominator)]])
+  [[-c / (crowd(rho, p) * denominator)]]
+  [[-c * (Real(1) / (crowd(rho, p) * denominator))]])

@@ -1,0 +1,39 @@
+// Which vector instructions the CPU backend uses: chosen when a solver is made, from what the
+// processor has, so that one program runs everywhere. The results are the same bits with each.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "kernels/hd.h"
+
+// Functions compiled for more than the program's baseline. What they call is inlined into them.
+#if defined(__x86_64__)
+#define PBF_HAS_AVX 1
+#define PBF_AVX2 __attribute__((target("avx2,popcnt")))
+#define PBF_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw,popcnt")))
+#endif
+
+namespace pbf::inline PBF_VARIANT {
+
+/// scalar: one particle at a time. baseline: vectors of 16 bytes, SSE2 on x86-64, what the compiler
+/// makes of them elsewhere.
+enum class Simd { scalar, baseline, avx2, avx512 };
+
+const char* simd_name(Simd simd);
+
+/// All that this processor and this build have, the widest last.
+std::vector<Simd> usable_simd();
+
+/// The widest one, or what the environment variable PBF_SIMD names (scalar, baseline, avx2,
+/// avx512). Throws Error(bad_input) for another word, Error(unavailable) for what is not usable.
+Simd chosen_simd();
+
+/// Particles that one vector holds, for scalars of `bytes` bytes, as a power of 2.
+constexpr int lane_bits(Simd simd, std::size_t bytes) {
+  if (simd == Simd::scalar) return 0;
+  return (bytes == 4 ? 2 : 1) + int(simd) - int(Simd::baseline);
+}
+
+}  // namespace pbf::inline PBF_VARIANT
