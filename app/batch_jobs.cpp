@@ -12,6 +12,7 @@
 #include <cstring>
 #include <thread>
 
+#include "app/signals.h"
 #include "lib/base/error.h"
 
 namespace pbf {
@@ -49,6 +50,7 @@ JobPool::Job JobPool::start(std::size_t index, const std::vector<std::string>& a
   const int err = memfd_create("pbf-batch", MFD_CLOEXEC);
   const int out = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   const pid_t parent = getpid();
+  const HeldSignals held;  // a limit of the batch may pass before the run listens
   const pid_t pid = err < 0 || out < 0 ? -1 : fork();
   if (pid < 0)
     throw Error(ExitCode::unavailable, std::string("batch: no process can be started: ") +

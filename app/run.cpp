@@ -177,6 +177,7 @@ int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver
 }  // namespace
 
 int command_run(const RunOptions& options) {
+  watch_signals();
   const Stopwatch wall;
   StageClock clock;
   const LoadedScene loaded = load_scene_or_run(options.scene, all_overrides(options));
@@ -208,7 +209,6 @@ int command_run(const RunOptions& options) {
       return 0;
     }
   }
-  watch_signals();
   // A new folder comes last: a scene that cannot run leaves nothing behind.
   auto solver = make_solver(scene, plan, emit_particles(scene, dir));
   double solver_init = 0;  // the solver reports its own part of "init"

@@ -1,7 +1,5 @@
 #include "app/signals.h"
 
-#include <csignal>
-
 namespace pbf {
 namespace {
 
@@ -22,12 +20,29 @@ void watch(int signal, void (*handler)(int)) {
   sigaction(signal, &action, nullptr);
 }
 
+sigset_t watched() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int s : kStopping) sigaddset(&set, s);
+  sigaddset(&set, SIGUSR1);
+  return set;
+}
+
 }  // namespace
 
 void watch_signals() {
   for (const int s : kStopping) watch(s, pbf_on_stop);
   watch(SIGUSR1, pbf_on_save);
+  const sigset_t set = watched();
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }
+
+HeldSignals::HeldSignals() {
+  const sigset_t set = watched();
+  pthread_sigmask(SIG_BLOCK, &set, &before_);
+}
+
+HeldSignals::~HeldSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
 std::string signal_seen() { return seen == 0 ? "" : seen == SIGTERM ? "SIGTERM" : "SIGINT"; }
 

@@ -156,7 +156,7 @@ class CpuExec {
       const std::size_t room = std::size_t(std::min(kChunk, p.n - c * kChunk) * list_entries_);
       if (mine.size() < used || mine.size() > 2 * std::max(used, room))
         mine.resize(used > room ? used + used / 16 : room);
-      std::memcpy(mine.data(), scratch.found.data(), used * sizeof(int));
+      std::copy_n(scratch.found.data(), used, mine.data());  // of none: both may be null
       pointers_[std::size_t(c)] = mine.data();
     }
     return {pointers_.data(), groups_.data(), bits, p.n};

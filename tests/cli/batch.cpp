@@ -133,6 +133,20 @@ TEST_CASE("a batch of a list takes the settings of its lines, and wrong lists ar
   }
 }
 
+TEST_CASE(
+    "a limit of a batch that passes before a run listens to signals stops it like any other") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  for (const char* limit : {"0.003", "0.006", "0.012", "0.024"}) {
+    CAPTURE(limit);
+    const Outcome o = pbf::test::pbf(
+        {"batch", "tiny.yaml", "--set", "time.end=9000", "--out", "o", "--max-walltime", limit},
+        folder.path());
+    CHECK(o.code == 75);
+    CHECK_FALSE(has(read_text(folder / "o/summary.csv"), "killed by"));
+  }
+}
+
 TEST_CASE("the Slurm script of a batch runs every run as a task and requeues those that stop") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());

@@ -74,6 +74,13 @@ std::set<std::string> linked_libraries() {
   return names;
 }
 
+/// The number that follows `text` in `all`.
+double number_after(const std::string& all, const std::string& text) {
+  const auto at = all.find(text);
+  REQUIRE(at != std::string::npos);
+  return std::stod(all.substr(at + text.size()));
+}
+
 double mib_of_peak(const std::string& summary) {
   const auto at = summary.find("peak memory");
   std::istringstream in(summary.substr(at + 11));
@@ -134,6 +141,8 @@ TEST_CASE("the OpenGL library is mapped by a run that draws: the control of the 
 }
 #endif
 
+// AddressSanitizer has memory of its own, several times that of the run.
+#ifndef __SANITIZE_ADDRESS__
 TEST_CASE("the peak memory of a run is that of one particle and the arrays of the plan, to 5 %") {
   const Scratch folder;
   const auto scene = [&](const std::string& count, const std::string& spacing) {
@@ -161,12 +170,12 @@ TEST_CASE("the peak memory of a run is that of one particle and the arrays of th
     CAPTURE(count);
     const std::string path = scene(count, spacing);
     const Outcome plan = pbf::test::pbf({"plan", path, "--json"}, folder.path());
-    const std::string member = "\"host_arrays\":";
-    const double arrays = std::stod(plan.out.substr(plan.out.find(member) + member.size())) / 1e6;
+    const double arrays = number_after(plan.out, "\"host_arrays\":") / 1e6;
     const double measured = peak(path);
     CHECK(measured == Approx(base + arrays).epsilon(0.05));
   }
 }
+#endif
 
 TEST_CASE("bench --calibrate stores what plan estimates the time of an update from") {
   const Scratch folder;
@@ -191,7 +200,7 @@ TEST_CASE("bench --calibrate stores what plan estimates the time of an update fr
   CHECK(has(before.out, "not known"));
   CHECK(has(before.out, "--calibrate"));
   CHECK(has(after.out, " ms, from"));
-  CHECK(has(json.out, "\"time_per_update_ms\":0."));
+  CHECK(number_after(json.out, "\"time_per_update_ms\":") > 0);
   CHECK(has(other.out, "not known"));  // another precision: no guess
   CHECK(bad.code == 2);
   CHECK(has(bad.err, "not a line of a calibration"));
