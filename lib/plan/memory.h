@@ -33,12 +33,14 @@ struct FixedMemory {
   std::string name;
   std::int64_t bytes = 0;
   bool on_device = false;
+  bool after_start = false;  ///< not there yet while the solver is made
 };
 
 struct MemoryPlan {
   std::vector<PlanArray> arrays;
   std::vector<FixedMemory> fixed;
-  /// Peaks of the arrays alone. Host: what is resident, pages that are never touched left out.
+  /// Peaks less the fixed memory. Host: what is resident, pages that are never touched left out;
+  /// arrays of the start lie where fixed memory comes later, and only what exceeds it counts.
   std::int64_t host_arrays = 0, device_arrays = 0;
 
   /// What the solver holds where it runs: SolverInfo.bytes after a measure and a download.
