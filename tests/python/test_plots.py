@@ -31,6 +31,27 @@ def test_speedup_is_the_quotient_of_the_times_in_the_table(tools, tmp_path):
         assert float(ratio) == pytest.approx(ms[scene, "cpu", n] / ms[scene, "cuda", n], rel=1e-3)
 
 
+def test_time_per_particle_takes_cpu_time_of_one_thread_and_wall_time_of_more(tools, tmp_path):
+    row = "bench,cpu,A,{v},float,{t},{n},late,{ms},{ms},{ms},{cpu}\n"
+    (tmp_path / "cpu.csv").write_text(
+        "scene,backend,device,driver,precision,threads,n_particles,state,ms_per_step_median,ms_min,"
+        "ms_max,cpu_ms_per_step_median\n" +
+        "".join(row.format(v=v, t=t, n=n, ms=ms, cpu=cpu) for v, t, n, ms, cpu in (
+            ("avx2", 1, 1000, 4, 2), ("avx2", 1, 4000, 20, 10), ("avx2", 2, 1000, 3, 6),
+            ("scalar", 1, 1000, 9, 8))))
+    code, out, _ = tools("plot-time", tmp_path / "cpu.csv", "-o", tmp_path / "a.png")
+    lines = out.splitlines()
+    assert code == 0 and drawn(tmp_path / "a.png")
+    assert lines[0].split() == ("cpu, float, 1 thread, avx2 1000: 2 us 4000: 2.5 us greatest / least "
+                                "1.25").split()
+    assert "2 threads" in lines[1] and "1000: 3 us" in lines[1]
+    assert "scalar" in lines[2] and "1000: 8 us" in lines[2]
+    out = tools("plot-time", tmp_path / "cpu.csv", "--setup", "cpu:2", "-o", tmp_path / "a.png")[1]
+    assert len(out.splitlines()) == 2
+    code, _, err = tools("plot-time", tmp_path / "cpu.csv", "--setup", "cpu:7")
+    assert code == 2 and "no rows for cpu, 7 threads" in err
+
+
 def test_stages_sum_to_the_whole_update_and_groups_lose_nothing(tools, tmp_path):
     rows = Table({"n_particles": np.array([10.0, 20.0]), "ms_per_step_median": np.array([8.0, 9]),
                   "ms_grid": np.array([1.0, 1]), "ms_lambda": np.array([3.0, 4]),

@@ -12,6 +12,7 @@ from .errors import ToolError
 # Command -> what it does; the module has the same name with _ for -.
 COMMANDS = {
     "plot-speedup": "speed-up of one backend over another against the number of particles",
+    "plot-time": "time per particle and update against the number of particles",
     "plot-stages": "share of every stage in the time of an update, stacked",
     "plot-energy": "energies of runs over time",
     "plot-study": "error against run time, with the Pareto front",

@@ -78,13 +78,17 @@ class Setup:
                  f"{self.threads} thread{'s' if self.threads != 1 else ''}"]
         return ", ".join(p for p in parts if p)
 
-    def rows(self, table: Table) -> Table:
-        """The rows of this setup. BadInput when none fits, or when what is left open is not one."""
+    def mask(self, table: Table) -> np.ndarray:
+        """Which rows are of this setup, one bool per row."""
         mask = table["backend"] == self.backend
         for name, value in (("threads", self.threads), ("precision", self.precision)):
             if value is not None:
                 mask &= table[name] == value
-        rows = table.where(mask)
+        return mask
+
+    def rows(self, table: Table) -> Table:
+        """The rows of this setup. BadInput when none fits, or when what is left open is not one."""
+        rows = table.where(self.mask(table))
         if not len(rows):
             there = sorted({f"{b}:{t:g}:{p}" for b, t, p in
                             zip(table["backend"], table["threads"], table["precision"])})
