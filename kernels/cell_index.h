@@ -5,16 +5,19 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Cell coordinate of x along one axis, clamped to the grid; NaN goes to 0. The clamp keeps the
-/// search exact for particles outside the grid: the map is monotone, so two particles closer than
-/// the edge of a cell still lie in the same or in adjacent cells.
+/// Cell coordinate of x along one axis; NaN goes to 0. The grid is mirrored at its ends, again and
+/// again: that keeps the search exact for particles outside of it, since neighbouring cells stay
+/// the same or neighbours, and spreads them over the grid. (In the cells of the rim, particles that
+/// have left through an open face would find each other by looking at all pairs.)
 template <class Real>
 PBF_HD int cell_coordinate(Real x, Real inv_cell, int cells) {
+  constexpr int kFarthest = 1 << 30;
   Real s = x * inv_cell;
-  if (!(s > Real(0))) return 0;
-  if (s >= Real(cells)) return cells - 1;
-  int c = int(s);
-  return c < cells ? c : cells - 1;
+  if (!(s >= Real(0))) s = -s;  // mirrored at 0
+  int c = s < Real(kFarthest) ? int(s) : s >= Real(kFarthest) ? kFarthest - 1 : 0;
+  if (c < cells) return c;
+  c %= 2 * cells;
+  return c < cells ? c : 2 * cells - 1 - c;
 }
 
 /// x counts half cells: the runs of candidates below are then 2.5 cells long, not 3.

@@ -81,6 +81,11 @@ TEMPLATE_TEST_CASE("neighbour lists hold exactly the pairs closer than h", "", f
   SECTION("negative coordinates and points far outside the grid") {
     check_lists<R>(random_points<R>(1500, -4, 7), {3, 3, 3}, 3, 3, 3);
   }
+  SECTION("points many grids away, on both sides of a place where the grid is mirrored") {
+    check_lists<R>(random_points<R>(1500, 27, 33), {3, 3, 3}, 6, 3, 3);
+    check_lists<R>(random_points<R>(1500, -33, -27), {3, 3, 3}, 6, 3, 3);
+    check_lists<R>(random_points<R>(1500, 1e5 - 3, 1e5 + 3), {3, 3, 3}, 7, 3, 4);
+  }
   SECTION("a lattice on the faces and corners of the cells, pairs exactly at distance h") {
     std::vector<Vec4<R>> x;
     for (int k = 0; k < 1000; ++k)
@@ -109,6 +114,18 @@ TEMPLATE_TEST_CASE("neighbour lists hold exactly the pairs closer than h", "", f
     check_lists<R>({}, {1, 1, 1}, 2, 2, 2);
     check_lists<R>({{R(0.5), R(0.5), R(0.5), 0}}, {1, 1, 1}, 2, 2, 2);
   }
+}
+
+TEST_CASE("particles that have left the grid are spread over it, not piled up at its rim") {
+  Params<double> p;
+  p.cells_x = 8, p.cells_y = p.cells_z = 4;
+  std::vector<int> count(std::size_t(bin_count(p)));
+  const int n = 100000;
+  for (const auto& x : random_points<double>(n, -1000, 1000))
+    ++count[std::size_t(bin_of(xyz(x), p))];
+  const double mean = double(n) / double(count.size());
+  CHECK(*std::min_element(count.begin(), count.end()) > mean / 2);
+  CHECK(*std::max_element(count.begin(), count.end()) < mean * 2);
 }
 
 TEST_CASE("more than 16384 particles are sorted the same way by 1, 2 and 5 threads") {
