@@ -36,6 +36,41 @@ PBF_HD HalfSpace<Real> half_space_poly6(Real q) {
   return {max2(Real(0.5) - a * q * p, Real(0)), -a * u2 * u2};
 }
 
+/// In two dimensions D = (1-q)^m P(q), P = 1/2 + c1 q + c2 q^2 + c3 q^3 + c4 q^4, fitted to the
+/// integral over the half plane, which holds arc functions (how near: kernels/README.md (9)); the
+/// slope is this polynomial's own derivative, (1-q)^(m-1) ((1-q) P' - m P).
+template <int m, class Real>
+PBF_HD HalfSpace<Real> half_plane(Real q, Real c1, Real c2, Real c3, Real c4) {
+  static_assert(m == 4 || m == 5);
+  if (!(q < Real(1))) return {};
+  q = max2(q, Real(0));
+  const Real t = Real(1) - q, t3 = t * t * t, before = m == 5 ? t3 * t : t3;
+  const Real p = Real(0.5) + q * (c1 + q * (c2 + q * (c3 + q * c4)));
+  const Real dp = c1 + q * (Real(2) * c2 + q * (Real(3) * c3 + q * (Real(4) * c4)));
+  return {before * t * p, before * (t * dp - Real(m) * p)};
+}
+template <class Real>
+PBF_HD HalfSpace<Real> half_plane_spiky(Real q) {
+  return half_plane<5>(q, Real(0.90627), Real(-0.19345), Real(1.18431), Real(0));
+}
+template <class Real>
+PBF_HD HalfSpace<Real> half_plane_poly6(Real q) {
+  return half_plane<4>(q, Real(0.83646), Real(0.31849), Real(-0.09827), Real(-0.75489));
+}
+
+/// The half space of the density kernel, and of the gradient's, with the dimensions of S.
+template <class Real, Smoothing S>
+PBF_HD HalfSpace<Real> gradient_half_space(Real q) {
+  if constexpr (dimensions_of(S) == 2) return half_plane_spiky(q);
+  return half_space_spiky(q);
+}
+template <class Real, Smoothing S>
+PBF_HD HalfSpace<Real> density_half_space(Real q) {
+  if constexpr (!is_paper(S)) return gradient_half_space<Real, S>(q);
+  if constexpr (dimensions_of(S) == 2) return half_plane_poly6(q);
+  return half_space_poly6(q);
+}
+
 /// Contribution of all walls at x: density in units of rho0 and gradient in rho0/h.
 template <class Real>
 struct WallTerm {
@@ -53,18 +88,19 @@ PBF_HD WallTerm<Real> wall_term(Vec3<Real> x, const Params<Real>& p) {
   WallTerm<Real> w;
   if (!p.wall_density) return w;
   const Real one(1);
-  if (x.x >= one && x.y >= one && x.z >= one && x.x <= p.box.x - one && x.y <= p.box.y - one &&
-      x.z <= p.box.z - one)
+  constexpr bool flat = dimensions_of(S) == 2;  // no wall along y
+  if (x.x >= one && (flat || x.y >= one) && x.z >= one && x.x <= p.box.x - one &&
+      (flat || x.y <= p.box.y - one) && x.z <= p.box.z - one)
     return w;
   const Real distance[6] = {x.x, p.box.x - x.x, x.y, p.box.y - x.y, x.z, p.box.z - x.z};
   Real keep_density = one, keep[3] = {one, one, one}, slope[3] = {0, 0, 0};
-  for (int axis = 0; axis < 3; ++axis)
+  for (int axis = 0; axis < 3; axis += flat ? 2 : 1)
     for (int side = 0; side < 2; ++side) {
       const int face = 2 * axis + side;
       const Real q = distance[face] * p.wall_inv_range;
       if (!(p.walls & (1u << face)) || !(q < one)) continue;
-      const HalfSpace<Real> g = half_space_spiky(q);
-      const Real d = S == Smoothing::paper ? half_space_poly6(q).density : g.density;
+      const HalfSpace<Real> g = gradient_half_space<Real, S>(q);
+      const Real d = is_paper(S) ? density_half_space<Real, S>(q).density : g.density;
       keep_density = keep_density * (one - p.wall_scale * d);
       // d/dx of 1 - A D(q/kappa), and the product rule where opposite walls are near each other.
       const Real f = one - p.wall_scale * g.density;

@@ -1,4 +1,5 @@
-// Cells of the uniform grid, linear order with x fastest.
+// Cells of the uniform grid, linear order with x fastest. D: dimensions of the scene; with 2 there
+// is one layer of cells, y is 0.
 #pragma once
 
 #include "kernels/params.h"
@@ -25,53 +26,60 @@ struct Cell {
   int x, y, z;
 };
 
-template <class Real>
+template <int D, class Real>
 PBF_HD Cell cell_of(Vec3<Real> x, const Params<Real>& p) {
   return {cell_coordinate(x.x, p.inv_cell + p.inv_cell, p.cells_x),
-          cell_coordinate(x.y, p.inv_cell, p.cells_y), cell_coordinate(x.z, p.inv_cell, p.cells_z)};
+          D == 2 ? 0 : cell_coordinate(x.y, p.inv_cell, p.cells_y),
+          cell_coordinate(x.z, p.inv_cell, p.cells_z)};
 }
 
-/// Bins of a half cell: the quarters of its y-z face. Particles are sorted by bin, so that those
-/// next to each other in memory are about half a cell apart and share most of their neighbours.
-constexpr int kBinsPerCell = 4;
+/// Bins of a half cell: the quarters of its y-z face, in two dimensions the halves of its z edge.
+/// Particles are sorted by bin, so that those next to each other in memory are about half a cell
+/// apart and share most of their neighbours.
+constexpr int bins_per_cell(int dimensions) { return dimensions == 2 ? 2 : 4; }
 
-template <class Real>
+template <int D, class Real>
 PBF_HD int bin_of(Vec3<Real> x, const Params<Real>& p) {
-  const Cell c = cell_of(x, p);
+  const Cell c = cell_of<D>(x, p);
   const Real twice = p.inv_cell + p.inv_cell;
+  if constexpr (D == 2) {
+    const int z = cell_coordinate(x.z, twice, 2 * p.cells_z) & 1;
+    return (c.z * p.cells_x + c.x) * bins_per_cell(D) + z;
+  }
   const int y = cell_coordinate(x.y, twice, 2 * p.cells_y) & 1;
   const int z = cell_coordinate(x.z, twice, 2 * p.cells_z) & 1;
-  return ((c.z * p.cells_y + c.y) * p.cells_x + c.x) * kBinsPerCell + 2 * z + y;
+  return ((c.z * p.cells_y + c.y) * p.cells_x + c.x) * bins_per_cell(D) + 2 * z + y;
 }
 
 template <class Real>
 PBF_HD int bin_count(const Params<Real>& p) {
-  return p.cells_x * p.cells_y * p.cells_z * kBinsPerCell;
+  return p.cells_x * p.cells_y * p.cells_z * bins_per_cell(p.dimensions);
 }
 
-/// Calls f(begin, end) for the up to nine runs of particles (rows of half cells along x, from two
-/// before x_low to two after x_high) that hold every particle within one cell edge of a particle
-/// in the cells (x_low..x_high, y, z). `bin_start`: first particle of each bin, and the particle
-/// count as last entry. Order: z, then y, then x: canonical.
-template <class Real, class F>
+/// Calls f(begin, end) for the up to nine (three in two dimensions) runs of particles (rows of half
+/// cells along x, from two before x_low to two after x_high) that hold every particle within one
+/// cell edge of a particle in the cells (x_low..x_high, y, z). `bin_start`: first particle of each
+/// bin, and the particle count as last entry. Order: z, then y, then x: canonical.
+template <int D, class Real, class F>
 PBF_HD void for_each_run(int x_low, int x_high, int y, int z, const int* bin_start,
                          const Params<Real>& p, F&& f) {
   const int x0 = x_low > 2 ? x_low - 2 : 0;
   const int x1 = x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 1;
-  const int y0 = y > 0 ? y - 1 : 0, y1 = y + 1 < p.cells_y ? y + 1 : p.cells_y - 1;
+  const int y0 = D == 3 && y > 0 ? y - 1 : 0;
+  const int y1 = D == 2 ? 0 : y + 1 < p.cells_y ? y + 1 : p.cells_y - 1;
   const int z0 = z > 0 ? z - 1 : 0, z1 = z + 1 < p.cells_z ? z + 1 : p.cells_z - 1;
   for (int k = z0; k <= z1; ++k)
     for (int j = y0; j <= y1; ++j) {
-      const int row = (k * p.cells_y + j) * p.cells_x;
-      f(bin_start[(row + x0) * kBinsPerCell], bin_start[(row + x1 + 1) * kBinsPerCell]);
+      const int row = (D == 2 ? k : k * p.cells_y + j) * p.cells_x;
+      f(bin_start[(row + x0) * bins_per_cell(D)], bin_start[(row + x1 + 1) * bins_per_cell(D)]);
     }
 }
 
 /// The runs of one particle.
-template <class Real, class F>
+template <int D, class Real, class F>
 PBF_HD void for_each_run(Vec3<Real> x, const int* bin_start, const Params<Real>& p, F&& f) {
-  const Cell c = cell_of(x, p);
-  for_each_run(c.x, c.x, c.y, c.z, bin_start, p, f);
+  const Cell c = cell_of<D>(x, p);
+  for_each_run<D>(c.x, c.x, c.y, c.z, bin_start, p, f);
 }
 
 }  // namespace pbf::inline PBF_VARIANT

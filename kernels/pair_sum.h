@@ -2,6 +2,7 @@
 // are shared among threads (one particle each, two particles each, several lanes for one).
 //
 // Such a pass has
+//   D                                  dimensions of the scene
 //   own(i) const                       what particle i brings: position, lambda, ...
 //   other(j) const                     what is gathered from a neighbour
 //   SumOf<V> (value-initialised to 0)  and each(f): f(V&) for every member
@@ -27,10 +28,10 @@ PBF_HD void sum_over_neighbors(const Pass& pass, int i) {
 
 /// |d|^2 in h^2, or a value beyond every kernel for a pair that is switched off: selecting here
 /// costs one instruction and makes every term of the pair zero.
-template <class V>
-PBF_HD V pair_q_squared(Vec3<V> d, bool on) {
-  const V q2 = dot(d, d);
-  return on ? q2 : V(4);
+template <class Vector>
+PBF_HD auto pair_q_squared(Vector d, bool on) {
+  const auto q2 = dot(d, d);
+  return on ? q2 : decltype(dot(d, d))(4);
 }
 
 template <class V, class F>
@@ -39,11 +40,20 @@ PBF_HD void each_component(Vec3<V>& v, F&& f) {
   f(v.y);
   f(v.z);
 }
+template <class V, class F>
+PBF_HD void each_component(Vec2<V>& v, F&& f) {
+  f(v.x);
+  f(v.z);
+}
+template <class V, class F>
+PBF_HD void each_component(V& v, F&& f) {
+  f(v);
+}
 
 /// A sum of one vector.
-template <class V>
+template <class V, int dimensions>
 struct VectorSum {
-  Vec3<V> v;
+  Vec<V, dimensions> v;
   template <class F>
   PBF_HD void each(F&& f) {
     each_component(v, f);
@@ -51,13 +61,13 @@ struct VectorSum {
 };
 
 /// What the two sides bring to a sum over velocity differences.
-template <class V>
+template <class V, int dimensions>
 struct MovingOwn {
-  Vec3<V> x, v;
+  Vec<V, dimensions> x, v;
 };
-template <class V>
-PBF_HD MovingOwn<V> moving_own(const Vec4<V>& x, const Vec4<V>& v) {
-  return {xyz(x), xyz(v)};
+template <int dimensions, class V>
+PBF_HD MovingOwn<V, dimensions> moving_own(const Vec4<V>& x, const Vec4<V>& v) {
+  return {point<dimensions>(x), point<dimensions>(v)};
 }
 template <class V>
 struct MovingOther {

@@ -22,6 +22,7 @@ struct RestPool {
 template <class Real>
 struct Params {
   int n = 0;                        ///< particles
+  int dimensions = 3;               ///< 2: every y is 0, and v_y
   Real dt = 0, inv_dt = 0;          ///< s, 1/s
   Vec3<Real> gravity;               ///< h/s^2
   Real damping = 1;                 ///< factor on the velocity, once per update
@@ -33,7 +34,7 @@ struct Params {
   bool wall_density = true;         ///< walls contribute to density (boundary: density)
   Real wall_scale = 1;              ///< amplitude of that contribution, kernels/README.md (9)
   Real wall_inv_range = 1;          ///< h over the range of that contribution
-  int cells_x = 1, cells_y = 1, cells_z = 1;  ///< cells_x counts half cells
+  int cells_x = 1, cells_y = 1, cells_z = 1;  ///< cells_x counts half cells; in 2-D cells_y = 1
   Real inv_cell = 1;                          ///< 1/h, one over the edge of a cell (>= h)
   Real vol = 1;                               ///< m/(rho0 h^3), weight of one particle
   bool two_sided = false;                     ///< C = rho - 1 instead of max(rho - 1, 0)

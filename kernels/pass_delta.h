@@ -34,10 +34,11 @@ struct DeltaPass {
   Vec4<Real>* position_out;  ///< out; w = 1/density
   Vec4<Real>* velocity;      ///< in/out, h/s
 
+  static constexpr int D = dimensions_of(S);
   using Own = Vec4<Real>;
   template <class V>
   struct SumOf {
-    Vec3<V> move;
+    Vec<V, D> move;
     V closeness{};  ///< sum of 1/q: beyond any other sum where a neighbour is in the same place
     template <class F>
     PBF_HD void each(F&& f) {
@@ -66,7 +67,7 @@ struct DeltaPass {
     if constexpr (!tensile && Lists::skip_inactive && sizeof(V) == sizeof(Real)) {
       if (x.w + y.w == V(0)) return;  // neither is compressed
     }
-    const Vec3<V> d = xyz(x) - xyz(y);
+    const Vec<V, D> d = point<D>(x) - point<D>(y);
     const V q2 = pair_q_squared(d, on);
     const Root<V> root = root_of(q2);
     const V t = Spiky<Real>::t(root.q);
@@ -75,8 +76,9 @@ struct DeltaPass {
   }
   PBF_HD void finish(int i, const Own& own, const Sum& s) const {
     const Vec3<Real> x = xyz(own);
-    const Vec3<Real> move = s.closeness > Real(0.5e12) ? s.move + separate(i, own) : s.move;
-    const Real a = p.vol * Spiky<Real>::gradient_norm;
+    const Vec3<Real> pairs = in_space(s.move);
+    const Vec3<Real> move = s.closeness > Real(0.5e12) ? pairs + separate(i, own) : pairs;
+    const Real a = p.vol * Spiky<Real, D>::gradient_norm;
     const Vec3<Real> wall = own.w * wall_term<Real, S>(x, p).gradient;
     const Vec3<Real> free = p.step_length * (a * move + wall);
     const Vec3<Real> target = x + free;
@@ -95,7 +97,7 @@ struct DeltaPass {
       const Vec3<Real> d = xyz(own) - xyz(y);
       const Real q2 = dot(d, d);
       if (q2 <= coincident_q_squared<Real>())
-        sum = sum + weight(own, y, Real(0), Real(1)) * separation<Real>(i, j);
+        sum = sum + weight(own, y, Real(0), Real(1)) * separation<Real, D>(i, j);
     });
     return sum;
   }

@@ -14,7 +14,8 @@ struct DensityPass {
   const Vec4<Real>* position;
   Real* density;  ///< out
 
-  using Own = Vec3<Real>;
+  static constexpr int D = dimensions_of(S);
+  using Own = Vec<Real, D>;
   template <class V>
   struct SumOf {
     V shape{};
@@ -26,22 +27,21 @@ struct DensityPass {
   using Sum = SumOf<Real>;
   template <class Index>
   PBF_HD auto own(Index i) const {
-    return xyz(load(position, i));
+    return point<D>(load(position, i));
   }
   template <class Index>
   PBF_HD auto other(Index j) const {
-    return xyz(load(position, j));
+    return point<D>(load(position, j));
   }
   template <class V>
-  PBF_HD void add(SumOf<V>& s, const Vec3<V>& x, const Vec3<V>& y, int, int, bool on) const {
+  PBF_HD void add(SumOf<V>& s, const Vec<V, D>& x, const Vec<V, D>& y, int, int, bool on) const {
     const V q2 = pair_q_squared(x - y, on);
-    s.shape +=
-        density_shape<Real, S>(q2, S == Smoothing::paper ? V(0) : Spiky<Real>::t(root_of(q2).q));
+    s.shape += density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t(root_of(q2).q));
   }
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
     // 1: the particle itself.
-    density[i] =
-        p.vol * density_norm<Real, S>() * (Real(1) + s.shape) + wall_term<Real, S>(x, p).density;
+    density[i] = p.vol * density_norm<Real, S>() * (Real(1) + s.shape) +
+                 wall_term<Real, S>(in_space(x), p).density;
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
@@ -75,11 +75,12 @@ struct LambdaPass {
   Vec4<Real>* position_out;  ///< out: the same position with w = lambda
   Real* density;             ///< out when with_density, else in
 
-  using Own = Vec3<Real>;
+  static constexpr int D = dimensions_of(S);
+  using Own = Vec<Real, D>;
   template <class V>
   struct SumOf {
     V shape{}, squares{};
-    Vec3<V> gradient;
+    Vec<V, D> gradient;
     template <class F>
     PBF_HD void each(F&& f) {
       if constexpr (with_density) f(shape);
@@ -90,15 +91,15 @@ struct LambdaPass {
   using Sum = SumOf<Real>;
   template <class Index>
   PBF_HD auto own(Index i) const {
-    return xyz(load(position, i));
+    return point<D>(load(position, i));
   }
   template <class Index>
   PBF_HD auto other(Index j) const {
-    return xyz(load(position, j));
+    return point<D>(load(position, j));
   }
   template <class V>
-  PBF_HD void add(SumOf<V>& s, const Vec3<V>& x, const Vec3<V>& y, int, int, bool on) const {
-    const Vec3<V> d = x - y;
+  PBF_HD void add(SumOf<V>& s, const Vec<V, D>& x, const Vec<V, D>& y, int, int, bool on) const {
+    const Vec<V, D> d = x - y;
     const V q2 = pair_q_squared(d, on);
     const Root<V> root = root_of(q2);
     const V t = Spiky<Real>::t(root.q), t2 = t * t;
@@ -108,7 +109,7 @@ struct LambdaPass {
     s.gradient = s.gradient + (t2 * root.inverse) * d;
   }
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
-    const WallTerm<Real> wall = wall_term<Real, S>(x, p);
+    const WallTerm<Real> wall = wall_term<Real, S>(in_space(x), p);
     Real rho;
     if constexpr (with_density) {
       rho = p.vol * density_norm<Real, S>() * (Real(1) + s.shape) + wall.density;
@@ -116,13 +117,13 @@ struct LambdaPass {
     } else {
       rho = density[i];
     }
-    const Real a = p.vol * Spiky<Real>::gradient_norm;
-    const Vec3<Real> own_gradient = a * s.gradient + wall.gradient;
+    const Real a = p.vol * Spiky<Real, D>::gradient_norm;
+    const Vec3<Real> own_gradient = a * in_space(s.gradient) + wall.gradient;
     const Real c = constraint(rho, p);
     const Real denominator = a * a * s.squares + dot(own_gradient, own_gradient) + p.relaxation;
     // No neighbour, no wall and no relaxation: nothing to move along.
     const Real lambda = denominator > Real(0) ? -c / (crowd(rho, p) * denominator) : Real(0);
-    position_out[i] = with_w(x, lambda);
+    position_out[i] = with_w(in_space(x), lambda);
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };

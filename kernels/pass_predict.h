@@ -30,13 +30,13 @@ PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p) {
 
 /// The bin of x*. x* itself is computed once more where the particles are gathered, which is
 /// cheaper than writing and reading it.
-template <class Real>
+template <class Real, int D>
 struct PredictPass {
   Params<Real> p;
   const Vec4<Real>*position, *velocity;
   int* bin;  ///< out
   PBF_HD void operator()(int i) const {
-    bin[i] = bin_of(predict(xyz(position[i]), xyz(velocity[i]), p).x, p);
+    bin[i] = bin_of<D>(predict(xyz(position[i]), xyz(velocity[i]), p).x, p);
   }
 };
 
@@ -56,12 +56,12 @@ struct MovePass {
 };
 
 /// The bin of x as it is: for the state before the first update.
-template <class Real>
+template <class Real, int D>
 struct BinPass {
   Params<Real> p;
   const Vec4<Real>* position;
   int* bin;  ///< out
-  PBF_HD void operator()(int i) const { bin[i] = bin_of(xyz(position[i]), p); }
+  PBF_HD void operator()(int i) const { bin[i] = bin_of<D>(xyz(position[i]), p); }
 };
 
 /// Puts the particles in the order of bins; with `moving`, as predicted. Position's w = 1

@@ -7,16 +7,17 @@
 namespace pbf::inline PBF_VARIANT {
 
 /// grad W_ij vol/rho_j, in 1/h; zero for a coincident pair, and when not `on`.
-template <class Real, class V>
-PBF_HD Vec3<V> weighted_gradient(Vec3<V> d, V inv_rho_j, const Params<Real>& p, bool on) {
+template <int D, class Real, class V>
+PBF_HD Vec<V, D> weighted_gradient(Vec<V, D> d, V inv_rho_j, const Params<Real>& p, bool on) {
   const V q2 = pair_q_squared(d, on);
   const Root<V> root = root_of(q2);
   const V t = Spiky<Real>::t(root.q);
-  return (p.vol * Spiky<Real>::gradient_norm * t * t * root.inverse * inv_rho_j) * d;
+  return (p.vol * Spiky<Real, D>::gradient_norm * t * t * root.inverse * inv_rho_j) * d;
 }
 
-/// omega_i = sum_j m/rho_j grad W_ij x (v_j - v_i), 1/s; w = |omega_i|.
-template <class Real, class Lists>
+/// omega_i = sum_j m/rho_j grad W_ij x (v_j - v_i), 1/s; w = |omega_i|. In two dimensions only its
+/// y is summed.
+template <class Real, class Lists, int dimensions>
 struct CurlPass {
   Params<Real> p;
   Lists lists;
@@ -24,25 +25,33 @@ struct CurlPass {
   const Vec4<Real>* velocity;
   Vec4<Real>* curl;  ///< out
 
-  using Own = MovingOwn<Real>;
+  static constexpr int D = dimensions;
+  using Own = MovingOwn<Real, D>;
   template <class V>
-  using SumOf = VectorSum<V>;
-  using Sum = VectorSum<Real>;
+  struct SumOf {
+    decltype(cross(Vec<V, D>{}, Vec<V, D>{})) v{};
+    template <class F>
+    PBF_HD void each(F&& f) {
+      each_component(v, f);
+    }
+  };
+  using Sum = SumOf<Real>;
   template <class Index>
   PBF_HD auto own(Index i) const {
-    return moving_own(load(position, i), load(velocity, i));
+    return moving_own<D>(load(position, i), load(velocity, i));
   }
   template <class Index>
   PBF_HD auto other(Index j) const {
     return moving_other(load(position, j), load(velocity, j));
   }
   template <class V>
-  PBF_HD void add(VectorSum<V>& s, const MovingOwn<V>& a, const MovingOther<V>& b, int, int,
+  PBF_HD void add(SumOf<V>& s, const MovingOwn<V, D>& a, const MovingOther<V>& b, int, int,
                   bool on) const {
-    s.v = s.v + cross(weighted_gradient(a.x - xyz(b.x), b.x.w, p, on), xyz(b.v) - a.v);
+    s.v = s.v + cross(weighted_gradient<D>(a.x - point<D>(b.x), b.x.w, p, on), point<D>(b.v) - a.v);
   }
   PBF_HD void finish(int i, const Own&, const Sum& s) const {
-    curl[i] = with_w(s.v, square_root(dot(s.v, s.v)));
+    const Vec3<Real> omega = in_space(s.v);
+    curl[i] = with_w(omega, square_root(dot(omega, omega)));
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
@@ -70,7 +79,7 @@ PBF_HD CurlOther<V> curl_other(const Vec4<V>& x, V magnitude) {
 /// |omega|. Left out at the surface (density below 0.75 rho0), where the gradient is that of the
 /// missing neighbours. N is no longer a unit vector where |omega| is flat, so it is defined at eta
 /// = 0.
-template <class Real, class Lists>
+template <class Real, class Lists, int dimensions>
 struct VorticityPass {
   Params<Real> p;
   Lists lists;
@@ -78,10 +87,11 @@ struct VorticityPass {
   const Vec4<Real>* curl;
   Vec4<Real>* velocity;  ///< in/out
 
+  static constexpr int D = dimensions;
   using Own = CurlOwn<Real>;
   template <class V>
-  using SumOf = VectorSum<V>;  ///< eta
-  using Sum = VectorSum<Real>;
+  using SumOf = VectorSum<V, D>;  ///< eta
+  using Sum = VectorSum<Real, D>;
   template <class Index>
   PBF_HD auto own(Index i) const {
     return curl_own(load(position, i), load(curl, i));
@@ -91,15 +101,16 @@ struct VorticityPass {
     return curl_other(load(position, j), load(curl, j).w);
   }
   template <class V>
-  PBF_HD void add(VectorSum<V>& s, const CurlOwn<V>& a, const CurlOther<V>& b, int, int,
+  PBF_HD void add(VectorSum<V, D>& s, const CurlOwn<V>& a, const CurlOther<V>& b, int, int,
                   bool on) const {
-    s.v = s.v + (b.magnitude - a.curl.w) * weighted_gradient(xyz(a.x) - xyz(b.x), b.x.w, p, on);
+    s.v = s.v + (b.magnitude - a.curl.w) *
+                    weighted_gradient<D>(point<D>(a.x) - point<D>(b.x), b.x.w, p, on);
   }
   PBF_HD void finish(int i, const Own& a, const Sum& s) const {
     if (a.x.w * Real(0.75) > Real(1)) return;
     const Real size = square_root(dot(s.v, s.v)) + Real(0.1) * a.curl.w + Real(1e-20);
     const Real gain = min2(p.dt * p.vorticity, Real(0.05)) / size;
-    velocity[i] = with_w(xyz(velocity[i]) + gain * cross(s.v, xyz(a.curl)), Real(0));
+    velocity[i] = with_w(xyz(velocity[i]) + gain * cross(in_space(s.v), xyz(a.curl)), Real(0));
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };

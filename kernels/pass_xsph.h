@@ -17,30 +17,30 @@ struct XsphPass {
   Vec4<Real>* velocity_out;
   int* bin;  ///< out
 
-  using Own = MovingOwn<Real>;
+  static constexpr int D = dimensions_of(S);
+  using Own = MovingOwn<Real, D>;
   template <class V>
-  using SumOf = VectorSum<V>;
-  using Sum = VectorSum<Real>;
+  using SumOf = VectorSum<V, D>;
+  using Sum = VectorSum<Real, D>;
   template <class Index>
   PBF_HD auto own(Index i) const {
-    return moving_own(load(position, i), load(velocity, i));
+    return moving_own<D>(load(position, i), load(velocity, i));
   }
   template <class Index>
   PBF_HD auto other(Index j) const {
     return moving_other(load(position, j), load(velocity, j));
   }
   template <class V>
-  PBF_HD void add(VectorSum<V>& s, const MovingOwn<V>& a, const MovingOther<V>& b, int, int,
+  PBF_HD void add(VectorSum<V, D>& s, const MovingOwn<V, D>& a, const MovingOther<V>& b, int, int,
                   bool on) const {
-    const V q2 = pair_q_squared(a.x - xyz(b.x), on);
-    const V shape =
-        density_shape<Real, S>(q2, S == Smoothing::paper ? V(0) : Spiky<Real>::t(root_of(q2).q));
-    s.v = s.v + (shape * b.x.w) * (xyz(b.v) - a.v);
+    const V q2 = pair_q_squared(a.x - point<D>(b.x), on);
+    const V shape = density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t(root_of(q2).q));
+    s.v = s.v + (shape * b.x.w) * (point<D>(b.v) - a.v);
   }
   PBF_HD void finish(int i, const Own& a, const Sum& s) const {
-    const Vec3<Real> v = a.v + (p.xsph * p.vol * density_norm<Real, S>()) * s.v;
+    const Vec3<Real> v = in_space(a.v + (p.xsph * p.vol * density_norm<Real, S>()) * s.v);
     velocity_out[i] = with_w(v, Real(0));
-    if constexpr (more_to_come) bin[i] = bin_of(predict(a.x, v, p).x, p);
+    if constexpr (more_to_come) bin[i] = bin_of<D>(predict(in_space(a.x), v, p).x, p);
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };

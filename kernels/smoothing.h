@@ -1,4 +1,5 @@
-// Smoothing functions in units of h (q = r/h, 0 <= q <= 1), integral 1 over the unit ball.
+// Smoothing functions in units of h (q = r/h, 0 <= q <= 1), integral 1 over the unit ball, or over
+// the unit disc in two dimensions.
 // Mueller, Charypar & Gross 2003, eq. 20 (Poly6) and 21 (Spiky). V: Real, or several of them
 // (kernels/lanes.h).
 #pragma once
@@ -9,14 +10,19 @@ namespace pbf::inline PBF_VARIANT {
 
 /// Which pair of functions a scene uses; a template argument of the pair loops.
 /// consistent: Spiky for the density and, as its derivative, for the gradient;
-/// paper: Poly6 for the density, Spiky for the gradient (Macklin & Mueller 2013).
-enum class Smoothing { consistent, paper };
+/// paper: Poly6 for the density, Spiky for the gradient (Macklin & Mueller 2013); in space and in
+/// the plane.
+enum class Smoothing { consistent, paper, consistent_2d, paper_2d };
+constexpr bool is_paper(Smoothing s) { return s == Smoothing::paper || s == Smoothing::paper_2d; }
+constexpr int dimensions_of(Smoothing s) {
+  return s == Smoothing::consistent_2d || s == Smoothing::paper_2d ? 2 : 3;
+}
 
 constexpr double kPi = 3.14159265358979323846;
 
-template <class Real>
+template <class Real, int dimensions = 3>
 struct Poly6 {
-  static constexpr Real norm = Real(315.0 / (64.0 * kPi));
+  static constexpr Real norm = Real(dimensions == 2 ? 4.0 / kPi : 315.0 / (64.0 * kPi));
   /// (1 - q^2)^3, 0 beyond q = 1; times `norm` it is W.
   template <class V>
   static PBF_HD V shape(V q_squared) {
@@ -25,10 +31,10 @@ struct Poly6 {
   }
 };
 
-template <class Real>
+template <class Real, int dimensions = 3>
 struct Spiky {
-  static constexpr Real norm = Real(15.0 / kPi);
-  static constexpr Real gradient_norm = Real(-45.0 / kPi);
+  static constexpr Real norm = Real((dimensions == 2 ? 10.0 : 15.0) / kPi);
+  static constexpr Real gradient_norm = Real((dimensions == 2 ? -30.0 : -45.0) / kPi);
   /// 1 - q, 0 beyond q = 1; W = norm t^3, dW/dq = gradient_norm t^2.
   template <class V>
   static PBF_HD V t(V q) {
@@ -38,13 +44,13 @@ struct Spiky {
 
 template <class Real, Smoothing S>
 PBF_HD Real density_norm() {
-  return S == Smoothing::paper ? Poly6<Real>::norm : Spiky<Real>::norm;
+  return is_paper(S) ? Poly6<Real, dimensions_of(S)>::norm : Spiky<Real, dimensions_of(S)>::norm;
 }
 
 /// The density kernel's shape from what a pair loop has at hand: q^2 and t = 1 - q (clamped).
 template <class Real, Smoothing S, class V>
 PBF_HD V density_shape(V q_squared, V t) {
-  if constexpr (S == Smoothing::paper) return Poly6<Real>::shape(q_squared);
+  if constexpr (is_paper(S)) return Poly6<Real>::shape(q_squared);
   return t * t * t;
 }
 
@@ -56,8 +62,9 @@ PBF_HD Real coincident_q_squared() {
 }
 
 /// A unit vector for the coincident pair (i, j), the same for both but for the sign, from a small
-/// integer hash: the pair separates in the same way in every run and on every backend.
-template <class Real>
+/// integer hash: the pair separates in the same way in every run and on every backend. In two
+/// dimensions it lies in the plane.
+template <class Real, int dimensions = 3>
 PBF_HD Vec3<Real> separation(int i, int j) {
   unsigned a = unsigned(i < j ? i : j), b = unsigned(i < j ? j : i);
   unsigned k = a * 2654435761u ^ (b * 2246822519u + 374761393u);
@@ -73,6 +80,7 @@ PBF_HD Vec3<Real> separation(int i, int j) {
   Real cx = (Real(1) - u * u) * d, cy = (u + u) * d;
   if (k & (1u << 20)) cx = -cx;
   Vec3<Real> e{s * cx, s * cy, z};
+  if constexpr (dimensions == 2) e = {cx, Real(0), cy};
   return i < j ? e : Real(-1) * e;
 }
 

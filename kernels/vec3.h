@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include <cstddef>
+#include <type_traits>
 
 #include "kernels/hd.h"
 
@@ -13,6 +14,16 @@ template <class Real>
 struct Vec3 {
   Real x{}, y{}, z{};
 };
+
+/// A vector of the x-z plane, in which scenes of two dimensions lie.
+template <class Real>
+struct Vec2 {
+  Real x{}, z{};
+};
+
+/// What a pair loop calculates with: no component more than the scene has dimensions.
+template <class Real, int dimensions>
+using Vec = std::conditional_t<dimensions == 2, Vec2<Real>, Vec3<Real>>;
 
 /// Four scalars moved by one 16- or 32-byte access; what w holds is said where it is used.
 template <class Real>
@@ -28,11 +39,38 @@ template <class R> PBF_HD R dot(Vec3<R> a, Vec3<R> b) { return a.x * b.x + a.y *
 template <class R> PBF_HD Vec3<R> cross(Vec3<R> a, Vec3<R> b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+template <class R> PBF_HD Vec2<R> operator+(Vec2<R> a, Vec2<R> b) { return {a.x + b.x, a.z + b.z}; }
+template <class R> PBF_HD Vec2<R> operator-(Vec2<R> a, Vec2<R> b) { return {a.x - b.x, a.z - b.z}; }
+template <class R> PBF_HD Vec2<R> operator*(R s, Vec2<R> a) { return {s * a.x, s * a.z}; }
+template <class R> PBF_HD R dot(Vec2<R> a, Vec2<R> b) { return a.x * b.x + a.z * b.z; }
+template <class R> PBF_HD R cross(Vec2<R> a, Vec2<R> b) { return a.z * b.x - a.x * b.z; }  // its y
 template <class R> PBF_HD Vec3<R> xyz(const Vec4<R>& a) { return {a.x, a.y, a.z}; }
 template <class R> PBF_HD Vec4<R> with_w(Vec3<R> a, R w) { return {a.x, a.y, a.z, w}; }
 template <class R> PBF_HD R max2(R a, R b) { return a > b ? a : b; }
 template <class R> PBF_HD R min2(R a, R b) { return a < b ? a : b; }
 // clang-format on
+
+/// The components that a pair loop needs.
+template <int dimensions, class R>
+PBF_HD Vec<R, dimensions> point(const Vec4<R>& a) {
+  if constexpr (dimensions == 2)
+    return {a.x, a.z};
+  else
+    return xyz(a);
+}
+/// The same vector with all three components; of a cross product in the plane, the number is y.
+template <class R>
+PBF_HD Vec3<R> in_space(Vec2<R> a) {
+  return {a.x, R(0), a.z};
+}
+template <class R>
+PBF_HD Vec3<R> in_space(Vec3<R> a) {
+  return a;
+}
+template <class R>
+PBF_HD Vec3<R> in_space(R y) {
+  return {R(0), y, R(0)};
+}
 
 PBF_HD float square_root(float x) { return sqrtf(x); }
 PBF_HD double square_root(double x) { return sqrt(x); }

@@ -16,48 +16,49 @@ constexpr float kCutoffSquared = 1;  ///< h^2
 
 /// Candidates in ascending order of their index; `count` is a multiple of 16, what fills up has NaN
 /// for x and is near to nothing.
-template <class Real>
+template <class Real, int D>
 struct Candidates {
   static constexpr int block = 16;
-  const Real *x, *y, *z;
+  const Real *x, *y, *z;  ///< y: null in two dimensions
   const int* index;
   int count;
 };
 
-/// Where the copies of candidates go.
-template <class Real>
+/// Where the copies of candidates go; y is null in two dimensions.
+template <class Real, int D>
 struct CandidateCopy {
   Real *x, *y, *z;
   int* index;
 };
 
 /// Particles b..e-1 of n, side by side; writes up to W - 1 entries more.
-template <int W, class Real>
+template <int W, class Real, int D>
 PBF_HD void copy_run_by_lanes(const Vec4<Real>* position, int b, int e, int n,
-                              const CandidateCopy<Real>& to) {
+                              const CandidateCopy<Real, D>& to) {
   int j = b;
   for (; j < e && j + W <= n; j += W) {
     const Vec4<Lanes<Real, W>> from = load(position, Adjacent<W>{j});
     from.x.to(to.x + (j - b));
-    from.y.to(to.y + (j - b));
+    if constexpr (D == 3) from.y.to(to.y + (j - b));
     from.z.to(to.z + (j - b));
     for (int l = 0; l < W; ++l) to.index[j - b + l] = j + l;
   }
   for (; j < e; ++j) {
     const Vec4<Real>& from = position[j];
-    to.x[j - b] = from.x, to.y[j - b] = from.y, to.z[j - b] = from.z, to.index[j - b] = j;
+    if constexpr (D == 3) to.y[j - b] = from.y;
+    to.x[j - b] = from.x, to.z[j - b] = from.z, to.index[j - b] = j;
   }
 }
 #ifdef PBF_HAS_AVX
-template <class Real>
+template <class Real, int D>
 PBF_AVX2 void copy_run_by_avx2(const Vec4<Real>* position, int b, int e, int n,
-                               const CandidateCopy<Real>& to) {
+                               const CandidateCopy<Real, D>& to) {
   copy_run_by_lanes<32 / int(sizeof(Real))>(position, b, e, n, to);
 }
 #endif
-template <class Real>
+template <class Real, int D>
 void copy_run(Simd simd, const Vec4<Real>* position, int b, int e, int n,
-              const CandidateCopy<Real>& to) {
+              const CandidateCopy<Real, D>& to) {
 #ifdef PBF_HAS_AVX
   // Runs are short: wider blocks would be half empty.
   if (simd >= Simd::avx2) return copy_run_by_avx2(position, b, e, n, to);
@@ -66,22 +67,28 @@ void copy_run(Simd simd, const Vec4<Real>* position, int b, int e, int n,
 }
 
 /// Squared distances of candidates k, k + 1, ... from x.
-template <class Real, int W>
-PBF_HD Lanes<Real, W> squared_distances(const Candidates<Real>& c, int k, Vec3<Real> x) {
+template <class Real, int W, int D>
+PBF_HD Lanes<Real, W> squared_distances(const Candidates<Real, D>& c, int k, Vec3<Real> x) {
   using V = Lanes<Real, W>;
-  const Vec3<V> away{V(x.x) - V::at(c.x + k), V(x.y) - V::at(c.y + k), V(x.z) - V::at(c.z + k)};
+  const V dx = V(x.x) - V::at(c.x + k), dz = V(x.z) - V::at(c.z + k);
+  if constexpr (D == 2) return dot(Vec2<V>{dx, dz}, Vec2<V>{dx, dz});
+  const Vec3<V> away{dx, V(x.y) - V::at(c.y + k), dz};
   return dot(away, away);
 }
 
 /// Writes the indices of all candidates but `self` closer than h to x, in their order, and returns
 /// the end of them; up to 16 entries beyond that end are overwritten.
-template <class Real>
-int* close_to(const Candidates<Real>& c, Vec3<Real> x, int self, int* out) {
-  constexpr int block = Candidates<Real>::block;
+template <class Real, int D>
+int* close_to(const Candidates<Real, D>& c, Vec3<Real> x, int self, int* out) {
+  constexpr int block = Candidates<Real, D>::block;
   for (int k = 0; k < c.count; k += block) {
     Real q2[block];
     for (int m = 0; m < block; ++m) {
-      const Vec3<Real> d = x - Vec3<Real>{c.x[k + m], c.y[k + m], c.z[k + m]};
+      Vec<Real, D> d;
+      if constexpr (D == 2)
+        d = {x.x - c.x[k + m], x.z - c.z[k + m]};
+      else
+        d = x - Vec3<Real>{c.x[k + m], c.y[k + m], c.z[k + m]};
       q2[m] = dot(d, d);
     }
     for (int m = 0; m < block; ++m) {
@@ -104,8 +111,8 @@ struct SetBits {
 };
 inline constexpr SetBits kSetBits;
 
-template <class Real>
-PBF_AVX2 int* close_to_by_avx2(const Candidates<Real>& c, Vec3<Real> x, int self, int* out) {
+template <class Real, int D>
+PBF_AVX2 int* close_to_by_avx2(const Candidates<Real, D>& c, Vec3<Real> x, int self, int* out) {
   const __m256i me = _mm256_set1_epi32(self);
   for (int k = 0; k < c.count; k += 8) {
     int hits;
@@ -129,8 +136,8 @@ PBF_AVX2 int* close_to_by_avx2(const Candidates<Real>& c, Vec3<Real> x, int self
   return out;
 }
 
-template <class Real>
-PBF_AVX512 int* close_to_by_avx512(const Candidates<Real>& c, Vec3<Real> x, int self, int* out) {
+template <class Real, int D>
+PBF_AVX512 int* close_to_by_avx512(const Candidates<Real, D>& c, Vec3<Real> x, int self, int* out) {
   const __m512i me = _mm512_set1_epi32(self);
   for (int k = 0; k < c.count; k += 16) {
     __mmask16 hits;
@@ -153,8 +160,8 @@ PBF_AVX512 int* close_to_by_avx512(const Candidates<Real>& c, Vec3<Real> x, int 
 }
 #endif
 
-template <class Real>
-int* close_to(Simd simd, const Candidates<Real>& c, Vec3<Real> x, int self, int* out) {
+template <class Real, int D>
+int* close_to(Simd simd, const Candidates<Real, D>& c, Vec3<Real> x, int self, int* out) {
   switch (simd) {
 #ifdef PBF_HAS_AVX
     case Simd::avx2:

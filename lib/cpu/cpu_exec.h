@@ -148,9 +148,11 @@ class CpuExec {
       ListScratch& scratch = scratch_[std::size_t(omp_get_thread_num())];
       scratch.reserve(list_entries_);
       const int first = c * kChunk, last = std::min(p.n - first, kChunk) + first;
+      ChunkedLists::Group* groups = groups_.data() + std::size_t(c) * std::size_t(groups_per_chunk);
       const std::size_t used =
-          make_lists(simd_, position, bin_start, p, first, last,
-                     groups_.data() + std::size_t(c) * std::size_t(groups_per_chunk), scratch);
+          p.dimensions == 2
+              ? make_lists<2>(simd_, position, bin_start, p, first, last, groups, scratch)
+              : make_lists<3>(simd_, position, bin_start, p, first, last, groups, scratch);
       HostBuffer<int>& mine = chunks_[std::size_t(c)];
       // Grow with some air, shrink only when far too large: sizes change little between updates.
       const std::size_t room = std::size_t(std::min(kChunk, p.n - c * kChunk) * list_entries_);

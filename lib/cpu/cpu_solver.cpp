@@ -108,7 +108,7 @@ class CpuSolver final : public Solver {
   }
   template <class Out>
   void fill(Snapshot& s) {
-    stepper_->export_to(scene_.h(), scene_.fluid.rest_density, scene_.domain.min,
+    stepper_->export_to(scene_.h(), scene_.fluid.rest_density, scene_.origin(),
                         array<Out>(s, "position"), array<Out>(s, "velocity"),
                         array<Out>(s, "density"));
   }

@@ -18,27 +18,30 @@ void make_room(std::vector<T>& v, std::size_t n) {
 }
 
 /// The particles around one half cell, side by side: those of a half cell have the same candidates.
-template <class Real>
+template <class Real, int D>
 class NearbyParticles {
  public:
-  const Candidates<Real>& of(Simd simd, Vec3<Real> x, const Vec4<Real>* position,
-                             const int* bin_start, const Params<Real>& p) {
-    const Cell cell = cell_of(x, p);
+  const Candidates<Real, D>& of(Simd simd, Vec3<Real> x, const Vec4<Real>* position,
+                                const int* bin_start, const Params<Real>& p) {
+    const Cell cell = cell_of<D>(x, p);
     if (cell.x == cell_.x && cell.y == cell_.y && cell.z == cell_.z) return candidates_;
     cell_ = cell;
-    constexpr std::size_t block = Candidates<Real>::block;
+    constexpr std::size_t block = Candidates<Real, D>::block;
     std::size_t n = 0;
-    for_each_run(x, bin_start, p, [&](int b, int e) { n += std::size_t(e - b); });
+    for_each_run<D>(x, bin_start, p, [&](int b, int e) { n += std::size_t(e - b); });
     const std::size_t padded = (n + block - 1) / block * block;
-    for (auto* v : {&x_, &y_, &z_}) make_room(*v, padded + block);  // copies overrun
+    for (auto* v : {&x_, &z_}) make_room(*v, padded + block);  // copies overrun
+    if constexpr (D == 3) make_room(y_, padded + block);
     make_room(index_, padded + block);
     std::size_t k = 0;
-    for_each_run(x, bin_start, p, [&](int b, int e) {
-      copy_run(simd, position, b, e, p.n, {&x_[k], &y_[k], &z_[k], &index_[k]});
+    for_each_run<D>(x, bin_start, p, [&](int b, int e) {
+      const CandidateCopy<Real, D> to{&x_[k], y_.data() + (D == 3 ? k : 0), &z_[k], &index_[k]};
+      copy_run(simd, position, b, e, p.n, to);
       k += std::size_t(e - b);
     });
     for (; k < padded; ++k) {
-      x_[k] = y_[k] = z_[k] = std::numeric_limits<Real>::quiet_NaN();
+      x_[k] = z_[k] = std::numeric_limits<Real>::quiet_NaN();
+      if constexpr (D == 3) y_[k] = x_[k];
       index_[k] = 0;
     }
     candidates_ = {x_.data(), y_.data(), z_.data(), index_.data(), int(padded)};
@@ -49,7 +52,7 @@ class NearbyParticles {
   Cell cell_{-1, -1, -1};
   std::vector<Real> x_, y_, z_;
   std::vector<int> index_;
-  Candidates<Real> candidates_{};  ///< of `cell_`
+  Candidates<Real, D> candidates_{};  ///< of `cell_`
 };
 
 /// One thread's room.
@@ -65,13 +68,13 @@ struct ListScratch {
 };
 
 /// The lists of particles first..last-1, of one chunk, into `room.found`; returns how many entries
-/// that are, padding included. groups: those of the chunk's particles.
-template <class Real>
+/// that are, padding included. groups: those of the chunk's particles. D: dimensions.
+template <int D, class Real>
 std::size_t make_lists(Simd simd, const Vec4<Real>* position, const int* bin_start,
                        const Params<Real>& p, int first, int last, ChunkedLists::Group* groups,
                        ListScratch& room) {
   const int bits = lane_bits(simd, sizeof(Real)), width = 1 << bits;
-  NearbyParticles<Real> nearby;
+  NearbyParticles<Real, D> nearby;
   std::size_t used = 0;
   for (int i = first; i < last; i += width) {
     std::size_t begin[17], longest = 0, at = 0;
@@ -79,7 +82,7 @@ std::size_t make_lists(Simd simd, const Vec4<Real>* position, const int* bin_sta
       begin[l] = begin[l + 1] = at;
       if (i + l >= last) continue;
       const Vec3<Real> x = xyz(position[i + l]);
-      const Candidates<Real>& c = nearby.of(simd, x, position, bin_start, p);
+      const Candidates<Real, D>& c = nearby.of(simd, x, position, bin_start, p);
       make_room(room.single, at + std::size_t(c.count) + c.block);
       int* out = room.single.data() + at;
       const std::size_t n = std::size_t(close_to(simd, c, x, i + l, out) - out);

@@ -75,8 +75,8 @@ __global__ void __launch_bounds__(kBlock) lanes_kernel(int n, Pass pass) {
   sum_over_neighbors_by_lanes<lanes>(pass, blockIdx.x * kBlock + threadIdx.x, n);
 #endif
 }
-template <class Real>
-__global__ void __launch_bounds__(kBlock) list_lanes_kernel(ListPass<Real> pass) {
+template <class Real, int D>
+__global__ void __launch_bounds__(kBlock) list_lanes_kernel(ListPass<Real, D> pass) {
   wait_for_previous();
   pass.by_lanes(blockIdx.x * kBlock + threadIdx.x);
 }
@@ -119,7 +119,11 @@ class CudaExec {
 
   template <class Pass>
   void for_each(int n, const Pass& pass) {
-    if constexpr (requires { typename Pass::Sum; }) {
+    if constexpr (requires { requires Pass::D == 2; }) {
+      // A list has a third of the words: half as many threads have something to do.
+      if (n <= kEightLanes) return launch(lanes_kernel<4, Pass>, 4 * n, kBlock, 0, n, pass);
+      if (n <= kFourLanes) return launch(lanes_kernel<2, Pass>, 2 * n, kBlock, 0, n, pass);
+    } else if constexpr (requires { typename Pass::Sum; }) {
       if (n <= kSixteenLanes) return launch(lanes_kernel<16, Pass>, 16 * n, kBlock, 0, n, pass);
       if (n <= kEightLanes) return launch(lanes_kernel<8, Pass>, 8 * n, kBlock, 0, n, pass);
       if (n <= kFourLanes) return launch(lanes_kernel<4, Pass>, 4 * n, kBlock, 0, n, pass);
@@ -220,22 +224,10 @@ class CudaExec {
   template <class Real>
   Lists build_lists(const Vec4<Real>* position, const int* bin_start, const Params<Real>& p) {
     allocate_lists(p.n);
-    const ListPass<Real> pass{p,
-                              position,
-                              bin_start,
-                              words_.data(),
-                              tails_.data(),
-                              count_.data(),
-                              tail_of_.data(),
-                              list_state_.data(),
-                              room_,
-                              stride(p.n)};
-    if (p.n <= kListLanes)
-      launch(list_lanes_kernel<Real>, 8 * p.n, kBlock, 0, pass);
-    else
-      for_each(p.n, pass);
+    p.dimensions == 2 ? make_lists<2>(position, bin_start, p)
+                      : make_lists<3>(position, bin_start, p);
     return {words_.data(), tails_.data(), count_.data(), tail_of_.data(),
-            pass.stride,   room_.first,   room_.tail};
+            stride(p.n),   room_.first,   room_.tail};
   }
 
   // Lists that outgrow their room: the build records by how much, nothing is written beyond the
@@ -269,6 +261,23 @@ class CudaExec {
     config.numAttrs = overlap_ && !after_condition_ ? 1 : 0;
     after_condition_ = false;
     PBF_CUDA_CHECK(cudaLaunchKernelEx(&config, kernel, P(args)...));
+  }
+  template <int D, class Real>
+  void make_lists(const Vec4<Real>* position, const int* bin_start, const Params<Real>& p) {
+    const ListPass<Real, D> pass{p,
+                                 position,
+                                 bin_start,
+                                 words_.data(),
+                                 tails_.data(),
+                                 count_.data(),
+                                 tail_of_.data(),
+                                 list_state_.data(),
+                                 room_,
+                                 stride(p.n)};
+    if (p.n <= kListLanes)
+      launch(list_lanes_kernel<Real, D>, pass.lanes * p.n, kBlock, 0, pass);
+    else
+      for_each(p.n, pass);
   }
   static int stride(int n) { return list_stride(n); }
   void allocate_lists(int n);

@@ -273,8 +273,8 @@ class CudaSolver final : public Solver {
       at += 3 * std::size_t(n_);
     }
     if (pending_.find("density")) density = at;
-    stepper_->export_to(scene_.h(), scene_.fluid.rest_density, scene_.domain.min, position,
-                        velocity, density);
+    stepper_->export_to(scene_.h(), scene_.fluid.rest_density, scene_.origin(), position, velocity,
+                        density);
   }
 
   Scene scene_;

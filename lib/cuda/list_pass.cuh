@@ -21,8 +21,11 @@ struct ListState {
   int longest;  ///< list that did not fit in any update, with its tail
 };
 
-template <class Real>
+/// D: dimensions of the scene.
+template <class Real, int D>
 struct ListPass {
+  static constexpr int rows = D == 2 ? 3 : 9;   ///< of cells around a cell
+  static constexpr int lanes = D == 2 ? 2 : 8;  ///< threads of by_lanes() for one list
   Params<Real> p;
   const Vec4<Real>* position;
   const int* bin_start;
@@ -34,13 +37,13 @@ struct ListPass {
 
   /// hits(first, bits): bit 31 - k set where candidate first + k is a neighbour of i.
   template <class F>
-  __device__ __forceinline__ void scan(int i, Vec3<Real> xi, int begin, int end, F&& hits) const {
+  __device__ __forceinline__ void scan(int i, Vec<Real, D> xi, int begin, int end, F&& hits) const {
     for (int first = begin; first < end; first += 32) {
       const int n = min(32, end - first);
       unsigned bits = 0;
 #pragma unroll 4
       for (int k = 0; k < n; ++k) {
-        const Vec3<Real> d = xi - xyz(load(position, first + k));
+        const Vec<Real, D> d = xi - point<D>(load(position, first + k));
         bits = push_sign(dot(d, d) - Real(1), bits);
       }
       bits <<= 32 - n;  // the first candidate on top
@@ -51,7 +54,7 @@ struct ListPass {
 
   /// One thread makes the list of particle i, packing four entries in registers for each write.
   __device__ void operator()(int i) const {
-    const Vec3<Real> xi = xyz(position[i]);
+    const Vec<Real, D> xi = point<D>(position[i]);
     int4* out = words + i;
     std::size_t step = std::size_t(stride);
     int4 word{0, 0, 0, 0};
@@ -69,7 +72,7 @@ struct ListPass {
       *out = word;
       out += step;
     };
-    for_each_run(xi, bin_start, p, [&](int begin, int end) {
+    for_each_run<D>(in_space(xi), bin_start, p, [&](int begin, int end) {
       scan(i, xi, begin, end, [&](int first, unsigned bits) {
         while (bits) {
           const int k = __clz(int(bits));
@@ -83,52 +86,53 @@ struct ListPass {
     finish(i, all, limit);
   }
 
-  /// Eight threads make it: a row of candidates each (the last one two), counted first, then
-  /// written in order. For few particles.
+  /// Eight threads make it, or two: a row of candidates each (the last one two), counted first,
+  /// then written in order. For few particles.
   __device__ void by_lanes(int thread) const {
-    const int i = thread / 8, lane = thread % 8;
+    const int i = thread / lanes, lane = thread % lanes;
     const bool valid = i < p.n;
-    const Vec3<Real> xi = xyz(position[valid ? i : 0]);
-    const Cell c = cell_of(xi, p);
-    Row a = row_of(c, valid ? lane : 9), b = row_of(c, valid && lane == 7 ? 8 : 9);
+    const bool last = lane == lanes - 1;
+    const Vec<Real, D> xi = point<D>(position[valid ? i : 0]);
+    const Cell c = cell_of<D>(in_space(xi), p);
+    Row a = row_of(c, valid ? lane : rows), b = row_of(c, valid && last ? lanes : rows);
     count_row(i, xi, a);
     count_row(i, xi, b);
     const int mine = a.found + b.found;
-    int place = mine;  // inclusive prefix over the eight, then exclusive
+    int place = mine;  // inclusive prefix over the lanes, then exclusive
 #pragma unroll
-    for (int d = 1; d < 8; d *= 2) {
-      const int below = __shfl_up_sync(0xffffffffu, place, d, 8);
+    for (int d = 1; d < lanes; d *= 2) {
+      const int below = __shfl_up_sync(0xffffffffu, place, d, lanes);
       if (lane >= d) place += below;
     }
-    const int all = __shfl_sync(0xffffffffu, place, 7, 8);
+    const int all = __shfl_sync(0xffffffffu, place, lanes - 1, lanes);
     place -= mine;
     int4* tail = nullptr;
-    if (lane == 7 && all > 4 * room.first) tail = take_tail(i);
+    if (last && all > 4 * room.first) tail = take_tail(i);
     // A pointer travels as two words.
     tail = reinterpret_cast<int4*>(
-        __shfl_sync(0xffffffffu, reinterpret_cast<std::uint64_t>(tail), 7, 8));
+        __shfl_sync(0xffffffffu, reinterpret_cast<std::uint64_t>(tail), lanes - 1, lanes));
     const List list{words + i, tail};
     place = write_row(i, xi, a, place, list);
     write_row(i, xi, b, place, list);
-    if (!valid || lane != 7) return;
+    if (!valid || !last) return;
     for (int at = all; at & 3; ++at) put(list, at, p.n);
     finish(i, all, room.first + (tail ? room.tail : 0));
   }
 
  private:
-  /// One of the nine rows around a cell (for_each_run's order), and its hits where they fit a word.
+  /// One of the rows around a cell (for_each_run's order), and its hits where they fit a word.
   struct Row {
     int begin = 0, end = 0, found = 0;
     unsigned bits = 0;
   };
   __device__ __forceinline__ Row row_of(Cell c, int r) const {
-    const int y = c.y + r % 3 - 1, z = c.z + r / 3 - 1;
-    if (r >= 9 || y < 0 || z < 0 || y >= p.cells_y || z >= p.cells_z) return {};
-    const int row = (z * p.cells_y + y) * p.cells_x;
-    return {bin_start[(row + max(c.x - 2, 0)) * kBinsPerCell],
-            bin_start[(row + min(c.x + 2, p.cells_x - 1) + 1) * kBinsPerCell]};
+    const int y = D == 2 ? 0 : c.y + r % 3 - 1, z = c.z + (D == 2 ? r : r / 3) - 1;
+    if (r >= rows || y < 0 || z < 0 || y >= p.cells_y || z >= p.cells_z) return {};
+    const int row = (D == 2 ? z : z * p.cells_y + y) * p.cells_x;
+    return {bin_start[(row + max(c.x - 2, 0)) * bins_per_cell(D)],
+            bin_start[(row + min(c.x + 2, p.cells_x - 1) + 1) * bins_per_cell(D)]};
   }
-  __device__ __forceinline__ void count_row(int i, Vec3<Real> xi, Row& r) const {
+  __device__ __forceinline__ void count_row(int i, Vec<Real, D> xi, Row& r) const {
     scan(i, xi, r.begin, r.end, [&](int, unsigned bits) {
       r.found += __popc(bits);
       r.bits = bits;
@@ -147,7 +151,7 @@ struct ListPass {
     }
     return place;
   }
-  __device__ __forceinline__ int write_row(int i, Vec3<Real> xi, const Row& r, int place,
+  __device__ __forceinline__ int write_row(int i, Vec<Real, D> xi, const Row& r, int place,
                                            const List& list) const {
     if (r.end - r.begin <= 32) return write_bits(r.begin, r.bits, place, list);
     scan(i, xi, r.begin, r.end,

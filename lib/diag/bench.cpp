@@ -36,7 +36,11 @@ Scene scaled_to(const Scene& scene, std::int64_t n, const std::string& dir) {
   // A few rounds, since lattice points come in whole layers.
   for (int round = 0; round < 4; ++round) {
     const double now = double(count_particles(s, dir));
-    s.fluid.spacing *= std::cbrt(now / double(n));
+    const double share = now / double(n);
+    const double finer = s.dimensions == 2 ? std::sqrt(share) : std::cbrt(share);
+    s.fluid.spacing *= finer;
+    if (const auto y = s.plane())  // the slab stays as many spacings thick
+      for (double* face : {&s.domain.min[1], &s.domain.max[1]}) *face = *y + finer * (*face - *y);
   }
   s.time.step = scene.time.step * std::sqrt(s.h() / scene.h());
   return s;

@@ -69,15 +69,16 @@ std::vector<double> noise_floor(const Comparison& c, const SolverState& start, c
 }
 
 /// Bins may differ where a coordinate is within rounding of a border: borders lie half a cell apart
-/// along every axis. The largest distance from a border of a particle whose bins differ.
+/// along every axis that has bins. The largest distance from a border of a particle whose bins
+/// differ.
 Size bin_difference(const TraceArray& a, const TraceArray& b, const std::vector<double>& position,
-                    double border) {
+                    double border, int dimensions) {
   Size s;
   for (std::size_t i = 0; i < a.values.size(); ++i) {
     s.scale = std::max(s.scale, a.values[i]);
     if (a.values[i] == b.values[i]) continue;
     double nearest = border;
-    for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
+    for (std::size_t k = 3 * i; k < 3 * i + 3; k += dimensions == 2 ? 2 : 1)
       nearest = std::min(nearest, std::fabs(std::remainder(position[k], border)));
     s.worst = std::max(s.worst, std::max(nearest, std::numeric_limits<double>::min()));
     s.rms += 1;
@@ -167,7 +168,8 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
           c.same_bits ? 0 : 4 * position_tolerance + 8 * c.u, "neighbors");
     }
     if (x.quantity == "bin") {
-      add(name_of(x), "h", bin_difference(x, y, position, c.plan->cell_edge / 2),
+      add(name_of(x), "h",
+          bin_difference(x, y, position, c.plan->cell_edge / 2, c.scene->dimensions),
           position_tolerance, x.stage);
       continue;
     }

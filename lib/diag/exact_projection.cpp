@@ -21,7 +21,7 @@ using V4 = Vec4<double>;
 
 std::vector<V4> to_frame(const Scene& s, const std::vector<double>& si, bool place) {
   std::vector<V4> out(si.size() / 3);
-  const auto& low = s.domain.min;
+  const Double3 low = s.origin();
   for (std::size_t i = 0; i < out.size(); ++i) {
     const auto at = [&](std::size_t k) { return (si[3 * i + k] - (place ? low[k] : 0)) / s.h(); };
     out[i] = {at(0), at(1), at(2), 0};
@@ -34,7 +34,7 @@ std::vector<double> to_si(const Scene& s, const std::vector<V4>& x) {
   out.reserve(3 * x.size());
   for (const V4& p : x) {
     const double at[3] = {p.x, p.y, p.z};
-    for (std::size_t k = 0; k < 3; ++k) out.push_back(s.domain.min[k] + s.h() * at[k]);
+    for (std::size_t k = 0; k < 3; ++k) out.push_back(s.origin()[k] + s.h() * at[k]);
   }
   return out;
 }
@@ -69,19 +69,19 @@ class Constraints {
   /// dW/dq / q: times the distance vector it is the gradient; 0 for a coincident pair.
   static double slope(double q2) {
     if (q2 <= coincident_q_squared<double>() || q2 >= 1) return 0;
-    if (S == Smoothing::paper) return -6 * Poly6<double>::norm * (1 - q2) * (1 - q2);
+    if (is_paper(S)) return -6 * density_norm<double, S>() * (1 - q2) * (1 - q2);
     const Root<double> root = root_of(q2);
     const double t = Spiky<double>::t(root.q);
-    return Spiky<double>::gradient_norm * t * t * root.inverse;
+    return Spiky<double, dimensions_of(S)>::gradient_norm * t * t * root.inverse;
   }
   V3 wall_gradient(const V3& x) const {
-    if (S == Smoothing::consistent) return wall_term<double, S>(x, p_).gradient;
+    if (!is_paper(S)) return wall_term<double, S>(x, p_).gradient;
     const double e = 1e-5;  // central differences: error about 1e-10
     const auto along = [&](V3 d) {
       return (wall_term<double, S>(x + d, p_).density - wall_term<double, S>(x - d, p_).density) /
              (2 * e);
     };
-    return {along({e, 0, 0}), along({0, e, 0}), along({0, 0, e})};
+    return {along({e, 0, 0}), along({0, e, 0}), along({0, 0, e})};  // y: 0 in two dimensions
   }
 
   void density_row(int i, const Vector& x, std::vector<double>& value,
@@ -133,8 +133,8 @@ class Constraints {
       start_[std::size_t(now)] = from[std::size_t(old)];
       order_[std::size_t(now)] = old;
     };
-    exec_.sort_by_bin("grid", BinPass<double>{p_, from.data(), bin.data()}, n, bin_count(p_),
-                      bin_order.data(), bin_start_.data(), gather);
+    exec_.sort_by_bin("grid", BinPass<double, dimensions_of(S)>{p_, from.data(), bin.data()}, n,
+                      bin_count(p_), bin_order.data(), bin_start_.data(), gather);
     return exec_.build_lists(start_.data(), bin_start_.data(), p_);
   }
 
@@ -246,17 +246,19 @@ std::vector<double> predicted_positions(const Scene& scene, const Plan& plan,
                                         const std::vector<double>& velocity) {
   const Params<double> p = make_params<double>(scene, plan);
   std::vector<V4> x = to_frame(scene, position, true), v = to_frame(scene, velocity, false);
-  std::vector<int> bin(x.size());
-  const PredictPass<double> predict{p, x.data(), v.data(), bin.data()};
-  for (int i = 0; i < p.n; ++i) predict(i);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = with_w(predict(xyz(x[i]), xyz(v[i]), p).x, 0.0);
   return to_si(scene, x);
 }
 
 Projection project_exactly(const Scene& scene, const Plan& plan, const std::vector<double>& start) {
   const Params<double> p = make_params<double>(scene, plan);
   const std::vector<V4> x = to_frame(scene, start, true);
-  return scene.solver.kernels == KernelMode::paper ? project<Smoothing::paper>(scene, p, x)
-                                                   : project<Smoothing::consistent>(scene, p, x);
+  const bool paper = scene.solver.kernels == KernelMode::paper;
+  if (scene.dimensions == 2)
+    return paper ? project<Smoothing::paper_2d>(scene, p, x)
+                 : project<Smoothing::consistent_2d>(scene, p, x);
+  return paper ? project<Smoothing::paper>(scene, p, x)
+               : project<Smoothing::consistent>(scene, p, x);
 }
 
 ProjectionError projection_error(Solver& solver, const Scene& scene, const Plan& plan) {

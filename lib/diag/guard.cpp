@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/smoothing.h"
 #include "lib/base/text.h"
 
 namespace pbf {
@@ -73,7 +72,7 @@ GuardLimits guard_limits(const Scene& s, const Plan& plan, const Measures& first
   const double per_step = s.h() / s.time.step * s.solver.substeps, mass = mass_of(plan);
   const double scale = energy_scale(first, s, plan.mass, plan.particles);
   const double rounding = 0.5 * mass * std::pow(0.01 * per_step, 2);
-  const double at_rest = 4.0 / 3.0 * kPi * std::pow(s.fluid.smoothing_ratio, 3);
+  const double at_rest = rest_neighbors(s);
   GuardLimits l;
   l.speed = g.speed ? *g.speed : 10 * (first.speed_max + fall_speed(s) + per_step);
   l.energy =
@@ -130,7 +129,7 @@ void Guard::locate(GuardEvent& e) {
   if (e.stage) {
     e.alarm = e.stage->alarm;  // what came first: a speed, say, before it ended as a NaN
     for (std::size_t a = 0; a < 3; ++a) {
-      e.position[a] = scene_.domain.min[a] + h * e.stage->position[a];
+      e.position[a] = scene_.origin()[a] + h * e.stage->position[a];
       e.velocity[a] = h * e.stage->velocity[a];
     }
   }
@@ -206,7 +205,7 @@ Particles to_particles(const SolverState& state, const Scene& s) {
   for (std::size_t i = 0; i < state.id.size(); ++i) {
     Double3 x, v;
     for (std::size_t a = 0; a < 3; ++a) {
-      x[a] = std::clamp(s.domain.min[a] + h * state.position[3 * i + a], s.domain.min[a],
+      x[a] = std::clamp(s.origin()[a] + h * state.position[3 * i + a], s.domain.min[a],
                         s.domain.max[a]);
       v[a] = h * state.velocity[3 * i + a];
     }

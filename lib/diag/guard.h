@@ -32,7 +32,7 @@ struct GuardLimits {
 /// speed: 10 (fastest at the start + fall through the domain + h/dt): no flow from that start
 /// reaches it. energy: that of the start, + 0.1 energy_scale + released_energy
 /// + M (0.01 h/dt)^2/2 of rounding. neighbors: 4 times the most at the start, at least 16 times
-/// the (4/3) pi (h/d)^3 at rest.
+/// the rest_neighbors() at rest.
 GuardLimits guard_limits(const Scene& scene, const Plan& plan, const Measures& first);
 
 /// Why a run was stopped, SI units.

@@ -68,9 +68,8 @@ double at_time(const std::vector<double>& time, const std::vector<double>& value
   return values[i - 1] + part * (values[i] - values[i - 1]);
 }
 
-/// RMS over time of the distance between the centres of mass, in units of the cube root of the
-/// fluid's volume (m^3).
-double reference_distance(const MemberResult& r, const MemberResult& reference, double volume) {
+/// RMS over time of the distance between the centres of mass, in units of `length` (m).
+double reference_distance(const MemberResult& r, const MemberResult& reference, double length) {
   double squares = 0;
   const auto &time = r.series("time"), &there = reference.series("time");
   for (const char* name : {"center_of_mass_x", "center_of_mass_y", "center_of_mass_z"})
@@ -78,7 +77,7 @@ double reference_distance(const MemberResult& r, const MemberResult& reference, 
       const double e = r.series(name)[k] - at_time(there, reference.series(name), time[k]);
       squares += e * e;
     }
-  return std::sqrt(squares / double(time.size())) / std::cbrt(volume);
+  return std::sqrt(squares / double(time.size())) / length;
 }
 
 std::size_t index_of(const Study& study, const std::string& name) {
@@ -158,10 +157,11 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
                         {result.projection_mean, result.projection_rms, result.projection_max});
   const Scene& s = member.scene;
   if (study.reference) {
-    const double mass =
-        s.fluid.mass ? *s.fluid.mass : s.fluid.rest_density * std::pow(s.fluid.spacing, 3);
-    const double volume = double(result.particles) * mass / s.fluid.rest_density;
-    row.measures.push_back(reference ? reference_distance(result, *reference, volume) : kNaN);
+    // The edge of a cube, or of a square, that holds the fluid.
+    const double cells =
+        double(result.particles) * s.particle_mass() / (s.fluid.rest_density * s.cell_volume());
+    const double length = s.fluid.spacing * std::pow(cells, 1.0 / s.dimensions);
+    row.measures.push_back(reference ? reference_distance(result, *reference, length) : kNaN);
   }
   if (study.front) {
     const double g = std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/cell_index.h"
 #include "kernels/compression_bins.h"
 #include "kernels/measure_sums.h"
 #include "kernels/smoothing.h"
@@ -191,7 +192,8 @@ std::int64_t MemoryPlan::fixed_bytes(bool on_device) const {
 }
 
 double rest_neighbors(const Scene& s) {
-  return 4.0 / 3.0 * kPi * std::pow(s.fluid.smoothing_ratio, 3);
+  const double ratio = s.fluid.smoothing_ratio;
+  return s.dimensions == 2 ? kPi * ratio * ratio : 4.0 / 3.0 * kPi * std::pow(ratio, 3);
 }
 
 int cpu_list_entries(const Scene& s) {
@@ -202,7 +204,8 @@ MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
   MemoryPlan memory;
   const bool cuda = s.backend == Backend::cuda;
   const std::string real = s.precision == Precision::dbl ? "double" : "float";
-  const std::int64_t bins = std::int64_t(plan.cells[0]) * plan.cells[1] * plan.cells[2] * 4;
+  const std::int64_t bins =
+      std::int64_t(plan.cells[0]) * plan.cells[1] * plan.cells[2] * bins_per_cell(s.dimensions);
   const Adder solver{memory, cuda, Held::solver};
   add_state(plan, bool(s.guard), real, solver);
   if (cuda)

@@ -51,7 +51,7 @@ struct MemoryPlan {
 };
 
 /// Neighbours of a particle in fluid at rest, itself included: the ball of radius h holds
-/// (4/3) pi (h/d)^3 particles of spacing d.
+/// (4/3) pi (h/d)^3 particles of spacing d, the disc pi (h/d)^2.
 double rest_neighbors(const Scene& scene);
 
 /// Room of one list on the CPU: `rest_neighbors`, and a tenth for what fills up groups of lists.

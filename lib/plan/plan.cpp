@@ -16,6 +16,7 @@ namespace {
 void plan_grid(Plan& plan, const Scene& s) {
   double box[3];
   for (std::size_t k = 0; k < 3; ++k) box[k] = (s.domain.max[k] - s.domain.min[k]) / s.h();
+  if (s.dimensions == 2) box[1] = 0;  // one layer, also of a slab as thick as h
   const auto number = [&](double edge) {
     return (std::floor(2 * box[0] / edge) + 1) / 2 * (std::floor(box[1] / edge) + 1) *
            (std::floor(box[2] / edge) + 1);
@@ -23,7 +24,8 @@ void plan_grid(Plan& plan, const Scene& s) {
   const double limit = std::min(double(plan.particles) + 65536, 2e8);
   plan.cell_edge = 1;
   while (number(plan.cell_edge) > limit) {
-    plan.cell_edge *= std::max(1.01, std::cbrt(number(plan.cell_edge) / limit));
+    const double over = number(plan.cell_edge) / limit;
+    plan.cell_edge *= std::max(1.01, s.dimensions == 2 ? std::sqrt(over) : std::cbrt(over));
     if (!std::isfinite(plan.cell_edge))
       throw Error(ExitCode::bad_input, "domain: too large for its smoothing length");
   }
@@ -84,6 +86,9 @@ void plan_left_out(Plan& plan, const Scene& s) {
   auto out = [&](bool absent, const char* what, const char* why) {
     if (absent) plan.left_out.push_back({what, why});
   };
+  out(s.dimensions == 2,
+      "the third dimension: 18 of 27 cells around a particle, y in the pair loops",
+      "dimensions is 2");
   out(!plan.xsph, "xsph pass", "no key viscosity");
   out(!plan.tensile, "artificial pressure in the delta loop", "no key tensile");
   out(!plan.vorticity, "curl and confinement passes, curl array", "no key vorticity");
@@ -145,14 +150,13 @@ void plan_files(Plan& plan, const Scene& s) {
 Plan make_plan(const Scene& s, std::int64_t particles) {
   Plan plan;
   plan.particles = particles;
-  const double h = s.h();
+  plan.mass = s.particle_mass();
   if (s.fluid.mass) {
-    plan.mass = *s.fluid.mass;
-    plan.vol = plan.mass / (s.fluid.rest_density * h * h * h);
+    const double h = s.h(), third = s.dimensions == 2 ? s.domain.max[1] - s.domain.min[1] : h;
+    plan.vol = plan.mass / (s.fluid.rest_density * h * h * third);
     plan.wall_scale = plan.wall_range = 1;
   } else {
-    const Calibration c = calibrate(s.solver.kernels, s.fluid.smoothing_ratio);
-    plan.mass = s.fluid.rest_density * std::pow(s.fluid.spacing, 3);
+    const Calibration c = calibrate(s.solver.kernels, s.fluid.smoothing_ratio, s.dimensions);
     plan.vol = c.vol;
     plan.wall_scale = c.wall_scale;
     plan.wall_range = c.wall_range;

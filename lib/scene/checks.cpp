@@ -20,6 +20,7 @@ class Checker {
     const bool domain = p_.good({"domain.min", "domain.max"}) &&
                         above("domain.min", "domain.max", s_.domain.min, s_.domain.max);
     if (domain) check_domain();
+    if (flat()) check_plane(domain);
     if (p_.good({"bodies"})) check_bodies(domain);
     check_time();
     check_solver();
@@ -29,6 +30,32 @@ class Checker {
  private:
   void add(const std::string& key, const std::string& what) {
     problems_.add(p_.place(key), key, what);
+  }
+
+  bool flat() const { return p_.good({"dimensions"}) && s_.dimensions == 2; }
+
+  /// What a scene in two dimensions must not have along y.
+  void check_plane(bool domain) {
+    const double thick = s_.domain.max[1] - s_.domain.min[1];
+    if (domain && p_.good({"fluid.spacing", "fluid.smoothing_ratio"}) &&
+        thick > s_.h() * (1 + 1e-9))
+      add("domain.max", "y makes a slab " + to_text(thick) +
+                            " m thick, with dimensions: 2 it may be at most the smoothing length " +
+                            to_text(s_.h()) + " m (one cell); give y = " +
+                            to_text(s_.domain.min[1] + s_.fluid.spacing) +
+                            " for one spacing, or dimensions: 3");
+    if (p_.good({"domain.open"}))
+      for (const std::string& face : s_.domain.open)
+        if (face[0] == 'y')
+          add("domain.open", face + ": with dimensions: 2 there is no wall along y; remove it");
+    const auto must_lie_flat = [&](const std::string& key, const Double3& v) {
+      if (p_.good({key}) && v[1] != 0)
+        add(key, "its y component is " + to_text(v[1]) +
+                     ", with dimensions: 2 nothing moves along y; give 0, or dimensions: 3");
+    };
+    must_lie_flat("gravity", s_.gravity);
+    for (std::size_t b = 0; b < s_.bodies.size(); ++b)
+      must_lie_flat("bodies[" + std::to_string(b) + "].velocity", s_.bodies[b].velocity);
   }
 
   /// max > min along every axis.
@@ -61,7 +88,8 @@ class Checker {
 
   void check_domain() {
     double thinnest = s_.domain.max[0] - s_.domain.min[0];
-    for (int a = 1; a < 3; ++a) thinnest = std::min(thinnest, s_.domain.max[a] - s_.domain.min[a]);
+    for (int a = flat() ? 2 : 1; a < 3; ++a)
+      thinnest = std::min(thinnest, s_.domain.max[a] - s_.domain.min[a]);
     if (p_.good({"solver.wall_margin"}) && !(2 * s_.solver.wall_margin < thinnest))
       add("solver.wall_margin", "is " + to_text(s_.solver.wall_margin) +
                                     ", but must be below half the thinnest side of the domain (" +
@@ -87,7 +115,7 @@ class Checker {
         continue;
       }
       if (!p_.good({"fluid.spacing", key + ".count"})) continue;
-      const double n = lattice_count(body, s_.fluid.spacing);
+      const double n = lattice_count(body, s_.fluid.spacing, plane());
       if (n < 1)
         add(key, "makes no particle: the block is thinner than fluid.spacing (" +
                      to_text(s_.fluid.spacing) + " m); enlarge it or lower fluid.spacing");
@@ -96,7 +124,11 @@ class Checker {
     if (known && sum > kMaxParticles) add("bodies", too_many_text(sum));
   }
 
-  /// Box or sphere well formed and inside the domain.
+  std::optional<double> plane() const {
+    return p_.good({"domain.min", "domain.max", "dimensions"}) ? s_.plane() : std::nullopt;
+  }
+
+  /// Box or sphere well formed and inside the domain; with a plane, cut by it.
   bool check_place(const Body& body, const std::string& key, bool domain) {
     Double3 low = body.min, high = body.max;
     if (!p_.good({key + ".shape"})) return false;
@@ -112,7 +144,14 @@ class Checker {
       return false;
     }
     bool inside = true;
-    for (int a = 0; a < 3 && domain; ++a) {
+    const std::optional<double> y = domain ? plane() : std::nullopt;
+    if (y && !(low[1] <= *y && *y <= high[1])) {
+      inside = false;
+      add(key, "its y goes from " + to_text(low[1]) + " to " + to_text(high[1]) +
+                   ", which leaves out the plane of the particles, y = " + to_text(*y) +
+                   " (dimensions: 2, the middle of the domain); move the body there");
+    }
+    for (int a = 0; a < 3 && domain; a += y ? 2 : 1) {
       const double min = s_.domain.min[a], max = s_.domain.max[a], slack = 1e-9 * (max - min);
       const bool below = low[a] < min - slack;
       if (!below && high[a] <= max + slack) continue;

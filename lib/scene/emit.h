@@ -24,7 +24,9 @@ std::int64_t count_particles(const Scene& scene, const std::string& scene_dir);
 /// Block: lattice points min + (i + 1/2) d for every cell of edge d that fits (to rounding);
 /// sphere: points of the lattice through its centre with |x - c| <= radius; random_box: SplitMix64
 /// seeded by `seed`, three draws per particle (x, y, z), 53-bit mantissa, the same on every
-/// machine. Throws Error(bad_input) for a particle outside the domain (naming body and particle), a
+/// machine. In two dimensions each of them is its cut with the plane: square lattice, disc, two
+/// draws (x, z); particles of a file within the slab are put on it.
+/// Throws Error(bad_input) for a particle outside the domain (naming body and particle), a
 /// file body that cannot be understood, non-finite values; Error(io) for one that cannot be read.
 Particles emit_particles(const Scene& scene, const std::string& scene_dir);
 

@@ -57,7 +57,12 @@ Key shapes(unsigned mask, Key key) {
 const Words kFloats{"float", "double"};
 
 std::vector<Key> top_keys() {
-  return {words("name", {}, "Name of the scene, for titles and logs.", SCENE(&s.name))};
+  return {words("name", {}, "Name of the scene, for titles and logs.", SCENE(&s.name)),
+          number("dimensions", "", {2, 3},
+                 "2: the fluid lies in the x-z plane in the middle of the domain's y, whose extent "
+                 "is the thickness of the slab, at most h, without walls. Bodies are cut by that "
+                 "plane. 3: space.",
+                 SCENE(&s.dimensions))};
 }
 
 std::vector<Key> domain_keys() {
@@ -76,14 +81,16 @@ std::vector<Key> fluid_keys() {
              SCENE(&s.fluid.rest_density)),
       required(number("fluid.spacing", "m", kLength,
                       "Edge d of the rest lattice's cell: the distance of neighbouring particles "
-                      "at rest. Halving it makes 8 times the particles.",
+                      "at rest. Halving it makes 8 times the particles, 4 in two dimensions.",
                       SCENE(&s.fluid.spacing))),
       number("fluid.smoothing_ratio", "", {1, 10},
-             "Smoothing length over spacing, h/d. 2 gives about 33 neighbours.",
+             "Smoothing length over spacing, h/d. 2 gives about 33 neighbours, 12 in two "
+             "dimensions.",
              SCENE(&s.fluid.smoothing_ratio)),
       automatic(number("fluid.mass", "kg", {0, 1e30, true},
-                       "Mass of one particle. auto: rho0 d^3, with the density sum calibrated so "
-                       "that the rest lattice has density rho0. A number is used as it is.",
+                       "Mass of one particle. auto: rho0 d^3 (in two dimensions rho0 d^2 times "
+                       "the thickness), with the density sum calibrated so that the rest lattice "
+                       "has density rho0. A number is used as it is.",
                        SCENE(&s.fluid.mass)))};
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "lib/scene/scene.h"
 
@@ -14,18 +15,20 @@ inline constexpr double kMaxParticles = 2147483647.0;
 
 /// Whole cells of edge d (m) along each axis of a block. A cell that is short by less than a
 /// millionth of d counts: (0.4 - 0) / 0.02 need not be 20 in binary. Doubles, for they may be
-/// beyond any integer.
-inline std::array<double, 3> block_cells(const Body& body, double d) {
+/// beyond any integer. `plane`: of Scene::plane(); where there is one, a single layer along y.
+inline std::array<double, 3> block_cells(const Body& body, double d, std::optional<double> plane) {
   std::array<double, 3> n{};
   for (int a = 0; a < 3; ++a) n[a] = std::floor((body.max[a] - body.min[a]) / d + 1e-6);
+  if (plane) n[1] = 1;
   return n;
 }
 
 /// Squared radius of a sphere in units of d, widened by rounding: lattice point (i, j, k) belongs
-/// to the sphere when i^2 + j^2 + k^2 <= sphere_limit.
-inline double sphere_limit(const Body& body, double d) {
-  const double r = body.radius / d;
-  return r * r * (1 + 1e-9);
+/// to the sphere when i^2 + j^2 + k^2 <= sphere_limit. With a plane: that of the disc in which it
+/// cuts the sphere, j = 0; negative where it does not.
+inline double sphere_limit(const Body& body, double d, std::optional<double> plane) {
+  const double r = body.radius / d, off = plane ? (*plane - body.center[1]) / d : 0;
+  return r * r * (1 + 1e-9) - off * off;
 }
 
 /// Largest k >= 0 with k^2 <= rest, or -1 when rest < 0.
@@ -39,19 +42,21 @@ inline std::int64_t half_width(double rest) {
 
 /// Number of particles of a body that is not read from a file; exact up to 2^53 for blocks and, for
 /// spheres, up to kMaxParticles (beyond it the volume's estimate). Makes nothing.
-inline double lattice_count(const Body& body, double d) {
+inline double lattice_count(const Body& body, double d, std::optional<double> plane) {
   if (body.shape == Shape::random_box) return static_cast<double>(body.count);
   if (body.shape == Shape::block) {
-    const auto n = block_cells(body, d);
+    const auto n = block_cells(body, d, plane);
     return std::fmax(n[0], 0) * std::fmax(n[1], 0) * std::fmax(n[2], 0);
   }
-  const double limit = sphere_limit(body, d);
-  const double volume = 4.18879020478639098 * limit * std::sqrt(limit);
+  const double limit = sphere_limit(body, d, plane);
+  if (limit < 0) return 0;
+  const double volume =
+      plane ? 3.14159265358979324 * limit : 4.18879020478639098 * limit * std::sqrt(limit);
   if (volume > 2 * kMaxParticles) return volume;
-  const std::int64_t n = half_width(limit);
+  const std::int64_t n = half_width(limit), ny = plane ? 0 : n;
   double sum = 0;
   for (std::int64_t k = -n; k <= n; ++k)
-    for (std::int64_t j = -n; j <= n; ++j)
+    for (std::int64_t j = -ny; j <= ny; ++j)
       if (const auto w =
               half_width(limit - static_cast<double>(k * k) - static_cast<double>(j * j));
           w >= 0)

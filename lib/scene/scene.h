@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -45,8 +46,9 @@ struct Fluid {
   double rest_density = 1000;  ///< kg/m^3, rho0
   double spacing = 0.02;       ///< m, d: edge of the rest lattice's cell
   double smoothing_ratio = 2;  ///< h/d
-  std::optional<double> mass;  ///< kg per particle; absent: rho0 d^3, density sum calibrated so
-                               ///< that the rest lattice has density rho0; present: used as it is
+  std::optional<double> mass;  ///< kg per particle; absent: rho0 d^3 (rho0 d^2 times the thickness
+                               ///< in two dimensions), density sum calibrated so that the rest
+                               ///< lattice has density rho0; present: used as it is
   bool operator==(const Fluid&) const = default;
 };
 
@@ -139,6 +141,7 @@ struct Render {
 
 struct Scene {
   std::string name = "scene";
+  int dimensions = 3;  ///< 2: the x-z plane in the middle of the domain's y, which is its thickness
   Domain domain;
   Fluid fluid;
   std::vector<Body> bodies;
@@ -158,6 +161,21 @@ struct Scene {
   int threads = 0;  ///< CPU threads; 0: all that the process may use
 
   double h() const { return fluid.spacing * fluid.smoothing_ratio; }  ///< m, smoothing length
+  /// m, y of the plane that holds all particles of a scene in two dimensions; else nothing.
+  std::optional<double> plane() const {
+    if (dimensions != 2) return std::nullopt;
+    return 0.5 * (domain.min[1] + domain.max[1]);
+  }
+  /// m, where the coordinates of a step (kernels/README.md, "Frame") are 0.
+  Double3 origin() const { return {domain.min[0], plane().value_or(domain.min[1]), domain.min[2]}; }
+  /// m^3, what one particle of the rest lattice fills: d^3, in two dimensions d^2 times the
+  /// thickness.
+  double cell_volume() const {
+    if (dimensions == 3) return std::pow(fluid.spacing, 3);
+    return fluid.spacing * fluid.spacing * (domain.max[1] - domain.min[1]);
+  }
+  /// kg, mass of one particle.
+  double particle_mass() const { return fluid.mass.value_or(fluid.rest_density * cell_volume()); }
   bool operator==(const Scene&) const = default;
 };
 

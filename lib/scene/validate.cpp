@@ -90,11 +90,6 @@ class Validator {
     if (const Block* block = table == "bodies[]" ? nullptr : find_block(table))
       return read_child(*block, path, value);
     const Key* key = find_key(table);
-    if (table == "dimensions")
-      return report(
-          name.place(), path,
-          "there are only scenes in three dimensions; remove the key, and make the domain "
-          "some smoothing lengths thick");
     if (key == nullptr) {
       std::string what = "unknown key";
       std::string near = problems_.full() ? "" : nearest_path(table);

@@ -7,33 +7,37 @@
 namespace pbf {
 namespace {
 
-double kernel(KernelMode mode, double q_squared) {
-  const double t = Spiky<double>::t(std::sqrt(q_squared));
-  return mode == KernelMode::paper
-             ? Poly6<double>::norm * density_shape<double, Smoothing::paper>(q_squared, t)
-             : Spiky<double>::norm * density_shape<double, Smoothing::consistent>(q_squared, t);
-}
-
-}  // namespace
-
-Calibration calibrate(KernelMode mode, double ratio) {
-  const int reach = int(std::ceil(ratio));
+template <Smoothing S>
+Calibration calibrated(double ratio, double range) {
+  const int reach = int(std::ceil(ratio)), reach_y = dimensions_of(S) == 2 ? 0 : reach;
   double sum = 0, above = 0;  // whole lattice; the layers at and above the particle's own
   for (int z = -reach; z <= reach; ++z)
-    for (int y = -reach; y <= reach; ++y)
+    for (int y = -reach_y; y <= reach_y; ++y)
       for (int x = -reach; x <= reach; ++x) {
-        const double w = kernel(mode, (x * x + y * y + z * z) / (ratio * ratio));
+        const double q_squared = (x * x + y * y + z * z) / (ratio * ratio);
+        const double w =
+            density_norm<double, S>() *
+            density_shape<double, S>(q_squared, Spiky<double>::t(std::sqrt(q_squared)));
         sum += w;
         if (z >= 0) above += w;
       }
   Calibration c;
   c.vol = 1 / sum;
-  c.wall_range = 0.7;
-  const double q = 0.5 / ratio / c.wall_range;
-  const double half_space =
-      (mode == KernelMode::paper ? half_space_poly6(q) : half_space_spiky(q)).density;
-  c.wall_scale = (1 - c.vol * above) / half_space;
+  c.wall_range = range;
+  c.wall_scale =
+      (1 - c.vol * above) / density_half_space<double, S>(0.5 / ratio / c.wall_range).density;
   return c;
+}
+
+}  // namespace
+
+Calibration calibrate(KernelMode mode, double ratio, int dimensions) {
+  const bool paper = mode == KernelMode::paper;
+  if (dimensions == 2)
+    return paper ? calibrated<Smoothing::paper_2d>(ratio, 0.7)
+                 : calibrated<Smoothing::consistent_2d>(ratio, 0.7);
+  return paper ? calibrated<Smoothing::paper>(ratio, 0.7)
+               : calibrated<Smoothing::consistent>(ratio, 0.7);
 }
 
 }  // namespace pbf

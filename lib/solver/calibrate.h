@@ -5,8 +5,9 @@
 
 namespace pbf {
 
-/// vol = m/(rho0 h^3) such that a particle inside the rest lattice (cubic, spacing d = h/ratio)
-/// has density rho0 under the density kernel in use (lattice sum in double).
+/// vol = m/(rho0 h^3) (in two dimensions: over the thickness, m/(rho0 h^2)) such that a particle
+/// inside the rest lattice (cubic or square, spacing d = h/ratio) has density rho0 under the
+/// density kernel in use (lattice sum in double).
 ///
 /// A wall adds wall_scale * D(q / wall_range) to the density (kernels/boundary.h). The scale is
 /// such that a lattice layer at d/2 from the wall has density rho0. The range: fluid at rest keeps
@@ -20,6 +21,6 @@ namespace pbf {
 struct Calibration {
   double vol = 1, wall_scale = 1, wall_range = 1;
 };
-Calibration calibrate(KernelMode kernels, double ratio);
+Calibration calibrate(KernelMode kernels, double ratio, int dimensions = 3);
 
 }  // namespace pbf

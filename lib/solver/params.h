@@ -23,8 +23,9 @@ inline RestPool rest_pool(const Scene& s, double mass, std::int64_t n, unsigned 
   if (along != 1) return pool;
   const bool points_up = s.gravity[std::size_t(axis)] > 0;
   for (int k = 0; k < 3; ++k) {
+    const bool wall = k != 1 || s.dimensions == 3;  // the slab's faces hold the fluid by themselves
     const unsigned low = 1u << (2 * k), needed = k == axis ? (points_up ? 2 * low : low) : 3 * low;
-    if ((walls & needed) != needed) return pool;
+    if (wall && (walls & needed) != needed) return pool;
     if (k != axis) area *= extent[k];
   }
   pool.axis = axis;
@@ -40,6 +41,7 @@ Params<Real> make_params(const Scene& s, const Plan& plan) {
   const double h = s.h();
   Params<Real> p;
   p.n = int(plan.particles);
+  p.dimensions = s.dimensions;
   const double dt = s.time.step / plan.substeps;
   p.dt = Real(dt);
   p.inv_dt = Real(1 / dt);
@@ -59,6 +61,7 @@ Params<Real> make_params(const Scene& s, const Plan& plan) {
   for (const auto& open : s.domain.open)
     for (int k = 0; k < 6; ++k)
       if (open == faces[k]) p.walls &= ~(1u << k);
+  if (s.dimensions == 2) p.walls &= ~(y_min | y_max);
   p.wall_density = s.solver.boundary == BoundaryMode::density && p.walls != 0;
   p.wall_scale = Real(plan.wall_scale);
   p.wall_inv_range = Real(1 / plan.wall_range);

@@ -29,6 +29,7 @@ void measure_pool(const MeasureSums& s, const RestPool& pool, double counted, Me
 Measures to_measures(const MeasureSums& s, const Scene& scene, const Plan& plan,
                      std::int64_t update, double time) {
   const double h = scene.h(), n = double(plan.particles), mass = plan.mass;
+  const Double3 origin = scene.origin();
   const double counted = double(plan.particles - s.non_finite);
   Measures m;
   m.time = time;
@@ -47,9 +48,8 @@ Measures to_measures(const MeasureSums& s, const Scene& scene, const Plan& plan,
     const double extent = scene.domain.max[std::size_t(k)] - scene.domain.min[std::size_t(k)];
     m.energy += mass * std::max(scene.gravity[std::size_t(k)], 0.0) * extent * counted;
     m.momentum[k] = mass * h * s.v[k];
-    m.center_of_mass[k] =
-        scene.domain.min[std::size_t(k)] + h * s.x[k] / (counted > 0 ? counted : 1);
-    m.front[k] = scene.domain.min[std::size_t(k)] + h * s.front[k];
+    m.center_of_mass[k] = origin[std::size_t(k)] + h * s.x[k] / (counted > 0 ? counted : 1);
+    m.front[k] = origin[std::size_t(k)] + h * s.front[k];
   }
   m.energy += m.kinetic_energy + m.potential_energy;
   const Params<double> p = make_params<double>(scene, plan);

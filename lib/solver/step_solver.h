@@ -28,7 +28,7 @@ InternalState<Real> to_internal(const Scene& s, Particles particles) {
   const std::size_t n = particles.size();
   const double h = s.h();
   InternalState<Real> out;
-  const Double3& o = s.domain.min;
+  const Double3 o = s.origin();
   out.position.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const Double3& x = particles.position[i];

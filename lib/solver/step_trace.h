@@ -10,7 +10,7 @@
 
 namespace pbf {
 
-/// A state in the internal frame (h from the domain's lower corner, h/s), in the solver's own order
+/// A state in the internal frame (h from Scene::origin(), h/s), in the solver's own order
 /// of particles. The order belongs to the state: the sort by bin is stable, so particles of one bin
 /// keep it, and every sum over neighbours follows it.
 struct SolverState {

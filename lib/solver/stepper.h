@@ -27,11 +27,20 @@ namespace pbf::inline PBF_VARIANT {
 
 /// Calls f with the scene's choices as types, so that no pair loop tests them.
 template <class F>
-void with_smoothing(KernelMode mode, F&& f) {
+void with_dimensions(int dimensions, F&& f) {
+  dimensions == 2 ? f(std::integral_constant<int, 2>{}) : f(std::integral_constant<int, 3>{});
+}
+template <class F>
+void with_smoothing(KernelMode mode, int dimensions, F&& f) {
+  const auto choose = [&](auto in_space, auto in_plane) {
+    dimensions == 2 ? f(in_plane) : f(in_space);
+  };
   if (mode == KernelMode::paper)
-    f(std::integral_constant<Smoothing, Smoothing::paper>{});
+    choose(std::integral_constant<Smoothing, Smoothing::paper>{},
+           std::integral_constant<Smoothing, Smoothing::paper_2d>{});
   else
-    f(std::integral_constant<Smoothing, Smoothing::consistent>{});
+    choose(std::integral_constant<Smoothing, Smoothing::consistent>{},
+           std::integral_constant<Smoothing, Smoothing::consistent_2d>{});
 }
 template <class F>
 void with_bool(bool b, F&& f) {
@@ -89,7 +98,7 @@ class Stepper {
     release(position);  // before the lists are made
     release(velocity);
     release(id);
-    reorder<false>("grid", BinPass<Real>{p_, position_.data(), bin_.data()});
+    reorder_as_is("grid");
     sum_density();
   }
 
@@ -103,12 +112,14 @@ class Stepper {
     bool moved_on = false;
     for (int left = updates - 1; left >= 0; --left) {
       if (!moved_on)
-        reorder<true>("predict",
-                      PredictPass<Real>{p_, position_.data(), velocity_.data(), bin_.data()});
+        with_dimensions(p_.dimensions, [&](auto d) {
+          reorder<true>("predict", PredictPass<Real, decltype(d)::value>{
+                                       p_, position_.data(), velocity_.data(), bin_.data()});
+        });
       moved_on = left > 0 && p_.xsph > Real(0) && !(p_.vorticity > Real(0));
       solve(unseen);
       if (moved_on)
-        with_smoothing(mode_,
+        with_smoothing(mode_, p_.dimensions,
                        [&](auto s) { reorder<true>("xsph", xsph<decltype(s)::value, true>()); });
       else
         finish_update(unseen);
@@ -154,7 +165,7 @@ class Stepper {
   void set_state(const SolverState& s) {
     upload_state<Real>(exec_, s, arrays());
     save(unsorted_);
-    reorder<false>("grid", BinPass<Real>{p_, position_.data(), bin_.data()});
+    reorder_as_is("grid");
     density_is_current_ = false;
     sum_density();
   }
@@ -256,7 +267,7 @@ class Stepper {
     exec_.begin();
     exec_.for_each(p_.n, MovePass<Real>{p_, position_.data(), velocity_.data(), counts_.data()});
     seen("predict", 0);
-    reorder<false>("predict", BinPass<Real>{p_, position_.data(), bin_.data()});
+    reorder_as_is("predict");
     seen("grid", 0);
     seen("neighbors", 0);
     solve(seen);
@@ -283,6 +294,13 @@ class Stepper {
     exec_.mark("neighbors");
   }
 
+  /// The same with the positions as they are.
+  void reorder_as_is(const char* stage) {
+    with_dimensions(p_.dimensions, [&](auto d) {
+      reorder<false>(stage, BinPass<Real, decltype(d)::value>{p_, position_.data(), bin_.data()});
+    });
+  }
+
   /// The sweeps of the first substep, whose x* is there already, then the other substeps with the
   /// same lists. Rounds of sweeps go on while the mean compression that the last sweep found is
   /// above the tolerance. `seen(stage, sweep)` may look at what each stage left behind.
@@ -296,7 +314,7 @@ class Stepper {
         exec_.mark("predict");
         seen("predict", s);
       }
-      with_smoothing(mode_, [&](auto smoothing) {
+      with_smoothing(mode_, p_.dimensions, [&](auto smoothing) {
         const auto round = [&] {
           for (int k = 0; k < iterations_; ++k) {
             p_.step_length = step_length_[std::size_t(k)];
@@ -315,17 +333,20 @@ class Stepper {
   template <class Seen>
   void finish_update(const Seen& seen) {
     if (p_.xsph > Real(0)) {
-      with_smoothing(mode_,
+      with_smoothing(mode_, p_.dimensions,
                      [&](auto s) { exec_.for_each(p_.n, xsph<decltype(s)::value, false>()); });
       exec_.mark("xsph");
       seen("xsph", 0);
     }
     if (!(p_.vorticity > Real(0))) return;
-    exec_.for_each(
-        p_.n, CurlPass<Real, Lists>{p_, lists_, position_.data(), velocity_.data(), curl_.data()});
-    seen("curl", 0);
-    exec_.for_each(p_.n, VorticityPass<Real, Lists>{p_, lists_, position_.data(), curl_.data(),
-                                                    velocity_.data()});
+    with_dimensions(p_.dimensions, [&](auto d) {
+      constexpr int D = decltype(d)::value;
+      exec_.for_each(p_.n, CurlPass<Real, Lists, D>{p_, lists_, position_.data(), velocity_.data(),
+                                                    curl_.data()});
+      seen("curl", 0);
+      exec_.for_each(p_.n, VorticityPass<Real, Lists, D>{p_, lists_, position_.data(), curl_.data(),
+                                                         velocity_.data()});
+    });
     exec_.mark("vorticity");
     seen("vorticity", 0);
   }
@@ -370,7 +391,7 @@ class Stepper {
 
   void sum_density() {
     if (density_is_current_) return;
-    with_smoothing(mode_, [&](auto s) {
+    with_smoothing(mode_, p_.dimensions, [&](auto s) {
       exec_.for_each(p_.n, DensityPass<Real, Lists, decltype(s)::value>{
                                p_, lists_, position_.data(), density_.data()});
     });

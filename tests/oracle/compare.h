@@ -14,12 +14,14 @@ inline oracle::Settings settings_of(const Case& c) {
   oracle::Settings o;
   o.h = s.h();
   o.rest_density = s.fluid.rest_density;
+  o.dimensions = s.dimensions;
   if (s.fluid.mass) {
     o.mass = *s.fluid.mass;
+    if (s.dimensions == 2) o.mass /= s.domain.max[1] - s.domain.min[1];
     o.wall_scale = 1;
   } else {
-    const auto cal = pbf::calibrate(s.solver.kernels, s.fluid.smoothing_ratio);
-    o.mass = static_cast<long double>(cal.vol) * o.rest_density * o.h * o.h * o.h;
+    const auto cal = pbf::calibrate(s.solver.kernels, s.fluid.smoothing_ratio, s.dimensions);
+    o.mass = static_cast<long double>(cal.vol) * o.rest_density * powl(o.h, s.dimensions);
     o.wall_scale = cal.wall_scale;
     o.wall_range = cal.wall_range;
   }

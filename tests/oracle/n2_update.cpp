@@ -18,16 +18,42 @@ V cross(const V& a, const V& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-Real poly6(Real r, Real h) {
-  return r >= h ? 0 : 315 / (64 * pi * powl(h, 9)) * powl(h * h - r * r, 3);
+bool flat(const Settings& c) { return c.dimensions == 2; }
+
+Real poly6(Real r, const Settings& c) {
+  const Real h = c.h, norm = flat(c) ? 4 / (pi * powl(h, 8)) : 315 / (64 * pi * powl(h, 9));
+  return r >= h ? 0 : norm * powl(h * h - r * r, 3);
 }
-Real spiky(Real r, Real h) { return r >= h ? 0 : 15 / (pi * powl(h, 6)) * powl(h - r, 3); }
-V spiky_gradient(const V& d, Real h) {
+Real spiky_norm(const Settings& c) {
+  return flat(c) ? 10 / (pi * powl(c.h, 5)) : 15 / (pi * powl(c.h, 6));
+}
+Real spiky(Real r, const Settings& c) { return r >= c.h ? 0 : spiky_norm(c) * powl(c.h - r, 3); }
+V spiky_gradient(const V& d, const Settings& c) {
   const Real r = length(d);
-  if (r >= h || r == 0) return {0, 0, 0};
+  if (r >= c.h || r == 0) return {0, 0, 0};
   V g{};
-  axpy(g, -45 / (pi * powl(h, 6)) * (h - r) * (h - r) / r, d);
+  axpy(g, -3 * spiky_norm(c) * (c.h - r) * (c.h - r) / r, d);
   return g;
+}
+
+/// The polynomials of kernels/README.md (9) for half planes, and their derivative in q.
+struct HalfPlane {
+  Real density, slope;
+};
+HalfPlane half_plane(bool poly6, Real q) {
+  if (q >= 1) return {0, 0};
+  q = std::max<Real>(q, 0);
+  const Real spiky_c[5] = {0.5L, 0.90627L, -0.19345L, 1.18431L, 0};
+  const Real poly6_c[5] = {0.5L, 0.83646L, 0.31849L, -0.09827L, -0.75489L};
+  const Real m = poly6 ? 4 : 5;
+  HalfPlane out{0, 0};
+  for (int k = 0; k < 5; ++k) {
+    const Real c = (poly6 ? poly6_c : spiky_c)[k];
+    out.density += c * powl(q, k) * powl(1 - q, m);
+    out.slope -= c * m * powl(q, k) * powl(1 - q, m - 1);
+    if (k > 0) out.slope += c * k * powl(q, k - 1) * powl(1 - q, m);
+  }
+  return out;
 }
 
 /// Mass fraction of the kernel behind a plane at distance a: the integral over spherical caps,
@@ -70,12 +96,23 @@ void clamp(V& x, const Settings& c) {
 Wall walls(const V& x, const Settings& c) {
   Wall out;
   if (!c.wall_density) return out;
-  auto kernel = [&](Real r) { return c.paper ? poly6(r, c.h) : spiky(r, c.h); };
-  auto gradient_kernel = [&](Real r) { return spiky(r, c.h); };
+  auto kernel = [&](Real r) { return c.paper ? poly6(r, c) : spiky(r, c); };
+  auto gradient_kernel = [&](Real r) { return spiky(r, c); };
   Real keep = 1, factor[6], slope[6];
   for (int f = 0; f < 6; ++f) {
     const int axis = f / 2;
+    factor[f] = 1;
+    slope[f] = 0;
+    if (flat(c) && axis == 1) continue;
     const Real a = f % 2 ? c.high[axis] - x[axis] : x[axis] - c.low[axis];
+    if (flat(c)) {
+      const Real q = a / c.wall_range / c.h;
+      keep *= 1 - c.wall_scale * half_plane(c.paper, q).density;
+      const HalfPlane g = half_plane(false, q);
+      factor[f] = 1 - c.wall_scale * g.density;
+      slope[f] = c.wall_scale / c.wall_range / c.h * g.slope * (f % 2 ? -1 : 1);
+      continue;
+    }
     keep *= 1 - c.wall_scale * half_space(kernel, a / c.wall_range, c.h);
     factor[f] = 1 - c.wall_scale * half_space(gradient_kernel, a / c.wall_range, c.h);
     slope[f] =
@@ -97,7 +134,7 @@ std::vector<Real> densities(const std::vector<V>& x, const Settings& c) {
     Real sum = 0;
     for (std::size_t j = 0; j < x.size(); ++j) {
       const Real r = length(sub(x[i], x[j]));
-      sum += c.mass * (c.paper ? poly6(r, c.h) : spiky(r, c.h));
+      sum += c.mass * (c.paper ? poly6(r, c) : spiky(r, c));
     }
     out.push_back(sum + c.rest_density * walls(x[i], c).density);
   }
@@ -120,7 +157,7 @@ void update(State& s, const Settings& c) {
 
   const Real m = c.mass / c.rest_density;  // volume, m^3
   s.density.assign(n, c.rest_density);
-  auto kernel = [&](Real r) { return c.paper ? poly6(r, c.h) : spiky(r, c.h); };
+  auto kernel = [&](Real r) { return c.paper ? poly6(r, c) : spiky(r, c); };
   for (int sweep = 0; sweep < c.iterations; ++sweep) {
     std::vector<Real> lambda(n);
     std::vector<Wall> wall(n);
@@ -131,7 +168,7 @@ void update(State& s, const Settings& c) {
       for (std::size_t j : pairs[i]) {
         const V d = sub(s.x[i], s.x[j]);
         ratio += m * kernel(length(d));
-        V g = spiky_gradient(d, c.h);
+        V g = spiky_gradient(d, c);
         axpy(own, m, g);
         squares += m * m * (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
       }
@@ -151,7 +188,7 @@ void update(State& s, const Settings& c) {
         if (c.tensile_k != 0)
           w -= c.tensile_k * c.h * c.h *
                powl(kernel(length(d)) / kernel(c.tensile_q * c.h), c.tensile_n);
-        axpy(delta, m * w, spiky_gradient(d, c.h));
+        axpy(delta, m * w, spiky_gradient(d, c));
       }
       axpy(delta, lambda[i], wall[i].gradient);
       axpy(next[i], c.step_length, delta);
@@ -174,13 +211,13 @@ void update(State& s, const Settings& c) {
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j : pairs[i])
         axpy(curl[i], c.mass / s.density[j],
-             cross(spiky_gradient(sub(s.x[i], s.x[j]), c.h), sub(s.v[j], s.v[i])));
+             cross(spiky_gradient(sub(s.x[i], s.x[j]), c), sub(s.v[j], s.v[i])));
     for (std::size_t i = 0; i < n; ++i) {
       if (s.density[i] < 0.75L * c.rest_density) continue;
       V eta{};
       for (std::size_t j : pairs[i])
         axpy(eta, c.mass / s.density[j] * (length(curl[j]) - length(curl[i])),
-             spiky_gradient(sub(s.x[i], s.x[j]), c.h));
+             spiky_gradient(sub(s.x[i], s.x[j]), c));
       const Real size = length(eta) + 0.1L * length(curl[i]) / c.h;
       if (size == 0) continue;
       axpy(s.v[i], std::min(c.dt * c.vorticity, 0.05L) * c.h / size, cross(eta, curl[i]));

@@ -44,6 +44,16 @@ inline Case jittered_block(int nx, int ny, int nz, double jitter, double speed,
   return c;
 }
 
+/// The same in two dimensions: a square lattice in a slab one spacing thick.
+inline Case flat_block(int nx, int nz, double jitter, double speed, std::uint32_t seed = 1,
+                       double squeeze = 1.0) {
+  Case c = jittered_block(nx, 1, nz, jitter, speed, seed, squeeze);
+  c.scene.dimensions = 2;
+  for (auto& x : c.particles.position) x[1] = *c.scene.plane();
+  for (auto& v : c.particles.velocity) v[1] = 0;
+  return c;
+}
+
 inline std::unique_ptr<pbf::Solver> make(const Case& c) {
   const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
   return pbf::make_solver(c.scene, plan, c.particles);

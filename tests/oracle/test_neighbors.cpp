@@ -10,19 +10,21 @@ using namespace pbf;
 
 namespace {
 
-/// Positions in units of h; checks every list against brute force, in the same precision.
-template <class Real>
+/// Positions in units of h; checks every list against brute force, in the same precision. D:
+/// dimensions.
+template <int D, class Real>
 void check_lists(Simd simd, const std::vector<Vec4<Real>>& x, Vec3<Real> box, int nx, int ny,
                  int nz, int threads) {
   Params<Real> p;
   p.n = int(x.size());
   p.box = box;
+  p.dimensions = D;
   p.cells_x = 2 * nx;
   p.cells_y = ny;
   p.cells_z = nz;
   CpuExec exec(threads, 37, simd);
   std::vector<int> cell(x.size()), order(x.size()), start(std::size_t(bin_count(p)) + 1);
-  for (int i = 0; i < p.n; ++i) cell[std::size_t(i)] = bin_of(xyz(x[std::size_t(i)]), p);
+  for (int i = 0; i < p.n; ++i) cell[std::size_t(i)] = bin_of<D>(xyz(x[std::size_t(i)]), p);
   exec.sort(cell.data(), p.n, bin_count(p), order.data(), start.data());
 
   std::vector<Vec4<Real>> sorted(x.size());
@@ -41,7 +43,8 @@ void check_lists(Simd simd, const std::vector<Vec4<Real>>& x, Vec3<Real> box, in
     for (int j = 0; j < p.n; ++j) {
       const auto &a = sorted[std::size_t(i)], &b = sorted[std::size_t(j)];
       const Real dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
-      if (i != j && dx * dx + dy * dy + dz * dz < Real(1)) expected.push_back(j);
+      if (i != j && (D == 2 ? dx * dx + dz * dz : dx * dx + dy * dy + dz * dz) < Real(1))
+        expected.push_back(j);
     }
     REQUIRE(lists.size(i) == int(found.size()));
     REQUIRE(found == expected);  // the order too: ascending
@@ -49,12 +52,12 @@ void check_lists(Simd simd, const std::vector<Vec4<Real>>& x, Vec3<Real> box, in
 }
 
 /// With all vector instructions that there are.
-template <class Real>
+template <class Real, int D = 3>
 void check_lists(const std::vector<Vec4<Real>>& x, Vec3<Real> box, int nx, int ny, int nz,
                  int threads = 2) {
   for (const Simd simd : usable_simd()) {
     CAPTURE(simd_name(simd));
-    check_lists(simd, x, box, nx, ny, nz, threads);
+    check_lists<D>(simd, x, box, nx, ny, nz, threads);
   }
 }
 
@@ -122,7 +125,7 @@ TEST_CASE("particles that have left the grid are spread over it, not piled up at
   std::vector<int> count(std::size_t(bin_count(p)));
   const int n = 100000;
   for (const auto& x : random_points<double>(n, -1000, 1000))
-    ++count[std::size_t(bin_of(xyz(x), p))];
+    ++count[std::size_t(bin_of<3>(xyz(x), p))];
   const double mean = double(n) / double(count.size());
   CHECK(*std::min_element(count.begin(), count.end()) > mean / 2);
   CHECK(*std::max_element(count.begin(), count.end()) < mean * 2);
@@ -143,5 +146,35 @@ TEST_CASE("more than 16384 particles are sorted the same way by 1, 2 and 5 threa
     exec.sort(cell.data(), n, cells, order.data(), start.data());
     CHECK(order == expected);
     CHECK(start[cells] == n);
+  }
+}
+
+TEMPLATE_TEST_CASE("in two dimensions too, from 9 cells", "", float, double) {
+  using R = TestType;
+  const auto flat = [](std::vector<Vec4<R>> x) {
+    for (auto& p : x) p.y = 0;
+    return x;
+  };
+  SECTION("random points") {
+    check_lists<R, 2>(flat(random_points<R>(2000, 0, 14)), {14, 1, 14}, 15, 1, 15);
+  }
+  SECTION("outside the grid, and many in a cell") {
+    check_lists<R, 2>(flat(random_points<R>(1500, -4, 7)), {3, 1, 3}, 3, 1, 3);
+  }
+  SECTION("a lattice on the faces of the cells, pairs exactly at distance h") {
+    std::vector<Vec4<R>> x;
+    for (int k = 0; k < 900; ++k) x.push_back({R(k % 30) / 2, 0, R(k / 30) / 2, 0});
+    check_lists<R, 2>(x, {15, 1, 15}, 16, 1, 16);
+  }
+  SECTION("bins: halves of a cell along z, none along y") {
+    Params<R> p;
+    p.dimensions = 2;
+    p.cells_x = 6;
+    p.cells_z = 2;
+    CHECK(bin_count(p) == 6 * 2 * 2);
+    CHECK(bin_of<2>(Vec3<R>{R(0.1), 0, R(0.1)}, p) == 0);
+    CHECK(bin_of<2>(Vec3<R>{R(0.1), 0, R(0.6)}, p) == 1);
+    CHECK(bin_of<2>(Vec3<R>{R(0.6), 0, R(0.1)}, p) == 2);
+    CHECK(bin_of<2>(Vec3<R>{R(2.9), 0, R(1.9)}, p) == bin_count(p) - 1);
   }
 }

@@ -35,12 +35,14 @@ struct Problem {
   /// W and dW/dr; in `paper` both of Poly6, the true gradient.
   std::pair<Real, Real> kernel(Real r) const {
     const Real pi = acosl(-1.0L), h = c.h;
+    const bool flat = c.dimensions == 2;
     if (r >= h) return {0, 0};
     if (c.paper) {
-      const Real a = 315 / (64 * pi * powl(h, 9)), u = h * h - r * r;
+      const Real a = flat ? 4 / (pi * powl(h, 8)) : 315 / (64 * pi * powl(h, 9));
+      const Real u = h * h - r * r;
       return {a * u * u * u, -6 * a * r * u * u};
     }
-    const Real a = 15 / (pi * powl(h, 6)), u = h - r;
+    const Real a = flat ? 10 / (pi * powl(h, 5)) : 15 / (pi * powl(h, 6)), u = h - r;
     return {a * u * u * u, -3 * a * u * u};
   }
   void linearise(const std::vector<Real>& x, std::vector<Real>& value, Dense& jacobian) const {
@@ -140,6 +142,15 @@ TEST_CASE("the exact projection equals an independent dense solve to 1e-9 spacin
     c.scene.solver.kernels = pbf::KernelMode::paper;
     for (std::size_t k = 0; k < 3; ++k) c.scene.domain.min[k] -= 0.1;
   }
+  SECTION("in two dimensions") {
+    c = flat_block(5, 5, 0.05, 0, 3, 0.97);
+    for (std::size_t k : {0u, 2u}) c.scene.domain.max[k] = c.scene.domain.min[k] + 0.11;
+  }
+  SECTION("in two dimensions, the paper's kernels, free") {
+    c = flat_block(5, 5, 0.05, 0, 3, 0.97);
+    c.scene.solver.kernels = pbf::KernelMode::paper;
+    for (std::size_t k : {0u, 2u}) c.scene.domain.min[k] -= 0.1;
+  }
   SECTION("walls that only clamp, with a margin") {
     c.scene.solver.boundary = pbf::BoundaryMode::clamp;
     c.scene.solver.wall_margin = 0.008;
@@ -151,10 +162,24 @@ TEST_CASE("the exact projection equals an independent dense solve to 1e-9 spacin
   CHECK(exact.stationarity < 1e-9);
   CHECK(exact.complementarity < 1e-11);
   const Problem problem(c, start);
-  const auto reference = nearest_point(problem, 45, 200);
+  const auto reference = nearest_point(problem, c.scene.dimensions == 2 ? 70 : 45, 200);
   const double moved = largest(start, reference) / c.scene.fluid.spacing;
   CHECK(moved > 0.02);  // there was something to do
   CHECK(largest(exact.position, reference) / c.scene.fluid.spacing < 1e-9);
+}
+
+TEST_CASE("what is projected are the positions after gravity, velocity and clamp") {
+  Case c = jittered_block(3, 3, 3, 0.1, 0.5);
+  c.scene.solver.velocity_damping = 0.9;
+  std::vector<double> velocity;
+  for (const auto& v : c.particles.velocity) velocity.insert(velocity.end(), v.begin(), v.end());
+  const auto x = flat(c), moved = pbf::predicted_positions(c.scene, plan_of(c), x, velocity);
+  const double dt = c.scene.time.step;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double free = x[k] + dt * (0.9 * velocity[k] + dt * c.scene.gravity[k % 3]);
+    const double low = c.scene.domain.min[k % 3], high = c.scene.domain.max[k % 3];
+    CHECK(moved[k] == Approx(std::min(std::max(free, low), high)).epsilon(1e-12));
+  }
 }
 
 TEST_CASE("nothing moves where every constraint holds") {

@@ -13,6 +13,7 @@ namespace {
 
 using namespace pbf;
 using oracle_test::Case;
+using oracle_test::flat_block;
 using oracle_test::jittered_block;
 
 /// The environment variable for the length of a scope.
@@ -98,10 +99,12 @@ void check_loads() {
 
 TEST_CASE("lanes of every width give the bits of one particle at a time, pass by pass", "[simd]") {
   const bool dbl = GENERATE(false, true);
-  Case c = jittered_block(7, 5, 9, 0.3, 0.4);  // 315: no width divides it
+  const bool flat = GENERATE(false, true);
+  // 315: no width divides it.
+  Case c = flat ? flat_block(21, 15, 0.3, 0.4) : jittered_block(7, 5, 9, 0.3, 0.4);
   SECTION("defaults") {}
   SECTION("more than a chunk, two threads") {
-    c = jittered_block(13, 11, 9, 0.3, 0.4);
+    c = flat ? flat_block(39, 33, 0.3, 0.4) : jittered_block(13, 11, 9, 0.3, 0.4);
     c.scene.threads = 2;
   }
   SECTION("all terms") {

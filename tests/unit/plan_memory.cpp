@@ -161,6 +161,34 @@ TEST_CASE("the plan's device bytes are those measured on an H200, to 1 %") {
   }
 }
 
+TEST_CASE(
+    "in two dimensions the plan counts the bytes held, names the layer left out, and has one") {
+  for (const double ratio : {1.5, 2.0, 3.0})
+    for (const bool dbl : {false, true}) {
+      CAPTURE(ratio, dbl);
+      Scene s = scene_test::parse(
+          "dimensions: 2\n"
+          "domain: {min: [0, 0, 0], max: [2, 0.02, 1.25]}\n"
+          "fluid: {spacing: 0.02}\n"
+          "bodies: [{shape: block, min: [0, 0, 0], max: [1, 0.02, 1]}]\n"
+          "time: {step: 0.001, end: 1}\n"
+          "threads: 1\n",
+          {"fluid.smoothing_ratio=" + std::to_string(ratio),
+           std::string("precision=") + (dbl ? "double" : "float")});
+      const Plan plan = make_plan(s, count_particles(s, "."));
+      CHECK(plan.particles == 2500);
+      CHECK(plan.cells[1] == 1);
+      CHECK(plan.left_out[0].because == "dimensions is 2");
+      const auto solver = make_solver(s, plan, emit_particles(s, "."));
+      solver->step(2);
+      solver->measure();
+      solver->keep();
+      CHECK(double(solver->info().bytes) == Approx(double(plan.bytes())).epsilon(0.05));
+      CHECK(bytes_of(plan.memory, "bin_start") ==
+            4 * (std::int64_t(plan.cells[0]) * plan.cells[2] * 2 + 1));
+    }
+}
+
 TEST_CASE("a scene that cannot fit is refused before a particle is made") {
   const Scene s = block(0.001, {"fluid.smoothing_ratio=10"});
   const Plan plan = make_plan(s, 1000000000);

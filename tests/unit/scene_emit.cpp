@@ -162,4 +162,47 @@ TEST_CASE("emit: no particles and too many are errors, before anything is alloca
                  "5.24e+17 particles, at most 2147483647 are possible; raise fluid.spacing"));
 }
 
+TEST_CASE("in two dimensions every body is its cut with the middle of the domain's y") {
+  Scene s = unit_box(0.1, {block({0, 0, 0}, {0.5, 1, 0.3}), sphere({0.7, 0.05, 0.7}, 0.25),
+                           sphere({0.7, 0.2, 0.3}, 0.25), random_box({0, 0, 0}, {1, 1, 1}, 50, 3)});
+  s.dimensions = 2;
+  s.domain.max[1] = 0.1;
+  const Particles p = emit_particles(s, "");
+  // 15 of the rectangle, 21 of the disc of 2.5 d, 13 of that of 2 d (from 2.5 and 1.5 d off).
+  REQUIRE(p.size() == 15 + 21 + 13 + 50);
+  CHECK(count_particles(s, "") == 99);
+  for (const Double3& x : p.position) CHECK(x[1] == 0.05);
+  CHECK(p.position[0] == Double3{0.05, 0.05, 0.05});
+  CHECK(p.position[5][2] == Approx(0.15));
+  // Two draws for each particle of the random body, x and z.
+  SplitMix64 random(3);
+  CHECK(p.position[49][0] == random.uniform());
+  CHECK(p.position[49][2] == random.uniform());
+  CHECK(s.particle_mass() == Approx(1000 * 0.1 * 0.1 * 0.1));
+  s.domain.max[1] = 0.15;
+  CHECK(s.particle_mass() == Approx(1000 * 0.1 * 0.1 * 0.15));
+}
+
+TEST_CASE("in two dimensions particles of a file must lie in the slab and not move along y") {
+  const Folder folder;
+  const auto with = [&](const std::string& rows) {
+    Body b;
+    b.shape = Shape::file;
+    b.path = folder.write("p.csv", "x,y,z,vx,vy,vz\n" + rows);
+    Scene s = unit_box(0.1, {b});
+    s.dimensions = 2;
+    s.domain.max[1] = 0.1;
+    return s;
+  };
+  const Particles p = emit_particles(with("0.5,0.02,0.5,1,0,2\n0.7,0.1,0.5,0,0,0\n"), "");
+  CHECK(p.position[0] == Double3{0.5, 0.05, 0.5});
+  CHECK(p.position[1][1] == 0.05);
+  CHECK(p.velocity[0] == Double3{1, 0, 2});
+  const auto error = [&](const std::string& row) {
+    return error_of([&] { emit_particles(with(row), ""); });
+  };
+  CHECK(contains(error("0.5,0.2,0.5,0,0,0\n"), "the slab which holds all particles"));
+  CHECK(contains(error("0.5,0.05,0.5,0,1,0\n"), "its y component must be 0"));
+}
+
 }  // namespace pbf::scene_test

@@ -279,12 +279,31 @@ TEST_CASE("scene: every key of the table can be misspelt and is found again") {
   }
 }
 
-TEST_CASE("a scene in two dimensions is refused with what to do, not as a misspelt key") {
-  const std::string error = parse_error(kMinimal + "dimensions: 2\n");
-  CAPTURE(error);
-  CHECK(contains(error, "2 scene.yaml:6:1: dimensions: "));
-  CHECK(contains(error, "three dimensions"));
-  CHECK_FALSE(contains(error, "unknown key"));
+TEST_CASE("in two dimensions, what has no place in a plane is refused with the remedy") {
+  const auto error = [](std::vector<std::string> with) {
+    with.insert(with.begin(), {"dimensions=2", "domain.max=[1, 0.1, 1]"});
+    return parse_error(kMinimal, with);
+  };
+  CHECK(error({}) == "no error");
+  CHECK(error({"domain.max=[1, 0.2, 1]"}) == "no error");  // h
+  CHECK(
+      contains(error({"domain.max=[1, 0.21, 1]"}),
+               "domain.max: y makes a slab 0.21 m thick, with dimensions: 2 it may be at most the "
+               "smoothing length 0.2 m (one cell); give y = 0.1 for one spacing"));
+  CHECK(contains(error({"domain.max=[1, 0, 1]"}), "domain.max: y is 0, not above domain.min (0)"));
+  CHECK(contains(error({"domain.open=[x_min, y_max]"}),
+                 "domain.open: y_max: with dimensions: 2 there is no wall along y; remove it"));
+  CHECK(contains(error({"gravity=[0, -9.81, 0]"}),
+                 "gravity: its y component is -9.81, with dimensions: 2 nothing moves along y"));
+  CHECK(contains(error({"bodies[0].velocity=[1, 2, 0]"}),
+                 "bodies[0].velocity: its y component is 2, with dimensions: 2 nothing moves"));
+  CHECK(contains(error({"bodies[0].min=[0, 0.06, 0]"}),
+                 "bodies[0]: its y goes from 0.06 to 1, which leaves out the plane of the "
+                 "particles, y = 0.05"));
+  CHECK(contains(error({"dimensions=1"}), "dimensions"));
+  CHECK(contains(error({"dimensions=4"}), "dimensions"));
+  // The slab is no narrow place for particles: they keep to its middle.
+  CHECK(error({"solver.wall_margin=0.08"}) == "no error");
 }
 
 }  // namespace pbf::scene_test

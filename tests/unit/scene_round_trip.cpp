@@ -14,20 +14,21 @@ namespace {
 /// A scene in which no field has its default.
 Scene unlike_default() {
   Scene s;
+  s.dimensions = 2;
   s.name = "a \"quoted\\ name: # with, signs";
-  s.domain = {{-1.0 / 3, -2, 1e-7}, {0.1 + 0.2, 8, 3}, {"x_min", "z_max"}};
+  s.domain = {{-1.0 / 3, -0.02, 1e-7}, {0.1 + 0.2, 0.06, 3}, {"x_min", "z_max"}};
   s.fluid = {998.2, 0.1 / 3, 3.1072325059538572, 1.0 / 30};
   Body block;
   block.min = {-0.3, -1, 0.5};
   block.max = {0.1, 1, 1.5};
-  block.velocity = {1e-20, -1e11, 1.0 / 7};
+  block.velocity = {-1e11, 0, 1.0 / 7};
   Body sphere;
   sphere.shape = Shape::sphere;
-  sphere.center = {0, 4, 1};
+  sphere.center = {0, 0.1, 1};
   sphere.radius = 0.2;
   Body random;
   random.shape = Shape::random_box;
-  random.min = {0, 5, 1};
+  random.min = {0, -5, 1};
   random.max = {0.1, 6, 2};
   random.count = 123456789;
   random.seed = 9223372036854775807u;
@@ -35,7 +36,7 @@ Scene unlike_default() {
   file.shape = Shape::file;
   file.path = "odd name #1: [x].csv";
   s.bodies = {block, sphere, random, file};
-  s.gravity = {1.0 / 3, -9.8, 5e-300};
+  s.gravity = {1.0 / 3, 0, 5e-300};
   s.time = {1.0 / 60, 500.0 / 60};
   s.solver.iterations = 7;
   s.solver.substeps = 3;
