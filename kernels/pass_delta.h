@@ -4,6 +4,7 @@
 
 #include "kernels/boundary.h"
 #include "kernels/pair_sum.h"
+#include "kernels/pass_predict.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -33,6 +34,7 @@ struct DeltaPass {
   const Real* density;
   Vec4<Real>* position_out;  ///< out; w = 1/density
   Vec4<Real>* velocity;      ///< in/out, h/s
+  StepCounts* moves_on;      ///< not null: on to the next substep's x* and velocity at once
 
   static constexpr int D = dimensions_of(S);
   using Own = Vec4<Real>;
@@ -83,8 +85,13 @@ struct DeltaPass {
     const Vec3<Real> free = p.step_length * (a * move + wall);
     const Vec3<Real> target = x + free;
     const Vec3<Real> inside = clamp_inside(target, p);
+    const Vec3<Real> v = xyz(velocity[i]) + p.inv_dt * (free + (inside - target));
+    if (moves_on) {
+      move_on(i, inside, v, p, position_out, velocity, moves_on);
+      return;
+    }
     position_out[i] = with_w(inside, Real(1) / density[i]);
-    velocity[i] = with_w(xyz(velocity[i]) + p.inv_dt * (free + (inside - target)), Real(0));
+    velocity[i] = with_w(v, Real(0));
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 

@@ -28,6 +28,16 @@ PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p) {
   return {x, mul_add(p.inv_dt, x - free, v), fast};
 }
 
+/// Writes x* and the velocity that goes with it for particle i at x with velocity v.
+template <class Real>
+PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p, Vec4<Real>* position,
+                    Vec4<Real>* velocity, StepCounts* counts) {
+  const Moving<Real> m = predict(x, v, p);
+  if (m.fast) count_one(&counts->fast);
+  position[i] = with_w(m.x, Real(1));
+  velocity[i] = with_w(m.v, Real(0));
+}
+
 /// The bin of x*. x* itself is computed once more where the particles are gathered, which is
 /// cheaper than writing and reading it.
 template <class Real, int D>
@@ -48,10 +58,7 @@ struct MovePass {
   Vec4<Real>*position, *velocity;  ///< in/out
   StepCounts* counts;
   PBF_HD void operator()(int i) const {
-    const Moving<Real> m = predict(xyz(position[i]), xyz(velocity[i]), p);
-    if (m.fast) count_one(&counts->fast);
-    position[i] = with_w(m.x, Real(1));
-    velocity[i] = with_w(m.v, Real(0));
+    move_on(i, xyz(position[i]), xyz(velocity[i]), p, position, velocity, counts);
   }
 };
 

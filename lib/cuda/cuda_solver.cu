@@ -101,6 +101,7 @@ class CudaSolver final : public Solver {
   }
 
   Measures measure() override {
+    find_pairs();
     return to_measures(stepper_->measure(), scene_, plan_, updates_, time());
   }
 
@@ -215,7 +216,13 @@ class CudaSolver final : public Solver {
 
   void direct_step() {
     stepper_->step(1);
+    if (stepper_->has_pairs()) parity_ ^= 1;
+  }
+
+  void find_pairs() {
+    if (!stepper_->find_pairs()) return;
     parity_ ^= 1;
+    while (grow_if_needed()) stepper_->relist();
   }
 
   StepTrace traced_step(const TraceOptions& options) {
@@ -272,7 +279,10 @@ class CudaSolver final : public Solver {
       velocity = at;
       at += 3 * std::size_t(n_);
     }
-    if (pending_.find("density")) density = at;
+    if (pending_.find("density")) {
+      density = at;
+      find_pairs();
+    }
     stepper_->export_to(scene_.h(), scene_.fluid.rest_density, scene_.origin(), position, velocity,
                         density);
   }

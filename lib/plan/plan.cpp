@@ -59,8 +59,12 @@ void plan_passes(Plan& plan, const Scene& s) {
                  int times = 1) {
     plan.passes.push_back({name, stage, reads, writes, times});
   };
+  if (!plan.pairs) {
+    add("move", "predict", "position velocity", "position velocity", plan.substeps);
+    return;
+  }
   add("predict", "predict", "position velocity", "position velocity bin");
-  if (plan.substeps > 1)
+  if (plan.substeps > 1 && plan.more_rounds > 0)  // else the last sweep of a substep does it
     add("move", "predict", "position velocity", "position velocity", plan.substeps - 1);
   add("sort", "grid", "bin", "order bin_start");
   add("gather", "grid", "order position velocity id", "position' velocity' id'");
@@ -99,6 +103,8 @@ void plan_left_out(Plan& plan, const Scene& s) {
   out(s.domain.open.size() == 6, "walls: their density and the clamp", "domain.open names all six");
   out(plan.more_rounds == 0, "sweeps until a tolerance is met", "solver.tolerance is 0");
   out(s.solver.iterations == 0, "lambda and delta passes", "solver.iterations is 0");
+  out(!plan.pairs, "sort and neighbour lists, but for a measure and for densities of a frame",
+      "solver.iterations is 0; no keys viscosity, vorticity");
   out(!s.guard, "the guard and its copy of the state", "guard is off");
   out(s.solver.speed_limit == 0, "limit on the speed", "solver.speed_limit is 0");
   out(!s.output, "run.h5, its writer thread and its downloads", "no key output");
@@ -174,6 +180,7 @@ Plan make_plan(const Scene& s, std::int64_t particles) {
   plan.tensile = s.tensile && s.tensile->k != 0;
   plan.xsph = s.viscosity && s.viscosity->xsph != 0;
   plan.vorticity = s.vorticity && s.vorticity->epsilon != 0;
+  plan.pairs = s.solver.iterations > 0 || plan.xsph || plan.vorticity;
   plan_grid(plan, s);
   plan_passes(plan, s);
   plan.memory = plan_memory(s, plan);

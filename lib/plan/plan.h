@@ -49,6 +49,7 @@ struct Plan {
   double mass = 0;       ///< kg, of one particle as reported
   bool fused = true;
   bool tensile = false, xsph = false, vorticity = false;
+  bool pairs = true;  ///< an update looks at pairs of particles: sweeps, viscosity or vorticity
   std::vector<PlanPass> passes;
   MemoryPlan memory;
   std::vector<PlanLeftOut> left_out;

@@ -108,6 +108,11 @@ class Stepper {
     if (updates <= 0) return;
     unsort();
     exec_.begin();
+    if (!has_pairs()) {
+      for (int k = updates * substeps_; k > 0; --k) move();
+      lists_are_current_ = density_is_current_ = false;
+      return;
+    }
     const auto unseen = [](const char*, int) {};
     bool moved_on = false;
     for (int left = updates - 1; left >= 0; --left) {
@@ -117,7 +122,7 @@ class Stepper {
                                        p_, position_.data(), velocity_.data(), bin_.data()});
         });
       moved_on = left > 0 && p_.xsph > Real(0) && !(p_.vorticity > Real(0));
-      solve(unseen);
+      solve(unseen, true);
       if (moved_on)
         with_smoothing(mode_, p_.dimensions,
                        [&](auto s) { reorder<true>("xsph", xsph<decltype(s)::value, true>()); });
@@ -177,10 +182,24 @@ class Stepper {
     unsorted_ = {};
   }
 
+  /// Whether an update looks at pairs. Without sweeps, viscosity and vorticity it only moves
+  /// particles, and lists are made where a measure or a download asks for the density.
+  bool has_pairs() const { return iterations_ > 0 || p_.xsph > Real(0) || p_.vorticity > Real(0); }
+
+  /// Makes such lists and says so. The particles go back into their order with the next update: how
+  /// often a run is measured must not change it.
+  bool find_pairs() {
+    if (lists_are_current_) return false;
+    save(unsorted_);
+    reorder_as_is("grid");
+    return true;
+  }
+
   /// Sums at the present positions. The lists are those of the update: making new ones would
   /// reorder the particles, and how often a run is measured must not change it.
   MeasureSums measure() {
     exec_.begin();
+    find_pairs();
     sum_density();
     auto sums =
         exec_.reduce(p_.n, MeasurePass<Real, Lists>{p_, lists_, position_.data(), velocity_.data(),
@@ -197,7 +216,10 @@ class Stepper {
   void export_to(double h, double rest_density, const Double3& origin, Out* position, Out* velocity,
                  Out* density) {
     exec_.begin();
-    if (density) sum_density();
+    if (density) {
+      find_pairs();
+      sum_density();
+    }
     exec_.for_each(p_.n, ExportPass<Real, Out>{h,
                                                rest_density,
                                                {origin[0], origin[1], origin[2]},
@@ -212,7 +234,10 @@ class Stepper {
   }
 
   /// What a replay of recorded updates (an even number of them) leaves behind on the host.
-  void replayed() { density_is_current_ = false; }
+  void replayed() {
+    density_is_current_ = false;
+    lists_are_current_ = has_pairs();
+  }
 
   /// New lists at the present positions, after the executor has been given more room for them.
   void relist() {
@@ -265,12 +290,12 @@ class Stepper {
   void step_seen(const Seen& seen) {
     unsort();
     exec_.begin();
-    exec_.for_each(p_.n, MovePass<Real>{p_, position_.data(), velocity_.data(), counts_.data()});
+    move();
     seen("predict", 0);
     reorder_as_is("predict");
     seen("grid", 0);
     seen("neighbors", 0);
-    solve(seen);
+    solve(seen, false);
     finish_update(seen);
     density_is_current_ = false;
   }
@@ -291,7 +316,14 @@ class Stepper {
     std::swap(id_, other_id_);
     exec_.mark("grid");
     lists_ = exec_.build_lists(position_.data(), bin_start_.data(), p_);
+    lists_are_current_ = true;
     exec_.mark("neighbors");
+  }
+
+  /// x* and the velocity that goes with it, in place.
+  void move() {
+    exec_.for_each(p_.n, MovePass<Real>{p_, position_.data(), velocity_.data(), counts_.data()});
+    exec_.mark("predict");
   }
 
   /// The same with the positions as they are.
@@ -303,22 +335,24 @@ class Stepper {
 
   /// The sweeps of the first substep, whose x* is there already, then the other substeps with the
   /// same lists. Rounds of sweeps go on while the mean compression that the last sweep found is
-  /// above the tolerance. `seen(stage, sweep)` may look at what each stage left behind.
+  /// above the tolerance. `seen(stage, sweep)` may look at what each stage left behind. With
+  /// `joined`, the last sweep of a substep also takes the particles to the next one: the same
+  /// arithmetic in one launch less.
   template <class Seen>
-  void solve(const Seen& seen) {
+  void solve(const Seen& seen, bool joined) {
+    joined = joined && iterations_ > 0 && more_rounds_ == 0;
     int number = 0;
     for (int s = 0; s < substeps_; ++s) {
-      if (s > 0) {
-        exec_.for_each(p_.n,
-                       MovePass<Real>{p_, position_.data(), velocity_.data(), counts_.data()});
-        exec_.mark("predict");
+      if (s > 0 && !joined) {
+        move();
         seen("predict", s);
       }
       with_smoothing(mode_, p_.dimensions, [&](auto smoothing) {
         const auto round = [&] {
           for (int k = 0; k < iterations_; ++k) {
             p_.step_length = step_length_[std::size_t(k)];
-            sweep<decltype(smoothing)::value>(seen, ++number);
+            const bool moves_on = joined && k == iterations_ - 1 && s < substeps_ - 1;
+            sweep<decltype(smoothing)::value>(seen, ++number, moves_on);
           }
         };
         round();
@@ -352,7 +386,7 @@ class Stepper {
   }
 
   template <Smoothing S, class Seen>
-  void sweep(const Seen& seen, int number) {
+  void sweep(const Seen& seen, int number, bool moves_on) {
     if (!fused_) {
       exec_.for_each(p_.n,
                      DensityPass<Real, Lists, S>{p_, lists_, position_.data(), density_.data()});
@@ -367,9 +401,10 @@ class Stepper {
     exec_.mark("lambda");
     seen("lambda", number);
     with_bool(tensile_, [&](auto tensile) {
-      exec_.for_each(p_.n, DeltaPass<Real, Lists, S, decltype(tensile)::value>{
-                               p_, lists_, other_position_.data(), density_.data(),
-                               position_.data(), velocity_.data()});
+      exec_.for_each(p_.n,
+                     DeltaPass<Real, Lists, S, decltype(tensile)::value>{
+                         p_, lists_, other_position_.data(), density_.data(), position_.data(),
+                         velocity_.data(), moves_on ? counts_.data() : nullptr});
     });
     exec_.mark("delta");
     seen("delta", number);
@@ -405,7 +440,7 @@ class Stepper {
   std::uint64_t residual_limit_;
   std::vector<Real> step_length_;  ///< of each sweep
   bool fused_, tensile_;
-  bool density_is_current_ = false;
+  bool density_is_current_ = false, lists_are_current_ = false;
   Lists lists_{};
   Buffer<Vec4<Real>> position_, other_position_, velocity_, other_velocity_, curl_;
   Buffer<Real> density_;

@@ -75,7 +75,17 @@ TEST_CASE("a state put into a fresh solver continues to the last bit") {
 }
 
 TEST_CASE("an update by trace() gives the bytes of step(1), before, between and after others") {
-  const Case c = everything();
+  Case c = everything();
+  SECTION("as it is") {}
+  SECTION("substeps, which step(1) joins in one pass") {
+    c.scene.solver.substeps = 3;
+    c.scene.solver.iterations = 2;
+    c.scene.solver.speed_limit = 0.02;
+  }
+  SECTION("no pairs, which step(1) does not look for") {
+    c.scene.solver.iterations = 0;
+    c.scene.tensile.reset(), c.scene.viscosity.reset(), c.scene.vorticity.reset();
+  }
   auto a = make(c), b = make(c);
   for (const int k : {1, 4, 66}) {
     a->step(k + 1);

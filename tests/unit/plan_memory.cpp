@@ -94,10 +94,12 @@ TEST_CASE("every stage that the plan names runs as often as it says, and no othe
     const Made m = make(0.1, f, updates);
     std::set<std::string> planned{"init", "measure"}, ran;
     for (const PlanPass& p : m.plan.passes) planned.insert(p.stage);
+    if (!m.plan.pairs) planned.insert({"grid", "neighbors"});  // by the measure
     for (const StageTime& s : m.solver->timings())
       if (s.calls > 0) ran.insert(s.name);
     CHECK(ran == planned);
     const int k = m.scene.solver.iterations;
+    CHECK(calls(*m.solver, "neighbors") == (m.plan.pairs ? updates + 1 : 2));  // start, measure
     CHECK(calls(*m.solver, "lambda") == k * updates);
     CHECK(calls(*m.solver, "delta") == k * updates);
     CHECK(calls(*m.solver, "density") == (m.plan.fused ? 0 : k * updates));
