@@ -49,7 +49,7 @@ const char* const kCompareHelp =
 const char* const kBenchHelp =
     "Two lines per case: from the first updates on (start), and after the warm-up (late).\n"
     "Stage times on cuda are those of one update in 64 to 1024, timed by\n"
-    "device events, and share the time of all.\n"
+    "device events, and share the time of all. With time.adaptive an update is one step here.\n"
     "Examples:\n"
     "  pbf bench --n 10000,100000 --backend cpu --threads 1,2 --precision float,double \\\n"
     "      --csv bench.csv\n"
@@ -82,7 +82,9 @@ const char* const kRunHelp =
     "  pbf run configs/dam_break.yaml --set checkpoint.every=60 --resume\n"
     "  pbf run out/fine/run.h5 --out out/again\n"
     "SIGTERM and SIGINT finish the update, save a checkpoint and exit 75, as --max-walltime\n"
-    "does; a second one ends at once. SIGUSR1 saves a checkpoint and goes on.\n"
+    "does; a second one ends at once. SIGUSR1 saves a checkpoint and goes on. With\n"
+    "time.adaptive and the guard, checkpoints are of the last measure or frame, and no run\n"
+    "ends before its first.\n"
     "Exit codes are listed in pbf --help.\n\n";
 
 const char* const kStudyHelp =

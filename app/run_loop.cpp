@@ -55,6 +55,8 @@ void RunLoop::go_on_from(const SavedRun& saved) {
   energy_ = EnergyTrack(saved.energy);
   first_ = due_.first = saved.first;
   first_.energy = saved.energy.first;
+  steps_ = saved.steps;
+  resumed_ = true;
   seen_frames_ = schedule_.frames_until(u);
   pictures_ = schedule_.pictures_until(u);
   start_ = last_frame_ = u;
@@ -65,35 +67,54 @@ void RunLoop::go_on_from(const SavedRun& saved) {
 RunEnd RunLoop::run() {
   const Stopwatch loop;
   std::int64_t u = start_;
-  measure(u == 0);  // later only for what is shown: the row is in the log
-  if (u == 0) {
+  if (resumed_) {
+    show(solver_.measure());
+  } else {
+    measure();
     first_ = due_.first = last_;
     outputs(0, false);
+    choose_step(0);
   }
-  if (scene_.guard && !guard_) guard_.emplace(scene_, plan_, solver_, first_, last_);
   double per_update = 0;  // s, of the last call of step()
-  while (u < schedule_.updates && !event_ && !must_stop()) {
+  while (u < schedule_.updates && !guard_event() && !must_stop()) {
     // Short calls, so that a signal or the wall-time limit waits a quarter of a second at most
     // (or one update), yet few calls when an update takes microseconds.
     std::int64_t n = 1;
     if (per_update > 0) n = std::max<std::int64_t>(1, std::int64_t(0.25 / per_update));
     n = std::min({n, schedule_.next_event(u) - u, std::int64_t(1 << 20)});
+    const double step_before = step();
     const Stopwatch watch;
     solver_.step(static_cast<int>(n));
     per_update = watch.seconds() / double(n);
     hand_over();  // what was being copied while the updates ran
     u += n;
-    if (schedule_.measures(u)) measure();
-    if (!event_) outputs(u, false);
+    if (schedule_.measures(u))
+      measure();
+    else if (goes_back() && schedule_.has(u))
+      look(solver_.measure());
+    if (solver_.updates_done() < u && !guard_event()) {  // again, with a shorter step
+      u = solver_.updates_done();
+    } else if (!guard_event()) {
+      outputs(u, false);
+      choose_step(u);
+    }
+    per_update *= step_before / step();
     progress_.update({u, schedule_.updates, plan_.particles, solver_.time(), last_.compression_mean,
                       last_.compression_max, start_});
-    if (!event_ && u < schedule_.updates && checkpoint_due()) save();
+    if (!guard_event() && u < schedule_.updates && checkpoint_due()) save();
   }
-  if (!event_ && u < schedule_.updates) save();
-  if (!event_ && last_measure_ != u) measure();  // stopped between two measures
-  if (event_) u = solver_.updates_done();        // the guard has gone back to what it found
+  if (!guard_event() && u < schedule_.updates) {
+    if (goes_back()) {  // nothing beyond the last good state is in the files
+      watch_->go_back();
+      u = solver_.updates_done();
+    }
+    save();
+  }
+  // Stopped between two measures; what it has gone back to is known to be good.
+  if (!guard_event() && last_measure_ != u) measure(!goes_back());
+  if (guard_event()) u = solver_.updates_done();  // gone back to what it found
   outputs(u, true);
-  const RunEnd end = event_                  ? RunEnd::diverged
+  const RunEnd end = guard_event()           ? RunEnd::diverged
                      : u < schedule_.updates ? RunEnd::stopped
                                              : RunEnd::finished;
   close(end);
@@ -102,7 +123,10 @@ RunEnd RunLoop::run() {
   return end;
 }
 
+/// A run that alarms take back goes on to its first measure or frame, so that it gains something.
 bool RunLoop::must_stop() {
+  stop_reason_.clear();
+  if (goes_back() && watch_->guard()->last_good().update <= start_) return false;
   stop_reason_ = signal_seen();
   if (stop_reason_.empty() && max_walltime_ > 0 && wall_.seconds() >= max_walltime_)
     stop_reason_ = "--max-walltime";
@@ -117,8 +141,9 @@ bool RunLoop::checkpoint_due() {
 /// objects to is not saved: no run could go on from it.
 void RunLoop::save() {
   hand_over();
-  if (guard_ && last_measure_ != solver_.updates_done()) look(solver_.measure());
-  if (event_) return;
+  if (scene_.guard && !goes_back() && last_measure_ != solver_.updates_done())
+    look(solver_.measure());
+  if (guard_event()) return;
   clock_.begin();
   if (!closed_) {
 #ifdef PBF_HAS_RENDER
@@ -126,19 +151,28 @@ void RunLoop::save() {
 #endif
     if (sinks_.writer) sinks_.writer->sync();
   }
-  due_.state = solver_.state();
+  due_.state = goes_back() ? solver_.kept() : solver_.state();
   due_.particles = plan_.particles;
+  if (watch_ && watch_->adaptive()) due_.steps = watch_->adaptive()->history();
   write_checkpoint(sinks_.checkpoints, due_);
   due_.state = {};
   clock_.mark("write");
   since_save_.reset();
 }
 
-void RunLoop::measure(bool logged) {
-  last_ = solver_.measure();
-  EnergyTrack seen = energy_;
-  (logged ? energy_ : seen).follow(last_);
-  if (!logged) return;
+void RunLoop::show(const Measures& m) {
+  last_ = m;
+  EnergyTrack(energy_).follow(last_);
+  if (watched()) watch(m);
+}
+
+void RunLoop::measure(bool judged) {
+  const Measures m = solver_.measure();
+  if (watched()) watch(m);
+  const double dt = step();
+  if (watched() && judged && look(m) == Verdict::back) return;
+  last_ = m;
+  energy_.follow(last_);
   last_measure_ = last_.update;
   compression_max_ = std::max(compression_max_, last_.compression_max);
   if (last_.update % schedule_.measure_every == 0) {
@@ -148,7 +182,7 @@ void RunLoop::measure(bool logged) {
   const std::vector<StageTime> since = stages_since_last_row();
   clock_.begin();
   if (sinks_.writer) {
-    sinks_.writer->log({last_, scene_.solver.iterations, scene_.time.step, since});
+    sinks_.writer->log({last_, scene_.solver.iterations, dt, since});
     clock_.mark("write");
   }
   if (sinks_.json) {
@@ -160,15 +194,41 @@ void RunLoop::measure(bool logged) {
                   std::string("--log-json: cannot be written: ") + std::strerror(errno));
     clock_.mark("write");
   }
-  if (!scene_.guard) return;
-  if (!guard_) guard_.emplace(scene_, plan_, solver_, last_, last_);
-  look(last_);
 }
 
-void RunLoop::look(const Measures& m) {
-  clock_.begin();
-  event_ = guard_->check(m);
-  clock_.mark("guard");
+/// Made with the first measure of this process.
+Watch& RunLoop::watch(const Measures& m) {
+  if (!watch_)
+    watch_.emplace(
+        scene_, plan_, solver_, resumed_ ? first_ : m, m,
+        [this](const std::string& line) { log_.note(line); }, steps_.value_or(StepHistory{}));
+  return *watch_;
+}
+
+Verdict RunLoop::look(const Measures& m) {
+  const double before = solver_seconds();
+  const Stopwatch stopwatch;
+  const Verdict v = watch_->look(m, !goes_back() || schedule_.has(m.update));
+  clock_.add("guard", stopwatch.seconds() - (solver_seconds() - before));
+  return v;
+}
+
+/// A measure at the end of a run alone chooses nothing: a longer run would not have it.
+void RunLoop::choose_step(std::int64_t u) {
+  if (!scene_.time.adaptive || guard_event() || last_measure_ != u ||
+      u % schedule_.measure_every != 0)
+    return;
+  const double before = solver_seconds();
+  const Stopwatch stopwatch;
+  watch_->choose(last_);
+  clock_.add("guard", stopwatch.seconds() - (solver_seconds() - before));
+}
+
+/// What the solver has booked itself.
+double RunLoop::solver_seconds() const {
+  double sum = 0;
+  for (const StageTime& s : solver_.timings()) sum += s.seconds;
+  return sum;
 }
 
 void RunLoop::outputs(std::int64_t u, bool last) {
@@ -246,7 +306,7 @@ std::vector<StageTime> RunLoop::stages() const {
   add("init", 0, 0);
   for (const PlanPass& pass : plan_.passes) add(pass.stage, 0, 0);
   add("measure", 0, 0);
-  if (scene_.guard) add("guard", 0, 0);
+  if (watched()) add("guard", 0, 0);
   if (scene_.output || scene_.render) add("download", 0, 0);
   if (scene_.output || sinks_.json) add("write", 0, 0);
   if (scene_.render) add("render", 0, 0);
@@ -279,6 +339,11 @@ RunTotals RunLoop::totals() const {
   t.tolerance = plan_.tolerance;
   t.substeps = plan_.substeps;
   t.max_sweeps = scene_.solver.iterations * (1 + plan_.more_rounds);
+  if (watch_ && watch_->adaptive()) {
+    t.steps = watch_->adaptive()->history();
+    t.steps->updates = watch_->adaptive()->updates_at_levels(t.updates);
+  }
+  t.step = scene_.time.step;
   t.speed_limit = scene_.solver.speed_limit * scene_.h() / scene_.time.step;
   t.last = last_;
   t.compression_max = compression_max_;

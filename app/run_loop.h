@@ -11,7 +11,7 @@
 #include "app/schedule.h"
 #include "lib/base/log.h"
 #include "lib/base/stage_clock.h"
-#include "lib/diag/guard.h"
+#include "lib/diag/watch.h"
 #include "lib/io/checkpoint.h"
 #include "lib/io/run_file.h"
 #include "lib/plan/plan.h"
@@ -55,20 +55,30 @@ class RunLoop {
   RunTotals totals() const;
   const std::string& stop_reason() const { return stop_reason_; }  ///< "SIGTERM", ...
   /// What the guard stopped the run for; null unless it did.
-  const GuardEvent* guard_event() const { return event_ ? &*event_ : nullptr; }
-  const Guard& guard() const { return *guard_; }
+  const GuardEvent* guard_event() const {
+    return watch_ && watch_->event() ? &*watch_->event() : nullptr;
+  }
+  const Guard& guard() const { return *watch_->guard(); }
 
  private:
   void outputs(std::int64_t update, bool last);
   /// Gives the snapshot that is being copied from the solver, if any, to the writer and the
   /// pictures.
   void hand_over();
-  /// `logged`: into the log and the JSON file.
-  void measure(bool logged = true);
+  /// Into the log and the JSON file, unless it takes the run back. `judged`: by look().
+  void measure(bool judged = true);
+  void show(const Measures& m);  // the state that a resumed run begins with; its row is there
   bool must_stop();
   bool checkpoint_due();
   void save();
-  void look(const Measures& m);  // what the guard says to it
+  /// What the guard says to it.
+  Verdict look(const Measures& m);
+  void choose_step(std::int64_t update);
+  double solver_seconds() const;
+  Watch& watch(const Measures& m);
+  double step() const { return watch_ ? watch_->step() : scene_.time.step; }  // s, at present
+  bool watched() const { return scene_.guard || scene_.time.adaptive; }
+  bool goes_back() const { return watch_ && watch_->goes_back(); }
   std::vector<StageTime> stages() const;
   std::vector<StageTime> stages_since_last_row();
   void close(RunEnd end);
@@ -93,9 +103,9 @@ class RunLoop {
   std::int64_t start_ = 0, kept_frames_ = 0, seen_frames_ = 0;  // first update; in the file; due
   double compression_max_ = 0, loop_seconds_ = 0, render_thread_ = 0;
   std::int64_t frames_ = 0, pictures_ = 0, bytes_ = 0, last_frame_ = -1, last_measure_ = -1;
-  bool closed_ = false;
-  std::optional<Guard> guard_;
-  std::optional<GuardEvent> event_;
+  bool resumed_ = false, closed_ = false;
+  std::optional<Watch> watch_;
+  std::optional<StepHistory> steps_;  ///< that a resumed run begins with
   /// A download that was started and is finished after the next updates: on a device the copy
   /// runs beside them.
   struct {

@@ -46,6 +46,32 @@ std::string pool_line(const Measures& m) {
       m.height_kept, 100 * m.hydrostatic_deviation);
 }
 
+/// Changes of the step, and how long it was.
+std::string step_lines(const RunTotals& t) {
+  const StepHistory& s = *t.steps;
+  double updates = 0, steps = 0, shortest = t.step;
+  std::string shares;
+  for (std::size_t k = 0; k < s.updates.size(); ++k) {
+    if (s.updates[k] == 0) continue;
+    shortest = std::ldexp(t.step, -int(k));
+    updates += double(s.updates[k]);
+    steps += std::ldexp(double(s.updates[k]), int(k));
+    shares += format("%s%.4g s in %.3g %%", shares.empty() ? "" : ", ", shortest,
+                     percent(double(s.updates[k]), double(t.updates)));
+  }
+  std::string out =
+      format("time step           %lld changes, shortest %.4g s, mean %.4g s\n",
+             static_cast<long long>(s.changes), shortest, steps > 0 ? t.step * updates / steps : 0);
+  if (s.changes > 0) out += "                    " + shares + " of the updates\n";
+  if (s.repeats > 0)
+    out += format("                    %lld times back to the last good state\n",
+                  static_cast<long long>(s.repeats));
+  if (s.floor > 0)
+    out += format("                    %lld measures asked for less than time.adaptive.step_min\n",
+                  static_cast<long long>(s.floor));
+  return out;
+}
+
 }  // namespace
 
 std::string stage_table(const RunTotals& t) {
@@ -108,6 +134,7 @@ std::string run_summary(const RunTotals& t) {
     out += format(
         "sweeps              %.3g per substep on average, at most %d, for a tolerance of %.4g %%\n",
         double(t.last.sweeps) / (double(t.updates) * t.substeps), t.max_sweeps, 100 * t.tolerance);
+  if (t.steps) out += step_lines(t);
   if (t.speed_limit > 0)
     out += format("speed limit         %lld times a particle was slowed down to %.4g m/s\n",
                   static_cast<long long>(t.last.fast), t.speed_limit);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "lib/diag/measures.h"
+#include "lib/solver/adaptive_step.h"
 #include "lib/solver/solver.h"
 
 namespace pbf {
@@ -24,6 +26,8 @@ struct RunTotals {
   double speed_limit = 0;            ///< m/s, 0: none
   double tolerance = 0;              ///< mean compression, 0: none
   int substeps = 1, max_sweeps = 0;  ///< per update; per substep
+  double step = 0;                   ///< s, time.step
+  std::optional<StepHistory> steps;  ///< with time.adaptive; its `updates` up to the end
   double compression_max = 0;        ///< largest over all measures
   std::int64_t frames = 0, pictures = 0, bytes = 0;
   std::string folder;

@@ -17,6 +17,10 @@ struct Schedule {
   bool measures(std::int64_t u) const { return due(u, measure_every) || u == updates; }
   bool writes(std::int64_t u) const { return due(u, frame_every) || (frame_every && u == updates); }
   bool draws(std::int64_t u) const { return due(u, picture_every); }
+  /// Whether a longer run would measure, write or draw here as well.
+  bool has(std::int64_t u) const {
+    return due(u, measure_every) || due(u, frame_every) || due(u, picture_every);
+  }
   /// Numbers of measures, frames and pictures up to update u, the one after which a run that goes
   /// on does no more of them for u.
   std::int64_t measures_until(std::int64_t u) const { return count(u, measure_every, true); }

@@ -30,11 +30,26 @@ class CpuSolver final : public Solver {
 
   void step(int updates) override {
     if (fault_) {
-      for (int k = 0; k < updates; ++k) stepper_->step_checked(++updates_, nullptr, &*fault_);
+      for (int k = 0; k < updates; ++k) checked_step(nullptr);
       return;
     }
-    stepper_->step(updates);
-    updates_ += updates;
+    if (level_ == 0)
+      stepper_->step(updates);
+    else
+      for (int k = 0; k < updates; ++k) stepper_->step(1 << level_);
+    count(updates);
+  }
+  void set_step_level(int level) override {
+    if (level == level_) return;
+    level_ = level;
+    stepper_->set_params(params_at_level(scene_, plan_, level, stepper_->params()));
+  }
+  void relax(int steps, double damping) override {
+    const Params<Real> p = stepper_->params();
+    stepper_->set_params(without_time(p, damping));
+    stepper_->step(steps);
+    stepper_->set_params(p);
+    steps_ += steps;
   }
 
   Snapshot download(const std::vector<std::string>& fields, ScalarType type) override {
@@ -44,31 +59,34 @@ class CpuSolver final : public Solver {
   }
 
   Measures measure() override {
-    return to_measures(stepper_->measure(), scene_, plan_, updates_, time());
+    return to_measures(stepper_->measure(), scene_, plan_, updates_, steps_);
   }
 
-  SolverState state() override { return stepper_->state(updates_); }
+  SolverState state() override { return stepper_->state(updates_, steps_); }
   void set_state(const SolverState& s) override {
     check_state(s, n_);
     stepper_->set_state(s);
     updates_ = s.updates;
+    steps_ = s.steps;
   }
   StepTrace trace(const TraceOptions& options) override {
-    ++updates_;
+    refuse_trace(level_);
+    count(1);
     return stepper_->trace(options);
   }
 
   void keep() override {
     stepper_->save(kept_);
     kept_updates_ = updates_;
+    kept_steps_ = steps_;
   }
   SolverState kept() override {
     if (kept_.id.size() == 0) throw Error(ExitCode::internal, "kept() before keep()");
-    return stepper_->state(kept_, kept_updates_);
+    return stepper_->state(kept_, kept_updates_, kept_steps_);
   }
   void watch_speed(double speed) override { stepper_->watch_speed(speed / scene_.h()); }
   std::optional<StageEvent> step_checked(const StageLimits& limits) override {
-    return stepper_->step_checked(++updates_, &limits, fault_ ? &*fault_ : nullptr);
+    return checked_step(&limits);
   }
   void inject(const Fault& fault) override { fault_ = fault; }
 
@@ -100,6 +118,20 @@ class CpuSolver final : public Solver {
   double time() const override { return double(updates_) * scene_.time.step; }
 
  private:
+  void count(int updates) {
+    updates_ += updates;
+    steps_ += std::int64_t(updates) << level_;
+  }
+  /// limits may be null.
+  std::optional<StageEvent> checked_step(const StageLimits* limits) {
+    std::optional<StageEvent> first;
+    for (int s = 0; s < 1 << level_; ++s) {
+      const auto event = stepper_->step_checked(updates_ + 1, limits, fault_ ? &*fault_ : nullptr);
+      if (!first) first = event;
+    }
+    count(1);
+    return first;
+  }
   template <class Out>
   static Out* array(Snapshot& s, const char* name) {
     for (auto& f : s.fields)
@@ -120,7 +152,8 @@ class CpuSolver final : public Solver {
   std::unique_ptr<Stepper<Real, CpuExec>> stepper_;
   double init_seconds_ = 0;
   std::vector<StageClock::Entry> init_entries_;
-  std::int64_t updates_ = 0, kept_updates_ = 0;
+  int level_ = 0;
+  std::int64_t updates_ = 0, steps_ = 0, kept_updates_ = 0, kept_steps_ = 0;
   typename Stepper<Real, CpuExec>::Saved kept_;
   std::optional<Fault> fault_;
 };

@@ -58,20 +58,23 @@ class CudaSolver final : public Solver {
     const Stopwatch watch;
     if (updates > 0) stepper_->unsort();
     for (; fault_ && updates > 0; --updates) checked_step(nullptr);
-    while (updates > 0) {
-      int batch = std::min(updates, batch_);
-      stepper_->save(saved_);
-      run(batch);
-      while (grow_if_needed()) {  // nothing was lost: the batch is done again with more room
-        drop_graphs();
-        stepper_->restore(saved_);
-        batch = batch_ = std::min(batch, kFirstBatch);
-        run(batch);
-      }
-      updates_ += batch;
-      updates -= batch;
-      batch_ = std::min(2 * batch_, largest_batch(n_));
-    }
+    advance(std::int64_t(updates) << level_);
+    count(updates);
+    step_seconds_ += watch.seconds();
+  }
+  void set_step_level(int level) override {
+    if (level == level_) return;
+    level_ = level;
+    use(params_at_level(scene_, plan_, level, stepper_->params()));
+  }
+  void relax(int steps, double damping) override {
+    const Stopwatch watch;
+    const Params<Real> p = stepper_->params();
+    stepper_->unsort();
+    use(without_time(p, damping));
+    advance(steps);
+    use(p);
+    steps_ += steps;
     step_seconds_ += watch.seconds();
   }
 
@@ -102,18 +105,20 @@ class CudaSolver final : public Solver {
 
   Measures measure() override {
     find_pairs();
-    return to_measures(stepper_->measure(), scene_, plan_, updates_, time());
+    return to_measures(stepper_->measure(), scene_, plan_, updates_, steps_);
   }
 
-  SolverState state() override { return stepper_->state(updates_); }
+  SolverState state() override { return stepper_->state(updates_, steps_); }
   void set_state(const SolverState& s) override {
     check_state(s, n_);
     stepper_->set_state(s);
     while (grow_if_needed()) stepper_->relist();
     drop_graphs();  // the sort has changed which buffer is which
     updates_ = s.updates;
+    steps_ = s.steps;
   }
   StepTrace trace(const TraceOptions& options) override {
+    refuse_trace(level_);
     stepper_->unsort();
     stepper_->save(saved_);
     StepTrace t = traced_step(options);
@@ -122,17 +127,18 @@ class CudaSolver final : public Solver {
       stepper_->restore(saved_);
       t = traced_step(options);
     }
-    ++updates_;
+    count(1);
     return t;
   }
 
   void keep() override {
     stepper_->save(kept_);
     kept_updates_ = updates_;
+    kept_steps_ = steps_;
   }
   SolverState kept() override {
     if (kept_.id.size() == 0) throw Error(ExitCode::internal, "kept() before keep()");
-    return stepper_->state(kept_, kept_updates_);
+    return stepper_->state(kept_, kept_updates_, kept_steps_);
   }
   void watch_speed(double speed) override {
     stepper_->watch_speed(speed / scene_.h());
@@ -176,7 +182,32 @@ class CudaSolver final : public Solver {
   double time() const override { return double(updates_) * scene_.time.step; }
 
  private:
-  /// One update in a while is timed stage by stage, outside the graph; it stands for the others.
+  /// So many steps, in pieces after which the host looks for lists that outgrew their room.
+  void advance(std::int64_t left) {
+    while (left > 0) {
+      int batch = int(std::min<std::int64_t>(left, batch_));
+      stepper_->save(saved_);
+      run(batch);
+      while (grow_if_needed()) {  // nothing was lost: the batch is done again with more room
+        drop_graphs();
+        stepper_->restore(saved_);
+        batch = batch_ = std::min(batch, kFirstBatch);
+        run(batch);
+      }
+      left -= batch;
+      batch_ = std::min(2 * batch_, largest_batch(n_));
+    }
+  }
+  void use(const Params<Real>& p) {
+    stepper_->set_params(p);
+    drop_graphs();  // they hold the parameters
+  }
+  void count(int updates) {
+    updates_ += updates;
+    steps_ += std::int64_t(updates) << level_;
+  }
+
+  /// One step in a while is timed stage by stage, outside the graph; it stands for the others.
   int profile_every() const { return n_ < 100000 ? 1024 : 64; }
 
   void run(int batch) {
@@ -203,15 +234,18 @@ class CudaSolver final : public Solver {
   /// limits may be null. Done again where lists outgrew their room.
   std::optional<StageEvent> checked_step(const StageLimits* limits) {
     const Fault* fault = fault_ ? &*fault_ : nullptr;
-    std::optional<StageEvent> event;
+    std::optional<StageEvent> first, event;
     stepper_->unsort();
-    stepper_->save(saved_);
-    do {
-      event = stepper_->step_checked(updates_ + 1, limits, fault);
-      parity_ ^= 1;
-    } while (grow_if_needed() && (drop_graphs(), stepper_->restore(saved_), true));
-    ++updates_;
-    return event;
+    for (int s = 0; s < 1 << level_; ++s) {
+      stepper_->save(saved_);
+      do {
+        event = stepper_->step_checked(updates_ + 1, limits, fault);
+        parity_ ^= 1;
+      } while (grow_if_needed() && (drop_graphs(), stepper_->restore(saved_), true));
+      if (!first) first = event;
+    }
+    count(1);
+    return first;
   }
 
   void direct_step() {
@@ -302,7 +336,8 @@ class CudaSolver final : public Solver {
   PinnedBuffer<char> staging_host_;
   Snapshot pending_;
   double init_seconds_ = 0, step_seconds_ = 0, launches_ = 0;
-  std::int64_t updates_ = 0, kept_updates_ = 0;
+  int level_ = 0;
+  std::int64_t updates_ = 0, steps_ = 0, kept_updates_ = 0, kept_steps_ = 0;
   int since_profile_ = 0;
 };
 

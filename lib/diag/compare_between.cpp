@@ -111,6 +111,8 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   result.notes.push_back(
       format("scene \"%s\", %zu particles, %d updates on %s before the frozen step",
              scene_a.name.c_str(), particles.size(), settings.warmup, result.a.c_str()));
+  if (scene_a.time.adaptive || scene_b.time.adaptive)
+    result.notes.push_back("time.adaptive is left out: every update is one step");
   if (progress) progress(format("%d updates of warm-up on %s", settings.warmup, result.a.c_str()));
   a->step(settings.warmup);
   SolverState start = a->state();

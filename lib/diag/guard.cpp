@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/base/text.h"
+#include "lib/solver/adaptive_step.h"
 
 namespace pbf {
 namespace {
@@ -106,20 +107,20 @@ std::optional<Alarm> Guard::alarm(const Measures& m) const {
 }
 
 std::optional<GuardEvent> Guard::check(const Measures& m) {
-  const std::optional<Alarm> wrong = alarm(m);
-  if (!wrong) {
-    solver_.keep();
-    good_ = m;
-    return std::nullopt;
-  }
-  GuardEvent e;
-  e.alarm = *wrong;
-  e.measure = m;
-  locate(e);
-  return e;
+  if (const std::optional<Alarm> wrong = alarm(m)) return locate(*wrong, m);
+  keep(m);
+  return std::nullopt;
 }
 
-void Guard::locate(GuardEvent& e) {
+void Guard::keep(const Measures& m) {
+  solver_.keep();
+  good_ = m;
+}
+
+GuardEvent Guard::locate(Alarm alarm, const Measures& m) {
+  GuardEvent e;
+  e.alarm = alarm;
+  e.measure = m;
   const double h = scene_.h(), to_internal = 1 / (plan_.mass * h * h);
   const StageLimits limits{limits_.speed / h, limits_.energy * to_internal, limits_.neighbors};
   e.last_good = solver_.kept();
@@ -149,6 +150,7 @@ void Guard::locate(GuardEvent& e) {
     default:
       e.value = e.stage ? e.stage->value : double(e.measure.non_finite + e.measure.outside);
   }
+  return e;
 }
 
 std::string Guard::text(const GuardEvent& e) const {
@@ -176,11 +178,17 @@ std::string Guard::text(const GuardEvent& e) const {
   const std::string unit = w.unit[0] ? std::string(" ").append(w.unit) : std::string();
   out += format(": %.6g%s", e.value, unit.c_str());
   if (w.limit_key[0]) out += format(", limit %.6g%s (%s)", e.limit, unit.c_str(), w.limit_key);
+  if (scene_.time.adaptive) {
+    const Scene finest = scene_at_level(scene_, finest_level(scene_));
+    out += format("; with the shortest step, %.6g s (time.adaptive.step_min)", finest.time.step);
+  }
   return out + format("; seen at t = %.6g s. To help: %s", e.measure.time, w.remedy);
 }
 
 Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const {
-  Scene s = scene_;
+  const int level = finest_level(scene_);  // a coarser one would not have ended the run
+  Scene s = scene_at_level(scene_, level);
+  s.time.adaptive.reset();
   s.name += "_event";
   Body body;
   body.shape = Shape::file;
@@ -189,7 +197,7 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
   s.output.reset();
   s.render.reset();
   s.measure_every = 1;
-  const std::int64_t updates = e.measure.update - e.last_good.updates;
+  const std::int64_t updates = (e.measure.update - e.last_good.updates) << level;
   s.time.end = s.time.step * double(std::max<std::int64_t>(updates, 1) + 2);
   // The same limits, though the run starts elsewhere.
   s.guard->speed = limits_.speed;

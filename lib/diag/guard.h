@@ -18,7 +18,8 @@ double energy_scale(const Measures& m, const Scene& scene, double mass, std::int
 
 /// What a compressed start may give back, J: (compression_mean - 1 %) M (h/dt)^2/2, for its
 /// particles leave each other by up to h in a step of dt (of one substep). Without `one_sided`, a
-/// free surface is pulled as well: as if the mean were 1 more.
+/// free surface is pulled as well: as if the mean were 1 more. dt is that of level 0
+/// (time.adaptive).
 double released_energy(const Measures& first, const Scene& scene, const Plan& plan);
 
 /// Limits of a run, SI units.
@@ -32,7 +33,8 @@ struct GuardLimits {
 /// speed: 10 (fastest at the start + fall through the domain + h/dt): no flow from that start
 /// reaches it. energy: that of the start, + 0.1 energy_scale + released_energy
 /// + M (0.01 h/dt)^2/2 of rounding. neighbors: 4 times the most at the start, at least 16 times
-/// the rest_neighbors() at rest.
+/// the rest_neighbors() at rest. dt is time.step/substeps whatever the level (time.adaptive): what
+/// stopped a run with the long step does not pass for good with a shorter one.
 GuardLimits guard_limits(const Scene& scene, const Plan& plan, const Measures& first);
 
 /// Why a run was stopped, SI units.
@@ -56,17 +58,21 @@ class Guard {
   /// Looks at a new measure: nothing, and the state is kept as the last good one; or what is wrong,
   /// found by repeating the updates since then stage by stage. The solver has then gone back.
   std::optional<GuardEvent> check(const Measures& m);
+  /// The parts of check(): what is wrong with a measure, if anything; the state of a good one is
+  /// kept; what is wrong is found.
+  std::optional<Alarm> alarm(const Measures& m) const;
+  void keep(const Measures& m);
+  GuardEvent locate(Alarm alarm, const Measures& m);
+  const Measures& last_good() const { return good_; }
 
   const GuardLimits& limits() const { return limits_; }
   /// One paragraph: update, stage, particle, position, value, limit, and the keys to change.
   std::string text(const GuardEvent& e) const;
-  /// A scene that repeats the event from the last good state, which lies in particle file `path`.
+  /// A scene that repeats the event from the last good state, which lies in particle file `path`;
+  /// at the finest level of time.adaptive, with its steps as updates.
   Scene repeating_scene(const GuardEvent& e, const std::string& path) const;
 
  private:
-  std::optional<Alarm> alarm(const Measures& m) const;
-  void locate(GuardEvent& e);
-
   const Scene scene_;
   const Plan plan_;
   Solver& solver_;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "lib/diag/guard.h"
+#include "lib/diag/watch.h"
 #include "lib/scene/yaml_tree.h"
 
 namespace pbf {
@@ -92,6 +92,7 @@ struct Course {
   std::int64_t particles = 0, updates = 0;
   std::optional<GuardEvent> event;
   std::string guard_text;
+  std::optional<StepHistory> steps;  ///< with time.adaptive; its `updates` up to the end
 };
 
 /// Runs a scene under its guard to the end or to an alarm; `done` gets the solver at the end.

@@ -92,6 +92,10 @@ void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s
     if (!check.good) row.happened += " (!)";
     row.good = row.good && check.good;
   }
+  if (c.steps)
+    row.happened +=
+        format(", %lld changes of the step, %lld times back",
+               static_cast<long long>(c.steps->changes), static_cast<long long>(c.steps->repeats));
 }
 
 void run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {

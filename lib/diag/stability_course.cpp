@@ -19,24 +19,30 @@ Course run_course(const Scene& scene, const std::string& dir,
   c.first = c.last = solver->measure();
   c.scale = energy_scale(c.first, scene, plan.mass, c.particles);
   c.released = released_energy(c.first, scene, plan) / (c.scale > 0 ? c.scale : 1);
-  std::optional<Guard> guard;
-  if (scene.guard) guard.emplace(scene, plan, *solver, c.first, c.first);
+  Watch watch(scene, plan, *solver, c.first, c.first, [](const std::string&) {});
   std::vector<std::pair<double, double>> compression;
   const auto look = [&] {
+    if (watch.look(c.last) == Verdict::back) return;
     const double rise = total_energy(c.last) - total_energy(c.first);
     // Without gravity and at rest there is no scale: any rise counts in full.
     c.energy_rise = std::max(c.energy_rise, c.scale > 0 ? rise / c.scale : rise);
     c.speed_max = std::max(c.speed_max, c.last.speed_max);
     compression.push_back({c.last.compression_mean, c.last.compression_max});
-    if (guard) c.event = guard->check(c.last);
+    if (!watch.event() && c.last.update % scene.measure_every == 0) watch.choose(c.last);
   };
   look();
-  while (c.updates < updates && !c.event) {
+  while (c.updates < updates && !watch.event()) {
     const std::int64_t n = std::min<std::int64_t>(scene.measure_every, updates - c.updates);
     solver->step(int(n));
     c.updates += n;
     c.last = solver->measure();
     look();
+    if (!watch.event()) c.updates = solver->updates_done();
+  }
+  c.event = watch.event();
+  if (watch.adaptive()) {
+    c.steps = watch.adaptive()->history();
+    c.steps->updates = watch.adaptive()->updates_at_levels(c.updates);
   }
   const std::size_t settled = std::max<std::size_t>(1, compression.size() / 4);
   for (std::size_t k = compression.size() - settled; k < compression.size(); ++k) {
@@ -51,7 +57,7 @@ Course run_course(const Scene& scene, const std::string& dir,
     c.compression_mean = std::max(c.compression_mean, m.compression_mean);
     c.compression_max = std::max(c.compression_max, m.compression_max);
   }
-  if (c.event) c.guard_text = guard->text(*c.event);
+  if (c.event) c.guard_text = watch.guard()->text(*c.event);
   if (done) done(*solver);
   return c;
 }

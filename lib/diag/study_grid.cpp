@@ -85,6 +85,9 @@ StudyMember StudyReader::member(Node scene, const StudySettings& more) {
   for (const auto& [key, value] : more) set_value(scene, key, value, problems_);
   StudyMember m;
   m.scene = scene_of_tree(scene, problems_);
+  if (m.scene.time.adaptive)
+    problems_.add(path_, "time.adaptive",
+                  "a study compares steps that stay as they are; add time.adaptive: off to `set`");
   return m;
 }
 

@@ -63,6 +63,39 @@ void for_each_number(Saved& s, F&& f) {
   f("first_center_of_mass_z", s.first.center_of_mass[2]);
 }
 
+/// The same for the numbers of a StepHistory but its list. Their names begin with "step_".
+template <class History, class Integer, class Number>
+void for_each_step(History& s, Integer&& integer, Number&& number) {
+  integer("step_level", s.level);
+  integer("step_hold", s.hold);
+  integer("step_hold_length", s.hold_length);
+  integer("step_coarse", s.coarse);
+  integer("step_changes", s.changes);
+  integer("step_repeats", s.repeats);
+  integer("step_floor", s.floor);
+  integer("step_since", s.since);
+  number("step_time", s.time);
+  number("step_speed", s.speed);
+}
+
+void write_steps(hid_t file, const StepHistory& s) {
+  const auto write = [&](const char* name, const auto& v) { h5::write_numbers(file, name, &v); };
+  for_each_step(s, write, write);
+  h5::write_numbers(file, "step_updates", s.updates.data(), s.updates.size());
+}
+
+StepHistory read_steps(hid_t file) {
+  StepHistory s;
+  const auto read = [&](const char* name, auto& v) {
+    v = h5::read_number<std::remove_reference_t<decltype(v)>>(file, name);
+  };
+  for_each_step(s, read, read);
+  s.updates = h5::read_integers(file, "step_updates");
+  if (s.level < 0 || s.level >= std::int64_t(s.updates.size()))
+    throw h5::Failure("a level of the step that cannot be");
+  return s;
+}
+
 void write_file(const std::string& path, const SavedRun& s) {
   const h5::Properties access = h5::writer_access();
   h5::File file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access));
@@ -76,12 +109,14 @@ void write_file(const std::string& path, const SavedRun& s) {
     h5::write_numbers(file, "format_version", &kFormat);
     h5::write_text(file, "precision", wide ? "double" : "float");
     h5::write_numbers(file, "update", &s.state.updates);
+    h5::write_numbers(file, "steps", &s.state.steps);
     h5::write_numbers(file, "particles", &s.particles);
     h5::write_numbers(file, "fast", &s.state.fast);
     h5::write_numbers(file, "rounds", &s.state.rounds);
     h5::write_numbers(file, "first_neighbors_max", &s.first.neighbors_max);
     h5::write_numbers(file, "energy_started", &started);
     for_each_number(s, [&](const char* name, double v) { h5::write_numbers(file, name, &v); });
+    if (s.steps) write_steps(file, *s.steps);
     h5::flush_reserved(file);
     h5::sync(file);
   } catch (...) {
@@ -102,6 +137,10 @@ SavedRun read_file(const std::string& path) {
   s.state.precision =
       h5::read_text(file, "precision") == "double" ? Precision::dbl : Precision::single;
   s.state.updates = h5::read_number<std::int64_t>(file, "update");
+  // Files written before there were levels hold neither.
+  s.state.steps = h5::has_attribute(file, "steps") ? h5::read_number<std::int64_t>(file, "steps")
+                                                   : s.state.updates;
+  if (h5::has_attribute(file, "step_level")) s.steps = read_steps(file);
   s.particles = h5::read_number<std::int64_t>(file, "particles");
   s.state.fast = h5::read_number<std::int64_t>(file, "fast");
   s.state.rounds = h5::read_number<std::int64_t>(file, "rounds");

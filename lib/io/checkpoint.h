@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lib/diag/measures.h"
+#include "lib/solver/adaptive_step.h"
 #include "lib/solver/step_trace.h"
 
 namespace pbf {
@@ -17,6 +18,7 @@ struct SavedRun {
   EnergyHistory energy;        ///< of the measures that are due until then
   double compression_max = 0;  ///< 1, largest of the measures that are due until then
   Measures first;              ///< of the run: what guard_limits() needs of it, lib/diag/guard.h
+  std::optional<StepHistory> steps;  ///< with time.adaptive
   std::int64_t particles = 0;
 };
 

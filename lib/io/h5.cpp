@@ -135,6 +135,16 @@ std::string read_text(hid_t object, const char* name) {
   return values[0];
 }
 
+std::vector<std::int64_t> read_integers(hid_t object, const char* name) {
+  const Attribute a(H5Aopen(object, name, H5P_DEFAULT));
+  const Space space(H5Aget_space(a));
+  const auto count = check(H5Sget_simple_extent_npoints(space));
+  if (count > 64) throw Failure(std::string("attribute ") + name + " has too many numbers");
+  std::vector<std::int64_t> values(static_cast<std::size_t>(count));
+  if (!values.empty()) check(H5Aread(a, native<std::int64_t>(), values.data()));
+  return values;
+}
+
 std::vector<hsize_t> shape(hid_t dataset) {
   const Space space(H5Dget_space(dataset));
   std::vector<hsize_t> dims(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space))));

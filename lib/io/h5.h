@@ -120,6 +120,8 @@ T read_number(hid_t object, const char* name) {
   check(H5Aread(a, native<T>(), &value));
   return value;
 }
+/// The numbers in a one-dimensional attribute of at most 64.
+std::vector<std::int64_t> read_integers(hid_t object, const char* name);
 std::vector<hsize_t> shape(hid_t dataset);
 /// Number of values in a block of a dataset, `size` bytes each in memory. Failure, before memory is
 /// taken for them, when they are more than the file can hold: deflate makes 1 byte of at most 1032.

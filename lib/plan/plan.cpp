@@ -6,6 +6,7 @@
 #include "kernels/smoothing.h"
 #include "lib/base/error.h"
 #include "lib/scene/load.h"
+#include "lib/solver/adaptive_step.h"
 #include "lib/solver/calibrate.h"
 
 namespace pbf {
@@ -105,6 +106,7 @@ void plan_left_out(Plan& plan, const Scene& s) {
   out(s.solver.iterations == 0, "lambda and delta passes", "solver.iterations is 0");
   out(!plan.pairs, "sort and neighbour lists, but for a measure and for densities of a frame",
       "solver.iterations is 0; no keys viscosity, vorticity");
+  out(!s.time.adaptive, "halving of the step", "no key time.adaptive");
   out(!s.guard, "the guard and its copy of the state", "guard is off");
   out(s.solver.speed_limit == 0, "limit on the speed", "solver.speed_limit is 0");
   out(!s.output, "run.h5, its writer thread and its downloads", "no key output");
@@ -172,6 +174,7 @@ Plan make_plan(const Scene& s, std::int64_t particles) {
   if (s.solver.method == SolverMethod::chebyshev)
     plan.sweep_factors = chebyshev_factors(s.solver.iterations);
   plan.substeps = s.solver.substeps;
+  plan.finest_level = finest_level(s);
   if (s.solver.tolerance > 0 && s.solver.iterations > 0) {
     plan.tolerance = s.solver.tolerance;
     plan.more_rounds = s.solver.max_iterations / s.solver.iterations - 1;

@@ -44,6 +44,7 @@ struct Plan {
   /// Factors on omega, one per sweep of a substep; empty: 1 in all (solver.method: jacobi).
   std::vector<double> sweep_factors;
   int substeps = 1;
+  int finest_level = 0;  ///< of time.adaptive: an update is up to 2^finest_level steps
   double tolerance = 0;  ///< mean compression above which rounds of sweeps are repeated; 0: none is
   int more_rounds = 0;   ///< at most so many, besides the first
   double mass = 0;       ///< kg, of one particle as reported

@@ -82,7 +82,10 @@ std::string plan_text(const Plan& plan, const Scene& s) {
                            backend_text(s).c_str());
   out += format("grid %d (half) x %d x %d cells of edge %g h\n", plan.cells[0], plan.cells[1],
                 plan.cells[2], plan.cell_edge);
-  out += "passes of one update\n";
+  out += plan.finest_level == 0
+             ? "passes of one update\n"
+             : format("passes of one step; 2^k of them in an update at level k = 0 ... %d\n",
+                      plan.finest_level);
   for (const auto& p : plan.passes)
     out += format("  %-22s x%-3d stage %-10s reads %-34s writes %s\n", p.name.c_str(), p.per_update,
                   p.stage.c_str(), p.reads.c_str(), p.writes.c_str());
@@ -121,6 +124,7 @@ std::string plan_json(const Plan& plan, const Scene& s, const std::string& membe
                 plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge);
   out += format(",\"vol\":%.17g,\"wall_scale\":%.17g,\"wall_range_h\":%.17g,\"mass_kg\":%.17g",
                 plan.vol, plan.wall_scale, plan.wall_range, plan.mass);
+  out += format(",\"finest_level\":%d", plan.finest_level);
   out += ",\"passes\":" + list(plan.passes, [](const PlanPass& p) {
            return "{\"name\":" + json_string(p.name) + ",\"stage\":" + json_string(p.stage) +
                   ",\"reads\":" + json_string(p.reads) + ",\"writes\":" + json_string(p.writes) +

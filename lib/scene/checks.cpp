@@ -176,6 +176,15 @@ class Checker {
                             " updates, at most 2147483647 are possible; raise time.step or lower "
                             "time.end");
     }
+    if (s_.time.adaptive && s_.time.adaptive->step_min && p_.good({"time.adaptive.step_min"})) {
+      const double floor = *s_.time.adaptive->step_min;
+      if (floor > step)
+        add("time.adaptive.step_min",
+            "is " + to_text(floor) + ", above time.step (" + to_text(step) + " s); lower it");
+      else if (std::ldexp(floor, 20) < step)
+        add("time.adaptive.step_min", "is " + to_text(floor) + ", less than time.step/1048576 (" +
+                                          to_text(std::ldexp(step, -20)) + " s); raise it");
+    }
     const double least = step * (1 - 1e-9);
     if (s_.output && p_.good({"output.every"}) && s_.output->every < least)
       add("output.every", "is " + to_text(s_.output->every) + ", below time.step (" +

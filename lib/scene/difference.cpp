@@ -7,16 +7,11 @@
 namespace pbf {
 namespace {
 
-bool is_free(const std::string& path) {
-  static const char* const kFree[] = {"name",
-                                      "time.end",
-                                      "threads",
-                                      "backend",
-                                      "solver.reproducible",
-                                      "checkpoint.every",
-                                      "guard.speed",
-                                      "guard.energy",
-                                      "guard.neighbors"};
+/// The guard changes no particle, but where its alarms shorten the step.
+bool is_free(const std::string& path, const Scene& now) {
+  static const char* const kFree[] = {
+      "name", "time.end", "threads", "backend", "solver.reproducible", "checkpoint.every"};
+  if (path.rfind("guard.", 0) == 0) return !now.time.adaptive;
   return std::find(std::begin(kFree), std::end(kFree), path) != std::end(kFree);
 }
 
@@ -45,15 +40,14 @@ std::string body_difference(const Scene& before, const Scene& now) {
 
 std::string physics_difference(const Scene& before, const Scene& now) {
   for (const Block& block : scene_blocks()) {
-    if (!block.optional || block.path == "checkpoint" || block.path == "guard") continue;
+    if (!block.optional || block.path == "checkpoint") continue;
+    if (block.path == "guard" && !now.time.adaptive) continue;
     const bool was = block.present(before), is = block.present(now);
     if (was != is) return changed(block.path, was ? "on" : "off", is ? "on" : "off");
   }
   for (const Key& key : scene_keys()) {
     const std::string block = key.block();
-    if (block == "bodies[]" || is_free(key.path)) continue;
-    const Block* top = find_block(block.substr(0, block.find('.')));
-    if (top && !top->present(now)) continue;
+    if (block == "bodies[]" || is_free(key.path, now) || !is_present(now, block)) continue;
     std::string what =
         changed(key.path, value_text(key, before, Body{}), value_text(key, now, Body{}));
     if (!what.empty()) return what;

@@ -133,7 +133,17 @@ std::vector<Key> time_keys() {
                       SCENE(&s.time.step))),
       required(number("time.end", "s", kSeconds,
                       "Time simulated, rounded to whole updates; at least time.step.",
-                      SCENE(&s.time.end)))};
+                      SCENE(&s.time.end))),
+      automatic(number("time.adaptive.step_min", "s", {0, 1e9, true},
+                       "No step is shorter; at least time.step/1048576. auto: time.step/64.",
+                       SCENE(&s.time.adaptive->step_min))),
+      number("time.adaptive.cfl", "", {0, 1000, true},
+             "The fastest particle moves by at most so many h in a step.",
+             SCENE(&s.time.adaptive->cfl)),
+      number("time.adaptive.force", "", {0, 1000, true},
+             "A step is at most so many sqrt(h/a), a the acceleration of gravity or, if that is "
+             "more, the change of the fastest speed between two measures over their time.",
+             SCENE(&s.time.adaptive->force))};
 }
 
 std::vector<Key> solver_keys() {
@@ -185,8 +195,9 @@ std::vector<Key> solver_keys() {
              "Factor on every velocity, once per update. 1: no damping.",
              SCENE(&s.solver.velocity_damping)),
       number("solver.speed_limit", "h per update", {0, 1e6},
-             "Particles that would move farther than this in one update are slowed down to it; how "
-             "often is counted and reported. 0: no limit.",
+             "Particles that would move farther than this in time.step, however many steps that is "
+             "(time.adaptive), are slowed down to it; how often is counted and reported. 0: no "
+             "limit.",
              SCENE(&s.solver.speed_limit)),
       words("solver.fused", {}, "Density and lambda in one loop over the neighbours.",
             SCENE(&s.solver.fused)),
@@ -283,16 +294,19 @@ std::vector<Key> render_keys() {
 #undef SCENE
 #undef BODY
 
-template <class T>
-Block optional_block(const char* path, const char* help, std::optional<T> Scene::*member) {
-  return {path, help, true, [member](const Scene& s) { return (s.*member).has_value(); },
-          [member](Scene& s, bool on) {
+/// `at` gives the optional of a scene, const or not.
+template <class At>
+Block optional_block(const char* path, const char* help, At at) {
+  return {path, help, true, [at](const Scene& s) { return at(s).has_value(); },
+          [at](Scene& s, bool on) {
             if (!on)
-              s.*member = std::nullopt;
-            else if (!(s.*member))
-              (s.*member).emplace();
+              at(s).reset();
+            else if (!at(s))
+              at(s).emplace();
           }};
 }
+#define OPTIONAL(expression) \
+  [](auto& s) -> auto& { return expression; }
 
 Block on_by_default(Block block) {
   block.on_by_default = true;
@@ -324,21 +338,38 @@ const std::vector<Block>& scene_blocks() {
       plain_block("fluid", "The fluid and its particles."),
       plain_block("bodies[]", "A body of fluid."),
       plain_block("time", "Step and end of the simulation."),
+      optional_block(
+          "time.adaptive",
+          "Updates of 2^k steps of time.step/2^k, k chosen at every measure so that the "
+          "flow keeps the limits below, or finer: where the guard would stop the run, it "
+          "goes back to the last good state and goes on with half the step.",
+          OPTIONAL(s.time.adaptive)),
       plain_block("solver", "The constraint solver."),
-      optional_block("tensile", "Artificial pressure against clusters (s_corr).", &Scene::tensile),
-      optional_block("viscosity", "XSPH viscosity.", &Scene::viscosity),
-      optional_block("vorticity", "Vorticity confinement.", &Scene::vorticity),
+      optional_block("tensile", "Artificial pressure against clusters (s_corr).",
+                     OPTIONAL(s.tensile)),
+      optional_block("viscosity", "XSPH viscosity.", OPTIONAL(s.viscosity)),
+      optional_block("vorticity", "Vorticity confinement.", OPTIONAL(s.vorticity)),
       on_by_default(optional_block(
           "guard", "Stops a run at a measure that makes no sense, and names the culprit.",
-          &Scene::guard)),
-      optional_block("output", "Frames in run.h5.", &Scene::output),
+          OPTIONAL(s.guard))),
+      optional_block("output", "Frames in run.h5.", OPTIONAL(s.output)),
       optional_block("checkpoint",
                      "The whole state, now and then and at the end. A run that a signal or the "
                      "wall-time limit stops saves it also without this block.",
-                     &Scene::checkpoint),
-      optional_block("render", "Pictures, drawn while the simulation runs.", &Scene::render),
+                     OPTIONAL(s.checkpoint)),
+      optional_block("render", "Pictures, drawn while the simulation runs.", OPTIONAL(s.render)),
       plain_block("render.camera", "The camera of the pictures.")};
   return blocks;
+}
+
+#undef OPTIONAL
+
+bool is_present(const Scene& scene, const std::string& block) {
+  for (std::size_t dot = block.find('.');; dot = block.find('.', dot + 1)) {
+    const Block* part = find_block(block.substr(0, dot));
+    if (part && !part->present(scene)) return false;
+    if (dot == std::string::npos) return true;
+  }
 }
 
 const std::vector<std::string>& shape_names() {

@@ -52,7 +52,7 @@ struct Key {
 struct Block {
   std::string path;  ///< "solver", "render.camera"; "bodies[]" stands for one entry of the list
   std::string help;
-  bool optional = false;  ///< absent or `off`: the feature is off; {}: on with the defaults
+  bool optional = false;  ///< absent or `off`: the feature is off; {} or `on`: on, all defaults
   std::function<bool(const Scene&)> present;
   std::function<void(Scene&, bool)> set_present;
   bool on_by_default = false;  ///< optional, but on where the scene does not mention it
@@ -67,6 +67,8 @@ const std::vector<std::string>& shape_names();
 
 const Key* find_key(const std::string& path);
 const Block* find_block(const std::string& path);
+/// Whether a block and those that it stands in are there.
+bool is_present(const Scene& scene, const std::string& block);
 
 /// Default scene with every optional block present: what defaults are taken from.
 Scene scene_with_all_blocks();

@@ -39,10 +39,10 @@ Node made(const Node& like, Node::Kind kind, const std::string& text) {
   return node;
 }
 
-/// What a block may be overwritten from: nothing, or the word that turns it off.
-bool is_absent(const Node& node) {
-  return node.kind == Node::Kind::null ||
-         (node.kind == Node::Kind::scalar && (node.text == "off" || node.text == "false"));
+/// What a block may be overwritten from: nothing, or the words that turn it off, or on as it is.
+bool is_word_for_block(const Node& node) {
+  if (node.kind != Node::Kind::scalar) return node.kind == Node::Kind::null;
+  return node.text == "off" || node.text == "false" || node.text == "on" || node.text == "true";
 }
 
 /// Child of `at` named by `segment`, made when a block lacks it; nullptr with the reason in `why`.
@@ -59,7 +59,7 @@ Node* child(Node& at, const std::string& segment, const Node& value, const std::
           "\" is no index of it (the first is 0)";
     return nullptr;
   }
-  if (is_absent(at)) at = made(value, Node::Kind::map, "");
+  if (is_word_for_block(at)) at = made(value, Node::Kind::map, "");
   if (at.kind != Node::Kind::map) {
     why = here + " is no block, it has no key \"" + segment + "\"";
     return nullptr;

@@ -52,9 +52,18 @@ struct Fluid {
   bool operator==(const Fluid&) const = default;
 };
 
+/// A step that follows the flow: lib/solver/adaptive_step.h.
+struct AdaptiveTime {
+  std::optional<double> step_min;  ///< s, no step is shorter; absent: time.step/64
+  double cfl = 0.4;                ///< fastest particle: v dt <= cfl h
+  double force = 0.25;             ///< greatest acceleration: dt <= force sqrt(h/a)
+  bool operator==(const AdaptiveTime&) const = default;
+};
+
 struct Time {
-  double step = 0.002;  ///< s, dt of one update
-  double end = 1;       ///< s, rounded to whole updates
+  double step = 0.002;                   ///< s, dt of one update
+  double end = 1;                        ///< s, rounded to whole updates
+  std::optional<AdaptiveTime> adaptive;  ///< absent: an update is one step
   bool operator==(const Time&) const = default;
 };
 
@@ -72,7 +81,7 @@ struct SolverSettings {
   BoundaryMode boundary = BoundaryMode::density;
   double wall_margin = 0;       ///< m, distance to a wall at which particles are clamped
   double velocity_damping = 1;  ///< factor on the velocity, once per update
-  double speed_limit = 0;       ///< h per update, faster particles are slowed down; 0: no limit
+  double speed_limit = 0;       ///< h per time.step, faster particles are slowed down; 0: no limit
   bool fused = true;            ///< density and lambda in one loop over the neighbours
   bool reproducible = false;    ///< cuda: the CPU's bits, at a price (kernels/README.md, "Bits")
   bool operator==(const SolverSettings&) const = default;

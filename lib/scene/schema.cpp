@@ -87,7 +87,7 @@ std::string block_schema(const Block& block) {
   const std::string object = object_schema(block.path, -1);
   if (!block.optional) return object;
   return "{\"description\":" + json_string(block.help) + ",\"anyOf\":[" + object +
-         ",{\"enum\":[\"off\",false]}]}";
+         ",{\"enum\":[\"on\",\"off\",true,false]}]}";
 }
 
 std::string bodies_schema() {

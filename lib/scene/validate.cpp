@@ -20,6 +20,11 @@ bool turns_off(const Node& node) {
          (node.text == "off" || node.text == "false");
 }
 
+bool turns_on(const Node& node) {
+  return node.kind == Node::Kind::scalar && !node.quoted &&
+         (node.text == "on" || node.text == "true");
+}
+
 /// A key of the block, to show what one looks like.
 std::string example_of(const std::string& block) {
   for (const Key& key : scene_keys())
@@ -118,9 +123,10 @@ class Validator {
       block.set_present(out_.scene, true);
       return read_block(block.path, path, value, nullptr);
     }
-    if (block.optional && turns_off(value)) return block.set_present(out_.scene, false);
+    if (block.optional && (turns_on(value) || turns_off(value)))
+      return block.set_present(out_.scene, turns_on(value));
     std::string what = "expected a block {" + example_of(block.path) + "}, got " + value.shown();
-    if (block.optional) what += "; write {} for on with the defaults, off for off";
+    if (block.optional) what += "; write {} or on for on with the defaults, off for off";
     report(value.place(), path, what);
   }
 

@@ -62,7 +62,7 @@ class Writer {
     for (const Key& key : scene_keys()) {
       const std::string block = key.block();
       if (block != block_) enter(block);
-      if (block == "bodies[]" || !present(block)) continue;
+      if (block == "bodies[]" || !is_present(scene_, block)) continue;
       if (comments_) out_ += comment(documentation(key), indent_of(block));
       out_ += indent_of(block) + key.leaf() + ": " + value_text(key, scene_, Body{}) + "\n";
     }
@@ -70,11 +70,6 @@ class Writer {
   }
 
  private:
-  bool present(const std::string& block) const {
-    const std::string root = block.substr(0, block.find('.'));
-    return find_block(root)->present(scene_);
-  }
-
   void enter(const std::string& block) {
     block_ = block;
     if (comments_) out_ += "\n";
@@ -83,7 +78,7 @@ class Writer {
     const Block& entry = *find_block(block);
     const std::string leaf = block.substr(block.rfind('.') + 1);
     const std::string indent = indent_of(block).substr(2);
-    if (!present(block)) {  // children of an absent block say nothing
+    if (!is_present(scene_, block)) {  // children of an absent block say nothing
       if (entry.optional) out_ += indent + leaf + ": off\n";
       return;
     }
@@ -93,8 +88,8 @@ class Writer {
                                               "block; off with `" +
                                                   leaf + ": off`."
                         : entry.optional ? " Optional: without this block, or with `" + leaf +
-                                               ": off`, it is off; {} turns it on "
-                                               "with the defaults."
+                                               ": off`, it is off; {} or `on` turns it "
+                                               "on with the defaults."
                                          : ""),
           indent);
     out_ += indent + leaf + ":\n";

@@ -6,6 +6,7 @@
 #include "kernels/params.h"
 #include "kernels/smoothing.h"
 #include "lib/plan/plan.h"
+#include "lib/solver/adaptive_step.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -85,6 +86,27 @@ Params<Real> make_params(const Scene& s, const Plan& plan) {
   p.rest = rest_pool(s, plan.mass, plan.particles, p.walls);
   if (s.viscosity) p.xsph = Real(s.viscosity->xsph);
   if (s.vorticity) p.vorticity = Real(s.vorticity->epsilon);
+  return p;
+}
+
+/// The same for the steps of an update at that level. `now`: the parameters in use, whose watched
+/// speed stays.
+template <class Real>
+Params<Real> params_at_level(const Scene& s, const Plan& plan, int level, const Params<Real>& now) {
+  Params<Real> p = make_params<Real>(scene_at_level(s, level), plan);
+  if (!p.limit_speed) p.speed_squared = now.speed_squared;
+  return p;
+}
+
+/// A step without time: velocities take the factor `damping`, and the sweeps part what is too near
+/// without changing them.
+template <class Real>
+Params<Real> without_time(Params<Real> p, double damping) {
+  p.dt = p.inv_dt = 0;
+  p.damping = Real(damping);
+  p.limit_speed = false;
+  p.speed_squared = Real(1e30);
+  p.tensile_k = p.xsph = p.vorticity = 0;
   return p;
 }
 

@@ -36,15 +36,21 @@ struct SolverInfo {
   double vol = 0;         ///< m/(rho0 h^3) with the calibrated mass: the weight of one particle
   double wall_scale = 0;  ///< factor on the walls' density, from the calibration
   std::size_t bytes = 0;  ///< of the arrays held now (device memory on cuda)
-  double launches = 0;    ///< cuda: kernels and fills of one update; 0 before one was recorded
+  double launches = 0;    ///< cuda: kernels and fills of one step; 0 before one was recorded
 };
 
 /// One simulation. Two solvers may live in one process. Errors are thrown as Error.
 class Solver {
  public:
   virtual ~Solver() = default;
-  /// Advances by `updates` time steps.
+  /// Advances by `updates` times time.step.
   virtual void step(int updates) = 0;
+  /// From now on an update is 2^level steps (lib/solver/adaptive_step.h); 0 at first. The state and
+  /// keep() know nothing of it.
+  virtual void set_step_level(int level) = 0;
+  /// Steps without time: new lists and sweeps, which part what is too near, while velocities change
+  /// by the factor `damping` per step alone. No update is counted.
+  virtual void relax(int steps, double damping = 1) = 0;
   /// Copies the fields asked for (velocity, density; position and id always) to the host, in id
   /// order, SI units, positions and floating-point fields as f32 or f64 as `type` says.
   virtual Snapshot download(const std::vector<std::string>& fields, ScalarType type) = 0;
@@ -63,7 +69,7 @@ class Solver {
   virtual SolverState state() = 0;
   virtual void set_state(const SolverState& state) = 0;
   /// One update, with what each pass left behind, on the host: some ten times slower than step(1),
-  /// whose bits it gives unless `options` ask for others.
+  /// whose bits it gives unless `options` ask for others. Error(internal) at a level above 0.
   virtual StepTrace trace(const TraceOptions& options = {}) = 0;
   /// Keeps a copy of the state where the solver's arrays are, in place of the one before: cheap
   /// enough for every measure. kept() brings it to the host; Error(internal) when there is none.

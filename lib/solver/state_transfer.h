@@ -31,10 +31,11 @@ struct CopyStatePass {
 
 template <class Real, class Exec>
 SolverState download_state(Exec& exec, std::size_t n, const StateArrays<Real>& from,
-                           std::int64_t updates) {
+                           std::int64_t updates, std::int64_t steps) {
   SolverState s;
   s.precision = sizeof(Real) == 8 ? Precision::dbl : Precision::single;
   s.updates = updates;
+  s.steps = steps;
   const auto copy = [&](const Vec4<Real>* rows, std::vector<double>& to) {
     std::vector<Vec4<Real>> host(n);
     exec.to_host(rows, n, host.data());

@@ -27,12 +27,12 @@ void measure_pool(const MeasureSums& s, const RestPool& pool, double counted, Me
 }  // namespace
 
 Measures to_measures(const MeasureSums& s, const Scene& scene, const Plan& plan,
-                     std::int64_t update, double time) {
+                     std::int64_t update, std::int64_t steps) {
   const double h = scene.h(), n = double(plan.particles), mass = plan.mass;
   const Double3 origin = scene.origin();
   const double counted = double(plan.particles - s.non_finite);
   Measures m;
-  m.time = time;
+  m.time = double(update) * scene.time.step;
   m.update = update;
   m.compression_mean = s.compression / n;
   m.compression_rms = std::sqrt(s.compression_squared / n);
@@ -60,8 +60,12 @@ Measures to_measures(const MeasureSums& s, const Scene& scene, const Plan& plan,
   m.outside = s.outside;
   m.non_finite = s.non_finite;
   m.fast = s.fast;
-  m.sweeps = scene.solver.iterations * (plan.substeps * update + s.rounds);
+  m.sweeps = scene.solver.iterations * (plan.substeps * steps + s.rounds);
   return m;
+}
+
+void refuse_trace(int level) {
+  if (level > 0) throw Error(ExitCode::internal, "a trace is of an update of one step");
 }
 
 void check_state(const SolverState& s, std::int64_t n) {

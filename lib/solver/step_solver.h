@@ -49,9 +49,13 @@ InternalState<Real> to_internal(const Scene& s, Particles particles) {
 
 }  // namespace PBF_VARIANT
 
-/// Sums in the internal frame -> Measures in SI units (lib/diag/README.md).
+/// Sums in the internal frame, after so many updates and steps -> Measures in SI units
+/// (lib/diag/README.md).
 Measures to_measures(const MeasureSums& sums, const Scene& scene, const Plan& plan,
-                     std::int64_t update, double time);
+                     std::int64_t update, std::int64_t steps);
+
+/// Error(internal) at a level above 0, where an update has no single trace.
+void refuse_trace(int level);
 
 /// An empty snapshot of n particles with every array allocated and the ids filled in; position and
 /// id always, velocity and density where `fields` names them. Error(bad_input) for another name.

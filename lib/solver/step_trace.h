@@ -16,6 +16,7 @@ namespace pbf {
 struct SolverState {
   Precision precision = Precision::dbl;  ///< of the solver that it came from
   std::int64_t updates = 0;              ///< done so far
+  std::int64_t steps = 0;                ///< of them: more than updates at levels above 0
   std::vector<double> position;          ///< 3n, h
   std::vector<double> velocity;          ///< 3n, h/s
   std::vector<std::int32_t> id;          ///< n

@@ -155,14 +155,18 @@ class Stepper {
     return check.event();
   }
 
+  /// Others differ in what goes with the time step.
+  const Params<Real>& params() const { return p_; }
+  void set_params(const Params<Real>& p) { p_ = p; }
+
   /// Particles faster than `speed` (h/s) are counted; no effect where the scene limits the speed.
   void watch_speed(double speed) {
     if (!p_.limit_speed) p_.speed_squared = Real(std::min(speed * speed, 1e30));
   }
 
-  SolverState state(std::int64_t updates) {
-    if (unsorted_.id.size() > 0) return state(unsorted_, updates);
-    return download_state<Real>(exec_, std::size_t(p_.n), arrays(), updates);
+  SolverState state(std::int64_t updates, std::int64_t steps) {
+    if (unsorted_.id.size() > 0) return state(unsorted_, updates, steps);
+    return download_state<Real>(exec_, std::size_t(p_.n), arrays(), updates, steps);
   }
 
   /// Takes over a state of as many particles. What measures it before the next update needs lists,
@@ -268,8 +272,8 @@ class Stepper {
     exec_.for_each(p_.n, CopyStatePass<Real>{s.arrays(), arrays()});
     density_is_current_ = false;
   }
-  SolverState state(Saved& s, std::int64_t updates) {
-    return download_state<Real>(exec_, std::size_t(p_.n), s.arrays(), updates);
+  SolverState state(Saved& s, std::int64_t updates, std::int64_t steps) {
+    return download_state<Real>(exec_, std::size_t(p_.n), s.arrays(), updates, steps);
   }
 
   std::size_t bytes() const {

@@ -90,8 +90,8 @@ TEST_CASE("runs killed at random moments lose no reported frame and end in the s
     const double wait = std::uniform_real_distribution<>(0.01, 0.6 * seconds)(random);
     std::this_thread::sleep_for(std::chrono::duration<double>(wait));
     p.send(SIGKILL);
-    const int code = p.wait().code;
-    CAPTURE(seed, done, wait);
+    const auto [code, out, err] = p.wait();
+    CAPTURE(seed, done, wait, err);
     REQUIRE((code == 128 + SIGKILL || code == 0));
     if (code != 0) ++done;
     const std::int64_t safe = reported(folder / "b.json");

@@ -25,7 +25,7 @@ inline Case jittered_block(int nx, int ny, int nz, double jitter, double speed,
   c.scene.fluid.spacing = d;
   c.scene.domain.min = {-0.1, 0.3, -2};
   c.scene.domain.max = {-0.1 + d * (nx + 2), 0.3 + d * ny, -2 + d * (nz + 3)};
-  c.scene.time = {0.002, 1};
+  c.scene.time = {0.002, 1, {}};
   c.scene.precision = pbf::Precision::dbl;
   c.scene.threads = 1;
   std::mt19937 gen(seed);  // its integers are fixed by the standard

@@ -86,8 +86,8 @@ const std::vector<Case> kAppended{
     {"threads: 0\n", "threads: \"0\" is out of range, allowed: 1 .. 4096 | auto"},
     {"measure_every: 0\n", "out of range, allowed: 1 .. "},
     // optional blocks
-    {"viscosity:\n", "viscosity: expected a block {xsph: ...}, got nothing; write {} for on"},
-    {"viscosity: on\n", "write {} for on with the defaults, off for off"},
+    {"viscosity:\n", "viscosity: expected a block {xsph: ...}, got nothing; write {} or on for on"},
+    {"viscosity: full\n", "write {} or on for on with the defaults, off for off"},
     {"render: {camera: off}\n", "render.camera: expected a block"},
     // between keys
     {"output: {every: 0.001}\n", "output.every: is 0.001, below time.step (0.01 s)"},
@@ -196,6 +196,19 @@ TEST_CASE("scene: values that contradict each other are refused") {
   CHECK(contains(error({"fluid.spacing=0.0001"}), "the scene would have 5e+11 particles"));
   CHECK(contains(error({"fluid.spacing=0.6"}), "bodies[0]: makes no particle"));
   CHECK(contains(error({"fluid.smoothing_ratio=0.5"}), "out of range, allowed: 1 .. 10"));
+}
+
+TEST_CASE("scene: a shortest step above time.step, or a millionth of it, is refused") {
+  const auto with = [](const std::string& step_min) {
+    return "domain: {min: [0, 0, 0], max: [1, 1, 1]}\nfluid: {spacing: 0.1}\n"
+           "bodies: [{shape: block, min: [0, 0, 0], max: [1, 1, 0.5]}]\n"
+           "time: {step: 0.01, end: 1, adaptive: {step_min: " +
+           step_min + "}}\n";
+  };
+  expect(with("0.02"), "time.adaptive.step_min: is 0.02, above time.step (0.01 s); lower it");
+  expect(with("9e-9"), "is 9.0e-09, less than time.step/1048576 (");
+  expect(with("0"), "time.adaptive.step_min: \"0\" is out of range, allowed: > 0");
+  CHECK(parse(with("0.01")).time.adaptive->step_min == 0.01);
 }
 
 TEST_CASE("scene: a spacing larger than the domain is fine when a particle results") {

@@ -37,7 +37,7 @@ Scene unlike_default() {
   file.path = "odd name #1: [x].csv";
   s.bodies = {block, sphere, random, file};
   s.gravity = {1.0 / 3, 0, 5e-300};
-  s.time = {1.0 / 60, 500.0 / 60};
+  s.time = {1.0 / 60, 500.0 / 60, AdaptiveTime{1e-4, 0.3, 0.2}};
   s.solver.iterations = 7;
   s.solver.substeps = 3;
   s.solver.tolerance = 0.001;
@@ -112,7 +112,7 @@ TEST_CASE("minimal scene: everything not given has the default of scene.h") {
   s.fluid.spacing = 0.1;
   s.bodies.resize(1);
   s.bodies[0].max = {1, 1, 0.5};
-  s.time = {0.01, 1};
+  s.time = {0.01, 1, {}};
   CHECK(parse(kMinimal) == s);
 }
 
@@ -121,6 +121,10 @@ TEST_CASE("blocks given as {}: on, with the defaults of scene.h") {
                         "tensile: {}\nviscosity: {}\nvorticity: {}\noutput: {}\n"
                         "render: {camera: {}}\n");
   CHECK(s.tensile == Tensile{});
+  const Scene words = parse(kMinimal + "tensile: on\noutput: true\nvorticity: false\n");
+  CHECK(words.tensile == Tensile{});
+  CHECK(words.output == Output{});
+  CHECK_FALSE(words.vorticity);
   CHECK(s.viscosity == Viscosity{});
   CHECK(s.vorticity == Vorticity{});
   CHECK(s.output == Output{});

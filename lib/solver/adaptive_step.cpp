@@ -1,0 +1,110 @@
+#include "lib/solver/adaptive_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lib/base/text.h"
+
+namespace pbf {
+namespace {
+
+constexpr std::int64_t kEarly = 8, kLongestHold = std::int64_t(1) << 30;  // due measures
+
+double gravity_of(const Scene& s) { return std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]); }
+
+}  // namespace
+
+int finest_level(const Scene& s) {
+  if (!s.time.adaptive) return 0;
+  const double floor = s.time.adaptive->step_min.value_or(s.time.step / 64);
+  return std::max(0, int(std::floor(std::log2(s.time.step / floor) + 1e-9)));
+}
+
+Scene scene_at_level(const Scene& scene, int level) {
+  Scene s = scene;
+  if (level == 0) return s;
+  s.time.step = std::ldexp(s.time.step, -level);
+  s.solver.velocity_damping = std::pow(s.solver.velocity_damping, std::ldexp(1, -level));
+  s.solver.speed_limit = std::ldexp(s.solver.speed_limit, -level);
+  if (s.viscosity) s.viscosity->xsph = std::ldexp(s.viscosity->xsph, -level);
+  if (s.tensile) s.tensile->k = std::ldexp(s.tensile->k, -2 * level);
+  return s;
+}
+
+double longest_step(const Scene& s, double speed, double acceleration) {
+  const double none = std::numeric_limits<double>::infinity(), h = s.h();
+  const AdaptiveTime& a = *s.time.adaptive;
+  return std::min(speed > 0 ? a.cfl * h / speed : none,
+                  acceleration > 0 ? a.force * std::sqrt(h / acceleration) : none);
+}
+
+int next_level(const Scene& s, int level, double longest, bool may_coarsen) {
+  const int finest = finest_level(s);
+  int k = level;
+  while (k < finest && std::ldexp(s.time.step, -k) > longest) ++k;
+  const double coarser = std::ldexp(s.time.step, 1 - k);
+  return k == level && k > 0 && may_coarsen && 2 * coarser <= longest ? k - 1 : k;
+}
+
+AdaptiveStep::AdaptiveStep(const Scene& scene, const StepHistory& before)
+    : scene_(scene), finest_(finest_level(scene)), h_(before) {
+  h_.updates.resize(std::size_t(finest_) + 1);
+  h_.level = std::clamp<std::int64_t>(h_.level, 0, finest_);
+}
+
+double AdaptiveStep::step(int level) const { return std::ldexp(scene_.time.step, -level); }
+
+std::optional<std::string> AdaptiveStep::follow(const Measures& m) {
+  double acceleration = gravity_of(scene_);
+  if (h_.speed >= 0 && m.time > h_.time)
+    acceleration = std::max(acceleration, std::fabs(m.speed_max - h_.speed) / (m.time - h_.time));
+  h_.time = m.time;
+  h_.speed = m.speed_max;
+  if (h_.hold > 0) --h_.hold;
+  if (h_.coarse >= 0) ++h_.coarse;
+  const double longest = longest_step(scene_, m.speed_max, acceleration), before = step(level());
+  const int to = next_level(scene_, level(), longest, h_.hold == 0);
+  if (step(to) > longest) ++h_.floor;
+  if (to == level()) return std::nullopt;
+  const double h = scene_.h();
+  return format("update %lld, %.6g s: ", static_cast<long long>(m.update), m.time) +
+         change(to, m.update, false) +
+         format(": v_max dt %.3g h, dt sqrt(a/h) %.3g before", m.speed_max * before / h,
+                before * std::sqrt(acceleration / h));
+}
+
+std::optional<std::string> AdaptiveStep::refine(const std::string& alarm, const Measures& m,
+                                                std::int64_t back) {
+  if (level() == finest_) return std::nullopt;
+  ++h_.repeats;
+  return format("update %lld, %.6g s: alarm of the guard (%s), back to update %lld: ",
+                static_cast<long long>(m.update), m.time, alarm.c_str(),
+                static_cast<long long>(back)) +
+         change(level() + 1, back, true);
+}
+
+std::string AdaptiveStep::change(int to, std::int64_t update, bool alarm) {
+  const double before = step(level());
+  if (to < level()) {
+    h_.coarse = 0;
+  } else {
+    const bool early = h_.coarse >= 0 && h_.coarse <= kEarly;
+    if (early) h_.hold_length = std::min(2 * h_.hold_length, kLongestHold);
+    if (early || alarm) h_.hold = h_.hold_length;
+    h_.coarse = -1;
+  }
+  h_.updates = updates_at_levels(update);
+  h_.since = update;
+  h_.level = to;
+  ++h_.changes;
+  return format("step %.6g s (was %.6g)", step(to), before);
+}
+
+std::vector<std::int64_t> AdaptiveStep::updates_at_levels(std::int64_t update) const {
+  std::vector<std::int64_t> all = h_.updates;
+  all[std::size_t(h_.level)] += update - h_.since;
+  return all;
+}
+
+}  // namespace pbf

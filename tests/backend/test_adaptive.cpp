@@ -1,0 +1,224 @@
+// Updates of several steps (time.adaptive), and what an alarm does to them.
+#include <cmath>
+
+#include "lib/base/error.h"
+#include "lib/diag/watch.h"
+#include "tests/backend/backend.h"
+#include "tests/catch.h"
+
+using namespace oracle_test;
+using backend_test::here;
+using backend_test::is_double;
+
+namespace {
+
+Case everything() {
+  Case c = here(jittered_block(10, 9, 11, 0.3, 0.4));
+  c.scene.domain.max[0] += 0.1;
+  c.scene.time.adaptive = pbf::AdaptiveTime{};
+  c.scene.solver.velocity_damping = 0.97;
+  c.scene.solver.substeps = 2;
+  c.scene.tensile = pbf::Tensile{0.016, 0.3, 4};
+  c.scene.viscosity = pbf::Viscosity{0.2};
+  c.scene.vorticity = pbf::Vorticity{5};
+  return c;
+}
+
+bool same(const pbf::SolverState& a, const pbf::SolverState& b) {
+  return a.position == b.position && a.velocity == b.velocity && a.id == b.id;
+}
+
+/// A pool with one sweep and five times the step that it can bear; it sinks into itself, and the
+/// energy of that throws it up.
+Case unstable_pool() {
+  Case c = here(jittered_block(8, 8, 12, 0, 0));
+  const pbf::Double3 low = c.scene.domain.min;
+  c.scene.fluid.spacing = 0.05;
+  c.scene.domain = {{0, 0, 0}, {0.4, 0.4, 1.2}, {}};
+  for (pbf::Double3& x : c.particles.position)
+    for (std::size_t a = 0; a < 3; ++a) x[a] = 2.5 * (x[a] - low[a]);
+  c.scene.gravity = {0, 0, -10};
+  c.scene.time = {0.02, 2, pbf::AdaptiveTime{}};
+  c.scene.time.adaptive->cfl = c.scene.time.adaptive->force = 100;  // alarms alone
+  c.scene.solver.iterations = 1;
+  return c;
+}
+
+struct Course {
+  std::vector<std::string> notes;
+  pbf::Measures last;
+  double energy_start = 0, energy_most = 0, shortest = 1;
+  pbf::Verdict end = pbf::Verdict::good;
+  std::int64_t repeats = 0;
+};
+
+/// Under a Watch, measured every `every` updates.
+Course watched(const Case& c, pbf::Solver& solver, int updates, int every) {
+  Course course;
+  const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
+  const pbf::Measures first = solver.measure();
+  pbf::Watch watch(c.scene, plan, solver, first, first,
+                   [&](const std::string& line) { course.notes.push_back(line); });
+  course.energy_start = course.energy_most = pbf::total_energy(first);
+  watch.choose(first);
+  while (solver.updates_done() < updates && course.end != pbf::Verdict::stop) {
+    solver.step(every);
+    course.last = solver.measure();
+    course.end = watch.look(course.last);
+    if (course.end == pbf::Verdict::good) {
+      course.energy_most = std::max(course.energy_most, pbf::total_energy(course.last));
+      watch.choose(course.last);
+    }
+    course.shortest = std::min(course.shortest, watch.step());
+  }
+  course.repeats = watch.adaptive()->history().repeats;
+  return course;
+}
+
+}  // namespace
+
+TEST_CASE("an update at level k is 2^k updates of the scene with what goes with the shorter step") {
+  const int level = GENERATE(0, 1, 3);
+  CAPTURE(level);
+  Case c = everything();
+  if (GENERATE(false, true)) c.scene.vorticity.reset();  // then XSPH also predicts
+  auto coarse = make(c);
+  coarse->set_step_level(level);
+  const int steps = 1 << level;
+  c.scene.time.step /= steps;
+  c.scene.time.adaptive.reset();
+  c.scene.solver.velocity_damping = std::pow(0.97, 1.0 / steps);
+  c.scene.viscosity->xsph /= steps;
+  c.scene.tensile->k /= steps * steps;
+  auto fine = make(c);
+  for (const int updates : {1, 2, 9}) {
+    coarse->step(updates);
+    fine->step(updates * steps);
+    REQUIRE(same(coarse->state(), fine->state()));
+  }
+  CHECK(coarse->updates_done() == 12);
+  CHECK(coarse->time() == Approx(fine->time()).epsilon(1e-14));
+  CHECK(coarse->state().steps == fine->state().steps);
+  CHECK(coarse->measure().sweeps == fine->measure().sweeps);
+}
+
+TEST_CASE("levels that change in the middle: the bits of the pieces, in one solver or in several") {
+  const Case c = everything();
+  auto one = make(c);
+  pbf::SolverState state = one->state();
+  for (const int level : {0, 2, 1, 0, 3, 0}) {
+    one->set_step_level(level);
+    one->step(3);
+    auto other = make(c);
+    other->set_state(state);
+    other->set_step_level(level);
+    other->step(3);
+    state = other->state();
+    REQUIRE(same(one->state(), state));
+    CHECK(one->state().steps == state.steps);
+  }
+  CHECK(state.updates == 18);
+  CHECK(state.steps == 3 * (1 + 4 + 2 + 1 + 8 + 1));
+  one->set_step_level(2);
+  CHECK_THROWS_AS(one->trace(), pbf::Error);
+}
+
+TEST_CASE("updates with changing levels move every particle as the CPU in double does") {
+  Case c = everything();
+  auto a = make(c);
+  c.scene.backend = pbf::Backend::cpu;
+  c.scene.precision = pbf::Precision::dbl;
+  auto b = make(c);
+  for (const int level : {1, 0, 2})
+    for (auto* s : {a.get(), b.get()}) {
+      s->set_step_level(level);
+      s->step(2);
+      s->relax(3, 0.9);
+    }
+  const auto x = a->download({}, pbf::ScalarType::f64), y = b->download({}, pbf::ScalarType::f64);
+  const auto p = x.fields[0].as<double>(), q = y.fields[0].as<double>();
+  double worst = 0;
+  for (std::size_t k = 0; k < p.size(); ++k)
+    worst = std::max(worst, std::fabs(p[k] - q[k]) / c.scene.h());
+  CHECK(worst < (is_double() ? 1e-10 : 2e-3));
+}
+
+TEST_CASE("steps without time part the particles, and velocities take the damping alone") {
+  Case c = here(jittered_block(8, 8, 8, 0.3, 0.4, 1, 0.9));
+  c.scene.viscosity = pbf::Viscosity{0.3};
+  c.scene.vorticity = pbf::Vorticity{5};
+  auto s = make(c);
+  const double before = s->measure().compression_mean;
+  const auto v = s->download({"velocity"}, pbf::ScalarType::f64);
+  s->relax(24);
+  const pbf::Measures m = s->measure();
+  CHECK(before > 0.1);
+  CHECK(m.compression_mean < 0.1 * before);
+  CHECK(m.outside == 0);
+  CHECK(m.sweeps == 24 * c.scene.solver.iterations);
+  CHECK(s->updates_done() == 0);
+  const auto w = s->download({"velocity"}, pbf::ScalarType::f64);
+  CHECK(w.find("velocity")->bytes == v.find("velocity")->bytes);
+  CHECK(w.fields[0].bytes != v.fields[0].bytes);
+  s->relax(2, 0.5);
+  const auto half = s->download({"velocity"}, pbf::ScalarType::f64);
+  const auto from = v.find("velocity")->as<double>(), to = half.find("velocity")->as<double>();
+  for (std::size_t k = 0; k < from.size(); ++k) REQUIRE(to[k] == 0.25 * from[k]);
+  // And updates go on as from the same state in a new solver.
+  auto fresh = make(c);
+  fresh->set_state(s->state());
+  s->step(5);
+  fresh->step(5);
+  CHECK(same(s->state(), fresh->state()));
+}
+
+TEST_CASE("an alarm takes the run back, and with a shorter step it comes to its end") {
+  const Case c = unstable_pool();
+  const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
+  auto fixed = make(c);
+  const pbf::Measures first = fixed->measure();
+  pbf::Guard guard(c.scene, plan, *fixed, first, first);
+  std::optional<pbf::GuardEvent> event;
+  while (!event && fixed->updates_done() < 100) {
+    fixed->step(5);
+    event = guard.check(fixed->measure());
+  }
+  REQUIRE(event);  // the guard stops it today
+
+  auto solver = make(c);
+  const Course course = watched(c, *solver, 100, 5);
+  CHECK(course.end == pbf::Verdict::good);
+  CHECK(solver->updates_done() == 100);
+  CHECK(course.repeats >= 1);
+  REQUIRE(!course.notes.empty());
+  CHECK(course.notes[0].find("alarm of the guard (energy), back to update ") != std::string::npos);
+  CHECK(course.notes[0].find("steps without time") != std::string::npos);
+  CHECK(course.shortest < 0.02);
+  CHECK(course.energy_most < 1.1 * course.energy_start);
+  CHECK(course.last.compression_mean < 0.1);
+  CHECK(course.last.non_finite + course.last.outside == 0);
+}
+
+TEST_CASE("with the shortest step the guard stops the run, at the update of the event") {
+  Case c = everything();
+  c.scene.time.adaptive->step_min = c.scene.time.step / 4;
+  auto solver = make(c);
+  solver->inject({7, "delta", 2, 40, 1e6});
+  const Course course = watched(c, *solver, 20, 5);
+  CHECK(course.end == pbf::Verdict::stop);
+  CHECK(course.repeats == 2);
+  CHECK(solver->updates_done() == 7);
+  CHECK(course.notes.size() == 2);
+}
+
+TEST_CASE("what is wrong at the start is not tried again with a shorter step") {
+  Case c = everything();
+  c.scene.guard->speed = 1e-3;
+  auto solver = make(c);
+  const pbf::Measures first = solver->measure();
+  const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
+  pbf::Watch watch(c.scene, plan, *solver, first, first, [](const std::string&) {});
+  CHECK(watch.look(first) == pbf::Verdict::stop);
+  REQUIRE(watch.event());
+  CHECK(watch.guard()->text(*watch.event()).find("before the first update") != std::string::npos);
+}
