@@ -41,7 +41,7 @@ struct RunInfo {
 struct LogRow {
   Measures measures;
   int iterations = 0;
-  double dt = 0;
+  double dt = 0;                  ///< s, of the steps of the update that the measure follows
   std::vector<StageTime> stages;  ///< the same names in every row of a run
 };
 

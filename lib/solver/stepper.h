@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,35 +16,13 @@
 #include "kernels/pass_vorticity.h"
 #include "kernels/pass_xsph.h"
 #include "lib/base/release.h"
-#include "lib/scene/scene.h"
+#include "lib/solver/as_types.h"
 #include "lib/solver/compression_percentile.h"
 #include "lib/solver/stage_check.h"
 #include "lib/solver/state_transfer.h"
 #include "lib/solver/tracer.h"
 
 namespace pbf::inline PBF_VARIANT {
-
-/// Calls f with the scene's choices as types, so that no pair loop tests them.
-template <class F>
-void with_dimensions(int dimensions, F&& f) {
-  dimensions == 2 ? f(std::integral_constant<int, 2>{}) : f(std::integral_constant<int, 3>{});
-}
-template <class F>
-void with_smoothing(KernelMode mode, int dimensions, F&& f) {
-  const auto choose = [&](auto in_space, auto in_plane) {
-    dimensions == 2 ? f(in_plane) : f(in_space);
-  };
-  if (mode == KernelMode::paper)
-    choose(std::integral_constant<Smoothing, Smoothing::paper>{},
-           std::integral_constant<Smoothing, Smoothing::paper_2d>{});
-  else
-    choose(std::integral_constant<Smoothing, Smoothing::consistent>{},
-           std::integral_constant<Smoothing, Smoothing::consistent_2d>{});
-}
-template <class F>
-void with_bool(bool b, F&& f) {
-  b ? f(std::true_type{}) : f(std::false_type{});
-}
 
 template <class Real, class Exec>
 class Stepper {

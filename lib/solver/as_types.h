@@ -1,0 +1,33 @@
+// Choices of a scene as types.
+#pragma once
+
+#include <type_traits>
+
+#include "kernels/smoothing.h"
+#include "lib/scene/scene.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// Calls f with the scene's choices as types, so that no pair loop tests them.
+template <class F>
+void with_dimensions(int dimensions, F&& f) {
+  dimensions == 2 ? f(std::integral_constant<int, 2>{}) : f(std::integral_constant<int, 3>{});
+}
+template <class F>
+void with_smoothing(KernelMode mode, int dimensions, F&& f) {
+  const auto choose = [&](auto in_space, auto in_plane) {
+    dimensions == 2 ? f(in_plane) : f(in_space);
+  };
+  if (mode == KernelMode::paper)
+    choose(std::integral_constant<Smoothing, Smoothing::paper>{},
+           std::integral_constant<Smoothing, Smoothing::paper_2d>{});
+  else
+    choose(std::integral_constant<Smoothing, Smoothing::consistent>{},
+           std::integral_constant<Smoothing, Smoothing::consistent_2d>{});
+}
+template <class F>
+void with_bool(bool b, F&& f) {
+  b ? f(std::true_type{}) : f(std::false_type{});
+}
+
+}  // namespace pbf::inline PBF_VARIANT
