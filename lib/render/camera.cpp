@@ -36,6 +36,7 @@ void set_axes(Projection& p, const Double3& forward, const Double3& up) {
 
 /// From the target to the default eye, as a unit vector.
 Double3 default_direction(const View& view, const Double3& up) {
+  if (view.flat) return {0, -1, 0};
   const Double3 box = view.domain_max - view.domain_min;
   // The axis nearest to `up` is the vertical one; the longest of the others lies across the
   // picture.

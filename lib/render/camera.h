@@ -26,8 +26,9 @@ struct Projection {
 
 /// Camera of `view` at `time` (s): the orbit turns it about `up` through the target. The default
 /// stands outside the longest horizontal side, a little above and beside, as near as it sees the
-/// whole box (at every time, when it orbits). Throws Error(bad_input) for an empty box or a camera
-/// that cannot look: fov outside 1..170 degrees, position on the target.
+/// whole box (at every time, when it orbits); that of a scene in two dimensions in front of its
+/// plane, x to the right. Throws Error(bad_input) for an empty box or a camera that cannot look:
+/// fov outside 1..170 degrees, position on the target.
 Projection projection_of(const View& view, double time);
 
 }  // namespace pbf

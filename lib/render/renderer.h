@@ -22,6 +22,7 @@ struct Image {
 /// What a picture needs to know beside the particles.
 struct View {
   Double3 domain_min{}, domain_max{};  ///< m, drawn as 12 lines
+  bool flat = false;                   ///< a scene in two dimensions: seen along y by default
   Double3 up{0, 0, 1};                 ///< against gravity
   double radius = 0.01;                ///< m, drawn radius of a particle
   ColorBy color = ColorBy::speed;

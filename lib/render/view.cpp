@@ -12,6 +12,7 @@ View view_of(const Scene& scene, std::int64_t particles) {
   View view;
   view.domain_min = scene.domain.min;
   view.domain_max = scene.domain.max;
+  view.flat = scene.dimensions == 2;
   const double g = length(scene.gravity);
   if (g > 0) view.up = (-1 / g) * scene.gravity;
   view.radius = render.radius > 0 ? render.radius : 0.5 * scene.fluid.spacing;

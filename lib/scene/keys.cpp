@@ -182,8 +182,8 @@ std::vector<Key> solver_keys() {
       automatic(
           number("solver.step_length", "", {0, 2, true},
                  "Factor omega on the position change of one sweep; below 1 under-relaxes. "
-                 "auto: min(1, (2.5 d/h)^2), since more neighbours need smaller steps, and less "
-                 "where the density is above rest_density.",
+                 "auto: min(1, (2.5 d/h)^2), in two dimensions min(1, (3 d/h)^(4/3)), since more "
+                 "neighbours need smaller steps, and less where the density is above rest_density.",
                  SCENE(&s.solver.step_length))),
       words("solver.boundary", {"density", "clamp"},
             "density: walls count in the density like fluid behind them. clamp: particles are only "
@@ -275,7 +275,8 @@ std::vector<Key> render_keys() {
                        "Drawn radius of a particle. auto: half the spacing.",
                        SCENE(&s.render->radius))),
       automatic(number("render.camera.position", "m", kCoordinate,
-                       "Where the camera is. auto: outside the longest side.",
+                       "Where the camera is. auto: outside the longest side; in two dimensions in "
+                       "front of the plane.",
                        SCENE(&s.render->camera.position))),
       automatic(number("render.camera.target", "m", kCoordinate,
                        "What the camera looks at. auto: the centre of the domain.",

@@ -77,7 +77,7 @@ struct SolverSettings {
   ConstraintMode constraint = ConstraintMode::one_sided;
   double relaxation = 1e-4;           ///< dimensionless eps^ = eps h^2 in lambda's denominator
   std::optional<double> step_length;  ///< omega, factor on the position change of one sweep;
-                                      ///< absent: min(1, (2.5 d/h)^2), see lib/plan/plan.h
+                                      ///< absent: from h/d, see lib/plan/plan.h
   BoundaryMode boundary = BoundaryMode::density;
   double wall_margin = 0;       ///< m, distance to a wall at which particles are clamped
   double velocity_damping = 1;  ///< factor on the velocity, once per update
@@ -132,6 +132,7 @@ struct Checkpoint {
 
 struct Camera {
   std::optional<Double3> position;  ///< m; absent: seen from outside the longest side
+                                    ///< or, in two dimensions, straight at the plane
   std::optional<Double3> target;    ///< m; absent: centre of the domain
   double fov = 35;                  ///< degrees, vertical
   double orbit = 0;                 ///< degrees per second of simulated time about `up`

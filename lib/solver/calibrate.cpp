@@ -8,7 +8,7 @@ namespace pbf {
 namespace {
 
 template <Smoothing S>
-Calibration calibrated(double ratio, double range) {
+Calibration calibrated(double ratio) {
   const int reach = int(std::ceil(ratio)), reach_y = dimensions_of(S) == 2 ? 0 : reach;
   double sum = 0, above = 0;  // whole lattice; the layers at and above the particle's own
   for (int z = -reach; z <= reach; ++z)
@@ -23,7 +23,7 @@ Calibration calibrated(double ratio, double range) {
       }
   Calibration c;
   c.vol = 1 / sum;
-  c.wall_range = range;
+  c.wall_range = 0.7;
   c.wall_scale =
       (1 - c.vol * above) / density_half_space<double, S>(0.5 / ratio / c.wall_range).density;
   return c;
@@ -34,10 +34,9 @@ Calibration calibrated(double ratio, double range) {
 Calibration calibrate(KernelMode mode, double ratio, int dimensions) {
   const bool paper = mode == KernelMode::paper;
   if (dimensions == 2)
-    return paper ? calibrated<Smoothing::paper_2d>(ratio, 0.7)
-                 : calibrated<Smoothing::consistent_2d>(ratio, 0.7);
-  return paper ? calibrated<Smoothing::paper>(ratio, 0.7)
-               : calibrated<Smoothing::consistent>(ratio, 0.7);
+    return paper ? calibrated<Smoothing::paper_2d>(ratio)
+                 : calibrated<Smoothing::consistent_2d>(ratio);
+  return paper ? calibrated<Smoothing::paper>(ratio) : calibrated<Smoothing::consistent>(ratio);
 }
 
 }  // namespace pbf

@@ -15,13 +15,14 @@ seeded_defect(predict_clamp_dropped predict kernels/pass_predict.h
 
 # grid
 seeded_defect(stale_bins grid kernels/pass_predict.h
-  [[bin[i] = bin_of(xyz(position[i]), p);]] [[bin[i] = bin_of(Real(0.99) * xyz(position[i]), p);]])
+  [[bin[i] = bin_of<D>(xyz(position[i]), p);]]
+  [[bin[i] = bin_of<D>(Real(0.99) * xyz(position[i]), p);]])
 seeded_defect(gather_wrong_order grid kernels/pass_predict.h
   [[velocity_out[to] = with_w(m.v, Real(0));]] [[velocity_out[to] = with_w(xyz(velocity[to]), Real(0));]])
 
 # neighbors
 seeded_defect(missing_neighbour_cell neighbors kernels/cell_index.h
-  [[y1 = y + 1 < p.cells_y ? y + 1 : p.cells_y - 1;]] [[y1 = y;]])
+  [[: y + 1 < p.cells_y ? y + 1 : p.cells_y - 1;]] [[: y;]])
 seeded_defect(last_cell_off_by_one neighbors kernels/cell_index.h
   [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 1;]]
   [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 2;]])
@@ -38,7 +39,7 @@ seeded_defect(short_cutoff neighbors lib/cpu/close_pairs.h
 
 # density
 seeded_defect(kernel_constant density kernels/smoothing.h
-  [[norm = Real(15.0 / kPi)]] [[norm = Real(15.1 / kPi)]])
+  [[norm = Real((dimensions == 2 ? 10.0 : 15.0) / kPi)]] [[norm = Real(15.1 / kPi)]])
 seeded_defect(self_term_missing density kernels/pass_lambda.h
   [[rho = p.vol * density_norm<Real, S>() * (Real(1) + s.shape)]]
   [[rho = p.vol * density_norm<Real, S>() * s.shape]])
@@ -58,7 +59,7 @@ seeded_defect(lambda_sign lambda kernels/pass_lambda.h
 seeded_defect(relaxation_missing lambda kernels/pass_lambda.h
   [[dot(own_gradient, own_gradient) + p.relaxation;]] [[dot(own_gradient, own_gradient);]])
 seeded_defect(wall_gradient_missing lambda kernels/pass_lambda.h
-  [[a * s.gradient + wall.gradient;]] [[a * s.gradient;]])
+  [[in_space(s.gradient) + wall.gradient;]] [[in_space(s.gradient);]])
 seeded_defect(wall_gradient_side lambda kernels/boundary.h
   [[(side == 0 ? g.slope : -g.slope)]] [[g.slope]])
 seeded_defect(two_sided_by_mistake lambda kernels/pass_lambda.h
@@ -84,9 +85,9 @@ seeded_defect(one_iteration_less iterations lib/solver/stepper.h
 
 # xsph, vorticity
 seeded_defect(xsph_without_density xsph kernels/pass_xsph.h [[(shape * b.x.w)]] [[shape]])
-seeded_defect(xsph_sign xsph kernels/pass_xsph.h [[(xyz(b.v) - a.v)]] [[(a.v - xyz(b.v))]])
+seeded_defect(xsph_sign xsph kernels/pass_xsph.h [[(point<D>(b.v) - a.v)]] [[(a.v - point<D>(b.v))]])
 seeded_defect(curl_sign vorticity kernels/pass_vorticity.h
-  [[p, on), xyz(b.v) - a.v);]] [[p, on), a.v - xyz(b.v));]])
+  [[p, on), point<D>(b.v) - a.v);]] [[p, on), a.v - point<D>(b.v));]])
 seeded_defect(vorticity_sign vorticity kernels/pass_vorticity.h
   [[+ gain * cross]] [[- gain * cross]])
 seeded_defect(vorticity_at_surface vorticity kernels/pass_vorticity.h
