@@ -54,9 +54,10 @@ struct MemoryPlan {
 /// (4/3) pi (h/d)^3 particles of spacing d, the disc pi (h/d)^2.
 double rest_neighbors(const Scene& scene);
 
-/// Room of one list on the CPU: `rest_neighbors`, and a tenth for what fills up groups of lists.
-/// Lists of 1024 particles share theirs, so it is the mean that counts; where the fluid is denser
-/// the executor takes more.
+/// Room of one list on the CPU: `rest_neighbors`, and what fills up groups of up to 16 lists to the
+/// longest: a tenth, and more where particles start at random places, whose numbers of neighbours
+/// scatter like Poisson's. Lists of 1024 particles share their room, so it is the mean that counts;
+/// where the fluid is denser the executor takes more.
 int cpu_list_entries(const Scene& scene);
 /// Room for the lists that one thread makes: those of 1024 particles, and of one group.
 constexpr std::int64_t cpu_scratch_entries(int list_entries) {

@@ -4,18 +4,12 @@
 #include "kernels/boundary.h"
 #include "kernels/smoothing.h"
 #include "tests/catch.h"
+#include "tests/oracle/quadrature.h"
 
+using namespace oracle_test;
 using namespace pbf;
 
 namespace {
-
-/// Midpoint rule.
-template <class F>
-double integrate(F f, double a, double b, int n) {
-  double sum = 0;
-  for (int i = 0; i < n; ++i) sum += f(a + (i + 0.5) * (b - a) / n);
-  return sum * (b - a) / n;
-}
 
 double w(bool paper, double q) {
   const double t = Spiky<double>::t(q);

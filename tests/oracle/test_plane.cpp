@@ -5,19 +5,12 @@
 #include "kernels/boundary.h"
 #include "tests/catch.h"
 #include "tests/oracle/compare.h"
+#include "tests/oracle/quadrature.h"
 
 using namespace oracle_test;
 using namespace pbf;
 
 namespace {
-
-/// Midpoint rule.
-template <class F>
-double integrate(F f, double a, double b, int n) {
-  double sum = 0;
-  for (int i = 0; i < n; ++i) sum += f(a + (i + 0.5) * (b - a) / n);
-  return sum * (b - a) / n;
-}
 
 /// From the definition, without the functions under test.
 double w(bool paper, double q) {
