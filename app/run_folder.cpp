@@ -1,6 +1,7 @@
 #include "app/run_folder.h"
 
 #include <fcntl.h>
+#include <pthread.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <set>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -44,6 +46,12 @@ bool own_file(const std::string& name) {
                                        "guard_state.h5",
                                        "guard_scene.yaml"};
   return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
+}
+
+/// File descriptors of the locks that this process holds.
+std::set<int>& locks() {
+  static std::set<int> all;
+  return all;
 }
 
 }  // namespace
@@ -86,12 +94,19 @@ RunFolder::RunFolder(const std::string& path, ExistingFolder existing) : path_(p
 
 RunFolder::~RunFolder() {
   if (lock_ < 0) return;
+  locks().erase(lock_);
   ::unlink(file(".lock").c_str());  // while it is held: the next one makes a new file
   ::close(lock_);
 }
 
-/// The system drops the lock with the process, however that ends.
+/// The system drops the lock with the process, however that ends. A process that this one makes to
+/// try a file in would hold it too, and outlive a SIGKILL of this one: it closes its copy at once.
 void RunFolder::lock() {
+  static const int closed_in_children = pthread_atfork(nullptr, nullptr, [] {
+    for (const int fd : locks()) ::close(fd);
+  });
+  if (closed_in_children != 0)
+    fail(path_ / ".lock", "cannot be kept from other processes", std::strerror(closed_in_children));
   for (;;) {
     lock_ = ::open(file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (lock_ < 0) fail(path_ / ".lock", "cannot be made", std::strerror(errno));
@@ -115,6 +130,7 @@ void RunFolder::lock() {
       break;
     ::close(std::exchange(lock_, -1));
   }
+  locks().insert(lock_);
   char host[256] = "";
   gethostname(host, sizeof host - 1);
   const std::string who = "process " + std::to_string(getpid()) + " on " + host;

@@ -1,5 +1,6 @@
 #include "lib/io/h5_trial.h"
 
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,10 +17,12 @@ namespace pbf::h5 {
 void trial(const std::string& path, const std::function<void()>& action, unsigned seconds) {
   std::optional<Lock> held;
   held.emplace();  // no other thread is inside HDF5 while the process is copied
-  const pid_t child = fork();
+  const pid_t parent = getpid(), child = fork();
   held.reset();
   if (child < 0) return;  // no process to be had: the file is read without a trial
   if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // it is of no use to anyone else
+    if (getppid() != parent) _exit(0);
     const rlimit cpu{seconds, seconds}, core{0, 0};
     setrlimit(RLIMIT_CPU, &cpu);
     setrlimit(RLIMIT_CORE, &core);

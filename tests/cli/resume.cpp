@@ -178,6 +178,25 @@ TEST_CASE("a damaged checkpoint is told and the one before it is taken") {
   CHECK(has(none.err, "remove it"));
 }
 
+TEST_CASE("a run that is killed at its start leaves no process behind that holds its folder") {
+  const Scratch folder;
+  scene(folder);
+  const Args args{"run",       "s.yaml", "--out",          "b",   "--resume", "--quiet",
+                  "--threads", "1",      "--max-walltime", "0.1", "--set",    "time.end=90"};
+  REQUIRE(pbf::test::pbf(args, folder.path()).code == 75);
+  for (int k = 0; k < 25; ++k) {  // where it tries its file in a process apart
+    CAPTURE(k);
+    Process p(args, folder.path());
+    std::this_thread::sleep_for(std::chrono::milliseconds(4 + k));
+    p.send(SIGKILL);
+    const int killed = p.wait().code;
+    REQUIRE((killed == 128 + SIGKILL || killed == 75));
+    const Outcome next = pbf::test::pbf(args, folder.path());
+    CAPTURE(next.err);
+    REQUIRE(next.code == 75);
+  }
+}
+
 TEST_CASE("two runs cannot write to one folder") {
   const Scratch folder;
   scene(folder);
