@@ -226,7 +226,7 @@ class CudaSolver final : public Solver {
         cudaGraphExec_t& graph = graph_[size][parity_];
         if (!graph) capture(graph, kGraphUpdates[size]);
         PBF_CUDA_CHECK(cudaGraphLaunch(graph, exec_.stream()));
-        stepper_->replayed();
+        stepper_->moved();
       }
     if (left) direct_step();
   }

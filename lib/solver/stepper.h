@@ -87,7 +87,7 @@ class Stepper {
     exec_.begin();
     if (!has_pairs()) {
       for (int k = updates * substeps_; k > 0; --k) move();
-      lists_are_current_ = density_is_current_ = false;
+      moved();
       return;
     }
     const auto unseen = [](const char*, int) {};
@@ -106,7 +106,7 @@ class Stepper {
       else
         finish_update(unseen);
     }
-    density_is_current_ = false;
+    moved();
   }
 
   /// One update, with what each stage left behind.
@@ -142,7 +142,7 @@ class Stepper {
   }
 
   SolverState state(std::int64_t updates, std::int64_t steps) {
-    if (unsorted_.id.size() > 0) return state(unsorted_, updates, steps);
+    if (sorted_for_measure_) return state(unsorted_, updates, steps);
     return download_state<Real>(exec_, std::size_t(p_.n), arrays(), updates, steps);
   }
 
@@ -150,34 +150,38 @@ class Stepper {
   /// and these a sort; the order of the state itself comes back with the update.
   void set_state(const SolverState& s) {
     upload_state<Real>(exec_, s, arrays());
-    save(unsorted_);
-    reorder_as_is("grid");
+    sorted_for_measure_ = false;
+    sort_for_measure();
     density_is_current_ = false;
     sum_density();
   }
 
-  /// Puts the particles back into the order in which set_state() got them, if they are not.
+  /// Puts the particles back into the order that they had before a sort that no update made.
   void unsort() {
-    if (unsorted_.id.size() == 0) return;
+    if (!sorted_for_measure_) return;
     restore(unsorted_);
-    unsorted_ = {};
+    sorted_for_measure_ = false;
+    if (lists_last()) unsorted_ = {};  // it was for set_state(); else the next measure needs it
   }
 
   /// Whether an update looks at pairs. Without sweeps, viscosity and vorticity it only moves
   /// particles, and lists are made where a measure or a download asks for the density.
   bool has_pairs() const { return iterations_ > 0 || p_.xsph > Real(0) || p_.vorticity > Real(0); }
 
-  /// Makes such lists and says so. The particles go back into their order with the next update: how
-  /// often a run is measured must not change it.
+  /// Whether the lists of an update still name all pairs at its end. Not those that substeps
+  /// share: particles that met since are not in them, and a compression summed with them is up to
+  /// a third too small (README.md, "Error and run time").
+  bool lists_last() const { return has_pairs() && substeps_ == 1; }
+
+  /// Makes lists at the present positions, where there are none, and says so. The particles go back
+  /// into their order with the next update: how often a run is measured must not change it.
   bool find_pairs() {
     if (lists_are_current_) return false;
-    save(unsorted_);
-    reorder_as_is("grid");
+    sort_for_measure();
     return true;
   }
 
-  /// Sums at the present positions. The lists are those of the update: making new ones would
-  /// reorder the particles, and how often a run is measured must not change it.
+  /// Sums at the present positions, with the lists of the update where they last.
   MeasureSums measure() {
     exec_.begin();
     find_pairs();
@@ -214,10 +218,11 @@ class Stepper {
     exec_.mark("download");
   }
 
-  /// What a replay of recorded updates (an even number of them) leaves behind on the host.
-  void replayed() {
+  /// What a replay of recorded updates (an even number of them) leaves behind on the host: nothing
+  /// that was summed or listed before holds.
+  void moved() {
     density_is_current_ = false;
-    lists_are_current_ = has_pairs();
+    lists_are_current_ = lists_last();
   }
 
   /// New lists at the present positions, after the executor has been given more room for them.
@@ -243,7 +248,8 @@ class Stepper {
     s.velocity.resize(n);
     s.id.resize(n);
     s.counts.resize(1);
-    exec_.for_each(p_.n, CopyStatePass<Real>{arrays(), s.arrays()});
+    exec_.for_each(p_.n, CopyStatePass<Real>{sorted_for_measure_ ? unsorted_.arrays() : arrays(),
+                                             s.arrays()});
   }
   void restore(Saved& s) {
     exec_.for_each(p_.n, CopyStatePass<Real>{s.arrays(), arrays()});
@@ -278,7 +284,13 @@ class Stepper {
     seen("neighbors", 0);
     solve(seen, false);
     finish_update(seen);
-    density_is_current_ = false;
+    moved();
+  }
+
+  void sort_for_measure() {
+    save(unsorted_);
+    sorted_for_measure_ = true;
+    reorder_as_is("grid");
   }
 
   /// n numbers: the order of a sort, free after it.
@@ -427,7 +439,8 @@ class Stepper {
   Buffer<Real> density_;
   Buffer<int> id_, other_id_, bin_, order_, bin_start_;
   Buffer<StepCounts> counts_;  ///< one
-  Saved unsorted_;  ///< the state as set_state() got it, until the next update; else empty
+  Saved unsorted_;  ///< the state before a sort that no update made
+  bool sorted_for_measure_ = false;  ///< and whether it stands there
 };
 
 }  // namespace pbf::inline PBF_VARIANT

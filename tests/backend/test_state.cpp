@@ -95,6 +95,26 @@ TEST_CASE("an update by trace() gives the bytes of step(1), before, between and 
   }
 }
 
+TEST_CASE("how often a run is measured does not change its bytes") {
+  Case c = everything();
+  SECTION("as it is") {}
+  SECTION("substeps, after which a measure makes its own lists") {
+    c.scene.solver.substeps = 3;
+    c.scene.solver.iterations = 2;
+  }
+  auto a = make(c), b = make(c);
+  for (const int k : {1, 2, 5, 70, 3}) {
+    a->step(k);
+    b->step(k);
+    b->measure();
+    b->keep();
+    CHECK(same(a->state(), b->kept()));
+    b->download({"density"}, pbf::ScalarType::f32);
+  }
+  b->measure();
+  CHECK(same_bytes(*a, *b));
+}
+
 TEST_CASE("a trace ends with the state of the solver and lists the stages in order") {
   Case c = everything();
   c.scene.solver.iterations = 2;
