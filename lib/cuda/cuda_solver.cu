@@ -113,7 +113,6 @@ class CudaSolver final : public Solver {
     check_state(s, n_);
     stepper_->set_state(s);
     while (grow_if_needed()) stepper_->relist();
-    drop_graphs();  // the sort has changed which buffer is which
     updates_ = s.updates;
     steps_ = s.steps;
   }
@@ -123,7 +122,6 @@ class CudaSolver final : public Solver {
     stepper_->save(saved_);
     StepTrace t = traced_step(options);
     while (grow_if_needed()) {
-      drop_graphs();
       stepper_->restore(saved_);
       t = traced_step(options);
     }
@@ -189,7 +187,6 @@ class CudaSolver final : public Solver {
       stepper_->save(saved_);
       run(batch);
       while (grow_if_needed()) {  // nothing was lost: the batch is done again with more room
-        drop_graphs();
         stepper_->restore(saved_);
         batch = batch_ = std::min(batch, kFirstBatch);
         run(batch);
@@ -241,7 +238,7 @@ class CudaSolver final : public Solver {
       do {
         event = stepper_->step_checked(updates_ + 1, limits, fault);
         parity_ ^= 1;
-      } while (grow_if_needed() && (drop_graphs(), stepper_->restore(saved_), true));
+      } while (grow_if_needed() && (stepper_->restore(saved_), true));
       if (!first) first = event;
     }
     count(1);
@@ -255,7 +252,6 @@ class CudaSolver final : public Solver {
 
   void find_pairs() {
     if (!stepper_->find_pairs()) return;
-    parity_ ^= 1;
     while (grow_if_needed()) stepper_->relist();
   }
 
@@ -292,6 +288,7 @@ class CudaSolver final : public Solver {
     if (short_of.wanted == 0 && short_of.longest == 0) return false;
     exec_.set_room(n_, larger(exec_.room(), short_of, n_));
     exec_.clear_overflow();
+    drop_graphs();  // they hold the old room
     return true;
   }
 

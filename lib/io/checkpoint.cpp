@@ -159,14 +159,6 @@ void rename_or_fail(const std::string& from, const std::string& to) {
   if (std::rename(from.c_str(), to.c_str()) != 0) throw h5::Failure(std::strerror(errno));
 }
 
-/// The names in a folder reach the disk with it.
-void sync_folder(const std::string& folder) {
-  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) return;  // not everywhere possible; the files themselves are safe
-  ::fsync(fd);
-  ::close(fd);
-}
-
 }  // namespace
 
 void write_checkpoint(const std::string& folder, const SavedRun& saved) {
@@ -178,7 +170,7 @@ void write_checkpoint(const std::string& folder, const SavedRun& saved) {
     }
     if (fs::exists(path)) rename_or_fail(path, folder + "/checkpoint_prev.h5");
     rename_or_fail(temporary, path);
-    sync_folder(folder);
+    h5::sync_folder(folder);
   } catch (const h5::Failure& f) {
     ::unlink(temporary.c_str());
     throw Error(ExitCode::io, path + ": cannot write the checkpoint: " + f.what() +

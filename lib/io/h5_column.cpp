@@ -41,6 +41,20 @@ Column Column::existing(hid_t parent, const std::string& path) {
 void Column::truncate(hsize_t rows) {
   if (rows > rows_) throw Failure("a dataset ends before what the file says it holds");
   if (rows == rows_) return;
+  grow(rows);
+}
+
+void Column::write_ahead(const std::vector<double>& chunk) {
+  const hsize_t first = rows_ / chunk_rows_ * chunk_rows_;
+  if (chunk.size() != chunk_rows_) throw Failure("not the rows of a chunk");
+  if (rows_ == 0) {  // HDF5 makes the index with the first row
+    write(0, 1, H5T_NATIVE_DOUBLE, chunk.data());
+    grow(0);
+  }
+  check(H5Dwrite_chunk(dataset_, H5P_DEFAULT, 0, &first, chunk.size() * 8, chunk.data()));
+}
+
+void Column::grow(hsize_t rows) {
   const hsize_t size[2] = {rows, static_cast<hsize_t>(components_)};
   check(H5Dset_extent(dataset_, size));
   rows_ = rows;
@@ -50,11 +64,7 @@ void Column::write(hsize_t first, hsize_t count, hid_t type, const void* values)
   if (!count) return;
   const int rank = components_ ? 2 : 1;
   const auto width = static_cast<hsize_t>(components_);
-  if (first + count > rows_) {
-    const hsize_t size[2] = {first + count, width};
-    check(H5Dset_extent(dataset_, size));
-    rows_ = size[0];
-  }
+  if (first + count > rows_) grow(first + count);
   const Space file(H5Dget_space(dataset_));
   const hsize_t start[2] = {first, 0}, block[2] = {count, width};
   check(H5Sselect_hyperslab(file, H5S_SELECT_SET, start, nullptr, block, nullptr));

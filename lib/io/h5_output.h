@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "lib/io/h5.h"
 
@@ -17,9 +18,13 @@ Properties writer_access();
 /// first: nothing can fail after that. Failure with the system's reason.
 std::int64_t flush_reserved(hid_t file);
 
-/// Waits until the disk has stored the file. Network file systems and quotas report a full disk
-/// only here. Failure with the system's reason.
+/// Waits until the disk has stored the file's bytes and its size (fdatasync). Network file systems
+/// and quotas report a full disk only here. Failure with the system's reason.
 void sync(hid_t file);
+
+/// The same for the names in a folder, which are not stored with the files. No error where the
+/// file system has no such thing.
+void sync_folder(const std::string& folder);
 
 /// After a failure: HDF5 insists on writing what it still holds and can neither be told to forget
 /// it nor end cleanly when it fails again (a full disk), so its descriptor is turned away from the

@@ -56,13 +56,13 @@ class RunWriter {
   RunWriter(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
             std::int64_t rows);
   ~RunWriter();
-  /// Queues a frame; blocks while more than 2 wait. A frame is durable (flushed, readable after
-  /// kill -9) once frames_written() counts it.
+  /// Queues a frame; blocks while more than 2 wait. A frame is durable (on the disk, readable after
+  /// kill -9 and after a power cut) once frames_written() counts it.
   void write(Snapshot&& snapshot);
   void log(const LogRow& row);
   std::int64_t frames_written() const;
   std::int64_t bytes_written() const;
-  /// Waits until all that was queued, the log too, is on the disk: fsync.
+  /// Waits until all that was queued, the log too, is on the disk.
   void sync();
   /// Waits for the queue, writes /pbf status ("finished", "stopped", "diverged") with the end of
   /// the session, and closes. `reason`: of the session's end, the status when empty.

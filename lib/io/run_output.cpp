@@ -1,6 +1,7 @@
 #include "lib/io/run_output.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "lib/base/error.h"
 #include "lib/io/h5_output.h"
@@ -48,6 +49,10 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
   make_sessions();
   begin_session(info);
   flush();
+  h5::sync(file_);
+  const auto folder = std::filesystem::absolute(path).parent_path();
+  h5::sync_folder(folder);
+  h5::sync_folder(folder.parent_path());
 }
 
 RunOutput::~RunOutput() {
@@ -76,16 +81,21 @@ void RunOutput::write_frame(const Snapshot& s) {
   cell_offsets_.append(std::vector<std::int64_t>{part.cell_offset, 0, 0, 0});
   id_starts_.append(std::vector<std::int64_t>{0, 0, 0, 0});
   updates_.append(s.update);
-  write_log();
-  flush();
-  // The commit. Readers trust NSteps; VTK's overruns its heap when Values is longer than that.
-  // The group's header lies before the column's in the file, so a flush writes NSteps first.
-  const std::int64_t steps = frames_ + 1;
+  last_times_[times_.rows() % run_layout::step_rows] = s.time;
+  times_.write_ahead(last_times_);
+  commit_frames(frames_ + 1);
+}
+
+/// In the order that a power cut must not change: what a frame consists of; then NSteps, which
+/// readers trust; then the size of Values, for VTK's reader overruns its heap when that is longer.
+void RunOutput::commit_frames(std::int64_t frames) {
+  sync();
   const h5::Attribute count(H5Aopen(steps_, "NSteps", H5P_DEFAULT));
-  check(H5Awrite(count, H5T_NATIVE_INT64, &steps));
-  times_.append(s.time);
-  flush();
-  frames_ = steps;
+  check(H5Awrite(count, H5T_NATIVE_INT64, &frames));
+  sync();
+  times_.grow(static_cast<hsize_t>(frames));
+  sync();
+  frames_ = frames;
 }
 
 void RunOutput::flush() { bytes_ = h5::flush_reserved(file_); }

@@ -10,6 +10,7 @@
 #include "lib/base/stage_clock.h"
 #include "lib/io/h5_column.h"
 #include "lib/io/run_file.h"
+#include "lib/io/run_layout.h"
 
 namespace pbf {
 
@@ -68,6 +69,7 @@ class RunOutput {
   void check_fields(const Snapshot& snapshot) const;
   Part part_of(std::size_t count);
   void grow_ids(std::size_t count);
+  void commit_frames(std::int64_t frames);
   void write_log();
   void write_stages();
   void flush();
@@ -82,6 +84,7 @@ class RunOutput {
   h5::Column ids_, id_offsets_, connectivity_, points_per_part_, updates_;
   std::array<Topology, 4> topologies_;
   std::vector<Part> parts_;
+  std::vector<double> last_times_ = std::vector<double>(run_layout::step_rows);  ///< s, last chunk
   h5::Column times_, part_offsets_, part_counts_, point_offsets_, cell_offsets_, id_starts_;
   std::vector<LogRow> waiting_;
   Stopwatch since_log_;

@@ -50,7 +50,7 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, st
   pbf_ = h5::Group(H5Gopen2(file_, "pbf", H5P_DEFAULT));
   open_steps(frames);
   open_log(rows);
-  flush();  // Values is never longer than NSteps
+  sync();  // Values is never longer than NSteps
   const h5::Attribute count(H5Aopen(steps_, "NSteps", H5P_DEFAULT));
   check(H5Awrite(count, H5T_NATIVE_INT64, &frames));
   frames_ = frames;
@@ -72,6 +72,9 @@ void RunOutput::open_steps(std::int64_t frames) {
     return c;
   };
   times_ = table(steps_, "Values", n);
+  const auto times = h5::read_all<double>(steps_, "Values");
+  std::copy(times.begin() + frames / run_layout::step_rows * run_layout::step_rows, times.end(),
+            last_times_.begin());
   part_offsets_ = table(steps_, "PartOffsets", n);
   part_counts_ = table(steps_, "NumberOfParts", n);
   point_offsets_ = table(steps_, "PointOffsets", n);

@@ -149,6 +149,7 @@ class Stepper {
   /// Takes over a state of as many particles. What measures it before the next update needs lists,
   /// and these a sort; the order of the state itself comes back with the update.
   void set_state(const SolverState& s) {
+    if (sorted_for_measure_) swap_buffers();
     upload_state<Real>(exec_, s, arrays());
     sorted_for_measure_ = false;
     sort_for_measure();
@@ -159,6 +160,7 @@ class Stepper {
   /// Puts the particles back into the order that they had before a sort that no update made.
   void unsort() {
     if (!sorted_for_measure_) return;
+    swap_buffers();  // recorded updates know them by their place
     restore(unsorted_);
     sorted_for_measure_ = false;
     if (lists_last()) unsorted_ = {};  // it was for set_state(); else the next measure needs it
@@ -248,8 +250,8 @@ class Stepper {
     s.velocity.resize(n);
     s.id.resize(n);
     s.counts.resize(1);
-    exec_.for_each(p_.n, CopyStatePass<Real>{sorted_for_measure_ ? unsorted_.arrays() : arrays(),
-                                             s.arrays()});
+    exec_.for_each(
+        p_.n, CopyStatePass<Real>{sorted_for_measure_ ? unsorted_.arrays() : arrays(), s.arrays()});
   }
   void restore(Saved& s) {
     exec_.for_each(p_.n, CopyStatePass<Real>{s.arrays(), arrays()});
@@ -296,6 +298,12 @@ class Stepper {
   /// n numbers: the order of a sort, free after it.
   int* order() { return (Exec::order_in_place ? other_id_ : order_).data(); }
 
+  void swap_buffers() {
+    std::swap(position_, other_position_);
+    std::swap(velocity_, other_velocity_);
+    std::swap(id_, other_id_);
+  }
+
   /// Runs the pass that gives every particle its bin, sorts and gathers the particles by bin (as
   /// predicted, with `moving`), makes the lists.
   template <bool moving, class First>
@@ -304,9 +312,7 @@ class Stepper {
                       GatherPass<Real, moving>{p_, position_.data(), velocity_.data(), id_.data(),
                                                other_position_.data(), other_velocity_.data(),
                                                other_id_.data(), counts_.data()});
-    std::swap(position_, other_position_);
-    std::swap(velocity_, other_velocity_);
-    std::swap(id_, other_id_);
+    swap_buffers();
     exec_.mark("grid");
     lists_ = exec_.build_lists(position_.data(), bin_start_.data(), p_);
     lists_are_current_ = true;
@@ -438,8 +444,8 @@ class Stepper {
   Buffer<Vec4<Real>> position_, other_position_, velocity_, other_velocity_, curl_;
   Buffer<Real> density_;
   Buffer<int> id_, other_id_, bin_, order_, bin_start_;
-  Buffer<StepCounts> counts_;  ///< one
-  Saved unsorted_;  ///< the state before a sort that no update made
+  Buffer<StepCounts> counts_;        ///< one
+  Saved unsorted_;                   ///< the state before a sort that no update made
   bool sorted_for_measure_ = false;  ///< and whether it stands there
 };
 

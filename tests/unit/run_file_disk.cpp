@@ -1,5 +1,5 @@
-// HDF5 and the writer call the C library's pwrite, ftruncate and fallocate; definitions in the
-// program come first.
+// HDF5 and the writer call the C library's pwrite, ftruncate, fallocate and fdatasync; definitions
+// in the program come first.
 #include "tests/unit/run_file_disk.h"
 
 #include <fcntl.h>
@@ -75,6 +75,14 @@ int watched_resize(int fd, off_t size) {
   return static_cast<int>(syscall(SYS_ftruncate, fd, size));
 }
 
+int watched_sync(int number, int fd) {
+  const auto result = static_cast<int>(syscall(number, fd));
+  const std::lock_guard lock(watch.mutex);
+  if (result == 0 && watched(fd) && watch.record)
+    watch.operations.push_back({pbf::test::DiskOperation::barrier, 0, {}});
+  return result;
+}
+
 }  // namespace
 
 extern "C" {
@@ -88,6 +96,8 @@ ssize_t pwrite64(int fd, const void* data, size_t size, off64_t offset) {
 int fallocate(int fd, int mode, off_t offset, off_t size) {
   return watched_reserve(fd, mode, offset, size);
 }
+int fsync(int fd) { return watched_sync(SYS_fsync, fd); }
+int fdatasync(int fd) { return watched_sync(SYS_fdatasync, fd); }
 int ftruncate(int fd, off_t size) noexcept { return watched_resize(fd, size); }
 int ftruncate64(int fd, off64_t size) noexcept { return watched_resize(fd, size); }
 }

@@ -10,13 +10,14 @@ namespace pbf::test {
 
 /// One change of the watched file.
 struct DiskOperation {
-  enum Kind { write, resize, mark } kind;
+  enum Kind { write, resize, mark, barrier } kind;  ///< barrier: all before is on the disk
   std::int64_t offset = 0;       ///< bytes; of a resize: the new size; of a mark: its number
   std::vector<std::byte> bytes;  ///< of a write
 };
 
-/// While it lives, writes and resizes of the file at `path` by this process are recorded, and fail
-/// with ENOSPC where they would make the file longer than `capacity` bytes. One at a time.
+/// While it lives, writes, resizes and synchronisations of the file at `path` by this process are
+/// recorded, and fail with ENOSPC where they would make the file longer than `capacity` bytes. One
+/// at a time.
 class WatchedDisk {
  public:
   explicit WatchedDisk(const std::string& path, std::int64_t capacity = INT64_MAX,
