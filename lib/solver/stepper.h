@@ -172,7 +172,7 @@ class Stepper {
 
   /// Whether the lists of an update still name all pairs at its end. Not those that substeps
   /// share: particles that met since are not in them, and a compression summed with them is up to
-  /// a third too small (README.md, "Error and run time").
+  /// a third too small (README.md).
   bool lists_last() const { return has_pairs() && substeps_ == 1; }
 
   /// Makes lists at the present positions, where there are none, and says so. The particles go back

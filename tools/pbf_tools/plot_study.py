@@ -82,8 +82,8 @@ def run(args: argparse.Namespace) -> int:
     at = np.flatnonzero(best)[np.argsort(x[best])]
     axes.plot(x[at], y[at], color="#BBBBBB", linewidth=7, solid_capstyle="round", zorder=1,
               label="Pareto front")
-    for k, name in enumerate(dict.fromkeys(names.tolist())):
-        _series(axes, x, y, spread, np.flatnonzero(names == name), name, style.cycle(k))
+    for name, (look, line) in _looks(table, keys, names).items():
+        _series(axes, x, y, spread, np.flatnonzero(names == name), name, look, line)
     axes.plot(x[at], y[at], "o", markersize=11, markerfacecolor="none", markeredgecolor="black",
               markeredgewidth=0.9, zorder=4)
     axes.set(xscale="log", yscale="log", xlabel=_label(args.x, "s"),
@@ -96,10 +96,33 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _series(axes, x, y, spread, rows: np.ndarray, name: str, look: dict[str, object]) -> None:
+def _looks(table: Table, keys: list[str],
+           names: np.ndarray) -> dict[str, tuple[dict[str, object], str]]:
+    """Markers and line of every series. Where several of its columns vary, the last one of them
+    chooses the line (full, dashed ...) and the others the colour."""
+    vary = [c for c in keys if len(set(table[c].tolist())) > 1]
+    by_line = vary[-1] if len(vary) > 1 else None
+    colors: dict[tuple[str, ...], int] = {}
+    lines: dict[str, int] = {}
+    looks = {}
+    for name in dict.fromkeys(names.tolist()):
+        i = int(np.flatnonzero(names == name)[0])
+        color = colors.setdefault(tuple(_text(table[c][i]) for c in vary if c != by_line),
+                                  len(colors))
+        line = lines.setdefault(_text(table[by_line][i]), len(lines)) if by_line else 0
+        look = style.cycle(color)
+        if line:
+            look["markerfacecolor"] = "white"
+        looks[name] = look, ("-", "--", ":", "-.")[line % 4]
+    return looks
+
+
+def _series(axes, x, y, spread, rows: np.ndarray, name: str, look: dict[str, object],
+            style_of_line: str) -> None:
     own = front(x[rows], y[rows])
     line = rows[own][np.argsort(x[rows[own]])]
-    axes.plot(x[line], y[line], label=name or None, zorder=3, linewidth=1.4, **look)
+    axes.plot(x[line], y[line], label=name or None, zorder=3, linewidth=1.4,
+              linestyle=style_of_line, **look)
     rest = rows[~own]
     axes.plot(x[rest], y[rest], linestyle="", alpha=0.35, zorder=2, **look)
     if spread is not None:
