@@ -15,9 +15,9 @@
 #include "kernels/pass_residual.h"
 #include "kernels/pass_vorticity.h"
 #include "kernels/pass_xsph.h"
-#include "lib/base/release.h"
 #include "lib/solver/as_types.h"
 #include "lib/solver/compression_percentile.h"
+#include "lib/solver/particle_arrays.h"
 #include "lib/solver/stage_check.h"
 #include "lib/solver/state_transfer.h"
 #include "lib/solver/tracer.h"
@@ -28,8 +28,6 @@ template <class Real, class Exec>
 class Stepper {
  public:
   using Lists = typename Exec::Lists;
-  template <class T>
-  using Buffer = typename Exec::template Buffer<T>;
 
   /// State in the internal frame. Positions and velocities are in the order of ids 0..n-1.
   Stepper(Exec& exec, const Params<Real>& params, KernelMode mode, int iterations, const Plan& plan,
@@ -47,34 +45,7 @@ class Stepper {
       step_length_.push_back(
           Real(plan.step_length *
                (plan.sweep_factors.empty() ? 1 : plan.sweep_factors[std::size_t(k)])));
-    const std::size_t n = position.size();
-    // Executors whose lists are padded read one particle more, infinitely far away for any kernel.
-    const std::size_t padded = n + Exec::padding;
-    for (auto* b : {&position_, &other_position_, &velocity_, &other_velocity_}) b->resize(padded);
-    for (auto* b : {&id_, &other_id_, &bin_}) b->resize(n);
-    if (!Exec::order_in_place) order_.resize(n);
-    density_.resize(n);
-    counts_.resize(1);
-    const StepCounts none;
-    exec_.to_device(&none, 1, counts_.data());
-    bin_start_.resize(std::size_t(bin_count(p_)) + 1);
-    if (p_.vorticity > Real(0)) curl_.resize(padded);
-    if (Exec::padding) {
-      const std::vector<Vec4<Real>> far(Exec::padding, {Real(1e9), Real(1e9), Real(1e9), Real(1)}),
-          zero(Exec::padding, {0, 0, 0, 0});
-      const auto fill = [&](const auto& rows, auto& b) {
-        exec_.to_device(rows.data(), rows.size(), b.data() + n);
-      };
-      for (auto* b : {&position_, &other_position_}) fill(far, *b);
-      for (auto* b : {&velocity_, &other_velocity_}) fill(zero, *b);
-      if (curl_.size()) fill(zero, curl_);
-    }
-    exec_.to_device(position.data(), n, position_.data());
-    exec_.to_device(velocity.data(), n, velocity_.data());
-    exec_.to_device(id.data(), n, id_.data());
-    release(position);  // before the lists are made
-    release(velocity);
-    release(id);
+    a_.make(exec_, p_, position, velocity, id);
     reorder_as_is("grid");
     sum_density();
   }
@@ -96,7 +67,7 @@ class Stepper {
       if (!moved_on)
         with_dimensions(p_.dimensions, [&](auto d) {
           reorder<true>("predict", PredictPass<Real, decltype(d)::value>{
-                                       p_, position_.data(), velocity_.data(), bin_.data()});
+                                       p_, a_.position.data(), a_.velocity.data(), a_.bin.data()});
         });
       moved_on = left > 0 && p_.xsph > Real(0) && !(p_.vorticity > Real(0));
       solve(unseen, true);
@@ -123,11 +94,11 @@ class Stepper {
     StageCheck<Real, Exec> check(exec_, p_, update, limits, fault);
     step_seen([&](const std::string& stage, int sweep) {
       const bool lists = stage == "neighbors";
-      if (lists) exec_.for_each(p_.n, ListSizePass<Lists>{lists_, order()});  // free by now
-      check.look(
-          stage, sweep,
-          {(stage == "lambda" ? other_position_ : position_).data(), velocity_.data(),
-           stage == "density" ? density_.data() : nullptr, id_.data(), lists ? order() : nullptr});
+      if (lists) exec_.for_each(p_.n, ListSizePass<Lists>{lists_, a_.sort_order()});  // free by now
+      check.look(stage, sweep,
+                 {(stage == "lambda" ? a_.other_position : a_.position).data(), a_.velocity.data(),
+                  stage == "density" ? a_.density.data() : nullptr, a_.id.data(),
+                  lists ? a_.sort_order() : nullptr});
     });
     return check.event();
   }
@@ -142,16 +113,14 @@ class Stepper {
   }
 
   SolverState state(std::int64_t updates, std::int64_t steps) {
-    if (sorted_for_measure_) return state(unsorted_, updates, steps);
-    return download_state<Real>(exec_, std::size_t(p_.n), arrays(), updates, steps);
+    return download_state<Real>(exec_, std::size_t(p_.n), a_.unsorted_state(), updates, steps);
   }
 
   /// Takes over a state of as many particles. What measures it before the next update needs lists,
   /// and these a sort; the order of the state itself comes back with the update.
   void set_state(const SolverState& s) {
-    if (sorted_for_measure_) swap_buffers();
-    upload_state<Real>(exec_, s, arrays());
-    sorted_for_measure_ = false;
+    unsort();
+    upload_state<Real>(exec_, s, a_.state());
     sort_for_measure();
     density_is_current_ = false;
     sum_density();
@@ -159,11 +128,8 @@ class Stepper {
 
   /// Puts the particles back into the order that they had before a sort that no update made.
   void unsort() {
-    if (!sorted_for_measure_) return;
-    swap_buffers();  // recorded updates know them by their place
-    restore(unsorted_);
-    sorted_for_measure_ = false;
-    if (lists_last()) unsorted_ = {};  // it was for set_state(); else the next measure needs it
+    // The copy was for set_state(), or the next measure needs it.
+    if (a_.take_back(exec_, !lists_last())) density_is_current_ = false;
   }
 
   /// Whether an update looks at pairs. Without sweeps, viscosity and vorticity it only moves
@@ -188,11 +154,11 @@ class Stepper {
     exec_.begin();
     find_pairs();
     sum_density();
-    auto sums =
-        exec_.reduce(p_.n, MeasurePass<Real, Lists>{p_, lists_, position_.data(), velocity_.data(),
-                                                    density_.data(), counts_.data()});
+    auto sums = exec_.reduce(
+        p_.n, MeasurePass<Real, Lists>{p_, lists_, a_.position.data(), a_.velocity.data(),
+                                       a_.density.data(), a_.counts.data()});
     sums.compression_p99 = compression_percentile(
-        exec_.count_in_bins(p_.n, kCompressionBins, CompressionBinPass<Real>{density_.data()}),
+        exec_.count_in_bins(p_.n, kCompressionBins, CompressionBinPass<Real>{a_.density.data()}),
         p_.n - p_.n / 100, p_.n, sums.compression_max);
     exec_.mark("measure");
     return sums;
@@ -210,10 +176,10 @@ class Stepper {
     exec_.for_each(p_.n, ExportPass<Real, Out>{h,
                                                rest_density,
                                                {origin[0], origin[1], origin[2]},
-                                               position_.data(),
-                                               velocity_.data(),
-                                               density_.data(),
-                                               id_.data(),
+                                               a_.position.data(),
+                                               a_.velocity.data(),
+                                               a_.density.data(),
+                                               a_.id.data(),
                                                position,
                                                velocity,
                                                density});
@@ -229,50 +195,24 @@ class Stepper {
 
   /// New lists at the present positions, after the executor has been given more room for them.
   void relist() {
-    lists_ = exec_.build_lists(position_.data(), bin_start_.data(), p_);
+    lists_ = exec_.build_lists(a_.position.data(), a_.bin_start.data(), p_);
     density_is_current_ = false;
     sum_density();
   }
 
-  /// A copy of the state, from which the updates since can be repeated.
-  struct Saved {
-    Buffer<Vec4<Real>> position, velocity;
-    Buffer<int> id;
-    Buffer<StepCounts> counts;
-    StateArrays<Real> arrays() {
-      return {position.data(), velocity.data(), id.data(), counts.data()};
-    }
-    std::size_t bytes() const { return position.bytes() + velocity.bytes() + id.bytes(); }
-  };
-  void save(Saved& s) {
-    const std::size_t n = std::size_t(p_.n);
-    s.position.resize(n);
-    s.velocity.resize(n);
-    s.id.resize(n);
-    s.counts.resize(1);
-    exec_.for_each(
-        p_.n, CopyStatePass<Real>{sorted_for_measure_ ? unsorted_.arrays() : arrays(), s.arrays()});
-  }
+  using Saved = typename ParticleArrays<Real, Exec>::Saved;
+  void save(Saved& s) { a_.save(exec_, s); }
   void restore(Saved& s) {
-    exec_.for_each(p_.n, CopyStatePass<Real>{s.arrays(), arrays()});
+    a_.restore(exec_, s);
     density_is_current_ = false;
   }
   SolverState state(Saved& s, std::int64_t updates, std::int64_t steps) {
-    return download_state<Real>(exec_, std::size_t(p_.n), s.arrays(), updates, steps);
+    return download_state<Real>(exec_, std::size_t(p_.n), s.state(), updates, steps);
   }
 
-  std::size_t bytes() const {
-    return position_.bytes() + other_position_.bytes() + velocity_.bytes() +
-           other_velocity_.bytes() + id_.bytes() + other_id_.bytes() + bin_.bytes() +
-           order_.bytes() + density_.bytes() + bin_start_.bytes() + curl_.bytes() +
-           unsorted_.bytes() + exec_.list_bytes();
-  }
+  std::size_t bytes() const { return a_.bytes() + exec_.list_bytes(); }
 
  private:
-  StateArrays<Real> arrays() {
-    return {position_.data(), velocity_.data(), id_.data(), counts_.data()};
-  }
-
   /// One update, one pass after the other: the bits of step(1). `seen(stage, sweep)` may look at
   /// what each stage left behind.
   template <class Seen>
@@ -290,45 +230,38 @@ class Stepper {
   }
 
   void sort_for_measure() {
-    save(unsorted_);
-    sorted_for_measure_ = true;
+    a_.put_aside(exec_);
     reorder_as_is("grid");
-  }
-
-  /// n numbers: the order of a sort, free after it.
-  int* order() { return (Exec::order_in_place ? other_id_ : order_).data(); }
-
-  void swap_buffers() {
-    std::swap(position_, other_position_);
-    std::swap(velocity_, other_velocity_);
-    std::swap(id_, other_id_);
   }
 
   /// Runs the pass that gives every particle its bin, sorts and gathers the particles by bin (as
   /// predicted, with `moving`), makes the lists.
   template <bool moving, class First>
   void reorder(const char* stage, const First& first) {
-    exec_.sort_by_bin(stage, first, p_.n, bin_count(p_), order(), bin_start_.data(),
-                      GatherPass<Real, moving>{p_, position_.data(), velocity_.data(), id_.data(),
-                                               other_position_.data(), other_velocity_.data(),
-                                               other_id_.data(), counts_.data()});
-    swap_buffers();
+    exec_.sort_by_bin(
+        stage, first, p_.n, bin_count(p_), a_.sort_order(), a_.bin_start.data(),
+        GatherPass<Real, moving>{p_, a_.position.data(), a_.velocity.data(), a_.id.data(),
+                                 a_.other_position.data(), a_.other_velocity.data(),
+                                 a_.other_id.data(), a_.counts.data()});
+    a_.swap();
     exec_.mark("grid");
-    lists_ = exec_.build_lists(position_.data(), bin_start_.data(), p_);
+    lists_ = exec_.build_lists(a_.position.data(), a_.bin_start.data(), p_);
     lists_are_current_ = true;
     exec_.mark("neighbors");
   }
 
   /// x* and the velocity that goes with it, in place.
   void move() {
-    exec_.for_each(p_.n, MovePass<Real>{p_, position_.data(), velocity_.data(), counts_.data()});
+    exec_.for_each(p_.n,
+                   MovePass<Real>{p_, a_.position.data(), a_.velocity.data(), a_.counts.data()});
     exec_.mark("predict");
   }
 
   /// The same with the positions as they are.
   void reorder_as_is(const char* stage) {
     with_dimensions(p_.dimensions, [&](auto d) {
-      reorder<false>(stage, BinPass<Real, decltype(d)::value>{p_, position_.data(), bin_.data()});
+      reorder<false>(stage,
+                     BinPass<Real, decltype(d)::value>{p_, a_.position.data(), a_.bin.data()});
     });
   }
 
@@ -356,8 +289,8 @@ class Stepper {
         };
         round();
         if (more_rounds_ > 0)
-          exec_.repeat_while("residual", p_.n, more_rounds_, ResidualPass<Real>{density_.data()},
-                             residual_limit_, &counts_.data()->rounds, round);
+          exec_.repeat_while("residual", p_.n, more_rounds_, ResidualPass<Real>{a_.density.data()},
+                             residual_limit_, &a_.counts.data()->rounds, round);
       });
     }
   }
@@ -374,11 +307,11 @@ class Stepper {
     if (!(p_.vorticity > Real(0))) return;
     with_dimensions(p_.dimensions, [&](auto d) {
       constexpr int D = decltype(d)::value;
-      exec_.for_each(p_.n, CurlPass<Real, Lists, D>{p_, lists_, position_.data(), velocity_.data(),
-                                                    curl_.data()});
+      exec_.for_each(p_.n, CurlPass<Real, Lists, D>{p_, lists_, a_.position.data(),
+                                                    a_.velocity.data(), a_.curl.data()});
       seen("curl", 0);
-      exec_.for_each(p_.n, VorticityPass<Real, Lists, D>{p_, lists_, position_.data(), curl_.data(),
-                                                         velocity_.data()});
+      exec_.for_each(p_.n, VorticityPass<Real, Lists, D>{p_, lists_, a_.position.data(),
+                                                         a_.curl.data(), a_.velocity.data()});
     });
     exec_.mark("vorticity");
     seen("vorticity", 0);
@@ -387,23 +320,23 @@ class Stepper {
   template <Smoothing S, class Seen>
   void sweep(const Seen& seen, int number, bool moves_on) {
     if (!fused_) {
-      exec_.for_each(p_.n,
-                     DensityPass<Real, Lists, S>{p_, lists_, position_.data(), density_.data()});
+      exec_.for_each(
+          p_.n, DensityPass<Real, Lists, S>{p_, lists_, a_.position.data(), a_.density.data()});
       exec_.mark("density");
       seen("density", number);
     }
     with_bool(fused_, [&](auto fused) {
-      exec_.for_each(p_.n,
-                     LambdaPass<Real, Lists, S, decltype(fused)::value>{
-                         p_, lists_, position_.data(), other_position_.data(), density_.data()});
+      exec_.for_each(
+          p_.n, LambdaPass<Real, Lists, S, decltype(fused)::value>{
+                    p_, lists_, a_.position.data(), a_.other_position.data(), a_.density.data()});
     });
     exec_.mark("lambda");
     seen("lambda", number);
     with_bool(tensile_, [&](auto tensile) {
-      exec_.for_each(p_.n,
-                     DeltaPass<Real, Lists, S, decltype(tensile)::value>{
-                         p_, lists_, other_position_.data(), density_.data(), position_.data(),
-                         velocity_.data(), moves_on ? counts_.data() : nullptr});
+      exec_.for_each(
+          p_.n, DeltaPass<Real, Lists, S, decltype(tensile)::value>{
+                    p_, lists_, a_.other_position.data(), a_.density.data(), a_.position.data(),
+                    a_.velocity.data(), moves_on ? a_.counts.data() : nullptr});
     });
     exec_.mark("delta");
     seen("delta", number);
@@ -411,23 +344,24 @@ class Stepper {
 
   void record(Tracer<Real, Exec>& t, const std::string& stage, int sweep) {
     t.record(stage, sweep,
-             {position_.data(), other_position_.data(), velocity_.data(), curl_.data(),
-              density_.data(), bin_.data(), id_.data(), other_id_.data(), fused_},
+             {a_.position.data(), a_.other_position.data(), a_.velocity.data(), a_.curl.data(),
+              a_.density.data(), a_.bin.data(), a_.id.data(), a_.other_id.data(), fused_},
              lists_);
   }
 
   /// The pass over the present velocities, which it leaves behind in the other array.
   template <Smoothing S, bool more_to_come>
   XsphPass<Real, Lists, S, more_to_come> xsph() {
-    std::swap(velocity_, other_velocity_);
-    return {p_, lists_, position_.data(), other_velocity_.data(), velocity_.data(), bin_.data()};
+    std::swap(a_.velocity, a_.other_velocity);
+    return {p_,           lists_, a_.position.data(), a_.other_velocity.data(), a_.velocity.data(),
+            a_.bin.data()};
   }
 
   void sum_density() {
     if (density_is_current_) return;
     with_smoothing(mode_, p_.dimensions, [&](auto s) {
       exec_.for_each(p_.n, DensityPass<Real, Lists, decltype(s)::value>{
-                               p_, lists_, position_.data(), density_.data()});
+                               p_, lists_, a_.position.data(), a_.density.data()});
     });
     density_is_current_ = true;
   }
@@ -441,12 +375,7 @@ class Stepper {
   bool fused_, tensile_;
   bool density_is_current_ = false, lists_are_current_ = false;
   Lists lists_{};
-  Buffer<Vec4<Real>> position_, other_position_, velocity_, other_velocity_, curl_;
-  Buffer<Real> density_;
-  Buffer<int> id_, other_id_, bin_, order_, bin_start_;
-  Buffer<StepCounts> counts_;        ///< one
-  Saved unsorted_;                   ///< the state before a sort that no update made
-  bool sorted_for_measure_ = false;  ///< and whether it stands there
+  ParticleArrays<Real, Exec> a_;
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -10,6 +10,9 @@
 #include <cerrno>
 #include <cstdlib>
 #include <mutex>
+#include <thread>
+
+#include "tests/unit/run_file_samples.h"
 
 namespace {
 
@@ -129,6 +132,21 @@ void WatchedDisk::mark(std::int64_t number) {
 std::vector<DiskOperation> WatchedDisk::operations() const {
   const std::lock_guard lock(watch.mutex);
   return watch.operations;
+}
+
+std::vector<DiskOperation> operations_of_a_run(const std::string& path, std::int64_t frames,
+                                               bool gzip) {
+  WatchedDisk disk(path);
+  RunWriter writer(path, sample_info(40), gzip);
+  disk.mark(0);
+  for (std::int64_t k = 0; k < frames; ++k) {
+    for (int row = 0; row < 10; ++row) writer.log(sample_row(10 * k + row));
+    writer.write(sample(k, count_of(k)));
+    while (writer.frames_written() <= k) std::this_thread::yield();
+    disk.mark(k + 1);
+  }
+  writer.finish("finished");
+  return disk.operations();
 }
 
 std::int64_t WatchedDisk::refused() const {

@@ -26,8 +26,6 @@ bool values_within_steps(const std::string& path) {
          h5::read_number<std::int64_t>(steps, "NSteps");
 }
 
-std::size_t count_of(std::int64_t frame) { return frame % 20 == 7 ? 30 : 40; }
-
 /// A copy of the file, changed operation by operation.
 class Replica {
  public:
@@ -53,21 +51,7 @@ TEST_CASE("after every single write to the disk all frames reported so far are r
   const TemporaryFolder folder;
   const std::string path = folder / "run.h5";
   const bool gzip = GENERATE(false, true);
-  std::vector<DiskOperation> operations;
-  const std::int64_t frames = 50;
-  {
-    WatchedDisk disk(path);
-    RunWriter writer(path, sample_info(40), gzip);
-    disk.mark(0);
-    for (std::int64_t k = 0; k < frames; ++k) {
-      for (int row = 0; row < 10; ++row) writer.log(sample_row(10 * k + row));
-      writer.write(sample(k, count_of(k)));
-      while (writer.frames_written() <= k) std::this_thread::yield();
-      disk.mark(k + 1);
-    }
-    writer.finish("finished");
-    operations = disk.operations();
-  }
+  const auto operations = operations_of_a_run(path, 50, gzip);
   REQUIRE(operations.size() > 1000);
   Replica replica(folder / "replica.h5");
   std::int64_t sure = -1, states = 0;

@@ -4,7 +4,6 @@
 #include <fstream>
 #include <map>
 #include <random>
-#include <thread>
 
 #include "lib/io/run_file.h"
 #include "tests/catch.h"
@@ -71,8 +70,6 @@ class Disk {
   std::vector<DiskOperation> since_;
 };
 
-std::size_t count_of(std::int64_t frame) { return frame % 20 == 7 ? 30 : 40; }
-
 }  // namespace
 
 TEST_CASE("a power cut at any moment leaves every reported frame, and no frame that is not whole",
@@ -80,19 +77,7 @@ TEST_CASE("a power cut at any moment leaves every reported frame, and no frame t
   const TemporaryFolder folder;
   const std::string path = folder / "run.h5";
   const bool gzip = GENERATE(false, true);
-  std::vector<DiskOperation> operations;
-  {
-    WatchedDisk watch(path);
-    RunWriter writer(path, sample_info(40), gzip);
-    for (std::int64_t k = 0; k < 50; ++k) {
-      for (int row = 0; row < 10; ++row) writer.log(sample_row(10 * k + row));
-      writer.write(sample(k, count_of(k)));
-      while (writer.frames_written() <= k) std::this_thread::yield();
-      watch.mark(k + 1);
-    }
-    writer.finish("finished");
-    operations = watch.operations();
-  }
+  const auto operations = operations_of_a_run(path, 50, gzip);
   Disk disk;
   std::mt19937 random(12);
   std::int64_t reported = 0, states = 0;
