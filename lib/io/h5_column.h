@@ -27,8 +27,9 @@ class Column {
   static Column existing(hid_t parent, const std::string& path);
   /// Drops what lies behind the first `rows` rows. Failure when there are fewer.
   void truncate(hsize_t rows);
-  /// Stores the rows of the last chunk and one behind the end, `chunk`, without the dataset reaching
-  /// to it: grow() then adds it by nothing but a new size. For unfiltered columns of doubles.
+  /// Stores the rows of the last chunk and one behind the end, `chunk`, without the dataset
+  /// reaching to it: grow() then adds it by nothing but a new size. For unfiltered columns of
+  /// doubles.
   void write_ahead(const std::vector<double>& chunk);
   void grow(hsize_t rows);
   hsize_t rows() const { return rows_; }
