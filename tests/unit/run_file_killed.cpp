@@ -47,7 +47,7 @@ class Replica {
 }  // namespace
 
 TEST_CASE("after every single write to the disk all frames reported so far are readable",
-          "[run_file]") {
+          "[run_file][many_states]") {
   const TemporaryFolder folder;
   const std::string path = folder / "run.h5";
   const bool gzip = GENERATE(false, true);
@@ -77,7 +77,7 @@ TEST_CASE("after every single write to the disk all frames reported so far are r
   REQUIRE(states > 1000);
 }
 
-TEST_CASE("kill -9 at any moment leaves every reported frame", "[run_file]") {
+TEST_CASE("kill -9 at any moment leaves every reported frame", "[run_file][many_states]") {
   const TemporaryFolder folder;
   for (int trial = 0; trial < 12; ++trial) {
     const std::string path = (folder.path / ("run" + std::to_string(trial) + ".h5")).string();

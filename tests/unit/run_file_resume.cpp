@@ -41,7 +41,8 @@ void check_whole(const std::string& path, std::int64_t frames) {
 
 }  // namespace
 
-TEST_CASE("a file goes on from whatever any single write to the disk has left", "[run_file]") {
+TEST_CASE("a file goes on from whatever any single write to the disk has left",
+          "[run_file][many_states]") {
   const TemporaryFolder folder;
   const std::string path = folder / "run.h5", replica = folder / "replica.h5",
                     again = folder / "again.h5";
