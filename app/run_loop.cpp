@@ -206,10 +206,8 @@ Watch& RunLoop::watch(const Measures& m) {
 }
 
 Verdict RunLoop::look(const Measures& m) {
-  const double before = solver_seconds();
-  const Stopwatch stopwatch;
-  const Verdict v = watch_->look(m, !goes_back() || schedule_.has(m.update));
-  clock_.add("guard", stopwatch.seconds() - (solver_seconds() - before));
+  Verdict v{};
+  book_guard([&] { v = watch_->look(m, !goes_back() || schedule_.has(m.update)); });
   return v;
 }
 
@@ -218,17 +216,20 @@ void RunLoop::choose_step(std::int64_t u) {
   if (!scene_.time.adaptive || guard_event() || last_measure_ != u ||
       u % schedule_.measure_every != 0)
     return;
-  const double before = solver_seconds();
-  const Stopwatch stopwatch;
-  watch_->choose(last_);
-  clock_.add("guard", stopwatch.seconds() - (solver_seconds() - before));
+  book_guard([&] { watch_->choose(last_); });
 }
 
-/// What the solver has booked itself.
-double RunLoop::solver_seconds() const {
-  double sum = 0;
-  for (const StageTime& s : solver_.timings()) sum += s.seconds;
-  return sum;
+/// Books what `action` takes, but for what the solver books itself.
+void RunLoop::book_guard(const std::function<void()>& action) {
+  const auto solver_seconds = [&] {
+    double sum = 0;
+    for (const StageTime& s : solver_.timings()) sum += s.seconds;
+    return sum;
+  };
+  const double before = solver_seconds();
+  const Stopwatch stopwatch;
+  action();
+  clock_.add("guard", stopwatch.seconds() - (solver_seconds() - before));
 }
 
 void RunLoop::outputs(std::int64_t u, bool last) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -74,7 +75,7 @@ class RunLoop {
   /// What the guard says to it.
   Verdict look(const Measures& m);
   void choose_step(std::int64_t update);
-  double solver_seconds() const;
+  void book_guard(const std::function<void()>& action);
   Watch& watch(const Measures& m);
   double step() const { return watch_ ? watch_->step() : scene_.time.step; }  // s, at present
   bool watched() const { return scene_.guard || scene_.time.adaptive; }

@@ -48,8 +48,7 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
                {run_layout::log_rows, 0, false, c.unit});
   make_sessions();
   begin_session(info);
-  flush();
-  h5::sync(file_);
+  sync();
   const auto folder = std::filesystem::absolute(path).parent_path();
   h5::sync_folder(folder);
   h5::sync_folder(folder.parent_path());
@@ -90,12 +89,16 @@ void RunOutput::write_frame(const Snapshot& s) {
 /// readers trust; then the size of Values, for VTK's reader overruns its heap when that is longer.
 void RunOutput::commit_frames(std::int64_t frames) {
   sync();
-  const h5::Attribute count(H5Aopen(steps_, "NSteps", H5P_DEFAULT));
-  check(H5Awrite(count, H5T_NATIVE_INT64, &frames));
+  set_steps(frames);
   sync();
   times_.grow(static_cast<hsize_t>(frames));
   sync();
   frames_ = frames;
+}
+
+void RunOutput::set_steps(std::int64_t frames) {
+  const h5::Attribute count(H5Aopen(steps_, "NSteps", H5P_DEFAULT));
+  check(H5Awrite(count, H5T_NATIVE_INT64, &frames));
 }
 
 void RunOutput::flush() { bytes_ = h5::flush_reserved(file_); }
@@ -112,8 +115,7 @@ void RunOutput::close(const std::string& status, const std::string& reason,
   flush();
   end_session(reason.empty() ? status : reason, last_update);
   h5::write_text(pbf_, "status", status);
-  flush();
-  h5::sync(file_);
+  sync();
   closed_ = true;
 }
 

@@ -70,6 +70,7 @@ class RunOutput {
   Part part_of(std::size_t count);
   void grow_ids(std::size_t count);
   void commit_frames(std::int64_t frames);
+  void set_steps(std::int64_t frames);  // NSteps
   void write_log();
   void write_stages();
   void flush();

@@ -51,8 +51,7 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, st
   open_steps(frames);
   open_log(rows);
   sync();  // Values is never longer than NSteps
-  const h5::Attribute count(H5Aopen(steps_, "NSteps", H5P_DEFAULT));
-  check(H5Awrite(count, H5T_NATIVE_INT64, &frames));
+  set_steps(frames);
   frames_ = frames;
   h5::write_text(pbf_, "status", "running");
   if (h5::read_text(pbf_, "resolved_scene") != info.resolved_scene) {  // a later end

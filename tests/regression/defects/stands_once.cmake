@@ -1,0 +1,10 @@
+# Sets `result` to whether `old` stands in `text` exactly once.
+function(stands_once text old result)
+  string(FIND "${text}" "${old}" first)
+  string(FIND "${text}" "${old}" last REVERSE)
+  if(first LESS 0 OR NOT first EQUAL last)
+    set(${result} NO PARENT_SCOPE)
+  else()
+    set(${result} YES PARENT_SCOPE)
+  endif()
+endfunction()
