@@ -5,9 +5,25 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-void CpuExec::sort(const int* bin, int n, int bins, int* order, int* start) {
-  // Every thread counts and places the particles of its own range of bins, in order: stable, and
-  // `start` is all the room it takes. Particles are nearly in the order of the last sort, so bins
+namespace {
+
+/// Puts order[first..last-1], whole bins in order, into the order of ids within each bin. They
+/// nearly are: rows were in that order before they moved.
+void sort_within_bins(const int* bin, const int* id, int first, int last, int* order) {
+  for (int k = first + 1; k < last; ++k) {
+    const int row = order[k];
+    int to = k;
+    for (; to > first && bin[order[to - 1]] == bin[row] && id[order[to - 1]] > id[row]; --to)
+      order[to] = order[to - 1];
+    order[to] = row;
+  }
+}
+
+}  // namespace
+
+void CpuExec::sort(const int* bin, const int* id, int n, int bins, int* order, int* start) {
+  // Every thread counts and places the particles of its own range of bins, in order, and `start`
+  // is all the room it takes. Particles are nearly in the order of the last sort, so bins
   // met at equal distances divide the work about equally. At most 4 threads, since each looks at
   // every particle; the sort is a small part of an update.
   const int threads = n > 16384 ? std::min(threads_, 4) : 1;
@@ -32,6 +48,7 @@ void CpuExec::sort(const int* bin, int n, int bins, int* order, int* start) {
     std::exclusive_scan(start + low[t], start + low[t + 1], start + low[t], first);
     for (int i = 0; i < n; ++i)
       if (unsigned(bin[i] - low[t]) < size) order[start[bin[i]]++] = i;
+    sort_within_bins(bin, id, first, first + placed[t], order);
     // Every start has moved to that of the next bin.
     std::copy_backward(start + low[t], start + low[t + 1] - 1, start + low[t + 1]);
     start[low[t]] = first;

@@ -121,19 +121,20 @@ class CpuExec {
     return in_bins_;
   }
 
-  /// first(i) for every particle, which writes first.bin[i]; a stable counting sort by bin
-  /// (start[b] = first place of bin b, start[bins] = n); gather(from, to) for every particle.
-  /// Marks `stage` after `first`.
+  /// first(i) for every particle, which writes first.bin[i]; a counting sort by bin, within a bin
+  /// by id (start[b] = first place of bin b, start[bins] = n); gather(from, to) for every particle.
+  /// So the order of rows follows from the positions alone, not from the rows before. Marks `stage`
+  /// after `first`.
   template <class First, class Gather>
-  void sort_by_bin(const char* stage, const First& first, int n, int bins, int* order, int* start,
-                   const Gather& gather) {
+  void sort_by_bin(const char* stage, const First& first, int n, int bins, const int* id,
+                   int* order, int* start, const Gather& gather) {
     for_each(n, first);
     mark(stage);
-    sort(first.bin, n, bins, order, start);
+    sort(first.bin, id, n, bins, order, start);
     for_each(n, [&](int k) { gather(order[k], k); });
   }
-  /// order[k] = index of the k-th particle by (bin, index).
-  void sort(const int* bin, int n, int bins, int* order, int* start);
+  /// order[k] = row of the k-th particle by (bin, id).
+  void sort(const int* bin, const int* id, int n, int bins, int* order, int* start);
 
   /// Exact lists of all pairs closer than h; grows as it must (std::bad_alloc when it cannot).
   template <class Real>

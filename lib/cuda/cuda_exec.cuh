@@ -190,15 +190,15 @@ class CudaExec {
 
   /// See CpuExec; `order` is room for the arrivals.
   template <class First, class Gather>
-  void sort_by_bin(const char* stage, const First& first, int n, int bins, int* order, int* start,
-                   const Gather& gather) {
+  void sort_by_bin(const char* stage, const First& first, int n, int bins, const int* id,
+                   int* order, int* start, const Gather& gather) {
     slot_.resize(std::size_t(n));
-    const StablePass<Gather> stable{first.bin, start, slot_.data(), gather};
+    const OrderPass<Gather> in_order{first.bin, id, start, slot_.data(), gather};
     if (n <= kSortParticles && bins <= kSortBins) {
       const auto sort = [&](const auto& before) {
         launch(small_sort_kernel<std::decay_t<decltype(before)>, Gather>, kSortThreads,
                kSortThreads, std::size_t(bins) * sizeof(int), before, n, bins, order, slot_.data(),
-               start, list_state_.data(), stable);
+               start, list_state_.data(), in_order);
       };
       if constexpr (requires { typename First::Sum; }) {
         for_each(n, first);
@@ -218,7 +218,7 @@ class CudaExec {
     scan(bins + 1, start);
     for_each(n, PlacePass{first.bin, start, order, slot_.data(), counts_.data(), list_state_.data(),
                           n, bins + 1});
-    for_each(n, stable);
+    for_each(n, in_order);
   }
 
   template <class Real>

@@ -56,7 +56,6 @@ class CudaSolver final : public Solver {
 
   void step(int updates) override {
     const Stopwatch watch;
-    if (updates > 0) stepper_->unsort();
     for (; fault_ && updates > 0; --updates) checked_step(nullptr);
     advance(std::int64_t(updates) << level_);
     count(updates);
@@ -70,7 +69,6 @@ class CudaSolver final : public Solver {
   void relax(int steps, double damping) override {
     const Stopwatch watch;
     const Params<Real> p = stepper_->params();
-    stepper_->unsort();
     use(without_time(p, damping));
     advance(steps);
     use(p);
@@ -112,18 +110,16 @@ class CudaSolver final : public Solver {
   void set_state(const SolverState& s) override {
     check_state(s, n_);
     stepper_->set_state(s);
-    while (grow_if_needed()) stepper_->relist();
     updates_ = s.updates;
     steps_ = s.steps;
   }
   StepTrace trace(const TraceOptions& options) override {
     refuse_trace(level_);
-    stepper_->unsort();
     stepper_->save(saved_);
-    StepTrace t = traced_step(options);
+    StepTrace t = stepper_->trace(options);
     while (grow_if_needed()) {
       stepper_->restore(saved_);
-      t = traced_step(options);
+      t = stepper_->trace(options);
     }
     count(1);
     return t;
@@ -211,7 +207,7 @@ class CudaSolver final : public Solver {
     int left = batch;
     if (since_profile_ <= 0) {
       exec_.set_profiling(true);
-      direct_step();
+      stepper_->step(1);
       exec_.book(profile_every());
       exec_.set_profiling(false);
       since_profile_ = profile_every();
@@ -220,24 +216,22 @@ class CudaSolver final : public Solver {
     since_profile_ -= batch;
     for (const int size : {0, 1, 2})
       for (; left >= kGraphUpdates[size]; left -= kGraphUpdates[size]) {
-        cudaGraphExec_t& graph = graph_[size][parity_];
+        cudaGraphExec_t& graph = graph_[size][stepper_->placement()];
         if (!graph) capture(graph, kGraphUpdates[size]);
         PBF_CUDA_CHECK(cudaGraphLaunch(graph, exec_.stream()));
         stepper_->moved();
       }
-    if (left) direct_step();
+    if (left) stepper_->step(1);
   }
 
   /// limits may be null. Done again where lists outgrew their room.
   std::optional<StageEvent> checked_step(const StageLimits* limits) {
     const Fault* fault = fault_ ? &*fault_ : nullptr;
     std::optional<StageEvent> first, event;
-    stepper_->unsort();
     for (int s = 0; s < 1 << level_; ++s) {
       stepper_->save(saved_);
       do {
         event = stepper_->step_checked(updates_ + 1, limits, fault);
-        parity_ ^= 1;
       } while (grow_if_needed() && (stepper_->restore(saved_), true));
       if (!first) first = event;
     }
@@ -245,23 +239,13 @@ class CudaSolver final : public Solver {
     return first;
   }
 
-  void direct_step() {
-    stepper_->step(1);
-    if (stepper_->has_pairs()) parity_ ^= 1;
-  }
-
   void find_pairs() {
     if (!stepper_->find_pairs()) return;
     while (grow_if_needed()) stepper_->relist();
   }
 
-  StepTrace traced_step(const TraceOptions& options) {
-    parity_ ^= 1;
-    return stepper_->trace(options);
-  }
-
   /// Buffers trade places in an update, so a graph that can be replayed holds an even number of
-  /// them, and there is one for either way round. Long ones spare the gaps between graphs.
+  /// them, and there is one for each placement. Long ones spare the gaps between graphs.
   static constexpr int kGraphUpdates[3] = {64, 8, 2};
   void capture(cudaGraphExec_t& out, int updates) {
     cudaGraph_t graph = nullptr;
@@ -325,8 +309,8 @@ class CudaSolver final : public Solver {
   std::unique_ptr<Stepper<Real, CudaExec>> stepper_;
   typename Stepper<Real, CudaExec>::Saved saved_, kept_;
   std::optional<Fault> fault_;
-  cudaGraphExec_t graph_[3][2] = {};  ///< by size and parity
-  int parity_ = 0, batch_ = kFirstBatch;
+  cudaGraphExec_t graph_[3][4] = {};  ///< by size and placement
+  int batch_ = kFirstBatch;
   cudaStream_t copy_stream_ = nullptr;
   cudaEvent_t exported_ = nullptr;
   DeviceBuffer<char> staging_;

@@ -1,4 +1,4 @@
-// Kernels of the stable counting sort by bin.
+// Kernels of the counting sort by bin, within a bin by id.
 #pragma once
 
 #include "kernels/pair_sum.h"
@@ -39,16 +39,17 @@ struct PlacePass {
     if (i == 0) lists->used = 0;
   }
 };
-/// Moves the particles of a bin in the order of their index, which makes the sort stable and the
-/// run reproducible: each one counts those of its bin that come before it.
+/// Moves the particles of a bin in the order of their ids, so that the order of rows follows from
+/// the positions alone: each one counts those of its bin that come before it.
 template <class Gather>
-struct StablePass {
-  const int *bin, *start, *slot;
+struct OrderPass {
+  const int *bin, *id, *start, *slot;
   Gather gather;
   __device__ void operator()(int k) const {
-    const int i = slot[k], b = bin[i], end = start[b + 1];
-    int place = start[b];
-    for (int m = place; m < end; ++m) place += slot[m] < i ? 1 : 0;
+    const int i = slot[k], b = bin[i], mine = id[i], begin = start[b], end = start[b + 1];
+    int place = begin;
+    for (int m = begin; m < end; ++m)
+      if (m != k) place += id[slot[m]] < mine ? 1 : 0;
     gather(i, place);
   }
 };
@@ -58,7 +59,7 @@ struct StablePass {
 template <class First, class Gather>
 __global__ void __launch_bounds__(kSortThreads)
     small_sort_kernel(First first_pass, int n, int bins, int* arrival, int* slot, int* start,
-                      ListState* lists, StablePass<Gather> place) {
+                      ListState* lists, OrderPass<Gather> place) {
   wait_for_previous();
   extern __shared__ int count[];  // bins
   __shared__ int warp_sum[32];

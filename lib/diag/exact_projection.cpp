@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "kernels/boundary.h"
 #include "kernels/pass_predict.h"
@@ -126,7 +127,8 @@ class Constraints {
   ChunkedLists make_lists() {
     const int n = p_.n;
     std::vector<V4> from = start_;
-    std::vector<int> bin(from.size()), bin_order(from.size());
+    std::vector<int> bin(from.size()), row(from.size()), bin_order(from.size());
+    std::iota(row.begin(), row.end(), 0);
     bin_start_.resize(std::size_t(bin_count(p_)) + 1);
     order_.resize(from.size());
     const auto gather = [&](int old, int now) {
@@ -134,7 +136,7 @@ class Constraints {
       order_[std::size_t(now)] = old;
     };
     exec_.sort_by_bin("grid", BinPass<double, dimensions_of(S)>{p_, from.data(), bin.data()}, n,
-                      bin_count(p_), bin_order.data(), bin_start_.data(), gather);
+                      bin_count(p_), row.data(), bin_order.data(), bin_start_.data(), gather);
     return exec_.build_lists(start_.data(), bin_start_.data(), p_);
   }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/base/text.h"
+#include "lib/plan/substep_lists.h"
 #include "lib/solver/adaptive_step.h"
 
 namespace pbf {
@@ -12,16 +13,6 @@ namespace {
 double length(const double (&v)[3]) { return std::hypot(v[0], v[1], v[2]); }
 
 double mass_of(const Plan& plan) { return plan.mass * double(plan.particles); }
-
-/// Fastest fall from one side of the domain to the other, m/s; through an open face, until the end.
-double fall_speed(const Scene& s) {
-  double squared = 0, g = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    squared += 2 * std::fabs(s.gravity[a]) * (s.domain.max[a] - s.domain.min[a]);
-    g += s.gravity[a] * s.gravity[a];
-  }
-  return std::sqrt(squared) + (s.domain.open.empty() ? 0 : std::sqrt(g) * s.time.end);
-}
 
 /// What each alarm is about: words for it, unit, and the keys that help.
 struct Words {

@@ -49,14 +49,6 @@ Course run_course(const Scene& scene, const std::string& dir,
     c.compression_mean += compression[k].first / double(settled);
     c.compression_max = std::max(c.compression_max, compression[k].second);
   }
-  if (!c.event) {
-    // The lists of an update do not hold the pairs that its sweeps brought together; lists made
-    // from the last state do, and show a fluid that only seems to have its density.
-    solver->set_state(solver->state());
-    const Measures m = solver->measure();
-    c.compression_mean = std::max(c.compression_mean, m.compression_mean);
-    c.compression_max = std::max(c.compression_max, m.compression_max);
-  }
   if (c.event) c.guard_text = watch.guard()->text(*c.event);
   if (done) done(*solver);
   return c;

@@ -62,11 +62,6 @@ void add_state(const Plan& plan, bool guard, const std::string& real, const Adde
     add("kept velocity", real, 4, n);
     add("kept id", "int32", 1, n);
   }
-  if (!plan.pairs || plan.substeps > 1) {  // from a measure, which sorts, to the next update
-    add("unsorted position", real, 4, n);
-    add("unsorted velocity", real, 4, n);
-    add("unsorted id", "int32", 1, n);
-  }
   add("partial sums of a measure", "double", int(sizeof(MeasureSums) / 8), blocks);
   add("histogram of compression", "int64", 1, kCompressionBins);
 }

@@ -5,6 +5,7 @@
 
 #include "kernels/smoothing.h"
 #include "lib/base/error.h"
+#include "lib/plan/substep_lists.h"
 #include "lib/scene/load.h"
 #include "lib/solver/adaptive_step.h"
 #include "lib/solver/calibrate.h"
@@ -72,12 +73,14 @@ void plan_passes(Plan& plan, const Scene& s) {
     add("move", "predict", "position velocity", "position velocity", plan.substeps);
     return;
   }
-  add("predict", "predict", "position velocity", "position velocity bin");
-  if (plan.substeps > 1 && plan.more_rounds > 0)  // else the last sweep of a substep does it
-    add("move", "predict", "position velocity", "position velocity", plan.substeps - 1);
-  add("sort", "grid", "bin", "order bin_start");
-  add("gather", "grid", "order position velocity id", "position' velocity' id'");
-  add("lists", "neighbors", "position bin_start", "lists");
+  const int lists = plan.lists_per_update;
+  add("predict", "predict", "position velocity", "position velocity bin", lists);
+  // Else the last sweep of a substep does it.
+  if (plan.substeps > lists && plan.more_rounds > 0)
+    add("move", "predict", "position velocity", "position velocity", plan.substeps - lists);
+  add("sort", "grid", "bin id", "order bin_start", lists);
+  add("gather", "grid", "order position velocity id", "position' velocity' id'", lists);
+  add("lists", "neighbors", "position bin_start", "lists", lists);
   if (k > 0 && !plan.fused) add("density", "density", "position lists", "density", k);
   if (k > 0) {
     add(plan.fused ? "density+lambda" : "lambda", "lambda",
@@ -182,6 +185,8 @@ Plan make_plan(const Scene& s, std::int64_t particles) {
   if (s.solver.method == SolverMethod::chebyshev)
     plan.sweep_factors = chebyshev_factors(s.solver.iterations);
   plan.substeps = s.solver.substeps;
+  plan.lists_per_update = lists_per_update(s);
+  plan.way_on_one_list = way_per_update(s) / plan.lists_per_update;
   plan.finest_level = finest_level(s);
   if (s.solver.tolerance > 0 && s.solver.iterations > 0) {
     plan.tolerance = s.solver.tolerance;

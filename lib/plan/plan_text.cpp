@@ -89,6 +89,10 @@ std::string plan_text(const Plan& plan, const Scene& s) {
   for (const auto& p : plan.passes)
     out += format("  %-22s x%-3d stage %-10s reads %-34s writes %s\n", p.name.c_str(), p.per_update,
                   p.stage.c_str(), p.reads.c_str(), p.writes.c_str());
+  if (plan.substeps > 1)
+    out += format("  %d substeps of %.4g s on %d list%s: at most %.3g h of way on one list\n",
+                  plan.substeps, s.time.step / plan.substeps, plan.lists_per_update,
+                  plan.lists_per_update == 1 ? "" : "s", plan.way_on_one_list);
   out += format("arrays, %s\n", backend_text(s).c_str());
   for (const PlanArray& a : plan.memory.arrays)
     out += format("  %-33s %2d x %-6s  %-6s  %-6s %11.3f MB %8.1f B/particle\n", a.name.c_str(),
@@ -124,7 +128,8 @@ std::string plan_json(const Plan& plan, const Scene& s, const std::string& membe
                 plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge);
   out += format(",\"vol\":%.17g,\"wall_scale\":%.17g,\"wall_range_h\":%.17g,\"mass_kg\":%.17g",
                 plan.vol, plan.wall_scale, plan.wall_range, plan.mass);
-  out += format(",\"finest_level\":%d", plan.finest_level);
+  out += format(",\"finest_level\":%d,\"lists_per_update\":%d", plan.finest_level,
+                plan.lists_per_update);
   out += ",\"passes\":" + list(plan.passes, [](const PlanPass& p) {
            return "{\"name\":" + json_string(p.name) + ",\"stage\":" + json_string(p.stage) +
                   ",\"reads\":" + json_string(p.reads) + ",\"writes\":" + json_string(p.writes) +

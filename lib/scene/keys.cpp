@@ -159,7 +159,8 @@ std::vector<Key> solver_keys() {
              "Sweeps per substep at most, in whole rounds, where there is a tolerance.",
              SCENE(&s.solver.max_iterations)),
       number("solver.substeps", "", {1, 1000},
-             "Time steps of time.step/substeps that share one update's sort and neighbour lists; "
+             "Time steps of time.step/substeps that share one update's sort and neighbour lists, "
+             "as long as little moves meanwhile (pbf plan says how many lists an update makes); "
              "viscosity and vorticity act once per update.",
              SCENE(&s.solver.substeps)),
       words("solver.method", {"jacobi", "chebyshev"},

@@ -78,12 +78,16 @@ struct ParticleArrays {
   /// What a sort has written becomes the state.
   void swap() {
     std::swap(position, other_position);
-    std::swap(velocity, other_velocity);
     std::swap(id, other_id);
+    swap_velocity();
+    placement_ ^= 1;
   }
-
-  /// The state in the order of the last update, also where it is put aside.
-  StateArrays<Real> unsorted_state() { return aside_ ? unsorted_.state() : state(); }
+  void swap_velocity() {
+    std::swap(velocity, other_velocity);
+    placement_ ^= 2;
+  }
+  /// 0 .. 3: which of the two arrays each part of the state lies in.
+  int placement() const { return placement_; }
 
   void save(Exec& exec, Saved& s) {
     const auto n = std::size_t(size());
@@ -91,38 +95,20 @@ struct ParticleArrays {
     s.velocity.resize(n);
     s.id.resize(n);
     s.counts.resize(1);
-    exec.for_each(size(), CopyStatePass<Real>{unsorted_state(), s.state()});
+    exec.for_each(size(), CopyStatePass<Real>{state(), s.state()});
   }
   void restore(Exec& exec, Saved& s) {
     exec.for_each(size(), CopyStatePass<Real>{s.state(), state()});
   }
 
-  /// Before a sort that no update makes: keeps the state as it is, until take_back().
-  void put_aside(Exec& exec) {
-    save(exec, unsorted_);
-    aside_ = true;
-  }
-
-  /// The state and the places of the arrays, which recorded updates know, as they were before that
-  /// sort; false where there was none. Unless `again`, the copy is given up.
-  bool take_back(Exec& exec, bool again) {
-    if (!aside_) return false;
-    swap();
-    restore(exec, unsorted_);
-    aside_ = false;
-    if (!again) unsorted_ = {};
-    return true;
-  }
-
   std::size_t bytes() const {
     return position.bytes() + other_position.bytes() + velocity.bytes() + other_velocity.bytes() +
            id.bytes() + other_id.bytes() + bin.bytes() + order.bytes() + density.bytes() +
-           bin_start.bytes() + curl.bytes() + unsorted_.bytes();
+           bin_start.bytes() + curl.bytes();
   }
 
  private:
-  Saved unsorted_;      ///< the state before a sort that no update made
-  bool aside_ = false;  ///< and whether it stands there
+  int placement_ = 0;
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -63,8 +63,7 @@ class Solver {
   virtual Measures measure() = 0;
   /// The state as it is now. set_state() of it, in this or in another solver of the same scene and
   /// precision, continues to the last bit. Positions and velocities of a double are rounded where
-  /// they go into a solver of float. What is measured or downloaded between set_state() and the
-  /// next update uses lists made from the state itself. Error(internal) when the number of
+  /// they go into a solver of float. Error(internal) when the number of
   /// particles differs or the ids are not 0..n-1 in some order.
   virtual SolverState state() = 0;
   virtual void set_state(const SolverState& state) = 0;

@@ -1,6 +1,7 @@
 // A state between the arrays of a step and the host.
 #pragma once
 
+#include <numeric>
 #include <vector>
 
 #include "kernels/step_counts.h"
@@ -29,6 +30,7 @@ struct CopyStatePass {
   }
 };
 
+/// In the order of ids: the order of rows is no part of a state.
 template <class Real, class Exec>
 SolverState download_state(Exec& exec, std::size_t n, const StateArrays<Real>& from,
                            std::int64_t updates, std::int64_t steps) {
@@ -36,17 +38,21 @@ SolverState download_state(Exec& exec, std::size_t n, const StateArrays<Real>& f
   s.precision = sizeof(Real) == 8 ? Precision::dbl : Precision::single;
   s.updates = updates;
   s.steps = steps;
+  std::vector<int> id(n);
+  exec.to_host(from.id, n, id.data());
   const auto copy = [&](const Vec4<Real>* rows, std::vector<double>& to) {
     std::vector<Vec4<Real>> host(n);
     exec.to_host(rows, n, host.data());
     to.resize(3 * n);
-    for (std::size_t k = 0; k < n; ++k)
-      to[3 * k] = host[k].x, to[3 * k + 1] = host[k].y, to[3 * k + 2] = host[k].z;
+    for (std::size_t k = 0; k < n; ++k) {
+      double* row = to.data() + 3 * std::size_t(id[k]);
+      row[0] = host[k].x, row[1] = host[k].y, row[2] = host[k].z;
+    }
   };
   copy(from.position, s.position);
   copy(from.velocity, s.velocity);
   s.id.resize(n);
-  exec.to_host(from.id, n, s.id.data());
+  std::iota(s.id.begin(), s.id.end(), 0);
   StepCounts counts;
   exec.to_host(from.counts, 1, &counts);
   s.fast = std::int64_t(counts.fast);

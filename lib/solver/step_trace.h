@@ -10,9 +10,8 @@
 
 namespace pbf {
 
-/// A state in the internal frame (h from Scene::origin(), h/s), in the solver's own order
-/// of particles. The order belongs to the state: the sort by bin is stable, so particles of one bin
-/// keep it, and every sum over neighbours follows it.
+/// A state in the internal frame (h from Scene::origin(), h/s). A solver gives it in the order of
+/// ids and takes any order: that of its rows follows from the positions.
 struct SolverState {
   Precision precision = Precision::dbl;  ///< of the solver that it came from
   std::int64_t updates = 0;              ///< done so far

@@ -37,6 +37,7 @@ class Stepper {
         mode_(mode),
         iterations_(iterations),
         substeps_(plan.substeps),
+        lists_per_update_(plan.lists_per_update),
         more_rounds_(plan.more_rounds),
         residual_limit_(residual_limit(plan.tolerance, params.n)),
         fused_(plan.fused),
@@ -46,7 +47,7 @@ class Stepper {
           Real(plan.step_length *
                (plan.sweep_factors.empty() ? 1 : plan.sweep_factors[std::size_t(k)])));
     a_.make(exec_, p_, position, velocity, id);
-    reorder_as_is("grid");
+    find_pairs();
     sum_density();
   }
 
@@ -54,7 +55,6 @@ class Stepper {
   /// next update, one pass does both that and the next bins.
   void step(int updates) {
     if (updates <= 0) return;
-    unsort();
     exec_.begin();
     if (!has_pairs()) {
       for (int k = updates * substeps_; k > 0; --k) move();
@@ -64,16 +64,22 @@ class Stepper {
     const auto unseen = [](const char*, int) {};
     bool moved_on = false;
     for (int left = updates - 1; left >= 0; --left) {
-      if (!moved_on)
-        with_dimensions(p_.dimensions, [&](auto d) {
-          reorder<true>("predict", PredictPass<Real, decltype(d)::value>{
-                                       p_, a_.position.data(), a_.velocity.data(), a_.bin.data()});
-        });
+      SubstepRange r;
+      while (next_range(r)) {
+        if (!moved_on)
+          with_dimensions(p_.dimensions, [&](auto d) {
+            reorder<true>(kUpdateStages,
+                          PredictPass<Real, decltype(d)::value>{p_, a_.position.data(),
+                                                                a_.velocity.data(), a_.bin.data()});
+          });
+        moved_on = false;
+        solve(r, unseen, true);
+      }
       moved_on = left > 0 && p_.xsph > Real(0) && !(p_.vorticity > Real(0));
-      solve(unseen, true);
       if (moved_on)
-        with_smoothing(mode_, p_.dimensions,
-                       [&](auto s) { reorder<true>("xsph", xsph<decltype(s)::value, true>()); });
+        with_smoothing(mode_, p_.dimensions, [&](auto s) {
+          reorder<true>({"xsph", "grid", "neighbors"}, xsph<decltype(s)::value, true>());
+        });
       else
         finish_update(unseen);
     }
@@ -113,43 +119,33 @@ class Stepper {
   }
 
   SolverState state(std::int64_t updates, std::int64_t steps) {
-    return download_state<Real>(exec_, std::size_t(p_.n), a_.unsorted_state(), updates, steps);
+    return download_state<Real>(exec_, std::size_t(p_.n), a_.state(), updates, steps);
   }
 
-  /// Takes over a state of as many particles. What measures it before the next update needs lists,
-  /// and these a sort; the order of the state itself comes back with the update.
+  /// Takes over a state of as many particles, in any order.
   void set_state(const SolverState& s) {
-    unsort();
     upload_state<Real>(exec_, s, a_.state());
-    sort_for_measure();
-    density_is_current_ = false;
-    sum_density();
-  }
-
-  /// Puts the particles back into the order that they had before a sort that no update made.
-  void unsort() {
-    // The copy was for set_state(), or the next measure needs it.
-    if (a_.take_back(exec_, !lists_last())) density_is_current_ = false;
+    moved();
   }
 
   /// Whether an update looks at pairs. Without sweeps, viscosity and vorticity it only moves
   /// particles, and lists are made where a measure or a download asks for the density.
   bool has_pairs() const { return iterations_ > 0 || p_.xsph > Real(0) || p_.vorticity > Real(0); }
 
-  /// Whether the lists of an update still name all pairs at its end. Not those that substeps
-  /// share: particles that met since are not in them, and a compression summed with them is up to
-  /// a third too small (README.md).
-  bool lists_last() const { return has_pairs() && substeps_ == 1; }
-
-  /// Makes lists at the present positions, where there are none, and says so. The particles go back
-  /// into their order with the next update: how often a run is measured must not change it.
+  /// Makes lists at the present positions, where there are none, and says so. Those of the last
+  /// update do not do: they name the pairs of its predicted positions, and a density summed over
+  /// them misses every pair that has come nearer since. Rows are in the order of bin and id, so
+  /// this sort changes no bit of the updates that follow.
   bool find_pairs() {
     if (lists_are_current_) return false;
-    sort_for_measure();
+    reorder_as_is({"measure", "measure", "measure"});
     return true;
   }
 
-  /// Sums at the present positions, with the lists of the update where they last.
+  /// Where the arrays of the state lie: updates that were recorded hold for one such place.
+  int placement() const { return a_.placement(); }
+
+  /// Sums at the present positions, over lists of their own.
   MeasureSums measure() {
     exec_.begin();
     find_pairs();
@@ -186,12 +182,9 @@ class Stepper {
     exec_.mark("download");
   }
 
-  /// What a replay of recorded updates (an even number of them) leaves behind on the host: nothing
-  /// that was summed or listed before holds.
-  void moved() {
-    density_is_current_ = false;
-    lists_are_current_ = lists_last();
-  }
+  /// The particles have moved, also by a replay of recorded updates (an even number of them):
+  /// nothing that was summed or listed before holds.
+  void moved() { density_is_current_ = lists_are_current_ = false; }
 
   /// New lists at the present positions, after the executor has been given more room for them.
   void relist() {
@@ -204,7 +197,7 @@ class Stepper {
   void save(Saved& s) { a_.save(exec_, s); }
   void restore(Saved& s) {
     a_.restore(exec_, s);
-    density_is_current_ = false;
+    moved();
   }
   SolverState state(Saved& s, std::int64_t updates, std::int64_t steps) {
     return download_state<Real>(exec_, std::size_t(p_.n), s.state(), updates, steps);
@@ -213,41 +206,59 @@ class Stepper {
   std::size_t bytes() const { return a_.bytes() + exec_.list_bytes(); }
 
  private:
+  /// Names under which the parts of a sort with new lists are timed: the pass before it, the sort,
+  /// the lists.
+  struct SortStages {
+    const char *first, *grid, *lists;
+  };
+  static constexpr SortStages kUpdateStages{"predict", "grid", "neighbors"};
+
+  /// Substeps first..last-1 share their lists; range number `number` of the update.
+  struct SubstepRange {
+    int number = -1, first = 0, last = 0, sweeps = 0;
+  };
+  /// On to the next range of an update; false after the last one. The ranges are as equal as can
+  /// be.
+  bool next_range(SubstepRange& r) const {
+    if (++r.number == lists_per_update_) return false;
+    r.first = r.last;
+    r.last = int(std::int64_t(substeps_) * (r.number + 1) / lists_per_update_);
+    return true;
+  }
+
   /// One update, one pass after the other: the bits of step(1). `seen(stage, sweep)` may look at
   /// what each stage left behind.
   template <class Seen>
   void step_seen(const Seen& seen) {
-    unsort();
     exec_.begin();
-    move();
-    seen("predict", 0);
-    reorder_as_is("predict");
-    seen("grid", 0);
-    seen("neighbors", 0);
-    solve(seen, false);
+    SubstepRange r;
+    while (next_range(r)) {
+      move();
+      seen("predict", r.first);
+      reorder_as_is(kUpdateStages);
+      seen("grid", r.first);
+      seen("neighbors", r.first);
+      solve(r, seen, false);
+    }
     finish_update(seen);
     moved();
-  }
-
-  void sort_for_measure() {
-    a_.put_aside(exec_);
-    reorder_as_is("grid");
   }
 
   /// Runs the pass that gives every particle its bin, sorts and gathers the particles by bin (as
   /// predicted, with `moving`), makes the lists.
   template <bool moving, class First>
-  void reorder(const char* stage, const First& first) {
+  void reorder(const SortStages& stages, const First& first) {
     exec_.sort_by_bin(
-        stage, first, p_.n, bin_count(p_), a_.sort_order(), a_.bin_start.data(),
+        stages.first, first, p_.n, bin_count(p_), a_.id.data(), a_.sort_order(),
+        a_.bin_start.data(),
         GatherPass<Real, moving>{p_, a_.position.data(), a_.velocity.data(), a_.id.data(),
                                  a_.other_position.data(), a_.other_velocity.data(),
                                  a_.other_id.data(), a_.counts.data()});
     a_.swap();
-    exec_.mark("grid");
+    exec_.mark(stages.grid);
     lists_ = exec_.build_lists(a_.position.data(), a_.bin_start.data(), p_);
     lists_are_current_ = true;
-    exec_.mark("neighbors");
+    exec_.mark(stages.lists);
   }
 
   /// x* and the velocity that goes with it, in place.
@@ -258,24 +269,23 @@ class Stepper {
   }
 
   /// The same with the positions as they are.
-  void reorder_as_is(const char* stage) {
+  void reorder_as_is(const SortStages& stages) {
     with_dimensions(p_.dimensions, [&](auto d) {
-      reorder<false>(stage,
+      reorder<false>(stages,
                      BinPass<Real, decltype(d)::value>{p_, a_.position.data(), a_.bin.data()});
     });
   }
 
-  /// The sweeps of the first substep, whose x* is there already, then the other substeps with the
-  /// same lists. Rounds of sweeps go on while the mean compression that the last sweep found is
-  /// above the tolerance. `seen(stage, sweep)` may look at what each stage left behind. With
-  /// `joined`, the last sweep of a substep also takes the particles to the next one: the same
+  /// The sweeps of the first substep of a range, whose x* is there already, then its other substeps
+  /// with the same lists. Rounds of sweeps go on while the mean compression that the last sweep
+  /// found is above the tolerance. `seen(stage, sweep)` may look at what each stage left behind.
+  /// With `joined`, the last sweep of a substep also takes the particles to the next one: the same
   /// arithmetic in one launch less.
   template <class Seen>
-  void solve(const Seen& seen, bool joined) {
+  void solve(SubstepRange& range, const Seen& seen, bool joined) {
     joined = joined && iterations_ > 0 && more_rounds_ == 0;
-    int number = 0;
-    for (int s = 0; s < substeps_; ++s) {
-      if (s > 0 && !joined) {
+    for (int s = range.first; s < range.last; ++s) {
+      if (s > range.first && !joined) {
         move();
         seen("predict", s);
       }
@@ -283,8 +293,8 @@ class Stepper {
         const auto round = [&] {
           for (int k = 0; k < iterations_; ++k) {
             p_.step_length = step_length_[std::size_t(k)];
-            const bool moves_on = joined && k == iterations_ - 1 && s < substeps_ - 1;
-            sweep<decltype(smoothing)::value>(seen, ++number, moves_on);
+            const bool moves_on = joined && k == iterations_ - 1 && s < range.last - 1;
+            sweep<decltype(smoothing)::value>(seen, ++range.sweeps, moves_on);
           }
         };
         round();
@@ -352,7 +362,7 @@ class Stepper {
   /// The pass over the present velocities, which it leaves behind in the other array.
   template <Smoothing S, bool more_to_come>
   XsphPass<Real, Lists, S, more_to_come> xsph() {
-    std::swap(a_.velocity, a_.other_velocity);
+    a_.swap_velocity();
     return {p_,           lists_, a_.position.data(), a_.other_velocity.data(), a_.velocity.data(),
             a_.bin.data()};
   }
@@ -369,7 +379,7 @@ class Stepper {
   Exec& exec_;
   Params<Real> p_;
   KernelMode mode_;
-  int iterations_, substeps_, more_rounds_;
+  int iterations_, substeps_, lists_per_update_, more_rounds_;
   std::uint64_t residual_limit_;
   std::vector<Real> step_length_;  ///< of each sweep
   bool fused_, tensile_;

@@ -1,5 +1,6 @@
 // Neighbour lists of the CPU executor against all pairs.
 #include <algorithm>
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -23,17 +24,22 @@ void check_lists(Simd simd, const std::vector<Vec4<Real>>& x, Vec3<Real> box, in
   p.cells_y = ny;
   p.cells_z = nz;
   CpuExec exec(threads, 37, simd);
-  std::vector<int> cell(x.size()), order(x.size()), start(std::size_t(bin_count(p)) + 1);
+  std::vector<int> cell(x.size()), id(x.size()), order(x.size()),
+      start(std::size_t(bin_count(p)) + 1);
   for (int i = 0; i < p.n; ++i) cell[std::size_t(i)] = bin_of<D>(xyz(x[std::size_t(i)]), p);
-  exec.sort(cell.data(), p.n, bin_count(p), order.data(), start.data());
+  std::iota(id.begin(), id.end(), 0);
+  std::shuffle(id.begin(), id.end(), std::mt19937(5));
+  exec.sort(cell.data(), id.data(), p.n, bin_count(p), order.data(), start.data());
 
   std::vector<Vec4<Real>> sorted(x.size());
   for (std::size_t k = 0; k < x.size(); ++k) {
     sorted[k] = x[std::size_t(order[k])];
     if (k > 0) {
-      const auto a = std::make_pair(cell[std::size_t(order[k - 1])], order[k - 1]);
-      const auto b = std::make_pair(cell[std::size_t(order[k])], order[k]);
-      REQUIRE(a < b);  // by bin, and stable within a bin
+      const auto key = [&](std::size_t at) {
+        const auto row = std::size_t(order[at]);
+        return std::make_pair(cell[row], id[row]);
+      };
+      REQUIRE(key(k - 1) < key(k));
     }
   }
   const auto lists = exec.build_lists(sorted.data(), start.data(), p);
@@ -131,19 +137,25 @@ TEST_CASE("particles that have left the grid are spread over it, not piled up at
   CHECK(*std::max_element(count.begin(), count.end()) < mean * 2);
 }
 
-TEST_CASE("more than 16384 particles are sorted the same way by 1, 2 and 5 threads") {
+TEST_CASE("more than 16384 particles are sorted by bin and id, by 1, 2 and 5 threads alike") {
   std::mt19937 gen(3);
   const int n = 40000, cells = 500;
   std::vector<int> cell(n);
   for (int& c : cell) c = int(gen() % cells);
-  std::vector<int> expected(n), start(cells + 1);
-  for (int i = 0; i < n; ++i) expected[std::size_t(i)] = i;
-  std::stable_sort(expected.begin(), expected.end(),
-                   [&](int a, int b) { return cell[std::size_t(a)] < cell[std::size_t(b)]; });
+  std::vector<int> id(n), expected(n), start(cells + 1);
+  std::iota(id.begin(), id.end(), 0);
+  std::shuffle(id.begin(), id.end(), gen);
+  std::iota(expected.begin(), expected.end(), 0);
+  std::sort(expected.begin(), expected.end(), [&](int a, int b) {
+    const auto row = [&](int i) {
+      return std::make_pair(cell[std::size_t(i)], id[std::size_t(i)]);
+    };
+    return row(a) < row(b);
+  });
   for (int threads : {1, 2, 5}) {
     CpuExec exec(threads);
     std::vector<int> order(n);
-    exec.sort(cell.data(), n, cells, order.data(), start.data());
+    exec.sort(cell.data(), id.data(), n, cells, order.data(), start.data());
     CHECK(order == expected);
     CHECK(start[cells] == n);
   }

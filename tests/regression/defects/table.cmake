@@ -27,9 +27,9 @@ seeded_defect(last_cell_off_by_one neighbors kernels/cell_index.h
   [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 1;]]
   [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 2;]])
 seeded_defect(stale_grid neighbors lib/solver/stepper.h
-  [[exec_.mark("grid");
+  [[exec_.mark(stages.grid);
     lists_ = exec_.build_lists(a_.position.data()]]
-  [[exec_.mark("grid");
+  [[exec_.mark(stages.grid);
     lists_ = exec_.build_lists(a_.other_position.data()]])
 seeded_defect(last_neighbour_skipped neighbors lib/cpu/list_maker.h
   [[close_to(simd, c, x, i + l, out) - out);]]
