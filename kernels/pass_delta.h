@@ -32,6 +32,7 @@ struct DeltaPass {
   Lists lists;
   const Vec4<Real>* position;  ///< w = lambda
   const Real* density;
+  const int* id;             ///< of each row
   Vec4<Real>* position_out;  ///< out; w = 1/density
   Vec4<Real>* velocity;      ///< in/out, h/s
   StepCounts* moves_on;      ///< not null: on to the next substep's x* and velocity at once
@@ -104,7 +105,7 @@ struct DeltaPass {
       const Vec3<Real> d = xyz(own) - xyz(y);
       const Real q2 = dot(d, d);
       if (q2 <= coincident_q_squared<Real>())
-        sum = sum + weight(own, y, Real(0), Real(1)) * separation<Real, D>(i, j);
+        sum = sum + weight(own, y, Real(0), Real(1)) * separation<Real, D>(id[i], id[j]);
     });
     return sum;
   }

@@ -61,9 +61,9 @@ PBF_HD Real coincident_q_squared() {
   return Real(1e-24);
 }
 
-/// A unit vector for the coincident pair (i, j), the same for both but for the sign, from a small
-/// integer hash: the pair separates in the same way in every run and on every backend. In two
-/// dimensions it lies in the plane.
+/// A unit vector for the coincident pair of ids (i, j), the same for both but for the sign, from a
+/// small integer hash: the pair separates in the same way in every run, on every backend and in any
+/// order of rows. In two dimensions it lies in the plane.
 template <class Real, int dimensions = 3>
 PBF_HD Vec3<Real> separation(int i, int j) {
   unsigned a = unsigned(i < j ? i : j), b = unsigned(i < j ? j : i);

@@ -345,8 +345,8 @@ class Stepper {
     with_bool(tensile_, [&](auto tensile) {
       exec_.for_each(
           p_.n, DeltaPass<Real, Lists, S, decltype(tensile)::value>{
-                    p_, lists_, a_.other_position.data(), a_.density.data(), a_.position.data(),
-                    a_.velocity.data(), moves_on ? a_.counts.data() : nullptr});
+                    p_, lists_, a_.other_position.data(), a_.density.data(), a_.id.data(),
+                    a_.position.data(), a_.velocity.data(), moves_on ? a_.counts.data() : nullptr});
     });
     exec_.mark("delta");
     seen("delta", number);
