@@ -4,6 +4,8 @@
 // positions keep their digits however far the domain lies from the origin.
 #pragma once
 
+#include <cstdint>
+
 #include "kernels/vec3.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -21,7 +23,8 @@ struct RestPool {
 
 template <class Real>
 struct Params {
-  int n = 0;                        ///< particles
+  int n = 0;                        ///< particles here
+  std::int64_t total = 0;           ///< of the whole scene: decides how a sum is shared by threads
   int dimensions = 3;               ///< 2: every y is 0, and v_y
   Real dt = 0, inv_dt = 0;          ///< s, 1/s
   Vec3<Real> gravity;               ///< h/s^2

@@ -17,7 +17,8 @@
 namespace pbf::inline PBF_VARIANT {
 
 /// Up to how many particles so many threads share a neighbour sum, and up to how many eight share
-/// the making of a list: measured on an H200 (kernels/PERFORMANCE.md).
+/// the making of a list (of which no bit depends on it): measured on an H200
+/// (kernels/PERFORMANCE.md).
 #ifdef PBF_PINNED
 constexpr int kSixteenLanes = 6000, kEightLanes = 24000, kFourLanes = 0, kTwoLanes = 0;
 #else
@@ -117,17 +118,21 @@ class CudaExec {
     synchronize();
   }
 
+  /// The threads of a neighbour sum shape its tree, so their number follows from the particles of
+  /// the whole scene, not from those here.
   template <class Pass>
   void for_each(int n, const Pass& pass) {
     if constexpr (requires { requires Pass::D == 2; }) {
+      const std::int64_t all = pass.p.total;
       // A list has a third of the words: half as many threads have something to do.
-      if (n <= kEightLanes) return launch(lanes_kernel<4, Pass>, 4 * n, kBlock, 0, n, pass);
-      if (n <= kFourLanes) return launch(lanes_kernel<2, Pass>, 2 * n, kBlock, 0, n, pass);
+      if (all <= kEightLanes) return launch(lanes_kernel<4, Pass>, 4 * n, kBlock, 0, n, pass);
+      if (all <= kFourLanes) return launch(lanes_kernel<2, Pass>, 2 * n, kBlock, 0, n, pass);
     } else if constexpr (requires { typename Pass::Sum; }) {
-      if (n <= kSixteenLanes) return launch(lanes_kernel<16, Pass>, 16 * n, kBlock, 0, n, pass);
-      if (n <= kEightLanes) return launch(lanes_kernel<8, Pass>, 8 * n, kBlock, 0, n, pass);
-      if (n <= kFourLanes) return launch(lanes_kernel<4, Pass>, 4 * n, kBlock, 0, n, pass);
-      if (n <= kTwoLanes) return launch(lanes_kernel<2, Pass>, 2 * n, kBlock, 0, n, pass);
+      const std::int64_t all = pass.p.total;
+      if (all <= kSixteenLanes) return launch(lanes_kernel<16, Pass>, 16 * n, kBlock, 0, n, pass);
+      if (all <= kEightLanes) return launch(lanes_kernel<8, Pass>, 8 * n, kBlock, 0, n, pass);
+      if (all <= kFourLanes) return launch(lanes_kernel<4, Pass>, 4 * n, kBlock, 0, n, pass);
+      if (all <= kTwoLanes) return launch(lanes_kernel<2, Pass>, 2 * n, kBlock, 0, n, pass);
     }
     launch(apply_kernel<Pass>, n, kBlock, 0, n, pass);
   }

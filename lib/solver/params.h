@@ -42,6 +42,7 @@ Params<Real> make_params(const Scene& s, const Plan& plan) {
   const double h = s.h();
   Params<Real> p;
   p.n = int(plan.particles);
+  p.total = plan.particles;
   p.dimensions = s.dimensions;
   const double dt = s.time.step / plan.substeps;
   p.dt = Real(dt);
