@@ -7,59 +7,82 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// One particle's share. A non-finite particle counts as such and nowhere else.
+/// One particle's maxima and counts, then its terms. A non-finite particle counts as such and
+/// nowhere else.
 template <class Real, class Lists>
 struct MeasurePass {
   Params<Real> p;
   Lists lists;
   const Vec4<Real>*position, *velocity;
   const Real* density;
-  const StepCounts* counts;
+  const StepCounts* step_counts;
 
-  PBF_HD MeasureSums operator()(int i) const {
-    MeasureSums s;
+  PBF_HD MeasureCounts counts(int i) const {
+    MeasureCounts s;
     if (i == 0) {
-      s.fast = std::int64_t(counts->fast);
-      s.rounds = std::int64_t(counts->rounds);
+      s.fast = std::int64_t(step_counts->fast);
+      s.rounds = std::int64_t(step_counts->rounds);
     }
-    const Vec3<Real> x = xyz(position[i]), v = xyz(velocity[i]);
-    if (!is_finite(x.x + x.y + x.z) || !is_finite(dot(v, v)) || !is_finite(density[i])) {
+    if (!finite(i)) {
       s.non_finite = 1;
       return s;
     }
-    const double c = max2(double(density[i]) - 1, 0.0);
-    const double xs[3] = {x.x, x.y, x.z}, vs[3] = {v.x, v.y, v.z};
-    s.compression = c;
-    s.compression_squared = c * c;
-    s.compression_max = c;
-    s.speed_squared = vs[0] * vs[0] + vs[1] * vs[1] + vs[2] * vs[2];
-    s.speed_squared_max = s.speed_squared;
+    const Particle a = particle(i);
+    s.compression_max = a.compression;
+    s.speed_squared_max = a.speed_squared;
     for (int k = 0; k < 3; ++k) {
-      s.x[k] = s.front[k] = xs[k];
-      s.v[k] = vs[k];
+      s.front[k] = a.x[k] + 0.0;  // one zero: the larger of two must not depend on their order
+      s.x_size[k] = a.x[k] < 0 ? -a.x[k] : a.x[k];
+      s.v_size[k] = a.v[k] < 0 ? -a.v[k] : a.v[k];
     }
-    s.above_1 = c > 0.01 ? 1 : 0;
-    s.above_10 = c > 0.1 ? 1 : 0;
-    if (p.rest.axis >= 0) {
-      const double height = p.rest.up * (xs[p.rest.axis] - p.rest.floor);
-      for (int k = 0; k < MeasureSums::levels; ++k) {
-        const double level = p.rest.depth * (k + 1) / MeasureSums::levels;
-        s.below[k] = min2(max2((level - height) / p.rest.spacing + 0.5, 0.0), 1.0);
-      }
-    }
+    s.above_1 = a.compression > 0.01 ? 1 : 0;
+    s.above_10 = a.compression > 0.1 ? 1 : 0;
     const double high[3] = {p.box.x, p.box.y, p.box.z};
     for (int k = 0; k < 3; ++k) {
       const double margin = p.margin;
-      if (p.walls & (1u << (2 * k))) s.penetration = max2(s.penetration, margin - xs[k]);
-      if (p.walls & (2u << (2 * k)))
-        s.penetration = max2(s.penetration, xs[k] - (high[k] - margin));
+      const bool low_wall = p.walls & (1u << (2 * k)), high_wall = p.walls & (2u << (2 * k));
+      if (low_wall) s.penetration = max2(s.penetration, margin - a.x[k]);
+      if (high_wall) s.penetration = max2(s.penetration, a.x[k] - (high[k] - margin));
+      if ((low_wall && a.x[k] < 0) || (high_wall && a.x[k] > high[k])) s.outside = 1;
     }
     s.neighbors = s.neighbors_max = lists.size(i);
-    const bool out = ((p.walls & x_min) && x.x < Real(0)) || ((p.walls & x_max) && x.x > p.box.x) ||
-                     ((p.walls & y_min) && x.y < Real(0)) || ((p.walls & y_max) && x.y > p.box.y) ||
-                     ((p.walls & z_min) && x.z < Real(0)) || ((p.walls & z_max) && x.z > p.box.z);
-    s.outside = out ? 1 : 0;
     return s;
+  }
+
+  PBF_HD MeasureTerms terms(int i, const MeasureUnits& unit) const {
+    MeasureTerms s;
+    if (!finite(i)) return s;
+    const Particle a = particle(i);
+    const double c = a.compression * power_of_two(-unit.compression);
+    s.compression = fixed_term(c);
+    s.compression_squared = fixed_term(c * c);
+    s.speed_squared = fixed_term(a.speed_squared * power_of_two(-unit.speed_squared));
+    for (int k = 0; k < 3; ++k) {
+      s.x[k] = fixed_term(a.x[k] * power_of_two(-unit.x[k]));
+      s.v[k] = fixed_term(a.v[k] * power_of_two(-unit.v[k]));
+    }
+    if (p.rest.axis < 0) return s;
+    const double height = p.rest.up * (a.x[p.rest.axis] - p.rest.floor);
+    for (int k = 0; k < MeasureTerms::levels; ++k) {
+      const double level = p.rest.depth * (k + 1) / MeasureTerms::levels;
+      s.below[k] = fixed_term(max2((level - height) / p.rest.spacing + 0.5, 0.0));  // at most 1
+    }
+    return s;
+  }
+
+ private:
+  struct Particle {
+    double x[3], v[3], compression, speed_squared;
+  };
+  PBF_HD bool finite(int i) const {
+    const Vec3<Real> x = xyz(position[i]), v = xyz(velocity[i]);
+    return is_finite(x.x + x.y + x.z) && is_finite(dot(v, v)) && is_finite(density[i]);
+  }
+  PBF_HD Particle particle(int i) const {
+    const Vec4<Real>&x = position[i], &v = velocity[i];
+    Particle a{{x.x, x.y, x.z}, {v.x, v.y, v.z}, max2(double(density[i]) - 1, 0.0), 0};
+    a.speed_squared = a.v[0] * a.v[0] + a.v[1] * a.v[1] + a.v[2] * a.v[2];
+    return a;
   }
 };
 

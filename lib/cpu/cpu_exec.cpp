@@ -59,7 +59,6 @@ void CpuExec::sort(const int* bin, const int* id, int n, int bins, int* order, i
 std::size_t CpuExec::list_bytes() const {
   std::size_t sum = groups_.bytes() + chunks_.capacity() * sizeof chunks_[0] +
                     pointers_.capacity() * sizeof pointers_[0] +
-                    partial_.capacity() * sizeof partial_[0] +
                     in_bins_.capacity() * sizeof in_bins_[0];
   for (const auto& c : chunks_) sum += c.bytes();
   for (const auto& s : scratch_) sum += s.bytes();

@@ -1,6 +1,6 @@
 // The CPU executor: OpenMP threads over particles. One thread is the sequential baseline; the
 // result does not depend on the number of threads (every particle's sums have one order, the sort
-// is stable, reductions have a fixed shape).
+// is stable, reductions are of integers).
 #pragma once
 
 #include <omp.h>
@@ -70,23 +70,12 @@ class CpuExec {
     }
   }
 
-  /// Sum of pass(i): a tree over every kMeasureBlock particles, then those sums in order.
+  /// A measure: its maxima and counts, then the sums in units that these decide.
   template <class Pass>
   MeasureSums reduce(int n, const Pass& pass) {
-    const int blocks = (n + kMeasureBlock - 1) / kMeasureBlock;
-    partial_.resize(std::size_t(blocks));
-#pragma omp parallel for schedule(dynamic, 8) num_threads(threads_) if (blocks > 8)
-    for (int b = 0; b < blocks; ++b) {
-      MeasureSums part[kMeasureBlock];
-      for (int t = 0, i = b * kMeasureBlock; t < kMeasureBlock && i < n; ++t, ++i)
-        part[t] = pass(i);
-      for (int half = kMeasureBlock / 2; half > 0; half /= 2)
-        for (int t = 0; t < half; ++t) part[t].add(part[t + half]);
-      partial_[std::size_t(b)] = part[0];
-    }
-    MeasureSums total;
-    for (const MeasureSums& s : partial_) total.add(s);
-    return total;
+    const auto counts = sum<MeasureCounts>(n, [&](int i) { return pass.counts(i); });
+    const MeasureUnits unit(counts);
+    return {counts, sum<MeasureTerms>(n, [&](int i) { return pass.terms(i, unit); })};
   }
 
   /// Calls body() while the sum of pass(i) is above `limit`, at most `times` times, and counts the
@@ -168,12 +157,26 @@ class CpuExec {
   std::size_t list_bytes() const;
 
  private:
+  /// Of term(i), whose additions have no order.
+  template <class Sum, class Term>
+  Sum sum(int n, const Term& term) {
+    Sum total;
+#pragma omp parallel num_threads(threads_) if (n > kChunk)
+    {
+      Sum mine;
+#pragma omp for schedule(static) nowait
+      for (int i = 0; i < n; ++i) mine.add(term(i));
+#pragma omp critical(pbf_sum)
+      total.add(mine);
+    }
+    return total;
+  }
+
   static constexpr int kChunk = 1 << ChunkedLists::chunk_bits;
   static constexpr int kPiece = 256;  ///< of a pass: whole groups of lists, a few microseconds
   int threads_, list_entries_;
   Simd simd_;
   StageClock clock_;
-  std::vector<MeasureSums> partial_;
   std::vector<std::int64_t> in_bins_;
   std::vector<ListScratch> scratch_;  ///< per thread
   std::vector<HostBuffer<int>> chunks_;

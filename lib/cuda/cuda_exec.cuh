@@ -6,11 +6,11 @@
 #include <cub/device/device_scan.cuh>
 #include <vector>
 
-#include "kernels/pass_measure.h"
 #include "lib/base/stage_clock.h"
 #include "lib/cuda/device_buffer.h"
 #include "lib/cuda/kernel_start.cuh"
 #include "lib/cuda/list_pass.cuh"
+#include "lib/cuda/reduce.cuh"
 #include "lib/cuda/repeat.cuh"
 #include "lib/cuda/sort_kernels.cuh"
 
@@ -32,20 +32,6 @@ __global__ void __launch_bounds__(kBlock) apply_kernel(int n, Pass pass) {
   wait_for_previous();
   const int i = blockIdx.x * kBlock + threadIdx.x;
   if (i < n) pass(i);
-}
-
-/// Sum over a block by a tree of fixed shape, one result per block.
-template <class Pass>
-__global__ void __launch_bounds__(kBlock) reduce_kernel(int n, Pass pass, MeasureSums* out) {
-  wait_for_previous();
-  __shared__ MeasureSums part[kBlock];
-  const int i = blockIdx.x * kBlock + threadIdx.x;
-  part[threadIdx.x] = i < n ? pass(i) : MeasureSums{};
-  for (int half = kBlock / 2; half > 0; half /= 2) {
-    __syncthreads();
-    if (threadIdx.x < half) part[threadIdx.x].add(part[threadIdx.x + half]);
-  }
-  if (threadIdx.x == 0) out[blockIdx.x] = part[0];
 }
 
 /// Adds the number of particles that pass(i) puts into each bin: in shared memory first, since most
@@ -137,18 +123,17 @@ class CudaExec {
     launch(apply_kernel<Pass>, n, kBlock, 0, n, pass);
   }
 
+  /// See CpuExec. The maxima stay on the device for the sums, so the host waits once.
   template <class Pass>
   MeasureSums reduce(int n, const Pass& pass) {
-    const int blocks = (n + kBlock - 1) / kBlock;
-    partial_.resize(std::size_t(blocks));
-    partial_host_.resize(std::size_t(blocks));
-    launch(reduce_kernel<Pass>, n, kBlock, 0, n, pass, partial_.data());
-    PBF_CUDA_CHECK(cudaMemcpyAsync(partial_host_.data(), partial_.data(), partial_.bytes(),
-                                   cudaMemcpyDeviceToHost, stream_));
-    synchronize();
-    MeasureSums total;
-    for (int b = 0; b < blocks; ++b) total.add(partial_host_.data()[b]);
-    return total;
+    if (n == 0) return {};
+    measure_.make(n, stream_);
+    const int threads = kBlock * reduce_blocks(n);
+    launch(reduce_kernel<CountsOf<Pass>>, threads, kBlock, 0, n, CountsOf<Pass>{pass},
+           measure_.counts());
+    launch(reduce_kernel<TermsOf<Pass>>, threads, kBlock, 0, n,
+           TermsOf<Pass>{pass, measure_.counts().total, {}}, measure_.terms());
+    return measure_.result(stream_);
   }
 
   /// See CpuExec. At most 12000 bins: their counters lie in shared memory.
@@ -245,7 +230,7 @@ class CudaExec {
 
   std::size_t list_bytes() const {
     return words_.bytes() + tails_.bytes() + tail_of_.bytes() + count_.bytes() + counts_.bytes() +
-           slot_.bytes() + scan_.bytes() + partial_.bytes() + in_bins_.bytes() + repeat_.bytes();
+           slot_.bytes() + scan_.bytes() + measure_.bytes() + in_bins_.bytes() + repeat_.bytes();
   }
 
  private:
@@ -304,8 +289,7 @@ class CudaExec {
   StageClock clock_;
   std::vector<cudaEvent_t> events_;
   std::vector<const char*> stages_;  ///< of the marks since begin()
-  DeviceBuffer<MeasureSums> partial_;
-  PinnedBuffer<MeasureSums> partial_host_;
+  MeasureRoom measure_;
   DeviceBuffer<unsigned long long> in_bins_;
   PinnedBuffer<unsigned long long> in_bins_host_;
   std::vector<std::int64_t> counted_;

@@ -1,11 +1,11 @@
 // What every kernel begins with.
 #pragma once
 
-#include "kernels/measure_sums.h"
+#include "kernels/hd.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-constexpr int kBlock = kMeasureBlock;
+constexpr int kBlock = 128;
 
 /// First statement of every kernel: it is set up while the kernel before it ends, and waits here
 /// until that one is done (programmatic dependent launch, from sm_90 on). An explicit early trigger

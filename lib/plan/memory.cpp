@@ -56,13 +56,14 @@ void add_state(const Plan& plan, bool guard, const std::string& real, const Adde
   add("density", real, 1, n);
   for (const char* name : {"id", "id'", "bin"}) add(name, "int32", 1, n);
   if (add.on_device) add("order", "int32", 1, n);  // else it stands in id'
-  const std::int64_t blocks = (n + kMeasureBlock - 1) / kMeasureBlock;
-  if (guard) {  // the last good state
+  if (guard) {                                     // the last good state
     add("kept position", real, 4, n);
     add("kept velocity", real, 4, n);
     add("kept id", "int32", 1, n);
   }
-  add("partial sums of a measure", "double", int(sizeof(MeasureSums) / 8), blocks);
+  if (add.on_device)
+    add("sums of a measure by block", "int64",
+        int((sizeof(MeasureCounts) + sizeof(MeasureTerms)) / 8), reduce_blocks(n) + 1);
   add("histogram of compression", "int64", 1, kCompressionBins);
 }
 
