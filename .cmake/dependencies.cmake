@@ -15,6 +15,7 @@ endif()
 target_link_libraries(pbf_dependencies INTERFACE
   Threads::Threads CLI11::CLI11 Eigen3::Eigen ${CMAKE_DL_LIBS})
 
+include(${CMAKE_CURRENT_LIST_DIR}/archives.cmake)
 if(PBF_STATIC)
   include(${CMAKE_CURRENT_LIST_DIR}/static.cmake)
 endif()
@@ -27,7 +28,15 @@ function(pbf_link target)
   endif()
 endfunction()
 
-pbf_link(OpenMP::OpenMP_CXX gomp)
+# GCC's OpenMP runtime is linked statically in every build: it reads its environment in a constructor,
+# before which only one of the program itself can run (lib/solver/threads.cpp). Nothing of it is
+# exported, so that a library which brings its own keeps that.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  pbf_link_archives(OpenMP::OpenMP_CXX gomp)
+  add_link_options(LINKER:--exclude-libs,libgomp.a)
+else()
+  pbf_link(OpenMP::OpenMP_CXX gomp)
+endif()
 pbf_link(hdf5::hdf5 hdf5 sz aec z)
 pbf_link(${PBF_YAML} yaml-cpp)
 if(PBF_RENDER)

@@ -61,7 +61,6 @@ std::string slurm_script(const BatchOptions& o, const std::string& out, std::siz
          "# When all is done, the summary: " +
          command +
          " --collect\n"
-         "export OMP_WAIT_POLICY=passive\n"
          "srun " +
          command +
          " --only \"$SLURM_ARRAY_TASK_ID\" --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n"
@@ -88,7 +87,6 @@ class Batch {
   }
 
   void run() {
-    if (o_.jobs > 1) setenv("OMP_WAIT_POLICY", "passive", 0);  // waiting threads must not spin
     const auto stop = [this] { return !signal_seen().empty() || time_is_up(); };
     JobPool(o_.jobs).run(
         members_.size(), [this](std::size_t k) { return arguments(members_[k]); }, stop,

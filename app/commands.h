@@ -41,7 +41,7 @@ struct BenchOptions {
   std::vector<std::string> scenes;  ///< paths; empty: the built-in dam break
   std::vector<std::int64_t> particles{10000, 100000};
   std::vector<std::string> backends{"cpu"}, precisions{"float"};
-  std::vector<int> threads{0};  ///< 0: all that the process may use
+  std::vector<int> threads{0};  ///< 0: as a run would choose
   std::vector<std::string> overrides;
   int warmup = 400, updates = 64, repeats = 5;
   std::string csv, json;   ///< paths, empty: none

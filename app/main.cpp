@@ -133,7 +133,8 @@ void add_bench(CLI::App& app, BenchOptions& o, Command& command) {
   c->add_option("--precision", o.precisions, "float, double or both")
       ->delimiter(',')
       ->check(CLI::IsMember({"float", "double"}));
-  c->add_option("--threads", o.threads, "Numbers of CPU threads; all when not given")
+  c->add_option("--threads", o.threads,
+                "Numbers of CPU threads; as a run would choose when not given")
       ->delimiter(',')
       ->check(CLI::Range(1, 4096));
   add_overrides(c, o.overrides);

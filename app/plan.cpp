@@ -11,6 +11,7 @@
 #include "lib/scene/emit.h"
 #include "lib/scene/load.h"
 #include "lib/solver/devices.h"
+#include "lib/solver/threads.h"
 
 namespace pbf {
 namespace {
@@ -37,7 +38,7 @@ int command_plan(const PlanOptions& options) {
   const std::string dir = std::filesystem::path(loaded.path).parent_path().string();
   // Counted for --resolved too: a scene that cannot run is an error in every form of the answer.
   const Plan plan = make_plan(loaded.scene, count_particles(loaded.scene, dir));
-  const int threads = loaded.scene.threads > 0 ? loaded.scene.threads : usable_threads();
+  const int threads = solver_threads(loaded.scene, plan.particles);
   const std::vector<StageCosts> costs = read_calibration(calibration_path());
   const auto time = estimate_time(plan, loaded.scene, costs, threads, cpu_model());
   std::string text = options.resolved ? resolved_yaml(loaded.scene)

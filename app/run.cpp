@@ -18,6 +18,7 @@
 #include "lib/io/particle_output.h"
 #include "lib/scene/emit.h"
 #include "lib/scene/load.h"
+#include "lib/solver/threads.h"
 
 namespace pbf {
 namespace {
@@ -87,7 +88,7 @@ std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
   const SolverInfo i = solver.info();
   const BuildInfo build = build_info();
   std::string where = i.backend + " " + i.precision;
-  if (i.backend == "cpu") where += format(", %d thread%s", i.threads, i.threads == 1 ? "" : "s");
+  if (i.backend == "cpu") where += ", " + threads_text(scene, plan.particles);
   return format("pbf %s (%s)  scene %s: %lld particles, %lld updates of %.4g s\n%s on %s, %s -> %s",
                 build.version.c_str(), build.commit.c_str(), scene.name.c_str(),
                 static_cast<long long>(plan.particles),

@@ -7,6 +7,7 @@
 #include "lib/cpu/cpu_exec.h"
 #include "lib/solver/devices.h"
 #include "lib/solver/step_solver.h"
+#include "lib/solver/threads.h"
 
 namespace pbf::inline PBF_VARIANT {
 namespace {
@@ -18,7 +19,7 @@ class CpuSolver final : public Solver {
       : scene_(scene),
         plan_(plan),
         n_(std::int64_t(particles.size())),
-        exec_(scene.threads > 0 ? scene.threads : usable_threads(), cpu_list_entries(scene)) {
+        exec_(solver_threads(scene, n_), cpu_list_entries(scene)) {
     Stopwatch watch;
     InternalState<Real> s = to_internal<Real>(scene, std::move(particles));
     stepper_ = std::make_unique<Stepper<Real, CpuExec>>(

@@ -8,7 +8,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Runs with scene.threads threads (0: all that the process may use). Throws Error(unavailable)
+/// Runs with scene.threads threads (0: solver_threads()). Throws Error(unavailable)
 /// when there is not enough memory.
 std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan, Particles particles);
 

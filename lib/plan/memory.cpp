@@ -9,7 +9,7 @@
 #include "kernels/smoothing.h"
 #include "lib/cuda/list_room.h"
 #include "lib/plan/plan.h"
-#include "lib/solver/devices.h"
+#include "lib/solver/threads.h"
 
 namespace pbf {
 namespace {
@@ -69,7 +69,7 @@ void add_state(const Plan& plan, bool guard, const std::string& real, const Adde
 
 void add_cpu_lists(const Scene& s, const Plan& plan, std::int64_t bins, const Adder& add) {
   const std::int64_t n = plan.particles, chunks = (n + 1023) / 1024;
-  const int entries = cpu_list_entries(s), threads = s.threads > 0 ? s.threads : usable_threads();
+  const int entries = cpu_list_entries(s), threads = solver_threads(s, n);
   add("bin_start", "int32", 1, bins + 1);
   add("lists", "int32", 1, n * entries);
   add("groups of lists", "int32", 2, chunks * 1024 / 8);

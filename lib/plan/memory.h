@@ -65,7 +65,7 @@ constexpr std::int64_t cpu_scratch_entries(int list_entries) {
 }
 
 /// For the scene's backend and precision (change them in a copy for the others). Pure but for the
-/// number of CPU threads, which is that of this machine where the scene leaves it open.
+/// number of CPU threads, which depends on this machine where the scene leaves it open.
 MemoryPlan plan_memory(const Scene& scene, const Plan& plan);
 
 }  // namespace pbf

@@ -1,6 +1,7 @@
 // The plan as text and as JSON.
 #include "lib/base/text.h"
 #include "lib/plan/plan.h"
+#include "lib/solver/threads.h"
 
 namespace pbf {
 namespace {
@@ -82,6 +83,7 @@ std::string plan_text(const Plan& plan, const Scene& s) {
                            backend_text(s).c_str());
   out += format("grid %d (half) x %d x %d cells of edge %g h\n", plan.cells[0], plan.cells[1],
                 plan.cells[2], plan.cell_edge);
+  if (s.backend == Backend::cpu) out += threads_text(s, plan.particles) + "\n";
   out += plan.finest_level == 0
              ? "passes of one update\n"
              : format("passes of one step; 2^k of them in an update at level k = 0 ... %d\n",
@@ -128,8 +130,9 @@ std::string plan_json(const Plan& plan, const Scene& s, const std::string& membe
                 plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge);
   out += format(",\"vol\":%.17g,\"wall_scale\":%.17g,\"wall_range_h\":%.17g,\"mass_kg\":%.17g",
                 plan.vol, plan.wall_scale, plan.wall_range, plan.mass);
-  out += format(",\"finest_level\":%d,\"lists_per_update\":%d", plan.finest_level,
-                plan.lists_per_update);
+  out += format(",\"finest_level\":%d,\"lists_per_update\":%d,\"threads\":%d",
+                plan.finest_level, plan.lists_per_update,
+                s.backend == Backend::cpu ? solver_threads(s, plan.particles) : 0);
   out += ",\"passes\":" + list(plan.passes, [](const PlanPass& p) {
            return "{\"name\":" + json_string(p.name) + ",\"stage\":" + json_string(p.stage) +
                   ",\"reads\":" + json_string(p.reads) + ",\"writes\":" + json_string(p.writes) +

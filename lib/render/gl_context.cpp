@@ -15,7 +15,7 @@ class RasterThreads {
  public:
   explicit RasterThreads(int threads) {
     if (threads > 0 && !std::getenv(kName)) {
-      setenv(kName, std::to_string(threads).c_str(), 0);
+      setenv(kName, threads == 1 ? "0" : std::to_string(threads).c_str(), 0);  // beside the caller
       set_ = true;
     }
   }

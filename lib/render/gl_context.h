@@ -20,7 +20,8 @@ struct GlLibraries {
 /// (osmesa, egl or egl-device) asks for one of them and no other.
 class GlContext {
  public:
-  /// `threads`: cores that Mesa's rasteriser may take, 0 for all; the environment variable
+  /// `threads`: cores that Mesa's rasteriser may take, 0 for all; with 1 it draws on the thread
+  /// that asks for a picture and starts none of its own; the environment variable
   /// LP_NUM_THREADS wins. Mesa reads it once for each library and process: the first context
   /// decides. Throws Error(unavailable) with what was tried and what to install, Error(bad_input)
   /// for an unknown PBF_GL.

@@ -62,8 +62,8 @@ class Renderer {
 void write_png(const std::string& path, const Image& image);
 
 /// Draws on a thread of its own and writes DIR/frame_000123.png (number = index of the picture).
-/// The rasteriser gets one core, so that a CPU solver beside it is not stalled (LP_NUM_THREADS in
-/// the environment wins).
+/// A software rasteriser draws on that thread too and starts none of its own, so that a CPU solver
+/// beside it is not stalled (LP_NUM_THREADS in the environment wins).
 class RenderThread {
  public:
   /// Makes the folder and opens the GL library: throws Error(io) or Error(unavailable) at once.

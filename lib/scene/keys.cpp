@@ -289,7 +289,9 @@ std::vector<Key> render_keys() {
              SCENE(&s.render->camera.orbit)),
       words("backend", {"cpu", "cuda"}, "Where the simulation runs.", SCENE(choice(s.backend))),
       words("precision", kFloats, "Of the computation.", SCENE(choice(s.precision))),
-      automatic(number("threads", "", {1, 4096}, "CPU threads. auto: all that the process may use.",
+      automatic(number("threads", "", {1, 4096},
+                       "CPU threads. auto: one below 4096 particles, else one for every 1024, at "
+                       "most all that the process may use.",
                        SCENE(&s.threads)))};
 }
 

@@ -168,7 +168,7 @@ struct Scene {
   std::optional<Render> render;
   Backend backend = Backend::cpu;
   Precision precision = Precision::single;
-  int threads = 0;  ///< CPU threads; 0: all that the process may use
+  int threads = 0;  ///< CPU threads; 0: by the number of particles (lib/solver/threads.h)
 
   double h() const { return fluid.spacing * fluid.smoothing_ratio; }  ///< m, smoothing length
   /// m, y of the plane that holds all particles of a scene in two dimensions; else nothing.

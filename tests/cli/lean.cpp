@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -30,6 +31,7 @@ std::string long_scene(const std::string& more = "") {
 struct Look {
   std::string maps;  ///< /proc/PID/maps
   long threads = 0;
+  std::string thread_names;  ///< a line each
   Outcome outcome;
 };
 
@@ -45,7 +47,8 @@ Look look_at(const Scratch& folder, const std::string& scene, bool first_picture
   Look look;
   look.maps = read_text(proc / "maps");
   std::error_code gone;
-  look.threads = std::distance(fs::directory_iterator(proc / "task", gone), {});
+  for (const auto& task : fs::directory_iterator(proc / "task", gone))
+    ++look.threads, look.thread_names += read_text(task.path() / "comm");
   run.send(15);
   look.outcome = run.wait();
   return look;
@@ -138,6 +141,9 @@ TEST_CASE("the OpenGL library is mapped by a run that draws: the control of the 
   REQUIRE(look.outcome.code == 75);
   CHECK((has(look.maps, "OSMesa") || has(look.maps, "libEGL")));
   CHECK(look.threads > 1);
+  // The thread that makes pictures draws them too: another would take a core from the solver.
+  CAPTURE(look.thread_names);
+  if (!std::getenv("LP_NUM_THREADS")) CHECK_FALSE(has(look.thread_names, "llvmpipe-"));
 }
 #endif
 

@@ -1,6 +1,7 @@
 #include "tests/cli/process.h"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,7 +14,8 @@
 namespace pbf::test {
 namespace fs = std::filesystem;
 
-Process::Process(const std::vector<std::string>& args, const fs::path& folder)
+Process::Process(const std::vector<std::string>& args, const fs::path& folder,
+                 const std::vector<std::string>& environment)
     : out_(folder / ".stdout"), err_(folder / ".stderr") {
   std::vector<char*> argv{const_cast<char*>(PBF_BINARY)};
   for (const auto& a : args) argv.push_back(const_cast<char*>(a.c_str()));
@@ -26,25 +28,31 @@ Process::Process(const std::vector<std::string>& args, const fs::path& folder)
   const int o = open(out.c_str(), flags, 0600), e = open(err.c_str(), flags, 0600);
   if (o < 0 || e < 0 || dup2(o, 1) < 0 || dup2(e, 2) < 0 || chdir(dir.c_str()) != 0) _exit(126);
   setenv("CUDA_VISIBLE_DEVICES", "", 1);  // these tests are the same with and without a GPU
+  for (const char* name : {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"}) unsetenv(name);
+  for (const auto& pair : environment) putenv(const_cast<char*>(pair.c_str()));
   execv(PBF_BINARY, argv.data());
   _exit(127);
 }
 
 void Process::send(int signal) const { kill(pid_, signal); }
 
-Outcome Process::wait() {
+Outcome Process::wait(double* user_seconds) {
   int status = 0;
-  while (waitpid(pid_, &status, 0) < 0)
-    if (errno != EINTR) throw std::runtime_error("waitpid failed");
+  rusage used{};
+  while (wait4(pid_, &status, 0, &used) < 0)
+    if (errno != EINTR) throw std::runtime_error("wait4 failed");
   Outcome o;
+  if (user_seconds)
+    *user_seconds = double(used.ru_utime.tv_sec) + 1e-6 * double(used.ru_utime.tv_usec);
   o.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   o.out = read_text(out_);
   o.err = read_text(err_);
   return o;
 }
 
-Outcome pbf(const std::vector<std::string>& args, const fs::path& folder) {
-  return Process(args, folder).wait();
+Outcome pbf(const std::vector<std::string>& args, const fs::path& folder,
+            const std::vector<std::string>& environment) {
+  return Process(args, folder, environment).wait();
 }
 
 Scratch::Scratch() {

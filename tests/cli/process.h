@@ -17,10 +17,13 @@ struct Outcome {
 /// A program under way; its output goes to files in the folder it runs in.
 class Process {
  public:
-  /// Starts `pbf args...` with `folder` as its working directory.
-  Process(const std::vector<std::string>& args, const std::filesystem::path& folder);
+  /// Starts `pbf args...` with `folder` as its working directory and NAME=VALUE added to its
+  /// environment, which says nothing of how threads wait: this program too has set that for itself.
+  Process(const std::vector<std::string>& args, const std::filesystem::path& folder,
+          const std::vector<std::string>& environment = {});
   void send(int signal) const;
-  Outcome wait();
+  /// user_seconds: CPU time outside the kernel, of all its threads.
+  Outcome wait(double* user_seconds = nullptr);
   pid_t id() const { return pid_; }
 
  private:
@@ -29,7 +32,8 @@ class Process {
 };
 
 /// Runs `pbf args...` to its end.
-Outcome pbf(const std::vector<std::string>& args, const std::filesystem::path& folder);
+Outcome pbf(const std::vector<std::string>& args, const std::filesystem::path& folder,
+            const std::vector<std::string>& environment = {});
 
 /// An empty folder of its own, removed with everything in it at the end.
 class Scratch {

@@ -9,7 +9,6 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
-os.environ["OMP_WAIT_POLICY"] = "passive"  # tests run side by side
 
 collect_ignore = ["check_run_file.py", "check_vtk.py", "run_pytest.py"]
 
