@@ -21,6 +21,7 @@ class Checker {
                         above("domain.min", "domain.max", s_.domain.min, s_.domain.max);
     if (domain) check_domain();
     if (flat()) check_plane(domain);
+    check_smoothing_ratio();
     if (p_.good({"bodies"})) check_bodies(domain);
     check_time();
     check_solver();
@@ -56,6 +57,18 @@ class Checker {
     must_lie_flat("gravity", s_.gravity);
     for (std::size_t b = 0; b < s_.bodies.size(); ++b)
       must_lie_flat("bodies[" + std::to_string(b) + "].velocity", s_.bodies[b].velocity);
+  }
+
+  void check_smoothing_ratio() {
+    if (!p_.good({"dimensions", "fluid.smoothing_ratio", "fluid.mass"}) || s_.fluid.mass) return;
+    const double least = least_smoothing_ratio(s_.dimensions);
+    if (s_.fluid.smoothing_ratio < least)
+      add("fluid.smoothing_ratio",
+          "is " + to_text(s_.fluid.smoothing_ratio) +
+              ": with so few neighbours the density cannot tell the rest lattice from a closer "
+              "packing, and a pool loses volume; give at least " +
+              to_text(least) + (flat() ? "" : " (1.5 with dimensions: 2)") +
+              ", 2 is the default, or set fluid.mass");
   }
 
   /// max > min along every axis.

@@ -42,6 +42,11 @@ struct Domain {
   bool operator==(const Domain&) const = default;
 };
 
+/// Smallest fluid.smoothing_ratio with fluid.mass: auto. Below it the density sum holds little but
+/// the nearest neighbours, and counts the many of a close packing like the few of the lattice
+/// farther out: a pool sinks into the packing without being compressed (solver/calibrate.h).
+constexpr double least_smoothing_ratio(int dimensions) { return dimensions == 2 ? 1.5 : 1.6; }
+
 struct Fluid {
   double rest_density = 1000;  ///< kg/m^3, rho0
   double spacing = 0.02;       ///< m, d: edge of the rest lattice's cell

@@ -20,7 +20,8 @@ namespace pbf {
 /// does not. In two dimensions (pools of 10 x 16 and 24 x 24 squares), ranges 1: 0.970 and 0.980;
 /// 0.855: 0.986 and 0.989; 0.75: 0.992 and 0.992; 0.7: 0.994 and 0.993; 0.64: 0.994 and 0.993; 0.5:
 /// 0.988 and 0.990; with the paper's kernels (10 x 24) 0.992 at 0.7 and less on either side. So it
-/// is 0.7 there too. kernels/README.md (8), (9). ratio: h/d >= 1.
+/// is 0.7 there too. kernels/README.md (8), (9). ratio: h/d; what a small one does to the volume,
+/// and why scenes have at least least_smoothing_ratio(): lib/diag/README.md.
 struct Calibration {
   double vol = 1, wall_scale = 1, wall_range = 1;
 };

@@ -75,6 +75,25 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "a pool keeps 0.97 of its height with the smallest smoothing ratio that a scene may have") {
+  for (const int dimensions : {2, 3})
+    for (const auto kernels : {pbf::KernelMode::consistent, pbf::KernelMode::paper}) {
+      CAPTURE(dimensions, int(kernels));
+      Case c = dimensions == 2 ? flat_block(24, 12, 0, 0) : jittered_block(10, 10, 12, 0, 0);
+      c.scene.domain.max[0] = c.scene.domain.min[0] + 0.02 * (dimensions == 2 ? 24 : 10);
+      c.scene.domain.max[2] = c.scene.domain.min[2] + 0.5;
+      c.scene.precision = pbf::Precision::single;
+      c.scene.fluid.smoothing_ratio = pbf::least_smoothing_ratio(dimensions);
+      c.scene.solver.kernels = kernels;
+      auto s = make(c);
+      s->step(1000);
+      const double height = s->measure().height_kept;
+      CHECK(height > 0.97);
+      CHECK(height < 1.02);
+    }
+}
+
+TEST_CASE(
     "vorticity confinement up to epsilon = 10 does not raise the energy of a sloshing block") {
   Case c = jittered_block(8, 8, 16, 0.1, 0);
   c.scene.domain.max[0] += 0.3;

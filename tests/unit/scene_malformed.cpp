@@ -198,6 +198,26 @@ TEST_CASE("scene: values that contradict each other are refused") {
   CHECK(contains(error({"fluid.smoothing_ratio=0.5"}), "out of range, allowed: 1 .. 10"));
 }
 
+TEST_CASE(
+    "scene: a smoothing ratio at which a pool loses volume is refused, but for a given mass") {
+  const auto with = [](int dimensions, const std::string& fluid) {
+    return parse_error("dimensions: " + std::to_string(dimensions) +
+                       "\ndomain: {min: [0, 0, 0], max: [1, 0.1, 1]}\nfluid: {spacing: 0.1, " +
+                       fluid + "}\nbodies: [{shape: block, min: [0, 0, 0], max: [1, 0.1, 0.5]}]\n" +
+                       "time: {step: 0.01, end: 1}\n");
+  };
+  const std::string few = with(3, "smoothing_ratio: 1.2");
+  CHECK(contains(few, "2 "));
+  CHECK(contains(few, "scene.yaml:3:40: fluid.smoothing_ratio: is 1.2"));
+  CHECK(contains(few, "give at least 1.6 (1.5 with dimensions: 2), 2 is the default"));
+  CHECK(contains(with(3, "smoothing_ratio: 1"), "fluid.smoothing_ratio: is 1:"));
+  CHECK(contains(with(3, "smoothing_ratio: 1.59"), "give at least 1.6"));
+  CHECK(contains(with(2, "smoothing_ratio: 1.49"), "give at least 1.5, 2 is the default"));
+  CHECK(with(3, "smoothing_ratio: 1.6") == "no error");
+  CHECK(with(2, "smoothing_ratio: 1.5") == "no error");
+  CHECK(with(3, "smoothing_ratio: 1.2, mass: 0.8") == "no error");
+}
+
 TEST_CASE("scene: a shortest step above time.step, or a millionth of it, is refused") {
   const auto with = [](const std::string& step_min) {
     return "domain: {min: [0, 0, 0], max: [1, 1, 1]}\nfluid: {spacing: 0.1}\n"
