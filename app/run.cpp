@@ -160,6 +160,7 @@ int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver
   RunTotals totals = loop.totals();
   totals.folder = folder.path();
   log.result(run_summary(totals));
+  if (totals.last.unresolved > 0) log.note("pbf: warning: " + unresolved_text(totals));
   if (loop.guard_event()) report_alarm(*loop.guard_event(), loop.guard(), loaded.scene, folder);
   if (end == RunEnd::stopped) {
     log.note(

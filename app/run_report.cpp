@@ -1,6 +1,7 @@
 #include "app/run_report.h"
 
 #include <cmath>
+#include "kernels/relative_motion.h"
 
 #include "lib/base/text.h"
 #include "lib/solver/devices.h"
@@ -103,6 +104,15 @@ std::string group_table(const RunTotals& t) {
   return out + row("other", rest, t.wall);
 }
 
+std::string unresolved_text(const RunTotals& t) {
+  // The longest way belongs to a step of time.step/substeps, or shorter ones of time.adaptive.
+  return format(
+      "%lld times a particle moved by more than %g h relative to a neighbour in a step, by up to "
+      "%.3g h: fluid may have passed through fluid; time.step %.2g s resolves it",
+      static_cast<long long>(t.last.unresolved), kResolvedWay, t.last.relative_way_max,
+      t.step * kResolvedWay / t.last.relative_way_max);
+}
+
 std::string run_summary(const RunTotals& t) {
   std::string out = format(
       "particles           %lld\n"
@@ -181,7 +191,9 @@ std::string measure_json(const Measures& m, double wall, std::int64_t frames,
         {"outside", double(m.outside)},
         {"non_finite", double(m.non_finite)},
         {"fast", double(m.fast)},
-        {"sweeps", double(m.sweeps)}})
+        {"sweeps", double(m.sweeps)},
+        {"unresolved", double(m.unresolved)},
+        {"relative_way_max", m.relative_way_max}})
     (out += ", ") += item(name, value);
   (out += ", ") += triple("momentum", m.momentum) + ", " +
                    triple("center_of_mass", m.center_of_mass) + ", " + triple("front", m.front) +

@@ -3,6 +3,7 @@
 
 #include "kernels/boundary.h"
 #include "kernels/pair_sum.h"
+#include "kernels/relative_motion.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -72,8 +73,10 @@ struct LambdaPass {
   Params<Real> p;
   Lists lists;
   const Vec4<Real>* position;
-  Vec4<Real>* position_out;  ///< out: the same position with w = lambda
-  Real* density;             ///< out when with_density, else in
+  Vec4<Real>* position_out;    ///< out: the same position with w = lambda
+  Real* density;               ///< out when with_density, else in
+  const Vec4<Real>* velocity;  ///< null: neighbours' motion is not looked at (relative_motion.h)
+  StepCounts* counts;
 
   static constexpr int D = dimensions_of(S);
   using Own = Vec<Real, D>;
@@ -109,6 +112,7 @@ struct LambdaPass {
     s.gradient = s.gradient + (t2 * root.inverse) * d;
   }
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
+    if (velocity) count_unresolved(i, p, lists, velocity, counts);
     const WallTerm<Real> wall = wall_term<Real, S>(in_space(x), p);
     Real rho;
     if constexpr (with_density) {

@@ -22,6 +22,8 @@ struct MeasurePass {
     if (i == 0) {
       s.fast = std::int64_t(step_counts->fast);
       s.rounds = std::int64_t(step_counts->rounds);
+      s.unresolved = std::int64_t(step_counts->unresolved);
+      s.way_squared = step_counts->way_squared;
     }
     if (!finite(i)) {
       s.non_finite = 1;

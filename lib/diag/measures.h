@@ -37,6 +37,10 @@ struct Measures {
   /// it), or without one above guard.speed.
   std::int64_t fast = 0;
   std::int64_t sweeps = 0;  ///< over the constraints since the start
+  /// Particles times steps, since the start, that moved by more than kResolvedWay relative to a
+  /// neighbour (kernels/relative_motion.h): there fluid may pass through fluid.
+  std::int64_t unresolved = 0;
+  double relative_way_max = 0;  ///< h, the longest such way in a step; 0: there was none
 };
 
 /// What an EnergyTrack knows: enough to go on from a checkpoint. J.

@@ -81,6 +81,7 @@ void for_each_step(History& s, Integer&& integer, Number&& number) {
 void write_steps(hid_t file, const StepHistory& s) {
   const auto write = [&](const char* name, const auto& v) { h5::write_numbers(file, name, &v); };
   for_each_step(s, write, write);
+  write("step_unresolved", s.unresolved);
   h5::write_numbers(file, "step_updates", s.updates.data(), s.updates.size());
 }
 
@@ -90,6 +91,7 @@ StepHistory read_steps(hid_t file) {
     v = h5::read_number<std::remove_reference_t<decltype(v)>>(file, name);
   };
   for_each_step(s, read, read);
+  if (h5::has_attribute(file, "step_unresolved")) read("step_unresolved", s.unresolved);
   s.updates = h5::read_integers(file, "step_updates");
   if (s.level < 0 || s.level >= std::int64_t(s.updates.size()))
     throw h5::Failure("a level of the step that cannot be");
@@ -113,6 +115,8 @@ void write_file(const std::string& path, const SavedRun& s) {
     h5::write_numbers(file, "particles", &s.particles);
     h5::write_numbers(file, "fast", &s.state.fast);
     h5::write_numbers(file, "rounds", &s.state.rounds);
+    h5::write_numbers(file, "unresolved", &s.state.unresolved);
+    h5::write_numbers(file, "way_squared", &s.state.way_squared);
     h5::write_numbers(file, "first_neighbors_max", &s.first.neighbors_max);
     h5::write_numbers(file, "energy_started", &started);
     for_each_number(s, [&](const char* name, double v) { h5::write_numbers(file, name, &v); });
@@ -144,6 +148,10 @@ SavedRun read_file(const std::string& path) {
   s.particles = h5::read_number<std::int64_t>(file, "particles");
   s.state.fast = h5::read_number<std::int64_t>(file, "fast");
   s.state.rounds = h5::read_number<std::int64_t>(file, "rounds");
+  if (h5::has_attribute(file, "unresolved")) {  // files written before it was counted hold none
+    s.state.unresolved = h5::read_number<std::int64_t>(file, "unresolved");
+    s.state.way_squared = h5::read_number<double>(file, "way_squared");
+  }
   s.first.neighbors_max = h5::read_number<std::int64_t>(file, "first_neighbors_max");
   s.energy.started = h5::read_number<std::int64_t>(file, "energy_started") != 0;
   for_each_number(s, [&](const char* name, double& v) { v = h5::read_number<double>(file, name); });

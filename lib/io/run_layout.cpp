@@ -39,6 +39,8 @@ const std::vector<LogColumn>& log_columns() {
       {"non_finite", "1", nullptr, [](Row r) { return r.measures.non_finite; }},
       {"fast", "1", nullptr, [](Row r) { return r.measures.fast; }},
       {"sweeps", "1", nullptr, [](Row r) { return r.measures.sweeps; }},
+      {"unresolved", "1", nullptr, [](Row r) { return r.measures.unresolved; }},
+      {"relative_way_max", "h", [](Row r) { return r.measures.relative_way_max; }},
   };
   return columns;
 }

@@ -63,7 +63,12 @@ std::optional<std::string> AdaptiveStep::follow(const Measures& m) {
   h_.speed = m.speed_max;
   if (h_.hold > 0) --h_.hold;
   if (h_.coarse >= 0) ++h_.coarse;
-  const double longest = longest_step(scene_, m.speed_max, acceleration), before = step(level());
+  const double before = step(level());
+  double longest = longest_step(scene_, m.speed_max, acceleration);
+  // Neighbours that moved too far past each other: half the step, and again while they do.
+  const bool unresolved = m.unresolved > h_.unresolved;
+  if (unresolved) longest = std::min(longest, before / 2);
+  h_.unresolved = m.unresolved;
   const int to = next_level(scene_, level(), longest, h_.hold == 0);
   if (step(to) > longest) ++h_.floor;
   if (to == level()) return std::nullopt;
@@ -71,7 +76,8 @@ std::optional<std::string> AdaptiveStep::follow(const Measures& m) {
   return format("update %lld, %.6g s: ", static_cast<long long>(m.update), m.time) +
          change(to, m.update, false) +
          format(": v_max dt %.3g h, dt sqrt(a/h) %.3g before", m.speed_max * before / h,
-                before * std::sqrt(acceleration / h));
+                before * std::sqrt(acceleration / h)) +
+         (unresolved ? "; neighbours moved too far past each other" : "");
 }
 
 std::optional<std::string> AdaptiveStep::refine(const std::string& alarm, const Measures& m,

@@ -57,6 +57,8 @@ SolverState download_state(Exec& exec, std::size_t n, const StateArrays<Real>& f
   exec.to_host(from.counts, 1, &counts);
   s.fast = std::int64_t(counts.fast);
   s.rounds = std::int64_t(counts.rounds);
+  s.unresolved = std::int64_t(counts.unresolved);
+  s.way_squared = counts.way_squared;
   return s;
 }
 
@@ -75,6 +77,8 @@ void upload_state(Exec& exec, const SolverState& s, const StateArrays<Real>& to)
   StepCounts counts;
   counts.fast = std::uint64_t(s.fast);
   counts.rounds = std::uint64_t(s.rounds);
+  counts.unresolved = std::uint64_t(s.unresolved);
+  counts.way_squared = float(s.way_squared);
   exec.to_device(&counts, 1, to.counts);
 }
 

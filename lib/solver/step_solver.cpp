@@ -60,6 +60,8 @@ Measures to_measures(const MeasureSums& s, const Scene& scene, const Plan& plan,
   m.outside = s.outside;
   m.non_finite = s.non_finite;
   m.fast = s.fast;
+  m.unresolved = s.unresolved;
+  m.relative_way_max = std::sqrt(s.way_squared);
   m.sweeps = scene.solver.iterations * (plan.substeps * steps + s.rounds);
   return m;
 }

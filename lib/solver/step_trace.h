@@ -19,7 +19,9 @@ struct SolverState {
   std::vector<double> position;          ///< 3n, h
   std::vector<double> velocity;          ///< 3n, h/s
   std::vector<std::int32_t> id;          ///< n
-  std::int64_t fast = 0, rounds = 0;     ///< kernels/step_counts.h, so far
+  /// kernels/step_counts.h, so far.
+  std::int64_t fast = 0, rounds = 0, unresolved = 0;
+  double way_squared = 0;
 };
 
 /// One array that a pass left behind; row = particle id.

@@ -28,8 +28,10 @@ SavedRun saved(Precision precision, std::int64_t update) {
   s.compression_max = 0.3;
   s.state.fast = 7;
   s.state.rounds = 1000;
+  s.state.unresolved = 12;
+  s.state.way_squared = 2.5;
   s.state.steps = 3 * update;
-  if (update == 7) s.steps = StepHistory{2, 3, 32, 5, 0.125, 1.0 / 3, 11, 4, 6, 5, {1, 0, 4}};
+  if (update == 7) s.steps = StepHistory{2, 3, 32, 5, 0.125, 1.0 / 3, 11, 4, 6, 8, 5, {1, 0, 4}};
   s.first.kinetic_energy = 0.1;
   s.first.potential_energy = -3;
   s.first.compression_mean = 17.5;
@@ -46,7 +48,9 @@ bool same(const SavedRun& a, const SavedRun& b) {
          a.energy.first == b.energy.first && a.energy.lowest == b.energy.lowest &&
          a.energy.rise == b.energy.rise && a.compression_max == b.compression_max &&
          a.particles == b.particles && a.state.fast == b.state.fast &&
-         a.state.rounds == b.state.rounds && a.state.steps == b.state.steps && a.steps == b.steps;
+         a.state.rounds == b.state.rounds && a.state.unresolved == b.state.unresolved &&
+         a.state.way_squared == b.state.way_squared && a.state.steps == b.state.steps &&
+         a.steps == b.steps;
 }
 
 bool same(const GuardLimits& a, const GuardLimits& b) {
