@@ -10,10 +10,16 @@ namespace {
 /// Puts order[first..last-1], whole bins in order, into the order of ids within each bin. They
 /// nearly are: rows were in that order before they moved.
 void sort_within_bins(const int* bin, const int* id, int first, int last, int* order) {
-  for (int k = first + 1; k < last; ++k) {
-    const int row = order[k];
+  int bin_before = -1, id_before = 0;  // of the row at k - 1
+  for (int k = first; k < last; ++k) {
+    const int row = order[k], b = bin[row], mine = id[row];
+    if (b != bin_before || mine > id_before) {
+      bin_before = b;
+      id_before = mine;
+      continue;
+    }
     int to = k;
-    for (; to > first && bin[order[to - 1]] == bin[row] && id[order[to - 1]] > id[row]; --to)
+    for (; to > first && bin[order[to - 1]] == b && id[order[to - 1]] > mine; --to)
       order[to] = order[to - 1];
     order[to] = row;
   }
