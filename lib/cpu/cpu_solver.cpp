@@ -21,7 +21,7 @@ class CpuSolver final : public Solver {
         n_(std::int64_t(particles.size())),
         exec_(solver_threads(scene, n_), cpu_list_entries(scene)) {
     Stopwatch watch;
-    InternalState<Real> s = to_internal<Real>(scene, std::move(particles));
+    InternalState<Real> s = to_internal<Real>(scene, plan.axes, std::move(particles));
     stepper_ = std::make_unique<Stepper<Real, CpuExec>>(
         exec_, make_params<Real>(scene, plan), scene.solver.kernels, scene.solver.iterations, plan,
         std::move(s.position), std::move(s.velocity), std::move(s.id));

@@ -37,7 +37,7 @@ class CudaSolver final : public Solver {
   CudaSolver(const Scene& scene, const Plan& plan, Particles particles, ListRoom room)
       : scene_(scene), plan_(plan), n_(int(particles.size())), exec_(room) {
     Stopwatch watch;
-    InternalState<Real> s = to_internal<Real>(scene, std::move(particles));
+    InternalState<Real> s = to_internal<Real>(scene, plan.axes, std::move(particles));
     stepper_ = std::make_unique<Stepper<Real, CudaExec>>(
         exec_, make_params<Real>(scene, plan), scene.solver.kernels, scene.solver.iterations, plan,
         std::move(s.position), std::move(s.velocity), std::move(s.id));

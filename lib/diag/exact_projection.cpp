@@ -20,22 +20,28 @@ using Vector = Eigen::VectorXd;
 using V3 = Vec3<double>;
 using V4 = Vec4<double>;
 
-std::vector<V4> to_frame(const Scene& s, const std::vector<double>& si, bool place) {
+std::vector<V4> to_frame(const Scene& s, const Plan& plan, const std::vector<double>& si,
+                         bool place) {
   std::vector<V4> out(si.size() / 3);
   const Double3 low = s.origin();
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const auto at = [&](std::size_t k) { return (si[3 * i + k] - (place ? low[k] : 0)) / s.h(); };
+    const auto at = [&](int axis) {
+      const auto k = std::size_t(plan.axes.of[axis]);
+      return (si[3 * i + k] - (place ? low[k] : 0)) / s.h();
+    };
     out[i] = {at(0), at(1), at(2), 0};
   }
   return out;
 }
 
-std::vector<double> to_si(const Scene& s, const std::vector<V4>& x) {
-  std::vector<double> out;
-  out.reserve(3 * x.size());
-  for (const V4& p : x) {
-    const double at[3] = {p.x, p.y, p.z};
-    for (std::size_t k = 0; k < 3; ++k) out.push_back(s.origin()[k] + s.h() * at[k]);
+std::vector<double> to_si(const Scene& s, const Plan& plan, const std::vector<V4>& x) {
+  std::vector<double> out(3 * x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double at[3] = {x[i].x, x[i].y, x[i].z};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto k = std::size_t(plan.axes.of[axis]);
+      out[3 * i + k] = s.origin()[k] + s.h() * at[axis];
+    }
   }
   return out;
 }
@@ -196,7 +202,8 @@ double violation(const ConstraintSet& c) {
 }
 
 template <Smoothing S>
-Projection project(const Scene& scene, const Params<double>& p, const std::vector<V4>& start) {
+Projection project(const Scene& scene, const Plan& plan, const std::vector<V4>& start) {
+  const Params<double> p = make_params<double>(scene, plan);
   const Constraints<S> constraints(p, start);
   const Vector target = constraints.start();
   Vector x = target;
@@ -232,7 +239,7 @@ Projection project(const Scene& scene, const Params<double>& p, const std::vecto
     const auto i = Eigen::Index(k), to = Eigen::Index(constraints.order()[k]);
     moved[std::size_t(to)] = {x[3 * i], x[3 * i + 1], x[3 * i + 2], 0};
   }
-  out.position = to_si(scene, moved);
+  out.position = to_si(scene, plan, moved);
   return out;
 }
 
@@ -247,20 +254,20 @@ std::vector<double> predicted_positions(const Scene& scene, const Plan& plan,
                                         const std::vector<double>& position,
                                         const std::vector<double>& velocity) {
   const Params<double> p = make_params<double>(scene, plan);
-  std::vector<V4> x = to_frame(scene, position, true), v = to_frame(scene, velocity, false);
+  std::vector<V4> x = to_frame(scene, plan, position, true),
+                  v = to_frame(scene, plan, velocity, false);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = with_w(predict(xyz(x[i]), xyz(v[i]), p).x, 0.0);
-  return to_si(scene, x);
+  return to_si(scene, plan, x);
 }
 
 Projection project_exactly(const Scene& scene, const Plan& plan, const std::vector<double>& start) {
-  const Params<double> p = make_params<double>(scene, plan);
-  const std::vector<V4> x = to_frame(scene, start, true);
+  const std::vector<V4> x = to_frame(scene, plan, start, true);
   const bool paper = scene.solver.kernels == KernelMode::paper;
   if (scene.dimensions == 2)
-    return paper ? project<Smoothing::paper_2d>(scene, p, x)
-                 : project<Smoothing::consistent_2d>(scene, p, x);
-  return paper ? project<Smoothing::paper>(scene, p, x)
-               : project<Smoothing::consistent>(scene, p, x);
+    return paper ? project<Smoothing::paper_2d>(scene, plan, x)
+                 : project<Smoothing::consistent_2d>(scene, plan, x);
+  return paper ? project<Smoothing::paper>(scene, plan, x)
+               : project<Smoothing::consistent>(scene, plan, x);
 }
 
 ProjectionError projection_error(Solver& solver, const Scene& scene, const Plan& plan) {

@@ -5,6 +5,7 @@
 
 #include "kernels/smoothing.h"
 #include "lib/base/error.h"
+#include "lib/plan/axes.h"
 #include "lib/plan/substep_lists.h"
 #include "lib/scene/load.h"
 #include "lib/solver/adaptive_step.h"
@@ -15,7 +16,9 @@ namespace {
 
 /// Cells of one h where their number is in proportion to the particles, else larger ones: a nearly
 /// empty box must not cost more memory than its fluid.
-void plan_grid(Plan& plan, const Scene& s) {
+void plan_grid(Plan& plan, const Scene& scene) {
+  plan.axes = internal_axes(scene);
+  const Scene s = in_internal_axes(scene, plan.axes);
   double box[3];
   for (std::size_t k = 0; k < 3; ++k) box[k] = (s.domain.max[k] - s.domain.min[k]) / s.h();
   if (s.dimensions == 2) box[1] = 0;  // one layer, also of a slab as thick as h

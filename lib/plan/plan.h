@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/axes.h"
 #include "lib/plan/memory.h"
 #include "lib/scene/scene.h"
 
@@ -31,7 +32,8 @@ struct PlanFile {
 struct Plan {
   std::int64_t particles = 0;
   double cell_edge = 1;      ///< in h, >= 1: larger only where the box would need too many cells
-  int cells[3] = {1, 1, 1};  ///< of the grid; along x half cells
+  Axes axes;                 ///< of the internal frame; lib/plan/axes.h
+  int cells[3] = {1, 1, 1};  ///< of the grid, in internal axes; along x half cells
   double vol = 1;            ///< m/(rho0 h^3), in 2-D m/(rho0 h^2 thickness); solver/calibrate.h
   double wall_scale = 1, wall_range = 1;  ///< amplitude; range in h
   /// omega. By default min(1, (2.5 d/h)^2): one Jacobi sweep moves every particle for all its

@@ -1,5 +1,6 @@
 // The plan as text and as JSON.
 #include "lib/base/text.h"
+#include "lib/plan/axes.h"
 #include "lib/plan/plan.h"
 #include "lib/solver/threads.h"
 
@@ -81,8 +82,9 @@ std::string plan_text(const Plan& plan, const Scene& s) {
   std::string out = format("scene %s: %lld particles, h = %g m, d = %g m, %s\n", s.name.c_str(),
                            static_cast<long long>(plan.particles), s.h(), s.fluid.spacing,
                            backend_text(s).c_str());
-  out += format("grid %d (half) x %d x %d cells of edge %g h\n", plan.cells[0], plan.cells[1],
-                plan.cells[2], plan.cell_edge);
+  out += format(
+      "grid %d (half) x %d x %d cells of edge %g h; internal axes x, y, z: %s of the scene\n",
+      plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge, axes_text(plan.axes).c_str());
   if (s.backend == Backend::cpu) out += threads_text(s, plan.particles) + "\n";
   out += plan.finest_level == 0
              ? "passes of one update\n"
@@ -130,6 +132,8 @@ std::string plan_json(const Plan& plan, const Scene& s, const std::string& membe
                 plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge);
   out += format(",\"vol\":%.17g,\"wall_scale\":%.17g,\"wall_range_h\":%.17g,\"mass_kg\":%.17g",
                 plan.vol, plan.wall_scale, plan.wall_range, plan.mass);
+  out += ",\"axes\":" +
+         list(plan.axes.of, [](int axis) { return json_string(std::string(1, char('x' + axis))); });
   out += format(",\"finest_level\":%d,\"lists_per_update\":%d,\"threads\":%d",
                 plan.finest_level, plan.lists_per_update,
                 s.backend == Backend::cpu ? solver_threads(s, plan.particles) : 0);

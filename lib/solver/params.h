@@ -1,16 +1,17 @@
-// Scene (SI units) -> Params (internal frame).
+// Scene (SI units, its own axes) -> Params (internal frame).
 #pragma once
 
 #include <cmath>
 
 #include "kernels/params.h"
 #include "kernels/smoothing.h"
+#include "lib/plan/axes.h"
 #include "lib/plan/plan.h"
 #include "lib/solver/adaptive_step.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-/// See RestPool. `mass` (kg) of one of the `n` particles.
+/// See RestPool. The scene is in internal axes. `mass` (kg) of one of the `n` particles.
 inline RestPool rest_pool(const Scene& s, double mass, std::int64_t n, unsigned walls) {
   const double h = s.h();
   double extent[3], area = 1;
@@ -38,7 +39,8 @@ inline RestPool rest_pool(const Scene& s, double mass, std::int64_t n, unsigned 
 }
 
 template <class Real>
-Params<Real> make_params(const Scene& s, const Plan& plan) {
+Params<Real> make_params(const Scene& scene, const Plan& plan) {
+  const Scene s = in_internal_axes(scene, plan.axes);
   const double h = s.h();
   Params<Real> p;
   p.n = int(plan.particles);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "kernels/axes.h"
 #include "kernels/params.h"
 #include "lib/solver/stage_event.h"
 
@@ -24,9 +25,9 @@ template <class Real, class Exec>
 class StageCheck {
  public:
   /// limits or fault may be null: then nothing is looked at, or nothing put in.
-  StageCheck(Exec& exec, const Params<Real>& p, std::int64_t update, const StageLimits* limits,
-             const Fault* fault)
-      : exec_(exec), p_(p), update_(update), limits_(limits), fault_(fault) {}
+  StageCheck(Exec& exec, const Params<Real>& p, const Axes& axes, std::int64_t update,
+             const StageLimits* limits, const Fault* fault)
+      : exec_(exec), p_(p), axes_(axes), update_(update), limits_(limits), fault_(fault) {}
 
   void look(const std::string& stage, int sweep, const StageArrays<Real>& a) {
     if (event_) return;
@@ -57,7 +58,7 @@ class StageCheck {
       Vec4<Real>* at = (lambda ? a.position : a.velocity) + k;
       Vec4<Real> x;
       exec_.to_host(at, 1, &x);
-      (lambda ? x.w : x.x) = value;
+      (lambda ? x.w : (&x.x)[axes_.inside(0)]) = value;
       exec_.to_device(&x, 1, at);
       return;
     }
@@ -71,14 +72,11 @@ class StageCheck {
     std::size_t fast = 0;
     const auto found = [&](Alarm alarm, std::size_t k, double value) {
       if (event_ && event_->id < id[k]) return;
-      event_ = StageEvent{alarm,
-                          update_,
-                          stage,
-                          sweep,
-                          id[k],
-                          {double(x[k].x), double(x[k].y), double(x[k].z)},
-                          {double(v[k].x), double(v[k].y), double(v[k].z)},
-                          value};
+      event_ = StageEvent{alarm, update_, stage, sweep, id[k], {}, {}, value};
+      for (int c = 0; c < 3; ++c) {
+        event_->position[axes_.of[c]] = double((&x[k].x)[c]);
+        event_->velocity[axes_.of[c]] = double((&v[k].x)[c]);
+      }
     };
     for (std::size_t k = 0; k < id.size(); ++k) {
       const double values[] = {double(x[k].x), double(x[k].y), double(x[k].z), double(x[k].w),
@@ -116,6 +114,7 @@ class StageCheck {
 
   Exec& exec_;
   const Params<Real>& p_;
+  Axes axes_;
   std::int64_t update_;
   const StageLimits* limits_;
   const Fault* fault_;

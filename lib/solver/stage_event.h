@@ -1,5 +1,5 @@
-// What the guard looks for stage by stage, and what it finds. Everything is in the internal frame:
-// h from the domain's lower corner, h/s, sums per particle's mass.
+// What the guard looks for stage by stage, and what it finds: in h from the domain's lower corner
+// and h/s along the scene's axes, sums per particle's mass.
 #pragma once
 
 #include <cstdint>

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <vector>
 
+#include "kernels/axes.h"
 #include "kernels/step_counts.h"
 #include "kernels/vec3.h"
 #include "lib/solver/step_trace.h"
@@ -32,8 +33,9 @@ struct CopyStatePass {
 
 /// In the order of ids: the order of rows is no part of a state.
 template <class Real, class Exec>
-SolverState download_state(Exec& exec, std::size_t n, const StateArrays<Real>& from,
-                           std::int64_t updates, std::int64_t steps) {
+SolverState download_state(Exec& exec, std::size_t n, const Axes& axes,
+                           const StateArrays<Real>& from, std::int64_t updates,
+                           std::int64_t steps) {
   SolverState s;
   s.precision = sizeof(Real) == 8 ? Precision::dbl : Precision::single;
   s.updates = updates;
@@ -46,7 +48,7 @@ SolverState download_state(Exec& exec, std::size_t n, const StateArrays<Real>& f
     to.resize(3 * n);
     for (std::size_t k = 0; k < n; ++k) {
       double* row = to.data() + 3 * std::size_t(id[k]);
-      row[0] = host[k].x, row[1] = host[k].y, row[2] = host[k].z;
+      row[axes.of[0]] = host[k].x, row[axes.of[1]] = host[k].y, row[axes.of[2]] = host[k].z;
     }
   };
   copy(from.position, s.position);
@@ -63,12 +65,14 @@ SolverState download_state(Exec& exec, std::size_t n, const StateArrays<Real>& f
 }
 
 template <class Real, class Exec>
-void upload_state(Exec& exec, const SolverState& s, const StateArrays<Real>& to) {
+void upload_state(Exec& exec, const Axes& axes, const SolverState& s, const StateArrays<Real>& to) {
   const std::size_t n = s.id.size();
   const auto copy = [&](const std::vector<double>& from, Vec4<Real>* rows, Real w) {
     std::vector<Vec4<Real>> host(n);
+    const double *x = from.data() + axes.of[0], *y = from.data() + axes.of[1],
+                 *z = from.data() + axes.of[2];
     for (std::size_t k = 0; k < n; ++k)
-      host[k] = {Real(from[3 * k]), Real(from[3 * k + 1]), Real(from[3 * k + 2]), w};
+      host[k] = {Real(x[3 * k]), Real(y[3 * k]), Real(z[3 * k]), w};
     exec.to_device(host.data(), n, rows);
   };
   copy(s.position, to.position, Real(1));

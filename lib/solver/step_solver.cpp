@@ -43,13 +43,14 @@ Measures to_measures(const MeasureSums& s, const Scene& scene, const Plan& plan,
   m.penetration = h * s.penetration;
   m.kinetic_energy = 0.5 * mass * h * h * s.speed_squared;
   for (int k = 0; k < 3; ++k) {
-    m.potential_energy -= mass * scene.gravity[std::size_t(k)] * h * s.x[k];
+    const auto axis = std::size_t(plan.axes.of[k]);
+    m.potential_energy -= mass * scene.gravity[axis] * h * s.x[k];
     // The lowest corner of the box: where gravity would carry a particle.
-    const double extent = scene.domain.max[std::size_t(k)] - scene.domain.min[std::size_t(k)];
-    m.energy += mass * std::max(scene.gravity[std::size_t(k)], 0.0) * extent * counted;
-    m.momentum[k] = mass * h * s.v[k];
-    m.center_of_mass[k] = origin[std::size_t(k)] + h * s.x[k] / (counted > 0 ? counted : 1);
-    m.front[k] = origin[std::size_t(k)] + h * s.front[k];
+    const double extent = scene.domain.max[axis] - scene.domain.min[axis];
+    m.energy += mass * std::max(scene.gravity[axis], 0.0) * extent * counted;
+    m.momentum[axis] = mass * h * s.v[k];
+    m.center_of_mass[axis] = origin[axis] + h * s.x[k] / (counted > 0 ? counted : 1);
+    m.front[axis] = origin[axis] + h * s.front[k];
   }
   m.energy += m.kinetic_energy + m.potential_energy;
   const Params<double> p = make_params<double>(scene, plan);

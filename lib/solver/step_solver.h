@@ -24,22 +24,24 @@ struct InternalState {
 /// Takes the particles, and lets go of each of their arrays as soon as it is converted: while a
 /// solver is made no more memory is held than it needs later.
 template <class Real>
-InternalState<Real> to_internal(const Scene& s, Particles particles) {
+InternalState<Real> to_internal(const Scene& s, const Axes& axes, Particles particles) {
   const std::size_t n = particles.size();
   const double h = s.h();
   InternalState<Real> out;
   const Double3 o = s.origin();
+  const std::size_t a[3] = {std::size_t(axes.of[0]), std::size_t(axes.of[1]),
+                            std::size_t(axes.of[2])};
   out.position.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const Double3& x = particles.position[i];
-    out.position[i] = {Real((x[0] - o[0]) / h), Real((x[1] - o[1]) / h), Real((x[2] - o[2]) / h),
-                       Real(1)};
+    const auto at = [&](std::size_t k) { return Real((x[k] - o[k]) / h); };
+    out.position[i] = {at(a[0]), at(a[1]), at(a[2]), Real(1)};
   }
   release(particles.position);
   out.velocity.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const Double3& v = particles.velocity[i];
-    out.velocity[i] = {Real(v[0] / h), Real(v[1] / h), Real(v[2] / h), Real(0)};
+    out.velocity[i] = {Real(v[a[0]] / h), Real(v[a[1]] / h), Real(v[a[2]] / h), Real(0)};
   }
   release(particles.velocity);
   out.id.resize(n);
@@ -49,8 +51,8 @@ InternalState<Real> to_internal(const Scene& s, Particles particles) {
 
 }  // namespace PBF_VARIANT
 
-/// Sums in the internal frame, after so many updates and steps -> Measures in SI units
-/// (lib/diag/README.md).
+/// Sums in the internal frame, after so many updates and steps -> Measures in SI units and the
+/// scene's axes (lib/diag/README.md).
 Measures to_measures(const MeasureSums& sums, const Scene& scene, const Plan& plan,
                      std::int64_t update, std::int64_t steps);
 

@@ -10,8 +10,8 @@
 
 namespace pbf {
 
-/// A state in the internal frame (h from Scene::origin(), h/s). A solver gives it in the order of
-/// ids and takes any order: that of its rows follows from the positions.
+/// A state in h from Scene::origin() and h/s, along the scene's axes. A solver gives it in the order
+/// of ids and takes any order: that of its rows follows from the positions.
 struct SolverState {
   Precision precision = Precision::dbl;  ///< of the solver that it came from
   std::int64_t updates = 0;              ///< done so far
@@ -24,7 +24,7 @@ struct SolverState {
   double way_squared = 0;
 };
 
-/// One array that a pass left behind; row = particle id.
+/// One array that a pass left behind, along the scene's axes; row = particle id.
 struct TraceArray {
   std::string stage;     ///< name of the pass: predict, grid, lambda, ...
   int sweep = 0;         ///< 1, 2, ... within the iterations, 0 outside them

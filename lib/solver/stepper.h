@@ -29,11 +29,13 @@ class Stepper {
  public:
   using Lists = typename Exec::Lists;
 
-  /// State in the internal frame. Positions and velocities are in the order of ids 0..n-1.
+  /// Positions and velocities are in the internal frame, in the order of ids 0..n-1. What comes out
+  /// is along the scene's axes.
   Stepper(Exec& exec, const Params<Real>& params, KernelMode mode, int iterations, const Plan& plan,
           std::vector<Vec4<Real>> position, std::vector<Vec4<Real>> velocity, std::vector<int> id)
       : exec_(exec),
         p_(params),
+        axes_(plan.axes),
         mode_(mode),
         iterations_(iterations),
         substeps_(plan.substeps),
@@ -88,7 +90,7 @@ class Stepper {
 
   /// One update, with what each stage left behind.
   StepTrace trace(const TraceOptions& options) {
-    Tracer<Real, Exec> t(exec_, p_.n, options);
+    Tracer<Real, Exec> t(exec_, p_.n, axes_, options);
     step_seen([&](const char* stage, int sweep) { record(t, stage, sweep); });
     return t.result();
   }
@@ -97,7 +99,7 @@ class Stepper {
   /// null. `update`: its number, the first is 1.
   std::optional<StageEvent> step_checked(std::int64_t update, const StageLimits* limits,
                                          const Fault* fault) {
-    StageCheck<Real, Exec> check(exec_, p_, update, limits, fault);
+    StageCheck<Real, Exec> check(exec_, p_, axes_, update, limits, fault);
     step_seen([&](const std::string& stage, int sweep) {
       const bool lists = stage == "neighbors";
       if (lists) exec_.for_each(p_.n, ListSizePass<Lists>{lists_, a_.sort_order()});  // free by now
@@ -119,12 +121,12 @@ class Stepper {
   }
 
   SolverState state(std::int64_t updates, std::int64_t steps) {
-    return download_state<Real>(exec_, std::size_t(p_.n), a_.state(), updates, steps);
+    return download_state<Real>(exec_, std::size_t(p_.n), axes_, a_.state(), updates, steps);
   }
 
   /// Takes over a state of as many particles, in any order.
   void set_state(const SolverState& s) {
-    upload_state<Real>(exec_, s, a_.state());
+    upload_state<Real>(exec_, axes_, s, a_.state());
     moved();
   }
 
@@ -160,7 +162,7 @@ class Stepper {
     return sums;
   }
 
-  /// SI units, id order, into device-visible buffers; null where not asked for.
+  /// SI units, the scene's axes, id order, into device-visible buffers; null where not asked for.
   template <class Out>
   void export_to(double h, double rest_density, const Double3& origin, Out* position, Out* velocity,
                  Out* density) {
@@ -169,9 +171,11 @@ class Stepper {
       find_pairs();
       sum_density();
     }
+    const auto from = [&](int k) { return origin[std::size_t(axes_.of[k])]; };
     exec_.for_each(p_.n, ExportPass<Real, Out>{h,
                                                rest_density,
-                                               {origin[0], origin[1], origin[2]},
+                                               {from(0), from(1), from(2)},
+                                               axes_,
                                                a_.position.data(),
                                                a_.velocity.data(),
                                                a_.density.data(),
@@ -200,7 +204,7 @@ class Stepper {
     moved();
   }
   SolverState state(Saved& s, std::int64_t updates, std::int64_t steps) {
-    return download_state<Real>(exec_, std::size_t(p_.n), s.state(), updates, steps);
+    return download_state<Real>(exec_, std::size_t(p_.n), axes_, s.state(), updates, steps);
   }
 
   std::size_t bytes() const { return a_.bytes() + exec_.list_bytes(); }
@@ -381,6 +385,7 @@ class Stepper {
 
   Exec& exec_;
   Params<Real> p_;
+  Axes axes_;
   KernelMode mode_;
   int iterations_, substeps_, lists_per_update_, more_rounds_;
   std::uint64_t residual_limit_;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/axes.h"
 #include "kernels/neighbors.h"
 #include "kernels/vec3.h"
 #include "lib/scene/random.h"
@@ -51,8 +52,8 @@ struct TracedArrays {
 template <class Real, class Exec>
 class Tracer {
  public:
-  Tracer(Exec& exec, int n, const TraceOptions& options)
-      : exec_(exec), n_(std::size_t(n)), options_(options), random_(options.seed) {}
+  Tracer(Exec& exec, int n, const Axes& axes, const TraceOptions& options)
+      : exec_(exec), n_(std::size_t(n)), axes_(axes), options_(options), random_(options.seed) {}
 
   /// Records what a stage has left behind.
   template <class Lists>
@@ -84,7 +85,7 @@ class Tracer {
       vectors("velocity", "h/s", a.velocity, a.id);
     } else if (stage == "curl") {
       this->stage("vorticity", 0, most_terms_);
-      vectors("curl", "1/s", a.curl, a.id);
+      vectors("curl", "1/s", a.curl, a.id, axes_.handedness());
     } else {
       this->stage(stage, 0);
       vectors("velocity", "h/s", a.velocity, a.id);
@@ -100,9 +101,12 @@ class Tracer {
     sweep_ = sweep;
     amplitude_ = options_.unit_roundoff * (terms > 0 ? 4 + std::sqrt(terms) : 1);
   }
-  /// Row k belongs to id[k], both in device-visible memory.
-  void vectors(const char* quantity, const char* unit, Vec4<Real>* from, const int* id) {
-    array(quantity, unit, 3, from, id, [](Vec4<Real>& x, int c) -> Real& { return (&x.x)[c]; });
+  /// Row k belongs to id[k], both in device-visible memory. sign: of the scene's vector, -1 for a
+  /// cross product in axes of the other hand.
+  void vectors(const char* quantity, const char* unit, Vec4<Real>* from, const int* id,
+               int sign = 1) {
+    array(
+        quantity, unit, 3, from, id, [](Vec4<Real>& x, int c) -> Real& { return (&x.x)[c]; }, sign);
   }
   /// The fourth component.
   void fourth(const char* quantity, const char* unit, Vec4<Real>* from, const int* id) {
@@ -142,7 +146,7 @@ class Tracer {
   /// and puts the values to follow in their place, where asked to.
   template <class T, class Component>
   void array(const char* quantity, const char* unit, int components, T* from, const int* id,
-             const Component& component) {
+             const Component& component, int sign = 1) {
     std::vector<T> v = host(from);
     id_ = host(id);
     trace_.arrays.push_back({stage_, sweep_, quantity, unit, components, {}});
@@ -153,13 +157,14 @@ class Tracer {
     for (std::size_t k = 0; k < n_; ++k)
       for (int c = 0; c < components; ++c) {
         Scalar& x = component(v[k], c);
-        const std::size_t row = std::size_t(id_[k]) * std::size_t(components) + std::size_t(c);
+        const std::size_t row = std::size_t(id_[k]) * std::size_t(components) +
+                                std::size_t(components == 3 ? axes_.of[c] : c);
         if constexpr (std::is_integral_v<Scalar>) {
           to.values[row] = double(x);
         } else {
           x = rounded(x);
-          to.values[row] = double(x);
-          if (follow) x = rounded(Real(follow->values[row]));
+          to.values[row] = sign * double(x);
+          if (follow) x = rounded(Real(sign * follow->values[row]));
         }
       }
     if (!std::is_integral_v<Scalar> && (amplitude_ > 0 || follow))
@@ -197,6 +202,7 @@ class Tracer {
 
   Exec& exec_;
   std::size_t n_;
+  Axes axes_;
   TraceOptions options_;
   SplitMix64 random_;
   std::string stage_;
