@@ -21,7 +21,9 @@ PBF_HD int cell_coordinate(Real x, Real inv_cell, int cells) {
   return c < cells ? c : 2 * cells - 1 - c;
 }
 
-/// x counts half cells: the runs of candidates below are then 2.5 cells long, not 3.
+/// x counts half cells: the runs of candidates below are then 2.5 cells long, not 3. z is counted
+/// from the first layer that is here: a slab of the grid has the bins of the whole one, from the
+/// first of its layers on.
 struct Cell {
   int x, y, z;
 };
@@ -30,7 +32,7 @@ template <int D, class Real>
 PBF_HD Cell cell_of(Vec3<Real> x, const Params<Real>& p) {
   return {cell_coordinate(x.x, p.inv_cell + p.inv_cell, p.cells_x),
           D == 2 ? 0 : cell_coordinate(x.y, p.inv_cell, p.cells_y),
-          cell_coordinate(x.z, p.inv_cell, p.cells_z)};
+          cell_coordinate(x.z, p.inv_cell, p.cells_z) - p.first_layer};
 }
 
 /// Bins of a half cell: the quarters of its y-z face, in two dimensions the halves of its z edge.
@@ -53,7 +55,7 @@ PBF_HD int bin_of(Vec3<Real> x, const Params<Real>& p) {
 
 template <class Real>
 PBF_HD int bin_count(const Params<Real>& p) {
-  return p.cells_x * p.cells_y * p.cells_z * bins_per_cell(p.dimensions);
+  return p.cells_x * p.cells_y * p.layers * bins_per_cell(p.dimensions);
 }
 
 /// Calls f(begin, end) for the up to nine (three in two dimensions) runs of particles (rows of half
@@ -67,7 +69,7 @@ PBF_HD void for_each_run(int x_low, int x_high, int y, int z, const int* bin_sta
   const int x1 = x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 1;
   const int y0 = D == 3 && y > 0 ? y - 1 : 0;
   const int y1 = D == 2 ? 0 : y + 1 < p.cells_y ? y + 1 : p.cells_y - 1;
-  const int z0 = z > 0 ? z - 1 : 0, z1 = z + 1 < p.cells_z ? z + 1 : p.cells_z - 1;
+  const int z0 = z > 0 ? z - 1 : 0, z1 = z + 1 < p.layers ? z + 1 : p.layers - 1;
   for (int k = z0; k <= z1; ++k)
     for (int j = y0; j <= y1; ++j) {
       const int row = (D == 2 ? k : k * p.cells_y + j) * p.cells_x;

@@ -38,6 +38,7 @@ struct Params {
   Real wall_scale = 1;              ///< amplitude of that contribution, kernels/README.md (9)
   Real wall_inv_range = 1;          ///< h over the range of that contribution
   int cells_x = 1, cells_y = 1, cells_z = 1;  ///< cells_x counts half cells; in 2-D cells_y = 1
+  int first_layer = 0, layers = 1;            ///< of cells along z: those that have bins here
   Real inv_cell = 1;                          ///< 1/h, one over the edge of a cell (>= h)
   Real vol = 1;                               ///< m/(rho0 h^3), weight of one particle
   bool two_sided = false;                     ///< C = rho - 1 instead of max(rho - 1, 0)

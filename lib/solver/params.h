@@ -71,7 +71,7 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   p.wall_inv_range = Real(1 / plan.wall_range);
   p.cells_x = plan.cells[0];
   p.cells_y = plan.cells[1];
-  p.cells_z = plan.cells[2];
+  p.cells_z = p.layers = plan.cells[2];
   p.inv_cell = Real(1 / plan.cell_edge);
   p.vol = Real(plan.vol);
   p.two_sided = s.solver.constraint == ConstraintMode::two_sided;

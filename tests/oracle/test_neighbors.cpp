@@ -3,6 +3,7 @@
 #include <numeric>
 #include <random>
 #include <set>
+#include <utility>
 
 #include "lib/cpu/cpu_exec.h"
 #include "tests/catch.h"
@@ -22,7 +23,7 @@ void check_lists(Simd simd, const std::vector<Vec4<Real>>& x, Vec3<Real> box, in
   p.dimensions = D;
   p.cells_x = 2 * nx;
   p.cells_y = ny;
-  p.cells_z = nz;
+  p.cells_z = p.layers = nz;
   CpuExec exec(threads, 37, simd);
   std::vector<int> cell(x.size()), id(x.size()), order(x.size()),
       start(std::size_t(bin_count(p)) + 1);
@@ -127,7 +128,7 @@ TEMPLATE_TEST_CASE("neighbour lists hold exactly the pairs closer than h", "", f
 
 TEST_CASE("particles that have left the grid are spread over it, not piled up at its rim") {
   Params<double> p;
-  p.cells_x = 8, p.cells_y = p.cells_z = 4;
+  p.cells_x = 8, p.cells_y = p.cells_z = p.layers = 4;
   std::vector<int> count(std::size_t(bin_count(p)));
   const int n = 100000;
   for (const auto& x : random_points<double>(n, -1000, 1000))
@@ -182,11 +183,96 @@ TEMPLATE_TEST_CASE("in two dimensions too, from 9 cells", "", float, double) {
     Params<R> p;
     p.dimensions = 2;
     p.cells_x = 6;
-    p.cells_z = 2;
+    p.cells_z = p.layers = 2;
     CHECK(bin_count(p) == 6 * 2 * 2);
     CHECK(bin_of<2>(Vec3<R>{R(0.1), 0, R(0.1)}, p) == 0);
     CHECK(bin_of<2>(Vec3<R>{R(0.1), 0, R(0.6)}, p) == 1);
     CHECK(bin_of<2>(Vec3<R>{R(0.6), 0, R(0.1)}, p) == 2);
     CHECK(bin_of<2>(Vec3<R>{R(2.9), 0, R(1.9)}, p) == bin_count(p) - 1);
+  }
+}
+
+namespace {
+
+/// Particles in the order of bins, with their lists.
+template <int D, class Real>
+struct Sorted {
+  std::vector<int> id, start;
+  std::vector<Vec4<Real>> x;
+  std::vector<std::vector<int>> lists;  ///< ids
+
+  Sorted(const Params<Real>& p, const std::vector<Vec4<Real>>& all, const std::vector<int>& ids)
+      : start(std::size_t(bin_count(p)) + 1) {
+    std::vector<int> bin, order(ids.size());
+    for (const int i : ids) bin.push_back(bin_of<D>(xyz(all[std::size_t(i)]), p));
+    for (const int b : bin) REQUIRE((b >= 0 && b < bin_count(p)));
+    CpuExec exec(2);
+    exec.sort(bin.data(), p.n, bin_count(p), order.data(), start.data());
+    for (const int k : order) {
+      id.push_back(ids[std::size_t(k)]);
+      x.push_back(all[std::size_t(id.back())]);
+    }
+    const auto made = exec.build_lists(x.data(), start.data(), p);
+    lists.resize(ids.size());
+    for (int i = 0; i < p.n; ++i)
+      made.for_each(i, [&](int j) { lists[std::size_t(i)].push_back(id[std::size_t(j)]); });
+  }
+};
+
+/// Layers first..last-1 with one more on either side, against the whole grid: the same particles in
+/// the same order, and the same lists of those between.
+template <int D, class Real>
+void check_slab(const std::vector<Vec4<Real>>& x, Params<Real> p, int first, int last) {
+  const auto layer = [&, whole = p](const Vec4<Real>& at) { return cell_of<D>(xyz(at), whole).z; };
+  std::vector<int> all, here;
+  const int low = std::max(first - 1, 0), high = std::min(last + 1, p.cells_z);
+  for (int i = 0; i < int(x.size()); ++i) {
+    all.push_back(i);
+    const int z = layer(x[std::size_t(i)]);
+    if (z >= low && z < high) here.push_back(i);
+  }
+  p.n = int(all.size());
+  const Sorted<D, Real> whole(p, x, all);
+  p.n = int(here.size());
+  p.first_layer = low;
+  p.layers = high - low;
+  const Sorted<D, Real> slab(p, x, here);
+  const auto begin =
+      std::size_t(whole.start[std::size_t(low * p.cells_x * p.cells_y * bins_per_cell(D))]);
+  std::size_t compared = 0;
+  for (std::size_t k = 0; k < here.size(); ++k) {
+    REQUIRE(slab.id[k] == whole.id[begin + k]);
+    const int z = layer(slab.x[k]);
+    if (z < first || z >= last) continue;
+    REQUIRE(slab.lists[k] == whole.lists[begin + k]);
+    ++compared;
+  }
+  REQUIRE(compared > 0);
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a slab of the grid has the rows and the lists of the whole", "", float,
+                   double) {
+  using R = TestType;
+  Params<R> p;
+  p.cells_x = 10;
+  p.cells_y = 4;
+  p.cells_z = p.layers = 9;
+  // Some have left the grid through each face, many times its size away.
+  std::vector<Vec4<R>> x = random_points<R>(3000, -1, 10);
+  for (auto far : random_points<R>(500, -60, 60)) x.push_back(far);
+  for (int i = 0; i < 40; ++i) x.push_back({R(1), R(2), R(3 + i % 2), 0});  // on a cut
+  const std::vector<std::pair<int, int>> slabs{{0, 9}, {0, 3}, {3, 4}, {2, 7}, {8, 9}, {6, 9}};
+  for (const auto& s : slabs) {
+    CAPTURE(s.first, s.second);
+    check_slab<3>(x, p, s.first, s.second);
+  }
+  p.dimensions = 2;
+  p.cells_y = 1;
+  for (auto& at : x) at.y = 0;
+  for (const auto& s : slabs) {
+    CAPTURE(s.first, s.second);
+    check_slab<2>(x, p, s.first, s.second);
   }
 }
