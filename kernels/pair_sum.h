@@ -3,6 +3,7 @@
 //
 // Such a pass has
 //   D                                  dimensions of the scene
+//   gathers                            Fields of a neighbour's row that it reads
 //   own(i) const                       what particle i brings: position, lambda, ...
 //   other(j) const                     what is gathered from a neighbour
 //   SumOf<V> (value-initialised to 0)  and each(f): f(V&) for every member
@@ -16,6 +17,17 @@
 #include "kernels/smoothing.h"
 
 namespace pbf::inline PBF_VARIANT {
+
+/// What a row has for the passes over its neighbours. A pass that reads a field of another row
+/// finds there what the last pass that wrote it has left.
+enum Fields : unsigned {
+  kPlace = 1,           ///< x, y, z of the position
+  kLambda = 2,          ///< its w after the lambda pass
+  kInverseDensity = 4,  ///< its w after the delta pass
+  kVelocity = 8,
+  kCurl = 16,
+  kId = 32
+};
 
 /// One particle on one thread: the sequential form, and the reference for the others.
 template <class Pass>

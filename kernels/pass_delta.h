@@ -38,6 +38,7 @@ struct DeltaPass {
   StepCounts* moves_on;      ///< not null: on to the next substep's x* and velocity at once
 
   static constexpr int D = dimensions_of(S);
+  static constexpr unsigned gathers = kPlace | kLambda | kId;
   using Own = Vec4<Real>;
   template <class V>
   struct SumOf {

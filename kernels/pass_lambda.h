@@ -16,6 +16,7 @@ struct DensityPass {
   Real* density;  ///< out
 
   static constexpr int D = dimensions_of(S);
+  static constexpr unsigned gathers = kPlace;
   using Own = Vec<Real, D>;
   template <class V>
   struct SumOf {
@@ -79,6 +80,7 @@ struct LambdaPass {
   StepCounts* counts;
 
   static constexpr int D = dimensions_of(S);
+  static constexpr unsigned gathers = kPlace;
   using Own = Vec<Real, D>;
   template <class V>
   struct SumOf {

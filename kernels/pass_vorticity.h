@@ -26,6 +26,7 @@ struct CurlPass {
   Vec4<Real>* curl;  ///< out
 
   static constexpr int D = dimensions;
+  static constexpr unsigned gathers = kPlace | kInverseDensity | kVelocity;
   using Own = MovingOwn<Real, D>;
   template <class V>
   struct SumOf {
@@ -88,6 +89,7 @@ struct VorticityPass {
   Vec4<Real>* velocity;  ///< in/out
 
   static constexpr int D = dimensions;
+  static constexpr unsigned gathers = kPlace | kInverseDensity | kCurl;
   using Own = CurlOwn<Real>;
   template <class V>
   using SumOf = VectorSum<V, D>;  ///< eta

@@ -18,6 +18,7 @@ struct XsphPass {
   int* bin;  ///< out
 
   static constexpr int D = dimensions_of(S);
+  static constexpr unsigned gathers = kPlace | kInverseDensity | kVelocity;
   using Own = MovingOwn<Real, D>;
   template <class V>
   using SumOf = VectorSum<V, D>;

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "kernels/smoothing.h"
+#include "kernels/pass_delta.h"
+#include "kernels/pass_lambda.h"
+#include "kernels/pass_vorticity.h"
+#include "kernels/pass_xsph.h"
 #include "lib/base/error.h"
 #include "lib/plan/axes.h"
 #include "lib/plan/substep_lists.h"
@@ -66,11 +70,25 @@ double default_step_length(double ratio, int dimensions) {
   return std::min(1.0, 2.5 / ratio * (2.5 / ratio));
 }
 
+/// The fields that a pass declares (kernels/pair_sum.h).
+std::string gathers_text(unsigned fields) {
+  std::string out;
+  const std::pair<unsigned, const char*> names[] = {
+      {kPlace, "position"},    {kLambda, "lambda"}, {kInverseDensity, "1/density"},
+      {kVelocity, "velocity"}, {kCurl, "curl"},     {kId, "id"}};
+  for (const auto& [field, name] : names)
+    if (fields & field) out.append(out.empty() ? "" : " ").append(name);
+  return out;
+}
+
 void plan_passes(Plan& plan, const Scene& s) {
+  // What a pass gathers is the same in every form of it.
+  constexpr Smoothing S = Smoothing::consistent;
+  using Lists = ChunkedLists;
   const int k = s.solver.iterations * plan.substeps * (1 + plan.more_rounds);  // at most
   auto add = [&](const char* name, const char* stage, const char* reads, const char* writes,
-                 int times = 1) {
-    plan.passes.push_back({name, stage, reads, writes, times});
+                 int times = 1, unsigned gathers = 0) {
+    plan.passes.push_back({name, stage, reads, writes, times, gathers_text(gathers)});
   };
   if (!plan.pairs) {
     add("move", "predict", "position velocity", "position velocity", plan.substeps);
@@ -84,20 +102,28 @@ void plan_passes(Plan& plan, const Scene& s) {
   add("sort", "grid", "bin id", "order bin_start", lists);
   add("gather", "grid", "order position velocity id", "position' velocity' id'", lists);
   add("lists", "neighbors", "position bin_start", "lists", lists);
-  if (k > 0 && !plan.fused) add("density", "density", "position lists", "density", k);
+  if (k > 0 && !plan.fused)
+    add("density", "density", "position lists", "density", k,
+        DensityPass<float, Lists, S>::gathers);
   if (k > 0) {
     add(plan.fused ? "density+lambda" : "lambda", "lambda",
         plan.fused ? "position lists" : "position lists density",
-        plan.fused ? "position' density" : "position'", k);
+        plan.fused ? "position' density" : "position'", k,
+        LambdaPass<float, Lists, S, true>::gathers);
     add(plan.tensile ? "delta+move (tensile)" : "delta+move", "delta",
-        "position' lists density velocity", "position velocity", k);
+        "position' lists density velocity", "position velocity", k,
+        DeltaPass<float, Lists, S, true>::gathers);
   }
   if (plan.more_rounds > 0)
     add("mean compression", "residual", "density", "", plan.substeps * plan.more_rounds);
-  if (plan.xsph) add("xsph", "xsph", "position velocity lists", "velocity'");
+  if (plan.xsph)
+    add("xsph", "xsph", "position velocity lists", "velocity'", 1,
+        XsphPass<float, Lists, S, true>::gathers);
   if (plan.vorticity) {
-    add("curl", "vorticity", "position velocity lists", "curl");
-    add("confinement", "vorticity", "position curl lists velocity", "velocity");
+    add("curl", "vorticity", "position velocity lists", "curl", 1,
+        CurlPass<float, Lists, 3>::gathers);
+    add("confinement", "vorticity", "position curl lists velocity", "velocity", 1,
+        VorticityPass<float, Lists, 3>::gathers);
   }
 }
 

@@ -15,7 +15,8 @@ namespace pbf {
 /// One pass of an update, in order. `stage` is its timer's name.
 struct PlanPass {
   std::string name, stage, reads, writes;
-  int per_update = 1;  ///< times per update
+  int per_update = 1;   ///< times per update
+  std::string gathers;  ///< of what it reads, the fields of neighbours' rows
 };
 
 struct PlanLeftOut {

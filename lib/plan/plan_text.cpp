@@ -91,8 +91,9 @@ std::string plan_text(const Plan& plan, const Scene& s) {
              : format("passes of one step; 2^k of them in an update at level k = 0 ... %d\n",
                       plan.finest_level);
   for (const auto& p : plan.passes)
-    out += format("  %-22s x%-3d stage %-10s reads %-34s writes %s\n", p.name.c_str(), p.per_update,
-                  p.stage.c_str(), p.reads.c_str(), p.writes.c_str());
+    out += format("  %-22s x%-3d stage %-10s reads %-34s writes %s", p.name.c_str(), p.per_update,
+                  p.stage.c_str(), p.reads.c_str(), p.writes.c_str()) +
+           (p.gathers.empty() ? "\n" : "; of neighbours " + p.gathers + "\n");
   if (plan.substeps > 1)
     out += format("  %d substeps of %.4g s on %d list%s: at most %.3g h of way on one list\n",
                   plan.substeps, s.time.step / plan.substeps, plan.lists_per_update,
@@ -140,6 +141,7 @@ std::string plan_json(const Plan& plan, const Scene& s, const std::string& membe
   out += ",\"passes\":" + list(plan.passes, [](const PlanPass& p) {
            return "{\"name\":" + json_string(p.name) + ",\"stage\":" + json_string(p.stage) +
                   ",\"reads\":" + json_string(p.reads) + ",\"writes\":" + json_string(p.writes) +
+                  ",\"gathers\":" + json_string(p.gathers) +
                   format(",\"per_update\":%d}", p.per_update);
          });
   out += ",\"memory\":" + memory_json(plan, s);

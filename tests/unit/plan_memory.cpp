@@ -203,3 +203,17 @@ TEST_CASE("a scene that cannot fit is refused before a particle is made") {
   const Plan small = make_plan(block(0.5, {}), 8);
   CHECK(scene_test::error_of([&] { refuse_if_too_large(s, small); }) == "no error");
 }
+
+TEST_CASE("the plan says what each pass over pairs reads of the neighbours' rows") {
+  const Scene s = block(0.1, {"viscosity={}", "vorticity={}", "tensile={}"});
+  const Plan plan = make_plan(s, 1000);
+  std::vector<std::string> gathers;
+  for (const PlanPass& p : plan.passes)
+    if (!p.gathers.empty()) gathers.push_back(p.stage + ": " + p.gathers);
+  CHECK(gathers == std::vector<std::string>{"lambda: position", "delta: position lambda id",
+                                            "xsph: position 1/density velocity",
+                                            "vorticity: position 1/density velocity",
+                                            "vorticity: position 1/density curl"});
+  CHECK(plan_text(plan, s).find("; of neighbours position lambda id\n") != std::string::npos);
+  CHECK(plan_json(plan, s).find("\"gathers\":\"position lambda id\"") != std::string::npos);
+}
