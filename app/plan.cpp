@@ -10,6 +10,7 @@
 #include "lib/diag/calibration.h"
 #include "lib/scene/emit.h"
 #include "lib/scene/load.h"
+#include "lib/scene/start_neighbors.h"
 #include "lib/solver/devices.h"
 #include "lib/solver/threads.h"
 
@@ -37,7 +38,8 @@ int command_plan(const PlanOptions& options) {
   Log log(false);
   const std::string dir = std::filesystem::path(loaded.path).parent_path().string();
   // Counted for --resolved too: a scene that cannot run is an error in every form of the answer.
-  const Plan plan = make_plan(loaded.scene, count_particles(loaded.scene, dir));
+  const std::int64_t n = count_particles(loaded.scene, dir);
+  const Plan plan = make_plan(loaded.scene, n, start_neighbors(loaded.scene, dir, n));
   const int threads = solver_threads(loaded.scene, plan.particles);
   const std::vector<StageCosts> costs = read_calibration(calibration_path());
   const auto time = estimate_time(plan, loaded.scene, costs, threads, cpu_model());

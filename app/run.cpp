@@ -18,6 +18,7 @@
 #include "lib/io/particle_output.h"
 #include "lib/scene/emit.h"
 #include "lib/scene/load.h"
+#include "lib/scene/start_neighbors.h"
 #include "lib/solver/threads.h"
 
 namespace pbf {
@@ -198,7 +199,9 @@ int command_run(const RunOptions& options) {
   const bool there = RunFolder::check(out, existing);
   check_json_folder(options.log_json, out);
   const std::string dir = std::filesystem::path(loaded.path).parent_path().string();
-  const Plan plan = make_plan(scene, count_particles(scene, dir));
+  const std::int64_t particles = count_particles(scene, dir);
+  refuse_if_too_large(scene, make_plan(scene, particles));  // before a look at every particle
+  const Plan plan = make_plan(scene, particles, start_neighbors(scene, dir, particles));
   refuse_if_too_large(scene, plan);
   std::unique_ptr<RunFolder> folder;
   ResumePoint from;

@@ -16,21 +16,6 @@ namespace {
 constexpr int kFirstBatch = 8;
 int largest_batch(int n) { return n < 20000 ? 256 : n < 500000 ? 64 : 16; }
 
-/// More room, with air for what may come: longer lists for all while many outgrow theirs, or more
-/// tails; and longer ones, but then no more of them than are in use, for one very long list (a
-/// clump of thousands of particles) must not cost every tail its length.
-ListRoom larger(ListRoom room, const ListState& short_of, int n) {
-  const int tails = std::max(short_of.used, short_of.wanted);
-  if (tails > n / 8 + 32 && room.first < 96) {
-    room.first += (room.first + 1) / 2;
-    return room;
-  }
-  if (short_of.longest > room.longest())
-    room.tail = (short_of.longest + short_of.longest / 8) / 4 + 1 - room.first;
-  room.tails = tails + tails / 4 + 32;
-  return room;
-}
-
 template <class Real>
 class CudaSolver final : public Solver {
  public:
@@ -270,7 +255,8 @@ class CudaSolver final : public Solver {
   bool grow_if_needed() {
     const ListState short_of = exec_.overflow();
     if (short_of.wanted == 0 && short_of.longest == 0) return false;
-    exec_.set_room(n_, larger(exec_.room(), short_of, n_));
+    exec_.set_room(n_, larger_list_room(exec_.room(), std::max(short_of.used, short_of.wanted),
+                                        short_of.longest, n_));
     exec_.clear_overflow();
     drop_graphs();  // they hold the old room
     return true;

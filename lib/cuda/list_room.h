@@ -1,6 +1,7 @@
 // What decides the size of arrays on the device; no CUDA header is needed to include this.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace pbf {
@@ -19,6 +20,20 @@ struct ListRoom {
 inline ListRoom first_list_room(double rest_neighbors, std::int64_t n, int first_entries = 0) {
   const int first = first_entries > 0 ? first_entries : int(rest_neighbors * 1.15);
   return {(first + 3) / 4, 8, int(n / 8) + 32};
+}
+
+/// More room, with air for what may come, where `tails` lists outgrew the first room and the
+/// longest holds `longest` entries (0: none is too long): longer lists for all while many outgrow
+/// theirs, or more tails; and longer ones, but then no more of them than are in use, for one very
+/// long list (a clump of thousands of particles) must not cost every tail its length.
+inline ListRoom larger_list_room(ListRoom room, std::int64_t tails, int longest, std::int64_t n) {
+  if (tails > n / 8 + 32 && room.first < 96) {
+    room.first += (room.first + 1) / 2;
+    return room;
+  }
+  if (longest > room.longest()) room.tail = (longest + longest / 8) / 4 + 1 - room.first;
+  room.tails = int(std::min<std::int64_t>(tails + tails / 4 + 32, 2147483647));
+  return room;
 }
 
 /// Words between word k and k + 1 of one particle: whole warps.

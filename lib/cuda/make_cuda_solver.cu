@@ -10,15 +10,15 @@ namespace pbf {
 namespace {
 
 /// By the plan's count of the arrays; the context is there already, so it is not counted.
-void refuse_if_device_too_small(const Plan& plan) {
+void refuse_if_device_too_small(const Scene& scene, const Plan& plan) {
   std::size_t free = 0, total = 0;
   PBF_CUDA_CHECK(cudaMemGetInfo(&free, &total));
   if (plan.memory.device_arrays > std::int64_t(free))
     throw Error(ExitCode::unavailable,
                 "not enough device memory: " + std::to_string(plan.particles) + " particles need " +
                     std::to_string(plan.memory.device_arrays) + " bytes, " + std::to_string(free) +
-                    " of " + std::to_string(total) +
-                    " are free; increase fluid.spacing or use --precision float");
+                    " of " + std::to_string(total) + " are free; " + memory_remedy(scene, plan) +
+                    " or use --precision float");
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ std::unique_ptr<Solver> make_cuda_solver(const Scene& scene, const Plan& plan, P
     throw Error(ExitCode::unavailable,
                 "backend cuda: no usable GPU here (" + why +
                     "); run with --backend cpu, or where `nvidia-smi` lists a device");
-  refuse_if_device_too_small(plan);
+  refuse_if_device_too_small(scene, plan);
   const ListRoom room = first_list_room(rest_neighbors(scene), plan.particles, first_entries);
   return scene.solver.reproducible
              ? pinned::make_stepping_solver(scene, plan, std::move(particles), room)

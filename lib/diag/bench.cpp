@@ -7,6 +7,7 @@
 #include "lib/base/stage_clock.h"
 #include "lib/plan/plan.h"
 #include "lib/scene/emit.h"
+#include "lib/scene/start_neighbors.h"
 #include "lib/solver/devices.h"
 
 namespace pbf {
@@ -88,7 +89,7 @@ void time_state(Solver& solver, const BenchSettings& s, BenchRow& row) {
 
 std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const BenchSettings& s) {
   const std::int64_t n = count_particles(scene, dir);
-  const Plan plan = make_plan(scene, n);
+  const Plan plan = make_plan(scene, n, start_neighbors(scene, dir, n));
   refuse_if_too_large(scene, plan);
   const std::unique_ptr<Solver> solver = make_solver(scene, plan, emit_particles(scene, dir));
   BenchRow row;

@@ -13,6 +13,7 @@
 #include "lib/io/run_layout.h"
 #include "lib/plan/plan.h"
 #include "lib/scene/emit.h"
+#include "lib/scene/start_neighbors.h"
 
 namespace pbf {
 namespace {
@@ -24,13 +25,18 @@ std::int64_t short_updates(std::int64_t updates) {
   return std::min(updates, std::max<std::int64_t>(20, updates / 10));
 }
 
+Plan plan_of(const Scene& scene, const std::string& dir) {
+  const std::int64_t n = count_particles(scene, dir);
+  return make_plan(scene, n, start_neighbors(scene, dir, n));
+}
+
 /// One simulation with its clock.
 class Simulation {
  public:
   Simulation(const Study& study, const StudyMember& member)
       : scene_(member.scene),
         cpu_clock_(study.cpu_clock),
-        plan_(make_plan(scene_, count_particles(scene_, study.scene_dir))),
+        plan_(plan_of(scene_, study.scene_dir)),
         solver_((refuse_if_too_large(scene_, plan_),
                  make_solver(scene_, plan_, emit_particles(scene_, study.scene_dir)))) {}
 

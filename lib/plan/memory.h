@@ -59,6 +59,16 @@ double rest_neighbors(const Scene& scene);
 /// scatter like Poisson's. Lists of 1024 particles share their room, so it is the mean that counts;
 /// where the fluid is denser the executor takes more.
 int cpu_list_entries(const Scene& scene);
+/// Mean number of neighbours at the start, and whether that, not fluid at rest, decides the size of
+/// the lists. Later the fluid may crowd more than it did at the start; that is not foreseen.
+struct StartCrowd {
+  double neighbors = 0;  ///< 0: not counted (Plan::start)
+  bool decides = false;
+};
+StartCrowd start_crowd(const Scene& scene, const Plan& plan);
+/// What to change where the memory does not suffice, for the end of a message.
+std::string memory_remedy(const Scene& scene, const Plan& plan);
+
 /// Room for the lists that one thread makes: those of 1024 particles, and of one group.
 constexpr std::int64_t cpu_scratch_entries(int list_entries) {
   return (1024 + 32) * std::int64_t(list_entries);

@@ -195,9 +195,10 @@ void plan_files(Plan& plan, const Scene& s) {
 
 }  // namespace
 
-Plan make_plan(const Scene& s, std::int64_t particles) {
+Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   Plan plan;
   plan.particles = particles;
+  plan.start = std::move(start);
   plan.mass = s.particle_mass();
   if (s.fluid.mass) {
     const double h = s.h(), third = s.dimensions == 2 ? s.domain.max[1] - s.domain.min[1] : h;

@@ -9,6 +9,7 @@
 #include "kernels/axes.h"
 #include "lib/plan/memory.h"
 #include "lib/scene/scene.h"
+#include "lib/scene/start_neighbors.h"
 
 namespace pbf {
 
@@ -32,6 +33,7 @@ struct PlanFile {
 
 struct Plan {
   std::int64_t particles = 0;
+  StartNeighbors start;      ///< lib/scene/start_neighbors.h
   double cell_edge = 1;      ///< in h, >= 1: larger only where the box would need too many cells
   Axes axes;                 ///< of the internal frame; lib/plan/axes.h
   int cells[3] = {1, 1, 1};  ///< of the grid, in internal axes; along x half cells
@@ -67,9 +69,10 @@ struct Plan {
   std::int64_t bytes() const { return memory.solver_bytes(); }
 };
 
-/// Pure: touches no file and no device. `particles` from count_particles().
-/// Throws Error(bad_input) where the grid of the scene cannot be numbered.
-Plan make_plan(const Scene& scene, std::int64_t particles);
+/// Pure: touches no file and no device. `particles` from count_particles(). `start`: of
+/// start_neighbors(), for the memory of a crowded start; without it the start counts as fluid at
+/// rest. Throws Error(bad_input) where the grid of the scene cannot be numbered.
+Plan make_plan(const Scene& scene, std::int64_t particles, StartNeighbors start = {});
 
 /// The plan for people: passes, arrays, files, what was left out and because of which key.
 std::string plan_text(const Plan& plan, const Scene& scene);

@@ -86,6 +86,12 @@ std::string plan_text(const Plan& plan, const Scene& s) {
       "grid %d (half) x %d x %d cells of edge %g h; internal axes x, y, z: %s of the scene\n",
       plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge, axes_text(plan.axes).c_str());
   if (s.backend == Backend::cpu) out += threads_text(s, plan.particles) + "\n";
+  if (const StartCrowd crowd = start_crowd(s, plan); crowd.neighbors > 0)
+    out += format("start: about %.0f neighbours of a particle, at rest %.0f%s\n", crowd.neighbors,
+                  rest_neighbors(s),
+                  crowd.decides ? "; they decide the size of the lists, and fluid that crowds more "
+                                  "later takes more"
+                                : "");
   out += plan.finest_level == 0
              ? "passes of one update\n"
              : format("passes of one step; 2^k of them in an update at level k = 0 ... %d\n",

@@ -5,57 +5,12 @@
 #include <filesystem>
 
 #include "lib/base/error.h"
-#include "lib/scene/lattice.h"
 #include "lib/scene/number.h"
 #include "lib/scene/particle_file.h"
-#include "lib/scene/random.h"
+#include "lib/scene/points.h"
 
 namespace pbf {
 namespace {
-
-std::string resolved_path(const Body& body, const std::string& scene_dir) {
-  const std::filesystem::path path(body.path);
-  return path.is_absolute() ? body.path : (std::filesystem::path(scene_dir) / path).string();
-}
-
-void emit_block(const Body& body, double d, std::optional<double> plane,
-                std::vector<Double3>& out) {
-  const auto cells = block_cells(body, d, plane);
-  const std::array<std::int64_t, 3> n{static_cast<std::int64_t>(cells[0]),
-                                      static_cast<std::int64_t>(cells[1]),
-                                      static_cast<std::int64_t>(cells[2])};
-  for (std::int64_t k = 0; k < n[2]; ++k)
-    for (std::int64_t j = 0; j < n[1]; ++j)
-      for (std::int64_t i = 0; i < n[0]; ++i)
-        out.push_back({body.min[0] + (static_cast<double>(i) + 0.5) * d,
-                       body.min[1] + (static_cast<double>(j) + 0.5) * d,
-                       body.min[2] + (static_cast<double>(k) + 0.5) * d});
-}
-
-void emit_sphere(const Body& body, double d, std::optional<double> plane,
-                 std::vector<Double3>& out) {
-  const double limit = sphere_limit(body, d, plane);
-  const std::int64_t n = half_width(limit), ny = plane ? 0 : n;
-  for (std::int64_t k = -n; k <= n; ++k)
-    for (std::int64_t j = -ny; j <= ny; ++j) {
-      const auto w = half_width(limit - static_cast<double>(k * k) - static_cast<double>(j * j));
-      for (std::int64_t i = -w; i <= w; ++i)
-        out.push_back({body.center[0] + static_cast<double>(i) * d,
-                       body.center[1] + static_cast<double>(j) * d,
-                       body.center[2] + static_cast<double>(k) * d});
-    }
-}
-
-void emit_random_box(const Body& body, bool flat, std::vector<Double3>& out) {
-  SplitMix64 random(body.seed);
-  for (std::int64_t i = 0; i < body.count; ++i) {
-    Double3 x{};
-    for (int a = 0; a < 3;
-         a += flat ? 2 : 1)  // min(): rounding of the product may reach past the upper face
-      x[a] = std::min(body.min[a] + random.uniform() * (body.max[a] - body.min[a]), body.max[a]);
-    out.push_back(x);
-  }
-}
 
 /// Refuses particles outside the domain. What lies outside by rounding only (a sphere that touches
 /// a wall) is put on the wall. In two dimensions everything is put on the plane.
@@ -94,6 +49,11 @@ void refuse_velocity_along_y(std::size_t body, const std::vector<Double3>& v) {
 
 }  // namespace
 
+std::string resolved_path(const Body& body, const std::string& scene_dir) {
+  const std::filesystem::path path(body.path);
+  return path.is_absolute() ? body.path : (std::filesystem::path(scene_dir) / path).string();
+}
+
 std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {
   double sum = 0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
@@ -124,13 +84,10 @@ Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
     const std::size_t first = all.size();
     switch (body.shape) {
       case Shape::block:
-        emit_block(body, scene.fluid.spacing, scene.plane(), all.position);
-        break;
       case Shape::sphere:
-        emit_sphere(body, scene.fluid.spacing, scene.plane(), all.position);
-        break;
       case Shape::random_box:
-        emit_random_box(body, scene.dimensions == 2, all.position);
+        for_each_point(body, scene.fluid.spacing, scene.plane(),
+                       [&](const Double3& x) { all.position.push_back(x); });
         break;
       case Shape::file: {
         const Particles p = read_particle_file(resolved_path(body, scene_dir));

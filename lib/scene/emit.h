@@ -16,6 +16,9 @@ struct Particles {
   std::size_t size() const { return position.size(); }
 };
 
+/// Path of a file body's file.
+std::string resolved_path(const Body& body, const std::string& scene_dir);
+
 /// Number of particles the scene's bodies make, without making them (file bodies are opened).
 /// Throws Error(bad_input) when the number is 0 or above 2^31 - 1.
 std::int64_t count_particles(const Scene& scene, const std::string& scene_dir);

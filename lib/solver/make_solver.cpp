@@ -17,9 +17,10 @@ void refuse_if_too_large(const Scene& scene, const Plan& plan) {
   if (available > 0 && needed > available)
     throw Error(ExitCode::unavailable,
                 format("scene %s needs about %s of memory for %lld particles, %s are available; "
-                       "increase fluid.spacing, or use a machine with more memory",
+                       "%s, or use a machine with more memory",
                        scene.name.c_str(), bytes_text(needed).c_str(),
-                       static_cast<long long>(plan.particles), bytes_text(available).c_str()));
+                       static_cast<long long>(plan.particles), bytes_text(available).c_str(),
+                       memory_remedy(scene, plan).c_str()));
 }
 
 std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles) {

@@ -127,3 +127,20 @@ TEST_CASE("pictures are drawn by a run and, later, from its file") {
   }
 }
 #endif
+
+TEST_CASE("a start too crowded for the memory of any machine exits 4 before anything is made") {
+  const Scratch folder;
+  const std::string scene = folder.write(
+      "s.yaml",
+      "domain: {min: [0, 0, 0], max: [1, 1, 1]}\n"
+      "fluid: {spacing: 0.05}\n"
+      "bodies:\n"
+      "  - {shape: random_box, min: [0.4, 0.4, 0.4], max: [0.42, 0.42, 0.42], count: 2000000}\n"
+      "time: {step: 0.001, end: 1}\n");
+  const Outcome o = pbf::test::pbf({"run", scene}, folder.path());
+  CAPTURE(o.err);
+  CHECK(o.code == 4);
+  CHECK(has(o.err, "about 2000000 neighbours"));
+  CHECK_FALSE(fs::exists(folder / "out"));
+  CHECK(has(pbf::test::pbf({"plan", scene}, folder.path()).out, "\nstart: about 2000000"));
+}

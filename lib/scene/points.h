@@ -1,0 +1,55 @@
+// The places of a body's particles, one by one in the order of their ids, before any check of them.
+// Header only. Bodies of files are read by particle_file.h.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "lib/scene/lattice.h"
+#include "lib/scene/random.h"
+
+namespace pbf {
+
+/// put(point in m) for every particle of a block, sphere or random box. d: spacing of the lattice;
+/// plane: of Scene::plane(), along y what lies off it is left as it is.
+template <class Put>
+void for_each_point(const Body& body, double d, std::optional<double> plane, Put&& put) {
+  if (body.shape == Shape::block) {
+    const auto cells = block_cells(body, d, plane);
+    const std::array<std::int64_t, 3> n{static_cast<std::int64_t>(cells[0]),
+                                        static_cast<std::int64_t>(cells[1]),
+                                        static_cast<std::int64_t>(cells[2])};
+    for (std::int64_t k = 0; k < n[2]; ++k)
+      for (std::int64_t j = 0; j < n[1]; ++j)
+        for (std::int64_t i = 0; i < n[0]; ++i)
+          put(Double3{body.min[0] + (static_cast<double>(i) + 0.5) * d,
+                      body.min[1] + (static_cast<double>(j) + 0.5) * d,
+                      body.min[2] + (static_cast<double>(k) + 0.5) * d});
+  }
+  if (body.shape == Shape::sphere) {
+    const double limit = sphere_limit(body, d, plane);
+    const std::int64_t n = half_width(limit), ny = plane ? 0 : n;
+    for (std::int64_t k = -n; k <= n; ++k)
+      for (std::int64_t j = -ny; j <= ny; ++j) {
+        const auto w = half_width(limit - static_cast<double>(k * k) - static_cast<double>(j * j));
+        for (std::int64_t i = -w; i <= w; ++i)
+          put(Double3{body.center[0] + static_cast<double>(i) * d,
+                      body.center[1] + static_cast<double>(j) * d,
+                      body.center[2] + static_cast<double>(k) * d});
+      }
+  }
+  if (body.shape == Shape::random_box) {
+    SplitMix64 random(body.seed);
+    for (std::int64_t i = 0; i < body.count; ++i) {
+      Double3 x{};
+      for (int a = 0; a < 3; a += plane ? 2 : 1)
+        // min(): rounding of the product may reach past the upper face
+        x[a] = std::min(body.min[a] + random.uniform() * (body.max[a] - body.min[a]), body.max[a]);
+      put(x);
+    }
+  }
+}
+
+}  // namespace pbf
