@@ -15,6 +15,7 @@
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
+#include "lib/diag/prestabilize.h"
 #include "lib/io/particle_output.h"
 #include "lib/scene/emit.h"
 #include "lib/scene/load.h"
@@ -134,6 +135,18 @@ File open_json(const std::string& path, bool append) {
   return file;
 }
 
+/// The start's compression, taken out with a line in the log, and one every 10 s on the way.
+void relieve(Solver& solver, const Scene& scene, const Plan& plan, Log& log) {
+  Stopwatch since;
+  const std::string done =
+      prestabilized_text(prestabilize(solver, scene, plan, [&](const std::string& line) {
+        if (since.seconds() < 10) return log.transient("pbf: " + line);
+        log.note("pbf: " + line);
+        since.reset();
+      }));
+  if (!done.empty()) log.note("pbf: " + done);
+}
+
 /// Everything from the made folder on, so that its log.txt also gets the error that ends it.
 int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver> solver,
              const RunFolder& folder, const ResumePoint& from, Log& log, StageClock& clock,
@@ -150,6 +163,10 @@ int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver
     solver->set_state(from.saved->state);
     log.note(format("pbf: goes on from the checkpoint of update %lld",
                     static_cast<long long>(from.update())));
+  } else {
+    clock.mark("init");
+    relieve(*solver, loaded.scene, plan, log);
+    clock.begin();  // the solver has booked its steps
   }
   RunSinks sinks = open_sinks(loaded, plan, *solver, folder, json.get(), started, from);
   clock.mark("init");

@@ -53,6 +53,7 @@ class CpuSolver final : public Solver {
     steps_ += steps;
   }
 
+  std::vector<double> positions() override { return stepper_->positions(); }
   Snapshot download(const std::vector<std::string>& fields, ScalarType type) override {
     Snapshot s = empty_snapshot(fields, type, std::size_t(n_), updates_, time());
     type == ScalarType::f64 ? fill<double>(s) : fill<float>(s);

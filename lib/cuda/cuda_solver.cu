@@ -61,6 +61,7 @@ class CudaSolver final : public Solver {
     step_seconds_ += watch.seconds();
   }
 
+  std::vector<double> positions() override { return stepper_->positions(); }
   Snapshot download(const std::vector<std::string>& fields, ScalarType type) override {
     start_download(fields, type);
     return finish_download();

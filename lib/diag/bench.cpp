@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "lib/base/stage_clock.h"
+#include "lib/diag/prestabilize.h"
 #include "lib/plan/plan.h"
 #include "lib/scene/emit.h"
 #include "lib/scene/start_neighbors.h"
@@ -91,7 +92,7 @@ std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const Be
   const std::int64_t n = count_particles(scene, dir);
   const Plan plan = make_plan(scene, n, start_neighbors(scene, dir, n));
   refuse_if_too_large(scene, plan);
-  const std::unique_ptr<Solver> solver = make_solver(scene, plan, emit_particles(scene, dir));
+  const std::unique_ptr<Solver> solver = start_solver(scene, plan, emit_particles(scene, dir));
   BenchRow row;
   row.particles = n;
   row.settings = s;

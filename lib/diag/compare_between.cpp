@@ -4,6 +4,7 @@
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 #include "lib/diag/compare_parts.h"
+#include "lib/diag/prestabilize.h"
 #include "lib/scene/emit.h"
 #include "lib/scene/random.h"
 
@@ -113,6 +114,9 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
              scene_a.name.c_str(), particles.size(), settings.warmup, result.a.c_str()));
   if (scene_a.time.adaptive || scene_b.time.adaptive)
     result.notes.push_back("time.adaptive is left out: every update is one step");
+  // The others take over A's state.
+  const std::string relieved = prestabilized_text(prestabilize(*a, on_a, plan));
+  if (!relieved.empty()) result.notes.push_back(relieved);
   if (progress) progress(format("%d updates of warm-up on %s", settings.warmup, result.a.c_str()));
   a->step(settings.warmup);
   SolverState start = a->state();

@@ -180,6 +180,7 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
   const int level = finest_level(scene_);  // a coarser one would not have ended the run
   Scene s = scene_at_level(scene_, level);
   s.time.adaptive.reset();
+  s.solver.prestabilize = false;  // it goes on from a state
   s.name += "_event";
   Body body;
   body.shape = Shape::file;

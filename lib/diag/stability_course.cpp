@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "lib/base/error.h"
+#include "lib/diag/prestabilize.h"
 #include "lib/diag/stability.h"
 
 namespace pbf {
@@ -13,7 +14,7 @@ Course run_course(const Scene& scene, const std::string& dir,
   Course c;
   c.particles = count_particles(scene, dir);
   const Plan plan = make_plan(scene, c.particles);
-  const auto solver = make_solver(scene, plan, emit_particles(scene, dir));
+  const auto solver = start_solver(scene, plan, emit_particles(scene, dir));
   const std::int64_t updates =
       std::max<std::int64_t>(1, std::llround(scene.time.end / scene.time.step));
   c.first = c.last = solver->measure();

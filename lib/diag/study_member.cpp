@@ -10,6 +10,7 @@
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
 #include "lib/diag/exact_projection.h"
+#include "lib/diag/prestabilize.h"
 #include "lib/io/run_layout.h"
 #include "lib/plan/plan.h"
 #include "lib/scene/emit.h"
@@ -38,7 +39,7 @@ class Simulation {
         cpu_clock_(study.cpu_clock),
         plan_(plan_of(scene_, study.scene_dir)),
         solver_((refuse_if_too_large(scene_, plan_),
-                 make_solver(scene_, plan_, emit_particles(scene_, study.scene_dir)))) {}
+                 start_solver(scene_, plan_, emit_particles(scene_, study.scene_dir)))) {}
 
   /// Seconds that n updates took, by the clock of the study.
   double step(std::int64_t n) {

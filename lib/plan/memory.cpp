@@ -162,6 +162,18 @@ std::int64_t add_start(const Scene& s, const Plan& plan, const std::string& real
   return peak;
 }
 
+/// While the compression is taken out of the start (lib/diag/prestabilize.h), beside the solver:
+/// the positions before and after a round, and the latter as they come from it.
+std::int64_t add_prestabilize(const Scene& s, const Plan& plan, const std::string& real,
+                              MemoryPlan& memory) {
+  if (!s.solver.prestabilize || s.solver.iterations == 0) return 0;
+  const std::int64_t n = plan.particles;
+  const Adder add{memory, false, Held::start};
+  add("positions before and after steps without time", "double", 3, 2 * n);
+  add("the latter in the solver's order", real, 4, n);
+  return n * (48 + 4 * size_of(real));
+}
+
 /// What frames and pictures take: on the host beside the solver, and the staging on the device.
 void add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   const int scalars = downloaded_scalars(s);
@@ -290,11 +302,13 @@ MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
     add_cpu_lists(s, plan, bins, solver);
   add_output(s, plan, memory);
   const std::int64_t start = add_start(s, plan, real, memory);
+  const std::int64_t relieved = add_prestabilize(s, plan, real, memory);
   add_fixed(s, memory);
   std::int64_t later = 0;
   for (const FixedMemory& f : memory.fixed) later += f.after_start ? f.bytes : 0;
   memory.host_arrays =
-      std::max(start - later, sum(memory, false, Held::solver) + sum(memory, false, Held::output));
+      std::max(start - later, sum(memory, false, Held::solver) +
+                                  std::max(sum(memory, false, Held::output), relieved - later));
   memory.device_arrays = sum(memory, true, Held::solver);
   return memory;
 }

@@ -201,6 +201,13 @@ std::vector<Key> solver_keys() {
              "(time.adaptive), are slowed down to it; how often is counted and reported. 0: no "
              "limit.",
              SCENE(&s.solver.speed_limit)),
+      words(
+          "solver.prestabilize", {},
+          "Steps without time before the first update, while the compression of the start (blocks "
+          "in corners, bodies that overlap) would add to the energy: they move particles and "
+          "leave velocities alone. false: the start as it is given, as for a file that continues "
+          "a run.",
+          SCENE(&s.solver.prestabilize)),
       words("solver.fused", {}, "Density and lambda in one loop over the neighbours.",
             SCENE(&s.solver.fused)),
       words("solver.reproducible", {},

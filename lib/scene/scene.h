@@ -87,6 +87,7 @@ struct SolverSettings {
   double wall_margin = 0;       ///< m, distance to a wall at which particles are clamped
   double velocity_damping = 1;  ///< factor on the velocity, once per update
   double speed_limit = 0;       ///< h per time.step, faster particles are slowed down; 0: no limit
+  bool prestabilize = true;     ///< take the compression out of the start, lib/diag/prestabilize.h
   bool fused = true;            ///< density and lambda in one loop over the neighbours
   bool reproducible = false;    ///< cuda: the CPU's bits, at a price (kernels/README.md, "Bits")
   bool operator==(const SolverSettings&) const = default;

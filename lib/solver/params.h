@@ -102,12 +102,13 @@ Params<Real> params_at_level(const Scene& s, const Plan& plan, int level, const 
 }
 
 /// A step without time: velocities take the factor `damping`, and the sweeps part what is too near
-/// without changing them.
+/// without changing them. One-sided: what pulls a free surface in is no overlap, and without the
+/// artificial pressure that goes with it the particles would draw together in clusters.
 template <class Real>
 Params<Real> without_time(Params<Real> p, double damping) {
   p.dt = p.inv_dt = 0;
   p.damping = Real(damping);
-  p.limit_speed = false;
+  p.limit_speed = p.two_sided = false;
   p.speed_squared = Real(1e30);
   p.tensile_k = p.xsph = p.vorticity = 0;
   return p;

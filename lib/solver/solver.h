@@ -48,9 +48,13 @@ class Solver {
   /// From now on an update is 2^level steps (lib/solver/adaptive_step.h); 0 at first. The state and
   /// keep() know nothing of it.
   virtual void set_step_level(int level) = 0;
-  /// Steps without time: new lists and sweeps, which part what is too near, while velocities change
-  /// by the factor `damping` per step alone. No update is counted.
+  /// Steps without time: new lists and sweeps, which part what is too near and draw nothing
+  /// together (one-sided, whatever the scene's constraint), while velocities change by the factor
+  /// `damping` per step alone. No update is counted.
   virtual void relax(int steps, double damping = 1) = 0;
+  /// Where the particles are now: 3 coordinates each in units of h from Scene::origin(), in the
+  /// order of ids, with all digits that they have.
+  virtual std::vector<double> positions() = 0;
   /// Copies the fields asked for (velocity, density; position and id always) to the host, in id
   /// order, SI units, positions and floating-point fields as f32 or f64 as `type` says.
   virtual Snapshot download(const std::vector<std::string>& fields, ScalarType type) = 0;
@@ -100,6 +104,8 @@ void refuse_if_too_large(const Scene& scene, const Plan& plan);
 
 /// Throws Error(unavailable) when the backend, a device or memory is not there. Takes the particles
 /// and lets go of them as it goes.
+/// The particles stay where they are: what runs a scene from its start calls start_solver()
+/// (lib/diag/prestabilize.h).
 std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles);
 
 }  // namespace pbf

@@ -31,6 +31,27 @@ struct CopyStatePass {
   }
 };
 
+template <class Real, class Exec>
+std::vector<int> ids_on_host(Exec& exec, std::size_t n, const StateArrays<Real>& from) {
+  std::vector<int> id(n);
+  exec.to_host(from.id, n, id.data());
+  return id;
+}
+
+/// Vectors of the rows `id` in the order of ids, along the scene's axes: 3 numbers each.
+template <class Real, class Exec>
+std::vector<double> rows_by_id(Exec& exec, const Axes& axes, const Vec4<Real>* rows,
+                               const std::vector<int>& id) {
+  std::vector<Vec4<Real>> host(id.size());
+  exec.to_host(rows, id.size(), host.data());
+  std::vector<double> to(3 * id.size());
+  for (std::size_t k = 0; k < id.size(); ++k) {
+    double* row = to.data() + 3 * std::size_t(id[k]);
+    row[axes.of[0]] = host[k].x, row[axes.of[1]] = host[k].y, row[axes.of[2]] = host[k].z;
+  }
+  return to;
+}
+
 /// In the order of ids: the order of rows is no part of a state.
 template <class Real, class Exec>
 SolverState download_state(Exec& exec, std::size_t n, const Axes& axes,
@@ -40,19 +61,9 @@ SolverState download_state(Exec& exec, std::size_t n, const Axes& axes,
   s.precision = sizeof(Real) == 8 ? Precision::dbl : Precision::single;
   s.updates = updates;
   s.steps = steps;
-  std::vector<int> id(n);
-  exec.to_host(from.id, n, id.data());
-  const auto copy = [&](const Vec4<Real>* rows, std::vector<double>& to) {
-    std::vector<Vec4<Real>> host(n);
-    exec.to_host(rows, n, host.data());
-    to.resize(3 * n);
-    for (std::size_t k = 0; k < n; ++k) {
-      double* row = to.data() + 3 * std::size_t(id[k]);
-      row[axes.of[0]] = host[k].x, row[axes.of[1]] = host[k].y, row[axes.of[2]] = host[k].z;
-    }
-  };
-  copy(from.position, s.position);
-  copy(from.velocity, s.velocity);
+  const std::vector<int> id = ids_on_host(exec, n, from);
+  s.position = rows_by_id(exec, axes, from.position, id);
+  s.velocity = rows_by_id(exec, axes, from.velocity, id);
   s.id.resize(n);
   std::iota(s.id.begin(), s.id.end(), 0);
   StepCounts counts;

@@ -10,8 +10,8 @@
 
 namespace pbf {
 
-/// A state in h from Scene::origin() and h/s, along the scene's axes. A solver gives it in the order
-/// of ids and takes any order: that of its rows follows from the positions.
+/// A state in h from Scene::origin() and h/s, along the scene's axes. A solver gives it in the
+/// order of ids and takes any order: that of its rows follows from the positions.
 struct SolverState {
   Precision precision = Precision::dbl;  ///< of the solver that it came from
   std::int64_t updates = 0;              ///< done so far

@@ -124,6 +124,12 @@ class Stepper {
     return download_state<Real>(exec_, std::size_t(p_.n), axes_, a_.state(), updates, steps);
   }
 
+  /// h from Scene::origin() along the scene's axes, 3n, in the order of ids.
+  std::vector<double> positions() {
+    return rows_by_id(exec_, axes_, a_.position.data(),
+                      ids_on_host<Real>(exec_, std::size_t(p_.n), a_.state()));
+  }
+
   /// Takes over a state of as many particles, in any order.
   void set_state(const SolverState& s) {
     upload_state<Real>(exec_, axes_, s, a_.state());

@@ -51,6 +51,7 @@ Scene unlike_default() {
   s.solver.wall_margin = 0.01;
   s.solver.velocity_damping = 0.999;
   s.solver.speed_limit = 0.25;
+  s.solver.prestabilize = false;
   s.solver.fused = false;
   s.solver.reproducible = true;
   s.tensile = Tensile{0.01, 0.2, 6};
