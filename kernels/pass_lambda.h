@@ -74,10 +74,12 @@ struct LambdaPass {
   Params<Real> p;
   Lists lists;
   const Vec4<Real>* position;
-  Vec4<Real>* position_out;    ///< out: the same position with w = lambda
-  Real* density;               ///< out when with_density, else in
-  const Vec4<Real>* velocity;  ///< null: neighbours' motion is not looked at (relative_motion.h)
-  StepCounts* counts;
+  Vec4<Real>* position_out;  ///< out: the same position with w = lambda
+  Real* density;             ///< out when with_density, else in
+  /// Null: how neighbours move past each other is not looked at (relative_motion.h). Where it is,
+  /// the velocities of neighbours are read besides, for a count alone.
+  const Vec4<Real>* velocity = nullptr;
+  StepCounts* counts = nullptr;
 
   static constexpr int D = dimensions_of(S);
   static constexpr unsigned gathers = kPlace;

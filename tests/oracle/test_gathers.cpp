@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -55,9 +56,10 @@ Rows<Real> random_rows(Params<Real>& p) {
   p.total = p.n;
   p.dimensions = D;
   if (D == 2) p.cells_y = 1;
-  std::vector<int> bin, order(x.size()), start(std::size_t(bin_count(p)) + 1);
+  std::vector<int> bin, id(x.size()), order(x.size()), start(std::size_t(bin_count(p)) + 1);
   for (const auto& at : x) bin.push_back(bin_of<D>(xyz(at), p));
-  CpuExec(1).sort(bin.data(), p.n, bin_count(p), order.data(), start.data());
+  std::iota(id.begin(), id.end(), 0);
+  CpuExec(1).sort(bin.data(), id.data(), p.n, bin_count(p), order.data(), start.data());
   for (const int k : order) {
     rows.position.push_back(x[std::size_t(k)]);
     rows.velocity.push_back(flat({r(), r(), r(), 0}));

@@ -132,7 +132,7 @@ TEST_CASE("the log keeps every row, and stages that come later", "[run_file]") {
     REQUIRE(xsph[k] == (k >= 1000 ? 7 : 0));
   }
   const auto names = reader.log_columns();
-  CHECK(names.size() == 37);
+  CHECK(names.size() == 39);
   CHECK(std::count(names.begin(), names.end(), "stage/lambda") == 1);
   CHECK(reader.log_column("no_such_column").empty());
   CHECK(reader.log_column("stage/no_such_stage").empty());
