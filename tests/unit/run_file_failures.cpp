@@ -148,7 +148,7 @@ TEST_CASE("a process whose files may not grow ends cleanly", "[run_file]") {
   if (child == 0) {
     ::signal(SIGXFSZ, SIG_IGN);
     ::alarm(60);  // a hang ends as a signal
-    const rlimit limit{3500000, 3500000};
+    const rlimit limit{4000000, 4000000};
     ::setrlimit(RLIMIT_FSIZE, &limit);
     int result = 1;
     try {
