@@ -56,6 +56,7 @@ void RunLoop::go_on_from(const SavedRun& saved) {
   first_ = due_.first = saved.first;
   first_.energy = saved.energy.first;
   steps_ = saved.steps;
+  released_ = saved.released;
   resumed_ = true;
   seen_frames_ = schedule_.frames_until(u);
   pictures_ = schedule_.pictures_until(u);
@@ -153,6 +154,7 @@ void RunLoop::save() {
   }
   due_.state = goes_back() ? solver_.kept() : solver_.state();
   due_.particles = plan_.particles;
+  if (watch_ && watch_->guard()) due_.released = watch_->guard()->released();
   if (watch_ && watch_->adaptive()) due_.steps = watch_->adaptive()->history();
   write_checkpoint(sinks_.checkpoints, due_);
   due_.state = {};
@@ -201,7 +203,8 @@ Watch& RunLoop::watch(const Measures& m) {
   if (!watch_)
     watch_.emplace(
         scene_, plan_, solver_, resumed_ ? first_ : m, m,
-        [this](const std::string& line) { log_.note(line); }, steps_.value_or(StepHistory{}));
+        [this](const std::string& line) { log_.note(line); }, steps_.value_or(StepHistory{}),
+        released_);
   return *watch_;
 }
 

@@ -107,6 +107,7 @@ class RunLoop {
   bool resumed_ = false, closed_ = false;
   std::optional<Watch> watch_;
   std::optional<StepHistory> steps_;  ///< that a resumed run begins with
+  std::optional<double> released_;    ///< the same
   /// A download that was started and is finished after the next updates: on a device the copy
   /// runs beside them.
   struct {

@@ -14,26 +14,30 @@ double length(const double (&v)[3]) { return std::hypot(v[0], v[1], v[2]); }
 
 double mass_of(const Plan& plan) { return plan.mass * double(plan.particles); }
 
-/// What each alarm is about: words for it, unit, and the keys that help.
+constexpr double kShare = 0.1;   // of the energy scale, that a run may gain
+constexpr double kApart = 0.01;  // mean compression of a start that has come apart
+
+double gravity_of(const Scene& s) { return std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]); }
+
+/// m/s, of a move by h in a step of level 0.
+double h_per_step(const Scene& s) { return s.h() / s.time.step * s.solver.substeps; }
+
+/// What each alarm is about: words for it, unit, and its key.
 struct Words {
-  const char *what, *unit, *limit_key, *remedy;
+  const char *what, *unit, *limit_key;
 };
 Words words(Alarm alarm) {
-  const char* softer = "lower time.step, or raise solver.iterations";
   switch (alarm) {
     case Alarm::non_finite:
-      return {"is not finite", "", "", softer};
+      return {"is not finite", "", ""};
     case Alarm::outside:
-      return {"is outside the walls", "", "", softer};
+      return {"is outside the walls", "", ""};
     case Alarm::speed:
-      return {"is too fast", "m/s", "guard.speed",
-              "lower time.step, raise solver.iterations, or ask for solver.speed_limit"};
+      return {"is too fast", "m/s", "guard.speed"};
     case Alarm::energy:
-      return {"is the fastest while the energy grows without a source", "J", "guard.energy",
-              "lower time.step, raise solver.iterations, or lower solver.step_length"};
+      return {"is the fastest while the energy grows without a source", "J", "guard.energy"};
     case Alarm::neighbors:
-      return {"has too many neighbours", "", "guard.neighbors",
-              "raise solver.iterations, lower time.step, or spread the bodies"};
+      return {"has too many neighbours", "", "guard.neighbors"};
   }
   return {};
 }
@@ -43,47 +47,96 @@ Words words(Alarm alarm) {
 double total_energy(const Measures& m) { return m.kinetic_energy + m.potential_energy; }
 
 double energy_scale(const Measures& m, const Scene& s, double mass, std::int64_t particles) {
-  double scale = m.kinetic_energy;
+  const double all = mass * double(particles);
+  double together = 0;
+  for (const double p : m.momentum) together += p * p / (2 * all);
+  return std::max(m.kinetic_energy - together, 0.0) + energy_of_height(m, s, mass, particles);
+}
+
+double energy_of_height(const Measures& m, const Scene& s, double mass, std::int64_t particles) {
+  const double all = mass * double(particles);
+  double height = 0;
   for (std::size_t a = 0; a < 3; ++a) {
     const double g = s.gravity[a], x = m.center_of_mass[a];
-    scale += mass * double(particles) * std::fabs(g) *
-             (g > 0 ? s.domain.max[a] - x : x - s.domain.min[a]);
+    height += all * std::fabs(g) * (g > 0 ? s.domain.max[a] - x : x - s.domain.min[a]);
   }
-  return scale;
+  return height;
 }
 
 double released_energy(const Measures& first, const Scene& s, const Plan& plan) {
-  const double per_step = s.h() / s.time.step * s.solver.substeps;
-  const double share = std::max(first.compression_mean - 0.01, 0.0) +
-                       (s.solver.constraint == ConstraintMode::two_sided ? 1 : 0);
-  return 0.5 * mass_of(plan) * per_step * per_step * share;
+  const double share = std::max(first.compression_mean - kApart, 0.0) +
+                       (s.solver.constraint == ConstraintMode::two_sided ? 0.01 : 0);
+  return 0.5 * mass_of(plan) * std::pow(h_per_step(s), 2) * share;
+}
+
+std::int64_t release_updates(const Scene& s) {
+  double edge = 0;
+  for (std::size_t a = 0; a < 3; ++a) edge = std::max(edge, s.domain.max[a] - s.domain.min[a]);
+  return 20 + std::int64_t(std::min(2 * edge / s.h(), 1e9));
+}
+
+double position_rounding(const Scene& s) {
+  double edge = 0;
+  for (std::size_t a = 0; a < 3; ++a) edge = std::max(edge, s.domain.max[a] - s.domain.min[a]);
+  return edge / s.h() * (s.precision == Precision::dbl ? 0x1p-53 : 0x1p-24);
 }
 
 GuardLimits guard_limits(const Scene& s, const Plan& plan, const Measures& first) {
   const GuardSettings& g = *s.guard;
-  const double per_step = s.h() / s.time.step * s.solver.substeps, mass = mass_of(plan);
+  const double per_step = h_per_step(s), mass = mass_of(plan), gravity = gravity_of(s);
   const double scale = energy_scale(first, s, plan.mass, plan.particles);
-  const double rounding = 0.5 * mass * std::pow(0.01 * per_step, 2);
+  double slack = 0.5 * mass * std::pow(0.01 * per_step, 2);
+  if (gravity > 0) slack = std::min(slack, kShare * mass * gravity * s.h());
+  const double rounded = 8 * position_rounding(s) * std::ldexp(per_step, finest_level(s));
+  slack += 0.5 * mass * rounded * rounded;
   const double at_rest = rest_neighbors(s);
   GuardLimits l;
   l.speed = g.speed ? *g.speed : 10 * (first.speed_max + fall_speed(s) + per_step);
-  l.energy =
-      total_energy(first) +
-      (g.energy ? *g.energy * scale : 0.1 * scale + released_energy(first, s, plan) + rounding);
+  l.energy = total_energy(first) + (g.energy ? *g.energy * scale : kShare * scale + slack);
   l.neighbors =
       g.neighbors > 0 ? g.neighbors : std::max(4 * first.neighbors_max, std::int64_t(16 * at_rest));
   return l;
 }
 
 Guard::Guard(const Scene& scene, const Plan& plan, Solver& solver, const Measures& first,
-             const Measures& now)
+             const Measures& now, std::optional<double> released)
     : scene_(scene),
       plan_(plan),
       solver_(solver),
       limits_(guard_limits(scene, plan, first)),
-      good_(now) {
+      first_(first),
+      good_(now),
+      released_(released) {
+  follow_release(now);
   solver_.watch_speed(limits_.speed);
   solver_.keep();
+}
+
+bool Guard::came_apart(const Measures& m) const {
+  // A two-sided fluid is never without compression: what it releases is that of its surface.
+  return m.compression_mean <= kApart || scene_.solver.constraint == ConstraintMode::two_sided;
+}
+
+double Guard::energy_limit(const Measures& m) const {
+  if (scene_.guard->energy) return limits_.energy;
+  const double first = energy_scale(first_, scene_, plan_.mass, plan_.particles);
+  const double now = energy_scale(m, scene_, plan_.mass, plan_.particles);
+  double released = 0;
+  if (released_)
+    released = std::max(*released_ - total_energy(first_), 0.0);
+  else if (m.update <= release_updates(scene_) || came_apart(m))
+    released = released_energy(first_, scene_, plan_);
+  return limits_.energy + released + kShare * std::max(now - first, 0.0);
+}
+
+void Guard::follow_release(const Measures& m) {
+  if (released_) return;
+  const bool late = m.update > release_updates(scene_);
+  const bool surface = scene_.solver.constraint == ConstraintMode::two_sided;
+  if (surface ? late : came_apart(m))
+    released_ = total_energy(m);
+  else if (late)
+    released_ = total_energy(first_);
 }
 
 std::optional<Alarm> Guard::alarm(const Measures& m) const {
@@ -93,7 +146,7 @@ std::optional<Alarm> Guard::alarm(const Measures& m) const {
   if (m.speed_max > limits_.speed || (scene_.solver.speed_limit == 0 && m.fast > good_.fast))
     return Alarm::speed;
   if (m.neighbors_max > limits_.neighbors) return Alarm::neighbors;
-  if (!(total_energy(m) <= limits_.energy)) return Alarm::energy;
+  if (!(total_energy(m) <= energy_limit(m))) return Alarm::energy;
   return std::nullopt;
 }
 
@@ -106,6 +159,7 @@ std::optional<GuardEvent> Guard::check(const Measures& m) {
 void Guard::keep(const Measures& m) {
   solver_.keep();
   good_ = m;
+  follow_release(m);
 }
 
 GuardEvent Guard::locate(Alarm alarm, const Measures& m) {
@@ -113,7 +167,9 @@ GuardEvent Guard::locate(Alarm alarm, const Measures& m) {
   e.alarm = alarm;
   e.measure = m;
   const double h = scene_.h(), to_internal = 1 / (plan_.mass * h * h);
-  const StageLimits limits{limits_.speed / h, limits_.energy * to_internal, limits_.neighbors};
+  // That of the last good measure: the energy that has come since widens the limit of `m`.
+  const double energy = std::min(energy_limit(good_), energy_limit(m));
+  const StageLimits limits{limits_.speed / h, energy * to_internal, limits_.neighbors};
   e.last_good = solver_.kept();
   solver_.set_state(e.last_good);
   while (!e.stage && solver_.updates_done() < e.measure.update)
@@ -131,7 +187,7 @@ GuardEvent Guard::locate(Alarm alarm, const Measures& m) {
       e.value = e.stage ? h * e.stage->value : e.measure.speed_max;
       break;
     case Alarm::energy:
-      e.limit = limits_.energy;
+      e.limit = energy;
       e.value = e.stage ? e.stage->value / to_internal : total_energy(e.measure);
       break;
     case Alarm::neighbors:
@@ -173,7 +229,37 @@ std::string Guard::text(const GuardEvent& e) const {
     const Scene finest = scene_at_level(scene_, finest_level(scene_));
     out += format("; with the shortest step, %.6g s (time.adaptive.step_min)", finest.time.step);
   }
-  return out + format("; seen at t = %.6g s. To help: %s", e.measure.time, w.remedy);
+  return out + format("; seen at t = %.6g s. To help: %s", e.measure.time, remedy(e).c_str());
+}
+
+/// The keys that help, by what there is to blame.
+std::string Guard::remedy(const GuardEvent& e) const {
+  const std::string stage = e.stage ? e.stage->stage : std::string();
+  if (stage == "xsph") return "lower viscosity.xsph";
+  if (stage == "curl" || stage == "vorticity") return "lower vorticity.epsilon";
+  const bool shaken = e.alarm == Alarm::speed || e.alarm == Alarm::energy;
+  if (first_.compression_mean > kApart && (e.alarm == Alarm::neighbors || shaken)) {
+    std::string help =
+        format("the start is compressed by %.3g %% (mean)", 100 * first_.compression_mean);
+    if (!scene_.solver.prestabilize) help += "; leave solver.prestabilize on";
+    help += "; spread the bodies, or give them room";
+    if (scene_.fluid.mass) help += "; check fluid.mass";
+    return help + ". A shorter time.step makes it worse";
+  }
+  std::string help;
+  if (shaken && scene_.tensile) help += "lower tensile.k, which acts as k/time.step^2; ";
+  if (shaken && scene_.solver.constraint == ConstraintMode::two_sided)
+    help += "use solver.constraint: one_sided; ";
+  switch (e.alarm) {
+    case Alarm::speed:
+      return help + "lower time.step, raise solver.iterations, or ask for solver.speed_limit";
+    case Alarm::energy:
+      return help + "lower time.step, raise solver.iterations, or lower solver.step_length";
+    case Alarm::neighbors:
+      return "raise solver.iterations, lower time.step, or spread the bodies";
+    default:
+      return "lower time.step, or raise solver.iterations";
+  }
 }
 
 Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const {
@@ -195,7 +281,10 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
   s.guard->speed = limits_.speed;
   s.guard->neighbors = limits_.neighbors;
   const double scale = energy_scale(good_, s, plan_.mass, plan_.particles);
-  if (scale > 0) s.guard->energy = std::max((limits_.energy - total_energy(good_)) / scale, 1e-12);
+  if (scale > 0)
+    s.guard->energy = std::max(
+        (std::min(energy_limit(good_), energy_limit(e.measure)) - total_energy(good_)) / scale,
+        1e-12);
   return s;
 }
 

@@ -47,14 +47,6 @@ bool hopeless(const std::vector<Point>& course) {
   return half != course.rend() && !(now.kick < kProgress * half->kick);
 }
 
-/// A coordinate is known to half of this, h: that of the far end of the box.
-double rounding(const Scene& s) {
-  double extent = 0;
-  for (std::size_t a = 0; a < 3; ++a)
-    extent = std::max(extent, (s.domain.max[a] - s.domain.min[a]) / s.h());
-  return extent * (s.precision == Precision::dbl ? 0x1p-53 : 0x1p-24);
-}
-
 }  // namespace
 
 Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
@@ -67,7 +59,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   const double speed = s.h() / dt;  // m/s, of a move by h
   // J for a sum of squares of moves in h.
   const auto energy = [&](double squares) { return 0.5 * plan.mass * squares * speed * speed; };
-  const double n = double(plan.particles), noise = n * std::pow(rounding(s), 2);
+  const double n = double(plan.particles), noise = n * std::pow(position_rounding(s), 2);
   const double scale = energy_scale(before, s, plan.mass, plan.particles);
   p.harmless = scale > 0 ? std::max(kShare * scale, energy(noise))
                          : energy(std::max(noise, n * kStill * kStill));
@@ -95,6 +87,10 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
     course.push_back({p.steps, p.kick});
     if (p.relieved() || (p.steps >= patience && hopeless(course))) break;
   }
+  double diagonal = 0;  // the moves of the rounds add up to more than anyone has gone
+  for (std::size_t a = 0; a < 3; ++a)
+    diagonal = std::hypot(diagonal, s.domain.max[a] - s.domain.min[a]);
+  if (s.domain.open.empty()) p.moved = std::min(p.moved, diagonal / s.fluid.spacing);
   p.compression_after = solver.measure().compression_mean;
   return p;
 }

@@ -52,8 +52,8 @@ std::string must_text(const Criteria& m) {
 
 /// Share of the height above the floor, along gravity, that the centre of mass has lost.
 double height_lost(const Course& c, const Scene& s) {
-  const double after = energy_scale(c.last, s, 1, 1) - c.last.kinetic_energy;
-  const double before = energy_scale(c.first, s, 1, 1) - c.first.kinetic_energy;
+  const double after = energy_of_height(c.last, s, 1, 1);
+  const double before = energy_of_height(c.first, s, 1, 1);
   return before > 0 ? 1 - after / before : 0;
 }
 

@@ -10,9 +10,9 @@ namespace pbf {
 
 Watch::Watch(const Scene& scene, const Plan& plan, Solver& solver, const Measures& first,
              const Measures& now, std::function<void(const std::string&)> note,
-             const StepHistory& before)
+             const StepHistory& before, std::optional<double> released)
     : whole_(scene.time.step), solver_(solver), note_(std::move(note)) {
-  if (scene.guard) guard_.emplace(scene, plan, solver, first, now);
+  if (scene.guard) guard_.emplace(scene, plan, solver, first, now, released);
   if (!scene.time.adaptive) return;
   step_.emplace(scene, before);
   solver_.set_step_level(step_->level());

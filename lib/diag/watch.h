@@ -18,10 +18,11 @@ enum class Verdict { good, back, stop };
 class Watch {
  public:
   /// `first`: the measure that the run began with, `now`: that of the present state; `before`: what
-  /// a checkpoint remembers. `note` gets a line for every change of the step.
+  /// a checkpoint remembers, and `released` what it does of Guard::released(). `note` gets a line
+  /// for every change of the step.
   Watch(const Scene& scene, const Plan& plan, Solver& solver, const Measures& first,
         const Measures& now, std::function<void(const std::string&)> note,
-        const StepHistory& before = {});
+        const StepHistory& before = {}, std::optional<double> released = {});
 
   /// Judges a measure. `keep`: its state, if good, is the one to go back to; where alarms take a
   /// run back, that must come before anything of the state is written down.

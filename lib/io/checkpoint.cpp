@@ -63,6 +63,14 @@ void for_each_number(Saved& s, F&& f) {
   f("first_center_of_mass_z", s.first.center_of_mass[2]);
 }
 
+/// The same for those that older files lack.
+template <class Saved, class F>
+void for_each_newer_number(Saved& s, F&& f) {
+  f("first_momentum_x", s.first.momentum[0]);
+  f("first_momentum_y", s.first.momentum[1]);
+  f("first_momentum_z", s.first.momentum[2]);
+}
+
 /// The same for the numbers of a StepHistory but its list. Their names begin with "step_".
 template <class History, class Integer, class Number>
 void for_each_step(History& s, Integer&& integer, Number&& number) {
@@ -119,7 +127,10 @@ void write_file(const std::string& path, const SavedRun& s) {
     h5::write_numbers(file, "way_squared", &s.state.way_squared);
     h5::write_numbers(file, "first_neighbors_max", &s.first.neighbors_max);
     h5::write_numbers(file, "energy_started", &started);
-    for_each_number(s, [&](const char* name, double v) { h5::write_numbers(file, name, &v); });
+    const auto write = [&](const char* name, double v) { h5::write_numbers(file, name, &v); };
+    for_each_number(s, write);
+    for_each_newer_number(s, write);
+    if (s.released) write("released_energy", *s.released);
     if (s.steps) write_steps(file, *s.steps);
     h5::flush_reserved(file);
     h5::sync(file);
@@ -154,7 +165,12 @@ SavedRun read_file(const std::string& path) {
   }
   s.first.neighbors_max = h5::read_number<std::int64_t>(file, "first_neighbors_max");
   s.energy.started = h5::read_number<std::int64_t>(file, "energy_started") != 0;
-  for_each_number(s, [&](const char* name, double& v) { v = h5::read_number<double>(file, name); });
+  const auto read = [&](const char* name, double& v) { v = h5::read_number<double>(file, name); };
+  for_each_number(s, read);
+  for_each_newer_number(s, [&](const char* name, double& v) {
+    if (h5::has_attribute(file, name)) read(name, v);
+  });
+  if (h5::has_attribute(file, "released_energy")) read("released_energy", s.released.emplace());
   if (s.particles < 0 || s.particles > 2147483647 || s.state.updates < 0)
     throw h5::Failure("a number of particles or updates that cannot be");
   read_rows(file, "position", s.particles, 3, s.state.position);

@@ -239,8 +239,8 @@ std::vector<Key> guard_keys() {
                        SCENE(&s.guard->speed))),
       automatic(number("guard.energy", "", {0, 1e30, true},
                        "Growth of kinetic plus potential energy allowed, as a share of what "
-                       "it was above the floor at the start. auto: 0.1, and more for a start "
-                       "that is compressed.",
+                       "it was at the start above the floor and the motion of the whole. auto: "
+                       "0.1, and more while a compressed start comes apart.",
                        SCENE(&s.guard->energy))),
       automatic(number("guard.neighbors", "", {0, 2147483647, true},
                        "Neighbours of one particle allowed. auto: 4 times the most at the start, "

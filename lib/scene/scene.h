@@ -117,7 +117,7 @@ struct Vorticity {
 struct GuardSettings {
   std::optional<double> speed;   ///< m/s; absent: from the scene and the start
   std::optional<double> energy;  ///< growth, as a share of the energy at the start; absent: 0.1 and
-                                 ///< what a compressed start may release
+                                 ///< what a start may release while it comes apart
   std::int64_t neighbors = 0;    ///< of one particle; 0: from the start
   bool operator==(const GuardSettings&) const = default;
 };

@@ -1,4 +1,5 @@
 // Updates of several steps (time.adaptive), and what an alarm does to them.
+#include <algorithm>
 #include <cmath>
 
 #include "lib/base/error.h"
@@ -191,8 +192,12 @@ TEST_CASE("an alarm takes the run back, and with a shorter step it comes to its 
   CHECK(solver->updates_done() == 100);
   CHECK(course.repeats >= 1);
   REQUIRE(!course.notes.empty());
-  CHECK(course.notes[0].find("alarm of the guard (energy), back to update ") != std::string::npos);
-  CHECK(course.notes[0].find("steps without time") != std::string::npos);
+  // Neighbours that move too far past each other may have halved the step before.
+  const auto alarm = std::find_if(course.notes.begin(), course.notes.end(), [](const auto& note) {
+    return note.find("alarm of the guard (energy), back to update ") != std::string::npos;
+  });
+  REQUIRE(alarm != course.notes.end());
+  CHECK(alarm->find("steps without time") != std::string::npos);
   CHECK(course.shortest < 0.02);
   CHECK(course.energy_most < 1.1 * course.energy_start);
   CHECK(course.last.compression_mean < 0.1);

@@ -36,8 +36,10 @@ SavedRun saved(Precision precision, std::int64_t update) {
   s.first.potential_energy = -3;
   s.first.compression_mean = 17.5;
   s.first.speed_max = 4.1;
-  for (int k = 0; k < 3; ++k) s.first.center_of_mass[k] = 0.1 + k;
+  for (int k = 0; k < 3; ++k)
+    s.first.center_of_mass[k] = 0.1 + k, s.first.momentum[k] = 1.0 / 3 - k;
   s.first.neighbors_max = 400;
+  if (update == 7) s.released = 1.0 / 7;
   return s;
 }
 
@@ -50,7 +52,8 @@ bool same(const SavedRun& a, const SavedRun& b) {
          a.particles == b.particles && a.state.fast == b.state.fast &&
          a.state.rounds == b.state.rounds && a.state.unresolved == b.state.unresolved &&
          a.state.way_squared == b.state.way_squared && a.state.steps == b.state.steps &&
-         a.steps == b.steps;
+         a.steps == b.steps && a.released == b.released &&
+         std::equal(a.first.momentum, a.first.momentum + 3, b.first.momentum);
 }
 
 bool same(const GuardLimits& a, const GuardLimits& b) {
