@@ -207,7 +207,7 @@ struct Sorted {
     for (const int i : ids) bin.push_back(bin_of<D>(xyz(all[std::size_t(i)]), p));
     for (const int b : bin) REQUIRE((b >= 0 && b < bin_count(p)));
     CpuExec exec(2);
-    exec.sort(bin.data(), p.n, bin_count(p), order.data(), start.data());
+    exec.sort(bin.data(), ids.data(), p.n, bin_count(p), order.data(), start.data());
     for (const int k : order) {
       id.push_back(ids[std::size_t(k)]);
       x.push_back(all[std::size_t(id.back())]);
