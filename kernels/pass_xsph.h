@@ -1,4 +1,5 @@
-// XSPH viscosity. Schechter & Bridson 2012, eq. 6; Macklin & Mueller 2013, eq. 17.
+// XSPH viscosity. Schechter & Bridson 2012, eq. 6; Macklin & Mueller 2013, eq. 17; with one weight
+// for both particles of a pair, as Monaghan 1989 has it.
 #pragma once
 
 #include "kernels/pair_sum.h"
@@ -6,8 +7,20 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// v_i += c sum_j m/rho_j (v_j - v_i) W_ij, with the density of the last sweep. With
-/// `more_to_come` it also gives the particle its bin in the next update: that update's `predict`.
+/// What a particle brings to its viscosity; w = 1/density.
+template <class V, int dimensions>
+struct XsphOwn {
+  Vec<V, dimensions> x, v;
+  V w;
+};
+template <int dimensions, class V>
+PBF_HD XsphOwn<V, dimensions> xsph_own(const Vec4<V>& x, const Vec4<V>& v) {
+  return {point<dimensions>(x), point<dimensions>(v), x.w};
+}
+
+/// v_i += c sum_j (m/rho_i + m/rho_j)/2 (v_j - v_i) W_ij, with the density of the last sweep. What
+/// i takes from j, j takes from i: momentum is kept to rounding. With `more_to_come` it also gives
+/// the particle its bin in the next update: that update's `predict`.
 template <class Real, class Lists, Smoothing S, bool more_to_come>
 struct XsphPass {
   Params<Real> p;
@@ -19,27 +32,28 @@ struct XsphPass {
 
   static constexpr int D = dimensions_of(S);
   static constexpr unsigned gathers = kPlace | kInverseDensity | kVelocity;
-  using Own = MovingOwn<Real, D>;
+  using Own = XsphOwn<Real, D>;
   template <class V>
   using SumOf = VectorSum<V, D>;
   using Sum = VectorSum<Real, D>;
   template <class Index>
   PBF_HD auto own(Index i) const {
-    return moving_own<D>(load(position, i), load(velocity, i));
+    return xsph_own<D>(load(position, i), load(velocity, i));
   }
   template <class Index>
   PBF_HD auto other(Index j) const {
     return moving_other(load(position, j), load(velocity, j));
   }
   template <class V>
-  PBF_HD void add(VectorSum<V, D>& s, const MovingOwn<V, D>& a, const MovingOther<V>& b, int, int,
+  PBF_HD void add(VectorSum<V, D>& s, const XsphOwn<V, D>& a, const MovingOther<V>& b, int, int,
                   bool on) const {
     const V q2 = pair_q_squared(a.x - point<D>(b.x), on);
     const V shape = density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t(root_of(q2).q));
-    s.v = s.v + (shape * b.x.w) * (point<D>(b.v) - a.v);
+    s.v = s.v + (shape * (a.w + b.x.w)) * (point<D>(b.v) - a.v);
   }
   PBF_HD void finish(int i, const Own& a, const Sum& s) const {
-    const Vec3<Real> v = in_space(a.v + (p.xsph * p.vol * density_norm<Real, S>()) * s.v);
+    const Vec3<Real> v =
+        in_space(a.v + (Real(0.5) * p.xsph * p.vol * density_norm<Real, S>()) * s.v);
     velocity_out[i] = with_w(v, Real(0));
     if constexpr (more_to_come) bin[i] = bin_of<D>(predict(in_space(a.x), v, p).x, p);
   }

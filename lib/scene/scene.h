@@ -101,7 +101,7 @@ struct Tensile {
   bool operator==(const Tensile&) const = default;
 };
 
-/// XSPH viscosity (Schechter & Bridson 2012; Macklin & Mueller 2013, eq. 17).
+/// XSPH viscosity (Schechter & Bridson 2012; Macklin & Mueller 2013, eq. 17), symmetric.
 struct Viscosity {
   double xsph = 0.05;  ///< c, 0..1 stable
   bool operator==(const Viscosity&) const = default;

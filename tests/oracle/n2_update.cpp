@@ -203,7 +203,9 @@ void update(State& s, const Settings& c) {
     const std::vector<V> v = s.v;
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j : pairs[i])
-        axpy(s.v[i], c.xsph * c.mass / s.density[j] * kernel(length(sub(s.x[i], s.x[j]))),
+        axpy(s.v[i],
+             c.xsph * (c.mass / s.density[i] + c.mass / s.density[j]) / 2 *
+                 kernel(length(sub(s.x[i], s.x[j]))),
              sub(v[j], v[i]));
   }
   if (c.vorticity != 0) {

@@ -84,7 +84,7 @@ seeded_defect(one_iteration_less iterations lib/solver/stepper.h
   [[for (int k = 0; k < iterations_; ++k) {]] [[for (int k = 0; k + 1 < iterations_; ++k) {]])
 
 # xsph, vorticity
-seeded_defect(xsph_without_density xsph kernels/pass_xsph.h [[(shape * b.x.w)]] [[shape]])
+seeded_defect(xsph_without_density xsph kernels/pass_xsph.h [[(shape * (a.w + b.x.w))]] [[(shape + shape)]])
 seeded_defect(xsph_sign xsph kernels/pass_xsph.h [[(point<D>(b.v) - a.v)]] [[(a.v - point<D>(b.v))]])
 seeded_defect(curl_sign vorticity kernels/pass_vorticity.h
   [[p, on), point<D>(b.v) - a.v);]] [[p, on), a.v - point<D>(b.v));]])
