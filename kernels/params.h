@@ -50,6 +50,7 @@ struct Params {
   int tensile_n = 4;
   Real xsph = 0;       ///< c
   Real vorticity = 0;  ///< 1/s, epsilon
+  Real update_dt = 0;  ///< s, of all substeps together: confinement acts once for them
   RestPool rest;
 };
 

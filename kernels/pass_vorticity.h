@@ -1,5 +1,5 @@
-// Vorticity confinement in a form that cannot feed energy into the free surface.
-// Macklin & Mueller 2013, eq. 15 and 16, stabilised as kernels/README.md (13) says.
+// Vorticity confinement, bounded by what the flow around a particle loses.
+// Macklin & Mueller 2013, eq. 15 and 16, in the form of kernels/README.md (13).
 #pragma once
 
 #include "kernels/pair_sum.h"
@@ -15,15 +15,16 @@ PBF_HD Vec<V, D> weighted_gradient(Vec<V, D> d, V inv_rho_j, const Params<Real>&
   return (p.vol * Spiky<Real, D>::gradient_norm * t * t * root.inverse * inv_rho_j) * d;
 }
 
-/// omega_i = sum_j m/rho_j grad W_ij x (v_j - v_i), 1/s; w = |omega_i|. In two dimensions only its
-/// y is summed.
+/// omega_i = sum_j m/rho_j grad W_ij x (v_j - v_i), 1/s, and the share of it that the particle's
+/// confinement may put back, by the rate at which its neighbours approach: the sweeps take their
+/// energy from approach, and there is none in a rigid motion. In two dimensions only y is summed.
 template <class Real, class Lists, int dimensions>
 struct CurlPass {
   Params<Real> p;
   Lists lists;
   const Vec4<Real>* position;  ///< w = 1/density
   const Vec4<Real>* velocity;
-  Vec4<Real>* curl;  ///< out
+  Vec4<Real>* curl;  ///< out: min(dt eps, 2 dt approach, 0.05) omega; w = |omega|
 
   static constexpr int D = dimensions;
   static constexpr unsigned gathers = kPlace | kInverseDensity | kVelocity;
@@ -31,9 +32,11 @@ struct CurlPass {
   template <class V>
   struct SumOf {
     decltype(cross(Vec<V, D>{}, Vec<V, D>{})) v{};
+    V approach{};  ///< 1/s^2, sum_j m/rho_j W_ij (rate of approach/r)^2 over what approaches
     template <class F>
     PBF_HD void each(F&& f) {
       each_component(v, f);
+      f(approach);
     }
   };
   using Sum = SumOf<Real>;
@@ -48,11 +51,18 @@ struct CurlPass {
   template <class V>
   PBF_HD void add(SumOf<V>& s, const MovingOwn<V, D>& a, const MovingOther<V>& b, int, int,
                   bool on) const {
-    s.v = s.v + cross(weighted_gradient<D>(a.x - point<D>(b.x), b.x.w, p, on), point<D>(b.v) - a.v);
+    const Vec<V, D> d = a.x - point<D>(b.x), v = point<D>(b.v) - a.v;
+    const Root<V> root = root_of(pair_q_squared(d, on));
+    const V t = Spiky<Real>::t(root.q), weight = p.vol * t * t * b.x.w;
+    s.v = s.v + cross((Spiky<Real, D>::gradient_norm * weight * root.inverse) * d, v);
+    const V rate = max2(dot(v, d) * root.inverse * root.inverse, V(0));
+    s.approach += Spiky<Real, D>::norm * weight * t * rate * rate;
   }
   PBF_HD void finish(int i, const Own&, const Sum& s) const {
     const Vec3<Real> omega = in_space(s.v);
-    curl[i] = with_w(omega, square_root(dot(omega, omega)));
+    const Real limit = min2(p.vorticity, Real(2) * square_root(s.approach));
+    const Real gain = min2(p.update_dt * limit, Real(0.05));
+    curl[i] = with_w(gain * omega, square_root(dot(omega, omega)));
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
@@ -76,17 +86,17 @@ PBF_HD CurlOther<V> curl_other(const Vec4<V>& x, V magnitude) {
   return {x, magnitude};
 }
 
-/// v += min(dt eps, 0.05) h (N x omega), N = eta/(|eta| + 0.1 |omega|/h + tiny), eta = grad
-/// |omega|. Left out at the surface (density below 0.75 rho0), where the gradient is that of the
-/// missing neighbours. N is no longer a unit vector where |omega| is flat, so it is defined at eta
-/// = 0.
+/// v += h N x (gain omega), N = eta/(|eta| + 0.1 |omega|/h + tiny), eta = grad |omega|; the gain is
+/// CurlPass's. Left out where the density of the last sweep is below rho0: the sweeps do not act
+/// there, so nothing is lost, and at the surface eta is the gradient of missing neighbours. N is no
+/// longer a unit vector where |omega| is flat, so it is defined at eta = 0.
 template <class Real, class Lists, int dimensions>
 struct VorticityPass {
   Params<Real> p;
   Lists lists;
   const Vec4<Real>* position;  ///< w = 1/density
-  const Vec4<Real>* curl;
-  Vec4<Real>* velocity;  ///< in/out
+  const Vec4<Real>* curl;      ///< times its gain; w = |omega|
+  Vec4<Real>* velocity;        ///< in/out
 
   static constexpr int D = dimensions;
   static constexpr unsigned gathers = kPlace | kInverseDensity | kCurl;
@@ -109,10 +119,10 @@ struct VorticityPass {
                     weighted_gradient<D>(point<D>(a.x) - point<D>(b.x), b.x.w, p, on);
   }
   PBF_HD void finish(int i, const Own& a, const Sum& s) const {
-    if (a.x.w * Real(0.75) > Real(1)) return;
+    if (a.x.w > Real(1)) return;
     const Real size = square_root(dot(s.v, s.v)) + Real(0.1) * a.curl.w + Real(1e-20);
-    const Real gain = min2(p.dt * p.vorticity, Real(0.05)) / size;
-    velocity[i] = with_w(xyz(velocity[i]) + gain * cross(in_space(s.v), xyz(a.curl)), Real(0));
+    const Vec3<Real> push = cross(in_space(s.v), xyz(a.curl));
+    velocity[i] = with_w(xyz(velocity[i]) + Real(1) / size * push, Real(0));
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };

@@ -224,7 +224,10 @@ std::vector<Key> force_keys() {
              SCENE(&s.tensile->delta_q)),
       number("tensile.n", "", {1, 16}, "Exponent.", SCENE(&s.tensile->n)),
       number("viscosity.xsph", "", {0, 10}, "Factor c; stable up to 1.", SCENE(&s.viscosity->xsph)),
-      number("vorticity.epsilon", "", {0, 1000}, "Strength.", SCENE(&s.vorticity->epsilon)),
+      number("vorticity.epsilon", "1/s", {0, 1000},
+             "Strength; acts up to twice the rate at which neighbours approach, so that it adds no "
+             "more than the flow loses.",
+             SCENE(&s.vorticity->epsilon)),
       number("measure_every", "", {1, 2147483647},
              "Updates between two measures (density error, energy, momentum, ...).",
              SCENE(&s.measure_every))};

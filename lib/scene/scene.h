@@ -107,9 +107,9 @@ struct Viscosity {
   bool operator==(const Viscosity&) const = default;
 };
 
-/// Vorticity confinement (Macklin & Mueller 2013, eq. 15-16), in the stabilised form.
+/// Vorticity confinement (Macklin & Mueller 2013, eq. 15-16), bounded: kernels/README.md (13).
 struct Vorticity {
-  double epsilon = 0.1;  ///< dimensionless strength
+  double epsilon = 0.1;  ///< 1/s
   bool operator==(const Vorticity&) const = default;
 };
 

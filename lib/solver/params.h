@@ -89,6 +89,7 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   p.rest = rest_pool(s, plan.mass, plan.particles, p.walls);
   if (s.viscosity) p.xsph = Real(s.viscosity->xsph);
   if (s.vorticity) p.vorticity = Real(s.vorticity->epsilon);
+  p.update_dt = Real(s.time.step);
   return p;
 }
 

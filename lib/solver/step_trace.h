@@ -28,7 +28,7 @@ struct SolverState {
 struct TraceArray {
   std::string stage;     ///< name of the pass: predict, grid, lambda, ...
   int sweep = 0;         ///< 1, 2, ... within the iterations, 0 outside them
-  std::string quantity;  ///< position, velocity, bin, density, lambda, curl
+  std::string quantity;  ///< position, velocity, bin, density, lambda, curl ...
   std::string unit;      ///< of the internal frame
   int components = 1;    ///< scalars per row
   std::vector<double> values;

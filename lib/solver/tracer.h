@@ -85,7 +85,7 @@ class Tracer {
       vectors("velocity", "h/s", a.velocity, a.id);
     } else if (stage == "curl") {
       this->stage("vorticity", 0, most_terms_);
-      vectors("curl", "1/s", a.curl, a.id, axes_.handedness());
+      vectors("curl times its gain", "1/s", a.curl, a.id, axes_.handedness());
     } else {
       this->stage(stage, 0);
       vectors("velocity", "h/s", a.velocity, a.id);

@@ -210,19 +210,27 @@ void update(State& s, const Settings& c) {
   }
   if (c.vorticity != 0) {
     std::vector<V> curl(n);
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j : pairs[i])
-        axpy(curl[i], c.mass / s.density[j],
-             cross(spiky_gradient(sub(s.x[i], s.x[j]), c), sub(s.v[j], s.v[i])));
+    std::vector<Real> approach(n);  // rms rate at which neighbours come nearer, 1/s
     for (std::size_t i = 0; i < n; ++i) {
-      if (s.density[i] < 0.75L * c.rest_density) continue;
+      for (std::size_t j : pairs[i]) {
+        const V d = sub(s.x[j], s.x[i]), dv = sub(s.v[j], s.v[i]);
+        axpy(curl[i], c.mass / s.density[j], cross(spiky_gradient(sub(s.x[i], s.x[j]), c), dv));
+        const Real along = d[0] * dv[0] + d[1] * dv[1] + d[2] * dv[2], r = length(d);
+        if (along < 0)
+          approach[i] += c.mass / s.density[j] * spiky(r, c) * powl(along / (r * r), 2);
+      }
+      approach[i] = sqrtl(approach[i]);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      if (s.density[i] < c.rest_density) continue;
       V eta{};
       for (std::size_t j : pairs[i])
         axpy(eta, c.mass / s.density[j] * (length(curl[j]) - length(curl[i])),
              spiky_gradient(sub(s.x[i], s.x[j]), c));
       const Real size = length(eta) + 0.1L * length(curl[i]) / c.h;
       if (size == 0) continue;
-      axpy(s.v[i], std::min(c.dt * c.vorticity, 0.05L) * c.h / size, cross(eta, curl[i]));
+      const Real gain = c.dt * std::min(c.vorticity, 2 * approach[i]);
+      axpy(s.v[i], std::min(gain, 0.05L) * c.h / size, cross(eta, curl[i]));
     }
   }
 }

@@ -87,11 +87,13 @@ seeded_defect(one_iteration_less iterations lib/solver/stepper.h
 seeded_defect(xsph_without_density xsph kernels/pass_xsph.h [[(shape * (a.w + b.x.w))]] [[(shape + shape)]])
 seeded_defect(xsph_sign xsph kernels/pass_xsph.h [[(point<D>(b.v) - a.v)]] [[(a.v - point<D>(b.v))]])
 seeded_defect(curl_sign vorticity kernels/pass_vorticity.h
-  [[p, on), point<D>(b.v) - a.v);]] [[p, on), a.v - point<D>(b.v));]])
+  [[root.inverse) * d, v);]] [[root.inverse) * d, a.v - point<D>(b.v));]])
 seeded_defect(vorticity_sign vorticity kernels/pass_vorticity.h
-  [[+ gain * cross]] [[- gain * cross]])
+  [[+ Real(1) / size * push]] [[- Real(1) / size * push]])
 seeded_defect(vorticity_at_surface vorticity kernels/pass_vorticity.h
-  [[a.x.w * Real(0.75) > Real(1)]] [[a.x.w * Real(0.5) > Real(1)]])
+  [[a.x.w > Real(1)]] [[a.x.w * Real(0.5) > Real(1)]])
+seeded_defect(vorticity_unbounded vorticity kernels/pass_vorticity.h
+  [[min2(p.vorticity, Real(2) * square_root(s.approach))]] [[p.vorticity]])
 
 # Other arithmetic, as another backend may have it.
 seeded_defect(clean_reverse_sums none kernels/lanes.h
