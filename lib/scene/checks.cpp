@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/base/text.h"
 #include "lib/scene/lattice.h"
 #include "lib/scene/number.h"
+#include "lib/scene/rounding.h"
 #include "lib/scene/validate.h"
 
 namespace pbf {
@@ -25,6 +27,7 @@ class Checker {
     if (p_.good({"bodies"})) check_bodies(domain);
     check_time();
     check_solver();
+    if (domain) check_rounding();
     check_render();
   }
 
@@ -115,6 +118,33 @@ class Checker {
                                " cells of the smoothing length " + to_text(s_.h()) +
                                " m, at most 2147483647 are possible; raise fluid.spacing or make "
                                "the domain smaller");
+  }
+
+  /// Whether numbers of the precision can tell where a particle is, and where it is after a step.
+  void check_rounding() {
+    if (!p_.good({"fluid.spacing", "fluid.smoothing_ratio", "precision", "dimensions", "gravity",
+                  "bodies", "time.step", "time.end", "solver.substeps"}))
+      return;
+    const Rounding r = rounding_of(s_);
+    const bool single = s_.precision == Precision::single;
+    const std::string precision = single ? "float" : "double";
+    const std::string remedy = single ? "give precision: double, or " : "";
+    if (r.spacing > kLargestSpacing)
+      return add("domain.max", "the box is so long that positions in " + precision + " are " +
+                                   to_text(r.spacing) + " h apart at its far end (at most " +
+                                   to_text(kLargestSpacing) + "): densities would be off; " +
+                                   remedy + "make the domain smaller or raise fluid.spacing");
+    const bool lost = r.lost > kLeastLoss;
+    if (!lost && r.slow <= kLargestLoss) return;
+    const std::string what =
+        lost ? "in " + precision + " up to " + format("%.3g", r.lost) + " h of a motion over " +
+                   format("%.3g", r.distance) + " h would be rounded away: positions are " +
+                   to_text(r.spacing) + " h apart, steps shorter than half of that are none"
+             : "makes so many steps in a fall that rounding in " + precision + " would take " +
+                   format("%.3g", 100 * r.slow) + " % of its velocity";
+    add("time.step", what + "; " + remedy +
+                         (s_.solver.substeps > 1 ? "raise time.step or lower solver.substeps"
+                                                 : "raise time.step"));
   }
 
   void check_bodies(bool domain) {

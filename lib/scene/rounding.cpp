@@ -1,0 +1,48 @@
+#include "lib/scene/rounding.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pbf {
+namespace {
+
+/// Distance of neighbouring numbers as large as x, with so many digits after the first.
+double number_spacing(double x, int digits) { return std::ldexp(1.0, std::ilogb(x) - digits); }
+
+}  // namespace
+
+Rounding rounding_of(const Scene& s) {
+  const int digits = s.precision == Precision::dbl ? 52 : 23;
+  const double h = s.h(), dt = s.time.step / s.solver.substeps;
+  const bool falls = s.gravity != Double3{};
+  Rounding worst;
+  const auto take = [&](double distance, double lost, double slow) {
+    worst.slow = std::max(worst.slow, slow);
+    lost = std::min(lost, distance);
+    if (lost > kLargestLoss * distance && lost > worst.lost) {
+      worst.lost = lost;
+      worst.distance = distance;
+    }
+  };
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double extent = (s.domain.max[a] - s.domain.min[a]) / h;
+    const double spacing = number_spacing(extent, digits);
+    if (s.dimensions == 2 && a == 1) continue;
+    worst.spacing = std::max(worst.spacing, spacing);
+    const double g = std::fabs(s.gravity[a]) / h;
+    if (g > 0) {
+      const double time = std::min(s.time.end, std::sqrt(2 * extent / g));
+      take(0.5 * g * time * time, spacing * spacing / (8 * g * dt * dt),
+           std::ldexp(time / dt, -digits - 1) / 4);
+    }
+    for (const Body& b : s.bodies) {
+      const double v = std::fabs(b.velocity[a]) / h;
+      if (falls || v == 0) continue;
+      const double distance = std::min(v * s.time.end, extent);
+      take(distance, distance * spacing / (2 * v * dt), 0);
+    }
+  }
+  return worst;
+}
+
+}  // namespace pbf
