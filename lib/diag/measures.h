@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace pbf {
@@ -43,21 +44,27 @@ struct Measures {
   double relative_way_max = 0;  ///< h, the longest such way in a step; 0: there was none
 };
 
-/// What an EnergyTrack knows: enough to go on from a checkpoint. J.
+/// What an EnergyTrack knows: enough to go on from a checkpoint. J, rise 1.
 struct EnergyHistory {
   bool started = false;
-  double first = 0, lowest = 0, rise = 0;
+  double first = 0, lowest = 0, largest = 0, rise = 0;
 };
 
 /// Follows the energy of one simulation from its first measure on. The walls do not move and do no
-/// work, so whatever rises was made by the method.
+/// work, so whatever rises was made by the method. A start without energy (E0 at most 1e-12 of the
+/// largest so far) is no scale; the largest so far is one then, and a rise of 1 says that all of it
+/// was made by the method. Never infinite.
 class EnergyTrack {
  public:
-  explicit EnergyTrack(const EnergyHistory& before = {}) : h_(before) {}
+  explicit EnergyTrack(const EnergyHistory& before = {}) : h_(before) {
+    h_.largest = std::max({h_.largest, h_.first, h_.lowest});
+    if (!std::isfinite(h_.rise)) h_.rise = 1;  // of a checkpoint from before this rule
+  }
   /// Fills m.energy_drift and m.energy_rise. To be called with every measure, in order.
   void follow(Measures& m) {
-    if (!h_.started) h_.first = h_.lowest = m.energy;
+    if (!h_.started) h_.first = h_.lowest = h_.largest = m.energy;
     h_.started = true;
+    h_.largest = std::max(h_.largest, m.energy);
     h_.rise = std::max(h_.rise, relative(m.energy - h_.lowest));
     h_.lowest = std::min(h_.lowest, m.energy);
     m.energy_drift = relative(m.energy - h_.first);
@@ -66,7 +73,9 @@ class EnergyTrack {
   const EnergyHistory& history() const { return h_; }
 
  private:
-  double relative(double e) const { return e == 0 ? 0 : e / h_.first; }
+  double relative(double e) const {
+    return e == 0 ? 0 : e / (h_.first > 1e-12 * h_.largest ? h_.first : h_.largest);
+  }
   EnergyHistory h_;
 };
 

@@ -66,6 +66,8 @@ void for_each_number(Saved& s, F&& f) {
 /// The same for those that older files lack.
 template <class Saved, class F>
 void for_each_newer_number(Saved& s, F&& f) {
+  f("energy_largest", s.energy.largest);
+  f("way_squared", s.state.way_squared);
   f("first_momentum_x", s.first.momentum[0]);
   f("first_momentum_y", s.first.momentum[1]);
   f("first_momentum_z", s.first.momentum[2]);
@@ -124,7 +126,6 @@ void write_file(const std::string& path, const SavedRun& s) {
     h5::write_numbers(file, "fast", &s.state.fast);
     h5::write_numbers(file, "rounds", &s.state.rounds);
     h5::write_numbers(file, "unresolved", &s.state.unresolved);
-    h5::write_numbers(file, "way_squared", &s.state.way_squared);
     h5::write_numbers(file, "first_neighbors_max", &s.first.neighbors_max);
     h5::write_numbers(file, "energy_started", &started);
     const auto write = [&](const char* name, double v) { h5::write_numbers(file, name, &v); };
@@ -159,10 +160,8 @@ SavedRun read_file(const std::string& path) {
   s.particles = h5::read_number<std::int64_t>(file, "particles");
   s.state.fast = h5::read_number<std::int64_t>(file, "fast");
   s.state.rounds = h5::read_number<std::int64_t>(file, "rounds");
-  if (h5::has_attribute(file, "unresolved")) {  // files written before it was counted hold none
+  if (h5::has_attribute(file, "unresolved"))  // newer as well
     s.state.unresolved = h5::read_number<std::int64_t>(file, "unresolved");
-    s.state.way_squared = h5::read_number<double>(file, "way_squared");
-  }
   s.first.neighbors_max = h5::read_number<std::int64_t>(file, "first_neighbors_max");
   s.energy.started = h5::read_number<std::int64_t>(file, "energy_started") != 0;
   const auto read = [&](const char* name, double& v) { v = h5::read_number<double>(file, name); };

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 
 #include "lib/diag/measures.h"
 #include "tests/catch.h"
@@ -18,13 +19,38 @@ TEST_CASE("the energy's drift is from the start, its rise from the lowest value 
   }
 }
 
-TEST_CASE("a state without energy has no drift while it stays so, and an infinite one after") {
+TEST_CASE(
+    "of a start without energy the rise is a share of the most energy since, never infinite") {
   EnergyTrack track;
   Measures m;
   track.follow(m);
   CHECK(m.energy_drift == 0);
   CHECK(m.energy_rise == 0);
-  m.energy = 1;
+  const double energy[] = {1e-300, 2, 1, 1.5}, drift[] = {1, 1, 0.5, 0.75};
+  for (int k = 0; k < 4; ++k) {
+    m.energy = energy[k];
+    track.follow(m);
+    CHECK(m.energy_drift == Approx(drift[k]));
+    CHECK(m.energy_rise == 1);
+  }
+}
+
+TEST_CASE("energy lost and made again after a start of next to none counts by its own size") {
+  EnergyTrack track;
+  Measures m;
+  for (const double e : {1e-320, 5.0, 1.0, 2.0}) {
+    m.energy = e;
+    track.follow(m);
+    CHECK(std::isfinite(m.energy_drift));
+    CHECK(m.energy_rise <= 1);
+  }
+}
+
+TEST_CASE("a history with an infinite rise, as old checkpoints hold, goes on finite") {
+  EnergyTrack track({true, 0, 0, 0, std::numeric_limits<double>::infinity()});
+  Measures m;
+  m.energy = 3;
   track.follow(m);
-  CHECK(std::isinf(m.energy_rise));
+  CHECK(m.energy_rise == 1);
+  CHECK(m.energy_drift == 1);
 }
