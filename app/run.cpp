@@ -102,8 +102,7 @@ std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
 /// Saves the last good state and a scene that goes on from it, and ends the run.
 [[noreturn]] void report_alarm(const GuardEvent& e, const Guard& guard, const Scene& scene,
                                const RunFolder& folder) {
-  write_particle_file(folder.file("guard_state.h5"), to_particles(e.last_good, scene),
-                      e.last_good.id);
+  write_particle_file(folder.file("guard_state.h5"), to_particles(e.last_good, scene));
   folder.write_text("guard_scene.yaml", resolved_yaml(guard.repeating_scene(e, "guard_state.h5")));
   throw Error(
       ExitCode::guard,
@@ -147,10 +146,19 @@ void relieve(Solver& solver, const Scene& scene, const Plan& plan, Log& log) {
   if (!done.empty()) log.note("pbf: " + done);
 }
 
+/// What was done to the particles of the scene before the start; empty: nothing.
+std::string start_note(const Particles& p, const Scene& scene) {
+  if (p.put_on_margin == 0) return {};
+  return format(
+      "%zu particles were nearer to a wall than solver.wall_margin (%.6g m), by up to "
+      "%.3g m; they start at that distance",
+      p.put_on_margin, scene.solver.wall_margin, p.farthest_put);
+}
+
 /// Everything from the made folder on, so that its log.txt also gets the error that ends it.
 int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver> solver,
-             const RunFolder& folder, const ResumePoint& from, Log& log, StageClock& clock,
-             const Stopwatch& wall, const RunOptions& options) {
+             const std::string& start_note, const RunFolder& folder, const ResumePoint& from,
+             Log& log, StageClock& clock, const Stopwatch& wall, const RunOptions& options) {
   const std::string started = utc_now();
   const File json = open_json(options.log_json, from.started);
   if (from.started) prepare_resume(folder, from);
@@ -159,6 +167,7 @@ int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver
       scene_record(loaded.scene, std::filesystem::path(loaded.path).parent_path().string()));
   log.note(banner(loaded.scene, plan, *solver, folder.path()));
   for (const std::string& note : from.notes) log.note("pbf: " + note);
+  if (!from.saved && !start_note.empty()) log.note("pbf: " + start_note);
   if (from.saved) {
     solver->set_state(from.saved->state);
     log.note(format("pbf: goes on from the checkpoint of update %lld",
@@ -232,7 +241,9 @@ int command_run(const RunOptions& options) {
     }
   }
   // A new folder comes last: a scene that cannot run leaves nothing behind.
-  auto solver = make_solver(scene, plan, emit_particles(scene, dir));
+  Particles particles = emit_particles(scene, dir);
+  const std::string note = start_note(particles, scene);
+  auto solver = make_solver(scene, plan, std::move(particles));
   double solver_init = 0;  // the solver reports its own part of "init"
   for (const StageTime& s : solver->timings()) solver_init += s.name == "init" ? s.seconds : 0;
   clock.add("init", wall.seconds() - solver_init);
@@ -240,7 +251,8 @@ int command_run(const RunOptions& options) {
   if (!folder) folder = std::make_unique<RunFolder>(out, existing);
   log.open(folder->file("log.txt"), from.started);
   try {
-    return simulate(loaded, plan, std::move(solver), *folder, from, log, clock, wall, options);
+    return simulate(loaded, plan, std::move(solver), note, *folder, from, log, clock, wall,
+                    options);
   } catch (const std::exception& e) {
     try {
       log.file_only(std::string("pbf: error: ") + e.what());

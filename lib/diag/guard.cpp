@@ -290,17 +290,16 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
 
 Particles to_particles(const SolverState& state, const Scene& s) {
   Particles p;
+  p.position.resize(state.id.size());
+  p.velocity.resize(state.id.size());
   const double h = s.h();
-  for (std::size_t i = 0; i < state.id.size(); ++i) {
-    Double3 x, v;
+  for (std::size_t i = 0; i < state.id.size(); ++i)
     for (std::size_t a = 0; a < 3; ++a) {
-      x[a] = std::clamp(s.origin()[a] + h * state.position[3 * i + a], s.domain.min[a],
-                        s.domain.max[a]);
-      v[a] = h * state.velocity[3 * i + a];
+      const auto id = std::size_t(state.id[i]);
+      p.position[id][a] = std::clamp(s.origin()[a] + h * state.position[3 * i + a], s.domain.min[a],
+                                     s.domain.max[a]);
+      p.velocity[id][a] = h * state.velocity[3 * i + a];
     }
-    p.position.push_back(x);
-    p.velocity.push_back(v);
-  }
   return p;
 }
 

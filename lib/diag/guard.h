@@ -107,8 +107,8 @@ class Guard {
   std::optional<double> released_;
 };
 
-/// Positions and velocities of a state, SI units, in its own order. What rounding has put beyond a
-/// face of the domain is put on it.
+/// Positions and velocities of a state, SI units, in the order of ids: in a scene made of them row,
+/// and so id, are what they were. What rounding has put beyond a face of the domain is put on it.
 Particles to_particles(const SolverState& state, const Scene& scene);
 
 }  // namespace pbf

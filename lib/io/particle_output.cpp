@@ -1,12 +1,13 @@
 #include "lib/io/particle_output.h"
 
+#include <vector>
+
 #include "lib/base/error.h"
 #include "lib/io/h5.h"
 
 namespace pbf {
 
-void write_particle_file(const std::string& path, const Particles& particles,
-                         const std::vector<std::int32_t>& id) {
+void write_particle_file(const std::string& path, const Particles& particles) {
   const h5::Lock lock;
   try {
     h5::File file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
@@ -20,13 +21,6 @@ void write_particle_file(const std::string& path, const Particles& particles,
     };
     write("position", "m", particles.position);
     write("velocity", "m/s", particles.velocity);
-    {
-      const hsize_t rows = id.size();
-      const h5::Space space(H5Screate_simple(1, &rows, nullptr));
-      const h5::Dataset d(
-          H5Dcreate2(file, "id", H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-      h5::check(H5Dwrite(d, H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, id.data()));
-    }
     if (!file.reset()) throw h5::Failure(h5::reason());
   } catch (const h5::Failure& e) {
     throw Error(ExitCode::io, path + ": cannot be written: " + e.what());

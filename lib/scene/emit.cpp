@@ -36,6 +36,40 @@ void hold_inside(const Scene& scene, std::size_t body, std::size_t first, std::v
   }
 }
 
+bool is_open(const Domain& domain, int axis, bool high) {
+  const std::string face = std::string(1, "xyz"[axis]) + (high ? "_max" : "_min");
+  return std::find(domain.open.begin(), domain.open.end(), face) != domain.open.end();
+}
+
+/// Puts the particles from `first` on that are nearer to a wall than solver.wall_margin on it;
+/// refuses what would have to go farther than half a spacing, for layers would meet there.
+void hold_off_walls(const Scene& s, std::size_t body, std::size_t first, Particles& all) {
+  const double margin = s.solver.wall_margin, d = s.fluid.spacing;
+  if (!(margin > 0)) return;
+  std::size_t too_far = 0;
+  double farthest = 0;
+  for (std::size_t i = first; i < all.size(); ++i) {
+    double way = 0;
+    for (int a = 0; a < 3; a += s.dimensions == 2 ? 2 : 1) {
+      double& x = all.position[i][a];
+      const double low = s.domain.min[a] + margin, high = s.domain.max[a] - margin, before = x;
+      if (x < low && !is_open(s.domain, a, false)) x = low;
+      if (x > high && !is_open(s.domain, a, true)) x = high;
+      way = std::max(way, std::fabs(x - before));
+    }
+    if (way > 1e-6 * d) ++all.put_on_margin;  // the rest is rounding
+    if (way > 0.5 * d * (1 + 1e-6)) ++too_far;
+    farthest = std::max(farthest, way);
+  }
+  all.farthest_put = std::max(all.farthest_put, farthest);
+  if (too_far == 0) return;
+  throw Error(ExitCode::bad_input,
+              "bodies[" + std::to_string(body) + "]: " + std::to_string(too_far) +
+                  " particles are nearer to a wall than solver.wall_margin (" + to_text(margin) +
+                  " m) by more than half of fluid.spacing, the farthest by " + to_text(farthest) +
+                  " m; move the body away from the walls or lower solver.wall_margin");
+}
+
 /// In two dimensions nothing leaves the plane. A body's own velocity is checked with the scene.
 void refuse_velocity_along_y(std::size_t body, const std::vector<Double3>& v) {
   for (std::size_t i = 0; i < v.size(); ++i)
@@ -100,6 +134,7 @@ Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
     for (std::size_t i = first; i < all.size(); ++i)
       for (int a = 0; a < 3; ++a) all.velocity[i][a] += body.velocity[a];
     hold_inside(scene, b, first, all.position);
+    hold_off_walls(scene, b, first, all);
   }
   return all;
 }

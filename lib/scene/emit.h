@@ -13,6 +13,8 @@ namespace pbf {
 struct Particles {
   std::vector<Double3> position;  ///< m
   std::vector<Double3> velocity;  ///< m/s
+  std::size_t put_on_margin = 0;  ///< that were nearer to a wall than solver.wall_margin
+  double farthest_put = 0;        ///< m, by how much at most
   std::size_t size() const { return position.size(); }
 };
 
@@ -28,8 +30,10 @@ std::int64_t count_particles(const Scene& scene, const std::string& scene_dir);
 /// sphere: points of the lattice through its centre with |x - c| <= radius; random_box: SplitMix64
 /// seeded by `seed`, three draws per particle (x, y, z), 53-bit mantissa, the same on every
 /// machine. In two dimensions each of them is its cut with the plane: square lattice, disc, two
-/// draws (x, z); particles of a file within the slab are put on it.
-/// Throws Error(bad_input) for a particle outside the domain (naming body and particle), a
+/// draws (x, z); particles of a file within the slab are put on it. Particles nearer to a wall than
+/// solver.wall_margin are put on that distance, by up to half a spacing: the first update would
+/// clamp them, and take the way for a velocity.
+/// Throws Error(bad_input) for a particle outside the domain or farther behind the margin, a
 /// file body that cannot be understood, non-finite values; Error(io) for one that cannot be read.
 Particles emit_particles(const Scene& scene, const std::string& scene_dir);
 

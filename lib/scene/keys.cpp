@@ -191,8 +191,11 @@ std::vector<Key> solver_keys() {
             "density: walls count in the density like fluid behind them. clamp: particles are only "
             "put back into the box.",
             SCENE(choice(s.solver.boundary))),
-      number("solver.wall_margin", "m", {0, 1e9},
-             "Distance to a wall at which particles are clamped.", SCENE(&s.solver.wall_margin)),
+      number(
+          "solver.wall_margin", "m", {0, 1e9},
+          "Distance to a wall at which particles are clamped. What is nearer at the start is put "
+          "there; by more than half of fluid.spacing it is refused.",
+          SCENE(&s.solver.wall_margin)),
       number("solver.velocity_damping", "", {0, 1},
              "Factor on every velocity, once per update. 1: no damping.",
              SCENE(&s.solver.velocity_damping)),

@@ -74,9 +74,11 @@ TEST_CASE(
   CHECK_FALSE(fs::exists(folder / "o/DONE"));
   const Outcome again = pbf::test::pbf({"run", "o/guard_scene.yaml", "--out", "p"}, folder.path());
   CHECK(again.code == 3);
-  const auto told = [](const std::string& text) {
-    return text.substr(text.find(", in stage"), 28);
+  const auto told = [](const std::string& text) {  // stage, sweep and particle
+    const std::size_t from = text.find(", in stage"), id = text.find(", particle ", from);
+    return text.substr(from, text.find(" at ", id) - from);
   };
+  CHECK(has(told(o.err), ", particle "));
   CHECK(told(o.err) == told(again.err));
   std::vector<std::string> off = blow;
   off.insert(off.end(), {"--overwrite", "--set", "guard=off"});

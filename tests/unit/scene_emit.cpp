@@ -205,4 +205,48 @@ TEST_CASE("in two dimensions particles of a file must lie in the slab and not mo
   CHECK(contains(error("0.5,0.05,0.5,0,1,0\n"), "its y component must be 0"));
 }
 
+TEST_CASE("particles nearer to a wall than the margin start on it, those before it stay") {
+  Scene s = unit_box(0.1, {block({0, 0, 0}, {0.3, 0.3, 0.3})});
+  s.domain.max = {1, 1, 1};
+  s.solver.wall_margin = 0.05;  // where the lattice is
+  const Particles free = emit_particles(s, "");
+  CHECK(free.put_on_margin == 0);
+  CHECK(free.position[0][0] == Approx(0.05).epsilon(1e-12));
+  s.solver.wall_margin = 0.08;
+  const Particles p = emit_particles(s, "");
+  CHECK(p.put_on_margin == 27 - 8);
+  CHECK(p.farthest_put == Approx(0.03));
+  REQUIRE(p.size() == free.size());
+  for (std::size_t i = 0; i < p.size(); ++i)
+    for (std::size_t a = 0; a < 3; ++a) {
+      CHECK(p.position[i][a] == std::max(free.position[i][a], 0.08));
+      CHECK(p.velocity[i][a] == 0);
+    }
+}
+
+TEST_CASE("an open face has no margin") {
+  Scene s = unit_box(0.1, {block({0, 0, 0}, {0.3, 0.1, 0.3})});
+  s.domain.max = {1, 1, 1};
+  s.domain.open = {"z_min", "y_min"};
+  s.solver.wall_margin = 0.08;
+  const Particles p = emit_particles(s, "");
+  CHECK(p.put_on_margin == 3);  // a column along z and the plane x = 0.05
+  for (const Double3& x : p.position) {
+    CHECK(x[0] >= 0.08);
+    CHECK(x[1] == Approx(0.05));
+  }
+}
+
+TEST_CASE("a start that the margin would squeeze by more than half a spacing is refused") {
+  Scene s = unit_box(0.1, {block({0, 0, 0}, {0.3, 0.3, 0.3})});
+  s.domain.max = {1, 1, 1};
+  s.solver.wall_margin = 0.12;
+  const std::string error = error_of([&] { emit_particles(s, ""); });
+  CHECK(contains(error,
+                 "2 bodies[0]: 19 particles are nearer to a wall than solver.wall_margin "
+                 "(0.12 m) by more than half of fluid.spacing, the farthest by 0.0"));
+  s.bodies = {block({0.1, 0.1, 0.1}, {0.4, 0.4, 0.4})};  // where the margin leaves it alone
+  CHECK(emit_particles(s, "").put_on_margin == 0);
+}
+
 }  // namespace pbf::scene_test
