@@ -241,9 +241,9 @@ int command_run(const RunOptions& options) {
     }
   }
   // A new folder comes last: a scene that cannot run leaves nothing behind.
-  Particles particles = emit_particles(scene, dir);
-  const std::string note = start_note(particles, scene);
-  auto solver = make_solver(scene, plan, std::move(particles));
+  Particles start = emit_particles(scene, dir);
+  const std::string note = start_note(start, scene);
+  auto solver = make_solver(scene, plan, std::move(start));
   double solver_init = 0;  // the solver reports its own part of "init"
   for (const StageTime& s : solver->timings()) solver_init += s.name == "init" ? s.seconds : 0;
   clock.add("init", wall.seconds() - solver_init);
