@@ -162,16 +162,14 @@ std::int64_t add_start(const Scene& s, const Plan& plan, const std::string& real
   return peak;
 }
 
-/// While the compression is taken out of the start (lib/diag/prestabilize.h), beside the solver:
-/// the positions before and after a round, and the latter as they come from it.
+/// While the compression is taken out of the start (lib/diag/prestabilize.h): what that takes
+/// beside the solver, which keeps no good state yet.
 std::int64_t add_prestabilize(const Scene& s, const Plan& plan, const std::string& real,
                               MemoryPlan& memory) {
   if (!s.solver.prestabilize || s.solver.iterations == 0) return 0;
-  const std::int64_t n = plan.particles;
-  const Adder add{memory, false, Held::start};
-  add("positions before and after steps without time", "double", 3, 2 * n);
-  add("the latter in the solver's order", real, 4, n);
-  return n * (48 + 4 * size_of(real));
+  const std::int64_t n = plan.particles, kept = n * (8 * size_of(real) + 4);
+  Adder{memory, false, Held::start}("positions around steps without time", "double", 3, 2 * n);
+  return 48 * n - (s.guard && s.backend == Backend::cpu ? kept : 0);
 }
 
 /// What frames and pictures take: on the host beside the solver, and the staging on the device.

@@ -1,6 +1,7 @@
 // A state between the arrays of a step and the host.
 #pragma once
 
+#include <algorithm>
 #include <numeric>
 #include <vector>
 
@@ -31,25 +32,26 @@ struct CopyStatePass {
   }
 };
 
+/// Vectors of n rows in the order of ids, along the scene's axes: 3 numbers each. They come in
+/// parts, and take no more memory than the result.
 template <class Real, class Exec>
-std::vector<int> ids_on_host(Exec& exec, std::size_t n, const StateArrays<Real>& from) {
-  std::vector<int> id(n);
-  exec.to_host(from.id, n, id.data());
-  return id;
-}
-
-/// Vectors of the rows `id` in the order of ids, along the scene's axes: 3 numbers each.
-template <class Real, class Exec>
-std::vector<double> rows_by_id(Exec& exec, const Axes& axes, const Vec4<Real>* rows,
-                               const std::vector<int>& id) {
-  std::vector<Vec4<Real>> host(id.size());
-  exec.to_host(rows, id.size(), host.data());
-  std::vector<double> to(3 * id.size());
-  for (std::size_t k = 0; k < id.size(); ++k) {
-    double* row = to.data() + 3 * std::size_t(id[k]);
-    row[axes.of[0]] = host[k].x, row[axes.of[1]] = host[k].y, row[axes.of[2]] = host[k].z;
+std::vector<double> rows_by_id(Exec& exec, const Axes& axes, std::size_t n, const Vec4<Real>* rows,
+                               const int* id) {
+  const std::size_t part = std::min<std::size_t>(n, 1 << 16);
+  std::vector<int> ids(part);
+  std::vector<Vec4<Real>> vectors(part);
+  std::vector<double> out(3 * n);
+  for (std::size_t first = 0; first < n; first += part) {
+    const std::size_t count = std::min(part, n - first);
+    exec.to_host(id + first, count, ids.data());
+    exec.to_host(rows + first, count, vectors.data());
+    for (std::size_t k = 0; k < count; ++k) {
+      double* to = out.data() + 3 * std::size_t(ids[k]);
+      const Vec4<Real>& v = vectors[k];
+      to[axes.of[0]] = v.x, to[axes.of[1]] = v.y, to[axes.of[2]] = v.z;
+    }
   }
-  return to;
+  return out;
 }
 
 /// In the order of ids: the order of rows is no part of a state.
@@ -61,9 +63,8 @@ SolverState download_state(Exec& exec, std::size_t n, const Axes& axes,
   s.precision = sizeof(Real) == 8 ? Precision::dbl : Precision::single;
   s.updates = updates;
   s.steps = steps;
-  const std::vector<int> id = ids_on_host(exec, n, from);
-  s.position = rows_by_id(exec, axes, from.position, id);
-  s.velocity = rows_by_id(exec, axes, from.velocity, id);
+  s.position = rows_by_id(exec, axes, n, from.position, from.id);
+  s.velocity = rows_by_id(exec, axes, n, from.velocity, from.id);
   s.id.resize(n);
   std::iota(s.id.begin(), s.id.end(), 0);
   StepCounts counts;

@@ -126,8 +126,7 @@ class Stepper {
 
   /// h from Scene::origin() along the scene's axes, 3n, in the order of ids.
   std::vector<double> positions() {
-    return rows_by_id(exec_, axes_, a_.position.data(),
-                      ids_on_host<Real>(exec_, std::size_t(p_.n), a_.state()));
+    return rows_by_id(exec_, axes_, std::size_t(p_.n), a_.position.data(), a_.id.data());
   }
 
   /// Takes over a state of as many particles, in any order.
