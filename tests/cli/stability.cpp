@@ -72,6 +72,7 @@ TEST_CASE(
   CHECK(has(read_text(folder / "o/log.txt"), "stopped by the guard"));
   CHECK(pbf::RunReader((folder / "o/run.h5").string()).status() == "diverged");
   CHECK_FALSE(fs::exists(folder / "o/DONE"));
+  CHECK(has(read_text(folder / "o/guard_scene.yaml"), "prestabilize: false"));
   const Outcome again = pbf::test::pbf({"run", "o/guard_scene.yaml", "--out", "p"}, folder.path());
   CHECK(again.code == 3);
   const auto told = [](const std::string& text) {  // stage, sweep and particle
