@@ -86,6 +86,29 @@ TEST_CASE(
   CHECK(pbf::test::pbf(off, folder.path()).code == 0);
 }
 
+TEST_CASE("guard: the scene that repeats an event names the particle by the id that it had") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  // A first update with tensile, and one after the particles have been sorted, with viscosity.
+  for (const char* key : {"tensile.k=1", "viscosity.xsph=6"}) {
+    CAPTURE(key);
+    const Outcome o =
+        pbf::test::pbf({"run", "tiny.yaml", "--out", "o", "--overwrite", "--set", key, "--set",
+                        "guard.energy=0.01", "--set", "bodies[0].velocity=[1,2,0]"},
+                       folder.path());
+    REQUIRE(o.code == 3);
+    const Outcome again =
+        pbf::test::pbf({"run", "o/guard_scene.yaml", "--out", "p", "--overwrite"}, folder.path());
+    CHECK(again.code == 3);
+    const auto particle = [](const std::string& text) {
+      const std::size_t from = text.find(", particle ");
+      return text.substr(from, text.find(" m, ", from) - from);
+    };
+    CHECK(has(particle(o.err), " at ("));
+    CHECK(particle(o.err) == particle(again.err));
+  }
+}
+
 TEST_CASE("speed limit: the summary says how often a particle was slowed down") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());
