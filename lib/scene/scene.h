@@ -187,7 +187,8 @@ struct Scene {
   /// m^3, what one particle of the rest lattice fills: d^3, in two dimensions d^2 times the
   /// thickness.
   double cell_volume() const {
-    if (dimensions == 3) return std::pow(fluid.spacing, 3);
+    // Products, for pow() may differ in the last bit from one C library to the next.
+    if (dimensions == 3) return fluid.spacing * fluid.spacing * fluid.spacing;
     return fluid.spacing * fluid.spacing * (domain.max[1] - domain.min[1]);
   }
   /// kg, mass of one particle.

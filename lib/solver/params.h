@@ -55,7 +55,8 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   // The guard's limit depends on the first measure, so it comes later (Stepper::watch_speed).
   if (s.solver.speed_limit > 0) {
     p.limit_speed = true;
-    p.speed_squared = Real(std::pow(s.solver.speed_limit / s.time.step, 2));
+    const double limit = s.solver.speed_limit / s.time.step;
+    p.speed_squared = Real(limit * limit);
   }
   p.box = {Real((s.domain.max[0] - s.domain.min[0]) / h),
            Real((s.domain.max[1] - s.domain.min[1]) / h),
