@@ -31,12 +31,14 @@ struct Params {
   Real damping = 1;                 ///< factor on the velocity, once per update
   Real speed_squared = Real(1e30);  ///< (h/s)^2, faster particles are counted ...
   bool limit_speed = false;         ///< ... and slowed down to it
-  Vec3<Real> box;                   ///< h, extent of the domain
-  Real margin = 0;                  ///< h, distance to a wall at which particles are clamped
-  unsigned walls = 63;              ///< WallBit mask of the faces that are walls
-  bool wall_density = true;         ///< walls contribute to density (boundary: density)
-  Real wall_scale = 1;              ///< amplitude of that contribution, kernels/README.md (9)
-  Real wall_inv_range = 1;          ///< h over the range of that contribution
+  /// (h/s)^2, faster ones look how they pass their neighbours in the first sweep.
+  Real passing_squared = Real(1e30);
+  Vec3<Real> box;            ///< h, extent of the domain
+  Real margin = 0;           ///< h, distance to a wall at which particles are clamped
+  unsigned walls = 63;       ///< WallBit mask of the faces that are walls
+  bool wall_density = true;  ///< walls contribute to density (boundary: density)
+  Real wall_scale = 1;       ///< amplitude of that contribution, kernels/README.md (9)
+  Real wall_inv_range = 1;   ///< h over the range of that contribution
   int cells_x = 1, cells_y = 1, cells_z = 1;  ///< cells_x counts half cells; in 2-D cells_y = 1
   int first_layer = 0, layers = 1;            ///< of cells along z: those that have bins here
   Real inv_cell = 1;                          ///< 1/h, one over the edge of a cell (>= h)

@@ -74,12 +74,10 @@ struct LambdaPass {
   Params<Real> p;
   Lists lists;
   const Vec4<Real>* position;
-  Vec4<Real>* position_out;  ///< out: the same position with w = lambda
-  Real* density;             ///< out when with_density, else in
-  /// Null: how neighbours move past each other is not looked at (relative_motion.h). Where it is,
-  /// the velocities of neighbours are read besides, for a count alone.
-  const Vec4<Real>* velocity = nullptr;
-  StepCounts* counts = nullptr;
+  Vec4<Real>* position_out;    ///< out: the same position with w = lambda
+  Real* density;               ///< out when with_density, else in
+  const Vec4<Real>* velocity;  ///< of the neighbours of marked particles, for a count alone
+  StepCounts* counts;
 
   static constexpr int D = dimensions_of(S);
   static constexpr unsigned gathers = kPlace;
@@ -116,7 +114,6 @@ struct LambdaPass {
     s.gradient = s.gradient + (t2 * root.inverse) * d;
   }
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
-    if (velocity) count_unresolved(i, p, lists, velocity, counts);
     const WallTerm<Real> wall = wall_term<Real, S>(in_space(x), p);
     Real rho;
     if constexpr (with_density) {
@@ -132,6 +129,8 @@ struct LambdaPass {
     // No neighbour, no wall and no relaxation: nothing to move along.
     const Real lambda = denominator > Real(0) ? -c / (crowd(rho, p) * denominator) : Real(0);
     position_out[i] = with_w(in_space(x), lambda);
+    // Last, where nothing else is held in registers.
+    if (load(position, i).w < Real(0)) count_unresolved(i, p, lists, velocity, counts);
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };

@@ -12,6 +12,7 @@ template <class Real>
 struct Moving {
   Vec3<Real> x, v;  ///< h, h/s
   bool fast;        ///< faster than the speed that is watched, before it was limited
+  Real mark = 1;    ///< -1: so fast that it may pass a neighbour (relative_motion.h), else 1
 };
 
 /// Position is clamped to the walls, and the velocity follows what the clamp did: a particle never
@@ -25,7 +26,8 @@ PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p) {
   const Vec3<Real> free = mul_add(p.dt, v, x);
   x = clamp_inside(free, p);
   // Only a clamped coordinate changes v: elsewhere x - free is exactly 0.
-  return {x, mul_add(p.inv_dt, x - free, v), fast};
+  const Real mark = speed_squared > p.passing_squared ? Real(-1) : Real(1);
+  return {x, mul_add(p.inv_dt, x - free, v), fast, mark};
 }
 
 /// Writes x* and the velocity that goes with it for particle i at x with velocity v.
@@ -34,7 +36,7 @@ PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p, Ve
                     Vec4<Real>* velocity, StepCounts* counts) {
   const Moving<Real> m = predict(x, v, p);
   if (m.fast) count_one(&counts->fast);
-  position[i] = with_w(m.x, Real(1));
+  position[i] = with_w(m.x, m.mark);
   velocity[i] = with_w(m.v, Real(0));
 }
 
@@ -72,7 +74,7 @@ struct BinPass {
 };
 
 /// Puts the particles in the order of bins; with `moving`, as predicted. Position's w = 1
-/// (1/density, until a sweep replaces it).
+/// (1/density, until a sweep replaces it), or -1 as a mark for the first sweep.
 template <class Real, bool moving>
 struct GatherPass {
   Params<Real> p;
@@ -85,7 +87,7 @@ struct GatherPass {
     Moving<Real> m{xyz(position[from]), xyz(velocity[from]), false};
     if constexpr (moving) m = predict(m.x, m.v, p);
     if (m.fast) count_one(&counts->fast);
-    position_out[to] = with_w(m.x, Real(1));
+    position_out[to] = with_w(m.x, m.mark);
     velocity_out[to] = with_w(m.v, Real(0));
     id_out[to] = id[from];
   }

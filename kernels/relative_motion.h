@@ -12,14 +12,14 @@ namespace pbf::inline PBF_VARIANT {
 constexpr double kResolvedWay = 0.4;
 
 /// Counts particle i if it moves by more than kResolvedWay relative to a neighbour in this step,
-/// and keeps the largest such way. Of two that part so fast one moves by more than half of it, so
-/// the others need not look at their neighbours. velocity: as predicted, h/s.
+/// and keeps the largest such way. Of two that part so fast one moves by more than half of it: such
+/// particles are marked when they are predicted, and no other needs to look. velocity: as
+/// predicted, h/s.
 template <class Real, class Lists>
 PBF_HD void count_unresolved(int i, const Params<Real>& p, const Lists& lists,
                              const Vec4<Real>* velocity, StepCounts* counts) {
   constexpr Real limit = Real(kResolvedWay * kResolvedWay);
   const Vec3<Real> way = p.dt * xyz(velocity[i]);
-  if (!(dot(way, way) > limit / Real(4))) return;
   Real longest(0);
   lists.for_each(i, [&](int j) {
     if (j >= p.n) return;  // what fills up a list

@@ -1,9 +1,11 @@
 // Scene (SI units, its own axes) -> Params (internal frame).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/params.h"
+#include "kernels/relative_motion.h"
 #include "kernels/smoothing.h"
 #include "lib/plan/axes.h"
 #include "lib/plan/plan.h"
@@ -58,6 +60,10 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
     const double limit = s.solver.speed_limit / s.time.step;
     p.speed_squared = Real(limit * limit);
   }
+  if (s.solver.iterations > 0) {  // of two that part by kResolvedWay one goes half of it
+    const double speed = kResolvedWay / 2 / dt;
+    p.passing_squared = Real(std::min(speed * speed, 1e30));
+  }
   p.box = {Real((s.domain.max[0] - s.domain.min[0]) / h),
            Real((s.domain.max[1] - s.domain.min[1]) / h),
            Real((s.domain.max[2] - s.domain.min[2]) / h)};
@@ -111,7 +117,7 @@ Params<Real> without_time(Params<Real> p, double damping) {
   p.dt = p.inv_dt = 0;
   p.damping = Real(damping);
   p.limit_speed = p.two_sided = false;
-  p.speed_squared = Real(1e30);
+  p.speed_squared = p.passing_squared = Real(1e30);
   p.tensile_k = p.xsph = p.vorticity = 0;
   return p;
 }

@@ -298,14 +298,12 @@ class Stepper {
         move();
         seen("predict", s);
       }
-      bool first_of_substep = p_.dt > Real(0);
       with_smoothing(mode_, p_.dimensions, [&](auto smoothing) {
         const auto round = [&] {
           for (int k = 0; k < iterations_; ++k) {
             p_.step_length = step_length_[std::size_t(k)];
             const bool moves_on = joined && k == iterations_ - 1 && s < range.last - 1;
-            sweep<decltype(smoothing)::value>(seen, ++range.sweeps, first_of_substep, moves_on);
-            first_of_substep = false;
+            sweep<decltype(smoothing)::value>(seen, ++range.sweeps, moves_on);
           }
         };
         round();
@@ -339,7 +337,7 @@ class Stepper {
   }
 
   template <Smoothing S, class Seen>
-  void sweep(const Seen& seen, int number, bool first_of_substep, bool moves_on) {
+  void sweep(const Seen& seen, int number, bool moves_on) {
     if (!fused_) {
       exec_.for_each(
           p_.n, DensityPass<Real, Lists, S>{p_, lists_, a_.position.data(), a_.density.data()});
@@ -347,10 +345,9 @@ class Stepper {
       seen("density", number);
     }
     with_bool(fused_, [&](auto fused) {
-      exec_.for_each(
-          p_.n, LambdaPass<Real, Lists, S, decltype(fused)::value>{
-                    p_, lists_, a_.position.data(), a_.other_position.data(), a_.density.data(),
-                    first_of_substep ? a_.velocity.data() : nullptr, a_.counts.data()});
+      exec_.for_each(p_.n, LambdaPass<Real, Lists, S, decltype(fused)::value>{
+                               p_, lists_, a_.position.data(), a_.other_position.data(),
+                               a_.density.data(), a_.velocity.data(), a_.counts.data()});
     });
     exec_.mark("lambda");
     seen("lambda", number);

@@ -143,16 +143,27 @@ void check_all() {
   using P = Params<Real>;
   using L = ChunkedLists;
   using R = Rows<Real>;
+  static StepCounts counts;  // no row is marked: nothing is counted
   check<Real, D>([](const P& p, const L& lists, R& in, R& out) {
     return DensityPass<Real, L, S>{p, lists, in.position.data(), out.density.data()};
   });
   check<Real, D>([](const P& p, const L& lists, R& in, R& out) {
-    return LambdaPass<Real, L, S, true>{p, lists, in.position.data(), out.position.data(),
-                                        out.density.data()};
+    return LambdaPass<Real, L, S, true>{p,
+                                        lists,
+                                        in.position.data(),
+                                        out.position.data(),
+                                        out.density.data(),
+                                        in.velocity.data(),
+                                        &counts};
   });
   check<Real, D>([](const P& p, const L& lists, R& in, R& out) {
-    return LambdaPass<Real, L, S, false>{p, lists, in.position.data(), out.position.data(),
-                                         in.density.data()};
+    return LambdaPass<Real, L, S, false>{p,
+                                         lists,
+                                         in.position.data(),
+                                         out.position.data(),
+                                         in.density.data(),
+                                         in.velocity.data(),
+                                         &counts};
   });
   const auto delta = [](auto tensile) {
     return [](const P& p, const L& lists, R& in, R& out) {
