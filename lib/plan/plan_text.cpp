@@ -141,8 +141,8 @@ std::string plan_json(const Plan& plan, const Scene& s, const std::string& membe
                 plan.vol, plan.wall_scale, plan.wall_range, plan.mass);
   out += ",\"axes\":" +
          list(plan.axes.of, [](int axis) { return json_string(std::string(1, char('x' + axis))); });
-  out += format(",\"finest_level\":%d,\"lists_per_update\":%d,\"threads\":%d",
-                plan.finest_level, plan.lists_per_update,
+  out += format(",\"finest_level\":%d,\"lists_per_update\":%d,\"threads\":%d", plan.finest_level,
+                plan.lists_per_update,
                 s.backend == Backend::cpu ? solver_threads(s, plan.particles) : 0);
   out += ",\"passes\":" + list(plan.passes, [](const PlanPass& p) {
            return "{\"name\":" + json_string(p.name) + ",\"stage\":" + json_string(p.stage) +
