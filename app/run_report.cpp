@@ -105,12 +105,15 @@ std::string group_table(const RunTotals& t) {
 }
 
 std::string unresolved_text(const RunTotals& t) {
-  // The longest way belongs to a step of time.step/substeps, or shorter ones of time.adaptive.
+  // With time.adaptive the longest way may be that of a step much shorter than time.step.
+  const std::string remedy = t.steps ? std::string("lower time.adaptive.cfl")
+                                     : format("time.step %.2g s resolves it",
+                                              t.step * kResolvedWay / t.last.relative_way_max);
   return format(
-      "%lld times a particle moved by more than %g h relative to a neighbour in a step, by up to "
-      "%.3g h: fluid may have passed through fluid; time.step %.2g s resolves it",
-      static_cast<long long>(t.last.unresolved), kResolvedWay, t.last.relative_way_max,
-      t.step * kResolvedWay / t.last.relative_way_max);
+             "%lld times a particle moved by more than %g h relative to a neighbour in a step, by "
+             "up to %.3g h: fluid may have passed through fluid; ",
+             static_cast<long long>(t.last.unresolved), kResolvedWay, t.last.relative_way_max) +
+         remedy;
 }
 
 std::string run_summary(const RunTotals& t) {

@@ -42,6 +42,30 @@ TEST_CASE("a run leaves its file, resolved scene, log and DONE, and says so") {
   CHECK(has(json, "{\"update\": 20, "));
 }
 
+TEST_CASE("a run warns where fluid may have passed through fluid, and names the step that helps") {
+  const Scratch folder;
+  const std::string scene = folder.write(
+      "balls.yaml",
+      "domain: {min: [0, 0, 0], max: [3, 1, 1]}\n"
+      "fluid: {spacing: 0.05}\n"
+      "bodies:\n"
+      "  - {shape: sphere, center: [1.25, 0.5, 0.5], radius: 0.2, velocity: [10, 0, 0]}\n"
+      "  - {shape: sphere, center: [1.75, 0.5, 0.5], radius: 0.2, velocity: [-10, 0, 0]}\n"
+      "gravity: [0, 0, 0]\n"
+      "time: {step: 0.004, end: 0.06}\n");
+  const auto run = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"run", scene, "--out", "balls", "--overwrite"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome o = pbf::test::pbf(words, folder.path());
+    REQUIRE(o.code == 0);
+    CHECK(has(read_text(folder / "balls/log.txt"), "pbf: warning: ") == has(o.err, "warning"));
+    return o.err;
+  };
+  const std::string coarse = run({});
+  CHECK(has(coarse, "fluid may have passed through fluid; time.step 0.0"));
+  CHECK(has(run({"--set", "time.step=0.001"}), "warning") == false);
+}
+
 TEST_CASE("the resolved scene of a run gives the same run again") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());
