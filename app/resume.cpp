@@ -11,6 +11,7 @@
 #include "lib/base/hash.h"
 #include "lib/base/text.h"
 #include "lib/io/run_file.h"
+#include "lib/io/run_layout.h"
 #include "lib/scene/difference.h"
 #include "lib/scene/load.h"
 
@@ -124,6 +125,7 @@ class Finder {
       return forget(std::string(e.what()) + "; it becomes run.damaged.h5");
     }
     if (file->frames() == 0) return forget("");
+    refuse_older_log(*file, info);
     point_.keep_file = true;
     const std::int64_t u = point_.update();
     point_.rows = point_.saved ? prefix(file->log_column("update"), u,
@@ -136,6 +138,18 @@ class Finder {
     if (point_.saved &&
         (point_.frames < schedule_.frames_until(u) || point_.rows < schedule_.measures_until(u)))
       forget("run.h5 ends before the checkpoint");
+  }
+  /// A log without one of today's columns cannot go on, and the results would be others.
+  void refuse_older_log(const RunReader& file, const RunInfo& info) const {
+    const std::vector<std::string> there = file.log_columns();
+    for (const auto& column : run_layout::log_columns())
+      if (std::find(there.begin(), there.end(), column.name) == there.end())
+        throw Error(ExitCode::bad_input,
+                    folder_.path() + ": cannot resume: run.h5 was written by pbf " +
+                        info.program_version + " (" + info.commit + "), whose log has no column " +
+                        column.name +
+                        " and whose results are others; resume with that program, or start again "
+                        "with --overwrite");
   }
   std::int64_t update_of_row(std::int64_t k) const { return schedule_.update_of_measure(k); }
 

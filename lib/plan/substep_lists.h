@@ -16,7 +16,8 @@ double way_per_update(const Scene& scene);
 /// of each other since. The next lists find them too near and part them within one substep, with a
 /// speed of (what they have approached)/(one substep). For a fluid of speed u and n substeps of dt
 /// on one list this is n u at most, and so has a bound only where n (u n dt)/h has one
-/// (kernels/README.md, "Substeps"). u dt: way_per_update()/substeps.
+/// (kernels/README.md, "Substeps"). u dt: way_per_update()/substeps. With bodies of files, whose
+/// velocities are not known here, at most 8 substeps share lists.
 int lists_per_update(const Scene& scene);
 
 }  // namespace pbf

@@ -122,6 +122,13 @@ TEST_CASE("few substeps share one list, many make several, one substep none of i
   CHECK(lists(2) == 1);
   CHECK(lists(200) > 3);
   CHECK(lists(1000) > lists(200));
+  Case at_rest = c;
+  at_rest.scene.gravity = {0, 0, 0};
+  at_rest.scene.solver.substeps = 200;
+  CHECK(pbf::make_plan(at_rest.scene, 336).lists_per_update == 1);
+  at_rest.scene.bodies.push_back({});
+  at_rest.scene.bodies.back().shape = pbf::Shape::file;  // its velocities are not known
+  CHECK(pbf::make_plan(at_rest.scene, 336).lists_per_update == 25);
   c.scene.bodies.push_back({});
   c.scene.bodies.back().velocity = {1e5, 0, 0};
   CHECK(lists(8) == 8);  // never more than there are substeps

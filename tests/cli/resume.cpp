@@ -1,4 +1,5 @@
 // pbf run --resume: a run that was stopped or killed becomes the run that nobody disturbed.
+#include <hdf5.h>
 #include <sys/wait.h>
 
 #include <chrono>
@@ -130,6 +131,22 @@ TEST_CASE("a finished run can be prolonged, to the bytes of the long run") {
     CHECK(difference(folder, "a", "b") == "");
     CHECK(run(folder, "b", {"--set", "time.end=0.1", "--resume"}).code == 0);  // it is done
   }
+}
+
+TEST_CASE("a run of an earlier version, whose log lacks a column, is refused by name") {
+  const Scratch folder;
+  scene(folder);
+  REQUIRE(run(folder, "b", {"--set", "time.end=0.1"}).code == 0);
+  {
+    const hid_t file = H5Fopen((folder / "b/run.h5").string().c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    REQUIRE(file >= 0);
+    CHECK(H5Ldelete(file, "pbf/log/unresolved", H5P_DEFAULT) >= 0);
+    CHECK(H5Fclose(file) >= 0);
+  }
+  const Outcome o = run(folder, "b", {"--set", "time.end=0.2", "--resume"});
+  CHECK(o.code == 2);
+  CHECK(has(o.err, "whose log has no column unresolved"));
+  CHECK(has(o.err, "--overwrite"));
 }
 
 TEST_CASE("a changed physics key is an error that names it, and other keys may change") {

@@ -75,7 +75,7 @@ def test_the_program_starts_from_a_frame_written_as_particles(tools, pbf, minima
     (tmp_path / "s.yaml").write_text(
         "domain: {min: [0, 0, 0], max: [2, 2, 2]}\nfluid: {spacing: 0.02}\n"
         "bodies: [{shape: file, path: p.csv}]\ntime: {step: 0.002, end: 0.004}\n"
-        "output: {every: 0.002}\n")
+        "solver: {prestabilize: false}\noutput: {every: 0.002}\n")
     done = subprocess.run([pbf, "run", "s.yaml", "--out", "out", "--quiet"], cwd=tmp_path,
                           capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

@@ -71,7 +71,7 @@ def test_plots_of_a_run_file_are_drawn(tools, minimal, tmp_path):
     assert tools("to-csv", minimal, "--log", "-o", tmp_path / "log.csv")[0] == 0
     one = tools("plot-energy", minimal, "-o", tmp_path / "a.png")[1].splitlines()[0]
     two = tools("plot-energy", tmp_path / "log.csv", "-o", tmp_path / "b.svg")[1].splitlines()[0]
-    assert one == two and "62.784 J at the start" in one
+    assert one == two and "62.7844 J at the start" in one
     code, out, _ = tools("plot-energy", minimal, tmp_path / "log.csv", "-o", tmp_path / "c.png")
     assert code == 0 and drawn(tmp_path / "c.png") and "1 at most" in out
 
@@ -177,7 +177,9 @@ def test_the_front_of_a_run_starts_at_one_and_ends_before_the_wall(tools, pbf, t
     plot_front.add_arguments(parser)
     path = str(tmp_path / "run/run.h5")
     front = plot_front.read_front(path, parser.parse_args([path]))
-    assert front.ratio == pytest.approx(2) and front.z[0] == pytest.approx(1, abs=1e-5)
+    # The start has been relieved of its compression: it is no longer the lattice to the last digit.
+    assert front.ratio == pytest.approx(2, rel=1e-3)
+    assert front.z[0] == pytest.approx(1, abs=1e-3)
     assert front.t[0] == 0 and 3 < front.z[-1] < 4 - 0.1 / 0.4
     # The dry-bed front of Ritter (1892), 2 sqrt(g H), is an upper bound of its speed.
     assert np.diff(front.z).max() / np.diff(front.t).max() < 2

@@ -20,7 +20,8 @@ EXAMPLE = """examples:
   python -m pbf_tools to-csv out/dam_break/run.h5 --log -o log.csv
   python -m pbf_tools to-csv out/dam_break/run.h5 --frames -1 -o last.csv
   python -m pbf_tools to-csv out/dam_break/run.h5 --frames -1 --particles -o start.csv
-      (x,y,z,vx,vy,vz: a body of shape `file` in another scene starts from there)
+      (x,y,z,vx,vy,vz: a body of shape `file` in another scene starts from there; with
+       solver.prestabilize: false its compression stays as it is)
   python -m pbf_tools to-csv out/dam_break/run.h5 --frames all --xyz -o run.xyz"""
 
 
