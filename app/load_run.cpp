@@ -11,8 +11,9 @@ namespace {
 
 bool is_hdf5(const std::string& path) {
   constexpr char kSignature[] = "\x89HDF\r\n\x1a\n";
+  // Anything else, a pipe say, can be read once: the scene's reader must find it whole.
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) return false;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
   std::ifstream in(path, std::ios::binary);
   char head[8] = {};
   in.read(head, sizeof head);

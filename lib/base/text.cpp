@@ -1,5 +1,6 @@
 #include "lib/base/text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -57,6 +58,13 @@ std::string json_string(std::string_view text) {
 
 std::string json_number(double value) {
   return std::isfinite(value) ? format("%.17g", value) : "null";
+}
+
+bool is_file_name(std::string_view text) {
+  if (text.empty() || text == "." || text == ".." || text.size() > 200) return false;
+  return std::none_of(text.begin(), text.end(), [](char c) {
+    return c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+  });
 }
 
 std::string utc_now() {

@@ -24,6 +24,10 @@ std::string json_string(std::string_view text);
 /// All 17 digits; null for what JSON cannot hold (nan, inf).
 std::string json_number(double value);
 
+/// Whether it can name a file or folder in another one: not empty, no "." or "..", no slash, no
+/// control character, at most 200 bytes.
+bool is_file_name(std::string_view text);
+
 /// Now, UTC, ISO 8601: "2024-05-01T12:00:00Z".
 std::string utc_now();
 

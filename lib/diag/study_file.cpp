@@ -4,6 +4,7 @@
 #include <set>
 
 #include "lib/base/error.h"
+#include "lib/base/text.h"
 #include "lib/diag/study_reader.h"
 #include "lib/scene/load.h"
 #include "lib/scene/number.h"
@@ -117,7 +118,15 @@ Study StudyReader::read(const std::vector<std::string>& overrides) {
   double repeats = study_.repeats;
   bool has_scene = false;
   read_map(root_, "",
-           {{"name", [&](const Node& n) { text(n, "name", study_.name); }},
+           {{"name",
+             [&](const Node& n) {
+               text(n, "name", study_.name);
+               if (!is_file_name(study_.name))
+                 bad(n, "name",
+                     "is " + n.shown() +
+                         ", and tables are kept in out/study_<name>; give a word without "
+                         "slashes, not . or ..");
+             }},
             {"scene",
              [&](const Node& n) {
                scene_path_ = file(n, "scene");

@@ -23,6 +23,7 @@ class Checker {
                         above("domain.min", "domain.max", s_.domain.min, s_.domain.max);
     if (domain) check_domain();
     if (flat()) check_plane(domain);
+    check_name();
     check_smoothing_ratio();
     if (p_.good({"bodies"})) check_bodies(domain);
     check_time();
@@ -34,6 +35,14 @@ class Checker {
  private:
   void add(const std::string& key, const std::string& what) {
     problems_.add(p_.place(key), key, what);
+  }
+
+  /// It becomes a folder of out/, also where the scene comes from a stranger's run file.
+  void check_name() {
+    if (p_.good({"name"}) && !is_file_name(s_.name))
+      add("name",
+          "is " + json_string(s_.name.substr(0, 60)) +
+              ", and runs are kept in out/<name>; give a word without slashes, not . or ..");
   }
 
   bool flat() const { return p_.good({"dimensions"}) && s_.dimensions == 2; }

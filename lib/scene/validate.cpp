@@ -77,7 +77,12 @@ class Validator {
                    "; remove one");
         continue;
       }
-      out_.places[path] = node.items[i].place();
+      // Also as a path in one word: solver.iterations beside solver: {iterations: ...}.
+      const auto [before, fresh] = out_.places.try_emplace(path, node.items[i].place());
+      if (!fresh) {
+        report(name.place(), path, "given twice, first at " + before->second + "; remove one");
+        continue;
+      }
       read_entry(join(table, name.text), path, name, node.items[i], body, shape);
     }
     require(table, shown, seen, body, shape);

@@ -31,6 +31,18 @@ const std::vector<Case> kAppended{
     {"gravity: [0, 0, 0]\ngravity: [0, 0, 1]\n",
      "7:1: gravity: given twice, first at scene.yaml:6:1; remove one"},
     {"domain: {}\n", "domain: given twice, first at scene.yaml:1:1"},
+    {"solver: {iterations: 4}\nsolver.iterations: 9\n",
+     "7:1: solver.iterations: given twice, first at scene.yaml:6:22; remove one"},
+    {"solver.iterations: 9\nsolver: {iterations: 4}\n",
+     "7:10: solver.iterations: given twice, first at scene.yaml:6:20; remove one"},
+    {"solver.iterations: 9\nsolver.iterations: 4\n", "given twice, first at scene.yaml:6:1"},
+    // names that lead out of the folder of runs
+    {"name: ../../evil\n", "6:7: name: is \"../../evil\", and runs are kept in out/<name>"},
+    {"name: /etc\n", "runs are kept in out/<name>"},
+    {"name: a/b\n", "give a word without slashes"},
+    {"name: ..\n", "name: is \"..\""},
+    {"name: .\n", "name: is \".\""},
+    {"name: \"\"\n", "name: "},
     // wrong types
     {"solver: {iterations: many}\n",
      "6:22: solver.iterations: expected a whole number, got \"many\""},
