@@ -1,23 +1,20 @@
 #include "app/load_run.h"
 
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 
+#include "lib/io/h5_trial.h"
 #include "lib/io/run_file.h"
 
 namespace pbf {
 namespace {
 
 bool is_hdf5(const std::string& path) {
-  constexpr char kSignature[] = "\x89HDF\r\n\x1a\n";
   // Anything else, a pipe say, can be read once: the scene's reader must find it whole.
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;
   std::ifstream in(path, std::ios::binary);
-  char head[8] = {};
-  in.read(head, sizeof head);
-  return in.gcount() == sizeof head && std::memcmp(head, kSignature, sizeof head) == 0;
+  return h5::begins_as_hdf5(in);
 }
 
 }  // namespace

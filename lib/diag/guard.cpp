@@ -19,6 +19,13 @@ constexpr double kApart = 0.01;  // mean compression of a start that has come ap
 
 double gravity_of(const Scene& s) { return std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]); }
 
+/// h, of the domain.
+double longest_edge(const Scene& s) {
+  double edge = 0;
+  for (std::size_t a = 0; a < 3; ++a) edge = std::max(edge, s.domain.max[a] - s.domain.min[a]);
+  return edge / s.h();
+}
+
 /// m/s, of a move by h in a step of level 0.
 double h_per_step(const Scene& s) { return s.h() / s.time.step * s.solver.substeps; }
 
@@ -70,15 +77,11 @@ double released_energy(const Measures& first, const Scene& s, const Plan& plan) 
 }
 
 std::int64_t release_updates(const Scene& s) {
-  double edge = 0;
-  for (std::size_t a = 0; a < 3; ++a) edge = std::max(edge, s.domain.max[a] - s.domain.min[a]);
-  return 20 + std::int64_t(std::min(2 * edge / s.h(), 1e9));
+  return 20 + std::int64_t(std::min(2 * longest_edge(s), 1e9));
 }
 
 double position_rounding(const Scene& s) {
-  double edge = 0;
-  for (std::size_t a = 0; a < 3; ++a) edge = std::max(edge, s.domain.max[a] - s.domain.min[a]);
-  return edge / s.h() * (s.precision == Precision::dbl ? 0x1p-53 : 0x1p-24);
+  return longest_edge(s) * (s.precision == Precision::dbl ? 0x1p-53 : 0x1p-24);
 }
 
 GuardLimits guard_limits(const Scene& s, const Plan& plan, const Measures& first) {
@@ -129,6 +132,11 @@ double Guard::energy_limit(const Measures& m) const {
   return limits_.energy + released + kShare * std::max(now - first, 0.0);
 }
 
+/// That of the last good measure at most: the energy that has come since widens the limit of `m`.
+double Guard::event_limit(const Measures& m) const {
+  return std::min(energy_limit(good_), energy_limit(m));
+}
+
 void Guard::follow_release(const Measures& m) {
   if (released_) return;
   const bool late = m.update > release_updates(scene_);
@@ -167,8 +175,7 @@ GuardEvent Guard::locate(Alarm alarm, const Measures& m) {
   e.alarm = alarm;
   e.measure = m;
   const double h = scene_.h(), to_internal = 1 / (plan_.mass * h * h);
-  // That of the last good measure: the energy that has come since widens the limit of `m`.
-  const double energy = std::min(energy_limit(good_), energy_limit(m));
+  const double energy = event_limit(m);
   const StageLimits limits{limits_.speed / h, energy * to_internal, limits_.neighbors};
   e.last_good = solver_.kept();
   solver_.set_state(e.last_good);
@@ -282,9 +289,7 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
   s.guard->neighbors = limits_.neighbors;
   const double scale = energy_scale(good_, s, plan_.mass, plan_.particles);
   if (scale > 0)
-    s.guard->energy = std::max(
-        (std::min(energy_limit(good_), energy_limit(e.measure)) - total_energy(good_)) / scale,
-        1e-12);
+    s.guard->energy = std::max((event_limit(e.measure) - total_energy(good_)) / scale, 1e-12);
   return s;
 }
 

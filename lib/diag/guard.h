@@ -96,6 +96,7 @@ class Guard {
 
  private:
   bool came_apart(const Measures& m) const;
+  double event_limit(const Measures& m) const;
   void follow_release(const Measures& m);
   std::string remedy(const GuardEvent& e) const;
 

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <optional>
 
 #include "lib/base/error.h"
@@ -47,6 +48,13 @@ void trial(const std::string& path, const std::function<void()>& action, unsigne
   throw Error(ExitCode::io, path + ": the file is damaged: HDF5 " +
                                 (endless ? "does not come to an end with it" : "crashes on it") +
                                 "; copy or make it anew");
+}
+
+bool begins_as_hdf5(std::istream& in) {
+  constexpr char kSignature[] = "\x89HDF\r\n\x1a\n";
+  char head[8] = {};
+  in.read(head, sizeof head);
+  return in.gcount() == sizeof head && std::memcmp(head, kSignature, sizeof head) == 0;
 }
 
 }  // namespace pbf::h5

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <istream>
 #include <string>
 
 namespace pbf::h5 {
@@ -13,5 +14,8 @@ namespace pbf::h5 {
 /// end of the program. Errors that the action throws are left to whoever does it next. Not to be
 /// called under a Lock.
 void trial(const std::string& path, const std::function<void()>& action, unsigned seconds = 60);
+
+/// Whether a stream begins with HDF5's signature; reads 8 bytes.
+bool begins_as_hdf5(std::istream& in);
 
 }  // namespace pbf::h5

@@ -216,7 +216,6 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
     plan.sweep_factors = chebyshev_factors(s.solver.iterations);
   plan.substeps = s.solver.substeps;
   plan.lists_per_update = lists_per_update(s);
-  plan.way_on_one_list = way_per_update(s) / plan.lists_per_update;
   plan.finest_level = finest_level(s);
   if (s.solver.tolerance > 0 && s.solver.iterations > 0) {
     plan.tolerance = s.solver.tolerance;

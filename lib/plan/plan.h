@@ -52,9 +52,8 @@ struct Plan {
   /// Factors on omega, one per sweep of a substep; empty: 1 in all (solver.method: jacobi).
   std::vector<double> sweep_factors;
   int substeps = 1;
-  int lists_per_update = 1;    ///< substeps share lists (substep_lists.h)
-  double way_on_one_list = 0;  ///< h, at most, of a particle (fall_speed() and the fastest body)
-  int finest_level = 0;        ///< of time.adaptive: an update is up to 2^finest_level steps
+  int lists_per_update = 1;  ///< substeps share lists (substep_lists.h)
+  int finest_level = 0;      ///< of time.adaptive: an update is up to 2^finest_level steps
   double tolerance = 0;  ///< mean compression above which rounds of sweeps are repeated; 0: none is
   int more_rounds = 0;   ///< at most so many, besides the first
   double mass = 0;       ///< kg, of one particle as reported

@@ -2,6 +2,7 @@
 #include "lib/base/text.h"
 #include "lib/plan/axes.h"
 #include "lib/plan/plan.h"
+#include "lib/plan/substep_lists.h"
 #include "lib/solver/threads.h"
 
 namespace pbf {
@@ -103,7 +104,7 @@ std::string plan_text(const Plan& plan, const Scene& s) {
   if (plan.substeps > 1)
     out += format("  %d substeps of %.4g s on %d list%s: at most %.3g h of way on one list\n",
                   plan.substeps, s.time.step / plan.substeps, plan.lists_per_update,
-                  plan.lists_per_update == 1 ? "" : "s", plan.way_on_one_list);
+                  plan.lists_per_update == 1 ? "" : "s", way_per_update(s) / plan.lists_per_update);
   out += format("arrays, %s\n", backend_text(s).c_str());
   for (const PlanArray& a : plan.memory.arrays)
     out += format("  %-33s %2d x %-6s  %-6s  %-6s %11.3f MB %8.1f B/particle\n", a.name.c_str(),

@@ -34,11 +34,8 @@ std::ifstream open_file(const std::string& path) {
 }
 
 bool is_hdf5(const std::string& path) {
-  static constexpr char kSignature[] = "\x89HDF\r\n\x1a\n";
   std::ifstream in = open_file(path);
-  char head[8] = {};
-  in.read(head, 8);
-  return in.gcount() == 8 && std::memcmp(head, kSignature, 8) == 0;
+  return h5::begins_as_hdf5(in);
 }
 
 // ---- CSV

@@ -81,16 +81,7 @@ TEST_CASE("guard: a jittered ball without gravity runs to its end, however fast 
   // Half as far off its places, the ball's mean compression is below the 1 % that a guard
   // overlooks.
   for (const double jitter : {0.1, 0.2}) {
-    const auto off = [&] { return jitter * (double(gen()) / 4294967295.0 * 2 - 1); };
-    std::string rows = "x,y,z\n";
-    for (int i = -5; i <= 5; ++i)
-      for (int j = -5; j <= 5; ++j)
-        for (int k = -5; k <= 5; ++k)
-          if (i * i + j * j + k * k <= 25)
-            rows += std::to_string(0.5 + 0.05 * (i + off())) + "," +
-                    std::to_string(0.5 + 0.05 * (j + off())) + "," +
-                    std::to_string(0.5 + 0.05 * (k + off())) + "\n";
-    folder.write("ball.csv", rows);
+    folder.write("ball.csv", scene_test::jittered_ball(jitter, gen));
     for (const double speed : {0.0, 1.0, 20.0})
       for (const char* step : {"0.004", "0.0005"}) {
         CAPTURE(jitter, speed, step);

@@ -63,16 +63,7 @@ bool same_particles(Solver& a, Solver& b) {
 /// A ball of the lattice in free space, every coordinate off its place by up to a fifth of d.
 std::string jittered_ball(const Folder& folder) {
   std::mt19937 gen(7);
-  const auto off = [&] { return 0.2 * (double(gen()) / 4294967295.0 * 2 - 1); };
-  std::string rows = "x,y,z\n";
-  for (int i = -5; i <= 5; ++i)
-    for (int j = -5; j <= 5; ++j)
-      for (int k = -5; k <= 5; ++k)
-        if (i * i + j * j + k * k <= 25)
-          rows += std::to_string(0.5 + 0.05 * (i + off())) + "," +
-                  std::to_string(0.5 + 0.05 * (j + off())) + "," +
-                  std::to_string(0.5 + 0.05 * (k + off())) + "\n";
-  folder.write("ball.csv", rows);
+  folder.write("ball.csv", scene_test::jittered_ball(0.2, gen));
   return folder.path.string();
 }
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,21 @@ inline const std::string kMinimal =
 inline std::string with_bodies(const std::string& bodies) {
   return "domain: {min: [0, 0, 0], max: [1, 1, 1]}\nfluid: {spacing: 0.1}\nbodies: " + bodies +
          "\ntime: {step: 0.01, end: 1}\n";
+}
+
+/// A particle file: a ball of the lattice, d = 0.05 m, radius 5 d, in the middle of a box of 1 m,
+/// every coordinate off its place by up to `jitter` d.
+inline std::string jittered_ball(double jitter, std::mt19937& gen) {
+  const auto off = [&] { return jitter * (double(gen()) / 4294967295.0 * 2 - 1); };
+  std::string rows = "x,y,z\n";
+  for (int i = -5; i <= 5; ++i)
+    for (int j = -5; j <= 5; ++j)
+      for (int k = -5; k <= 5; ++k)
+        if (i * i + j * j + k * k <= 25)
+          rows += std::to_string(0.5 + 0.05 * (i + off())) + "," +
+                  std::to_string(0.5 + 0.05 * (j + off())) + "," +
+                  std::to_string(0.5 + 0.05 * (k + off())) + "\n";
+  return rows;
 }
 
 inline Scene parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
