@@ -38,6 +38,7 @@ std::string command_text(const BatchOptions& o, const std::string& out) {
                      quoted(fs::absolute(out).string());
   for (const std::string& g : o.grid) text += " --grid " + quoted(g);
   for (const std::string& s : o.overrides) text += " --set " + quoted(s);
+  if (o.strict) text += " --strict";
   return text;
 }
 
@@ -132,6 +133,7 @@ class Batch {
                                   "--quiet", "--resume"};
     for (const std::string& s : o_.overrides) args.insert(args.end(), {"--set", s});
     for (const std::string& s : m.overrides) args.insert(args.end(), {"--set", s});
+    if (o_.strict) args.push_back("--strict");
     if (threads_ > 0) args.insert(args.end(), {"--threads", std::to_string(threads_)});
     if (o_.max_walltime > 0)
       args.insert(args.end(), {"--max-walltime",

@@ -14,9 +14,10 @@ const char* const kMeasures[] = {
     "height_kept", "kinetic_energy", "energy",           "energy_drift",    "energy_rise",
     "speed_max",   "front_x"};
 
-/// Of a run's file: the last measures, the number of frames, seconds; empty cells without one.
+/// Of a run's file: the last measures, the number of frames, seconds, warnings; empty cells without
+/// one.
 void add_results(const std::string& path, std::vector<Cell>& row) {
-  std::vector<Cell> cells(std::size(kMeasures) + 2);
+  std::vector<Cell> cells(std::size(kMeasures) + 3);
   std::error_code error;
   if (std::filesystem::exists(path, error)) try {
       const RunReader file(path);
@@ -28,7 +29,8 @@ void add_results(const std::string& path, std::vector<Cell>& row) {
       for (const std::string& name : file.log_columns())
         if (name.rfind("stage/", 0) == 0)
           for (const double s : file.log_column(name)) seconds += s;
-      cells.back() = seconds;
+      cells[std::size(kMeasures) + 1] = seconds;
+      cells.back() = std::int64_t(file.info().warnings.size());
     } catch (const Error&) {
       cells.assign(cells.size(), Cell{});  // the message of the run says what is wrong with it
     }
@@ -49,6 +51,8 @@ std::string exit_reason(int code) {
       return "unavailable";
     case static_cast<int>(ExitCode::io):
       return "file error";
+    case static_cast<int>(ExitCode::difference):
+      return "warned";  // --strict
     case static_cast<int>(ExitCode::resumable):
       return "stopped";
     case -1:
@@ -62,7 +66,7 @@ std::string batch_summary(const std::vector<BatchMember>& members,
                           const std::map<std::string, JobEnd>& ends, const std::string& out) {
   std::vector<std::string> columns{"name", "scene", "settings", "exit_code", "reason", "message"};
   columns.insert(columns.end(), std::begin(kMeasures), std::end(kMeasures));
-  columns.insert(columns.end(), {"frames", "seconds"});
+  columns.insert(columns.end(), {"frames", "seconds", "warnings"});
   CsvTable table(columns);
   for (const BatchMember& m : members) {
     const auto at = ends.find(m.name);

@@ -14,6 +14,7 @@ struct RunOptions {
   int threads = 0;                     ///< 0: as the scene says
   std::vector<std::string> overrides;  ///< key.path=value
   bool overwrite = false, resume = false, quiet = false;
+  bool strict = false;      ///< warnings are errors
   std::string log_json;     ///< path, empty: none
   double max_walltime = 0;  ///< s, 0: none
 };
@@ -64,6 +65,7 @@ struct BatchOptions {
   std::int64_t only = -1;                    ///< this run alone, from 0
   double max_walltime = 0;                   ///< s, 0: none
   bool list = false, slurm = false, collect = false, quiet = false;
+  bool strict = false;  ///< of every run
 };
 
 struct CompareOptions {

@@ -10,7 +10,8 @@ const char* const kExitCodes =
     "  3   run stopped by the stability guard\n"
     "  4   backend, device or memory not available\n"
     "  5   file cannot be read or written (disk full)\n"
-    "  6   compare found a difference, batch has failed runs, a suite found a failure\n"
+    "  6   compare found a difference, batch has failed runs, a suite found a failure, a run\n"
+    "      with --strict warned\n"
     "  75  stopped early by a signal or the wall-time limit, after saving\n\n"
     "Example: pbf run configs/dam_break.yaml --out out/dam_break";
 

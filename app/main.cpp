@@ -48,6 +48,9 @@ void add_run(CLI::App& app, RunOptions& o, Command& command) {
        "it to a later time.end; start it when the folder is not there")
       ->excludes(overwrite);
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  c->add_flag("--strict", o.strict,
+              "A warning ends the run with exit 6: before it where the scene gives it, else after "
+              "saving");
   c->add_option("--log-json", o.log_json, "One JSON object per line and measure, into this file");
   c->add_option("--max-walltime", o.max_walltime, "Stop after so many seconds, save, exit 75")
       ->check(positive_seconds);
@@ -170,6 +173,7 @@ void add_batch(CLI::App& app, BatchOptions& o, Command& command) {
                           ->check(CLI::NonNegativeNumber);
   c->add_flag("--collect", o.collect, "Run nothing, write the summary of what is there")
       ->excludes(only);
+  c->add_flag("--strict", o.strict, "A warning ends its run with exit 6");
   c->add_flag("--list", o.list, "Print the runs and do nothing");
   c->add_flag("--slurm", o.slurm, "Print a Slurm array script and do nothing");
   c->add_flag("--quiet", o.quiet, "No progress on stderr");

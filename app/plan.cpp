@@ -8,6 +8,7 @@
 #include "lib/base/log.h"
 #include "lib/base/text.h"
 #include "lib/diag/calibration.h"
+#include "lib/diag/warnings.h"
 #include "lib/scene/emit.h"
 #include "lib/scene/load.h"
 #include "lib/scene/start_neighbors.h"
@@ -31,6 +32,22 @@ std::string time_json(const std::optional<TimeEstimate>& time) {
          json_string(time->basis);
 }
 
+std::string warnings_text(const std::vector<Warning>& warnings) {
+  std::string text = "\nwarnings\n";
+  for (const Warning& w : warnings) text += "  " + w.text + "\n";
+  return warnings.empty() ? std::string() : text;
+}
+
+std::string warnings_json(const std::vector<Warning>& warnings) {
+  std::string text = ",\"warnings\":[";
+  for (const Warning& w : warnings) {
+    if (text.back() != '[') text += ',';
+    text += "{\"kind\":" + json_string(w.kind);
+    text += ",\"text\":" + json_string(w.text) + "}";
+  }
+  return text + "]";
+}
+
 }  // namespace
 
 int command_plan(const PlanOptions& options) {
@@ -43,9 +60,11 @@ int command_plan(const PlanOptions& options) {
   const int threads = solver_threads(loaded.scene, plan.particles);
   const std::vector<StageCosts> costs = read_calibration(calibration_path());
   const auto time = estimate_time(plan, loaded.scene, costs, threads, cpu_model());
-  std::string text = options.resolved ? resolved_yaml(loaded.scene)
-                     : options.json   ? plan_json(plan, loaded.scene, time_json(time))
-                                      : plan_text(plan, loaded.scene) + time_text(time);
+  const std::vector<Warning> warnings = scene_warnings(loaded.scene, dir, n);
+  std::string text =
+      options.resolved ? resolved_yaml(loaded.scene)
+      : options.json   ? plan_json(plan, loaded.scene, time_json(time) + warnings_json(warnings))
+                       : plan_text(plan, loaded.scene) + time_text(time) + warnings_text(warnings);
   while (!text.empty() && text.back() == '\n') text.pop_back();
   log.result(text);
   return 0;

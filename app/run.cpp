@@ -16,6 +16,7 @@
 #include "lib/base/text.h"
 #include "lib/base/version.h"
 #include "lib/diag/prestabilize.h"
+#include "lib/diag/warnings.h"
 #include "lib/io/particle_output.h"
 #include "lib/scene/emit.h"
 #include "lib/scene/load.h"
@@ -34,7 +35,8 @@ std::vector<std::string> all_overrides(const RunOptions& o) {
 }
 
 RunInfo run_info(const LoadedScene& loaded, const Plan& plan, const Solver& solver,
-                 const std::string& started, std::int64_t first_update) {
+                 const std::string& started, std::int64_t first_update,
+                 const std::vector<Warning>& warnings) {
   const BuildInfo build = build_info();
   char host[256] = "";
   gethostname(host, sizeof host - 1);
@@ -43,6 +45,7 @@ RunInfo run_info(const LoadedScene& loaded, const Plan& plan, const Solver& solv
   info.scene_text = loaded.text;
   info.resolved_scene = resolved_yaml(loaded.scene);
   info.overrides = loaded.overrides;
+  for (const Warning& w : warnings) info.warnings.push_back(w.text);
   info.program_version = build.version;
   info.commit = build.commit;
   info.compiler = build.compiler;
@@ -63,14 +66,14 @@ RunInfo run_info(const LoadedScene& loaded, const Plan& plan, const Solver& solv
 
 RunSinks open_sinks(const LoadedScene& loaded, const Plan& plan, const Solver& solver,
                     const RunFolder& folder, std::FILE* json, const std::string& started,
-                    const ResumePoint& from) {
+                    const ResumePoint& from, const std::vector<Warning>& warnings) {
   const Scene& scene = loaded.scene;
   RunSinks sinks;
   sinks.json = json;
   sinks.checkpoints = folder.path();
   if (scene.output) {
     const std::string path = folder.file("run.h5");
-    const RunInfo info = run_info(loaded, plan, solver, started, from.update());
+    const RunInfo info = run_info(loaded, plan, solver, started, from.update(), warnings);
     sinks.writer = from.keep_file ? std::make_unique<RunWriter>(path, info, scene.output->gzip,
                                                                 from.frames, from.rows)
                                   : std::make_unique<RunWriter>(path, info, scene.output->gzip);
@@ -155,10 +158,23 @@ std::string start_note(const Particles& p, const Scene& scene) {
       p.put_on_margin, scene.solver.wall_margin, p.farthest_put);
 }
 
+std::string lines(const std::vector<Warning>& warnings) {
+  std::string text;
+  for (const Warning& w : warnings) text += (text.empty() ? "" : "\npbf: error: ") + w.text;
+  return text;
+}
+
+/// After the summary: what has not been told on the way, and what has become of the rest.
+void tell_warnings(const RunLoop& loop, Log& log) {
+  for (const Warning& w : loop.warnings())
+    if (!loop.told(w)) log.warning(w.text);
+}
+
 /// Everything from the made folder on, so that its log.txt also gets the error that ends it.
 int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver> solver,
-             const std::string& start_note, const RunFolder& folder, const ResumePoint& from,
-             Log& log, StageClock& clock, const Stopwatch& wall, const RunOptions& options) {
+             const std::string& start_note, const std::vector<Warning>& warnings,
+             const RunFolder& folder, const ResumePoint& from, Log& log, StageClock& clock,
+             const Stopwatch& wall, const RunOptions& options) {
   const std::string started = utc_now();
   const File json = open_json(options.log_json, from.started);
   if (from.started) prepare_resume(folder, from);
@@ -166,6 +182,7 @@ int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver
       "scene.resolved.yaml",
       scene_record(loaded.scene, std::filesystem::path(loaded.path).parent_path().string()));
   log.note(banner(loaded.scene, plan, *solver, folder.path()));
+  for (const Warning& w : warnings) log.warning(w.text);
   for (const std::string& note : from.notes) log.note("pbf: " + note);
   if (!from.saved && !start_note.empty()) log.note("pbf: " + start_note);
   if (from.saved) {
@@ -177,18 +194,26 @@ int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver
     relieve(*solver, loaded.scene, plan, log);
     clock.begin();  // the solver has booked its steps
   }
-  RunSinks sinks = open_sinks(loaded, plan, *solver, folder, json.get(), started, from);
+  RunSinks sinks = open_sinks(loaded, plan, *solver, folder, json.get(), started, from, warnings);
   clock.mark("init");
   RunLoop loop(loaded.scene, plan, *solver, std::move(sinks), log, clock, wall,
-               options.max_walltime);
+               {options.max_walltime, options.strict, warnings});
   if (from.saved) loop.go_on_from(*from.saved);
   loop.keep_frames(from.frames);
   const RunEnd end = loop.run();
   RunTotals totals = loop.totals();
   totals.folder = folder.path();
   log.result(run_summary(totals));
-  if (totals.last.unresolved > 0) log.note("pbf: warning: " + unresolved_text(totals));
+  if (!options.strict) tell_warnings(loop, log);  // else all are in the error
   if (loop.guard_event()) report_alarm(*loop.guard_event(), loop.guard(), loaded.scene, folder);
+  if (options.strict && !loop.warnings().empty())
+    throw Error(
+        ExitCode::difference,
+        "--strict: " + lines(loop.warnings()) +
+            format("\npbf: the files in %s hold the run up to update %lld of %lld; the same "
+                   "command with --resume and without --strict goes on",
+                   folder.path().c_str(), static_cast<long long>(totals.updates),
+                   static_cast<long long>(make_schedule(loaded.scene).updates)));
   if (end == RunEnd::stopped) {
     log.note(
         format("pbf: stopped early by %s after update %lld of %lld, after saving; the files "
@@ -229,6 +254,9 @@ int command_run(const RunOptions& options) {
   refuse_if_too_large(scene, make_plan(scene, particles));  // before a look at every particle
   const Plan plan = make_plan(scene, particles, start_neighbors(scene, dir, particles));
   refuse_if_too_large(scene, plan);
+  const std::vector<Warning> warnings = scene_warnings(scene, dir, particles);
+  if (options.strict && !warnings.empty())
+    throw Error(ExitCode::difference, "--strict: " + lines(warnings));
   std::unique_ptr<RunFolder> folder;
   ResumePoint from;
   if (there && existing == ExistingFolder::resume) {
@@ -251,8 +279,8 @@ int command_run(const RunOptions& options) {
   if (!folder) folder = std::make_unique<RunFolder>(out, existing);
   log.open(folder->file("log.txt"), from.started);
   try {
-    return simulate(loaded, plan, std::move(solver), note, *folder, from, log, clock, wall,
-                    options);
+    return simulate(loaded, plan, std::move(solver), note, warnings, *folder, from, log, clock,
+                    wall, options);
   } catch (const std::exception& e) {
     try {
       log.file_only(std::string("pbf: error: ") + e.what());

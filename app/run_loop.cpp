@@ -30,7 +30,7 @@ const char* status_name(RunEnd end) {
 }
 
 RunLoop::RunLoop(const Scene& scene, const Plan& plan, Solver& solver, RunSinks sinks, Log& log,
-                 StageClock& clock, const Stopwatch& wall, double max_walltime)
+                 StageClock& clock, const Stopwatch& wall, const RunLimits& limits)
     : scene_(scene),
       plan_(plan),
       solver_(solver),
@@ -38,9 +38,10 @@ RunLoop::RunLoop(const Scene& scene, const Plan& plan, Solver& solver, RunSinks 
       log_(log),
       clock_(clock),
       wall_(wall),
-      max_walltime_(max_walltime),
+      limits_(limits),
       schedule_(make_schedule(scene)),
-      progress_(log) {
+      progress_(log),
+      warnings_(scene, schedule_.updates) {
   if (scene.output) fields_ = scene.output->fields;
   if (scene.render && scene.render->color != ColorBy::id) {
     const char* needed = scene.render->color == ColorBy::speed ? "velocity" : "density";
@@ -57,6 +58,8 @@ void RunLoop::go_on_from(const SavedRun& saved) {
   first_.energy = saved.energy.first;
   steps_ = saved.steps;
   released_ = saved.released;
+  due_.compressed_updates = saved.compressed_updates;
+  warnings_.go_on_from(saved.compressed_updates);
   resumed_ = true;
   seen_frames_ = schedule_.frames_until(u);
   pictures_ = schedule_.pictures_until(u);
@@ -99,6 +102,7 @@ RunEnd RunLoop::run() {
       outputs(u, false);
       choose_step(u);
     }
+    if (!guard_event() && u < schedule_.updates) tell(warnings_.at(last_, false));
     per_update *= step_before / step();
     progress_.update({u, schedule_.updates, plan_.particles, solver_.time(), last_.compression_mean,
                       last_.compression_max, start_});
@@ -129,8 +133,9 @@ bool RunLoop::must_stop() {
   stop_reason_.clear();
   if (goes_back() && watch_->guard()->last_good().update <= start_) return false;
   stop_reason_ = signal_seen();
-  if (stop_reason_.empty() && max_walltime_ > 0 && wall_.seconds() >= max_walltime_)
+  if (stop_reason_.empty() && limits_.walltime > 0 && wall_.seconds() >= limits_.walltime)
     stop_reason_ = "--max-walltime";
+  if (stop_reason_.empty() && limits_.strict && !told_.empty()) stop_reason_ = "--strict";
   return !stop_reason_.empty();
 }
 
@@ -177,9 +182,11 @@ void RunLoop::measure(bool judged) {
   energy_.follow(last_);
   last_measure_ = last_.update;
   compression_max_ = std::max(compression_max_, last_.compression_max);
+  if (schedule_.measures(last_.update)) warnings_.follow(last_);
   if (last_.update % schedule_.measure_every == 0) {
     due_.energy = energy_.history();
     due_.compression_max = compression_max_;
+    due_.compressed_updates = warnings_.compressed_updates();
   }
   const std::vector<StageTime> since = stages_since_last_row();
   clock_.begin();
@@ -196,6 +203,17 @@ void RunLoop::measure(bool judged) {
                   std::string("--log-json: cannot be written: ") + std::strerror(errno));
     clock_.mark("write");
   }
+}
+
+bool RunLoop::told(const Warning& w) const {
+  const auto at = told_.find(w.kind);
+  return at != told_.end() && at->second == w.text;
+}
+
+/// Each kind once: at the end the whole run's figures are told.
+void RunLoop::tell(const std::vector<Warning>& found) {
+  for (const Warning& w : found)
+    if (told_.emplace(w.kind, w.text).second) log_.warning(w.text);
 }
 
 /// Made with the first measure of this process.
@@ -261,6 +279,7 @@ void RunLoop::hand_over() {
   under_way_ = {};
   Snapshot snapshot = solver_.finish_download();
   clock_.begin();
+  warnings_.look_outside(snapshot);
   (void)draw;  // without pictures
 #ifdef PBF_HAS_RENDER
   if (draw) {
@@ -287,8 +306,14 @@ void RunLoop::close(RunEnd end) {
     clock_.mark("render");
   }
 #endif
+  if (!scene_.domain.open.empty()) warnings_.look_outside(solver_.positions());
+  all_warnings_ = limits_.of_scene;
+  for (Warning& w : warnings_.at(last_, end == RunEnd::finished))
+    all_warnings_.push_back(std::move(w));
   if (sinks_.writer) {
-    sinks_.writer->finish(status_name(end), stop_reason_, solver_.updates_done());
+    RunEnding ending{status_name(end), stop_reason_, solver_.updates_done(), {}};
+    for (const Warning& w : all_warnings_) ending.warnings.push_back(w.text);
+    sinks_.writer->finish(ending);
     frames_ = sinks_.writer->frames_written();
     bytes_ = sinks_.writer->bytes_written();
     clock_.mark("write");

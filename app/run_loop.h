@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "app/schedule.h"
 #include "lib/base/log.h"
 #include "lib/base/stage_clock.h"
+#include "lib/diag/warnings.h"
 #include "lib/diag/watch.h"
 #include "lib/io/checkpoint.h"
 #include "lib/io/run_file.h"
@@ -38,11 +40,18 @@ struct RunSinks {
   std::string checkpoints;    ///< folder
 };
 
+/// What ends a run besides its own end, signals and the guard.
+struct RunLimits {
+  double walltime = 0;            ///< s, 0: none
+  bool strict = false;            ///< a warning does
+  std::vector<Warning> of_scene;  ///< that the scene has given
+};
+
 class RunLoop {
  public:
   /// `wall` has been running since the start of the command.
   RunLoop(const Scene& scene, const Plan& plan, Solver& solver, RunSinks sinks, Log& log,
-          StageClock& clock, const Stopwatch& wall, double max_walltime);
+          StageClock& clock, const Stopwatch& wall, const RunLimits& limits);
 
   /// Before run(): goes on from a state that the solver has already been given.
   void go_on_from(const SavedRun& saved);
@@ -60,6 +69,10 @@ class RunLoop {
     return watch_ && watch_->event() ? &*watch_->event() : nullptr;
   }
   const Guard& guard() const { return *watch_->guard(); }
+  /// After run(): those of the scene and of the whole run.
+  const std::vector<Warning>& warnings() const { return all_warnings_; }
+  /// Whether a warning has been told with these words.
+  bool told(const Warning& w) const;
 
  private:
   void outputs(std::int64_t update, bool last);
@@ -69,6 +82,7 @@ class RunLoop {
   /// Into the log and the JSON file, unless it takes the run back. `judged`: by look().
   void measure(bool judged = true);
   void show(const Measures& m);  // the state that a resumed run begins with; its row is there
+  void tell(const std::vector<Warning>& found);
   bool must_stop();
   bool checkpoint_due();
   void save();
@@ -91,7 +105,7 @@ class RunLoop {
   Log& log_;
   StageClock& clock_;
   const Stopwatch& wall_;
-  double max_walltime_;
+  RunLimits limits_;
   Schedule schedule_;
   Progress progress_;
   std::vector<std::string> fields_;    // downloaded
@@ -114,6 +128,9 @@ class RunLoop {
     bool active = false, write = false, draw = false;
   } under_way_;
   std::string stop_reason_;
+  RunWarnings warnings_;
+  std::map<std::string, std::string> told_;  ///< kind, text
+  std::vector<Warning> all_warnings_;
 };
 
 }  // namespace pbf

@@ -1,7 +1,6 @@
 #include "app/run_report.h"
 
 #include <cmath>
-#include "kernels/relative_motion.h"
 
 #include "lib/base/text.h"
 #include "lib/solver/devices.h"
@@ -102,18 +101,6 @@ std::string group_table(const RunTotals& t) {
     out += row(name, sum, t.wall);
   }
   return out + row("other", rest, t.wall);
-}
-
-std::string unresolved_text(const RunTotals& t) {
-  // With time.adaptive the longest way may be that of a step much shorter than time.step.
-  const std::string remedy = t.steps ? std::string("lower time.adaptive.cfl")
-                                     : format("time.step %.2g s resolves it",
-                                              t.step * kResolvedWay / t.last.relative_way_max);
-  return format(
-             "%lld times a particle moved by more than %g h relative to a neighbour in a step, by "
-             "up to %.3g h: fluid may have passed through fluid; ",
-             static_cast<long long>(t.last.unresolved), kResolvedWay, t.last.relative_way_max) +
-         remedy;
 }
 
 std::string run_summary(const RunTotals& t) {

@@ -39,9 +39,6 @@ std::string stage_table(const RunTotals& totals);
 /// The same folded into seven groups, initialization ... post-processing.
 std::string group_table(const RunTotals& totals);
 
-/// What to say where t.last.unresolved is not 0.
-std::string unresolved_text(const RunTotals& t);
-
 std::string run_summary(const RunTotals& totals);
 
 /// One JSON object on one line: the measures, wall-clock seconds, frames that are safe on the disk,

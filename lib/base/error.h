@@ -14,7 +14,7 @@ enum class ExitCode : int {
   guard = 3,        ///< run stopped by the stability guard
   unavailable = 4,  ///< backend, device or memory not available
   io = 5,           ///< file cannot be read or written (disk full)
-  difference = 6,   ///< `compare` or a suite found a difference or a failure
+  difference = 6,   ///< `compare` or a suite found a difference or failure, --strict a warning
   resumable = 75,   ///< stopped early after saving
 };
 

@@ -51,6 +51,13 @@ void Log::note(const std::string& text) {
   to_file(text + "\n");
 }
 
+void Log::warning(const std::string& text) {
+  clear_transient();
+  const std::string line = "pbf: warning: " + text + "\n";
+  write_to(stderr, line);
+  to_file(line);
+}
+
 void Log::result(const std::string& text) {
   clear_transient();
   write_to(stdout, text + "\n");

@@ -13,7 +13,8 @@ namespace pbf {
 /// A closed pipe on either side is no error; finish_stdout() reports every other lost write.
 class Log {
  public:
-  /// quiet: nothing but results and errors on the terminal. The file still gets everything.
+  /// quiet: nothing but results, warnings and errors on the terminal. The file still gets
+  /// everything.
   explicit Log(bool quiet);
   ~Log();
   Log(const Log&) = delete;
@@ -24,6 +25,8 @@ class Log {
   void open(const std::string& path, bool append = false);
   /// Lines to stderr and the file. `text` ends without a newline.
   void note(const std::string& text);
+  /// "pbf: warning: TEXT" to stderr, also when quiet, and the file.
+  void warning(const std::string& text);
   /// Lines to stdout and the file.
   void result(const std::string& text);
   /// A line that the next one overwrites on a terminal; the file does not get it.

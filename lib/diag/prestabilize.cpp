@@ -55,6 +55,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   if (!s.solver.prestabilize || s.solver.iterations == 0) return p;
   const Measures before = solver.measure();
   p.compression_before = p.compression_after = before.compression_mean;
+  p.most_before = before.compression_max;
   const double dt = std::ldexp(s.time.step / plan.substeps, -finest_level(s));
   const double speed = s.h() / dt;  // m/s, of a move by h
   // J for a sum of squares of moves in h.
@@ -98,10 +99,10 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
 std::string prestabilized_text(const Prestabilized& p) {
   if (p.steps == 0) return {};
   std::string text = format(
-      "start: mean compression %.3g %%, %.3g %% after %d step%s without time "
+      "start: mean compression %.3g %% (most %.3g %%), %.3g %% after %d step%s without time "
       "(solver.prestabilize); no particle has moved by more than %.2g spacings",
-      100 * p.compression_before, 100 * p.compression_after, p.steps, p.steps == 1 ? "" : "s",
-      p.moved);
+      100 * p.compression_before, 100 * p.most_before, 100 * p.compression_after, p.steps,
+      p.steps == 1 ? "" : "s", p.moved);
   if (!p.relieved())
     text +=
         format(". What is left did not go in these steps; one more would give them %.2g J", p.kick);

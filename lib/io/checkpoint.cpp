@@ -128,6 +128,7 @@ void write_file(const std::string& path, const SavedRun& s) {
     h5::write_numbers(file, "unresolved", &s.state.unresolved);
     h5::write_numbers(file, "first_neighbors_max", &s.first.neighbors_max);
     h5::write_numbers(file, "energy_started", &started);
+    h5::write_numbers(file, "compressed_updates", &s.compressed_updates);
     const auto write = [&](const char* name, double v) { h5::write_numbers(file, name, &v); };
     for_each_number(s, write);
     for_each_newer_number(s, write);
@@ -162,6 +163,8 @@ SavedRun read_file(const std::string& path) {
   s.state.rounds = h5::read_number<std::int64_t>(file, "rounds");
   if (h5::has_attribute(file, "unresolved"))  // newer as well
     s.state.unresolved = h5::read_number<std::int64_t>(file, "unresolved");
+  if (h5::has_attribute(file, "compressed_updates"))
+    s.compressed_updates = h5::read_number<std::int64_t>(file, "compressed_updates");
   s.first.neighbors_max = h5::read_number<std::int64_t>(file, "first_neighbors_max");
   s.energy.started = h5::read_number<std::int64_t>(file, "energy_started") != 0;
   const auto read = [&](const char* name, double& v) { v = h5::read_number<double>(file, name); };

@@ -18,8 +18,9 @@ struct SavedRun {
   EnergyHistory energy;        ///< of the measures that are due until then
   double compression_max = 0;  ///< 1, largest of the measures that are due until then
   Measures first;              ///< of the run: what guard_limits() needs of it, lib/diag/guard.h
-  std::optional<StepHistory> steps;  ///< with time.adaptive
-  std::optional<double> released;    ///< J, Guard::released()
+  std::optional<StepHistory> steps;     ///< with time.adaptive
+  std::optional<double> released;       ///< J, Guard::released()
+  std::int64_t compressed_updates = 0;  ///< RunWarnings::compressed_updates()
   std::int64_t particles = 0;
 };
 

@@ -27,6 +27,7 @@ struct RunSession {
 struct RunInfo {
   std::string scene_path, scene_text, resolved_scene;
   std::vector<std::string> overrides;
+  std::vector<std::string> warnings;  ///< so far: those of the scene; at the end those of the run
   std::string program_version, commit, compiler, build_flags;
   std::string host, started;  ///< ISO 8601, UTC
   std::string plan;           ///< text of the plan
@@ -35,6 +36,14 @@ struct RunInfo {
   double spacing = 0, smoothing_length = 0, rest_density = 0;
   std::int64_t particles = 0;
   std::int64_t first_update = 0;  ///< of this session
+};
+
+/// What is known when a run ends.
+struct RunEnding {
+  std::string status{};  ///< finished, stopped, diverged
+  std::string reason{};  ///< of the session's end; empty: the status
+  std::int64_t last_update = 0;
+  std::vector<std::string> warnings{};  ///< all of the run, in place of RunInfo::warnings
 };
 
 /// One row of the log: the measures, and the seconds per stage since the row before.
@@ -65,9 +74,8 @@ class RunWriter {
   /// Waits until all that was queued, the log too, is on the disk.
   void sync();
   /// Waits for the queue, writes /pbf status ("finished", "stopped", "diverged") with the end of
-  /// the session, and closes. `reason`: of the session's end, the status when empty.
-  void finish(const std::string& status, const std::string& reason = "",
-              std::int64_t last_update = 0);
+  /// the session, and closes.
+  void finish(const RunEnding& ending);
 
  private:
   struct Impl;

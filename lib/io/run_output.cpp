@@ -109,12 +109,12 @@ void RunOutput::sync() {
   h5::sync(file_);
 }
 
-void RunOutput::close(const std::string& status, const std::string& reason,
-                      std::int64_t last_update) {
+void RunOutput::close(const RunEnding& end) {
   write_log();
   flush();
-  end_session(reason.empty() ? status : reason, last_update);
-  h5::write_text(pbf_, "status", status);
+  end_session(end.reason.empty() ? end.status : end.reason, end.last_update);
+  write_warnings(end.warnings);
+  h5::write_text(pbf_, "status", end.status);
   sync();
   closed_ = true;
 }

@@ -32,9 +32,8 @@ class RunOutput {
   void log(const LogRow& row);
   /// Writes what waits and waits until the disk has stored it.
   void sync();
-  /// The same with the status and the end of the session (`reason` empty: the status).
-  void close(const std::string& status, const std::string& reason = "",
-             std::int64_t last_update = 0);
+  /// The same with the end of the session.
+  void close(const RunEnding& ending);
   std::int64_t frames() const { return frames_; }  ///< committed
   std::int64_t bytes() const { return bytes_; }    ///< size of the file at the last commit
 
@@ -58,6 +57,7 @@ class RunOutput {
 
   void create_steps();
   void write_info(const RunInfo& info);
+  void write_warnings(const std::vector<std::string>& warnings);
   void make_sessions();
   void begin_session(const RunInfo& info);
   void end_session(const std::string& reason, std::int64_t last_update);

@@ -51,6 +51,7 @@ void RunOutput::write_info(const RunInfo& info) {
   run_layout::for_each_text(
       info, [&](const char* name, const std::string& text) { h5::write_text(pbf_, name, text); });
   h5::write_texts(pbf_, "overrides", info.overrides);
+  write_warnings(info.warnings);
   const std::int64_t threads = info.solver.threads;
   const std::uint64_t bytes = info.solver.bytes;
   h5::write_numbers(pbf_, "threads", &threads);
@@ -71,6 +72,13 @@ void RunOutput::write_info(const RunInfo& info) {
   quantity("rest_density", "kg/m^3", &info.rest_density, 1);
   quantity("particle_weight", "1", &info.solver.vol, 1);
   quantity("wall_scale", "1", &info.solver.wall_scale, 1);
+}
+
+/// One a line: a text is replaced in place, a list of another length could not be.
+void RunOutput::write_warnings(const std::vector<std::string>& warnings) {
+  std::string lines;
+  for (const std::string& w : warnings) lines += w + "\n";
+  h5::write_text(pbf_, "warnings", lines);
 }
 
 void RunOutput::create_fields(const Snapshot& first) {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <filesystem>
 #include <limits>
+#include <sstream>
 #include <thread>
 
 #include "lib/base/error.h"
@@ -83,6 +84,10 @@ RunInfo read_info(hid_t pbf) {
   run_layout::for_each_text(
       info, [&](const char* name, std::string& text) { text = h5::read_text(pbf, name); });
   info.overrides = h5::read_texts(pbf, "overrides");
+  if (h5::has_attribute(pbf, "warnings")) {  // older files have none
+    std::istringstream lines(h5::read_text(pbf, "warnings"));
+    for (std::string line; std::getline(lines, line);) info.warnings.push_back(line);
+  }
   info.solver.threads = static_cast<int>(h5::read_number<std::int64_t>(pbf, "threads"));
   info.solver.bytes = h5::read_number<std::uint64_t>(pbf, "solver_bytes");
   info.particles = h5::read_number<std::int64_t>(pbf, "particles");

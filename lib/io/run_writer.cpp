@@ -17,11 +17,7 @@ namespace pbf {
 
 struct RunWriter::Impl {
   struct Sync {};
-  struct Finish {
-    std::string status, reason;
-    std::int64_t last_update = 0;
-  };
-  using Job = std::variant<Snapshot, LogRow, Sync, Finish>;
+  using Job = std::variant<Snapshot, LogRow, Sync, RunEnding>;
   using Open = std::function<std::unique_ptr<RunOutput>()>;
   static constexpr int max_snapshots = 2;
 
@@ -37,7 +33,7 @@ struct RunWriter::Impl {
 
   ~Impl() {
     if (!thread_.joinable()) return;
-    push(Finish{"stopped", "", 0});
+    push(RunEnding{"stopped", "", 0, {}});
     thread_.join();
   }
 
@@ -67,7 +63,7 @@ struct RunWriter::Impl {
     if (failure_) std::rethrow_exception(failure_);
   }
 
-  void finish(Finish&& end) {
+  void finish(RunEnding&& end) {
     if (thread_.joinable()) {
       push(std::move(end));
       thread_.join();
@@ -116,9 +112,8 @@ struct RunWriter::Impl {
   void run_jobs() {
     for (;;) {
       Job job = pop();
-      if (const auto* end = std::get_if<Finish>(&job)) {
-        on_file("cannot finish the file",
-                [&] { out_->close(end->status, end->reason, end->last_update); });
+      if (const auto* end = std::get_if<RunEnding>(&job)) {
+        on_file("cannot finish the file", [&] { out_->close(*end); });
         const h5::Lock lock;
         out_.reset();
         return;
@@ -182,9 +177,6 @@ void RunWriter::log(const LogRow& row) { impl_->push_or_throw(LogRow(row)); }
 std::int64_t RunWriter::frames_written() const { return impl_->frames_; }
 std::int64_t RunWriter::bytes_written() const { return impl_->bytes_; }
 void RunWriter::sync() { impl_->sync(); }
-void RunWriter::finish(const std::string& status, const std::string& reason,
-                       std::int64_t last_update) {
-  impl_->finish({status, reason, last_update});
-}
+void RunWriter::finish(const RunEnding& ending) { impl_->finish(RunEnding(ending)); }
 
 }  // namespace pbf

@@ -6,9 +6,7 @@
 #include <functional>
 #include <unordered_map>
 
-#include "lib/scene/emit.h"
-#include "lib/scene/particle_file.h"
-#include "lib/scene/points.h"
+#include "lib/scene/start_points.h"
 
 namespace pbf {
 namespace {
@@ -109,22 +107,7 @@ class Sample {
 StartNeighbors start_neighbors(const Scene& s, const std::string& scene_dir,
                                std::int64_t particles) {
   if (!may_be_crowded(s)) return {};
-  std::vector<Particles> files;
-  for (const Body& b : s.bodies)
-    if (b.shape == Shape::file) files.push_back(read_particle_file(resolved_path(b, scene_dir)));
-  const std::optional<double> plane = s.plane();
-  const auto for_all = [&](auto&& f) {
-    std::size_t file = 0;
-    const auto put = [&](Double3 x) {
-      if (plane) x[1] = *plane;
-      f(x);
-    };
-    for (const Body& b : s.bodies)
-      if (b.shape != Shape::file)
-        for_each_point(b, s.fluid.spacing, plane, put);
-      else
-        for (const Double3& x : files[file++].position) put(x);
-  };
+  const StartPoints points(s, scene_dir);
   // Fewer where there are many, for in one clump every particle is looked at for every one of them.
   const std::int64_t wanted =
       std::min(particles, std::clamp<std::int64_t>(400000000 / particles, 256, 4096));
@@ -138,14 +121,14 @@ StartNeighbors start_neighbors(const Scene& s, const std::string& scene_dir,
     return first_of(k) + std::min(run - 1, std::int64_t(random.uniform() * double(run)));
   };
   std::int64_t id = 0, k = 0, next = draw(0);
-  for_all([&](const Double3& x) {
+  points.for_each([&](std::size_t, const Double3& x) {
     if (id++ != next) return;
     sample.add(x);
     if (++k < wanted) next = draw(k);
   });
   StartNeighbors out;
   out.count.resize(sample.size());
-  for_all([&](const Double3& x) { sample.count(x, out.count); });
+  points.for_each([&](std::size_t, const Double3& x) { sample.count(x, out.count); });
   out.scatter = sample.scatter(out.count);
   return out;
 }

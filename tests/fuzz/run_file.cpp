@@ -38,7 +38,7 @@ std::string sample() {
                   field("id", ScalarType::i32, 1, 5)};
       writer.write(std::move(s));
     }
-    writer.finish("finished");
+    writer.finish({"finished"});
   }
   std::ifstream in(path, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(in), {}};

@@ -145,7 +145,7 @@ std::vector<DiskOperation> operations_of_a_run(const std::string& path, std::int
     while (writer.frames_written() <= k) std::this_thread::yield();
     disk.mark(k + 1);
   }
-  writer.finish("finished");
+  writer.finish({"finished"});
   return disk.operations();
 }
 

@@ -45,7 +45,7 @@ std::string good_file(const TemporaryFolder& folder, std::int64_t frames) {
     writer.log(sample_row(k));
     writer.write(sample(k, 20));
   }
-  writer.finish("finished");
+  writer.finish({"finished"});
   return path;
 }
 
@@ -56,7 +56,7 @@ void write_until_full(const std::string& path, bool gzip, std::size_t count) {
     writer.log(sample_row(k));
     writer.write(sample(k, count));
   }
-  writer.finish("finished");
+  writer.finish({"finished"});
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ TEST_CASE("a full disk ends the run with the frame, the reason and what is kept"
     while (whole.frames_written() == 0) std::this_thread::yield();
     if (k == 0) start = whole.bytes_written();
   }
-  whole.finish("finished");
+  whole.finish({"finished"});
   const std::int64_t frames = whole.bytes_written() - start;
   // Full at every kind of moment: in the data, the index, the tables, the log.
   for (int step = 0; step < 12; ++step) {
@@ -120,7 +120,7 @@ TEST_CASE("a disk that is full from the start is an error of creation", "[run_fi
     const std::string path = (folder.path / std::to_string(capacity)).string();
     const WatchedDisk disk(path, capacity, false);
     error_of(ExitCode::io, {path, "No space left on device"},
-             [&] { RunWriter(path, sample_info(20), false).finish("finished"); });
+             [&] { RunWriter(path, sample_info(20), false).finish({"finished"}); });
   }
 }
 
@@ -135,8 +135,8 @@ TEST_CASE("after a failure every call says the same and nothing hangs", "[run_fi
   });
   again([&] { writer.write(sample(0, 100000)); });
   again([&] { writer.log(sample_row(0)); });
-  again([&] { writer.finish("finished"); });
-  again([&] { writer.finish("finished"); });
+  again([&] { writer.finish({"finished"}); });
+  again([&] { writer.finish({"finished"}); });
   CHECK(writer.frames_written() == 0);
 }
 
@@ -173,7 +173,7 @@ TEST_CASE("a snapshot that does not fit is a defect, not a file error", "[run_fi
     RunWriter writer(path, sample_info(20), false);
     writer.write(sample(0, 20));
     writer.write(std::move(bad));
-    error_of(ExitCode::internal, {word}, [&] { writer.finish("finished"); });
+    error_of(ExitCode::internal, {word}, [&] { writer.finish({"finished"}); });
     CHECK(RunReader(path).frames() == 1);
   };
   Snapshot s = sample(1, 20);
@@ -194,8 +194,8 @@ TEST_CASE("a snapshot that does not fit is a defect, not a file error", "[run_fi
 TEST_CASE("nothing can be written after the end", "[run_file]") {
   const TemporaryFolder folder;
   RunWriter writer(folder / "run.h5", sample_info(20), false);
-  writer.finish("finished");
-  writer.finish("finished");  // says nothing new
+  writer.finish({"finished"});
+  writer.finish({"finished"});  // says nothing new
   error_of(ExitCode::internal, {"after its end"}, [&] { writer.write(sample(0, 20)); });
 }
 

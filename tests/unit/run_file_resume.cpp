@@ -57,7 +57,7 @@ TEST_CASE("a file goes on from whatever any single write to the disk has left",
       while (writer.frames_written() <= k) std::this_thread::yield();
       disk.mark(k + 1);
     }
-    writer.finish("finished");
+    writer.finish({"finished"});
     operations = disk.operations();
   }
   check_whole(path, frames);
@@ -82,7 +82,7 @@ TEST_CASE("a file goes on from whatever any single write to the disk has left",
     INFO("state " << states << ", " << kept << " frames kept");
     RunWriter writer(again, sample_info(40), gzip, kept, 2 * kept);
     write(writer, kept, frames);
-    writer.finish("finished");
+    writer.finish({"finished"});
     check_whole(again, frames);
   }
   ::close(fd);
@@ -98,7 +98,7 @@ TEST_CASE("frames and rows that a resumed run does again are dropped, and sessio
     write(writer, 0, 5);
     writer.sync();
     CHECK(writer.frames_written() == 5);
-    writer.finish("stopped", "SIGTERM", 50);
+    writer.finish({"stopped", "SIGTERM", 50});
   }
   {
     RunInfo info = sample_info(40);
@@ -109,7 +109,7 @@ TEST_CASE("frames and rows that a resumed run does again are dropped, and sessio
     CHECK(RunReader(path).status() == "running");
     CHECK(RunReader(path).sessions().at(1).ended.empty());
     write(writer, 2, 8);
-    writer.finish("finished", "", 80);
+    writer.finish({"finished", "", 80});
   }
   check_whole(path, 8);
   const auto sessions = RunReader(path).sessions();

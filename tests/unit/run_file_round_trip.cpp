@@ -16,7 +16,7 @@ void check_round_trip(const std::vector<std::size_t>& counts, bool gzip, ScalarT
   RunWriter writer(path, sample_info(static_cast<std::int64_t>(counts[0])), gzip);
   for (std::size_t k = 0; k < counts.size(); ++k)
     writer.write(sample(static_cast<std::int64_t>(k), counts[k], real));
-  writer.finish("finished");
+  writer.finish({"finished"});
   REQUIRE(writer.frames_written() == static_cast<std::int64_t>(counts.size()));
   REQUIRE(writer.bytes_written() > 0);
 
@@ -57,7 +57,7 @@ TEST_CASE("gzip makes the file of a smooth field smaller", "[run_file]") {
   for (const bool gzip : {false, true}) {
     RunWriter writer(folder / (gzip ? "a.h5" : "b.h5"), sample_info(100000), gzip);
     writer.write(sample(0, 100000));
-    writer.finish("finished");
+    writer.finish({"finished"});
     bytes[gzip] = writer.bytes_written();
   }
   CHECK(bytes[1] < bytes[0] / 2);
@@ -67,7 +67,7 @@ TEST_CASE("what the run was comes back", "[run_file]") {
   const TemporaryFolder folder;
   const std::string path = folder / "run.h5";
   const RunInfo in = sample_info(42);
-  RunWriter(path, in, false).finish("stopped");
+  RunWriter(path, in, false).finish({"stopped"});
   const RunReader reader(path);
   const RunInfo out = reader.info();
   CHECK(reader.frames() == 0);
@@ -110,7 +110,7 @@ TEST_CASE("the log keeps every row, and stages that come later", "[run_file]") {
     writer.log(row);
     if (k % 100 == 0) writer.write(sample(k, 10));
   }
-  writer.finish("finished");
+  writer.finish({"finished"});
   const RunReader reader(path);
   const auto get = [&](const char* name) {
     const auto values = reader.log_column(name);
@@ -154,7 +154,7 @@ TEST_CASE("a live file reads as running with the frames written so far", "[run_f
       REQUIRE(same(reader.frame(last), sample(last, 500)));
     }
   }
-  writer.finish("diverged");
+  writer.finish({"diverged"});
   CHECK(RunReader(path).status() == "diverged");
 }
 
@@ -178,6 +178,6 @@ TEST_CASE("a snapshot without ids gets them: row i is particle i", "[run_file]")
   Snapshot s = sample(0, 50);
   s.fields.pop_back();
   writer.write(std::move(s));
-  writer.finish("finished");
+  writer.finish({"finished"});
   CHECK(same(RunReader(path).frame(0), sample(0, 50)));
 }

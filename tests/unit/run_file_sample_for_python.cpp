@@ -43,7 +43,7 @@ void write_sample(const std::string& path, bool varying, bool gzip, ScalarType r
     writer.log(test::sample_row(k));
     writer.write(falling_block(k, varying ? 10 + k % 3 - k / 4 : 10, real));
   }
-  writer.finish("finished");
+  writer.finish({"finished"});
 }
 
 }  // namespace

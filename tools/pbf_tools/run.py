@@ -80,6 +80,11 @@ class Run:
         return str(self.info["status"])
 
     @property
+    def warnings(self) -> list[str]:
+        """What the run warned of, each kind once; of a run under way, what its scene gave."""
+        return str(self.info.get("warnings", "")).splitlines()
+
+    @property
     def title(self) -> str:
         """Scene, particles, backend, precision and device, for the title of a plot."""
         i = self.info
