@@ -14,8 +14,8 @@ const char* const kMeasures[] = {
     "height_kept", "kinetic_energy", "energy",           "energy_drift",    "energy_rise",
     "speed_max",   "front_x"};
 
-/// Of a run's file: the last measures, the number of frames, seconds, warnings; empty cells without
-/// one.
+/// Of a run's file: the last measures, the numbers of frames and warnings, seconds; empty cells
+/// without one.
 void add_results(const std::string& path, std::vector<Cell>& row) {
   std::vector<Cell> cells(std::size(kMeasures) + 3);
   std::error_code error;
@@ -29,8 +29,8 @@ void add_results(const std::string& path, std::vector<Cell>& row) {
       for (const std::string& name : file.log_columns())
         if (name.rfind("stage/", 0) == 0)
           for (const double s : file.log_column(name)) seconds += s;
-      cells[std::size(kMeasures) + 1] = seconds;
-      cells.back() = std::int64_t(file.info().warnings.size());
+      cells[std::size(kMeasures) + 1] = std::int64_t(file.info().warnings.size());
+      cells.back() = seconds;
     } catch (const Error&) {
       cells.assign(cells.size(), Cell{});  // the message of the run says what is wrong with it
     }
@@ -66,7 +66,7 @@ std::string batch_summary(const std::vector<BatchMember>& members,
                           const std::map<std::string, JobEnd>& ends, const std::string& out) {
   std::vector<std::string> columns{"name", "scene", "settings", "exit_code", "reason", "message"};
   columns.insert(columns.end(), std::begin(kMeasures), std::end(kMeasures));
-  columns.insert(columns.end(), {"frames", "seconds", "warnings"});
+  columns.insert(columns.end(), {"frames", "warnings", "seconds"});
   CsvTable table(columns);
   for (const BatchMember& m : members) {
     const auto at = ends.find(m.name);
