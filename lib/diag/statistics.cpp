@@ -39,13 +39,14 @@ double at(const std::vector<double>& v, double p) {
 Statistic quantile(const std::string& name, const std::string& unit, const std::vector<double>& v,
                    double p) {
   const double d = kSigmas * std::sqrt(p * (1 - p) / double(v.size())), q = at(v, p);
-  return {name, unit, q, std::max(at(v, p + d) - q, q - at(v, p - d)), 0};
+  const double below = q - at(v, p - d), above = p + d > 1 ? 2 * below : at(v, p + d) - q;
+  return {name, unit, q, std::max(above, below), 0};
 }
 
 }  // namespace
 
 FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const Double3& gravity,
-                                 double rest_density) {
+                                 double rest_density, const Resolution& resolution) {
   FrameStatistics out;
   if (s.count == 0) return out;
   const std::vector<double> x = numbers_of(s.fields[0]);
@@ -54,67 +55,87 @@ FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const
     for (std::size_t i = 0; i < s.count; ++i) v[i] = f(i);
     return v;
   };
-  const auto distribute = [&](const char* name, const char* unit, std::vector<double> v) {
+  const auto distribute = [&](const char* name, const char* unit, std::vector<double> v,
+                              double resolution_of_it) {
     sort(v);
-    out.distributions.push_back({name, unit, std::move(v)});
+    out.distributions.push_back({name, unit, std::move(v), resolution_of_it});
     return &out.distributions.back().values;
   };
+  const auto add = [&](Statistic number, double resolution_of_it) {
+    number.resolution = resolution_of_it;
+    out.numbers.push_back(std::move(number));
+  };
   const char* axes[] = {"x", "y", "z"};
-  out.numbers.push_back(mean("potential energy", "J/kg", column([&](std::size_t i) {
-                               double e = 0;
-                               for (std::size_t k = 0; k < 3; ++k)
-                                 e -= gravity[k] * (x[3 * i + k] - origin[k]);
-                               return e;
-                             })));
+  const double g = std::fabs(gravity[0]) + std::fabs(gravity[1]) + std::fabs(gravity[2]);
+  add(mean("potential energy", "J/kg", column([&](std::size_t i) {
+             double e = 0;
+             for (std::size_t k = 0; k < 3; ++k) e -= gravity[k] * (x[3 * i + k] - origin[k]);
+             return e;
+           })),
+      g * resolution.length);
   for (std::size_t k = 0; k < 3; ++k) {
     const std::string axis = axes[k];
     auto v = column([&](std::size_t i) { return x[3 * i + k] - origin[k]; });
-    out.numbers.push_back(mean("centre of mass " + axis, "m", v));
-    out.numbers.push_back(
-        quantile("front " + axis + " (99.9 %)", "m", *distribute(axes[k], "m", v), 0.999));
+    add(mean("centre of mass " + axis, "m", v), resolution.length);
+    add(quantile("front " + axis + " (99.9 %)", "m",
+                 *distribute(axes[k], "m", v, resolution.length), 0.999),
+        resolution.length + resolution.front);
   }
   if (const FieldArray* f = s.find("velocity")) {
     const std::vector<double> v = numbers_of(*f);
     const auto squared = [&](std::size_t i) {
       return v[3 * i] * v[3 * i] + v[3 * i + 1] * v[3 * i + 1] + v[3 * i + 2] * v[3 * i + 2];
     };
-    out.numbers.push_back(
-        mean("kinetic energy", "J/kg", column([&](std::size_t i) { return 0.5 * squared(i); })));
     const double speed =
         mean("", "", column([&](std::size_t i) { return std::sqrt(squared(i)); })).value;
+    add(mean("kinetic energy", "J/kg", column([&](std::size_t i) { return 0.5 * squared(i); })),
+        3 * resolution.speed * (std::isfinite(speed) ? speed + resolution.speed : 0));
     for (std::size_t k = 0; k < 3; ++k) {
-      out.numbers.push_back(mean(std::string("momentum ") + axes[k], "m/s",
-                                 column([&](std::size_t i) { return v[3 * i + k]; })));
+      add(mean(std::string("momentum ") + axes[k], "m/s",
+               column([&](std::size_t i) { return v[3 * i + k]; })),
+          resolution.speed);
       out.numbers.back().scale = speed;
     }
-    distribute("speed", "m/s", column([&](std::size_t i) { return std::sqrt(squared(i)); }));
+    distribute("speed", "m/s", column([&](std::size_t i) { return std::sqrt(squared(i)); }),
+               2 * resolution.speed);  // sqrt(3) components
   }
   if (const FieldArray* f = s.find("density")) {
     const std::vector<double> rho = numbers_of(*f);
-    out.numbers.push_back(mean("volume", "rest volumes",
-                               column([&](std::size_t i) { return rest_density / rho[i]; })));
-    const auto* error = distribute(
-        "density error", "1", column([&](std::size_t i) { return rho[i] / rest_density - 1; }));
+    const Statistic volume = mean("volume", "rest volumes",
+                                  column([&](std::size_t i) { return rest_density / rho[i]; }));
+    add(volume, resolution.density * std::fabs(volume.value));
+    const auto* error = distribute("density error", "1",
+                                   column([&](std::size_t i) { return rho[i] / rest_density - 1; }),
+                                   resolution.density);
     for (const auto& [name, p] : {std::pair<const char*, double>{"density error 50 %", 0.5},
                                   {"density error 90 %", 0.9},
                                   {"density error 99 %", 0.99}})
-      out.numbers.push_back(quantile(name, "1", *error, p));
+      add(quantile(name, "1", *error, p), resolution.density);
   }
   return out;
 }
 
-double ks_distance(const std::vector<double>& a, const std::vector<double>& b) {
+namespace {
+
+/// By how much the share of `a` up to some value exceeds that of `b` up to `rounding` above it. The
+/// first grows at the values of `a` alone.
+double excess(const std::vector<double>& a, const std::vector<double>& b, double rounding) {
   const auto before = [](double x, double y) { return std::isnan(y) ? !std::isnan(x) : x < y; };
-  std::size_t i = 0, k = 0;
   double largest = 0;
-  while (i < a.size() && k < b.size()) {
-    const double x = before(b[k], a[i]) ? b[k] : a[i];
+  for (std::size_t i = 0, k = 0; i < a.size();) {
+    const double x = a[i];
     while (i < a.size() && !before(x, a[i])) ++i;
-    while (k < b.size() && !before(x, b[k])) ++k;
-    largest =
-        std::max(largest, std::fabs(double(i) / double(a.size()) - double(k) / double(b.size())));
+    while (k < b.size() && !before(x + rounding, b[k])) ++k;
+    largest = std::max(largest, double(i) / double(a.size()) - double(k) / double(b.size()));
   }
   return largest;
+}
+
+}  // namespace
+
+double ks_distance(const std::vector<double>& a, const std::vector<double>& b, double rounding) {
+  if (a.empty() || b.empty()) return 0;
+  return std::max(excess(a, b, rounding), excess(b, a, rounding));
 }
 
 double ks_critical(double alpha, std::size_t n, std::size_t m) {

@@ -53,35 +53,73 @@ TEST_CASE("compare: run files of other scenes, particles, frames or fields say w
   const std::string a = run(folder, "a");
   std::vector<std::string> key;
   std::vector<std::string> fragments;
-  int code = 6;
   SECTION("another scene") {
     key = {"--set", "gravity=[0,0,-20]"};
     fragments = {"scene: DIFFERS", "-9.8", "-20"};
   }
   SECTION("another number of particles") {
     key = {"--set", "bodies.0.max=[0.4,0.4,0.5]"};
-    fragments = {"A holds 64 particles, B 80"};
+    fragments = {"A holds 64 particles at 0 s, B 80"};
   }
   SECTION("another cadence") {
     key = {"--set", "output.every=0.05"};
-    fragments = {"2 frames are at a time of both files (A has 6, B 3)"};
-    code = 0;
+    fragments = {"extent: DIFFERS", "4 frames of A have no frame of B", "first at 0.02 s",
+                 "1 frame of B has no frame of A", "output.every is 0.02 s in A, 0.05 s in B"};
   }
   SECTION("a field missing") {
     key = {"--set", "output.fields=[velocity]"};
-    fragments = {"b/run.h5 has no field density", "output.fields"};
-    code = 0;
+    fragments = {"only A has the field density, b/run.h5 has not", "output.fields"};
   }
   SECTION("a shorter run") {
     key = {"--set", "time.end=0.05"};
-    fragments = {"A has 6, B 4"};
-    code = 0;
+    fragments = {"time.end is 0.1 s in A, 0.05 s in B", "3 frames of A", "the log ends at 0.1 s"};
+  }
+  SECTION("a run that ends after its first frame") {
+    key = {"--set", "time.end=0.005"};
+    fragments = {"5 frames of A have no frame of B", "the first at 0.02 s"};
   }
   key.insert(key.begin(), {"--precision", "float"});
   const Outcome o = compare(folder, {a, run(folder, "b", key)});
   CAPTURE(o.out, o.err);
-  CHECK(o.code == code);
+  CHECK(o.code == 6);
   for (const auto& f : fragments) CHECK(has(o.out, f));
+}
+
+TEST_CASE("compare: a shipped scene in float and in double is the same") {
+  // Its densities are 1 +- rounding in frame 0.
+  const Scratch folder;
+  const std::string scene = std::string(PBF_SOURCE_DIR) + "/configs/minimal.yaml";
+  for (const char* precision : {"float", "double"})
+    REQUIRE(pbf::test::pbf({"run", scene, "--quiet", "--out", precision, "--precision", precision,
+                            "--set", "output={}", "--set", "time.end=0.1", "--threads", "1"},
+                           folder.path())
+                .code == 0);
+  const Outcome o = compare(folder, {"float/run.h5", "double/run.h5"});
+  CAPTURE(o.out, o.err);
+  CHECK(o.code == 0);
+  CHECK(has(o.out, "values up to 16 roundings apart are equal"));
+}
+
+TEST_CASE("compare: a run that was stopped differs until it is resumed") {
+  const Scratch folder;
+  const std::string a = run(folder, "a");
+  const std::vector<std::string> again{"run", "tiny.yaml", "--quiet", "--out", "b"};
+  std::vector<std::string> stopped = again, resumed = again;
+  stopped.insert(stopped.end(), {"--max-walltime", "0.000001"});
+  resumed.emplace_back("--resume");
+  REQUIRE(pbf::test::pbf(stopped, folder.path()).code == 75);
+  Outcome o = compare(folder, {a, "b/run.h5"});
+  CAPTURE(o.out, o.err);
+  CHECK(o.code == 6);
+  CHECK(has(o.out, "A is finished, B is stopped (--max-walltime)"));
+  REQUIRE(pbf::test::pbf(resumed, folder.path()).code == 0);
+  o = compare(folder, {a, "b/run.h5"});
+  CAPTURE(o.out, o.err);
+  CHECK(o.code == 0);
+  CHECK(has(o.out, "same to the last byte"));
+  o = compare(folder, {a, a});
+  CHECK(o.code == 0);
+  CHECK(has(o.out, "A and B are one and the same file"));
 }
 
 TEST_CASE("compare: one scene on two sides, with reports") {

@@ -55,6 +55,32 @@ TEST_CASE("the KS distance is that of its definition, with ties and unequal size
   CHECK(ks_distance({1, 2}, {1, nan}) == 0.5);
 }
 
+TEST_CASE("values within the rounding are ties, and the KS distance is that of its definition",
+          "[compare]") {
+  // The smallest distance of moved samples: share of a up to x less that of b up to x + rounding.
+  const auto slow = [](const std::vector<double>& a, const std::vector<double>& b,
+                       double rounding) {
+    double worst = 0;
+    const auto share = [](const std::vector<double>& v, double x) {
+      return double(std::count_if(v.begin(), v.end(), [x](double y) { return y <= x; })) /
+             double(v.size());
+    };
+    for (const double x : a) worst = std::max(worst, share(a, x) - share(b, x + rounding));
+    for (const double x : b) worst = std::max(worst, share(b, x) - share(a, x + rounding));
+    return worst;
+  };
+  for (std::uint64_t seed = 1; seed < 8; ++seed) {
+    auto a = uniform(40, seed), b = uniform(17, seed + 100, 0.2);
+    for (auto* v : {&a, &b})
+      for (double& x : *v) x = std::round(8 * x) / 8;
+    for (const double rounding : {0.0, 0.125, 0.2, 5.0})
+      CHECK(ks_distance(a, b, rounding) == Approx(slow(a, b, rounding)));
+  }
+  CHECK(ks_distance({1, 1, 1}, {1.01, 0.99, 1.01}) > 0.6);
+  CHECK(ks_distance({1, 1, 1}, {1.01, 0.99, 1.01}, 0.02) == 0);
+  CHECK(ks_distance({}, {1, 2}, 1) == 0);
+}
+
 TEST_CASE("samples of one distribution stay below the critical distance, others do not",
           "[compare]") {
   int above = 0;
