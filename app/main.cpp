@@ -1,12 +1,13 @@
 // The command line of pbf; every error ends here, as one message and an exit code.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <cstdlib>
 #include <functional>
+#include <limits>
 #include <new>
 
 #include "app/commands.h"
 #include "app/help.h"
+#include "app/number_options.h"
 #include "app/signals.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
@@ -17,12 +18,8 @@ namespace {
 
 using Command = std::function<int()>;
 
-std::string positive_seconds(const std::string& text) {
-  char* end = nullptr;
-  const double s = std::strtod(text.c_str(), &end);
-  return *end == '\0' && s > 0 && s < 1e300 ? std::string()
-                                            : text + " is not a number of seconds above 0";
-}
+/// Of a limit on the wall time.
+CLI::Validator seconds_above_0() { return number_from(0, true, "seconds"); }
 
 void add_overrides(CLI::App* c, std::vector<std::string>& overrides) {
   c->add_option("--set", overrides, "Replace one key of the scene, KEY.PATH=VALUE; repeatable")
@@ -38,7 +35,7 @@ void add_run(CLI::App& app, RunOptions& o, Command& command) {
   c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember({"cpu", "cuda"}));
   c->add_option("--precision", o.precision, "Of the computation")
       ->check(CLI::IsMember({"float", "double"}));
-  c->add_option("--threads", o.threads, "CPU threads")->check(CLI::Range(1, 4096));
+  c->add_option("--threads", o.threads, "CPU threads")->transform(whole_number(1, 4096));
   add_overrides(c, o.overrides);
   CLI::Option* overwrite =
       c->add_flag("--overwrite", o.overwrite, "Replace the run in an existing folder");
@@ -53,7 +50,7 @@ void add_run(CLI::App& app, RunOptions& o, Command& command) {
               "saving");
   c->add_option("--log-json", o.log_json, "One JSON object per line and measure, into this file");
   c->add_option("--max-walltime", o.max_walltime, "Stop after so many seconds, save, exit 75")
-      ->check(positive_seconds);
+      ->transform(seconds_above_0());
   c->footer(std::string(help::kRunHelp) + help::kMeasures);
   c->callback([&] { command = [&] { return command_run(o); }; });
 }
@@ -97,11 +94,12 @@ void add_compare(CLI::App& app, CompareOptions& o, Command& command) {
       ->take_all()
       ->allow_extra_args(false);
   c->add_option("--warmup", o.warmup, "Updates on A before the frozen step")
-      ->check(CLI::Range(0, 1000000000));
-  c->add_option("--updates", o.updates, "Updates after it")->check(CLI::Range(1, 1000000000));
+      ->transform(whole_number(0, 1000000000));
+  c->add_option("--updates", o.updates, "Updates after it")->transform(whole_number(1, 1000000000));
   c->add_option("--members", o.members, "Randomly rounded references that give the tolerances")
-      ->check(CLI::Range(2, 1000));
-  c->add_option("--seed", o.seed, "Of the random roundings");
+      ->transform(whole_number(2, 1000));
+  c->add_option("--seed", o.seed, "Of the random roundings")
+      ->transform(whole_number(0, std::numeric_limits<std::int64_t>::max()));
   c->add_option("--report", o.report, "Write the result to this file: .html, .json or .png");
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
   c->footer(help::kCompareHelp);
@@ -129,7 +127,7 @@ void add_bench(CLI::App& app, BenchOptions& o, Command& command) {
       ->excludes(scenes);
   c->add_option("--n", o.particles, "Numbers of particles, separated by commas")
       ->delimiter(',')
-      ->check(CLI::Range(std::int64_t(1), std::int64_t(2147483647)));
+      ->transform(whole_number(1));
   c->add_option("--backend", o.backends, "cpu, cuda or both, separated by commas")
       ->delimiter(',')
       ->check(CLI::IsMember({"cpu", "cuda"}));
@@ -139,12 +137,12 @@ void add_bench(CLI::App& app, BenchOptions& o, Command& command) {
   c->add_option("--threads", o.threads,
                 "Numbers of CPU threads; as a run would choose when not given")
       ->delimiter(',')
-      ->check(CLI::Range(1, 4096));
+      ->transform(whole_number(1, 4096));
   add_overrides(c, o.overrides);
   c->add_option("--warmup", o.warmup, "Updates before the state counts as late")
-      ->check(CLI::NonNegativeNumber);
-  c->add_option("--updates", o.updates, "Updates of one repeat")->check(CLI::PositiveNumber);
-  c->add_option("--repeats", o.repeats, "Repeats; the median counts")->check(CLI::PositiveNumber);
+      ->transform(whole_number(0));
+  c->add_option("--updates", o.updates, "Updates of one repeat")->transform(whole_number(1));
+  c->add_option("--repeats", o.repeats, "Repeats; the median counts")->transform(whole_number(1));
   c->add_option("--csv", o.csv, "Write the table to this file");
   c->add_option("--json", o.json, "Write the table to this file, as a JSON array");
   c->footer(help::kBenchHelp);
@@ -164,13 +162,13 @@ void add_batch(CLI::App& app, BatchOptions& o, Command& command) {
       ->take_all()
       ->allow_extra_args(false);
   add_overrides(c, o.overrides);
-  c->add_option("--jobs", o.jobs, "Runs at a time")->check(CLI::Range(1, 4096));
+  c->add_option("--jobs", o.jobs, "Runs at a time")->transform(whole_number(1, 4096));
   c->add_option("--threads", o.threads, "CPU threads of a run; all, shared among --jobs")
-      ->check(CLI::Range(1, 4096));
+      ->transform(whole_number(1, 4096));
   c->add_option("--max-walltime", o.max_walltime, "Stop all after so many seconds, save, exit 75")
-      ->check(positive_seconds);
+      ->transform(seconds_above_0());
   CLI::Option* only = c->add_option("--only", o.only, "Run this one alone, counted from 0")
-                          ->check(CLI::NonNegativeNumber);
+                          ->transform(whole_number(0));
   c->add_flag("--collect", o.collect, "Run nothing, write the summary of what is there")
       ->excludes(only);
   c->add_flag("--strict", o.strict, "A warning ends its run with exit 6");
@@ -191,7 +189,7 @@ void add_study(CLI::App& app, StudyOptions& o, Command& command) {
       ->take_all()
       ->allow_extra_args(false);
   c->add_option("--repeats", o.repeats, "Repeats of the timing; as the study says when not given")
-      ->check(CLI::Range(1, 1000));
+      ->transform(whole_number(1, 1000));
   c->add_flag("--list", o.list, "Print the runs and do nothing");
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
   c->footer(std::string(help::kStudyHelp) + help::kMeasures + help::kStudyMeasures);
@@ -210,7 +208,7 @@ void add_stability(CLI::App& app, StabilityCommandOptions& o, Command& command) 
       ->check(CLI::IsMember({"float", "double"}));
   c->add_flag("--reduced", o.reduced, "Fewer particles and updates, where the suite says so");
   c->add_option("--jobs", o.jobs, "Cases at once; all CPU threads when not given, 1 on cuda")
-      ->check(CLI::Range(1, 4096));
+      ->transform(whole_number(1, 4096));
   add_overrides(c, o.overrides);
   c->add_option("--csv", o.csv, "Write the table to this file");
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
@@ -223,10 +221,10 @@ void add_stability(CLI::App& app, StabilityCommandOptions& o, Command& command) 
         ->needs(map);
   c->add_option("--iterations", o.iterations, "Of the map, separated by commas")
       ->delimiter(',')
-      ->check(CLI::Range(0, 100000))
+      ->transform(whole_number(0, 100000))
       ->needs(map);
   c->add_option("--limit", o.limit, "Mean compression above which a run of a map is degraded")
-      ->check(CLI::NonNegativeNumber)
+      ->transform(number_from(0, false, ""))
       ->needs(map);
   c->footer(help::kStabilityHelp);
   c->callback([&] { command = [&] { return command_stability(o); }; });

@@ -1,11 +1,10 @@
 #include "app/render_options.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdlib>
 
 #include "lib/base/error.h"
+#include "lib/scene/number.h"
 
 namespace pbf {
 namespace {
@@ -29,18 +28,11 @@ bool read_numbers(const std::string& text, char separator, std::size_t n, double
   const auto parts = split(text, separator);
   if (parts.size() != n) return false;
   for (std::size_t i = 0; i < n; ++i) {
-    char* end = nullptr;
-    out[i] = std::strtod(parts[i].c_str(), &end);
-    if (parts[i].empty() || *end != '\0' || !std::isfinite(out[i])) return false;
+    const NumberError e = read_double(parts[i], out[i]);
+    if (e == NumberError::too_small) out[i] = 0;
+    if (e != NumberError::none && e != NumberError::too_small) return false;
   }
   return true;
-}
-
-bool read_integer(const std::string& text, std::int64_t& value) {
-  char* end = nullptr;
-  errno = 0;
-  value = std::strtoll(text.c_str(), &end, 10);
-  return !text.empty() && *end == '\0' && errno == 0;
 }
 
 void read_camera(const std::string& text, Camera& camera) {
@@ -82,7 +74,7 @@ std::vector<std::int64_t> select_frames(const std::string& text, std::int64_t fr
         range[i] = bounds[i];
         continue;
       }
-      if (!read_integer(parts[i], range[i])) bad("--frames", text, want);
+      if (read_integer(parts[i], range[i]) != NumberError::none) bad("--frames", text, want);
       if (range[i] < 0) range[i] += frames;
     }
     if (parts.size() == 1) {
@@ -90,7 +82,7 @@ std::vector<std::int64_t> select_frames(const std::string& text, std::int64_t fr
         bad("--frames", text, "a frame from 0 to " + std::to_string(frames - 1));
       return {range[0]};
     }
-    if (parts.size() == 3 && (!read_integer(parts[2], step) || step < 1))
+    if (parts.size() == 3 && (read_integer(parts[2], step) != NumberError::none || step < 1))
       bad("--frames", text, want);
   }
   range[0] = std::max<std::int64_t>(0, range[0]);

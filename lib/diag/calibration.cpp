@@ -40,7 +40,8 @@ bool add_line(const std::string& line, std::vector<StageCosts>& rows) {
   StageCosts row;
   double ms = 0;
   if (cell.size() != kColumns.size() || !parse(cell[2], row.threads) ||
-      !parse(cell[4], row.particles) || !parse(cell[6], ms) || row.particles < 1 || !(ms >= 0))
+      !parse(cell[4], row.particles) || !parse(cell[6], ms) || row.threads < 0 ||
+      row.particles < 1 || !(ms >= 0))
     return false;
   row.backend = cell[0], row.precision = cell[1], row.device = cell[3];
   const auto known =
@@ -104,7 +105,11 @@ std::vector<StageCosts> read_calibration(const std::string& path) {
   std::ifstream in(path);
   if (!in) throw Error(ExitCode::io, path + ": cannot be read: " + std::strerror(errno));
   std::string line;
-  std::getline(in, line);  // the head
+  std::string head;
+  for (const std::string& c : kColumns) head += (head.empty() ? "" : ",") + c;
+  if (std::getline(in, line) && line != head)
+    throw Error(ExitCode::bad_input, path + ":1: the columns are " + line + ", expected " + head +
+                                         "; remove the file and run pbf bench --calibrate again");
   for (int number = 2; std::getline(in, line); ++number)
     if (!add_line(line, rows))
       throw Error(ExitCode::bad_input,

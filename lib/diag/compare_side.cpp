@@ -1,7 +1,6 @@
-#include <cstdlib>
-
 #include "lib/base/error.h"
 #include "lib/diag/compare.h"
+#include "lib/scene/number.h"
 
 namespace pbf {
 
@@ -37,9 +36,8 @@ CompareSide parse_side(const std::string& text) {
   if (precision != "float" && precision != "double") fail("no precision \"" + precision + "\"");
   side.precision = precision == "double" ? Precision::dbl : Precision::single;
   if (at != std::string::npos) {
-    char* end = nullptr;
-    const long n = std::strtol(text.c_str() + at + 1, &end, 10);
-    if (at + 1 == text.size() || *end != '\0' || n < 1 || n > 4096)
+    std::int64_t n = 0;
+    if (read_integer(text.substr(at + 1), n) != NumberError::none || n < 1 || n > 4096)
       fail("the number of threads is not a whole number from 1 to 4096");
     if (side.backend == Backend::cuda) fail("threads are the CPU's alone");
     side.threads = int(n);

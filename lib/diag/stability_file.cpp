@@ -79,6 +79,16 @@ class SuiteReader {
       out = v;
     };
   }
+  /// An exit code.
+  Read exit_code(std::optional<int>& out) {
+    return [this, &out](const Node& n) {
+      std::int64_t v = 0;
+      if (n.kind != Node::Kind::scalar || read_integer(n.text, v) != NumberError::none || v < 0 ||
+          v > 255)
+        return problem(n, "", "expected an exit code, 0 to 255, got " + n.shown());
+      out = int(v);
+    };
+  }
   Read settings(std::vector<std::pair<std::string, Node>>& out) {
     return [this, &out](const Node& n) {
       if (n.kind != Node::Kind::map)
@@ -90,7 +100,6 @@ class SuiteReader {
   void read_case(const Node& n) {
     StabilityCase c;
     Criteria& m = c.must;
-    double error = -1;
     const auto seen = block(n, "cases",
                             {{"name", text(c.name)},
                              {"group", text(c.group)},
@@ -109,13 +118,12 @@ class SuiteReader {
                                        {"height", number(m.height)},
                                        {"momentum", number(m.momentum)},
                                        {"like", text(m.like)},
-                                       {"error", number(error)},
+                                       {"error", exit_code(m.error)},
                                        {"says", text(m.says)},
                                        {"guard", text(m.guard)}});
                               }}});
     for (const char* key : {"name", "group", "scene", "must"})
       if (!seen.count(key)) problem(n, key, "missing; required");
-    if (error >= 0) m.error = static_cast<int>(error);
     if (!m.guard.empty() && m.guard != "allowed") {
       bool known = false;
       for (const char* alarm : kAlarmNames) known = known || m.guard == alarm;

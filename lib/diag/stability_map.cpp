@@ -1,5 +1,6 @@
 #include "lib/diag/stability_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -85,11 +86,21 @@ std::vector<double> map_values(const std::string& path, const std::vector<std::s
     const double own = value_of(s, key);
     if (own == 0) bad("--map: " + key + " is 0 in " + path + "; give its values with --x or --y");
     for (const double factor : {0.25, 0.5, 1.0, 2.0, 4.0, 8.0}) values.push_back(own * factor);
+    if (std::holds_alternative<int*>(field_of(s, key))) {
+      for (double& v : values) v = std::max(1.0, std::round(v));
+      values.erase(std::unique(values.begin(), values.end()), values.end());
+    }
     return values;
   }
   const auto range = split(text, ':');
+  Scene s = scene_with(path, overrides, {});
+  const bool whole = std::holds_alternative<int*>(field_of(s, key));
   if (range.size() == 1) {
-    for (const std::string& v : split(text, ',')) values.push_back(number(v, key));
+    for (const std::string& v : split(text, ',')) {
+      values.push_back(number(v, key));
+      if (whole && values.back() != std::floor(values.back()))
+        bad("values of " + key + ": " + v + " " + describe(NumberError::not_whole));
+    }
     return values;
   }
   if (range.size() != 3) bad("values of " + key + ": expected a,b,c or LOW:HIGH:COUNT");
@@ -97,8 +108,13 @@ std::vector<double> map_values(const std::string& path, const std::vector<std::s
                count = number(range[2], key);
   if (!(low > 0 && high > low && count >= 2 && count <= 1000 && count == std::floor(count)))
     bad("values of " + key + ": " + text + " is no range with 0 < LOW < HIGH and 2 to 1000 values");
-  for (int k = 0; k < int(count); ++k)
-    values.push_back(low * std::pow(high / low, k / (count - 1)));
+  for (int k = 0; k < int(count); ++k) {
+    const double v = low * std::pow(high / low, k / (count - 1));
+    if (!whole)
+      values.push_back(v);
+    else if (values.empty() || values.back() != std::round(v))
+      values.push_back(std::round(v));
+  }
   return values;
 }
 

@@ -52,6 +52,19 @@ void StudyReader::number(const Node& n, const std::string& key, double low, doub
     out = v;
 }
 
+void StudyReader::whole(const Node& n, const std::string& key, int low, int high, int& out) {
+  std::int64_t v = 0;
+  const NumberError e =
+      n.kind == Kind::scalar ? read_integer(n.text, v) : NumberError::not_a_number;
+  if (e != NumberError::none)
+    bad(n, key, n.shown() + " " + describe(e));
+  else if (v < low || v > high)
+    bad(n, key,
+        n.shown() + " is out of range, " + std::to_string(low) + " .. " + std::to_string(high));
+  else
+    out = int(v);
+}
+
 void StudyReader::numbers(const Node& n, const std::string& key, double low,
                           std::vector<double>& out) {
   if (n.kind != Kind::list || n.items.empty())
@@ -115,7 +128,6 @@ void StudyReader::front(const Node& n) {
 Study StudyReader::read(const std::vector<std::string>& overrides) {
   study_.path = path_;
   study_.name = fs::path(path_).stem().string();
-  double repeats = study_.repeats;
   bool has_scene = false;
   read_map(root_, "",
            {{"name",
@@ -135,7 +147,7 @@ Study StudyReader::read(const std::vector<std::string>& overrides) {
             {"set", [&](const Node& n) { base_ = settings(n, "set"); }},
             {"variants", [&](const Node& n) { variants(n); }},
             {"grid", [&](const Node& n) { grid(n); }},
-            {"repeats", [&](const Node& n) { number(n, "repeats", 1, 1000, repeats); }},
+            {"repeats", [&](const Node& n) { whole(n, "repeats", 1, 1000, study_.repeats); }},
             {"clock",
              [&](const Node& n) {
                study_.cpu_clock = n.text == "cpu";
@@ -154,7 +166,6 @@ Study StudyReader::read(const std::vector<std::string>& overrides) {
                has_reference_ = true;
              }},
             {"front", [&](const Node& n) { front(n); }}});
-  study_.repeats = int(repeats);
   if (!has_scene)
     problems_.add(path_, "scene", "is missing: the scene to vary, a path from this file's folder");
   problems_.raise();

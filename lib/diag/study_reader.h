@@ -42,6 +42,7 @@ class StudyReader {
   using Entries = std::vector<std::pair<std::string, std::function<void(const Node&)>>>;
   void read_map(const Node& map, const std::string& block, const Entries& entries);
   void number(const Node& n, const std::string& key, double low, double high, double& out);
+  void whole(const Node& n, const std::string& key, int low, int high, int& out);
   void numbers(const Node& n, const std::string& key, double low, std::vector<double>& out);
   void text(const Node& n, const std::string& key, std::string& out);
   std::string file(const Node& n, const std::string& key);

@@ -1,5 +1,5 @@
 // Results of members on disk: what makes two runs the same, and JSON both ways.
-#include <cmath>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
@@ -10,6 +10,7 @@
 #include "lib/base/version.h"
 #include "lib/diag/study_member.h"
 #include "lib/io/report.h"
+#include "lib/io/run_layout.h"
 #include "lib/scene/load.h"
 #include "lib/scene/number.h"
 #include "lib/solver/devices.h"
@@ -63,27 +64,57 @@ void for_each_number(Result& r, F&& f) {
   throw Error(ExitCode::bad_input, at.place() + ": " + what);
 }
 
-double number_of(const Node& n) {
+/// null is NaN: a measure that is not defined.
+double number_of(const Node& n, const std::string& key) {
   double v = std::numeric_limits<double>::quiet_NaN();
   if (n.kind == Node::Kind::null) return v;
   const NumberError e =
       n.kind == Node::Kind::scalar ? read_double(n.text, v) : NumberError::not_a_number;
   if (e == NumberError::too_small) return 0;
-  if (e != NumberError::none) bad(n, n.shown() + " " + describe(e));
+  if (e != NumberError::none) bad(n, key + ": " + n.shown() + " " + describe(e));
   return v;
 }
 
-std::vector<double> numbers_of(const Node& n) {
-  if (n.kind != Node::Kind::list) bad(n, "is " + n.shown() + ", expected a list");
+/// A count, not below 0.
+std::int64_t whole_of(const Node& n, const std::string& key) {
+  std::int64_t v = 0;
+  const NumberError e =
+      n.kind == Node::Kind::scalar ? read_integer(n.text, v) : NumberError::not_a_number;
+  if (e != NumberError::none) bad(n, key + ": " + n.shown() + " " + describe(e));
+  if (v < 0) bad(n, key + ": " + n.shown() + " is below 0");
+  return v;
+}
+
+const std::string& text_of(const Node& n, const std::string& key) {
+  if (n.kind != Node::Kind::scalar) bad(n, key + " is " + n.shown() + ", expected text");
+  return n.text;
+}
+
+std::vector<double> numbers_of(const Node& n, const std::string& key) {
+  if (n.kind != Node::Kind::list) bad(n, key + " is " + n.shown() + ", expected a list");
   std::vector<double> out;
-  for (const Node& item : n.items) out.push_back(number_of(item));
+  for (const Node& item : n.items) out.push_back(number_of(item, key));
   return out;
 }
 
 Node& child(Node& n, const std::string& key) {
-  Node* found = n.find(key);
+  Node* found = n.kind == Node::Kind::map ? n.find(key) : nullptr;
   if (!found) bad(n, "has no " + key);
   return *found;
+}
+
+/// The log has every column that run_member() writes, of one length, and a row at least.
+void check_log(const Node& log, const MemberResult& r) {
+  for (const auto& c : run_layout::log_columns())
+    if (std::find(r.names.begin(), r.names.end(), c.name) == r.names.end())
+      bad(log, std::string("log has no column ") + c.name);
+  for (std::size_t k = 0; k < r.names.size(); ++k) {
+    const std::size_t n = r.columns[k].size();
+    if (n == 0 || n != r.columns[0].size())
+      bad(log, "log: column " + r.names[k] + " has " + std::to_string(n) + " rows, " + r.names[0] +
+                   " has " + std::to_string(r.columns[0].size()) +
+                   (n == 0 ? "; a run has one at least" : ""));
+  }
 }
 
 }  // namespace
@@ -123,17 +154,21 @@ std::optional<MemberResult> read_member(const std::string& path) {
   if (!std::filesystem::exists(path, ignored)) return std::nullopt;
   Node root = load_tree(path, "result of a study");  // JSON is YAML
   MemberResult r;
-  for_each_text(r, [&](const char* name, std::string& v) { v = child(root, name).text; });
-  for_each_integer(r, [&](const char* name, std::int64_t& v) {
-    v = std::llround(number_of(child(root, name)));
-  });
-  for_each_number(r, [&](const char* name, double& v) { v = number_of(child(root, name)); });
-  r.ratios = numbers_of(child(root, "ratios"));
+  for_each_text(r, [&](const char* name, std::string& v) { v = text_of(child(root, name), name); });
+  if (r.status != "finished" && r.status != "diverged")
+    bad(child(root, "status"), "status: \"" + r.status + "\" is neither finished nor diverged");
+  for_each_integer(
+      r, [&](const char* name, std::int64_t& v) { v = whole_of(child(root, name), name); });
+  for_each_number(r, [&](const char* name, double& v) { v = number_of(child(root, name), name); });
+  if (!(r.seconds >= 0)) bad(child(root, "seconds"), "seconds: not a time");
+  r.ratios = numbers_of(child(root, "ratios"), "ratios");
   Node& log = child(root, "log");
+  if (log.kind != Node::Kind::map) bad(log, "log is " + log.shown() + ", expected columns");
   for (std::size_t k = 0; k < log.items.size(); ++k) {
     r.names.push_back(log.keys[k].text);
-    r.columns.push_back(numbers_of(log.items[k]));
+    r.columns.push_back(numbers_of(log.items[k], "log." + r.names.back()));
   }
+  check_log(log, r);
   return r;
 }
 

@@ -199,7 +199,12 @@ TEST_CASE("bench --calibrate stores what plan estimates the time of an update fr
   folder.write("bad.csv", text + "cpu,float,none\n");
   setenv(store.c_str(), (folder / "bad.csv").c_str(), 1);
   const Outcome bad = pbf::test::pbf({"plan", scene}, folder.path());
+  folder.write("renamed.csv", text.replace(text.find("stage,ms"), 8, "ms,stage"));
+  setenv(store.c_str(), (folder / "renamed.csv").c_str(), 1);
+  const Outcome renamed = pbf::test::pbf({"plan", scene}, folder.path());
   unsetenv(store.c_str());
+  CHECK(renamed.code == 2);
+  CHECK(has(renamed.err, "renamed.csv:1: the columns are"));
   CAPTURE(bench.err);
   CHECK(bench.code == 0);
   CHECK(has(bench.err, path));

@@ -144,3 +144,66 @@ TEST_CASE("a start too crowded for the memory of any machine exits 4 before anyt
   CHECK_FALSE(fs::exists(folder / "out"));
   CHECK(has(pbf::test::pbf({"plan", scene}, folder.path()).out, "\nstart: about 2000000"));
 }
+
+TEST_CASE("whole numbers on the command line are read as people write them, or refused") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  folder.write("study.yaml", "scene: tiny.yaml\n");
+  const std::vector<std::vector<std::string>> commands{
+      {"bench", "--warmup", "0", "--updates", "1", "--n", "100", "--repeats"},
+      {"bench", "--warmup", "0", "--repeats", "1", "--n", "100", "--updates"},
+      {"bench", "--updates", "1", "--repeats", "1", "--n", "100", "--warmup"},
+      {"bench", "--updates", "1", "--repeats", "1", "--warmup", "0", "--n"},
+      {"bench", "--updates", "1", "--repeats", "1", "--n", "100", "--threads"},
+      {"run", "tiny.yaml", "--threads"},
+      {"run", "tiny.yaml", "--max-walltime"},
+      {"batch", "tiny.yaml", "--list", "--jobs"},
+      {"batch", "tiny.yaml", "--list", "--only"},
+      {"study", "study.yaml", "--list", "--repeats"},
+      {"compare", "tiny.yaml", "--between", "cpu:float,cpu:float", "--seed"},
+      {"compare", "tiny.yaml", "--between", "cpu:float,cpu:float", "--members"},
+      {"stability", "--jobs"},
+      {"stability", "--map", "time.step,gravity", "--limit"},
+      {"stability", "--map", "time.step,gravity", "--iterations"}};
+  for (const auto& command : commands)
+    for (const char* value : {"1.5", "-1", "99999999999999999999", "", "0x10", "nan", "1 "}) {
+      const bool real = command.back() == "--max-walltime" || command.back() == "--limit";
+      if (real && std::string(value) == "1.5") continue;
+      auto args = command;
+      args.back() += "=";
+      args.back() += value;
+      if (real && args.back().find("999") != std::string::npos) continue;
+      CAPTURE(args);
+      const Outcome o = pbf::test::pbf(args, folder.path());
+      CAPTURE(o.out, o.err);
+      CHECK(o.code == 2);
+      CHECK(has(o.err, command.back()));
+    }
+  const Outcome eight =
+      pbf::test::pbf({"batch", "tiny.yaml", "--list", "--jobs", "1e1"}, folder.path());
+  CHECK(eight.code == 0);
+  const Outcome ten = pbf::test::pbf({"bench", "--updates", "010", "--repeats", "1", "--warmup",
+                                      "0", "--n", "1e2", "--csv", "b.csv"},
+                                     folder.path());
+  CAPTURE(ten.err);
+  CHECK(ten.code == 0);
+  const std::string csv = read_text(folder / "b.csv");
+  CHECK(has(csv, ",start,0,10,1,"));  // updates, not eight in octal
+}
+
+TEST_CASE("a map over a key of whole numbers runs whole numbers, and refuses others") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  const auto map = [&](const char* x) {
+    return pbf::test::pbf({"stability", "tiny.yaml", "--map", "measure_every,time.step", "--x", x,
+                           "--y", "0.005", "--iterations", "1", "--quiet"},
+                          folder.path());
+  };
+  const Outcome bad = map("1.5,2");
+  CHECK(bad.code == 2);
+  CHECK(has(bad.err, "measure_every: 1.5 is not a whole number"));
+  const Outcome range = map("1:4:5");  // 1 1.4 2 2.8 4
+  CAPTURE(range.out, range.err);
+  CHECK(range.code == 0);
+  CHECK(has(range.out, "4 runs:"));
+}

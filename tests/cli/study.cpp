@@ -60,6 +60,16 @@ TEST_CASE("a study writes its tables, keeps its runs, and does only what is miss
   CHECK(mended.code == 0);
   CHECK(count(mended.err, "kept from before") == 3);
   CHECK(has(mended.err, "damaged"));
+  // So is one whose columns are not those of a result.
+  const auto changed = fs::directory_iterator(folder / "o/members")->path();
+  std::string text = read_text(changed);
+  text.replace(text.find("\"compression_mean\""), 18, "\"mean_compression\"");
+  folder.write("o/members/" + changed.filename().string(), text);
+  const Outcome remade = folder.run();
+  CHECK(remade.code == 0);
+  CHECK(count(remade.err, "kept from before") == 3);
+  CHECK(has(remade.err, changed.filename().string()));
+  CHECK(has(remade.err, "log has no column compression_mean"));
 }
 
 TEST_CASE("a killed study goes on where it was, and SIGTERM stops it with 75") {

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import pbf_tools
+from conftest import ROOT
 from pbf_tools import fill, surface
 
 
@@ -45,6 +46,21 @@ def test_a_run_does_not_differ_from_itself_and_differs_from_a_moved_one(tools, m
         assert np.allclose(table[name], 0.25, atol=1e-5)
     assert (tmp_path / "b.png").stat().st_size > 10000
     assert tools("compare", minimal, moved, "--max-rms", 0.26)[0] == 0
+
+
+def test_a_run_that_ended_early_or_otherwise_differs(tools, pbf, minimal, tmp_path):
+    short = tmp_path / "short/run.h5"
+    subprocess.run([pbf, "run", ROOT / "configs/minimal.yaml", "--set", "output={}", "--quiet",
+                    "--set", "time.end=0.004", "--out", short.parent], check=True,
+                   capture_output=True)
+    code, out, _ = tools("compare", minimal, short, "--max-rms", 1)
+    assert code == 6 and "different: frames at a time of both: 1, of 26 in A and 2 in B" in out
+    assert tools("compare", minimal, short)[0] == 0  # asked for nothing
+    ended = shutil.copy(minimal, tmp_path / "ended.h5")
+    with h5py.File(ended, "r+") as file:
+        file["pbf"].attrs["status"] = "diverged"
+    code, out, _ = tools("compare", minimal, ended, "--max-rms", 1)
+    assert code == 6 and "different: A is finished, B is diverged" in out
 
 
 def test_runs_without_a_common_time_cannot_be_compared(tools, minimal, tmp_path):

@@ -83,7 +83,14 @@ TEST_CASE("what is wrong with a study is said with file, line and column, all at
       {"variants:\n  - {nme: a}", "variants.nme: unknown key, did you mean name?"},
       {"clock: sun", "clock: is \"sun\", expected wall or cpu"},
       {"clock: cpu\nset: {backend: cuda}", ":2:8: clock: cpu does not count the time of a GPU"},
-      {"repeats: 0", "repeats: \"0\" is out of range"},
+      {"repeats: 0", "repeats: \"0\" is out of range, 1 .. 1000"},
+      {"repeats: 1.5", ":2:10: repeats: \"1.5\" is not a whole number"},
+      {"repeats: -1", "repeats: \"-1\" is out of range"},
+      {"repeats: 1e4", "repeats: \"1e4\" is out of range"},
+      {"repeats: 99999999999", "repeats: \"99999999999\" is out of range"},
+      {"repeats: 99999999999999999999", "is too large"},
+      {"repeats: ''", "repeats: \"\" is not a number"},
+      {"repeats:", "repeats: "},
       {"repeats: [1]", "repeats: a list of 1"},
       {"targets: 0.1", "targets: is \"0.1\", expected a list"},
       {"targets: [nan]", "targets: \"nan\""},
@@ -129,6 +136,12 @@ TEST_CASE("what is wrong with a study is said with file, line and column, all at
                            "measure_every: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10], threads: "
                            "[1, 2]}\n"))
             .find("makes more than 10000 runs") != std::string::npos);
+}
+
+TEST_CASE("repeats of a study are read as numbers of scenes are") {
+  const StudyFolder folder;
+  CHECK(folder.study("repeats: 1e2\n").repeats == 100);
+  CHECK(folder.study("repeats: 1000\n").repeats == 1000);
 }
 
 TEST_CASE("shipped studies are valid and say how to run them") {

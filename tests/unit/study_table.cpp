@@ -168,6 +168,47 @@ TEST_CASE("a run gives the same result again, also from disk, and its key is its
       study, study.members[0], [] { return true; }, [](double) {}));
 }
 
+TEST_CASE("a stored result that is not whole is refused by file and column") {
+  const StudyFolder folder;
+  const MemberResult good = result_of(4, {0, 0.01, 0.02});
+  const std::string path = folder / "member.json";
+  const auto error = [&](const std::string& from, const std::string& to) -> std::string {
+    write_member(path, good);
+    std::ifstream in(path);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    folder.write("member.json", text.replace(at, from.size(), to));
+    try {
+      read_member(path);
+    } catch (const Error& e) {
+      CHECK(e.code() == ExitCode::bad_input);
+      CHECK(std::string(e.what()).rfind(path + ":", 0) == 0);
+      return e.what();
+    }
+    return "accepted";
+  };
+  const std::vector<std::array<std::string, 3>> cases{
+      {"\"compression_mean\"", "\"compression_men\"", "log has no column compression_mean"},
+      {"\"front_x\"", "\"front\"", "log has no column front_x"},
+      {"\"time\": [", "\"time\": [0.5,", "has 3 rows, time has 4"},
+      {"\"log\"", "\"lok\"", "has no log"},
+      {"\"seconds\": 4", "\"seconds\": null", "seconds: not a time"},
+      {"\"updates\": 20", "\"updates\": 20.5", "updates: \"20.5\" is not a whole number"},
+      {"\"particles\": 64", "\"particles\": 1e300", "particles: \"1e300\" is too large"},
+      {"\"threads\": 1", "\"threads\": -1", "threads: \"-1\" is below 0"},
+      {"\"finished\"", "\"finish\"", "neither finished nor diverged"},
+      {"\"device\": \"none\"", "\"device\": [1]", "device is"},
+      {"\"ratios\": []", "\"ratios\": 3", "ratios is"},
+      {"\"time\": [", "\"time\": [x,", "log.time: \"x\" is not a number"}};
+  for (const auto& [from, to, message] : cases) {
+    CAPTURE(from, to);
+    CHECK_THAT(error(from, to), Catch::Contains(message));
+  }
+  write_member(path, result_of(4, {}));
+  CHECK_THROWS_WITH(read_member(path), Catch::Contains("a run has one at least"));
+}
+
 TEST_CASE("a run that is thrown out of every number stops and says when") {
   const StudyFolder folder;
   const Study study = folder.study(

@@ -26,7 +26,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("a", metavar="A", help="run file")
     parser.add_argument("b", metavar="B", help="run file")
     parser.add_argument("--max-rms", type=float, metavar="H",
-                        help="exit 6 when the RMS distance of a frame exceeds this many h")
+                        help="exit 6 when the RMS distance of a frame exceeds this many h, when one run "
+                             "lacks frames or particles of the other, or ended otherwise")
     parser.add_argument("--csv", metavar="FILE", help="write the table to this file")
     style.add_output(parser, "")
 
@@ -67,6 +68,19 @@ def distances(a: Run, b: Run) -> Table:
     return Table({n: np.array(v) for n, v in zip(names, zip(*rows))}, units)
 
 
+def one_sided(a: Run, b: Run, table: Table) -> list[str]:
+    """What one run holds and the other does not, in sentences."""
+    found = []
+    if a.status != b.status:
+        found.append(f"A is {a.status}, B is {b.status}")
+    if len(table) < max(len(a.times), len(b.times)):
+        found.append(f"frames at a time of both: {len(table)}, of {len(a.times)} in A and "
+                     f"{len(b.times)} in B")
+    if np.any(table["unmatched"] > 0):
+        found.append(f"{table['unmatched'].max()} particles at most are in one run only")
+    return found
+
+
 def run(args: argparse.Namespace) -> int:
     a, b = Run(args.a), Run(args.b)
     table = distances(a, b)
@@ -76,8 +90,9 @@ def run(args: argparse.Namespace) -> int:
     for k in sorted({*range(0, len(table), every), len(table) - 1}):
         print(f"{table['time'][k]:10.4g} {table['particles'][k]:10d} " + " ".join(
             f"{table[c][k]:10.3g}" for c in ("mean", "rms", "max", "centers")))
-    if np.any(table["unmatched"] > 0):
-        print(f"{table['unmatched'].max()} particles at most are in one run only")
+    missing = one_sided(a, b, table)
+    for line in missing:
+        print(line)
     for name in MEASURES:
         la, lb = a.log, b.log
         if len(la) and len(lb):
@@ -93,6 +108,9 @@ def run(args: argparse.Namespace) -> int:
         k = int(np.argmax(~(table["rms"] <= args.max_rms)))
         print(f"different: RMS distance {table['rms'][k]:.3g} h at {table['time'][k]:g} s is above "
               f"{args.max_rms:g} h")
+        return 6
+    if args.max_rms is not None and missing:
+        print("different: " + "; ".join(missing))
         return 6
     return 0
 
