@@ -8,6 +8,10 @@
 #include "app/batch_list.h"
 #include "app/batch_summary.h"
 #include "app/commands.h"
+#include "app/finished_run.h"
+#include "app/load_run.h"
+#include "app/resume.h"
+#include "app/schedule.h"
 #include "app/signals.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
@@ -94,10 +98,10 @@ class Batch {
         [this](std::size_t k, const JobEnd& end) { ended(members_[k], end); });
   }
 
-  /// What became of each run, without running it: from DONE and the status in run.h5.
+  /// What became of each run, without running it: from DONE, the scene beside it and run.h5.
   void collect() {
     for (const BatchMember& m : members_)
-      if (fs::exists(out_ + "/" + m.name + "/DONE")) ends_[m.name] = {0, ""};
+      if (fs::exists(out_ + "/" + m.name + "/DONE")) ended(m, end_of(m));
   }
 
   /// Exit code of the only run.
@@ -123,6 +127,29 @@ class Batch {
   }
 
  private:
+  /// How a run with DONE would end if it were given again.
+  JobEnd end_of(const BatchMember& m) const {
+    const std::string folder = out_ + "/" + m.name;
+    std::vector<std::string> overrides = o_.overrides;
+    overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
+    try {
+      const LoadedScene loaded = load_scene_or_run(m.scene, overrides);
+      const LoadedScene record = load_scene(folder + "/scene.resolved.yaml", {});
+      const std::string other =
+          difference_of_record(record, loaded.scene, fs::path(loaded.path).parent_path().string());
+      if (!other.empty())
+        return {static_cast<int>(ExitCode::bad_input), folder + " is of another scene: " + other};
+      const std::string doubt = why_not_finished(folder, loaded.scene);
+      if (!doubt.empty())
+        return {static_cast<int>(ExitCode::resumable), "DONE is there, but " + doubt};
+      if (make_schedule(loaded.scene).updates > make_schedule(record.scene).updates)
+        return {static_cast<int>(ExitCode::resumable), "time.end has grown"};
+    } catch (const Error& e) {
+      return {static_cast<int>(e.code()), e.what()};
+    }
+    return {0, ""};
+  }
+
   static bool resumable(int code) {
     return code == static_cast<int>(ExitCode::resumable) || code > 128;
   }

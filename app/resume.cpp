@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "app/finished_run.h"
 #include "app/schedule.h"
 #include "lib/base/error.h"
 #include "lib/base/hash.h"
@@ -66,17 +67,17 @@ class Finder {
     }
     const LoadedScene record = load_scene(folder_.file("scene.resolved.yaml"), {});
     const Scene& before = record.scene;
-    std::string difference = physics_difference(before, scene_);
-    const std::string files = files_line(scene_, dir_);
-    if (difference.empty() && !files.empty() && record.text.find(files) == std::string::npos)
-      difference = "bodies: the contents of a particle file have changed";
+    const std::string difference = difference_of_record(record, scene_, dir_);
     if (!difference.empty())
       throw Error(ExitCode::bad_input,
                   folder_.path() + ": cannot resume: " + difference +
                       "; only time.end, checkpoint, threads and backend may change. Restore the "
                       "key, or start again with --overwrite");
     const std::int64_t done = make_schedule(before).updates;
-    if (folder_.has("DONE") && schedule_.updates <= done) {
+    const bool is_done = folder_.has("DONE") && schedule_.updates <= done;
+    const std::string doubt = is_done ? why_not_finished(folder_.path(), scene_) : std::string();
+    if (!doubt.empty()) point_.notes.push_back("DONE is there, but " + doubt);
+    if (is_done && doubt.empty()) {
       if (schedule_.updates < done)
         point_.notes.push_back(
             format("%s: the run is finished up to update %lld, beyond the end "
@@ -120,6 +121,8 @@ class Finder {
       try_run_file(folder_.file("run.h5"));
       file.emplace(folder_.file("run.h5"));
       info = file->info();
+      if (const std::string other = difference_of_file(info, scene_); !other.empty())
+        throw Error(ExitCode::bad_input, "run.h5 is of another scene: " + other);
     } catch (const Error& e) {
       damaged_ = true;
       return forget(std::string(e.what()) + "; it becomes run.damaged.h5");
@@ -176,6 +179,15 @@ class Finder {
 ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene, const std::string& dir,
                               std::int64_t particles, const std::string& commit) {
   return Finder(folder, scene, dir, commit).find(particles);
+}
+
+std::string difference_of_record(const LoadedScene& record, const Scene& scene,
+                                 const std::string& dir) {
+  std::string difference = physics_difference(record.scene, scene);
+  const std::string files = files_line(scene, dir);
+  if (difference.empty() && !files.empty() && record.text.find(files) == std::string::npos)
+    difference = "bodies: the contents of a particle file have changed";
+  return difference;
 }
 
 std::string scene_record(const Scene& scene, const std::string& dir) {

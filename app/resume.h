@@ -8,7 +8,7 @@
 
 #include "app/run_folder.h"
 #include "lib/io/checkpoint.h"
-#include "lib/scene/scene.h"
+#include "lib/scene/load.h"
 
 namespace pbf {
 
@@ -30,6 +30,11 @@ struct ResumePoint {
 /// done; Error(io) when a checkpoint cannot be read.
 ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene, const std::string& dir,
                               std::int64_t particles, const std::string& commit);
+
+/// By what the scene of a record (scene.resolved.yaml) and its particle files differ from `scene`;
+/// empty when by nothing that matters.
+std::string difference_of_record(const LoadedScene& record, const Scene& scene,
+                                 const std::string& dir);
 
 /// scene.resolved.yaml of a run folder: the scene, and a hash of the particle files that it names
 /// (`dir`: their folder), so that a run is not resumed with other particles.

@@ -147,6 +147,78 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a run whose file is not its own is not called finished, and is made again") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  const std::vector<std::string> batch{"batch", "tiny.yaml", "--out", "o", "--threads", "1"};
+  auto collect = batch;
+  collect.emplace_back("--collect");
+  REQUIRE(pbf::test::pbf(batch, folder.path()).code == 0);
+  const std::string good = read_text(folder / "o/tiny/run.h5");
+  REQUIRE(pbf::test::pbf({"run", "tiny.yaml", "--quiet", "--out", "x", "--set", "gravity=[0,0,-5]"},
+                         folder.path())
+              .code == 0);
+  REQUIRE(pbf::test::pbf({"run", "tiny.yaml", "--quiet", "--out", "y", "--set", "time.end=0.05"},
+                         folder.path())
+              .code == 0);
+  std::string why;
+  SECTION("garbage") {
+    folder.write("o/tiny/run.h5", "garbage");
+    why = "DONE is there, but o/tiny/run.h5: cannot read";
+  }
+  SECTION("empty") {
+    folder.write("o/tiny/run.h5", "");
+    why = "DONE is there, but o/tiny/run.h5: cannot read";
+  }
+  SECTION("truncated") {
+    folder.write("o/tiny/run.h5", good.substr(0, good.size() / 2));
+    why = "DONE is there, but o/tiny/run.h5: cannot read";
+  }
+  SECTION("missing") {
+    fs::remove(folder / "o/tiny/run.h5");
+    why = "DONE is there, but run.h5 is missing";
+  }
+  SECTION("of another scene") {
+    fs::copy_file(folder / "x/run.h5", folder / "o/tiny/run.h5",
+                  fs::copy_options::overwrite_existing);
+    why = "DONE is there, but run.h5 is of another scene: gravity";
+  }
+  SECTION("of a shorter run") {
+    fs::copy_file(folder / "y/run.h5", folder / "o/tiny/run.h5",
+                  fs::copy_options::overwrite_existing);
+    why = "DONE is there, but the frames of run.h5 end at update 10, the run at 20";
+  }
+  const Outcome seen = pbf::test::pbf(collect, folder.path());
+  CAPTURE(seen.out, seen.err);
+  CHECK(seen.code == 75);
+  CHECK(has(seen.out, "1 runs: 0 finished, 0 failed, 1 to go on with"));
+  CHECK(has(seen.err, why));
+  CHECK(has(read_text(folder / "o/summary.csv"), "but "));
+  const Outcome again = pbf::test::pbf(batch, folder.path());
+  CAPTURE(again.err);
+  CHECK(again.code == 0);
+  CHECK(has(again.out, "1 finished"));
+  CHECK(has(read_text(folder / "o/tiny/log.txt"), why));
+  CHECK(pbf::test::pbf({"compare", "o/tiny/run.h5", "o/tiny/run.h5"}, folder.path()).code == 0);
+  CHECK(pbf::test::pbf(collect, folder.path()).code == 0);
+}
+
+TEST_CASE("a batch whose scenes have changed is not collected as finished") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  REQUIRE(pbf::test::pbf({"batch", "tiny.yaml", "--out", "o"}, folder.path()).code == 0);
+  const auto collect = [&](const char* key) {
+    return pbf::test::pbf({"batch", "tiny.yaml", "--out", "o", "--collect", "--set", key},
+                          folder.path());
+  };
+  CHECK(collect("threads=2").code == 0);  // no other run
+  const Outcome other = collect("gravity=[0,0,-5]");
+  CHECK(other.code == 6);
+  CHECK(has(other.err, "is of another scene: gravity"));
+  const Outcome longer = collect("time.end=0.2");
+  CHECK(longer.code == 75);
+}
+
 TEST_CASE("the Slurm script of a batch runs every run as a task and requeues those that stop") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());

@@ -1,0 +1,41 @@
+#include "app/finished_run.h"
+
+#include <filesystem>
+
+#include "app/schedule.h"
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+#include "lib/scene/difference.h"
+#include "lib/scene/load.h"
+
+namespace pbf {
+
+std::string difference_of_file(const RunInfo& info, const Scene& scene) {
+  return physics_difference(parse_scene(info.resolved_scene, "the scene in run.h5", {}), scene);
+}
+
+std::string why_not_finished(const std::string& folder, const Scene& scene) {
+  if (!scene.output) return {};
+  const std::string path = folder + "/run.h5";
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return "run.h5 is missing";
+  try {
+    try_run_file(path);
+    const RunReader file(path);
+    const std::string other = difference_of_file(file.info(), scene);
+    if (!other.empty()) return "run.h5 is of another scene: " + other;
+    if (file.status() != "finished") return "run.h5 is of a run that is " + file.status();
+    // The last frame is that of the end. The log is not asked: one of an earlier version will do.
+    const std::vector<std::int64_t> frames = file.updates();
+    const std::int64_t end = make_schedule(scene).updates,
+                       last = frames.empty() ? 0 : frames.back();
+    if (last < end)
+      return format("the frames of run.h5 end at update %lld, the run at %lld",
+                    static_cast<long long>(last), static_cast<long long>(end));
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return {};
+}
+
+}  // namespace pbf
