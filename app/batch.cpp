@@ -12,6 +12,7 @@
 #include "app/load_run.h"
 #include "app/resume.h"
 #include "app/schedule.h"
+#include "app/shell_quote.h"
 #include "app/signals.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
@@ -25,23 +26,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._=/,"
-                             "+:@%-") == std::string::npos &&
-      !text.empty())
-    return text;
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out += "'";
-}
-
-/// The command again, for a script that runs elsewhere: absolute paths.
+/// The command again on one line, for a script that runs elsewhere: absolute paths.
 std::string command_text(const BatchOptions& o, const std::string& out) {
-  std::string text = quoted(fs::read_symlink("/proc/self/exe").string()) + " batch " +
-                     quoted(fs::absolute(o.input).string()) + " --out " +
-                     quoted(fs::absolute(out).string());
-  for (const std::string& g : o.grid) text += " --grid " + quoted(g);
-  for (const std::string& s : o.overrides) text += " --set " + quoted(s);
+  std::string text = shell_quoted(fs::read_symlink("/proc/self/exe").string()) + " batch " +
+                     shell_quoted(fs::absolute(o.input).string()) + " --out " +
+                     shell_quoted(fs::absolute(out).string());
+  for (const std::string& g : o.grid) text += " --grid " + shell_quoted(g);
+  for (const std::string& s : o.overrides) text += " --set " + shell_quoted(s);
   if (o.strict) text += " --strict";
   return text;
 }

@@ -258,3 +258,51 @@ TEST_CASE("the Slurm script of a batch runs every run as a task and requeues tho
   CHECK(task(1, "") == 75);
   CHECK(read_text(folder / "requeued") == "requeue 7_1\n");
 }
+
+TEST_CASE("whatever is in its words, the Slurm script runs one command and nothing else") {
+  const Scratch folder;
+  // Each word would make a file `owned` if the script let it.
+  const std::vector<std::string> words{"a=b\ntouch owned #",
+                                       "a=b\n#SBATCH --wrap=x\n touch owned",
+                                       "a=b\r\ntouch owned",
+                                       "a='; touch owned; '",
+                                       "a='\n touch owned; '\n'",
+                                       "a=\"; touch owned; \"",
+                                       "a=$(touch owned)",
+                                       "a=`touch owned`",
+                                       "a=$HOME ~ * ? ! # & | ; < > ( ) { } [ ] \\ \\n",
+                                       "a=\\'\n\\\\",
+                                       "a=\t\x01\x7f\xC3\xA4"};
+  folder.write("srun", "#!/bin/sh\nshift\nprintf '%s\\0' \"$@\" > words\n");
+  REQUIRE(chmod((folder / "srun").c_str(), 0755) == 0);
+  for (const std::string& word : words)
+    for (const char* where : {"--set", "--grid", "--out", "INPUT"}) {
+      CAPTURE(word, where);
+      const std::string input = where == std::string("INPUT") ? "s " + word : "s";
+      std::string name = input;  // a path has no slash here, and ends like a scene
+      name += ".yaml";
+      folder.write(name, tiny_scene());
+      std::vector<std::string> args{"batch", name, "--slurm"};
+      if (where != std::string("INPUT")) args.insert(args.end(), {where, word});
+      if (where == std::string("--grid") && word.find(',') != std::string::npos) continue;
+      const Outcome o = pbf::test::pbf(args, folder.path());
+      CAPTURE(o.out, o.err);
+      REQUIRE(o.code == 0);
+      std::size_t directives = 0, lines = 0;
+      std::istringstream text(o.out);
+      for (std::string line; std::getline(text, line); ++lines)
+        directives += line.rfind("#SBATCH", 0) == 0;
+      CHECK(directives == 7);
+      CHECK(lines == 18);
+      const std::string script = folder.write("job.sh", o.out);
+      const std::string run = "cd " + folder.path().string() +
+                              " && rm -f words owned && PATH=\"$PWD:$PATH\" bash " + script +
+                              " 2>errors";
+      CHECK(std::system(run.c_str()) == 0);
+      CHECK_FALSE(fs::exists(folder / "owned"));
+      const std::string given = read_text(folder / "words");
+      const std::string end = where == std::string("INPUT") ? name : word;
+      CHECK(has(given, end + std::string(1, '\0')));
+      fs::remove(folder / name);
+    }
+}

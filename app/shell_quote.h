@@ -1,0 +1,12 @@
+// Words for the scripts that pbf prints.
+#pragma once
+
+#include <string>
+
+namespace pbf {
+
+/// `text` as one word of bash, on one line: bare where that is safe, in single quotes, or, with
+/// control characters (a line break would end a comment), in $'...' with escapes.
+std::string shell_quoted(const std::string& text);
+
+}  // namespace pbf
