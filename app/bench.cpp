@@ -4,6 +4,7 @@
 #include "app/commands.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
+#include "lib/base/stages.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
 #include "lib/diag/bench.h"
@@ -13,9 +14,6 @@
 
 namespace pbf {
 namespace {
-
-const char* const kStages[] = {"predict", "grid",  "neighbors", "density",
-                               "lambda",  "delta", "xsph",      "vorticity"};
 
 std::vector<std::string> columns() {
   std::vector<std::string> c{"scene",
@@ -44,7 +42,8 @@ std::vector<std::string> columns() {
                              "bytes_per_particle",
                              "peak_mb",
                              "launches_per_update"};
-  for (const char* s : kStages) c.push_back(std::string("ms_") + s);
+  for (const Stage& s : kStages)
+    if (s.of_update) c.push_back(std::string("ms_") + s.name);
   return c;
 }
 
@@ -77,10 +76,11 @@ std::vector<Cell> cells(const std::string& scene, const BenchRow& r) {
                       double(r.solver.bytes) / n,
                       r.peak_mb,
                       r.solver.launches > 0 ? Cell(r.solver.launches) : Cell()};
-  for (const char* name : kStages) {
+  for (const Stage& stage : kStages) {
+    if (!stage.of_update) continue;
     Cell value;  // empty: the scene has no such stage
     for (const StageTime& s : r.stages)
-      if (s.name == name) value = s.seconds * 1e3;
+      if (s.name == stage.name) value = s.seconds * 1e3;
     c.push_back(value);
   }
   return c;

@@ -2,28 +2,12 @@
 
 #include <cmath>
 
+#include "lib/base/stages.h"
 #include "lib/base/text.h"
 #include "lib/solver/devices.h"
 
 namespace pbf {
 namespace {
-
-struct Group {
-  const char* name;
-  std::vector<std::string> stages;
-};
-
-const std::vector<Group>& groups() {
-  static const std::vector<Group> list{
-      {"initialization", {"init"}},
-      {"gridding/neighbours", {"grid", "neighbors"}},
-      {"densities", {"density"}},
-      {"lambdas", {"lambda", "residual"}},
-      {"deltas", {"delta"}},
-      {"position/velocity updates", {"predict", "xsph", "vorticity"}},
-      {"post-processing", {"measure", "guard", "download", "write", "render"}}};
-  return list;
-}
 
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
 
@@ -90,13 +74,13 @@ std::string stage_table(const RunTotals& t) {
 std::string group_table(const RunTotals& t) {
   std::string out = "time per group of stages\n";
   double rest = t.wall;
-  for (const Group& g : groups()) {
+  for (std::size_t g = 0; g < std::size(kStageGroupNames); ++g) {
     double sum = 0;
-    for (const auto& name : g.stages)
+    for (const Stage& stage : kStages)
       for (const auto& s : t.stages)
-        if (s.name == name) sum += s.seconds;
+        if (static_cast<std::size_t>(stage.group) == g && s.name == stage.name) sum += s.seconds;
     rest -= sum;
-    std::string name = g.name;
+    std::string name = kStageGroupNames[g];
     if (t.fused && name == "densities") name += " (in lambdas)";
     out += row(name, sum, t.wall);
   }

@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "lib/base/stage_clock.h"
+#include "lib/base/stages.h"
 #include "lib/diag/prestabilize.h"
 #include "lib/plan/plan.h"
 #include "lib/scene/emit.h"
@@ -54,7 +55,9 @@ std::vector<StageTime> per_update(const std::vector<StageTime>& before,
                                   const std::vector<StageTime>& after, double updates) {
   std::vector<StageTime> out;
   for (const StageTime& a : after) {
-    if (a.name == "init" || a.name == "measure" || a.name == "download") continue;
+    const auto* stage = std::find_if(std::begin(kStages), std::end(kStages),
+                                     [&](const Stage& s) { return a.name == s.name; });
+    if (stage == std::end(kStages) || !stage->of_update) continue;
     double seconds = a.seconds;
     for (const StageTime& b : before)
       if (b.name == a.name) seconds -= b.seconds;
