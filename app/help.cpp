@@ -46,7 +46,8 @@ const char* const kCompareHelp =
     "what only one file holds is a difference; particles, where the same bits are promised; the\n"
     "particles of every frame as two samples. There, values up to 16 roundings apart are equal:\n"
     "of the coarser of computed and stored precision, relative to the box for positions, to the\n"
-    "box over a step for velocities, to 1 + box/h for densities.\n"
+    "box over a step for velocities, to 1 + box/h for densities. A difference of all the fluid\n"
+    "at once, after chaos has grown, may still be one of rounding: --between tells.\n"
     "Exit code 0 when nothing differs by more, 6 when something does.\n"
     "Examples:\n"
     "  pbf compare configs/minimal.yaml --between cpu:double,cuda:float --report compare.html\n"
@@ -63,7 +64,8 @@ const char* const kBenchHelp =
     "  pbf bench --calibrate --n 10000,100000 --warmup 100 --updates 20";
 
 const char* const kBatchHelp =
-    "Every run is `pbf run --resume` in a folder of its own: what is finished is left alone,\n"
+    "Every run is `pbf run --resume` in a folder of its own: what is finished (DONE is there, and\n"
+    "run.h5 is whole, of this scene, up to its end; --collect looks too) is left alone,\n"
     "what was stopped or killed goes on, so the same command can be given again until all is\n"
     "done. OUT/summary.csv has a row per run: why it ended, its last measures. SIGTERM, SIGINT\n"
     "and --max-walltime save all runs.\n"

@@ -21,6 +21,9 @@ constexpr double kRoundings = 16;
 /// order statistics are of.
 constexpr double kFront = 0.01;
 
+/// Edge of the cells whose particles may move as one, h: what reaches each other.
+constexpr double kCluster = 2;
+
 std::vector<double> numbers_of(const FieldArray& f) {
   if (f.type == ScalarType::f64) return {f.as<double>().begin(), f.as<double>().end()};
   return {f.as<float>().begin(), f.as<float>().end()};
@@ -86,7 +89,8 @@ Resolution computed(const ComparedRun& a, const ComparedRun& b) {
       if (dt > 0) step = std::min(step, dt);
   }
   return {u * extent, u * extent / step, u * (1 + extent / std::min(a.scene.h(), b.scene.h())),
-          kFront * std::min(a.scene.fluid.spacing, b.scene.fluid.spacing)};
+          kFront * std::min(a.scene.fluid.spacing, b.scene.fluid.spacing),
+          kCluster * std::max(a.scene.h(), b.scene.h())};
 }
 
 /// That, and what it makes of the values as they are stored.
@@ -101,7 +105,8 @@ Resolution resolution_of(const Resolution& computed, const Snapshot& x, const Sn
   };
   return {kRoundings * (computed.length + stored("position")),
           kRoundings * (computed.speed + stored("velocity")),
-          kRoundings * (computed.density + stored("density") / rest_density), computed.front};
+          kRoundings * (computed.density + stored("density") / rest_density), computed.front,
+          computed.cluster};
 }
 
 /// The row of a name, made when new.
@@ -146,7 +151,7 @@ void compare_samples(ComparePart& p, const FrameStatistics& a, const FrameStatis
       if (x.name == y.name)
         note(p, "distribution of " + x.name, "KS distance",
              ks_distance(x.values, y.values, std::max(x.resolution, y.resolution)), 0,
-             ks_critical(kAlpha, x.values.size(), y.values.size()));
+             ks_critical(kAlpha, x.samples, y.samples));
 }
 
 /// Values that are not finite, by field: as many in both.
@@ -175,8 +180,10 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
   far.verdict = Verdict::same;
   far.tolerance_source = format(
       "two samples: %g standard errors of means and quantiles, Kolmogorov-Smirnov at %g, where "
-      "values up to %g roundings apart are equal, fronts up to %g spacings; the worst frame counts",
-      kSigmas, kAlpha, kRoundings, kFront);
+      "values up to %g roundings apart are equal, fronts up to %g spacings; once particles are not "
+      "comparable, of as many samples as velocity and density are independent in cells of %g h; "
+      "the worst frame counts",
+      kSigmas, kAlpha, kRoundings, kFront, kCluster);
   Curve rms{"A to B, rms", {}, {}}, worst{"A to B, largest", {}, {}};
   const double h = a.scene.h(), d = a.scene.fluid.spacing;
   bool paired = true, bytes = true;
@@ -184,7 +191,7 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
   const Resolution own = computed(a, b);
   for (const auto& [i, k] : frames.common) {
     const Snapshot x = a.frame(i), y = b.frame(k);
-    const Resolution resolution = resolution_of(own, x, y, a.scene.fluid.rest_density);
+    Resolution resolution = resolution_of(own, x, y, a.scene.fluid.rest_density);
     if (paired && x.count != y.count) {
       paired = false;
       near.finding =
@@ -203,6 +210,9 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
         note(near, "initial positions", "m", e.worst, largest_of(&x.fields[0]),
              exact ? 0 : resolution.length);
     }
+    // Up to the horizon the particles of both sides are the same ones, behind it they are samples
+    // of a flow.
+    if (paired && result.horizon < 0) resolution.cluster = 0;
     compare_not_finite(far, x, y);
     const auto statistics = [&](const ComparedRun& o, const Snapshot& s) {
       return frame_statistics(s, o.scene.domain.min, o.scene.gravity, o.scene.fluid.rest_density,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "lib/diag/clusters.h"
+
 namespace pbf {
 namespace {
 
@@ -22,12 +24,14 @@ void sort(std::vector<double>& v) {
             [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; });
 }
 
-Statistic mean(const std::string& name, const std::string& unit, const std::vector<double>& v) {
+/// `effect`: how many particles move as one.
+Statistic mean(const std::string& name, const std::string& unit, const std::vector<double>& v,
+               double effect = 1) {
   double sum = 0, squares = 0;
   for (const double x : v) sum += x;
   const double n = double(v.size()), m = sum / n;
   for (const double x : v) squares += (x - m) * (x - m);
-  return {name, unit, m, kSigmas * std::sqrt(squares / n / n), 0};
+  return {name, unit, m, kSigmas * std::sqrt(effect * squares / n / n), 0};
 }
 
 /// `v` sorted. The value at ceil(p n), counted from 1.
@@ -37,8 +41,8 @@ double at(const std::vector<double>& v, double p) {
 }
 
 Statistic quantile(const std::string& name, const std::string& unit, const std::vector<double>& v,
-                   double p) {
-  const double d = kSigmas * std::sqrt(p * (1 - p) / double(v.size())), q = at(v, p);
+                   double p, double effect = 1) {
+  const double d = kSigmas * std::sqrt(effect * p * (1 - p) / double(v.size())), q = at(v, p);
   const double below = q - at(v, p - d), above = p + d > 1 ? 2 * below : at(v, p + d) - q;
   return {name, unit, q, std::max(above, below), 0};
 }
@@ -56,11 +60,16 @@ FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const
     return v;
   };
   const auto distribute = [&](const char* name, const char* unit, std::vector<double> v,
-                              double resolution_of_it) {
-    sort(v);
-    out.distributions.push_back({name, unit, std::move(v), resolution_of_it});
-    return &out.distributions.back().values;
+                              double resolution_of_it, const Clusters* together = nullptr) {
+    std::vector<double> sorted = v;
+    sort(sorted);
+    const double effect = together ? together->design_effect_of_shares(v, sorted) : 1;
+    out.distributions.push_back(
+        {name, unit, std::move(sorted), resolution_of_it, double(v.size()) / effect});
+    return &out.distributions.back();
   };
+  // Positions are no less independent than lattice points, which are more even than any sample.
+  const Clusters together(x, resolution.cluster);
   const auto add = [&](Statistic number, double resolution_of_it) {
     number.resolution = resolution_of_it;
     out.numbers.push_back(std::move(number));
@@ -78,7 +87,7 @@ FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const
     auto v = column([&](std::size_t i) { return x[3 * i + k] - origin[k]; });
     add(mean("centre of mass " + axis, "m", v), resolution.length);
     add(quantile("front " + axis + " (99.9 %)", "m",
-                 *distribute(axes[k], "m", v, resolution.length), 0.999),
+                 distribute(axes[k], "m", v, resolution.length)->values, 0.999),
         resolution.length + resolution.front);
   }
   if (const FieldArray* f = s.find("velocity")) {
@@ -88,29 +97,33 @@ FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const
     };
     const double speed =
         mean("", "", column([&](std::size_t i) { return std::sqrt(squared(i)); })).value;
-    add(mean("kinetic energy", "J/kg", column([&](std::size_t i) { return 0.5 * squared(i); })),
+    const auto energy = column([&](std::size_t i) { return 0.5 * squared(i); });
+    add(mean("kinetic energy", "J/kg", energy, together.design_effect(energy)),
         3 * resolution.speed * (std::isfinite(speed) ? speed + resolution.speed : 0));
     for (std::size_t k = 0; k < 3; ++k) {
-      add(mean(std::string("momentum ") + axes[k], "m/s",
-               column([&](std::size_t i) { return v[3 * i + k]; })),
+      const auto component = column([&](std::size_t i) { return v[3 * i + k]; });
+      add(mean(std::string("momentum ") + axes[k], "m/s", component,
+               together.design_effect(component)),
           resolution.speed);
       out.numbers.back().scale = speed;
     }
     distribute("speed", "m/s", column([&](std::size_t i) { return std::sqrt(squared(i)); }),
-               2 * resolution.speed);  // sqrt(3) components
+               2 * resolution.speed, &together);  // sqrt(3) components
   }
   if (const FieldArray* f = s.find("density")) {
     const std::vector<double> rho = numbers_of(*f);
-    const Statistic volume = mean("volume", "rest volumes",
-                                  column([&](std::size_t i) { return rest_density / rho[i]; }));
+    const auto volumes = column([&](std::size_t i) { return rest_density / rho[i]; });
+    const Statistic volume =
+        mean("volume", "rest volumes", volumes, together.design_effect(volumes));
     add(volume, resolution.density * std::fabs(volume.value));
     const auto* error = distribute("density error", "1",
                                    column([&](std::size_t i) { return rho[i] / rest_density - 1; }),
-                                   resolution.density);
+                                   resolution.density, &together);
+    const double effect = double(error->values.size()) / error->samples;
     for (const auto& [name, p] : {std::pair<const char*, double>{"density error 50 %", 0.5},
                                   {"density error 90 %", 0.9},
                                   {"density error 99 %", 0.99}})
-      add(quantile(name, "1", *error, p), resolution.density);
+      add(quantile(name, "1", error->values, p, effect), resolution.density);
   }
   return out;
 }
@@ -138,8 +151,8 @@ double ks_distance(const std::vector<double>& a, const std::vector<double>& b, d
   return std::max(excess(a, b, rounding), excess(b, a, rounding));
 }
 
-double ks_critical(double alpha, std::size_t n, std::size_t m) {
-  return std::sqrt(-0.5 * std::log(alpha / 2) * (double(n) + double(m)) / (double(n) * double(m)));
+double ks_critical(double alpha, double n, double m) {
+  return std::sqrt(-0.5 * std::log(alpha / 2) * (n + m) / (n * m));
 }
 
 double e_folding(const std::vector<double>& x, const std::vector<double>& y, double upper) {

@@ -31,6 +31,7 @@ struct Distribution {
   std::string name, unit;
   std::vector<double> values;
   double resolution = 0;  ///< as of a Statistic
+  double samples = 0;     ///< independent ones that `values` are worth
 };
 
 /// What is too small to tell two frames apart: how far rounding alone may move one particle's
@@ -40,6 +41,9 @@ struct Resolution {
   double speed = 0;    ///< m/s, of a component of the velocity
   double density = 0;  ///< of rho/rho0
   double front = 0;    ///< m, of a front besides: it is the place of one particle
+  /// m: particles nearer than that share velocity and density, so that they count as one sample as
+  /// far as the frame shows that they do (Clusters); 0: all are independent.
+  double cluster = 0;
 };
 
 struct FrameStatistics {
@@ -60,7 +64,7 @@ double ks_distance(const std::vector<double>& a, const std::vector<double>& b, d
 
 /// The distance that two samples of sizes n and m of one distribution exceed with probability
 /// alpha: sqrt(-ln(alpha/2)/2 (n + m)/(n m)) (Smirnov 1948).
-double ks_critical(double alpha, std::size_t n, std::size_t m);
+double ks_critical(double alpha, double n, double m);
 
 /// Least squares of ln y = c + x/e over the points with 0 < y < upper; e, or 0 where there are
 /// fewer than 3 points or less than 1 % of growth.

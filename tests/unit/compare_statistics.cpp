@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lib/diag/clusters.h"
 #include "lib/diag/statistics.h"
 #include "lib/scene/random.h"
 #include "tests/catch.h"
@@ -133,4 +134,34 @@ TEST_CASE("statistics leave out what a frame does not hold", "[compare]") {
   CHECK(f.distributions.size() == 3);
   for (const auto& n : f.numbers) CHECK(n.name != "kinetic energy");
   CHECK(frame_statistics(Snapshot{}, {}, {}, 1).numbers.empty());
+}
+
+TEST_CASE("particles that move as one count as one sample, independent ones as many", "[compare]") {
+  // 40 x 10 x 1 cells of edge 1 with 25 particles each.
+  SplitMix64 random(3);
+  std::vector<double> x, own, shared;
+  for (int cell = 0; cell < 400; ++cell) {
+    const double of_cell = random.uniform();
+    for (int k = 0; k < 25; ++k) {
+      for (const double corner : {double(cell % 40), double(cell / 40), 0.0})
+        x.push_back(corner + 0.999 * random.uniform());
+      own.push_back(random.uniform());
+      shared.push_back(of_cell);
+    }
+  }
+  const auto sorted = [](std::vector<double> v) {
+    std::sort(v.begin(), v.end());
+    return v;
+  };
+  const Clusters cells(x, 1), alone(x, 0);
+  CHECK(cells.design_effect(shared) == Approx(25));
+  CHECK(cells.design_effect_of_shares(shared, sorted(shared)) == Approx(25));
+  CHECK(cells.design_effect(own) < 1.5);
+  CHECK(cells.design_effect_of_shares(own, sorted(own)) < 1.5);
+  CHECK(alone.design_effect(shared) == 1);
+  CHECK(cells.design_effect(std::vector<double>(x.size() / 3, 2.0)) == 1);
+  shared[7] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(cells.design_effect(shared) == 1);
+  x[0] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(Clusters(x, 1).design_effect(own) < 1.5);
 }
