@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "lib/base/regular_file.h"
 #include "lib/base/text.h"
 
 namespace pbf {
@@ -18,9 +19,10 @@ class Hash {
     bytes(text);
     value_ = (value_ ^ 256u) * kPrime;
   }
-  /// Adds the contents of a file; one that cannot be read counts as empty.
+  /// Adds the contents of a file; one that cannot be read, or is no regular one, counts as empty.
   void add_file(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
+    std::ifstream in;
+    if (not_regular(path).empty()) in.open(path, std::ios::binary);
     char block[1 << 16];
     while (in.read(block, sizeof block), in.gcount() > 0)
       bytes({block, static_cast<std::size_t>(in.gcount())});

@@ -9,7 +9,11 @@
 #include <filesystem>
 
 #include "lib/base/error.h"
+#include "lib/base/regular_file.h"
 #include "lib/io/h5_output.h"
+#include "lib/io/h5_read.h"
+#include "lib/io/h5_trial.h"
+#include "lib/scene/scene_files.h"
 
 namespace pbf {
 namespace {
@@ -38,7 +42,7 @@ void write_rows(hid_t file, const char* name, const char* unit, hid_t type, hsiz
 template <class T>
 void read_rows(hid_t file, const char* name, std::int64_t n, std::size_t components,
                std::vector<T>& values) {
-  const h5::Dataset d(H5Dopen2(file, name, H5P_DEFAULT));
+  const h5::Dataset d = h5::open_dataset(file, name);
   const std::vector<hsize_t> size = h5::shape(d);
   if (size != std::vector<hsize_t>{static_cast<hsize_t>(n), components})
     throw h5::Failure(std::string("dataset ") + name + " has the wrong size");
@@ -134,6 +138,9 @@ void write_file(const std::string& path, const SavedRun& s) {
     for_each_newer_number(s, write);
     if (s.released) write("released_energy", *s.released);
     if (s.steps) write_steps(file, *s.steps);
+    h5::write_text(file, "resolved_scene", s.scene);
+    h5::write_text(file, "scene_files", s.files);
+    h5::write_text(file, "scene_sha256", scene_digest(s.scene, s.files));
     h5::flush_reserved(file);
     h5::sync(file);
   } catch (...) {
@@ -144,8 +151,7 @@ void write_file(const std::string& path, const SavedRun& s) {
 }
 
 SavedRun read_file(const std::string& path) {
-  const h5::Lock lock;
-  const h5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, h5::file_access()));
+  const h5::Reading file(path);
   const auto format = h5::read_number<std::int64_t>(file, "format_version");
   if (format != kFormat)
     throw h5::Failure("format version " + std::to_string(format) + "; this program reads version " +
@@ -173,12 +179,40 @@ SavedRun read_file(const std::string& path) {
     if (h5::has_attribute(file, name)) read(name, v);
   });
   if (h5::has_attribute(file, "released_energy")) read("released_energy", s.released.emplace());
+  if (h5::has_attribute(file, "scene_sha256")) {
+    s.scene = h5::read_text(file, "resolved_scene");
+    s.files = h5::read_text(file, "scene_files");
+    if (h5::read_text(file, "scene_sha256") != scene_digest(s.scene, s.files))
+      throw h5::Failure("its scene is not the one that it was written with (SHA-256 differs)");
+  }
   if (s.particles < 0 || s.particles > 2147483647 || s.state.updates < 0)
     throw h5::Failure("a number of particles or updates that cannot be");
   read_rows(file, "position", s.particles, 3, s.state.position);
   read_rows(file, "velocity", s.particles, 3, s.state.velocity);
   read_rows(file, "id", s.particles, 1, s.state.id);
+  std::vector<bool> seen(s.state.id.size());
+  for (const std::int32_t id : s.state.id) {
+    if (id < 0 || id >= s.particles || seen[static_cast<std::size_t>(id)])
+      throw h5::Failure("dataset id does not hold every number from 0 on once");
+    seen[static_cast<std::size_t>(id)] = true;
+  }
   return s;
+}
+
+/// As anything, a link that leads nowhere or to itself too.
+bool is_there(const std::string& path) {
+  std::error_code error;
+  return fs::symlink_status(path, error).type() != fs::file_type::not_found;
+}
+
+/// In a process of its own first: HDF5 may crash on what is damaged. Failure.
+SavedRun try_and_read(const std::string& path) {
+  try {
+    if (not_regular(path).empty()) h5::trial(path, [&path] { read_file(path); });
+  } catch (const Error& e) {
+    throw h5::Failure(e.what());
+  }
+  return read_file(path);
 }
 
 void rename_or_fail(const std::string& from, const std::string& to) {
@@ -194,7 +228,7 @@ void write_checkpoint(const std::string& folder, const SavedRun& saved) {
       const h5::Lock lock;
       write_file(temporary, saved);
     }
-    if (fs::exists(path)) rename_or_fail(path, folder + "/checkpoint_prev.h5");
+    if (is_there(path)) rename_or_fail(path, folder + "/checkpoint_prev.h5");
     rename_or_fail(temporary, path);
     h5::sync_folder(folder);
   } catch (const h5::Failure& f) {
@@ -209,10 +243,9 @@ std::optional<SavedRun> read_checkpoint(const std::string& folder,
   std::string damaged;
   for (const char* name : {"checkpoint.h5", "checkpoint_prev.h5"}) {
     const std::string path = folder + "/" + name;
-    std::error_code error;
-    if (!fs::exists(path, error)) continue;
+    if (!is_there(path)) continue;
     try {
-      SavedRun saved = read_file(path);
+      SavedRun saved = try_and_read(path);
       if (!damaged.empty()) notes.push_back(damaged + "; the one before it is taken");
       return saved;
     } catch (const h5::Failure& f) {

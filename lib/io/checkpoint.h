@@ -22,6 +22,8 @@ struct SavedRun {
   std::optional<double> released;       ///< J, Guard::released()
   std::int64_t compressed_updates = 0;  ///< RunWarnings::compressed_updates()
   std::int64_t particles = 0;
+  std::string scene;  ///< resolved_yaml() of the run, and files_text() of the files that it names;
+  std::string files;  ///< both empty in checkpoints of older versions
 };
 
 /// Writes `folder`/checkpoint.h5 by way of checkpoint.h5.tmp, which has reached the disk before it

@@ -2,12 +2,25 @@
 
 #include <cstring>
 
+#include "lib/base/error.h"
+#include "lib/io/h5_read.h"
+
 namespace pbf::h5 {
 namespace {
 
 std::mutex& process_mutex() {
   static std::mutex m;
   return m;
+}
+
+bool& held_here() {
+  static thread_local bool held = false;
+  return held;
+}
+
+std::string name_of(hid_t object) {
+  char name[200] = "";
+  return H5Iget_name(object, name, sizeof name) > 0 ? name : "without a name";
 }
 
 herr_t take_first(unsigned, const H5E_error2_t* error, void* out) {
@@ -19,12 +32,23 @@ herr_t take_first(unsigned, const H5E_error2_t* error, void* out) {
 }  // namespace
 
 Lock::Lock() : lock_(process_mutex()) {
+  held_here() = true;
   static const bool once = [] {
-    H5dont_atexit();  // fails when HDF5 is already in use: then its own clean-up stays
+    H5dont_atexit();           // fails when HDF5 is already in use: then its own clean-up stays
+    H5PLset_loading_state(0);  // filters of plugins: code of a folder that the environment names
+    H5Lunregister(H5L_TYPE_EXTERNAL);  // open_group() says it; nothing else goes there either
     return true;
   }();
   (void)once;
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // a setting of the calling thread's stack
+}
+
+Lock::~Lock() { held_here() = false; }
+
+bool Lock::held() { return held_here(); }
+
+void require_lock() {
+  if (!Lock::held()) throw Error(ExitCode::internal, "HDF5 is used without h5::Lock");
 }
 
 std::string reason() {
@@ -91,7 +115,9 @@ bool has_attribute(hid_t object, const char* name) { return H5Aexists(object, na
 bool has_link(hid_t group, const std::string& path) {
   for (std::size_t at = 0; at != std::string::npos;) {
     at = path.find('/', at + 1);
-    if (H5Lexists(group, path.substr(0, at).c_str(), H5P_DEFAULT) <= 0) return false;
+    const std::string part = path.substr(0, at);
+    if (H5Lexists(group, part.c_str(), H5P_DEFAULT) <= 0) return false;
+    stay_inside(group, part);
   }
   return true;
 }
@@ -103,7 +129,7 @@ std::vector<std::string> read_texts(hid_t object, const char* name) {
     throw Failure(std::string("attribute ") + name + " is not a string of variable length");
   const Space space(H5Aget_space(a));
   const auto count = check(H5Sget_simple_extent_npoints(space));
-  if (count > 1 << 20) throw Failure(std::string("attribute ") + name + " has too many texts");
+  if (count > 1 << 12) throw Failure(std::string("attribute ") + name + " has too many texts");
   std::vector<char*> texts(static_cast<std::size_t>(count));
   if (texts.empty()) return {};
   const Type type = string_type();
@@ -115,7 +141,7 @@ std::vector<std::string> read_texts(hid_t object, const char* name) {
 }
 
 std::vector<std::string> read_fixed_texts(hid_t group, const std::string& path, std::size_t size) {
-  const Dataset d(H5Dopen2(group, path.c_str(), H5P_DEFAULT));
+  const Dataset d = open_dataset(group, path);
   const Type stored(H5Dget_type(d));
   const auto dims = shape(d);
   if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) != 0 ||
@@ -163,7 +189,8 @@ std::size_t claimed(hid_t dataset, const std::vector<hsize_t>& block, std::size_
   // Integers are stored in 4 bytes and read as 8 at most.
   constexpr hsize_t most = 2 * 1032;
   if (!fits || bytes / most > file)
-    throw Failure("a dataset claims more rows than the file can hold; it is damaged");
+    throw Failure("dataset " + name_of(dataset) +
+                  " claims more rows than the file can hold; it is damaged");
   return values;
 }
 
@@ -176,6 +203,7 @@ std::vector<std::string> children(hid_t group, H5O_type_t kind) {
   check(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &all));
   std::vector<std::string> wanted;
   for (auto& name : all) {
+    stay_inside(group, name);
     const Object o(H5Oopen(group, name.c_str(), H5P_DEFAULT));
     const H5I_type_t type = H5Iget_type(o);
     if ((kind == H5O_TYPE_GROUP && type == H5I_GROUP) ||

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -14,11 +15,17 @@
 namespace pbf::h5 {
 
 /// Held around every use of HDF5: the distributions build the library without thread safety. Not
-/// recursive. Also turns off HDF5's habit of printing its error stack and of cleaning up at exit
-/// (which cannot end well for a file on a full disk; every handle here is closed by its owner).
+/// recursive. check() and every handle below end with Error(internal) where a thread has forgotten
+/// it. Files that are read come with it: h5::Reading, lib/io/h5_read.h. Also sets what HDF5 must
+/// not do by itself: print its error stack, clean up at exit (which cannot end well for a file on a
+/// full disk; every handle here is closed by its owner), load plugins, go into other files.
 class Lock {
  public:
   Lock();
+  ~Lock();
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+  static bool held();  ///< by this thread
 
  private:
   std::unique_lock<std::mutex> lock_;
@@ -34,14 +41,18 @@ struct Failure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Error(internal) when this thread does not hold the Lock.
+void require_lock();
+
 /// `id` itself, or Failure when it is negative: HDF5's way to report an error.
 template <class Id>
 Id check(Id id) {
+  require_lock();
   if (id < 0) throw Failure(reason());
   return id;
 }
 
-/// Owns one HDF5 id; closes it with `Close`. Must be destroyed under a Lock.
+/// Owns one HDF5 id; closes it with `Close`, under a Lock of its own where none is held.
 template <herr_t (*Close)(hid_t)>
 class Handle {
  public:
@@ -57,7 +68,12 @@ class Handle {
   }
   ~Handle() { reset(); }
   /// Closes; the result tells whether that worked (a file: whether all of it reached the system).
-  bool reset() noexcept { return id_ < 0 || Close(std::exchange(id_, -1)) >= 0; }
+  bool reset() noexcept {
+    if (id_ < 0) return true;
+    std::optional<Lock> lock;
+    if (!Lock::held()) lock.emplace();
+    return Close(std::exchange(id_, -1)) >= 0;
+  }
   operator hid_t() const { return id_; }
   bool open() const { return id_ >= 0; }
 
@@ -122,6 +138,12 @@ T read_number(hid_t object, const char* name) {
 }
 /// The numbers in a one-dimensional attribute of at most 64.
 std::vector<std::int64_t> read_integers(hid_t object, const char* name);
+/// A group, or a dataset, of an open file by its path. Both follow hard links and soft links within
+/// the file. Failure for what leads out of it: external and user-defined links, external storage
+/// and virtual datasets, which let a file from elsewhere take in any file of this machine. A
+/// dataset whose chunks claim more than the file can hold is a Failure too.
+Group open_group(hid_t parent, const std::string& path);
+Dataset open_dataset(hid_t parent, const std::string& path);
 std::vector<hsize_t> shape(hid_t dataset);
 /// Number of values in a block of a dataset, `size` bytes each in memory. Failure, before memory is
 /// taken for them, when they are more than the file can hold: deflate makes 1 byte of at most 1032.
@@ -129,7 +151,7 @@ std::size_t claimed(hid_t dataset, const std::vector<hsize_t>& block, std::size_
 /// The first rows (all, or at most `rows`) of a dataset, converted to T, row by row.
 template <class T>
 std::vector<T> read_all(hid_t group, const std::string& path, hsize_t rows = ~hsize_t{0}) {
-  const Dataset d(H5Dopen2(group, path.c_str(), H5P_DEFAULT));
+  const Dataset d = open_dataset(group, path);
   std::vector<hsize_t> count = shape(d);
   const std::vector<hsize_t> start(count.size(), 0);
   if (!count.empty() && rows < count[0]) count[0] = rows;

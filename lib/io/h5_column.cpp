@@ -25,7 +25,7 @@ Column::Column(hid_t parent, const std::string& path, hid_t type, const Layout& 
 
 Column Column::existing(hid_t parent, const std::string& path) {
   Column c;
-  c.dataset_ = Dataset(H5Dopen2(parent, path.c_str(), H5P_DEFAULT));
+  c.dataset_ = open_dataset(parent, path);
   const auto dims = shape(c.dataset_);
   hsize_t chunk[2] = {1, 1};
   const Properties create(H5Dget_create_plist(c.dataset_));

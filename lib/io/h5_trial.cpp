@@ -50,11 +50,12 @@ void trial(const std::string& path, const std::function<void()>& action, unsigne
                                 "; copy or make it anew");
 }
 
+bool is_signature(std::string_view head) { return head == "\x89HDF\r\n\x1a\n"; }
+
 bool begins_as_hdf5(std::istream& in) {
-  constexpr char kSignature[] = "\x89HDF\r\n\x1a\n";
   char head[8] = {};
   in.read(head, sizeof head);
-  return in.gcount() == sizeof head && std::memcmp(head, kSignature, sizeof head) == 0;
+  return is_signature({head, static_cast<std::size_t>(in.gcount())});
 }
 
 }  // namespace pbf::h5

@@ -6,6 +6,7 @@
 #include <functional>
 #include <istream>
 #include <string>
+#include <string_view>
 
 namespace pbf::h5 {
 
@@ -14,6 +15,9 @@ namespace pbf::h5 {
 /// end of the program. Errors that the action throws are left to whoever does it next. Not to be
 /// called under a Lock.
 void trial(const std::string& path, const std::function<void()>& action, unsigned seconds = 60);
+
+/// Whether the first 8 bytes of a file are HDF5's signature.
+bool is_signature(std::string_view head);
 
 /// Whether a stream begins with HDF5's signature; reads 8 bytes.
 bool begins_as_hdf5(std::istream& in);

@@ -68,4 +68,11 @@ void for_each_text(Info& info, F&& f) {
   f("driver", info.solver.driver);
 }
 
+/// The same for those that older files lack.
+template <class Info, class F>
+void for_each_newer_text(Info& info, F&& f) {
+  f("scene_sha256", info.scene_sha256);
+  f("scene_files", info.scene_files);
+}
+
 }  // namespace pbf::run_layout

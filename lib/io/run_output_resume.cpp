@@ -45,9 +45,9 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, st
     : RunOutput(gzip) {
   expected_ = static_cast<std::size_t>(std::max<std::int64_t>(0, info.particles));
   file_ = open_again(path);
-  vtk_ = h5::Group(H5Gopen2(file_, "VTKHDF", H5P_DEFAULT));
-  steps_ = h5::Group(H5Gopen2(vtk_, "Steps", H5P_DEFAULT));
-  pbf_ = h5::Group(H5Gopen2(file_, "pbf", H5P_DEFAULT));
+  vtk_ = h5::open_group(file_, "VTKHDF");
+  steps_ = h5::open_group(vtk_, "Steps");
+  pbf_ = h5::open_group(file_, "pbf");
   open_steps(frames);
   open_log(rows);
   sync();  // Values is never longer than NSteps
@@ -58,6 +58,9 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, st
     h5::write_text(pbf_, "resolved_scene", info.resolved_scene);
     h5::write_text(pbf_, "plan", info.plan);
   }
+  // Always: an older version had none, and a process may have been killed between the two.
+  run_layout::for_each_newer_text(
+      info, [&](const char* name, const std::string& text) { h5::write_text(pbf_, name, text); });
   make_sessions();
   begin_session(info);
   flush();
@@ -121,7 +124,7 @@ void RunOutput::open_fields(std::int64_t frames) {
   end_row_ =
       static_cast<hsize_t>(starts.back()) + parts_[static_cast<std::size_t>(parts.back())].count;
   const auto open = [&](const std::string& name, const std::string& path) {
-    const h5::Dataset d(H5Dopen2(vtk_, path.c_str(), H5P_DEFAULT));
+    const h5::Dataset d = h5::open_dataset(vtk_, path);
     const h5::Type type(H5Dget_type(d));
     const bool wide = H5Tget_size(type) == 8, real = H5Tget_class(type) == H5T_FLOAT;
     const auto dims = h5::shape(d);
@@ -159,7 +162,7 @@ void RunOutput::open_log(std::int64_t rows) {
   for (const auto& c : run_layout::log_columns())
     (log_[c.name] = Column::existing(pbf_, std::string("log/") + c.name)).truncate(n);
   if (!h5::has_link(pbf_, "log/stage")) return;
-  const h5::Group group(H5Gopen2(pbf_, "log/stage", H5P_DEFAULT));
+  const h5::Group group = h5::open_group(pbf_, "log/stage");
   for (const auto& name : h5::children(group, H5O_TYPE_DATASET))
     (stages_[name] = Column::existing(group, name)).truncate(n);
 }

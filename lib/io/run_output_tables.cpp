@@ -48,8 +48,11 @@ void RunOutput::create_steps() {
 void RunOutput::write_info(const RunInfo& info) {
   h5::write_text(pbf_, "status", "running");
   h5::write_numbers(pbf_, "format_version", &run_layout::format_version);
-  run_layout::for_each_text(
-      info, [&](const char* name, const std::string& text) { h5::write_text(pbf_, name, text); });
+  const auto write = [&](const char* name, const std::string& text) {
+    h5::write_text(pbf_, name, text);
+  };
+  run_layout::for_each_text(info, write);
+  run_layout::for_each_newer_text(info, write);
   h5::write_texts(pbf_, "overrides", info.overrides);
   write_warnings(info.warnings);
   const std::int64_t threads = info.solver.threads;

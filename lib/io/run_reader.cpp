@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "lib/base/error.h"
-#include "lib/io/h5.h"
+#include "lib/io/h5_read.h"
 #include "lib/io/h5_trial.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
@@ -41,7 +41,7 @@ hid_t memory_type(ScalarType t) {
 
 FieldPlace describe(hid_t vtk, const std::string& name, const std::string& path, std::size_t n) {
   FieldPlace f{name, "", path, {}};
-  const h5::Dataset d(H5Dopen2(vtk, path.c_str(), H5P_DEFAULT));
+  const h5::Dataset d = h5::open_dataset(vtk, path);
   f.type = scalar_type(d, path);
   const auto dims = h5::shape(d);
   if (dims.empty() || dims.size() > 2 || (dims.size() == 2 && (dims[1] < 1 || dims[1] > 64)))
@@ -55,7 +55,7 @@ FieldPlace describe(hid_t vtk, const std::string& name, const std::string& path,
 
 FieldArray read_rows(hid_t vtk, const FieldPlace& place, std::size_t frame, std::size_t count) {
   FieldArray f{place.name, place.unit, place.type, place.components, {}};
-  const h5::Dataset d(H5Dopen2(vtk, place.path.c_str(), H5P_DEFAULT));
+  const h5::Dataset d = h5::open_dataset(vtk, place.path);
   const auto dims = h5::shape(d);
   const auto first = static_cast<hsize_t>(place.offsets[frame]);
   if (place.offsets[frame] < 0 || first > dims[0] || count > dims[0] - first)
@@ -83,6 +83,9 @@ RunInfo read_info(hid_t pbf) {
   RunInfo info;
   run_layout::for_each_text(
       info, [&](const char* name, std::string& text) { text = h5::read_text(pbf, name); });
+  run_layout::for_each_newer_text(info, [&](const char* name, std::string& text) {
+    if (h5::has_attribute(pbf, name)) text = h5::read_text(pbf, name);
+  });
   info.overrides = h5::read_texts(pbf, "overrides");
   if (h5::has_attribute(pbf, "warnings")) {  // older files have none
     std::istringstream lines(h5::read_text(pbf, "warnings"));
@@ -116,8 +119,7 @@ struct RunReader::Impl {
   auto with_file(const char* what, Action action) const {
     for (int attempt = 1;; ++attempt) {
       try {
-        const h5::Lock lock;
-        const h5::File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, h5::file_access()));
+        const h5::Reading file(path);
         return action(file);
       } catch (const h5::Failure& f) {
         if (attempt == 3 || !alive())
@@ -141,15 +143,15 @@ struct RunReader::Impl {
 void RunReader::Impl::scan(hid_t file) {
   if (!h5::has_link(file, "pbf") || !h5::has_link(file, "VTKHDF/Steps"))
     throw h5::Failure("an HDF5 file, but not one that pbf wrote (no /pbf or no /VTKHDF/Steps)");
-  const h5::Group pbf(H5Gopen2(file, "pbf", H5P_DEFAULT));
-  const h5::Group vtk(H5Gopen2(file, "VTKHDF", H5P_DEFAULT));
+  const h5::Group pbf = h5::open_group(file, "pbf");
+  const h5::Group vtk = h5::open_group(file, "VTKHDF");
   if (!h5::has_attribute(pbf, "format_version"))
     throw h5::Failure("an HDF5 file, but not one that pbf wrote (no /pbf format_version)");
   const auto version = h5::read_number<std::int64_t>(pbf, "format_version");
   if (version != run_layout::format_version)
     throw h5::Failure("format version " + std::to_string(version) +
                       "; this program reads version " + std::to_string(run_layout::format_version));
-  const h5::Group steps(H5Gopen2(vtk, "Steps", H5P_DEFAULT));
+  const h5::Group steps = h5::open_group(vtk, "Steps");
   // What lies beyond the NSteps committed rows may be half written: it is not looked at.
   auto n = static_cast<std::size_t>(
       std::max<std::int64_t>(0, h5::read_number<std::int64_t>(steps, "NSteps")));
@@ -161,7 +163,7 @@ void RunReader::Impl::scan(hid_t file) {
   fields.clear();
   if (n > 0) {
     fields.push_back(describe(vtk, "position", "Points", n));
-    const h5::Group data(H5Gopen2(vtk, "PointData", H5P_DEFAULT));
+    const h5::Group data = h5::open_group(vtk, "PointData");
     for (const auto& name : h5::children(data, H5O_TYPE_DATASET))
       fields.push_back(describe(vtk, name, "PointData/" + name, n));
   }
@@ -193,7 +195,7 @@ void try_run_file(const std::string& path) {
 
 RunReader::RunReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
   impl_->path = path;
-  impl_->with_file("cannot read the run file", [&](const h5::File& file) { impl_->scan(file); });
+  impl_->with_file("cannot read the run file", [&](const h5::Reading& file) { impl_->scan(file); });
 }
 RunReader::~RunReader() = default;
 
@@ -216,8 +218,8 @@ Snapshot RunReader::frame(std::int64_t k) const {
   const auto at = static_cast<std::size_t>(k);
   const auto count = static_cast<std::size_t>(impl_->counts[at]);
   const std::string what = "cannot read frame " + std::to_string(k);
-  return impl_->with_file(what.c_str(), [&](const h5::File& file) {
-    const h5::Group vtk(H5Gopen2(file, "VTKHDF", H5P_DEFAULT));
+  return impl_->with_file(what.c_str(), [&](const h5::Reading& file) {
+    const h5::Group vtk = h5::open_group(file, "VTKHDF");
     Snapshot s{impl_->updates[at], impl_->times[at], count, {}};
     for (const auto& f : impl_->fields) s.fields.push_back(read_rows(vtk, f, at, count));
     return s;
@@ -225,24 +227,24 @@ Snapshot RunReader::frame(std::int64_t k) const {
 }
 
 RunInfo RunReader::info() const {
-  return impl_->with_file("cannot read what the run was", [](const h5::File& file) {
-    return read_info(h5::Group(H5Gopen2(file, "pbf", H5P_DEFAULT)));
+  return impl_->with_file("cannot read what the run was", [](const h5::Reading& file) {
+    return read_info(h5::open_group(file, "pbf"));
   });
 }
 
 std::string RunReader::status() const {
-  return impl_->with_file("cannot read the status", [](const h5::File& file) {
-    return h5::read_text(h5::Group(H5Gopen2(file, "pbf", H5P_DEFAULT)), "status");
+  return impl_->with_file("cannot read the status", [](const h5::Reading& file) {
+    return h5::read_text(h5::open_group(file, "pbf"), "status");
   });
 }
 
 std::vector<std::int64_t> RunReader::updates() const { return impl_->updates; }
 
 std::vector<RunSession> RunReader::sessions() const {
-  return impl_->with_file("cannot read the sessions", [](const h5::File& file) {
+  return impl_->with_file("cannot read the sessions", [](const h5::Reading& file) {
     std::vector<RunSession> all;
     if (!h5::has_link(file, "pbf/sessions")) return all;
-    const h5::Group group(H5Gopen2(file, "pbf/sessions", H5P_DEFAULT));
+    const h5::Group group = h5::open_group(file, "pbf/sessions");
     all.resize(h5::read_all<std::int64_t>(group, "last_update").size());  // written last
     for (std::size_t k = 0; k < all.size(); ++k) {
       run_layout::for_each_text(all[k], [&](const char* name, std::string& text) {
@@ -259,29 +261,29 @@ std::vector<RunSession> RunReader::sessions() const {
 }
 
 std::vector<std::string> RunReader::log_columns() const {
-  return impl_->with_file("cannot read the log", [](const h5::File& file) {
-    const h5::Group log(H5Gopen2(file, "pbf/log", H5P_DEFAULT));
+  return impl_->with_file("cannot read the log", [](const h5::Reading& file) {
+    const h5::Group log = h5::open_group(file, "pbf/log");
     auto names = h5::children(log, H5O_TYPE_DATASET);
     if (h5::has_link(log, "stage"))
-      for (const auto& s :
-           h5::children(h5::Group(H5Gopen2(log, "stage", H5P_DEFAULT)), H5O_TYPE_DATASET))
+      for (const auto& s : h5::children(h5::open_group(log, "stage"), H5O_TYPE_DATASET))
         names.push_back("stage/" + s);
     return names;
   });
 }
 
 std::vector<double> RunReader::log_column(const std::string& name) const {
-  return impl_->with_file("cannot read the log", [&](const h5::File& file) -> std::vector<double> {
-    const h5::Group log(H5Gopen2(file, "pbf/log", H5P_DEFAULT));
-    if (name.empty() || !h5::has_link(log, name)) return {};
-    auto values = h5::read_all<double>(log, name);
-    // A process killed while it wrote the log may leave columns of different lengths.
-    for (const auto& c : run_layout::log_columns()) {
-      const h5::Dataset d(H5Dopen2(log, c.name, H5P_DEFAULT));
-      values.resize(std::min<std::size_t>(values.size(), h5::shape(d).at(0)));
-    }
-    return values;
-  });
+  return impl_->with_file(
+      "cannot read the log", [&](const h5::Reading& file) -> std::vector<double> {
+        const h5::Group log = h5::open_group(file, "pbf/log");
+        if (name.empty() || !h5::has_link(log, name)) return {};
+        auto values = h5::read_all<double>(log, name);
+        // A process killed while it wrote the log may leave columns of different lengths.
+        for (const auto& c : run_layout::log_columns()) {
+          const h5::Dataset d = h5::open_dataset(log, c.name);
+          values.resize(std::min<std::size_t>(values.size(), h5::shape(d).at(0)));
+        }
+        return values;
+      });
 }
 
 }  // namespace pbf

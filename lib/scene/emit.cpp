@@ -124,7 +124,8 @@ Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
                        [&](const Double3& x) { all.position.push_back(x); });
         break;
       case Shape::file: {
-        const Particles p = read_particle_file(resolved_path(body, scene_dir));
+        SceneFile& file = all.files.emplace_back(SceneFile{body.path, ""});
+        const Particles p = read_particle_file(resolved_path(body, scene_dir), &file.sha256);
         if (scene.dimensions == 2) refuse_velocity_along_y(b, p.velocity);
         all.position.insert(all.position.end(), p.position.begin(), p.position.end());
         all.velocity.insert(all.velocity.end(), p.velocity.begin(), p.velocity.end());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lib/scene/scene.h"
+#include "lib/scene/scene_files.h"
 
 namespace pbf {
 
@@ -15,6 +16,7 @@ struct Particles {
   std::vector<Double3> velocity;  ///< m/s
   std::size_t put_on_margin = 0;  ///< that were nearer to a wall than solver.wall_margin
   double farthest_put = 0;        ///< m, by how much at most
+  std::vector<SceneFile> files;   ///< that they were read from, in the order of the bodies
   std::size_t size() const { return position.size(); }
 };
 

@@ -109,6 +109,7 @@ Scene parse_scene(const std::string& text, const std::string& origin,
 LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides) {
   LoadedScene loaded;
   loaded.path = path;
+  loaded.folder = std::filesystem::path(path).parent_path().string();
   loaded.text = read_text_file(path, "scene");
   loaded.overrides = overrides;
   loaded.scene = parse_scene(loaded.text, path, overrides);

@@ -16,6 +16,10 @@ struct LoadedScene {
   std::string path;                    ///< of the scene file
   std::string text;                    ///< the file as it stands
   std::vector<std::string> overrides;  ///< the --set arguments
+  std::string folder;                  ///< of the files that it names
+  std::string run_file;                ///< that the scene was taken from; empty: none
+  std::string files;                   ///< files_text() of what was, or (run file) has been, read
+  bool files_known = false;            ///< whether the run file has `files`
 };
 
 /// Reads `path`, applies `--set key.path=value` overrides, validates everything.

@@ -12,9 +12,11 @@ namespace pbf {
 /// HDF5 (known by its signature): dataset `position` of shape (N, 3), optional `velocity` (N, 3),
 /// any number type. Anything else is read as CSV: header `x,y,z` or `x,y,z,vx,vy,vz`, then one
 /// particle per line; CRLF and empty lines are tolerated.
-/// Throws Error(io) when the file cannot be read, Error(bad_input) naming file and line (CSV) or
-/// dataset and row (HDF5) when it cannot be understood or a value is not finite.
-Particles read_particle_file(const std::string& path);
+/// `sha256`: gets the SHA-256 of the bytes that were read, if given.
+/// Throws Error(io) when the file cannot be read, is no regular file, or leads into other files,
+/// Error(bad_input) naming file and line (CSV) or dataset and row (HDF5) when it cannot be
+/// understood or a value is not finite.
+Particles read_particle_file(const std::string& path, std::string* sha256 = nullptr);
 
 /// Number of particles read_particle_file would give, without keeping them. HDF5: from the shape of
 /// the dataset; CSV: lines are counted, not parsed. Same errors for what it looks at;

@@ -1,0 +1,67 @@
+#include "lib/base/regular_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "lib/base/error.h"
+
+namespace pbf {
+namespace {
+
+std::string kind_of(mode_t mode) {
+  if (S_ISDIR(mode)) return "a directory";
+  if (S_ISFIFO(mode)) return "a named pipe (FIFO)";
+  if (S_ISSOCK(mode)) return "a socket";
+  if (S_ISCHR(mode) || S_ISBLK(mode)) return "a device";
+  return {};
+}
+
+}  // namespace
+
+std::string not_regular(const std::string& path) {
+  struct stat state {};
+  return ::stat(path.c_str(), &state) == 0 ? kind_of(state.st_mode) : std::string();
+}
+
+RegularFile::RegularFile(const std::string& path, const std::string& expected,
+                         const std::string& missing)
+    : path_(path) {
+  const auto refuse = [&](const std::string& kind) {
+    if (!kind.empty())
+      throw Error(ExitCode::io,
+                  path + ": is " + kind + ", expected " + expected + "; give a regular file");
+  };
+  refuse(not_regular(path));
+  // It may have become a pipe since: that must not wait.
+  fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd_ < 0) {
+    const int reason = errno;
+    throw Error(ExitCode::io, path + ": cannot be opened: " + std::strerror(reason) +
+                                  (reason == ENOENT ? missing : std::string()));
+  }
+  struct stat state {};
+  const std::string kind = ::fstat(fd_, &state) == 0 ? kind_of(state.st_mode) : std::string();
+  if (!kind.empty()) ::close(fd_);
+  refuse(kind);
+}
+
+RegularFile::~RegularFile() { ::close(fd_); }
+
+std::size_t RegularFile::read(char* bytes, std::size_t size) {
+  ssize_t n = 0;
+  do n = ::read(fd_, bytes, size);
+  while (n < 0 && errno == EINTR);
+  if (n < 0) throw Error(ExitCode::io, path_ + ": reading failed: " + std::strerror(errno));
+  return static_cast<std::size_t>(n);
+}
+
+void RegularFile::rewind() {
+  if (::lseek(fd_, 0, SEEK_SET) < 0)
+    throw Error(ExitCode::io, path_ + ": reading failed: " + std::strerror(errno));
+}
+
+}  // namespace pbf

@@ -1,0 +1,32 @@
+// Files that must be regular ones: a pipe waits for its writer, a device may never end.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace pbf {
+
+/// "a folder", "a named pipe (FIFO)", "a device", "a socket" for a path that leads to one, without
+/// opening it; empty for a regular file and for what is not there or cannot be looked at.
+std::string not_regular(const std::string& path);
+
+/// A regular file open for reading.
+class RegularFile {
+ public:
+  /// Error(io) when it cannot be opened or is no regular file; `expected` says what was ("a
+  /// particle file"), `missing` is added where the file is not there.
+  RegularFile(const std::string& path, const std::string& expected, const std::string& missing);
+  ~RegularFile();
+  RegularFile(const RegularFile&) = delete;
+  RegularFile& operator=(const RegularFile&) = delete;
+  /// The next bytes, `size` at most; 0 at the end. Error(io).
+  std::size_t read(char* bytes, std::size_t size);
+  /// Back to the first byte.
+  void rewind();
+
+ private:
+  std::string path_;
+  int fd_ = -1;
+};
+
+}  // namespace pbf
