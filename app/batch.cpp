@@ -127,7 +127,7 @@ class Batch {
       const LoadedScene loaded = load_scene_or_run(m.scene, overrides);
       const LoadedScene record = load_scene(folder + "/scene.resolved.yaml", {});
       const std::string other =
-          difference_of_record(record, loaded.scene, fs::path(loaded.path).parent_path().string());
+          difference_of_record(record, loaded.scene, scene_files(loaded.scene, loaded.folder));
       if (!other.empty())
         return {static_cast<int>(ExitCode::bad_input), folder + " is of another scene: " + other};
       const std::string doubt = why_not_finished(folder, loaded.scene);

@@ -4,12 +4,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
+#include <sstream>
 
 #include "app/finished_run.h"
 #include "app/schedule.h"
 #include "lib/base/error.h"
-#include "lib/base/hash.h"
 #include "lib/base/text.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
@@ -19,17 +18,13 @@
 namespace pbf {
 namespace {
 
-constexpr const char* kFilesMark = "# particle files ";
-
-std::string files_line(const Scene& scene, const std::string& dir) {
-  Hash hash;
-  bool any = false;
-  for (const Body& b : scene.bodies)
-    if (b.shape == Shape::file) {
-      hash.add_file((std::filesystem::path(dir) / b.path).string());
-      any = true;
-    }
-  return any ? kFilesMark + hash.text() + "\n" : std::string();
+/// files_text() from the comments that scene_record() begins with.
+std::string recorded_files(const std::string& record) {
+  std::string files;
+  std::istringstream lines(record);
+  for (std::string line; std::getline(lines, line) && line.rfind("# ", 0) == 0;)
+    if (line.find("  ") != std::string::npos) files += line.substr(2) + "\n";
+  return files;
 }
 
 /// Runs of such scenes give the same bits with one program, whatever the machine.
@@ -48,11 +43,11 @@ std::int64_t prefix(const Values& values, std::int64_t last, const Expected& exp
 
 class Finder {
  public:
-  Finder(const RunFolder& folder, const Scene& scene, const std::string& dir,
+  Finder(const RunFolder& folder, const Scene& scene, const std::vector<SceneFile>& files,
          const std::string& commit)
       : folder_(folder),
         scene_(scene),
-        dir_(dir),
+        files_(files),
         commit_(commit),
         schedule_(make_schedule(scene)) {}
 
@@ -67,12 +62,12 @@ class Finder {
     }
     const LoadedScene record = load_scene(folder_.file("scene.resolved.yaml"), {});
     const Scene& before = record.scene;
-    const std::string difference = difference_of_record(record, scene_, dir_);
-    if (!difference.empty())
-      throw Error(ExitCode::bad_input,
-                  folder_.path() + ": cannot resume: " + difference +
-                      "; only time.end, checkpoint, threads and backend may change. Restore the "
-                      "key, or start again with --overwrite");
+    const std::string files = recorded_files(record.text);
+    refuse_other("", before, files);
+    if (files.empty() && !files_.empty())
+      point_.notes.push_back(folder_.path() +
+                             ": begun by an earlier version, which kept no SHA-256 "
+                             "of its particle files: they are taken as they are");
     const std::int64_t done = make_schedule(before).updates;
     const bool is_done = folder_.has("DONE") && schedule_.updates <= done;
     const std::string doubt = is_done ? why_not_finished(folder_.path(), scene_) : std::string();
@@ -99,9 +94,31 @@ class Finder {
   }
 
  private:
-  void check_checkpoint(std::int64_t particles) const {
+  /// That the folder, or a file in it, is of this scene and its files.
+  void refuse_other(const std::string& name, const Scene& before, const std::string& files) const {
+    std::string difference = physics_difference(before, scene_);
+    if (difference.empty()) difference = files_difference(files, files_);
+    if (difference.empty()) return;
+    throw Error(ExitCode::bad_input,
+                (name.empty() ? folder_.path() : folder_.file(name)) + ": cannot resume: " +
+                    (name.empty() ? "" : "it is of another scene: ") + difference +
+                    "; only time.end, checkpoint, threads and backend may change. Restore it, or "
+                    "start again with --overwrite");
+  }
+  void refuse_other(const std::string& name, const std::string& scene,
+                    const std::string& files) const {
+    refuse_other(name, parse_scene(scene, folder_.file(name) + ": its scene", {}), files);
+  }
+
+  void check_checkpoint(std::int64_t particles) {
     if (!point_.saved) return;
     const SavedRun& s = *point_.saved;
+    if (!s.scene.empty())
+      refuse_other("checkpoint.h5", s.scene, s.files);
+    else
+      point_.notes.push_back(
+          "the checkpoint is of an earlier version, which kept no scene in it: "
+          "it is taken as it is");
     if (s.particles != particles || s.state.precision != scene_.precision)
       throw Error(ExitCode::io, folder_.path() +
                                     "/checkpoint.h5: holds another number of particles or another "
@@ -129,6 +146,7 @@ class Finder {
     }
     if (file->frames() == 0) return forget("");
     refuse_older_log(*file, info);
+    if (!info.scene_sha256.empty()) refuse_other("run.h5", info.resolved_scene, info.scene_files);
     point_.keep_file = true;
     const std::int64_t u = point_.update();
     point_.rows = point_.saved ? prefix(file->log_column("update"), u,
@@ -168,7 +186,8 @@ class Finder {
 
   const RunFolder& folder_;
   const Scene& scene_;
-  const std::string &dir_, &commit_;
+  const std::vector<SceneFile>& files_;
+  const std::string& commit_;
   Schedule schedule_;
   ResumePoint point_;
   bool damaged_ = false;
@@ -176,22 +195,23 @@ class Finder {
 
 }  // namespace
 
-ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene, const std::string& dir,
-                              std::int64_t particles, const std::string& commit) {
-  return Finder(folder, scene, dir, commit).find(particles);
+ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene,
+                              const std::vector<SceneFile>& files, std::int64_t particles,
+                              const std::string& commit) {
+  return Finder(folder, scene, files, commit).find(particles);
 }
 
 std::string difference_of_record(const LoadedScene& record, const Scene& scene,
-                                 const std::string& dir) {
-  std::string difference = physics_difference(record.scene, scene);
-  const std::string files = files_line(scene, dir);
-  if (difference.empty() && !files.empty() && record.text.find(files) == std::string::npos)
-    difference = "bodies: the contents of a particle file have changed";
-  return difference;
+                                 const std::vector<SceneFile>& files) {
+  const std::string difference = physics_difference(record.scene, scene);
+  return difference.empty() ? files_difference(recorded_files(record.text), files) : difference;
 }
 
-std::string scene_record(const Scene& scene, const std::string& dir) {
-  return files_line(scene, dir) + resolved_yaml(scene);
+std::string scene_record(const Scene& scene, const std::string& files) {
+  std::string text = files.empty() ? "" : "# SHA-256 of its particle files:\n";
+  std::istringstream lines(files);
+  for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
+  return text + resolved_yaml(scene);
 }
 
 void prepare_resume(const RunFolder& folder, const ResumePoint& from) {

@@ -9,6 +9,8 @@
 #include "app/run_folder.h"
 #include "lib/io/checkpoint.h"
 #include "lib/scene/load.h"
+#include "lib/scene/scene.h"
+#include "lib/scene/scene_files.h"
 
 namespace pbf {
 
@@ -23,22 +25,23 @@ struct ResumePoint {
   std::int64_t update() const { return saved ? saved->state.updates : 0; }
 };
 
-/// Looks at a folder that this process has locked. `dir`: folder of the scene's particle files;
-/// `commit`: of this program. Throws
-/// Error(bad_input) naming the key when the scene is not the one that the folder's run was begun
-/// with (only what physics_difference() leaves out may change), or its end lies before what is
-/// done; Error(io) when a checkpoint cannot be read.
-ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene, const std::string& dir,
-                              std::int64_t particles, const std::string& commit);
+/// Looks at a folder that this process has locked. `files`: of the scene, as they were read;
+/// `commit`: of this program. Throws Error(bad_input) naming the key, or the file, when the scene
+/// and its files are not those that the folder's run was begun with, or that its checkpoint or
+/// run.h5 is of (only what physics_difference() leaves out may change), or when the end lies before
+/// what is done; Error(io) when a checkpoint cannot be read.
+ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene,
+                              const std::vector<SceneFile>& files, std::int64_t particles,
+                              const std::string& commit);
 
-/// By what the scene of a record (scene.resolved.yaml) and its particle files differ from `scene`;
-/// empty when by nothing that matters.
+/// By what the scene of a record (scene.resolved.yaml) and its particle files differ from `scene`
+/// and its files as they are now; empty when by nothing that matters.
 std::string difference_of_record(const LoadedScene& record, const Scene& scene,
-                                 const std::string& dir);
+                                 const std::vector<SceneFile>& files);
 
-/// scene.resolved.yaml of a run folder: the scene, and a hash of the particle files that it names
-/// (`dir`: their folder), so that a run is not resumed with other particles.
-std::string scene_record(const Scene& scene, const std::string& dir);
+/// scene.resolved.yaml of a run folder: the scene, and files_text() of the particle files that it
+/// names, so that a run is not resumed with other particles.
+std::string scene_record(const Scene& scene, const std::string& files);
 
 /// Makes the folder ready to go on: removes DONE, and moves a damaged run.h5 aside.
 void prepare_resume(const RunFolder& folder, const ResumePoint& from);

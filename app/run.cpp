@@ -44,6 +44,8 @@ RunInfo run_info(const LoadedScene& loaded, const Plan& plan, const Solver& solv
   info.scene_path = loaded.path;
   info.scene_text = loaded.text;
   info.resolved_scene = resolved_yaml(loaded.scene);
+  info.scene_files = loaded.files;
+  info.scene_sha256 = scene_digest(info.resolved_scene, info.scene_files);
   info.overrides = loaded.overrides;
   for (const Warning& w : warnings) info.warnings.push_back(w.text);
   info.program_version = build.version;
@@ -71,6 +73,7 @@ RunSinks open_sinks(const LoadedScene& loaded, const Plan& plan, const Solver& s
   RunSinks sinks;
   sinks.json = json;
   sinks.checkpoints = folder.path();
+  sinks.scene_files = loaded.files;
   if (scene.output) {
     const std::string path = folder.file("run.h5");
     const RunInfo info = run_info(loaded, plan, solver, started, from.update(), warnings);
@@ -178,9 +181,7 @@ int simulate(const LoadedScene& loaded, const Plan& plan, std::unique_ptr<Solver
   const std::string started = utc_now();
   const File json = open_json(options.log_json, from.started);
   if (from.started) prepare_resume(folder, from);
-  folder.write_text(
-      "scene.resolved.yaml",
-      scene_record(loaded.scene, std::filesystem::path(loaded.path).parent_path().string()));
+  folder.write_text("scene.resolved.yaml", scene_record(loaded.scene, loaded.files));
   log.note(banner(loaded.scene, plan, *solver, folder.path()));
   for (const Warning& w : warnings) log.warning(w.text);
   for (const std::string& note : from.notes) log.note("pbf: " + note);
@@ -234,7 +235,7 @@ int command_run(const RunOptions& options) {
   watch_signals();
   const Stopwatch wall;
   StageClock clock;
-  const LoadedScene loaded = load_scene_or_run(options.scene, all_overrides(options));
+  LoadedScene loaded = load_scene_or_run(options.scene, all_overrides(options));
   const Scene& scene = loaded.scene;
 #ifndef PBF_HAS_RENDER
   if (scene.render)
@@ -249,7 +250,7 @@ int command_run(const RunOptions& options) {
   Log log(options.quiet);
   const bool there = RunFolder::check(out, existing);
   check_json_folder(options.log_json, out);
-  const std::string dir = std::filesystem::path(loaded.path).parent_path().string();
+  const std::string& dir = loaded.folder;
   const std::int64_t particles = count_particles(scene, dir);
   refuse_if_too_large(scene, make_plan(scene, particles));  // before a look at every particle
   const Plan plan = make_plan(scene, particles, start_neighbors(scene, dir, particles));
@@ -257,11 +258,12 @@ int command_run(const RunOptions& options) {
   const std::vector<Warning> warnings = scene_warnings(scene, dir, particles);
   if (options.strict && !warnings.empty())
     throw Error(ExitCode::difference, "--strict: " + lines(warnings));
+  Particles start = emit_particles(scene, dir);
   std::unique_ptr<RunFolder> folder;
   ResumePoint from;
   if (there && existing == ExistingFolder::resume) {
     folder = std::make_unique<RunFolder>(out, existing);
-    from = find_resume_point(*folder, scene, dir, plan.particles, build_info().commit);
+    from = find_resume_point(*folder, scene, start.files, plan.particles, build_info().commit);
     if (from.finished) {
       for (const std::string& note : from.notes) log.note("pbf: " + note);
       log.note(out + ": the run is finished (DONE is there); nothing to do");
@@ -269,7 +271,7 @@ int command_run(const RunOptions& options) {
     }
   }
   // A new folder comes last: a scene that cannot run leaves nothing behind.
-  Particles start = emit_particles(scene, dir);
+  take_files(loaded, start.files, from.notes);
   const std::string note = start_note(start, scene);
   auto solver = make_solver(scene, plan, std::move(start));
   double solver_init = 0;  // the solver reports its own part of "init"

@@ -7,6 +7,7 @@
 
 #include "app/signals.h"
 #include "lib/base/error.h"
+#include "lib/scene/load.h"
 
 namespace pbf {
 namespace {
@@ -42,6 +43,8 @@ RunLoop::RunLoop(const Scene& scene, const Plan& plan, Solver& solver, RunSinks 
       schedule_(make_schedule(scene)),
       progress_(log),
       warnings_(scene, schedule_.updates) {
+  due_.scene = resolved_yaml(scene);
+  due_.files = sinks_.scene_files;
   if (scene.output) fields_ = scene.output->fields;
   if (scene.render && scene.render->color != ColorBy::id) {
     const char* needed = scene.render->color == ColorBy::speed ? "velocity" : "density";

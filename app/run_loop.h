@@ -38,6 +38,7 @@ struct RunSinks {
 #endif
   std::FILE* json = nullptr;  ///< one line per measure; owned by the caller
   std::string checkpoints;    ///< folder
+  std::string scene_files;    ///< LoadedScene::files, for checkpoints
 };
 
 /// What ends a run besides its own end, signals and the guard.

@@ -108,6 +108,16 @@ std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {
   return static_cast<std::int64_t>(sum);
 }
 
+std::vector<SceneFile> scene_files(const Scene& scene, const std::string& scene_dir) {
+  std::vector<SceneFile> files;
+  for (const Body& body : scene.bodies) {
+    if (body.shape != Shape::file) continue;
+    SceneFile& file = files.emplace_back(SceneFile{body.path, ""});
+    read_particle_file(resolved_path(body, scene_dir), &file.sha256);
+  }
+  return files;
+}
+
 Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
   const auto total = static_cast<std::size_t>(count_particles(scene, scene_dir));
   Particles all;

@@ -23,6 +23,9 @@ struct Particles {
 /// Path of a file body's file.
 std::string resolved_path(const Body& body, const std::string& scene_dir);
 
+/// The files of the scene's bodies, in their order, as they are now. Throws as emit_particles().
+std::vector<SceneFile> scene_files(const Scene& scene, const std::string& scene_dir);
+
 /// Number of particles the scene's bodies make, without making them (file bodies are opened).
 /// Throws Error(bad_input) when the number is 0 or above 2^31 - 1.
 std::int64_t count_particles(const Scene& scene, const std::string& scene_dir);
