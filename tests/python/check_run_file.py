@@ -18,7 +18,8 @@ except ImportError as missing:
 TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
 UNITS = {"Points": "m", "velocity": "m/s", "density": "kg/m^3", "id": "1"}
 TEXTS = ("scene_path scene_text resolved_scene program_version commit compiler build_flags host "
-         "started plan backend precision device driver status warnings").split()
+         "started plan backend precision device driver status scene_sha256 "
+         "scene_files warnings").split()
 
 
 def check(condition, message):

@@ -175,6 +175,29 @@ def test_a_run_file_without_its_parts_is_refused(samples, tmp_path):
         reason(path)
 
 
+def _virtual(parent, key, other):
+    layout = h5py.VirtualLayout((8000, 3), "f4")
+    layout[:] = h5py.VirtualSource(other, "VTKHDF/Points", (8000, 3))
+    parent.create_virtual_dataset(key, layout)
+
+
+@pytest.mark.parametrize("words, replace", [
+    ("external link", lambda g, k, o: g.__setitem__(k, h5py.ExternalLink(o, "VTKHDF/Points"))),
+    ("external storage", lambda g, k, o: g.create_dataset(k, (8000, 3), "f4",
+                                                          external=[(o, 0, 96000)])),
+    ("virtual dataset", _virtual)])
+def test_a_run_file_that_takes_in_another_file_is_refused(samples, tmp_path, words, replace):
+    other, path = str(samples / "constant.h5"), tmp_path / "run.h5"
+    for place in ("VTKHDF/Points", "VTKHDF/PointData/velocity", "pbf/log/time"):
+        shutil.copy(other, path)
+        with h5py.File(path, "r+") as file:
+            parent, key = file[place].parent, place.rsplit("/", 1)[1]
+            del parent[key]
+            replace(parent, key, other)
+        with pytest.raises(pbf_tools.FileError, match=f"{place}.*{words}"):
+            pbf_tools.open(path)
+
+
 def test_offsets_beyond_the_data_are_refused_not_followed(samples, tmp_path):
     path = shutil.copy(samples / "constant.h5", tmp_path / "offsets.h5")
     with h5py.File(path, "r+") as file:

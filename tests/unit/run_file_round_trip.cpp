@@ -75,6 +75,8 @@ TEST_CASE("what the run was comes back", "[run_file]") {
   CHECK(out.scene_path == in.scene_path);
   CHECK(out.scene_text == in.scene_text);
   CHECK(out.resolved_scene == in.resolved_scene);
+  CHECK(out.scene_files == in.scene_files);
+  CHECK(out.scene_sha256 == in.scene_sha256);
   CHECK(out.overrides == in.overrides);
   CHECK(out.program_version == in.program_version);
   CHECK(out.commit == in.commit);

@@ -82,6 +82,7 @@ def _reason(path: Path, problem: Exception) -> str:
 def scan(file: h5py.File) -> Index:
     """Reads the index; FileError for an HDF5 file that is not a run file of this version."""
     name = file.filename
+    _refuse_other_files(file, name)
     if "pbf" not in file or "VTKHDF/Steps" not in file:
         raise FileError(f"{name}: an HDF5 file, but not one that pbf wrote "
                         "(no /pbf or no /VTKHDF/Steps)")
@@ -106,6 +107,32 @@ def scan(file: h5py.File) -> Index:
     info, units = _info(pbf)
     units.update({key: place.unit for key, place in fields.items()})
     return Index(steps["Values"][:n], pbf["frames/update"][:n], counts, fields, info, units)
+
+
+def _refuse_other_files(file: h5py.File, name: str) -> None:
+    """FileError where a link or a dataset leads into other files: one from elsewhere could take in
+    any file of this machine. All that hard links reach is looked at, so soft links need not be."""
+    seen, groups = set(), [file["/"]]
+    while groups:
+        group = groups.pop()
+        address = h5py.h5o.get_info(group.id).addr
+        if address in seen:
+            continue
+        seen.add(address)
+        for key in group:
+            link = group.get(key, getlink=True)
+            place = f"{name}: {group.name.rstrip('/')}/{key}"
+            if isinstance(link, h5py.ExternalLink):
+                raise FileError(f"{place} is a link into another file (external link)")
+            if not isinstance(link, h5py.HardLink):
+                continue
+            item = group[key]
+            if isinstance(item, h5py.Group):
+                groups.append(item)
+            elif isinstance(item, h5py.Dataset) and item.external:
+                raise FileError(f"{place} has its values in another file (external storage)")
+            elif isinstance(item, h5py.Dataset) and item.is_virtual:
+                raise FileError(f"{place} is put together from others (virtual dataset)")
 
 
 def _place(vtk: h5py.Group, path: str, offsets: str) -> Place:
