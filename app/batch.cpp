@@ -16,6 +16,7 @@
 #include "app/signals.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
+#include "lib/base/own_file.h"
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
 #include "lib/io/report.h"
@@ -101,7 +102,7 @@ class Batch {
   }
 
   int finish() {
-    write_text_file(out_ + "/summary.csv", batch_summary(members_, ends_, out_));
+    write_text_file(out_ + "/summary.csv", batch_summary(members_, ends_, out_), Naming::own);
     std::size_t finished = 0, failed = 0;
     for (const auto& [name, end] : ends_) {
       finished += end.code == 0;
@@ -196,6 +197,8 @@ int command_batch(const BatchOptions& o) {
   std::error_code error;
   fs::create_directories(out, error);
   if (error) throw Error(ExitCode::io, out + ": the folder cannot be made: " + error.message());
+  require_own_file(out + "/summary.csv");
+  check_output("--out", out + "/summary.csv");
   watch_signals();
   const bool one = o.only >= 0;  // a task of an array: no summary, others write beside it
   if (one) members = {members[static_cast<std::size_t>(o.only)]};

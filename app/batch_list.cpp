@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "lib/base/error.h"
+#include "lib/base/inputs.h"
 
 namespace pbf {
 namespace {
@@ -38,6 +39,7 @@ std::vector<BatchMember> of_folder(const std::string& path) {
 }
 
 std::vector<BatchMember> of_list(const std::string& path) {
+  note_input(path);
   std::ifstream in(path);
   if (!in) bad(path, std::string("cannot be opened: ") + std::strerror(errno));
   std::vector<BatchMember> all;

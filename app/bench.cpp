@@ -112,6 +112,16 @@ int command_bench(const BenchOptions& o) {
   for (const std::string& path : o.scenes)
     scenes.push_back(
         {load_scene(path, o.overrides).scene, std::filesystem::path(path).parent_path().string()});
+  check_output("--csv", o.csv);
+  check_output("--json", o.json);
+  if (!o.csv.empty() && !o.json.empty() && same_output(o.csv, o.json))
+    throw Error(ExitCode::bad_input, "--csv and --json name one file: " + o.csv);
+  // After every row, so that a long benchmark that is cut off leaves its results. What goes into a
+  // pipe cannot be replaced: it waits for the end.
+  const auto store = [&](bool end) {
+    if (!o.csv.empty() && is_stream(o.csv) == end) write_text_file(o.csv, table.text());
+    if (!o.json.empty() && is_stream(o.json) == end) write_text_file(o.json, table.json());
+  };
   std::vector<StageCosts> costs;
   const BenchSettings settings{o.warmup, o.updates, o.repeats};
   for (const auto& [base, dir] : scenes)
@@ -130,12 +140,11 @@ int command_bench(const BenchOptions& o) {
             for (const BenchRow& row : rows) {
               table.add(cells(s.name, row));
               log.result(line(s.name, row));
-              // After every row, so that a long benchmark that is cut off leaves its results.
-              if (!o.csv.empty()) write_text_file(o.csv, table.text());
-              if (!o.json.empty()) write_text_file(o.json, table.json());
+              store(false);
             }
           }
         }
+  store(true);
   if (o.calibrate) {
     store_calibration(calibration_path(), costs);
     log.note("stored in " + calibration_path());

@@ -3,6 +3,7 @@
 
 #include "app/commands.h"
 #include "lib/base/error.h"
+#include "lib/base/inputs.h"
 #include "lib/base/log.h"
 #include "lib/diag/compare.h"
 #include "lib/io/report.h"
@@ -31,7 +32,7 @@ void check_report(const std::string& path) {
 void write_report(const std::string& path, const CompareResult& result) {
   if (path.empty()) return;
 #ifdef PBF_HAS_RENDER
-  if (ends_with(path, ".png")) return write_png(path, compare_picture(result));
+  if (ends_with(path, ".png")) return write_png(path, compare_picture(result), Naming::given);
 #endif
   write_text_file(path, ends_with(path, ".json") ? compare_json(result) : compare_html(result));
 }
@@ -54,6 +55,7 @@ CompareResult between(const CompareOptions& o, Log& log) {
   std::vector<std::string> more = o.overrides;
   more.insert(more.end(), o.overrides_b.begin(), o.overrides_b.end());
   const LoadedScene b = load_scene(o.inputs[0], more);
+  check_output("--report", o.report);
   CompareResult result =
       compare_between(a.scene, b.scene, std::filesystem::path(a.path).parent_path().string(), s,
                       [&](const std::string& line) { log.note(line); });
@@ -68,6 +70,8 @@ CompareResult files(const CompareOptions& o) {
   if (o.inputs.size() != 2)
     throw Error(ExitCode::bad_input, "two run files are needed, or one scene with --between A,B; " +
                                          std::to_string(o.inputs.size()) + " given");
+  for (const std::string& path : o.inputs) note_input(path);
+  check_output("--report", o.report);
   return compare_files(o.inputs[0], o.inputs[1]);
 }
 

@@ -41,10 +41,11 @@ int command_render(const RenderOptions& options) {
   log.note(format("%zu picture%s of %dx%d with %s", frames.size(), frames.size() == 1 ? "" : "s",
                   view.size[0], view.size[1], renderer.backend().c_str()));
   for (const std::int64_t k : frames) {
-    Stopwatch watch;
-    const Snapshot snapshot = reader.frame(k);
     const std::string file =
         (folder / format("frame_%06lld.png", static_cast<long long>(k))).string();
+    check_output("--out", file);
+    Stopwatch watch;
+    const Snapshot snapshot = reader.frame(k);
     write_png(file, renderer.draw(snapshot));
     log.result(format("%s  t = %.6g s  (%.2f s)", file.c_str(), snapshot.time, watch.seconds()));
   }

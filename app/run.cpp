@@ -13,6 +13,7 @@
 #include "app/run_loop.h"
 #include "app/signals.h"
 #include "lib/base/error.h"
+#include "lib/base/output_file.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
 #include "lib/diag/prestabilize.h"
@@ -119,13 +120,16 @@ std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
 }
 
 /// A folder that is missing is told before the run folder is made. It may be the run folder itself.
-void check_json_folder(const std::string& path, const std::string& out) {
+void check_json(const std::string& path, const std::string& out) {
   namespace fs = std::filesystem;
+  if (path.empty()) return;
+  if (RunFolder::owns(out, path))
+    throw Error(ExitCode::bad_input,
+                "--log-json " + path + ": the run itself writes this file; give another name");
   const fs::path parent = fs::path(path).parent_path();
   std::error_code error;
-  if (parent.empty() || fs::is_directory(parent, error) ||
-      fs::absolute(parent).lexically_normal() == fs::absolute(out).lexically_normal())
-    return;
+  if (parent.empty() || fs::is_directory(parent, error)) return check_output("--log-json", path);
+  if (fs::absolute(parent).lexically_normal() == fs::absolute(out).lexically_normal()) return;
   throw Error(ExitCode::io, "--log-json " + path + ": the folder " + parent.string() +
                                 " is not there; make it first");
 }
@@ -133,7 +137,7 @@ void check_json_folder(const std::string& path, const std::string& out) {
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 File open_json(const std::string& path, bool append) {
-  File file(path.empty() ? nullptr : std::fopen(path.c_str(), append ? "a" : "w"), std::fclose);
+  File file(path.empty() ? nullptr : ::fdopen(open_output_stream(path, append), "a"), std::fclose);
   if (!path.empty() && !file)
     throw Error(ExitCode::io,
                 "--log-json " + path + ": cannot be created: " + std::strerror(errno));
@@ -249,9 +253,10 @@ int command_run(const RunOptions& options) {
                                                     : ExistingFolder::refuse;
   Log log(options.quiet);
   const bool there = RunFolder::check(out, existing);
-  check_json_folder(options.log_json, out);
   const std::string& dir = loaded.folder;
   const std::int64_t particles = count_particles(scene, dir);
+  check_json(options.log_json, out);  // now that all is read
+  if (there && options.overwrite) RunFolder::refuse_overwrite(out);
   refuse_if_too_large(scene, make_plan(scene, particles));  // before a look at every particle
   const Plan plan = make_plan(scene, particles, start_neighbors(scene, dir, particles));
   refuse_if_too_large(scene, plan);

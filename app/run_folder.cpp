@@ -15,7 +15,9 @@
 #include <vector>
 
 #include "lib/base/error.h"
-#include "lib/io/report.h"
+#include "lib/base/inputs.h"
+#include "lib/base/output_file.h"
+#include "lib/base/own_file.h"
 
 namespace pbf {
 namespace fs = std::filesystem;
@@ -29,23 +31,17 @@ namespace {
 bool starts_with(const std::string& s, const char* prefix) { return s.rfind(prefix, 0) == 0; }
 
 bool own_picture(const std::string& name) {
-  return starts_with(name, "frame_") && fs::path(name).extension() == ".png";
+  return starts_with(name, kTemporaryPrefix) ||
+         (starts_with(name, "frame_") && fs::path(name).extension() == ".png");
 }
 
 bool own_file(const std::string& name) {
-  static const char* const kNames[] = {"run.h5",
-                                       "run.damaged.h5",
-                                       "scene.resolved.yaml",
-                                       "log.txt",
-                                       "DONE",
-                                       "checkpoint.h5",
-                                       "checkpoint_prev.h5",
-                                       "checkpoint.h5.tmp",
-                                       "scene.resolved.yaml.tmp",
-                                       "DONE.tmp",
-                                       "guard_state.h5",
-                                       "guard_scene.yaml"};
-  return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
+  static const char* const kNames[] = {
+      "run.h5",         "run.damaged.h5",  "scene.resolved.yaml", "log.txt",
+      "DONE",           "checkpoint.h5",   "checkpoint_prev.h5",  "checkpoint.h5.tmp",
+      "guard_state.h5", "guard_scene.yaml"};
+  return starts_with(name, kTemporaryPrefix) ||
+         std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
 }
 
 /// File descriptors of the locks that this process holds.
@@ -90,6 +86,7 @@ RunFolder::RunFolder(const std::string& path, ExistingFolder existing) : path_(p
     fail(path_, "the output folder cannot be written", std::strerror(errno));
   lock();
   if (!made && existing == ExistingFolder::overwrite) remove_own_files();
+  if (!made) refuse_special_files();
 }
 
 RunFolder::~RunFolder() {
@@ -108,8 +105,7 @@ void RunFolder::lock() {
   if (closed_in_children != 0)
     fail(path_ / ".lock", "cannot be kept from other processes", std::strerror(closed_in_children));
   for (;;) {
-    lock_ = ::open(file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (lock_ < 0) fail(path_ / ".lock", "cannot be made", std::strerror(errno));
+    lock_ = open_own_file(file(".lock"), O_RDWR | O_CREAT);
     if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
       const int reason = errno;
       char who[200] = "";
@@ -137,6 +133,40 @@ void RunFolder::lock() {
   if (::ftruncate(lock_, 0) != 0 ||
       ::pwrite(lock_, who.data(), who.size(), 0) != static_cast<ssize_t>(who.size()))
     errno = 0;  // only what a second run would be told; a full disk is noticed soon enough
+}
+
+void RunFolder::refuse_overwrite(const std::string& path) {
+  std::error_code error;
+  const fs::path folder = fs::canonical(path, error);
+  for (const std::string& input : inputs()) {
+    const fs::path file = fs::canonical(input, error);
+    if (!error && file.parent_path() == folder && own_file(file.filename().string()))
+      throw Error(ExitCode::bad_input, path + ": --overwrite would remove " + input +
+                                           ", which this run reads; give another folder with "
+                                           "--out");
+  }
+}
+
+bool RunFolder::owns(const std::string& folder, const std::string& path) {
+  const auto place = [](const fs::path& file) {
+    std::error_code error;
+    return fs::weakly_canonical(fs::absolute(file), error);
+  };
+  const std::string name = fs::path(path).filename().string();
+  const bool inside = place(path).parent_path() == place(fs::path(folder) / name).parent_path();
+  return inside && (own_file(name) || name == ".lock" || name == "frames");
+}
+
+/// Nobody but pbf has business with these names, and to follow a link or wait for a FIFO among them
+/// would harm others. A folder that is reached by way of a link is fine.
+void RunFolder::refuse_special_files() const {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path_, error)) {
+    if (own_file(entry.path().filename().string())) require_own_file(entry.path().string());
+  }
+  if (error) fail(path_, "cannot be read", error.message());
+  if (!fs::is_directory(fs::symlink_status(path_ / "frames", error)))
+    require_own_file((path_ / "frames").string());
 }
 
 bool RunFolder::has(const std::string& name) const {
@@ -174,13 +204,15 @@ void RunFolder::remove_own_files() const {
     for (const auto& p : found) remove(p);
   };
   remove_in(path_, own_file);
-  if (!fs::is_directory(path_ / "frames", error)) return;
+  const fs::file_status frames = fs::symlink_status(path_ / "frames", error);
+  if (fs::exists(frames) && !fs::is_directory(frames)) remove(path_ / "frames");
+  if (!fs::is_directory(frames)) return;
   remove_in(path_ / "frames", own_picture);
   fs::remove(path_ / "frames", error);  // only when nothing foreign is left in it
 }
 
 void RunFolder::write_text(const std::string& name, const std::string& text) const {
-  write_text_file(file(name), text);
+  write_text_file(file(name), text, Naming::own);
 }
 
 void RunFolder::make_frames_folder() const {

@@ -17,11 +17,17 @@ class RunFolder {
   static bool check(const std::string& path, ExistingFolder existing);
 
   /// Makes or opens the folder, after the same checks, and locks it: Error(bad_input) when another
-  /// run writes there. `overwrite` removes the files that pbf itself writes and leaves everything
-  /// else. Throws Error(io) when it cannot be made or written.
+  /// run writes there, Error(io) when a link or a FIFO has the name of a file of the run.
+  /// `overwrite` removes the files that pbf itself writes and leaves everything else. Throws
+  /// Error(io) when it cannot be made or written.
   RunFolder(const std::string& path, ExistingFolder existing);
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
+
+  /// Error(bad_input) when `overwrite` would remove a file there that this command has read.
+  static void refuse_overwrite(const std::string& path);
+  /// Whether `path` is a file that a run in `folder` writes itself, be it there or not.
+  static bool owns(const std::string& folder, const std::string& path);
 
   std::string file(const std::string& name) const { return (path_ / name).string(); }
   std::string path() const { return path_.string(); }
@@ -36,6 +42,7 @@ class RunFolder {
  private:
   void lock();
   void remove_own_files() const;
+  void refuse_special_files() const;
   std::filesystem::path path_;
   int lock_ = -1;
 };

@@ -200,8 +200,10 @@ void RunLoop::measure(bool judged) {
   if (sinks_.json) {
     const std::int64_t frames = sinks_.writer ? sinks_.writer->frames_written() : 0;
     const std::string line = measure_json(last_, wall_.seconds(), frames, since) + "\n";
-    if (std::fwrite(line.data(), 1, line.size(), sinks_.json) != line.size() ||
-        std::fflush(sinks_.json) != 0)
+    // A reader that has gone is no error, as on stdout.
+    if ((std::fwrite(line.data(), 1, line.size(), sinks_.json) != line.size() ||
+         std::fflush(sinks_.json) != 0) &&
+        errno != EPIPE)
       throw Error(ExitCode::io,
                   std::string("--log-json: cannot be written: ") + std::strerror(errno));
     clock_.mark("write");

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <system_error>
 #include <thread>
 
 #include "app/commands.h"
@@ -35,7 +36,10 @@ void in_parallel(std::size_t n, int jobs, const Work& work) {
     }
   };
   std::vector<std::thread> threads;
-  for (int j = 1; j < jobs; ++j) threads.emplace_back(loop);
+  try {
+    for (int j = 1; j < jobs; ++j) threads.emplace_back(loop);
+  } catch (const std::system_error&) {  // no more to be had: those that run do the work
+  }
   loop();
   for (std::thread& t : threads) t.join();
   if (failed) std::rethrow_exception(failed);
@@ -131,6 +135,7 @@ void write_csv(const std::string& path, const std::vector<StabilityRow>& rows,
 int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int jobs) {
   Log log(o.quiet);
   const std::vector<StabilityCase> cases = chosen(o);
+  check_output("--csv", o.csv);
   std::vector<StabilityRow> rows(cases.size());
   std::mutex mutex;
   std::size_t done = 0;
@@ -174,6 +179,7 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
   map.y_key = o.map.substr(comma + 1);
   map.x = map_values(map.scene, run.overrides, map.x_key, o.x);
   map.y = map_values(map.scene, run.overrides, map.y_key, o.y);
+  check_output("--csv", o.csv);
   Log log(o.quiet);
   const std::vector<MapCell> grid = map_cells(map);
   std::vector<MapCell> cells(grid.size());

@@ -6,6 +6,7 @@
 #include "app/signals.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
+#include "lib/base/own_file.h"
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
 #include "lib/diag/study_table.h"
@@ -34,6 +35,7 @@ class StudyRunner {
   std::optional<MemberResult> result(const StudyMember& member, std::size_t k, std::size_t n) {
     const std::string head = format("[%zu/%zu] %s", k, n, member.label.c_str());
     const std::string path = folder_ + "/members/" + member_key(study_, member) + ".json";
+    require_own_file(path);
     try {
       if (auto kept = read_member(path)) {
         log_.note(head + ": kept from before");
@@ -72,9 +74,12 @@ class StudyRunner {
 };
 
 void write_tables(const Study& study, const std::vector<StudyRow>& rows, const std::string& out) {
-  write_text_file(out + "/study.csv", study_table(study, rows).text());
-  write_text_file(out + "/study.json", study_json(study, rows));
-  if (study.front) write_text_file(out + "/front.csv", front_table(study, rows).text());
+  const auto write = [&](const char* name, const std::string& text) {
+    write_text_file(out + "/" + name, text, Naming::own);
+  };
+  write("study.csv", study_table(study, rows).text());
+  write("study.json", study_json(study, rows));
+  if (study.front) write("front.csv", front_table(study, rows).text());
 }
 
 std::string list_text(const Study& study) {
@@ -96,6 +101,10 @@ int command_study(const StudyOptions& o) {
   }
   const std::string out = o.out.empty() ? "out/study_" + study.name : o.out;
   make_folder(out + "/members");
+  for (const char* name : {"study.csv", "study.json", "front.csv"}) {
+    require_own_file(out + "/" + name);
+    check_output("--out", out + "/" + name);
+  }
   watch_signals();
   StudyRunner runner(study, out, log);
   const std::size_t n = study.members.size() + (study.reference ? 1 : 0);

@@ -1,5 +1,6 @@
 #include "lib/base/log.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <cstring>
 
 #include "lib/base/error.h"
+#include "lib/base/own_file.h"
 #include "lib/base/text.h"
 
 namespace pbf {
@@ -30,7 +32,10 @@ Log::~Log() {
 
 void Log::open(const std::string& path, bool append) {
   path_ = path;
-  file_ = std::fopen(path.c_str(), append ? "a" : "w");
+  // A new one is a new file: not the one that another name may still stand for.
+  if (!append) require_own_file(path), ::unlink(path.c_str());
+  const int how = append ? O_APPEND : O_EXCL;
+  file_ = ::fdopen(open_own_file(path, O_WRONLY | O_CREAT | how), append ? "a" : "w");
   if (!file_) throw Error(ExitCode::io, path + ": cannot be created: " + std::strerror(errno));
 }
 
@@ -114,8 +119,19 @@ void Progress::update(const ProgressState& state) {
   line_update_ = state.update;
 }
 
+void hold_standard_streams() {
+  // Opened the wrong way round, so that using them fails as if they were closed.
+  for (const int fd : {0, 1, 2})
+    if (::fcntl(fd, F_GETFD) < 0 && errno == EBADF)
+      (void)::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
+}
+
 void finish_stdout() {
   if (std::fflush(stdout) != 0 && stdout_errno == 0) stdout_errno = errno;
+  if (stdout_errno == EBADF)
+    throw Error(ExitCode::io,
+                "standard output is closed and results are lost; where they are not wanted, give "
+                "> /dev/null");
   if (stdout_errno != 0 && stdout_errno != EPIPE)
     throw Error(ExitCode::io,
                 std::string("standard output cannot be written: ") + std::strerror(stdout_errno));

@@ -76,6 +76,10 @@ class Progress {
   std::int64_t last_update_ = 0, line_update_ = 0;
 };
 
+/// To be called before any file is opened: one that got the number of a standard stream that is
+/// closed would also get what is written there.
+void hold_standard_streams();
+
 /// Flushes stdout at the end of the program. Throws Error(io) when results were lost (disk full);
 /// a reader that has gone away (`pbf ... | head`) is no error.
 void finish_stdout();

@@ -10,21 +10,19 @@
 #include "lib/base/error.h"
 
 namespace pbf {
-namespace {
-
-std::string kind_of(mode_t mode) {
-  if (S_ISDIR(mode)) return "a directory";
-  if (S_ISFIFO(mode)) return "a named pipe (FIFO)";
+std::string file_kind(mode_t mode) {
+  if (S_ISREG(mode)) return "a regular file";
+  if (S_ISLNK(mode)) return "a link";
+  if (S_ISDIR(mode)) return "a folder";
+  if (S_ISFIFO(mode)) return "a FIFO";
   if (S_ISSOCK(mode)) return "a socket";
-  if (S_ISCHR(mode) || S_ISBLK(mode)) return "a device";
-  return {};
+  return S_ISBLK(mode) ? "a block device" : "a device";
 }
 
-}  // namespace
-
 std::string not_regular(const std::string& path) {
-  struct stat state {};
-  return ::stat(path.c_str(), &state) == 0 ? kind_of(state.st_mode) : std::string();
+  struct stat there {};
+  if (::stat(path.c_str(), &there) != 0 || S_ISREG(there.st_mode)) return {};
+  return file_kind(there.st_mode);
 }
 
 RegularFile::RegularFile(const std::string& path, const std::string& expected,
@@ -44,7 +42,8 @@ RegularFile::RegularFile(const std::string& path, const std::string& expected,
                                   (reason == ENOENT ? missing : std::string()));
   }
   struct stat state {};
-  const std::string kind = ::fstat(fd_, &state) == 0 ? kind_of(state.st_mode) : std::string();
+  const bool other = ::fstat(fd_, &state) == 0 && !S_ISREG(state.st_mode);
+  const std::string kind = other ? file_kind(state.st_mode) : std::string();
   if (!kind.empty()) ::close(fd_);
   refuse(kind);
 }

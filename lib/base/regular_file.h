@@ -1,13 +1,18 @@
 // Files that must be regular ones: a pipe waits for its writer, a device may never end.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstddef>
 #include <string>
 
 namespace pbf {
 
-/// "a folder", "a named pipe (FIFO)", "a device", "a socket" for a path that leads to one, without
-/// opening it; empty for a regular file and for what is not there or cannot be looked at.
+/// "a link", "a FIFO", "a folder" ..., from st_mode.
+std::string file_kind(mode_t mode);
+
+/// The kind of what a path leads to, without opening it; empty for a regular file and for what is
+/// not there or cannot be looked at.
 std::string not_regular(const std::string& path);
 
 /// A regular file open for reading.

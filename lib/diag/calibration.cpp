@@ -1,5 +1,9 @@
 #include "lib/diag/calibration.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
@@ -19,6 +23,23 @@ namespace {
 
 const std::vector<std::string> kColumns{"backend",   "precision", "threads", "device",
                                         "particles", "stage",     "ms"};
+
+/// One program at a time changes what a folder holds. A file system without locks has none of this.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::string& folder)
+      : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (fd_ >= 0) ::flock(fd_, LOCK_EX);
+  }
+  ~FolderLock() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int fd_;
+};
 
 bool same_case(const StageCosts& a, const StageCosts& b) {
   return a.backend == b.backend && a.precision == b.precision && a.device == b.device &&
@@ -120,6 +141,13 @@ std::vector<StageCosts> read_calibration(const std::string& path) {
 }
 
 void store_calibration(const std::string& path, const std::vector<StageCosts>& rows) {
+  const auto folder = std::filesystem::path(path).parent_path();
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (error)
+    throw Error(ExitCode::io, folder.string() + ": the folder of the calibration cannot be made: " +
+                                  error.message());
+  const FolderLock lock(folder.empty() ? "." : folder.string());
   std::vector<StageCosts> all = read_calibration(path);
   for (const StageCosts& row : rows)
     std::erase_if(all, [&](const StageCosts& old) { return same_case(old, row); });
@@ -129,12 +157,6 @@ void store_calibration(const std::string& path, const std::vector<StageCosts>& r
     for (const auto& [stage, ms] : row.ms)
       table.add({row.backend, row.precision, std::int64_t(row.threads), row.device, row.particles,
                  stage, ms});
-  const auto folder = std::filesystem::path(path).parent_path();
-  std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (error)
-    throw Error(ExitCode::io, folder.string() + ": the folder of the calibration cannot be made: " +
-                                  error.message());
   write_text_file(path, table.text());
 }
 

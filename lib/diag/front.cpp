@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "lib/base/error.h"
+#include "lib/base/inputs.h"
 #include "lib/scene/number.h"
 
 namespace pbf {
@@ -30,6 +31,7 @@ std::vector<std::string> cells(const std::string& line) {
 
 FrontData read_front_data(const std::string& path) {
   std::error_code ignored;
+  note_input(path);
   std::ifstream in(path);
   if (!in || std::filesystem::is_directory(path, ignored))
     throw Error(ExitCode::io,

@@ -146,7 +146,7 @@ void write_member(const std::string& path, const MemberResult& r) {
   object.add_json("ratios", numbers(r.ratios));
   for (std::size_t k = 0; k < r.names.size(); ++k) log.add_json(r.names[k], numbers(r.columns[k]));
   object.add_json("log", log.text());
-  write_text_file(path, object.text() + "\n");
+  write_text_file(path, object.text() + "\n", Naming::own);
 }
 
 std::optional<MemberResult> read_member(const std::string& path) {

@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "lib/base/error.h"
-#include "lib/base/regular_file.h"
+#include "lib/base/own_file.h"
 #include "lib/io/h5_output.h"
 #include "lib/io/h5_read.h"
 #include "lib/io/h5_trial.h"
@@ -114,7 +114,8 @@ StepHistory read_steps(hid_t file) {
 
 void write_file(const std::string& path, const SavedRun& s) {
   const h5::Properties access = h5::writer_access();
-  h5::File file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access));
+  ::unlink(path.c_str());  // what a killed run has left; whatever is there is not followed
+  h5::File file(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access));
   try {
     const bool wide = s.state.precision == Precision::dbl;
     const hid_t real = wide ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
@@ -151,6 +152,7 @@ void write_file(const std::string& path, const SavedRun& s) {
 }
 
 SavedRun read_file(const std::string& path) {
+  require_own_file(path);
   const h5::Reading file(path);
   const auto format = h5::read_number<std::int64_t>(file, "format_version");
   if (format != kFormat)

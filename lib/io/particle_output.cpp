@@ -1,16 +1,21 @@
 #include "lib/io/particle_output.h"
 
+#include <unistd.h>
+
 #include <vector>
 
 #include "lib/base/error.h"
+#include "lib/base/own_file.h"
 #include "lib/io/h5.h"
 
 namespace pbf {
 
 void write_particle_file(const std::string& path, const Particles& particles) {
+  require_own_file(path);
+  ::unlink(path.c_str());
   const h5::Lock lock;
   try {
-    h5::File file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+    h5::File file(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT));
     const auto write = [&](const char* name, const char* unit, const std::vector<Double3>& rows) {
       const hsize_t shape[] = {rows.size(), 3};
       const h5::Space space(H5Screate_simple(2, shape, nullptr));

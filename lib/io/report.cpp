@@ -1,13 +1,8 @@
 #include "lib/io/report.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 
 #include "lib/base/error.h"
 
@@ -119,31 +114,6 @@ std::string JsonObject::text() const {
   for (const auto& [key, value] : members_)
     out += (out.size() > 1 ? ", " : "") + quoted(key) + ": " + value;
   return out + "}";
-}
-
-void write_text_file(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".tmp";
-  const auto fail = [&](const char* what) {
-    const std::string reason = std::strerror(errno);
-    ::unlink(temporary.c_str());
-    throw Error(ExitCode::io, path + ": cannot " + what + ": " + reason);
-  };
-  const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (fd < 0) fail("create the file");
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t n = ::write(fd, text.data() + done, text.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      const int error = errno;
-      ::close(fd);
-      errno = error;
-      fail("write the file");
-    }
-    done += static_cast<std::size_t>(n);
-  }
-  if (::fsync(fd) != 0 && errno != EINVAL) fail("write the file");  // EINVAL: a pipe, a device
-  if (::close(fd) != 0) fail("write the file");
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("move the file into place");
 }
 
 }  // namespace pbf

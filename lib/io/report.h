@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "lib/base/output_file.h"
+
 namespace pbf {
 
 /// A value of a report. A double prints in the shortest form that reads back as the same number.
@@ -45,9 +47,5 @@ class JsonObject {
 std::string json(const Cell& value);
 /// A JSON array of JSON texts.
 std::string json_array(const std::vector<std::string>& items);
-
-/// Writes the text to `path` by way of a temporary file beside it, so that no reader ever sees half
-/// a file. Throws Error(io) with the path and the system's reason.
-void write_text_file(const std::string& path, const std::string& text);
 
 }  // namespace pbf

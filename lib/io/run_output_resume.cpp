@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "lib/base/error.h"
+#include "lib/base/own_file.h"
 #include "lib/base/text.h"
 #include "lib/io/h5_output.h"
 #include "lib/io/run_layout.h"
@@ -16,6 +17,7 @@ using h5::Column;
 /// What a process killed in the middle of a commit has left may lie behind the end that the file
 /// knows of; space is taken only behind that.
 h5::File open_again(const std::string& path) {
+  require_own_file(path);
   h5::File file(H5Fopen(path.c_str(), H5F_ACC_RDWR, h5::writer_access()));
   check(H5Fincrement_filesize(file, 0));
   return file;

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "lib/base/error.h"
+#include "lib/base/inputs.h"
 #include "lib/io/h5_read.h"
 #include "lib/io/h5_trial.h"
 #include "lib/io/run_file.h"
@@ -195,6 +196,7 @@ void try_run_file(const std::string& path) {
 
 RunReader::RunReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
   impl_->path = path;
+  note_input(path);
   impl_->with_file("cannot read the run file", [&](const h5::Reading& file) { impl_->scan(file); });
 }
 RunReader::~RunReader() = default;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/base/output_file.h"
 #include "lib/scene/scene.h"
 #include "lib/solver/snapshot.h"
 
@@ -58,8 +59,8 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// PNG, level 1, SUB filter. Throws Error(io).
-void write_png(const std::string& path, const Image& image);
+/// PNG, level 1, SUB filter; an OutputFile. Throws Error(io).
+void write_png(const std::string& path, const Image& image, Naming naming = Naming::own);
 
 /// Draws on a thread of its own and writes DIR/frame_000123.png (number = index of the picture).
 /// A software rasteriser draws on that thread too and starts none of its own, so that a CPU solver

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "lib/base/error.h"
+#include "lib/base/inputs.h"
 #include "lib/scene/overrides.h"
 #include "lib/scene/validate.h"
 #include "lib/scene/yaml_tree.h"
@@ -56,6 +57,7 @@ std::string read_text_file(const std::string& path, const std::string& what) {
   std::error_code ec;
   const fs::file_status status = fs::status(path, ec);
   if (fs::is_directory(status)) bad(path, "is a directory, expected a " + what + " file");
+  note_input(path);
   std::ifstream in(path, std::ios::binary);
   if (!in) bad(path, "cannot be opened: " + std::string(std::strerror(errno)));
   // One byte more than allowed tells a file that is too large, without reading all of it.

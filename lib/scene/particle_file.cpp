@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lib/base/error.h"
+#include "lib/base/inputs.h"
 #include "lib/base/regular_file.h"
 #include "lib/base/sha256.h"
 #include "lib/io/h5_read.h"
@@ -23,6 +24,7 @@ namespace {
 }
 
 RegularFile open_file(const std::string& path) {
+  note_input(path);
   return RegularFile(path, "a particle file (CSV or HDF5)",
                      "; paths of file bodies are relative to the folder of the scene file");
 }

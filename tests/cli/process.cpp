@@ -15,10 +15,24 @@ namespace pbf::test {
 namespace fs = std::filesystem;
 
 Process::Process(const std::vector<std::string>& args, const fs::path& folder,
-                 const std::vector<std::string>& environment)
-    : out_(folder / ".stdout"), err_(folder / ".stderr") {
-  std::vector<char*> argv{const_cast<char*>(PBF_BINARY)};
-  for (const auto& a : args) argv.push_back(const_cast<char*>(a.c_str()));
+                 const std::vector<std::string>& environment) {
+  std::vector<std::string> words{PBF_BINARY};
+  words.insert(words.end(), args.begin(), args.end());
+  start(words, folder, environment);
+}
+
+Process Process::program(const std::vector<std::string>& words, const fs::path& folder,
+                         const std::vector<std::string>& environment) {
+  Process p;
+  p.start(words, folder, environment);
+  return p;
+}
+
+void Process::start(const std::vector<std::string>& words, const fs::path& folder,
+                    const std::vector<std::string>& environment) {
+  out_ = folder / ".stdout", err_ = folder / ".stderr";
+  std::vector<char*> argv;
+  for (const auto& w : words) argv.push_back(const_cast<char*>(w.c_str()));
   argv.push_back(nullptr);
   const std::string out = out_.string(), err = err_.string(), dir = folder.string();
   pid_ = fork();
@@ -30,7 +44,7 @@ Process::Process(const std::vector<std::string>& args, const fs::path& folder,
   setenv("CUDA_VISIBLE_DEVICES", "", 1);  // these tests are the same with and without a GPU
   for (const char* name : {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"}) unsetenv(name);
   for (const auto& pair : environment) putenv(const_cast<char*>(pair.c_str()));
-  execv(PBF_BINARY, argv.data());
+  execv(argv[0], argv.data());
   _exit(127);
 }
 
@@ -53,6 +67,17 @@ Outcome Process::wait(double* user_seconds) {
 Outcome pbf(const std::vector<std::string>& args, const fs::path& folder,
             const std::vector<std::string>& environment) {
   return Process(args, folder, environment).wait();
+}
+
+Outcome shell(const std::string& lines, const fs::path& folder) {
+  // Limits on processes do not hold for root, and count all processes of anybody else.
+  const std::string stranger = geteuid() == 0
+                                   ? "setpriv --reuid=" + std::to_string(200000 + getpid()) +
+                                         " --regid=65534 --clear-groups --inh-caps=-all"
+                                   : "env";
+  return Process::program({"/usr/bin/env", "timeout", "-k", "1", "60", "bash", "-c", lines}, folder,
+                          {"PBF=" PBF_BINARY, "STRANGER=" + stranger})
+      .wait();
 }
 
 Scratch::Scratch() {

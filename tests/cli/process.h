@@ -21,12 +21,18 @@ class Process {
   /// environment, which says nothing of how threads wait: this program too has set that for itself.
   Process(const std::vector<std::string>& args, const std::filesystem::path& folder,
           const std::vector<std::string>& environment = {});
+  /// The same with another program: its path, then its arguments.
+  static Process program(const std::vector<std::string>& words, const std::filesystem::path& folder,
+                         const std::vector<std::string>& environment = {});
   void send(int signal) const;
   /// user_seconds: CPU time outside the kernel, of all its threads.
   Outcome wait(double* user_seconds = nullptr);
   pid_t id() const { return pid_; }
 
  private:
+  Process() = default;
+  void start(const std::vector<std::string>& words, const std::filesystem::path& folder,
+             const std::vector<std::string>& environment);
   pid_t pid_ = -1;
   std::filesystem::path out_, err_;
 };
@@ -34,6 +40,10 @@ class Process {
 /// Runs `pbf args...` to its end.
 Outcome pbf(const std::vector<std::string>& args, const std::filesystem::path& folder,
             const std::vector<std::string>& environment = {});
+
+/// Runs lines of bash, where "$PBF" is the program and "$STRANGER" starts one as a user who has no
+/// other processes; exit code 124 when they have not come to an end after a minute.
+Outcome shell(const std::string& lines, const std::filesystem::path& folder);
 
 /// An empty folder of its own, removed with everything in it at the end.
 class Scratch {

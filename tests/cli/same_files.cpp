@@ -194,6 +194,6 @@ TEST_CASE("what is no regular file is refused by every command that reads it, an
     CAPTURE(args[0], o.err);
     CHECK(o.code == 5);
     CHECK(has(o.err, "pipe"));
-    CHECK(has(o.err, "a named pipe (FIFO)"));
+    CHECK(has(o.err, "a FIFO"));
   }
 }

@@ -213,8 +213,8 @@ TEST_CASE("a file behind an external link is not opened: a pipe there makes nobo
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
   change(path, "position", ways(pipe)[0].replace);
   refused("external link", [&] { read_particle_file(path); });
-  refused("named pipe", [&] { const RunReader run(pipe); });
-  refused("named pipe", [&] { try_run_file(pipe), RunReader(pipe); });
+  refused("FIFO", [&] { const RunReader run(pipe); });
+  refused("FIFO", [&] { try_run_file(pipe), RunReader(pipe); });
 }
 
 TEST_CASE("a checkpoint that is a link to itself, a pipe or a folder is an I/O error, no crash") {

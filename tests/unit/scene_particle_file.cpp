@@ -192,11 +192,11 @@ TEST_CASE("particle files: missing ones and what is no regular file are I/O erro
   const Folder folder;
   CHECK(contains(read_error((folder.path / "no.csv").string()), "cannot be opened"));
   CHECK(read_error((folder.path / "no.csv").string())[0] == '5');
-  CHECK(contains(read_error(folder.path.string()), "is a directory"));
+  CHECK(contains(read_error(folder.path.string()), "is a folder"));
   const std::string pipe = (folder.path / "pipe").string();
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
-  CHECK(contains(read_error(pipe), "5 " + pipe + ": is a named pipe (FIFO), expected a particle"));
-  CHECK(contains(error_of([&] { count_particle_file(pipe); }), "is a named pipe"));
+  CHECK(contains(read_error(pipe), "5 " + pipe + ": is a FIFO, expected a particle"));
+  CHECK(contains(error_of([&] { count_particle_file(pipe); }), "is a FIFO"));
   CHECK(contains(read_error("/dev/zero"), "5 /dev/zero: is a device"));
 }
 

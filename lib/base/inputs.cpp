@@ -1,0 +1,42 @@
+#include "lib/base/inputs.h"
+
+#include <sys/stat.h>
+
+#include <mutex>
+#include <set>
+
+namespace pbf {
+namespace {
+
+std::mutex mutex;
+
+std::set<std::string>& paths() {
+  static std::set<std::string> all;
+  return all;
+}
+
+}  // namespace
+
+void note_input(const std::string& path) {
+  const std::lock_guard lock(mutex);
+  paths().insert(path);
+}
+
+std::vector<std::string> inputs() {
+  const std::lock_guard lock(mutex);
+  return {paths().begin(), paths().end()};
+}
+
+// Looked up anew each time: the inode of a file that is gone may have become another's.
+std::string input_at(const std::string& path) {
+  struct stat there {
+  }, input{};
+  if (::stat(path.c_str(), &there) != 0 || !S_ISREG(there.st_mode)) return {};
+  for (const std::string& p : inputs())
+    if (::stat(p.c_str(), &input) == 0 && input.st_dev == there.st_dev &&
+        input.st_ino == there.st_ino)
+      return p;
+  return {};
+}
+
+}  // namespace pbf

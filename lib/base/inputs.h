@@ -1,0 +1,19 @@
+// The files that a command has read, so that none of its outputs takes the place of one.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace pbf {
+
+/// Called by whoever reads a file that the user has named, on the command line or in another file.
+void note_input(const std::string& path);
+
+/// All of them, in alphabetical order.
+std::vector<std::string> inputs();
+
+/// Which of them is the same file (device and inode) as `path`; empty: none. Pipes and devices may
+/// be read and written.
+std::string input_at(const std::string& path);
+
+}  // namespace pbf
