@@ -52,9 +52,15 @@ JobPool::Job JobPool::start(std::size_t index, const std::vector<std::string>& a
   const pid_t parent = getpid();
   const HeldSignals held;  // a limit of the batch may pass before the run listens
   const pid_t pid = err < 0 || out < 0 ? -1 : fork();
-  if (pid < 0)
-    throw Error(ExitCode::unavailable, std::string("batch: no process can be started: ") +
-                                           std::strerror(errno) + "; lower --jobs");
+  if (pid < 0) {
+    const int reason = errno;
+    for (const int fd : {err, out})
+      if (fd >= 0) ::close(fd);
+    throw Error(ExitCode::unavailable,
+                std::string("batch: no process can be started: ") + std::strerror(reason) +
+                    "; raise the limit on processes (ulimit -u, or pids of a container), or lower "
+                    "--jobs");
+  }
   if (pid == 0) {
     setpgid(0, 0);  // the terminal's Ctrl-C reaches the batch alone, which passes it on
     prctl(PR_SET_PDEATHSIG, SIGTERM);
@@ -75,7 +81,12 @@ void JobPool::run(std::size_t count,
   bool told = false;
   while (!running.empty() || (next < count && !stop())) {
     while (running.size() < jobs_ && next < count && !stop()) {
-      running.push_back(start(next, args(next)));
+      try {
+        running.push_back(start(next, args(next)));
+      } catch (const Error&) {
+        if (running.empty()) throw;
+        break;  // those that run go on; the next one waits for the end of one of them
+      }
       ++next;
     }
     if (stop() && !told) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <new>
+#include <sstream>
 
 #include "app/commands.h"
 #include "app/help.h"
@@ -277,7 +278,12 @@ int run_main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+    if (e.get_exit_code() == 0) {  // --help, --version; on stdout, where a lost write is seen
+      std::ostringstream text;
+      app.exit(e, text, text);
+      std::fputs(text.str().c_str(), stdout);
+      return 0;
+    }
     throw Error(ExitCode::bad_input, explain(app, e, argc, argv));
   }
   return command();
@@ -308,6 +314,7 @@ int guarded(int argc, char** argv) {
 }  // namespace pbf
 
 int main(int argc, char** argv) {
-  pbf::ignore_closed_pipes();
+  pbf::hold_standard_streams();
+  pbf::see_failed_writes();
   return pbf::guarded(argc, argv);
 }

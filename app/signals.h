@@ -30,7 +30,8 @@ std::string signal_seen();
 /// Whether SIGUSR1 came since the last call.
 bool save_asked();
 
-/// Writing to a pipe whose reader has gone gives an error instead of ending the program.
-void ignore_closed_pipes();
+/// Writing to a pipe whose reader has gone, or beyond the limit of a file's size (ulimit -f), gives
+/// an error instead of ending the program.
+void see_failed_writes();
 
 }  // namespace pbf

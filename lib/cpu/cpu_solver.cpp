@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lib/base/error.h"
+#include "lib/base/start_thread.h"
 #include "lib/cpu/cpu_exec.h"
 #include "lib/solver/devices.h"
 #include "lib/solver/step_solver.h"
@@ -164,6 +165,7 @@ class CpuSolver final : public Solver {
 
 std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan,
                                         Particles particles) try {
+  require_threads(solver_threads(scene, plan.particles));
   if (scene.precision == Precision::dbl)
     return std::make_unique<CpuSolver<double>>(scene, plan, std::move(particles));
   return std::make_unique<CpuSolver<float>>(scene, plan, std::move(particles));

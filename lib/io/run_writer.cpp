@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "lib/base/error.h"
+#include "lib/base/start_thread.h"
 #include "lib/io/h5.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_output.h"
@@ -22,7 +23,7 @@ struct RunWriter::Impl {
   static constexpr int max_snapshots = 2;
 
   Impl(const std::string& path, const std::string& opening, const Open& open)
-      : path_(path), thread_([this, opening, open] { work(opening, open); }) {
+      : path_(path), thread_(start_thread([this, opening, open] { work(opening, open); })) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return failure_ || created_; });
     if (!failure_) return;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "lib/base/error.h"
+#include "lib/base/start_thread.h"
 #include "lib/render/particles.h"
 #include "lib/render/renderer.h"
 
@@ -51,7 +52,10 @@ struct RenderThread::Impl {
   std::thread thread;  // last: it uses all of the above
 
   Impl(const View& view, std::string folder)
-      : dir(std::move(folder)), color(view.color), renderer(view, 1), thread([this] { work(); }) {}
+      : dir(std::move(folder)),
+        color(view.color),
+        renderer(view, 1),
+        thread(start_thread([this] { work(); })) {}
 
   void work() {
     std::unique_lock lock(mutex);

@@ -1,0 +1,37 @@
+#include "lib/base/start_thread.h"
+
+#include <cstring>
+#include <mutex>
+#include <vector>
+
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+
+namespace pbf {
+
+void refuse_threads(int reason, int wanted) {
+  throw Error(ExitCode::unavailable,
+              format("%s cannot be started: %s; raise the limit on processes (ulimit -u, or pids "
+                     "of a container), or use fewer --threads and --jobs",
+                     wanted > 1 ? format("%d threads", wanted).c_str() : "a thread",
+                     std::strerror(reason)));
+}
+
+void require_threads(int threads) {
+  std::mutex gate;
+  std::vector<std::thread> all;
+  int reason = 0;
+  {
+    const std::lock_guard closed(gate);  // none ends before the last has begun
+    try {
+      for (int k = 1; k < threads; ++k)
+        all.emplace_back([&gate] { const std::lock_guard open(gate); });
+    } catch (const std::system_error& e) {
+      reason = e.code().value();
+    }
+  }
+  for (std::thread& t : all) t.join();
+  if (reason != 0) refuse_threads(reason, threads);
+}
+
+}  // namespace pbf
