@@ -17,7 +17,7 @@ void refuse_threads(int reason, int wanted) {
                      std::strerror(reason)));
 }
 
-void require_threads(int threads) {
+int reason_against_threads(int threads) {
   std::mutex gate;
   std::vector<std::thread> all;
   int reason = 0;
@@ -31,7 +31,12 @@ void require_threads(int threads) {
     }
   }
   for (std::thread& t : all) t.join();
-  if (reason != 0) refuse_threads(reason, threads);
+  return reason;
+}
+
+void require_threads(int threads) {
+  if (const int reason = reason_against_threads(threads); reason != 0)
+    refuse_threads(reason, threads);
 }
 
 }  // namespace pbf

@@ -20,6 +20,9 @@ std::thread start_thread(Work&& work) {
   }
 }
 
+/// 0 when so many threads, the calling one among them, can run at once; else the system's reason.
+int reason_against_threads(int threads);
+
 /// Throws Error(unavailable) when so many threads, the calling one among them, cannot run at once.
 /// To be asked before OpenMP starts a team: its runtime ends the program.
 void require_threads(int threads);

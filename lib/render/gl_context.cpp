@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "lib/base/error.h"
+#include "lib/base/start_thread.h"
 
 namespace pbf {
 namespace {
@@ -30,6 +31,13 @@ class RasterThreads {
   bool set_ = false;
 };
 
+/// `threads`, or 1 where so many cannot be started: Mesa would wait for ever for those it lacks.
+int startable(int threads) {
+  constexpr int kOfMesa = 4;  // for what is not drawing
+  const int wanted = threads > 0 ? threads : int(std::thread::hardware_concurrency());
+  return wanted > 1 && reason_against_threads(wanted + kOfMesa) != 0 ? 1 : threads;
+}
+
 }  // namespace
 
 void* open_library(const std::vector<std::string>& names, std::string& tried) {
@@ -49,7 +57,7 @@ GlContext::GlContext(int threads, const GlLibraries& libraries) {
   const auto may = [&](const char* name) {
     return !platform_ && (wanted.empty() || wanted == name);
   };
-  const RasterThreads limit(threads);
+  const RasterThreads limit(startable(threads));
   std::string tried, way;
   if (may("osmesa")) platform_ = open_osmesa(libraries.osmesa, tried), way = "OSMesa";
   if (may("egl")) platform_ = open_egl(libraries.egl, false, tried), way = "EGL surfaceless";

@@ -29,6 +29,17 @@ def without(monkeypatch, package):
     monkeypatch.setattr(builtins, "__import__", refuse)
 
 
+def test_no_file_that_a_command_reads_is_overwritten(tools, minimal, tmp_path):
+    run = shutil.copy(minimal, tmp_path / "run.h5")
+    os.link(run, tmp_path / "hard.png")
+    before = run.read_bytes()
+    for words in (("to-csv", run, "--log", "-o", run), ("compare", run, minimal, "--csv", run),
+                  ("plot-energy", minimal, run, "-o", tmp_path / "hard.png")):
+        code, _, err = tools(*words)
+        assert code == 2 and "which this command reads and would overwrite" in err
+    assert run.read_bytes() == before
+
+
 def test_a_run_does_not_differ_from_itself_and_differs_from_a_moved_one(tools, minimal, tmp_path):
     code, out, _ = tools("compare", minimal, minimal, "--max-rms", 0, "--csv", tmp_path / "a.csv")
     assert code == 0 and "different" not in out

@@ -7,7 +7,7 @@ import importlib
 import os
 import sys
 
-from .errors import ToolError
+from .errors import BadInput, ToolError
 
 # Command -> what it does; the module has the same name with _ for -.
 COMMANDS = {
@@ -48,10 +48,24 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+def refuse_inputs(args: argparse.Namespace) -> None:
+    """BadInput when a file to write is one that the command reads, by whatever name."""
+    given = {name: value for name, value in vars(args).items() if isinstance(value, (str, list))}
+    outputs = [given.pop(name) for name in ("out", "csv") if isinstance(given.get(name), str)]
+    values = [v for value in given.values() for v in (value if isinstance(value, list) else [value])]
+    inputs = [v for v in values if isinstance(v, str) and os.path.isfile(v)]
+    for out in outputs:
+        for path in inputs:
+            if os.path.isfile(out) and os.path.samefile(out, path):
+                raise BadInput(f"{out}: is the same file as {path}, which this command reads and "
+                               "would overwrite; give another name")
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Runs one command; an error a user can mend is one line on stderr and its exit code."""
     args = parser().parse_args(arguments)
     try:
+        refuse_inputs(args)
         code = args.run(args) or 0
         sys.stdout.flush()
         return code
