@@ -5,11 +5,13 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
+#include "lib/base/plain_text.h"
 
 namespace pbf {
 namespace {
@@ -47,6 +49,7 @@ std::vector<BatchMember> of_list(const std::string& path) {
   for (int number = 1; std::getline(in, line); ++number) {
     std::istringstream words(line.substr(0, line.find('#')));
     const std::string where = path + ":" + std::to_string(number);
+    if (const auto found = find_bad_text(line)) bad(where, found->what + "; " + found->remedy);
     BatchMember m;
     for (std::string word; words >> word;) {
       if (m.scene.empty()) {
@@ -83,6 +86,7 @@ std::string plain(const std::string& text) {
 
 void name_all(std::vector<BatchMember>& all) {
   std::set<std::string> taken;
+  std::map<std::string, int> next;  // the number to try for a name: not all of them again
   for (BatchMember& m : all) {
     std::string name = fs::path(m.scene).stem().string();
     for (const std::string& o : m.overrides) {
@@ -94,7 +98,8 @@ void name_all(std::vector<BatchMember>& all) {
     name = plain(name);
     if (name.empty() || name[0] == '.') name.insert(0, "run");
     m.name = name;
-    for (int k = 2; !taken.insert(m.name).second; ++k) m.name = name + "_" + std::to_string(k);
+    for (int& k = next.try_emplace(name, 2).first->second; !taken.insert(m.name).second; ++k)
+      m.name = name + "_" + std::to_string(k);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "app/signals.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
+#include "lib/base/plain_text.h"
 #include "lib/base/version.h"
 
 namespace pbf {
@@ -290,7 +291,8 @@ int run_main(int argc, char** argv) {
 }
 
 int fail(ExitCode code, const std::string& message) {
-  std::fprintf(stderr, "pbf: error: %s\n", message.c_str());
+  // Messages quote what anyone wrote: arguments, file names, the environment, strangers' files.
+  std::fprintf(stderr, "pbf: error: %s\n", escaped(message).c_str());
   return static_cast<int>(code);
 }
 

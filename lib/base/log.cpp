@@ -9,6 +9,7 @@
 
 #include "lib/base/error.h"
 #include "lib/base/own_file.h"
+#include "lib/base/plain_text.h"
 #include "lib/base/text.h"
 
 namespace pbf {
@@ -51,29 +52,33 @@ void Log::clear_transient() {
 }
 
 void Log::note(const std::string& text) {
+  const std::string lines = escaped(text) + "\n";
   clear_transient();
-  if (!quiet_) write_to(stderr, text + "\n");
-  to_file(text + "\n");
+  if (!quiet_) write_to(stderr, lines);
+  to_file(lines);
 }
 
 void Log::warning(const std::string& text) {
   clear_transient();
-  const std::string line = "pbf: warning: " + text + "\n";
+  const std::string line = "pbf: warning: " + escaped(text) + "\n";
   write_to(stderr, line);
   to_file(line);
 }
 
 void Log::result(const std::string& text) {
+  const std::string lines = escaped(text) + "\n";
   clear_transient();
-  write_to(stdout, text + "\n");
-  to_file(text + "\n");
+  write_to(stdout, lines);
+  to_file(lines);
 }
 
 void Log::transient(const std::string& text) {
   if (!terminal_) return;
-  write_to(stderr, "\r\033[K" + text);
+  write_to(stderr, "\r\033[K" + escaped(text));
   dirty_ = true;
 }
+
+void Log::file_only(const std::string& text) { to_file(escaped(text) + "\n"); }
 
 void Log::close() {
   clear_transient();

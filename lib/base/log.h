@@ -10,6 +10,7 @@
 namespace pbf {
 
 /// Notes and progress go to stderr, results to stdout, all of it to the log file once one is open.
+/// What is no text (a stranger's file name, say) is written out, see escaped() in plain_text.h.
 /// A closed pipe on either side is no error; finish_stdout() reports every other lost write.
 class Log {
  public:
@@ -32,7 +33,7 @@ class Log {
   /// A line that the next one overwrites on a terminal; the file does not get it.
   void transient(const std::string& text);
   /// A line for the file alone.
-  void file_only(const std::string& text) { to_file(text + "\n"); }
+  void file_only(const std::string& text);
   /// Closes the log file. Throws Error(io) when something could not be written (disk full).
   void close();
   bool terminal() const { return terminal_; }  ///< stderr is a terminal and not quiet

@@ -1,10 +1,11 @@
 #include "lib/base/text.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <ctime>
+
+#include "lib/base/plain_text.h"
 
 namespace pbf {
 
@@ -43,28 +44,13 @@ std::string duration_text(double s) {
   return format("%lld h %02lld min", whole / 3600, whole % 3600 / 60);
 }
 
-std::string json_string(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\')
-      out += '\\', out += c;
-    else if (static_cast<unsigned char>(c) < 0x20)
-      out += format("\\u%04x", static_cast<unsigned>(c));
-    else
-      out += c;
-  }
-  return out + '"';
-}
-
 std::string json_number(double value) {
   return std::isfinite(value) ? format("%.17g", value) : "null";
 }
 
 bool is_file_name(std::string_view text) {
   if (text.empty() || text == "." || text == ".." || text.size() > 200) return false;
-  return std::none_of(text.begin(), text.end(), [](char c) {
-    return c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-  });
+  return text.find_first_of("/\t\n\r") == text.npos && !find_bad_text(text);
 }
 
 std::string utc_now() {

@@ -11,6 +11,7 @@
 
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
+#include "lib/base/plain_text.h"
 #include "lib/scene/number.h"
 
 namespace pbf {
@@ -44,6 +45,7 @@ FrontData read_front_data(const std::string& path) {
   };
   for (std::string line; std::getline(in, line);) {
     ++number;
+    if (const auto found = find_bad_text(line)) fail(found->what + "; " + found->remedy);
     const auto row = cells(line);
     if (line.empty() || line[0] == '#' || row.empty()) continue;
     if (columns == 0) {

@@ -10,6 +10,14 @@ namespace {
 
 constexpr std::size_t kMostMembers = 10000;
 
+/// Variants and keys of a grid are looked for among each other.
+bool too_many(const Node& n) { return n.items.size() > kMostMembers; }
+
+std::string too_many_text(const Node& n) {
+  return "has " + std::to_string(n.items.size()) + " entries, at most " +
+         std::to_string(kMostMembers) + " are possible; leave some out";
+}
+
 }  // namespace
 
 using Kind = Node::Kind;
@@ -31,6 +39,7 @@ std::string study_text_of(const Node& node) {
 
 void StudyReader::axis(const Node& n) {
   StudyAxis axis;
+  if (too_many(n)) return bad(n, "grid", too_many_text(n));
   for (const auto& [key, values] : settings(n, "grid")) {
     if (values.kind != Kind::list || values.items.empty())
       return bad(values, "grid." + key,
@@ -51,6 +60,7 @@ void StudyReader::axis(const Node& n) {
 }
 
 void StudyReader::grid(const Node& n) {
+  if (too_many(n)) return bad(n, "grid", too_many_text(n));
   if (n.kind == Kind::list) {
     for (const Node& entry : n.items) axis(entry);
     return;
@@ -58,7 +68,8 @@ void StudyReader::grid(const Node& n) {
   if (n.kind != Kind::map)
     return bad(n, "grid", "is " + n.shown() + ", expected keys of the scene with lists of values");
   for (std::size_t i = 0; i < n.items.size(); ++i) {
-    Node one = n;  // every key of a block is an axis of its own
+    Node one = n.keys[i];  // every key of a block is an axis of its own
+    one.kind = Kind::map;
     one.keys = {n.keys[i]};
     one.items = {n.items[i]};
     axis(one);
@@ -68,6 +79,7 @@ void StudyReader::grid(const Node& n) {
 void StudyReader::variants(const Node& n) {
   if (n.kind != Kind::list || n.items.empty())
     return bad(n, "variants", "is " + n.shown() + ", expected a list of {name: ..., set: {...}}");
+  if (too_many(n)) return bad(n, "variants", too_many_text(n));
   study_.has_variants = true;
   for (const Node& entry : n.items) {
     StudyVariant v;

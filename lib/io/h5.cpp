@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "lib/base/error.h"
+#include "lib/base/plain_text.h"
 #include "lib/io/h5_read.h"
 
 namespace pbf::h5 {
@@ -82,12 +83,13 @@ Group make_group(hid_t parent, const char* name) {
 }
 
 void write_text(hid_t object, const char* name, const std::string& value) {
+  const std::string plain = escaped(value);  // a path may hold anything; readers refuse it
   const Type type = string_type();
   const Space space(H5Screate(H5S_SCALAR));
   const Attribute a(H5Aexists(object, name) > 0
                         ? H5Aopen(object, name, H5P_DEFAULT)
                         : H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
-  const char* text = value.c_str();
+  const char* text = plain.c_str();
   check(H5Awrite(a, type, &text));
 }
 
@@ -137,6 +139,9 @@ std::vector<std::string> read_texts(hid_t object, const char* name) {
   std::vector<std::string> values;
   for (const char* t : texts) values.emplace_back(t ? t : "");
   H5Dvlen_reclaim(type, space, H5P_DEFAULT, texts.data());
+  for (const std::string& v : values)
+    if (const auto bad = find_bad_text(v))
+      throw Failure(std::string("attribute ") + name + " is not plain text: " + bad->what);
   return values;
 }
 

@@ -3,8 +3,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 
 #include "lib/base/error.h"
+#include "lib/base/plain_text.h"
+#include "lib/base/text.h"
 
 namespace pbf {
 namespace {
@@ -17,28 +20,6 @@ std::string number(double v) {
   return {buffer, end};
 }
 
-std::string quoted(const std::string& s) {
-  std::string out = "\"";
-  for (const char c : s) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (c == '\n') {
-      out += "\\n";
-    } else if (c == '\t') {
-      out += "\\t";
-    } else if (code < 0x20) {
-      char buffer[8];
-      std::snprintf(buffer, sizeof buffer, "\\u%04x", code);
-      out += buffer;
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
-}
-
 std::string plain(const Cell& value) {
   if (const auto* b = std::get_if<bool>(&value)) return *b ? "true" : "false";
   if (const auto* i = std::get_if<std::int64_t>(&value)) return std::to_string(*i);
@@ -47,7 +28,8 @@ std::string plain(const Cell& value) {
   return {};
 }
 
-std::string csv(const std::string& s) {
+std::string csv(const std::string& text) {
+  const std::string s = escaped(text);
   if (s.find_first_of(",\"\r\n") == std::string::npos) return s;
   std::string out = "\"";
   for (const char c : s) out += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -57,7 +39,7 @@ std::string csv(const std::string& s) {
 }  // namespace
 
 std::string json(const Cell& value) {
-  if (const auto* s = std::get_if<std::string>(&value)) return quoted(*s);
+  if (const auto* s = std::get_if<std::string>(&value)) return json_string(*s);
   if (const auto* d = std::get_if<double>(&value); d && !std::isfinite(*d)) return "null";
   return std::holds_alternative<std::monostate>(value) ? "null" : plain(value);
 }
@@ -112,7 +94,7 @@ JsonObject& JsonObject::add_json(const std::string& key, const std::string& text
 std::string JsonObject::text() const {
   std::string out = "{";
   for (const auto& [key, value] : members_)
-    out += (out.size() > 1 ? ", " : "") + quoted(key) + ": " + value;
+    out += (out.size() > 1 ? ", " : "") + json_string(key) + ": " + value;
   return out + "}";
 }
 

@@ -7,6 +7,7 @@
 
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
+#include "lib/base/plain_text.h"
 #include "lib/scene/overrides.h"
 #include "lib/scene/validate.h"
 #include "lib/scene/yaml_tree.h"
@@ -25,31 +26,13 @@ std::size_t limit_of(const std::string& what) {
   throw Error(ExitCode::bad_input, place + ": " + what);
 }
 
-/// Position of the first byte that is not UTF-8 text (a NUL, too), or npos.
-std::size_t find_binary(const std::string& text) {
-  const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  for (std::size_t i = 0; i < text.size();) {
-    const unsigned char c = byte(i);
-    const std::size_t more = c < 0x80             ? 0
-                             : (c & 0xE0) == 0xC0 ? 1
-                             : (c & 0xF0) == 0xE0 ? 2
-                             : (c & 0xF8) == 0xF0 ? 3
-                                                  : text.size();
-    if (c == 0 || i + more >= text.size()) return i;
-    for (std::size_t k = 1; k <= more; ++k)
-      if ((byte(i + k) & 0xC0) != 0x80) return i;
-    i += more + 1;
-  }
-  return std::string::npos;
-}
-
 void check_text(const std::string& text, const std::string& origin, const std::string& what) {
   if (text.size() > limit_of(what))
     bad(origin, "is larger than 4 MiB; many particles belong into a file body (shape: file)");
-  const std::size_t binary = find_binary(text);
-  if (binary != std::string::npos)
-    bad(origin, "is not a text file (byte " + std::to_string(binary) +
-                    " is not UTF-8 text); expected a " + what + " in YAML");
+  if (const auto found = find_bad_text(text))
+    bad(origin + ":" + std::to_string(found->line + 1) + ":" + std::to_string(found->column + 1),
+        "is not plain text: " + found->what + "; " + found->remedy + "; expected a " + what +
+            " in YAML");
 }
 
 std::string read_text_file(const std::string& path, const std::string& what) {
@@ -97,12 +80,7 @@ Scene parse_scene(const std::string& text, const std::string& origin,
                   const std::vector<std::string>& overrides) {
   Node root = tree_of(text, origin, "scene");
   Problems problems;
-  for (const std::string& argument : overrides) {
-    if (find_binary(argument) != std::string::npos)
-      problems.add("--set", "", "an argument is not UTF-8 text");
-    else
-      apply_override(root, argument, problems);
-  }
+  for (const std::string& argument : overrides) apply_override(root, argument, problems);
   const Scene scene = scene_of_tree(root, problems);
   problems.raise();
   return scene;

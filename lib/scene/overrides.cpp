@@ -2,8 +2,13 @@
 
 #include <charconv>
 
+#include "lib/base/plain_text.h"
+
 namespace pbf {
 namespace {
+
+/// Of a block that settings add to; every one of them is looked for among the others.
+constexpr std::size_t kMostKeys = 10000;
 
 /// "bodies[0].count" -> bodies, 0, count. Empty when a segment is.
 std::vector<std::string> segments(const std::string& path) {
@@ -65,6 +70,10 @@ Node* child(Node& at, const std::string& segment, const Node& value, const std::
     return nullptr;
   }
   if (Node* found = at.find(segment)) return found;
+  if (at.keys.size() >= kMostKeys) {
+    why = here + " has more than " + std::to_string(kMostKeys) + " keys; leave some out";
+    return nullptr;
+  }
   at.keys.push_back(made(value, Node::Kind::scalar, segment));
   at.items.push_back(made(value, Node::Kind::null, ""));
   return &at.items.back();
@@ -73,12 +82,15 @@ Node* child(Node& at, const std::string& segment, const Node& value, const std::
 bool is_path(const std::string& path, const std::string& place, Problems& problems) {
   const auto parts = segments(path);
   if (!parts.empty() && parts.size() <= 8) return true;
-  problems.add(place, "", "\"" + path + "\" is no path of keys such as bodies[0].count");
+  problems.add(
+      place, "",
+      std::string("\"").append(one_line(path)) + "\" is no path of keys such as bodies[0].count");
   return false;
 }
 
 void put(Node& root, const std::string& path, const Node& value, const std::string& place,
          Problems& problems) {
+  if (problems.full()) return;
   Node* at = &root;
   std::string so_far, why;
   for (const std::string& part : segments(path)) {
@@ -95,7 +107,9 @@ void put(Node& root, const std::string& path, const Node& value, const std::stri
 }  // namespace
 
 void apply_override(Node& root, const std::string& argument, Problems& problems) {
-  const std::string place = "--set " + argument;
+  const std::string place = "--set " + one_line(argument);
+  if (const auto found = find_bad_text(argument))
+    return problems.add(place, "", found->what + "; leave it out");
   const std::size_t equals = argument.find('=');
   if (equals == std::string::npos || equals == 0) {
     problems.add(place, "", "expected key.path=value, e.g. --set solver.iterations=8");

@@ -1,8 +1,8 @@
 // All that is wrong with a scene, gathered so that one try shows everything.
 #pragma once
 
-#include <algorithm>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "lib/base/error.h"
@@ -14,28 +14,28 @@ class Problems {
   /// One line: "place: key: what"; `key` may be empty. Said once: the runs of a study share places.
   void add(const std::string& place, const std::string& key, const std::string& what) {
     const std::string line = place + ": " + (key.empty() ? "" : key + ": ") + what;
-    if (std::find(lines_.begin(), lines_.end(), line) == lines_.end()) lines_.push_back(line);
+    if (known_.insert(line).second && !full()) lines_.push_back(line);
   }
 
   bool empty() const { return lines_.empty(); }
   /// Whether further problems would not be shown: no need to think long about them.
-  bool full() const { return lines_.size() > kShown; }
+  bool full() const { return lines_.size() >= kShown; }
 
   /// Throws Error(bad_input) with one line per problem, if there is any; at most kShown lines, for
   /// a file that is no scene at all would fill the terminal.
   void raise() const {
     if (lines_.empty()) return;
     std::string text;
-    for (std::size_t i = 0; i < lines_.size() && i < kShown; ++i)
-      text += (i > 0 ? "\n" : "") + lines_[i];
-    if (lines_.size() > kShown)
-      text += "\n... and " + std::to_string(lines_.size() - kShown) + " more problems";
+    for (const std::string& line : lines_) text += (text.empty() ? "" : "\n") + line;
+    if (known_.size() > lines_.size())
+      text += "\n... and " + std::to_string(known_.size() - lines_.size()) + " more problems";
     throw Error(ExitCode::bad_input, text);
   }
 
  private:
   static constexpr std::size_t kShown = 100;
-  std::vector<std::string> lines_;
+  std::unordered_set<std::string> known_;
+  std::vector<std::string> lines_;  ///< the first of them, to be shown
 };
 
 }  // namespace pbf

@@ -63,7 +63,7 @@ class Validator {
   void read_block(const std::string& table, const std::string& shown, const Node& node,
                   Body* body) {
     const unsigned shape = body != nullptr ? read_shape(shown, node, *body) : 0;
-    std::set<std::string> seen;
+    std::map<std::string, std::size_t> seen;  // every key and which of the node's it is first
     for (std::size_t i = 0; i < node.keys.size(); ++i) {
       const Node& name = node.keys[i];
       if (name.kind != Node::Kind::scalar) {
@@ -71,10 +71,9 @@ class Validator {
         continue;
       }
       const std::string path = join(shown, name.text);
-      if (!seen.insert(name.text).second) {
+      if (const auto [first, fresh] = seen.try_emplace(name.text, i); !fresh) {
         report(name.place(), path,
-               "given twice, first at " + node.keys[first_of(node, name.text)].place() +
-                   "; remove one");
+               "given twice, first at " + node.keys[first->second].place() + "; remove one");
         continue;
       }
       // Also as a path in one word: solver.iterations beside solver: {iterations: ...}.
@@ -86,12 +85,6 @@ class Validator {
       read_entry(join(table, name.text), path, name, node.items[i], body, shape);
     }
     require(table, shown, seen, body, shape);
-  }
-
-  static std::size_t first_of(const Node& node, const std::string& key) {
-    for (std::size_t i = 0; i < node.keys.size(); ++i)
-      if (node.keys[i].kind == Node::Kind::scalar && node.keys[i].text == key) return i;
-    return 0;
   }
 
   void read_entry(const std::string& table, const std::string& path, const Node& name,
@@ -169,7 +162,7 @@ class Validator {
   }
 
   void require(const std::string& table, const std::string& shown,
-               const std::set<std::string>& seen, const Body* body, unsigned shape) {
+               const std::map<std::string, std::size_t>& seen, const Body* body, unsigned shape) {
     const std::string place = out_.places[shown];
     for (const Key& key : scene_keys()) {
       const std::string in = key.block();

@@ -4,7 +4,11 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include <algorithm>
 #include <sstream>
+#include <string_view>
+
+#include "lib/base/plain_text.h"
 
 namespace pbf {
 namespace {
@@ -38,6 +42,8 @@ class TreeBuilder : public YAML::EventHandler {
                 const std::string& value) override {
     refuse_anchor(mark, anchor);
     refuse_tag(mark, tag);
+    if (const auto bad = find_bad_text(value))  // the file is text: "\e"
+      throw Refused{mark, "an escape makes " + bad->what + "; leave it out"};
     Node node = make(mark, Node::Kind::scalar);
     node.text = value;
     node.quoted = tag == "!";
@@ -110,14 +116,14 @@ std::string place_of(const std::string& origin, bool lines, int line, int column
 
 /// YAML forbids tabs as indentation; yaml-cpp's words for it do not say so.
 void refuse_tabs(const std::string& text, const std::string& origin, bool lines) {
-  int line = 0;
-  for (std::size_t start = 0; start < text.size(); ++line) {
-    std::size_t end = text.find('\n', start);
-    if (end == std::string::npos) end = text.size();
-    const std::size_t first = text.find_first_not_of(" \t\r", start);
-    const std::size_t tab = text.find('\t', start);
-    if (first < end && tab < first && text[first] != '#')
-      throw YamlError{place_of(origin, lines, line, static_cast<int>(tab - start)),
+  int number = 0;
+  for (std::size_t start = 0; start < text.size(); ++number) {
+    const std::size_t end = std::min(text.find('\n', start), text.size());
+    // The line alone is searched: up to the end of the text is a page for every line of it.
+    const std::string_view line = std::string_view(text).substr(start, end - start);
+    const std::size_t first = line.find_first_not_of(" \t\r"), tab = line.find('\t');
+    if (first != line.npos && tab < first && line[first] != '#')
+      throw YamlError{place_of(origin, lines, number, static_cast<int>(tab)),
                       "a tab indents this line; YAML allows spaces only"};
     start = end + 1;
   }
@@ -146,16 +152,7 @@ std::string Node::shown() const {
     case Kind::scalar:
       break;
   }
-  // Cut and cleaned: the text is anyone's, the message is one line.
-  std::string clean = text;
-  if (clean.size() > 60) {
-    std::size_t end = 60;
-    while ((static_cast<unsigned char>(clean[end]) & 0xC0) == 0x80) --end;  // whole characters
-    clean = clean.substr(0, end) + "...";
-  }
-  for (char& c : clean)
-    if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
-  return "\"" + clean + "\"";
+  return std::string("\"").append(one_line(text, 60)) + "\"";
 }
 
 Node parse_yaml(const std::string& text, const std::string& origin, bool lines) {

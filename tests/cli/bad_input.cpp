@@ -21,7 +21,7 @@ std::vector<Case> cases() {
       {"missing scene", {"run", "none.yaml"}, 2, {"none.yaml", "No such file"}},
       {"not YAML", {"run", "broken.yaml"}, 2, {"broken.yaml:", "YAML"}},
       {"empty file", {"run", "empty.yaml"}, 2, {"empty.yaml", "empty", "config --example"}},
-      {"binary file", {"run", "binary.yaml"}, 2, {"binary.yaml", "not a text file"}},
+      {"binary file", {"run", "binary.yaml"}, 2, {"binary.yaml", "is not plain text"}},
       {"a folder as scene", {"run", "folder"}, 2, {"folder", "directory"}},
       {"zero particles",
        {"run", "tiny.yaml", "--set", box + "[0.01, 0.4, 0.4]}]"},
