@@ -19,7 +19,8 @@ namespace pbf {
 namespace {
 
 /// Cells of one h where their number is in proportion to the particles, else larger ones: a nearly
-/// empty box must not cost more memory than its fluid.
+/// empty box must not cost more memory than its fluid. So no box has too many (that positions can
+/// be told apart in it is a matter of the scene's checks).
 void plan_grid(Plan& plan, const Scene& scene) {
   plan.axes = internal_axes(scene);
   const Scene s = in_internal_axes(scene, plan.axes);
@@ -35,8 +36,6 @@ void plan_grid(Plan& plan, const Scene& scene) {
   while (number(plan.cell_edge) > limit) {
     const double over = number(plan.cell_edge) / limit;
     plan.cell_edge *= std::max(1.01, s.dimensions == 2 ? std::sqrt(over) : std::cbrt(over));
-    if (!std::isfinite(plan.cell_edge))
-      throw Error(ExitCode::bad_input, "domain: too large for its smoothing length");
   }
   plan.cells[0] = int(2 * box[0] / plan.cell_edge) + 1;
   for (int k = 1; k < 3; ++k) plan.cells[k] = int(box[k] / plan.cell_edge) + 1;

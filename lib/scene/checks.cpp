@@ -119,17 +119,10 @@ class Checker {
       add("solver.wall_margin", "is " + to_text(s_.solver.wall_margin) +
                                     ", but must be below half the thinnest side of the domain (" +
                                     to_text(thinnest / 2) + " m); lower it");
-    if (!p_.good({"fluid.spacing", "fluid.smoothing_ratio"})) return;
-    double cells = 1;
-    for (int a = 0; a < 3; ++a) cells *= std::ceil((s_.domain.max[a] - s_.domain.min[a]) / s_.h());
-    if (!(cells < 2147483648.0))
-      add("fluid.spacing", "the domain holds " + count_text(cells) +
-                               " cells of the smoothing length " + to_text(s_.h()) +
-                               " m, at most 2147483647 are possible; raise fluid.spacing or make "
-                               "the domain smaller");
   }
 
   /// Whether numbers of the precision can tell where a particle is, and where it is after a step.
+  /// Nothing else limits the size of a domain: the grid's cells grow with it (lib/plan).
   void check_rounding() {
     if (!p_.good({"fluid.spacing", "fluid.smoothing_ratio", "precision", "dimensions", "gravity",
                   "bodies", "time.step", "time.end", "solver.substeps"}))

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <iomanip>
+#include <sstream>
 
 #include "lib/plan/plan.h"
 #include "lib/scene/emit.h"
@@ -50,6 +52,26 @@ TEST_CASE("a step so short that float would hold a falling particle is refused w
   CHECK(parse_error(falling("1.0e-6", "0.04"), {"gravity=[0,0,0]"}) == "no error");
   // So short a run that nobody sees what is lost.
   CHECK(parse_error(falling("1.0e-6", "1.0e-3")) == "no error");
+}
+
+TEST_CASE("how long a box may be depends on the precision alone, not on the number of its cells") {
+  // h = 1 mm, at rest: nothing but the box counts. Numbers from 2^17 h on are more than h/128
+  // apart in float, from 2^46 h on in double. 2^31 cells are passed by the second edge.
+  const auto error = [](double edge, const std::string& precision, bool cube) {
+    std::ostringstream max;
+    max << std::setprecision(17) << "domain.max=[" << edge << "," << (cube ? edge : 1) << ","
+        << (cube ? edge : 10) << "]";
+    return parse_error(falling("1.0e-3", "0.04"), {"gravity=[0,0,0]", "fluid.spacing=5e-4",
+                                                   max.str(), "precision=" + precision});
+  };
+  for (const bool cube : {false, true})
+    for (const auto& [precision, most] : {std::pair{"float", 17}, {"double", 46}}) {
+      const double limit = std::ldexp(1e-3, most);
+      CAPTURE(cube, precision);
+      CHECK(error(limit * (1 - 1e-9), precision, cube) == "no error");
+      CHECK(contains(error(limit * (1 + 1e-9), precision, cube),
+                     "domain.max: the box is so long that positions in "));
+    }
 }
 
 TEST_CASE("a fall just within the limit is right within 2 %, far beyond it is not") {
