@@ -1,0 +1,142 @@
+"""tools/setup, tools/demo and tools/test, with commands in their place that say how they were called."""
+
+import os
+import pty
+import shutil
+import subprocess
+
+import pytest
+from conftest import ROOT
+
+CMAKE = """
+case "$1" in
+  --build)
+    for i in 1 2 3; do echo "[$i/3] Building CXX object $i"; done
+    [ -z "$BREAK" ] || { echo "FAILED: it is broken"; exit 1; }
+    mkdir -p build
+    printf '%s\\n' '#!/bin/sh' 'echo "pbf $*" >>calls; mkdir -p out/dam_break mine' >build/pbf
+    chmod +x build/pbf ;;
+  *)
+    touch build/CMakeCache.txt
+    case "$*" in *-DPBF_CUDA=OFF*) echo "-- CUDA backend: off" ;; *) echo "-- CUDA backend: on" ;; esac ;;
+esac
+"""
+GPU = 'echo "GPU 0: NVIDIA H200 (UUID: GPU-0)"'
+NO_GPU = 'echo "NVIDIA-SMI has failed"; exit 9'
+
+
+@pytest.fixture
+def tree(tmp_path):
+    """A copy of tools/ and a way to run one of them: tree(arguments, nvidia_smi=..., ...)."""
+    (tmp_path / "tools").mkdir()
+    for name in ("setup", "demo", "test", "shared.sh"):
+        shutil.copy(ROOT / "tools" / name, tmp_path / "tools")
+    commands = tmp_path / "bin"
+    commands.mkdir()
+
+    def command(name, body):
+        (commands / name).write_text(f'#!/bin/sh\necho "{name} $*" >>"{tmp_path}/calls"\n{body}\n')
+        (commands / name).chmod(0o755)
+
+    command("cmake", CMAKE)
+    command("ctest", "")
+    command("apt-get", "echo 'Unpacking g++'")
+    command("apt-cache", "")
+
+    def run(*arguments, nvidia_smi=NO_GPU, installed=True, terminal=False, **environment):
+        command("nvidia-smi", nvidia_smi)
+        command("dpkg-query", "echo installed" if installed else "exit 1")
+        (tmp_path / "calls").write_text("")
+        env = {**os.environ, "PATH": f"{commands}:/usr/bin:/bin", **environment}
+        if not terminal:
+            done = subprocess.run(arguments, cwd=tmp_path, env=env, capture_output=True, text=True,
+                                  timeout=60)
+            text = done.stdout + done.stderr
+        else:
+            ours, theirs = pty.openpty()
+            done = subprocess.Popen(arguments, cwd=tmp_path, env=env, stdin=theirs, stdout=theirs,
+                                    stderr=theirs)
+            os.close(theirs)
+            text = ""
+            try:
+                while part := os.read(ours, 4096):
+                    text += part.decode()
+            except OSError:  # the other end is closed
+                pass
+            os.close(ours)
+            done.wait(60)
+        calls = (tmp_path / "calls").read_text().splitlines()
+        return done.returncode, text, [c for c in calls if c.startswith(("cmake", "pbf", "ctest"))]
+
+    (tmp_path / "build/venv/bin").mkdir(parents=True)
+    (tmp_path / "build/venv/bin/python").symlink_to("/bin/true")
+    run.folder = tmp_path
+    return run
+
+
+@pytest.mark.parametrize("tool", ["setup", "demo", "test"])
+def test_a_tool_explains_itself_and_refuses_what_it_does_not_know(tree, tool):
+    code, text, calls = tree(f"tools/{tool}", "--help")
+    assert code == 0 and f"Example" in text and f"tools/{tool}" in text and "#" not in text
+    assert calls == []
+    code, text, calls = tree(f"tools/{tool}", "nonsense")
+    assert code == 2 and "unknown argument 'nonsense'" in text and calls == []
+
+
+@pytest.mark.parametrize("tool", ["demo", "test"])
+@pytest.mark.parametrize("options,nvidia_smi,cuda,native", [
+    ([], NO_GPU, "OFF", False),
+    ([], GPU, "AUTO", True),
+    (["--cuda"], NO_GPU, "ON", False),
+    (["--cuda"], GPU, "ON", True),
+    (["--no-cuda"], GPU, "OFF", False)])
+def test_cuda_is_built_where_a_gpu_or_a_wish_is(tree, tool, options, nvidia_smi, cuda, native):
+    code, text, calls = tree(f"tools/{tool}", *options, nvidia_smi=nvidia_smi)
+    assert code == 0
+    assert f"-DPBF_CUDA={cuda}" in calls[0]
+    assert ("-DCMAKE_CUDA_ARCHITECTURES=native" in calls[0]) == native
+    assert ("without" if cuda == "OFF" else "with") + " the CUDA backend" in text
+
+
+def test_the_demo_builds_the_program_alone_passes_options_on_and_says_what_is_next(tree):
+    code, text, calls = tree("tools/demo", "--", "--threads", "2")
+    assert code == 0
+    assert "-DPBF_TESTS=OFF" in calls[0] and "-DCMAKE_BUILD_TYPE=Release" in calls[0]
+    assert calls[1:] == [
+        "cmake --build build --target pbf",
+        "pbf run configs/dam_break.yaml --out out/dam_break --overwrite --threads 2"]
+    for part in (f"{tree.folder}/build/pbf", f"{tree.folder}/out/dam_break", "frames/", "run.h5",
+                 "build/pbf render out/dam_break/run.h5", "cp configs/dam_break.yaml", "tools/test",
+                 "README.md"):
+        assert part in text, part
+    _, text, calls = tree("tools/demo", "--", "--out", "mine")
+    assert calls[0].count("TESTS") == 0  # a build folder that is there stays as it is
+    assert calls[2] == "pbf run configs/dam_break.yaml --overwrite --out mine"
+    assert f"{tree.folder}/mine" in text and "render mine/run.h5" in text
+
+
+def test_the_tests_get_the_options_of_cmake_and_of_ctest(tree):
+    code, _, calls = tree("tools/test", "-DPBF_WERROR=ON", "--", "-R", "resume")
+    assert code == 0
+    assert "-DPBF_TESTS=ON" in calls[0] and calls[0].endswith("-DPBF_WERROR=ON")
+    assert calls[1] == "cmake --build build --target all"
+    assert calls[2].startswith("ctest ") and calls[2].endswith(" -R resume")
+
+
+def test_a_build_that_fails_shows_all_of_its_output(tree):
+    code, text, calls = tree("tools/demo", BREAK="yes")
+    assert code == 1
+    assert "[2/3] Building" in text and "FAILED: it is broken" in text and "failed, see above" in text
+    assert not any(c.startswith("pbf") for c in calls)
+    code, text, _ = tree("tools/demo", BREAK="yes", terminal=True)
+    assert code == 1 and "FAILED: it is broken" in text and "the build failed, see above" in text
+
+
+def test_a_terminal_shows_each_step_in_one_line_that_is_overwritten(tree):
+    code, text, _ = tree("tools/setup", installed=False, terminal=True)
+    assert code == 0 and "\r\x1b[KUnpacking g++\r\x1b[K" in text
+    assert "tools/setup: installing g++ cmake" in text
+    code, text, _ = tree("tools/setup", installed=False)
+    assert code == 0 and "\r" not in text and "\x1b" not in text and "Unpacking" not in text
+    code, text, _ = tree("tools/setup")
+    assert code == 0 and "nothing is missing" in text
