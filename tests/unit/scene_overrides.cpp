@@ -1,4 +1,5 @@
 // --set: the same keys and checks as the file, with its own place.
+#include "lib/base/plain_text.h"
 #include "tests/catch.h"
 #include "tests/unit/scene_samples.h"
 
@@ -77,7 +78,7 @@ TEST_CASE("option --set: what is wrong is reported with the argument as its plac
     const std::string error = parse_error(kMinimal + "gravity: [0, 0, -9.81]\n", {argument});
     CAPTURE(argument, message, error);
     CHECK(contains(error, message));
-    CHECK(error.rfind("2 --set " + argument + ": ", 0) == 0);
+    CHECK(error.rfind("2 --set " + one_line(argument) + ": ", 0) == 0);
   }
   CHECK(contains(parse_error(kMinimal, {"name=\xff"}), "not UTF-8"));
 }
