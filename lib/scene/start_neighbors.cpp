@@ -30,12 +30,21 @@ bool overlap(const Box& a, const Box& b, double d) {
 }
 
 bool may_be_crowded(const Scene& s) {
-  for (std::size_t i = 0; i < s.bodies.size(); ++i) {
-    const Body& b = s.bodies[i];
+  std::vector<Box> boxes;
+  Double3 extent{};
+  for (const Body& b : s.bodies) {
     if (b.shape == Shape::random_box || b.shape == Shape::file) return true;
-    for (std::size_t j = 0; j < i; ++j)
-      if (overlap(box_of(b), box_of(s.bodies[j]), s.fluid.spacing)) return true;
+    boxes.push_back(box_of(b));
+    for (std::size_t k = 0; k < 3; ++k)
+      extent[k] = std::max(extent[k], std::fabs(boxes.back().low[k] - boxes[0].low[k]));
   }
+  // In order along the axis on which they are spread most, a box can overlap only the next few.
+  const auto axis = std::size_t(std::max_element(extent.begin(), extent.end()) - extent.begin());
+  std::sort(boxes.begin(), boxes.end(),
+            [axis](const Box& a, const Box& b) { return a.low[axis] < b.low[axis]; });
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (std::size_t j = i + 1; j < boxes.size() && boxes[j].low[axis] < boxes[i].high[axis]; ++j)
+      if (overlap(boxes[i], boxes[j], s.fluid.spacing)) return true;
   return false;
 }
 
