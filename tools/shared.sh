@@ -11,18 +11,27 @@ fail() { # fail CODE TEXT
 usage() { sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"; }
 
 # follow LOG: copies its input to LOG and shows where it stands, on a terminal by a line that the
-# next one overwrites, else by a line every 10 seconds.
+# next one overwrites, else by a line every 10 seconds, also when nothing comes.
 follow() {
-  local line said=$SECONDS
+  local line='' part status=0 said=$SECONDS shown
   : >"$1"
-  while IFS= read -r line || [ -n "$line" ]; do
-    printf '%s\n' "$line" >>"$1"
+  while [ $status -eq 0 ] || [ $status -gt 128 ]; do # above 128: nothing came for so long
+    status=0
+    IFS= read -r -t 10 part || status=$?
+    line+=$part
+    shown=$line
+    if [ $status -gt 128 ]; then
+      shown="... $SECONDS s"
+    elif [ $status -eq 0 ] || [ -n "$line" ]; then
+      printf '%s\n' "$line" >>"$1"
+      line=''
+    fi
     if [ -t 1 ]; then
-      line=${line##*$'\r'} # what it would overwrite itself
-      printf '\r\033[K%s' "${line:0:79}"
-    elif [ $((SECONDS - said)) -ge 10 ]; then
+      shown=${shown##*$'\r'} # what it would overwrite itself
+      printf '\r\033[K%s' "${shown:0:79}"
+    elif [ $((SECONDS - said)) -ge 10 ] && [ -n "$shown" ]; then
       said=$SECONDS
-      printf '%s\n' "$line"
+      printf '%s\n' "$shown"
     fi
   done
   if [ -t 1 ]; then printf '\r\033[K'; fi

@@ -38,7 +38,7 @@ TEST_CASE("load: missing files, directories, binary and huge files are bad input
   CHECK(contains(load_error(folder.path.string()), ": is a directory, expected a scene file"));
   CHECK(contains(load_error(folder.write("e.yaml", "")), "e.yaml: is empty"));
   CHECK(contains(load_error(folder.write("b.yaml", std::string("\x89PNG\r\n\0\1", 8))),
-                 "is not a text file"));
+                 "b.yaml:1:1: is not plain text: the byte 0x89 is not UTF-8"));
   CHECK(contains(load_error(folder.write("h.yaml", std::string(5u << 20, ' '))),
                  "larger than 4 MiB"));
   const std::string typo = folder.write("t.yaml", kMinimal + "nme: x\n");
