@@ -31,14 +31,22 @@ Character first_character(std::string_view text) {
 
 bool is_control(long code) { return (code >= 0 && code < 0x20) || (code >= 0x7F && code < 0xA0); }
 
-bool is_blank(long code) { return code == '\t' || code == '\n' || code == '\r'; }
+/// Of the first character of a text: a tab, or what ends a line. A carriage return within a line
+/// makes a terminal write over it.
+bool is_blank(std::string_view text) {
+  const char c = text[0];
+  return c == '\t' || c == '\n' || (c == '\r' && (text.size() == 1 || text[1] == '\n'));
+}
 
-/// How a character stands in a message.
-std::string shown(std::string_view character, long code, bool one_line) {
-  if (code < 0) return format("\\x%02x", static_cast<unsigned char>(character[0]));
-  if (!is_control(code) || (!one_line && is_blank(code))) return std::string(character);
-  if (is_blank(code)) return code == '\n' ? "\\n" : code == '\r' ? "\\r" : "\\t";
-  return format("\\u%04lx", static_cast<unsigned long>(code));
+/// How the first character of a text stands in a message.
+std::string shown(std::string_view text, const Character& c, bool one_line) {
+  if (c.code < 0) return format("\\x%02x", static_cast<unsigned char>(text[0]));
+  if (!is_control(c.code) || (!one_line && is_blank(text)))
+    return std::string(text.substr(0, c.bytes));
+  if (c.code == '\n') return "\\n";
+  if (c.code == '\r') return "\\r";
+  if (c.code == '\t') return "\\t";
+  return format("\\u%04lx", static_cast<unsigned long>(c.code));
 }
 
 }  // namespace
@@ -46,7 +54,7 @@ std::string shown(std::string_view character, long code, bool one_line) {
 std::optional<BadText> find_bad_text(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     const Character c = first_character(text.substr(at));
-    if (c.code >= 0 && (!is_control(c.code) || is_blank(c.code))) {
+    if (c.code >= 0 && (!is_control(c.code) || is_blank(text.substr(at)))) {
       at += c.bytes;
       continue;
     }
@@ -70,7 +78,7 @@ std::string escaped(std::string_view text) {
   std::string out;
   for (Character c; !text.empty(); text.remove_prefix(c.bytes)) {
     c = first_character(text);
-    out += shown(text.substr(0, c.bytes), c.code, false);
+    out += shown(text, c, false);
   }
   return out;
 }
@@ -80,7 +88,7 @@ std::string one_line(std::string_view text, std::size_t most) {
   for (Character c; !text.empty(); text.remove_prefix(c.bytes)) {
     if (out.size() >= most) return out + "...";
     c = first_character(text);
-    out += shown(text.substr(0, c.bytes), c.code, true);
+    out += shown(text, c, true);
   }
   return out;
 }
@@ -90,7 +98,7 @@ std::string json_string(std::string_view text) {
   for (Character c; !text.empty(); text.remove_prefix(c.bytes)) {
     c = first_character(text);
     if (c.code == '"' || c.code == '\\' || c.code < 0) out += '\\';
-    out += shown(text.substr(0, c.bytes), c.code, true);
+    out += shown(text, c, true);
   }
   return out + '"';
 }

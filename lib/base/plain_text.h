@@ -14,8 +14,9 @@ struct BadText {
 };
 
 /// Text is UTF-8 (RFC 3629: no overlong forms, surrogates or numbers above U+10FFFF) without
-/// control characters (C0, DEL, C1) other than tab, line feed and carriage return: a terminal obeys
-/// control characters, and readers of HDF5 and JSON refuse what is not UTF-8.
+/// control characters (C0, DEL, C1) other than tab, line feed and the carriage return at the end of
+/// a line: a terminal obeys control characters, and readers of HDF5 and JSON refuse what is not
+/// UTF-8.
 std::optional<BadText> find_bad_text(std::string_view text);
 
 /// The text with everything that find_bad_text refuses written out: \x9b for a byte that is not

@@ -75,6 +75,9 @@ TEST_CASE("escaped text is text, keeps what was text, and shows the rest") {
   const std::string nasty("a\x1b[2J\x7f\0\xc2\x9b\xff\xed\xa0\x80z", 14);
   CHECK(escaped(nasty) == "a\\u001b[2J\\u007f\\u0000\\u009b\\xff\\xed\\xa0\\x80z");
   CHECK(escaped("caf\u00e9\n\tline") == "caf\u00e9\n\tline");
+  CHECK(escaped("crlf\r\nend\r") == "crlf\r\nend\r");
+  CHECK(escaped("over\rwritten") == "over\\rwritten");
+  CHECK(find_bad_text("over\rwritten")->what == "the control character U+000D");
   CHECK(one_line("a\r\nb\tc") == "a\\r\\nb\\tc");
   CHECK(one_line(std::string(300, 'x')) == std::string(200, 'x') + "...");
   CHECK(one_line("\u20ac\u20ac\u20ac", 4) == "\u20ac\u20ac...");
