@@ -131,6 +131,10 @@ class Batch {
           difference_of_record(record, loaded.scene, scene_files(loaded.scene, loaded.folder));
       if (!other.empty())
         return {static_cast<int>(ExitCode::bad_input), folder + " is of another scene: " + other};
+      const std::string file = difference_of_file(folder, loaded.scene);
+      if (!file.empty())
+        return {static_cast<int>(ExitCode::bad_input),
+                folder + "/run.h5 is of another scene: " + file};
       const std::string doubt = why_not_finished(folder, loaded.scene);
       if (!doubt.empty())
         return {static_cast<int>(ExitCode::resumable), "DONE is there, but " + doubt};

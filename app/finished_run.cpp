@@ -10,8 +10,15 @@
 
 namespace pbf {
 
-std::string difference_of_file(const RunInfo& info, const Scene& scene) {
-  return physics_difference(parse_scene(info.resolved_scene, "the scene in run.h5", {}), scene);
+std::string difference_of_file(const std::string& folder, const Scene& scene) {
+  const std::string path = folder + "/run.h5";
+  try {
+    try_run_file(path);
+    return physics_difference(
+        parse_scene(RunReader(path).info().resolved_scene, path + ": its scene", {}), scene);
+  } catch (const Error&) {
+    return {};
+  }
 }
 
 std::string why_not_finished(const std::string& folder, const Scene& scene) {
@@ -22,8 +29,6 @@ std::string why_not_finished(const std::string& folder, const Scene& scene) {
   try {
     try_run_file(path);
     const RunReader file(path);
-    const std::string other = difference_of_file(file.info(), scene);
-    if (!other.empty()) return "run.h5 is of another scene: " + other;
     if (file.status() != "finished") return "run.h5 is of a run that is " + file.status();
     // The last frame is that of the end. The log is not asked: one of an earlier version will do.
     const std::vector<std::int64_t> frames = file.updates();

@@ -8,13 +8,12 @@
 
 namespace pbf {
 
-/// By which key the run that wrote a file is another than that of `scene`; empty when by none that
-/// matters (physics_difference()).
-std::string difference_of_file(const RunInfo& info, const Scene& scene);
+/// By which key the run of a folder's run.h5 is another than that of `scene`; empty when by none
+/// that matters (physics_difference()), and when there is no such file that can be read.
+std::string difference_of_file(const std::string& folder, const Scene& scene);
 
-/// Why the run.h5 of a folder with DONE is not the finished run of `scene` up to its end: missing,
-/// not to be read, of another scene, not finished, shorter. Empty when it is, or when the scene
-/// writes none.
+/// Why the run.h5 of a folder with DONE is not a finished run up to the end of `scene`: missing,
+/// not to be read, not finished, shorter. Empty when it is, or when the scene writes none.
 std::string why_not_finished(const std::string& folder, const Scene& scene);
 
 }  // namespace pbf

@@ -70,6 +70,10 @@ class Finder {
                              "of its particle files: they are taken as they are");
     const std::int64_t done = make_schedule(before).updates;
     const bool is_done = folder_.has("DONE") && schedule_.updates <= done;
+    if (const std::string other =
+            is_done && scene_.output ? difference_of_file(folder_.path(), scene_) : std::string();
+        !other.empty())
+      refuse("run.h5", other);
     const std::string doubt = is_done ? why_not_finished(folder_.path(), scene_) : std::string();
     if (!doubt.empty()) point_.notes.push_back("DONE is there, but " + doubt);
     if (is_done && doubt.empty()) {
@@ -98,7 +102,9 @@ class Finder {
   void refuse_other(const std::string& name, const Scene& before, const std::string& files) const {
     std::string difference = physics_difference(before, scene_);
     if (difference.empty()) difference = files_difference(files, files_);
-    if (difference.empty()) return;
+    if (!difference.empty()) refuse(name, difference);
+  }
+  [[noreturn]] void refuse(const std::string& name, const std::string& difference) const {
     throw Error(ExitCode::bad_input,
                 (name.empty() ? folder_.path() : folder_.file(name)) + ": cannot resume: " +
                     (name.empty() ? "" : "it is of another scene: ") + difference +
@@ -138,15 +144,13 @@ class Finder {
       try_run_file(folder_.file("run.h5"));
       file.emplace(folder_.file("run.h5"));
       info = file->info();
-      if (const std::string other = difference_of_file(info, scene_); !other.empty())
-        throw Error(ExitCode::bad_input, "run.h5 is of another scene: " + other);
     } catch (const Error& e) {
       damaged_ = true;
       return forget(std::string(e.what()) + "; it becomes run.damaged.h5");
     }
     if (file->frames() == 0) return forget("");
     refuse_older_log(*file, info);
-    if (!info.scene_sha256.empty()) refuse_other("run.h5", info.resolved_scene, info.scene_files);
+    refuse_other("run.h5", info.resolved_scene, info.scene_files);  // no files in older ones
     point_.keep_file = true;
     const std::int64_t u = point_.update();
     point_.rows = point_.saved ? prefix(file->log_column("update"), u,

@@ -11,6 +11,7 @@
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
 #include "lib/base/own_file.h"
+#include "lib/base/regular_file.h"
 
 namespace pbf {
 namespace fs = std::filesystem;

@@ -10,6 +10,7 @@
 
 #include "lib/base/error.h"
 #include "lib/base/own_file.h"
+#include "lib/base/regular_file.h"
 #include "lib/io/h5_output.h"
 #include "lib/io/h5_read.h"
 #include "lib/io/h5_trial.h"

@@ -155,9 +155,6 @@ TEST_CASE("a run whose file is not its own is not called finished, and is made a
   collect.emplace_back("--collect");
   REQUIRE(pbf::test::pbf(batch, folder.path()).code == 0);
   const std::string good = read_text(folder / "o/tiny/run.h5");
-  REQUIRE(pbf::test::pbf({"run", "tiny.yaml", "--quiet", "--out", "x", "--set", "gravity=[0,0,-5]"},
-                         folder.path())
-              .code == 0);
   REQUIRE(pbf::test::pbf({"run", "tiny.yaml", "--quiet", "--out", "y", "--set", "time.end=0.05"},
                          folder.path())
               .code == 0);
@@ -178,11 +175,6 @@ TEST_CASE("a run whose file is not its own is not called finished, and is made a
     fs::remove(folder / "o/tiny/run.h5");
     why = "DONE is there, but run.h5 is missing";
   }
-  SECTION("of another scene") {
-    fs::copy_file(folder / "x/run.h5", folder / "o/tiny/run.h5",
-                  fs::copy_options::overwrite_existing);
-    why = "DONE is there, but run.h5 is of another scene: gravity";
-  }
   SECTION("of a shorter run") {
     fs::copy_file(folder / "y/run.h5", folder / "o/tiny/run.h5",
                   fs::copy_options::overwrite_existing);
@@ -201,6 +193,28 @@ TEST_CASE("a run whose file is not its own is not called finished, and is made a
   CHECK(has(read_text(folder / "o/tiny/log.txt"), why));
   CHECK(pbf::test::pbf({"compare", "o/tiny/run.h5", "o/tiny/run.h5"}, folder.path()).code == 0);
   CHECK(pbf::test::pbf(collect, folder.path()).code == 0);
+}
+
+TEST_CASE("a run file of another scene in a finished run's folder is a failed run, and is kept") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  const std::vector<std::string> batch{"batch", "tiny.yaml", "--out", "o", "--threads", "1"};
+  auto collect = batch;
+  collect.emplace_back("--collect");
+  REQUIRE(pbf::test::pbf(batch, folder.path()).code == 0);
+  REQUIRE(pbf::test::pbf({"run", "tiny.yaml", "--quiet", "--out", "x", "--set", "gravity=[0,0,-5]"},
+                         folder.path())
+              .code == 0);
+  fs::copy_file(folder / "x/run.h5", folder / "o/tiny/run.h5",
+                fs::copy_options::overwrite_existing);
+  for (const auto& command : {collect, batch}) {
+    const Outcome o = pbf::test::pbf(command, folder.path());
+    CAPTURE(o.out, o.err);
+    CHECK(o.code == 6);
+    CHECK(has(o.out, "0 finished, 1 failed"));
+    CHECK(has(o.err, "of another scene: gravity"));
+  }
+  CHECK(read_text(folder / "o/tiny/run.h5") == read_text(folder / "x/run.h5"));
 }
 
 TEST_CASE("a batch whose scenes have changed is not collected as finished") {

@@ -75,7 +75,9 @@ TEST_CASE("a FIFO and a folder in a run folder are errors, and nothing hangs") {
   }
 }
 
-TEST_CASE("--overwrite removes links and FIFOs among a run's files, not what they lead to") {
+TEST_CASE(
+    "an overwritten run folder loses links and FIFOs among the run's files, not what they lead "
+    "to") {
   const Scratch folder;
   begin(folder);
   fs::create_directory(folder / "pictures");

@@ -63,7 +63,7 @@ CompareResult compare(const Made& a, const Made& b) {
     RunWriter writer(folder / name, info, false);
     for (int k = 0; k < m->frames; ++k) writer.write(frame_of(*m, k));
     for (int k = 0; k < m->rows; ++k) writer.log(sample_row(k));
-    writer.finish(m->status);
+    writer.finish({m->status});
   }
   return compare_files(folder / "a.h5", folder / "b.h5");
 }

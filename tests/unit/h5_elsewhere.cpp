@@ -127,7 +127,7 @@ std::string run_file(const TemporaryFolder& folder) {
   RunWriter writer(path, sample_info(2), false);
   writer.log(sample_row(0));
   writer.write(sample(0, 2, ScalarType::f64));
-  writer.finish("finished");
+  writer.finish({"finished"});
   return path;
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("a run file that takes in another file is refused, whatever the way an
       });
       // Nor written to: what is appended to such a run file would go into the other file.
       try {
-        RunWriter(path, sample_info(2), false, 1, 1).finish("finished");
+        RunWriter(path, sample_info(2), false, 1, 1).finish({"finished"});
       } catch (const Error&) {
       }
       CHECK(read_particle_file(other).position.at(1)[0] == 0.75);
