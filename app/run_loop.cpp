@@ -42,7 +42,7 @@ RunLoop::RunLoop(const Scene& scene, const Plan& plan, Solver& solver, RunSinks 
       limits_(limits),
       schedule_(make_schedule(scene)),
       progress_(log),
-      warnings_(scene, schedule_.updates) {
+      warnings_(scene, plan.particles, schedule_.updates) {
   due_.scene = resolved_yaml(scene);
   due_.files = sinks_.scene_files;
   if (scene.output) fields_ = scene.output->fields;

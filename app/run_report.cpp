@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "kernels/relative_motion.h"
 #include "lib/base/stages.h"
 #include "lib/base/text.h"
 #include "lib/solver/devices.h"
@@ -118,6 +119,9 @@ std::string run_summary(const RunTotals& t) {
     out += format(
         "sweeps              %.3g per substep on average, at most %d, for a tolerance of %.4g %%\n",
         double(t.last.sweeps) / (double(t.updates) * t.substeps), t.max_sweeps, 100 * t.tolerance);
+  if (t.last.unresolved > 0)
+    out += format("fast past neighbours %lld times more than %g h in a step, at most %.3g h\n",
+                  static_cast<long long>(t.last.unresolved), kResolvedWay, t.last.relative_way_max);
   if (t.steps) out += step_lines(t);
   if (t.speed_limit > 0)
     out += format("speed limit         %lld times a particle was slowed down to %.4g m/s\n",

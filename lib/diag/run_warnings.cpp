@@ -11,16 +11,20 @@ namespace {
 
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
 
-std::string passed_through_text(const Scene& s, const Measures& m) {
+/// Splashes of a few particles are in any lively flow.
+constexpr double kMuch = 1e-3;  // of particles times steps
+
+std::string passed_through_text(const Scene& s, const Measures& m, double share) {
   // With time.adaptive the longest way may be that of a step much shorter than time.step.
   const std::string remedy =
       s.time.adaptive
           ? std::string("lower time.adaptive.cfl")
           : format("time.step %.2g s resolves it", s.time.step * kResolvedWay / m.relative_way_max);
   return format(
-             "%lld times a particle moved by more than %g h relative to a neighbour in a step, by "
-             "up to %.3g h: fluid may have passed through fluid; ",
-             static_cast<long long>(m.unresolved), kResolvedWay, m.relative_way_max) +
+             "fluid may have passed through fluid: %lld times (%.2g %% of particles times steps) a "
+             "particle moved by more than %g h relative to a neighbour in a step, by up to %.3g "
+             "h; ",
+             static_cast<long long>(m.unresolved), 100 * share, kResolvedWay, m.relative_way_max) +
          remedy;
 }
 
@@ -34,7 +38,6 @@ void RunWarnings::follow(const Measures& m) {
 
 template <class Coordinate>
 void RunWarnings::count_outside(std::size_t n, const Coordinate& coordinate) {
-  particles_ = std::int64_t(n);
   left_ = 0;
   farthest_ = 0;
   std::vector<std::int64_t> through(scene_->domain.open.size());
@@ -88,7 +91,10 @@ std::vector<Warning> RunWarnings::at(const Measures& m, bool end) const {
                 "updates, %.3g %% at %s; give a shorter time.step or more solver.iterations",
                 100 * kNoLiquid, percent(double(compressed_), double(updates_)),
                 100 * m.compression_mean, end ? "the end" : "present")});
-  if (m.unresolved > 0) list.push_back({"passed_through", passed_through_text(*scene_, m)});
+  const double share =
+      double(m.unresolved) / (double(particles_) * double(updates_) * scene_->solver.substeps);
+  if (m.unresolved > 0 && (share >= kMuch || m.relative_way_max >= 1))
+    list.push_back({"passed_through", passed_through_text(*scene_, m, share)});
   if (left_ > 0)
     list.push_back(
         {"left", format("%lld of %lld particles (%.2g %%) have left the domain through "

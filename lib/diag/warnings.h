@@ -35,7 +35,8 @@ std::vector<Warning> scene_warnings(const Scene& scene, const std::string& scene
 class RunWarnings {
  public:
   /// updates: of the whole run. The scene must outlive this.
-  RunWarnings(const Scene& scene, std::int64_t updates) : scene_(&scene), updates_(updates) {}
+  RunWarnings(const Scene& scene, std::int64_t particles, std::int64_t updates)
+      : scene_(&scene), particles_(particles), updates_(updates) {}
   /// Before the first measure of a run that goes on: its compressed_updates() so far.
   void go_on_from(std::int64_t compressed) { compressed_ = compressed; }
   void follow(const Measures& due);
@@ -53,8 +54,8 @@ class RunWarnings {
   void count_outside(std::size_t n, const Coordinate& coordinate);
 
   const Scene* scene_;
-  std::int64_t updates_, compressed_ = 0;
-  std::int64_t particles_ = 0, left_ = 0;
+  std::int64_t particles_, updates_, compressed_ = 0;
+  std::int64_t left_ = 0;
   double farthest_ = 0;  ///< m
   std::string faces_;    ///< through which they left
 };

@@ -62,7 +62,8 @@ TEST_CASE("a run warns where fluid may have passed through fluid, and names the 
     return o.err;
   };
   const std::string coarse = run({});
-  CHECK(has(coarse, "fluid may have passed through fluid; time.step 0.0"));
+  CHECK(has(coarse, "fluid may have passed through fluid: "));
+  CHECK(has(coarse, "; time.step 0.0"));
   CHECK(has(run({"--set", "time.step=0.001"}), "warning") == false);
 }
 
