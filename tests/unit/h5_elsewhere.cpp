@@ -228,7 +228,7 @@ TEST_CASE("a checkpoint that is a link to itself, a pipe or a folder is an I/O e
     const TemporaryFolder folder;
     make(folder / "checkpoint.h5");
     std::vector<std::string> notes;
-    refused("remove it to start again", [&] { read_checkpoint(folder.path, notes); });
+    refused("remove it", [&] { read_checkpoint(folder.path, notes); });
     write_checkpoint(folder.path, saved);  // puts it aside
     CHECK(read_checkpoint(folder.path, notes));
   }
