@@ -43,6 +43,7 @@ RunLoop::RunLoop(const Scene& scene, const Plan& plan, Solver& solver, RunSinks 
       schedule_(make_schedule(scene)),
       progress_(log),
       warnings_(scene, plan.particles, schedule_.updates) {
+  for (const Warning& w : limits_.of_scene) told_.emplace(w.kind, w.text);  // by who found them
   due_.scene = resolved_yaml(scene);
   due_.files = sinks_.scene_files;
   if (scene.output) fields_ = scene.output->fields;
