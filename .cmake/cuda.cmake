@@ -1,4 +1,4 @@
-# The CUDA backend. AUTO: built when a toolkit is found. nvcc sees only lib/cuda/*.cu.
+# The CUDA backend. AUTO: built when a toolkit is found. nvcc sees only lib/exec/cuda/*.cu.
 if(NOT PBF_CUDA STREQUAL "OFF")
   include(CheckLanguage)
   if(NOT CMAKE_CUDA_COMPILER AND NOT DEFINED ENV{CUDACXX} AND EXISTS /usr/local/cuda/bin/nvcc)

@@ -29,7 +29,7 @@ function(pbf_link target)
 endfunction()
 
 # GCC's OpenMP runtime is linked statically in every build: it reads its environment in a constructor,
-# before which only one of the program itself can run (lib/solver/threads.cpp). Nothing of it is
+# before which only one of the program itself can run (lib/program/threads.cpp). Nothing of it is
 # exported, so that a library which brings its own keeps that.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   pbf_link_archives(OpenMP::OpenMP_CXX gomp)

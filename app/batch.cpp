@@ -4,25 +4,26 @@
 #include <filesystem>
 #include <map>
 
-#include "app/batch_jobs.h"
-#include "app/batch_list.h"
-#include "app/batch_summary.h"
 #include "app/commands.h"
-#include "app/finished_run.h"
-#include "app/load_run.h"
-#include "app/resume.h"
-#include "app/schedule.h"
 #include "app/shell_quote.h"
-#include "app/signals.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
+#include "lib/base/machine.h"
 #include "lib/base/own_file.h"
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
+#include "lib/campaign/batch_jobs.h"
+#include "lib/campaign/batch_list.h"
+#include "lib/campaign/batch_summary.h"
 #include "lib/io/report.h"
-#include "lib/solver/devices.h"
+#include "lib/run/emit.h"
+#include "lib/run/finished_run.h"
+#include "lib/run/load_run.h"
+#include "lib/run/resume.h"
+#include "lib/run/schedule.h"
+#include "lib/run/signals.h"
 
-namespace pbf {
+namespace pbf::inline app_module {
 namespace {
 
 namespace fs = std::filesystem;
@@ -90,7 +91,7 @@ class Batch {
         [this](std::size_t k, const JobEnd& end) { ended(members_[k], end); });
   }
 
-  /// What became of each run, without running it: from DONE, the scene beside it and run.h5.
+  /// What became of each run, without running it: from DONE, the scene beside it and run.vtkhdf.
   void collect() {
     for (const BatchMember& m : members_)
       if (fs::exists(out_ + "/" + m.name + "/DONE")) ended(m, end_of(m));
@@ -126,7 +127,7 @@ class Batch {
     overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
     try {
       const LoadedScene loaded = load_scene_or_run(m.scene, overrides);
-      const LoadedScene record = load_scene(folder + "/scene.resolved.yaml", {});
+      const LoadedScene record = load_stored_scene(folder + "/scene.resolved.yaml");
       const std::string other =
           difference_of_record(record, loaded.scene, scene_files(loaded.scene, loaded.folder));
       if (!other.empty())
@@ -134,7 +135,7 @@ class Batch {
       const std::string file = difference_of_file(folder, loaded.scene);
       if (!file.empty())
         return {static_cast<int>(ExitCode::bad_input),
-                folder + "/run.h5 is of another scene: " + file};
+                folder + "/run.vtkhdf is of another scene: " + file};
       const std::string doubt = why_not_finished(folder, loaded.scene);
       if (!doubt.empty())
         return {static_cast<int>(ExitCode::resumable), "DONE is there, but " + doubt};
@@ -211,4 +212,4 @@ int command_batch(const BatchOptions& o) {
   return one ? batch.code() : batch.finish();
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

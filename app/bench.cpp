@@ -7,12 +7,12 @@
 #include "lib/base/stages.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
-#include "lib/diag/bench.h"
-#include "lib/diag/calibration.h"
+#include "lib/campaign/bench.h"
+#include "lib/campaign/calibration.h"
 #include "lib/io/report.h"
 #include "lib/scene/load.h"
 
-namespace pbf {
+namespace pbf::inline app_module {
 namespace {
 
 std::vector<std::string> columns() {
@@ -152,4 +152,4 @@ int command_bench(const BenchOptions& o) {
   return 0;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf {
+namespace pbf::inline app_module {
 
 struct RunOptions {
   std::string scene;                   ///< path
@@ -26,7 +26,7 @@ struct PlanOptions {
 };
 
 struct RenderOptions {
-  std::string run;             ///< path of run.h5
+  std::string run;             ///< path of run.vtkhdf
   std::string frames = "all";  ///< k, a:b, a:b:step (b excluded, negative from the end) or all
   std::string size;            ///< WxH, empty: as the scene says
   std::string camera;          ///< position=x,y,z;target=x,y,z;fov=deg;orbit=deg/s
@@ -102,4 +102,4 @@ int command_batch(const BatchOptions& options);
 int command_study(const StudyOptions& options);
 int command_stability(const StabilityCommandOptions& options);
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

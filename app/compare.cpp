@@ -5,14 +5,14 @@
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
 #include "lib/base/log.h"
-#include "lib/diag/compare.h"
 #include "lib/io/report.h"
 #include "lib/scene/load.h"
+#include "lib/verify/compare.h"
 #ifdef PBF_HAS_RENDER
-#include "lib/render/compare_picture.h"
+#include "lib/verify/compare_picture.h"
 #endif
 
-namespace pbf {
+namespace pbf::inline app_module {
 namespace {
 
 bool ends_with(const std::string& text, const std::string& end) {
@@ -86,4 +86,4 @@ int command_compare(const CompareOptions& o) {
   return static_cast<int>(result.same() ? ExitCode::done : ExitCode::difference);
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

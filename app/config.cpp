@@ -3,7 +3,7 @@
 #include "lib/base/log.h"
 #include "lib/scene/load.h"
 
-namespace pbf {
+namespace pbf::inline app_module {
 
 int command_config(const ConfigOptions& options) {
   std::string text = options.schema ? json_schema() : reference_yaml();
@@ -12,4 +12,4 @@ int command_config(const ConfigOptions& options) {
   return 0;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

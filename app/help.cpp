@@ -1,6 +1,6 @@
 #include "app/help.h"
 
-namespace pbf::help {
+namespace pbf::inline app_module::help {
 
 const char* const kExitCodes =
     "Exit codes:\n"
@@ -16,7 +16,7 @@ const char* const kExitCodes =
     "Example: pbf run configs/dam_break.yaml --out out/dam_break";
 
 const char* const kMeasures =
-    "Measures (formulas: lib/diag/README.md; c = max(rho/rho0 - 1, 0) of a particle, walls\n"
+    "Measures (formulas: lib/solver/DIAGNOSTICS.md; c = max(rho/rho0 - 1, 0) of a particle, walls\n"
     "included; H0 = volume of the fluid / area of the floor):\n"
     "  compression_mean, _rms, _p99, _max   sum c/N, sqrt(sum c^2/N), 99th percentile, max c [1]\n"
     "  share_above_1, share_above_10        particles with c > 1 %, c > 10 % [1]\n"
@@ -34,7 +34,7 @@ const char* const kPlanHelp =
 
 const char* const kRenderHelp =
     "Example:\n"
-    "  pbf render out/dam_break/run.h5 --frames 0:-1:5 --size 1920x1080 --color density \\\n"
+    "  pbf render out/dam_break/run.vtkhdf --frames 0:-1:5 --size 1920x1080 --color density \\\n"
     "      --camera 'position=3,-4,2;fov=30'";
 
 const char* const kCompareHelp =
@@ -52,7 +52,7 @@ const char* const kCompareHelp =
     "Examples:\n"
     "  pbf compare configs/minimal.yaml --between cpu:double,cuda:float --report compare.html\n"
     "  pbf compare configs/minimal.yaml --between cpu:float@1,cpu:float@2\n"
-    "  pbf compare out/a/run.h5 out/b/run.h5";
+    "  pbf compare out/a/run.vtkhdf out/b/run.vtkhdf";
 
 const char* const kBenchHelp =
     "Two lines per case: from the first updates on (start), and after the warm-up (late).\n"
@@ -65,7 +65,7 @@ const char* const kBenchHelp =
 
 const char* const kBatchHelp =
     "Every run is `pbf run --resume` in a folder of its own: what is finished (DONE is there, and\n"
-    "run.h5 is whole, of this scene, up to its end; --collect looks too) is left alone,\n"
+    "run.vtkhdf is whole, of this scene, up to its end; --collect looks too) is left alone,\n"
     "what was stopped or killed goes on, so the same command can be given again until all is\n"
     "done. OUT/summary.csv has a row per run: why it ended, its last measures. SIGTERM, SIGINT\n"
     "and --max-walltime save all runs.\n"
@@ -89,7 +89,7 @@ const char* const kRunHelp =
     "  pbf run configs/dam_break.yaml\n"
     "  pbf run configs/dam_break.yaml --out out/fine --set fluid.spacing=0.01 --threads 8\n"
     "  pbf run configs/dam_break.yaml --set checkpoint.every=60 --resume\n"
-    "  pbf run out/fine/run.h5 --out out/again\n"
+    "  pbf run out/fine/run.vtkhdf --out out/again\n"
     "SIGTERM and SIGINT finish the update, save a checkpoint and exit 75, as --max-walltime\n"
     "does; a second one ends at once. SIGUSR1 saves a checkpoint and goes on. With\n"
     "time.adaptive and the guard, checkpoints are of the last measure or frame, and no run\n"
@@ -130,4 +130,4 @@ const char* const kStudyMeasures =
     "Example:\n"
     "  pbf study configs/study/dam_break.yaml --out out/study --set threads=2";
 
-}  // namespace pbf::help
+}  // namespace pbf::inline app_module::help

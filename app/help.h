@@ -1,7 +1,7 @@
 // The long texts of --help.
 #pragma once
 
-namespace pbf::help {
+namespace pbf::inline app_module::help {
 
 extern const char* const kExitCodes;
 extern const char* const kMeasures;
@@ -15,4 +15,4 @@ extern const char* const kRunHelp;
 extern const char* const kStudyHelp;
 extern const char* const kStudyMeasures;
 
-}  // namespace pbf::help
+}  // namespace pbf::inline app_module::help

@@ -1,12 +1,13 @@
 // pbf info: this build and this machine.
 #include "app/commands.h"
 #include "lib/base/log.h"
+#include "lib/base/machine.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
-#include "lib/cpu/simd.h"
-#include "lib/solver/devices.h"
+#include "lib/exec/cpu/simd.h"
+#include "lib/exec/devices.h"
 
-namespace pbf {
+namespace pbf::inline app_module {
 
 int command_info() {
   const BuildInfo b = build_info();
@@ -30,4 +31,4 @@ int command_info() {
   return 0;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

@@ -9,13 +9,13 @@
 #include "app/commands.h"
 #include "app/help.h"
 #include "app/number_options.h"
-#include "app/signals.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
 #include "lib/base/plain_text.h"
 #include "lib/base/version.h"
+#include "lib/run/signals.h"
 
-namespace pbf {
+namespace pbf::inline app_module {
 namespace {
 
 using Command = std::function<int()>;
@@ -30,7 +30,8 @@ void add_overrides(CLI::App* c, std::vector<std::string>& overrides) {
 }
 
 void add_run(CLI::App& app, RunOptions& o, Command& command) {
-  CLI::App* c = app.add_subcommand("run", "Simulate a scene: run.h5 and pictures in one folder");
+  CLI::App* c =
+      app.add_subcommand("run", "Simulate a scene: run.vtkhdf and pictures in one folder");
   c->add_option("SCENE", o.scene, "Scene file (YAML), or the run file of a run to repeat")
       ->required();
   c->add_option("--out", o.out, "Run folder; out/<scene name> when not given");
@@ -71,7 +72,7 @@ void add_plan(CLI::App& app, PlanOptions& o, Command& command) {
 
 void add_render(CLI::App& app, RenderOptions& o, Command& command) {
   CLI::App* c = app.add_subcommand("render", "Pictures from the frames of a run file");
-  c->add_option("RUN", o.run, "Run file (run.h5)")->required();
+  c->add_option("RUN", o.run, "Run file (run.vtkhdf)")->required();
   c->add_option("--frames", o.frames, "all, k, a:b or a:b:step; b excluded, negative from the end");
   c->add_option("--size", o.size, "WIDTHxHEIGHT in pixels");
   c->add_option("--camera", o.camera, "position=x,y,z;target=x,y,z;fov=degrees;orbit=degrees/s");
@@ -86,7 +87,7 @@ void add_render(CLI::App& app, RenderOptions& o, Command& command) {
 void add_compare(CLI::App& app, CompareOptions& o, Command& command) {
   CLI::App* c = app.add_subcommand(
       "compare", "Whether two runs, or one scene on two backends, differ by more than rounding");
-  c->add_option("INPUT", o.inputs, "Two run files (run.h5), or one scene file with --between")
+  c->add_option("INPUT", o.inputs, "Two run files (run.vtkhdf), or one scene file with --between")
       ->required();
   c->add_option("--between", o.between,
                 "A,B: two sides BACKEND:PRECISION or BACKEND:PRECISION@THREADS")
@@ -313,7 +314,7 @@ int guarded(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace pbf
+}  // namespace pbf::inline app_module
 
 int main(int argc, char** argv) {
   pbf::hold_standard_streams();

@@ -9,7 +9,7 @@
 
 #include "lib/scene/number.h"
 
-namespace pbf {
+namespace pbf::inline app_module {
 
 /// For Option::transform: a whole number from `low` to `high`, handed on in plain digits.
 inline CLI::Validator whole_number(std::int64_t low,
@@ -41,4 +41,4 @@ inline CLI::Validator number_from(double low, bool above, const std::string& uni
       what);
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

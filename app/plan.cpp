@@ -1,21 +1,21 @@
 // pbf plan: what a scene would do and need; runs nothing.
-#include "lib/plan/plan.h"
+#include "lib/program/plan.h"
 
 #include <filesystem>
 #include <optional>
 
 #include "app/commands.h"
 #include "lib/base/log.h"
+#include "lib/base/machine.h"
 #include "lib/base/text.h"
-#include "lib/diag/calibration.h"
-#include "lib/diag/warnings.h"
-#include "lib/scene/emit.h"
+#include "lib/campaign/calibration.h"
+#include "lib/program/threads.h"
+#include "lib/run/emit.h"
+#include "lib/run/start_neighbors.h"
+#include "lib/run/warnings.h"
 #include "lib/scene/load.h"
-#include "lib/scene/start_neighbors.h"
-#include "lib/solver/devices.h"
-#include "lib/solver/threads.h"
 
-namespace pbf {
+namespace pbf::inline app_module {
 namespace {
 
 std::string time_text(const std::optional<TimeEstimate>& time) {
@@ -70,4 +70,4 @@ int command_plan(const PlanOptions& options) {
   return 0;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

@@ -13,7 +13,7 @@
 #include "lib/render/renderer.h"
 #endif
 
-namespace pbf {
+namespace pbf::inline app_module {
 
 #ifndef PBF_HAS_RENDER
 int command_render(const RenderOptions&) {
@@ -24,7 +24,8 @@ int command_render(const RenderOptions& options) {
   try_run_file(options.run);
   const RunReader reader(options.run);
   const RunInfo info = reader.info();
-  Scene scene = parse_scene(info.resolved_scene, options.run + " (the scene stored in it)", {});
+  Scene scene =
+      parse_stored_scene(info.resolved_scene, options.run + " (the scene stored in it)", {});
   apply_render_options(options, scene);
   const auto frames = select_frames(options.frames, reader.frames());
   const std::filesystem::path folder =
@@ -53,4 +54,4 @@ int command_render(const RenderOptions& options) {
 }
 #endif
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

@@ -9,7 +9,7 @@
 #include "app/commands.h"
 #include "lib/scene/scene.h"
 
-namespace pbf {
+namespace pbf::inline app_module {
 
 /// "all", "k", "a:b" or "a:b:step", as Python slices: b excluded, negative from the end, empty for
 /// the ends. Refuses what selects nothing of `frames` frames.
@@ -19,4 +19,4 @@ std::vector<std::int64_t> select_frames(const std::string& text, std::int64_t fr
 /// colour without a range gets that field's own range.
 void apply_render_options(const RenderOptions& options, Scene& scene);
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

@@ -7,24 +7,25 @@
 #include <memory>
 
 #include "app/commands.h"
-#include "app/load_run.h"
-#include "app/resume.h"
-#include "app/run_folder.h"
-#include "app/run_loop.h"
-#include "app/signals.h"
 #include "lib/base/error.h"
 #include "lib/base/output_file.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
-#include "lib/diag/prestabilize.h"
-#include "lib/diag/warnings.h"
+#include "lib/exec/make_solver.h"
 #include "lib/io/particle_output.h"
-#include "lib/scene/emit.h"
+#include "lib/program/threads.h"
+#include "lib/run/emit.h"
+#include "lib/run/load_run.h"
+#include "lib/run/prestabilize.h"
+#include "lib/run/resume.h"
+#include "lib/run/run_folder.h"
+#include "lib/run/run_loop.h"
+#include "lib/run/signals.h"
+#include "lib/run/start_neighbors.h"
+#include "lib/run/warnings.h"
 #include "lib/scene/load.h"
-#include "lib/scene/start_neighbors.h"
-#include "lib/solver/threads.h"
 
-namespace pbf {
+namespace pbf::inline app_module {
 namespace {
 
 std::vector<std::string> all_overrides(const RunOptions& o) {
@@ -76,7 +77,7 @@ RunSinks open_sinks(const LoadedScene& loaded, const Plan& plan, const Solver& s
   sinks.checkpoints = folder.path();
   sinks.scene_files = loaded.files;
   if (scene.output) {
-    const std::string path = folder.file("run.h5");
+    const std::string path = folder.file(kRunFile);
     const RunInfo info = run_info(loaded, plan, solver, started, from.update(), warnings);
     sinks.writer = from.keep_file ? std::make_unique<RunWriter>(path, info, scene.output->gzip,
                                                                 from.frames, from.rows)
@@ -297,4 +298,4 @@ int command_run(const RunOptions& options) {
   }
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

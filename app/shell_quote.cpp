@@ -4,7 +4,7 @@
 
 #include "lib/base/text.h"
 
-namespace pbf {
+namespace pbf::inline app_module {
 
 std::string shell_quoted(const std::string& text) {
   const std::string safe =
@@ -26,4 +26,4 @@ std::string shell_quoted(const std::string& text) {
   return out + "'";
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

@@ -3,10 +3,10 @@
 
 #include <string>
 
-namespace pbf {
+namespace pbf::inline app_module {
 
 /// `text` as one word of bash, on one line: bare where that is safe, in single quotes, or, with
 /// control characters (a line break would end a comment), in $'...' with escapes.
 std::string shell_quoted(const std::string& text);
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

@@ -9,13 +9,13 @@
 #include "app/commands.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
+#include "lib/base/machine.h"
 #include "lib/base/text.h"
-#include "lib/diag/stability.h"
-#include "lib/diag/stability_map.h"
+#include "lib/campaign/stability.h"
+#include "lib/campaign/stability_map.h"
 #include "lib/io/report.h"
-#include "lib/solver/devices.h"
 
-namespace pbf {
+namespace pbf::inline app_module {
 namespace {
 
 /// Calls work(k) for k below n on `jobs` threads; the first exception is thrown at the end.
@@ -225,4 +225,4 @@ int command_stability(const StabilityCommandOptions& o) {
   return o.map.empty() ? run_suite(o, run, jobs) : run_map(o, run, jobs);
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

@@ -3,15 +3,15 @@
 #include <system_error>
 
 #include "app/commands.h"
-#include "app/signals.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
 #include "lib/base/own_file.h"
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
-#include "lib/diag/study_table.h"
+#include "lib/campaign/study_table.h"
+#include "lib/run/signals.h"
 
-namespace pbf {
+namespace pbf::inline app_module {
 namespace {
 
 namespace fs = std::filesystem;
@@ -150,4 +150,4 @@ int command_study(const StudyOptions& o) {
   return 0;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline app_module

@@ -79,7 +79,7 @@ struct WallTerm {
 };
 
 /// Each wall adds A D(q/kappa), with amplitude A = wall_scale and range kappa = 1/wall_inv_range
-/// from lib/solver/calibrate.h. The walls' union is taken by inclusion-exclusion,
+/// from lib/program/calibrate.h. The walls' union is taken by inclusion-exclusion,
 /// 1 - prod(1 - A D_k): exact for one wall, an approximation where two half spaces overlap (its
 /// error: tests/oracle). In `paper` the density's D is Poly6's, the gradient's Spiky's, as for
 /// particles.

@@ -44,8 +44,8 @@ struct Params {
   Real inv_cell = 1;                          ///< 1/h, one over the edge of a cell (>= h)
   Real vol = 1;                               ///< m/(rho0 h^3), weight of one particle
   bool two_sided = false;                     ///< C = rho - 1 instead of max(rho - 1, 0)
-  Real relaxation = 0;                        ///< eps^ = eps h^2
-  Real step_length = 1;                       ///< omega
+  Real cfm = 0;                               ///< eps^ = eps h^2
+  Real sor = 1;                               ///< omega
   bool ease_crowds = false;                   ///< smaller steps where the density is above 1
   Real tensile_k = 0;                         ///< h^2
   Real tensile_scale = 0;                     ///< 1/shape(delta_q)

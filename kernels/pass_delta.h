@@ -84,7 +84,7 @@ struct DeltaPass {
     const Vec3<Real> move = s.closeness > Real(0.5e12) ? pairs + separate(i, own) : pairs;
     const Real a = p.vol * Spiky<Real, D>::gradient_norm;
     const Vec3<Real> wall = own.w * wall_term<Real, S>(x, p).gradient;
-    const Vec3<Real> free = p.step_length * (a * move + wall);
+    const Vec3<Real> free = p.sor * (a * move + wall);
     const Vec3<Real> target = x + free;
     const Vec3<Real> inside = clamp_inside(target, p);
     const Vec3<Real> v = xyz(velocity[i]) + p.inv_dt * (free + (inside - target));

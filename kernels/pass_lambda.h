@@ -58,7 +58,7 @@ PBF_HD Real constraint(Real density, const Params<Real>& p) {
 
 /// What lambda is divided by where the scene leaves the step length to the program: 1 + 3 C above
 /// the rest density, at most 2. As omega falls with the number of neighbours at rest
-/// (lib/plan/plan.h), so it falls here with their number where there are too many, for Jacobi
+/// (lib/program/plan.h), so it falls here with their number where there are too many, for Jacobi
 /// sweeps overshoot with them. At most 2: with 1 + 3 C without end, or rho^3, a pool under large
 /// steps collapsed.
 template <class Real>
@@ -125,8 +125,8 @@ struct LambdaPass {
     const Real a = p.vol * Spiky<Real, D>::gradient_norm;
     const Vec3<Real> own_gradient = a * in_space(s.gradient) + wall.gradient;
     const Real c = constraint(rho, p);
-    const Real denominator = a * a * s.squares + dot(own_gradient, own_gradient) + p.relaxation;
-    // No neighbour, no wall and no relaxation: nothing to move along.
+    const Real denominator = a * a * s.squares + dot(own_gradient, own_gradient) + p.cfm;
+    // No neighbour, no wall and no cfm: nothing to move along.
     const Real lambda = denominator > Real(0) ? -c / (crowd(rho, p) * denominator) : Real(0);
     position_out[i] = with_w(in_space(x), lambda);
     // Last, where nothing else is held in registers.

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 /// Exit codes of `pbf`, the same for every command (listed in the README and in `pbf --help`).
 enum class ExitCode : int {
@@ -28,4 +28,4 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

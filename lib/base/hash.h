@@ -10,7 +10,7 @@
 #include "lib/base/regular_file.h"
 #include "lib/base/text.h"
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 class Hash {
  public:
@@ -39,4 +39,4 @@ class Hash {
   std::uint64_t value_ = 14695981039346656037u;
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

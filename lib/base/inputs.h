@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 /// Called by whoever reads a file that the user has named, on the command line or in another file.
 void note_input(const std::string& path);
@@ -16,4 +16,4 @@ std::vector<std::string> inputs();
 /// be read and written.
 std::string input_at(const std::string& path);
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

@@ -7,7 +7,7 @@
 
 #include "lib/base/stage_clock.h"
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 /// Notes and progress go to stderr, results to stdout, all of it to the log file once one is open.
 /// What is no text (a stranger's file name, say) is written out, see escaped() in plain_text.h.
@@ -85,4 +85,4 @@ void hold_standard_streams();
 /// a reader that has gone away (`pbf ... | head`) is no error.
 void finish_stdout();
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

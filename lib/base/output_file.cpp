@@ -16,7 +16,7 @@
 #include "lib/base/output_target.h"
 #include "lib/base/text.h"
 
-namespace pbf {
+namespace pbf::inline base_module {
 namespace fs = std::filesystem;
 namespace {
 
@@ -141,4 +141,4 @@ bool same_output(const std::string& a, const std::string& b) {
   return !is_stream(a) && !is_stream(b) && place(a) == place(b);
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

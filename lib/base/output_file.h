@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 /// How the names begin under which files wait for their place.
 inline constexpr const char* kTemporaryPrefix = ".pbf-";
@@ -62,4 +62,4 @@ void check_output(const std::string& option, const std::string& path);
 /// Whether two paths, of which neither need exist, name one file.
 bool same_output(const std::string& a, const std::string& b);
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

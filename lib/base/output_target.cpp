@@ -13,7 +13,7 @@
 #include "lib/base/own_file.h"
 #include "lib/base/regular_file.h"
 
-namespace pbf {
+namespace pbf::inline base_module {
 namespace fs = std::filesystem;
 namespace {
 
@@ -114,4 +114,4 @@ int open_stream(const OutputTarget& target, const std::string& path) {
   return fd;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 /// Links are followed, also to what is not there yet.
 struct OutputTarget {
@@ -35,4 +35,4 @@ std::string obstacle(const OutputTarget& target);
 /// reader. `path` is what the user wrote.
 int open_stream(const OutputTarget& target, const std::string& path);
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

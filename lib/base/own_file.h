@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 /// For files that the program names itself, in a folder of results. Throws Error(io) when something
 /// else than a regular file is there; a link too, for its target is nobody's result.
@@ -13,4 +13,4 @@ void require_own_file(const std::string& path);
 /// The descriptor is the caller's. Throws Error(io).
 int open_own_file(const std::string& path, int flags);
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

@@ -4,7 +4,7 @@
 
 #include "lib/base/text.h"
 
-namespace pbf {
+namespace pbf::inline base_module {
 namespace {
 
 /// A character at the start of a text; `code` is -1 where a byte begins none.
@@ -103,4 +103,4 @@ std::string json_string(std::string_view text) {
   return out + '"';
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 /// The first place of a text that is no text.
 struct BadText {
@@ -27,4 +27,4 @@ std::string escaped(std::string_view text);
 /// "..." where something is missing. Pure.
 std::string one_line(std::string_view text, std::size_t most = 200);
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string>
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 /// "a link", "a FIFO", "a folder" ..., from st_mode.
 std::string file_kind(mode_t mode);
@@ -34,4 +34,4 @@ class RegularFile {
   int fd_ = -1;
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

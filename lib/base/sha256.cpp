@@ -6,7 +6,7 @@
 
 #include "lib/base/text.h"
 
-namespace pbf {
+namespace pbf::inline base_module {
 namespace {
 
 // FIPS 180-4, 4.2.2: fractional parts of the cube roots of the first 64 primes.
@@ -76,4 +76,4 @@ std::string sha256(std::string_view bytes) {
   return hash.text();
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

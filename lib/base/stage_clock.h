@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 /// Seconds since it was made or last reset, on the monotonic clock.
 class Stopwatch {
@@ -66,4 +66,4 @@ class StageClock {
   std::vector<Entry> entries_;  // a dozen: a linear search beats a map
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

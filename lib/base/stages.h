@@ -1,7 +1,8 @@
-// The stages of a run: one name everywhere, in timers, run.h5, `pbf plan`, `pbf bench` and plots.
+// The stages of a run: one name everywhere, in timers, run.vtkhdf, `pbf plan`, `pbf bench` and
+// plots.
 #pragma once
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 /// What the summary of a run adds up.
 enum class StageGroup { init, grid, density, lambda, delta, move, output };
@@ -27,4 +28,4 @@ inline constexpr Stage kStages[] = {
     {"download", StageGroup::output, false}, {"write", StageGroup::output, false},
     {"render", StageGroup::output, false}};
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

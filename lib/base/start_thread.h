@@ -5,7 +5,7 @@
 #include <thread>
 #include <utility>
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 /// Throws Error(unavailable) that names the limit and the remedy.
 [[noreturn]] void refuse_threads(int reason, int wanted);
@@ -27,4 +27,4 @@ int reason_against_threads(int threads);
 /// To be asked before OpenMP starts a team: its runtime ends the program.
 void require_threads(int threads);
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

@@ -7,7 +7,7 @@
 
 #include "lib/base/plain_text.h"
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 std::string format(const char* pattern, ...) {
   va_list args, again;
@@ -62,4 +62,4 @@ std::string utc_now() {
   return text;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

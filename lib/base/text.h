@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 /// printf into a string.
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
@@ -32,4 +32,4 @@ bool is_file_name(std::string_view text);
 /// Now, UTC, ISO 8601: "2024-05-01T12:00:00Z".
 std::string utc_now();
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

@@ -2,7 +2,7 @@
 
 #include "pbf_build_info.h"  // the only source that sees it: a new commit recompiles this alone
 
-namespace pbf {
+namespace pbf::inline base_module {
 
 BuildInfo build_info() {
   BuildInfo info{PBF_VERSION,  PBF_COMMIT, PBF_BUILD_TYPE, PBF_COMPILER, PBF_BUILD_FLAGS,
@@ -15,4 +15,4 @@ BuildInfo build_info() {
   return info;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline base_module

@@ -6,18 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "lib/diag/measures.h"
-#include "lib/solver/adaptive_step.h"
+#include "lib/program/time_levels.h"
+#include "lib/solver/measures.h"
 #include "lib/solver/step_trace.h"
 
-namespace pbf {
+namespace pbf::inline io_module {
 
 /// A run as it stands after some update.
 struct SavedRun {
   SolverState state;
   EnergyHistory energy;        ///< of the measures that are due until then
   double compression_max = 0;  ///< 1, largest of the measures that are due until then
-  Measures first;              ///< of the run: what guard_limits() needs of it, lib/diag/guard.h
+  Measures first;              ///< of the run: what guard_limits() needs of it, lib/run/guard.h
   std::optional<StepHistory> steps;     ///< with time.adaptive
   std::optional<double> released;       ///< J, Guard::released()
   std::int64_t compressed_updates = 0;  ///< RunWarnings::compressed_updates()
@@ -35,4 +35,4 @@ void write_checkpoint(const std::string& folder, const SavedRun& saved);
 /// there.
 std::optional<SavedRun> read_checkpoint(const std::string& folder, std::vector<std::string>& notes);
 
-}  // namespace pbf
+}  // namespace pbf::inline io_module

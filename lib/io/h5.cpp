@@ -6,7 +6,7 @@
 #include "lib/base/plain_text.h"
 #include "lib/io/h5_read.h"
 
-namespace pbf::h5 {
+namespace pbf::inline io_module::h5 {
 namespace {
 
 std::mutex& process_mutex() {
@@ -218,4 +218,4 @@ std::vector<std::string> children(hid_t group, H5O_type_t kind) {
   return wanted;
 }
 
-}  // namespace pbf::h5
+}  // namespace pbf::inline io_module::h5

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace pbf::h5 {
+namespace pbf::inline io_module::h5 {
 
 /// Held around every use of HDF5: the distributions build the library without thread safety. Not
 /// recursive. check() and every handle below end with Error(internal) where a thread has forgotten
@@ -168,4 +168,4 @@ std::vector<T> read_all(hid_t group, const std::string& path, hsize_t rows = ~hs
 /// Names of the datasets (or of the groups) directly in a group, in alphabetical order.
 std::vector<std::string> children(hid_t group, H5O_type_t kind);
 
-}  // namespace pbf::h5
+}  // namespace pbf::inline io_module::h5

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace pbf::h5 {
+namespace pbf::inline io_module::h5 {
 
 Column::Column(hid_t parent, const std::string& path, hid_t type, const Layout& layout)
     : chunk_rows_(std::max<hsize_t>(1, layout.chunk_rows)), components_(layout.components) {
@@ -72,4 +72,4 @@ void Column::write(hsize_t first, hsize_t count, hid_t type, const void* values)
   check(H5Dwrite(dataset_, type, memory, file, H5P_DEFAULT, values));
 }
 
-}  // namespace pbf::h5
+}  // namespace pbf::inline io_module::h5

@@ -6,7 +6,7 @@
 
 #include "lib/io/h5.h"
 
-namespace pbf::h5 {
+namespace pbf::inline io_module::h5 {
 
 /// How a growing dataset is laid out and labelled.
 struct Layout {
@@ -53,4 +53,4 @@ class Column {
   int components_ = 0;
 };
 
-}  // namespace pbf::h5
+}  // namespace pbf::inline io_module::h5

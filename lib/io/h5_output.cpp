@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace pbf::h5 {
+namespace pbf::inline io_module::h5 {
 namespace {
 
 int descriptor(hid_t file) {
@@ -74,4 +74,4 @@ void abandon(hid_t file) noexcept {
   }
 }
 
-}  // namespace pbf::h5
+}  // namespace pbf::inline io_module::h5

@@ -13,7 +13,7 @@
 #include "lib/base/error.h"
 #include "lib/io/h5.h"
 
-namespace pbf::h5 {
+namespace pbf::inline io_module::h5 {
 
 void trial(const std::string& path, const std::function<void()>& action, unsigned seconds) {
   std::optional<Lock> held;
@@ -50,12 +50,4 @@ void trial(const std::string& path, const std::function<void()>& action, unsigne
                                 "; copy or make it anew");
 }
 
-bool is_signature(std::string_view head) { return head == "\x89HDF\r\n\x1a\n"; }
-
-bool begins_as_hdf5(std::istream& in) {
-  char head[8] = {};
-  in.read(head, sizeof head);
-  return is_signature({head, static_cast<std::size_t>(in.gcount())});
-}
-
-}  // namespace pbf::h5
+}  // namespace pbf::inline io_module::h5

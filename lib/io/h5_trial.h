@@ -4,11 +4,9 @@
 #pragma once
 
 #include <functional>
-#include <istream>
 #include <string>
-#include <string_view>
 
-namespace pbf::h5 {
+namespace pbf::inline io_module::h5 {
 
 /// Lets a child process do `action` (which reads the file at `path`) first, so that a file on which
 /// HDF5 crashes, or goes on for more than `seconds` of CPU time, is an Error(io) here and not the
@@ -16,10 +14,4 @@ namespace pbf::h5 {
 /// called under a Lock.
 void trial(const std::string& path, const std::function<void()>& action, unsigned seconds = 60);
 
-/// Whether the first 8 bytes of a file are HDF5's signature.
-bool is_signature(std::string_view head);
-
-/// Whether a stream begins with HDF5's signature; reads 8 bytes.
-bool begins_as_hdf5(std::istream& in);
-
-}  // namespace pbf::h5
+}  // namespace pbf::inline io_module::h5

@@ -9,7 +9,7 @@
 #include "lib/base/plain_text.h"
 #include "lib/base/text.h"
 
-namespace pbf {
+namespace pbf::inline io_module {
 namespace {
 
 std::string number(double v) {
@@ -98,4 +98,4 @@ std::string JsonObject::text() const {
   return out + "}";
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline io_module

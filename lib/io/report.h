@@ -9,7 +9,7 @@
 
 #include "lib/base/output_file.h"
 
-namespace pbf {
+namespace pbf::inline io_module {
 
 /// A value of a report. A double prints in the shortest form that reads back as the same number.
 using Cell = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
@@ -48,4 +48,4 @@ std::string json(const Cell& value);
 /// A JSON array of JSON texts.
 std::string json_array(const std::vector<std::string>& items);
 
-}  // namespace pbf
+}  // namespace pbf::inline io_module

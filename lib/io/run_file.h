@@ -1,4 +1,4 @@
-// The run file run.h5: a temporal VTKHDF PolyData file plus our own root group /pbf.
+// The run file run.vtkhdf: a temporal VTKHDF PolyData file plus our own root group /pbf.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +6,19 @@
 #include <string>
 #include <vector>
 
-#include "lib/diag/measures.h"
 #include "lib/scene/scene.h"
+#include "lib/solver/measures.h"
 #include "lib/solver/snapshot.h"
 #include "lib/solver/solver.h"
 
-namespace pbf {
+namespace pbf::inline io_module {
+
+/// The run file in its folder: .vtkhdf is what ParaView knows.
+inline constexpr const char* kRunFile = "run.vtkhdf";
+/// Where one that cannot be gone on with is kept.
+inline constexpr const char* kDamagedRunFile = "run.damaged.vtkhdf";
+/// Its name in earlier versions.
+inline constexpr const char* kEarlierRunFile = "run.h5";
 
 /// One process that worked on a run: started it, or resumed it. A row of the tables in
 /// /pbf/sessions.
@@ -56,7 +63,7 @@ struct LogRow {
   std::vector<StageTime> stages;  ///< the same names in every row of a run
 };
 
-/// Writes run.h5 from a thread of its own; all HDF5 calls of the writer happen there.
+/// Writes run.vtkhdf from a thread of its own; all HDF5 calls of the writer happen there.
 /// Errors of that thread (disk full) are thrown as Error(io) by the next call from outside.
 class RunWriter {
  public:
@@ -111,4 +118,4 @@ class RunReader {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline io_module

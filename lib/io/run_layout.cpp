@@ -1,6 +1,6 @@
 #include "lib/io/run_layout.h"
 
-namespace pbf::run_layout {
+namespace pbf::inline io_module::run_layout {
 
 const std::vector<LogColumn>& log_columns() {
   using Row = const LogRow&;
@@ -45,4 +45,4 @@ const std::vector<LogColumn>& log_columns() {
   return columns;
 }
 
-}  // namespace pbf::run_layout
+}  // namespace pbf::inline io_module::run_layout

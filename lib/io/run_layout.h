@@ -1,4 +1,4 @@
-// What the writer and the reader of run.h5 agree on: names, versions, the columns of the log.
+// What the writer and the reader of run.vtkhdf agree on: names, versions, the columns of the log.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 #include "lib/io/run_file.h"
 
-namespace pbf::run_layout {
+namespace pbf::inline io_module::run_layout {
 
 /// Version of everything under /pbf. A reader refuses newer files.
 inline constexpr int format_version = 1;
@@ -75,4 +75,4 @@ void for_each_newer_text(Info& info, F&& f) {
   f("scene_files", info.scene_files);
 }
 
-}  // namespace pbf::run_layout
+}  // namespace pbf::inline io_module::run_layout

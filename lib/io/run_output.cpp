@@ -7,7 +7,7 @@
 #include "lib/io/h5_output.h"
 #include "lib/io/run_layout.h"
 
-namespace pbf {
+namespace pbf::inline io_module {
 namespace {
 
 using h5::check;
@@ -119,4 +119,4 @@ void RunOutput::close(const RunEnding& end) {
   closed_ = true;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline io_module

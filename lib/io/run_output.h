@@ -1,4 +1,4 @@
-// The file behind RunWriter: every HDF5 call that writes run.h5.
+// The file behind RunWriter: every HDF5 call that writes run.vtkhdf.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
 
-namespace pbf {
+namespace pbf::inline io_module {
 
 /// A run file being written. Used, made and destroyed under an h5::Lock. Members throw h5::Failure
 /// when HDF5 or the disk fails and Error(internal) when a frame does not fit the ones before;
@@ -92,4 +92,4 @@ class RunOutput {
   std::map<std::string, h5::Column> log_, stages_, sessions_;
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline io_module

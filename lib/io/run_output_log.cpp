@@ -4,7 +4,7 @@
 #include "lib/io/run_layout.h"
 #include "lib/io/run_output.h"
 
-namespace pbf {
+namespace pbf::inline io_module {
 namespace {
 
 using h5::Column;
@@ -62,4 +62,4 @@ void RunOutput::write_stages() {
   }
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline io_module

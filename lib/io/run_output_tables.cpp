@@ -6,7 +6,7 @@
 #include "lib/io/run_layout.h"
 #include "lib/io/run_output.h"
 
-namespace pbf {
+namespace pbf::inline io_module {
 namespace {
 
 using h5::check;
@@ -159,4 +159,4 @@ void RunOutput::grow_ids(std::size_t count) {
   ids_.append(next);
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline io_module

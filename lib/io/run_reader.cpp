@@ -13,7 +13,7 @@
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
 
-namespace pbf {
+namespace pbf::inline io_module {
 namespace {
 
 using h5::check;
@@ -281,6 +281,7 @@ std::vector<double> RunReader::log_column(const std::string& name) const {
         auto values = h5::read_all<double>(log, name);
         // A process killed while it wrote the log may leave columns of different lengths.
         for (const auto& c : run_layout::log_columns()) {
+          if (!h5::has_link(log, c.name)) continue;  // of a later version than the file's
           const h5::Dataset d = h5::open_dataset(log, c.name);
           values.resize(std::min<std::size_t>(values.size(), h5::shape(d).at(0)));
         }
@@ -288,4 +289,4 @@ std::vector<double> RunReader::log_column(const std::string& name) const {
       });
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline io_module

@@ -14,7 +14,7 @@
 #include "lib/io/run_file.h"
 #include "lib/io/run_output.h"
 
-namespace pbf {
+namespace pbf::inline io_module {
 
 struct RunWriter::Impl {
   struct Sync {};
@@ -180,4 +180,4 @@ std::int64_t RunWriter::bytes_written() const { return impl_->bytes_; }
 void RunWriter::sync() { impl_->sync(); }
 void RunWriter::finish(const RunEnding& ending) { impl_->finish(RunEnding(ending)); }
 
-}  // namespace pbf
+}  // namespace pbf::inline io_module

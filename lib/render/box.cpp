@@ -6,7 +6,7 @@
 
 #include "lib/render/vector3.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 namespace {
 
 constexpr std::array<std::uint8_t, 4> kEdge{92, 102, 116, 0}, kFloor{218, 224, 230, 150};
@@ -82,4 +82,4 @@ void add_floor(const View& view, const Projection& projection, std::vector<FlatV
   add_quad(quad, out);
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

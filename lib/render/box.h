@@ -7,7 +7,7 @@
 
 #include "lib/render/camera.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 
 struct FlatVertex {
   float x, y, depth;                  ///< view space, m
@@ -23,4 +23,4 @@ void add_box_edges(const View& view, const Projection& projection, double width,
 /// Appends the lowest face of the box with its grid, when the eye is above it.
 void add_floor(const View& view, const Projection& projection, std::vector<FlatVertex>& out);
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

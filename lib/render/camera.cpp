@@ -8,7 +8,7 @@
 #include "lib/base/error.h"
 #include "lib/render/vector3.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -146,4 +146,4 @@ Projection projection_of(const View& view, double time) {
   return p;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

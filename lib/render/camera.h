@@ -5,7 +5,7 @@
 
 #include "lib/render/renderer.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 
 /// A perspective camera. View space: x to the right, y up, z = depth away from the eye, in m.
 /// Pixels: x to the right, y down, (0, 0) at the outer corner of the first pixel.
@@ -31,4 +31,4 @@ struct Projection {
 /// fov outside 1..170 degrees, position on the target.
 Projection projection_of(const View& view, double time);
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

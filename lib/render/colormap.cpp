@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pbf {
+namespace pbf::inline render_module {
 namespace {
 
 // Viridis (S. van der Walt, N. Smith, E. Firing, 2015; public domain, CC0) at 33 even places:
@@ -31,4 +31,4 @@ Rgb viridis(double t) {
   return color;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

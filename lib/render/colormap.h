@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace pbf {
+namespace pbf::inline render_module {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
@@ -14,4 +14,4 @@ inline constexpr Rgb kNoValue{230, 0, 120};
 /// Viridis: dark violet at t = 0 to yellow at 1; clamped outside, kNoValue for NaN.
 Rgb viridis(double t);
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

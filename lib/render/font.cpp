@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace pbf {
+namespace pbf::inline render_module {
 namespace {
 
 constexpr int kColumns = 5, kRows = 9;  // 7 rows of capitals and 2 below the line
@@ -193,4 +193,4 @@ double text_width(const std::string& text, double dot) {
   return lay_out(text, 0, 0, dot, [](const Glyph&, double, double, double) {}) - dot;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

@@ -7,7 +7,7 @@
 #include "lib/render/colormap.h"
 #include "lib/render/renderer.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 
 /// Draws one line of ASCII text, clipped to the image. (x, y): left end and top of the capitals, in
 /// pixels. `dot`: pixels between neighbouring dots (capitals are 7 dots high). "^" raises the next
@@ -17,4 +17,4 @@ void draw_text(Image& image, const std::string& text, double x, double y, double
 /// Width of the text in pixels.
 double text_width(const std::string& text, double dot);
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

@@ -8,7 +8,7 @@
 #include "lib/render/gl_platform.h"
 #include "lib/render/gl_table.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 
 /// Names that dlopen tries, in this order.
 struct GlLibraries {
@@ -53,4 +53,4 @@ class GlCurrent {
   GlContext& context_;
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

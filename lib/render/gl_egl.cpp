@@ -10,7 +10,7 @@
 #include "lib/base/error.h"
 #include "lib/render/gl_platform.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 namespace {
 
 // Types and values of EGL/egl.h and EGL/eglext.h.
@@ -152,4 +152,4 @@ std::unique_ptr<GlPlatform> open_egl(const std::vector<std::string>& libraries, 
   return nullptr;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

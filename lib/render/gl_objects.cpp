@@ -3,7 +3,7 @@
 #include "lib/base/error.h"
 #include "lib/render/shaders.h"
 
-namespace pbf::gl {
+namespace pbf::inline render_module::gl {
 namespace {
 
 template <class GetInt, class GetLog>
@@ -100,4 +100,4 @@ void Target::draw_into() const {
   gl_.Viewport(0, 0, width_, height_);
 }
 
-}  // namespace pbf::gl
+}  // namespace pbf::inline render_module::gl

@@ -8,7 +8,7 @@
 
 #include "lib/render/gl_table.h"
 
-namespace pbf::gl {
+namespace pbf::inline render_module::gl {
 
 /// A linked program. Throws Error(unavailable) with the driver's message when it does not build.
 class Program {
@@ -69,4 +69,4 @@ class Target {
   std::array<Uint, 2> textures_{};
 };
 
-}  // namespace pbf::gl
+}  // namespace pbf::inline render_module::gl

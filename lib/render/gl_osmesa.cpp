@@ -8,7 +8,7 @@
 #include "lib/render/gl_platform.h"
 #include "lib/render/gl_table.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 namespace {
 
 // Values of GL/osmesa.h.
@@ -73,4 +73,4 @@ std::unique_ptr<GlPlatform> open_osmesa(const std::vector<std::string>& librarie
   return nullptr;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf {
+namespace pbf::inline render_module {
 
 /// A context of OpenGL 3.3 core with no surface of its own; we draw into our own framebuffer.
 class GlPlatform {
@@ -27,4 +27,4 @@ std::unique_ptr<GlPlatform> open_egl(const std::vector<std::string>& libraries, 
 /// dlopen of the first library that opens; null with the reasons appended to `tried`.
 void* open_library(const std::vector<std::string>& names, std::string& tried);
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace pbf::gl {
+namespace pbf::inline render_module::gl {
 
 using Enum = std::uint32_t;
 using Uint = std::uint32_t;
@@ -97,4 +97,4 @@ struct Table {
 #undef PBF_GL_MEMBER
 };
 
-}  // namespace pbf::gl
+}  // namespace pbf::inline render_module::gl

@@ -7,7 +7,7 @@
 #include "lib/render/colormap.h"
 #include "lib/render/font.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 namespace {
 
 constexpr Rgb kInk{42, 48, 58};
@@ -97,4 +97,4 @@ void draw_overlay(Image& image, const std::string& title, const std::string& uni
   draw_text(image, time_text(time), 8 * bar.dot, 6 * bar.dot, bar.dot, kInk);
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

@@ -7,7 +7,7 @@
 
 #include "lib/render/renderer.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 
 struct Tick {
   double value;
@@ -31,4 +31,4 @@ BarPlace bar_place(int width, int height, const std::vector<Tick>& ticks);
 void draw_overlay(Image& image, const std::string& title, const std::string& unit,
                   std::array<double, 2> range, double time);
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

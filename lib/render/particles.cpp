@@ -6,7 +6,7 @@
 #include "lib/base/error.h"
 #include "lib/render/vector3.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 namespace {
 
 /// Row i of a field in double, whatever its type.
@@ -111,4 +111,4 @@ void collect(const Snapshot& snapshot, const View& view, const Projection& proje
   }
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

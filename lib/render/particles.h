@@ -8,7 +8,7 @@
 #include "lib/render/colormap.h"
 #include "lib/render/renderer.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 
 struct ParticleVertex {
   float x, y, depth;  ///< centre in view space, m: subtracted and turned in double before rounding
@@ -35,4 +35,4 @@ void collect(const Snapshot& snapshot, const View& view, const Projection& proje
 /// Throws Error(bad_input) unless `snapshot` has what a picture coloured by `color` reads.
 void check_fields(const Snapshot& snapshot, ColorBy color);
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

@@ -12,7 +12,7 @@
 #include "lib/base/error.h"
 #include "lib/render/renderer.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 namespace {
 
 /// False when libpng reports an error (a full disk, say). libpng leaves by longjmp, so nothing in
@@ -70,4 +70,4 @@ void write_png(const std::string& path, const Image& image, Naming naming) {
   out.finish(false);
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

@@ -15,7 +15,7 @@
 #include "lib/render/particles.h"
 #include "lib/render/renderer.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 namespace {
 
 constexpr std::size_t kWaiting = 2;  // pictures; each holds a copy of its particles
@@ -141,4 +141,4 @@ void RenderThread::finish() {
 
 double RenderThread::seconds() const { return impl_->seconds; }
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

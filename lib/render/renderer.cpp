@@ -15,7 +15,7 @@
 #include "lib/render/shaders.h"
 #include "lib/render/vector3.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 namespace {
 
 void check_view(const View& view) {
@@ -205,4 +205,4 @@ Image Renderer::draw(const Snapshot& snapshot) {
 
 std::string Renderer::backend() const { return impl_->context.backend(); }
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

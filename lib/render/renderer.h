@@ -12,7 +12,7 @@
 #include "lib/scene/scene.h"
 #include "lib/solver/snapshot.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 
 /// 8-bit RGB, row-major, first row on top.
 struct Image {
@@ -85,4 +85,4 @@ class RenderThread {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

@@ -1,7 +1,7 @@
 // The three GLSL programs. View space as in camera.h: x right, y up, z = depth, in m.
 #pragma once
 
-namespace pbf::shaders {
+namespace pbf::inline render_module::shaders {
 
 /// In front of every shader.
 inline constexpr const char* kHead = R"(#version 330 core
@@ -142,4 +142,4 @@ void main() {
 }
 )";
 
-}  // namespace pbf::shaders
+}  // namespace pbf::inline render_module::shaders

@@ -5,7 +5,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 
 inline Double3 operator+(const Double3& a, const Double3& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
@@ -23,4 +23,4 @@ inline Double3 cross(const Double3& a, const Double3& b) {
 inline double length(const Double3& a) { return std::sqrt(dot(a, a)); }
 inline Double3 unit(const Double3& a) { return (1 / length(a)) * a; }
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

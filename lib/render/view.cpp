@@ -5,7 +5,7 @@
 #include "lib/render/renderer.h"
 #include "lib/render/vector3.h"
 
-namespace pbf {
+namespace pbf::inline render_module {
 
 View view_of(const Scene& scene, std::int64_t particles) {
   const Render render = scene.render.value_or(Render{});
@@ -37,4 +37,4 @@ View view_of(const Scene& scene, std::int64_t particles) {
   return view;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline render_module

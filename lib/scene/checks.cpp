@@ -8,7 +8,7 @@
 #include "lib/scene/rounding.h"
 #include "lib/scene/validate.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 constexpr const char* kAxes[] = {"x", "y", "z"};
@@ -122,7 +122,7 @@ class Checker {
   }
 
   /// Whether numbers of the precision can tell where a particle is, and where it is after a step.
-  /// Nothing else limits the size of a domain: the grid's cells grow with it (lib/plan).
+  /// Nothing else limits the size of a domain: the grid's cells grow with it (lib/program).
   void check_rounding() {
     if (!p_.good({"fluid.spacing", "fluid.smoothing_ratio", "precision", "dimensions", "gravity",
                   "bodies", "time.step", "time.end", "solver.substeps"}))
@@ -267,4 +267,4 @@ class Checker {
 
 void check_scene(const PlacedScene& placed, Problems& problems) { Checker(placed, problems).run(); }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

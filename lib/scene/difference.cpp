@@ -4,7 +4,7 @@
 
 #include "lib/scene/keys.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 /// The guard changes no particle, but where its alarms shorten the step.
@@ -55,4 +55,4 @@ std::string physics_difference(const Scene& before, const Scene& now) {
   return body_difference(before, now);
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

@@ -5,11 +5,11 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 /// The first key in which two scenes differ, and how: "solver.iterations: 4 before, 8 now"; empty
 /// when there is none. Keys that leave the results of a run alone up to its end are not looked at:
 /// name, time.end, threads, backend, solver.reproducible and those of checkpoint.
 std::string physics_difference(const Scene& before, const Scene& now);
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

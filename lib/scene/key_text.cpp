@@ -5,7 +5,7 @@
 #include "lib/scene/number.h"
 #include "lib/scene/value.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 /// Edit distance with transpositions of neighbours (optimal string alignment).
@@ -35,6 +35,12 @@ std::string Key::block() const {
 }
 
 std::string Key::leaf() const { return after_last_dot(path); }
+
+const Key* find_renamed(const std::string& path) {
+  for (const Key& key : scene_keys())
+    if (!key.was.empty() && key.was == path) return &key;
+  return nullptr;
+}
 
 const Key* find_key(const std::string& path) {
   for (const Key& key : scene_keys())
@@ -67,7 +73,7 @@ std::string nearest_path(const std::string& path) {
   for (const Block& block : scene_blocks())
     if (!block.path.empty()) paths.push_back(block.path == "bodies[]" ? "bodies" : block.path);
   for (const Key& key : scene_keys()) paths.push_back(key.path);
-  // First among the block's own keys: `solver.step` is near solver.step_length, not time.step.
+  // First among the block's own keys: `solver.step` is near solver.sor, not time.step.
   const auto parent = [](const std::string& p) {
     const std::size_t dot = p.rfind('.');
     return dot == std::string::npos ? std::string() : p.substr(0, dot);
@@ -115,4 +121,4 @@ std::string value_text(const Key& key, const Scene& scene, const Body& body) {
   return format_field(key, key.field(const_cast<Scene&>(scene), const_cast<Body&>(body)));
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

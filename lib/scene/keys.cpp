@@ -1,6 +1,6 @@
 #include "lib/scene/keys.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -47,6 +47,10 @@ Key required(Key key) {
 }
 Key automatic(Key key) {
   key.automatic = true;
+  return key;
+}
+Key renamed(const char* was, Key key) {
+  key.was = was;
   return key;
 }
 Key shapes(unsigned mask, Key key) {
@@ -165,7 +169,7 @@ std::vector<Key> solver_keys() {
              "viscosity and vorticity act once per update.",
              SCENE(&s.solver.substeps)),
       words("solver.method", {"jacobi", "chebyshev"},
-            "jacobi: every sweep with omega = step_length. chebyshev: omega follows Chebyshev's "
+            "jacobi: every sweep with omega = sor. chebyshev: omega follows Chebyshev's "
             "steps for eigenvalues from 1/2 to 3/2 of Jacobi's matrix, large ones first: less "
             "error for the same work from 2 iterations on.",
             SCENE(choice(s.solver.method))),
@@ -177,16 +181,21 @@ std::vector<Key> solver_keys() {
             "one_sided: only compression is corrected, C = max(rho/rho0 - 1, 0). two_sided: C = "
             "rho/rho0 - 1, which pulls particles together and needs `tensile` against clusters.",
             SCENE(choice(s.solver.constraint))),
-      number("solver.relaxation", "", {0, 1e12},
-             "eps h^2, in the denominator of lambda (constraint force mixing, made dimensionless). "
-             "Larger is softer.",
-             SCENE(&s.solver.relaxation)),
-      automatic(
-          number("solver.step_length", "", {0, 2, true},
-                 "Factor omega on the position change of one sweep; below 1 under-relaxes. "
-                 "auto: min(1, (2.5 d/h)^2), in two dimensions min(1, (3 d/h)^(4/3)), since more "
-                 "neighbours need smaller steps, and less where the density is above rest_density.",
-                 SCENE(&s.solver.step_length))),
+      renamed("solver.relaxation", number("solver.cfm", "", {0, 1e12},
+                                          "eps h^2, in the denominator of lambda (constraint force "
+                                          "mixing, made dimensionless). "
+                                          "Larger is softer.",
+                                          SCENE(&s.solver.cfm))),
+      renamed(
+          "solver.step_length",
+          automatic(number(
+              "solver.sor", "", {0, 2, true},
+              "Factor omega on the position change of one sweep (successive over-relaxation; below "
+              "1 it "
+              "under-relaxes). "
+              "auto: min(1, (2.5 d/h)^2), in two dimensions min(1, (3 d/h)^(4/3)), since more "
+              "neighbours need smaller steps, and less where the density is above rest_density.",
+              SCENE(&s.solver.sor)))),
       words("solver.boundary", {"density", "clamp"},
             "density: walls count in the density like fluid behind them. clamp: particles are only "
             "put back into the box.",
@@ -370,7 +379,7 @@ const std::vector<Block>& scene_blocks() {
       on_by_default(optional_block(
           "guard", "Stops a run at a measure that makes no sense, and names the culprit.",
           OPTIONAL(s.guard))),
-      optional_block("output", "Frames in run.h5.", OPTIONAL(s.output)),
+      optional_block("output", "Frames in run.vtkhdf.", OPTIONAL(s.output)),
       optional_block("checkpoint",
                      "The whole state, now and then and at the end. A run that a signal or the "
                      "wall-time limit stops saves it also without this block.",
@@ -401,4 +410,4 @@ Scene scene_with_all_blocks() {
   return scene;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

@@ -11,7 +11,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 /// A field that is one word of Key::choices; get and set speak of its index.
 struct ChoiceField {
@@ -43,6 +43,7 @@ struct Key {
   bool automatic = false;  ///< `auto` is allowed: an absent optional, or 0 of a plain number
   unsigned shapes = 0;     ///< bodies: bit 1 << Shape of every shape that has this key
   std::function<Field(Scene&, Body&)> field;
+  std::string was{};  ///< its path in earlier versions; empty: the same
 
   std::string block() const;  ///< "fluid", "" for the top level, "bodies[]"
   std::string leaf() const;   ///< "spacing"
@@ -66,6 +67,8 @@ const std::vector<Block>& scene_blocks();
 const std::vector<std::string>& shape_names();
 
 const Key* find_key(const std::string& path);
+/// The key that had this path in earlier versions, or null.
+const Key* find_renamed(const std::string& path);
 const Block* find_block(const std::string& path);
 /// Whether a block and those that it stands in are there.
 bool is_present(const Scene& scene, const std::string& block);
@@ -84,4 +87,4 @@ std::string range_text(const Key& key);
 /// YAML text of the key's value in a scene or body.
 std::string value_text(const Key& key, const Scene& scene, const Body& body);
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

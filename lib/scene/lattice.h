@@ -8,7 +8,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 /// Largest number of particles of a scene: ids are 32-bit and signed.
 inline constexpr double kMaxParticles = 2147483647.0;
@@ -64,4 +64,4 @@ inline double lattice_count(const Body& body, double d, std::optional<double> pl
   return sum;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

@@ -8,11 +8,12 @@
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
 #include "lib/base/plain_text.h"
+#include "lib/scene/keys.h"
 #include "lib/scene/overrides.h"
 #include "lib/scene/validate.h"
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{4} << 20;     // of a scene or a study
@@ -76,14 +77,45 @@ Scene scene_of_tree(const Node& root, Problems& problems) {
   return placed.scene;
 }
 
-Scene parse_scene(const std::string& text, const std::string& origin,
-                  const std::vector<std::string>& overrides) {
-  Node root = tree_of(text, origin, "scene");
+namespace {
+
+Scene scene_with_overrides(Node root, const std::vector<std::string>& overrides) {
   Problems problems;
   for (const std::string& argument : overrides) apply_override(root, argument, problems);
   const Scene scene = scene_of_tree(root, problems);
   problems.raise();
   return scene;
+}
+
+void use_new_names(Node& node, const std::string& block) {
+  for (std::size_t i = 0; i < node.keys.size(); ++i) {
+    const std::string path = (block.empty() ? "" : block + ".") + node.keys[i].text;
+    if (const Key* now = find_renamed(path)) node.keys[i].text = now->leaf();
+    use_new_names(node.items[i], path);
+  }
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::string& origin,
+                  const std::vector<std::string>& overrides) {
+  return scene_with_overrides(tree_of(text, origin, "scene"), overrides);
+}
+
+Scene parse_stored_scene(const std::string& text, const std::string& origin,
+                         const std::vector<std::string>& overrides) {
+  Node root = tree_of(text, origin, "scene");
+  use_new_names(root, "");
+  return scene_with_overrides(std::move(root), overrides);
+}
+
+LoadedScene load_stored_scene(const std::string& path) {
+  LoadedScene loaded;
+  loaded.path = path;
+  loaded.folder = std::filesystem::path(path).parent_path().string();
+  loaded.text = read_text_file(path, "scene");
+  loaded.scene = parse_stored_scene(loaded.text, path, {});
+  return loaded;
 }
 
 LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides) {
@@ -96,4 +128,4 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
   return loaded;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

@@ -8,7 +8,7 @@
 #include "lib/scene/scene.h"
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 /// What was read, beside the scene: needed to write provenance.
 struct LoadedScene {
@@ -31,6 +31,12 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
 Scene parse_scene(const std::string& text, const std::string& origin,
                   const std::vector<std::string>& overrides);
 
+/// Of a scene that a program has written (run file, checkpoint, run folder), an earlier version
+/// too: keys that have been renamed since are read under their old names.
+Scene parse_stored_scene(const std::string& text, const std::string& origin,
+                         const std::vector<std::string>& overrides);
+LoadedScene load_stored_scene(const std::string& path);
+
 /// The two halves of load_scene, for those who change values in between: the tree of a YAML file
 /// (`what` it should be, for messages: "scene"), and the scene of a tree, with what is wrong added
 /// to `problems` (the scene is of no use then).
@@ -47,4 +53,4 @@ std::string reference_yaml();
 /// JSON Schema (draft 2020-12) of a scene file, from the table of keys.
 std::string json_schema();
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

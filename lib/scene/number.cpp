@@ -8,7 +8,7 @@
 
 #include "lib/base/text.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 /// Whether `s` is a decimal number; `whole` tells whether it has digits (and a sign) only.
@@ -117,4 +117,4 @@ std::string too_many_text(double count) {
          "eighth of the particles) or make the bodies smaller";
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

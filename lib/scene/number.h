@@ -6,7 +6,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 /// Fewest digits that read back to the same double: 0.1, 1000, 1.0e-05. An exponent always comes
 /// with a point, for YAML 1.1 readers take 1e-05 for text.
@@ -31,4 +31,4 @@ std::string count_text(double count);
 /// Message for a scene with more particles than ids.
 std::string too_many_text(double count);
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

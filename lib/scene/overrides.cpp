@@ -4,7 +4,7 @@
 
 #include "lib/base/plain_text.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 /// Of a block that settings add to; every one of them is looked for among the others.
@@ -136,4 +136,4 @@ void set_value(Node& root, const std::string& path, const Node& value, Problems&
   if (is_path(path, value.place(), problems)) put(root, path, value, value.place(), problems);
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

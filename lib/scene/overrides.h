@@ -6,7 +6,7 @@
 #include "lib/scene/problems.h"
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 /// Replaces or creates the value at the key's path: "solver.iterations=8", "bodies.0.count=10",
 /// "bodies[0].count=10", "viscosity=off". The value is YAML. Blocks on the way are created. What
@@ -16,4 +16,4 @@ void apply_override(Node& root, const std::string& argument, Problems& problems)
 /// The same with a value that was read already: messages name the place where it stands.
 void set_value(Node& root, const std::string& path, const Node& value, Problems& problems);
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

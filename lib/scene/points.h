@@ -10,7 +10,7 @@
 #include "lib/scene/lattice.h"
 #include "lib/scene/random.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 /// put(point in m) for every particle of a block, sphere or random box. d: spacing of the lattice;
 /// plane: of Scene::plane(), along y what lies off it is left as it is.
@@ -52,4 +52,4 @@ void for_each_point(const Body& body, double d, std::optional<double> plane, Put
   }
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

@@ -7,7 +7,7 @@
 
 #include "lib/base/error.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 class Problems {
  public:
@@ -38,4 +38,4 @@ class Problems {
   std::vector<std::string> lines_;  ///< the first of them, to be shown
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

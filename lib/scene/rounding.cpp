@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 /// Distance of neighbouring numbers as large as x, with so many digits after the first.
@@ -45,4 +45,4 @@ Rounding rounding_of(const Scene& s) {
   return worst;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

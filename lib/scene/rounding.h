@@ -3,7 +3,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 /// How far the arithmetic of a scene's precision follows a fall, or without gravity the bodies'
 /// velocities, along the axis where it follows worst. Positions count from the domain's lower
@@ -28,4 +28,4 @@ constexpr double kLargestSpacing = 1.0 / 128;  ///< h: 0.13 % of density
 constexpr double kLargestLoss = 0.01;          ///< of the distance, and of the velocity
 constexpr double kLeastLoss = 0.001;           ///< h: nobody sees less
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 using Double3 = std::array<double, 3>;
 
@@ -57,7 +57,7 @@ struct Fluid {
   bool operator==(const Fluid&) const = default;
 };
 
-/// A step that follows the flow: lib/solver/adaptive_step.h.
+/// A step that follows the flow: lib/run/step_control.h.
 struct AdaptiveTime {
   std::optional<double> step_min;  ///< s, no step is shorter; absent: time.step/64
   double cfl = 0.4;                ///< fastest particle: v dt <= cfl h
@@ -80,14 +80,14 @@ struct SolverSettings {
   SolverMethod method = SolverMethod::jacobi;
   KernelMode kernels = KernelMode::consistent;
   ConstraintMode constraint = ConstraintMode::one_sided;
-  double relaxation = 1e-4;           ///< dimensionless eps^ = eps h^2 in lambda's denominator
-  std::optional<double> step_length;  ///< omega, factor on the position change of one sweep;
-                                      ///< absent: from h/d, see lib/plan/plan.h
+  double cfm = 1e-4;          ///< dimensionless eps^ = eps h^2 in lambda's denominator
+  std::optional<double> sor;  ///< omega, factor on the position change of one sweep;
+                              ///< absent: from h/d, see lib/program/plan.h
   BoundaryMode boundary = BoundaryMode::density;
   double wall_margin = 0;       ///< m, distance to a wall at which particles are clamped
   double velocity_damping = 1;  ///< factor on the velocity, once per update
   double speed_limit = 0;       ///< h per time.step, faster particles are slowed down; 0: no limit
-  bool prestabilize = true;     ///< take the compression out of the start, lib/diag/prestabilize.h
+  bool prestabilize = true;     ///< take the compression out of the start, lib/run/prestabilize.h
   bool fused = true;            ///< density and lambda in one loop over the neighbours
   bool reproducible = false;    ///< cuda: the CPU's bits, at a price (kernels/README.md, "Bits")
   bool operator==(const SolverSettings&) const = default;
@@ -113,7 +113,7 @@ struct Vorticity {
   bool operator==(const Vorticity&) const = default;
 };
 
-/// What stops a run before it wastes time on nonsense; lib/diag/guard.h says how it is told.
+/// What stops a run before it wastes time on nonsense; lib/run/guard.h says how it is told.
 struct GuardSettings {
   std::optional<double> speed;   ///< m/s; absent: from the scene and the start
   std::optional<double> energy;  ///< growth, as a share of the energy at the start; absent: 0.1 and
@@ -174,7 +174,7 @@ struct Scene {
   std::optional<Render> render;
   Backend backend = Backend::cpu;
   Precision precision = Precision::single;
-  int threads = 0;  ///< CPU threads; 0: by the number of particles (lib/solver/threads.h)
+  int threads = 0;  ///< CPU threads; 0: by the number of particles (lib/program/threads.h)
 
   double h() const { return fluid.spacing * fluid.smoothing_ratio; }  ///< m, smoothing length
   /// m, y of the plane that holds all particles of a scene in two dimensions; else nothing.
@@ -196,4 +196,4 @@ struct Scene {
   bool operator==(const Scene&) const = default;
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

@@ -4,7 +4,7 @@
 
 #include "lib/base/sha256.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 /// sha256sum's way: a path with such characters has them escaped, and a backslash before the
@@ -45,4 +45,4 @@ std::string files_difference(const std::string& before, const std::vector<SceneF
   return {};
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 struct SceneFile {
   std::string path;    ///< as the scene has it
@@ -22,4 +22,4 @@ std::string scene_digest(const std::string& resolved_scene, const std::string& f
 /// changed: SHA-256 ... before, ... now", empty when nothing has.
 std::string files_difference(const std::string& before, const std::vector<SceneFile>& now);
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

@@ -5,7 +5,7 @@
 #include "lib/scene/number.h"
 #include "lib/scene/value.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 std::string enumeration(const std::vector<std::string>& words) {
@@ -149,4 +149,4 @@ std::string json_schema() {
          object.substr(1) + "\n";
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

@@ -5,7 +5,7 @@
 #include "lib/scene/keys.h"
 #include "lib/scene/value.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 std::string join(const std::string& block, const std::string& leaf) {
@@ -94,6 +94,8 @@ class Validator {
       return read_child(*block, path, value);
     const Key* key = find_key(table);
     if (key == nullptr) {
+      if (const Key* now = find_renamed(table))
+        return report(name.place(), path, "is called " + now->path + " now; rename it");
       std::string what = "unknown key";
       std::string near = problems_.full() ? "" : nearest_path(table);
       const std::size_t list = near.find("[]");
@@ -210,4 +212,4 @@ bool PlacedScene::good(std::initializer_list<std::string> keys) const {
 
 PlacedScene validate(const Node& root, Problems& problems) { return Validator(problems).run(root); }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

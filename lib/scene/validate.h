@@ -9,7 +9,7 @@
 #include "lib/scene/scene.h"
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 /// A scene with the memory of where each key stood.
 struct PlacedScene {
@@ -31,4 +31,4 @@ PlacedScene validate(const Node& root, Problems& problems);
 /// of particles and cells within bounds. Skips what has a problem already.
 void check_scene(const PlacedScene& placed, Problems& problems);
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

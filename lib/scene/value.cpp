@@ -5,7 +5,7 @@
 
 #include "lib/scene/number.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 std::string list_of(const std::vector<std::string>& words) {
@@ -228,4 +228,4 @@ std::string yaml_text(const std::string& text) {
   return out + "\"";
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

@@ -7,7 +7,7 @@
 #include "lib/scene/keys.h"
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 /// Whether the field is a number or a group of numbers.
 bool is_numeric(const Field& field);
@@ -25,4 +25,4 @@ std::string yaml_text(const std::string& text);
 /// Nearest of `words`, or empty when nothing is near.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& words);
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

@@ -3,7 +3,7 @@
 #include "lib/scene/load.h"
 #include "lib/scene/value.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 constexpr std::size_t kWidth = 100;
@@ -155,4 +155,4 @@ std::string reference_yaml() {
          Writer(example_scene(), true).text();
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

@@ -10,7 +10,7 @@
 
 #include "lib/base/plain_text.h"
 
-namespace pbf {
+namespace pbf::inline scene_module {
 namespace {
 
 struct Refused {
@@ -173,4 +173,4 @@ Node parse_yaml(const std::string& text, const std::string& origin, bool lines) 
   return builder.take();
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

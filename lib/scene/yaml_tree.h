@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf {
+namespace pbf::inline scene_module {
 
 /// One value of a YAML document. Depth is limited to kMaxYamlDepth.
 struct Node {
@@ -38,4 +38,4 @@ struct YamlError {
 /// alone. Throws YamlError.
 Node parse_yaml(const std::string& text, const std::string& origin, bool lines);
 
-}  // namespace pbf
+}  // namespace pbf::inline scene_module

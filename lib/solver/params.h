@@ -7,9 +7,9 @@
 #include "kernels/params.h"
 #include "kernels/relative_motion.h"
 #include "kernels/smoothing.h"
-#include "lib/plan/axes.h"
-#include "lib/plan/plan.h"
-#include "lib/solver/adaptive_step.h"
+#include "lib/program/axes.h"
+#include "lib/program/plan.h"
+#include "lib/program/time_levels.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -82,9 +82,9 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   p.inv_cell = Real(1 / plan.cell_edge);
   p.vol = Real(plan.vol);
   p.two_sided = s.solver.constraint == ConstraintMode::two_sided;
-  p.relaxation = Real(s.solver.relaxation);
-  p.step_length = Real(plan.step_length);
-  p.ease_crowds = !s.solver.step_length;
+  p.cfm = Real(s.solver.cfm);
+  p.sor = Real(plan.sor);
+  p.ease_crowds = !s.solver.sor;
   if (s.tensile) {
     p.tensile_k = Real(s.tensile->k);
     const double q = s.tensile->delta_q, t = 1 - q;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf {
+namespace pbf::inline solver_module {
 
 enum class ScalarType { f32, f64, i32 };
 
@@ -46,4 +46,4 @@ struct Snapshot {
   }
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline solver_module

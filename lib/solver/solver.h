@@ -8,16 +8,18 @@
 #include <utility>
 #include <vector>
 
-#include "lib/diag/measures.h"
-#include "lib/scene/emit.h"
+#include "lib/scene/particles.h"
 #include "lib/scene/scene.h"
+#include "lib/solver/measures.h"
 #include "lib/solver/snapshot.h"
 #include "lib/solver/stage_event.h"
 #include "lib/solver/step_trace.h"
 
-namespace pbf {
-
+namespace pbf::inline program_module {
 struct Plan;
+}
+
+namespace pbf::inline solver_module {
 
 /// Seconds spent in one stage since the solver was made. `name` is the name of the pass.
 struct StageTime {
@@ -31,7 +33,7 @@ struct SolverInfo {
   std::string backend;    ///< cpu, cuda
   std::string precision;  ///< float, double
   std::string device;     ///< CPU model or GPU name
-  std::string driver;     ///< of the GPU; on the CPU the vector instructions (lib/cpu/simd.h)
+  std::string driver;     ///< of the GPU; on the CPU the vector instructions (lib/exec/cpu/simd.h)
   int threads = 0;
   double vol = 0;         ///< m/(rho0 h^3) with the calibrated mass: the weight of one particle
   double wall_scale = 0;  ///< factor on the walls' density, from the calibration
@@ -45,7 +47,7 @@ class Solver {
   virtual ~Solver() = default;
   /// Advances by `updates` times time.step.
   virtual void step(int updates) = 0;
-  /// From now on an update is 2^level steps (lib/solver/adaptive_step.h); 0 at first. The state and
+  /// From now on an update is 2^level steps (lib/run/step_control.h); 0 at first. The state and
   /// keep() know nothing of it.
   virtual void set_step_level(int level) = 0;
   /// Steps without time: new lists and sweeps, which part what is too near and draw nothing
@@ -97,15 +99,4 @@ class Solver {
 /// Throws Error(internal) for a state that a solver of n particles cannot take over.
 void check_state(const SolverState& state, std::int64_t n);
 
-/// Throws Error(unavailable) when the plan's peak of host memory is more than what is available
-/// here: an allocation that the system cannot back succeeds at first, and the process is killed
-/// later without a word. The memory of a device is checked by make_solver.
-void refuse_if_too_large(const Scene& scene, const Plan& plan);
-
-/// Throws Error(unavailable) when the backend, a device or memory is not there. Takes the particles
-/// and lets go of them as it goes.
-/// The particles stay where they are: what runs a scene from its start calls start_solver()
-/// (lib/diag/prestabilize.h).
-std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles);
-
-}  // namespace pbf
+}  // namespace pbf::inline solver_module

@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-namespace pbf {
+namespace pbf::inline solver_module {
 
 /// Why a run is stopped. The words of kAlarmNames stand in messages and in suite files.
 enum class Alarm { non_finite, outside, speed, energy, neighbors };
@@ -42,4 +42,4 @@ struct Fault {
   double value = 0;  ///< h/s for a velocity
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline solver_module

@@ -6,11 +6,11 @@
 
 #include "lib/base/error.h"
 
-namespace pbf {
+namespace pbf::inline solver_module {
 
 namespace {
 
-/// Volume kept and distance to the hydrostatic profile; lib/diag/README.md has the formulas.
+/// Volume kept and distance to the hydrostatic profile; lib/solver/DIAGNOSTICS.md has the formulas.
 void measure_pool(const MeasureSums& s, const RestPool& pool, double counted, Measures& m) {
   m.height_kept = m.hydrostatic_deviation = std::numeric_limits<double>::quiet_NaN();
   if (pool.axis < 0 || counted == 0) return;
@@ -115,4 +115,4 @@ Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type,
   return s;
 }
 
-}  // namespace pbf
+}  // namespace pbf::inline solver_module

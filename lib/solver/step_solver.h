@@ -11,8 +11,7 @@
 #include "lib/solver/solver.h"
 #include "lib/solver/stepper.h"
 
-namespace pbf {
-inline namespace PBF_VARIANT {
+namespace pbf::inline PBF_VARIANT {
 
 /// Positions and velocities of a scene in the internal frame, in the order of ids.
 template <class Real>
@@ -49,10 +48,12 @@ InternalState<Real> to_internal(const Scene& s, const Axes& axes, Particles part
   return out;
 }
 
-}  // namespace PBF_VARIANT
+}  // namespace pbf::inline PBF_VARIANT
+
+namespace pbf::inline solver_module {
 
 /// Sums in the internal frame, after so many updates and steps -> Measures in SI units and the
-/// scene's axes (lib/diag/README.md).
+/// scene's axes (lib/solver/DIAGNOSTICS.md).
 Measures to_measures(const MeasureSums& sums, const Scene& scene, const Plan& plan,
                      std::int64_t update, std::int64_t steps);
 
@@ -64,4 +65,4 @@ void refuse_trace(int level);
 Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type, std::size_t n,
                         std::int64_t update, double time);
 
-}  // namespace pbf
+}  // namespace pbf::inline solver_module

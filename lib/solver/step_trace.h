@@ -8,7 +8,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf {
+namespace pbf::inline solver_module {
 
 /// A state in h from Scene::origin() and h/s, along the scene's axes. A solver gives it in the
 /// order of ids and takes any order: that of its rows follows from the positions.
@@ -57,4 +57,4 @@ struct TraceOptions {
   const StepTrace* follow = nullptr;
 };
 
-}  // namespace pbf
+}  // namespace pbf::inline solver_module

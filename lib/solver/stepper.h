@@ -45,9 +45,8 @@ class Stepper {
         fused_(plan.fused),
         tensile_(plan.tensile) {
     for (int k = 0; k < iterations; ++k)
-      step_length_.push_back(
-          Real(plan.step_length *
-               (plan.sweep_factors.empty() ? 1 : plan.sweep_factors[std::size_t(k)])));
+      sor_.push_back(
+          Real(plan.sor * (plan.sweep_factors.empty() ? 1 : plan.sweep_factors[std::size_t(k)])));
     a_.make(exec_, p_, position, velocity, id);
     find_pairs();
     sum_density();
@@ -301,7 +300,7 @@ class Stepper {
       with_smoothing(mode_, p_.dimensions, [&](auto smoothing) {
         const auto round = [&] {
           for (int k = 0; k < iterations_; ++k) {
-            p_.step_length = step_length_[std::size_t(k)];
+            p_.sor = sor_[std::size_t(k)];
             const bool moves_on = joined && k == iterations_ - 1 && s < range.last - 1;
             sweep<decltype(smoothing)::value>(seen, ++range.sweeps, moves_on);
           }
@@ -391,7 +390,7 @@ class Stepper {
   KernelMode mode_;
   int iterations_, substeps_, lists_per_update_, more_rounds_;
   std::uint64_t residual_limit_;
-  std::vector<Real> step_length_;  ///< of each sweep
+  std::vector<Real> sor_;  ///< of each sweep
   bool fused_, tensile_;
   bool density_is_current_ = false, lists_are_current_ = false;
   Lists lists_{};

@@ -14,7 +14,7 @@
 
 #include "tests/backend/backend.h"
 #ifdef PBF_HAS_CUDA
-#include "lib/cuda/cuda_solver.h"
+#include "lib/exec/cuda/cuda_solver.h"
 #endif
 
 int main(int argc, char** argv) {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "lib/base/error.h"
-#include "lib/diag/watch.h"
+#include "lib/run/watch.h"
 #include "tests/backend/backend.h"
 #include "tests/catch.h"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "lib/diag/guard.h"
+#include "lib/run/guard.h"
 #include "tests/backend/backend.h"
 #include "tests/catch.h"
 

@@ -3,7 +3,7 @@
 #include "tests/catch.h"
 #ifdef PBF_HAS_CUDA
 #include "lib/base/error.h"
-#include "lib/cuda/cuda_solver.h"
+#include "lib/exec/cuda/cuda_solver.h"
 #endif
 
 using namespace oracle_test;

@@ -1,7 +1,7 @@
 // A step that is too long for fluid to see the fluid that it meets is told.
 #include <cmath>
 
-#include "lib/solver/adaptive_step.h"
+#include "lib/run/step_control.h"
 #include "tests/backend/backend.h"
 #include "tests/catch.h"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lib/diag/guard.h"
+#include "lib/run/guard.h"
 #include "tests/backend/backend.h"
 #include "tests/catch.h"
 

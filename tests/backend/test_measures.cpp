@@ -13,7 +13,7 @@ using backend_test::is_double;
 
 namespace {
 
-/// Measures by the definitions of lib/diag/README.md, from brute-force densities.
+/// Measures by the definitions of lib/solver/DIAGNOSTICS.md, from brute-force densities.
 struct Expected {
   double mean = 0, rms = 0, p99 = 0, max = 0, above_1 = 0, above_10 = 0;
 };

@@ -45,7 +45,7 @@ Outcome run(const Scratch& folder, const std::string& out, const Args& more = {}
 }
 
 std::string difference(const Scratch& folder) {
-  return run_difference(folder / "a/run.h5", folder / "b/run.h5");
+  return run_difference(folder / "a/run.vtkhdf", folder / "b/run.vtkhdf");
 }
 
 int count(const std::string& text, const std::string& part) {
@@ -70,7 +70,7 @@ TEST_CASE("a run that the guard stops goes on with time.adaptive, and says what 
   CHECK(has(o.out, "time step           " + std::to_string(changes) + " changes, shortest 0.0"));
   CHECK(has(o.out, " % of the updates"));
   // The steps of the measures: halves of time.step, and only of good ones.
-  const pbf::RunReader reader((folder / "a/run.h5").string());
+  const pbf::RunReader reader((folder / "a/run.vtkhdf").string());
   const auto dt = reader.log_column("dt"), updates = reader.log_column("update");
   REQUIRE(updates.size() == 33);
   bool halved = false;
@@ -154,7 +154,7 @@ TEST_CASE("with the shortest step the guard ends an adaptive run, with a scene t
   CHECK(o.code == 3);
   CHECK(has(o.err, "with the shortest step, 0.01 s (time.adaptive.step_min)"));
   CHECK(has(o.out, "1 times back to the last good state"));
-  CHECK(pbf::RunReader((folder / "a/run.h5").string()).status() == "diverged");
+  CHECK(pbf::RunReader((folder / "a/run.vtkhdf").string()).status() == "diverged");
   const std::string again = read_text(folder / "a/guard_scene.yaml");
   CHECK(has(again, "step: 0.01\n"));
   CHECK(has(again, "adaptive: off"));

@@ -77,9 +77,10 @@ TEST_CASE("a batch of 12 runs killed at random and rerun has the summary of the 
   CHECK(has(summary(folder / "a"), "s_iterations=4_kernels=paper_step=0.003,s.yaml,"));
   // Once more: nothing is run.
   const auto time =
-      fs::last_write_time(folder / "b/s_iterations=1_kernels=paper_step=0.002/run.h5");
+      fs::last_write_time(folder / "b/s_iterations=1_kernels=paper_step=0.002/run.vtkhdf");
   CHECK(pbf::test::pbf(killed, folder.path()).code == 0);
-  CHECK(fs::last_write_time(folder / "b/s_iterations=1_kernels=paper_step=0.002/run.h5") == time);
+  CHECK(fs::last_write_time(folder / "b/s_iterations=1_kernels=paper_step=0.002/run.vtkhdf") ==
+        time);
 }
 
 TEST_CASE("a batch over a folder tells which runs failed and why, and finishes the others") {
@@ -154,31 +155,31 @@ TEST_CASE("a run whose file is not its own is not called finished, and is made a
   auto collect = batch;
   collect.emplace_back("--collect");
   REQUIRE(pbf::test::pbf(batch, folder.path()).code == 0);
-  const std::string good = read_text(folder / "o/tiny/run.h5");
+  const std::string good = read_text(folder / "o/tiny/run.vtkhdf");
   REQUIRE(pbf::test::pbf({"run", "tiny.yaml", "--quiet", "--out", "y", "--set", "time.end=0.05"},
                          folder.path())
               .code == 0);
   std::string why;
   SECTION("garbage") {
-    folder.write("o/tiny/run.h5", "garbage");
-    why = "DONE is there, but o/tiny/run.h5: cannot read";
+    folder.write("o/tiny/run.vtkhdf", "garbage");
+    why = "DONE is there, but o/tiny/run.vtkhdf: cannot read";
   }
   SECTION("empty") {
-    folder.write("o/tiny/run.h5", "");
-    why = "DONE is there, but o/tiny/run.h5: cannot read";
+    folder.write("o/tiny/run.vtkhdf", "");
+    why = "DONE is there, but o/tiny/run.vtkhdf: cannot read";
   }
   SECTION("truncated") {
-    folder.write("o/tiny/run.h5", good.substr(0, good.size() / 2));
-    why = "DONE is there, but o/tiny/run.h5: cannot read";
+    folder.write("o/tiny/run.vtkhdf", good.substr(0, good.size() / 2));
+    why = "DONE is there, but o/tiny/run.vtkhdf: cannot read";
   }
   SECTION("missing") {
-    fs::remove(folder / "o/tiny/run.h5");
-    why = "DONE is there, but run.h5 is missing";
+    fs::remove(folder / "o/tiny/run.vtkhdf");
+    why = "DONE is there, but run.vtkhdf is missing";
   }
   SECTION("of a shorter run") {
-    fs::copy_file(folder / "y/run.h5", folder / "o/tiny/run.h5",
+    fs::copy_file(folder / "y/run.vtkhdf", folder / "o/tiny/run.vtkhdf",
                   fs::copy_options::overwrite_existing);
-    why = "DONE is there, but the frames of run.h5 end at update 10, the run at 20";
+    why = "DONE is there, but the frames of run.vtkhdf end at update 10, the run at 20";
   }
   const Outcome seen = pbf::test::pbf(collect, folder.path());
   CAPTURE(seen.out, seen.err);
@@ -191,7 +192,8 @@ TEST_CASE("a run whose file is not its own is not called finished, and is made a
   CHECK(again.code == 0);
   CHECK(has(again.out, "1 finished"));
   CHECK(has(read_text(folder / "o/tiny/log.txt"), why));
-  CHECK(pbf::test::pbf({"compare", "o/tiny/run.h5", "o/tiny/run.h5"}, folder.path()).code == 0);
+  CHECK(pbf::test::pbf({"compare", "o/tiny/run.vtkhdf", "o/tiny/run.vtkhdf"}, folder.path()).code ==
+        0);
   CHECK(pbf::test::pbf(collect, folder.path()).code == 0);
 }
 
@@ -205,7 +207,7 @@ TEST_CASE("a run file of another scene in a finished run's folder is a failed ru
   REQUIRE(pbf::test::pbf({"run", "tiny.yaml", "--quiet", "--out", "x", "--set", "gravity=[0,0,-5]"},
                          folder.path())
               .code == 0);
-  fs::copy_file(folder / "x/run.h5", folder / "o/tiny/run.h5",
+  fs::copy_file(folder / "x/run.vtkhdf", folder / "o/tiny/run.vtkhdf",
                 fs::copy_options::overwrite_existing);
   for (const auto& command : {collect, batch}) {
     const Outcome o = pbf::test::pbf(command, folder.path());
@@ -214,7 +216,7 @@ TEST_CASE("a run file of another scene in a finished run's folder is a failed ru
     CHECK(has(o.out, "0 finished, 1 failed"));
     CHECK(has(o.err, "of another scene: gravity"));
   }
-  CHECK(read_text(folder / "o/tiny/run.h5") == read_text(folder / "x/run.h5"));
+  CHECK(read_text(folder / "o/tiny/run.vtkhdf") == read_text(folder / "x/run.vtkhdf"));
 }
 
 TEST_CASE("a batch whose scenes have changed is not collected as finished") {

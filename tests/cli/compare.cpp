@@ -16,7 +16,7 @@ std::string run(const Scratch& folder, const std::string& out, std::vector<std::
   const Outcome o = pbf::test::pbf(more, folder.path());
   CAPTURE(o.err);
   REQUIRE(o.code == 0);
-  return out + "/run.h5";
+  return out + "/run.vtkhdf";
 }
 
 Outcome compare(const Scratch& folder, std::vector<std::string> args) {
@@ -68,7 +68,7 @@ TEST_CASE("compare: run files of other scenes, particles, frames or fields say w
   }
   SECTION("a field missing") {
     key = {"--set", "output.fields=[velocity]"};
-    fragments = {"only A has the field density, b/run.h5 has not", "output.fields"};
+    fragments = {"only A has the field density, b/run.vtkhdf has not", "output.fields"};
   }
   SECTION("a shorter run") {
     key = {"--set", "time.end=0.05"};
@@ -108,7 +108,7 @@ TEST_CASE("compare: shipped scenes in float and in double are the same") {
     args.insert(args.end(), scene.begin() + 1, scene.end());
     REQUIRE(pbf::test::pbf(args, folder.path()).code == 0);
   }
-  const Outcome o = compare(folder, {"float/run.h5", "double/run.h5"});
+  const Outcome o = compare(folder, {"float/run.vtkhdf", "double/run.vtkhdf"});
   CAPTURE(o.out, o.err);
   CHECK(o.code == 0);
   CHECK(has(o.out, "values up to 16 roundings apart are equal"));
@@ -122,12 +122,12 @@ TEST_CASE("compare: a run that was stopped differs until it is resumed") {
   stopped.insert(stopped.end(), {"--max-walltime", "0.000001"});
   resumed.emplace_back("--resume");
   REQUIRE(pbf::test::pbf(stopped, folder.path()).code == 75);
-  Outcome o = compare(folder, {a, "b/run.h5"});
+  Outcome o = compare(folder, {a, "b/run.vtkhdf"});
   CAPTURE(o.out, o.err);
   CHECK(o.code == 6);
   CHECK(has(o.out, "A is finished, B is stopped (--max-walltime)"));
   REQUIRE(pbf::test::pbf(resumed, folder.path()).code == 0);
-  o = compare(folder, {a, "b/run.h5"});
+  o = compare(folder, {a, "b/run.vtkhdf"});
   CAPTURE(o.out, o.err);
   CHECK(o.code == 0);
   CHECK(has(o.out, "same to the last byte"));

@@ -96,15 +96,15 @@ TEST_CASE("runs killed at random moments lose no reported frame and end in the s
     if (code != 0) ++done;
     const std::int64_t safe = reported(folder / "b.json");
     if (safe > 0) {
-      const pbf::RunReader reader((folder / "b/run.h5").string());
+      const pbf::RunReader reader((folder / "b/run.vtkhdf").string());
       REQUIRE(reader.frames() >= safe);
       REQUIRE(reader.frame(reader.frames() - 1).count == reader.frame(0).count);
-      REQUIRE(opens_in_h5py(folder / "b/run.h5", safe));
+      REQUIRE(opens_in_h5py(folder / "b/run.vtkhdf", safe));
       ++hit;
     }
     if (code == 0 || (done == kills)) {
       REQUIRE(pbf::test::pbf(killed, folder.path()).code == 0);
-      REQUIRE(run_difference(folder / "a/run.h5", folder / "b/run.h5") == "");
+      REQUIRE(run_difference(folder / "a/run.vtkhdf", folder / "b/run.vtkhdf") == "");
       fs::remove_all(folder / "b");
       fs::remove(folder / "b.json");
       ++rounds;

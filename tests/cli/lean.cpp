@@ -108,7 +108,7 @@ TEST_CASE(
     CHECK_FALSE(has(bare.maps, absent));
   }
   CHECK(bare.threads == 1);
-  CHECK_FALSE(fs::exists(folder / "o/run.h5"));
+  CHECK_FALSE(fs::exists(folder / "o/run.vtkhdf"));
   CHECK_FALSE(fs::exists(folder / "o/frames"));
   // Not "write": a run that is stopped saves its state.
   for (const char* stage : {"download", "render", "xsph", "vorticity"}) {
@@ -123,7 +123,7 @@ TEST_CASE("the writer's thread comes with the key output, and with it the stages
   CAPTURE(look.outcome.err);
   REQUIRE(look.outcome.code == 75);
   CHECK(look.threads == 2);
-  CHECK(fs::exists(folder / "o/run.h5"));
+  CHECK(fs::exists(folder / "o/run.vtkhdf"));
   for (const char* stage : {"download", "write  "})
     CHECK(has(look.outcome.out, std::string("\n  ") + stage));
   CHECK_FALSE(has(look.maps, "LLVM"));
@@ -214,6 +214,6 @@ TEST_CASE("bench --calibrate stores what plan estimates the time of an update fr
   CHECK(number_after(json.out, "\"time_per_update_ms\":") > 0);
   CHECK(has(other.out, "not known"));  // another precision: no guess
   CHECK(bad.code == 2);
-  CHECK(has(bad.err, "not a line of a calibration"));
+  CHECK(has(bad.err, "; remove the file and run pbf bench --calibrate again"));
   CHECK(has(bad.err, "bad.csv:"));
 }

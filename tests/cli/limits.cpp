@@ -21,11 +21,11 @@ TEST_CASE("a limit on the size of files is an error with exit code 5, and frames
       folder.path());
   CAPTURE(o.err);
   CHECK(o.code == 5);
-  CHECK(has(o.err, "run.h5: cannot write frame"));
+  CHECK(has(o.err, "run.vtkhdf: cannot write frame"));
   CHECK(has(o.err, "File too large; frames 0.."));
   CHECK(has(read_text(folder / "out/tiny/log.txt"), "File too large"));
   CHECK_FALSE(fs::exists(folder / "out/tiny/DONE"));
-  const pbf::RunReader reader((folder / "out/tiny/run.h5").string());
+  const pbf::RunReader reader((folder / "out/tiny/run.vtkhdf").string());
   REQUIRE(reader.frames() > 1);
   CHECK(reader.frame(reader.frames() - 1).count > 0);
 }
@@ -83,7 +83,7 @@ TEST_CASE("where no thread can be started, the error names the limit and the rem
 #ifdef PBF_HAS_RENDER
   // Mesa would wait for threads that it could not start.
   REQUIRE(shell("\"$PBF\" run tiny.yaml --out f && chmod -R a+rX f", folder.path()).code == 0);
-  const Outcome pictures = run("render f/run.h5 --frames 0 --size 64x64 --out p");
+  const Outcome pictures = run("render f/run.vtkhdf --frames 0 --size 64x64 --out p");
   CAPTURE(pictures.err);
   CHECK((pictures.code == 0 || has(pictures.err, "none could be opened")));
 #endif
@@ -126,7 +126,7 @@ TEST_CASE("no file of a run gets what is meant for a closed stream") {
       folder.path());
   CHECK(o.code == 5);
   CHECK(fs::exists(folder / "b/DONE"));
-  CHECK(fs::file_size(folder / "a/run.h5") == fs::file_size(folder / "b/run.h5"));
+  CHECK(fs::file_size(folder / "a/run.vtkhdf") == fs::file_size(folder / "b/run.vtkhdf"));
   for (const char* name : {"b.json", "b/scene.resolved.yaml", "b/DONE"})
     CHECK_FALSE(has(read_text(folder / name), "particles  "));
   CHECK(shell("\"$PBF\" run tiny.yaml --threads 1 --out c 2>&- > /dev/null", folder.path()).code ==

@@ -96,11 +96,11 @@ TEST_CASE("pictures are drawn by a run and, later, from its file") {
   for (const char* name : {"frame_000000.png", "frame_000001.png", "frame_000002.png"})
     CHECK(fs::file_size(folder / "o/frames" / name) > 100);
   CHECK_FALSE(fs::exists(folder / "o/frames/frame_000003.png"));
-  const pbf::RunReader reader((folder / "o/run.h5").string());
+  const pbf::RunReader reader((folder / "o/run.vtkhdf").string());
   CHECK(reader.fields() == std::vector<std::string>{"velocity"});  // density was for pictures only
 
   const auto render = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), {"render", "o/run.h5"});
+    more.insert(more.begin(), {"render", "o/run.vtkhdf"});
     return pbf::test::pbf(more, folder.path());
   };
   const Outcome drawn = render({"--frames", "1:-1:2", "--color", "speed", "--range", "0,2",

@@ -139,21 +139,21 @@ TEST_CASE("no output takes the place of a file that the command reads") {
   fs::create_hard_link(folder / "tiny.yaml", folder / "hard.json");
   fs::create_symlink("tiny.yaml", folder / "soft.json");
   REQUIRE(shell("\"$PBF\" run tiny.yaml --out made", folder.path()).code == 0);
-  REQUIRE(shell("ln made/run.h5 run.json", folder.path()).code == 0);
+  REQUIRE(shell("ln made/run.vtkhdf run.json", folder.path()).code == 0);
   const std::pair<const char*, const char*> cases[] = {
       {"run tiny.yaml --log-json tiny.yaml", "tiny.yaml"},
       {"run tiny.yaml --log-json ./hard.json", "tiny.yaml"},
       {"run tiny.yaml --log-json soft.json", "tiny.yaml"},
       {"run of_file.yaml --log-json points.csv", "points.csv"},
-      {"run made/run.h5 --out again --log-json run.json", "made/run.h5"},
-      {"run made/run.h5 --out made --overwrite", "made/run.h5"},
+      {"run made/run.vtkhdf --out again --log-json run.json", "made/run.vtkhdf"},
+      {"run made/run.vtkhdf --out made --overwrite", "made/run.vtkhdf"},
       {"run made/scene.resolved.yaml --out made --overwrite", "made/scene.resolved.yaml"},
       {"bench tiny.yaml --csv tiny.yaml", "tiny.yaml"},
       {"bench tiny.yaml --json soft.json", "tiny.yaml"},
       {"stability --suite suite.yaml --csv suite.yaml", "suite.yaml"},
       {"stability tiny.yaml --map time.step,gravity --csv tiny.yaml", "tiny.yaml"},
       {"compare scene.json --between cpu:double,cpu:float --report scene.json", "scene.json"},
-      {"compare made/run.h5 made/run.h5 --report run.json", "made/run.h5"},
+      {"compare made/run.vtkhdf made/run.vtkhdf --report run.json", "made/run.vtkhdf"},
       {"study s/study.json --out s", "s/study.json"},
       {"batch summary.csv --out .", "summary.csv"}};
   const std::string snapshot = "find . -type f ! -name '.std*' | sort | xargs sha256sum";
@@ -172,7 +172,7 @@ TEST_CASE("no output takes the place of a file that the command reads") {
 TEST_CASE("the measures of a run go into none of its own files, two tables not into one") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());
-  for (const char* name : {"out/tiny/log.txt", "out/../out/tiny/run.h5", "out/tiny/DONE"}) {
+  for (const char* name : {"out/tiny/log.txt", "out/../out/tiny/run.vtkhdf", "out/tiny/DONE"}) {
     const Outcome o =
         shell(std::string("\"$PBF\" run tiny.yaml --log-json ") + name, folder.path());
     CAPTURE(name, o.err);

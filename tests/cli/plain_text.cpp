@@ -113,8 +113,8 @@ TEST_CASE("a scene whose own path is no text runs, and its run file holds text a
   CHECK(is_clean(run.err));
   CHECK(is_clean(read_text(folder / "out/log.txt")));
   // The path stands in the file's attributes: written out, so that every reader can read it.
-  CHECK(has(read_text(folder / "out/run.h5"), "a\\xff\\u001b[1m.yaml"));
-  CHECK(pbf::test::pbf({"run", "out/run.h5", "--out", "again"}, folder.path()).code == 0);
+  CHECK(has(read_text(folder / "out/run.vtkhdf"), "a\\xff\\u001b[1m.yaml"));
+  CHECK(pbf::test::pbf({"run", "out/run.vtkhdf", "--out", "again"}, folder.path()).code == 0);
   const Outcome batch = pbf::test::pbf({"batch", ".", "--out", "all"}, folder.path());
   CHECK(batch.code == 0);
   CHECK(is_clean(batch.err + batch.out + read_text(folder / "all/summary.csv")));

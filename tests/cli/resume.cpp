@@ -38,7 +38,7 @@ Outcome run(const Scratch& folder, const std::string& out, const Args& more) {
   return pbf::test::pbf(args, folder.path());
 }
 std::string difference(const Scratch& folder, const std::string& a, const std::string& b) {
-  return run_difference(folder / (a + "/run.h5"), folder / (b + "/run.h5"));
+  return run_difference(folder / (a + "/run.vtkhdf"), folder / (b + "/run.vtkhdf"));
 }
 
 /// Starts a run and sends it a signal when it has at least so many frames, and `file` (if any) is
@@ -49,7 +49,7 @@ Outcome end_by(const Scratch& folder, const Args& args, int signal, std::int64_t
   for (int i = 0; i < 2000; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     try {
-      if (pbf::RunReader((folder / "b/run.h5").string()).frames() >= frames &&
+      if (pbf::RunReader((folder / "b/run.vtkhdf").string()).frames() >= frames &&
           (file.empty() || fs::exists(folder / file)))
         break;
     } catch (const std::exception&) {  // not there yet
@@ -87,7 +87,7 @@ TEST_CASE("a run stopped again and again ends in the bytes of the undisturbed ru
   const std::string log = read_text(folder / "b/log.txt");
   CHECK(has(log, "start: mean compression"));
   CHECK(log.find("start: mean compression") == log.rfind("start: mean compression"));
-  const auto sessions = pbf::RunReader((folder / "b/run.h5").string()).sessions();
+  const auto sessions = pbf::RunReader((folder / "b/run.vtkhdf").string()).sessions();
   REQUIRE(sessions.size() == std::size_t(stops) + 1);
   for (std::size_t k = 0; k + 1 < sessions.size(); ++k) {
     CHECK(sessions[k].reason == "--max-walltime");
@@ -110,7 +110,7 @@ TEST_CASE("a killed run keeps its frames and ends in the same bytes, with and wi
     // How soon the first checkpoint comes depends on how busy the machine is.
     const std::string file = checkpoint && frames == 20 ? "b/checkpoint.h5" : "";
     CHECK(end_by(folder, args, SIGKILL, frames, file).code == 128 + SIGKILL);
-    const pbf::RunReader reader((folder / "b/run.h5").string());
+    const pbf::RunReader reader((folder / "b/run.vtkhdf").string());
     CHECK(reader.frames() >= std::max(frames, before));
     before = reader.frames();
     CHECK(reader.status() == "running");
@@ -144,7 +144,8 @@ TEST_CASE("a run of an earlier version, whose log lacks a column, is refused by 
   scene(folder);
   REQUIRE(run(folder, "b", {"--set", "time.end=0.1"}).code == 0);
   {
-    const hid_t file = H5Fopen((folder / "b/run.h5").string().c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const hid_t file =
+        H5Fopen((folder / "b/run.vtkhdf").string().c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     REQUIRE(file >= 0);
     CHECK(H5Ldelete(file, "pbf/log/unresolved", H5P_DEFAULT) >= 0);
     CHECK(H5Fclose(file) >= 0);
@@ -229,7 +230,7 @@ TEST_CASE("two runs cannot write to one folder") {
   scene(folder);
   Process first({"run", "s.yaml", "--out", "b", "--quiet", "--set", "time.end=1000"},
                 folder.path());
-  for (int i = 0; i < 500 && !fs::exists(folder / "b/run.h5"); ++i)
+  for (int i = 0; i < 500 && !fs::exists(folder / "b/run.vtkhdf"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   const Scratch other;  // its own stderr
   for (const char* how : {"--resume", "--overwrite"}) {
@@ -249,7 +250,7 @@ TEST_CASE("a run file runs again to the same bytes") {
   const Scratch folder;
   scene(folder);
   REQUIRE(run(folder, "a", {"--set", "solver.iterations=2"}).code == 0);
-  const Outcome o = pbf::test::pbf({"run", "a/run.h5", "--out", "b", "--quiet"}, folder.path());
+  const Outcome o = pbf::test::pbf({"run", "a/run.vtkhdf", "--out", "b", "--quiet"}, folder.path());
   CAPTURE(o.err);
   REQUIRE(o.code == 0);
   CHECK(difference(folder, "a", "b") == "");

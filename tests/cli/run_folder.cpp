@@ -20,12 +20,12 @@ TEST_CASE("a run leaves its file, resolved scene, log and DONE, and says so") {
   CAPTURE(o.err);
   REQUIRE(o.code == 0);
   const fs::path run = folder / "out/tiny";
-  for (const char* name : {"run.h5", "scene.resolved.yaml", "log.txt", "DONE"}) {
+  for (const char* name : {"run.vtkhdf", "scene.resolved.yaml", "log.txt", "DONE"}) {
     CAPTURE(name);
     CHECK(fs::is_regular_file(run / name));
   }
   CHECK_FALSE(fs::exists(run / "frames"));
-  const pbf::RunReader reader((run / "run.h5").string());
+  const pbf::RunReader reader((run / "run.vtkhdf").string());
   CHECK(reader.status() == "finished");
   CHECK(reader.times().size() == 6);  // 0, 0.02 ... 0.1
   CHECK(reader.frame(5).time == Approx(0.1));
@@ -74,7 +74,7 @@ TEST_CASE("the resolved scene of a run gives the same run again") {
       pbf::test::pbf({"run", scene, "--out", "a", "--set", "solver.iterations=2"}, folder.path())
           .code == 0);
   REQUIRE(pbf::test::pbf({"run", "a/scene.resolved.yaml", "--out", "b"}, folder.path()).code == 0);
-  const pbf::RunReader a((folder / "a/run.h5").string()), b((folder / "b/run.h5").string());
+  const pbf::RunReader a((folder / "a/run.vtkhdf").string()), b((folder / "b/run.vtkhdf").string());
   REQUIRE(a.frames() == b.frames());
   CHECK(a.frame(a.frames() - 1).fields[0].bytes == b.frame(b.frames() - 1).fields[0].bytes);
 }
@@ -88,7 +88,7 @@ TEST_CASE("a scene without output and pictures writes no run file and no folder 
   CHECK(o.code == 0);
   CHECK(o.err.empty());
   CHECK(fs::exists(folder / "o/DONE"));
-  CHECK_FALSE(fs::exists(folder / "o/run.h5"));
+  CHECK_FALSE(fs::exists(folder / "o/run.vtkhdf"));
   CHECK_FALSE(fs::exists(folder / "o/frames"));
   CHECK_FALSE(has(o.out, "download"));
 }
@@ -98,7 +98,7 @@ TEST_CASE("the last state is written even when it falls between two frames") {
   const std::string scene = folder.write("tiny.yaml", tiny_scene());
   REQUIRE(pbf::test::pbf({"run", scene, "--out", "o", "--set", "output.every=0.03"}, folder.path())
               .code == 0);
-  const pbf::RunReader reader((folder / "o/run.h5").string());
+  const pbf::RunReader reader((folder / "o/run.vtkhdf").string());
   CHECK(reader.times().size() == 5);  // 0, 0.03, 0.06, 0.09, 0.1
   CHECK(reader.times().back() == Approx(0.1));
 }
@@ -121,19 +121,19 @@ TEST_CASE("option --overwrite replaces the files of pbf and leaves everything el
   CHECK(read_text(folder / "o/frames/sketch.png") == "mine");
   CHECK(fs::is_directory(folder / "o/frames/mine"));
   CHECK_FALSE(fs::exists(folder / "o/frames/frame_000007.png"));
-  CHECK(pbf::RunReader((folder / "o/run.h5").string()).times().back() == Approx(0.05));
+  CHECK(pbf::RunReader((folder / "o/run.vtkhdf").string()).times().back() == Approx(0.05));
 }
 
 TEST_CASE("option --resume leaves a finished run untouched and starts one that is not there") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());
   REQUIRE(pbf::test::pbf({"run", scene, "--out", "o", "--resume"}, folder.path()).code == 0);
-  const auto before = fs::last_write_time(folder / "o/run.h5");
+  const auto before = fs::last_write_time(folder / "o/run.vtkhdf");
   const Outcome again = pbf::test::pbf({"run", scene, "--out", "o", "--resume"}, folder.path());
   CHECK(again.code == 0);
   CHECK(again.out.empty());
   CHECK(has(again.err, "finished"));
-  CHECK(fs::last_write_time(folder / "o/run.h5") == before);
+  CHECK(fs::last_write_time(folder / "o/run.vtkhdf") == before);
 }
 
 namespace {
@@ -158,7 +158,7 @@ TEST_CASE("SIGTERM and SIGINT end a run with exit code 75, a checkpoint and a re
     const Scratch folder;
     endless(folder);
     Process run(kEndless, folder.path());
-    wait_for(folder / "o/run.h5");
+    wait_for(folder / "o/run.vtkhdf");
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     run.send(signal);
     const Outcome o = run.wait();
@@ -168,7 +168,7 @@ TEST_CASE("SIGTERM and SIGINT end a run with exit code 75, a checkpoint and a re
     CHECK(has(o.err, "--resume"));
     CHECK_FALSE(fs::exists(folder / "o/DONE"));
     CHECK(fs::exists(folder / "o/checkpoint.h5"));
-    const pbf::RunReader reader((folder / "o/run.h5").string());
+    const pbf::RunReader reader((folder / "o/run.vtkhdf").string());
     CHECK(reader.status() == "stopped");
     REQUIRE(reader.frames() >= 1);
     CHECK(reader.frame(reader.frames() - 1).count == 64);
@@ -185,7 +185,7 @@ TEST_CASE("SIGUSR1 saves a checkpoint, and the run goes on") {
   const Scratch folder;
   endless(folder);
   Process run(kEndless, folder.path());
-  wait_for(folder / "o/run.h5");
+  wait_for(folder / "o/run.vtkhdf");
   run.send(SIGUSR1);
   wait_for(folder / "o/checkpoint.h5");
   CHECK(fs::exists(folder / "o/checkpoint.h5"));
@@ -202,7 +202,7 @@ TEST_CASE("a second signal ends a run at once") {
   folder.write("slow.yaml", tiny_scene("solver: {iterations: 100000}\n"));
   Process run({"run", "slow.yaml", "--out", "o", "--threads", "1", "--set", "fluid.spacing=0.02"},
               folder.path());
-  wait_for(folder / "o/run.h5");
+  wait_for(folder / "o/run.vtkhdf");
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   run.send(SIGTERM);
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
@@ -226,7 +226,7 @@ TEST_CASE("a run that diverges exits 3, names update, stage and particle, and ke
   CHECK(has(o.out, "not finite          64"));
   CHECK_FALSE(fs::exists(folder / "o/DONE"));
   CHECK(has(read_text(folder / "o/log.txt"), "pbf: error: stopped by the guard"));
-  CHECK(pbf::RunReader((folder / "o/run.h5").string()).status() == "diverged");
+  CHECK(pbf::RunReader((folder / "o/run.vtkhdf").string()).status() == "diverged");
 }
 
 TEST_CASE("option --max-walltime ends a run in time with exit code 75") {
@@ -237,5 +237,5 @@ TEST_CASE("option --max-walltime ends a run in time with exit code 75") {
   const Outcome o = pbf::test::pbf(args, folder.path());
   CHECK(o.code == 75);
   CHECK(has(o.err, "--max-walltime"));
-  CHECK(pbf::RunReader((folder / "o/run.h5").string()).status() == "stopped");
+  CHECK(pbf::RunReader((folder / "o/run.vtkhdf").string()).status() == "stopped");
 }

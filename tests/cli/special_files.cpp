@@ -9,15 +9,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const char* const kNames[] = {"log.txt",
-                              "run.h5",
-                              "scene.resolved.yaml",
-                              "checkpoint.h5",
-                              "checkpoint.h5.tmp",
-                              "checkpoint_prev.h5",
-                              "guard_state.h5",
-                              "guard_scene.yaml",
-                              "run.damaged.h5",
+const char* const kNames[] = {"log.txt",        "run.vtkhdf",        "scene.resolved.yaml",
+                              "checkpoint.h5",  "checkpoint.h5.tmp", "checkpoint_prev.h5",
+                              "guard_state.h5", "guard_scene.yaml",  "run.damaged.vtkhdf",
                               "frames"};
 
 /// A folder as a run that was killed before its first update leaves it.
@@ -82,7 +76,7 @@ TEST_CASE(
   begin(folder);
   fs::create_directory(folder / "pictures");
   folder.write("pictures/frame_000001.png", "precious");
-  for (const char* name : {"log.txt", "run.h5", "DONE"})
+  for (const char* name : {"log.txt", "run.vtkhdf", "DONE"})
     fs::create_symlink("../victim", folder / "o" / name);
   REQUIRE(mkfifo((folder / "o/checkpoint.h5").c_str(), 0600) == 0);
   fs::create_directory_symlink("../pictures", folder / "o/frames");
@@ -92,7 +86,7 @@ TEST_CASE(
   CHECK(o.code == 0);
   CHECK(read_text(folder / "victim") == "precious");
   CHECK(read_text(folder / "pictures/frame_000001.png") == "precious");
-  CHECK(fs::is_regular_file(fs::symlink_status(folder / "o/run.h5")));
+  CHECK(fs::is_regular_file(fs::symlink_status(folder / "o/run.vtkhdf")));
   CHECK_FALSE(fs::exists(fs::symlink_status(folder / "o/frames")));
 }
 

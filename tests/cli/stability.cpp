@@ -70,7 +70,7 @@ TEST_CASE(
                            ", particle ", " m, velocity (", "time.step", "guard_scene.yaml"})
     CHECK(has(o.err, part));
   CHECK(has(read_text(folder / "o/log.txt"), "stopped by the guard"));
-  CHECK(pbf::RunReader((folder / "o/run.h5").string()).status() == "diverged");
+  CHECK(pbf::RunReader((folder / "o/run.vtkhdf").string()).status() == "diverged");
   CHECK_FALSE(fs::exists(folder / "o/DONE"));
   CHECK(has(read_text(folder / "o/guard_scene.yaml"), "prestabilize: false"));
   const Outcome again = pbf::test::pbf({"run", "o/guard_scene.yaml", "--out", "p"}, folder.path());

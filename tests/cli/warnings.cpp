@@ -64,7 +64,7 @@ TEST_CASE("a warning is on stderr, also with --quiet, in log.txt and in the run 
   CHECK(has(o.err, "pbf: warning: the fluid is no liquid"));
   CHECK(warnings_in(read_text(folder / "a/log.txt")) == told);
   CHECK(has(o.out, "warning") == false);  // stdout is for results
-  const std::vector<std::string> list = kept(folder / "a/run.h5");
+  const std::vector<std::string> list = kept(folder / "a/run.vtkhdf");
   REQUIRE(list.size() == 3);  // each kind once, with the figures of the whole run
   CHECK(has(list[0], "times the longest that is safe"));
   CHECK(has(list[1], "at the end"));
@@ -79,7 +79,7 @@ TEST_CASE("a sound run warns of nothing") {
                                  "time.end=0.4", "--strict"});
   CHECK(o.code == 0);
   CHECK(warnings_in(o.err).empty());
-  CHECK(kept(folder / "a/run.h5").empty());
+  CHECK(kept(folder / "a/run.vtkhdf").empty());
   CHECK(fs::exists(folder / "a/DONE"));
 }
 
@@ -114,13 +114,13 @@ TEST_CASE("a strict run ends where it begins to warn, and without it the run goe
   CHECK(has(o.err, "open face (x_max)"));
   CHECK(has(o.err, "--resume and without --strict"));
   CHECK(!fs::exists(folder / "a/DONE"));
-  const std::int64_t there = pbf::RunReader((folder / "a/run.h5").string()).frames();
+  const std::int64_t there = pbf::RunReader((folder / "a/run.vtkhdf").string()).frames();
   CHECK((there > 1 && there < 20));
-  CHECK(pbf::RunReader((folder / "a/run.h5").string()).status() == "stopped");
+  CHECK(pbf::RunReader((folder / "a/run.vtkhdf").string()).status() == "stopped");
   REQUIRE(run(folder, {"s.yaml", "--out", "a", "--resume"}).code == 0);
   REQUIRE(run(folder, {"s.yaml", "--out", "b"}).code == 0);
-  CHECK(run_difference(folder / "a/run.h5", folder / "b/run.h5") == "");
-  CHECK(kept(folder / "a/run.h5") == kept(folder / "b/run.h5"));
+  CHECK(run_difference(folder / "a/run.vtkhdf", folder / "b/run.vtkhdf") == "");
+  CHECK(kept(folder / "a/run.vtkhdf") == kept(folder / "b/run.vtkhdf"));
 }
 
 TEST_CASE("fluid that leaves through an open face is counted also without frames") {
@@ -144,8 +144,8 @@ TEST_CASE("a stopped run counts what it has warned of on from its checkpoint") {
   REQUIRE(run(folder, {"s.yaml", "--out", "a", "--max-walltime", "0.001"}).code == 75);
   REQUIRE(run(folder, {"s.yaml", "--out", "a", "--resume"}).code == 0);
   REQUIRE(run(folder, {"s.yaml", "--out", "b"}).code == 0);
-  CHECK(kept(folder / "a/run.h5") == kept(folder / "b/run.h5"));
-  CHECK(kept(folder / "a/run.h5").size() == 3);
+  CHECK(kept(folder / "a/run.vtkhdf") == kept(folder / "b/run.vtkhdf"));
+  CHECK(kept(folder / "a/run.vtkhdf").size() == 3);
 }
 
 TEST_CASE("summary.csv counts the warnings of each run, and --strict makes them failures") {

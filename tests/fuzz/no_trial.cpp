@@ -1,6 +1,6 @@
 // Under a fuzzer files are read in its own process.
 #include "lib/io/h5_trial.h"
 
-namespace pbf::h5 {
+namespace pbf::inline io_module::h5 {
 void trial(const std::string&, const std::function<void()>&, unsigned) {}
-}  // namespace pbf::h5
+}  // namespace pbf::inline io_module::h5

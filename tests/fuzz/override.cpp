@@ -1,8 +1,8 @@
 // --set and --grid: any argument gives a scene or an Error.
 #include <cstdlib>
 
-#include "app/batch_list.h"
 #include "lib/base/error.h"
+#include "lib/campaign/batch_list.h"
 #include "lib/scene/load.h"
 
 namespace {

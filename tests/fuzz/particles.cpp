@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "lib/base/error.h"
-#include "lib/scene/particle_file.h"
+#include "lib/io/particle_file.h"
 #include "tests/fuzz/memory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -26,9 +26,9 @@ inline oracle::Settings settings_of(const Case& c) {
     o.wall_range = cal.wall_range;
   }
   o.dt = s.time.step;
-  o.relaxation = s.solver.relaxation;
-  o.step_length = pbf::make_plan(s, std::int64_t(c.particles.size())).step_length;
-  o.smaller_steps_in_crowds = !s.solver.step_length;
+  o.cfm = s.solver.cfm;
+  o.sor = pbf::make_plan(s, std::int64_t(c.particles.size())).sor;
+  o.smaller_steps_in_crowds = !s.solver.sor;
   o.damping = s.solver.velocity_damping;
   o.margin = s.solver.wall_margin;
   o.iterations = s.solver.iterations;

@@ -175,7 +175,7 @@ void update(State& s, const Settings& c) {
       s.density[i] = c.rest_density * ratio;
       const Real constraint = c.two_sided ? ratio - 1 : std::max<Real>(ratio - 1, 0);
       squares += own[0] * own[0] + own[1] * own[1] + own[2] * own[2];
-      lambda[i] = -constraint / (squares + c.relaxation / (c.h * c.h));
+      lambda[i] = -constraint / (squares + c.cfm / (c.h * c.h));
       if (c.smaller_steps_in_crowds && ratio > 1)
         lambda[i] /= std::min<Real>(1 + 3 * (ratio - 1), 2);
     }
@@ -191,7 +191,7 @@ void update(State& s, const Settings& c) {
         axpy(delta, m * w, spiky_gradient(d, c));
       }
       axpy(delta, lambda[i], wall[i].gradient);
-      axpy(next[i], c.step_length, delta);
+      axpy(next[i], c.sor, delta);
       clamp(next[i], c);
     }
     s.x = next;

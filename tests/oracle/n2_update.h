@@ -14,8 +14,8 @@ using V = std::array<Real, 3>;
 /// (the x-z plane, no walls along y) in kg per metre of thickness.
 struct Settings {
   int dimensions = 3;
-  Real h = 0.04L, mass = 0, rest_density = 1000, dt = 0.002L, relaxation = 0;  // eps^, 1
-  Real step_length = 1, damping = 1, wall_scale = 0, wall_range = 1, margin = 0;
+  Real h = 0.04L, mass = 0, rest_density = 1000, dt = 0.002L, cfm = 0;  // eps^, 1
+  Real sor = 1, damping = 1, wall_scale = 0, wall_range = 1, margin = 0;
   V gravity{0, 0, -9.81L}, low{0, 0, 0}, high{1, 1, 1};
   int iterations = 4;
   bool paper = false, two_sided = false, wall_density = true, smaller_steps_in_crowds = false;

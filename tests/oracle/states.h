@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <random>
 
-#include "lib/plan/plan.h"
-#include "lib/solver/calibrate.h"
+#include "lib/exec/make_solver.h"
+#include "lib/program/calibrate.h"
+#include "lib/program/plan.h"
 #include "lib/solver/solver.h"
 
 namespace oracle_test {

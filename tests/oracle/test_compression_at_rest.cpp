@@ -1,8 +1,8 @@
 // The formula behind the warning of too long a step, against pools that are simulated.
 #include <cmath>
 
-#include "lib/diag/prestabilize.h"
-#include "lib/diag/warnings.h"
+#include "lib/run/prestabilize.h"
+#include "lib/run/warnings.h"
 #include "tests/catch.h"
 #include "tests/oracle/states.h"
 

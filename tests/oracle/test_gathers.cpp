@@ -11,7 +11,7 @@
 #include "kernels/pass_lambda.h"
 #include "kernels/pass_vorticity.h"
 #include "kernels/pass_xsph.h"
-#include "lib/cpu/cpu_exec.h"
+#include "lib/exec/cpu/cpu_exec.h"
 #include "tests/catch.h"
 
 using namespace pbf;

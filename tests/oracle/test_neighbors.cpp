@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "lib/cpu/cpu_exec.h"
+#include "lib/exec/cpu/cpu_exec.h"
 #include "tests/catch.h"
 
 using namespace pbf;

@@ -1,6 +1,6 @@
 // The exact projection against a dense solve that shares no line with it, against thousands of
 // Jacobi sweeps, and against hydrostatics.
-#include "lib/diag/exact_projection.h"
+#include "lib/campaign/exact_projection.h"
 
 #include <cmath>
 
@@ -202,9 +202,9 @@ TEST_CASE(
   Case c = jittered_block(6, 6, 6, 0.05, 0, 5, 0.985);
   for (std::size_t k = 0; k < 3; ++k) c.scene.domain.min[k] -= 0.1, c.scene.domain.max[k] += 0.1;
   c.scene.gravity = {0, 0, 0};
-  const auto after = [&](int iterations, double step_length) {
+  const auto after = [&](int iterations, double sor) {
     c.scene.solver.iterations = iterations;
-    c.scene.solver.step_length = step_length;
+    c.scene.solver.sor = sor;
     const auto e = pbf::projection_error(*make(c), c.scene, plan_of(c));
     CHECK(e.converged);
     CHECK(e.mean <= e.rms);

@@ -27,7 +27,7 @@ TEST_CASE("one update in double equals the brute-force oracle to rounding, featu
     c.scene.solver.fused = false;
     c.scene.solver.velocity_damping = 0.99;
     c.scene.fluid.smoothing_ratio = 2.6;
-    c.scene.solver.step_length = 0.6;
+    c.scene.solver.sor = 0.6;
   }
   SECTION("no iterations") {
     c.scene.solver.iterations = 0;

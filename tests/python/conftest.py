@@ -27,11 +27,11 @@ def samples():
 
 @pytest.fixture(scope="session")
 def minimal(pbf, tmp_path_factory):
-    """run.h5 of configs/minimal.yaml with frames: 4000 particles, 26 frames; pictures not drawn."""
+    """run.vtkhdf of configs/minimal.yaml with frames: 4000 particles, 26 frames; pictures not drawn."""
     folder = tmp_path_factory.mktemp("minimal")
     subprocess.run([pbf, "run", ROOT / "configs/minimal.yaml", "--set", "output={}", "--quiet",
                     "--threads", "2", "--out", folder / "run"], check=True, capture_output=True)
-    return folder / "run/run.h5"
+    return folder / "run/run.vtkhdf"
 
 
 @pytest.fixture

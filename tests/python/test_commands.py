@@ -30,7 +30,7 @@ def without(monkeypatch, package):
 
 
 def test_no_file_that_a_command_reads_is_overwritten(tools, minimal, tmp_path):
-    run = shutil.copy(minimal, tmp_path / "run.h5")
+    run = shutil.copy(minimal, tmp_path / "run.vtkhdf")
     os.link(run, tmp_path / "hard.png")
     before = run.read_bytes()
     for words in (("to-csv", run, "--log", "-o", run), ("compare", run, minimal, "--csv", run),
@@ -60,7 +60,7 @@ def test_a_run_does_not_differ_from_itself_and_differs_from_a_moved_one(tools, m
 
 
 def test_a_run_that_ended_early_or_otherwise_differs(tools, pbf, minimal, tmp_path):
-    short = tmp_path / "short/run.h5"
+    short = tmp_path / "short/run.vtkhdf"
     subprocess.run([pbf, "run", ROOT / "configs/minimal.yaml", "--set", "output={}", "--quiet",
                     "--set", "time.end=0.004", "--out", short.parent], check=True,
                    capture_output=True)
@@ -106,7 +106,7 @@ def test_the_program_starts_from_a_frame_written_as_particles(tools, pbf, minima
     done = subprocess.run([pbf, "run", "s.yaml", "--out", "out", "--quiet"], cwd=tmp_path,
                           capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    start, frame = pbf_tools.open(tmp_path / "out/run.h5").frames[0], \
+    start, frame = pbf_tools.open(tmp_path / "out/run.vtkhdf").frames[0], \
         pbf_tools.open(minimal).frames[10]
     assert np.allclose(start["position"], frame["position"], atol=1e-7)
     assert np.allclose(start["velocity"], frame["velocity"], atol=1e-6)

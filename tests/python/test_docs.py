@@ -21,7 +21,7 @@ ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT / "tools"), "PYTHONDONTWRITE
 
 
 def test_the_examples_in_docstrings_hold(minimal, tmp_path, monkeypatch):
-    shutil.copy(minimal, tmp_path / "run.h5")
+    shutil.copy(minimal, tmp_path / "run.vtkhdf")
     monkeypatch.chdir(tmp_path)
     tried = 0
     for module in pkgutil.iter_modules(pbf_tools.__path__, "pbf_tools."):
@@ -48,9 +48,9 @@ def run_python(arguments, folder):
 
 @pytest.fixture
 def demo(minimal, tmp_path):
-    """A folder with out/dam_break/run.h5, as after tools/demo."""
+    """A folder with out/dam_break/run.vtkhdf, as after tools/demo."""
     (tmp_path / "out/dam_break").mkdir(parents=True)
-    shutil.copy(minimal, tmp_path / "out/dam_break/run.h5")
+    shutil.copy(minimal, tmp_path / "out/dam_break/run.vtkhdf")
     return tmp_path
 
 

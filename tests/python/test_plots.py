@@ -175,7 +175,7 @@ def test_the_front_of_a_run_starts_at_one_and_ends_before_the_wall(tools, pbf, t
                     tmp_path / "run"], check=True, capture_output=True)
     parser = __import__("argparse").ArgumentParser()
     plot_front.add_arguments(parser)
-    path = str(tmp_path / "run/run.h5")
+    path = str(tmp_path / "run/run.vtkhdf")
     front = plot_front.read_front(path, parser.parse_args([path]))
     # The start has been relieved of its compression: it is no longer the lattice to the last digit.
     assert front.ratio == pytest.approx(2, rel=1e-3)

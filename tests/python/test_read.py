@@ -187,7 +187,7 @@ def _virtual(parent, key, other):
                                                           external=[(o, 0, 96000)])),
     ("virtual dataset", _virtual)])
 def test_a_run_file_that_takes_in_another_file_is_refused(samples, tmp_path, words, replace):
-    other, path = str(samples / "constant.h5"), tmp_path / "run.h5"
+    other, path = str(samples / "constant.h5"), tmp_path / "run.vtkhdf"
     for place in ("VTKHDF/Points", "VTKHDF/PointData/velocity", "pbf/log/time"):
         shutil.copy(other, path)
         with h5py.File(path, "r+") as file:
@@ -251,7 +251,7 @@ def test_a_run_is_read_while_it_is_written_and_after_it_was_killed(pbf, tmp_path
         [pbf, "run", ROOT / "configs/minimal.yaml", "--set", "output={every: 0.002}", "--set",
          "time.end=1000", "--quiet", "--threads", "1", "--out", tmp_path / "run"],
         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    path, seen, run = tmp_path / "run/run.h5", [], None
+    path, seen, run = tmp_path / "run/run.vtkhdf", [], None
     try:
         end = time.monotonic() + 60
         while time.monotonic() < end and (not seen or seen[-1] < 40):

@@ -105,14 +105,14 @@ def test_the_demo_builds_the_program_alone_passes_options_on_and_says_what_is_ne
     assert calls[1:] == [
         "cmake --build build --target pbf",
         "pbf run configs/dam_break.yaml --out out/dam_break --overwrite --threads 2"]
-    for part in (f"{tree.folder}/build/pbf", f"{tree.folder}/out/dam_break", "frames/", "run.h5",
-                 "build/pbf render out/dam_break/run.h5", "cp configs/dam_break.yaml", "tools/test",
+    for part in (f"{tree.folder}/build/pbf", f"{tree.folder}/out/dam_break", "frames/", "run.vtkhdf",
+                 "build/pbf render out/dam_break/run.vtkhdf", "cp configs/dam_break.yaml", "tools/test",
                  "README.md"):
         assert part in text, part
     _, text, calls = tree("tools/demo", "--", "--out", "mine")
     assert calls[0].count("TESTS") == 0  # a build folder that is there stays as it is
     assert calls[2] == "pbf run configs/dam_break.yaml --overwrite --out mine"
-    assert f"{tree.folder}/mine" in text and "render mine/run.h5" in text
+    assert f"{tree.folder}/mine" in text and "render mine/run.vtkhdf" in text
 
 
 def test_the_tests_get_the_options_of_cmake_and_of_ctest(tree):

@@ -1,5 +1,5 @@
 // The choice of the step's level: a function of the fastest speed and the greatest acceleration.
-#include "lib/solver/adaptive_step.h"
+#include "lib/run/step_control.h"
 
 #include <cmath>
 #include <limits>

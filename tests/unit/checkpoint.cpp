@@ -1,5 +1,5 @@
 #include "lib/io/checkpoint.h"
-#include "lib/diag/guard.h"
+#include "lib/run/guard.h"
 #include "lib/scene/load.h"
 
 #include <filesystem>

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "lib/base/error.h"
-#include "lib/diag/compare.h"
 #include "lib/scene/random.h"
+#include "lib/verify/compare.h"
 #include "tests/catch.h"
 #include "tests/unit/run_file_samples.h"
 

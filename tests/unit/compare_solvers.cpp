@@ -1,7 +1,7 @@
 // pbf compare on two solvers: what is the same passes, what is not is found in its stage.
 #include "lib/base/error.h"
-#include "lib/diag/compare.h"
 #include "lib/scene/load.h"
+#include "lib/verify/compare.h"
 #include "tests/catch.h"
 
 using namespace pbf;
@@ -72,11 +72,16 @@ TEST_CASE("float is within the tolerance of double, and not by a wide margin", "
 
 TEST_CASE("a key that differs on purpose is found in the stage that it belongs to", "[compare]") {
   const std::vector<std::pair<std::string, std::string>> cases{
-      {"gravity=[0,0,-9.83]", "predict"},      {"solver.velocity_damping=0.998", "predict"},
-      {"solver.relaxation=0.012", "lambda"},   {"tensile.k=0.0055", "delta"},
-      {"solver.step_length=0.99", "delta"},    {"viscosity.xsph=0.101", "xsph"},
-      {"vorticity.epsilon=0.55", "vorticity"}, {"solver.iterations=4", "iterations"},
-      {"solver.boundary=clamp", "density"},    {"viscosity=off", "xsph"},
+      {"gravity=[0,0,-9.83]", "predict"},
+      {"solver.velocity_damping=0.998", "predict"},
+      {"solver.cfm=0.012", "lambda"},
+      {"tensile.k=0.0055", "delta"},
+      {"solver.sor=0.99", "delta"},
+      {"viscosity.xsph=0.101", "xsph"},
+      {"vorticity.epsilon=0.55", "vorticity"},
+      {"solver.iterations=4", "iterations"},
+      {"solver.boundary=clamp", "density"},
+      {"viscosity=off", "xsph"},
       {"solver.kernels=paper", "density"}};
   const auto [key, stage] = cases[std::size_t(GENERATE(range(0, 11)))];
   CAPTURE(key);
@@ -86,7 +91,7 @@ TEST_CASE("a key that differs on purpose is found in the stage that it belongs t
   s.members = 3;
   // Of a given step length, so that another one changes nothing else, and a confinement that its
   // bound does not cut.
-  const std::string length = "solver.step_length=1", curl = "vorticity.epsilon=0.5";
+  const std::string length = "solver.sor=1", curl = "vorticity.epsilon=0.5";
   const CompareResult r = compare(scene({length, curl}), scene({length, curl, key}), s);
   CHECK_FALSE(r.same());
   CHECK(r.stage == stage);

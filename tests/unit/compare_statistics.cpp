@@ -2,9 +2,9 @@
 #include <cmath>
 #include <limits>
 
-#include "lib/diag/clusters.h"
-#include "lib/diag/statistics.h"
 #include "lib/scene/random.h"
+#include "lib/verify/clusters.h"
+#include "lib/verify/statistics.h"
 #include "tests/catch.h"
 #include "tests/unit/run_file_samples.h"
 

@@ -5,7 +5,7 @@
 
 #include "kernels/lanes.h"
 #include "lib/base/error.h"
-#include "lib/cpu/simd.h"
+#include "lib/exec/cpu/simd.h"
 #include "tests/catch.h"
 #include "tests/oracle/states.h"
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lib/diag/measures.h"
+#include "lib/solver/measures.h"
 #include "tests/catch.h"
 
 using namespace pbf;

@@ -2,8 +2,10 @@
 #include <cmath>
 #include <random>
 
-#include "lib/diag/prestabilize.h"
-#include "lib/diag/stability.h"
+#include "lib/campaign/stability.h"
+#include "lib/exec/make_solver.h"
+#include "lib/run/emit.h"
+#include "lib/run/prestabilize.h"
 #include "tests/catch.h"
 #include "tests/unit/scene_samples.h"
 

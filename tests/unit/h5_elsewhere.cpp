@@ -10,7 +10,7 @@
 #include "lib/base/error.h"
 #include "lib/io/checkpoint.h"
 #include "lib/io/h5_read.h"
-#include "lib/scene/particle_file.h"
+#include "lib/io/particle_file.h"
 #include "tests/catch.h"
 #include "tests/unit/run_file_samples.h"
 
@@ -122,7 +122,7 @@ void refused(const char* words, Action action) {
 }
 
 std::string run_file(const TemporaryFolder& folder) {
-  const std::string path = folder / "run.h5";
+  const std::string path = folder / "run.vtkhdf";
   std::filesystem::remove(path);
   RunWriter writer(path, sample_info(2), false);
   writer.log(sample_row(0));

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "lib/cpu/cpu_exec.h"
+#include "lib/exec/cpu/cpu_exec.h"
 #include "tests/catch.h"
 
 using namespace pbf;

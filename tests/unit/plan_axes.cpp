@@ -1,6 +1,6 @@
 // Which axis of the box becomes which axis of the internal frame.
-#include "lib/plan/axes.h"
-#include "lib/plan/plan.h"
+#include "lib/program/axes.h"
+#include "lib/program/plan.h"
 #include "tests/catch.h"
 
 using namespace pbf;

@@ -4,9 +4,10 @@
 #include <memory>
 #include <set>
 
-#include "lib/plan/plan.h"
-#include "lib/scene/emit.h"
-#include "lib/scene/start_neighbors.h"
+#include "lib/exec/make_solver.h"
+#include "lib/program/plan.h"
+#include "lib/run/emit.h"
+#include "lib/run/start_neighbors.h"
 #include "lib/solver/solver.h"
 #include "tests/catch.h"
 #include "tests/unit/scene_samples.h"

@@ -1,5 +1,6 @@
 // Starts relieved of their compression: what that does to the energy, and what it leaves alone.
-#include "lib/diag/prestabilize.h"
+#include "lib/run/prestabilize.h"
+#include "lib/run/emit.h"
 
 #include <cmath>
 #include <filesystem>

@@ -73,15 +73,15 @@ TEST_CASE("a place that cannot be written to is named with the reason", "[run_fi
   const TemporaryFolder folder;
   const std::string file = folder / "file";
   std::ofstream(file) << "in the way";
-  error_of(ExitCode::io, {file + "/run.h5", "Not a directory"},
-           [&] { RunWriter(file + "/run.h5", sample_info(20), false); });
-  error_of(ExitCode::io, {"missing/run.h5", "No such file or directory"},
-           [&] { RunWriter(folder / "missing/run.h5", sample_info(20), false); });
+  error_of(ExitCode::io, {file + "/run.vtkhdf", "Not a directory"},
+           [&] { RunWriter(file + "/run.vtkhdf", sample_info(20), false); });
+  error_of(ExitCode::io, {"missing/run.vtkhdf", "No such file or directory"},
+           [&] { RunWriter(folder / "missing/run.vtkhdf", sample_info(20), false); });
 }
 
 TEST_CASE("a full disk ends the run with the frame, the reason and what is kept", "[run_file]") {
   const TemporaryFolder folder;
-  const std::string path = folder / "run.h5";
+  const std::string path = folder / "run.vtkhdf";
   const bool gzip = GENERATE(false, true);
   const std::size_t count = GENERATE(std::size_t{500}, std::size_t{60000});
   RunWriter whole(path, sample_info(static_cast<std::int64_t>(count)), gzip);
@@ -126,7 +126,7 @@ TEST_CASE("a disk that is full from the start is an error of creation", "[run_fi
 
 TEST_CASE("after a failure every call says the same and nothing hangs", "[run_file]") {
   const TemporaryFolder folder;
-  const std::string path = folder / "run.h5";
+  const std::string path = folder / "run.vtkhdf";
   const WatchedDisk disk(path, 1000000, false);
   RunWriter writer(path, sample_info(100000), false);
   const auto again = [&](auto call) { return error_of(ExitCode::io, {"frame 0"}, call); };
@@ -142,7 +142,7 @@ TEST_CASE("after a failure every call says the same and nothing hangs", "[run_fi
 
 TEST_CASE("a process whose files may not grow ends cleanly", "[run_file]") {
   const TemporaryFolder folder;
-  const std::string path = folder / "run.h5";
+  const std::string path = folder / "run.vtkhdf";
   const pid_t child = ::fork();
   REQUIRE(child >= 0);
   if (child == 0) {
@@ -193,7 +193,7 @@ TEST_CASE("a snapshot that does not fit is a defect, not a file error", "[run_fi
 
 TEST_CASE("nothing can be written after the end", "[run_file]") {
   const TemporaryFolder folder;
-  RunWriter writer(folder / "run.h5", sample_info(20), false);
+  RunWriter writer(folder / "run.vtkhdf", sample_info(20), false);
   writer.finish({"finished"});
   writer.finish({"finished"});  // says nothing new
   error_of(ExitCode::internal, {"after its end"}, [&] { writer.write(sample(0, 20)); });

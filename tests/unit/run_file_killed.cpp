@@ -49,7 +49,7 @@ class Replica {
 TEST_CASE("after every single write to the disk all frames reported so far are readable",
           "[run_file][many_states]") {
   const TemporaryFolder folder;
-  const std::string path = folder / "run.h5";
+  const std::string path = folder / "run.vtkhdf";
   const bool gzip = GENERATE(false, true);
   const auto operations = operations_of_a_run(path, 50, gzip);
   REQUIRE(operations.size() > 1000);

@@ -75,7 +75,7 @@ class Disk {
 TEST_CASE("a power cut at any moment leaves every reported frame, and no frame that is not whole",
           "[run_file][many_states]") {
   const TemporaryFolder folder;
-  const std::string path = folder / "run.h5";
+  const std::string path = folder / "run.vtkhdf";
   const bool gzip = GENERATE(false, true);
   const auto operations = operations_of_a_run(path, 50, gzip);
   Disk disk;

@@ -44,7 +44,7 @@ void check_whole(const std::string& path, std::int64_t frames) {
 TEST_CASE("a file goes on from whatever any single write to the disk has left",
           "[run_file][many_states]") {
   const TemporaryFolder folder;
-  const std::string path = folder / "run.h5", replica = folder / "replica.h5",
+  const std::string path = folder / "run.vtkhdf", replica = folder / "replica.h5",
                     again = folder / "again.h5";
   const bool gzip = GENERATE(false, true);
   constexpr std::int64_t frames = 6;
@@ -92,7 +92,7 @@ TEST_CASE("a file goes on from whatever any single write to the disk has left",
 TEST_CASE("frames and rows that a resumed run does again are dropped, and sessions are told",
           "[run_file]") {
   const TemporaryFolder folder;
-  const std::string path = folder / "run.h5";
+  const std::string path = folder / "run.vtkhdf";
   {
     RunWriter writer(path, sample_info(40), false);
     write(writer, 0, 5);

@@ -12,7 +12,7 @@ namespace {
 
 void check_round_trip(const std::vector<std::size_t>& counts, bool gzip, ScalarType real) {
   const TemporaryFolder folder;
-  const std::string path = folder / "run.h5";
+  const std::string path = folder / "run.vtkhdf";
   RunWriter writer(path, sample_info(static_cast<std::int64_t>(counts[0])), gzip);
   for (std::size_t k = 0; k < counts.size(); ++k)
     writer.write(sample(static_cast<std::int64_t>(k), counts[k], real));
@@ -65,7 +65,7 @@ TEST_CASE("gzip makes the file of a smooth field smaller", "[run_file]") {
 
 TEST_CASE("what the run was comes back", "[run_file]") {
   const TemporaryFolder folder;
-  const std::string path = folder / "run.h5";
+  const std::string path = folder / "run.vtkhdf";
   const RunInfo in = sample_info(42);
   RunWriter(path, in, false).finish({"stopped"});
   const RunReader reader(path);
@@ -103,7 +103,7 @@ TEST_CASE("what the run was comes back", "[run_file]") {
 
 TEST_CASE("the log keeps every row, and stages that come later", "[run_file]") {
   const TemporaryFolder folder;
-  const std::string path = folder / "run.h5";
+  const std::string path = folder / "run.vtkhdf";
   RunWriter writer(path, sample_info(10), false);
   const std::int64_t rows = 1500;
   for (std::int64_t k = 0; k < rows; ++k) {
@@ -142,7 +142,7 @@ TEST_CASE("the log keeps every row, and stages that come later", "[run_file]") {
 
 TEST_CASE("a live file reads as running with the frames written so far", "[run_file]") {
   const TemporaryFolder folder;
-  const std::string path = folder / "run.h5";
+  const std::string path = folder / "run.vtkhdf";
   RunWriter writer(path, sample_info(500), false);
   CHECK(RunReader(path).frames() == 0);
   for (std::int64_t k = 0; k < 20; ++k) {
@@ -163,7 +163,7 @@ TEST_CASE("a live file reads as running with the frames written so far", "[run_f
 TEST_CASE("a writer that goes away without finish leaves all its frames and stopped",
           "[run_file]") {
   const TemporaryFolder folder;
-  const std::string path = folder / "run.h5";
+  const std::string path = folder / "run.vtkhdf";
   {
     RunWriter writer(path, sample_info(50), false);
     for (std::int64_t k = 0; k < 5; ++k) writer.write(sample(k, 50));
@@ -175,7 +175,7 @@ TEST_CASE("a writer that goes away without finish leaves all its frames and stop
 
 TEST_CASE("a snapshot without ids gets them: row i is particle i", "[run_file]") {
   const TemporaryFolder folder;
-  const std::string path = folder / "run.h5";
+  const std::string path = folder / "run.vtkhdf";
   RunWriter writer(path, sample_info(50), false);
   Snapshot s = sample(0, 50);
   s.fields.pop_back();

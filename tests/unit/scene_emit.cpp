@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/scene/emit.h"
+#include "lib/run/emit.h"
 #include "lib/scene/random.h"
 #include "tests/catch.h"
 #include "tests/unit/scene_samples.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <set>
 
-#include "lib/scene/emit.h"
+#include "lib/run/emit.h"
 #include "tests/catch.h"
 #include "tests/unit/scene_samples.h"
 
@@ -101,7 +101,7 @@ TEST_CASE("seed scenes: the numbers of the original set-up, made dimensionless")
     CHECK(s.h() == h);
     CHECK(s.fluid.mass == mass);
     CHECK(s.fluid.spacing == Approx(std::cbrt(mass / 1000)).epsilon(1e-14));
-    CHECK(s.solver.relaxation == Approx(1e5 * mass * h * h).epsilon(1e-15));
+    CHECK(s.solver.cfm == Approx(1e5 * mass * h * h).epsilon(1e-15));
     CHECK(s.tensile->k == Approx(1e-4 / (h * h)).epsilon(1e-14));
     CHECK(s.time.step == 1.0 / 60);
     CHECK(std::llround(s.time.end / s.time.step) == 500);

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <limits>
 
-#include "lib/scene/emit.h"
-#include "lib/scene/particle_file.h"
+#include "lib/io/particle_file.h"
+#include "lib/run/emit.h"
 #include "tests/catch.h"
 #include "tests/unit/scene_samples.h"
 

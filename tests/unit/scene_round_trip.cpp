@@ -45,8 +45,8 @@ Scene unlike_default() {
   s.solver.method = SolverMethod::chebyshev;
   s.solver.kernels = KernelMode::paper;
   s.solver.constraint = ConstraintMode::two_sided;
-  s.solver.relaxation = 100.0 / 3;
-  s.solver.step_length = 0.7;
+  s.solver.cfm = 100.0 / 3;
+  s.solver.sor = 0.7;
   s.solver.boundary = BoundaryMode::clamp;
   s.solver.wall_margin = 0.01;
   s.solver.velocity_damping = 0.999;

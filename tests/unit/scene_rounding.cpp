@@ -6,8 +6,9 @@
 #include <iomanip>
 #include <sstream>
 
-#include "lib/plan/plan.h"
-#include "lib/scene/emit.h"
+#include "lib/exec/make_solver.h"
+#include "lib/program/plan.h"
+#include "lib/run/emit.h"
 #include "lib/solver/solver.h"
 #include "tests/catch.h"
 #include "tests/unit/scene_samples.h"

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <random>
 
-#include "lib/diag/warnings.h"
-#include "lib/scene/emit.h"
+#include "lib/run/emit.h"
+#include "lib/run/overlap.h"
+#include "lib/run/warnings.h"
 #include "lib/scene/load.h"
-#include "lib/scene/overlap.h"
 #include "tests/catch.h"
 
 using namespace pbf;

@@ -1,8 +1,10 @@
 // The rule for the number of threads.
-#include "lib/solver/threads.h"
+#include "lib/program/threads.h"
+#include "lib/run/emit.h"
 
-#include "lib/plan/plan.h"
-#include "lib/solver/devices.h"
+#include "lib/base/machine.h"
+#include "lib/exec/make_solver.h"
+#include "lib/program/plan.h"
 #include "lib/solver/solver.h"
 #include "tests/catch.h"
 #include "tests/unit/scene_samples.h"

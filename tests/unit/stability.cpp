@@ -1,10 +1,10 @@
 // Suite files, criteria, maps and the guard's limits.
-#include "lib/diag/stability.h"
+#include "lib/campaign/stability.h"
 
 #include <cmath>
 #include <limits>
 
-#include "lib/diag/stability_map.h"
+#include "lib/campaign/stability_map.h"
 #include "tests/catch.h"
 #include "tests/unit/scene_samples.h"
 

@@ -8,8 +8,9 @@
 #include <regex>
 #include <set>
 
-#include "lib/plan/plan.h"
-#include "lib/scene/emit.h"
+#include "lib/exec/make_solver.h"
+#include "lib/program/plan.h"
+#include "lib/run/emit.h"
 #include "lib/scene/load.h"
 #include "lib/solver/solver.h"
 #include "tests/catch.h"

@@ -1,7 +1,7 @@
 // Which starts are looked at for crowds: those with bodies that overlap, found pair by pair here.
 #include <random>
 
-#include "lib/scene/start_neighbors.h"
+#include "lib/run/start_neighbors.h"
 #include "tests/catch.h"
 #include "tests/unit/scene_samples.h"
 

@@ -99,7 +99,7 @@ TEST_CASE("what is wrong with a study is said with file, line and column, all at
       {"from: 1", ":2:7: from: 1 s is not before time.end (0.04 s)"},
       {"front: {axis: w, length: 1}", "expected x, y or z"},
       {"front: {axis: x}", "front.length: is missing"},
-      {"front: {length: 1, data: [no.csv]}", "no.csv: cannot be read: No such file"},
+      {"front: {length: 1, data: [no.csv]}", "no.csv: cannot be opened: No such file"},
       {"front: {length: 1, data: [bad.csv]}", "bad.csv:3: \"x\""},
       {"repeats: 1\nrepeats: 2", "repeats: is given twice"},
       {"grid: {solver.iterations: [1, 2\n", "not valid YAML"}};

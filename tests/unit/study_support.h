@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "lib/diag/study_table.h"
+#include "lib/campaign/study_table.h"
 #include "lib/io/run_layout.h"
 #include "tests/unit/run_file_samples.h"
 

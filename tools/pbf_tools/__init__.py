@@ -1,4 +1,4 @@
-"""Reads, plots and compares the run files of pbf. Start with `pbf_tools.open("run.h5")`."""
+"""Reads, plots and compares the run files of pbf. Start with `pbf_tools.open("run.vtkhdf")`."""
 
 from .errors import BadInput, FileError, MissingPackage, ToolError
 from .fields import Field, Frame

@@ -37,7 +37,7 @@ def parser() -> argparse.ArgumentParser:
         description="Plots, compares and converts what pbf writes.",
         epilog="Exit codes: 0 done, 1 internal error, 2 bad command line or table, 4 package not\n"
                "installed, 5 file cannot be read or written, 6 difference found (compare).\n\n"
-               "Example: python -m pbf_tools plot-energy out/dam_break/run.h5 -o energy.png")
+               "Example: python -m pbf_tools plot-energy out/dam_break/run.vtkhdf -o energy.png")
     commands = top.add_subparsers(metavar="COMMAND", required=True)
     for name, summary in COMMANDS.items():
         module = importlib.import_module("." + name.replace("-", "_"), __package__)

@@ -17,8 +17,8 @@ from .run import Run
 from .table import Table, write_text
 
 EXAMPLE = """examples:
-  python -m pbf_tools compare out/float/run.h5 out/double/run.h5
-  python -m pbf_tools compare a/run.h5 b/run.h5 --max-rms 0.01 --csv diff.csv --out diff.png"""
+  python -m pbf_tools compare out/float/run.vtkhdf out/double/run.vtkhdf
+  python -m pbf_tools compare a/run.vtkhdf b/run.vtkhdf --max-rms 0.01 --csv diff.csv --out diff.png"""
 MEASURES = ("compression_mean", "kinetic_energy", "potential_energy")
 
 

@@ -25,7 +25,7 @@ class Field:
     number of particles in each.
 
     >>> import pbf_tools
-    >>> run = pbf_tools.open("run.h5")
+    >>> run = pbf_tools.open("run.vtkhdf")
     >>> velocity = run["velocity"]
     >>> velocity.shape, velocity.unit
     ((26, 4000, 3), 'm/s')

@@ -66,7 +66,7 @@ def _reason(path: Path, problem: Exception) -> str:
     if not path.exists():
         return "no such file"
     if path.is_dir():
-        return "a folder; name the run.h5 in it"
+        return "a folder; name the run.vtkhdf in it"
     if not os.access(path, os.R_OK):
         return "permission denied"
     if path.stat().st_size == 0:

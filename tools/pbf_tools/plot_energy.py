@@ -18,8 +18,8 @@ from .run import Run
 from .table import Table, need, read_csv
 
 EXAMPLE = """examples:
-  python -m pbf_tools plot-energy out/dam_break/run.h5 -o energy.png
-  python -m pbf_tools plot-energy out/float/run.h5 out/double/run.h5 -o energies.png"""
+  python -m pbf_tools plot-energy out/dam_break/run.vtkhdf -o energy.png
+  python -m pbf_tools plot-energy out/float/run.vtkhdf out/double/run.vtkhdf -o energies.png"""
 COLUMNS = ["time", "kinetic_energy", "potential_energy"]
 
 

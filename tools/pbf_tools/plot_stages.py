@@ -17,7 +17,7 @@ from .table import Table
 
 EXAMPLE = """examples:
   python -m pbf_tools plot-stages tests/regression/bench/seed_speedup_nvidia_h200.csv -o stages.png
-  python -m pbf_tools plot-stages out/dam_break/run.h5 --grouped"""
+  python -m pbf_tools plot-stages out/dam_break/run.vtkhdf --grouped"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,4 +1,4 @@
-"""Reading run.h5: frames, fields, tracks, the log; nothing is loaded before it is asked for."""
+"""Reading run.vtkhdf: frames, fields, tracks, the log; nothing is loaded before it is asked for."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ class Run:
         One row per frame; nan in the frames that the particle is not in. BadInput for an id that
         no frame has.
 
-        >>> track = open("run.h5").track(17, "velocity")
+        >>> track = open("run.vtkhdf").track(17, "velocity")
         >>> list(track), track["velocity"].shape, track.units["position"]
         (['time', 'position', 'velocity'], (26, 3), 'm')
         """
@@ -143,7 +143,7 @@ class Run:
     def log(self) -> Table:
         """Measures and seconds per stage ("stage/lambda"), one row per measure; with units.
 
-        >>> log = open("run.h5").log
+        >>> log = open("run.vtkhdf").log
         >>> log["time"][:2], log.units["kinetic_energy"], "stage/lambda" in log
         (array([0.  , 0.02]), 'J', True)
         """
@@ -176,7 +176,7 @@ def open(path: str | os.PathLike[str]) -> Run:  # noqa: A001, as in h5py and gzi
 
     FileError with the reason when it is not a run file that this version reads.
 
-    >>> run = open("run.h5")
+    >>> run = open("run.vtkhdf")
     >>> run.status, len(run.frames), run.fields
     ('finished', 26, ['position', 'density', 'id', 'velocity'])
     >>> run.times[:3], run.units["velocity"]

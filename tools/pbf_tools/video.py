@@ -44,7 +44,7 @@ def pictures(source: str) -> list[Path]:
                        key=lambda p: ([int(n) for n in re.findall(r"\d+", p.stem)], p.name))
         if found:
             return found
-    raise FileError(f"{source}: no PNG pictures there; draw some: pbf render RUN.h5 --out FOLDER")
+    raise FileError(f"{source}: no PNG pictures there; draw some: pbf render RUN --out FOLDER")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -31,10 +31,10 @@ seeded_defect(stale_grid neighbors lib/solver/stepper.h
     lists_ = exec_.build_lists(a_.position.data()]]
   [[exec_.mark(stages.grid);
     lists_ = exec_.build_lists(a_.other_position.data()]])
-seeded_defect(last_neighbour_skipped neighbors lib/cpu/list_maker.h
+seeded_defect(last_neighbour_skipped neighbors lib/exec/cpu/list_maker.h
   [[close_to(simd, c, x, i + l, out) - out);]]
   [[std::max<std::ptrdiff_t>(close_to(simd, c, x, i + l, out) - out, 1) - 1);]])
-seeded_defect(short_cutoff neighbors lib/cpu/close_pairs.h
+seeded_defect(short_cutoff neighbors lib/exec/cpu/close_pairs.h
   [[kCutoffSquared = 1;]] [[kCutoffSquared = 0.98f;]])
 
 # density
@@ -57,7 +57,7 @@ seeded_defect(float_for_double density kernels/pass_lambda.h
 seeded_defect(lambda_sign lambda kernels/pass_lambda.h
   [[? -c / (]] [[? c / (]])
 seeded_defect(relaxation_missing lambda kernels/pass_lambda.h
-  [[dot(own_gradient, own_gradient) + p.relaxation;]] [[dot(own_gradient, own_gradient);]])
+  [[dot(own_gradient, own_gradient) + p.cfm;]] [[dot(own_gradient, own_gradient);]])
 seeded_defect(wall_gradient_missing lambda kernels/pass_lambda.h
   [[in_space(s.gradient) + wall.gradient;]] [[in_space(s.gradient);]])
 seeded_defect(wall_gradient_side lambda kernels/boundary.h

@@ -15,13 +15,13 @@
 
 #include "lib/base/error.h"
 #include "lib/base/hash.h"
+#include "lib/base/machine.h"
 #include "lib/base/stage_clock.h"
-#include "lib/diag/stability.h"
-#include "lib/diag/study.h"
+#include "lib/campaign/stability.h"
+#include "lib/campaign/study.h"
 #include "lib/scene/load.h"
-#include "lib/solver/devices.h"
 #ifdef PBF_HAS_CUDA
-#include "lib/cuda/cuda_solver.h"
+#include "lib/exec/cuda/cuda_solver.h"
 #endif
 
 namespace {

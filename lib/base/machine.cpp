@@ -1,0 +1,61 @@
+#include "lib/base/machine.h"
+
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+
+namespace pbf::inline base_module {
+namespace {
+
+/// First number in a file; false when there is none ("max" in a control group without a limit).
+bool read_number(const std::string& path, std::size_t& value) {
+  std::ifstream in(path);
+  return static_cast<bool>(in >> value);
+}
+
+/// "MemAvailable:   123 kB" -> bytes; 0 when there is no such line.
+std::size_t memory_line(const char* file, const std::string& wanted) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind(wanted, 0) == 0) return std::stoull(line.substr(wanted.size())) * 1024;
+  return 0;
+}
+
+}  // namespace
+
+std::string cpu_model() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const auto colon = line.find(": ");
+    if (colon != std::string::npos && line.rfind("model name", 0) == 0)
+      return line.substr(colon + 2);
+  }
+  return "unknown CPU";
+}
+
+int usable_threads() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (sched_getaffinity(0, sizeof set, &set) == 0) return std::max(1, CPU_COUNT(&set));
+  return static_cast<int>(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));  // over 1024 CPUs
+}
+
+std::size_t available_memory() {
+  std::size_t free = memory_line("/proc/meminfo", "MemAvailable:");
+  // Version 2 of control groups, as seen from inside a container; a batch job nested deeper is not
+  // covered, there the allocation itself fails or the system ends the job.
+  std::size_t limit = 0, used = 0;
+  if (read_number("/sys/fs/cgroup/memory.max", limit) &&
+      read_number("/sys/fs/cgroup/memory.current", used)) {
+    const std::size_t left = limit > used ? limit - used : 0;
+    free = free == 0 ? left : std::min(free, left);
+  }
+  return free;
+}
+
+std::size_t peak_memory() { return memory_line("/proc/self/status", "VmHWM:"); }
+
+}  // namespace pbf::inline base_module

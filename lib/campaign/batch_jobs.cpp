@@ -1,0 +1,116 @@
+#include "lib/campaign/batch_jobs.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <thread>
+
+#include "lib/base/error.h"
+#include "lib/run/signals.h"
+
+namespace pbf::inline campaign_module {
+namespace {
+
+/// Of all that was written to stderr, the error.
+std::string error_line(int fd) {
+  std::string text;
+  char block[4096];
+  for (off_t at = 0;;) {
+    const ssize_t n = ::pread(fd, block, sizeof block, at);
+    if (n <= 0) break;
+    text.append(block, static_cast<std::size_t>(n));
+    at += n;
+  }
+  const std::string mark = "pbf: error: ";
+  const std::size_t at = text.rfind(mark);
+  if (at == std::string::npos) return {};
+  std::string line = text.substr(at + mark.size());
+  while (!line.empty() && line.back() == '\n') line.pop_back();
+  for (char& c : line)
+    if (c == '\n') c = ' ';
+  return line;
+}
+
+}  // namespace
+
+JobPool::Job JobPool::start(std::size_t index, const std::vector<std::string>& args) const {
+  // Everything is made before the fork: only system calls may follow it.
+  std::vector<std::string> texts{"pbf"};
+  texts.insert(texts.end(), args.begin(), args.end());
+  std::vector<char*> argv;
+  for (std::string& t : texts) argv.push_back(t.data());
+  argv.push_back(nullptr);
+  const int err = memfd_create("pbf-batch", MFD_CLOEXEC);
+  const int out = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  const pid_t parent = getpid();
+  const HeldSignals held;  // a limit of the batch may pass before the run listens
+  const pid_t pid = err < 0 || out < 0 ? -1 : fork();
+  if (pid < 0) {
+    const int reason = errno;
+    for (const int fd : {err, out})
+      if (fd >= 0) ::close(fd);
+    throw Error(ExitCode::unavailable,
+                std::string("batch: no process can be started: ") + std::strerror(reason) +
+                    "; raise the limit on processes (ulimit -u, or pids of a container), or lower "
+                    "--jobs");
+  }
+  if (pid == 0) {
+    setpgid(0, 0);  // the terminal's Ctrl-C reaches the batch alone, which passes it on
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent || dup2(out, 1) < 0 || dup2(err, 2) < 0) _exit(1);
+    execv("/proc/self/exe", argv.data());
+    _exit(1);
+  }
+  ::close(out);
+  return {pid, index, err};
+}
+
+void JobPool::run(std::size_t count,
+                  const std::function<std::vector<std::string>(std::size_t)>& args,
+                  const std::function<bool()>& stop,
+                  const std::function<void(std::size_t, const JobEnd&)>& ended) {
+  std::vector<Job> running;
+  std::size_t next = 0;
+  bool told = false;
+  while (!running.empty() || (next < count && !stop())) {
+    while (running.size() < jobs_ && next < count && !stop()) {
+      try {
+        running.push_back(start(next, args(next)));
+      } catch (const Error&) {
+        if (running.empty()) throw;
+        break;  // those that run go on; the next one waits for the end of one of them
+      }
+      ++next;
+    }
+    if (stop() && !told) {
+      for (const Job& j : running) ::kill(j.pid, SIGTERM);
+      told = true;
+    }
+    bool any = false;
+    for (std::size_t k = 0; k < running.size();) {
+      int status = 0;
+      if (::waitpid(running[k].pid, &status, WNOHANG) != running[k].pid) {
+        ++k;
+        continue;
+      }
+      any = true;
+      const Job job = running[k];
+      running.erase(running.begin() + static_cast<std::ptrdiff_t>(k));
+      JobEnd end;
+      end.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+      end.message = error_line(job.err);
+      ::close(job.err);
+      ended(job.index, end);
+    }
+    if (!any) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+}  // namespace pbf::inline campaign_module

@@ -1,0 +1,159 @@
+#include "lib/campaign/batch_list.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "lib/base/error.h"
+#include "lib/base/inputs.h"
+#include "lib/base/plain_text.h"
+
+namespace pbf::inline campaign_module {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostMembers = 100000;
+
+[[noreturn]] void bad(const std::string& where, const std::string& what) {
+  throw Error(ExitCode::bad_input, where + ": " + what);
+}
+
+bool is_scene(const fs::path& p) {
+  return p.extension() == ".yaml" || p.extension() == ".yml" || p.extension() == ".h5";
+}
+
+std::vector<BatchMember> of_folder(const std::string& path) {
+  std::vector<BatchMember> all;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path, error))
+    if (is_scene(entry.path()) && entry.path().extension() != ".h5")
+      all.push_back({"", entry.path().string(), {}});
+  if (error) bad(path, "cannot be read: " + error.message());
+  if (all.empty()) bad(path, "holds no scene (*.yaml)");
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.scene < b.scene; });
+  return all;
+}
+
+std::vector<BatchMember> of_list(const std::string& path) {
+  note_input(path);
+  std::ifstream in(path);
+  if (!in) bad(path, std::string("cannot be opened: ") + std::strerror(errno));
+  std::vector<BatchMember> all;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    std::istringstream words(line.substr(0, line.find('#')));
+    const std::string where = path + ":" + std::to_string(number);
+    if (const auto found = find_bad_text(line)) bad(where, found->what + "; " + found->remedy);
+    BatchMember m;
+    for (std::string word; words >> word;) {
+      if (m.scene.empty()) {
+        m.scene = (fs::path(path).parent_path() / word).string();
+      } else {
+        if (word.find('=') == std::string::npos)
+          bad(where, "\"" + word + "\" is not key.path=value; a line is a scene and such settings");
+        m.overrides.push_back(word);
+      }
+    }
+    if (m.scene.empty()) continue;
+    if (!is_scene(m.scene)) bad(where, m.scene + " is no scene (*.yaml) and no run file (*.h5)");
+    all.push_back(m);
+    if (all.size() > kMostMembers) bad(path, "has more than 100000 lines");
+  }
+  if (all.empty()) bad(path, "names no scene");
+  return all;
+}
+
+/// What may stand in the name of a folder on any system.
+std::string plain(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const bool good = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                      c == '.' || c == '-' || c == '=' || c == '_';
+    if (good)
+      out += c;
+    else if (!out.empty() && out.back() != '-')
+      out += '-';
+  }
+  while (!out.empty() && out.back() == '-') out.pop_back();
+  return out.substr(0, 150);
+}
+
+void name_all(std::vector<BatchMember>& all) {
+  std::set<std::string> taken;
+  std::map<std::string, int> next;  // the number to try for a name: not all of them again
+  for (BatchMember& m : all) {
+    std::string name = fs::path(m.scene).stem().string();
+    for (const std::string& o : m.overrides) {
+      const std::size_t equals = o.find('=');
+      const std::size_t dot = o.rfind('.', equals);
+      name += '_';
+      name += o.substr(dot == std::string::npos ? 0 : dot + 1);
+    }
+    name = plain(name);
+    if (name.empty() || name[0] == '.') name.insert(0, "run");
+    m.name = name;
+    for (int& k = next.try_emplace(name, 2).first->second; !taken.insert(m.name).second; ++k)
+      m.name = name + "_" + std::to_string(k);
+  }
+}
+
+}  // namespace
+
+BatchAxis parse_axis(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    bad("--grid " + text, "expected KEY=V1,V2,..., e.g. --grid solver.iterations=2,4,8");
+  BatchAxis axis{text.substr(0, equals), {""}};
+  int depth = 0;
+  char quote = 0;
+  for (const char c : text.substr(equals + 1)) {
+    if (quote) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '[' || c == '{') {
+      ++depth;
+    } else if (c == ']' || c == '}') {
+      --depth;
+    } else if (c == ',' && depth == 0) {
+      axis.values.emplace_back();
+      continue;
+    }
+    axis.values.back() += c;
+  }
+  for (const std::string& v : axis.values)
+    if (v.empty()) bad("--grid " + text, "has an empty value");
+  return axis;
+}
+
+std::vector<BatchMember> batch_members(const std::string& input,
+                                       const std::vector<BatchAxis>& axes) {
+  std::error_code error;
+  std::vector<BatchMember> all;
+  if (fs::is_directory(input, error))
+    all = of_folder(input);
+  else if (is_scene(input))
+    all = {{"", input, {}}};
+  else
+    all = of_list(input);
+  for (const BatchAxis& axis : axes) {
+    std::vector<BatchMember> more;
+    for (const BatchMember& m : all)
+      for (const std::string& value : axis.values) {
+        if (more.size() >= kMostMembers) bad("--grid", "makes more than 100000 runs");
+        more.push_back(m);
+        more.back().overrides.push_back(axis.key + "=" + value);
+      }
+    all = std::move(more);
+  }
+  name_all(all);
+  return all;
+}
+
+}  // namespace pbf::inline campaign_module

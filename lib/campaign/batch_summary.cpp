@@ -1,0 +1,88 @@
+#include "lib/campaign/batch_summary.h"
+
+#include <filesystem>
+
+#include "lib/base/error.h"
+#include "lib/io/report.h"
+#include "lib/io/run_file.h"
+
+namespace pbf::inline campaign_module {
+namespace {
+
+const char* const kMeasures[] = {
+    "time",        "update",         "compression_mean", "compression_p99", "compression_max",
+    "height_kept", "kinetic_energy", "energy",           "energy_drift",    "energy_rise",
+    "speed_max",   "front_x"};
+
+/// Of a run's file: the last measures, the numbers of frames and warnings, seconds; empty cells
+/// without one.
+void add_results(const std::string& path, std::vector<Cell>& row) {
+  std::vector<Cell> cells(std::size(kMeasures) + 3);
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) try {
+      const RunReader file(path);
+      for (std::size_t k = 0; k < std::size(kMeasures); ++k)
+        if (const auto column = file.log_column(kMeasures[k]); !column.empty())
+          cells[k] = column.back();
+      cells[std::size(kMeasures)] = file.frames();
+      double seconds = 0;
+      for (const std::string& name : file.log_columns())
+        if (name.rfind("stage/", 0) == 0)
+          for (const double s : file.log_column(name)) seconds += s;
+      cells[std::size(kMeasures) + 1] = std::int64_t(file.info().warnings.size());
+      cells.back() = seconds;
+    } catch (const Error&) {
+      cells.assign(cells.size(), Cell{});  // the message of the run says what is wrong with it
+    }
+  row.insert(row.end(), cells.begin(), cells.end());
+}
+
+}  // namespace
+
+std::string exit_reason(int code) {
+  switch (code) {
+    case 0:
+      return "finished";
+    case static_cast<int>(ExitCode::bad_input):
+      return "bad input";
+    case static_cast<int>(ExitCode::guard):
+      return "diverged";
+    case static_cast<int>(ExitCode::unavailable):
+      return "unavailable";
+    case static_cast<int>(ExitCode::io):
+      return "file error";
+    case static_cast<int>(ExitCode::difference):
+      return "warned";  // --strict
+    case static_cast<int>(ExitCode::resumable):
+      return "stopped";
+    case -1:
+      return "waiting";
+    default:
+      return code > 128 ? "killed by signal " + std::to_string(code - 128) : "internal error";
+  }
+}
+
+std::string batch_summary(const std::vector<BatchMember>& members,
+                          const std::map<std::string, JobEnd>& ends, const std::string& out) {
+  std::vector<std::string> columns{"name", "scene", "settings", "exit_code", "reason", "message"};
+  columns.insert(columns.end(), std::begin(kMeasures), std::end(kMeasures));
+  columns.insert(columns.end(), {"frames", "warnings", "seconds"});
+  CsvTable table(columns);
+  for (const BatchMember& m : members) {
+    const auto at = ends.find(m.name);
+    const JobEnd end = at == ends.end() ? JobEnd{-1, ""} : at->second;
+    std::string settings;
+    for (const std::string& o : m.overrides) settings += (settings.empty() ? "" : " ") + o;
+    std::vector<Cell> row{m.name,
+                          m.scene,
+                          settings,
+                          end.code < 0 ? Cell{} : Cell{std::int64_t{end.code}},
+                          exit_reason(end.code),
+                          end.message};
+    add_results(out + "/" + m.name + "/" + kRunFile, row);
+    table.add(row);
+  }
+  return table.text();
+}
+
+}  // namespace pbf::inline campaign_module

@@ -1,0 +1,23 @@
+// The table of `pbf batch`: one row per run, from what its folder holds.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lib/campaign/batch_jobs.h"
+#include "lib/campaign/batch_list.h"
+
+namespace pbf::inline campaign_module {
+
+/// Why a run ended, from its exit code: finished, diverged, stopped, unavailable, ... "waiting":
+/// not started.
+std::string exit_reason(int code);
+
+/// CSV: name, scene, settings, exit code, reason, message, then the last row of the run's log
+/// (time, update, compression, energies, ...) and its frames, where it has a run file, and last
+/// `seconds`, those of all its updates and their output. Only `seconds` depends on the machine.
+std::string batch_summary(const std::vector<BatchMember>& members,
+                          const std::map<std::string, JobEnd>& ends, const std::string& out);
+
+}  // namespace pbf::inline campaign_module

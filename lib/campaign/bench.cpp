@@ -1,0 +1,121 @@
+#include "lib/campaign/bench.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include "lib/base/machine.h"
+#include "lib/base/stage_clock.h"
+#include "lib/base/stages.h"
+#include "lib/exec/make_solver.h"
+#include "lib/program/plan.h"
+#include "lib/run/emit.h"
+#include "lib/run/prestabilize.h"
+#include "lib/run/start_neighbors.h"
+
+namespace pbf::inline campaign_module {
+
+std::string bench_scene_yaml() {
+  return R"(name: bench
+domain: {min: [0, 0, 0], max: [2, 1, 1.25]}
+fluid: {spacing: 0.02}
+bodies:
+  - {shape: block, min: [0, 0, 0], max: [1, 1, 1]}
+time: {step: 0.002, end: 1}
+solver: {iterations: 4}
+tensile: {k: 0.001}
+viscosity: {xsph: 0.05}
+)";
+}
+
+Scene scaled_to(const Scene& scene, std::int64_t n, const std::string& dir) {
+  Scene s = scene;
+  std::int64_t random = 0;
+  for (const Body& b : s.bodies)
+    if (b.shape == Shape::random_box) random += b.count;
+  if (random > 0) {
+    for (Body& b : s.bodies) b.count = b.count * n / random;
+    return s;
+  }
+  // A few rounds, since lattice points come in whole layers.
+  for (int round = 0; round < 4; ++round) {
+    const double now = double(count_particles(s, dir));
+    const double share = now / double(n);
+    const double finer = s.dimensions == 2 ? std::sqrt(share) : std::cbrt(share);
+    s.fluid.spacing *= finer;
+    if (const auto y = s.plane())  // the slab stays as many spacings thick
+      for (double* face : {&s.domain.min[1], &s.domain.max[1]}) *face = *y + finer * (*face - *y);
+  }
+  s.time.step = scene.time.step * std::sqrt(s.h() / scene.h());
+  return s;
+}
+
+namespace {
+
+std::vector<StageTime> per_update(const std::vector<StageTime>& before,
+                                  const std::vector<StageTime>& after, double updates) {
+  std::vector<StageTime> out;
+  for (const StageTime& a : after) {
+    const auto* stage = std::find_if(std::begin(kStages), std::end(kStages),
+                                     [&](const Stage& s) { return a.name == s.name; });
+    if (stage == std::end(kStages) || !stage->of_update) continue;
+    double seconds = a.seconds;
+    for (const StageTime& b : before)
+      if (b.name == a.name) seconds -= b.seconds;
+    out.push_back({a.name, seconds / updates, 1});
+  }
+  return out;
+}
+
+void time_state(Solver& solver, const BenchSettings& s, BenchRow& row) {
+  row.first_update = solver.updates_done();
+  const auto before = solver.timings();
+  std::vector<double> ms, cpu_ms;
+  for (int r = 0; r < s.repeats; ++r) {
+    const Stopwatch watch;
+    const std::clock_t cpu = std::clock();
+    solver.step(s.updates);  // returns when the device has done them
+    ms.push_back(watch.seconds() * 1e3 / s.updates);
+    cpu_ms.push_back(double(std::clock() - cpu) * 1e3 / CLOCKS_PER_SEC / s.updates);
+  }
+  std::sort(ms.begin(), ms.end());
+  std::sort(cpu_ms.begin(), cpu_ms.end());
+  row.cpu_ms_median = cpu_ms[cpu_ms.size() / 2];
+  row.ms_median = ms[ms.size() / 2];
+  row.ms_min = ms.front();
+  row.ms_max = ms.back();
+  row.stages = per_update(before, solver.timings(), double(s.updates) * s.repeats);
+  row.measures = solver.measure();
+  row.solver = solver.info();
+  row.peak_mb = double(peak_memory()) / (1 << 20);
+}
+
+}  // namespace
+
+std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const BenchSettings& s) {
+  const std::int64_t n = count_particles(scene, dir);
+  const Plan plan = make_plan(scene, n, start_neighbors(scene, dir, n));
+  refuse_if_too_large(scene, plan);
+  const std::unique_ptr<Solver> solver = start_solver(scene, plan, emit_particles(scene, dir));
+  BenchRow row;
+  row.particles = n;
+  row.settings = s;
+  row.iterations = scene.solver.iterations;
+  row.dt = scene.time.step;
+  row.h = scene.h();
+  // First use of every kernel; without a warm-up every update counts.
+  if (s.warmup > 0) solver->step(2);
+  std::vector<BenchRow> rows;
+  row.state = "start";
+  time_state(*solver, s, row);
+  rows.push_back(row);
+  if (s.warmup == 0) return rows;
+  const std::int64_t left = s.warmup - solver->updates_done();
+  if (left > 0) solver->step(int(left));
+  row.state = "late";
+  time_state(*solver, s, row);
+  rows.push_back(row);
+  return rows;
+}
+
+}  // namespace pbf::inline campaign_module

@@ -1,0 +1,189 @@
+#include "lib/campaign/calibration.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+#include "lib/io/csv.h"
+#include "lib/io/report.h"
+
+namespace pbf::inline campaign_module {
+namespace {
+
+const std::vector<std::string> kColumns{"backend",   "precision", "threads", "device",
+                                        "particles", "stage",     "ms"};
+
+/// One program at a time changes what a folder holds. A file system without locks has none of this.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::string& folder)
+      : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (fd_ >= 0) ::flock(fd_, LOCK_EX);
+  }
+  ~FolderLock() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int fd_;
+};
+
+bool same_case(const StageCosts& a, const StageCosts& b) {
+  return a.backend == b.backend && a.precision == b.precision && a.device == b.device &&
+         a.threads == b.threads && a.particles == b.particles;
+}
+
+template <class T>
+bool parse(const std::string& text, T& value) {
+  const char* end = text.data() + text.size();
+  const auto r = std::from_chars(text.data(), end, value);
+  return r.ec == std::errc() && r.ptr == end;
+}
+
+/// Adds a line to the case it belongs to; false when it is not one.
+bool add_line(const std::vector<std::string>& cell, std::vector<StageCosts>& rows) {
+  StageCosts row;
+  double ms = 0;
+  if (!parse(cell[2], row.threads) || !parse(cell[4], row.particles) || !parse(cell[6], ms) ||
+      row.threads < 0 || row.particles < 1 || !(ms >= 0))
+    return false;
+  row.backend = cell[0], row.precision = cell[1], row.device = cell[3];
+  const auto known =
+      std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return same_case(r, row); });
+  StageCosts& into = known != rows.end() ? *known : rows.emplace_back(row);
+  into.ms[cell[5]] = ms;
+  return true;
+}
+
+/// A device's name without what would end a cell.
+std::string plain_name(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ',' || c == '"'; }, ' ');
+  return name;
+}
+
+/// ms of one pass at n particles; sorted by particles, at least one. Straight lines between the
+/// logarithms.
+double at_size(const std::vector<std::pair<double, double>>& measured, double n) {
+  if (n <= measured.front().first) return measured.front().second * n / measured.front().first;
+  for (std::size_t k = 1; k < measured.size(); ++k) {
+    const auto& [n0, t0] = measured[k - 1];
+    const auto& [n1, t1] = measured[k];
+    if (n > n1 || !(t0 > 0) || !(t1 > 0)) continue;
+    const double x = std::log(n / n0) / std::log(n1 / n0);
+    return t0 * std::pow(t1 / t0, x);
+  }
+  return measured.back().second * n / measured.back().first;
+}
+
+}  // namespace
+
+std::string calibration_path() {
+  if (const char* file = std::getenv("PBF_CALIBRATION"); file && *file) return file;
+  const char *data = std::getenv("XDG_DATA_HOME"), *home = std::getenv("HOME");
+  if (data && *data) return std::string(data) + "/pbf/calibration.csv";
+  if (home && *home) return std::string(home) + "/.local/share/pbf/calibration.csv";
+  throw Error(ExitCode::bad_input,
+              "no place for the calibration: set PBF_CALIBRATION to the path of a file");
+}
+
+std::string calibration_scene_yaml() { return bench_scene_yaml() + "vorticity: {epsilon: 0.1}\n"; }
+
+StageCosts calibration_of(const BenchRow& row) {
+  StageCosts out;
+  out.backend = row.solver.backend;
+  out.precision = row.solver.precision;
+  out.device = plain_name(row.solver.device);
+  out.threads = row.solver.threads;
+  out.particles = row.particles;
+  for (const StageTime& s : row.stages) {
+    const bool swept = s.name == "lambda" || s.name == "delta" || s.name == "density";
+    out.ms[s.name] = s.seconds * 1e3 / (swept ? std::max(1, row.iterations) : 1);
+  }
+  return out;
+}
+
+std::vector<StageCosts> read_calibration(const std::string& path) {
+  std::vector<StageCosts> rows;
+  if (!std::filesystem::exists(path)) return rows;
+  const std::string remedy = "; remove the file and run pbf bench --calibrate again";
+  const auto joined = [](const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& n : names) text += (text.empty() ? "" : ",") + n;
+    return text;
+  };
+  const std::vector<CsvRow> lines = read_csv(path, remedy);
+  if (!lines.empty() && lines[0].cells != kColumns)
+    throw Error(ExitCode::bad_input, lines[0].where + ": the columns are " +
+                                         joined(lines[0].cells) + ", expected " + joined(kColumns) +
+                                         remedy);
+  for (std::size_t k = 1; k < lines.size(); ++k)
+    if (!add_line(lines[k].cells, rows))
+      throw Error(ExitCode::bad_input, lines[k].where + ": not a line of a calibration" + remedy);
+  return rows;
+}
+
+void store_calibration(const std::string& path, const std::vector<StageCosts>& rows) {
+  const auto folder = std::filesystem::path(path).parent_path();
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (error)
+    throw Error(ExitCode::io, folder.string() + ": the folder of the calibration cannot be made: " +
+                                  error.message());
+  const FolderLock lock(folder.empty() ? "." : folder.string());
+  std::vector<StageCosts> all = read_calibration(path);
+  for (const StageCosts& row : rows)
+    std::erase_if(all, [&](const StageCosts& old) { return same_case(old, row); });
+  all.insert(all.end(), rows.begin(), rows.end());
+  CsvTable table(kColumns);
+  for (const StageCosts& row : all)
+    for (const auto& [stage, ms] : row.ms)
+      table.add({row.backend, row.precision, std::int64_t(row.threads), row.device, row.particles,
+                 stage, ms});
+  write_text_file(path, table.text());
+}
+
+std::optional<TimeEstimate> estimate_time(const Plan& plan, const Scene& s,
+                                          const std::vector<StageCosts>& rows, int threads,
+                                          const std::string& cpu) {
+  const bool cuda = s.backend == Backend::cuda;
+  const std::string precision = s.precision == Precision::dbl ? "double" : "float";
+  std::map<std::string, std::vector<std::pair<double, double>>> measured;  // stage: n, ms
+  TimeEstimate out;
+  for (const StageCosts& row : rows) {
+    if (row.backend != (cuda ? "cuda" : "cpu") || row.precision != precision) continue;
+    if (cuda ? !out.basis.empty() && row.device != out.basis
+             : row.threads != threads || row.device != plain_name(cpu))
+      continue;
+    out.basis = row.device;
+    for (const auto& [stage, ms] : row.ms) measured[stage].push_back({double(row.particles), ms});
+  }
+  if (measured.empty()) return std::nullopt;
+  for (auto& [stage, sizes] : measured) std::sort(sizes.begin(), sizes.end());
+  Scene reference;  // of the calibration: h = 2 d
+  const double neighbors = rest_neighbors(s) / rest_neighbors(reference);
+  std::map<std::string, int> passes;  // of each stage: sort and gather are timed together
+  for (const PlanPass& p : plan.passes) passes[p.stage] = std::max(passes[p.stage], p.per_update);
+  for (const auto& [stage, times] : passes) {
+    // The calibration's density is summed with lambda, in one loop that takes about as long.
+    auto known = measured.find(stage == "density" && !measured.contains(stage) ? "lambda" : stage);
+    if (known == measured.end()) continue;
+    const bool of_pairs = stage != "predict" && stage != "grid";
+    out.ms += times * at_size(known->second, double(plan.particles)) * (of_pairs ? neighbors : 1);
+  }
+  return out;
+}
+
+}  // namespace pbf::inline campaign_module

@@ -1,0 +1,300 @@
+#include "lib/campaign/exact_projection.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "kernels/boundary.h"
+#include "kernels/pass_predict.h"
+#include "lib/base/error.h"
+#include "lib/campaign/active_set.h"
+#include "lib/exec/cpu/cpu_exec.h"
+#include "lib/solver/params.h"
+
+namespace pbf::inline campaign_module {
+namespace {
+
+using Vector = Eigen::VectorXd;
+using V3 = Vec3<double>;
+using V4 = Vec4<double>;
+
+std::vector<V4> to_frame(const Scene& s, const Plan& plan, const std::vector<double>& si,
+                         bool place) {
+  std::vector<V4> out(si.size() / 3);
+  const Double3 low = s.origin();
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto at = [&](int axis) {
+      const auto k = std::size_t(plan.axes.of[axis]);
+      return (si[3 * i + k] - (place ? low[k] : 0)) / s.h();
+    };
+    out[i] = {at(0), at(1), at(2), 0};
+  }
+  return out;
+}
+
+std::vector<double> to_si(const Scene& s, const Plan& plan, const std::vector<V4>& x) {
+  std::vector<double> out(3 * x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double at[3] = {x[i].x, x[i].y, x[i].z};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto k = std::size_t(plan.axes.of[axis]);
+      out[3 * i + k] = s.origin()[k] + s.h() * at[axis];
+    }
+  }
+  return out;
+}
+
+/// The constraints in the internal frame (kernels/README.md, 4 to 6, 9), over all 3n coordinates.
+/// The density is the kernels' own; in `paper` the gradient here is that of its Poly6, for only
+/// the true gradient gives the nearest point.
+template <Smoothing S>
+class Constraints {
+ public:
+  Constraints(const Params<double>& p, const std::vector<V4>& start)
+      : p_(p), exec_(1), start_(start), lists_(make_lists()) {}
+
+  /// Values and Jacobian at x: n densities, then the walls near which a particle is.
+  void linearise(const Vector& x, ConstraintSet& out) const {
+    std::vector<Eigen::Triplet<double>> entries;
+    std::vector<double> value;
+    for (int i = 0; i < p_.n; ++i) density_row(i, x, value, entries);
+    for (int i = 0; i < p_.n; ++i) wall_rows(i, x, value, entries);
+    out.value = Eigen::Map<const Vector>(value.data(), Eigen::Index(value.size()));
+    out.jacobian.resize(out.value.size(), 3 * p_.n);
+    out.jacobian.setFromTriplets(entries.begin(), entries.end());
+    out.equalities = p_.two_sided ? p_.n : 0;
+  }
+
+ private:
+  static V3 point(const Vector& x, int i) { return {x[3 * i], x[3 * i + 1], x[3 * i + 2]}; }
+
+  static double density_shape_at(double q2) {
+    return density_shape<double, S>(q2, Spiky<double>::t(root_of(q2).q));
+  }
+  /// dW/dq / q: times the distance vector it is the gradient; 0 for a coincident pair.
+  static double slope(double q2) {
+    if (q2 <= coincident_q_squared<double>() || q2 >= 1) return 0;
+    if (is_paper(S)) return -6 * density_norm<double, S>() * (1 - q2) * (1 - q2);
+    const Root<double> root = root_of(q2);
+    const double t = Spiky<double>::t(root.q);
+    return Spiky<double, dimensions_of(S)>::gradient_norm * t * t * root.inverse;
+  }
+  V3 wall_gradient(const V3& x) const {
+    if (!is_paper(S)) return wall_term<double, S>(x, p_).gradient;
+    const double e = 1e-5;  // central differences: error about 1e-10
+    const auto along = [&](V3 d) {
+      return (wall_term<double, S>(x + d, p_).density - wall_term<double, S>(x - d, p_).density) /
+             (2 * e);
+    };
+    return {along({e, 0, 0}), along({0, e, 0}), along({0, 0, e})};  // y: 0 in two dimensions
+  }
+
+  void density_row(int i, const Vector& x, std::vector<double>& value,
+                   std::vector<Eigen::Triplet<double>>& entries) const {
+    const V3 xi = point(x, i);
+    double sum = 1;
+    V3 own = wall_gradient(xi);
+    const auto put = [&](int j, const V3& g) {
+      entries.emplace_back(i, 3 * j, g.x);
+      entries.emplace_back(i, 3 * j + 1, g.y);
+      entries.emplace_back(i, 3 * j + 2, g.z);
+    };
+    lists_.for_each(i, [&](int j) {
+      const V3 d = xi - point(x, j);
+      const double q2 = dot(d, d);
+      sum += density_shape_at(q2);
+      const V3 g = (p_.vol * slope(q2)) * d;
+      own = own + g;
+      put(j, -1.0 * g);
+    });
+    put(i, own);
+    value.push_back(p_.vol * density_norm<double, S>() * sum +
+                    wall_term<double, S>(xi, p_).density - 1);
+  }
+
+  /// Walls at which a particle within h of them (at the start) would be clamped.
+  void wall_rows(int i, const Vector& x, std::vector<double>& value,
+                 std::vector<Eigen::Triplet<double>>& entries) const {
+    const double box[3] = {p_.box.x, p_.box.y, p_.box.z};
+    const V4& s = start_[std::size_t(i)];
+    const double from[3] = {s.x, s.y, s.z};
+    for (int k = 0; k < 3; ++k)
+      for (const int side : {0, 1}) {
+        const double limit = side ? box[k] - p_.margin : p_.margin, sign = side ? 1 : -1;
+        if (!(p_.walls & (1u << (2 * k + side))) || sign * (from[k] - limit) < -1) continue;
+        entries.emplace_back(int(value.size()), 3 * i + k, sign);
+        value.push_back(sign * (x[3 * i + k] - limit));
+      }
+  }
+
+  /// Sorts `start_` by bin; order()[k] is then the index that particle k had.
+  ChunkedLists make_lists() {
+    const int n = p_.n;
+    std::vector<V4> from = start_;
+    std::vector<int> bin(from.size()), row(from.size()), bin_order(from.size());
+    std::iota(row.begin(), row.end(), 0);
+    bin_start_.resize(std::size_t(bin_count(p_)) + 1);
+    order_.resize(from.size());
+    const auto gather = [&](int old, int now) {
+      start_[std::size_t(now)] = from[std::size_t(old)];
+      order_[std::size_t(now)] = old;
+    };
+    exec_.sort_by_bin("grid", BinPass<double, dimensions_of(S)>{p_, from.data(), bin.data()}, n,
+                      bin_count(p_), row.data(), bin_order.data(), bin_start_.data(), gather);
+    return exec_.build_lists(start_.data(), bin_start_.data(), p_);
+  }
+
+  Params<double> p_;
+  CpuExec exec_;
+  std::vector<V4> start_;
+  std::vector<int> order_, bin_start_;
+  ChunkedLists lists_;
+
+ public:
+  const std::vector<int>& order() const { return order_; }
+  Vector start() const {
+    Vector x(3 * p_.n);
+    for (int i = 0; i < p_.n; ++i) {
+      const V4& s = start_[std::size_t(i)];
+      x[3 * i] = s.x, x[3 * i + 1] = s.y, x[3 * i + 2] = s.z;
+    }
+    return x;
+  }
+};
+
+/// Anderson's method on the fixed point x = x + step(x): the curvature of the constraints, which a
+/// linearisation leaves out, makes the plain iteration swing about the solution for long.
+class Acceleration {
+ public:
+  Vector next(const Vector& x, const Vector& step) {
+    const double size = step.norm();
+    if (size > 3 * last_size_) steps_ = {};  // led astray: forget
+    last_size_ = size;
+    if (steps_.size() == kDepth + 1) steps_.erase(steps_.begin()), points_.erase(points_.begin());
+    if (steps_.empty()) points_.clear();
+    steps_.push_back(step);
+    points_.push_back(x);
+    const auto m = Eigen::Index(steps_.size()) - 1;
+    if (m == 0) return x + step;
+    Eigen::MatrixXd df(x.size(), m), dx(x.size(), m);
+    for (Eigen::Index k = 0; k < m; ++k) {
+      df.col(k) = steps_[std::size_t(k) + 1] - steps_[std::size_t(k)];
+      dx.col(k) = points_[std::size_t(k) + 1] - points_[std::size_t(k)];
+    }
+    const Vector weight = df.colPivHouseholderQr().solve(step);
+    return x + step - (dx + df) * weight;
+  }
+
+ private:
+  static constexpr std::size_t kDepth = 8;
+  std::vector<Vector> points_, steps_;
+  double last_size_ = std::numeric_limits<double>::infinity();
+};
+
+/// Largest |C| of the equalities and C of the inequalities.
+double violation(const ConstraintSet& c) {
+  double worst = 0;
+  for (Eigen::Index i = 0; i < c.value.size(); ++i)
+    worst = std::max(worst, i < c.equalities ? std::fabs(c.value[i]) : c.value[i]);
+  return worst;
+}
+
+template <Smoothing S>
+Projection project(const Scene& scene, const Plan& plan, const std::vector<V4>& start) {
+  const Params<double> p = make_params<double>(scene, plan);
+  const Constraints<S> constraints(p, start);
+  const Vector target = constraints.start();
+  Vector x = target;
+  ConstraintSet set;
+  Multipliers multipliers;
+  Projection out;
+  constexpr int kMost = 200;
+  constexpr double kSmallest = 1e-11;  // h; rounding of the coordinates is 1e-16 of their size
+  Acceleration accelerate;
+  for (; out.iterations < kMost; ++out.iterations) {
+    constraints.linearise(x, set);
+    if (!multipliers.solve(set, set.value + set.jacobian * (target - x))) break;
+    const Vector step = target - set.jacobian.transpose() * multipliers.value() - x;
+    const double size = step.lpNorm<Eigen::Infinity>();
+    if (!std::isfinite(size)) break;
+    if (size < kSmallest * (1 + x.lpNorm<Eigen::Infinity>())) {
+      x += step;
+      out.converged = true;
+      break;
+    }
+    x = accelerate.next(x, step);
+  }
+  constraints.linearise(x, set);
+  const Vector& mu = multipliers.value();
+  out.violation = violation(set);
+  std::vector<V4> moved(start.size());
+  if (mu.size() == set.value.size()) {
+    const Vector residual = x - target + set.jacobian.transpose() * mu;
+    out.stationarity = residual.lpNorm<Eigen::Infinity>() * scene.fluid.smoothing_ratio;
+    out.complementarity = mu.cwiseProduct(set.value).lpNorm<Eigen::Infinity>();
+  }
+  for (std::size_t k = 0; k < start.size(); ++k) {
+    const auto i = Eigen::Index(k), to = Eigen::Index(constraints.order()[k]);
+    moved[std::size_t(to)] = {x[3 * i], x[3 * i + 1], x[3 * i + 2], 0};
+  }
+  out.position = to_si(scene, plan, moved);
+  return out;
+}
+
+std::vector<double> positions(const FieldArray& f) {
+  const auto v = f.as<double>();
+  return {v.begin(), v.end()};
+}
+
+}  // namespace
+
+std::vector<double> predicted_positions(const Scene& scene, const Plan& plan,
+                                        const std::vector<double>& position,
+                                        const std::vector<double>& velocity) {
+  const Params<double> p = make_params<double>(scene, plan);
+  std::vector<V4> x = to_frame(scene, plan, position, true),
+                  v = to_frame(scene, plan, velocity, false);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = with_w(predict(xyz(x[i]), xyz(v[i]), p).x, 0.0);
+  return to_si(scene, plan, x);
+}
+
+Projection project_exactly(const Scene& scene, const Plan& plan, const std::vector<double>& start) {
+  const std::vector<V4> x = to_frame(scene, plan, start, true);
+  const bool paper = scene.solver.kernels == KernelMode::paper;
+  if (scene.dimensions == 2)
+    return paper ? project<Smoothing::paper_2d>(scene, plan, x)
+                 : project<Smoothing::consistent_2d>(scene, plan, x);
+  return paper ? project<Smoothing::paper>(scene, plan, x)
+               : project<Smoothing::consistent>(scene, plan, x);
+}
+
+ProjectionError projection_error(Solver& solver, const Scene& scene, const Plan& plan) {
+  if (scene.solver.substeps != 1)
+    throw Error(ExitCode::bad_input,
+                "projection: one update is compared with one projection; set solver.substeps to 1");
+  const Snapshot before = solver.download({"velocity"}, ScalarType::f64);
+  const auto start = predicted_positions(scene, plan, positions(before.fields[0]),
+                                         positions(*before.find("velocity")));
+  solver.step(1);
+  const auto after = positions(solver.download({}, ScalarType::f64).fields[0]);
+  ProjectionError e;
+  e.exact = project_exactly(scene, plan, start);
+  e.converged = e.exact.converged;
+  double squares = 0;
+  for (std::size_t i = 0; i < after.size(); i += 3) {
+    const auto& x = e.exact.position;
+    const double r = std::hypot(after[i] - x[i], after[i + 1] - x[i + 1], after[i + 2] - x[i + 2]) /
+                     scene.fluid.spacing;
+    e.mean += r;
+    squares += r * r;
+    e.max = std::max(e.max, r);
+  }
+  const double n = double(before.count);
+  e.mean /= n;
+  e.rms = std::sqrt(squares / n);
+  return e;
+}
+
+}  // namespace pbf::inline campaign_module

@@ -1,0 +1,70 @@
+#include "lib/campaign/front.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "lib/base/error.h"
+#include "lib/base/inputs.h"
+#include "lib/io/csv.h"
+#include "lib/scene/number.h"
+
+namespace pbf::inline campaign_module {
+FrontData read_front_data(const std::string& path) {
+  note_input(path);
+  const std::vector<CsvRow> rows = read_csv(path);
+  if (rows.size() < 2) throw Error(ExitCode::bad_input, path + ": holds no data");
+  FrontData data;
+  data.name = std::filesystem::path(path).stem().string();
+  const std::vector<std::string>& head = rows[0].cells;
+  const auto t = std::size_t(std::find(head.begin(), head.end(), "T") - head.begin());
+  const auto z = std::size_t(std::find(head.begin(), head.end(), "Z") - head.begin());
+  if (t == head.size() || z == head.size())
+    throw Error(ExitCode::bad_input,
+                rows[0].where + ": expected a header with the columns T and Z");
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const auto number = [&](std::size_t column) {
+      double value = 0;
+      const std::string& text = rows[k].cells[column];
+      if (const NumberError e = read_double(text, value);
+          e != NumberError::none && e != NumberError::too_small)
+        throw Error(ExitCode::bad_input, rows[k].where + ": \"" + text + "\" " + describe(e));
+      return value;
+    };
+    const double at = number(t);
+    if (!data.T.empty() && at < data.T.back())
+      throw Error(ExitCode::bad_input, rows[k].where + ": T must not decrease");
+    data.T.push_back(at);
+    data.Z.push_back(number(z));
+  }
+  return data;
+}
+
+FrontCurve front_curve(const Front& f, double gravity, double spacing,
+                       const std::vector<double>& time, const std::vector<double>& x) {
+  FrontCurve c;
+  for (std::size_t k = 0; k < time.size(); ++k) {
+    c.T.push_back(time[k] * std::sqrt(f.factor * gravity / f.length));
+    c.Z.push_back((x[k] + 0.5 * spacing - f.origin) / f.length);
+  }
+  return c;
+}
+
+double front_deviation(const FrontCurve& c, const FrontData& data, std::size_t* points) {
+  double squares = 0;
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < data.T.size(); ++k) {
+    const auto next = std::lower_bound(c.T.begin(), c.T.end(), data.T[k]);
+    if (next == c.T.end() || (next == c.T.begin() && *next > data.T[k])) continue;
+    const auto i = std::size_t(next - c.T.begin());
+    double z = c.Z[i];
+    if (i > 0) z += (c.Z[i - 1] - z) * (c.T[i] - data.T[k]) / (c.T[i] - c.T[i - 1]);
+    squares += (z - data.Z[k]) * (z - data.Z[k]);
+    ++n;
+  }
+  if (points) *points = n;
+  return n ? std::sqrt(squares / double(n)) : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace pbf::inline campaign_module

@@ -1,0 +1,171 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "lib/base/error.h"
+#include "lib/base/stage_clock.h"
+#include "lib/base/text.h"
+#include "lib/campaign/stability.h"
+#include "lib/scene/load.h"
+#include "lib/scene/overrides.h"
+
+namespace pbf::inline campaign_module {
+namespace {
+
+Scene scene_of(const StabilityCase& c, const StabilityOptions& o) {
+  Node root = load_tree(c.scene, "scene");
+  Problems problems;
+  for (const auto& [path, value] : c.set) set_value(root, path, value, problems);
+  if (o.reduced)
+    for (const auto& [path, value] : c.small) set_value(root, path, value, problems);
+  for (const std::string& argument : o.overrides) apply_override(root, argument, problems);
+  Scene s = scene_of_tree(root, problems);
+  problems.raise();
+  s.output.reset();
+  s.render.reset();
+  s.backend = o.backend;
+  s.precision = o.precision;
+  s.threads = o.threads;
+  return s;
+}
+
+std::string number(double v) { return format("%.3g", v); }
+
+/// "speed <= 5 m/s, energy <= 3 %": what the row must fulfil, for people.
+std::string must_text(const Criteria& m) {
+  if (m.error) return format("error %d", *m.error) + (m.says.empty() ? "" : ": " + m.says);
+  if (!m.guard.empty() && m.guard != "allowed") return "guard: " + m.guard;
+  std::string out = "finite, inside";
+  const auto add = [&out](const char* what, double limit) { out += what + number(limit); };
+  if (m.speed) add(", speed<=", *m.speed);
+  add(", E<=", m.energy);
+  if (m.compression_mean) add(", c<=", *m.compression_mean);
+  if (m.compression_max) add(", cmax<=", *m.compression_max);
+  if (m.nearest) add(", near>=", *m.nearest);
+  if (m.still) add(", Ekin<=", *m.still);
+  if (m.height) add(", height>=-", *m.height);
+  if (m.momentum) add(", momentum<=", *m.momentum);
+  if (!m.like.empty()) out += ", like " + m.like;
+  if (m.guard == "allowed") out += "; or guard";
+  return out;
+}
+
+/// Share of the height above the floor, along gravity, that the centre of mass has lost.
+double height_lost(const Course& c, const Scene& s) {
+  const double after = energy_of_height(c.last, s, 1, 1);
+  const double before = energy_of_height(c.first, s, 1, 1);
+  return before > 0 ? 1 - after / before : 0;
+}
+
+double momentum_drift(const Course& c, double mass) {
+  double drift = 0;
+  for (int a = 0; a < 3; ++a) drift += std::pow(c.last.momentum[a] - c.first.momentum[a], 2);
+  // sqrt(2 M E): what the momenta add up to when all have the same speed.
+  const double all = std::sqrt(2 * mass * std::max(c.first.kinetic_energy, c.last.kinetic_energy));
+  return all > 0 ? std::sqrt(drift) / all : 0;
+}
+
+void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s) {
+  const auto at_most = [&](const char* name, double value, double limit) {
+    row.checks.push_back({name, value, limit, value <= limit});
+  };
+  at_most("lost", double(c.last.non_finite + c.last.outside), 0);
+  if (m.speed) at_most("speed", c.speed_max, *m.speed);
+  at_most("E", c.energy_rise, m.energy + c.released);
+  if (m.compression_mean) at_most("c", c.compression_mean, *m.compression_mean);
+  if (m.compression_max) at_most("cmax", c.compression_max, *m.compression_max);
+  if (m.nearest) row.checks.push_back({"near", row.nearest, *m.nearest, row.nearest >= *m.nearest});
+  if (m.still) at_most("Ekin", c.last.kinetic_energy / c.scale, *m.still);
+  if (m.height) at_most("height lost", height_lost(c, s), *m.height);
+  if (m.momentum) {
+    const double mass = make_plan(s, c.particles).mass * double(c.particles);
+    at_most("momentum", momentum_drift(c, mass), *m.momentum);
+  }
+  for (const StabilityCheck& check : row.checks) {
+    const bool least = check.name == std::string("near");
+    if (check.limit > 0 && (least || check.value > 0)) {
+      const double used = least ? check.limit / check.value : check.value / check.limit;
+      if (used > row.used) row.used = used, row.tightest = check.name;
+    }
+    row.happened += (row.happened.empty() ? "" : ", ") + check.name + " " + number(check.value);
+    if (check.name == "E" && c.released > 0.01) row.happened += " of " + number(check.limit);
+    if (!check.good) row.happened += " (!)";
+    row.good = row.good && check.good;
+  }
+  if (c.steps)
+    row.happened +=
+        format(", %lld changes of the step, %lld times back",
+               static_cast<long long>(c.steps->changes), static_cast<long long>(c.steps->repeats));
+}
+
+void run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
+  const Scene s = scene_of(c, o);
+  const std::string dir = std::filesystem::path(c.scene).parent_path().string();
+  row.dt_hat =
+      s.time.step * std::sqrt(std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]) / s.h());
+  const Course course = run_course(s, dir, [&](Solver& solver) {
+    const Snapshot snap = solver.download({}, ScalarType::f64);
+    const auto x = snap.fields[0].as<double>();
+    row.nearest = nearest_distance({x.begin(), x.end()}) / s.fluid.spacing;
+  });
+  row.particles = course.particles;
+  row.updates = course.updates;
+  row.fast = course.last.fast;
+  row.speed_max = course.speed_max;
+  row.energy_rise = course.energy_rise;
+  row.compression_mean = course.compression_mean;
+  row.compression_max = course.compression_max;
+  for (std::size_t a = 0; a < 3; ++a)
+    row.center[a] = (course.last.center_of_mass[a] - s.domain.min[a]) / s.h();
+  const bool must_stop = !c.must.guard.empty() && c.must.guard != "allowed";
+  if (course.event) {
+    const std::string alarm = kAlarmNames[static_cast<int>(course.event->alarm)];
+    row.happened = "guard: " + alarm + ", " + course.guard_text;
+    row.good = c.must.guard == "allowed" || c.must.guard == alarm;
+    return;
+  }
+  row.good = !must_stop && !c.must.error;
+  judge(row, c.must, course, s);
+}
+
+}  // namespace
+
+StabilityRow run_stability_case(const StabilityCase& c, const StabilityOptions& o) {
+  StabilityRow row;
+  row.name = c.name;
+  row.group = c.group;
+  row.must = must_text(c.must);
+  const Stopwatch watch;
+  try {
+    run(row, c, o);
+  } catch (const Error& e) {
+    if (e.code() == ExitCode::unavailable && !c.must.error) throw;
+    row.happened = format("error %d: ", static_cast<int>(e.code())) + e.what();
+    row.good = c.must.error == static_cast<int>(e.code()) &&
+               row.happened.find(c.must.says) != std::string::npos;
+  }
+  row.seconds = watch.seconds();
+  return row;
+}
+
+void judge_likeness(const std::vector<StabilityCase>& cases, std::vector<StabilityRow>& rows) {
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (cases[k].must.like.empty()) continue;
+    const auto other = std::find_if(rows.begin(), rows.end(), [&](const StabilityRow& r) {
+      return r.name == cases[k].must.like;
+    });
+    if (other == rows.end()) {
+      rows[k].happened += ", " + cases[k].must.like + " was not run";
+      continue;
+    }
+    double distance = 0;
+    for (std::size_t a = 0; a < 3; ++a)
+      distance = std::max(distance, std::fabs(rows[k].center[a] - other->center[a]));
+    const bool good = distance <= kLikeness;
+    rows[k].checks.push_back({"like", distance, kLikeness, good});
+    rows[k].happened += ", like " + number(distance) + " h" + (good ? "" : " (!)");
+    rows[k].good = rows[k].good && good;
+  }
+}
+
+}  // namespace pbf::inline campaign_module

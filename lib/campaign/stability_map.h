@@ -1,0 +1,47 @@
+// A stability map: a scene run over a grid of two of its keys, every run put into a class.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/campaign/stability.h"
+
+namespace pbf::inline campaign_module {
+
+/// stable: ran to the end below the limit on compression; degraded: above it; stopped: by the
+/// guard.
+enum class MapClass { stable, degraded, stopped };
+constexpr const char* kMapClassNames[] = {"stable", "degraded", "stopped"};
+
+struct StabilityMap {
+  std::string scene;         ///< path
+  std::string x_key, y_key;  ///< number keys of a scene; of a vector, its length is meant
+  std::vector<double> x, y;
+  std::vector<int> iterations;
+  double limit = 0.01;  ///< mean compression of the settled part: above it a run is degraded
+  StabilityOptions run;
+};
+
+struct MapCell {
+  double x = 0, y = 0;
+  int iterations = 0;
+  std::string scene;  ///< its name
+  MapClass verdict = MapClass::stable;
+  double dt_hat = 0;  ///< dt sqrt(|g|/h)
+  double compression_mean = 0, compression_max = 0, energy_rise = 0;
+  std::string stopped_for;  ///< the guard's alarm
+};
+
+/// Values of an axis from text: a,b,c or LOW:HIGH:COUNT (in equal ratios); empty: the scene's own
+/// value times 1/4, 1/2, 1, 2, 4, 8. Throws Error(bad_input).
+std::vector<double> map_values(const std::string& scene, const std::vector<std::string>& overrides,
+                               const std::string& key, const std::string& text);
+
+/// The grid, not run yet.
+std::vector<MapCell> map_cells(const StabilityMap& map);
+
+/// Runs one cell. Where gravity changes, the time simulated changes with sqrt(h/g), so that all
+/// cells see the same dimensionless time. Throws Error(bad_input) for a scene that is none.
+MapCell run_map_cell(const StabilityMap& map, MapCell cell);
+
+}  // namespace pbf::inline campaign_module

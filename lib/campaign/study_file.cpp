@@ -1,0 +1,196 @@
+// Study files: YAML in, members out.
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+#include "lib/campaign/study_reader.h"
+#include "lib/scene/load.h"
+#include "lib/scene/number.h"
+#include "lib/scene/value.h"
+
+namespace pbf::inline campaign_module {
+namespace fs = std::filesystem;
+using Kind = Node::Kind;
+
+void StudyReader::read_map(const Node& map, const std::string& block, const Entries& entries) {
+  if (map.kind != Kind::map)
+    return bad(map, block, "is " + map.shown() + ", expected a block of keys");
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < map.items.size(); ++i) {
+    const std::string key = study_text_of(map.keys[i]);
+    const std::string full = block.empty() ? key : block + "." + key;
+    const auto found =
+        std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return e.first == key; });
+    if (found == entries.end()) {
+      std::vector<std::string> names;
+      for (const auto& e : entries) names.push_back(e.first);
+      const std::string near = nearest_word(key, names);
+      std::string all;
+      for (const auto& name : names) all += (all.empty() ? "" : " ") + name;
+      bad(map.keys[i], full,
+          "unknown key, " +
+              (near.empty() ? "the keys here are " + all : "did you mean " + near + "?"));
+    } else if (!seen.insert(key).second) {
+      bad(map.keys[i], full, "is given twice");
+    } else {
+      found->second(map.items[i]);
+    }
+  }
+}
+
+void StudyReader::number(const Node& n, const std::string& key, double low, double high,
+                         double& out) {
+  double v = 0;
+  const NumberError e = n.kind == Kind::scalar ? read_double(n.text, v) : NumberError::not_a_number;
+  if (e != NumberError::none)
+    bad(n, key, n.shown() + " " + describe(e));
+  else if (v < low || v > high)
+    bad(n, key, n.shown() + " is out of range, " + to_text(low) + " .. " + to_text(high));
+  else
+    out = v;
+}
+
+void StudyReader::whole(const Node& n, const std::string& key, int low, int high, int& out) {
+  std::int64_t v = 0;
+  const NumberError e =
+      n.kind == Kind::scalar ? read_integer(n.text, v) : NumberError::not_a_number;
+  if (e != NumberError::none)
+    bad(n, key, n.shown() + " " + describe(e));
+  else if (v < low || v > high)
+    bad(n, key,
+        n.shown() + " is out of range, " + std::to_string(low) + " .. " + std::to_string(high));
+  else
+    out = int(v);
+}
+
+void StudyReader::numbers(const Node& n, const std::string& key, double low,
+                          std::vector<double>& out) {
+  if (n.kind != Kind::list || n.items.empty())
+    return bad(n, key, "is " + n.shown() + ", expected a list of numbers");
+  out.assign(n.items.size(), 0);
+  for (std::size_t i = 0; i < n.items.size(); ++i) number(n.items[i], key, low, 1e9, out[i]);
+}
+
+void StudyReader::text(const Node& n, const std::string& key, std::string& out) {
+  if (n.kind != Kind::scalar || n.text.empty())
+    return bad(n, key, "is " + n.shown() + ", expected text");
+  out = n.text;
+}
+
+/// A path, taken from the folder of the study file.
+std::string StudyReader::file(const Node& n, const std::string& key) {
+  std::string name;
+  text(n, key, name);
+  return (fs::path(path_).parent_path() / name).string();
+}
+
+StudySettings StudyReader::settings(const Node& n, const std::string& key) {
+  StudySettings out;
+  if (n.kind != Kind::map) {
+    bad(n, key,
+        "is " + n.shown() + ", expected keys of the scene with values, {solver.iterations: 4}");
+    return out;
+  }
+  for (std::size_t i = 0; i < n.items.size(); ++i)
+    out.emplace_back(study_text_of(n.keys[i]), n.items[i]);
+  return out;
+}
+
+void StudyReader::front(const Node& n) {
+  Front front;
+  read_map(
+      n, "front",
+      {{"axis",
+        [&](const Node& at) {
+          front.axis = at.text == "x" ? 0 : at.text == "y" ? 1 : at.text == "z" ? 2 : -1;
+          if (front.axis < 0) bad(at, "front.axis", "is " + at.shown() + ", expected x, y or z");
+        }},
+       {"origin", [&](const Node& at) { number(at, "front.origin", -1e12, 1e12, front.origin); }},
+       {"length", [&](const Node& at) { number(at, "front.length", 1e-9, 1e9, front.length); }},
+       {"factor", [&](const Node& at) { number(at, "front.factor", 1e-9, 1e9, front.factor); }},
+       {"data", [&](const Node& at) {
+          if (at.kind != Kind::list)
+            return bad(at, "front.data", "is " + at.shown() + ", expected a list of files");
+          for (const Node& item : at.items) {
+            try {
+              front.data.push_back(read_front_data(file(item, "front.data")));
+            } catch (const Error& e) {
+              bad(item, "front.data", e.what());
+            }
+          }
+        }}});
+  if (front.length == 0) bad(n, "front.length", "is missing: the width of the column, m");
+  study_.front = front;
+}
+
+Study StudyReader::read(const std::vector<std::string>& overrides) {
+  study_.path = path_;
+  study_.name = fs::path(path_).stem().string();
+  bool has_scene = false;
+  read_map(root_, "",
+           {{"name",
+             [&](const Node& n) {
+               text(n, "name", study_.name);
+               if (!is_file_name(study_.name))
+                 bad(n, "name",
+                     "is " + n.shown() +
+                         ", and tables are kept in out/study_<name>; give a word without "
+                         "slashes, not . or ..");
+             }},
+            {"scene",
+             [&](const Node& n) {
+               scene_path_ = file(n, "scene");
+               has_scene = true;
+             }},
+            {"set", [&](const Node& n) { base_ = settings(n, "set"); }},
+            {"variants", [&](const Node& n) { variants(n); }},
+            {"grid", [&](const Node& n) { grid(n); }},
+            {"repeats", [&](const Node& n) { whole(n, "repeats", 1, 1000, study_.repeats); }},
+            {"clock",
+             [&](const Node& n) {
+               study_.cpu_clock = n.text == "cpu";
+               if (n.text != "cpu" && n.text != "wall")
+                 bad(n, "clock", "is " + n.shown() + ", expected wall or cpu");
+             }},
+            {"error", [&](const Node& n) { text(n, "error", study_.error); }},
+            {"targets", [&](const Node& n) { numbers(n, "targets", 0, study_.targets); }},
+            {"from", [&](const Node& n) { number(n, "from", 0, 1e9, study_.from); }},
+            {"energy_limit",
+             [&](const Node& n) { number(n, "energy_limit", 0, 1e9, study_.energy_limit); }},
+            {"projection", [&](const Node& n) { numbers(n, "projection", 0, study_.projection); }},
+            {"reference",
+             [&](const Node& n) {
+               reference_ = settings(n, "reference");
+               has_reference_ = true;
+             }},
+            {"front", [&](const Node& n) { front(n); }}});
+  if (!has_scene)
+    problems_.add(path_, "scene", "is missing: the scene to vary, a path from this file's folder");
+  problems_.raise();
+  study_.scene_dir = fs::path(scene_path_).parent_path().string();
+  make_members(load_tree(scene_path_, "scene"), overrides);
+  const auto known = study_error_measures(study_);
+  if (std::find(known.begin(), known.end(), study_.error) == known.end()) {
+    const std::string near = nearest_word(study_.error, known);
+    std::string all;
+    for (const auto& k : known) all += " " + k;
+    problems_.add(root_.find("error")->place(), "error",
+                  "\"" + study_.error + "\" is no measure of this study" +
+                      (near.empty() ? "; there are" + all : ", did you mean " + near + "?"));
+  }
+  problems_.raise();
+  for (const StudyMember& m : study_.members)
+    if (study_.from >= m.scene.time.end)
+      throw Error(ExitCode::bad_input, root_.find("from")->place() + ": from: " +
+                                           to_text(study_.from) + " s is not before time.end (" +
+                                           to_text(m.scene.time.end) + " s) of " + m.label);
+  return study_;
+}
+
+Study load_study(const std::string& path, const std::vector<std::string>& overrides) {
+  return StudyReader(load_tree(path, "study"), path).read(overrides);
+}
+
+}  // namespace pbf::inline campaign_module

@@ -1,0 +1,251 @@
+#include "lib/campaign/study_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lib/base/text.h"
+#include "lib/base/version.h"
+#include "lib/scene/number.h"
+
+namespace pbf::inline campaign_module {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+enum class Over { mean, rms, max, last };
+
+/// A measure of the table: a column of the log over the window of the study.
+struct Measure {
+  const char *name, *column;
+  Over over;
+};
+constexpr Measure kMeasures[] = {{"compression_mean", "compression_mean", Over::mean},
+                                 {"compression_rms", "compression_rms", Over::rms},
+                                 {"compression_p99", "compression_p99", Over::mean},
+                                 {"compression_max", "compression_max", Over::max},
+                                 {"energy_rise", "energy_rise", Over::last},
+                                 {"height_kept", "height_kept", Over::mean},
+                                 {"share_above_1", "share_above_1", Over::mean},
+                                 {"share_above_10", "share_above_10", Over::mean},
+                                 {"energy_drift", "energy_drift", Over::last},
+                                 {"hydrostatic_deviation", "hydrostatic_deviation", Over::mean},
+                                 {"penetration", "penetration", Over::max},
+                                 {"speed_max", "speed_max", Over::max},
+                                 {"neighbors_mean", "neighbors_mean", Over::mean}};
+
+double over_window(const MemberResult& r, const Measure& m, double from) {
+  const auto &time = r.series("time"), &values = r.series(m.column);
+  double sum = 0, largest = -std::numeric_limits<double>::infinity();
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (time[k] < from) continue;
+    sum += m.over == Over::rms ? values[k] * values[k] : values[k];
+    largest = std::max(largest, values[k]);
+    ++n;
+  }
+  if (n == 0) return kNaN;  // ended before the window
+  switch (m.over) {
+    case Over::mean:
+      return sum / double(n);
+    case Over::rms:
+      return std::sqrt(sum / double(n));
+    case Over::max:
+      return std::isnan(sum) ? kNaN : largest;
+    case Over::last:
+      return values.back();
+  }
+  return kNaN;
+}
+
+/// Linear in time; NaN beyond the last sample.
+double at_time(const std::vector<double>& time, const std::vector<double>& values, double t) {
+  const auto next = std::lower_bound(time.begin(), time.end(), t - 1e-9 * std::fabs(t));
+  if (next == time.end()) return kNaN;
+  const auto i = std::size_t(next - time.begin());
+  if (i == 0 || time[i] <= t) return values[i];
+  const double part = (t - time[i - 1]) / (time[i] - time[i - 1]);
+  return values[i - 1] + part * (values[i] - values[i - 1]);
+}
+
+/// RMS over time of the distance between the centres of mass, in units of `length` (m).
+double reference_distance(const MemberResult& r, const MemberResult& reference, double length) {
+  double squares = 0;
+  const auto &time = r.series("time"), &there = reference.series("time");
+  for (const char* name : {"center_of_mass_x", "center_of_mass_y", "center_of_mass_z"})
+    for (std::size_t k = 0; k < time.size(); ++k) {
+      const double e = r.series(name)[k] - at_time(there, reference.series(name), time[k]);
+      squares += e * e;
+    }
+  return std::sqrt(squares / double(time.size())) / length;
+}
+
+std::size_t index_of(const Study& study, const std::string& name) {
+  const auto names = study_error_measures(study);
+  return std::size_t(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+/// A value as written in the study file: a number where it is one.
+Cell cell_of(const std::string& text) {
+  double v = 0;
+  std::int64_t i = 0;
+  if (read_integer(text, i) == NumberError::none) return i;
+  if (read_double(text, v) == NumberError::none) return v;
+  return text;
+}
+
+/// Keys with a column of their own in every table.
+bool has_own_column(const std::string& key) {
+  return key == "backend" || key == "precision" || key == "threads";
+}
+
+void setting_columns(const Study& study, std::vector<std::string>& columns) {
+  if (study.has_variants) columns.push_back("variant");
+  for (const auto& key : study.keys)
+    if (!has_own_column(key)) columns.push_back(key);
+  for (const char* name : {"backend", "precision", "threads", "particles"}) columns.push_back(name);
+}
+
+void setting_cells(const Study& study, const StudyRow& row, std::vector<Cell>& cells) {
+  if (study.has_variants) cells.push_back(row.member->variant);
+  for (std::size_t k = 0; k < study.keys.size(); ++k)
+    if (!has_own_column(study.keys[k])) cells.push_back(cell_of(row.member->values[k]));
+  const MemberResult& r = row.result;
+  cells.insert(cells.end(), {r.backend, r.precision, r.threads, r.particles});
+}
+
+/// Empty for NaN.
+void add_number(std::vector<Cell>& cells, double v) {
+  cells.emplace_back();
+  if (!std::isnan(v)) cells.back() = v;
+}
+
+bool counts(const Study& study, const StudyRow& row) {
+  return row.status == "finished" && std::isfinite(measure_of(study, row, study.error));
+}
+
+}  // namespace
+
+std::vector<std::string> study_error_measures(const Study& study) {
+  std::vector<std::string> names;
+  for (const Measure& m : kMeasures) names.push_back(m.name);
+  names.push_back("height_error");
+  if (!study.projection.empty())
+    names.insert(names.end(), {"projection_mean", "projection_rms", "projection_max"});
+  if (study.reference) names.push_back("reference_distance");
+  if (study.front)
+    for (const FrontData& d : study.front->data) names.push_back("front_rms_" + d.name);
+  return names;
+}
+
+StudyRow study_row(const Study& study, const StudyMember& member, const MemberResult& result,
+                   const MemberResult* reference) {
+  StudyRow row;
+  row.member = &member;
+  row.result = result;
+  row.status = result.status;
+  row.message = result.message;
+  const auto names = study_error_measures(study);
+  if (result.columns.empty()) {  // never ran
+    row.measures.assign(names.size(), kNaN);
+    return row;
+  }
+  for (const Measure& m : kMeasures) row.measures.push_back(over_window(result, m, study.from));
+  row.measures.push_back(std::fabs(1 - row.measures[index_of(study, "height_kept")]));
+  if (!study.projection.empty())
+    row.measures.insert(row.measures.end(),
+                        {result.projection_mean, result.projection_rms, result.projection_max});
+  const Scene& s = member.scene;
+  if (study.reference) {
+    // The edge of a cube, or of a square, that holds the fluid.
+    const double cells =
+        double(result.particles) * s.particle_mass() / (s.fluid.rest_density * s.cell_volume());
+    const double length = s.fluid.spacing * std::pow(cells, 1.0 / s.dimensions);
+    row.measures.push_back(reference ? reference_distance(result, *reference, length) : kNaN);
+  }
+  if (study.front) {
+    const double g = std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
+    const std::string column = std::string("front_") + "xyz"[study.front->axis];
+    row.front.push_back(front_curve(*study.front, g, s.fluid.spacing, result.series("time"),
+                                    result.series(column)));
+    for (const FrontData& d : study.front->data)
+      row.measures.push_back(front_deviation(row.front[0], d));
+  }
+  const double rise = measure_of(study, row, "energy_rise");
+  if (row.status == "finished" && !(rise <= study.energy_limit)) {
+    row.status = "energy_rose";
+    row.message = format("by %.2g %% of its start, the limit is %.2g %%", 100 * rise,
+                         100 * study.energy_limit);
+  }
+  return row;
+}
+
+double measure_of(const Study& study, const StudyRow& row, const std::string& name) {
+  const std::size_t k = index_of(study, name);
+  return k < row.measures.size() ? row.measures[k] : kNaN;
+}
+
+void mark_front(const Study& study, std::vector<StudyRow>& rows) {
+  for (StudyRow& row : rows) {
+    row.pareto = counts(study, row);
+    const double seconds = row.result.seconds_median(), error = measure_of(study, row, study.error);
+    for (const StudyRow& other : rows) {
+      if (!row.pareto || !counts(study, other)) continue;
+      const double s = other.result.seconds_median(), e = measure_of(study, other, study.error);
+      if (s <= seconds && e <= error && (s < seconds || e < error)) row.pareto = false;
+    }
+  }
+}
+
+CsvTable study_table(const Study& study, const std::vector<StudyRow>& rows) {
+  std::vector<std::string> columns;
+  setting_columns(study, columns);
+  columns.insert(columns.end(), {"updates", "seconds_median", "seconds_spread"});
+  const auto names = study_error_measures(study);
+  columns.insert(columns.end(), names.begin(), names.end());
+  columns.insert(columns.end(), {"device", "status", "message", "pareto"});
+  CsvTable table(columns);
+  for (const StudyRow& row : rows) {
+    std::vector<Cell> cells;
+    setting_cells(study, row, cells);
+    const MemberResult& r = row.result;
+    cells.emplace_back(r.updates);
+    const bool ran = row.status != "unavailable";
+    add_number(cells, ran ? r.seconds_median() : kNaN);
+    add_number(cells, ran ? r.seconds_spread() : kNaN);
+    for (const double m : row.measures) add_number(cells, m);
+    cells.insert(cells.end(), {r.device, row.status, row.message, row.pareto});
+    table.add(cells);
+  }
+  return table;
+}
+
+CsvTable front_table(const Study& study, const std::vector<StudyRow>& rows) {
+  std::vector<std::string> columns;
+  setting_columns(study, columns);
+  columns.insert(columns.end(), {"T", "Z"});
+  CsvTable table(columns);
+  for (const StudyRow& row : rows)
+    for (const FrontCurve& curve : row.front)
+      for (std::size_t k = 0; k < curve.T.size(); ++k) {
+        std::vector<Cell> cells;
+        setting_cells(study, row, cells);
+        cells.emplace_back(curve.T[k]);
+        cells.emplace_back(curve.Z[k]);
+        table.add(cells);
+      }
+  return table;
+}
+
+const StudyRow* cheapest(const Study& study, const std::vector<StudyRow>& rows, double target,
+                         const std::string& variant) {
+  const StudyRow* best = nullptr;
+  for (const StudyRow& row : rows) {
+    if (!variant.empty() && row.member->variant != variant) continue;
+    if (!counts(study, row) || !(measure_of(study, row, study.error) <= target)) continue;
+    if (!best || row.result.seconds_median() < best->result.seconds_median()) best = &row;
+  }
+  return best;
+}
+
+}  // namespace pbf::inline campaign_module

@@ -1,0 +1,74 @@
+#include "lib/exec/cpu/cpu_exec.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace pbf::inline PBF_VARIANT {
+
+namespace {
+
+/// Puts order[first..last-1], whole bins in order, into the order of ids within each bin. They
+/// nearly are: rows were in that order before they moved.
+void sort_within_bins(const int* bin, const int* id, int first, int last, int* order) {
+  int bin_before = -1, id_before = 0;  // of the row at k - 1
+  for (int k = first; k < last; ++k) {
+    const int row = order[k], b = bin[row], mine = id[row];
+    if (b != bin_before || mine > id_before) {
+      bin_before = b;
+      id_before = mine;
+      continue;
+    }
+    int to = k;
+    for (; to > first && bin[order[to - 1]] == b && id[order[to - 1]] > mine; --to)
+      order[to] = order[to - 1];
+    order[to] = row;
+  }
+}
+
+}  // namespace
+
+void CpuExec::sort(const int* bin, const int* id, int n, int bins, int* order, int* start) {
+  // Every thread counts and places the particles of its own range of bins, in order, and `start`
+  // is all the room it takes. Particles are nearly in the order of the last sort, so bins
+  // met at equal distances divide the work about equally. At most 4 threads, since each looks at
+  // every particle; the sort is a small part of an update.
+  const int threads = n > 16384 ? std::min(threads_, 4) : 1;
+  int low[5] = {0}, placed[4] = {0};
+  for (int t = 1; t < threads; ++t)
+    low[t] = std::max(low[t - 1], bin[std::int64_t(n) * t / threads]);
+  low[threads] = bins;
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+  for (int t = 0; t < threads; ++t) {
+    std::fill(start + low[t], start + low[t + 1], 0);
+    const auto size = unsigned(low[t + 1] - low[t]);
+    int count = 0;
+    for (int i = 0; i < n; ++i)
+      if (unsigned(bin[i] - low[t]) < size) ++start[bin[i]], ++count;
+    placed[t] = count;
+  }
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+  for (int t = 0; t < threads; ++t) {
+    const auto size = unsigned(low[t + 1] - low[t]);
+    if (size == 0) continue;
+    const int first = std::accumulate(placed, placed + t, 0);
+    std::exclusive_scan(start + low[t], start + low[t + 1], start + low[t], first);
+    for (int i = 0; i < n; ++i)
+      if (unsigned(bin[i] - low[t]) < size) order[start[bin[i]]++] = i;
+    sort_within_bins(bin, id, first, first + placed[t], order);
+    // Every start has moved to that of the next bin.
+    std::copy_backward(start + low[t], start + low[t + 1] - 1, start + low[t + 1]);
+    start[low[t]] = first;
+  }
+  start[bins] = n;
+}
+
+std::size_t CpuExec::list_bytes() const {
+  std::size_t sum = groups_.bytes() + chunks_.capacity() * sizeof chunks_[0] +
+                    pointers_.capacity() * sizeof pointers_[0] +
+                    in_bins_.capacity() * sizeof in_bins_[0];
+  for (const auto& c : chunks_) sum += c.bytes();
+  for (const auto& s : scratch_) sum += s.bytes();
+  return sum;
+}
+
+}  // namespace pbf::inline PBF_VARIANT

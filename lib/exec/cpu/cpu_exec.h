@@ -1,0 +1,187 @@
+// The CPU executor: OpenMP threads over particles. One thread is the sequential baseline; the
+// result does not depend on the number of threads (every particle's sums have one order, the sort
+// is stable, reductions are of integers).
+#pragma once
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "kernels/neighbors.h"
+#include "kernels/pass_measure.h"
+#include "lib/base/stage_clock.h"
+#include "lib/exec/cpu/host_buffer.h"
+#include "lib/exec/cpu/lane_sums.h"
+#include "lib/exec/cpu/list_maker.h"
+#include "lib/program/memory.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+class CpuExec {
+ public:
+  using Lists = ChunkedLists;
+  /// Rows that the lanes of the last group may read; the lists are filled up with the first of
+  /// them.
+  static constexpr std::size_t padding = 16;
+  /// The order of a sort may stand where its gather writes the ids: each is read before.
+  static constexpr bool order_in_place = true;
+  template <class T>
+  using Buffer = HostBuffer<T>;
+
+  /// threads >= 1. list_entries: room per particle for its neighbours, at first
+  /// (lib/program/memory.h); pages that stay empty are never touched.
+  explicit CpuExec(int threads, int list_entries = 37, Simd simd = chosen_simd())
+      : threads_(threads),
+        list_entries_(list_entries),
+        simd_(simd),
+        scratch_(std::size_t(threads)) {}
+
+  void begin() { clock_.begin(); }
+  void mark(const char* stage) { clock_.mark(stage); }
+  const StageClock& clock() const { return clock_; }
+  int threads() const { return threads_; }
+  Simd simd() const { return simd_; }
+
+  /// Copies n elements to an array of this executor.
+  template <class T>
+  void to_device(const T* host, std::size_t n, T* to) {
+    if (n) std::memcpy(to, host, n * sizeof(T));
+  }
+
+  /// Copies n elements of an array of this executor.
+  template <class T>
+  void to_host(const T* from, std::size_t n, T* host) {
+    if (n) std::memcpy(host, from, n * sizeof(T));
+  }
+
+  /// pass(i) for i in 0..n-1. Dynamic pieces: particles at the surface have fewer neighbours, and
+  /// another program may take a core for a while.
+  template <class Pass>
+  void for_each(int n, const Pass& pass) {
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (n > kChunk)
+    for (int first = 0; first < n; first += kPiece) {
+      const int last = std::min(n - first, kPiece) + first;
+      if constexpr (requires { typename Pass::Sum; })
+        sum_over_neighbors(simd_, pass, first, last);
+      else
+        for (int i = first; i < last; ++i) pass(i);
+    }
+  }
+
+  /// A measure: its maxima and counts, then the sums in units that these decide.
+  template <class Pass>
+  MeasureSums reduce(int n, const Pass& pass) {
+    const auto counts = sum<MeasureCounts>(n, [&](int i) { return pass.counts(i); });
+    const MeasureUnits unit(counts);
+    return {counts, sum<MeasureTerms>(n, [&](int i) { return pass.terms(i, unit); })};
+  }
+
+  /// Calls body() while the sum of pass(i) is above `limit`, at most `times` times, and counts the
+  /// calls in *rounds. Marks `stage` after every sum.
+  template <class Pass, class Body>
+  void repeat_while(const char* stage, int n, int times, const Pass& pass, std::uint64_t limit,
+                    unsigned long long* rounds, const Body& body) {
+    for (int k = 0; k < times; ++k) {
+      std::uint64_t sum = 0;
+#pragma omp parallel for schedule(static) reduction(+ : sum) num_threads(threads_) if (n > 4096)
+      for (int i = 0; i < n; ++i) sum += pass(i);
+      mark(stage);
+      if (sum <= limit) return;
+      ++*rounds;
+      body();
+    }
+  }
+
+  /// How many particles pass(i) puts into each of `bins` bins; none for a negative bin.
+  template <class Pass>
+  const std::vector<std::int64_t>& count_in_bins(int n, int bins, const Pass& pass) {
+    in_bins_.assign(std::size_t(bins), 0);
+#pragma omp parallel num_threads(threads_) if (n > kChunk)
+    {
+      std::vector<std::int64_t> mine(std::size_t(bins), 0);
+#pragma omp for schedule(static) nowait
+      for (int i = 0; i < n; ++i)
+        if (const int b = pass(i); b >= 0) ++mine[std::size_t(b)];
+#pragma omp critical(pbf_count_in_bins)
+      for (std::size_t b = 0; b < mine.size(); ++b) in_bins_[b] += mine[b];
+    }
+    return in_bins_;
+  }
+
+  /// first(i) for every particle, which writes first.bin[i]; a counting sort by bin, within a bin
+  /// by id (start[b] = first place of bin b, start[bins] = n); gather(from, to) for every particle.
+  /// So the order of rows follows from the positions alone, not from the rows before. Marks `stage`
+  /// after `first`.
+  template <class First, class Gather>
+  void sort_by_bin(const char* stage, const First& first, int n, int bins, const int* id,
+                   int* order, int* start, const Gather& gather) {
+    for_each(n, first);
+    mark(stage);
+    sort(first.bin, id, n, bins, order, start);
+    for_each(n, [&](int k) { gather(order[k], k); });
+  }
+  /// order[k] = row of the k-th particle by (bin, id).
+  void sort(const int* bin, const int* id, int n, int bins, int* order, int* start);
+
+  /// Exact lists of all pairs closer than h; grows as it must (std::bad_alloc when it cannot).
+  template <class Real>
+  Lists build_lists(const Vec4<Real>* position, const int* bin_start, const Params<Real>& p) {
+    const int chunks = (p.n + kChunk - 1) / kChunk;
+    const int bits = lane_bits(simd_, sizeof(Real)), groups_per_chunk = kChunk >> bits;
+    chunks_.resize(std::size_t(chunks));
+    pointers_.resize(std::size_t(chunks));
+    groups_.resize(std::size_t(chunks) * std::size_t(groups_per_chunk));
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (chunks > 1)
+    for (int c = 0; c < chunks; ++c) {
+      ListScratch& scratch = scratch_[std::size_t(omp_get_thread_num())];
+      scratch.reserve(list_entries_);
+      const int first = c * kChunk, last = std::min(p.n - first, kChunk) + first;
+      ChunkedLists::Group* groups = groups_.data() + std::size_t(c) * std::size_t(groups_per_chunk);
+      const std::size_t used =
+          p.dimensions == 2
+              ? make_lists<2>(simd_, position, bin_start, p, first, last, groups, scratch)
+              : make_lists<3>(simd_, position, bin_start, p, first, last, groups, scratch);
+      HostBuffer<int>& mine = chunks_[std::size_t(c)];
+      // Grow with some air, shrink only when far too large: sizes change little between updates.
+      const std::size_t room = std::size_t(std::min(kChunk, p.n - c * kChunk) * list_entries_);
+      if (mine.size() < used || mine.size() > 2 * std::max(used, room))
+        mine.resize(used > room ? used + used / 16 : room);
+      std::copy_n(scratch.found.data(), used, mine.data());  // of none: both may be null
+      pointers_[std::size_t(c)] = mine.data();
+    }
+    return {pointers_.data(), groups_.data(), bits, p.n};
+  }
+
+  std::size_t list_bytes() const;
+
+ private:
+  /// Of term(i), whose additions have no order.
+  template <class Sum, class Term>
+  Sum sum(int n, const Term& term) {
+    Sum total;
+#pragma omp parallel num_threads(threads_) if (n > kChunk)
+    {
+      Sum mine;
+#pragma omp for schedule(static) nowait
+      for (int i = 0; i < n; ++i) mine.add(term(i));
+#pragma omp critical(pbf_sum)
+      total.add(mine);
+    }
+    return total;
+  }
+
+  static constexpr int kChunk = 1 << ChunkedLists::chunk_bits;
+  static constexpr int kPiece = 256;  ///< of a pass: whole groups of lists, a few microseconds
+  int threads_, list_entries_;
+  Simd simd_;
+  StageClock clock_;
+  std::vector<std::int64_t> in_bins_;
+  std::vector<ListScratch> scratch_;  ///< per thread
+  std::vector<HostBuffer<int>> chunks_;
+  std::vector<const int*> pointers_;
+  HostBuffer<ChunkedLists::Group> groups_;
+};
+
+}  // namespace pbf::inline PBF_VARIANT

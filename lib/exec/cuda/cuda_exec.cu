@@ -1,0 +1,129 @@
+#include "lib/exec/cuda/cuda_exec.cuh"
+
+namespace pbf::inline PBF_VARIANT {
+
+CudaExec::CudaExec(ListRoom room) : room_(room) {
+  int device = 0, major = 0;
+  PBF_CUDA_CHECK(cudaGetDevice(&device));
+  PBF_CUDA_CHECK(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device));
+  overlap_ = major >= 9;
+  PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
+  list_state_.resize(1);
+  list_state_host_.resize(1);
+  clear_overflow();
+}
+
+CudaExec::~CudaExec() {
+  for (cudaEvent_t e : events_) cudaEventDestroy(e);
+  if (stream_) cudaStreamDestroy(stream_);
+  if (other_stream_) cudaStreamDestroy(other_stream_);
+}
+
+void CudaExec::begin() {
+  if (!profiling_) return;
+  stages_.clear();
+  mark("");
+}
+
+void CudaExec::mark(const char* stage) {
+  if (!profiling_) return;
+  if (events_.size() <= stages_.size()) {
+    events_.emplace_back();
+    PBF_CUDA_CHECK(cudaEventCreate(&events_.back()));
+  }
+  PBF_CUDA_CHECK(cudaEventRecord(events_[stages_.size()], stream_));
+  stages_.push_back(stage);
+}
+
+void CudaExec::book(double scale) {
+  synchronize();
+  for (std::size_t k = 1; k < stages_.size(); ++k) {
+    float ms = 0;
+    PBF_CUDA_CHECK(cudaEventElapsedTime(&ms, events_[k - 1], events_[k]));
+    clock_.add(stages_[k], double(ms) * 1e-3 * scale);
+  }
+  stages_.clear();
+}
+
+void CudaExec::scan(int n, int* start) {
+  // The count behind the last bin is 0, so the scan ends with the number of particles.
+  std::size_t bytes = 0;
+  PBF_CUDA_CHECK(cub::DeviceScan::ExclusiveSum(nullptr, bytes, counts_.data(), start, n, stream_));
+  if (scan_.size() < bytes) scan_.resize(bytes);
+  PBF_CUDA_CHECK(
+      cub::DeviceScan::ExclusiveSum(scan_.data(), bytes, counts_.data(), start, n, stream_));
+}
+
+bool CudaExec::new_condition(cudaGraphConditionalHandle& handle) {
+  cudaStreamCaptureStatus status;
+  cudaGraph_t graph = nullptr;
+  PBF_CUDA_CHECK(cudaStreamGetCaptureInfo(stream_, &status, nullptr, &graph));
+  if (status != cudaStreamCaptureStatusActive) return false;
+  PBF_CUDA_CHECK(cudaGraphConditionalHandleCreate(&handle, graph));
+  return true;
+}
+
+void CudaExec::begin_repeated(cudaGraphConditionalHandle handle) {
+  cudaStreamCaptureStatus status;
+  cudaGraph_t graph = nullptr;
+  const cudaGraphNode_t* before = nullptr;
+  const cudaGraphEdgeData* edges = nullptr;
+  std::size_t count = 0;
+  PBF_CUDA_CHECK(
+      cudaStreamGetCaptureInfo(stream_, &status, nullptr, &graph, &before, &edges, &count));
+  cudaGraphNodeParams params{};
+  params.type = cudaGraphNodeTypeConditional;
+  params.conditional.handle = handle;
+  params.conditional.type = cudaGraphCondTypeWhile;
+  params.conditional.size = 1;
+  cudaGraphNode_t node = nullptr;
+  PBF_CUDA_CHECK(cudaGraphAddNode(&node, graph, before, edges, count, &params));
+  PBF_CUDA_CHECK(cudaStreamUpdateCaptureDependencies(stream_, &node, nullptr, 1,
+                                                     cudaStreamSetCaptureDependencies));
+  if (!other_stream_)
+    PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&other_stream_, cudaStreamNonBlocking));
+  std::swap(stream_, other_stream_);
+  after_condition_ = true;
+  PBF_CUDA_CHECK(cudaStreamBeginCaptureToGraph(stream_, params.conditional.phGraph_out[0], nullptr,
+                                               nullptr, 0, cudaStreamCaptureModeThreadLocal));
+}
+
+void CudaExec::end_repeated() {
+  cudaGraph_t body = nullptr;
+  PBF_CUDA_CHECK(cudaStreamEndCapture(stream_, &body));
+  std::swap(stream_, other_stream_);
+  after_condition_ = true;
+}
+
+bool CudaExec::asked_to_repeat() {
+  unsigned go = 0;
+  to_host(&repeat_.data()->go, 1, &go);
+  return go != 0;
+}
+
+void CudaExec::allocate_lists(int n) {
+  words_.resize(std::size_t(stride(n)) * std::size_t(room_.first));
+  tails_.resize(std::size_t(room_.tails) * std::size_t(room_.tail));
+  count_.resize(std::size_t(n));
+  tail_of_.resize(std::size_t(n));
+}
+
+void CudaExec::set_room(int n, ListRoom room) {
+  room_ = room;
+  words_.resize(0);  // first, so that the old and the new lists need not fit together
+  tails_.resize(0);
+  allocate_lists(n);
+}
+
+void CudaExec::clear_overflow() {
+  PBF_CUDA_CHECK(cudaMemsetAsync(list_state_.data(), 0, sizeof(ListState), stream_));
+}
+
+ListState CudaExec::overflow() {
+  PBF_CUDA_CHECK(cudaMemcpyAsync(list_state_host_.data(), list_state_.data(), sizeof(ListState),
+                                 cudaMemcpyDeviceToHost, stream_));
+  synchronize();
+  return *list_state_host_.data();
+}
+
+}  // namespace pbf::inline PBF_VARIANT

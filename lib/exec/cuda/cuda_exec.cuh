@@ -1,0 +1,304 @@
+// The CUDA executor: one stream; a thread per particle, or several for a neighbour sum where there
+// are few particles.
+#pragma once
+
+#include <algorithm>
+#include <cub/device/device_scan.cuh>
+#include <vector>
+
+#include "lib/base/stage_clock.h"
+#include "lib/exec/cuda/device_buffer.h"
+#include "lib/exec/cuda/kernel_start.cuh"
+#include "lib/exec/cuda/list_pass.cuh"
+#include "lib/exec/cuda/reduce.cuh"
+#include "lib/exec/cuda/repeat.cuh"
+#include "lib/exec/cuda/sort_kernels.cuh"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// Up to how many particles so many threads share a neighbour sum, and up to how many eight share
+/// the making of a list (of which no bit depends on it): measured on an H200
+/// (kernels/PERFORMANCE.md).
+#ifdef PBF_PINNED
+constexpr int kSixteenLanes = 6000, kEightLanes = 24000, kFourLanes = 0, kTwoLanes = 0;
+#else
+constexpr int kSixteenLanes = 4000, kEightLanes = 12000, kFourLanes = 40000, kTwoLanes = 100000;
+#endif
+constexpr int kListLanes = 40000;
+constexpr int kRepeatBlocks = 512;
+
+template <class Pass>
+__global__ void __launch_bounds__(kBlock) apply_kernel(int n, Pass pass) {
+  wait_for_previous();
+  const int i = blockIdx.x * kBlock + threadIdx.x;
+  if (i < n) pass(i);
+}
+
+/// Adds the number of particles that pass(i) puts into each bin: in shared memory first, since most
+/// particles of a fluid share few bins. Integers: the order of the additions does not matter.
+constexpr int kBinBlock = 256, kBinBlocks = 512;
+template <class Pass>
+__global__ void __launch_bounds__(kBinBlock)
+    count_in_bins_kernel(int n, int bins, Pass pass, unsigned long long* out) {
+  wait_for_previous();
+  extern __shared__ unsigned in_bin[];  // bins
+  for (int b = threadIdx.x; b < bins; b += kBinBlock) in_bin[b] = 0;
+  __syncthreads();
+  for (std::int64_t i = blockIdx.x * kBinBlock + threadIdx.x; i < n;
+       i += std::int64_t(gridDim.x) * kBinBlock)
+    if (const int b = pass(int(i)); b >= 0) atomicAdd(&in_bin[b], 1u);
+  __syncthreads();
+  for (int b = threadIdx.x; b < bins; b += kBinBlock)
+    if (in_bin[b]) atomicAdd(&out[b], static_cast<unsigned long long>(in_bin[b]));
+}
+
+/// A neighbour sum by several threads per particle.
+template <int lanes, class Pass>
+__global__ void __launch_bounds__(kBlock) lanes_kernel(int n, Pass pass) {
+  wait_for_previous();
+#ifdef PBF_PINNED
+  sum_in_order_by_lanes<lanes, kBlock>(pass, blockIdx.x * kBlock + threadIdx.x, n);
+#else
+  sum_over_neighbors_by_lanes<lanes>(pass, blockIdx.x * kBlock + threadIdx.x, n);
+#endif
+}
+template <class Real, int D>
+__global__ void __launch_bounds__(kBlock) list_lanes_kernel(ListPass<Real, D> pass) {
+  wait_for_previous();
+  pass.by_lanes(blockIdx.x * kBlock + threadIdx.x);
+}
+
+class CudaExec {
+ public:
+  using Lists = TransposedLists;
+  static constexpr std::size_t padding = 1;
+  static constexpr bool order_in_place = false;
+  template <class T>
+  using Buffer = DeviceBuffer<T>;
+
+  /// room: for the lists at first.
+  explicit CudaExec(ListRoom room);
+  ~CudaExec();
+  CudaExec(const CudaExec&) = delete;
+  CudaExec& operator=(const CudaExec&) = delete;
+
+  cudaStream_t stream() const { return stream_; }
+  void synchronize() { PBF_CUDA_CHECK(cudaStreamSynchronize(stream_)); }
+
+  // Stage times: only where profiling is on, from events on the stream.
+  void set_profiling(bool on) { profiling_ = on; }
+  void begin();
+  void mark(const char* stage);
+  /// Books the marks since begin(), waiting for them; `scale` updates count as this one.
+  void book(double scale);
+  const StageClock& clock() const { return clock_; }
+
+  template <class T>
+  void to_device(const T* host, std::size_t n, T* to) {
+    PBF_CUDA_CHECK(cudaMemcpyAsync(to, host, n * sizeof(T), cudaMemcpyHostToDevice, stream_));
+    synchronize();
+  }
+  template <class T>
+  void to_host(const T* from, std::size_t n, T* host) {
+    PBF_CUDA_CHECK(cudaMemcpyAsync(host, from, n * sizeof(T), cudaMemcpyDeviceToHost, stream_));
+    synchronize();
+  }
+
+  /// The threads of a neighbour sum shape its tree, so their number follows from the particles of
+  /// the whole scene, not from those here.
+  template <class Pass>
+  void for_each(int n, const Pass& pass) {
+    if constexpr (requires { requires Pass::D == 2; }) {
+      const std::int64_t all = pass.p.total;
+      // A list has a third of the words: half as many threads have something to do.
+      if (all <= kEightLanes) return launch(lanes_kernel<4, Pass>, 4 * n, kBlock, 0, n, pass);
+      if (all <= kFourLanes) return launch(lanes_kernel<2, Pass>, 2 * n, kBlock, 0, n, pass);
+    } else if constexpr (requires { typename Pass::Sum; }) {
+      const std::int64_t all = pass.p.total;
+      if (all <= kSixteenLanes) return launch(lanes_kernel<16, Pass>, 16 * n, kBlock, 0, n, pass);
+      if (all <= kEightLanes) return launch(lanes_kernel<8, Pass>, 8 * n, kBlock, 0, n, pass);
+      if (all <= kFourLanes) return launch(lanes_kernel<4, Pass>, 4 * n, kBlock, 0, n, pass);
+      if (all <= kTwoLanes) return launch(lanes_kernel<2, Pass>, 2 * n, kBlock, 0, n, pass);
+    }
+    launch(apply_kernel<Pass>, n, kBlock, 0, n, pass);
+  }
+
+  /// See CpuExec. The maxima stay on the device for the sums, so the host waits once.
+  template <class Pass>
+  MeasureSums reduce(int n, const Pass& pass) {
+    if (n == 0) return {};
+    measure_.make(n, stream_);
+    const int threads = kBlock * reduce_blocks(n);
+    launch(reduce_kernel<CountsOf<Pass>>, threads, kBlock, 0, n, CountsOf<Pass>{pass},
+           measure_.counts());
+    launch(reduce_kernel<TermsOf<Pass>>, threads, kBlock, 0, n,
+           TermsOf<Pass>{pass, measure_.counts().total, {}}, measure_.terms());
+    return measure_.result(stream_);
+  }
+
+  /// See CpuExec. At most 12000 bins: their counters lie in shared memory.
+  template <class Pass>
+  const std::vector<std::int64_t>& count_in_bins(int n, int bins, const Pass& pass) {
+    in_bins_.resize(std::size_t(bins));
+    in_bins_host_.resize(std::size_t(bins));
+    PBF_CUDA_CHECK(cudaMemsetAsync(in_bins_.data(), 0, in_bins_.bytes(), stream_));
+    launch(count_in_bins_kernel<Pass>, std::min(n, kBinBlock * kBinBlocks), kBinBlock,
+           std::size_t(bins) * sizeof(unsigned), n, bins, pass, in_bins_.data());
+    PBF_CUDA_CHECK(cudaMemcpyAsync(in_bins_host_.data(), in_bins_.data(), in_bins_.bytes(),
+                                   cudaMemcpyDeviceToHost, stream_));
+    synchronize();
+    counted_.assign(in_bins_host_.data(), in_bins_host_.data() + bins);
+    return counted_;
+  }
+
+  /// See CpuExec. While a graph is captured the body becomes part of it, and the device repeats it
+  /// without asking the host; else the host waits for every sum.
+  template <class Pass, class Body>
+  void repeat_while(const char* stage, int n, int times, const Pass& pass, std::uint64_t limit,
+                    unsigned long long* rounds, const Body& body) {
+    if (repeat_.size() == 0) {
+      repeat_.resize(1);
+      PBF_CUDA_CHECK(cudaMemsetAsync(repeat_.data(), 0, repeat_.bytes(), stream_));
+    }
+    Repetition r{repeat_.data(), rounds, limit, unsigned(times), true, false, {}};
+    const auto decide = [&] {
+      launch(repeat_kernel<Pass>, std::min(n, kBlock * kRepeatBlocks), kBlock, 0, n, pass, r);
+      mark(stage);
+      r.first = false;
+    };
+    r.in_graph = new_condition(r.handle);
+    decide();
+    if (r.in_graph) {
+      begin_repeated(r.handle);
+      body();
+      decide();
+      end_repeated();
+    } else {
+      for (; asked_to_repeat(); decide()) body();
+    }
+  }
+
+  /// See CpuExec; `order` is room for the arrivals.
+  template <class First, class Gather>
+  void sort_by_bin(const char* stage, const First& first, int n, int bins, const int* id,
+                   int* order, int* start, const Gather& gather) {
+    slot_.resize(std::size_t(n));
+    const OrderPass<Gather> in_order{first.bin, id, start, slot_.data(), gather};
+    if (n <= kSortParticles && bins <= kSortBins) {
+      const auto sort = [&](const auto& before) {
+        launch(small_sort_kernel<std::decay_t<decltype(before)>, Gather>, kSortThreads,
+               kSortThreads, std::size_t(bins) * sizeof(int), before, n, bins, order, slot_.data(),
+               start, list_state_.data(), in_order);
+      };
+      if constexpr (requires { typename First::Sum; }) {
+        for_each(n, first);
+        mark(stage);
+        sort(NothingFirst{});
+      } else {
+        sort(first);
+      }
+      return;
+    }
+    if (counts_.size() != std::size_t(bins) + 1) {
+      counts_.resize(std::size_t(bins) + 1);
+      PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), stream_));
+    }
+    for_each(n, CountPass<First>{first, counts_.data(), order});
+    mark(stage);
+    scan(bins + 1, start);
+    for_each(n, PlacePass{first.bin, start, order, slot_.data(), counts_.data(), list_state_.data(),
+                          n, bins + 1});
+    for_each(n, in_order);
+  }
+
+  template <class Real>
+  Lists build_lists(const Vec4<Real>* position, const int* bin_start, const Params<Real>& p) {
+    allocate_lists(p.n);
+    p.dimensions == 2 ? make_lists<2>(position, bin_start, p)
+                      : make_lists<3>(position, bin_start, p);
+    return {words_.data(), tails_.data(), count_.data(), tail_of_.data(),
+            stride(p.n),   room_.first,   room_.tail};
+  }
+
+  // Lists that outgrow their room: the build records by how much, nothing is written beyond the
+  // room, and the caller repeats the updates with more.
+  ListRoom room() const { return room_; }
+  void set_room(int n, ListRoom room);
+  void clear_overflow();
+  /// Waits; what did not fit since clear_overflow(), zeros when all did.
+  ListState overflow();
+
+  std::size_t list_bytes() const {
+    return words_.bytes() + tails_.bytes() + tail_of_.bytes() + count_.bytes() + counts_.bytes() +
+           slot_.bytes() + scan_.bytes() + measure_.bytes() + in_bins_.bytes() + repeat_.bytes();
+  }
+
+ private:
+  /// Enough blocks of `block` threads for `threads`; from sm_90 on with programmatic dependent
+  /// launch, which hides most of the time between two kernels.
+  template <class... P, class... A>
+  void launch(void (*kernel)(P...), int threads, int block, std::size_t shared, const A&... args) {
+    if (threads == 0) return;
+    cudaLaunchConfig_t config{};
+    config.gridDim = dim3(unsigned((std::int64_t(threads) + block - 1) / block));
+    config.blockDim = dim3(unsigned(block));
+    config.dynamicSmemBytes = shared;
+    config.stream = stream_;
+    cudaLaunchAttribute overlap{};
+    overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+    overlap.val.programmaticStreamSerializationAllowed = 1;
+    config.attrs = &overlap;
+    config.numAttrs = overlap_ && !after_condition_ ? 1 : 0;
+    after_condition_ = false;
+    PBF_CUDA_CHECK(cudaLaunchKernelEx(&config, kernel, P(args)...));
+  }
+  template <int D, class Real>
+  void make_lists(const Vec4<Real>* position, const int* bin_start, const Params<Real>& p) {
+    const ListPass<Real, D> pass{p,
+                                 position,
+                                 bin_start,
+                                 words_.data(),
+                                 tails_.data(),
+                                 count_.data(),
+                                 tail_of_.data(),
+                                 list_state_.data(),
+                                 room_,
+                                 stride(p.n)};
+    if (p.n <= kListLanes)
+      launch(list_lanes_kernel<Real, D>, pass.lanes * p.n, kBlock, 0, pass);
+    else
+      for_each(p.n, pass);
+  }
+  static int stride(int n) { return list_stride(n); }
+  void allocate_lists(int n);
+  /// Makes a condition in the graph that is being captured; false where none is.
+  bool new_condition(cudaGraphConditionalHandle& handle);
+  /// What is launched in between is captured as the body that the condition repeats.
+  void begin_repeated(cudaGraphConditionalHandle handle);
+  void end_repeated();
+  bool asked_to_repeat();
+  /// Exclusive sums of the counts.
+  void scan(int n, int* start);
+
+  cudaStream_t stream_ = nullptr;
+  cudaStream_t other_stream_ = nullptr;  ///< while a repeated body is captured: that of the graph
+  bool overlap_ = false;                 ///< the device knows programmatic dependent launch
+  bool after_condition_ = false;         ///< ... which is for kernels behind kernels
+  ListRoom room_;
+  bool profiling_ = false;
+  StageClock clock_;
+  std::vector<cudaEvent_t> events_;
+  std::vector<const char*> stages_;  ///< of the marks since begin()
+  MeasureRoom measure_;
+  DeviceBuffer<unsigned long long> in_bins_;
+  PinnedBuffer<unsigned long long> in_bins_host_;
+  std::vector<std::int64_t> counted_;
+  DeviceBuffer<int4> words_, tails_;
+  DeviceBuffer<int> count_, tail_of_, counts_, slot_;
+  DeviceBuffer<ListState> list_state_;
+  PinnedBuffer<ListState> list_state_host_;
+  DeviceBuffer<char> scan_;
+  DeviceBuffer<RepeatState> repeat_;
+};
+
+}  // namespace pbf::inline PBF_VARIANT

@@ -1,0 +1,20 @@
+// The CUDA solver in its two variants: fast, and with the host's bits (solver.reproducible).
+#pragma once
+
+#include <memory>
+
+#include "lib/program/list_room.h"
+#include "lib/solver/solver.h"
+
+namespace pbf {
+
+inline namespace plain {
+std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& plan,
+                                             Particles particles, ListRoom room);
+}
+namespace pinned {
+std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& plan,
+                                             Particles particles, ListRoom room);
+}
+
+}  // namespace pbf

@@ -1,0 +1,58 @@
+// A sum that decides on the device whether work is repeated.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <cstdint>
+
+#include "lib/exec/cuda/kernel_start.cuh"
+
+namespace pbf::inline PBF_VARIANT {
+
+struct RepeatState {
+  unsigned long long sum;
+  unsigned blocks_done;
+  unsigned left;  ///< repetitions that are still allowed
+  unsigned go;    ///< what was decided last
+};
+
+struct Repetition {
+  RepeatState* state;  ///< all 0 at first; left so again, but for `left` and `go`
+  unsigned long long* rounds;
+  std::uint64_t limit;
+  unsigned times;
+  bool first;  ///< of its sequence
+  bool in_graph;
+  cudaGraphConditionalHandle handle;  ///< of the node that repeats, in a graph
+};
+
+/// Sums pass(i) of n particles; the block that is done last decides.
+template <class Pass>
+__global__ void __launch_bounds__(kBlock) repeat_kernel(int n, Pass pass, Repetition r) {
+  wait_for_previous();
+  unsigned long long sum = 0;
+  for (std::int64_t i = blockIdx.x * kBlock + threadIdx.x; i < n;
+       i += std::int64_t(gridDim.x) * kBlock)
+    sum += pass(int(i));
+  for (int d = 16; d > 0; d /= 2) sum += __shfl_down_sync(0xffffffffu, sum, d);
+  __shared__ unsigned long long warp_sum[kBlock / 32];
+  if (threadIdx.x % 32 == 0) warp_sum[threadIdx.x / 32] = sum;
+  __syncthreads();
+  if (threadIdx.x != 0) return;
+  for (int w = 1; w < kBlock / 32; ++w) sum += warp_sum[w];
+  RepeatState& s = *r.state;
+  atomicAdd(&s.sum, sum);
+  __threadfence();
+  if (atomicAdd(&s.blocks_done, 1u) != gridDim.x - 1) return;
+  __threadfence();
+  const unsigned left = r.first ? r.times : s.left;
+  const bool go = left > 0 && atomicAdd(&s.sum, 0ull) > r.limit;
+  s.sum = 0;
+  s.blocks_done = 0;
+  s.left = go ? left - 1 : left;
+  s.go = go;
+  if (go) ++*r.rounds;
+  if (r.in_graph) cudaGraphSetConditional(r.handle, go ? 1 : 0);
+}
+
+}  // namespace pbf::inline PBF_VARIANT

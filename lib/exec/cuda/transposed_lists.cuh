@@ -1,0 +1,123 @@
+// Neighbour lists for coalesced reading: word k of 4 entries of particle i lies at
+// words[k stride + i], so the lanes of a warp read adjacent 16-byte words. Few lists are longer
+// than most, so there is room of one length for all, and a list that outgrows it takes a tail of
+// its own from a common pool.
+#pragma once
+
+#include <type_traits>
+
+#include "kernels/pair_sum.h"
+#include "lib/program/list_room.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// A word that this pass reads once and no pass reads soon: it takes no room in L1 from the
+/// positions.
+__device__ __forceinline__ int4 load_once(const int4* word) {
+  int4 w;
+  asm("ld.global.nc.L1::no_allocate.v4.s32 {%0, %1, %2, %3}, [%4];"
+      : "=r"(w.x), "=r"(w.y), "=r"(w.z), "=r"(w.w)
+      : "l"(word));
+  return w;
+}
+
+/// Neighbour policy. Unused entries of the last word name the far particle (index n), whose
+/// contribution to every sum is zero: no test per entry.
+struct TransposedLists {
+  static constexpr bool skip_inactive = false;  ///< a branch per pair costs more than the pair
+  const int4 *words = nullptr, *tails = nullptr;
+  const int* count = nullptr;    ///< neighbours stored for each particle
+  const int* tail_of = nullptr;  ///< which tail, where count is above 4 first
+  int stride = 0;                ///< words between word k and k + 1 of one particle
+  int first = 0, tail = 0;       ///< see ListRoom
+
+  /// f(j) for every neighbour j of i, or for the share of one of `lanes` threads.
+  template <class F>
+  __device__ __forceinline__ void for_each(int i, F&& f, int lane = 0, int lanes = 1) const {
+    const int n = (count[i] + 3) >> 2;
+    const int4* w = words + i + std::size_t(lane) * stride;
+    std::size_t step = std::size_t(lanes) * stride;
+    for (int k = lane; k < n; k += lanes, w += step) {
+      if (k >= first && k < first + lanes) {
+        w = tails + std::size_t(tail_of[i]) * tail + (k - first);
+        step = lanes;
+      }
+      const int4 j = load_once(w);
+      f(j.x);
+      f(j.y);
+      f(j.z);
+      f(j.w);
+    }
+  }
+  /// Word k of particle i.
+  __device__ __forceinline__ int4 word(int i, int k) const {
+    return load_once(k < first ? words + i + std::size_t(k) * stride
+                               : tails + std::size_t(tail_of[i]) * tail + (k - first));
+  }
+  __device__ __forceinline__ int size(int i) const { return count[i]; }
+};
+
+/// Several threads share the neighbours of one particle: for few particles, where a pass waits for
+/// memory rather than for arithmetic. Their sums are added in a tree of fixed shape.
+template <int lanes, class Pass>
+__device__ __forceinline__ void sum_over_neighbors_by_lanes(const Pass& pass, int thread, int n) {
+  const int i = thread / lanes, lane = thread % lanes;
+  const bool valid = i < n;  // every lane of the warp takes part in the shuffles
+  typename Pass::Own own{};
+  typename Pass::Sum sum{};
+  if (valid) {
+    own = pass.own(i);
+    pass.lists.for_each(
+        i, [&](int j) { pass.add(sum, own, pass.other(j), i, j, true); }, lane, lanes);
+  }
+  sum.each([](auto& x) {
+#pragma unroll
+    for (int half = lanes / 2; half > 0; half /= 2) x += __shfl_xor_sync(0xffffffffu, x, half);
+  });
+  if (valid && lane == 0) pass.finish(i, own, sum);
+}
+
+/// The same with the bits of one thread's sum: the threads compute the terms, 4 lanes of them at a
+/// time, and leave them in shared memory; then each adds one component in the order of the list.
+template <int lanes, int block, class Pass>
+__device__ __forceinline__ void sum_in_order_by_lanes(const Pass& pass, int thread, int n) {
+  using Real = std::remove_cv_t<decltype(pass.p.dt)>;
+  using Sum = typename Pass::Sum;
+  constexpr int parts = sizeof(Sum) / sizeof(Real), entries = 4 * lanes;
+  __shared__ Real terms[block / lanes][entries][parts];
+  auto& mine = terms[threadIdx.x / lanes];
+  const int i = thread / lanes, lane = thread % lanes;
+  const bool valid = i < n;
+  const int words = valid ? (pass.lists.size(i) + 3) >> 2 : 0;
+  typename Pass::Own own{};
+  if (valid) own = pass.own(i);
+  Real total[(parts + lanes - 1) / lanes] = {};
+  // Every lane of the warp goes through as many rounds as the longest list of the warp needs.
+  for (int first = 0; __any_sync(0xffffffffu, first < words); first += lanes) {
+    if (first + lane < words) {
+      const int4 word = pass.lists.word(i, first + lane);
+      const int j[4] = {word.x, word.y, word.z, word.w};
+#pragma unroll
+      for (int e = 0; e < 4; ++e) {
+        Sum term{};
+        pass.add(term, own, pass.other(j[e]), i, j[e], true);
+        const Real* part = reinterpret_cast<const Real*>(&term);
+        for (int c = 0; c < parts; ++c) mine[4 * lane + e][c] = part[c];
+      }
+    }
+    __syncwarp();
+    const int there = min(lanes, words - first) * 4;
+    for (int c = lane, k = 0; c < parts; c += lanes, ++k)
+#pragma unroll 8
+      for (int e = 0; e < there; ++e) total[k] += mine[e][c];
+    __syncwarp();
+  }
+  for (int c = lane, k = 0; c < parts; c += lanes, ++k) mine[0][c] = total[k];
+  __syncwarp();
+  if (!valid || lane != 0) return;
+  Sum sum;
+  for (int c = 0; c < parts; ++c) reinterpret_cast<Real*>(&sum)[c] = mine[0][c];
+  pass.finish(i, own, sum);
+}
+
+}  // namespace pbf::inline PBF_VARIANT

@@ -1,0 +1,38 @@
+#include <utility>
+
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+#include "lib/exec/cpu/cpu_solver.h"
+#ifdef PBF_HAS_CUDA
+#include "lib/exec/cuda/cuda_solver.h"
+#endif
+#include "lib/base/machine.h"
+#include "lib/exec/make_solver.h"
+#include "lib/program/plan.h"
+#include "lib/solver/solver.h"
+
+namespace pbf::inline exec_module {
+
+void refuse_if_too_large(const Scene& scene, const Plan& plan) {
+  const auto needed = double(plan.memory.host_peak()), available = double(available_memory());
+  if (available > 0 && needed > available)
+    throw Error(ExitCode::unavailable,
+                format("scene %s needs about %s of memory for %lld particles, %s are available; "
+                       "%s, or use a machine with more memory",
+                       scene.name.c_str(), bytes_text(needed).c_str(),
+                       static_cast<long long>(plan.particles), bytes_text(available).c_str(),
+                       memory_remedy(scene, plan).c_str()));
+}
+
+std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles) {
+  if (scene.backend == Backend::cpu) return make_cpu_solver(scene, plan, std::move(particles));
+#ifdef PBF_HAS_CUDA
+  return make_cuda_solver(scene, plan, std::move(particles));
+#else
+  throw Error(ExitCode::unavailable,
+              "this build has no CUDA backend; run with --backend cpu, or build with "
+              "-DPBF_CUDA=ON where a CUDA toolkit is installed");
+#endif
+}
+
+}  // namespace pbf::inline exec_module

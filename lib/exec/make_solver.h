@@ -1,0 +1,24 @@
+// A solver on the backend that a scene asks for.
+#pragma once
+
+#include <memory>
+
+#include "lib/program/plan.h"
+#include "lib/scene/particles.h"
+#include "lib/scene/scene.h"
+#include "lib/solver/solver.h"
+
+namespace pbf::inline exec_module {
+
+/// Throws Error(unavailable) when the plan's peak of host memory is more than what is available
+/// here: an allocation that the system cannot back succeeds at first, and the process is killed
+/// later without a word. The memory of a device is checked by make_solver.
+void refuse_if_too_large(const Scene& scene, const Plan& plan);
+
+/// Throws Error(unavailable) when the backend, a device or memory is not there. Takes the particles
+/// and lets go of them as it goes.
+/// The particles stay where they are: what runs a scene from its start calls start_solver()
+/// (lib/run/prestabilize.h).
+std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles);
+
+}  // namespace pbf::inline exec_module

@@ -1,0 +1,115 @@
+#include "lib/io/particle_csv.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "lib/base/error.h"
+#include "lib/io/csv.h"
+
+namespace pbf::inline io_module {
+namespace {
+
+constexpr const char* kNames[] = {"x", "y", "z", "vx", "vy", "vz"};
+constexpr std::size_t kLongestLine = 4096;  // bytes; six numbers need a few hundred
+constexpr const char* kExpected = "expected x,y,z or x,y,z,vx,vy,vz";
+
+[[noreturn]] void bad(const std::string& where, const std::string& what) {
+  throw Error(ExitCode::bad_input, where + ": " + what);
+}
+
+bool printable(std::string_view s) {
+  return std::all_of(s.begin(), s.end(), [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+/// What a first line is that is no header. It is quoted only where it consists of what headers
+/// consist of: it may be the first line of anything.
+std::string wrong_header(const std::string& header) {
+  constexpr std::string_view kLetters = "xyzuvwXYZUVW_,;:|";
+  if (header.size() <= 40 && header.find_first_not_of(kLetters) == std::string::npos)
+    return "the header is \"" + header + "\"";
+  if (header.find_first_not_of("0123456789+-.eE,") == std::string::npos)
+    return "the first line holds numbers, no header";
+  return "the first line is no header (" +
+         std::to_string(1 + std::count(header.begin(), header.end(), ',')) +
+         " columns; not shown, for the file may be anything)";
+}
+
+/// The header without blanks; tells how many columns follow.
+int csv_columns(std::string_view line, const std::string& where) {
+  std::string header;
+  for (char c : trimmed(line))
+    if (c != ' ' && c != '\t') header += c;
+  if (header.rfind("\xEF\xBB\xBF", 0) == 0) header.erase(0, 3);  // byte order mark of spreadsheets
+  if (header == "x,y,z") return 3;
+  if (header == "x,y,z,vx,vy,vz") return 6;
+  bad(where, wrong_header(header) + ", " + kExpected);
+}
+
+void parse_row(std::string_view line, int columns, const CsvLines& lines, double* row) {
+  int column = 0;
+  for (std::string_view rest = line;; ++column) {
+    const std::size_t comma = rest.find(',');
+    const std::string_view cell = trimmed(rest.substr(0, comma));
+    if (column < columns) {
+      std::string_view digits = cell;
+      if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
+      const char* end = digits.data() + digits.size();
+      const auto [stop, ec] = std::from_chars(digits.data(), end, row[column]);
+      const auto refuse = [&](const char* what) {
+        const std::string value = printable(cell)
+                                      ? std::string("\"").append(cell.substr(0, 40)) + "\""
+                                      : "what stands there, no plain text,";
+        bad(lines.where(), std::string(kNames[column]) + ": " + value + what);
+      };
+      if (cell.empty())
+        bad(lines.where(), std::string(kNames[column]) + ": empty, expected a number");
+      if (ec == std::errc::result_out_of_range) refuse(" does not fit a double");
+      if (ec != std::errc{} || stop != end) refuse(" is not a number");
+      if (!std::isfinite(row[column])) refuse(" is not finite");
+    }
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  if (column + 1 != columns)
+    bad(lines.where(),
+        std::to_string(column + 1) + " columns, the header has " + std::to_string(columns));
+}
+
+/// Calls `use(line, columns, where)` for every data line.
+template <class Use>
+void for_each_row(RegularFile& file, const std::string& path, Sha256* hash, Use use) {
+  CsvLines lines(file, path, {hash, kLongestLine, kExpected});
+  int columns = 0;
+  for (std::string line; lines.next(line);) {
+    if (trimmed(line).empty()) continue;
+    if (columns == 0)
+      columns = csv_columns(line, lines.where());
+    else
+      use(std::string_view(line), columns, lines);
+  }
+  if (columns == 0) bad(path, "empty, expected a header x,y,z or x,y,z,vx,vy,vz and particles");
+}
+
+}  // namespace
+
+Particles read_particle_csv(RegularFile& file, const std::string& path, Sha256* hash) {
+  Particles p;
+  for_each_row(file, path, hash, [&p](std::string_view line, int columns, const CsvLines& lines) {
+    double row[6] = {};
+    parse_row(line, columns, lines, row);
+    p.position.push_back({row[0], row[1], row[2]});
+    p.velocity.push_back({row[3], row[4], row[5]});
+  });
+  return p;
+}
+
+std::int64_t count_particle_csv(RegularFile& file, const std::string& path) {
+  std::int64_t count = 0;
+  for_each_row(file, path, nullptr, [&count](std::string_view, int, const CsvLines&) { ++count; });
+  return count;
+}
+
+}  // namespace pbf::inline io_module

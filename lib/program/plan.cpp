@@ -1,0 +1,235 @@
+#include "lib/program/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "kernels/pass_delta.h"
+#include "kernels/pass_lambda.h"
+#include "kernels/pass_vorticity.h"
+#include "kernels/pass_xsph.h"
+#include "lib/base/error.h"
+#include "lib/program/axes.h"
+#include "lib/program/calibrate.h"
+#include "lib/program/substep_lists.h"
+#include "lib/program/time_levels.h"
+#include "lib/scene/load.h"
+
+namespace pbf::inline program_module {
+namespace {
+
+/// Cells of one h where their number is in proportion to the particles, else larger ones: a nearly
+/// empty box must not cost more memory than its fluid. So no box has too many (that positions can
+/// be told apart in it is a matter of the scene's checks).
+void plan_grid(Plan& plan, const Scene& scene) {
+  plan.axes = internal_axes(scene);
+  const Scene s = in_internal_axes(scene, plan.axes);
+  double box[3];
+  for (std::size_t k = 0; k < 3; ++k) box[k] = (s.domain.max[k] - s.domain.min[k]) / s.h();
+  if (s.dimensions == 2) box[1] = 0;  // one layer, also of a slab as thick as h
+  const auto number = [&](double edge) {
+    return (std::floor(2 * box[0] / edge) + 1) / 2 * (std::floor(box[1] / edge) + 1) *
+           (std::floor(box[2] / edge) + 1);
+  };
+  const double limit = std::min(double(plan.particles) + 65536, 2e8);
+  plan.cell_edge = 1;
+  while (number(plan.cell_edge) > limit) {
+    const double over = number(plan.cell_edge) / limit;
+    plan.cell_edge *= std::max(1.01, s.dimensions == 2 ? std::sqrt(over) : std::cbrt(over));
+  }
+  plan.cells[0] = int(2 * box[0] / plan.cell_edge) + 1;
+  for (int k = 1; k < 3; ++k) plan.cells[k] = int(box[k] / plan.cell_edge) + 1;
+}
+
+/// 2/((b + a) + (b - a) cos((2 m - 1) pi/2K)), m = 1..K: the steps of the first-order Richardson
+/// iteration whose error polynomial is Chebyshev's on [a, b] = [1/2, 3/2] (Young 1954, On
+/// Richardson's method). Large and small ones alternate, because each alone may amplify; the
+/// smallest comes late, because it smooths. Measured (column of 48 layers and dam break, h = 2 d):
+/// against omega = 1, mean compression x 0.77 and 0.68 with 2 sweeps, 0.79 and 0.62 with 4, 0.74
+/// and 0.50 with 8, and energy rises no more; from a = 0.4 on down the column heats with 2 or 3
+/// sweeps. In two dimensions (column of 24 layers, dam break, h = 2 d): x 0.86 and 0.80 with 2
+/// sweeps, 0.85 and 0.82 with 4, 0.85 and 0.84 with 8; a = 0.4 takes another eighth off, with a =
+/// 0.3 the dam break gains twice its energy.
+std::vector<double> chebyshev_factors(int sweeps) {
+  constexpr double a = 0.5, b = 1.5;
+  std::vector<double> rising, out;
+  for (int m = 1; m <= sweeps; ++m)
+    rising.push_back(2 / ((b + a) + (b - a) * std::cos((2 * m - 1) * kPi / (2 * sweeps))));
+  int low = sweeps / 2 - 1, high = sweeps - 1;
+  while (int(out.size()) < sweeps) {
+    if (high >= sweeps / 2) out.push_back(rising[std::size_t(high--)]);
+    if (low >= 0) out.push_back(rising[std::size_t(low--)]);
+  }
+  return out;
+}
+
+/// See Plan::sor. ratio: h/d.
+double default_sor(double ratio, int dimensions) {
+  if (dimensions == 2) return std::min(1.0, std::pow(3 / ratio, 4.0 / 3.0));
+  return std::min(1.0, 2.5 / ratio * (2.5 / ratio));
+}
+
+/// The fields that a pass declares (kernels/pair_sum.h).
+std::string gathers_text(unsigned fields) {
+  std::string out;
+  const std::pair<unsigned, const char*> names[] = {
+      {kPlace, "position"},    {kLambda, "lambda"}, {kInverseDensity, "1/density"},
+      {kVelocity, "velocity"}, {kCurl, "curl"},     {kId, "id"}};
+  for (const auto& [field, name] : names)
+    if (fields & field) out.append(out.empty() ? "" : " ").append(name);
+  return out;
+}
+
+void plan_passes(Plan& plan, const Scene& s) {
+  // What a pass gathers is the same in every form of it.
+  constexpr Smoothing S = Smoothing::consistent;
+  using Lists = ChunkedLists;
+  const int k = s.solver.iterations * plan.substeps * (1 + plan.more_rounds);  // at most
+  auto add = [&](const char* name, const char* stage, const char* reads, const char* writes,
+                 int times = 1, unsigned gathers = 0) {
+    plan.passes.push_back({name, stage, reads, writes, times, gathers_text(gathers)});
+  };
+  if (!plan.pairs) {
+    add("move", "predict", "position velocity", "position velocity", plan.substeps);
+    return;
+  }
+  const int lists = plan.lists_per_update;
+  add("predict", "predict", "position velocity", "position velocity bin", lists);
+  // Else the last sweep of a substep does it.
+  if (plan.substeps > lists && plan.more_rounds > 0)
+    add("move", "predict", "position velocity", "position velocity", plan.substeps - lists);
+  add("sort", "grid", "bin id", "order bin_start", lists);
+  add("gather", "grid", "order position velocity id", "position' velocity' id'", lists);
+  add("lists", "neighbors", "position bin_start", "lists", lists);
+  if (k > 0 && !plan.fused)
+    add("density", "density", "position lists", "density", k,
+        DensityPass<float, Lists, S>::gathers);
+  if (k > 0) {
+    add(plan.fused ? "density+lambda" : "lambda", "lambda",
+        plan.fused ? "position lists" : "position lists density",
+        plan.fused ? "position' density" : "position'", k,
+        LambdaPass<float, Lists, S, true>::gathers);
+    add(plan.tensile ? "delta+move (tensile)" : "delta+move", "delta",
+        "position' lists density velocity", "position velocity", k,
+        DeltaPass<float, Lists, S, true>::gathers);
+  }
+  if (plan.more_rounds > 0)
+    add("mean compression", "residual", "density", "", plan.substeps * plan.more_rounds);
+  if (plan.xsph)
+    add("xsph", "xsph", "position velocity lists", "velocity'", 1,
+        XsphPass<float, Lists, S, true>::gathers);
+  if (plan.vorticity) {
+    add("curl", "vorticity", "position velocity lists", "curl", 1,
+        CurlPass<float, Lists, 3>::gathers);
+    add("confinement", "vorticity", "position curl lists velocity", "velocity", 1,
+        VorticityPass<float, Lists, 3>::gathers);
+  }
+}
+
+void plan_left_out(Plan& plan, const Scene& s) {
+  auto out = [&](bool absent, const char* what, const char* why) {
+    if (absent) plan.left_out.push_back({what, why});
+  };
+  out(s.dimensions == 2,
+      "the third dimension: 18 of 27 cells around a particle, y in the pair loops",
+      "dimensions is 2");
+  out(!plan.xsph, "xsph pass", "no key viscosity");
+  out(!plan.tensile, "artificial pressure in the delta loop", "no key tensile");
+  out(!plan.vorticity, "curl and confinement passes, curl array", "no key vorticity");
+  out(plan.fused, "density pass of its own", "solver.fused is true");
+  out(s.solver.kernels == KernelMode::consistent, "the second smoothing function (Poly6)",
+      "solver.kernels is consistent");
+  out(s.solver.boundary == BoundaryMode::clamp, "wall density", "solver.boundary is clamp");
+  out(s.domain.open.size() == 6, "walls: their density and the clamp", "domain.open names all six");
+  out(plan.more_rounds == 0, "sweeps until a tolerance is met", "solver.tolerance is 0");
+  out(s.solver.iterations == 0, "lambda and delta passes", "solver.iterations is 0");
+  out(!plan.pairs, "sort and neighbour lists, but for a measure and for densities of a frame",
+      "solver.iterations is 0; no keys viscosity, vorticity");
+  out(!s.time.adaptive, "halving of the step", "no key time.adaptive");
+  out(!s.guard, "the guard and its copy of the state", "guard is off");
+  out(s.solver.speed_limit == 0, "limit on the speed", "solver.speed_limit is 0");
+  out(!s.output, "run.vtkhdf, its writer thread and its downloads", "no key output");
+  out(!s.checkpoint, "checkpoints, but where the run is stopped", "no key checkpoint");
+  out(!s.render, "pictures, the GL library and its thread", "no key render");
+  out(!s.output && !s.render, "copies of the particles in SI units", "no keys output, render");
+  out(s.backend == Backend::cpu, "CUDA context and driver", "backend is cpu");
+  out(s.backend == Backend::cuda && !s.output && !s.render, "staging of downloads on the device",
+      "no keys output, render");
+  out(!s.solver.reproducible && s.backend == Backend::cuda, "the host's arithmetic on the device",
+      "solver.reproducible is false");
+}
+
+void plan_files(Plan& plan, const Scene& s) {
+  const auto n = double(plan.particles);
+  const auto add = [&](const char* name, double number, double bytes,
+                       const std::string& note = {}) {
+    plan.files.push_back({name, std::int64_t(number), std::int64_t(bytes), note});
+  };
+  add("scene.resolved.yaml", 1, double(resolved_yaml(s).size()));
+  add("log.txt", 1, 2500);
+  add("DONE", 1, 30);
+  const double all = std::max(1.0, std::round(s.time.end / s.time.step));
+  if (s.output) {
+    const double scalar = s.output->precision == Precision::dbl ? 8 : 4;
+    double row = 3 * scalar;  // position
+    for (const auto& f : s.output->fields) row += (f == "velocity" ? 3 : 1) * scalar;
+    const double updates = std::max(1.0, std::round(s.output->every / s.time.step));
+    const double frames = std::floor(all / updates) + 1 + (std::fmod(all, updates) != 0 ? 1 : 0);
+    // Ids and the numbers of the vertices once; 1.66 MB of tables and the first 1024 rows of the
+    // log, measured; 45 columns of the log. gzip: 1.45 times smaller, measured.
+    const double rows = all / s.measure_every + 1;
+    const double bytes = (frames * row + 12) * n / (s.output->gzip ? 1.45 : 1) + 1.66e6 +
+                         std::floor(rows / 1024) * 1024 * 8 * 45;
+    add("run.vtkhdf", 1, bytes, std::to_string(std::int64_t(frames)) + " frames");
+  }
+  if (s.render) {
+    const double pictures = std::floor(s.time.end / s.render->every + 1e-9) + 1;
+    const double pixels = double(s.render->size[0]) * s.render->size[1];
+    add("frames/frame_*.png", pictures, pictures * 0.32 * pixels, "0.32 bytes a pixel");
+  }
+  if (s.checkpoint)
+    add("checkpoint.h5, checkpoint_prev.h5", 2,
+        2 * (6 * (s.precision == Precision::dbl ? 8 : 4) + 4) * n + 2e4);
+}
+
+}  // namespace
+
+Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
+  Plan plan;
+  plan.particles = particles;
+  plan.start = std::move(start);
+  plan.mass = s.particle_mass();
+  if (s.fluid.mass) {
+    const double h = s.h(), third = s.dimensions == 2 ? s.domain.max[1] - s.domain.min[1] : h;
+    plan.vol = plan.mass / (s.fluid.rest_density * h * h * third);
+    plan.wall_scale = plan.wall_range = 1;
+  } else {
+    const Calibration c = calibrate(s.solver.kernels, s.fluid.smoothing_ratio, s.dimensions);
+    plan.vol = c.vol;
+    plan.wall_scale = c.wall_scale;
+    plan.wall_range = c.wall_range;
+  }
+  plan.sor = s.solver.sor.value_or(default_sor(s.fluid.smoothing_ratio, s.dimensions));
+  if (s.solver.method == SolverMethod::chebyshev)
+    plan.sweep_factors = chebyshev_factors(s.solver.iterations);
+  plan.substeps = s.solver.substeps;
+  plan.lists_per_update = lists_per_update(s);
+  plan.finest_level = finest_level(s);
+  if (s.solver.tolerance > 0 && s.solver.iterations > 0) {
+    plan.tolerance = s.solver.tolerance;
+    plan.more_rounds = s.solver.max_iterations / s.solver.iterations - 1;
+  }
+  plan.fused = s.solver.fused;
+  plan.tensile = s.tensile && s.tensile->k != 0;
+  plan.xsph = s.viscosity && s.viscosity->xsph != 0;
+  plan.vorticity = s.vorticity && s.vorticity->epsilon != 0;
+  plan.pairs = s.solver.iterations > 0 || plan.xsph || plan.vorticity;
+  plan_grid(plan, s);
+  plan_passes(plan, s);
+  plan.memory = plan_memory(s, plan);
+  plan_left_out(plan, s);
+  plan_files(plan, s);
+  return plan;
+}
+
+}  // namespace pbf::inline program_module

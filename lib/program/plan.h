@@ -1,0 +1,88 @@
+// What a scene needs, computed before anything is allocated: passes, arrays, grid, features, and
+// what was left out. A pure function of the scene; everything downstream obeys it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kernels/axes.h"
+#include "lib/program/memory.h"
+#include "lib/scene/scene.h"
+
+namespace pbf::inline program_module {
+
+/// Of a sample of the scene's particles, spread evenly over their ids.
+struct StartNeighbors {
+  std::vector<int> count;       ///< particles within h, the particle itself included
+  std::vector<double> scatter;  ///< standard deviation of the counts around it; 0: too few sampled
+  bool empty() const { return count.empty(); }
+};
+
+/// One pass of an update, in order. `stage` is its timer's name.
+struct PlanPass {
+  std::string name, stage, reads, writes;
+  int per_update = 1;   ///< times per update
+  std::string gathers;  ///< of what it reads, the fields of neighbours' rows
+};
+
+struct PlanLeftOut {
+  std::string what, because;  ///< e.g. "xsph", "no key viscosity"
+};
+
+/// Files of one kind that the run leaves behind, with their estimated size.
+struct PlanFile {
+  std::string name;  ///< "run.vtkhdf", "frames/frame_*.png"
+  std::int64_t number = 1, bytes = 0;
+  std::string note;  ///< "101 frames"
+};
+
+struct Plan {
+  std::int64_t particles = 0;
+  StartNeighbors start;      ///< lib/run/start_neighbors.h
+  double cell_edge = 1;      ///< in h, >= 1: larger only where the box would need too many cells
+  Axes axes;                 ///< of the internal frame; lib/program/axes.h
+  int cells[3] = {1, 1, 1};  ///< of the grid, in internal axes; along x half cells
+  double vol = 1;            ///< m/(rho0 h^3), in 2-D m/(rho0 h^2 thickness); solver/calibrate.h
+  double wall_scale = 1, wall_range = 1;  ///< amplitude; range in h
+  /// omega. By default min(1, (2.5 d/h)^2): one Jacobi sweep moves every particle for all its
+  /// neighbours' constraints at once, so its stable step falls with their number. Measured on a
+  /// column of 24 layers: 1 is stable at h = 2.5 d and throws particles up at 3 d, 0.7 is stable at
+  /// 3 d and 0.3 at 4 d. In two dimensions min(1, (3 d/h)^(4/3)), the same power of the number of
+  /// neighbours: measured on a column of 24 squares, 1 is stable at h = 3 d, gains 1.5 % of energy
+  /// at 4 d and throws particles up at 5 d, 0.7 is stable at 4 d and 0.5 at 5 d. Unless the scene
+  /// sets it, it falls further where the density is above rho0 (kernels/pass_lambda.h): a closed
+  /// box with 1.3 times its particles boiled with 58 times the energy of its start, and now comes
+  /// to rest.
+  double sor = 1;
+  /// Factors on omega, one per sweep of a substep; empty: 1 in all (solver.method: jacobi).
+  std::vector<double> sweep_factors;
+  int substeps = 1;
+  int lists_per_update = 1;  ///< substeps share lists (substep_lists.h)
+  int finest_level = 0;      ///< of time.adaptive: an update is up to 2^finest_level steps
+  double tolerance = 0;  ///< mean compression above which rounds of sweeps are repeated; 0: none is
+  int more_rounds = 0;   ///< at most so many, besides the first
+  double mass = 0;       ///< kg, of one particle as reported
+  bool fused = true;
+  bool tensile = false, xsph = false, vorticity = false;
+  bool pairs = true;  ///< an update looks at pairs of particles: sweeps, viscosity or vorticity
+  std::vector<PlanPass> passes;
+  MemoryPlan memory;
+  std::vector<PlanLeftOut> left_out;
+  std::vector<PlanFile> files;
+
+  std::int64_t bytes() const { return memory.solver_bytes(); }
+};
+
+/// Pure: touches no file and no device. `particles` from count_particles(). `start`: of
+/// start_neighbors(), for the memory of a crowded start; without it the start counts as fluid at
+/// rest. Throws Error(bad_input) where the grid of the scene cannot be numbered.
+Plan make_plan(const Scene& scene, std::int64_t particles, StartNeighbors start = {});
+
+/// The plan for people: passes, arrays, files, what was left out and because of which key.
+std::string plan_text(const Plan& plan, const Scene& scene);
+
+/// The same as one JSON object. `members`: more of them, as JSON text, each with a comma in front.
+std::string plan_json(const Plan& plan, const Scene& scene, const std::string& members = {});
+
+}  // namespace pbf::inline program_module

@@ -1,0 +1,153 @@
+#include "lib/run/emit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "lib/base/error.h"
+#include "lib/io/particle_file.h"
+#include "lib/scene/number.h"
+#include "lib/scene/points.h"
+
+namespace pbf::inline run_module {
+namespace {
+
+/// Refuses particles outside the domain. What lies outside by rounding only (a sphere that touches
+/// a wall) is put on the wall. In two dimensions everything is put on the plane.
+void hold_inside(const Scene& scene, std::size_t body, std::size_t first, std::vector<Double3>& x) {
+  const Domain& domain = scene.domain;
+  const std::optional<double> plane = scene.plane();
+  for (std::size_t i = first; i < x.size(); ++i) {
+    // Only a file has a y of its own.
+    if (plane && scene.bodies[body].shape != Shape::file) x[i][1] = *plane;
+    for (int a = 0; a < 3; ++a) {
+      const double slack = 1e-9 * (domain.max[a] - domain.min[a]);
+      if (!(x[i][a] >= domain.min[a] - slack && x[i][a] <= domain.max[a] + slack))
+        throw Error(ExitCode::bad_input,
+                    "bodies[" + std::to_string(body) + "]: particle " + std::to_string(i - first) +
+                        " at " + to_text(x[i]) + " is outside the domain along " + "xyz"[a] + " (" +
+                        to_text(domain.min[a]) + " .. " + to_text(domain.max[a]) + " m); " +
+                        (plane && a == 1 ? "with dimensions: 2 that is the slab which holds all "
+                                           "particles; give them such a y"
+                                         : "move the body or enlarge the domain"));
+      x[i][a] = std::clamp(x[i][a], domain.min[a], domain.max[a]);
+    }
+    if (plane) x[i][1] = *plane;
+  }
+}
+
+bool is_open(const Domain& domain, int axis, bool high) {
+  const std::string face = std::string(1, "xyz"[axis]) + (high ? "_max" : "_min");
+  return std::find(domain.open.begin(), domain.open.end(), face) != domain.open.end();
+}
+
+/// Puts the particles from `first` on that are nearer to a wall than solver.wall_margin on it;
+/// refuses what would have to go farther than half a spacing, for layers would meet there.
+void hold_off_walls(const Scene& s, std::size_t body, std::size_t first, Particles& all) {
+  const double margin = s.solver.wall_margin, d = s.fluid.spacing;
+  if (!(margin > 0)) return;
+  std::size_t too_far = 0;
+  double farthest = 0;
+  for (std::size_t i = first; i < all.size(); ++i) {
+    double way = 0;
+    for (int a = 0; a < 3; a += s.dimensions == 2 ? 2 : 1) {
+      double& x = all.position[i][a];
+      const double low = s.domain.min[a] + margin, high = s.domain.max[a] - margin, before = x;
+      if (x < low && !is_open(s.domain, a, false)) x = low;
+      if (x > high && !is_open(s.domain, a, true)) x = high;
+      way = std::max(way, std::fabs(x - before));
+    }
+    if (way > 1e-6 * d) ++all.put_on_margin;  // the rest is rounding
+    if (way > 0.5 * d * (1 + 1e-6)) ++too_far;
+    farthest = std::max(farthest, way);
+  }
+  all.farthest_put = std::max(all.farthest_put, farthest);
+  if (too_far == 0) return;
+  throw Error(ExitCode::bad_input,
+              "bodies[" + std::to_string(body) + "]: " + std::to_string(too_far) +
+                  " particles are nearer to a wall than solver.wall_margin (" + to_text(margin) +
+                  " m) by more than half of fluid.spacing, the farthest by " + to_text(farthest) +
+                  " m; move the body away from the walls or lower solver.wall_margin");
+}
+
+/// In two dimensions nothing leaves the plane. A body's own velocity is checked with the scene.
+void refuse_velocity_along_y(std::size_t body, const std::vector<Double3>& v) {
+  for (std::size_t i = 0; i < v.size(); ++i)
+    if (v[i][1] != 0)
+      throw Error(ExitCode::bad_input,
+                  "bodies[" + std::to_string(body) + "]: particle " + std::to_string(i) +
+                      " has velocity " + to_text(v[i]) +
+                      "; with dimensions: 2 its y component must be 0: set it so in the file, or "
+                      "give dimensions: 3");
+}
+
+}  // namespace
+
+std::string resolved_path(const Body& body, const std::string& scene_dir) {
+  const std::filesystem::path path(body.path);
+  return path.is_absolute() ? body.path : (std::filesystem::path(scene_dir) / path).string();
+}
+
+std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {
+  double sum = 0;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    const double n = body.shape == Shape::file
+                         ? static_cast<double>(count_particle_file(resolved_path(body, scene_dir)))
+                         : lattice_count(body, scene.fluid.spacing, scene.plane());
+    if (n < 1 && body.shape == Shape::file)
+      throw Error(ExitCode::bad_input, "bodies[" + std::to_string(b) + "]: " +
+                                           resolved_path(body, scene_dir) + ": holds no particles");
+    sum += n;
+  }
+  if (sum < 1)
+    throw Error(ExitCode::bad_input,
+                "bodies: the scene has 0 particles; add a body or lower "
+                "fluid.spacing");
+  if (sum > kMaxParticles) throw Error(ExitCode::bad_input, "bodies: " + too_many_text(sum));
+  return static_cast<std::int64_t>(sum);
+}
+
+std::vector<SceneFile> scene_files(const Scene& scene, const std::string& scene_dir) {
+  std::vector<SceneFile> files;
+  for (const Body& body : scene.bodies) {
+    if (body.shape != Shape::file) continue;
+    SceneFile& file = files.emplace_back(SceneFile{body.path, ""});
+    read_particle_file(resolved_path(body, scene_dir), &file.sha256);
+  }
+  return files;
+}
+
+Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
+  const auto total = static_cast<std::size_t>(count_particles(scene, scene_dir));
+  Particles all;
+  all.position.reserve(total);
+  all.velocity.reserve(total);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    const std::size_t first = all.size();
+    switch (body.shape) {
+      case Shape::block:
+      case Shape::sphere:
+      case Shape::random_box:
+        for_each_point(body, scene.fluid.spacing, scene.plane(),
+                       [&](const Double3& x) { all.position.push_back(x); });
+        break;
+      case Shape::file: {
+        SceneFile& file = all.files.emplace_back(SceneFile{body.path, ""});
+        const Particles p = read_particle_file(resolved_path(body, scene_dir), &file.sha256);
+        if (scene.dimensions == 2) refuse_velocity_along_y(b, p.velocity);
+        all.position.insert(all.position.end(), p.position.begin(), p.position.end());
+        all.velocity.insert(all.velocity.end(), p.velocity.begin(), p.velocity.end());
+      }
+    }
+    all.velocity.resize(all.position.size(), Double3{});
+    for (std::size_t i = first; i < all.size(); ++i)
+      for (int a = 0; a < 3; ++a) all.velocity[i][a] += body.velocity[a];
+    hold_inside(scene, b, first, all.position);
+    hold_off_walls(scene, b, first, all);
+  }
+  return all;
+}
+
+}  // namespace pbf::inline run_module

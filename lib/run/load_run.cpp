@@ -1,0 +1,90 @@
+#include "lib/run/load_run.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include "lib/base/error.h"
+#include "lib/io/h5_signature.h"
+#include "lib/io/run_file.h"
+#include "lib/run/emit.h"
+
+namespace pbf::inline run_module {
+namespace {
+
+bool is_hdf5(const std::string& path) {
+  // Anything else, a pipe say, can be read once: the scene's reader must find it whole.
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  std::ifstream in(path, std::ios::binary);
+  return h5::begins_as_hdf5(in);
+}
+
+namespace fs = std::filesystem;
+
+/// The folder from which all files of the scene can be reached.
+std::string folder_of_files(const Scene& scene, const std::string& run_file,
+                            const std::string& scene_path) {
+  const std::string then = fs::path(scene_path).parent_path().string();
+  const std::string beside = fs::path(run_file).parent_path().string();
+  const auto missing = [&](const std::string& folder) {
+    std::error_code error;
+    for (const Body& b : scene.bodies)
+      if (b.shape == Shape::file && !fs::exists(resolved_path(b, folder), error)) return b.path;
+    return std::string();
+  };
+  const std::string file = missing(then);
+  if (file.empty()) return then;
+  if (missing(beside).empty()) return beside;
+  const auto name = [](const std::string& folder) { return folder.empty() ? "." : folder; };
+  throw Error(ExitCode::bad_input,
+              run_file + ": its particle file " + file + " is neither in " + name(then) +
+                  ", the folder of its scene file, nor in " + name(beside) +
+                  ", its own; put it into one of them, or name it with --set bodies.0.path=PATH "
+                  "(0: the number of the body)");
+}
+
+}  // namespace
+
+LoadedScene load_scene_or_run(const std::string& path, const std::vector<std::string>& overrides) {
+  if (!is_hdf5(path)) return load_scene(path, overrides);
+  try_run_file(path);
+  const RunInfo info = RunReader(path).info();
+  if (!info.scene_sha256.empty() &&
+      info.scene_sha256 != scene_digest(info.resolved_scene, info.scene_files))
+    throw Error(ExitCode::bad_input,
+                path +
+                    ": the scene in it (/pbf resolved_scene, scene_files) has been changed since "
+                    "the run: its SHA-256 is not /pbf scene_sha256; give the scene file itself, "
+                    "or the run file as it was");
+  LoadedScene loaded;
+  loaded.scene = parse_stored_scene(info.resolved_scene, path + ": its scene", overrides);
+  loaded.path = info.scene_path;
+  loaded.text = info.scene_text;
+  loaded.folder = folder_of_files(loaded.scene, path, info.scene_path);
+  loaded.run_file = path;
+  loaded.files = info.scene_files;
+  loaded.files_known = !info.scene_sha256.empty();
+  loaded.overrides = info.overrides;
+  loaded.overrides.insert(loaded.overrides.end(), overrides.begin(), overrides.end());
+  return loaded;
+}
+
+void take_files(LoadedScene& loaded, const std::vector<SceneFile>& read,
+                std::vector<std::string>& notes) {
+  if (!loaded.run_file.empty() && !read.empty()) {
+    if (!loaded.files_known)
+      notes.push_back(loaded.run_file +
+                      " is of an earlier version, which kept no SHA-256 of its particle files: "
+                      "they are taken as they are");
+    const std::string difference = files_difference(loaded.files, read);
+    if (!difference.empty())
+      throw Error(ExitCode::bad_input,
+                  loaded.run_file + ": cannot run again: " + difference +
+                      " (read from the folder " + (loaded.folder.empty() ? "." : loaded.folder) +
+                      "); put the file of the run there, or give the scene file itself to run with "
+                      "the new one");
+  }
+  loaded.files = files_text(read);
+}
+
+}  // namespace pbf::inline run_module

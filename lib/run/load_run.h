@@ -1,0 +1,25 @@
+// What `pbf run` is given: a scene file, or a run file whose scene is to run again.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/scene/load.h"
+#include "lib/scene/scene_files.h"
+
+namespace pbf::inline run_module {
+
+/// load_scene() of a scene file; of a run file (told by its first bytes) the scene that it holds,
+/// with every default as it was then, and the overrides of this time on top. Paths in it are those
+/// of the scene file that the run was begun with, or, where its files are not there any more, of
+/// the run file's folder. Throws as load_scene() and RunReader do; Error(bad_input) for a run file
+/// whose scene has been changed since, or whose particle files are in neither folder.
+LoadedScene load_scene_or_run(const std::string& path, const std::vector<std::string>& overrides);
+
+/// Keeps what was read of the scene's files, for the run to come. Of a scene from a run file they
+/// must be those of that run: Error(bad_input) names the one that has changed; that an older run
+/// file says nothing of them goes to `notes`. Files that --set names now are new.
+void take_files(LoadedScene& loaded, const std::vector<SceneFile>& read,
+                std::vector<std::string>& notes);
+
+}  // namespace pbf::inline run_module

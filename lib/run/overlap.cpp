@@ -1,0 +1,128 @@
+#include "lib/run/overlap.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "lib/run/start_points.h"
+
+namespace pbf::inline run_module {
+namespace {
+
+constexpr std::int64_t kMostDistances = 200000000;
+
+struct Box {
+  Double3 low, high;
+  bool holds(const Double3& x, double margin) const {
+    for (int a = 0; a < 3; ++a)
+      if (!(x[a] >= low[a] - margin && x[a] <= high[a] + margin)) return false;
+    return true;
+  }
+};
+
+/// By more than rounding. Bodies that touch have their particles half a spacing outside of each
+/// other.
+bool inside(const Body& b, const Double3& x, double d) {
+  if (b.shape == Shape::file) return false;
+  if (b.shape != Shape::sphere) return Box{b.min, b.max}.holds(x, -1e-6 * d);
+  double r2 = 0;
+  for (int a = 0; a < 3; ++a) r2 += (x[a] - b.center[a]) * (x[a] - b.center[a]);
+  return r2 < b.radius * b.radius * (1 - 1e-6);
+}
+
+using Cell = std::array<std::int64_t, 3>;
+
+struct Candidate {
+  Cell cell;
+  std::size_t body;
+  Double3 x;
+};
+
+std::vector<Box> boxes_of(const Scene& s, const StartPoints& points) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  std::vector<Box> boxes(s.bodies.size(), {{far, far, far}, {-far, -far, -far}});
+  points.for_each([&](std::size_t b, const Double3& x) {
+    for (int a = 0; a < 3; ++a) {
+      boxes[b].low[a] = std::min(boxes[b].low[a], x[a]);
+      boxes[b].high[a] = std::max(boxes[b].high[a], x[a]);
+    }
+  });
+  return boxes;
+}
+
+std::vector<Candidate> candidates(const Scene& s, const StartPoints& points, double reach) {
+  const std::vector<Box> boxes = boxes_of(s, points);
+  std::vector<Candidate> out;
+  points.for_each([&](std::size_t b, const Double3& x) {
+    bool near = s.bodies[b].shape == Shape::file;
+    for (std::size_t k = 0; k < boxes.size() && !near; ++k)
+      near = k != b && boxes[k].holds(x, reach);
+    if (!near) return;
+    Cell c{};
+    for (int a = 0; a < 3; ++a)
+      c[a] = static_cast<std::int64_t>(std::floor((x[a] - s.domain.min[a]) / reach));
+    out.push_back({c, b, x});
+  });
+  std::sort(out.begin(), out.end(),
+            [](const Candidate& a, const Candidate& b) { return a.cell < b.cell; });
+  return out;
+}
+
+}  // namespace
+
+Overlap find_overlap(const Scene& s, const std::string& scene_dir) {
+  Overlap found;
+  const bool file = std::any_of(s.bodies.begin(), s.bodies.end(),
+                                [](const Body& b) { return b.shape == Shape::file; });
+  if (s.bodies.size() < 2 && !file) return found;
+  // By more than rounding: bodies that touch on one lattice are a spacing apart, no less.
+  const double reach = 0.5 * s.fluid.spacing * (1 - 1e-6);
+  const std::vector<Candidate> list = candidates(s, StartPoints(s, scene_dir), reach);
+  for (const Candidate& c : list) found.of_files += s.bodies[c.body].shape == Shape::file;
+  const auto bodies = [&](std::size_t a, std::size_t b) {
+    if (found.inside + found.pairs > 1) return;
+    found.first = std::min(a, b);
+    found.second = std::max(a, b);
+  };
+  for (const Candidate& c : list)
+    for (std::size_t k = 0; k < s.bodies.size(); ++k)
+      if (k != c.body && inside(s.bodies[k], c.x, s.fluid.spacing)) {
+        ++found.inside;
+        bodies(k, c.body);
+        break;
+      }
+  std::int64_t distances = 0;
+  const auto look = [&](const Candidate& a, const Candidate& b) {
+    ++distances;
+    if (a.body == b.body && s.bodies[a.body].shape != Shape::file) return;
+    double r2 = 0;
+    for (int k = 0; k < 3; ++k) r2 += (a.x[k] - b.x[k]) * (a.x[k] - b.x[k]);
+    if (!(r2 < reach * reach)) return;
+    if (a.body == b.body) {
+      if (found.within++ == 0) found.file = a.body;
+    } else {
+      ++found.pairs;
+      bodies(a.body, b.body);
+    }
+  };
+  // Half of the cells around one: every pair is met once.
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    for (std::size_t j = i + 1; j < list.size() && list[j].cell == list[i].cell; ++j)
+      if (look(list[i], list[j]); distances >= kMostDistances) return found.more = true, found;
+    for (int dx = 0; dx <= 1; ++dx)
+      for (int dy = dx == 0 ? 0 : -1; dy <= 1; ++dy)
+        for (int dz = dx == 0 && dy == 0 ? 1 : -1; dz <= 1; ++dz) {
+          const Cell c{list[i].cell[0] + dx, list[i].cell[1] + dy, list[i].cell[2] + dz};
+          for (auto j = std::lower_bound(
+                   list.begin(), list.end(), c,
+                   [](const Candidate&a, const Cell&cell) { return a.cell < cell; });
+               j != list.end() && j->cell == c; ++j)
+            if (look(list[i], *j); distances >= kMostDistances) return found.more = true, found;
+        }
+  }
+  return found;
+}
+
+}  // namespace pbf::inline run_module

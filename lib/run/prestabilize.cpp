@@ -1,0 +1,121 @@
+#include "lib/run/prestabilize.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "lib/base/text.h"
+#include "lib/exec/make_solver.h"
+#include "lib/program/time_levels.h"
+#include "lib/run/guard.h"
+
+namespace pbf::inline run_module {
+namespace {
+
+constexpr int kRound = 8;           // steps of one round, at most
+constexpr int kMostSweeps = 2048;   // in all; 32 steps at least
+constexpr int kPatience = 64;       // sweeps before anything is called hopeless; 4 steps at least
+constexpr double kShare = 1e-5;     // of the energy scale
+constexpr double kProgress = 0.75;  // of the kick that twice the steps may leave
+constexpr double kStill = 1e-6;     // h, a move that counts for nothing where all is at rest
+
+/// How far the particles went from `a` to `b`, h.
+struct Moves {
+  double squares = 0, farthest = 0;
+  Moves(const std::vector<double>& a, const std::vector<double>& b) {
+    for (std::size_t k = 0; k < a.size(); k += 3) {
+      double squared = 0;
+      for (std::size_t c = k; c < k + 3; ++c) squared += (b[c] - a[c]) * (b[c] - a[c]);
+      squares += squared;
+      farthest = std::max(farthest, squared);
+    }
+    farthest = std::sqrt(farthest);
+  }
+};
+
+/// The kick after so many steps.
+struct Point {
+  int steps;
+  double kick;
+};
+
+/// Whether the last half of the steps did little: what is left has no room to go to.
+bool hopeless(const std::vector<Point>& course) {
+  const Point now = course.back();
+  const auto half = std::find_if(course.rbegin(), course.rend(),
+                                 [&](const Point& p) { return 2 * p.steps <= now.steps; });
+  return half != course.rend() && !(now.kick < kProgress * half->kick);
+}
+
+}  // namespace
+
+Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
+                           const std::function<void(const std::string&)>& progress) {
+  Prestabilized p;
+  if (!s.solver.prestabilize || s.solver.iterations == 0) return p;
+  const Measures before = solver.measure();
+  p.compression_before = p.compression_after = before.compression_mean;
+  p.most_before = before.compression_max;
+  const double dt = std::ldexp(s.time.step / plan.substeps, -finest_level(s));
+  const double speed = s.h() / dt;  // m/s, of a move by h
+  // J for a sum of squares of moves in h.
+  const auto energy = [&](double squares) { return 0.5 * plan.mass * squares * speed * speed; };
+  const double n = double(plan.particles), noise = n * std::pow(position_rounding(s), 2);
+  const double scale = energy_scale(before, s, plan.mass, plan.particles);
+  p.harmless = scale > 0 ? std::max(kShare * scale, energy(noise))
+                         : energy(std::max(noise, n * kStill * kStill));
+  // A step moves particles by about c h. Twice that is no less than any scene has shown.
+  p.kick = energy(n * std::pow(2 * before.compression_rms, 2));
+  if (p.relieved() || before.non_finite > 0) return p;
+  std::vector<double> from = solver.positions();
+  std::vector<Point> course;
+  const std::int64_t sweeps = std::int64_t(s.solver.iterations) * plan.substeps;
+  const std::int64_t most = std::max<std::int64_t>(kMostSweeps / sweeps, 32);
+  const std::int64_t patience = std::max<std::int64_t>(kPatience / sweeps, 4);
+  for (int round = 1; p.steps < most; round = std::min(p.steps, kRound)) {
+    solver.relax(round);
+    p.steps += round;
+    std::vector<double> to = solver.positions();
+    const Moves moves(from, to);
+    from = std::move(to);
+    p.moved += moves.farthest * s.fluid.smoothing_ratio;
+    p.kick = energy(moves.squares / (round * round));  // of the mean step of the round
+    if (progress)
+      progress(
+          format("start: %d steps without time; one more would give the particles %.2g J, "
+                 "%.2g J do no harm",
+                 p.steps, p.kick, p.harmless));
+    course.push_back({p.steps, p.kick});
+    if (p.relieved() || (p.steps >= patience && hopeless(course))) break;
+  }
+  double diagonal = 0;  // the moves of the rounds add up to more than anyone has gone
+  for (std::size_t a = 0; a < 3; ++a)
+    diagonal = std::hypot(diagonal, s.domain.max[a] - s.domain.min[a]);
+  if (s.domain.open.empty()) p.moved = std::min(p.moved, diagonal / s.fluid.spacing);
+  p.compression_after = solver.measure().compression_mean;
+  return p;
+}
+
+std::string prestabilized_text(const Prestabilized& p) {
+  if (p.steps == 0) return {};
+  std::string text = format(
+      "start: mean compression %.3g %% (most %.3g %%), %.3g %% after %d step%s without time "
+      "(solver.prestabilize); no particle has moved by more than %.2g spacings",
+      100 * p.compression_before, 100 * p.most_before, 100 * p.compression_after, p.steps,
+      p.steps == 1 ? "" : "s", p.moved);
+  if (!p.relieved())
+    text +=
+        format(". What is left did not go in these steps; one more would give them %.2g J", p.kick);
+  if (!p.relieved() && p.compression_after > 0.01)
+    text += ": is there room for all of them? Is fluid.mass as meant?";
+  return text;
+}
+
+std::unique_ptr<Solver> start_solver(const Scene& scene, const Plan& plan, Particles particles) {
+  std::unique_ptr<Solver> solver = make_solver(scene, plan, std::move(particles));
+  prestabilize(*solver, scene, plan);
+  return solver;
+}
+
+}  // namespace pbf::inline run_module

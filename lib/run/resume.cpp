@@ -1,0 +1,236 @@
+#include "lib/run/resume.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <sstream>
+
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+#include "lib/io/run_file.h"
+#include "lib/io/run_layout.h"
+#include "lib/run/finished_run.h"
+#include "lib/run/schedule.h"
+#include "lib/scene/difference.h"
+#include "lib/scene/load.h"
+
+namespace pbf::inline run_module {
+namespace {
+
+/// files_text() from the comments that scene_record() begins with.
+std::string recorded_files(const std::string& record) {
+  std::string files;
+  std::istringstream lines(record);
+  for (std::string line; std::getline(lines, line) && line.rfind("# ", 0) == 0;)
+    if (line.find("  ") != std::string::npos) files += line.substr(2) + "\n";
+  return files;
+}
+
+/// Runs of such scenes give the same bits with one program, whatever the machine.
+bool exact(const Scene& s) { return s.backend == Backend::cpu || s.solver.reproducible; }
+
+/// How many of the values stand where the schedule has them, from the first on.
+template <class Values, class Expected>
+std::int64_t prefix(const Values& values, std::int64_t last, const Expected& expected) {
+  std::int64_t k = 0;
+  for (const auto v : values) {
+    if (std::int64_t(v) > last || std::int64_t(v) != expected(k)) break;
+    ++k;
+  }
+  return k;
+}
+
+class Finder {
+ public:
+  Finder(const RunFolder& folder, const Scene& scene, const std::vector<SceneFile>& files,
+         const std::string& commit)
+      : folder_(folder),
+        scene_(scene),
+        files_(files),
+        commit_(commit),
+        schedule_(make_schedule(scene)) {}
+
+  ResumePoint find(std::int64_t particles) {
+    if (!folder_.has("scene.resolved.yaml")) {
+      if (folder_.holds_other_files())
+        throw Error(ExitCode::bad_input,
+                    folder_.path() +
+                        ": holds no run to resume, but other files; give another folder with "
+                        "--out");
+      return {};  // killed before it had begun
+    }
+    const LoadedScene record = load_stored_scene(folder_.file("scene.resolved.yaml"));
+    const Scene& before = record.scene;
+    const std::string files = recorded_files(record.text);
+    refuse_other("", before, files);
+    if (files.empty() && !files_.empty())
+      point_.notes.push_back(folder_.path() +
+                             ": begun by an earlier version, which kept no SHA-256 "
+                             "of its particle files: they are taken as they are");
+    if (folder_.has(kEarlierRunFile) && !folder_.has(kRunFile))
+      throw Error(ExitCode::bad_input,
+                  folder_.path() + ": cannot resume: holds " + kEarlierRunFile +
+                      ", as an earlier version of pbf called its run file, whose results are "
+                      "others; resume with that program, or start again with --overwrite");
+    const std::int64_t done = make_schedule(before).updates;
+    const bool is_done = folder_.has("DONE") && schedule_.updates <= done;
+    if (const std::string other =
+            is_done && scene_.output ? difference_of_file(folder_.path(), scene_) : std::string();
+        !other.empty())
+      refuse(kRunFile, other);
+    const std::string doubt = is_done ? why_not_finished(folder_.path(), scene_) : std::string();
+    if (!doubt.empty()) point_.notes.push_back("DONE is there, but " + doubt);
+    if (is_done && doubt.empty()) {
+      if (schedule_.updates < done)
+        point_.notes.push_back(
+            format("%s: the run is finished up to update %lld, beyond the end "
+                   "that the scene now has",
+                   folder_.path().c_str(), static_cast<long long>(done)));
+      point_.finished = true;
+      return point_;
+    }
+    point_.started = true;
+    point_.saved = read_checkpoint(folder_.path(), point_.notes);
+    check_checkpoint(particles);
+    if (scene_.output) look_at_file(before);
+    if (!point_.saved)
+      point_.notes.push_back("there is no checkpoint: the run starts again from its first update" +
+                             (point_.frames > 0 ? format("; the %lld frames that are there stay",
+                                                         static_cast<long long>(point_.frames))
+                                                : std::string()));
+    return point_;
+  }
+
+ private:
+  /// That the folder, or a file in it, is of this scene and its files.
+  void refuse_other(const std::string& name, const Scene& before, const std::string& files) const {
+    std::string difference = physics_difference(before, scene_);
+    if (difference.empty()) difference = files_difference(files, files_);
+    if (!difference.empty()) refuse(name, difference);
+  }
+  [[noreturn]] void refuse(const std::string& name, const std::string& difference) const {
+    throw Error(ExitCode::bad_input,
+                (name.empty() ? folder_.path() : folder_.file(name)) + ": cannot resume: " +
+                    (name.empty() ? "" : "it is of another scene: ") + difference +
+                    "; only time.end, checkpoint, threads and backend may change. Restore it, or "
+                    "start again with --overwrite");
+  }
+  void refuse_other(const std::string& name, const std::string& scene,
+                    const std::string& files) const {
+    refuse_other(name, parse_stored_scene(scene, folder_.file(name) + ": its scene", {}), files);
+  }
+
+  void check_checkpoint(std::int64_t particles) {
+    if (!point_.saved) return;
+    const SavedRun& s = *point_.saved;
+    if (s.scene.empty())
+      throw Error(ExitCode::bad_input,
+                  folder_.path() +
+                      ": cannot resume: checkpoint.h5 is of an earlier version of pbf, which kept "
+                      "no scene in it and whose results are others; resume with that program, or "
+                      "start again with --overwrite");
+    refuse_other("checkpoint.h5", s.scene, s.files);
+    if (s.particles != particles || s.state.precision != scene_.precision)
+      throw Error(ExitCode::io, folder_.path() +
+                                    "/checkpoint.h5: holds another number of particles or another "
+                                    "precision than the scene; remove it to start again");
+    if (s.state.updates > schedule_.updates)
+      throw Error(ExitCode::bad_input,
+                  folder_.path() + ": cannot resume: time.end ends after update " +
+                      std::to_string(schedule_.updates) + ", the checkpoint is of update " +
+                      std::to_string(s.state.updates) + "; raise time.end");
+  }
+
+  void look_at_file(const Scene& before) {
+    if (!folder_.has(kRunFile)) return forget("run.vtkhdf is missing");
+    std::optional<RunReader> file;
+    RunInfo info;
+    try {
+      try_run_file(folder_.file(kRunFile));
+      file.emplace(folder_.file(kRunFile));
+      info = file->info();
+    } catch (const Error& e) {
+      damaged_ = true;
+      return forget(std::string(e.what()) + "; it becomes run.damaged.vtkhdf");
+    }
+    if (file->frames() == 0) return forget("");
+    refuse_older_log(*file, info);
+    refuse_other(kRunFile, info.resolved_scene, info.scene_files);  // no files in older ones
+    point_.keep_file = true;
+    const std::int64_t u = point_.update();
+    point_.rows = point_.saved ? prefix(file->log_column("update"), u,
+                                        [&](std::int64_t k) { return update_of_row(k); })
+                               : 0;
+    // Frames behind the checkpoint stay when the run to come writes the same.
+    const bool same = exact(before) && exact(scene_) && info.commit == commit_;
+    point_.frames = prefix(file->updates(), same ? schedule_.updates : u,
+                           [&](std::int64_t k) { return schedule_.update_of_frame(k); });
+    if (point_.saved &&
+        (point_.frames < schedule_.frames_until(u) || point_.rows < schedule_.measures_until(u)))
+      forget("run.vtkhdf ends before the checkpoint");
+  }
+  /// A log without one of today's columns cannot go on, and the results would be others.
+  void refuse_older_log(const RunReader& file, const RunInfo& info) const {
+    const std::vector<std::string> there = file.log_columns();
+    for (const auto& column : run_layout::log_columns())
+      if (std::find(there.begin(), there.end(), column.name) == there.end())
+        throw Error(ExitCode::bad_input,
+                    folder_.path() + ": cannot resume: run.vtkhdf was written by pbf " +
+                        info.program_version + " (" + info.commit + "), whose log has no column " +
+                        column.name +
+                        " and whose results are others; resume with that program, or start again "
+                        "with --overwrite");
+  }
+  std::int64_t update_of_row(std::int64_t k) const { return schedule_.update_of_measure(k); }
+
+  /// Without what came before it in run.vtkhdf a checkpoint is of no use.
+  void forget(const std::string& why) {
+    if (point_.saved && !why.empty())
+      point_.notes.push_back(why + ": the checkpoint is not used");
+    else if (!why.empty() && damaged_)
+      point_.notes.push_back(why);
+    point_.saved.reset();
+    point_.rows = 0;
+  }
+
+  const RunFolder& folder_;
+  const Scene& scene_;
+  const std::vector<SceneFile>& files_;
+  const std::string& commit_;
+  Schedule schedule_;
+  ResumePoint point_;
+  bool damaged_ = false;
+};
+
+}  // namespace
+
+ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene,
+                              const std::vector<SceneFile>& files, std::int64_t particles,
+                              const std::string& commit) {
+  return Finder(folder, scene, files, commit).find(particles);
+}
+
+std::string difference_of_record(const LoadedScene& record, const Scene& scene,
+                                 const std::vector<SceneFile>& files) {
+  const std::string difference = physics_difference(record.scene, scene);
+  return difference.empty() ? files_difference(recorded_files(record.text), files) : difference;
+}
+
+std::string scene_record(const Scene& scene, const std::string& files) {
+  std::string text = files.empty() ? "" : "# SHA-256 of its particle files:\n";
+  std::istringstream lines(files);
+  for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
+  return text + resolved_yaml(scene);
+}
+
+void prepare_resume(const RunFolder& folder, const ResumePoint& from) {
+  folder.remove("DONE");
+  if (!from.keep_file && folder.has(kRunFile)) {
+    const std::string aside = folder.file(kDamagedRunFile);
+    if (std::rename(folder.file(kRunFile).c_str(), aside.c_str()) != 0)
+      throw Error(ExitCode::io, aside + ": cannot be made: " + std::strerror(errno));
+  }
+}
+
+}  // namespace pbf::inline run_module

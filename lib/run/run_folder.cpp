@@ -1,0 +1,233 @@
+#include "lib/run/run_folder.h"
+
+#include <fcntl.h>
+#include <pthread.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <set>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "lib/base/error.h"
+#include "lib/base/inputs.h"
+#include "lib/base/output_file.h"
+#include "lib/base/own_file.h"
+#include "lib/io/run_file.h"
+
+namespace pbf::inline run_module {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what, const std::string& reason) {
+  throw Error(ExitCode::io, path.string() + ": " + what + ": " + reason +
+                                "; choose another folder with --out, or free space and rights");
+}
+
+bool starts_with(const std::string& s, const char* prefix) { return s.rfind(prefix, 0) == 0; }
+
+bool own_picture(const std::string& name) {
+  return starts_with(name, kTemporaryPrefix) ||
+         (starts_with(name, "frame_") && fs::path(name).extension() == ".png");
+}
+
+bool own_file(const std::string& name) {
+  static const char* const kNames[] = {kRunFile,
+                                       kEarlierRunFile,
+                                       "run.damaged.h5",
+                                       kDamagedRunFile,
+                                       "scene.resolved.yaml",
+                                       "log.txt",
+                                       "DONE",
+                                       "checkpoint.h5",
+                                       "checkpoint_prev.h5",
+                                       "checkpoint.h5.tmp",
+                                       "guard_state.h5",
+                                       "guard_scene.yaml"};
+  return starts_with(name, kTemporaryPrefix) ||
+         std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
+}
+
+/// File descriptors of the locks that this process holds.
+std::set<int>& locks() {
+  static std::set<int> all;
+  return all;
+}
+
+}  // namespace
+
+bool RunFolder::check(const std::string& path, ExistingFolder existing) {
+  const fs::path folder(path);
+  std::error_code error;
+  const fs::file_status status = fs::status(folder, error);
+  if (status.type() == fs::file_type::not_found) return false;
+  if (status.type() == fs::file_type::none)  // below a regular file, or no right to look
+    fail(folder, "the output folder cannot be used", error.message());
+  if (!fs::is_directory(status))
+    fail(folder, "the output folder cannot be used", "it is not a folder");
+  if (existing == ExistingFolder::refuse)
+    throw Error(ExitCode::bad_input,
+                path +
+                    ": the output folder exists; give --overwrite to replace the run in it, "
+                    "--resume to go on with it, or another folder with --out");
+  return true;
+}
+
+RunFolder::RunFolder(const std::string& path, ExistingFolder existing) : path_(path) {
+  if (!path_.has_filename()) path_ = path_.parent_path();  // "out/" means "out"
+  check(path_.string(), existing);
+  std::error_code error;
+  if (path_.has_parent_path()) {
+    fs::create_directories(path_.parent_path(), error);
+    if (error) fail(path_, "the output folder cannot be made", error.message());
+  }
+  // One mkdir decides: of two runs started at the same time only one gets the folder.
+  const bool made = fs::create_directory(path_, error);
+  if (error) fail(path_, "the output folder cannot be made", error.message());
+  if (!made && existing == ExistingFolder::refuse)
+    throw Error(ExitCode::bad_input, path_.string() + ": another run has just taken this folder");
+  if (access(path_.c_str(), W_OK | X_OK) != 0)
+    fail(path_, "the output folder cannot be written", std::strerror(errno));
+  lock();
+  if (!made && existing == ExistingFolder::overwrite) remove_own_files();
+  if (!made) refuse_special_files();
+}
+
+RunFolder::~RunFolder() {
+  if (lock_ < 0) return;
+  locks().erase(lock_);
+  ::unlink(file(".lock").c_str());  // while it is held: the next one makes a new file
+  ::close(lock_);
+}
+
+/// The system drops the lock with the process, however that ends. A process that this one makes to
+/// try a file in would hold it too, and outlive a SIGKILL of this one: it closes its copy at once.
+void RunFolder::lock() {
+  static const int closed_in_children = pthread_atfork(nullptr, nullptr, [] {
+    for (const int fd : locks()) ::close(fd);
+  });
+  if (closed_in_children != 0)
+    fail(path_ / ".lock", "cannot be kept from other processes", std::strerror(closed_in_children));
+  for (;;) {
+    lock_ = open_own_file(file(".lock"), O_RDWR | O_CREAT);
+    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+      const int reason = errno;
+      char who[200] = "";
+      const ssize_t size = ::pread(lock_, who, sizeof who - 1, 0);
+      ::close(std::exchange(lock_, -1));
+      if (reason != EWOULDBLOCK)
+        fail(path_ / ".lock", "this file system has no locks (flock)", std::strerror(reason));
+      throw Error(ExitCode::bad_input,
+                  path_.string() + ": another run writes here" +
+                      (size > 0 ? " (" + std::string(who) + ")" : std::string()) +
+                      "; wait for its end, stop it, or give another folder with --out");
+    }
+    // The one before may have unlinked it between our open and our lock.
+    struct stat mine {
+    }, there{};
+    if (::fstat(lock_, &mine) == 0 && ::stat(file(".lock").c_str(), &there) == 0 &&
+        mine.st_ino == there.st_ino)
+      break;
+    ::close(std::exchange(lock_, -1));
+  }
+  locks().insert(lock_);
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  const std::string who = "process " + std::to_string(getpid()) + " on " + host;
+  if (::ftruncate(lock_, 0) != 0 ||
+      ::pwrite(lock_, who.data(), who.size(), 0) != static_cast<ssize_t>(who.size()))
+    errno = 0;  // only what a second run would be told; a full disk is noticed soon enough
+}
+
+void RunFolder::refuse_overwrite(const std::string& path) {
+  std::error_code error;
+  const fs::path folder = fs::canonical(path, error);
+  for (const std::string& input : inputs()) {
+    const fs::path file = fs::canonical(input, error);
+    if (!error && file.parent_path() == folder && own_file(file.filename().string()))
+      throw Error(ExitCode::bad_input, path + ": --overwrite would remove " + input +
+                                           ", which this run reads; give another folder with "
+                                           "--out");
+  }
+}
+
+bool RunFolder::owns(const std::string& folder, const std::string& path) {
+  const auto place = [](const fs::path& file) {
+    std::error_code error;
+    return fs::weakly_canonical(fs::absolute(file), error);
+  };
+  const std::string name = fs::path(path).filename().string();
+  const bool inside = place(path).parent_path() == place(fs::path(folder) / name).parent_path();
+  return inside && (own_file(name) || name == ".lock" || name == "frames");
+}
+
+/// Nobody but pbf has business with these names, and to follow a link or wait for a FIFO among them
+/// would harm others. A folder that is reached by way of a link is fine.
+void RunFolder::refuse_special_files() const {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path_, error)) {
+    if (own_file(entry.path().filename().string())) require_own_file(entry.path().string());
+  }
+  if (error) fail(path_, "cannot be read", error.message());
+  if (!fs::is_directory(fs::symlink_status(path_ / "frames", error)))
+    require_own_file((path_ / "frames").string());
+}
+
+bool RunFolder::has(const std::string& name) const {
+  std::error_code error;
+  return fs::exists(path_ / name, error);
+}
+
+bool RunFolder::holds_other_files() const {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path_, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!own_file(name) && name != ".lock" && name != "frames") return true;
+  }
+  return false;
+}
+
+void RunFolder::remove(const std::string& name) const {
+  std::error_code error;
+  fs::remove(path_ / name, error);
+  if (error) fail(path_ / name, "cannot be removed", error.message());
+}
+
+void RunFolder::remove_own_files() const {
+  std::error_code error;
+  const auto remove = [&](const fs::path& p) {
+    if (!fs::is_directory(fs::symlink_status(p)) && !fs::remove(p, error) && error)
+      fail(p, "cannot be removed", error.message());
+  };
+  remove(path_ / "DONE");  // first: a folder that is half removed is not a finished run
+  const auto remove_in = [&](const fs::path& folder, bool (*own)(const std::string&)) {
+    std::vector<fs::path> found;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (own(entry.path().filename().string())) found.push_back(entry.path());
+    if (error) fail(folder, "cannot be read", error.message());
+    for (const auto& p : found) remove(p);
+  };
+  remove_in(path_, own_file);
+  const fs::file_status frames = fs::symlink_status(path_ / "frames", error);
+  if (fs::exists(frames) && !fs::is_directory(frames)) remove(path_ / "frames");
+  if (!fs::is_directory(frames)) return;
+  remove_in(path_ / "frames", own_picture);
+  fs::remove(path_ / "frames", error);  // only when nothing foreign is left in it
+}
+
+void RunFolder::write_text(const std::string& name, const std::string& text) const {
+  write_text_file(file(name), text, Naming::own);
+}
+
+void RunFolder::make_frames_folder() const {
+  std::error_code error;
+  fs::create_directories(path_ / "frames", error);
+  if (error) fail(path_ / "frames", "cannot be made", error.message());
+}
+
+}  // namespace pbf::inline run_module

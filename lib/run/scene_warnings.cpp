@@ -1,0 +1,174 @@
+// Warnings that a scene gives before it is run.
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/relative_motion.h"
+#include "lib/base/text.h"
+#include "lib/run/overlap.h"
+#include "lib/run/warnings.h"
+
+namespace pbf::inline run_module {
+namespace {
+
+double length(const Double3& v) { return std::hypot(v[0], v[1], v[2]); }
+
+/// s, the longest step of gravity that time.adaptive allows; more than time.step: it has no say.
+double adaptive_step(const Scene& s) {
+  const double g = length(s.gravity);
+  return s.time.adaptive && g > 0 ? s.time.adaptive->force * std::sqrt(s.h() / g) : 2 * s.time.step;
+}
+
+/// s, the longest substep that the scene allows itself.
+double longest_step(const Scene& s) {
+  return std::min(s.time.step, adaptive_step(s)) / s.solver.substeps;
+}
+
+bool closed_box(const Scene& s) { return s.domain.open.empty(); }
+
+/// m^3
+double volume(const Scene& s, double particles) {
+  return particles * s.particle_mass() / s.fluid.rest_density;
+}
+
+void add_step(const Scene& s, std::int64_t particles, std::vector<Warning>& list) {
+  const double c = compression_at_rest(s, particles);
+  if (c <= kNoLiquid) return;
+  const double times = std::sqrt(c / kNoLiquid);
+  const bool by_force = adaptive_step(s) < s.time.step;
+  const double value = by_force ? s.time.adaptive->force : s.time.step;
+  const std::string key = by_force ? "time.adaptive.force" : "time.step";
+  // Beyond the reach of the formula the compression is larger.
+  std::string text = key +
+                     format(
+                         " %g makes steps %.2g times the longest that is safe here: at rest the "
+                         "fluid would have a mean compression of ",
+                         value, times) +
+                     (c > 0.2 ? std::string("more than 20 %") : format("about %.2g %%", 100 * c)) +
+                     format("; give %.2g or less", value / times);
+  if (s.solver.tolerance == 0)
+    text += format(", or solver.iterations %.0f", std::ceil(s.solver.iterations * times * times));
+  list.push_back({"step", text});
+}
+
+void add_speed(const Scene& s, std::vector<Warning>& list) {
+  if (s.time.adaptive) return;  // it follows speeds
+  double fastest = 0;
+  std::size_t first = 0, second = 0;
+  for (std::size_t i = 0; i < s.bodies.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      Double3 d{};
+      for (int a = 0; a < 3; ++a) d[a] = s.bodies[i].velocity[a] - s.bodies[j].velocity[a];
+      if (length(d) > fastest) fastest = length(d), first = j, second = i;
+    }
+  const double way = fastest * longest_step(s) / s.h();
+  if (way <= kResolvedWay) return;
+  list.push_back(
+      {"speed", format("bodies[%zu] and bodies[%zu] move past each other by %.3g h in a step, more "
+                       "than %g h: fluid may pass through fluid; give time.step %.2g or less, or "
+                       "time.adaptive",
+                       first, second, way, kResolvedWay, s.time.step * kResolvedWay / way)});
+}
+
+void add_overlap(const Scene& s, const std::string& dir, std::vector<Warning>& list) {
+  const Overlap o = find_overlap(s, dir);
+  const char* least = o.more ? "at least " : "";
+  std::string text;
+  if (o.inside + o.pairs > 0)
+    text = format(
+        "bodies[%zu] and bodies[%zu] overlap: %lld particles start inside another body, "
+        "%s%lld pairs of two bodies are closer than half of fluid.spacing; ",
+        o.first, o.second, static_cast<long long>(o.inside), least,
+        static_cast<long long>(o.pairs));
+  else if (o.within > 0 && 100 * o.within > o.of_files)  // some pairs are so near in any flow
+    text = format(
+        "bodies[%zu]: %s%lld pairs of the file's particles are closer than half of "
+        "fluid.spacing; ",
+        o.file, least, static_cast<long long>(o.within));
+  if (text.empty()) return;
+  const char* then = s.solver.prestabilize
+                         ? "steps without time part them, so the fluid takes more "
+                           "room than the bodies do; move the bodies apart"
+                         : "they burst; move the bodies apart, or leave "
+                           "solver.prestabilize on";
+  list.push_back({"overlap", text + then});
+}
+
+void add_crowded(const Scene& s, std::int64_t particles, std::vector<Warning>& list) {
+  constexpr double kTooMuch = 1.02;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const Body& body = s.bodies[b];
+    if (body.shape != Shape::random_box) continue;
+    double room = 1;
+    for (int a = 0; a < 3; ++a) room *= body.max[a] - body.min[a];
+    if (s.plane()) room *= (s.domain.max[1] - s.domain.min[1]) / (body.max[1] - body.min[1]);
+    const double fill = volume(s, double(body.count)) / room;
+    if (fill <= kTooMuch) continue;
+    list.push_back(
+        {"crowded", format("bodies[%zu] holds %.3g times the fluid that its box has room "
+                           "for; give count %.0f or less, or a larger box",
+                           b, fill, std::floor(body.count / fill * (1 + 1e-9)))});
+    return;
+  }
+  double box = 1;
+  for (int a = 0; a < 3; ++a) box *= s.domain.max[a] - s.domain.min[a];
+  const double fill = volume(s, double(particles)) / box;
+  if (closed_box(s) && fill > kTooMuch)
+    list.push_back({"crowded", format("the bodies hold %.3g times the fluid that the closed domain "
+                                      "has room for; give fewer or smaller bodies",
+                                      fill)});
+}
+
+void add_output(const Scene& s, std::vector<Warning>& list) {
+  const double run = s.time.end * (1 + 1e-9);
+  std::string text;
+  const auto add = [&](const char* key, double every, const std::string& what) {
+    if (every <= run) return;
+    text += (text.empty() ? "" : "; ") +
+            format("%s %g s is longer than the run (time.end %g s): ", key, every, s.time.end) +
+            what;
+  };
+  if (s.output)
+    add("output.every", s.output->every, "run.vtkhdf gets the first and the last frame");
+  if (s.render) add("render.every", s.render->every, "the start alone is drawn");
+  if (double(s.measure_every) * s.time.step > run)
+    add("measure_every", s.measure_every * s.time.step,
+        "the guard looks at the start and the end alone");
+  if (!text.empty()) list.push_back({"output", text});
+}
+
+}  // namespace
+
+double compression_at_rest(const Scene& s, std::int64_t particles) {
+  const double g = length(s.gravity), h = s.h();
+  const int sweeps = s.solver.tolerance > 0 ? std::max(s.solver.iterations, s.solver.max_iterations)
+                                            : s.solver.iterations;
+  if (g == 0 || sweeps == 0) return 0;
+  int down = 0;  // the axis along which the fluid lies on a wall
+  for (int a = 1; a < 3; ++a)
+    if (std::abs(s.gravity[a]) > std::abs(s.gravity[down])) down = a;
+  // Without a wall below or at a side the fluid does not stay.
+  const std::string ceiling =
+      std::string(1, char('x' + down)) + (s.gravity[down] < 0 ? "_max" : "_min");
+  for (const std::string& face : s.domain.open)
+    if (face != ceiling) return 0;
+  double area = 1;
+  for (int a = 0; a < 3; ++a)
+    if (a != down) area *= s.domain.max[a] - s.domain.min[a];
+  const double depth =
+      std::min(volume(s, double(particles)) / area, s.domain.max[down] - s.domain.min[down]);
+  const double dt = longest_step(s);
+  return 2.0 / 3 * g * dt * dt / h * (depth / h) / sweeps;
+}
+
+std::vector<Warning> scene_warnings(const Scene& scene, const std::string& scene_dir,
+                                    std::int64_t particles) {
+  std::vector<Warning> list;
+  add_step(scene, particles, list);
+  add_speed(scene, list);
+  add_overlap(scene, scene_dir, list);
+  add_crowded(scene, particles, list);
+  add_output(scene, list);
+  return list;
+}
+
+}  // namespace pbf::inline run_module

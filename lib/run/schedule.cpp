@@ -1,0 +1,34 @@
+#include "lib/run/schedule.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pbf::inline run_module {
+namespace {
+
+std::int64_t whole(double ratio) {
+  return std::max<std::int64_t>(1, std::llround(std::min(ratio, 9e18)));
+}
+
+}  // namespace
+
+std::int64_t Schedule::next_event(std::int64_t u) const {
+  std::int64_t next = updates;
+  for (const std::int64_t every : {measure_every, frame_every, picture_every})
+    if (every > 0) next = std::min(next, (u / every + 1) * every);
+  return next;
+}
+
+Schedule make_schedule(const Scene& s) {
+  Schedule out;
+  out.updates = whole(s.time.end / s.time.step);
+  out.measure_every = s.measure_every;
+  if (s.output) out.frame_every = whole(s.output->every / s.time.step);
+  if (s.render) {
+    out.picture_every = s.output ? out.frame_every * whole(s.render->every / s.output->every)
+                                 : whole(s.render->every / s.time.step);
+  }
+  return out;
+}
+
+}  // namespace pbf::inline run_module

@@ -1,0 +1,49 @@
+// When a run measures, writes and draws, in whole updates.
+#pragma once
+
+#include <cstdint>
+
+#include "lib/scene/scene.h"
+
+namespace pbf::inline run_module {
+
+/// Numbers of updates; 0: never. Update 0 is the initial state.
+struct Schedule {
+  std::int64_t updates = 1;  ///< of the whole run
+  std::int64_t measure_every = 0;
+  std::int64_t frame_every = 0;    ///< frames of run.vtkhdf
+  std::int64_t picture_every = 0;  ///< a multiple of frame_every when there are frames
+
+  bool measures(std::int64_t u) const { return due(u, measure_every) || u == updates; }
+  bool writes(std::int64_t u) const { return due(u, frame_every) || (frame_every && u == updates); }
+  bool draws(std::int64_t u) const { return due(u, picture_every); }
+  /// Whether a longer run would measure, write or draw here as well.
+  bool has(std::int64_t u) const {
+    return due(u, measure_every) || due(u, frame_every) || due(u, picture_every);
+  }
+  /// Numbers of measures, frames and pictures up to update u, the one after which a run that goes
+  /// on does no more of them for u.
+  std::int64_t measures_until(std::int64_t u) const { return count(u, measure_every, true); }
+  std::int64_t frames_until(std::int64_t u) const { return count(u, frame_every, true); }
+  std::int64_t pictures_until(std::int64_t u) const { return count(u, picture_every, false); }
+  /// The update of the k-th measure and frame (from 0).
+  std::int64_t update_of_measure(std::int64_t k) const { return at(k, measure_every); }
+  std::int64_t update_of_frame(std::int64_t k) const { return at(k, frame_every); }
+  /// The first update after u at which something is due, at most the last one.
+  std::int64_t next_event(std::int64_t u) const;
+
+ private:
+  std::int64_t count(std::int64_t u, std::int64_t every, bool end) const {
+    if (every <= 0) return 0;
+    return u / every + 1 + (end && u >= updates && u % every != 0);
+  }
+  std::int64_t at(std::int64_t k, std::int64_t every) const {
+    return k > updates / every ? updates : k * every;
+  }
+  static bool due(std::int64_t u, std::int64_t every) { return every > 0 && u % every == 0; }
+};
+
+/// Rounds the scene's times to whole updates, at least 1.
+Schedule make_schedule(const Scene& scene);
+
+}  // namespace pbf::inline run_module

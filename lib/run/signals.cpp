@@ -1,0 +1,60 @@
+#include "lib/run/signals.h"
+
+namespace pbf::inline run_module {
+namespace {
+
+constexpr int kStopping[] = {SIGTERM, SIGINT};
+volatile std::sig_atomic_t seen = 0, save = 0;
+
+extern "C" void pbf_on_stop(int number) {
+  seen = number;
+  for (const int s : kStopping) std::signal(s, SIG_DFL);  // async-signal-safe
+}
+
+extern "C" void pbf_on_save(int) { save = 1; }
+
+void watch(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;  // a write that is under way goes on
+  sigaction(signal, &action, nullptr);
+}
+
+sigset_t watched() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int s : kStopping) sigaddset(&set, s);
+  sigaddset(&set, SIGUSR1);
+  return set;
+}
+
+}  // namespace
+
+void watch_signals() {
+  for (const int s : kStopping) watch(s, pbf_on_stop);
+  watch(SIGUSR1, pbf_on_save);
+  const sigset_t set = watched();
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
+HeldSignals::HeldSignals() {
+  const sigset_t set = watched();
+  pthread_sigmask(SIG_BLOCK, &set, &before_);
+}
+
+HeldSignals::~HeldSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+std::string signal_seen() { return seen == 0 ? "" : seen == SIGTERM ? "SIGTERM" : "SIGINT"; }
+
+bool save_asked() {
+  const bool asked = save != 0;
+  save = 0;
+  return asked;
+}
+
+void see_failed_writes() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+}  // namespace pbf::inline run_module

@@ -1,0 +1,145 @@
+#include "lib/run/start_neighbors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <unordered_map>
+
+#include "lib/run/start_points.h"
+
+namespace pbf::inline run_module {
+namespace {
+
+struct Box {
+  Double3 low, high;
+};
+
+Box box_of(const Body& b) {
+  if (b.shape != Shape::sphere) return {b.min, b.max};
+  Box box{b.center, b.center};
+  for (int a = 0; a < 3; ++a) box.low[a] -= b.radius, box.high[a] += b.radius;
+  return box;
+}
+
+/// By more than rounding.
+bool overlap(const Box& a, const Box& b, double d) {
+  for (int k = 0; k < 3; ++k)
+    if (a.high[k] <= b.low[k] + 1e-6 * d || b.high[k] <= a.low[k] + 1e-6 * d) return false;
+  return true;
+}
+
+bool may_be_crowded(const Scene& s) {
+  std::vector<Box> boxes;
+  Double3 extent{};
+  for (const Body& b : s.bodies) {
+    if (b.shape == Shape::random_box || b.shape == Shape::file) return true;
+    boxes.push_back(box_of(b));
+    for (std::size_t k = 0; k < 3; ++k)
+      extent[k] = std::max(extent[k], std::fabs(boxes.back().low[k] - boxes[0].low[k]));
+  }
+  // In order along the axis on which they are spread most, a box can overlap only the next few.
+  const auto axis = std::size_t(std::max_element(extent.begin(), extent.end()) - extent.begin());
+  std::sort(boxes.begin(), boxes.end(),
+            [axis](const Box& a, const Box& b) { return a.low[axis] < b.low[axis]; });
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (std::size_t j = i + 1; j < boxes.size() && boxes[j].low[axis] < boxes[i].high[axis]; ++j)
+      if (overlap(boxes[i], boxes[j], s.fluid.spacing)) return true;
+  return false;
+}
+
+/// The sampled particles, found by cells of edge h: each stands in its own and those around it.
+class Sample {
+ public:
+  explicit Sample(double h) : h_(h) {}
+  void add(const Double3& x) {
+    const int mine = int(at_.size());
+    at_.push_back(x);
+    const std::array<std::int64_t, 3> c = cell(x, h_);
+    for (std::int64_t i = -1; i <= 1; ++i)
+      for (std::int64_t j = -1; j <= 1; ++j)
+        for (std::int64_t k = -1; k <= 1; ++k)
+          near_[key({c[0] + i, c[1] + j, c[2] + k})].push_back(mine);
+  }
+  /// Counts x as a neighbour of those that it is near to.
+  void count(const Double3& x, std::vector<int>& neighbors) const {
+    const auto found = near_.find(key(cell(x, h_)));
+    if (found == near_.end()) return;
+    for (const int s : found->second) {
+      double r2 = 0;
+      for (int a = 0; a < 3; ++a) r2 += (x[a] - at_[s][a]) * (x[a] - at_[s][a]);
+      neighbors[s] += r2 < h_ * h_;
+    }
+  }
+  std::size_t size() const { return at_.size(); }
+  /// Of the counts in one bin of the solver, an eighth of a cell, for each of its particles.
+  std::vector<double> scatter(const std::vector<int>& neighbors) const {
+    struct Sums {
+      double n = 0, sum = 0, squares = 0;
+    };
+    std::unordered_map<std::uint64_t, Sums> bins;
+    for (std::size_t i = 0; i < at_.size(); ++i) {
+      Sums& s = bins[key(cell(at_[i], h_ / 2))];
+      s.n += 1;
+      s.sum += neighbors[i];
+      s.squares += double(neighbors[i]) * neighbors[i];
+    }
+    std::vector<double> out(at_.size());
+    for (std::size_t i = 0; i < at_.size(); ++i) {
+      const Sums& s = bins[key(cell(at_[i], h_ / 2))];
+      if (s.n >= 4) out[i] = std::sqrt(std::max(0.0, s.squares - s.sum * s.sum / s.n) / (s.n - 1));
+    }
+    return out;
+  }
+
+ private:
+  std::array<std::int64_t, 3> cell(const Double3& x, double edge) const {
+    std::array<std::int64_t, 3> c{};
+    for (int a = 0; a < 3; ++a) c[a] = static_cast<std::int64_t>(std::floor(x[a] / edge));
+    return c;
+  }
+  /// Two cells with the same key cost time, no wrong count: distances decide. But where two of the
+  /// 27 cells around one particle share a key, it is found twice; 2^21 cells along an axis do not.
+  static std::uint64_t key(const std::array<std::int64_t, 3>& c) {
+    std::uint64_t k = 0;
+    for (const std::int64_t i : c) k = k << 21 | (std::uint64_t(i) & 0x1FFFFF);
+    return k;
+  }
+
+  double h_;
+  std::vector<Double3> at_;
+  std::unordered_map<std::uint64_t, std::vector<int>> near_;
+};
+
+}  // namespace
+
+StartNeighbors start_neighbors(const Scene& s, const std::string& scene_dir,
+                               std::int64_t particles) {
+  if (!may_be_crowded(s)) return {};
+  const StartPoints points(s, scene_dir);
+  // Fewer where there are many, for in one clump every particle is looked at for every one of them.
+  const std::int64_t wanted =
+      std::min(particles, std::clamp<std::int64_t>(400000000 / particles, 256, 4096));
+  // One of each of `wanted` runs of ids, at a random place in it: at equal distances all could lie
+  // on one face of a lattice.
+  SplitMix64 random(1);
+  Sample sample(s.h());
+  const auto first_of = [&](std::int64_t k) { return k * particles / wanted; };
+  const auto draw = [&](std::int64_t k) {
+    const std::int64_t run = first_of(k + 1) - first_of(k);
+    return first_of(k) + std::min(run - 1, std::int64_t(random.uniform() * double(run)));
+  };
+  std::int64_t id = 0, k = 0, next = draw(0);
+  points.for_each([&](std::size_t, const Double3& x) {
+    if (id++ != next) return;
+    sample.add(x);
+    if (++k < wanted) next = draw(k);
+  });
+  StartNeighbors out;
+  out.count.resize(sample.size());
+  points.for_each([&](std::size_t, const Double3& x) { sample.count(x, out.count); });
+  out.scatter = sample.scatter(out.count);
+  return out;
+}
+
+}  // namespace pbf::inline run_module

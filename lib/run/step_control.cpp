@@ -1,0 +1,99 @@
+#include "lib/run/step_control.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lib/base/text.h"
+
+namespace pbf::inline run_module {
+namespace {
+
+constexpr std::int64_t kEarly = 8, kLongestHold = std::int64_t(1) << 30;  // due measures
+
+double gravity_of(const Scene& s) { return std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]); }
+
+}  // namespace
+
+double longest_step(const Scene& s, double speed, double acceleration) {
+  const double none = std::numeric_limits<double>::infinity(), h = s.h();
+  const AdaptiveTime& a = *s.time.adaptive;
+  return std::min(speed > 0 ? a.cfl * h / speed : none,
+                  acceleration > 0 ? a.force * std::sqrt(h / acceleration) : none);
+}
+
+int next_level(const Scene& s, int level, double longest, bool may_coarsen) {
+  const int finest = finest_level(s);
+  int k = level;
+  while (k < finest && std::ldexp(s.time.step, -k) > longest) ++k;
+  const double coarser = std::ldexp(s.time.step, 1 - k);
+  return k == level && k > 0 && may_coarsen && 2 * coarser <= longest ? k - 1 : k;
+}
+
+AdaptiveStep::AdaptiveStep(const Scene& scene, const StepHistory& before)
+    : scene_(scene), finest_(finest_level(scene)), h_(before) {
+  h_.updates.resize(std::size_t(finest_) + 1);
+  h_.level = std::clamp<std::int64_t>(h_.level, 0, finest_);
+}
+
+double AdaptiveStep::step(int level) const { return std::ldexp(scene_.time.step, -level); }
+
+std::optional<std::string> AdaptiveStep::follow(const Measures& m) {
+  double acceleration = gravity_of(scene_);
+  if (h_.speed >= 0 && m.time > h_.time)
+    acceleration = std::max(acceleration, std::fabs(m.speed_max - h_.speed) / (m.time - h_.time));
+  h_.time = m.time;
+  h_.speed = m.speed_max;
+  if (h_.hold > 0) --h_.hold;
+  if (h_.coarse >= 0) ++h_.coarse;
+  const double before = step(level());
+  double longest = longest_step(scene_, m.speed_max, acceleration);
+  // Neighbours that moved too far past each other: half the step, and again while they do.
+  const bool unresolved = m.unresolved > h_.unresolved;
+  if (unresolved) longest = std::min(longest, before / 2);
+  h_.unresolved = m.unresolved;
+  const int to = next_level(scene_, level(), longest, h_.hold == 0);
+  if (step(to) > longest) ++h_.floor;
+  if (to == level()) return std::nullopt;
+  const double h = scene_.h();
+  return format("update %lld, %.6g s: ", static_cast<long long>(m.update), m.time) +
+         change(to, m.update, false) +
+         format(": v_max dt %.3g h, dt sqrt(a/h) %.3g before", m.speed_max * before / h,
+                before * std::sqrt(acceleration / h)) +
+         (unresolved ? "; neighbours moved too far past each other" : "");
+}
+
+std::optional<std::string> AdaptiveStep::refine(const std::string& alarm, const Measures& m,
+                                                std::int64_t back) {
+  if (level() == finest_) return std::nullopt;
+  ++h_.repeats;
+  return format("update %lld, %.6g s: alarm of the guard (%s), back to update %lld: ",
+                static_cast<long long>(m.update), m.time, alarm.c_str(),
+                static_cast<long long>(back)) +
+         change(level() + 1, back, true);
+}
+
+std::string AdaptiveStep::change(int to, std::int64_t update, bool alarm) {
+  const double before = step(level());
+  if (to < level()) {
+    h_.coarse = 0;
+  } else {
+    const bool early = h_.coarse >= 0 && h_.coarse <= kEarly;
+    if (early) h_.hold_length = std::min(2 * h_.hold_length, kLongestHold);
+    if (early || alarm) h_.hold = h_.hold_length;
+    h_.coarse = -1;
+  }
+  h_.updates = updates_at_levels(update);
+  h_.since = update;
+  h_.level = to;
+  ++h_.changes;
+  return format("step %.6g s (was %.6g)", step(to), before);
+}
+
+std::vector<std::int64_t> AdaptiveStep::updates_at_levels(std::int64_t update) const {
+  std::vector<std::int64_t> all = h_.updates;
+  all[std::size_t(h_.level)] += update - h_.since;
+  return all;
+}
+
+}  // namespace pbf::inline run_module

@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <cmath>
+
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+#include "lib/exec/make_solver.h"
+#include "lib/run/emit.h"
+#include "lib/run/prestabilize.h"
+#include "lib/scene/random.h"
+#include "lib/verify/compare_parts.h"
+
+#ifdef PBF_HAS_DEFECT
+namespace pbf::defect {  // compiled a second time, from changed sources (.cmake/defect.cmake)
+std::unique_ptr<Solver> make_cpu_solver(const Scene&, const Plan&, Particles);
+}
+#endif
+
+namespace pbf::inline verify_module {
+namespace {
+
+Scene on(const Scene& scene, const CompareSide& side) {
+  Scene s = scene;
+  s.backend = side.backend;
+  s.precision = side.precision;
+  if (side.threads > 0) s.threads = side.threads;
+  return s;
+}
+
+std::unique_ptr<Solver> make(const Scene& scene, const Particles& particles, bool variant) {
+  const Plan plan = make_plan(scene, std::int64_t(particles.size()));
+#ifdef PBF_HAS_DEFECT
+  if (variant) return defect::make_cpu_solver(scene, plan, particles);
+#endif
+  if (variant) throw Error(ExitCode::unavailable, "cpu+defect is not in this build");
+  return make_solver(scene, plan, particles);
+}
+
+double roundoff(Precision p) { return p == Precision::dbl ? 0x1p-53 : 0x1p-24; }
+
+void round_to_float(SolverState& s) {
+  for (auto* v : {&s.position, &s.velocity})
+    for (double& x : *v) x = double(float(x));
+}
+
+/// The scene with every constant of the update rounded at random, as a solver of lower precision
+/// rounds them once: an error that is the same for all particles and does not average out.
+Scene rounded(const Scene& scene, double u, std::uint64_t seed) {
+  SplitMix64 random(seed);
+  Scene s = scene;
+  const auto round = [&](double& x) { x *= 1 + u * (2 * random.uniform() - 1); };
+  for (double* x : {&s.time.step, &s.fluid.smoothing_ratio, &s.solver.cfm, &s.solver.wall_margin,
+                    &s.gravity[0], &s.gravity[1], &s.gravity[2]})
+    round(*x);
+  if (s.solver.velocity_damping < 1) round(s.solver.velocity_damping);
+  if (s.solver.sor) round(*s.solver.sor);
+  if (s.fluid.mass) round(*s.fluid.mass);
+  if (s.tensile) round(s.tensile->k), round(s.tensile->delta_q);
+  if (s.viscosity) round(s.viscosity->xsph);
+  if (s.vorticity) round(s.vorticity->epsilon);
+  return s;
+}
+
+}  // namespace
+
+SolverState rounded(const SolverState& s, double u, std::uint64_t seed) {
+  SplitMix64 random(seed);
+  SolverState out = s;
+  for (auto* v : {&out.position, &out.velocity})
+    for (double& x : *v) x *= 1 + u * (2 * random.uniform() - 1);
+  return out;
+}
+
+CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const std::string& dir,
+                              const CompareSettings& settings,
+                              const std::function<void(const std::string&)>& progress) {
+  if (scene_a.bodies != scene_b.bodies || scene_a.fluid.spacing != scene_b.fluid.spacing ||
+      scene_a.fluid.smoothing_ratio != scene_b.fluid.smoothing_ratio ||
+      scene_a.domain.min != scene_b.domain.min)
+    throw Error(ExitCode::bad_input,
+                "--set-b: both sides start from the same particles, so bodies, fluid.spacing, "
+                "fluid.smoothing_ratio and domain.min must stay; give these to both with --set, or "
+                "compare two run files");
+  const Particles particles = emit_particles(scene_a, dir);
+  const Scene on_a = on(scene_a, settings.a), on_b = on(scene_b, settings.b);
+  const std::unique_ptr<Solver> a = make(on_a, particles, settings.a.variant);
+  const std::unique_ptr<Solver> b = make(on_b, particles, settings.b.variant);
+  Scene plain = on(scene_a, {Backend::cpu, Precision::dbl, 0, false});
+  plain.solver.fused = false;  // a stored density can be rounded; its bits are the same
+  const std::unique_ptr<Solver> reference = make(plain, particles, false);
+  const Plan plan = make_plan(on_a, std::int64_t(particles.size()));
+
+  Comparison c;
+  c.settings = &settings;
+  c.plan = &plan;
+  c.scene = &on_a;
+  c.a = a.get();
+  c.b = b.get();
+  c.reference = reference.get();
+  c.u = std::max(roundoff(settings.a.precision), roundoff(settings.b.precision));
+  c.sides = settings.a.precision == settings.b.precision ? 2 : 1;
+  const bool promised = settings.a.backend == settings.b.backend ||
+                        (on_a.solver.reproducible && on_b.solver.reproducible);
+  c.same_bits = promised && c.sides == 2 && !settings.a.variant && !settings.b.variant;
+  c.progress = progress;
+  if (!c.same_bits)
+    for (int m = 0; m < settings.members; ++m)
+      c.members.push_back(
+          make(rounded(plain, c.u, settings.seed + std::uint64_t(m)), particles, false));
+
+  CompareResult result;
+  result.a = settings.a.name();
+  result.b = settings.b.name();
+  result.notes.push_back(
+      format("scene \"%s\", %zu particles, %d updates on %s before the frozen step",
+             scene_a.name.c_str(), particles.size(), settings.warmup, result.a.c_str()));
+  if (scene_a.time.adaptive || scene_b.time.adaptive)
+    result.notes.push_back("time.adaptive is left out: every update is one step");
+  // The others take over A's state.
+  const std::string relieved = prestabilized_text(prestabilize(*a, on_a, plan));
+  if (!relieved.empty()) result.notes.push_back(relieved);
+  if (progress) progress(format("%d updates of warm-up on %s", settings.warmup, result.a.c_str()));
+  a->step(settings.warmup);
+  SolverState start = a->state();
+  if (c.u == roundoff(Precision::single)) round_to_float(start);
+  result.parts.push_back(compare_stages(c, start, result));
+  if (progress) progress("frozen step: " + result.parts[0].finding);
+  std::int64_t failure = -1;
+  for (auto& part : compare_course(c, start, result, failure))
+    result.parts.push_back(std::move(part));
+  // The frozen step missed it: others, from A's state just before it showed and from the last one.
+  for (const std::int64_t after : {failure - 1, std::int64_t(settings.updates)}) {
+    if (!result.stage.empty() || failure < 1) break;
+    a->set_state(start);
+    a->step(int(after));
+    SolverState later = a->state();
+    if (c.u == roundoff(Precision::single)) round_to_float(later);
+    ComparePart part = compare_stages(c, later, result);
+    part.name = format("frozen step at update %lld", static_cast<long long>(later.updates));
+    result.parts.push_back(std::move(part));
+  }
+  return result;
+}
+
+}  // namespace pbf::inline verify_module

@@ -1,0 +1,232 @@
+// The updates after the frozen step: how far particles drift apart, and what stays the same.
+#include <algorithm>
+#include <cmath>
+
+#include "lib/base/text.h"
+#include "lib/verify/compare_parts.h"
+#include "lib/verify/statistics.h"
+
+namespace pbf::inline verify_module {
+namespace {
+
+/// Positions by id, h.
+std::vector<double> positions(Solver& solver) {
+  const SolverState s = solver.state();
+  std::vector<double> x(s.position.size());
+  for (std::size_t k = 0; k < s.id.size(); ++k)
+    std::copy_n(&s.position[3 * k], 3, &x[3 * std::size_t(s.id[k])]);
+  return x;
+}
+
+struct Distance {
+  double rms = 0, worst = 0;
+};
+Distance distance(const std::vector<double>& x, const std::vector<double>& y) {
+  Distance d;
+  for (std::size_t i = 0; i < x.size(); i += 3) {
+    const double a = x[i] - y[i], b = x[i + 1] - y[i + 1], c = x[i + 2] - y[i + 2];
+    const double r2 = a * a + b * b + c * c;
+    d.worst = std::max(d.worst, std::sqrt(r2));
+    d.rms += r2;
+  }
+  d.rms = std::sqrt(d.rms / double(std::max<std::size_t>(x.size() / 3, 1)));
+  if (std::isnan(d.rms)) d.rms = d.worst = HUGE_VAL;
+  return d;
+}
+
+/// The worst moment of one quantity of the third part.
+struct Watched {
+  CompareRow row;
+  double spread = 0;  ///< largest change over the ensemble so far
+  double worst = -1;  ///< error/tolerance
+};
+
+class Samples {
+ public:
+  explicit Samples(const Comparison& c) : c_(c) {}
+  std::int64_t first_failure = -1;  ///< update of the first sample outside a tolerance
+
+  /// `update`: counted from the frozen step on.
+  void take(std::int64_t update) {
+    update_ = update;
+    // Random roundings average out over the particles; real ones may all go the same way, as where
+    // a slow particle's step is less than the last place of its position.
+    const double roundings = 4 + double(update);
+    const FrameStatistics a = of(*c_.a), b = of(*c_.b);
+    FrameStatistics r;
+    std::vector<FrameStatistics> members;
+    if (!c_.same_bits) {
+      r = of(*c_.reference);
+      for (const auto& m : c_.members) members.push_back(of(*m));
+    }
+    for (std::size_t k = 0; k < a.numbers.size(); ++k) {
+      double spread = 0;
+      for (const auto& m : members)
+        spread = std::max(spread, std::fabs(m.numbers[k].value - r.numbers[k].value));
+      const double scale = std::max(
+          {std::fabs(a.numbers[k].value), std::fabs(b.numbers[k].value), a.numbers[k].scale});
+      note(a.numbers[k].name, a.numbers[k].unit, std::fabs(a.numbers[k].value - b.numbers[k].value),
+           scale, spread, roundings * c_.u * scale);
+    }
+    for (std::size_t k = 0; k < a.distributions.size(); ++k) {
+      double spread = 0;
+      for (const auto& m : members)
+        spread =
+            std::max(spread, ks_distance(m.distributions[k].values, r.distributions[k].values));
+      // The resolution of the distance is one particle.
+      const double one = 1 / double(a.distributions[k].values.size());
+      note("distribution of " + a.distributions[k].name, "KS distance",
+           ks_distance(a.distributions[k].values, b.distributions[k].values), 0, spread, 2 * one);
+    }
+  }
+
+  ComparePart part() const {
+    ComparePart p;
+    p.name = "distributions";
+    p.tolerance_source =
+        c_.same_bits
+            ? std::string("0: both sides promise the same bits")
+            : format(
+                  "%g x the largest change so far over the %zu randomly rounded references (what "
+                  "chaos alone makes), + (4 + updates) u |value| (of a momentum: of the mean "
+                  "speed) or two particles",
+                  kSpreadFactor, c_.members.size());
+    p.verdict = Verdict::same;
+    double worst = 0;
+    std::string name;
+    for (const auto& w : watched_) {
+      p.rows.push_back(w.row);
+      if (w.worst >= worst) worst = w.worst, name = w.row.what;
+      if (w.row.verdict == Verdict::differs) p.verdict = Verdict::differs;
+    }
+    p.finding = c_.same_bits
+                    ? std::string(p.verdict == Verdict::same ? "all equal" : "not equal")
+                    : format("the largest share of a tolerance is %.2g (%s)", worst, name.c_str());
+    return p;
+  }
+
+ private:
+  FrameStatistics of(Solver& s) const {
+    return frame_statistics(s.download({"velocity", "density"}, ScalarType::f64),
+                            c_.scene->domain.min, c_.scene->gravity, c_.scene->fluid.rest_density);
+  }
+  void note(const std::string& what, const std::string& unit, double error, double scale,
+            double spread, double floor) {
+    auto at = std::find_if(watched_.begin(), watched_.end(),
+                           [&](const Watched& w) { return w.row.what == what; });
+    if (at == watched_.end()) {
+      watched_.push_back({});
+      at = watched_.end() - 1;
+      at->row.what = what;
+      at->row.unit = unit;
+      at->row.verdict = Verdict::same;
+    }
+    at->spread = std::max(at->spread, spread);
+    const double tolerance = c_.same_bits ? 0 : c_.sides * (kSpreadFactor * at->spread + floor);
+    const double share = error == 0 ? 0 : tolerance > 0 ? error / tolerance : HUGE_VAL;
+    if (!(share <= at->worst)) {
+      at->worst = share;
+      at->row.error = error;
+      at->row.relative = scale > 0 ? error / scale : error;
+      at->row.ulps = scale > 0 ? error / ulp(scale, c_.u) : 0;
+      at->row.tolerance = tolerance;
+    }
+    if (error <= tolerance) return;
+    at->row.verdict = Verdict::differs;
+    if (first_failure < 0) first_failure = update_;
+  }
+
+  const Comparison& c_;
+  std::int64_t update_ = 0;
+  std::vector<Watched> watched_;
+};
+
+}  // namespace
+
+std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& start,
+                                        CompareResult& result, std::int64_t& first_failure) {
+  c.a->set_state(start);
+  c.b->set_state(start);
+  if (!c.same_bits) {
+    c.reference->set_state(start);
+    for (std::size_t m = 0; m < c.members.size(); ++m)
+      c.members[m]->set_state(rounded(start, c.u, c.settings->seed + m));
+  }
+  Samples samples(c);
+  Curve rms{"A to B, rms", {}, {}}, worst{"A to B, largest", {}, {}},
+      chaos{"chaos alone, rms", {}, {}};
+  ComparePart near;
+  near.name = "short horizon";
+  CompareRow row{"distance of a particle, rms", "h", 0, 0, 0, 0, 0, Verdict::same};
+  const double apart = 0.1 / c.scene->fluid.smoothing_ratio;  // a tenth of the spacing, h
+  double spread = 0, share = -1;
+  first_failure = -1;
+  const int updates = c.settings->updates, every = std::max(1, updates / 10);
+  for (int t = 1; t <= updates; ++t) {
+    c.a->step(1);
+    c.b->step(1);
+    const Distance d = distance(positions(*c.a), positions(*c.b));
+    double now = 0;
+    if (!c.same_bits) {
+      c.reference->step(1);
+      const std::vector<double> r = positions(*c.reference);
+      for (std::size_t m = 0; m < c.members.size(); ++m) {
+        // Every update its own roundings.
+        c.members[m]->trace({c.u, c.settings->seed + 1000 * std::uint64_t(t) + m, nullptr});
+        now = std::max(now, distance(positions(*c.members[m]), r).rms);
+      }
+      spread = std::max(spread, now);
+    }
+    rms.x.push_back(t), rms.y.push_back(d.rms);
+    worst.x.push_back(t), worst.y.push_back(d.worst);
+    chaos.x.push_back(t), chaos.y.push_back(now);
+    if (result.horizon < 0 && d.rms > apart) result.horizon = t;
+    const double tolerance = c.same_bits ? 0 : c.sides * kNoiseFactor * spread;
+    // Past the horizon particles are as far apart as any two: the third part judges that.
+    if (result.horizon < 0 || t == 1 || first_failure >= 0) {
+      const double s = d.rms == 0 ? 0 : tolerance > 0 ? d.rms / tolerance : HUGE_VAL;
+      if (s > share) share = s, row.error = d.rms, row.rms = d.rms, row.tolerance = tolerance;
+      if (s > 1 && first_failure < 0) first_failure = t;
+    }
+    if (t % every == 0 || t == updates) samples.take(t);
+    if (c.progress && t % every == 0)
+      c.progress(format("update %d/%d: particles %.2g h apart (rms)", t, updates, d.rms));
+  }
+  row.verdict = near.verdict = first_failure < 0 ? Verdict::same : Verdict::differs;
+  row.relative = row.error;
+  near.rows.push_back(row);
+  near.tolerance_source =
+      c.same_bits ? std::string("0: both sides promise the same bits")
+                  : format(
+                        "%g x the largest rms distance so far of %zu references, rounded at random "
+                        "in every update, from the one that is not",
+                        kNoiseFactor, c.members.size());
+  // The first updates are rounding, not growth; from a hundredth of h on growth saturates.
+  std::vector<double> x(rms.x.begin() + std::min<std::ptrdiff_t>(5, updates), rms.x.end());
+  std::vector<double> y(rms.y.begin() + std::min<std::ptrdiff_t>(5, updates), rms.y.end());
+  result.e_folding = e_folding(x, y, 0.01);
+  const double last = rms.y.empty() ? 0 : rms.y.back();
+  if (last == 0)
+    near.finding = format("identical for %d updates", updates);
+  else
+    near.finding = format("%.2g h apart (rms) after %d updates", last, updates);
+  if (result.e_folding > 0)
+    near.finding += format("; distances grow e-fold in %.3g updates", result.e_folding);
+  if (result.horizon >= 0)
+    near.finding +=
+        format("; from update %g on, a tenth of the spacing apart, particles are not comparable",
+               result.horizon);
+  else if (result.e_folding > 0 && last > 0)
+    near.finding += format("; not comparable past about update %.0f",
+                           updates + result.e_folding * std::log(apart / last));
+  if (first_failure >= 0)
+    near.finding += format("; outside the tolerance from update %lld on",
+                           static_cast<long long>(first_failure));
+  if (first_failure < 0) first_failure = samples.first_failure;
+  Diagram diagram{"Distance of each particle on A and on B", "update", "h", {rms, worst}};
+  if (!c.same_bits) diagram.curves.push_back(chaos);
+  result.diagrams.push_back(diagram);
+  return {near, samples.part()};
+}
+
+}  // namespace pbf::inline verify_module

@@ -1,0 +1,161 @@
+// Two run files: what they say about themselves, then frame by frame.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <sstream>
+
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+#include "lib/scene/load.h"
+#include "lib/verify/compare_run.h"
+
+namespace pbf::inline verify_module {
+namespace {
+
+std::string side_of(const ComparedRun& o) {
+  std::string s = o.path + ": " + o.info.solver.backend + ":" + o.info.solver.precision;
+  if (o.info.solver.threads > 0) s += format("@%d", o.info.solver.threads);
+  return s + ", version " + o.info.program_version + " (" + o.info.commit + ")" +
+         format(", %lld particles, %zu frames, %s", static_cast<long long>(o.info.particles),
+                o.times.size(), o.end_text().c_str());
+}
+
+/// The scene without what does not touch the physics.
+Scene physics_of(Scene s) {
+  s.name.clear();
+  s.backend = Backend::cpu;
+  s.precision = Precision::dbl;
+  s.threads = 0;
+  if (!s.time.adaptive) s.measure_every = 1;  // a measure there chooses the step
+  s.output.reset();
+  s.render.reset();
+  s.checkpoint.reset();
+  s.time.end = s.time.step;
+  s.solver.fused = true;
+  return s;
+}
+
+/// Lines that stand in one of two texts only.
+std::string line_differences(const std::string& a, const std::string& b) {
+  const auto lines = [](const std::string& text) {
+    std::set<std::string> out;
+    std::istringstream in(text);
+    for (std::string l; std::getline(in, l);) out.insert(l.substr(0, l.find('#')));
+    return out;
+  };
+  const auto trimmed = [](const std::string& l) { return l.substr(l.find_first_not_of(' ')); };
+  const std::set<std::string> x = lines(a), y = lines(b);
+  std::string out;
+  const auto add = [&](const char* side, const std::string& l) {
+    out += (out.empty() ? side : std::string("; ") + side) + trimmed(l);
+  };
+  for (const auto& l : x)
+    if (!y.count(l)) add("A ", l);
+  for (const auto& l : y)
+    if (!x.count(l)) add("B ", l);
+  return out.empty() ? "the same lines in another order" : out;
+}
+
+ComparePart compare_scenes(const ComparedRun& a, const ComparedRun& b) {
+  ComparePart p;
+  p.name = "scene";
+  p.tolerance_source = "every key that the physics depends on must be the same";
+  const Scene x = physics_of(a.scene), y = physics_of(b.scene);
+  p.verdict = x == y ? Verdict::same : Verdict::differs;
+  p.finding = x == y ? "the same physics" : line_differences(resolved_yaml(x), resolved_yaml(y));
+  return p;
+}
+
+/// The same bits are promised: CPU, one precision, one build.
+bool same_bits(const RunInfo& a, const RunInfo& b) {
+  return a.solver.backend == "cpu" && b.solver.backend == "cpu" &&
+         a.solver.precision == b.solver.precision && a.commit == b.commit &&
+         a.compiler == b.compiler && a.build_flags == b.build_flags;
+}
+
+void note_fields(CompareResult& result, const ComparedRun& a, const ComparedRun& b) {
+  const auto x = a.reader.fields(), y = b.reader.fields();
+  for (const char* name : {"velocity", "density"})
+    if (std::find(x.begin(), x.end(), name) == x.end() &&
+        std::find(y.begin(), y.end(), name) == y.end())
+      result.notes.push_back(std::string("neither file has the field ") + name +
+                             ": what needs it is not compared (output.fields writes it)");
+}
+
+}  // namespace
+
+ComparedRun::ComparedRun(const std::string& p)
+    : path(p),
+      reader((try_run_file(p), p)),
+      info(reader.info()),
+      scene(parse_stored_scene(info.resolved_scene, p + " (the scene stored in it)", {})),
+      times(reader.times()),
+      status(reader.status()) {}
+
+std::string ComparedRun::end_text() const {
+  const std::vector<RunSession> sessions = reader.sessions();
+  if (status == "running") return "running (or killed)";
+  if (sessions.empty() || sessions.back().reason.empty() || sessions.back().reason == status)
+    return status;
+  return status + " (" + sessions.back().reason + ")";
+}
+
+Snapshot ComparedRun::frame(std::int64_t k) const {
+  Snapshot s = reader.frame(k);
+  const std::pair<const char*, int> known[] = {{"position", 3}, {"velocity", 3}, {"density", 1}};
+  for (const FieldArray& f : s.fields)
+    for (const auto& [name, components] : known)
+      if (f.name == name && (f.components != components || f.type == ScalarType::i32))
+        throw Error(ExitCode::io, path + ": frame " + std::to_string(k) + ": " + name +
+                                      " has not the type and the columns that pbf writes");
+  return s;
+}
+
+FramePairs pair_frames(const ComparedRun& a, const ComparedRun& b) {
+  FramePairs out;
+  const double half = 0.5 * std::min(a.scene.time.step, b.scene.time.step);
+  std::size_t i = 0, k = 0;
+  while (i < a.times.size() && k < b.times.size()) {
+    if (std::fabs(a.times[i] - b.times[k]) <= half)
+      out.common.emplace_back(i++, k++);
+    else if (a.times[i] < b.times[k])
+      out.only_a.push_back(a.times[i++]);
+    else
+      out.only_b.push_back(b.times[k++]);
+  }
+  out.only_a.insert(out.only_a.end(), a.times.begin() + std::ptrdiff_t(i), a.times.end());
+  out.only_b.insert(out.only_b.end(), b.times.begin() + std::ptrdiff_t(k), b.times.end());
+  return out;
+}
+
+CompareResult compare_files(const std::string& path_a, const std::string& path_b) {
+  const ComparedRun a(path_a), b(path_b);
+  CompareResult result;
+  result.a = side_of(a);
+  result.b = side_of(b);
+  const FramePairs frames = pair_frames(a, b);
+  if (a.times.empty() && b.times.empty())
+    throw Error(ExitCode::bad_input, path_a + " and " + path_b +
+                                         " hold no frames to compare; run both scenes with an "
+                                         "output block (--set output={})");
+  if (frames.common.empty() && !a.times.empty() && !b.times.empty())
+    throw Error(ExitCode::bad_input,
+                path_a + " and " + path_b + " have no frame at the same time (" +
+                    std::to_string(a.times.size()) + " and " + std::to_string(b.times.size()) +
+                    " frames); run both scenes with the same output.every");
+  std::error_code ignored;
+  if (std::filesystem::equivalent(path_a, path_b, ignored))
+    result.notes.push_back("A and B are one and the same file");
+  note_fields(result, a, b);
+  result.parts.push_back(compare_scenes(a, b));
+  const bool same_scene = result.parts[0].verdict == Verdict::same;
+  result.parts.push_back(compare_extents(a, b, frames));
+  if (frames.common.empty()) return result;
+  const bool exact = same_scene && same_bits(a.info, b.info);
+  for (ComparePart& p : compare_frames(a, b, frames, exact, result))
+    result.parts.push_back(std::move(p));
+  return result;
+}
+
+}  // namespace pbf::inline verify_module

@@ -1,0 +1,262 @@
+// Two run files frame by frame: particles where they are comparable, samples everywhere.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "lib/base/text.h"
+#include "lib/verify/compare_parts.h"
+#include "lib/verify/compare_run.h"
+#include "lib/verify/statistics.h"
+
+namespace pbf::inline verify_module {
+namespace {
+
+constexpr double kAlpha = 1e-6;  // of a false alarm of one Kolmogorov-Smirnov test
+
+/// Differences up to so many roundings are none: what an update rounds on both sides, as a sum of
+/// density has tens of terms.
+constexpr double kRoundings = 16;
+
+/// What a front is known to, spacings. A pool's uppermost layer is flatter than any sample that its
+/// order statistics are of.
+constexpr double kFront = 0.01;
+
+/// Edge of the cells whose particles may move as one, h: what reaches each other.
+constexpr double kCluster = 2;
+
+std::vector<double> numbers_of(const FieldArray& f) {
+  if (f.type == ScalarType::f64) return {f.as<double>().begin(), f.as<double>().end()};
+  return {f.as<float>().begin(), f.as<float>().end()};
+}
+
+double largest_of(const FieldArray* f) {
+  double largest = 0;
+  if (f)
+    for (const double v : numbers_of(*f))
+      if (std::isfinite(v)) largest = std::max(largest, std::fabs(v));
+  return largest;
+}
+
+struct Distance {
+  double rms = 0, worst = 0;  ///< m; infinite where a coordinate is not finite on one side
+};
+Distance distance(const Snapshot& a, const Snapshot& b) {
+  const std::vector<double> x = numbers_of(a.fields[0]), y = numbers_of(b.fields[0]);
+  Distance d;
+  for (std::size_t i = 0; i < x.size(); i += 3) {
+    double r2 = 0;
+    for (std::size_t k = i; k < i + 3; ++k) {
+      const double e = x[k] - y[k];
+      if (x[k] == y[k] || (std::isnan(x[k]) && std::isnan(y[k]))) continue;
+      r2 += std::isfinite(e) ? e * e : HUGE_VAL;
+    }
+    d.worst = std::max(d.worst, std::sqrt(r2));
+    d.rms += r2;
+  }
+  d.rms = std::sqrt(d.rms / double(std::max<std::size_t>(a.count, 1)));
+  return d;
+}
+
+/// The same bits; where one file holds float and the other double, those of float.
+bool same_numbers(const FieldArray& f, const FieldArray& g) {
+  if (f.type == g.type) return f.bytes == g.bytes;
+  const std::vector<double> x = numbers_of(f), y = numbers_of(g);
+  return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](double a, double b) {
+    const float c = float(a), d = float(b);
+    return std::memcmp(&c, &d, sizeof c) == 0;
+  });
+}
+bool same_numbers(const Snapshot& a, const Snapshot& b) {
+  for (const FieldArray& f : a.fields)
+    if (const FieldArray* g = b.find(f.name); g && !same_numbers(f, *g)) return false;
+  return true;
+}
+
+double unit_roundoff(bool single) { return single ? 0x1p-24 : 0x1p-53; }
+
+/// What rounding makes of two runs. Positions are lengths of the box's extent, velocities ways over
+/// a step, densities sums over distances in units of h.
+Resolution computed(const ComparedRun& a, const ComparedRun& b) {
+  const double u =
+      unit_roundoff(a.info.solver.precision == "float" || b.info.solver.precision == "float");
+  double extent = 0, step = HUGE_VAL;
+  for (const ComparedRun* o : {&a, &b}) {
+    const Scene& s = o->scene;
+    for (std::size_t k = 0; k < 3; ++k)
+      extent = std::max(extent, s.domain.max[k] - s.domain.min[k]);
+    step = std::min(step, s.time.step / s.solver.substeps);
+    for (const double dt : o->reader.log_column("dt"))
+      if (dt > 0) step = std::min(step, dt);
+  }
+  return {u * extent, u * extent / step, u * (1 + extent / std::min(a.scene.h(), b.scene.h())),
+          kFront * std::min(a.scene.fluid.spacing, b.scene.fluid.spacing),
+          kCluster * std::max(a.scene.h(), b.scene.h())};
+}
+
+/// That, and what it makes of the values as they are stored.
+Resolution resolution_of(const Resolution& computed, const Snapshot& x, const Snapshot& y,
+                         double rest_density) {
+  const auto stored = [&](const char* name) {
+    double most = 0;
+    for (const Snapshot* s : {&x, &y})
+      if (const FieldArray* f = s->find(name))
+        most = std::max(most, unit_roundoff(f->type == ScalarType::f32) * largest_of(f));
+    return most;
+  };
+  return {kRoundings * (computed.length + stored("position")),
+          kRoundings * (computed.speed + stored("velocity")),
+          kRoundings * (computed.density + stored("density") / rest_density), computed.front,
+          computed.cluster};
+}
+
+/// The row of a name, made when new.
+CompareRow& row_of(ComparePart& p, const std::string& what, const std::string& unit) {
+  for (CompareRow& r : p.rows)
+    if (r.what == what) return r;
+  p.rows.push_back({what, unit, -1, 0, 0, 0, 0, Verdict::same});
+  return p.rows.back();
+}
+
+/// Keeps the worst share of a tolerance.
+void note(ComparePart& p, const std::string& what, const std::string& unit, double error,
+          double scale, double tolerance) {
+  CompareRow& r = row_of(p, what, unit);
+  const auto share = [](double e, double t) { return e == 0 ? 0 : t > 0 ? e / t : HUGE_VAL; };
+  if (r.error < 0 || share(error, tolerance) > share(r.error, r.tolerance)) {
+    r.error = error;
+    r.relative = scale > 0 ? error / scale : error;
+    r.tolerance = tolerance;
+  }
+  if (error != 0 && !(error <= tolerance)) r.verdict = p.verdict = Verdict::differs;
+}
+
+/// |a - b|; 0 where neither is a number, infinite where one alone is not.
+double difference(double a, double b) {
+  if (a == b || (std::isnan(a) && std::isnan(b))) return 0;
+  const double e = std::fabs(a - b);
+  return std::isnan(e) ? HUGE_VAL : e;
+}
+
+void compare_samples(ComparePart& p, const FrameStatistics& a, const FrameStatistics& b) {
+  for (const Statistic& x : a.numbers)
+    for (const Statistic& y : b.numbers)
+      if (x.name == y.name) {
+        const double open = std::hypot(x.uncertainty, y.uncertainty);
+        note(p, x.name, x.unit, difference(x.value, y.value),
+             std::max(std::fabs(x.value), std::fabs(y.value)),
+             (std::isnan(open) ? 0 : open) + std::max(x.resolution, y.resolution));
+      }
+  for (const Distribution& x : a.distributions)
+    for (const Distribution& y : b.distributions)
+      if (x.name == y.name)
+        note(p, "distribution of " + x.name, "KS distance",
+             ks_distance(x.values, y.values, std::max(x.resolution, y.resolution)), 0,
+             ks_critical(kAlpha, x.samples, y.samples));
+}
+
+/// Values that are not finite, by field: as many in both.
+void compare_not_finite(ComparePart& p, const Snapshot& a, const Snapshot& b) {
+  const auto count = [](const FieldArray& f) {
+    double n = 0;
+    for (const double v : numbers_of(f)) n += !std::isfinite(v);
+    return n;
+  };
+  for (const FieldArray& f : a.fields)
+    if (const FieldArray* g = b.find(f.name); g && f.type != ScalarType::i32) {
+      const double x = count(f), y = count(*g);
+      if (x > 0 || y > 0)
+        note(p, "not finite: " + f.name, "values", std::fabs(x - y), std::max(x, y), 0);
+    }
+}
+
+}  // namespace
+
+std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun& b,
+                                        const FramePairs& frames, bool exact,
+                                        CompareResult& result) {
+  ComparePart near, far;
+  near.name = "particles";
+  far.name = "distributions";
+  far.verdict = Verdict::same;
+  far.tolerance_source = format(
+      "two samples: %g standard errors of means and quantiles, Kolmogorov-Smirnov at %g, where "
+      "values up to %g roundings apart are equal, fronts up to %g spacings; once particles are not "
+      "comparable, of as many samples as velocity and density are independent in cells of %g h; "
+      "the worst frame counts",
+      kSigmas, kAlpha, kRoundings, kFront, kCluster);
+  Curve rms{"A to B, rms", {}, {}}, worst{"A to B, largest", {}, {}};
+  const double h = a.scene.h(), d = a.scene.fluid.spacing;
+  bool paired = true, bytes = true;
+  double last = 0;
+  const Resolution own = computed(a, b);
+  for (const auto& [i, k] : frames.common) {
+    const Snapshot x = a.frame(i), y = b.frame(k);
+    Resolution resolution = resolution_of(own, x, y, a.scene.fluid.rest_density);
+    if (paired && x.count != y.count) {
+      paired = false;
+      near.finding =
+          format("A holds %zu particles at %g s, B %zu: no particle of one is one of the other",
+                 x.count, x.time, y.count);
+    }
+    if (paired) {
+      const Distance e = distance(x, y);
+      bytes = bytes && same_numbers(x, y);
+      last = e.rms / h;
+      const double update = double(x.update);
+      rms.x.push_back(update), rms.y.push_back(e.rms / h);
+      worst.x.push_back(update), worst.y.push_back(e.worst / h);
+      if (result.horizon < 0 && e.rms > 0.1 * d) result.horizon = update;
+      if (x.update == 0 && y.update == 0)
+        note(near, "initial positions", "m", e.worst, largest_of(&x.fields[0]),
+             exact ? 0 : resolution.length);
+    }
+    // Up to the horizon the particles of both sides are the same ones, behind it they are samples
+    // of a flow.
+    if (paired && result.horizon < 0) resolution.cluster = 0;
+    compare_not_finite(far, x, y);
+    const auto statistics = [&](const ComparedRun& o, const Snapshot& s) {
+      return frame_statistics(s, o.scene.domain.min, o.scene.gravity, o.scene.fluid.rest_density,
+                              resolution);
+    };
+    compare_samples(far, statistics(a, x), statistics(b, y));
+  }
+  if (!paired) {
+    near.verdict = Verdict::differs;
+    near.tolerance_source = "the numbers of particles must be the same";
+  } else {
+    result.e_folding = e_folding(rms.x, rms.y, 0.01);
+    near.finding =
+        bytes ? format("the %zu common frames are the same to the last byte", frames.common.size())
+              : format("%.2g h apart (rms) at the last common frame", last);
+    if (result.e_folding > 0)
+      near.finding += format("; distances grow e-fold in %.3g updates", result.e_folding);
+    if (result.horizon >= 0)
+      near.finding += format("; not comparable from update %g on", result.horizon);
+    if (exact) {
+      near.tolerance_source = "0: both are the CPU in one precision and build, which promises it";
+      near.verdict = bytes ? Verdict::same : Verdict::differs;
+    } else {
+      near.tolerance_source = format(
+          "initial positions: %g roundings; later distances are not judged, since files "
+          "hold no ensemble (pbf compare SCENE --between makes one)",
+          kRoundings);
+      // Steps without time that part what overlaps multiply roundings like any others.
+      const bool relieved = a.scene.solver.prestabilize && b.scene.solver.prestabilize;
+      if (near.verdict == Verdict::differs && relieved) {
+        near.verdict = near.rows[0].verdict = Verdict::not_judged;
+        near.finding +=
+            "; the start differs by more than rounding, which steps without time "
+            "(solver.prestabilize) may do: the samples judge it";
+      }
+      if (near.verdict != Verdict::differs)
+        near.verdict = bytes ? Verdict::same : Verdict::not_judged;
+    }
+    result.diagrams.push_back(
+        {"Distance of each particle in A and in B", "update", "h", {rms, worst}});
+  }
+  far.finding = far.verdict == Verdict::same ? "no two samples can be told apart"
+                                             : "samples that are not of one distribution";
+  return {std::move(near), std::move(far)};
+}
+
+}  // namespace pbf::inline verify_module

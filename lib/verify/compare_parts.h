@@ -1,0 +1,47 @@
+// The three parts of a comparison of two solvers, and what they share.
+#pragma once
+
+#include "lib/program/plan.h"
+#include "lib/verify/compare.h"
+
+namespace pbf::inline verify_module {
+
+/// A tolerance is kNoiseFactor times the largest change that the ensemble of randomly rounded
+/// references shows: the ensemble rounds what a pass stores, a solver of that precision rounds
+/// inside its passes too, and the largest of a few members is an estimate. What clean
+/// pairs need of it: tests/regression/defects.
+inline constexpr double kNoiseFactor = 4;
+
+/// The same for the statistics of the third part: single numbers, not the largest over thousands of
+/// particles, whose largest change over a few members is a poorer estimate.
+inline constexpr double kSpreadFactor = 8;
+
+struct Comparison {
+  const CompareSettings* settings;
+  const Plan* plan;    ///< of A's scene
+  const Scene* scene;  ///< A's
+  Solver *a, *b;
+  Solver* reference;  ///< A's scene on cpu in double, without fused density
+  std::vector<std::unique_ptr<Solver>> members;  ///< like the reference
+  double u = 0;                                  ///< unit roundoff of the coarser precision
+  double sides = 1;                              ///< how many of the two round to it
+  bool same_bits = false;  ///< both sides promise the same bits: every tolerance is 0
+  std::function<void(const std::string&)> progress;
+};
+
+/// One update from `start` on both sides, stage by stage. Sets result.stage.
+ComparePart compare_stages(const Comparison& c, const SolverState& start, CompareResult& result);
+
+/// settings->updates updates from `start`: per-particle distances (second part) and statistics
+/// (third part), each against the ensemble. first_failure: update at which the distances, or else
+/// the statistics, left their tolerance, -1: never.
+std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& start,
+                                        CompareResult& result, std::int64_t& first_failure);
+
+/// The state with every number rounded at random: value (1 + r u), r uniform in [-1, 1).
+SolverState rounded(const SolverState& s, double u, std::uint64_t seed);
+
+/// Unit in the last place of `value` for a unit roundoff u.
+double ulp(double value, double u);
+
+}  // namespace pbf::inline verify_module

@@ -1,0 +1,203 @@
+// One frozen step: two solvers, one state, one update, every array that the passes leave behind.
+// Each stage of B starts from what the stage before left on A, so that no error is inherited.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "lib/base/text.h"
+#include "lib/verify/compare_parts.h"
+
+namespace pbf::inline verify_module {
+namespace {
+
+/// What a difference of two arrays amounts to; NaN against a number is infinite.
+struct Size {
+  double worst = 0, rms = 0, scale = 0;
+};
+
+double distance(double a, double b) {
+  if (a == b || (std::isnan(a) && std::isnan(b))) return 0;
+  const double d = std::fabs(a - b);
+  return std::isnan(d) ? std::numeric_limits<double>::infinity() : d;
+}
+
+Size difference(const std::vector<double>& a, const std::vector<double>& b) {
+  Size s;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const double d = distance(a[k], b[k]);
+    s.worst = std::max(s.worst, d);
+    s.rms += d * d;
+    if (std::isfinite(a[k])) s.scale = std::max(s.scale, std::fabs(a[k]));
+  }
+  s.rms = std::sqrt(s.rms / double(std::max<std::size_t>(a.size(), 1)));
+  return s;
+}
+
+std::string name_of(const TraceArray& t) {
+  return t.sweep ? format("%s %d: %s", t.stage.c_str(), t.sweep, t.quantity.c_str())
+                 : format("%s: %s", t.stage.c_str(), t.quantity.c_str());
+}
+
+bool same_kind(const TraceArray& x, const TraceArray& y) {
+  return x.stage == y.stage && x.sweep == y.sweep && x.quantity == y.quantity;
+}
+
+/// Terms of the sums of a stage: rounding within them is not in the ensemble.
+double terms_of(const TraceArray& t, const StepTrace& trace) {
+  if (t.stage == "predict" || t.stage == "grid" || t.quantity == "position") return 4;
+  std::int64_t most = 0;
+  for (std::size_t i = 0; i + 1 < trace.neighbor_begin.size(); ++i)
+    most = std::max(most, trace.neighbor_begin[i + 1] - trace.neighbor_begin[i]);
+  return 4 + double(most);
+}
+
+/// Largest change of every array over the ensemble, each stage alone from the values of `a`.
+std::vector<double> noise_floor(const Comparison& c, const SolverState& start, const StepTrace& a,
+                                StepTrace& reference) {
+  c.reference->set_state(start);
+  reference = c.reference->trace({0, 1, &a});
+  std::vector<double> noise(reference.arrays.size(), 0);
+  for (std::size_t m = 0; m < c.members.size(); ++m) {
+    c.members[m]->set_state(rounded(start, c.u, c.settings->seed + m));
+    const StepTrace t = c.members[m]->trace({c.u, c.settings->seed + m, &a});
+    for (std::size_t k = 0; k < noise.size(); ++k)
+      noise[k] =
+          std::max(noise[k], difference(reference.arrays[k].values, t.arrays[k].values).worst);
+  }
+  return noise;
+}
+
+/// Bins may differ where a coordinate is within rounding of a border: borders lie half a cell apart
+/// along every axis that has bins. The largest distance from a border of a particle whose bins
+/// differ.
+Size bin_difference(const TraceArray& a, const TraceArray& b, const std::vector<double>& position,
+                    double border, int dimensions) {
+  Size s;
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    s.scale = std::max(s.scale, a.values[i]);
+    if (a.values[i] == b.values[i]) continue;
+    double nearest = border;
+    for (std::size_t k = 3 * i; k < 3 * i + 3; k += dimensions == 2 ? 2 : 1)
+      nearest = std::min(nearest, std::fabs(std::remainder(position[k], border)));
+    s.worst = std::max(s.worst, std::max(nearest, std::numeric_limits<double>::min()));
+    s.rms += 1;
+  }
+  return s;
+}
+
+/// Sets of neighbours may differ in pairs whose distance is within rounding of h. The largest
+/// |distance - h| of a pair that only one side has; rms: the number of such pairs.
+Size set_difference(const StepTrace& a, const StepTrace& b, const std::vector<double>& position) {
+  Size s;
+  s.scale = 1;
+  std::vector<std::int32_t> only;
+  for (std::size_t i = 0; i + 1 < a.neighbor_begin.size(); ++i) {
+    only.clear();
+    std::set_symmetric_difference(
+        a.neighbors.begin() + a.neighbor_begin[i], a.neighbors.begin() + a.neighbor_begin[i + 1],
+        b.neighbors.begin() + b.neighbor_begin[i], b.neighbors.begin() + b.neighbor_begin[i + 1],
+        std::back_inserter(only));
+    for (const std::int32_t j : only) {
+      double d2 = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double d = position[3 * i + k] - position[3 * std::size_t(j) + k];
+        d2 += d * d;
+      }
+      s.worst = std::max(
+          s.worst, std::max(std::fabs(std::sqrt(d2) - 1), std::numeric_limits<double>::min()));
+      s.rms += 1;
+    }
+  }
+  return s;
+}
+
+const std::vector<double>& values_of(const StepTrace& t, const char* stage, const char* quantity) {
+  for (const TraceArray& x : t.arrays)
+    if (x.stage == stage && x.quantity == quantity) return x.values;
+  return t.arrays.front().values;
+}
+
+}  // namespace
+
+double ulp(double value, double u) {
+  if (!(value > 0) || !std::isfinite(value)) return 0;
+  return 2 * u * std::exp2(std::floor(std::log2(value)));
+}
+
+ComparePart compare_stages(const Comparison& c, const SolverState& start, CompareResult& result) {
+  ComparePart part;
+  part.name = "frozen step";
+  c.a->set_state(start);
+  c.b->set_state(start);
+  const StepTrace a = c.a->trace(), b = c.b->trace({0, 1, &a});
+  StepTrace reference;
+  std::vector<double> noise;
+  if (!c.same_bits) noise = noise_floor(c, start, a, reference);
+  part.tolerance_source =
+      c.same_bits
+          ? std::string("0: both sides promise the same bits")
+          : format(
+                "%g x the largest change over %zu references in double, whose constants, start "
+                "and every stored value are rounded at random to u = %.3g, + (terms of the stage's "
+                "sums) u max|value|%s",
+                kNoiseFactor, c.members.size(), c.u,
+                c.sides > 1 ? "; twice that, since both sides round" : "");
+  result.stage.clear();
+  const auto add = [&](const std::string& what, const std::string& unit, const Size& s,
+                       double tolerance, const std::string& stage) {
+    CompareRow r{what, unit, s.worst, s.rms, 0, 0, tolerance, Verdict::same};
+    r.relative = s.scale > 0 ? s.worst / s.scale : 0;
+    r.ulps = s.scale > 0 ? s.worst / ulp(s.scale, c.u) : 0;
+    if (!(s.worst <= tolerance)) {
+      r.verdict = Verdict::differs;
+      if (result.stage.empty()) result.stage = stage;
+    }
+    part.rows.push_back(r);
+  };
+  const std::vector<double>& position = values_of(a, "grid", "position");
+  double position_tolerance = 0;
+  bool lists_done = false;
+  const std::size_t common = std::min(a.arrays.size(), b.arrays.size());
+  std::size_t k = 0;
+  for (; k < common && same_kind(a.arrays[k], b.arrays[k]); ++k) {
+    const TraceArray &x = a.arrays[k], &y = b.arrays[k];
+    if (x.stage != "predict" && x.stage != "grid" && !lists_done) {
+      lists_done = true;
+      add("neighbors: pairs", "h", set_difference(a, b, position),
+          c.same_bits ? 0 : 4 * position_tolerance + 8 * c.u, "neighbors");
+    }
+    if (x.quantity == "bin") {
+      add(name_of(x), "h",
+          bin_difference(x, y, position, c.plan->cell_edge / 2, c.scene->dimensions),
+          position_tolerance, x.stage);
+      continue;
+    }
+    const Size s = difference(x.values, y.values);
+    const double tolerance =
+        c.same_bits ? 0
+                    : c.sides * (kNoiseFactor * noise[k] + terms_of(x, reference) * c.u * s.scale);
+    if (x.quantity == "position" && !lists_done) position_tolerance = tolerance;
+    add(name_of(x), x.unit, s, tolerance, x.stage);
+  }
+  if (!lists_done)
+    add("neighbors: pairs", "h", set_difference(a, b, position),
+        c.same_bits ? 0 : 4 * position_tolerance + 8 * c.u, "neighbors");
+  if (k < a.arrays.size() || k < b.arrays.size()) {
+    const bool only_b = k >= a.arrays.size() || (k < b.arrays.size() && b.arrays[k].sweep > 0);
+    const TraceArray& t = only_b ? b.arrays[k] : a.arrays[k];
+    CompareRow r{name_of(t),      "only on " + std::string(only_b ? "B" : "A"), 0, 0, 0, 0, 0,
+                 Verdict::differs};
+    part.rows.push_back(r);
+    if (result.stage.empty()) result.stage = t.sweep > 0 ? "iterations" : t.stage;
+  }
+  part.verdict = result.stage.empty() ? Verdict::same : Verdict::differs;
+  part.finding = result.stage.empty()
+                     ? "every stage of one update is within its tolerance"
+                     : "every stage starts from the values of A, and the first one outside its "
+                       "tolerance is `" +
+                           result.stage + "`";
+  return part;
+}
+
+}  // namespace pbf::inline verify_module
