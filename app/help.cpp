@@ -1,5 +1,7 @@
 #include "app/help.h"
 
+#include "lib/solver/diagnostics.h"
+
 namespace pbf::inline app_module::help {
 
 const char* const kExitCodes =
@@ -15,17 +17,12 @@ const char* const kExitCodes =
     "  75  stopped early by a signal or the wall-time limit, after saving\n\n"
     "Example: pbf run configs/dam_break.yaml --out out/dam_break";
 
-const char* const kMeasures =
-    "Measures (formulas: lib/solver/DIAGNOSTICS.md; c = max(rho/rho0 - 1, 0) of a particle, walls\n"
-    "included; H0 = volume of the fluid / area of the floor):\n"
-    "  compression_mean, _rms, _p99, _max   sum c/N, sqrt(sum c^2/N), 99th percentile, max c [1]\n"
-    "  share_above_1, share_above_10        particles with c > 1 %, c > 10 % [1]\n"
-    "  height_kept            2 x height of the centre of mass above the floor / H0 [1]\n"
-    "  hydrostatic_deviation  RMS of (weight above z - rho0 g (H0 - z)) / (rho0 g H0) [1]\n"
-    "  energy_drift           (E - E0)/E0, E above the box's lowest corner [1]\n"
-    "  energy_rise            largest E - (lowest E before), over E0 [1]\n"
-    "  momentum [kg m/s], front (largest coordinate) [m], speed_max [m/s]\n"
-    "  penetration            farthest that a particle is behind its clamp at a wall [m]\n";
+std::string measures() {
+  return "Measures (formulas: lib/solver/DIAGNOSTICS.md; c = max(rho/rho0 - 1, 0) of a particle, "
+         "walls\n"
+         "included; H0 = volume of the fluid / area of the floor):\n" +
+         diagnostics_help();
+}
 
 const char* const kPlanHelp =
     "The time per update is an estimate from what `pbf bench --calibrate` has stored on this\n"

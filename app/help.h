@@ -1,10 +1,13 @@
 // The long texts of --help.
 #pragma once
 
+#include <string>
+
 namespace pbf::inline app_module::help {
 
 extern const char* const kExitCodes;
-extern const char* const kMeasures;
+/// The measures of a run, a line each.
+std::string measures();
 extern const char* const kPlanHelp;
 extern const char* const kRenderHelp;
 extern const char* const kCompareHelp;

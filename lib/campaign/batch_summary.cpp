@@ -5,31 +5,36 @@
 #include "lib/base/error.h"
 #include "lib/io/report.h"
 #include "lib/io/run_file.h"
+#include "lib/solver/diagnostics.h"
 
 namespace pbf::inline campaign_module {
 namespace {
 
-const char* const kMeasures[] = {
-    "time",        "update",         "compression_mean", "compression_p99", "compression_max",
-    "height_kept", "kinetic_energy", "energy",           "energy_drift",    "energy_rise",
-    "speed_max",   "front_x"};
+/// Columns of a run's log whose last value is in the summary.
+std::vector<std::string> last_values() {
+  std::vector<std::string> names{"time", "update"};
+  for (const Diagnostic& d : diagnostics())
+    if (d.summary) names.push_back(d.name);
+  return names;
+}
 
 /// Of a run's file: the last measures, the numbers of frames and warnings, seconds; empty cells
 /// without one.
 void add_results(const std::string& path, std::vector<Cell>& row) {
-  std::vector<Cell> cells(std::size(kMeasures) + 3);
+  const std::vector<std::string> names = last_values();
+  std::vector<Cell> cells(names.size() + 3);
   std::error_code error;
   if (std::filesystem::exists(path, error)) try {
       const RunReader file(path);
-      for (std::size_t k = 0; k < std::size(kMeasures); ++k)
-        if (const auto column = file.log_column(kMeasures[k]); !column.empty())
+      for (std::size_t k = 0; k < names.size(); ++k)
+        if (const auto column = file.log_column(names[k]); !column.empty())
           cells[k] = column.back();
-      cells[std::size(kMeasures)] = file.frames();
+      cells[names.size()] = file.frames();
       double seconds = 0;
       for (const std::string& name : file.log_columns())
         if (name.rfind("stage/", 0) == 0)
           for (const double s : file.log_column(name)) seconds += s;
-      cells[std::size(kMeasures) + 1] = std::int64_t(file.info().warnings.size());
+      cells[names.size() + 1] = std::int64_t(file.info().warnings.size());
       cells.back() = seconds;
     } catch (const Error&) {
       cells.assign(cells.size(), Cell{});  // the message of the run says what is wrong with it
@@ -65,7 +70,8 @@ std::string exit_reason(int code) {
 std::string batch_summary(const std::vector<BatchMember>& members,
                           const std::map<std::string, JobEnd>& ends, const std::string& out) {
   std::vector<std::string> columns{"name", "scene", "settings", "exit_code", "reason", "message"};
-  columns.insert(columns.end(), std::begin(kMeasures), std::end(kMeasures));
+  const std::vector<std::string> names = last_values();
+  columns.insert(columns.end(), names.begin(), names.end());
   columns.insert(columns.end(), {"frames", "warnings", "seconds"});
   CsvTable table(columns);
   for (const BatchMember& m : members) {

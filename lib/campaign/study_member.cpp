@@ -79,7 +79,7 @@ bool measure(Simulation& run, const Scene& scene, EnergyTrack& energy, MemberRes
       out.names.push_back(c.name);
       out.columns.emplace_back();
     }
-    out.columns[k++].push_back(c.number ? c.number(row) : double(c.integer(row)));
+    out.columns[k++].push_back(c.value(row));
   }
   const Measures& m = row.measures;
   if (m.non_finite == 0 && m.outside == 0) return true;

@@ -7,35 +7,22 @@
 #include "lib/base/text.h"
 #include "lib/base/version.h"
 #include "lib/scene/number.h"
+#include "lib/solver/diagnostics.h"
 
 namespace pbf::inline campaign_module {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-enum class Over { mean, rms, max, last };
+/// Those of the table of diagnostics that a study sums up.
+std::vector<Diagnostic> measures() {
+  std::vector<Diagnostic> all = diagnostics();
+  std::erase_if(all, [](const Diagnostic& d) { return d.over == Over::none; });
+  return all;
+}
 
-/// A measure of the table: a column of the log over the window of the study.
-struct Measure {
-  const char *name, *column;
-  Over over;
-};
-constexpr Measure kMeasures[] = {{"compression_mean", "compression_mean", Over::mean},
-                                 {"compression_rms", "compression_rms", Over::rms},
-                                 {"compression_p99", "compression_p99", Over::mean},
-                                 {"compression_max", "compression_max", Over::max},
-                                 {"energy_rise", "energy_rise", Over::last},
-                                 {"height_kept", "height_kept", Over::mean},
-                                 {"share_above_1", "share_above_1", Over::mean},
-                                 {"share_above_10", "share_above_10", Over::mean},
-                                 {"energy_drift", "energy_drift", Over::last},
-                                 {"hydrostatic_deviation", "hydrostatic_deviation", Over::mean},
-                                 {"penetration", "penetration", Over::max},
-                                 {"speed_max", "speed_max", Over::max},
-                                 {"neighbors_mean", "neighbors_mean", Over::mean}};
-
-double over_window(const MemberResult& r, const Measure& m, double from) {
-  const auto &time = r.series("time"), &values = r.series(m.column);
+double over_window(const MemberResult& r, const Diagnostic& m, double from) {
+  const auto &time = r.series("time"), &values = r.series(m.name);
   double sum = 0, largest = -std::numeric_limits<double>::infinity();
   std::size_t n = 0;
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -54,6 +41,8 @@ double over_window(const MemberResult& r, const Measure& m, double from) {
       return std::isnan(sum) ? kNaN : largest;
     case Over::last:
       return values.back();
+    case Over::none:
+      break;
   }
   return kNaN;
 }
@@ -128,7 +117,7 @@ bool counts(const Study& study, const StudyRow& row) {
 
 std::vector<std::string> study_error_measures(const Study& study) {
   std::vector<std::string> names;
-  for (const Measure& m : kMeasures) names.push_back(m.name);
+  for (const Diagnostic& m : measures()) names.push_back(m.name);
   names.push_back("height_error");
   if (!study.projection.empty())
     names.insert(names.end(), {"projection_mean", "projection_rms", "projection_max"});
@@ -150,7 +139,7 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
     row.measures.assign(names.size(), kNaN);
     return row;
   }
-  for (const Measure& m : kMeasures) row.measures.push_back(over_window(result, m, study.from));
+  for (const Diagnostic& m : measures()) row.measures.push_back(over_window(result, m, study.from));
   row.measures.push_back(std::fabs(1 - row.measures[index_of(study, "height_kept")]));
   if (!study.projection.empty())
     row.measures.insert(row.measures.end(),

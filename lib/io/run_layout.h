@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lib/io/run_file.h"
+#include "lib/solver/diagnostics.h"
 
 namespace pbf::inline io_module::run_layout {
 
@@ -19,15 +20,21 @@ inline constexpr unsigned session_rows = 16, session_text = 96;
 
 inline constexpr const char* topologies[4] = {"Vertices", "Lines", "Polygons", "Strips"};
 
-/// A column of the log as a number of a row: a float64 or an int64 dataset /pbf/log/<name>.
+/// A column of the log: a float64 or an int64 dataset /pbf/log/<name>.
 struct LogColumn {
   const char* name;
   const char* unit;
-  double (*number)(const LogRow&);  ///< null for an integer column
+  bool real;                        ///< float64
+  double (*number)(const LogRow&);  ///< of those that are no diagnostic
   std::int64_t (*integer)(const LogRow&) = nullptr;
+  const Diagnostic* diagnostic = nullptr;
+
+  double value(const LogRow& row) const;
+  std::int64_t whole(const LogRow& row) const;  ///< where it is not real
 };
 
-/// All columns but the stages, in the order of their creation.
+/// All columns but the stages, in the order of their creation: what a row has besides measures,
+/// then the table of diagnostics.
 const std::vector<LogColumn>& log_columns();
 
 /// f(column name, value) for every text, and every integer, of a RunSession: one list for both

@@ -44,7 +44,7 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
   updates_ = Column(pbf_, "frames/update", H5T_STD_I64LE, {run_layout::step_rows, 0, false, "1"});
   for (const auto& c : run_layout::log_columns())
     log_[c.name] =
-        Column(pbf_, std::string("log/") + c.name, c.number ? H5T_IEEE_F64LE : H5T_STD_I64LE,
+        Column(pbf_, std::string("log/") + c.name, c.real ? H5T_IEEE_F64LE : H5T_STD_I64LE,
                {run_layout::log_rows, 0, false, c.unit});
   make_sessions();
   begin_session(info);

@@ -30,11 +30,13 @@ void RunOutput::write_log() {
   std::vector<double> numbers(waiting_.size());
   for (const auto& c : run_layout::log_columns()) {
     Column& column = log_.at(c.name);
-    if (c.number) {
-      std::transform(waiting_.begin(), waiting_.end(), numbers.begin(), c.number);
+    if (c.real) {
+      std::transform(waiting_.begin(), waiting_.end(), numbers.begin(),
+                     [&](const LogRow& row) { return c.value(row); });
       column.append(numbers);
     } else {
-      std::transform(waiting_.begin(), waiting_.end(), integers.begin(), c.integer);
+      std::transform(waiting_.begin(), waiting_.end(), integers.begin(),
+                     [&](const LogRow& row) { return c.whole(row); });
       column.append(integers);
     }
   }

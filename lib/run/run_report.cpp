@@ -6,6 +6,7 @@
 #include "lib/base/machine.h"
 #include "lib/base/stages.h"
 #include "lib/base/text.h"
+#include "lib/solver/diagnostics.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -141,41 +142,22 @@ std::string measure_json(const Measures& m, double wall, std::int64_t frames,
   const auto item = [](const char* name, double value) {
     return json_string(name) + ": " + json_number(value);
   };
-  const auto triple = [](const char* name, const double(&v)[3]) {
-    return json_string(name) + ": [" + json_number(v[0]) + ", " + json_number(v[1]) + ", " +
-           json_number(v[2]) + "]";
-  };
   std::string out = "{";  // appended to: GCC 12 warns of overlap when a literal comes first
   out += item("update", double(m.update)) + ", " + item("time", m.time) + ", " +
          item("wall", wall) + ", " + item("frames", double(frames));
-  for (const auto& [name, value] :
-       {std::pair<const char*, double>{"compression_mean", m.compression_mean},
-        {"compression_rms", m.compression_rms},
-        {"compression_p99", m.compression_p99},
-        {"compression_max", m.compression_max},
-        {"share_above_1", m.share_above_1},
-        {"share_above_10", m.share_above_10},
-        {"height_kept", m.height_kept},
-        {"hydrostatic_deviation", m.hydrostatic_deviation},
-        {"kinetic_energy", m.kinetic_energy},
-        {"potential_energy", m.potential_energy},
-        {"energy", m.energy},
-        {"energy_drift", m.energy_drift},
-        {"energy_rise", m.energy_rise},
-        {"speed_max", m.speed_max},
-        {"penetration", m.penetration},
-        {"neighbors_mean", m.neighbors_mean},
-        {"neighbors_max", double(m.neighbors_max)},
-        {"outside", double(m.outside)},
-        {"non_finite", double(m.non_finite)},
-        {"fast", double(m.fast)},
-        {"sweeps", double(m.sweeps)},
-        {"unresolved", double(m.unresolved)},
-        {"relative_way_max", m.relative_way_max}})
-    (out += ", ") += item(name, value);
-  (out += ", ") += triple("momentum", m.momentum) + ", " +
-                   triple("center_of_mass", m.center_of_mass) + ", " + triple("front", m.front) +
-                   ", \"stages\": {";
+  const std::vector<Diagnostic>& all = diagnostics();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const std::string name = all[k].name;
+    if (!name.ends_with("_x")) {
+      (out += ", ") += item(name.c_str(), all[k].value(m));
+      continue;
+    }
+    out += ", " + json_string(name.substr(0, name.size() - 2)) + ": [";  // the vector's three rows
+    for (std::size_t a = 0; a < 3; ++a) (out += a ? ", " : "") += json_number(all[k + a].value(m));
+    out += "]";
+    k += 2;
+  }
+  out += ", \"stages\": {";
   for (std::size_t i = 0; i < stages.size(); ++i) {
     if (i > 0) out += ", ";
     out += item(stages[i].name.c_str(), stages[i].seconds);
