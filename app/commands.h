@@ -74,7 +74,7 @@ struct CompareOptions {
   std::vector<std::string> overrides, overrides_b;  ///< of both sides, of B alone
   int warmup = 50, updates = 100, members = 8;
   std::uint64_t seed = 1;
-  std::string report;  ///< path, .html .json .png; empty: none
+  std::string report;  ///< path, .html or .json; empty: none
   bool quiet = false;
 };
 

@@ -8,9 +8,6 @@
 #include "lib/io/report.h"
 #include "lib/scene/load.h"
 #include "lib/verify/compare.h"
-#ifdef PBF_HAS_RENDER
-#include "lib/verify/compare_picture.h"
-#endif
 
 namespace pbf::inline app_module {
 namespace {
@@ -21,19 +18,12 @@ bool ends_with(const std::string& text, const std::string& end) {
 
 void check_report(const std::string& path) {
   if (path.empty() || ends_with(path, ".html") || ends_with(path, ".json")) return;
-#ifdef PBF_HAS_RENDER
-  if (ends_with(path, ".png")) return;
-#endif
-  throw Error(ExitCode::bad_input, "--report " + path +
-                                       ": the name must end in .html, .json or (in a build with "
-                                       "pictures) .png");
+  throw Error(ExitCode::bad_input,
+              "--report " + path + ": the name must end in .html (with diagrams) or .json");
 }
 
 void write_report(const std::string& path, const CompareResult& result) {
   if (path.empty()) return;
-#ifdef PBF_HAS_RENDER
-  if (ends_with(path, ".png")) return write_png(path, compare_picture(result), Naming::given);
-#endif
   write_text_file(path, ends_with(path, ".json") ? compare_json(result) : compare_html(result));
 }
 

@@ -103,7 +103,8 @@ void add_compare(CLI::App& app, CompareOptions& o, Command& command) {
       ->transform(whole_number(2, 1000));
   c->add_option("--seed", o.seed, "Of the random roundings")
       ->transform(whole_number(0, std::numeric_limits<std::int64_t>::max()));
-  c->add_option("--report", o.report, "Write the result to this file: .html, .json or .png");
+  c->add_option("--report", o.report,
+                "Write the result to this file: .html, with diagrams, or .json");
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
   c->footer(help::kCompareHelp);
   c->callback([&] { command = [&] { return command_compare(o); }; });

@@ -5,6 +5,7 @@
 #include "app/render_options.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
+#include "lib/base/output_file.h"
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
 #include "lib/io/run_file.h"

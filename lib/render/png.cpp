@@ -10,6 +10,7 @@
 #include <string>
 
 #include "lib/base/error.h"
+#include "lib/base/output_file.h"
 #include "lib/render/renderer.h"
 
 namespace pbf::inline render_module {
@@ -47,12 +48,12 @@ bool encode(std::FILE* file, const Image& image) {
 
 }  // namespace
 
-void write_png(const std::string& path, const Image& image, Naming naming) {
+void write_png(const std::string& path, const Image& image) {
   if (image.width < 1 || image.height < 1 ||
       image.rgb.size() !=
           3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
     throw Error(ExitCode::internal, path + ": the image's size does not fit its pixels");
-  OutputFile out(path, naming);
+  OutputFile out(path, Naming::own);
   const auto fail = [&](int error) {
     throw Error(ExitCode::io, path + ": the picture cannot be written: " +
                                   (error ? std::strerror(error) : "unknown reason"));

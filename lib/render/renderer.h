@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "lib/base/output_file.h"
 #include "lib/scene/scene.h"
 #include "lib/solver/snapshot.h"
 
@@ -60,7 +59,7 @@ class Renderer {
 };
 
 /// PNG, level 1, SUB filter; an OutputFile. Throws Error(io).
-void write_png(const std::string& path, const Image& image, Naming naming = Naming::own);
+void write_png(const std::string& path, const Image& image);
 
 /// Draws on a thread of its own and writes DIR/frame_000123.png (number = index of the picture).
 /// A software rasteriser draws on that thread too and starts none of its own, so that a CPU solver

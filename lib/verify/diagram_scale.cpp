@@ -6,10 +6,10 @@
 
 namespace pbf::inline verify_module {
 
-DiagramScale diagram_scale(const Diagram& d, double width, double height, double zoom) {
+DiagramScale diagram_scale(const Diagram& d, double width, double height) {
   DiagramScale s;
   s.width = width, s.height = height;
-  s.left = 60 * zoom, s.right = width - 20 * zoom, s.top = 44 * zoom, s.bottom = height - 40 * zoom;
+  s.left = 60, s.right = width - 20, s.top = 44, s.bottom = height - 40;
   double low = HUGE_VAL, high = 0;
   for (const Curve& c : d.curves)
     for (std::size_t k = 0; k < c.x.size(); ++k) {

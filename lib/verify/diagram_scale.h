@@ -22,7 +22,7 @@ struct DiagramScale {
   }
 };
 
-/// Ranges that hold every positive finite point, whole powers of ten; `zoom` scales the margins.
-DiagramScale diagram_scale(const Diagram& d, double width, double height, double zoom = 1);
+/// Ranges that hold every positive finite point, whole powers of ten.
+DiagramScale diagram_scale(const Diagram& d, double width, double height);
 
 }  // namespace pbf::inline verify_module

@@ -157,17 +157,6 @@ TEST_CASE("compare: one scene on two sides, with reports") {
   CHECK(has(o.out, "on B alone: gravity"));
 }
 
-#ifdef PBF_HAS_RENDER
-TEST_CASE("compare: a report as a picture") {
-  const Scratch folder;
-  const std::string scene = folder.write("tiny.yaml", tiny_scene());
-  const Outcome o = compare(folder, {scene, "--between", "cpu:double,cpu:float", "--updates", "5",
-                                     "--quiet", "--report", "r.png"});
-  CHECK(o.code == 0);
-  CHECK(read_text(folder / "r.png").rfind("\x89PNG", 0) == 0);
-}
-#endif
-
 TEST_CASE("compare: what cannot be compared gets its exit code and a message that names it") {
   const Scratch folder;
   const std::string a = run(folder, "a");

@@ -87,7 +87,7 @@ def draw(axes, labels: list[str], columns: list[tuple[dict[str, float], float]],
 
 
 def run(args: argparse.Namespace) -> int:
-    if any(path.endswith((".h5", ".hdf5")) for path in args.csv):
+    if any(path.endswith((".vtkhdf", ".h5", ".hdf5")) for path in args.csv):
         return _run_file(args)
     table = bench.read_bench(args.csv, args.state)
     scenes = bench.pick_scenes(table, args.scene)
