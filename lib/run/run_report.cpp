@@ -130,7 +130,7 @@ std::string run_summary(const RunTotals& t) {
   out += stage_table(t) + group_table(t);
   out += "files in            " + t.folder;
   if (t.frames > 0)
-    out += format("\n  run.vtkhdf            %lld frames, %s", static_cast<long long>(t.frames),
+    out += format("\n  run.vtkhdf        %lld frames, %s", static_cast<long long>(t.frames),
                   bytes_text(double(t.bytes)).c_str());
   if (t.pictures > 0)
     out += format("\n  frames/           %lld pictures", static_cast<long long>(t.pictures));
