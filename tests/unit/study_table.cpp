@@ -64,7 +64,7 @@ TEST_CASE("a run that made energy, diverged or never ran is neither on the front
   const std::string csv = study_table(study, rows).text();
   CHECK(csv.rfind("solver.iterations,backend,precision,threads,particles,updates,seconds_median,"
                   "seconds_spread,compression_mean,compression_rms,compression_p99,compression_max,"
-                  "energy_rise,height_kept,",
+                  "share_above_1,share_above_10,height_kept,hydrostatic_deviation,",
                   0) == 0);
   CHECK(csv.find("\n2,cpu,float,1,64,20,2,0,0.009,") != std::string::npos);
   CHECK(study_json(study, rows).find("\"seconds\": 4") != std::string::npos);
