@@ -6,21 +6,13 @@
 #include <limits>
 #include <vector>
 
+#include "lib/run/body_boxes.h"
 #include "lib/run/start_points.h"
 
 namespace pbf::inline run_module {
 namespace {
 
 constexpr std::int64_t kMostDistances = 200000000;
-
-struct Box {
-  Double3 low, high;
-  bool holds(const Double3& x, double margin) const {
-    for (int a = 0; a < 3; ++a)
-      if (!(x[a] >= low[a] - margin && x[a] <= high[a] + margin)) return false;
-    return true;
-  }
-};
 
 /// By more than rounding. Bodies that touch have their particles half a spacing outside of each
 /// other.
@@ -52,13 +44,33 @@ std::vector<Box> boxes_of(const Scene& s, const StartPoints& points) {
   return boxes;
 }
 
-std::vector<Candidate> candidates(const Scene& s, const StartPoints& points, double reach) {
-  const std::vector<Box> boxes = boxes_of(s, points);
+/// Of each body those whose boxes are within `reach`.
+using Near = std::vector<std::vector<std::size_t>>;
+
+Near near_bodies(const std::vector<Box>& boxes, double reach) {
+  Near near(boxes.size());
+  any_near_pair(boxes, reach * (1 + 1e-6), [&](std::size_t i, std::size_t j) {
+    near[i].push_back(j);
+    near[j].push_back(i);
+    return false;
+  });
+  return near;
+}
+
+/// From the bodies' shapes, before a look at any particle.
+bool may_be_near(const Scene& s, double reach) {
+  std::vector<Box> boxes;
+  for (const Body& b : s.bodies) boxes.push_back(box_of(b));
+  return any_near_pair(boxes, reach, [](std::size_t, std::size_t) { return true; });
+}
+
+std::vector<Candidate> candidates(const Scene& s, const StartPoints& points,
+                                  const std::vector<Box>& boxes, const Near& others, double reach) {
   std::vector<Candidate> out;
   points.for_each([&](std::size_t b, const Double3& x) {
-    bool near = s.bodies[b].shape == Shape::file;
-    for (std::size_t k = 0; k < boxes.size() && !near; ++k)
-      near = k != b && boxes[k].holds(x, reach);
+    const bool near = s.bodies[b].shape == Shape::file ||
+                      std::any_of(others[b].begin(), others[b].end(),
+                                  [&](std::size_t k) { return boxes[k].holds(x, reach); });
     if (!near) return;
     Cell c{};
     for (int a = 0; a < 3; ++a)
@@ -79,7 +91,11 @@ Overlap find_overlap(const Scene& s, const std::string& scene_dir) {
   if (s.bodies.size() < 2 && !file) return found;
   // By more than rounding: bodies that touch on one lattice are a spacing apart, no less.
   const double reach = 0.5 * s.fluid.spacing * (1 - 1e-6);
-  const std::vector<Candidate> list = candidates(s, StartPoints(s, scene_dir), reach);
+  if (!file && !may_be_near(s, reach)) return found;
+  const StartPoints points(s, scene_dir);
+  const std::vector<Box> boxes = boxes_of(s, points);
+  const Near others = near_bodies(boxes, reach);
+  const std::vector<Candidate> list = candidates(s, points, boxes, others, reach);
   for (const Candidate& c : list) found.of_files += s.bodies[c.body].shape == Shape::file;
   const auto bodies = [&](std::size_t a, std::size_t b) {
     if (found.inside + found.pairs > 1) return;
@@ -87,8 +103,8 @@ Overlap find_overlap(const Scene& s, const std::string& scene_dir) {
     found.second = std::max(a, b);
   };
   for (const Candidate& c : list)
-    for (std::size_t k = 0; k < s.bodies.size(); ++k)
-      if (k != c.body && inside(s.bodies[k], c.x, s.fluid.spacing)) {
+    for (const std::size_t k : others[c.body])
+      if (inside(s.bodies[k], c.x, s.fluid.spacing)) {
         ++found.inside;
         bodies(k, c.body);
         break;

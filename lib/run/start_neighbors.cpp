@@ -6,46 +6,20 @@
 #include <functional>
 #include <unordered_map>
 
+#include "lib/run/body_boxes.h"
 #include "lib/run/start_points.h"
 
 namespace pbf::inline run_module {
 namespace {
 
-struct Box {
-  Double3 low, high;
-};
-
-Box box_of(const Body& b) {
-  if (b.shape != Shape::sphere) return {b.min, b.max};
-  Box box{b.center, b.center};
-  for (int a = 0; a < 3; ++a) box.low[a] -= b.radius, box.high[a] += b.radius;
-  return box;
-}
-
-/// By more than rounding.
-bool overlap(const Box& a, const Box& b, double d) {
-  for (int k = 0; k < 3; ++k)
-    if (a.high[k] <= b.low[k] + 1e-6 * d || b.high[k] <= a.low[k] + 1e-6 * d) return false;
-  return true;
-}
-
 bool may_be_crowded(const Scene& s) {
   std::vector<Box> boxes;
-  Double3 extent{};
   for (const Body& b : s.bodies) {
     if (b.shape == Shape::random_box || b.shape == Shape::file) return true;
     boxes.push_back(box_of(b));
-    for (std::size_t k = 0; k < 3; ++k)
-      extent[k] = std::max(extent[k], std::fabs(boxes.back().low[k] - boxes[0].low[k]));
   }
-  // In order along the axis on which they are spread most, a box can overlap only the next few.
-  const auto axis = std::size_t(std::max_element(extent.begin(), extent.end()) - extent.begin());
-  std::sort(boxes.begin(), boxes.end(),
-            [axis](const Box& a, const Box& b) { return a.low[axis] < b.low[axis]; });
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    for (std::size_t j = i + 1; j < boxes.size() && boxes[j].low[axis] < boxes[i].high[axis]; ++j)
-      if (overlap(boxes[i], boxes[j], s.fluid.spacing)) return true;
-  return false;
+  const double rounding = 1e-6 * s.fluid.spacing;
+  return any_near_pair(boxes, -rounding, [](std::size_t, std::size_t) { return true; });
 }
 
 /// The sampled particles, found by cells of edge h: each stands in its own and those around it.

@@ -1,0 +1,63 @@
+// Which of many boxes around bodies come near to each other. Header only.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+#include "lib/scene/scene.h"
+
+namespace pbf::inline run_module {
+
+/// m
+struct Box {
+  Double3 low, high;
+  bool holds(const Double3& x, double margin) const {
+    for (int a = 0; a < 3; ++a)
+      if (!(x[a] >= low[a] - margin && x[a] <= high[a] + margin)) return false;
+    return true;
+  }
+  /// Whether they overlap where each side is moved out by half of `margin` (in, below 0).
+  bool near(const Box& other, double margin) const {
+    for (int a = 0; a < 3; ++a)
+      if (high[a] + margin <= other.low[a] || other.high[a] + margin <= low[a]) return false;
+    return true;
+  }
+};
+
+/// Around a block, sphere or random box.
+inline Box box_of(const Body& b) {
+  if (b.shape != Shape::sphere) return {b.min, b.max};
+  Box box{b.center, b.center};
+  for (int a = 0; a < 3; ++a) box.low[a] -= b.radius, box.high[a] += b.radius;
+  return box;
+}
+
+/// f(i, j) for every pair of boxes that are near(), each once, until it returns true; whether it
+/// did.
+template <class F>
+bool any_near_pair(const std::vector<Box>& boxes, double margin, F&& f) {
+  Double3 extent{};
+  for (const Box& b : boxes)
+    for (std::size_t a = 0; a < 3; ++a)
+      extent[a] = std::max(extent[a], std::fabs(b.low[a] - boxes[0].low[a]));
+  // In order along the axis on which they are spread most, a box can be near to the next few only.
+  const auto axis = std::size_t(std::max_element(extent.begin(), extent.end()) - extent.begin());
+  std::vector<std::size_t> order(boxes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t i, std::size_t j) { return boxes[i].low[axis] < boxes[j].low[axis]; });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Box& a = boxes[order[i]];
+    for (std::size_t j = i + 1; j < order.size(); ++j) {
+      const Box& b = boxes[order[j]];
+      if (!(b.low[axis] < a.high[axis] + margin)) break;
+      if (a.near(b, margin) && f(order[i], order[j])) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace pbf::inline run_module
