@@ -281,7 +281,7 @@ int command_run(const RunOptions& options) {
   const std::string note = start_note(start, scene);
   auto solver = make_solver(scene, plan, std::move(start));
   double solver_init = 0;  // the solver reports its own part of "init"
-  for (const StageTime& s : solver->timings()) solver_init += s.name == "init" ? s.seconds : 0;
+  for (const StageTime& s : solver->info().stages) solver_init += s.name == "init" ? s.seconds : 0;
   clock.add("init", wall.seconds() - solver_init);
   clock.begin();
   if (!folder) folder = std::make_unique<RunFolder>(out, existing);

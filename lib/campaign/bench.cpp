@@ -68,8 +68,8 @@ std::vector<StageTime> per_update(const std::vector<StageTime>& before,
 }
 
 void time_state(Solver& solver, const BenchSettings& s, BenchRow& row) {
-  row.first_update = solver.updates_done();
-  const auto before = solver.timings();
+  row.first_update = solver.updates();
+  const auto before = solver.info().stages;
   std::vector<double> ms, cpu_ms;
   for (int r = 0; r < s.repeats; ++r) {
     const Stopwatch watch;
@@ -84,7 +84,7 @@ void time_state(Solver& solver, const BenchSettings& s, BenchRow& row) {
   row.ms_median = ms[ms.size() / 2];
   row.ms_min = ms.front();
   row.ms_max = ms.back();
-  row.stages = per_update(before, solver.timings(), double(s.updates) * s.repeats);
+  row.stages = per_update(before, solver.info().stages, double(s.updates) * s.repeats);
   row.measures = solver.measure();
   row.solver = solver.info();
   row.peak_mb = double(peak_memory()) / (1 << 20);
@@ -110,7 +110,7 @@ std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const Be
   time_state(*solver, s, row);
   rows.push_back(row);
   if (s.warmup == 0) return rows;
-  const std::int64_t left = s.warmup - solver->updates_done();
+  const std::int64_t left = s.warmup - solver->updates();
   if (left > 0) solver->step(int(left));
   row.state = "late";
   time_state(*solver, s, row);

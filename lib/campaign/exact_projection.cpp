@@ -274,11 +274,11 @@ ProjectionError projection_error(Solver& solver, const Scene& scene, const Plan&
   if (scene.solver.substeps != 1)
     throw Error(ExitCode::bad_input,
                 "projection: one update is compared with one projection; set solver.substeps to 1");
-  const Snapshot before = solver.download({"velocity"}, ScalarType::f64);
+  const Snapshot before = solver.download({"velocity"}, ScalarType::f64).get();
   const auto start = predicted_positions(scene, plan, positions(before.fields[0]),
                                          positions(*before.find("velocity")));
   solver.step(1);
-  const auto after = positions(solver.download({}, ScalarType::f64).fields[0]);
+  const auto after = positions(solver.download({}, ScalarType::f64).get().fields[0]);
   ProjectionError e;
   e.exact = project_exactly(scene, plan, start);
   e.converged = e.exact.converged;

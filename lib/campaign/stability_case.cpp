@@ -104,7 +104,7 @@ void run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
   row.dt_hat =
       s.time.step * std::sqrt(std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]) / s.h());
   const Course course = run_course(s, dir, [&](Solver& solver) {
-    const Snapshot snap = solver.download({}, ScalarType::f64);
+    const Snapshot snap = solver.download({}, ScalarType::f64).get();
     const auto x = snap.fields[0].as<double>();
     row.nearest = nearest_distance({x.begin(), x.end()}) / s.fluid.spacing;
   });

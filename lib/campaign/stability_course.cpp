@@ -35,11 +35,11 @@ Course run_course(const Scene& scene, const std::string& dir,
   look();
   while (c.updates < updates && !watch.event()) {
     const std::int64_t n = std::min<std::int64_t>(scene.measure_every, updates - c.updates);
-    solver->step(int(n));
+    solver->step(int(n), watch.options());
     c.updates += n;
     c.last = solver->measure();
     look();
-    if (!watch.event()) c.updates = solver->updates_done();
+    if (!watch.event()) c.updates = solver->updates();
   }
   c.event = watch.event();
   if (watch.adaptive()) {

@@ -111,7 +111,6 @@ Guard::Guard(const Scene& scene, const Plan& plan, Solver& solver, const Measure
       good_(now),
       released_(released) {
   follow_release(now);
-  solver_.watch_speed(limits_.speed);
   solver_.keep();
 }
 
@@ -159,7 +158,7 @@ std::optional<Alarm> Guard::alarm(const Measures& m) const {
 }
 
 std::optional<GuardEvent> Guard::check(const Measures& m) {
-  if (const std::optional<Alarm> wrong = alarm(m)) return locate(*wrong, m);
+  if (const std::optional<Alarm> wrong = alarm(m)) return locate(*wrong, m, options());
   keep(m);
   return std::nullopt;
 }
@@ -170,17 +169,17 @@ void Guard::keep(const Measures& m) {
   follow_release(m);
 }
 
-GuardEvent Guard::locate(Alarm alarm, const Measures& m) {
+GuardEvent Guard::locate(Alarm alarm, const Measures& m, const StepOptions& options) {
   GuardEvent e;
   e.alarm = alarm;
   e.measure = m;
   const double h = scene_.h(), to_internal = 1 / (plan_.mass * h * h);
   const double energy = event_limit(m);
   const StageLimits limits{limits_.speed / h, energy * to_internal, limits_.neighbors};
-  e.last_good = solver_.kept();
+  e.last_good = solver_.state(Which::kept);
   solver_.set_state(e.last_good);
-  while (!e.stage && solver_.updates_done() < e.measure.update)
-    e.stage = solver_.step_checked(limits);
+  while (!e.stage && solver_.updates() < e.measure.update)
+    e.stage = solver_.inspection()->step_checked(limits, options);
   if (e.stage) {
     e.alarm = e.stage->alarm;  // what came first: a speed, say, before it ended as a NaN
     for (std::size_t a = 0; a < 3; ++a) {

@@ -63,7 +63,7 @@ struct GuardEvent {
 
 class Guard {
  public:
-  /// scene.guard must be there. Tells the solver which speed to watch and keeps its state.
+  /// scene.guard must be there. Keeps the state.
   /// `first`: the measure that the run began with, `now`: that of the present state; `released`: of
   /// a checkpoint.
   Guard(const Scene& scene, const Plan& plan, Solver& solver, const Measures& first,
@@ -72,11 +72,13 @@ class Guard {
   /// Looks at a new measure: nothing, and the state is kept as the last good one; or what is wrong,
   /// found by repeating the updates since then stage by stage. The solver has then gone back.
   std::optional<GuardEvent> check(const Measures& m);
+  /// What the updates are to be made with, at level 0.
+  StepOptions options() const { return {.watched_speed = limits_.speed}; }
   /// The parts of check(): what is wrong with a measure, if anything; the state of a good one is
-  /// kept; what is wrong is found.
+  /// kept; what is wrong is found. `options`: those that the updates were made with.
   std::optional<Alarm> alarm(const Measures& m) const;
   void keep(const Measures& m);
-  GuardEvent locate(Alarm alarm, const Measures& m);
+  GuardEvent locate(Alarm alarm, const Measures& m, const StepOptions& options);
   const Measures& last_good() const { return good_; }
 
   const GuardLimits& limits() const { return limits_; }

@@ -68,15 +68,15 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   // A step moves particles by about c h. Twice that is no less than any scene has shown.
   p.kick = energy(n * std::pow(2 * before.compression_rms, 2));
   if (p.relieved() || before.non_finite > 0) return p;
-  std::vector<double> from = solver.positions();
+  std::vector<double> from = solver.state(Which::positions).position;
   std::vector<Point> course;
   const std::int64_t sweeps = std::int64_t(s.solver.iterations) * plan.substeps;
   const std::int64_t most = std::max<std::int64_t>(kMostSweeps / sweeps, 32);
   const std::int64_t patience = std::max<std::int64_t>(kPatience / sweeps, 4);
   for (int round = 1; p.steps < most; round = std::min(p.steps, kRound)) {
-    solver.relax(round);
+    solver.step(round, {.without_time = 1.0});
     p.steps += round;
-    std::vector<double> to = solver.positions();
+    std::vector<double> to = solver.state(Which::positions).position;
     const Moves moves(from, to);
     from = std::move(to);
     p.moved += moves.farthest * s.fluid.smoothing_ratio;

@@ -92,7 +92,7 @@ RunEnd RunLoop::run() {
     n = std::min({n, schedule_.next_event(u) - u, std::int64_t(1 << 20)});
     const double step_before = step();
     const Stopwatch watch;
-    solver_.step(static_cast<int>(n));
+    solver_.step(static_cast<int>(n), watch_ ? watch_->options() : StepOptions{});
     per_update = watch.seconds() / double(n);
     hand_over();  // what was being copied while the updates ran
     u += n;
@@ -100,28 +100,29 @@ RunEnd RunLoop::run() {
       measure();
     else if (goes_back() && schedule_.has(u))
       look(solver_.measure());
-    if (solver_.updates_done() < u && !guard_event()) {  // again, with a shorter step
-      u = solver_.updates_done();
+    if (solver_.updates() < u && !guard_event()) {  // again, with a shorter step
+      u = solver_.updates();
     } else if (!guard_event()) {
       outputs(u, false);
       choose_step(u);
     }
     if (!guard_event() && u < schedule_.updates) tell(warnings_.at(last_, false));
     per_update *= step_before / step();
-    progress_.update({u, schedule_.updates, plan_.particles, solver_.time(), last_.compression_mean,
+    progress_.update({u, schedule_.updates, plan_.particles,
+                      double(solver_.updates()) * scene_.time.step, last_.compression_mean,
                       last_.compression_max, start_});
     if (!guard_event() && u < schedule_.updates && checkpoint_due()) save();
   }
   if (!guard_event() && u < schedule_.updates) {
     if (goes_back()) {  // nothing beyond the last good state is in the files
       watch_->go_back();
-      u = solver_.updates_done();
+      u = solver_.updates();
     }
     save();
   }
   // Stopped between two measures; what it has gone back to is known to be good.
   if (!guard_event() && last_measure_ != u) measure(!goes_back());
-  if (guard_event()) u = solver_.updates_done();  // gone back to what it found
+  if (guard_event()) u = solver_.updates();  // gone back to what it found
   outputs(u, true);
   const RunEnd end = guard_event()           ? RunEnd::diverged
                      : u < schedule_.updates ? RunEnd::stopped
@@ -151,8 +152,7 @@ bool RunLoop::checkpoint_due() {
 /// objects to is not saved: no run could go on from it.
 void RunLoop::save() {
   hand_over();
-  if (scene_.guard && !goes_back() && last_measure_ != solver_.updates_done())
-    look(solver_.measure());
+  if (scene_.guard && !goes_back() && last_measure_ != solver_.updates()) look(solver_.measure());
   if (guard_event()) return;
   clock_.begin();
   if (!closed_) {
@@ -161,7 +161,7 @@ void RunLoop::save() {
 #endif
     if (sinks_.writer) sinks_.writer->sync();
   }
-  due_.state = goes_back() ? solver_.kept() : solver_.state();
+  due_.state = goes_back() ? solver_.state(Which::kept) : solver_.state();
   due_.particles = plan_.particles;
   if (watch_ && watch_->guard()) due_.released = watch_->guard()->released();
   if (watch_ && watch_->adaptive()) due_.steps = watch_->adaptive()->history();
@@ -250,7 +250,7 @@ void RunLoop::choose_step(std::int64_t u) {
 void RunLoop::book_guard(const std::function<void()>& action) {
   const auto solver_seconds = [&] {
     double sum = 0;
-    for (const StageTime& s : solver_.timings()) sum += s.seconds;
+    for (const StageTime& s : solver_.info().stages) sum += s.seconds;
     return sum;
   };
   const double before = solver_seconds();
@@ -273,17 +273,16 @@ void RunLoop::outputs(std::int64_t u, bool last) {
   if (!write && !draw) return;
   const bool wide = scene_.output && scene_.output->precision == Precision::dbl;
   hand_over();
-  solver_.start_download(fields_, wide ? ScalarType::f64 : ScalarType::f32);
-  under_way_ = {true, write, draw};
+  under_way_ =
+      UnderWay{solver_.download(fields_, wide ? ScalarType::f64 : ScalarType::f32), write, draw};
   if (write) last_frame_ = u;
   if (last) hand_over();
 }
 
 void RunLoop::hand_over() {
-  if (!under_way_.active) return;
+  if (!under_way_.copy.valid()) return;
   const bool write = under_way_.write, draw = under_way_.draw;
-  under_way_ = {};
-  Snapshot snapshot = solver_.finish_download();
+  Snapshot snapshot = under_way_.copy.get();
   clock_.begin();
   warnings_.look_outside(snapshot);
   (void)draw;  // without pictures
@@ -312,12 +311,12 @@ void RunLoop::close(RunEnd end) {
     clock_.mark("render");
   }
 #endif
-  if (!scene_.domain.open.empty()) warnings_.look_outside(solver_.positions());
+  if (!scene_.domain.open.empty()) warnings_.look_outside(solver_.state(Which::positions).position);
   all_warnings_ = limits_.of_scene;
   for (Warning& w : warnings_.at(last_, end == RunEnd::finished))
     all_warnings_.push_back(std::move(w));
   if (sinks_.writer) {
-    RunEnding ending{status_name(end), stop_reason_, solver_.updates_done(), {}};
+    RunEnding ending{status_name(end), stop_reason_, solver_.updates(), {}};
     for (const Warning& w : all_warnings_) ending.warnings.push_back(w.text);
     sinks_.writer->finish(ending);
     frames_ = sinks_.writer->frames_written();
@@ -345,7 +344,7 @@ std::vector<StageTime> RunLoop::stages() const {
   if (scene_.output || scene_.render) add("download", 0, 0);
   if (scene_.output || sinks_.json) add("write", 0, 0);
   if (scene_.render) add("render", 0, 0);
-  for (const StageTime& s : solver_.timings()) add(s.name, s.seconds, s.calls);
+  for (const StageTime& s : solver_.info().stages) add(s.name, s.seconds, s.calls);
   for (const auto& e : clock_.entries()) add(e.name, e.seconds, e.calls);
   return out;
 }
@@ -362,9 +361,9 @@ std::vector<StageTime> RunLoop::stages_since_last_row() {
 RunTotals RunLoop::totals() const {
   RunTotals t;
   t.particles = plan_.particles;
-  t.updates = solver_.updates_done();
+  t.updates = solver_.updates();
   t.first_update = start_;
-  t.simulated = solver_.time();
+  t.simulated = double(solver_.updates()) * scene_.time.step;
   t.wall = wall_.seconds();
   t.loop = loop_seconds_;
   t.stages = stages();

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
@@ -125,8 +126,9 @@ class RunLoop {
   std::optional<double> released_;    ///< the same
   /// A download that was started and is finished after the next updates: on a device the copy
   /// runs beside them.
-  struct {
-    bool active = false, write = false, draw = false;
+  struct UnderWay {
+    std::future<Snapshot> copy;
+    bool write = false, draw = false;
   } under_way_;
   std::string stop_reason_;
   RunWarnings warnings_;

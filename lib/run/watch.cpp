@@ -13,9 +13,7 @@ Watch::Watch(const Scene& scene, const Plan& plan, Solver& solver, const Measure
              const StepHistory& before, std::optional<double> released)
     : whole_(scene.time.step), solver_(solver), note_(std::move(note)) {
   if (scene.guard) guard_.emplace(scene, plan, solver, first, now, released);
-  if (!scene.time.adaptive) return;
-  step_.emplace(scene, before);
-  solver_.set_step_level(step_->level());
+  if (scene.time.adaptive) step_.emplace(scene, before);
 }
 
 Verdict Watch::look(const Measures& m, bool keep) {
@@ -35,7 +33,7 @@ Verdict Watch::look(const Measures& m, bool keep) {
       return Verdict::back;
     }
   }
-  event_ = guard_->locate(*alarm, m);
+  event_ = guard_->locate(*alarm, m, options());
   return Verdict::stop;
 }
 
@@ -46,14 +44,20 @@ void Watch::choose(const Measures& m) {
 }
 
 void Watch::go_back() {
-  if (solver_.updates_done() != guard_->last_good().update) solver_.set_state(solver_.kept());
+  if (solver_.updates() != guard_->last_good().update)
+    solver_.set_state(solver_.state(Which::kept));
 }
 
 double Watch::step() const { return step_ ? step_->step(step_->level()) : whole_; }
 
+StepOptions Watch::options() const {
+  StepOptions o = guard_ ? guard_->options() : StepOptions{};
+  if (step_) o.level = step_->level();
+  return o;
+}
+
 void Watch::take(const std::string& change, int level_before) {
   const int finer = step_->level() - level_before;
-  solver_.set_step_level(step_->level());
   note_(change + (finer > 0 ? relax(finer) : std::string()));
 }
 
@@ -73,12 +77,13 @@ std::string Watch::relax(int levels) {
   if (std::ldexp(compression, 2 * levels) <= kHarmless) return {};
   int steps = 0;
   for (; steps < kMost && m.compression_mean > target; steps += kAtOnce) {
-    solver_.relax(kAtOnce);
+    solver_.step(kAtOnce, {.without_time = 1.0});
     m = solver_.measure();
   }
   const double lifted = total_energy(m) - energy;
   if (lifted > 0 && m.kinetic_energy > 0) {
-    solver_.relax(1, std::sqrt(std::max(0.0, 1 - lifted / m.kinetic_energy)));
+    const double damping = std::sqrt(std::max(0.0, 1 - lifted / m.kinetic_energy));
+    solver_.step(1, {.without_time = damping});
     ++steps;
     m = solver_.measure();
   }

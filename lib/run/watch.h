@@ -39,6 +39,8 @@ class Watch {
   void go_back();
 
   double step() const;  ///< s, at present
+  /// What the solver's updates are to be made with.
+  StepOptions options() const;
   /// Null without guard, or time.adaptive.
   const Guard* guard() const { return guard_ ? &*guard_ : nullptr; }
   const AdaptiveStep* adaptive() const { return step_ ? &*step_ : nullptr; }

@@ -9,7 +9,6 @@
 #include "kernels/smoothing.h"
 #include "lib/program/axes.h"
 #include "lib/program/plan.h"
-#include "lib/program/time_levels.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -54,7 +53,7 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   p.gravity = {Real(s.gravity[0] / h), Real(s.gravity[1] / h), Real(s.gravity[2] / h)};
   p.damping = Real(plan.substeps == 1 ? s.solver.velocity_damping
                                       : std::pow(s.solver.velocity_damping, 1.0 / plan.substeps));
-  // The guard's limit depends on the first measure, so it comes later (Stepper::watch_speed).
+  // The guard's limit depends on the first measure, so it comes later (StepOptions).
   if (s.solver.speed_limit > 0) {
     p.limit_speed = true;
     const double limit = s.solver.speed_limit / s.time.step;
@@ -97,15 +96,6 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   if (s.viscosity) p.xsph = Real(s.viscosity->xsph);
   if (s.vorticity) p.vorticity = Real(s.vorticity->epsilon);
   p.update_dt = Real(s.time.step);
-  return p;
-}
-
-/// The same for the steps of an update at that level. `now`: the parameters in use, whose watched
-/// speed stays.
-template <class Real>
-Params<Real> params_at_level(const Scene& s, const Plan& plan, int level, const Params<Real>& now) {
-  Params<Real> p = make_params<Real>(scene_at_level(s, level), plan);
-  if (!p.limit_speed) p.speed_squared = now.speed_squared;
   return p;
 }
 

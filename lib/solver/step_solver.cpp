@@ -67,10 +67,6 @@ Measures to_measures(const MeasureSums& s, const Scene& scene, const Plan& plan,
   return m;
 }
 
-void refuse_trace(int level) {
-  if (level > 0) throw Error(ExitCode::internal, "a trace is of an update of one step");
-}
-
 void check_state(const SolverState& s, std::int64_t n) {
   const std::size_t count = std::size_t(n);
   std::vector<bool> seen(count, false);

@@ -1,4 +1,4 @@
-// Solver over a Stepper: what the two backends share. Host side only.
+// The solver over any executor. Host side only.
 #pragma once
 
 #include <cmath>
@@ -6,10 +6,28 @@
 #include <numeric>
 #include <utility>
 
+#include "lib/base/error.h"
 #include "lib/base/release.h"
+#include "lib/base/stage_clock.h"
+#include "lib/program/time_levels.h"
+#include "lib/solver/executor.h"
 #include "lib/solver/params.h"
 #include "lib/solver/solver.h"
 #include "lib/solver/stepper.h"
+
+namespace pbf::inline solver_module {
+
+/// Sums in the internal frame, after so many updates and steps -> Measures in SI units and the
+/// scene's axes (lib/solver/DIAGNOSTICS.md).
+Measures to_measures(const MeasureSums& sums, const Scene& scene, const Plan& plan,
+                     std::int64_t update, std::int64_t steps);
+
+/// An empty snapshot of n particles with every array allocated and the ids filled in; position and
+/// id always, velocity and density where `fields` names them. Error(bad_input) for another name.
+Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type, std::size_t n,
+                        std::int64_t update, double time);
+
+}  // namespace pbf::inline solver_module
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -48,21 +66,193 @@ InternalState<Real> to_internal(const Scene& s, const Axes& axes, Particles part
   return out;
 }
 
+/// Updates after which the host looks whether a list outgrew its room, where lists can: few at
+/// first and after lists grew, for lists that grow once often do so again, and what is done again
+/// then is short.
+constexpr int kFirstBatch = 8;
+
+template <class Real, Executor Exec>
+class StepSolver final : public Solver, public Inspection {
+ public:
+  /// `executor`: what the executor is made of.
+  template <class... Args>
+  StepSolver(const Scene& scene, const Plan& plan, Particles particles, Args&&... executor)
+      : scene_(scene),
+        plan_(plan),
+        n_(int(particles.size())),
+        exec_(std::forward<Args>(executor)...) {
+    const Stopwatch watch;
+    InternalState<Real> s = to_internal<Real>(scene, plan.axes, std::move(particles));
+    stepper_ = std::make_unique<Stepper<Real, Exec>>(
+        exec_, make_params<Real>(scene, plan), scene.solver.kernels, scene.solver.iterations, plan,
+        std::move(s.position), std::move(s.velocity), std::move(s.id));
+    while (exec_.grow_lists(n_)) stepper_->relist();
+    exec_.forget_stages();  // sorting the first state is part of init, not of the updates
+    init_seconds_ = watch.seconds();
+  }
+
+  void step(int updates, const StepOptions& options) override {
+    const Stopwatch watch;
+    use(options);
+    if (options.without_time) {
+      advance(updates);
+      steps_ += updates;
+    } else {
+      for (; fault_ && updates > 0; --updates) checked_step(nullptr);
+      advance(std::int64_t(updates) << options.level);
+      count(updates);
+    }
+    step_seconds_ += watch.seconds();
+  }
+
+  std::future<Snapshot> download(const std::vector<std::string>& fields, ScalarType type) override {
+    auto snapshot = std::make_shared<Snapshot>(empty_snapshot(
+        fields, type, std::size_t(n_), updates_, double(updates_) * scene_.time.step));
+    if (snapshot->find("density")) find_pairs();
+    type == ScalarType::f64 ? start_export<double>(*snapshot) : start_export<float>(*snapshot);
+    return std::async(std::launch::deferred, [this, snapshot] {
+      exec_.finish_copy(targets(*snapshot));
+      return std::move(*snapshot);
+    });
+  }
+
+  Measures measure() override {
+    find_pairs();
+    return to_measures(stepper_->measure(), scene_, plan_, updates_, steps_);
+  }
+
+  SolverState state(Which which) override {
+    if (which == Which::positions) return stepper_->positions();
+    if (which == Which::now) return stepper_->state(updates_, steps_);
+    if (kept_.id.size() == 0) throw Error(ExitCode::internal, "no state was kept");
+    return stepper_->state(kept_, kept_updates_, kept_steps_);
+  }
+  void set_state(const SolverState& s) override {
+    check_state(s, n_);
+    stepper_->set_state(s);
+    updates_ = s.updates;
+    steps_ = s.steps;
+  }
+  void keep() override {
+    stepper_->save(kept_);
+    kept_updates_ = updates_;
+    kept_steps_ = steps_;
+  }
+
+  SolverInfo info() const override {
+    SolverInfo i;
+    i.precision = sizeof(Real) == 8 ? "double" : "float";
+    i.vol = plan_.vol;
+    i.wall_scale = plan_.wall_scale;
+    i.bytes = stepper_->bytes() + saved_.bytes() + kept_.bytes();
+    exec_.describe(i);
+    i.stages = {{"init", init_seconds_, 1}};
+    for (StageTime& s : exec_.stages(step_seconds_)) i.stages.push_back(std::move(s));
+    return i;
+  }
+  std::int64_t updates() const override { return updates_; }
+
+  Inspection* inspection() override { return this; }
+  StepTrace trace(const TraceOptions& options) override {
+    use({0, options_.watched_speed, {}});
+    StepTrace t;
+    until_lists_fit([&] { t = stepper_->trace(options); }, [] {});
+    count(1);
+    return t;
+  }
+  std::optional<StageEvent> step_checked(const StageLimits& limits,
+                                         const StepOptions& options) override {
+    use(options);
+    return checked_step(&limits);
+  }
+  void inject(const Fault& fault) override { fault_ = fault; }
+
+ private:
+  /// So many steps, in pieces after which lists that outgrew their room are looked for.
+  void advance(std::int64_t left) {
+    while (left > 0) {
+      int batch = int(std::min<std::int64_t>(left, batch_));
+      until_lists_fit([&] { exec_.repeat(batch, *stepper_); },
+                      [&] { batch = batch_ = std::min(batch, kFirstBatch); });
+      left -= batch;
+      batch_ = int(std::min<std::int64_t>(2 * std::int64_t(batch_), exec_.largest_batch(n_)));
+    }
+  }
+  /// What `work` does to the state is done again, with more room for the lists, as long as one of
+  /// them did not fit: nothing is lost. Calls again() before each repetition.
+  template <class Work, class Again>
+  void until_lists_fit(const Work& work, const Again& again) {
+    if constexpr (Exec::lists_overflow) stepper_->save(saved_);
+    work();
+    while (exec_.grow_lists(n_)) {
+      stepper_->restore(saved_);
+      again();
+      work();
+    }
+  }
+
+  void use(const StepOptions& options) {
+    if (options == options_) return;
+    options_ = options;
+    Params<Real> p = make_params<Real>(scene_at_level(scene_, options.level), plan_);
+    if (!p.limit_speed) {
+      const double speed = options.watched_speed / scene_.h();
+      p.speed_squared = Real(std::min(speed * speed, 1e30));
+    }
+    stepper_->set_params(options.without_time ? without_time(p, *options.without_time) : p);
+    exec_.forget_recorded();  // it holds the parameters
+  }
+  void count(int updates) {
+    updates_ += updates;
+    steps_ += std::int64_t(updates) << options_.level;
+  }
+
+  /// limits may be null.
+  std::optional<StageEvent> checked_step(const StageLimits* limits) {
+    std::optional<StageEvent> first, event;
+    for (int s = 0; s < 1 << options_.level; ++s) {
+      until_lists_fit(
+          [&] {
+            event = stepper_->step_checked(updates_ + 1, limits, fault_ ? &*fault_ : nullptr);
+          },
+          [] {});
+      if (!first) first = event;
+    }
+    count(1);
+    return first;
+  }
+
+  void find_pairs() {
+    if (!stepper_->find_pairs()) return;
+    while (exec_.grow_lists(n_)) stepper_->relist();
+  }
+
+  static std::vector<CopyTarget> targets(Snapshot& s) {
+    std::vector<CopyTarget> to;
+    for (FieldArray& f : s.fields)
+      if (f.name != "id") to.push_back({f.bytes.data(), f.bytes.size()});
+    return to;
+  }
+  template <class Out>
+  void start_export(Snapshot& s) {
+    const bool velocity = s.find("velocity"), density = s.find("density");
+    exec_.template start_copy<Out>(targets(s), [&](const std::vector<Out*>& to) {
+      stepper_->export_to(scene_.h(), scene_.fluid.rest_density, scene_.origin(), to[0],
+                          velocity ? to[1] : nullptr, density ? to.back() : nullptr);
+    });
+  }
+
+  const Scene scene_;
+  const Plan plan_;
+  const int n_;
+  Exec exec_;
+  std::unique_ptr<Stepper<Real, Exec>> stepper_;
+  typename Stepper<Real, Exec>::Saved saved_, kept_;
+  StepOptions options_;
+  std::optional<Fault> fault_;
+  int batch_ = Exec::lists_overflow ? kFirstBatch : 1 << 30;
+  double init_seconds_ = 0, step_seconds_ = 0;
+  std::int64_t updates_ = 0, steps_ = 0, kept_updates_ = 0, kept_steps_ = 0;
+};
+
 }  // namespace pbf::inline PBF_VARIANT
-
-namespace pbf::inline solver_module {
-
-/// Sums in the internal frame, after so many updates and steps -> Measures in SI units and the
-/// scene's axes (lib/solver/DIAGNOSTICS.md).
-Measures to_measures(const MeasureSums& sums, const Scene& scene, const Plan& plan,
-                     std::int64_t update, std::int64_t steps);
-
-/// Error(internal) at a level above 0, where an update has no single trace.
-void refuse_trace(int level);
-
-/// An empty snapshot of n particles with every array allocated and the ids filled in; position and
-/// id always, velocity and density where `fields` names them. Error(bad_input) for another name.
-Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type, std::size_t n,
-                        std::int64_t update, double time);
-
-}  // namespace pbf::inline solver_module

@@ -110,22 +110,19 @@ class Stepper {
     return check.event();
   }
 
+  int size() const { return p_.n; }
+
   /// Others differ in what goes with the time step.
-  const Params<Real>& params() const { return p_; }
   void set_params(const Params<Real>& p) { p_ = p; }
 
-  /// Particles faster than `speed` (h/s) are counted; no effect where the scene limits the speed.
-  void watch_speed(double speed) {
-    if (!p_.limit_speed) p_.speed_squared = Real(std::min(speed * speed, 1e30));
+  /// The rest of the state stays empty.
+  SolverState positions() {
+    SolverState s;
+    s.position = rows_by_id(exec_, axes_, std::size_t(p_.n), a_.position.data(), a_.id.data());
+    return s;
   }
-
   SolverState state(std::int64_t updates, std::int64_t steps) {
     return download_state<Real>(exec_, std::size_t(p_.n), axes_, a_.state(), updates, steps);
-  }
-
-  /// h from Scene::origin() along the scene's axes, 3n, in the order of ids.
-  std::vector<double> positions() {
-    return rows_by_id(exec_, axes_, std::size_t(p_.n), a_.position.data(), a_.id.data());
   }
 
   /// Takes over a state of as many particles, in any order.
@@ -211,7 +208,7 @@ class Stepper {
     return download_state<Real>(exec_, std::size_t(p_.n), axes_, s.state(), updates, steps);
   }
 
-  std::size_t bytes() const { return a_.bytes() + exec_.list_bytes(); }
+  std::size_t bytes() const { return a_.bytes() + exec_.bytes(); }
 
  private:
   /// Names under which the parts of a sort with new lists are timed: the pass before it, the sort,

@@ -107,7 +107,7 @@ class Samples {
 
  private:
   FrameStatistics of(Solver& s) const {
-    return frame_statistics(s.download({"velocity", "density"}, ScalarType::f64),
+    return frame_statistics(s.download({"velocity", "density"}, ScalarType::f64).get(),
                             c_.scene->domain.min, c_.scene->gravity, c_.scene->fluid.rest_density);
   }
   void note(const std::string& what, const std::string& unit, double error, double scale,
@@ -172,7 +172,8 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
       const std::vector<double> r = positions(*c.reference);
       for (std::size_t m = 0; m < c.members.size(); ++m) {
         // Every update its own roundings.
-        c.members[m]->trace({c.u, c.settings->seed + 1000 * std::uint64_t(t) + m, nullptr});
+        c.members[m]->inspection()->trace(
+            {c.u, c.settings->seed + 1000 * std::uint64_t(t) + m, nullptr});
         now = std::max(now, distance(positions(*c.members[m]), r).rms);
       }
       spread = std::max(spread, now);

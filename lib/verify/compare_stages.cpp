@@ -56,11 +56,11 @@ double terms_of(const TraceArray& t, const StepTrace& trace) {
 std::vector<double> noise_floor(const Comparison& c, const SolverState& start, const StepTrace& a,
                                 StepTrace& reference) {
   c.reference->set_state(start);
-  reference = c.reference->trace({0, 1, &a});
+  reference = c.reference->inspection()->trace({0, 1, &a});
   std::vector<double> noise(reference.arrays.size(), 0);
   for (std::size_t m = 0; m < c.members.size(); ++m) {
     c.members[m]->set_state(rounded(start, c.u, c.settings->seed + m));
-    const StepTrace t = c.members[m]->trace({c.u, c.settings->seed + m, &a});
+    const StepTrace t = c.members[m]->inspection()->trace({c.u, c.settings->seed + m, &a});
     for (std::size_t k = 0; k < noise.size(); ++k)
       noise[k] =
           std::max(noise[k], difference(reference.arrays[k].values, t.arrays[k].values).worst);
@@ -130,7 +130,7 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
   part.name = "frozen step";
   c.a->set_state(start);
   c.b->set_state(start);
-  const StepTrace a = c.a->trace(), b = c.b->trace({0, 1, &a});
+  const StepTrace a = c.a->inspection()->trace(), b = c.b->inspection()->trace({0, 1, &a});
   StepTrace reference;
   std::vector<double> noise;
   if (!c.same_bits) noise = noise_floor(c, start, a, reference);

@@ -99,23 +99,23 @@ TEST_CASE("a scene with its axes exchanged gives the same bits, exchanged back")
   auto first = make(c);
   first->step(20);
   const std::vector<std::string> fields{"velocity", "density"};
-  const pbf::Snapshot snap = first->download(fields, pbf::ScalarType::f64);
+  const pbf::Snapshot snap = first->download(fields, pbf::ScalarType::f64).get();
   const pbf::Measures measures = first->measure();
   const pbf::SolverState state = first->state();
-  const pbf::StepTrace trace = first->trace();
+  const pbf::StepTrace trace = first->inspection()->trace();
   for (const Turn& t : kTurns) {
     if (flat && t != Turn{2, 1, 0}) continue;
     CAPTURE(flat, t[0], t[1], t[2]);
     const Case other = turned(c, t);
     auto s = make(other);
     s->step(20);
-    check_same_fields(snap, s->download(fields, pbf::ScalarType::f64), t);
+    check_same_fields(snap, s->download(fields, pbf::ScalarType::f64).get(), t);
     check_same_measures(measures, s->measure(), t);
     const pbf::SolverState mine = s->state();
     CHECK(rows(state.position, t) == mine.position);
     CHECK(rows(state.velocity, t) == mine.velocity);
     CHECK(state.id == mine.id);
-    const pbf::StepTrace passes = s->trace();
+    const pbf::StepTrace passes = s->inspection()->trace();
     REQUIRE(passes.arrays.size() == trace.arrays.size());
     const bool mirrored = t != Turn{1, 2, 0} && t != Turn{2, 0, 1};
     for (std::size_t k = 0; k < passes.arrays.size(); ++k) {
@@ -136,8 +136,8 @@ TEST_CASE("a scene with its axes exchanged gives the same bits, exchanged back")
     again->set_state(state);
     again->step(7);
     s->step(7);
-    check_same_fields(again->download(fields, pbf::ScalarType::f64),
-                      s->download(fields, pbf::ScalarType::f64), t);
+    check_same_fields(again->download(fields, pbf::ScalarType::f64).get(),
+                      s->download(fields, pbf::ScalarType::f64).get(), t);
   }
 }
 
@@ -172,7 +172,7 @@ TEST_CASE("a thrown particle is where a hand calculation puts it, in any box, in
   }
   auto s = make(c);
   s->step(n);
-  const pbf::Snapshot snap = s->download({"velocity"}, pbf::ScalarType::f64);
+  const pbf::Snapshot snap = s->download({"velocity"}, pbf::ScalarType::f64).get();
   const pbf::Measures m = s->measure();
   const pbf::SolverState state = s->state();
   double potential = 0;
@@ -193,8 +193,8 @@ TEST_CASE("a thrown particle is where a hand calculation puts it, in any box, in
   auto faulty = make(c);
   const pbf::Measures first = faulty->measure();
   pbf::Guard guard(c.scene, plan, *faulty, first, first);
-  faulty->inject({1, "predict", 0, 0, 1e6});
-  faulty->step(1);
+  faulty->inspection()->inject({1, "predict", 0, 0, 1e6});
+  faulty->step(1, guard.options());
   const auto e = guard.check(faulty->measure());
   REQUIRE(e);
   CHECK(e->velocity[0] == Approx(1e6 * h).epsilon(1e-6));
@@ -227,7 +227,7 @@ TEST_CASE("a face is open or a wall by its name, in any box") {
   c.particles.velocity[1][axis] = -speed;  // meets the wall on the other side
   auto s = make(c);
   s->step(20);
-  const pbf::Snapshot snap = s->download({}, pbf::ScalarType::f64);
+  const pbf::Snapshot snap = s->download({}, pbf::ScalarType::f64).get();
   const auto x = snap.fields[0].as<double>();
   CHECK(x[axis] == Approx(0.5 + speed * 20 * c.scene.time.step));
   CHECK(x[3 + axis] >= 0);

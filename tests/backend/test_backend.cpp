@@ -19,7 +19,7 @@ void everything_on(pbf::Scene& s) {
 }
 
 std::vector<double> positions(pbf::Solver& s) {
-  const auto snap = s.download({}, pbf::ScalarType::f64);
+  const auto snap = s.download({}, pbf::ScalarType::f64).get();
   const auto x = snap.fields[0].as<double>();
   return {x.begin(), x.end()};
 }
@@ -95,7 +95,7 @@ TEST_CASE("the density and the neighbour counts of a state equal brute force ove
   }
   auto s = make(c);
   s->step(updates);
-  const auto snap = s->download({"density"}, pbf::ScalarType::f64);
+  const auto snap = s->download({"density"}, pbf::ScalarType::f64).get();
   const auto x = snap.fields[0].as<double>(), density = snap.find("density")->as<double>();
   std::vector<oracle::V> points;
   for (std::size_t i = 0; i < snap.count; ++i)
@@ -172,8 +172,8 @@ TEST_CASE("two runs of one scene give the same bytes") {
   auto a = make(c), b = make(c);
   a->step(75);                                 // in one piece
   for (int k : {1, 2, 7, 13, 52}) b->step(k);  // and in several
-  CHECK(same_bytes(a->download({"velocity", "density"}, pbf::ScalarType::f32),
-                   b->download({"velocity", "density"}, pbf::ScalarType::f32)));
+  CHECK(same_bytes(a->download({"velocity", "density"}, pbf::ScalarType::f32).get(),
+                   b->download({"velocity", "density"}, pbf::ScalarType::f32).get()));
 }
 
 TEST_CASE("with solver.reproducible the CPU's bytes come out, on 1 thread or more") {
@@ -210,8 +210,8 @@ TEST_CASE("with solver.reproducible the CPU's bytes come out, on 1 thread or mor
   const int updates = edge > 30 ? 12 : 60;
   a->step(updates);
   b->step(updates);
-  CHECK(same_bytes(a->download({"velocity", "density"}, pbf::ScalarType::f64),
-                   b->download({"velocity", "density"}, pbf::ScalarType::f64)));
+  CHECK(same_bytes(a->download({"velocity", "density"}, pbf::ScalarType::f64).get(),
+                   b->download({"velocity", "density"}, pbf::ScalarType::f64).get()));
   const auto m = a->measure(), r = b->measure();
   CHECK(m.kinetic_energy == r.kinetic_energy);
   CHECK(m.potential_energy == r.potential_energy);
@@ -223,13 +223,13 @@ TEST_CASE("a download started before further updates holds the state of its star
   auto a = make(c), b = make(c);
   a->step(5);
   b->step(5);
-  const auto expected = a->download({"velocity"}, pbf::ScalarType::f32);
-  b->start_download({"velocity"}, pbf::ScalarType::f32);
+  const auto expected = a->download({"velocity"}, pbf::ScalarType::f32).get();
+  auto under_way = b->download({"velocity"}, pbf::ScalarType::f32);
   b->step(30);
-  const auto got = b->finish_download();
+  const auto got = under_way.get();
   CHECK(same_bytes(expected, got));
   CHECK(got.update == 5);
-  CHECK(b->updates_done() == 35);
+  CHECK(b->updates() == 35);
 }
 
 TEST_CASE("degenerate states stay finite and inside") {
@@ -268,8 +268,8 @@ TEST_CASE("lists that outgrow their room grow, and the result is the same") {
   CHECK(tight->measure().neighbors_max > (flat ? 40 : 60));
   roomy->step(40);
   tight->step(40);
-  CHECK(same_bytes(roomy->download({"velocity"}, pbf::ScalarType::f32),
-                   tight->download({"velocity"}, pbf::ScalarType::f32)));
+  CHECK(same_bytes(roomy->download({"velocity"}, pbf::ScalarType::f32).get(),
+                   tight->download({"velocity"}, pbf::ScalarType::f32).get()));
   CHECK(tight->info().bytes < roomy->info().bytes);
 }
 
@@ -290,8 +290,8 @@ TEST_CASE("lists that outgrow their room in the middle of a run grow, and nothin
     most = std::max(most, roomy->measure().neighbors_max);
   }
   CHECK(most > at_start);
-  CHECK(same_bytes(roomy->download({"velocity"}, pbf::ScalarType::f32),
-                   tight->download({"velocity"}, pbf::ScalarType::f32)));
+  CHECK(same_bytes(roomy->download({"velocity"}, pbf::ScalarType::f32).get(),
+                   tight->download({"velocity"}, pbf::ScalarType::f32).get()));
 }
 
 TEST_CASE("more particles than the device's memory holds are refused before the run") {

@@ -30,7 +30,7 @@ Case cubes(double speed, double step, double drift = 0) {
 
 /// Mean velocity of the left cube along x, over `speed`.
 double kept(pbf::Solver& solver, double speed) {
-  const auto s = solver.download({"velocity"}, pbf::ScalarType::f64);
+  const auto s = solver.download({"velocity"}, pbf::ScalarType::f64).get();
   const auto v = s.find("velocity")->as<double>();
   double sum = 0;
   for (std::size_t i = 0; i < s.count; ++i) sum += i % 12 < 6 ? v[3 * i] : 0;

@@ -29,8 +29,8 @@ std::optional<pbf::GuardEvent> caught(const Case& c, const pbf::Fault& fault, in
   auto solver = make(c);
   const pbf::Measures first = solver->measure();
   pbf::Guard guard(c.scene, plan_of(c), *solver, first, first);
-  solver->inject(fault);
-  solver->step(updates);
+  solver->inspection()->inject(fault);
+  solver->step(updates, guard.options());
   return guard.check(solver->measure());
 }
 
@@ -74,9 +74,9 @@ TEST_CASE(
   const pbf::Measures first = guarded->measure();
   pbf::Guard guard(c.scene, plan_of(c), *guarded, first, first);
   for (int k = 0; k < 4; ++k) {
-    guarded->step(5);
+    guarded->step(5, guard.options());
     REQUIRE_FALSE(guard.check(guarded->measure()));
-    for (int u = 0; u < 5; ++u) REQUIRE_FALSE(looked_at->step_checked({}));
+    for (int u = 0; u < 5; ++u) REQUIRE_FALSE(looked_at->inspection()->step_checked({}));
   }
   bare->step(20);
   CHECK(same_state(guarded->state(), bare->state()));
@@ -88,7 +88,7 @@ TEST_CASE("guard: from the kept state the same updates give the same bits") {
   auto s = make(c);
   s->step(7);
   s->keep();
-  const pbf::SolverState kept = s->kept();
+  const pbf::SolverState kept = s->state(pbf::Which::kept);
   CHECK(same_state(kept, s->state()));
   s->step(6);
   const pbf::SolverState first = s->state();
@@ -128,7 +128,7 @@ TEST_CASE("speed limit: slows down the particles above it, counts them, and no o
   c.particles.position.push_back({5, 5, 5});
   c.particles.velocity.push_back({-30, 40, 0});  // 0.1 m in an update, h = 0.04 m
   const auto place = [](pbf::Solver& s) {
-    const auto snap = s.download({"velocity"}, pbf::ScalarType::f64);
+    const auto snap = s.download({"velocity"}, pbf::ScalarType::f64).get();
     const auto x = snap.fields[0].as<double>();
     return std::vector<double>(x.end() - 3, x.end());
   };

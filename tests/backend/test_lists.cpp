@@ -41,7 +41,7 @@ ByAllPairs by_all_pairs(const Case& c, const pbf::Snapshot& s) {
 
 void check_against_all_pairs(const Case& c, pbf::Solver& solver) {
   const pbf::Measures m = solver.measure();
-  const auto snapshot = solver.download({"density"}, pbf::ScalarType::f64);
+  const auto snapshot = solver.download({"density"}, pbf::ScalarType::f64).get();
   const ByAllPairs e = by_all_pairs(c, snapshot);
   const double tolerance = is_double() ? 1e-9 : 1e-4;
   CHECK(m.compression_mean == Approx(e.mean).epsilon(tolerance).margin(tolerance));

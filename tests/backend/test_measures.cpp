@@ -219,12 +219,12 @@ TEST_CASE(
   for (int k = 0; k < updates; k += 4) {
     often->step(4);
     often->measure();
-    often->download({"density"}, pbf::ScalarType::f64);
+    often->download({"density"}, pbf::ScalarType::f64).get();
   }
   never->step(updates);
   const auto fields = std::vector<std::string>{"velocity", "density"};
-  const auto x = often->download(fields, pbf::ScalarType::f64);
-  const auto y = never->download(fields, pbf::ScalarType::f64);
+  const auto x = often->download(fields, pbf::ScalarType::f64).get();
+  const auto y = never->download(fields, pbf::ScalarType::f64).get();
   for (const char* name : {"position", "velocity", "density"})
     CHECK(x.find(name)->bytes == y.find(name)->bytes);
   // Symplectic Euler: n steps of dt fall by g dt^2 n (n + 1)/2.

@@ -42,7 +42,7 @@ bool same(const pbf::SolverState& a, const pbf::SolverState& b) {
 TEST_CASE("sweeps go on until the mean compression is within the tolerance, and no further") {
   Case fixed = crowded();
   fixed.scene.solver.iterations = 24;
-  const std::vector<double> all = mean_compressions(make(fixed)->trace());
+  const std::vector<double> all = mean_compressions(make(fixed)->inspection()->trace());
   REQUIRE(all.size() == 24);
   for (const int sweeps : {2, 5, 17}) {
     CAPTURE(sweeps);
@@ -86,7 +86,7 @@ TEST_CASE("a tolerance is met in the same sweeps in one call, in many, and pass 
   constexpr int updates = 75;  // a graph of 64, one of 8, and three by themselves
   once->step(updates);
   for (int u = 0; u < updates; ++u) singly->step(1);
-  for (int u = 0; u < updates; ++u) traced->trace();
+  for (int u = 0; u < updates; ++u) traced->inspection()->trace();
   const auto sweeps = once->measure().sweeps;
   CHECK(sweeps > 4 * updates);
   CHECK(sweeps < 4 * 16 * updates);

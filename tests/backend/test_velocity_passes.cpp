@@ -83,7 +83,7 @@ double late_energy(const Case& c, int updates) {
 }
 
 double angular_momentum(pbf::Solver& s) {
-  const pbf::Snapshot snap = s.download({"velocity"}, pbf::ScalarType::f64);
+  const pbf::Snapshot snap = s.download({"velocity"}, pbf::ScalarType::f64).get();
   const auto x = snap.fields[0].as<double>(), v = snap.find("velocity")->as<double>();
   double sum = 0;
   for (std::size_t i = 0; i < x.size(); i += 3) sum += x[i] * v[i + 1] - x[i + 1] * v[i];
@@ -116,7 +116,7 @@ TEST_CASE("viscosity brakes a rigid rotation at its surface alone, by 0.13 c (h/
   auto s = make(c);
   const double before = angular_momentum(*s);
   s->step(1);
-  const pbf::Snapshot snap = s->download({"velocity"}, pbf::ScalarType::f64);
+  const pbf::Snapshot snap = s->download({"velocity"}, pbf::ScalarType::f64).get();
   const auto v = snap.find("velocity")->as<double>();
   double inside = 0;
   for (std::size_t i = 0; i < c.particles.size(); ++i) {

@@ -67,7 +67,7 @@ inline Difference against_oracle(const Case& c) {
   oracle::update(s, o);
   auto solver = make(c);
   solver->step(1);
-  const pbf::Snapshot snap = solver->download({"velocity"}, pbf::ScalarType::f64);
+  const pbf::Snapshot snap = solver->download({"velocity"}, pbf::ScalarType::f64).get();
   const auto x = snap.fields[0].as<double>(), v = snap.find("velocity")->as<double>();
   Difference d;
   for (std::size_t i = 0; i < s.x.size(); ++i)

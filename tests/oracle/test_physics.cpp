@@ -122,7 +122,8 @@ TEST_CASE("coincident particles separate, and the same way every time") {
   auto a = make(c), b = make(c);
   a->step(20);
   b->step(20);
-  const auto sa = a->download({}, pbf::ScalarType::f64), sb = b->download({}, pbf::ScalarType::f64);
+  const auto sa = a->download({}, pbf::ScalarType::f64).get(),
+             sb = b->download({}, pbf::ScalarType::f64).get();
   CHECK(sa.fields[0].bytes == sb.fields[0].bytes);
   const auto x = sa.fields[0].as<double>();
   double nearest = 1e9;

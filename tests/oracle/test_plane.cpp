@@ -132,7 +132,7 @@ TEST_CASE("a square lattice has density 1, and one compressed by 1 % what all pa
       c.scene.solver.kernels = kernels;
       c.scene.fluid.smoothing_ratio = ratio;
       const auto middle = [&] {
-        const auto snap = make(c)->download({"density"}, ScalarType::f64);
+        const auto snap = make(c)->download({"density"}, ScalarType::f64).get();
         return snap.find("density")->as<double>()[7 * 15 + 7] / c.scene.fluid.rest_density;
       };
       CHECK(middle() == Approx(1).epsilon(1e-12));
@@ -166,7 +166,7 @@ TEST_CASE(
   const double scale = 0.4 * 24 * 24 * c.scene.particle_mass();
   for (int k = 0; k < 3; ++k) CHECK(std::fabs(m.momentum[k] - before.momentum[k]) < 1e-12 * scale);
   CHECK(m.momentum[1] == 0);
-  const auto snap = s->download({"velocity"}, ScalarType::f64);
+  const auto snap = s->download({"velocity"}, ScalarType::f64).get();
   const auto x = snap.fields[0].as<double>(), v = snap.find("velocity")->as<double>();
   for (std::size_t i = 0; i < snap.count; ++i) {
     REQUIRE(x[3 * i + 1] == *c.scene.plane());
@@ -189,7 +189,7 @@ TEST_CASE("a pool at rest in two dimensions keeps 0.99 of its height and does no
     CHECK(m.kinetic_energy + m.potential_energy <
           1.01 * (start.kinetic_energy + start.potential_energy));
     // Two spacings of fluid along either side wall and the floor.
-    const auto snap = s->download({}, ScalarType::f64);
+    const auto snap = s->download({}, ScalarType::f64).get();
     const auto x = snap.fields[0].as<double>();
     int near[3] = {0, 0, 0};
     for (std::size_t i = 0; i < snap.count; ++i) {
@@ -217,8 +217,8 @@ TEST_CASE("in two dimensions 1 and 2 threads give the same bits, energies are th
   CHECK(a->measure().kinetic_energy == Approx(energy).epsilon(1e-6));
   a->step(15);
   b->step(15);
-  const auto x = a->download({"velocity", "density"}, ScalarType::f64);
-  const auto y = b->download({"velocity", "density"}, ScalarType::f64);
+  const auto x = a->download({"velocity", "density"}, ScalarType::f64).get();
+  const auto y = b->download({"velocity", "density"}, ScalarType::f64).get();
   for (std::size_t f = 0; f < x.fields.size(); ++f) CHECK(x.fields[f].bytes == y.fields[f].bytes);
 }
 

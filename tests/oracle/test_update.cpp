@@ -83,7 +83,8 @@ TEST_CASE("float follows double to single rounding over one update") {
   auto b = make(c);
   a->step(1);
   b->step(1);
-  const auto sa = a->download({}, pbf::ScalarType::f64), sb = b->download({}, pbf::ScalarType::f64);
+  const auto sa = a->download({}, pbf::ScalarType::f64).get(),
+             sb = b->download({}, pbf::ScalarType::f64).get();
   const auto xa = sa.fields[0].as<double>(), xb = sb.fields[0].as<double>();
   double sum = 0, worst = 0;
   for (std::size_t k = 0; k < xa.size(); ++k) {
@@ -108,8 +109,8 @@ TEST_CASE("1 and 2 threads give the same bits after 50 updates with every featur
   auto b = make(c);
   a->step(50);
   b->step(50);
-  const auto sa = a->download({"velocity", "density"}, pbf::ScalarType::f64);
-  const auto sb = b->download({"velocity", "density"}, pbf::ScalarType::f64);
+  const auto sa = a->download({"velocity", "density"}, pbf::ScalarType::f64).get();
+  const auto sb = b->download({"velocity", "density"}, pbf::ScalarType::f64).get();
   for (std::size_t f = 0; f < sa.fields.size(); ++f)
     CHECK(sa.fields[f].bytes == sb.fields[f].bytes);
   const auto ma = a->measure(), mb = b->measure();
@@ -124,8 +125,8 @@ TEST_CASE("measuring and downloading do not change the trajectory") {
     a->step(1);
     b->step(1);
     b->measure();
-    b->download({"density"}, pbf::ScalarType::f32);
+    b->download({"density"}, pbf::ScalarType::f32).get();
   }
-  CHECK(a->download({}, pbf::ScalarType::f64).fields[0].bytes ==
-        b->download({}, pbf::ScalarType::f64).fields[0].bytes);
+  CHECK(a->download({}, pbf::ScalarType::f64).get().fields[0].bytes ==
+        b->download({}, pbf::ScalarType::f64).get().fields[0].bytes);
 }

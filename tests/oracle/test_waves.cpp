@@ -46,7 +46,7 @@ double frequency(Tank t, int settle, double amplitude) {
   t.c.scene.solver.velocity_damping = 0.98;
   auto still = make(t.c);
   still->step(settle);
-  const auto rest = still->download({}, pbf::ScalarType::f64);
+  const auto rest = still->download({}, pbf::ScalarType::f64).get();
   const auto settled = rest.fields[0].as<double>();
   for (std::size_t i = 0; i < t.c.particles.size(); ++i) {
     t.c.particles.position[i] = {settled[3 * i], settled[3 * i + 1], settled[3 * i + 2]};
@@ -59,7 +59,7 @@ double frequency(Tank t, int settle, double amplitude) {
   double before = 1;
   for (int k = 1; zeros.size() < 4 && k < 200; ++k) {
     s->step(each);
-    const auto now = s->download({"velocity"}, pbf::ScalarType::f64);
+    const auto now = s->download({"velocity"}, pbf::ScalarType::f64).get();
     const auto x = now.fields[0].as<double>(), v = now.find("velocity")->as<double>();
     double share = 0;
     for (std::size_t i = 0; i < now.count; ++i) {

@@ -41,7 +41,7 @@ Outcome run(const Case& c, Simd simd) {
   Outcome o;
   o.simd = solver->info().driver;
   solver->step(3);
-  o.trace = solver->trace({});
+  o.trace = solver->inspection()->trace({});
   solver->step(4);
   o.state = solver->state();
   return o;

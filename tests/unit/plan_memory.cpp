@@ -56,7 +56,7 @@ bool has_pass(const Plan& plan, const std::string& name) {
 }
 
 std::int64_t calls(const Solver& solver, const std::string& stage) {
-  for (const StageTime& s : solver.timings())
+  for (const StageTime& s : solver.info().stages)
     if (s.name == stage) return s.calls;
   return 0;
 }
@@ -97,7 +97,7 @@ TEST_CASE("every stage that the plan names runs as often as it says, and no othe
     const Made m = make(0.1, f, updates);
     std::set<std::string> planned{"init", "measure"}, ran;
     for (const PlanPass& p : m.plan.passes) planned.insert(p.stage);
-    for (const StageTime& s : m.solver->timings())
+    for (const StageTime& s : m.solver->info().stages)
       if (s.calls > 0) ran.insert(s.name);
     CHECK(ran == planned);
     const int k = m.scene.solver.iterations * m.plan.substeps;

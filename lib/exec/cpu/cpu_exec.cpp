@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "lib/base/machine.h"
+
 namespace pbf::inline PBF_VARIANT {
 
 namespace {
@@ -62,7 +64,14 @@ void CpuExec::sort(const int* bin, const int* id, int n, int bins, int* order, i
   start[bins] = n;
 }
 
-std::size_t CpuExec::list_bytes() const {
+void CpuExec::describe(SolverInfo& info) const {
+  info.backend = "cpu";
+  info.device = cpu_model();
+  info.driver = simd_name(simd_);
+  info.threads = threads_;
+}
+
+std::size_t CpuExec::bytes() const {
   std::size_t sum = groups_.bytes() + chunks_.capacity() * sizeof chunks_[0] +
                     pointers_.capacity() * sizeof pointers_[0] +
                     in_bins_.capacity() * sizeof in_bins_[0];

@@ -16,6 +16,7 @@
 #include "lib/exec/cpu/lane_sums.h"
 #include "lib/exec/cpu/list_maker.h"
 #include "lib/program/memory.h"
+#include "lib/solver/executor.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -27,6 +28,7 @@ class CpuExec {
   static constexpr std::size_t padding = 16;
   /// The order of a sort may stand where its gather writes the ids: each is read before.
   static constexpr bool order_in_place = true;
+  static constexpr bool lists_overflow = false;  ///< they grow as they are made
   template <class T>
   using Buffer = HostBuffer<T>;
 
@@ -40,9 +42,30 @@ class CpuExec {
 
   void begin() { clock_.begin(); }
   void mark(const char* stage) { clock_.mark(stage); }
-  const StageClock& clock() const { return clock_; }
-  int threads() const { return threads_; }
-  Simd simd() const { return simd_; }
+  void forget_stages() { clock_ = {}; }
+  std::vector<StageTime> stages(double) const {
+    std::vector<StageTime> out;
+    for (const auto& e : clock_.entries()) out.push_back({e.name, e.seconds, e.calls});
+    return out;
+  }
+  void describe(SolverInfo& info) const;
+
+  /// A download: what write(pointers) fills is on the host at once.
+  template <class Out, class Write>
+  void start_copy(const std::vector<CopyTarget>& to, const Write& write) {
+    std::vector<Out*> rows;
+    for (const CopyTarget& t : to) rows.push_back(static_cast<Out*>(t.host));
+    write(rows);
+  }
+  void finish_copy(const std::vector<CopyTarget>&) {}
+
+  template <class Updates>
+  void repeat(int updates, Updates& u) {
+    u.step(updates);
+  }
+  void forget_recorded() {}
+  int largest_batch(int) const { return 1 << 30; }
+  bool grow_lists(int) { return false; }
 
   /// Copies n elements to an array of this executor.
   template <class T>
@@ -154,7 +177,7 @@ class CpuExec {
     return {pointers_.data(), groups_.data(), bits, p.n};
   }
 
-  std::size_t list_bytes() const;
+  std::size_t bytes() const;
 
  private:
   /// Of term(i), whose additions have no order.

@@ -14,6 +14,8 @@ CudaExec::CudaExec(ListRoom room) : room_(room) {
 }
 
 CudaExec::~CudaExec() {
+  if (stream_) cudaStreamSynchronize(stream_);
+  recorded_.drop();
   for (cudaEvent_t e : events_) cudaEventDestroy(e);
   if (stream_) cudaStreamDestroy(stream_);
   if (other_stream_) cudaStreamDestroy(other_stream_);
@@ -102,28 +104,50 @@ bool CudaExec::asked_to_repeat() {
 }
 
 void CudaExec::allocate_lists(int n) {
-  words_.resize(std::size_t(stride(n)) * std::size_t(room_.first));
+  words_.resize(std::size_t(list_stride(n)) * std::size_t(room_.first));
   tails_.resize(std::size_t(room_.tails) * std::size_t(room_.tail));
   count_.resize(std::size_t(n));
   tail_of_.resize(std::size_t(n));
 }
 
-void CudaExec::set_room(int n, ListRoom room) {
-  room_ = room;
+bool CudaExec::grow_lists(int n) {
+  PBF_CUDA_CHECK(cudaMemcpyAsync(list_state_host_.data(), list_state_.data(), sizeof(ListState),
+                                 cudaMemcpyDeviceToHost, stream_));
+  synchronize();
+  const ListState& short_of = *list_state_host_.data();  // since it was cleared
+  if (short_of.wanted == 0 && short_of.longest == 0) return false;
+  room_ = larger_list_room(room_, std::max(short_of.used, short_of.wanted), short_of.longest, n);
   words_.resize(0);  // first, so that the old and the new lists need not fit together
   tails_.resize(0);
   allocate_lists(n);
+  clear_overflow();
+  forget_recorded();  // it holds the old room
+  return true;
 }
 
 void CudaExec::clear_overflow() {
   PBF_CUDA_CHECK(cudaMemsetAsync(list_state_.data(), 0, sizeof(ListState), stream_));
 }
 
-ListState CudaExec::overflow() {
-  PBF_CUDA_CHECK(cudaMemcpyAsync(list_state_host_.data(), list_state_.data(), sizeof(ListState),
-                                 cudaMemcpyDeviceToHost, stream_));
-  synchronize();
-  return *list_state_host_.data();
+std::vector<StageTime> CudaExec::stages(double seconds) const {
+  double sampled = 0;
+  for (const auto& e : clock_.entries()) sampled += e.seconds;
+  std::vector<StageTime> out;
+  for (const auto& e : clock_.entries())
+    out.push_back({e.name, e.seconds * (seconds / sampled), e.calls});
+  return out;
+}
+
+void CudaExec::describe(SolverInfo& info) const {
+  int device = 0, driver = 0;
+  cudaDeviceProp p{};
+  PBF_CUDA_CHECK(cudaGetDevice(&device));
+  PBF_CUDA_CHECK(cudaGetDeviceProperties(&p, device));
+  PBF_CUDA_CHECK(cudaDriverGetVersion(&driver));
+  info.backend = "cuda";
+  info.device = p.name;
+  info.driver = "CUDA " + std::to_string(driver / 1000) + "." + std::to_string(driver % 100 / 10);
+  info.launches = recorded_.launches();
 }
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -8,90 +8,69 @@
 
 #include "lib/base/stage_clock.h"
 #include "lib/exec/cuda/device_buffer.h"
-#include "lib/exec/cuda/kernel_start.cuh"
-#include "lib/exec/cuda/list_pass.cuh"
+#include "lib/exec/cuda/host_copy.cuh"
+#include "lib/exec/cuda/kernels.cuh"
+#include "lib/exec/cuda/recorded.cuh"
 #include "lib/exec/cuda/reduce.cuh"
 #include "lib/exec/cuda/repeat.cuh"
 #include "lib/exec/cuda/sort_kernels.cuh"
+#include "lib/solver/executor.h"
 
 namespace pbf::inline PBF_VARIANT {
-
-/// Up to how many particles so many threads share a neighbour sum, and up to how many eight share
-/// the making of a list (of which no bit depends on it): measured on an H200
-/// (kernels/PERFORMANCE.md).
-#ifdef PBF_PINNED
-constexpr int kSixteenLanes = 6000, kEightLanes = 24000, kFourLanes = 0, kTwoLanes = 0;
-#else
-constexpr int kSixteenLanes = 4000, kEightLanes = 12000, kFourLanes = 40000, kTwoLanes = 100000;
-#endif
-constexpr int kListLanes = 40000;
-constexpr int kRepeatBlocks = 512;
-
-template <class Pass>
-__global__ void __launch_bounds__(kBlock) apply_kernel(int n, Pass pass) {
-  wait_for_previous();
-  const int i = blockIdx.x * kBlock + threadIdx.x;
-  if (i < n) pass(i);
-}
-
-/// Adds the number of particles that pass(i) puts into each bin: in shared memory first, since most
-/// particles of a fluid share few bins. Integers: the order of the additions does not matter.
-constexpr int kBinBlock = 256, kBinBlocks = 512;
-template <class Pass>
-__global__ void __launch_bounds__(kBinBlock)
-    count_in_bins_kernel(int n, int bins, Pass pass, unsigned long long* out) {
-  wait_for_previous();
-  extern __shared__ unsigned in_bin[];  // bins
-  for (int b = threadIdx.x; b < bins; b += kBinBlock) in_bin[b] = 0;
-  __syncthreads();
-  for (std::int64_t i = blockIdx.x * kBinBlock + threadIdx.x; i < n;
-       i += std::int64_t(gridDim.x) * kBinBlock)
-    if (const int b = pass(int(i)); b >= 0) atomicAdd(&in_bin[b], 1u);
-  __syncthreads();
-  for (int b = threadIdx.x; b < bins; b += kBinBlock)
-    if (in_bin[b]) atomicAdd(&out[b], static_cast<unsigned long long>(in_bin[b]));
-}
-
-/// A neighbour sum by several threads per particle.
-template <int lanes, class Pass>
-__global__ void __launch_bounds__(kBlock) lanes_kernel(int n, Pass pass) {
-  wait_for_previous();
-#ifdef PBF_PINNED
-  sum_in_order_by_lanes<lanes, kBlock>(pass, blockIdx.x * kBlock + threadIdx.x, n);
-#else
-  sum_over_neighbors_by_lanes<lanes>(pass, blockIdx.x * kBlock + threadIdx.x, n);
-#endif
-}
-template <class Real, int D>
-__global__ void __launch_bounds__(kBlock) list_lanes_kernel(ListPass<Real, D> pass) {
-  wait_for_previous();
-  pass.by_lanes(blockIdx.x * kBlock + threadIdx.x);
-}
 
 class CudaExec {
  public:
   using Lists = TransposedLists;
   static constexpr std::size_t padding = 1;
   static constexpr bool order_in_place = false;
+  static constexpr bool lists_overflow = true;
   template <class T>
   using Buffer = DeviceBuffer<T>;
 
-  /// room: for the lists at first.
+  /// room: for the lists at first. Lists that outgrow it: the build records by how much, nothing is
+  /// written beyond the room, and grow_lists() gives more.
   explicit CudaExec(ListRoom room);
   ~CudaExec();
   CudaExec(const CudaExec&) = delete;
   CudaExec& operator=(const CudaExec&) = delete;
 
-  cudaStream_t stream() const { return stream_; }
   void synchronize() { PBF_CUDA_CHECK(cudaStreamSynchronize(stream_)); }
 
-  // Stage times: only where profiling is on, from events on the stream.
-  void set_profiling(bool on) { profiling_ = on; }
+  // Stage times: of sampled updates, from events on the stream.
   void begin();
   void mark(const char* stage);
-  /// Books the marks since begin(), waiting for them; `scale` updates count as this one.
-  void book(double scale);
-  const StageClock& clock() const { return clock_; }
+  void forget_stages() {}  // nothing is sampled before the first update
+  /// The stages of the sampled updates, which are not recorded and so take longer, share the
+  /// `seconds` that all updates took.
+  std::vector<StageTime> stages(double seconds) const;
+  void describe(SolverInfo& info) const;
+
+  template <class Out, class Write>
+  void start_copy(const std::vector<CopyTarget>& to, const Write& write) {
+    copy_.start<Out>(to, write, stream_);
+  }
+  void finish_copy(const std::vector<CopyTarget>& to) { copy_.finish(to); }
+
+  /// Updates by replay of what was recorded; one in a while is timed stage by stage, outside the
+  /// recorded ones, and stands for the others.
+  template <class Updates>
+  void repeat(int updates, Updates& u) {
+    const int every = u.size() < 100000 ? 1024 : 64;
+    int left = updates;
+    if (since_profile_ <= 0) {
+      profiling_ = true;
+      u.step(1);
+      book(every);
+      profiling_ = false;
+      since_profile_ = every;
+      --left;
+    }
+    since_profile_ -= updates;
+    recorded_.repeat(left, u, stream_);
+  }
+  void forget_recorded() { recorded_.drop(); }
+  int largest_batch(int n) const { return n < 20000 ? 256 : n < 500000 ? 64 : 16; }
+  bool grow_lists(int n);
 
   template <class T>
   void to_device(const T* host, std::size_t n, T* to) {
@@ -216,21 +195,14 @@ class CudaExec {
     allocate_lists(p.n);
     p.dimensions == 2 ? make_lists<2>(position, bin_start, p)
                       : make_lists<3>(position, bin_start, p);
-    return {words_.data(), tails_.data(), count_.data(), tail_of_.data(),
-            stride(p.n),   room_.first,   room_.tail};
+    return {words_.data(),    tails_.data(), count_.data(), tail_of_.data(),
+            list_stride(p.n), room_.first,   room_.tail};
   }
 
-  // Lists that outgrow their room: the build records by how much, nothing is written beyond the
-  // room, and the caller repeats the updates with more.
-  ListRoom room() const { return room_; }
-  void set_room(int n, ListRoom room);
-  void clear_overflow();
-  /// Waits; what did not fit since clear_overflow(), zeros when all did.
-  ListState overflow();
-
-  std::size_t list_bytes() const {
+  std::size_t bytes() const {
     return words_.bytes() + tails_.bytes() + tail_of_.bytes() + count_.bytes() + counts_.bytes() +
-           slot_.bytes() + scan_.bytes() + measure_.bytes() + in_bins_.bytes() + repeat_.bytes();
+           slot_.bytes() + scan_.bytes() + measure_.bytes() + in_bins_.bytes() + repeat_.bytes() +
+           copy_.bytes();
   }
 
  private:
@@ -263,14 +235,16 @@ class CudaExec {
                                  tail_of_.data(),
                                  list_state_.data(),
                                  room_,
-                                 stride(p.n)};
+                                 list_stride(p.n)};
     if (p.n <= kListLanes)
       launch(list_lanes_kernel<Real, D>, pass.lanes * p.n, kBlock, 0, pass);
     else
       for_each(p.n, pass);
   }
-  static int stride(int n) { return list_stride(n); }
   void allocate_lists(int n);
+  void clear_overflow();
+  /// Books the marks since begin(), waiting for them; `scale` updates count as this one.
+  void book(double scale);
   /// Makes a condition in the graph that is being captured; false where none is.
   bool new_condition(cudaGraphConditionalHandle& handle);
   /// What is launched in between is captured as the body that the condition repeats.
@@ -286,6 +260,9 @@ class CudaExec {
   bool after_condition_ = false;         ///< ... which is for kernels behind kernels
   ListRoom room_;
   bool profiling_ = false;
+  int since_profile_ = 0;
+  RecordedUpdates recorded_;
+  HostCopy copy_;
   StageClock clock_;
   std::vector<cudaEvent_t> events_;
   std::vector<const char*> stages_;  ///< of the marks since begin()

@@ -83,8 +83,9 @@ std::string field_hash(const Snapshot& snapshot, const std::string& name) {
 std::string result_of(const Scene& s, const std::string& dir) {
   std::string row;
   run_course(s, dir, [&](Solver& solver) {
-    const Snapshot snapshot = solver.download({"velocity"}, ScalarType::f64);  // in order of ids
-    row = std::to_string(snapshot.count) + "," + std::to_string(solver.updates_done()) + "," +
+    const Snapshot snapshot =
+        solver.download({"velocity"}, ScalarType::f64).get();  // in order of ids
+    row = std::to_string(snapshot.count) + "," + std::to_string(solver.updates()) + "," +
           field_hash(snapshot, "position") + "," + field_hash(snapshot, "velocity");
   });
   return row;

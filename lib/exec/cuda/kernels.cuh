@@ -1,0 +1,65 @@
+// The kernels that launch a pass.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <cstdint>
+
+#include "lib/exec/cuda/kernel_start.cuh"
+#include "lib/exec/cuda/list_pass.cuh"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// Up to how many particles so many threads share a neighbour sum, and up to how many eight share
+/// the making of a list (of which no bit depends on it): measured on an H200
+/// (kernels/PERFORMANCE.md).
+#ifdef PBF_PINNED
+constexpr int kSixteenLanes = 6000, kEightLanes = 24000, kFourLanes = 0, kTwoLanes = 0;
+#else
+constexpr int kSixteenLanes = 4000, kEightLanes = 12000, kFourLanes = 40000, kTwoLanes = 100000;
+#endif
+constexpr int kListLanes = 40000;
+constexpr int kRepeatBlocks = 512;
+
+template <class Pass>
+__global__ void __launch_bounds__(kBlock) apply_kernel(int n, Pass pass) {
+  wait_for_previous();
+  const int i = blockIdx.x * kBlock + threadIdx.x;
+  if (i < n) pass(i);
+}
+
+/// Adds the number of particles that pass(i) puts into each bin: in shared memory first, since most
+/// particles of a fluid share few bins. Integers: the order of the additions does not matter.
+constexpr int kBinBlock = 256, kBinBlocks = 512;
+template <class Pass>
+__global__ void __launch_bounds__(kBinBlock)
+    count_in_bins_kernel(int n, int bins, Pass pass, unsigned long long* out) {
+  wait_for_previous();
+  extern __shared__ unsigned in_bin[];  // bins
+  for (int b = threadIdx.x; b < bins; b += kBinBlock) in_bin[b] = 0;
+  __syncthreads();
+  for (std::int64_t i = blockIdx.x * kBinBlock + threadIdx.x; i < n;
+       i += std::int64_t(gridDim.x) * kBinBlock)
+    if (const int b = pass(int(i)); b >= 0) atomicAdd(&in_bin[b], 1u);
+  __syncthreads();
+  for (int b = threadIdx.x; b < bins; b += kBinBlock)
+    if (in_bin[b]) atomicAdd(&out[b], static_cast<unsigned long long>(in_bin[b]));
+}
+
+/// A neighbour sum by several threads per particle.
+template <int lanes, class Pass>
+__global__ void __launch_bounds__(kBlock) lanes_kernel(int n, Pass pass) {
+  wait_for_previous();
+#ifdef PBF_PINNED
+  sum_in_order_by_lanes<lanes, kBlock>(pass, blockIdx.x * kBlock + threadIdx.x, n);
+#else
+  sum_over_neighbors_by_lanes<lanes>(pass, blockIdx.x * kBlock + threadIdx.x, n);
+#endif
+}
+template <class Real, int D>
+__global__ void __launch_bounds__(kBlock) list_lanes_kernel(ListPass<Real, D> pass) {
+  wait_for_previous();
+  pass.by_lanes(blockIdx.x * kBlock + threadIdx.x);
+}
+
+}  // namespace pbf::inline PBF_VARIANT

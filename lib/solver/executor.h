@@ -1,0 +1,101 @@
+// What a backend supplies to the step. A step is a list of passes (lib/program); an executor says
+// how a pass is launched, particles are sorted, lists made, sums reduced, updates repeated and
+// results copied, and nothing else: no physics stands in it.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/measure_sums.h"
+#include "kernels/params.h"
+#include "lib/solver/solver.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// Rows of a download on the host, and how many bytes they take.
+struct CopyTarget {
+  void* host;
+  std::size_t bytes;
+};
+
+/// Stand-ins for what an executor is called with.
+namespace archetype {
+struct Pass {
+  PBF_HD void operator()(int) const {}
+};
+struct Residual {
+  PBF_HD std::uint64_t operator()(int) const { return 0; }
+};
+struct Bin {
+  PBF_HD int operator()(int) const { return 0; }
+};
+struct Sorted {
+  int* bin;
+  PBF_HD void operator()(int) const {}
+};
+struct Gather {
+  PBF_HD void operator()(int, int) const {}
+};
+struct Measure {
+  PBF_HD MeasureCounts counts(int) const { return {}; }
+  PBF_HD MeasureTerms terms(int, const MeasureUnits&) const { return {}; }
+};
+struct Body {
+  void operator()() const {}
+};
+struct Write {
+  void operator()(const std::vector<float*>&) const {}
+};
+/// Updates that can be recorded.
+struct Updates {
+  int size() const { return 0; }
+  void step(int) {}
+  void moved() {}
+  int placement() const { return 0; }
+};
+}  // namespace archetype
+
+template <class E>
+concept Executor = requires(E e, const E c, int* ints, unsigned long long* count, Params<float> p,
+                            const Vec4<float>* rows, std::vector<CopyTarget> targets,
+                            archetype::Updates updates, SolverInfo info) {
+  typename E::Lists;                 // the neighbour policy of the pair passes
+  typename E::template Buffer<int>;  // memory that passes reach: resize, data, size, bytes
+  { E::padding } -> std::convertible_to<std::size_t>;  // rows behind the last that passes may read
+  { E::order_in_place } -> std::convertible_to<bool>;  // a sort's order may stand in the next ids
+  { E::lists_overflow } -> std::convertible_to<bool>;  // lists may outgrow their room in an update
+  // Stage times: from begin() on, mark() books to a stage. `seconds`: of all steps, where only some
+  // are timed.
+  e.begin();
+  e.mark("stage");
+  e.forget_stages();
+  { c.stages(1.0) } -> std::same_as<std::vector<StageTime>>;
+  // Copies between the host and the executor's memory.
+  e.to_device(ints, std::size_t(1), ints);
+  e.to_host(ints, std::size_t(1), ints);
+  // A download: write(pointers) fills memory of the executor for each target; it is on the host
+  // after finish_copy().
+  e.template start_copy<float>(targets, archetype::Write{});
+  e.finish_copy(targets);
+  // pass(i) for every particle, sums of all of them.
+  e.for_each(1, archetype::Pass{});
+  { e.reduce(1, archetype::Measure{}) } -> std::same_as<MeasureSums>;
+  { e.count_in_bins(1, 1, archetype::Bin{}) } -> std::convertible_to<std::vector<std::int64_t>>;
+  // body() while the sum of a pass is above a limit.
+  e.repeat_while("stage", 1, 1, archetype::Residual{}, std::uint64_t(0), count, archetype::Body{});
+  // Order by bin, then id; lists of the pairs closer than h.
+  e.sort_by_bin("stage", archetype::Sorted{ints}, 1, 1, ints, ints, ints, archetype::Gather{});
+  { e.build_lists(rows, ints, p) } -> std::same_as<typename E::Lists>;
+  // Repeats updates, recorded ones where it can; forget_recorded() when their parameters changed.
+  e.repeat(1, updates);
+  e.forget_recorded();
+  { e.largest_batch(1) } -> std::convertible_to<int>;
+  // Gives lists that did not fit more room; false where all did.
+  { e.grow_lists(1) } -> std::same_as<bool>;
+  { c.bytes() } -> std::convertible_to<std::size_t>;
+  c.describe(info);  // device, driver, threads, launches
+};
+
+}  // namespace pbf::inline PBF_VARIANT
