@@ -175,7 +175,8 @@ std::optional<TimeEstimate> estimate_time(const Plan& plan, const Scene& s,
   Scene reference;  // of the calibration: h = 2 d
   const double neighbors = rest_neighbors(s) / rest_neighbors(reference);
   std::map<std::string, int> passes;  // of each stage: sort and gather are timed together
-  for (const PlanPass& p : plan.passes) passes[p.stage] = std::max(passes[p.stage], p.per_update);
+  for (const auto& [p, times] : count_passes(plan.program))
+    passes[p->stage] = std::max(passes[p->stage], times);
   for (const auto& [stage, times] : passes) {
     // The calibration's density is summed with lambda, in one loop that takes about as long.
     auto known = measured.find(stage == "density" && !measured.contains(stage) ? "lambda" : stage);

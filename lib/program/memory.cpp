@@ -48,16 +48,21 @@ int downloaded_scalars(const Scene& s) {
   return 3 + (has_field(s, "velocity") ? 3 : 0) + (has_field(s, "density") ? 1 : 0);
 }
 
-void add_state(const Plan& plan, bool guard, const std::string& real, const Adder& add) {
+void add_state(const Plan& plan, std::int64_t bins, bool guard, const std::string& real,
+               const Adder& add) {
   // The lists name one particle more, far away, and lanes read further (padding of the executors).
   const std::int64_t n = plan.particles, padded = n + (add.on_device ? 1 : 16);
-  for (const char* name : {"position", "position'", "velocity", "velocity'"})
-    add(name, real, 4, padded);
-  if (plan.vorticity) add("curl", real, 4, padded);
-  add("density", real, 1, n);
-  for (const char* name : {"id", "id'", "bin"}) add(name, "int32", 1, n);
-  if (add.on_device) add("order", "int32", 1, n);  // else it stands in id'
-  if (guard) {                                     // the last good state
+  for (const FieldInfo* f : plan.program.fields) {
+    if (f == &field::order && !add.on_device) continue;  // it stands in id'
+    const std::int64_t rows = f->rows == Rows::bins     ? bins + 1
+                              : f->rows == Rows::padded ? padded
+                                                        : n;
+    for (const char* which : {"", "'"})
+      if (*which == '\0' || f->doubled)
+        add((std::string(f->name) + which).c_str(), f->type == Type::real ? real : "int32",
+            f->components, rows);
+  }
+  if (guard) {  // the last good state
     add("kept position", real, 4, n);
     add("kept velocity", real, 4, n);
     add("kept id", "int32", 1, n);
@@ -97,10 +102,9 @@ StartEntries start_entries(const Scene& s, const Plan& plan) {
   return e;
 }
 
-void add_cpu_lists(const Scene& s, const Plan& plan, std::int64_t bins, const Adder& add) {
+void add_cpu_lists(const Scene& s, const Plan& plan, const Adder& add) {
   const std::int64_t n = plan.particles, chunks = (n + 1023) / 1024;
   const int entries = cpu_list_entries(s), threads = solver_threads(s, n);
-  add("bin_start", "int32", 1, bins + 1);
   const StartEntries start = start_entries(s, plan);
   add("lists", "int32", 1, std::int64_t(double(n) * std::max(double(entries), start.mean)));
   add("groups of lists", "int32", 2, chunks * 1024 / 8);
@@ -131,7 +135,6 @@ void add_cuda_lists(const Scene& s, const Plan& plan, std::int64_t bins, const s
                     const Adder& add) {
   const std::int64_t n = plan.particles;
   const ListRoom room = list_room(s, plan);
-  add("bin_start", "int32", 1, bins + 1);
   if (n > kSortParticles || bins > kSortBins) {
     add("particles of each bin", "int32", 1, bins + 1);
     add("scratch of the scan", "byte", 1, bins / 240 + 1024);  // CUB: 16 bytes a tile
@@ -293,11 +296,11 @@ MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
   const std::int64_t bins =
       std::int64_t(plan.cells[0]) * plan.cells[1] * plan.cells[2] * bins_per_cell(s.dimensions);
   const Adder solver{memory, cuda, Held::solver};
-  add_state(plan, bool(s.guard), real, solver);
+  add_state(plan, bins, bool(s.guard), real, solver);
   if (cuda)
     add_cuda_lists(s, plan, bins, real, solver);
   else
-    add_cpu_lists(s, plan, bins, solver);
+    add_cpu_lists(s, plan, solver);
   add_output(s, plan, memory);
   const std::int64_t start = add_start(s, plan, real, memory);
   const std::int64_t relieved = add_prestabilize(s, plan, real, memory);

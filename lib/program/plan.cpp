@@ -4,10 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "kernels/pass_delta.h"
-#include "kernels/pass_lambda.h"
-#include "kernels/pass_vorticity.h"
-#include "kernels/pass_xsph.h"
+#include "kernels/smoothing.h"
 #include "lib/base/error.h"
 #include "lib/program/axes.h"
 #include "lib/program/calibrate.h"
@@ -69,81 +66,22 @@ double default_sor(double ratio, int dimensions) {
   return std::min(1.0, 2.5 / ratio * (2.5 / ratio));
 }
 
-/// The fields that a pass declares (kernels/pair_sum.h).
-std::string gathers_text(unsigned fields) {
-  std::string out;
-  const std::pair<unsigned, const char*> names[] = {
-      {kPlace, "position"},    {kLambda, "lambda"}, {kInverseDensity, "1/density"},
-      {kVelocity, "velocity"}, {kCurl, "curl"},     {kId, "id"}};
-  for (const auto& [field, name] : names)
-    if (fields & field) out.append(out.empty() ? "" : " ").append(name);
-  return out;
-}
-
-void plan_passes(Plan& plan, const Scene& s) {
-  // What a pass gathers is the same in every form of it.
-  constexpr Smoothing S = Smoothing::consistent;
-  using Lists = ChunkedLists;
-  const int k = s.solver.iterations * plan.substeps * (1 + plan.more_rounds);  // at most
-  auto add = [&](const char* name, const char* stage, const char* reads, const char* writes,
-                 int times = 1, unsigned gathers = 0) {
-    plan.passes.push_back({name, stage, reads, writes, times, gathers_text(gathers)});
-  };
-  if (!plan.pairs) {
-    add("move", "predict", "position velocity", "position velocity", plan.substeps);
-    return;
-  }
-  const int lists = plan.lists_per_update;
-  add("predict", "predict", "position velocity", "position velocity bin", lists);
-  // Else the last sweep of a substep does it.
-  if (plan.substeps > lists && plan.more_rounds > 0)
-    add("move", "predict", "position velocity", "position velocity", plan.substeps - lists);
-  add("sort", "grid", "bin id", "order bin_start", lists);
-  add("gather", "grid", "order position velocity id", "position' velocity' id'", lists);
-  add("lists", "neighbors", "position bin_start", "lists", lists);
-  if (k > 0 && !plan.fused)
-    add("density", "density", "position lists", "density", k,
-        DensityPass<float, Lists, S>::gathers);
-  if (k > 0) {
-    add(plan.fused ? "density+lambda" : "lambda", "lambda",
-        plan.fused ? "position lists" : "position lists density",
-        plan.fused ? "position' density" : "position'", k,
-        LambdaPass<float, Lists, S, true>::gathers);
-    add(plan.tensile ? "delta+move (tensile)" : "delta+move", "delta",
-        "position' lists density velocity", "position velocity", k,
-        DeltaPass<float, Lists, S, true>::gathers);
-  }
-  if (plan.more_rounds > 0)
-    add("mean compression", "residual", "density", "", plan.substeps * plan.more_rounds);
-  if (plan.xsph)
-    add("xsph", "xsph", "position velocity lists", "velocity'", 1,
-        XsphPass<float, Lists, S, true>::gathers);
-  if (plan.vorticity) {
-    add("curl", "vorticity", "position velocity lists", "curl", 1,
-        CurlPass<float, Lists, 3>::gathers);
-    add("confinement", "vorticity", "position curl lists velocity", "velocity", 1,
-        VorticityPass<float, Lists, 3>::gathers);
-  }
-}
-
 void plan_left_out(Plan& plan, const Scene& s) {
   auto out = [&](bool absent, const char* what, const char* why) {
     if (absent) plan.left_out.push_back({what, why});
   };
+  const std::vector<LeftOut> features = features_left_out(s);
   out(s.dimensions == 2,
       "the third dimension: 18 of 27 cells around a particle, y in the pair loops",
       "dimensions is 2");
-  out(!plan.xsph, "xsph pass", "no key viscosity");
-  out(!plan.tensile, "artificial pressure in the delta loop", "no key tensile");
-  out(!plan.vorticity, "curl and confinement passes, curl array", "no key vorticity");
-  out(plan.fused, "density pass of its own", "solver.fused is true");
+  plan.left_out.insert(plan.left_out.end(), features.begin(), features.end());
   out(s.solver.kernels == KernelMode::consistent, "the second smoothing function (Poly6)",
       "solver.kernels is consistent");
   out(s.solver.boundary == BoundaryMode::clamp, "wall density", "solver.boundary is clamp");
   out(s.domain.open.size() == 6, "walls: their density and the clamp", "domain.open names all six");
   out(plan.more_rounds == 0, "sweeps until a tolerance is met", "solver.tolerance is 0");
-  out(s.solver.iterations == 0, "lambda and delta passes", "solver.iterations is 0");
-  out(!plan.pairs, "sort and neighbour lists, but for a measure and for densities of a frame",
+  out(!plan.program.has_pairs(),
+      "sort and neighbour lists, but for a measure and for densities of a frame",
       "solver.iterations is 0; no keys viscosity, vorticity");
   out(!s.time.adaptive, "halving of the step", "no key time.adaptive");
   out(!s.guard, "the guard and its copy of the state", "guard is off");
@@ -194,6 +132,8 @@ void plan_files(Plan& plan, const Scene& s) {
 
 }  // namespace
 
+UpdateShape Plan::shape() const { return {substeps, lists_per_update, more_rounds}; }
+
 Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   Plan plan;
   plan.particles = particles;
@@ -219,13 +159,8 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
     plan.tolerance = s.solver.tolerance;
     plan.more_rounds = s.solver.max_iterations / s.solver.iterations - 1;
   }
-  plan.fused = s.solver.fused;
-  plan.tensile = s.tensile && s.tensile->k != 0;
-  plan.xsph = s.viscosity && s.viscosity->xsph != 0;
-  plan.vorticity = s.vorticity && s.vorticity->epsilon != 0;
-  plan.pairs = s.solver.iterations > 0 || plan.xsph || plan.vorticity;
+  plan.program = make_program(s, plan.shape());
   plan_grid(plan, s);
-  plan_passes(plan, s);
   plan.memory = plan_memory(s, plan);
   plan_left_out(plan, s);
   plan_files(plan, s);

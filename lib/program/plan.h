@@ -1,5 +1,5 @@
-// What a scene needs, computed before anything is allocated: passes, arrays, grid, features, and
-// what was left out. A pure function of the scene; everything downstream obeys it.
+// What a scene needs, computed before anything is allocated: program, arrays, grid, files, and what
+// was left out. A pure function of the scene; everything downstream obeys it.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 
 #include "kernels/axes.h"
 #include "lib/program/memory.h"
+#include "lib/program/program.h"
 #include "lib/scene/scene.h"
 
 namespace pbf::inline program_module {
@@ -17,17 +18,6 @@ struct StartNeighbors {
   std::vector<int> count;       ///< particles within h, the particle itself included
   std::vector<double> scatter;  ///< standard deviation of the counts around it; 0: too few sampled
   bool empty() const { return count.empty(); }
-};
-
-/// One pass of an update, in order. `stage` is its timer's name.
-struct PlanPass {
-  std::string name, stage, reads, writes;
-  int per_update = 1;   ///< times per update
-  std::string gathers;  ///< of what it reads, the fields of neighbours' rows
-};
-
-struct PlanLeftOut {
-  std::string what, because;  ///< e.g. "xsph", "no key viscosity"
 };
 
 /// Files of one kind that the run leaves behind, with their estimated size.
@@ -63,15 +53,13 @@ struct Plan {
   double tolerance = 0;  ///< mean compression above which rounds of sweeps are repeated; 0: none is
   int more_rounds = 0;   ///< at most so many, besides the first
   double mass = 0;       ///< kg, of one particle as reported
-  bool fused = true;
-  bool tensile = false, xsph = false, vorticity = false;
-  bool pairs = true;  ///< an update looks at pairs of particles: sweeps, viscosity or vorticity
-  std::vector<PlanPass> passes;
+  Program program;
   MemoryPlan memory;
-  std::vector<PlanLeftOut> left_out;
+  std::vector<LeftOut> left_out;
   std::vector<PlanFile> files;
 
   std::int64_t bytes() const { return memory.solver_bytes(); }
+  UpdateShape shape() const;
 };
 
 /// Pure: touches no file and no device. `particles` from count_particles(). `start`: of

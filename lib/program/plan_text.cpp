@@ -97,10 +97,10 @@ std::string plan_text(const Plan& plan, const Scene& s) {
              ? "passes of one update\n"
              : format("passes of one step; 2^k of them in an update at level k = 0 ... %d\n",
                       plan.finest_level);
-  for (const auto& p : plan.passes)
-    out += format("  %-22s x%-3d stage %-10s reads %-34s writes %s", p.name.c_str(), p.per_update,
-                  p.stage.c_str(), p.reads.c_str(), p.writes.c_str()) +
-           (p.gathers.empty() ? "\n" : "; of neighbours " + p.gathers + "\n");
+  for (const auto& [p, times] : count_passes(plan.program))
+    out += format("  %-22s x%-3d stage %-10s reads %-34s writes %s", p->name, times, p->stage,
+                  field_names(p->reads).c_str(), field_names(p->writes).c_str()) +
+           (p->gathers == 0 ? "\n" : "; of neighbours " + gathers_text(*p) + "\n");
   if (plan.substeps > 1)
     out += format("  %d substeps of %.4g s on %d list%s: at most %.3g h of way on one list\n",
                   plan.substeps, s.time.step / plan.substeps, plan.lists_per_update,
@@ -145,11 +145,13 @@ std::string plan_json(const Plan& plan, const Scene& s, const std::string& membe
   out += format(",\"finest_level\":%d,\"lists_per_update\":%d,\"threads\":%d", plan.finest_level,
                 plan.lists_per_update,
                 s.backend == Backend::cpu ? solver_threads(s, plan.particles) : 0);
-  out += ",\"passes\":" + list(plan.passes, [](const PlanPass& p) {
-           return "{\"name\":" + json_string(p.name) + ",\"stage\":" + json_string(p.stage) +
-                  ",\"reads\":" + json_string(p.reads) + ",\"writes\":" + json_string(p.writes) +
-                  ",\"gathers\":" + json_string(p.gathers) +
-                  format(",\"per_update\":%d}", p.per_update);
+  out += ",\"passes\":" + list(count_passes(plan.program), [](const PassCount& c) {
+           return "{\"name\":" + json_string(c.pass->name) +
+                  ",\"stage\":" + json_string(c.pass->stage) +
+                  ",\"reads\":" + json_string(field_names(c.pass->reads)) +
+                  ",\"writes\":" + json_string(field_names(c.pass->writes)) +
+                  ",\"gathers\":" + json_string(gathers_text(*c.pass)) +
+                  format(",\"per_update\":%d}", c.times);
          });
   out += ",\"memory\":" + memory_json(plan, s);
   out += ",\"files\":" + list(plan.files, [](const PlanFile& f) {
@@ -158,7 +160,7 @@ std::string plan_json(const Plan& plan, const Scene& s, const std::string& membe
                          static_cast<long long>(f.bytes));
          });
   out +=
-      ",\"left_out\":" + list(plan.left_out, [](const PlanLeftOut& l) {
+      ",\"left_out\":" + list(plan.left_out, [](const LeftOut& l) {
         return "{\"what\":" + json_string(l.what) + ",\"because\":" + json_string(l.because) + "}";
       });
   return out + members + "}";

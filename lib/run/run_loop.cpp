@@ -338,7 +338,7 @@ std::vector<StageTime> RunLoop::stages() const {
     out.push_back({name, seconds, calls});
   };
   add("init", 0, 0);
-  for (const PlanPass& pass : plan_.passes) add(pass.stage, 0, 0);
+  for (const PassCount& c : count_passes(plan_.program.update)) add(c.pass->stage, 0, 0);
   add("measure", 0, 0);
   if (watched()) add("guard", 0, 0);
   if (scene_.output || scene_.render) add("download", 0, 0);
@@ -368,7 +368,7 @@ RunTotals RunLoop::totals() const {
   t.loop = loop_seconds_;
   t.stages = stages();
   t.render_thread = render_thread_;
-  t.fused = plan_.fused;
+  t.fused = scene_.solver.fused;
   t.first = first_;
   t.tolerance = plan_.tolerance;
   t.substeps = plan_.substeps;

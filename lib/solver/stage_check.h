@@ -8,66 +8,84 @@
 
 #include "kernels/axes.h"
 #include "kernels/params.h"
+#include "lib/program/pass.h"
 #include "lib/solver/stage_event.h"
+#include "lib/solver/step_context.h"
+#include "lib/solver/tracer.h"
 
 namespace pbf::inline PBF_VARIANT {
-
-/// The arrays of a stage, in device-visible memory; row k belongs to particle id[k].
-template <class Real>
-struct StageArrays {
-  Vec4<Real>*position, *velocity;  ///< position's w: what the stage put there (lambda, 1/density)
-  Real* density;                   ///< null: not written by the stage
-  const int* id;
-  const int* neighbors;  ///< null: the lists are not new
-};
 
 template <class Real, class Exec>
 class StageCheck {
  public:
   /// limits or fault may be null: then nothing is looked at, or nothing put in.
-  StageCheck(Exec& exec, const Params<Real>& p, const Axes& axes, std::int64_t update,
+  StageCheck(StepContext<Real, Exec>& c, const Axes& axes, std::int64_t update,
              const StageLimits* limits, const Fault* fault)
-      : exec_(exec), p_(p), axes_(axes), update_(update), limits_(limits), fault_(fault) {}
+      : c_(c), p_(c.p), axes_(axes), update_(update), limits_(limits), fault_(fault) {}
 
-  void look(const std::string& stage, int sweep, const StageArrays<Real>& a) {
+  void look(const PassInfo& pass, int sweep) {
     if (event_) return;
-    if (fault_ && fault_->update == update_ && fault_->stage == stage && fault_->sweep == sweep)
-      inject(stage, a);
-    if (limits_) check(stage, sweep, a);
+    const Arrays a = arrays(pass);
+    if (fault_ && fault_->update == update_ && fault_->stage == pass.stage &&
+        fault_->sweep == sweep)
+      inject(a);
+    if (limits_) check(pass.stage, sweep, a);
   }
   const std::optional<StageEvent>& event() const { return event_; }
 
  private:
+  /// Where to look behind a pass.
+  struct Arrays {
+    Vec4<Real>* position;            ///< w: what the pass put there (lambda, 1/density)
+    Real* density = nullptr;         ///< null: not what the pass is for
+    bool stores_fourth = false;      ///< what the pass is for is the position's w
+    const int* neighbors = nullptr;  ///< null: the lists are not new
+  };
+  Arrays arrays(const PassInfo& pass) {
+    Arrays a{c_.position()};
+    if (pass.stored >= 0) {
+      const Written& w = pass.writes[std::size_t(pass.stored)];
+      if (w.part == Written::scalar) a.density = c_.template data<Real>(*w.to.field);
+      a.stores_fourth = w.part == Written::fourth;
+      if (a.stores_fourth && w.to.other) a.position = c_.other(*w.to.field);
+    }
+    if (pass.writes[0].part == Written::pairs) {
+      c_.each(ListSizePass<typename Exec::Lists>{c_.lists, c_.sort_order()});  // free by now
+      a.neighbors = c_.sort_order();
+    }
+    return a;
+  }
+
   template <class T>
   std::vector<T> host(const T* from) {
-    std::vector<T> v(std::size_t(p_.n));
-    if (from) exec_.to_host(from, v.size(), v.data());
+    std::vector<T> v(std::size_t(c_.rows()));
+    if (from) c_.exec.to_host(from, v.size(), v.data());
     return v;
   }
 
-  void inject(const std::string& stage, const StageArrays<Real>& a) {
-    const std::vector<int> id = host(a.id);
+  void inject(const Arrays& a) {
+    const std::vector<int> id = host(c_.ids());
     for (std::size_t k = 0; k < id.size(); ++k) {
       if (id[k] != fault_->id) continue;
       const Real value = Real(fault_->value);
       if (!is_finite(value) && a.density) {
-        exec_.to_device(&value, 1, a.density + k);
+        c_.exec.to_device(&value, 1, a.density + k);
         return;
       }
-      const bool lambda = !is_finite(value) && stage == "lambda";
-      Vec4<Real>* at = (lambda ? a.position : a.velocity) + k;
+      const bool fourth = !is_finite(value) && a.stores_fourth;
+      Vec4<Real>* at = (fourth ? a.position : c_.velocity()) + k;
       Vec4<Real> x;
-      exec_.to_host(at, 1, &x);
-      (lambda ? x.w : (&x.x)[axes_.inside(0)]) = value;
-      exec_.to_device(&x, 1, at);
+      c_.exec.to_host(at, 1, &x);
+      (fourth ? x.w : (&x.x)[axes_.inside(0)]) = value;
+      c_.exec.to_device(&x, 1, at);
       return;
     }
   }
 
-  void check(const std::string& stage, int sweep, const StageArrays<Real>& a) {
-    const auto x = host<Vec4<Real>>(a.position), v = host<Vec4<Real>>(a.velocity);
+  void check(const std::string& stage, int sweep, const Arrays& a) {
+    const auto x = host<Vec4<Real>>(a.position), v = host<Vec4<Real>>(c_.velocity());
     const auto density = host<Real>(a.density);
-    const auto id = host<int>(a.id), neighbors = host<int>(a.neighbors);
+    const auto id = host<int>(c_.ids()), neighbors = host<int>(a.neighbors);
     double energy = 0, fastest = -1;
     std::size_t fast = 0;
     const auto found = [&](Alarm alarm, std::size_t k, double value) {
@@ -112,7 +130,7 @@ class StageCheck {
   }
   bool wall(WallBit bit) const { return (p_.walls & bit) != 0; }
 
-  Exec& exec_;
+  StepContext<Real, Exec>& c_;
   const Params<Real>& p_;
   Axes axes_;
   std::int64_t update_;

@@ -79,13 +79,16 @@ class StepSolver final : public Solver, public Inspection {
   StepSolver(const Scene& scene, const Plan& plan, Particles particles, Args&&... executor)
       : scene_(scene),
         plan_(plan),
+        without_time_(make_program(scene, plan.shape(), true)),
         n_(int(particles.size())),
         exec_(std::forward<Args>(executor)...) {
+    if (plan.particles != n_)
+      throw Error(ExitCode::internal, "a plan of " + std::to_string(plan.particles) +
+                                          " particles for " + std::to_string(n_));
     const Stopwatch watch;
     InternalState<Real> s = to_internal<Real>(scene, plan.axes, std::move(particles));
-    stepper_ = std::make_unique<Stepper<Real, Exec>>(
-        exec_, make_params<Real>(scene, plan), scene.solver.kernels, scene.solver.iterations, plan,
-        std::move(s.position), std::move(s.velocity), std::move(s.id));
+    stepper_ = std::make_unique<Stepper<Real, Exec>>(exec_, scene_, plan_, std::move(s.position),
+                                                     std::move(s.velocity), std::move(s.id));
     while (exec_.grow_lists(n_)) stepper_->relist();
     exec_.forget_stages();  // sorting the first state is part of init, not of the updates
     init_seconds_ = watch.seconds();
@@ -124,7 +127,7 @@ class StepSolver final : public Solver, public Inspection {
   SolverState state(Which which) override {
     if (which == Which::positions) return stepper_->positions();
     if (which == Which::now) return stepper_->state(updates_, steps_);
-    if (kept_.id.size() == 0) throw Error(ExitCode::internal, "no state was kept");
+    if (kept_.empty()) throw Error(ExitCode::internal, "no state was kept");
     return stepper_->state(kept_, kept_updates_, kept_steps_);
   }
   void set_state(const SolverState& s) override {
@@ -194,12 +197,15 @@ class StepSolver final : public Solver, public Inspection {
   void use(const StepOptions& options) {
     if (options == options_) return;
     options_ = options;
-    Params<Real> p = make_params<Real>(scene_at_level(scene_, options.level), plan_);
+    const Scene scene = scene_at_level(scene_, options.level);
+    Params<Real> p = make_params<Real>(scene, plan_);
     if (!p.limit_speed) {
       const double speed = options.watched_speed / scene_.h();
       p.speed_squared = Real(std::min(speed * speed, 1e30));
     }
-    stepper_->set_params(options.without_time ? without_time(p, *options.without_time) : p);
+    options.without_time
+        ? stepper_->use(scene, without_time(p, *options.without_time), without_time_)
+        : stepper_->use(scene, p, plan_.program);
     exec_.forget_recorded();  // it holds the parameters
   }
   void count(int updates) {
@@ -244,6 +250,7 @@ class StepSolver final : public Solver, public Inspection {
 
   const Scene scene_;
   const Plan plan_;
+  const Program without_time_;
   const int n_;
   Exec exec_;
   std::unique_ptr<Stepper<Real, Exec>> stepper_;

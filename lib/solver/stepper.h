@@ -1,96 +1,64 @@
-// The step, written once, over an executor. An executor supplies: Lists (the neighbour policy),
-// Buffer<T>, for_each(n, pass), sort_by_bin, build_lists, reduce, to_host, and mark(stage).
+// Executes programs: updates at speed, updates pass by pass, and what is summed over a state.
 #pragma once
 
-#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "kernels/pass_delta.h"
 #include "kernels/pass_export.h"
-#include "kernels/pass_lambda.h"
 #include "kernels/pass_measure.h"
-#include "kernels/pass_predict.h"
-#include "kernels/pass_residual.h"
-#include "kernels/pass_vorticity.h"
-#include "kernels/pass_xsph.h"
-#include "lib/solver/as_types.h"
+#include "lib/program/features.h"
+#include "lib/program/plan.h"
 #include "lib/solver/compression_percentile.h"
-#include "lib/solver/particle_arrays.h"
+#include "lib/solver/executor.h"
+#include "lib/solver/params.h"
 #include "lib/solver/stage_check.h"
-#include "lib/solver/state_transfer.h"
+#include "lib/solver/step_context.h"
 #include "lib/solver/tracer.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-template <class Real, class Exec>
+template <class Real, Executor Exec>
 class Stepper {
  public:
   using Lists = typename Exec::Lists;
+  using Saved = SavedState<Real, Exec>;
 
   /// Positions and velocities are in the internal frame, in the order of ids 0..n-1. What comes out
   /// is along the scene's axes.
-  Stepper(Exec& exec, const Params<Real>& params, KernelMode mode, int iterations, const Plan& plan,
-          std::vector<Vec4<Real>> position, std::vector<Vec4<Real>> velocity, std::vector<int> id)
-      : exec_(exec),
-        p_(params),
-        axes_(plan.axes),
-        mode_(mode),
-        iterations_(iterations),
-        substeps_(plan.substeps),
-        lists_per_update_(plan.lists_per_update),
-        more_rounds_(plan.more_rounds),
-        residual_limit_(residual_limit(plan.tolerance, params.n)),
-        fused_(plan.fused),
-        tensile_(plan.tensile) {
-    for (int k = 0; k < iterations; ++k)
-      sor_.push_back(
+  Stepper(Exec& exec, const Scene& scene, const Plan& plan, std::vector<Vec4<Real>> position,
+          std::vector<Vec4<Real>> velocity, std::vector<int> id)
+      : plan_(plan),
+        c_(exec, in_internal_axes(scene, plan.axes), make_params<Real>(scene, plan)),
+        residual_limit_(residual_limit(plan.tolerance, int(plan.particles))),
+        program_(&plan.program) {
+    for (int k = 0; k < scene.solver.iterations; ++k)
+      c_.factors.push_back(
           Real(plan.sor * (plan.sweep_factors.empty() ? 1 : plan.sweep_factors[std::size_t(k)])));
-    a_.make(exec_, p_, position, velocity, id);
+    c_.make(plan.program.fields, position, velocity, id);
     find_pairs();
     sum_density();
   }
 
-  /// Updates (kernels/README.md, "The step"). Where only viscosity lies between a sweep and the
-  /// next update, one pass does both that and the next bins.
+  /// Updates (kernels/README.md, "The step"). What an update ends with and the next one begins with
+  /// is one pass where the program joins them.
   void step(int updates) {
     if (updates <= 0) return;
-    exec_.begin();
-    if (!has_pairs()) {
-      for (int k = updates * substeps_; k > 0; --k) move();
-      moved();
-      return;
+    c_.exec.begin();
+    run(program_->first);
+    run(program_->rest);
+    for (int k = 1; k < updates; ++k) {
+      run(program_->next);
+      run(program_->rest);
     }
-    const auto unseen = [](const char*, int) {};
-    bool moved_on = false;
-    for (int left = updates - 1; left >= 0; --left) {
-      SubstepRange r;
-      while (next_range(r)) {
-        if (!moved_on)
-          with_dimensions(p_.dimensions, [&](auto d) {
-            reorder<true>(kUpdateStages,
-                          PredictPass<Real, decltype(d)::value>{p_, a_.position.data(),
-                                                                a_.velocity.data(), a_.bin.data()});
-          });
-        moved_on = false;
-        solve(r, unseen, true);
-      }
-      moved_on = left > 0 && p_.xsph > Real(0) && !(p_.vorticity > Real(0));
-      if (moved_on)
-        with_smoothing(mode_, p_.dimensions, [&](auto s) {
-          reorder<true>({"xsph", "grid", "neighbors"}, xsph<decltype(s)::value, true>());
-        });
-      else
-        finish_update(unseen);
-    }
+    run(program_->last);
     moved();
   }
 
   /// One update, with what each stage left behind.
   StepTrace trace(const TraceOptions& options) {
-    Tracer<Real, Exec> t(exec_, p_.n, axes_, options);
-    step_seen([&](const char* stage, int sweep) { record(t, stage, sweep); });
+    Tracer<Real, Exec> t(c_, plan_.axes, options);
+    step_seen([&](const PassInfo& pass, int number) { t.record(pass, number); });
     return t.result();
   }
 
@@ -98,68 +66,75 @@ class Stepper {
   /// null. `update`: its number, the first is 1.
   std::optional<StageEvent> step_checked(std::int64_t update, const StageLimits* limits,
                                          const Fault* fault) {
-    StageCheck<Real, Exec> check(exec_, p_, axes_, update, limits, fault);
-    step_seen([&](const std::string& stage, int sweep) {
-      const bool lists = stage == "neighbors";
-      if (lists) exec_.for_each(p_.n, ListSizePass<Lists>{lists_, a_.sort_order()});  // free by now
-      check.look(stage, sweep,
-                 {(stage == "lambda" ? a_.other_position : a_.position).data(), a_.velocity.data(),
-                  stage == "density" ? a_.density.data() : nullptr, a_.id.data(),
-                  lists ? a_.sort_order() : nullptr});
-    });
+    StageCheck<Real, Exec> check(c_, plan_.axes, update, limits, fault);
+    step_seen([&](const PassInfo& pass, int number) { check.look(pass, number); });
     return check.event();
   }
 
-  int size() const { return p_.n; }
+  int size() const { return c_.rows(); }
+  int placement() const { return c_.placement(); }
 
-  /// Others differ in what goes with the time step.
-  void set_params(const Params<Real>& p) { p_ = p; }
+  /// From now on steps of `scene`, with parameters p, by that program.
+  void use(const Scene& scene, const Params<Real>& p, const Program& program) {
+    c_.scene = in_internal_axes(scene, plan_.axes);
+    c_.p = p;
+    program_ = &program;
+  }
 
   /// The rest of the state stays empty.
   SolverState positions() {
     SolverState s;
-    s.position = rows_by_id(exec_, axes_, std::size_t(p_.n), a_.position.data(), a_.id.data());
+    s.position = rows_by_id(c_.exec, plan_.axes, std::size_t(size()), c_.position(), c_.ids());
     return s;
   }
   SolverState state(std::int64_t updates, std::int64_t steps) {
-    return download_state<Real>(exec_, std::size_t(p_.n), axes_, a_.state(), updates, steps);
+    return downloaded(c_.state(), updates, steps);
   }
-
+  SolverState state(Saved& s, std::int64_t updates, std::int64_t steps) {
+    return downloaded(s.state(), updates, steps);
+  }
   /// Takes over a state of as many particles, in any order.
   void set_state(const SolverState& s) {
-    upload_state<Real>(exec_, axes_, s, a_.state());
+    upload_state<Real>(c_.exec, plan_.axes, s, c_.state());
     moved();
   }
-
-  /// Whether an update looks at pairs. Without sweeps, viscosity and vorticity it only moves
-  /// particles, and lists are made where a measure or a download asks for the density.
-  bool has_pairs() const { return iterations_ > 0 || p_.xsph > Real(0) || p_.vorticity > Real(0); }
+  void save(Saved& s) { s.save(c_); }
+  void restore(Saved& s) {
+    s.restore(c_);
+    moved();
+  }
 
   /// Makes lists at the present positions, where there are none, and says so. Those of the last
   /// update do not do: they name the pairs of its predicted positions, and a density summed over
   /// them misses every pair that has come nearer since. Rows are in the order of bin and id, so
   /// this sort changes no bit of the updates that follow.
   bool find_pairs() {
-    if (lists_are_current_) return false;
-    reorder_as_is({"measure", "measure", "measure"});
+    if (c_.lists_are_current) return false;
+    c_.booked_as = "measure";
+    for (const int pass : {Passes::index_of<Sort>(), Passes::index_of<MakeLists>()}) launch(pass);
+    c_.booked_as = nullptr;
     return true;
   }
-
-  /// Where the arrays of the state lie: updates that were recorded hold for one such place.
-  int placement() const { return a_.placement(); }
+  /// New lists at the present positions, after the executor has been given more room for them.
+  void relist() {
+    c_.make_lists();
+    density_is_current_ = false;
+    sum_density();
+  }
 
   /// Sums at the present positions, over lists of their own.
   MeasureSums measure() {
-    exec_.begin();
+    c_.exec.begin();
     find_pairs();
     sum_density();
-    auto sums = exec_.reduce(
-        p_.n, MeasurePass<Real, Lists>{p_, lists_, a_.position.data(), a_.velocity.data(),
-                                       a_.density.data(), a_.counts.data()});
+    const int n = size();
+    auto sums =
+        c_.exec.reduce(n, MeasurePass<Real, Lists>{c_.p, c_.lists, c_.position(), c_.velocity(),
+                                                   c_.density(), c_.counts()});
     sums.compression_p99 = compression_percentile(
-        exec_.count_in_bins(p_.n, kCompressionBins, CompressionBinPass<Real>{a_.density.data()}),
-        p_.n - p_.n / 100, p_.n, sums.compression_max);
-    exec_.mark("measure");
+        c_.exec.count_in_bins(n, kCompressionBins, CompressionBinPass<Real>{c_.density()}),
+        n - n / 100, n, sums.compression_max);
+    c_.exec.mark("measure");
     return sums;
   }
 
@@ -167,231 +142,93 @@ class Stepper {
   template <class Out>
   void export_to(double h, double rest_density, const Double3& origin, Out* position, Out* velocity,
                  Out* density) {
-    exec_.begin();
+    c_.exec.begin();
     if (density) {
       find_pairs();
       sum_density();
     }
-    const auto from = [&](int k) { return origin[std::size_t(axes_.of[k])]; };
-    exec_.for_each(p_.n, ExportPass<Real, Out>{h,
-                                               rest_density,
-                                               {from(0), from(1), from(2)},
-                                               axes_,
-                                               a_.position.data(),
-                                               a_.velocity.data(),
-                                               a_.density.data(),
-                                               a_.id.data(),
-                                               position,
-                                               velocity,
-                                               density});
-    exec_.mark("download");
+    const auto from = [&](int k) { return origin[std::size_t(plan_.axes.of[k])]; };
+    c_.each(ExportPass<Real, Out>{h,
+                                  rest_density,
+                                  {from(0), from(1), from(2)},
+                                  plan_.axes,
+                                  c_.position(),
+                                  c_.velocity(),
+                                  c_.density(),
+                                  c_.ids(),
+                                  position,
+                                  velocity,
+                                  density});
+    c_.exec.mark("download");
   }
 
   /// The particles have moved, also by a replay of recorded updates (an even number of them):
   /// nothing that was summed or listed before holds.
-  void moved() { density_is_current_ = lists_are_current_ = false; }
+  void moved() { density_is_current_ = c_.lists_are_current = false; }
 
-  /// New lists at the present positions, after the executor has been given more room for them.
-  void relist() {
-    lists_ = exec_.build_lists(a_.position.data(), a_.bin_start.data(), p_);
-    density_is_current_ = false;
-    sum_density();
-  }
-
-  using Saved = typename ParticleArrays<Real, Exec>::Saved;
-  void save(Saved& s) { a_.save(exec_, s); }
-  void restore(Saved& s) {
-    a_.restore(exec_, s);
-    moved();
-  }
-  SolverState state(Saved& s, std::int64_t updates, std::int64_t steps) {
-    return download_state<Real>(exec_, std::size_t(p_.n), axes_, s.state(), updates, steps);
-  }
-
-  std::size_t bytes() const { return a_.bytes() + exec_.bytes(); }
+  std::size_t bytes() const { return c_.bytes() + c_.exec.bytes(); }
 
  private:
-  /// Names under which the parts of a sort with new lists are timed: the pass before it, the sort,
-  /// the lists.
-  struct SortStages {
-    const char *first, *grid, *lists;
-  };
-  static constexpr SortStages kUpdateStages{"predict", "grid", "neighbors"};
-
-  /// Substeps first..last-1 share their lists; range number `number` of the update.
-  struct SubstepRange {
-    int number = -1, first = 0, last = 0, sweeps = 0;
-  };
-  /// On to the next range of an update; false after the last one. The ranges are as equal as can
-  /// be.
-  bool next_range(SubstepRange& r) const {
-    if (++r.number == lists_per_update_) return false;
-    r.first = r.last;
-    r.last = int(std::int64_t(substeps_) * (r.number + 1) / lists_per_update_);
-    return true;
+  void launch(int pass) {
+    Passes::launch(pass, c_);
+    c_.exec.mark(c_.booked(pass_infos()[std::size_t(pass)].stage));
   }
 
-  /// One update, one pass after the other: the bits of step(1). `seen(stage, sweep)` may look at
-  /// what each stage left behind.
+  void run(const Steps& steps) {
+    run(steps, [](int) {});
+  }
+  /// `seen(pass)` may look at what each pass left behind.
+  template <class Seen>
+  void run(const Steps& steps, const Seen& seen) {
+    for (const ProgramStep& s : steps) switch (s.kind) {
+        case ProgramStep::pass:
+          launch(s.index);
+          seen(s.index);
+          break;
+        case ProgramStep::iterate:
+          c_.iterating = true;
+          for (int k = 0; k < s.times; ++k) {
+            c_.iteration = s.first + k;
+            ++c_.iterations;
+            run(s.body, seen);
+          }
+          c_.iterating = false;
+          break;
+        case ProgramStep::until:
+          c_.exec.repeat_while("residual", size(), s.times, ResidualPass<Real>{c_.density()},
+                               residual_limit_, &c_.counts()->rounds, [&] { run(s.body, seen); });
+          break;
+      }
+  }
+
+  /// One update, one pass after the other: the bits of step(1). `seen(pass, number)`: of the
+  /// substep, of the iteration since the lists were made, or 0 behind the substeps.
   template <class Seen>
   void step_seen(const Seen& seen) {
-    exec_.begin();
-    SubstepRange r;
-    while (next_range(r)) {
-      move();
-      seen("predict", r.first);
-      reorder_as_is(kUpdateStages);
-      seen("grid", r.first);
-      seen("neighbors", r.first);
-      solve(r, seen, false);
-    }
-    finish_update(seen);
+    c_.exec.begin();
+    int substep = -1;
+    run(program_->update, [&](int index) {
+      if (index == Passes::index_of<Predict>()) ++substep;
+      const bool start = index <= Passes::index_of<MakeLists>();
+      seen(pass_infos()[std::size_t(index)], c_.iterating ? c_.iterations : start ? substep : 0);
+    });
     moved();
-  }
-
-  /// Runs the pass that gives every particle its bin, sorts and gathers the particles by bin (as
-  /// predicted, with `moving`), makes the lists.
-  template <bool moving, class First>
-  void reorder(const SortStages& stages, const First& first) {
-    exec_.sort_by_bin(
-        stages.first, first, p_.n, bin_count(p_), a_.id.data(), a_.sort_order(),
-        a_.bin_start.data(),
-        GatherPass<Real, moving>{p_, a_.position.data(), a_.velocity.data(), a_.id.data(),
-                                 a_.other_position.data(), a_.other_velocity.data(),
-                                 a_.other_id.data(), a_.counts.data()});
-    a_.swap();
-    exec_.mark(stages.grid);
-    lists_ = exec_.build_lists(a_.position.data(), a_.bin_start.data(), p_);
-    lists_are_current_ = true;
-    exec_.mark(stages.lists);
-  }
-
-  /// x* and the velocity that goes with it, in place.
-  void move() {
-    exec_.for_each(p_.n,
-                   MovePass<Real>{p_, a_.position.data(), a_.velocity.data(), a_.counts.data()});
-    exec_.mark("predict");
-  }
-
-  /// The same with the positions as they are.
-  void reorder_as_is(const SortStages& stages) {
-    with_dimensions(p_.dimensions, [&](auto d) {
-      reorder<false>(stages,
-                     BinPass<Real, decltype(d)::value>{p_, a_.position.data(), a_.bin.data()});
-    });
-  }
-
-  /// The sweeps of the first substep of a range, whose x* is there already, then its other substeps
-  /// with the same lists. Rounds of sweeps go on while the mean compression that the last sweep
-  /// found is above the tolerance. `seen(stage, sweep)` may look at what each stage left behind.
-  /// With `joined`, the last sweep of a substep also takes the particles to the next one: the same
-  /// arithmetic in one launch less.
-  template <class Seen>
-  void solve(SubstepRange& range, const Seen& seen, bool joined) {
-    joined = joined && iterations_ > 0 && more_rounds_ == 0;
-    for (int s = range.first; s < range.last; ++s) {
-      if (s > range.first && !joined) {
-        move();
-        seen("predict", s);
-      }
-      with_smoothing(mode_, p_.dimensions, [&](auto smoothing) {
-        const auto round = [&] {
-          for (int k = 0; k < iterations_; ++k) {
-            p_.sor = sor_[std::size_t(k)];
-            const bool moves_on = joined && k == iterations_ - 1 && s < range.last - 1;
-            sweep<decltype(smoothing)::value>(seen, ++range.sweeps, moves_on);
-          }
-        };
-        round();
-        if (more_rounds_ > 0)
-          exec_.repeat_while("residual", p_.n, more_rounds_, ResidualPass<Real>{a_.density.data()},
-                             residual_limit_, &a_.counts.data()->rounds, round);
-      });
-    }
-  }
-
-  /// What comes after the sweeps, in passes of their own.
-  template <class Seen>
-  void finish_update(const Seen& seen) {
-    if (p_.xsph > Real(0)) {
-      with_smoothing(mode_, p_.dimensions,
-                     [&](auto s) { exec_.for_each(p_.n, xsph<decltype(s)::value, false>()); });
-      exec_.mark("xsph");
-      seen("xsph", 0);
-    }
-    if (!(p_.vorticity > Real(0))) return;
-    with_dimensions(p_.dimensions, [&](auto d) {
-      constexpr int D = decltype(d)::value;
-      exec_.for_each(p_.n, CurlPass<Real, Lists, D>{p_, lists_, a_.position.data(),
-                                                    a_.velocity.data(), a_.curl.data()});
-      seen("curl", 0);
-      exec_.for_each(p_.n, VorticityPass<Real, Lists, D>{p_, lists_, a_.position.data(),
-                                                         a_.curl.data(), a_.velocity.data()});
-    });
-    exec_.mark("vorticity");
-    seen("vorticity", 0);
-  }
-
-  template <Smoothing S, class Seen>
-  void sweep(const Seen& seen, int number, bool moves_on) {
-    if (!fused_) {
-      exec_.for_each(
-          p_.n, DensityPass<Real, Lists, S>{p_, lists_, a_.position.data(), a_.density.data()});
-      exec_.mark("density");
-      seen("density", number);
-    }
-    with_bool(fused_, [&](auto fused) {
-      exec_.for_each(p_.n, LambdaPass<Real, Lists, S, decltype(fused)::value>{
-                               p_, lists_, a_.position.data(), a_.other_position.data(),
-                               a_.density.data(), a_.velocity.data(), a_.counts.data()});
-    });
-    exec_.mark("lambda");
-    seen("lambda", number);
-    with_bool(tensile_, [&](auto tensile) {
-      exec_.for_each(
-          p_.n, DeltaPass<Real, Lists, S, decltype(tensile)::value>{
-                    p_, lists_, a_.other_position.data(), a_.density.data(), a_.id.data(),
-                    a_.position.data(), a_.velocity.data(), moves_on ? a_.counts.data() : nullptr});
-    });
-    exec_.mark("delta");
-    seen("delta", number);
-  }
-
-  void record(Tracer<Real, Exec>& t, const std::string& stage, int sweep) {
-    t.record(stage, sweep,
-             {a_.position.data(), a_.other_position.data(), a_.velocity.data(), a_.curl.data(),
-              a_.density.data(), a_.bin.data(), a_.id.data(), a_.other_id.data(), fused_},
-             lists_);
-  }
-
-  /// The pass over the present velocities, which it leaves behind in the other array.
-  template <Smoothing S, bool more_to_come>
-  XsphPass<Real, Lists, S, more_to_come> xsph() {
-    a_.swap_velocity();
-    return {p_,           lists_, a_.position.data(), a_.other_velocity.data(), a_.velocity.data(),
-            a_.bin.data()};
   }
 
   void sum_density() {
     if (density_is_current_) return;
-    with_smoothing(mode_, p_.dimensions, [&](auto s) {
-      exec_.for_each(p_.n, DensityPass<Real, Lists, decltype(s)::value>{
-                               p_, lists_, a_.position.data(), a_.density.data()});
-    });
+    Passes::launch(Passes::index_of<Density>(), c_);
     density_is_current_ = true;
   }
+  SolverState downloaded(const StateArrays<Real>& from, std::int64_t updates, std::int64_t steps) {
+    return download_state<Real>(c_.exec, std::size_t(size()), plan_.axes, from, updates, steps);
+  }
 
-  Exec& exec_;
-  Params<Real> p_;
-  Axes axes_;
-  KernelMode mode_;
-  int iterations_, substeps_, lists_per_update_, more_rounds_;
+  const Plan& plan_;
+  StepContext<Real, Exec> c_;
   std::uint64_t residual_limit_;
-  std::vector<Real> sor_;  ///< of each sweep
-  bool fused_, tensile_;
-  bool density_is_current_ = false, lists_are_current_ = false;
-  Lists lists_{};
-  ParticleArrays<Real, Exec> a_;
+  const Program* program_;
+  bool density_is_current_ = false;
 };
 
 }  // namespace pbf::inline PBF_VARIANT

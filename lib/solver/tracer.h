@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "kernels/axes.h"
-#include "kernels/neighbors.h"
-#include "kernels/vec3.h"
+#include "lib/program/pass.h"
 #include "lib/scene/random.h"
+#include "lib/solver/step_context.h"
 #include "lib/solver/step_trace.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -40,116 +40,81 @@ struct FlatListPass {
   }
 };
 
-/// The arrays of the step, in device-visible memory; row k belongs to particle id[k].
-template <class Real>
-struct TracedArrays {
-  Vec4<Real>*position, *other_position, *velocity, *curl;
-  Real* density;
-  int *bin, *id, *other_id;  ///< of what lies in the order before the sort: other_id
-  bool fused;                ///< the lambda pass has summed the density
-};
-
 template <class Real, class Exec>
 class Tracer {
  public:
-  Tracer(Exec& exec, int n, const Axes& axes, const TraceOptions& options)
-      : exec_(exec), n_(std::size_t(n)), axes_(axes), options_(options), random_(options.seed) {}
+  Tracer(StepContext<Real, Exec>& c, const Axes& axes, const TraceOptions& options)
+      : c_(c), n_(std::size_t(c.rows())), axes_(axes), options_(options), random_(options.seed) {}
 
-  /// Records what a stage has left behind.
-  template <class Lists>
-  void record(const std::string& stage, int sweep, const TracedArrays<Real>& a,
-              const Lists& neighbors) {
-    this->stage(stage, sweep, most_terms_);
-    if (stage == "predict") {
-      vectors("position", "h", a.position, a.id);
-      vectors("velocity", "h/s", a.velocity, a.id);
-    } else if (stage == "grid") {
-      scalars("bin", "1", a.bin, a.other_id);
-      vectors("position", "h", a.position, a.id);
-      vectors("velocity", "h/s", a.velocity, a.id);
-    } else if (stage == "neighbors") {
-      lists(neighbors, a.id);
-    } else if (stage == "density") {
-      scalars("density", "rho0", a.density, a.id);
-    } else if (stage == "lambda") {
-      if (a.fused) {
-        this->stage("density", sweep, most_terms_);
-        scalars("density", "rho0", a.density, a.id);
-        this->stage("lambda", sweep, most_terms_);
+  /// Records what a pass has left behind.
+  void record(const PassInfo& pass, int number) {
+    for (const Written& w : pass.writes) {
+      stage_ = w.stage ? w.stage : pass.stage;
+      sweep_ = number;
+      amplitude_ = options_.unit_roundoff * (w.sum ? 4 + std::sqrt(most_terms_) : 1);
+      const FieldInfo& f = *w.to.field;
+      const auto vectors = [&] { return w.to.other ? c_.other(f) : c_.vectors(f); };
+      const auto component = [](Vec4<Real>& x, int k) -> Real& { return (&x.x)[k]; };
+      const auto fourth = [](Vec4<Real>& x, int) -> Real& { return x.w; };
+      switch (w.part) {
+        case Written::hidden:
+          break;
+        case Written::vector:
+          array(w, 3, vectors(), component, w.axial ? axes_.handedness() : 1);
+          break;
+        case Written::fourth:
+          array(w, 1, vectors(), fourth);
+          break;
+        case Written::scalar:
+          if (f.type == Type::int32)
+            array(w, 1, c_.template data<int>(f), [](int& x, int) -> int& { return x; });
+          else
+            array(w, 1, c_.template data<Real>(f), [](Real& x, int) -> Real& { return x; });
+          break;
+        case Written::pairs:
+          lists();
+          break;
       }
-      fourth("lambda", "h^2", a.other_position, a.id);
-    } else if (stage == "delta") {
-      this->stage("delta", sweep);
-      vectors("position", "h", a.position, a.id);
-      fourth("1/density", "1/rho0", a.position, a.id);
-      vectors("velocity", "h/s", a.velocity, a.id);
-    } else if (stage == "curl") {
-      this->stage("vorticity", 0, most_terms_);
-      vectors("curl times its gain", "1/s", a.curl, a.id, axes_.handedness());
-    } else {
-      this->stage(stage, 0);
-      vectors("velocity", "h/s", a.velocity, a.id);
     }
   }
 
   StepTrace result() { return std::move(trace_); }
 
  private:
-  /// Names the stage of what follows. `terms`: those of the sums that it stores, 0: none.
-  void stage(const std::string& name, int sweep, double terms = 0) {
-    stage_ = name;
-    sweep_ = sweep;
-    amplitude_ = options_.unit_roundoff * (terms > 0 ? 4 + std::sqrt(terms) : 1);
-  }
-  /// Row k belongs to id[k], both in device-visible memory. sign: of the scene's vector, -1 for a
-  /// cross product in axes of the other hand.
-  void vectors(const char* quantity, const char* unit, Vec4<Real>* from, const int* id,
-               int sign = 1) {
-    array(
-        quantity, unit, 3, from, id, [](Vec4<Real>& x, int c) -> Real& { return (&x.x)[c]; }, sign);
-  }
-  /// The fourth component.
-  void fourth(const char* quantity, const char* unit, Vec4<Real>* from, const int* id) {
-    array(quantity, unit, 1, from, id, [](Vec4<Real>& x, int) -> Real& { return x.w; });
-  }
-  template <class T>
-  void scalars(const char* quantity, const char* unit, T* from, const int* id) {
-    array(quantity, unit, 1, from, id, [](T& x, int) -> T& { return x; });
-  }
-
-  template <class Lists>
-  void lists(const Lists& lists, const int* id) {
+  void lists() {
+    using Lists = typename Exec::Lists;
+    const Lists& lists = c_.lists;
+    Exec& exec = c_.exec;
     typename Exec::template Buffer<int> size, begin, flat;
     size.resize(n_);
-    exec_.for_each(int(n_), ListSizePass<Lists>{lists, size.data()});
+    exec.for_each(int(n_), ListSizePass<Lists>{lists, size.data()});
     std::vector<int> sizes = host(size.data()), starts(n_);
     int sum = 0;
     for (std::size_t k = 0; k < n_; ++k) starts[k] = sum, sum += sizes[k];
     if (n_ > 0) most_terms_ = 1 + *std::max_element(sizes.begin(), sizes.end());
     begin.resize(n_);
-    exec_.to_device(starts.data(), n_, begin.data());
+    exec.to_device(starts.data(), n_, begin.data());
     flat.resize(std::size_t(sum) + 1);
-    exec_.for_each(int(n_), FlatListPass<Lists>{lists, int(n_), begin.data(), flat.data()});
+    exec.for_each(int(n_), FlatListPass<Lists>{lists, int(n_), begin.data(), flat.data()});
     std::vector<int> all(std::size_t(sum), 0);
-    exec_.to_host(flat.data(), all.size(), all.data());
-    id_ = host(id);
+    exec.to_host(flat.data(), all.size(), all.data());
+    id_ = host(c_.ids());
     by_id(sizes, starts, all);
   }
 
   template <class T>
   std::vector<T> host(const T* from) {
     std::vector<T> v(n_);
-    exec_.to_host(from, n_, v.data());
+    c_.exec.to_host(from, n_, v.data());
     return v;
   }
   /// Records n rows of `components` scalars, component(row, c) of what lies at `from`; rounds them
-  /// and puts the values to follow in their place, where asked to.
+  /// and puts the values to follow in their place, where asked to. sign: of the scene's vector.
   template <class T, class Component>
-  void array(const char* quantity, const char* unit, int components, T* from, const int* id,
-             const Component& component, int sign = 1) {
+  void array(const Written& w, int components, T* from, const Component& component, int sign = 1) {
     std::vector<T> v = host(from);
-    id_ = host(id);
-    trace_.arrays.push_back({stage_, sweep_, quantity, unit, components, {}});
+    id_ = host(w.before_sort ? c_.template other_data<int>(field::id) : c_.ids());
+    trace_.arrays.push_back({stage_, sweep_, w.quantity, w.unit, components, {}});
     TraceArray& to = trace_.arrays.back();
     to.values.resize(n_ * std::size_t(components));
     const TraceArray* follow = followed(to);
@@ -168,7 +133,7 @@ class Tracer {
         }
       }
     if (!std::is_integral_v<Scalar> && (amplitude_ > 0 || follow))
-      exec_.to_device(v.data(), n_, from);
+      c_.exec.to_device(v.data(), n_, from);
   }
   /// The array of the other trace that belongs to the present one.
   const TraceArray* followed(const TraceArray& mine) {
@@ -200,7 +165,7 @@ class Tracer {
     }
   }
 
-  Exec& exec_;
+  StepContext<Real, Exec>& c_;
   std::size_t n_;
   Axes axes_;
   TraceOptions options_;

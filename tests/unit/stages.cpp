@@ -95,8 +95,8 @@ TEST_CASE("a solver books and a plan names listed stages only, and the list has 
     const Scene scene =
         load_scene(std::string(PBF_SOURCE_DIR) + "/configs/minimal.yaml", overrides).scene;
     Particles particles = emit_particles(scene, ".");
-    const Plan plan = make_plan(scene, std::int64_t(particles.position.size() / 3));
-    for (const PlanPass& p : plan.passes) CHECK(names.count(p.stage) == 1);
+    const Plan plan = make_plan(scene, std::int64_t(particles.size()));
+    for (const PassCount& c : count_passes(plan.program)) CHECK(names.count(c.pass->stage) == 1);
     const auto solver = make_solver(scene, plan, std::move(particles));
     solver->step(3);
     solver->measure();

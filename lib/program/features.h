@@ -1,0 +1,24 @@
+// All features, in the order of their passes in an update. This is the only list: every executor
+// instantiates the passes of these, and a program is built of them.
+#pragma once
+
+#include "lib/program/features/confinement.h"
+#include "lib/program/features/constraint.h"
+#include "lib/program/features/motion.h"
+#include "lib/program/features/viscosity.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+template <class... Fs>
+struct FeatureList {
+  using Passes = typename Joined<typename Fs::Passes...>::type;
+  template <class B>
+  static void add(const Scene& scene, B& b) {
+    (Fs::add(scene, b), ...);
+  }
+};
+
+using Features = FeatureList<Motion, Constraint, XsphViscosity, VorticityConfinement>;
+using Passes = Features::Passes;
+
+}  // namespace pbf::inline PBF_VARIANT

@@ -1,0 +1,132 @@
+// The density constraint: density, lambda and the position correction of one iteration, with the
+// artificial pressure in the latter's loop.
+#pragma once
+
+#include "kernels/pass_delta.h"
+#include "kernels/pass_lambda.h"
+#include "kernels/pass_residual.h"
+#include "lib/program/features/motion.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// What a pass gathers is the same in every form of it.
+template <template <class, class, Smoothing> class Pass>
+constexpr unsigned gathered = Pass<float, ChunkedLists, Smoothing::consistent>::gathers;
+
+struct Density {
+  static PassInfo info() {
+    return {"density",
+            "density",
+            {{&field::position}, {&field::lists}},
+            {{{&field::density}, Written::scalar, "density", "rho0", true}},
+            gathered<DensityPass>,
+            0};
+  }
+  template <class C>
+  static void launch(C& c) {
+    c.with_smoothing([&](auto s) {
+      c.each(DensityPass<typename C::Real, typename C::Lists, decltype(s)::value>{
+          c.p, c.lists, c.position(), c.density()});
+    });
+  }
+};
+
+template <bool with_density, class C>
+void launch_lambda(C& c) {
+  c.with_smoothing([&](auto s) {
+    c.each(LambdaPass<typename C::Real, typename C::Lists, decltype(s)::value, with_density>{
+        c.p, c.lists, c.position(), c.other(field::position), c.density(), c.velocity(),
+        c.counts()});
+  });
+}
+inline Written written_lambda() {
+  return {other(field::position), Written::fourth, "lambda", "h^2", true};
+}
+
+struct Lambda {
+  static PassInfo info() {
+    return {"lambda",           "lambda", {{&field::position}, {&field::lists}, {&field::density}},
+            {written_lambda()}, kPlace,   0};
+  }
+  template <class C>
+  static void launch(C& c) {
+    launch_lambda<false>(c);
+  }
+};
+
+struct DensityLambda {
+  static PassInfo info() {
+    return {"density+lambda",
+            "lambda",
+            {{&field::position}, {&field::lists}},
+            {{{&field::density}, Written::scalar, "density", "rho0", true, false, false, "density"},
+             written_lambda()},
+            kPlace,
+            1};
+  }
+  template <class C>
+  static void launch(C& c) {
+    launch_lambda<true>(c);
+  }
+};
+
+template <class C>
+void launch_delta(C& c, StepCounts* moves_on) {
+  auto p = c.p;
+  p.sor = c.sor();
+  c.with_smoothing([&](auto s) {
+    with_bool(c.scene.tensile && c.scene.tensile->k != 0, [&](auto tensile) {
+      c.each(DeltaPass<typename C::Real, typename C::Lists, decltype(s)::value,
+                       decltype(tensile)::value>{p, c.lists, c.other(field::position), c.density(),
+                                                 c.ids(), c.position(), c.velocity(), moves_on});
+    });
+  });
+}
+inline PassInfo delta_info(const char* name) {
+  return {name,
+          "delta",
+          {other(field::position), {&field::lists}, {&field::density}, {&field::velocity}},
+          {vector({&field::position}, "position", "h"),
+           {{&field::position}, Written::fourth, "1/density", "1/rho0"},
+           vector({&field::velocity}, "velocity", "h/s")},
+          kPlace | kLambda | kId};
+}
+
+struct Delta {
+  static PassInfo info() { return delta_info("delta"); }
+  template <class C>
+  static void launch(C& c) {
+    launch_delta(c, nullptr);
+  }
+};
+
+/// Takes the particles to the next substep as well: the same arithmetic in one launch less.
+struct DeltaPredict {
+  using Fuses = Pair<Delta, Predict>;
+  static PassInfo info() { return delta_info("delta+predict"); }
+  template <class C>
+  static void launch(C& c) {
+    launch_delta(c, c.counts());
+  }
+};
+
+struct Constraint {
+  using Passes = PassList<Density, Lambda, DensityLambda, Delta, DeltaPredict>;
+  template <class B>
+  static void add(const Scene& s, B& b) {
+    if (s.solver.iterations == 0)
+      return b.left_out("lambda and delta passes", "solver.iterations is 0");
+    if (s.solver.fused) {
+      b.template iteration<DensityLambda>();
+      b.left_out("density pass of its own", "solver.fused is true");
+    } else {
+      b.template iteration<Density>();
+      b.template iteration<Lambda>();
+    }
+    b.template iteration<Delta>();
+    if (!s.tensile || s.tensile->k == 0)
+      b.left_out("artificial pressure in the delta loop", "no key tensile");
+  }
+};
+
+}  // namespace pbf::inline PBF_VARIANT

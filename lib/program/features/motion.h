@@ -1,0 +1,100 @@
+// Prediction, order and lists: what every update with pairs begins with.
+#pragma once
+
+#include "kernels/pass_predict.h"
+#include "lib/program/as_types.h"
+#include "lib/program/pass.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// x* and the velocity that goes with it, in place.
+struct Predict {
+  static PassInfo info() {
+    return {"predict",
+            "predict",
+            {{&field::position}, {&field::velocity}},
+            {vector({&field::position}, "position", "h"),
+             vector({&field::velocity}, "velocity", "h/s")}};
+  }
+  template <class C>
+  static void launch(C& c) {
+    c.each(MovePass<typename C::Real>{c.p, c.position(), c.velocity(), c.counts()});
+  }
+};
+
+inline PassInfo sort_info(const char* name) {
+  std::vector<Access> reads{{&field::position}, {&field::velocity}, {&field::id}};
+  std::vector<Written> writes{{{&field::bin}, Written::scalar, "bin"},
+                              hidden({&field::order}),
+                              hidden({&field::bin_start}),
+                              vector({&field::position}, "position", "h"),
+                              vector({&field::velocity}, "velocity", "h/s"),
+                              hidden({&field::id})};
+  writes[0].before_sort = true;
+  return {name, "grid", std::move(reads), std::move(writes)};
+}
+
+/// Runs `first`, the pass that gives every particle its bin, then puts the particles in the order
+/// of bins; with `moving`, as predicted.
+template <bool moving, class C, class First>
+void sort_rows(C& c, const char* stage, const First& first) {
+  c.exec.sort_by_bin(
+      c.booked(stage), first, c.rows(), bin_count(c.p), c.ids(), c.sort_order(),
+      c.template data<int>(field::bin_start),
+      GatherPass<typename C::Real, moving>{c.p, c.position(), c.velocity(), c.ids(),
+                                           c.other(field::position), c.other(field::velocity),
+                                           c.template other_data<int>(field::id), c.counts()});
+  c.flip(field::position);
+  c.flip(field::velocity);
+  c.flip(field::id);
+}
+
+/// The positions as they are.
+struct Sort {
+  static PassInfo info() { return sort_info("sort"); }
+  template <class C>
+  static void launch(C& c) {
+    with_dimensions(c.p.dimensions, [&](auto d) {
+      sort_rows<false>(c, "predict",
+                       BinPass<typename C::Real, decltype(d)::value>{
+                           c.p, c.position(), c.template data<int>(field::bin)});
+    });
+  }
+};
+
+/// x* is computed for its bin, and once more where the particles are gathered, which is cheaper
+/// than writing and reading it.
+struct PredictSort {
+  using Fuses = Pair<Predict, Sort>;
+  static PassInfo info() { return sort_info("predict+sort"); }
+  template <class C>
+  static void launch(C& c) {
+    with_dimensions(c.p.dimensions, [&](auto d) {
+      sort_rows<true>(c, "predict",
+                      PredictPass<typename C::Real, decltype(d)::value>{
+                          c.p, c.position(), c.velocity(), c.template data<int>(field::bin)});
+    });
+  }
+};
+
+struct MakeLists {
+  static PassInfo info() {
+    return {"lists",
+            "neighbors",
+            {{&field::position}, {&field::bin_start}},
+            {{{&field::lists}, Written::pairs}}};
+  }
+  template <class C>
+  static void launch(C& c) {
+    c.make_lists();
+  }
+};
+
+/// Where they stand in an update is the program's own matter (program.cpp).
+struct Motion {
+  using Passes = PassList<Predict, Sort, PredictSort, MakeLists>;
+  template <class B>
+  static void add(const Scene&, B&) {}
+};
+
+}  // namespace pbf::inline PBF_VARIANT

@@ -1,0 +1,57 @@
+// XSPH viscosity, behind the last substep of an update.
+#pragma once
+
+#include "kernels/pass_xsph.h"
+#include "lib/program/features/motion.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// The velocities come out in the other array, and the arrays trade places. With `more_to_come` the
+/// pass also gives the particles their bins in the next update.
+template <bool more_to_come, class C, class Use>
+void with_xsph(C& c, const Use& use) {
+  c.flip(field::velocity);
+  c.with_smoothing([&](auto s) {
+    use(XsphPass<typename C::Real, typename C::Lists, decltype(s)::value, more_to_come>{
+        c.p, c.lists, c.position(), c.other(field::velocity), c.velocity(),
+        c.template data<int>(field::bin)});
+  });
+}
+inline PassInfo xsph_info(PassInfo writes, const char* name) {
+  writes.name = name;
+  writes.reads = {{&field::position}, {&field::velocity}, {&field::lists}};
+  writes.gathers = kPlace | kInverseDensity | kVelocity;
+  return writes;
+}
+
+struct Xsph {
+  static PassInfo info() {
+    return xsph_info({"", "xsph", {}, {vector({&field::velocity}, "velocity", "h/s")}}, "xsph");
+  }
+  template <class C>
+  static void launch(C& c) {
+    with_xsph<false>(c, [&](const auto& pass) { c.each(pass); });
+  }
+};
+
+struct XsphPredictSort {
+  using Fuses = Pair<Xsph, PredictSort>;
+  static PassInfo info() { return xsph_info(sort_info(""), "xsph+predict+sort"); }
+  template <class C>
+  static void launch(C& c) {
+    with_xsph<true>(c, [&](const auto& pass) { sort_rows<true>(c, "xsph", pass); });
+  }
+};
+
+struct XsphViscosity {
+  using Passes = PassList<Xsph, XsphPredictSort>;
+  template <class B>
+  static void add(const Scene& s, B& b) {
+    if (s.viscosity && s.viscosity->xsph != 0)
+      b.template after<Xsph>();
+    else
+      b.left_out("xsph pass", "no key viscosity");
+  }
+};
+
+}  // namespace pbf::inline PBF_VARIANT

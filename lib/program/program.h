@@ -1,0 +1,70 @@
+// What an update consists of: the one list that is executed, printed, counted and observed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/program/pass.h"
+#include "lib/scene/scene.h"
+
+namespace pbf::inline program_module {
+
+/// A pass, or passes that are repeated.
+struct ProgramStep {
+  enum Kind {
+    pass,
+    iterate,  ///< `body` for iterations first ... first + times - 1 of a substep
+    until     ///< `body` at most `times` times, while the mean compression is above the tolerance
+  };
+  Kind kind = pass;
+  int index = -1;  ///< of the pass in Passes (features.h)
+  int first = 0, times = 1;
+  std::vector<ProgramStep> body{};
+};
+using Steps = std::vector<ProgramStep>;
+
+struct Program {
+  /// An update pass by pass, as it is observed.
+  Steps update;
+  /// The same with passes joined that can be: n updates are first, rest, (next, rest) n - 1 times,
+  /// last, to the same bits.
+  Steps first, rest, next, last;
+  /// Every field of the passes, and those that a solver has in any case.
+  std::vector<const FieldInfo*> fields;
+
+  bool has_pairs() const { return !first.empty(); }  ///< else particles only move
+};
+
+/// A pass, and how often it comes; at most, where a tolerance decides.
+struct PassCount {
+  const PassInfo* pass;
+  int times;
+};
+std::vector<PassCount> count_passes(const Steps& steps);
+/// Those of an update in the middle of a run.
+std::vector<PassCount> count_passes(const Program& program);
+
+/// How an update is divided, and what may be repeated.
+struct UpdateShape {
+  int substeps = 1, lists_per_update = 1, more_rounds = 0;
+};
+
+/// The update of a scene, or its step without time.
+Program make_program(const Scene& scene, const UpdateShape& shape, bool without_time = false);
+
+/// What the passes say of themselves, by index in Passes.
+const std::vector<PassInfo>& pass_infos();
+
+struct LeftOut {
+  std::string what, because;  ///< e.g. "xsph", "no key viscosity"
+};
+/// The features that a scene does without.
+std::vector<LeftOut> features_left_out(const Scene& scene);
+
+/// "position velocity'"
+std::string field_names(const std::vector<Access>& fields);
+std::string field_names(const std::vector<Written>& fields);
+/// "position lambda", of the neighbours' rows that a pass reads.
+std::string gathers_text(const PassInfo& pass);
+
+}  // namespace pbf::inline program_module

@@ -1,0 +1,182 @@
+// What a pass is launched with: the arrays of the step by name, its parameters, the executor.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "kernels/cell_index.h"
+#include "kernels/params.h"
+#include "kernels/step_counts.h"
+#include "lib/base/release.h"
+#include "lib/program/as_types.h"
+#include "lib/program/field.h"
+#include "lib/scene/scene.h"
+#include "lib/solver/state_transfer.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// The fields of a program in the memory of an executor, and the parts of a step around them.
+template <class RealType, class Exec>
+struct StepContext {
+  using Real = RealType;
+  using Lists = typename Exec::Lists;
+  template <class T>
+  using Buffer = typename Exec::template Buffer<T>;
+
+  StepContext(Exec& executor, Scene along_axes, const Params<Real>& parameters)
+      : exec(executor), scene(std::move(along_axes)), p(parameters) {}
+
+  Exec& exec;
+  Scene scene;  ///< along the internal axes, with the present step
+  Params<Real> p;
+  Lists lists{};
+  bool lists_are_current = false;
+  const char* booked_as = nullptr;  ///< instead of the passes' own stages
+  int iteration = 0;                ///< of the substep
+  int iterations = 0;               ///< since the lists were made
+  bool iterating = false;
+  std::vector<Real> factors{};  ///< omega of each iteration
+
+  // What passes use.
+  int rows() const { return n_; }
+  template <class Pass>
+  void each(const Pass& pass) {
+    exec.for_each(n_, pass);
+  }
+  template <class F>
+  void with_smoothing(F&& f) const {
+    pbf::with_smoothing(scene.solver.kernels, scene.dimensions, f);
+  }
+  Real sor() const { return factors[std::size_t(iteration)]; }
+  const char* booked(const char* stage) const { return booked_as ? booked_as : stage; }
+  void make_lists() {
+    lists = exec.build_lists(position(), data<int>(field::bin_start), p);
+    lists_are_current = true;
+    iterations = 0;
+  }
+
+  // Arrays. The other one of two is written by passes that reorder or overwrite, then flipped.
+  template <class T>
+  T* data(const FieldInfo& f) {
+    Slot& s = slot(f);
+    return reinterpret_cast<T*>(s.rows[s.now].data());
+  }
+  template <class T>
+  T* other_data(const FieldInfo& f) {
+    Slot& s = slot(f);
+    return reinterpret_cast<T*>(s.rows[1 - s.now].data());
+  }
+  void flip(const FieldInfo& f) { slot(f).now ^= 1; }
+  Vec4<Real>* vectors(const FieldInfo& f) { return data<Vec4<Real>>(f); }
+  Vec4<Real>* other(const FieldInfo& f) { return other_data<Vec4<Real>>(f); }
+  Vec4<Real>* position() { return vectors(field::position); }
+  Vec4<Real>* velocity() { return vectors(field::velocity); }
+  Real* density() { return data<Real>(field::density); }
+  int* ids() { return data<int>(field::id); }
+  /// rows() numbers: the order of a sort, free after it.
+  int* sort_order() {
+    return Exec::order_in_place ? other_data<int>(field::id) : data<int>(field::order);
+  }
+  StepCounts* counts() { return counts_.data(); }
+  StateArrays<Real> state() { return {position(), velocity(), ids(), counts()}; }
+
+  /// Which of the two arrays each field lies in, as bits: updates that were recorded hold for one
+  /// such placement.
+  int placement() const {
+    int bits = 0, bit = 1;
+    for (const Slot& s : slots_)
+      if (s.info->doubled) bits |= s.now ? bit : 0, bit *= 2;
+    return bits;
+  }
+
+  /// Makes the arrays of n particles and takes over their state, whose vectors are empty then.
+  void make(const std::vector<const FieldInfo*>& fields, std::vector<Vec4<Real>>& first_position,
+            std::vector<Vec4<Real>>& first_velocity, std::vector<int>& first_id);
+
+  std::size_t bytes() const {
+    std::size_t sum = 0;
+    for (const Slot& s : slots_) sum += s.rows[0].bytes() + s.rows[1].bytes();
+    return sum;
+  }
+
+ private:
+  struct Slot {
+    const FieldInfo* info;
+    Buffer<char> rows[2];
+    int now = 0;
+  };
+  Slot& slot(const FieldInfo& f) {
+    std::size_t k = 0;
+    while (slots_[k].info != &f) ++k;
+    return slots_[k];
+  }
+
+  int n_ = 0;
+  std::vector<Slot> slots_;  ///< a dozen: a linear search beats a map
+  Buffer<StepCounts> counts_;
+};
+
+template <class Real, class Exec>
+void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
+                                   std::vector<Vec4<Real>>& first_position,
+                                   std::vector<Vec4<Real>>& first_velocity,
+                                   std::vector<int>& first_id) {
+  const std::size_t n = first_position.size();
+  n_ = int(n);
+  for (const FieldInfo* f : fields) {
+    if (f == &field::order && Exec::order_in_place) continue;
+    const std::size_t count = f->rows == Rows::bins     ? std::size_t(bin_count(p)) + 1
+                              : f->rows == Rows::padded ? n + Exec::padding
+                                                        : n;
+    const std::size_t row =
+        std::size_t(f->components) * (f->type == Type::real ? sizeof(Real) : sizeof(int));
+    slots_.push_back({f, {}, 0});
+    for (int k = 0; k < (f->doubled ? 2 : 1); ++k) {
+      slots_.back().rows[k].resize(count * row);
+      if (f->rows != Rows::padded) continue;
+      // Behind the last row: infinitely far away for any kernel, and at rest.
+      const Real far = f == &field::position ? Real(1e9) : Real(0);
+      const std::vector<Vec4<Real>> rows(Exec::padding,
+                                         {far, far, far, Real(f == &field::position ? 1 : 0)});
+      auto* to = reinterpret_cast<Vec4<Real>*>(slots_.back().rows[k].data());
+      exec.to_device(rows.data(), rows.size(), to + n);
+    }
+  }
+  counts_.resize(1);
+  const StepCounts none;
+  exec.to_device(&none, 1, counts());
+  exec.to_device(first_position.data(), n, position());
+  exec.to_device(first_velocity.data(), n, velocity());
+  exec.to_device(first_id.data(), n, ids());
+  release(first_position);  // before the lists are made
+  release(first_velocity);
+  release(first_id);
+}
+
+/// A copy of the state, from which the updates since can be repeated.
+template <class Real, class Exec>
+struct SavedState {
+  template <class T>
+  using Buffer = typename Exec::template Buffer<T>;
+  Buffer<Vec4<Real>> position, velocity;
+  Buffer<int> id;
+  Buffer<StepCounts> counts;
+
+  bool empty() const { return counts.size() == 0; }
+  StateArrays<Real> state() { return {position.data(), velocity.data(), id.data(), counts.data()}; }
+  std::size_t bytes() const { return position.bytes() + velocity.bytes() + id.bytes(); }
+
+  void save(StepContext<Real, Exec>& c) {
+    const auto n = std::size_t(c.rows());
+    position.resize(n);
+    velocity.resize(n);
+    id.resize(n);
+    counts.resize(1);
+    c.each(CopyStatePass<Real>{c.state(), state()});
+  }
+  void restore(StepContext<Real, Exec>& c) { c.each(CopyStatePass<Real>{state(), c.state()}); }
+};
+
+}  // namespace pbf::inline PBF_VARIANT
