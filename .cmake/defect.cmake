@@ -18,7 +18,8 @@ if(PBF_DEFECT)
   if(NOT defect_file)
     message(FATAL_ERROR "PBF_DEFECT=${PBF_DEFECT}: no such entry in ${defect_table}")
   endif()
-  file(GLOB sources RELATIVE ${PROJECT_SOURCE_DIR} kernels/*.h lib/exec/cpu/*.h lib/exec/cpu/*.cpp
+  file(GLOB sources RELATIVE ${PROJECT_SOURCE_DIR} kernels/*.h kernels/boundary/*.h
+       lib/program/features/*.h lib/exec/cpu/*.h lib/exec/cpu/*.cpp
        lib/solver/*.h)
   foreach(source IN LISTS sources)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${source})

@@ -6,11 +6,10 @@
 
 #include <cstdint>
 
+#include "kernels/boundary/box.h"
 #include "kernels/vec3.h"
 
 namespace pbf::inline PBF_VARIANT {
-
-enum WallBit : unsigned { x_min = 1, x_max = 2, y_min = 4, y_max = 8, z_min = 16, z_max = 32 };
 
 /// Where all the fluid would rest, for the measures: on the wall that gravity points at, between
 /// walls on all four sides. axis -1: there is no such place.
@@ -23,8 +22,6 @@ struct RestPool {
 
 template <class Real>
 struct Params {
-  int n = 0;                        ///< particles here
-  std::int64_t total = 0;           ///< of the whole scene: decides how a sum is shared by threads
   int dimensions = 3;               ///< 2: every y is 0, and v_y
   Real dt = 0, inv_dt = 0;          ///< s, 1/s
   Vec3<Real> gravity;               ///< h/s^2
@@ -33,12 +30,7 @@ struct Params {
   bool limit_speed = false;         ///< ... and slowed down to it
   /// (h/s)^2, faster ones look how they pass their neighbours in the first sweep.
   Real passing_squared = Real(1e30);
-  Vec3<Real> box;            ///< h, extent of the domain
-  Real margin = 0;           ///< h, distance to a wall at which particles are clamped
-  unsigned walls = 63;       ///< WallBit mask of the faces that are walls
-  bool wall_density = true;  ///< walls contribute to density (boundary: density)
-  Real wall_scale = 1;       ///< amplitude of that contribution, kernels/README.md (9)
-  Real wall_inv_range = 1;   ///< h over the range of that contribution
+  Box<Real> boundary;
   int cells_x = 1, cells_y = 1, cells_z = 1;  ///< cells_x counts half cells; in 2-D cells_y = 1
   int first_layer = 0, layers = 1;            ///< of cells along z: those that have bins here
   Real inv_cell = 1;                          ///< 1/h, one over the edge of a cell (>= h)

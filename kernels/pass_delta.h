@@ -2,7 +2,6 @@
 // artificial pressure eq. 13; walls as in boundary.h.
 #pragma once
 
-#include "kernels/boundary.h"
 #include "kernels/pair_sum.h"
 #include "kernels/pass_predict.h"
 
@@ -83,10 +82,10 @@ struct DeltaPass {
     const Vec3<Real> pairs = in_space(s.move);
     const Vec3<Real> move = s.closeness > Real(0.5e12) ? pairs + separate(i, own) : pairs;
     const Real a = p.vol * Spiky<Real, D>::gradient_norm;
-    const Vec3<Real> wall = own.w * wall_term<Real, S>(x, p).gradient;
+    const Vec3<Real> wall = own.w * p.boundary.template term<S>(x).gradient;
     const Vec3<Real> free = p.sor * (a * move + wall);
     const Vec3<Real> target = x + free;
-    const Vec3<Real> inside = clamp_inside(target, p);
+    const Vec3<Real> inside = p.boundary.path_end(x, target);
     const Vec3<Real> v = xyz(velocity[i]) + p.inv_dt * (free + (inside - target));
     if (moves_on) {
       move_on(i, inside, v, p, position_out, velocity, moves_on);

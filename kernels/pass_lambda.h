@@ -1,7 +1,6 @@
 // density and lambda. Macklin & Mueller 2013, eq. 2 (density), 1 (C), 8 (gradient), 11 (lambda).
 #pragma once
 
-#include "kernels/boundary.h"
 #include "kernels/pair_sum.h"
 #include "kernels/relative_motion.h"
 
@@ -43,7 +42,7 @@ struct DensityPass {
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
     // 1: the particle itself.
     density[i] = p.vol * density_norm<Real, S>() * (Real(1) + s.shape) +
-                 wall_term<Real, S>(in_space(x), p).density;
+                 p.boundary.template term<S>(in_space(x)).density;
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
@@ -114,7 +113,7 @@ struct LambdaPass {
     s.gradient = s.gradient + (t2 * root.inverse) * d;
   }
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
-    const WallTerm<Real> wall = wall_term<Real, S>(in_space(x), p);
+    const BoundaryTerm<Real> wall = p.boundary.template term<S>(in_space(x));
     Real rho;
     if constexpr (with_density) {
       rho = p.vol * density_norm<Real, S>() * (Real(1) + s.shape) + wall.density;

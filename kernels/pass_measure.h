@@ -39,14 +39,8 @@ struct MeasurePass {
     }
     s.above_1 = a.compression > 0.01 ? 1 : 0;
     s.above_10 = a.compression > 0.1 ? 1 : 0;
-    const double high[3] = {p.box.x, p.box.y, p.box.z};
-    for (int k = 0; k < 3; ++k) {
-      const double margin = p.margin;
-      const bool low_wall = p.walls & (1u << (2 * k)), high_wall = p.walls & (2u << (2 * k));
-      if (low_wall) s.penetration = max2(s.penetration, margin - a.x[k]);
-      if (high_wall) s.penetration = max2(s.penetration, a.x[k] - (high[k] - margin));
-      if ((low_wall && a.x[k] < 0) || (high_wall && a.x[k] > high[k])) s.outside = 1;
-    }
+    s.penetration = p.boundary.penetration(a.x);
+    s.outside = p.boundary.beyond(a.x) ? 1 : 0;
     s.neighbors = s.neighbors_max = lists.size(i);
     return s;
   }

@@ -2,7 +2,6 @@
 // 1-4.
 #pragma once
 
-#include "kernels/boundary.h"
 #include "kernels/cell_index.h"
 #include "kernels/step_counts.h"
 
@@ -24,7 +23,7 @@ PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p) {
   const bool fast = speed_squared > p.speed_squared;
   if (p.limit_speed && fast) v = square_root(p.speed_squared / speed_squared) * v;
   const Vec3<Real> free = mul_add(p.dt, v, x);
-  x = clamp_inside(free, p);
+  x = p.boundary.path_end(x, free);
   // Only a clamped coordinate changes v: elsewhere x - free is exactly 0.
   const Real mark = speed_squared > p.passing_squared ? Real(-1) : Real(1);
   return {x, mul_add(p.inv_dt, x - free, v), fast, mark};

@@ -22,7 +22,7 @@ PBF_HD void count_unresolved(int i, const Params<Real>& p, const Lists& lists,
   const Vec3<Real> way = p.dt * xyz(velocity[i]);
   Real longest(0);
   lists.for_each(i, [&](int j) {
-    if (j >= p.n) return;  // what fills up a list
+    if (j >= lists.far) return;  // what fills up a list
     const Vec3<Real> d = way - p.dt * xyz(velocity[j]);
     longest = max2(longest, dot(d, d));
   });

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "kernels/boundary.h"
+#include "kernels/boundary/box.h"
 #include "kernels/pass_predict.h"
 #include "lib/base/error.h"
 #include "lib/campaign/active_set.h"
@@ -53,18 +53,18 @@ template <Smoothing S>
 class Constraints {
  public:
   Constraints(const Params<double>& p, const std::vector<V4>& start)
-      : p_(p), exec_(1), start_(start), lists_(make_lists()) {}
+      : p_(p), n_(int(start.size())), exec_(1), start_(start), lists_(make_lists()) {}
 
   /// Values and Jacobian at x: n densities, then the walls near which a particle is.
   void linearise(const Vector& x, ConstraintSet& out) const {
     std::vector<Eigen::Triplet<double>> entries;
     std::vector<double> value;
-    for (int i = 0; i < p_.n; ++i) density_row(i, x, value, entries);
-    for (int i = 0; i < p_.n; ++i) wall_rows(i, x, value, entries);
+    for (int i = 0; i < n_; ++i) density_row(i, x, value, entries);
+    for (int i = 0; i < n_; ++i) wall_rows(i, x, value, entries);
     out.value = Eigen::Map<const Vector>(value.data(), Eigen::Index(value.size()));
-    out.jacobian.resize(out.value.size(), 3 * p_.n);
+    out.jacobian.resize(out.value.size(), 3 * n_);
     out.jacobian.setFromTriplets(entries.begin(), entries.end());
-    out.equalities = p_.two_sided ? p_.n : 0;
+    out.equalities = p_.two_sided ? n_ : 0;
   }
 
  private:
@@ -82,10 +82,11 @@ class Constraints {
     return Spiky<double, dimensions_of(S)>::gradient_norm * t * t * root.inverse;
   }
   V3 wall_gradient(const V3& x) const {
-    if (!is_paper(S)) return wall_term<double, S>(x, p_).gradient;
+    if (!is_paper(S)) return p_.boundary.template term<S>(x).gradient;
     const double e = 1e-5;  // central differences: error about 1e-10
     const auto along = [&](V3 d) {
-      return (wall_term<double, S>(x + d, p_).density - wall_term<double, S>(x - d, p_).density) /
+      return (p_.boundary.template term<S>(x + d).density -
+              p_.boundary.template term<S>(x - d).density) /
              (2 * e);
     };
     return {along({e, 0, 0}), along({0, e, 0}), along({0, 0, e})};  // y: 0 in two dimensions
@@ -111,19 +112,21 @@ class Constraints {
     });
     put(i, own);
     value.push_back(p_.vol * density_norm<double, S>() * sum +
-                    wall_term<double, S>(xi, p_).density - 1);
+                    p_.boundary.template term<S>(xi).density - 1);
   }
 
   /// Walls at which a particle within h of them (at the start) would be clamped.
   void wall_rows(int i, const Vector& x, std::vector<double>& value,
                  std::vector<Eigen::Triplet<double>>& entries) const {
-    const double box[3] = {p_.box.x, p_.box.y, p_.box.z};
+    const double box[3] = {p_.boundary.extent.x, p_.boundary.extent.y, p_.boundary.extent.z};
     const V4& s = start_[std::size_t(i)];
     const double from[3] = {s.x, s.y, s.z};
     for (int k = 0; k < 3; ++k)
       for (const int side : {0, 1}) {
-        const double limit = side ? box[k] - p_.margin : p_.margin, sign = side ? 1 : -1;
-        if (!(p_.walls & (1u << (2 * k + side))) || sign * (from[k] - limit) < -1) continue;
+        const double limit = side ? box[k] - p_.boundary.margin : p_.boundary.margin,
+                     sign = side ? 1 : -1;
+        if (!(p_.boundary.walls & (1u << (2 * k + side))) || sign * (from[k] - limit) < -1)
+          continue;
         entries.emplace_back(int(value.size()), 3 * i + k, sign);
         value.push_back(sign * (x[3 * i + k] - limit));
       }
@@ -131,7 +134,7 @@ class Constraints {
 
   /// Sorts `start_` by bin; order()[k] is then the index that particle k had.
   ChunkedLists make_lists() {
-    const int n = p_.n;
+    const int n = n_;
     std::vector<V4> from = start_;
     std::vector<int> bin(from.size()), row(from.size()), bin_order(from.size());
     std::iota(row.begin(), row.end(), 0);
@@ -143,10 +146,11 @@ class Constraints {
     };
     exec_.sort_by_bin("grid", BinPass<double, dimensions_of(S)>{p_, from.data(), bin.data()}, n,
                       bin_count(p_), row.data(), bin_order.data(), bin_start_.data(), gather);
-    return exec_.build_lists(start_.data(), bin_start_.data(), p_);
+    return exec_.build_lists(n, n, start_.data(), bin_start_.data(), p_);
   }
 
   Params<double> p_;
+  int n_;
   CpuExec exec_;
   std::vector<V4> start_;
   std::vector<int> order_, bin_start_;
@@ -155,8 +159,8 @@ class Constraints {
  public:
   const std::vector<int>& order() const { return order_; }
   Vector start() const {
-    Vector x(3 * p_.n);
-    for (int i = 0; i < p_.n; ++i) {
+    Vector x(3 * n_);
+    for (int i = 0; i < n_; ++i) {
       const V4& s = start_[std::size_t(i)];
       x[3 * i] = s.x, x[3 * i + 1] = s.y, x[3 * i + 2] = s.z;
     }

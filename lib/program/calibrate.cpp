@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "kernels/boundary.h"
+#include "kernels/boundary/box.h"
 
 namespace pbf::inline program_module {
 namespace {

@@ -9,7 +9,7 @@ namespace pbf::inline program_module {
 /// inside the rest lattice (cubic or square, spacing d = h/ratio) has density rho0 under the
 /// density kernel in use (lattice sum in double).
 ///
-/// A wall adds wall_scale * D(q / wall_range) to the density (kernels/boundary.h). The scale is
+/// A wall adds wall_scale * D(q / wall_range) to the density (kernels/boundary/box.h). The scale is
 /// such that a lattice layer at d/2 from the wall has density rho0. The range: fluid at rest keeps
 /// about half a spacing from the wall on either side, so what a particle would see of it behind the
 /// wall falls off faster than the half space of a continuum (wall_range 1). Height kept by tanks at

@@ -44,8 +44,6 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   const Scene s = in_internal_axes(scene, plan.axes);
   const double h = s.h();
   Params<Real> p;
-  p.n = int(plan.particles);
-  p.total = plan.particles;
   p.dimensions = s.dimensions;
   const double dt = s.time.step / plan.substeps;
   p.dt = Real(dt);
@@ -63,18 +61,19 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
     const double speed = kResolvedWay / 2 / dt;
     p.passing_squared = Real(std::min(speed * speed, 1e30));
   }
-  p.box = {Real((s.domain.max[0] - s.domain.min[0]) / h),
-           Real((s.domain.max[1] - s.domain.min[1]) / h),
-           Real((s.domain.max[2] - s.domain.min[2]) / h)};
-  p.margin = Real(s.solver.wall_margin / h);
+  Box<Real>& b = p.boundary;
+  b.extent = {Real((s.domain.max[0] - s.domain.min[0]) / h),
+              Real((s.domain.max[1] - s.domain.min[1]) / h),
+              Real((s.domain.max[2] - s.domain.min[2]) / h)};
+  b.margin = Real(s.solver.wall_margin / h);
   const char* faces[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
   for (const auto& open : s.domain.open)
     for (int k = 0; k < 6; ++k)
-      if (open == faces[k]) p.walls &= ~(1u << k);
-  if (s.dimensions == 2) p.walls &= ~(y_min | y_max);
-  p.wall_density = s.solver.boundary == BoundaryMode::density && p.walls != 0;
-  p.wall_scale = Real(plan.wall_scale);
-  p.wall_inv_range = Real(1 / plan.wall_range);
+      if (open == faces[k]) b.walls &= ~(1u << k);
+  if (s.dimensions == 2) b.walls &= ~(y_min | y_max);
+  b.adds_density = s.solver.boundary == BoundaryMode::density && b.walls != 0;
+  b.scale = Real(plan.wall_scale);
+  b.inv_range = Real(1 / plan.wall_range);
   p.cells_x = plan.cells[0];
   p.cells_y = plan.cells[1];
   p.cells_z = p.layers = plan.cells[2];
@@ -92,7 +91,7 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
         Real(1 / (s.solver.kernels == KernelMode::paper ? Poly6<double>::shape(q * q) : t * t * t));
     p.tensile_n = s.tensile->n;
   }
-  p.rest = rest_pool(s, plan.mass, plan.particles, p.walls);
+  p.rest = rest_pool(s, plan.mass, plan.particles, b.walls);
   if (s.viscosity) p.xsph = Real(s.viscosity->xsph);
   if (s.vorticity) p.vorticity = Real(s.vorticity->epsilon);
   p.update_dt = Real(s.time.step);

@@ -112,7 +112,7 @@ class StageCheck {
       if (finite && !is_finite(dot(xyz(v[k]), xyz(v[k]))))
         found(Alarm::non_finite, k, speed), finite = false;
       if (!finite) continue;
-      if (is_outside(x[k])) found(Alarm::outside, k, speed);
+      if (p_.boundary.beyond({values[0], values[1], values[2]})) found(Alarm::outside, k, speed);
       if (speed > limits_->speed) found(Alarm::speed, k, speed);
       if (a.neighbors && neighbors[k] > limits_->neighbors)
         found(Alarm::neighbors, k, neighbors[k]);
@@ -122,13 +122,6 @@ class StageCheck {
     }
     if (!event_ && energy > limits_->energy) found(Alarm::energy, fast, energy);
   }
-
-  bool is_outside(const Vec4<Real>& x) const {
-    return (wall(x_min) && x.x < 0) || (wall(x_max) && x.x > p_.box.x) ||
-           (wall(y_min) && x.y < 0) || (wall(y_max) && x.y > p_.box.y) ||
-           (wall(z_min) && x.z < 0) || (wall(z_max) && x.z > p_.box.z);
-  }
-  bool wall(WallBit bit) const { return (p_.walls & bit) != 0; }
 
   StepContext<Real, Exec>& c_;
   const Params<Real>& p_;

@@ -40,10 +40,10 @@ struct StepContext {
   std::vector<Real> factors{};  ///< omega of each iteration
 
   // What passes use.
-  int rows() const { return n_; }
+  int rows() const { return rows_; }  ///< in use
   template <class Pass>
   void each(const Pass& pass) {
-    exec.for_each(n_, pass);
+    exec.for_each(rows_, pass);
   }
   template <class F>
   void with_smoothing(F&& f) const {
@@ -52,7 +52,7 @@ struct StepContext {
   Real sor() const { return factors[std::size_t(iteration)]; }
   const char* booked(const char* stage) const { return booked_as ? booked_as : stage; }
   void make_lists() {
-    lists = exec.build_lists(position(), data<int>(field::bin_start), p);
+    lists = exec.build_lists(rows_, capacity_, position(), data<int>(field::bin_start), p);
     lists_are_current = true;
     iterations = 0;
   }
@@ -113,7 +113,7 @@ struct StepContext {
     return slots_[k];
   }
 
-  int n_ = 0;
+  int rows_ = 0, capacity_ = 0;
   std::vector<Slot> slots_;  ///< a dozen: a linear search beats a map
   Buffer<StepCounts> counts_;
 };
@@ -124,7 +124,7 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
                                    std::vector<Vec4<Real>>& first_velocity,
                                    std::vector<int>& first_id) {
   const std::size_t n = first_position.size();
-  n_ = int(n);
+  rows_ = capacity_ = int(n);
   for (const FieldInfo* f : fields) {
     if (f == &field::order && Exec::order_in_place) continue;
     const std::size_t count = f->rows == Rows::bins     ? std::size_t(bin_count(p)) + 1

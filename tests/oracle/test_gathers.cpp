@@ -28,7 +28,7 @@ struct Rows {
 template <class Real>
 Params<Real> parameters() {
   Params<Real> p;
-  p.box = {Real(3), Real(3), Real(3)};
+  p.boundary.extent = {Real(3), Real(3), Real(3)};
   p.cells_x = 8, p.cells_y = p.cells_z = p.layers = 4;
   p.dt = Real(0.01), p.inv_dt = Real(100);
   p.vol = Real(0.1);
@@ -52,14 +52,12 @@ Rows<Real> random_rows(Params<Real>& p) {
     x.push_back(flat({3 * r(), 3 * r(), 3 * r(), Real(0.8) + r()}));
     if (i % 40 == 39) x[std::size_t(i)] = x[std::size_t(i) - 1];
   }
-  p.n = int(x.size());
-  p.total = p.n;
   p.dimensions = D;
   if (D == 2) p.cells_y = 1;
   std::vector<int> bin, id(x.size()), order(x.size()), start(std::size_t(bin_count(p)) + 1);
   for (const auto& at : x) bin.push_back(bin_of<D>(xyz(at), p));
   std::iota(id.begin(), id.end(), 0);
-  CpuExec(1).sort(bin.data(), id.data(), p.n, bin_count(p), order.data(), start.data());
+  CpuExec(1).sort(bin.data(), id.data(), int(x.size()), bin_count(p), order.data(), start.data());
   for (const int k : order) {
     rows.position.push_back(x[std::size_t(k)]);
     rows.velocity.push_back(flat({r(), r(), r(), 0}));
@@ -97,12 +95,13 @@ template <class Real, int D, class Make>
 void check(const Make& make) {
   Params<Real> p = parameters<Real>();
   const Rows<Real> rows = random_rows<Real, D>(p);
+  const int n = int(rows.density.size());
   std::vector<int> start(std::size_t(bin_count(p)) + 1, 0);
-  for (int i = 0; i < p.n; ++i)
+  for (int i = 0; i < n; ++i)
     ++start[std::size_t(bin_of<D>(xyz(rows.position[std::size_t(i)]), p)) + 1];
   for (std::size_t b = 1; b < start.size(); ++b) start[b] += start[b - 1];
   CpuExec exec(1);
-  const ChunkedLists lists = exec.build_lists(rows.position.data(), start.data(), p);
+  const ChunkedLists lists = exec.build_lists(n, n, rows.position.data(), start.data(), p);
 
   const auto result = [&](Rows<Real> in, int i) {
     Rows<Real> out = in;
@@ -120,7 +119,7 @@ void check(const Make& make) {
   const unsigned gathers = decltype(make(p, lists, any, any))::gathers;
   REQUIRE((gathers & kPlace) != 0);
   unsigned seen = 0;
-  for (int i = 0; i < p.n; ++i) {
+  for (int i = 0; i < n; ++i) {
     const std::vector<Real> expected = result(rows, i);
     Rows<Real> spoilt = rows;
     unsigned others = ~gathers;

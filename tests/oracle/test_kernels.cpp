@@ -1,7 +1,7 @@
 // Smoothing functions and walls against quadrature and finite differences.
 #include <cmath>
 
-#include "kernels/boundary.h"
+#include "kernels/boundary/box.h"
 #include "kernels/smoothing.h"
 #include "tests/catch.h"
 #include "tests/oracle/quadrature.h"
@@ -87,16 +87,16 @@ TEST_CASE("the density at an edge by inclusion-exclusion is within 1 % of rho0 o
 }
 
 TEST_CASE("the walls' gradient is the derivative of their density in the consistent mode") {
-  Params<double> p;
-  p.box = {3, 2.5, 1.6};  // the last one: opposite walls closer than 2 h
-  p.wall_scale = 1.2;
-  p.wall_inv_range = 1 / 0.7;
+  Box<double> box;
+  box.extent = {3, 2.5, 1.6};  // the last one: opposite walls closer than 2 h
+  box.scale = 1.2;
+  box.inv_range = 1 / 0.7;
   for (Vec3<double> x :
        {Vec3<double>{0.2, 0.3, 0.1}, {2.8, 1.2, 0.8}, {0.5, 2.2, 1.5}, {1.5, 1.2, 0.8}}) {
-    const auto g = wall_term<double, Smoothing::consistent>(x, p).gradient;
+    const auto g = box.term<Smoothing::consistent>(x).gradient;
     const double e = 1e-6;
     auto density = [&](double dx, double dy, double dz) {
-      return wall_term<double, Smoothing::consistent>({x.x + dx, x.y + dy, x.z + dz}, p).density;
+      return box.term<Smoothing::consistent>({x.x + dx, x.y + dy, x.z + dz}).density;
     };
     CHECK(g.x == Approx((density(e, 0, 0) - density(-e, 0, 0)) / (2 * e)).margin(1e-7));
     CHECK(g.y == Approx((density(0, e, 0) - density(0, -e, 0)) / (2 * e)).margin(1e-7));

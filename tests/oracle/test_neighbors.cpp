@@ -18,8 +18,8 @@ template <int D, class Real>
 void check_lists(Simd simd, const std::vector<Vec4<Real>>& x, Vec3<Real> box, int nx, int ny,
                  int nz, int threads) {
   Params<Real> p;
-  p.n = int(x.size());
-  p.box = box;
+  const int n = int(x.size());
+  p.boundary.extent = box;
   p.dimensions = D;
   p.cells_x = 2 * nx;
   p.cells_y = ny;
@@ -27,10 +27,10 @@ void check_lists(Simd simd, const std::vector<Vec4<Real>>& x, Vec3<Real> box, in
   CpuExec exec(threads, 37, simd);
   std::vector<int> cell(x.size()), id(x.size()), order(x.size()),
       start(std::size_t(bin_count(p)) + 1);
-  for (int i = 0; i < p.n; ++i) cell[std::size_t(i)] = bin_of<D>(xyz(x[std::size_t(i)]), p);
+  for (int i = 0; i < n; ++i) cell[std::size_t(i)] = bin_of<D>(xyz(x[std::size_t(i)]), p);
   std::iota(id.begin(), id.end(), 0);
   std::shuffle(id.begin(), id.end(), std::mt19937(5));
-  exec.sort(cell.data(), id.data(), p.n, bin_count(p), order.data(), start.data());
+  exec.sort(cell.data(), id.data(), n, bin_count(p), order.data(), start.data());
 
   std::vector<Vec4<Real>> sorted(x.size());
   for (std::size_t k = 0; k < x.size(); ++k) {
@@ -43,11 +43,11 @@ void check_lists(Simd simd, const std::vector<Vec4<Real>>& x, Vec3<Real> box, in
       REQUIRE(key(k - 1) < key(k));
     }
   }
-  const auto lists = exec.build_lists(sorted.data(), start.data(), p);
-  for (int i = 0; i < p.n; ++i) {
+  const auto lists = exec.build_lists(n, n, sorted.data(), start.data(), p);
+  for (int i = 0; i < n; ++i) {
     std::vector<int> found, expected;
     lists.for_each(i, [&](int j) { found.push_back(j); });
-    for (int j = 0; j < p.n; ++j) {
+    for (int j = 0; j < n; ++j) {
       const auto &a = sorted[std::size_t(i)], &b = sorted[std::size_t(j)];
       const Real dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
       if (i != j && (D == 2 ? dx * dx + dz * dz : dx * dx + dy * dy + dz * dz) < Real(1))
@@ -206,15 +206,16 @@ struct Sorted {
     std::vector<int> bin, order(ids.size());
     for (const int i : ids) bin.push_back(bin_of<D>(xyz(all[std::size_t(i)]), p));
     for (const int b : bin) REQUIRE((b >= 0 && b < bin_count(p)));
+    const int n = int(ids.size());
     CpuExec exec(2);
-    exec.sort(bin.data(), ids.data(), p.n, bin_count(p), order.data(), start.data());
+    exec.sort(bin.data(), ids.data(), n, bin_count(p), order.data(), start.data());
     for (const int k : order) {
       id.push_back(ids[std::size_t(k)]);
       x.push_back(all[std::size_t(id.back())]);
     }
-    const auto made = exec.build_lists(x.data(), start.data(), p);
+    const auto made = exec.build_lists(n, n, x.data(), start.data(), p);
     lists.resize(ids.size());
-    for (int i = 0; i < p.n; ++i)
+    for (int i = 0; i < n; ++i)
       made.for_each(i, [&](int j) { lists[std::size_t(i)].push_back(id[std::size_t(j)]); });
   }
 };
@@ -231,9 +232,7 @@ void check_slab(const std::vector<Vec4<Real>>& x, Params<Real> p, int first, int
     const int z = layer(x[std::size_t(i)]);
     if (z >= low && z < high) here.push_back(i);
   }
-  p.n = int(all.size());
   const Sorted<D, Real> whole(p, x, all);
-  p.n = int(here.size());
   p.first_layer = low;
   p.layers = high - low;
   const Sorted<D, Real> slab(p, x, here);

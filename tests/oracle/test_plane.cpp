@@ -2,7 +2,7 @@
 // brute force, and what must hold for any of them.
 #include <cmath>
 
-#include "kernels/boundary.h"
+#include "kernels/boundary/box.h"
 #include "tests/catch.h"
 #include "tests/oracle/compare.h"
 #include "tests/oracle/quadrature.h"

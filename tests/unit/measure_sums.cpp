@@ -53,8 +53,7 @@ Rows<Real> random_rows(int n, double decades) {
   std::mt19937 gen(5);
   const auto r = [&] { return double(gen()) / 4294967295.0; };
   Rows<Real> rows;
-  rows.p.n = n;
-  rows.p.box = {20, 10, 8};
+  rows.p.boundary.extent = {20, 10, 8};
   rows.p.rest = {2, 0, 1, 4, 0.5};
   for (int i = 0; i < n; ++i) {
     const double scale = std::pow(10, decades * (r() - 0.5));

@@ -148,10 +148,12 @@ class CpuExec {
   /// order[k] = row of the k-th particle by (bin, id).
   void sort(const int* bin, const int* id, int n, int bins, int* order, int* start);
 
-  /// Exact lists of all pairs closer than h; grows as it must (std::bad_alloc when it cannot).
+  /// Exact lists of all pairs of n particles closer than h; grows as it must (std::bad_alloc when
+  /// it cannot). far: the row that fills up lists.
   template <class Real>
-  Lists build_lists(const Vec4<Real>* position, const int* bin_start, const Params<Real>& p) {
-    const int chunks = (p.n + kChunk - 1) / kChunk;
+  Lists build_lists(int n, int far, const Vec4<Real>* position, const int* bin_start,
+                    const Params<Real>& p) {
+    const int chunks = (n + kChunk - 1) / kChunk;
     const int bits = lane_bits(simd_, sizeof(Real)), groups_per_chunk = kChunk >> bits;
     chunks_.resize(std::size_t(chunks));
     pointers_.resize(std::size_t(chunks));
@@ -160,21 +162,21 @@ class CpuExec {
     for (int c = 0; c < chunks; ++c) {
       ListScratch& scratch = scratch_[std::size_t(omp_get_thread_num())];
       scratch.reserve(list_entries_);
-      const int first = c * kChunk, last = std::min(p.n - first, kChunk) + first;
+      const int first = c * kChunk, last = std::min(n - first, kChunk) + first;
       ChunkedLists::Group* groups = groups_.data() + std::size_t(c) * std::size_t(groups_per_chunk);
       const std::size_t used =
           p.dimensions == 2
-              ? make_lists<2>(simd_, position, bin_start, p, first, last, groups, scratch)
-              : make_lists<3>(simd_, position, bin_start, p, first, last, groups, scratch);
+              ? make_lists<2>(simd_, position, bin_start, p, first, last, far, groups, scratch)
+              : make_lists<3>(simd_, position, bin_start, p, first, last, far, groups, scratch);
       HostBuffer<int>& mine = chunks_[std::size_t(c)];
       // Grow with some air, shrink only when far too large: sizes change little between updates.
-      const std::size_t room = std::size_t(std::min(kChunk, p.n - c * kChunk) * list_entries_);
+      const std::size_t room = std::size_t(std::min(kChunk, n - c * kChunk) * list_entries_);
       if (mine.size() < used || mine.size() > 2 * std::max(used, room))
         mine.resize(used > room ? used + used / 16 : room);
       std::copy_n(scratch.found.data(), used, mine.data());  // of none: both may be null
       pointers_[std::size_t(c)] = mine.data();
     }
-    return {pointers_.data(), groups_.data(), bits, p.n};
+    return {pointers_.data(), groups_.data(), bits, far};
   }
 
   std::size_t bytes() const;

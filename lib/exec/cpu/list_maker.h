@@ -22,7 +22,7 @@ template <class Real, int D>
 class NearbyParticles {
  public:
   const Candidates<Real, D>& of(Simd simd, Vec3<Real> x, const Vec4<Real>* position,
-                                const int* bin_start, const Params<Real>& p) {
+                                const int* bin_start, const Params<Real>& p, int rows) {
     const Cell cell = cell_of<D>(x, p);
     if (cell.x == cell_.x && cell.y == cell_.y && cell.z == cell_.z) return candidates_;
     cell_ = cell;
@@ -36,7 +36,7 @@ class NearbyParticles {
     std::size_t k = 0;
     for_each_run<D>(x, bin_start, p, [&](int b, int e) {
       const CandidateCopy<Real, D> to{&x_[k], y_.data() + (D == 3 ? k : 0), &z_[k], &index_[k]};
-      copy_run(simd, position, b, e, p.n, to);
+      copy_run(simd, position, b, e, rows, to);
       k += std::size_t(e - b);
     });
     for (; k < padded; ++k) {
@@ -71,8 +71,8 @@ struct ListScratch {
 /// that are, padding included. groups: those of the chunk's particles. D: dimensions.
 template <int D, class Real>
 std::size_t make_lists(Simd simd, const Vec4<Real>* position, const int* bin_start,
-                       const Params<Real>& p, int first, int last, ChunkedLists::Group* groups,
-                       ListScratch& room) {
+                       const Params<Real>& p, int first, int last, int far,
+                       ChunkedLists::Group* groups, ListScratch& room) {
   const int bits = lane_bits(simd, sizeof(Real)), width = 1 << bits;
   NearbyParticles<Real, D> nearby;
   std::size_t used = 0;
@@ -82,7 +82,7 @@ std::size_t make_lists(Simd simd, const Vec4<Real>* position, const int* bin_sta
       begin[l] = begin[l + 1] = at;
       if (i + l >= last) continue;
       const Vec3<Real> x = xyz(position[i + l]);
-      const Candidates<Real, D>& c = nearby.of(simd, x, position, bin_start, p);
+      const Candidates<Real, D>& c = nearby.of(simd, x, position, bin_start, p, far);
       make_room(room.single, at + std::size_t(c.count) + c.block);
       int* out = room.single.data() + at;
       const std::size_t n = std::size_t(close_to(simd, c, x, i + l, out) - out);
@@ -96,7 +96,7 @@ std::size_t make_lists(Simd simd, const Vec4<Real>* position, const int* bin_sta
       const int* from = room.single.data() + begin[l];
       const std::size_t n = begin[l + 1] - begin[l];
       for (std::size_t k = 0; k < n; ++k) to[k << bits] = from[k];
-      for (std::size_t k = n; k < longest; ++k) to[k << bits] = p.n;
+      for (std::size_t k = n; k < longest; ++k) to[k << bits] = far;
     }
     used += longest << bits;
   }

@@ -2,7 +2,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-CudaExec::CudaExec(ListRoom room) : room_(room) {
+CudaExec::CudaExec(ListRoom room, std::int64_t total) : room_(room), total_(total) {
   int device = 0, major = 0;
   PBF_CUDA_CHECK(cudaGetDevice(&device));
   PBF_CUDA_CHECK(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device));

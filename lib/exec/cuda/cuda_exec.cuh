@@ -29,7 +29,8 @@ class CudaExec {
 
   /// room: for the lists at first. Lists that outgrow it: the build records by how much, nothing is
   /// written beyond the room, and grow_lists() gives more.
-  explicit CudaExec(ListRoom room);
+  /// total: particles of the whole scene, for the number of threads of a sum.
+  CudaExec(ListRoom room, std::int64_t total);
   ~CudaExec();
   CudaExec(const CudaExec&) = delete;
   CudaExec& operator=(const CudaExec&) = delete;
@@ -88,12 +89,12 @@ class CudaExec {
   template <class Pass>
   void for_each(int n, const Pass& pass) {
     if constexpr (requires { requires Pass::D == 2; }) {
-      const std::int64_t all = pass.p.total;
+      const std::int64_t all = total_;
       // A list has a third of the words: half as many threads have something to do.
       if (all <= kEightLanes) return launch(lanes_kernel<4, Pass>, 4 * n, kBlock, 0, n, pass);
       if (all <= kFourLanes) return launch(lanes_kernel<2, Pass>, 2 * n, kBlock, 0, n, pass);
     } else if constexpr (requires { typename Pass::Sum; }) {
-      const std::int64_t all = pass.p.total;
+      const std::int64_t all = total_;
       if (all <= kSixteenLanes) return launch(lanes_kernel<16, Pass>, 16 * n, kBlock, 0, n, pass);
       if (all <= kEightLanes) return launch(lanes_kernel<8, Pass>, 8 * n, kBlock, 0, n, pass);
       if (all <= kFourLanes) return launch(lanes_kernel<4, Pass>, 4 * n, kBlock, 0, n, pass);
@@ -191,12 +192,13 @@ class CudaExec {
   }
 
   template <class Real>
-  Lists build_lists(const Vec4<Real>* position, const int* bin_start, const Params<Real>& p) {
-    allocate_lists(p.n);
-    p.dimensions == 2 ? make_lists<2>(position, bin_start, p)
-                      : make_lists<3>(position, bin_start, p);
-    return {words_.data(),    tails_.data(), count_.data(), tail_of_.data(),
-            list_stride(p.n), room_.first,   room_.tail};
+  Lists build_lists(int n, int far, const Vec4<Real>* position, const int* bin_start,
+                    const Params<Real>& p) {
+    allocate_lists(n);
+    p.dimensions == 2 ? make_lists<2>(n, far, position, bin_start, p)
+                      : make_lists<3>(n, far, position, bin_start, p);
+    return {words_.data(),  tails_.data(), count_.data(), tail_of_.data(),
+            list_stride(n), room_.first,   room_.tail,    far};
   }
 
   std::size_t bytes() const {
@@ -225,7 +227,8 @@ class CudaExec {
     PBF_CUDA_CHECK(cudaLaunchKernelEx(&config, kernel, P(args)...));
   }
   template <int D, class Real>
-  void make_lists(const Vec4<Real>* position, const int* bin_start, const Params<Real>& p) {
+  void make_lists(int n, int far, const Vec4<Real>* position, const int* bin_start,
+                  const Params<Real>& p) {
     const ListPass<Real, D> pass{p,
                                  position,
                                  bin_start,
@@ -235,11 +238,13 @@ class CudaExec {
                                  tail_of_.data(),
                                  list_state_.data(),
                                  room_,
-                                 list_stride(p.n)};
-    if (p.n <= kListLanes)
-      launch(list_lanes_kernel<Real, D>, pass.lanes * p.n, kBlock, 0, pass);
+                                 list_stride(n),
+                                 n,
+                                 far};
+    if (n <= kListLanes)
+      launch(list_lanes_kernel<Real, D>, pass.lanes * n, kBlock, 0, pass);
     else
-      for_each(p.n, pass);
+      for_each(n, pass);
   }
   void allocate_lists(int n);
   void clear_overflow();
@@ -259,6 +264,7 @@ class CudaExec {
   bool overlap_ = false;                 ///< the device knows programmatic dependent launch
   bool after_condition_ = false;         ///< ... which is for kernels behind kernels
   ListRoom room_;
+  std::int64_t total_;
   bool profiling_ = false;
   int since_profile_ = 0;
   RecordedUpdates recorded_;

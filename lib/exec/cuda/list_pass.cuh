@@ -34,6 +34,7 @@ struct ListPass {
   ListState* state;
   ListRoom room;
   int stride;
+  int n, far;  ///< particles, and the row that fills up lists
 
   /// hits(first, bits): bit 31 - k set where candidate first + k is a neighbour of i.
   template <class F>
@@ -82,7 +83,7 @@ struct ListPass {
       });
     });
     const int all = found;
-    while (found & 3) put(p.n);  // the far particle
+    while (found & 3) put(far);  // the far particle
     finish(i, all, limit);
   }
 
@@ -90,7 +91,7 @@ struct ListPass {
   /// then written in order. For few particles.
   __device__ void by_lanes(int thread) const {
     const int i = thread / lanes, lane = thread % lanes;
-    const bool valid = i < p.n;
+    const bool valid = i < n;
     const bool last = lane == lanes - 1;
     const Vec<Real, D> xi = point<D>(position[valid ? i : 0]);
     const Cell c = cell_of<D>(in_space(xi), p);
@@ -115,7 +116,7 @@ struct ListPass {
     place = write_row(i, xi, a, place, list);
     write_row(i, xi, b, place, list);
     if (!valid || !last) return;
-    for (int at = all; at & 3; ++at) put(list, at, p.n);
+    for (int at = all; at & 3; ++at) put(list, at, far);
     finish(i, all, room.first + (tail ? room.tail : 0));
   }
 

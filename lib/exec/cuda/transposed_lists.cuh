@@ -30,6 +30,7 @@ struct TransposedLists {
   const int* tail_of = nullptr;  ///< which tail, where count is above 4 first
   int stride = 0;                ///< words between word k and k + 1 of one particle
   int first = 0, tail = 0;       ///< see ListRoom
+  int far = 0;                   ///< the row that fills up lists
 
   /// f(j) for every neighbour j of i, or for the share of one of `lanes` threads.
   template <class F>

@@ -11,7 +11,7 @@ seeded_defect(wrong_dt predict kernels/pass_predict.h
 seeded_defect(damping_ignored predict kernels/pass_predict.h
   [[mul_add(p.damping, v,]] [[mul_add(Real(1), v,]])
 seeded_defect(predict_clamp_dropped predict kernels/pass_predict.h
-  [[x = clamp_inside(free, p);]] [[x = free;]])
+  [[x = p.boundary.path_end(x, free);]] [[x = free;]])
 
 # grid
 seeded_defect(stale_bins grid kernels/pass_predict.h
@@ -26,11 +26,9 @@ seeded_defect(missing_neighbour_cell neighbors kernels/cell_index.h
 seeded_defect(last_cell_off_by_one neighbors kernels/cell_index.h
   [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 1;]]
   [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 2;]])
-seeded_defect(stale_grid neighbors lib/solver/stepper.h
-  [[exec_.mark(stages.grid);
-    lists_ = exec_.build_lists(a_.position.data()]]
-  [[exec_.mark(stages.grid);
-    lists_ = exec_.build_lists(a_.other_position.data()]])
+seeded_defect(stale_grid neighbors lib/solver/step_context.h
+  [[exec.build_lists(rows_, capacity_, position(),]]
+  [[exec.build_lists(rows_, capacity_, other(field::position),]])
 seeded_defect(last_neighbour_skipped neighbors lib/exec/cpu/list_maker.h
   [[close_to(simd, c, x, i + l, out) - out);]]
   [[std::max<std::ptrdiff_t>(close_to(simd, c, x, i + l, out) - out, 1) - 1);]])
@@ -60,7 +58,7 @@ seeded_defect(relaxation_missing lambda kernels/pass_lambda.h
   [[dot(own_gradient, own_gradient) + p.cfm;]] [[dot(own_gradient, own_gradient);]])
 seeded_defect(wall_gradient_missing lambda kernels/pass_lambda.h
   [[in_space(s.gradient) + wall.gradient;]] [[in_space(s.gradient);]])
-seeded_defect(wall_gradient_side lambda kernels/boundary.h
+seeded_defect(wall_gradient_side lambda kernels/boundary/box.h
   [[(side == 0 ? g.slope : -g.slope)]] [[g.slope]])
 seeded_defect(two_sided_by_mistake lambda kernels/pass_lambda.h
   [[return !p.two_sided && c < Real(0) ? Real(0) : c;]] [[return c;]])
@@ -70,7 +68,7 @@ seeded_defect(s_corr_sign delta kernels/pass_delta.h [[w -= p.tensile_k]] [[w +=
 seeded_defect(frozen_particle delta kernels/pass_delta.h
   [[with_w(inside, Real(1) / density[i])]] [[with_w(i == 7 ? x : inside, Real(1) / density[i])]])
 seeded_defect(wall_clamp_dropped delta kernels/pass_delta.h
-  [[inside = clamp_inside(target, p);]] [[inside = target;]])
+  [[inside = p.boundary.path_end(x, target);]] [[inside = target;]])
 seeded_defect(velocity_not_updated delta kernels/pass_delta.h
   [[xyz(velocity[i]) + p.inv_dt * (free + (inside - target))]] [[xyz(velocity[i])]])
 seeded_defect(neighbours_lambda_missing delta kernels/pass_delta.h
@@ -81,7 +79,7 @@ seeded_defect(s_corr_exponent delta kernels/pass_delta.h
 seeded_defect(inverse_density_missing delta kernels/pass_delta.h
   [[with_w(inside, Real(1) / density[i])]] [[with_w(inside, Real(1))]])
 seeded_defect(one_iteration_less iterations lib/solver/stepper.h
-  [[for (int k = 0; k < iterations_; ++k) {]] [[for (int k = 0; k + 1 < iterations_; ++k) {]])
+  [[for (int k = 0; k < s.times; ++k) {]] [[for (int k = 0; k + 1 < s.times; ++k) {]])
 
 # xsph, vorticity
 seeded_defect(xsph_without_density xsph kernels/pass_xsph.h [[(shape * (a.w + b.x.w))]] [[(shape + shape)]])

@@ -1,0 +1,104 @@
+// The boundary of a domain: a box with plane walls.
+#pragma once
+
+#include "kernels/boundary/half_space.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+enum WallBit : unsigned { x_min = 1, x_max = 2, y_min = 4, y_max = 8, z_min = 16, z_max = 32 };
+
+/// What a boundary adds at a place: density in units of rho0 and gradient in rho0/h.
+template <class Real>
+struct BoundaryTerm {
+  Real density = 0;
+  Vec3<Real> gradient;
+};
+
+/// A boundary answers three questions: what it adds to the density and its gradient, where a path
+/// during a step ends, and how far a particle is behind it. Passes ask nothing else.
+template <class Real>
+struct Box {
+  Vec3<Real> extent;         ///< h, of the domain
+  Real margin = 0;           ///< h, distance to a wall at which particles are clamped
+  unsigned walls = 63;       ///< WallBit mask of the faces that are walls
+  bool adds_density = true;  ///< boundary: density
+  Real scale = 1;            ///< amplitude of that contribution, kernels/README.md (9)
+  Real inv_range = 1;        ///< h over the range of that contribution
+
+  /// Each wall adds A D(q/kappa), with amplitude A = `scale` and range kappa = 1/inv_range
+  /// from lib/program/calibrate.h. The walls' union is taken by inclusion-exclusion,
+  /// 1 - prod(1 - A D_k): exact for one wall, an approximation where two half spaces overlap (its
+  /// error: tests/oracle). In `paper` the density's D is Poly6's, the gradient's Spiky's, as for
+  /// particles.
+  template <Smoothing S>
+  PBF_HD BoundaryTerm<Real> term(Vec3<Real> x) const;
+
+  /// Where the way from a place inside to `to` ends: at the nearest place inside, for walls are
+  /// planes without another side.
+  PBF_HD Vec3<Real> path_end(Vec3<Real>, Vec3<Real> to) const {
+    return {clamped(to.x, extent.x, x_min), clamped(to.y, extent.y, y_min),
+            clamped(to.z, extent.z, z_min)};
+  }
+
+  /// h, the largest distance of x behind a place where particles are clamped; 0: behind none.
+  PBF_HD double penetration(const double (&x)[3]) const {
+    const double high[3] = {extent.x, extent.y, extent.z}, clamp = margin;
+    double deepest = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (walls & (1u << (2 * k))) deepest = max2(deepest, clamp - x[k]);
+      if (walls & (2u << (2 * k))) deepest = max2(deepest, x[k] - (high[k] - clamp));
+    }
+    return deepest;
+  }
+  /// Whether x is beyond a wall.
+  PBF_HD bool beyond(const double (&x)[3]) const {
+    const double high[3] = {extent.x, extent.y, extent.z};
+    for (int k = 0; k < 3; ++k)
+      if ((walls & (1u << (2 * k)) && x[k] < 0) || (walls & (2u << (2 * k)) && x[k] > high[k]))
+        return true;
+    return false;
+  }
+
+ private:
+  PBF_HD Real clamped(Real x, Real high, unsigned low_wall) const {
+    const Real low = margin;
+    if (walls & low_wall && x < low) x = low;
+    if (walls & (2 * low_wall) && x > high - margin) x = high - margin;
+    return x;
+  }
+};
+
+template <class Real>
+template <Smoothing S>
+PBF_HD BoundaryTerm<Real> Box<Real>::term(Vec3<Real> x) const {
+  BoundaryTerm<Real> w;
+  if (!adds_density) return w;
+  const Real one(1);
+  constexpr bool flat = dimensions_of(S) == 2;  // no wall along y
+  if (x.x >= one && (flat || x.y >= one) && x.z >= one && x.x <= extent.x - one &&
+      (flat || x.y <= extent.y - one) && x.z <= extent.z - one)
+    return w;
+  const Real distance[6] = {x.x, extent.x - x.x, x.y, extent.y - x.y, x.z, extent.z - x.z};
+  Real keep_density = one, keep[3] = {one, one, one}, slope[3] = {0, 0, 0};
+  for (int axis = 0; axis < 3; axis += flat ? 2 : 1)
+    for (int side = 0; side < 2; ++side) {
+      const int face = 2 * axis + side;
+      const Real q = distance[face] * inv_range;
+      if (!(walls & (1u << face)) || !(q < one)) continue;
+      const HalfSpace<Real> g = gradient_half_space<Real, S>(q);
+      const Real d = is_paper(S) ? density_half_space<Real, S>(q).density : g.density;
+      keep_density = keep_density * (one - scale * d);
+      // d/dx of 1 - A D(q/kappa), and the product rule where opposite walls are near each other.
+      const Real f = one - scale * g.density;
+      const Real s = scale * inv_range * (side == 0 ? g.slope : -g.slope);
+      slope[axis] = slope[axis] * f - s * keep[axis];
+      keep[axis] = keep[axis] * f;
+    }
+  // The gradient of 1 - prod(keep): minus the product rule's sum.
+  w.density = one - keep_density;
+  w.gradient = {-slope[0] * keep[1] * keep[2], -slope[1] * keep[0] * keep[2],
+                -slope[2] * keep[0] * keep[1]};
+  return w;
+}
+
+}  // namespace pbf::inline PBF_VARIANT
