@@ -19,16 +19,16 @@ PBF_HD XsphOwn<V, dimensions> xsph_own(const Vec4<V>& x, const Vec4<V>& v) {
 }
 
 /// v_i += c sum_j (m/rho_i + m/rho_j)/2 (v_j - v_i) W_ij, with the density of the last sweep. What
-/// i takes from j, j takes from i: momentum is kept to rounding. With `more_to_come` it also gives
-/// the particle its bin in the next update: that update's `predict`.
-template <class Real, class Lists, Smoothing S, bool more_to_come>
+/// i takes from j, j takes from i: momentum is kept to rounding. It also gives the particle its
+/// bin in the next update, where one follows: that update's `predict`.
+template <class Real, class Lists, Smoothing S>
 struct XsphPass {
   Params<Real> p;
   Lists lists;
   const Vec4<Real>* position;  ///< w = 1/density
   const Vec4<Real>* velocity;  ///< h/s
   Vec4<Real>* velocity_out;
-  int* bin;  ///< out
+  int* bin;  ///< out; null: no update follows
 
   static constexpr int D = dimensions_of(S);
   static constexpr unsigned gathers = kPlace | kInverseDensity | kVelocity;
@@ -55,7 +55,7 @@ struct XsphPass {
     const Vec3<Real> v =
         in_space(a.v + (Real(0.5) * p.xsph * p.vol * density_norm<Real, S>()) * s.v);
     velocity_out[i] = with_w(v, Real(0));
-    if constexpr (more_to_come) bin[i] = bin_of<D>(predict(in_space(a.x), v, p).x, p);
+    if (bin) bin[i] = bin_of<D>(predict(in_space(a.x), v, p).x, p);
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };

@@ -179,7 +179,7 @@ void check_all() {
   check<Real, D>(delta(std::false_type{}));
   check<Real, D>(delta(std::true_type{}));
   check<Real, D>([](const P& p, const L& lists, R& in, R& out) {
-    return XsphPass<Real, L, S, false>{
+    return XsphPass<Real, L, S>{
         p, lists, in.position.data(), in.velocity.data(), out.velocity.data(), out.bin.data()};
   });
   check<Real, D>([](const P& p, const L& lists, R& in, R& out) {

@@ -88,17 +88,14 @@ class CudaExec {
   /// the whole scene, not from those here.
   template <class Pass>
   void for_each(int n, const Pass& pass) {
-    if constexpr (requires { requires Pass::D == 2; }) {
-      const std::int64_t all = total_;
-      // A list has a third of the words: half as many threads have something to do.
-      if (all <= kEightLanes) return launch(lanes_kernel<4, Pass>, 4 * n, kBlock, 0, n, pass);
-      if (all <= kFourLanes) return launch(lanes_kernel<2, Pass>, 2 * n, kBlock, 0, n, pass);
-    } else if constexpr (requires { typename Pass::Sum; }) {
-      const std::int64_t all = total_;
-      if (all <= kSixteenLanes) return launch(lanes_kernel<16, Pass>, 16 * n, kBlock, 0, n, pass);
-      if (all <= kEightLanes) return launch(lanes_kernel<8, Pass>, 8 * n, kBlock, 0, n, pass);
-      if (all <= kFourLanes) return launch(lanes_kernel<4, Pass>, 4 * n, kBlock, 0, n, pass);
-      if (all <= kTwoLanes) return launch(lanes_kernel<2, Pass>, 2 * n, kBlock, 0, n, pass);
+    if constexpr (requires { typename Pass::Sum; }) {
+      // In two dimensions a list has a third of the words: half as many threads have something to
+      // do.
+      constexpr bool space = Pass::D == 3;
+      if (launch_lanes < 16, space ? kSixteenLanes : 0 > (n, pass)) return;
+      if (launch_lanes < space ? 8 : 4, kEightLanes > (n, pass)) return;
+      if (launch_lanes < space ? 4 : 2, kFourLanes > (n, pass)) return;
+      if (launch_lanes < 2, space ? kTwoLanes : 0 > (n, pass)) return;
     }
     launch(apply_kernel<Pass>, n, kBlock, 0, n, pass);
   }
@@ -225,6 +222,17 @@ class CudaExec {
     config.numAttrs = overlap_ && !after_condition_ ? 1 : 0;
     after_condition_ = false;
     PBF_CUDA_CHECK(cudaLaunchKernelEx(&config, kernel, P(args)...));
+  }
+  /// Where the scene has at most `most` particles.
+  template <int lanes, int most, class Pass>
+  bool launch_lanes(int n, const Pass& pass) {
+    if constexpr (most > 0) {
+      if (total_ <= most) {
+        launch(lanes_kernel<lanes, Pass>, lanes * n, kBlock, 0, n, pass);
+        return true;
+      }
+    }
+    return false;
   }
   template <int D, class Real>
   void make_lists(int n, int far, const Vec4<Real>* position, const int* bin_start,

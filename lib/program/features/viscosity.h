@@ -6,15 +6,14 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// The velocities come out in the other array, and the arrays trade places. With `more_to_come` the
-/// pass also gives the particles their bins in the next update.
-template <bool more_to_come, class C, class Use>
-void with_xsph(C& c, const Use& use) {
+/// The velocities come out in the other array, and the arrays trade places. bin: null, or where the
+/// particles' bins in the next update go.
+template <class C, class Use>
+void with_xsph(C& c, int* bin, const Use& use) {
   c.flip(field::velocity);
   c.with_smoothing([&](auto s) {
-    use(XsphPass<typename C::Real, typename C::Lists, decltype(s)::value, more_to_come>{
-        c.p, c.lists, c.position(), c.other(field::velocity), c.velocity(),
-        c.template data<int>(field::bin)});
+    use(XsphPass<typename C::Real, typename C::Lists, decltype(s)::value>{
+        c.p, c.lists, c.position(), c.other(field::velocity), c.velocity(), bin});
   });
 }
 inline PassInfo xsph_info(PassInfo writes, const char* name) {
@@ -30,7 +29,7 @@ struct Xsph {
   }
   template <class C>
   static void launch(C& c) {
-    with_xsph<false>(c, [&](const auto& pass) { c.each(pass); });
+    with_xsph(c, nullptr, [&](const auto& pass) { c.each(pass); });
   }
 };
 
@@ -39,7 +38,8 @@ struct XsphPredictSort {
   static PassInfo info() { return xsph_info(sort_info(""), "xsph+predict+sort"); }
   template <class C>
   static void launch(C& c) {
-    with_xsph<true>(c, [&](const auto& pass) { sort_rows<true>(c, "xsph", pass); });
+    with_xsph(c, c.template data<int>(field::bin),
+              [&](const auto& pass) { sort_rows<true>(c, "xsph", pass); });
   }
 };
 
