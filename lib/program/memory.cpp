@@ -5,7 +5,7 @@
 
 #include "kernels/cell_index.h"
 #include "kernels/compression_bins.h"
-#include "kernels/measure_sums.h"
+#include "kernels/measure.h"
 #include "kernels/smoothing.h"
 #include "lib/base/text.h"
 #include "lib/program/list_room.h"

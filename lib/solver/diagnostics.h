@@ -7,9 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "kernels/measure.h"
+#include "lib/program/plan.h"
 #include "lib/solver/measures.h"
 
 namespace pbf::inline solver_module {
+
+/// Sums in the internal frame, after so many updates and steps -> Measures in SI units and the
+/// scene's axes (lib/solver/DIAGNOSTICS.md).
+Measures to_measures(const MeasureSums& sums, const Scene& scene, const Plan& plan,
+                     std::int64_t update, std::int64_t steps);
 
 /// How a study sums a measure up over its window.
 enum class Over { none, mean, rms, max, last };

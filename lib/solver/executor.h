@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernels/measure_sums.h"
+#include "kernels/measure.h"
 #include "kernels/params.h"
 #include "lib/solver/solver.h"
 

@@ -10,17 +10,13 @@
 #include "lib/base/release.h"
 #include "lib/base/stage_clock.h"
 #include "lib/program/time_levels.h"
+#include "lib/solver/diagnostics.h"
 #include "lib/solver/executor.h"
 #include "lib/solver/params.h"
 #include "lib/solver/solver.h"
 #include "lib/solver/stepper.h"
 
 namespace pbf::inline solver_module {
-
-/// Sums in the internal frame, after so many updates and steps -> Measures in SI units and the
-/// scene's axes (lib/solver/DIAGNOSTICS.md).
-Measures to_measures(const MeasureSums& sums, const Scene& scene, const Plan& plan,
-                     std::int64_t update, std::int64_t steps);
 
 /// An empty snapshot of n particles with every array allocated and the ids filled in; position and
 /// id always, velocity and density where `fields` names them. Error(bad_input) for another name.

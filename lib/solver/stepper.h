@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/measure.h"
 #include "kernels/pass_export.h"
-#include "kernels/pass_measure.h"
 #include "lib/program/features.h"
 #include "lib/program/plan.h"
 #include "lib/solver/compression_percentile.h"

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <vector>
 
+#include "kernels/measure.h"
 #include "kernels/neighbors.h"
-#include "kernels/pass_measure.h"
 #include "lib/base/stage_clock.h"
 #include "lib/exec/cpu/host_buffer.h"
 #include "lib/exec/cpu/lane_sums.h"

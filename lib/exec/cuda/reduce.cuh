@@ -1,7 +1,7 @@
 // The maxima, counts and sums of a measure on the device.
 #pragma once
 
-#include "kernels/pass_measure.h"
+#include "kernels/measure.h"
 #include "lib/exec/cuda/device_buffer.h"
 #include "lib/exec/cuda/kernel_start.cuh"
 #include "lib/program/list_room.h"
