@@ -79,9 +79,10 @@ RunSinks open_sinks(const LoadedScene& loaded, const Plan& plan, const Solver& s
   if (scene.output) {
     const std::string path = folder.file(kRunFile);
     const RunInfo info = run_info(loaded, plan, solver, started, from.update(), warnings);
-    sinks.writer = from.keep_file ? std::make_unique<RunWriter>(path, info, scene.output->gzip,
-                                                                from.frames, from.rows)
-                                  : std::make_unique<RunWriter>(path, info, scene.output->gzip);
+    const bool gzip = scene.output->compression == Compression::gzip;
+    sinks.writer = from.keep_file
+                       ? std::make_unique<RunWriter>(path, info, gzip, from.frames, from.rows)
+                       : std::make_unique<RunWriter>(path, info, gzip);
   }
 #ifdef PBF_HAS_RENDER
   if (scene.render) {

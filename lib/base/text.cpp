@@ -21,6 +21,12 @@ std::string format(const char* pattern, ...) {
   return text;
 }
 
+std::string joined(const std::vector<std::string>& parts, const std::string& separator) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i) text += (i > 0 ? separator : "") + parts[i];
+  return text;
+}
+
 std::string si_number(double value) {
   const char* prefix[] = {"", " k", " M", " G", " T"};
   int i = 0;

@@ -3,11 +3,15 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pbf::inline base_module {
 
 /// printf into a string.
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
+
+/// "a, b, c" with ", " as the separator.
+std::string joined(const std::vector<std::string>& parts, const std::string& separator);
 
 /// 12345678 -> "12.3 M"; three digits and a decimal prefix (k M G T) from 1000 on.
 std::string si_number(double value);

@@ -26,13 +26,11 @@ Scene scene_with(const std::string& path, const std::vector<std::string>& overri
 
 /// The scene's field of a number key; of vectors the whole.
 Field field_of(Scene& s, const std::string& key) {
-  const Key* k = find_key(key);
+  const Key* k = scene_table().find_key(key);
   if (k == nullptr || key.find("[]") != std::string::npos)
     bad("--map: " + key + " is no key of a scene that a map can vary; try time.step,gravity");
-  const Block* block = find_block(k->block().substr(0, k->block().find('.')));
-  block->set_present(s, true);
-  static Body none;
-  return k->field(s, none);
+  for (const Block* b = k->block; b != nullptr; b = b->parent) b->resize(object(s), 1);
+  return k->field(object(s));
 }
 
 /// Present value; 0 where the scene leaves it to be chosen.

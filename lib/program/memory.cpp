@@ -192,7 +192,7 @@ void add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   add("frames under way", real, scalars, frames * n);
   add("ids of frames under way", "int32", 1, frames * n);
   if (s.output) add("vertex numbers of the first frame", "int64", 1, n);
-  if (s.output && s.output->gzip)
+  if (s.output && s.output->compression == Compression::gzip)
     add("chunk before and after compression", real, 3, 2 * std::min<std::int64_t>(n, 1 << 22));
   if (!s.render) return;
   const int colored = s.render->color == ColorBy::speed     ? 6

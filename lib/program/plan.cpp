@@ -116,8 +116,9 @@ void plan_files(Plan& plan, const Scene& s) {
     // Ids and the numbers of the vertices once; 1.66 MB of tables and the first 1024 rows of the
     // log, measured; 45 columns of the log. gzip: 1.45 times smaller, measured.
     const double rows = all / s.measure_every + 1;
-    const double bytes = (frames * row + 12) * n / (s.output->gzip ? 1.45 : 1) + 1.66e6 +
-                         std::floor(rows / 1024) * 1024 * 8 * 45;
+    const double bytes =
+        (frames * row + 12) * n / (s.output->compression == Compression::gzip ? 1.45 : 1) + 1.66e6 +
+        std::floor(rows / 1024) * 1024 * 8 * 45;
     add("run.vtkhdf", 1, bytes, std::to_string(std::int64_t(frames)) + " frames");
   }
   if (s.render) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/scene/keys.h"
+
 namespace pbf::inline program_module {
 
 int finest_level(const Scene& s) {
@@ -14,11 +16,11 @@ int finest_level(const Scene& s) {
 Scene scene_at_level(const Scene& scene, int level) {
   Scene s = scene;
   if (level == 0) return s;
-  s.time.step = std::ldexp(s.time.step, -level);
-  s.solver.velocity_damping = std::pow(s.solver.velocity_damping, std::ldexp(1, -level));
-  s.solver.speed_limit = std::ldexp(s.solver.speed_limit, -level);
-  if (s.viscosity) s.viscosity->xsph = std::ldexp(s.viscosity->xsph, -level);
-  if (s.tensile) s.tensile->k = std::ldexp(s.tensile->k, -2 * level);
+  for (const Key& key : scene_table().keys) {
+    if (key.at_level == nullptr || !key.block->is_present(object(s))) continue;
+    double& value = *std::get<double*>(key.field(object(s)));
+    value = key.at_level(value, level);
+  }
   return s;
 }
 

@@ -1,4 +1,5 @@
-// What holds between the keys of a scene.
+// What holds between the keys of a scene. Keys are named by their members here: their paths are the
+// table's.
 #include <algorithm>
 #include <cmath>
 
@@ -16,16 +17,18 @@ constexpr const char* kAxes[] = {"x", "y", "z"};
 class Checker {
  public:
   Checker(const PlacedScene& placed, Problems& problems)
-      : p_(placed), s_(placed.scene), problems_(problems) {}
+      : p_(placed),
+        s_(placed.scene),
+        names_(scene_table().names(object(placed.scene))),
+        problems_(problems) {}
 
   void run() {
-    const bool domain = p_.good({"domain.min", "domain.max"}) &&
-                        above("domain.min", "domain.max", s_.domain.min, s_.domain.max);
+    const bool domain = good(s_.domain.min, s_.domain.max) && above(s_.domain.min, s_.domain.max);
     if (domain) check_domain();
     if (flat()) check_plane(domain);
     check_name();
     check_smoothing_ratio();
-    if (p_.good({"bodies"})) check_bodies(domain);
+    if (good(s_.bodies)) check_bodies(domain);
     check_time();
     check_solver();
     if (domain) check_rounding();
@@ -33,49 +36,57 @@ class Checker {
   }
 
  private:
-  void add(const std::string& key, const std::string& what) {
-    problems_.add(p_.place(key), key, what);
+  const std::string& name(const auto& member) const { return names_.at(&member); }
+  /// Whether all of these were read without a problem.
+  bool good(const auto&... members) const { return p_.good({name(members)...}); }
+  void add_at(const std::string& path, const std::string& what) {
+    problems_.add(p_.place(path), path, what);
+  }
+  void add(const auto& member, const std::string& what) { add_at(name(member), what); }
+  /// "is 2, below time.step (3 s)" and the rest.
+  void add_below(const auto& member, const auto& other, const std::string& rest) {
+    const std::string& unit = scene_table().find_key(name(other))->unit;
+    add(member, "is " + to_text(member) + ", below " + name(other) + " (" + to_text(other) +
+                    (unit.empty() ? "" : " " + unit) + ")" + rest);
   }
 
   /// It becomes a folder of out/, also where the scene comes from a stranger's run file.
   void check_name() {
-    if (p_.good({"name"}) && !is_file_name(s_.name))
-      add("name",
+    if (good(s_.name) && !is_file_name(s_.name))
+      add(s_.name,
           "is " + json_string(s_.name.substr(0, 60)) +
               ", and runs are kept in out/<name>; give a word without slashes, not . or ..");
   }
 
-  bool flat() const { return p_.good({"dimensions"}) && s_.dimensions == 2; }
+  bool flat() const { return good(s_.dimensions) && s_.dimensions == 2; }
 
   /// What a scene in two dimensions must not have along y.
   void check_plane(bool domain) {
     const double thick = s_.domain.max[1] - s_.domain.min[1];
-    if (domain && p_.good({"fluid.spacing", "fluid.smoothing_ratio"}) &&
-        thick > s_.h() * (1 + 1e-9))
-      add("domain.max", "y makes a slab " + to_text(thick) +
-                            " m thick, with dimensions: 2 it may be at most the smoothing length " +
-                            to_text(s_.h()) + " m (one cell); give y = " +
-                            to_text(s_.domain.min[1] + s_.fluid.spacing) +
-                            " for one spacing, or dimensions: 3");
-    if (p_.good({"domain.open"}))
+    if (domain && good(s_.fluid.spacing, s_.fluid.smoothing_ratio) && thick > s_.h() * (1 + 1e-9))
+      add(s_.domain.max,
+          "y makes a slab " + to_text(thick) +
+              " m thick, with dimensions: 2 it may be at most the smoothing length " +
+              to_text(s_.h()) + " m (one cell); give y = " +
+              to_text(s_.domain.min[1] + s_.fluid.spacing) + " for one spacing, or dimensions: 3");
+    if (good(s_.domain.open))
       for (const std::string& face : s_.domain.open)
         if (face[0] == 'y')
-          add("domain.open", face + ": with dimensions: 2 there is no wall along y; remove it");
-    const auto must_lie_flat = [&](const std::string& key, const Double3& v) {
-      if (p_.good({key}) && v[1] != 0)
-        add(key, "its y component is " + to_text(v[1]) +
-                     ", with dimensions: 2 nothing moves along y; give 0, or dimensions: 3");
+          add(s_.domain.open, face + ": with dimensions: 2 there is no wall along y; remove it");
+    const auto must_lie_flat = [&](const Double3& v) {
+      if (good(v) && v[1] != 0)
+        add(v, "its y component is " + to_text(v[1]) +
+                   ", with dimensions: 2 nothing moves along y; give 0, or dimensions: 3");
     };
-    must_lie_flat("gravity", s_.gravity);
-    for (std::size_t b = 0; b < s_.bodies.size(); ++b)
-      must_lie_flat("bodies[" + std::to_string(b) + "].velocity", s_.bodies[b].velocity);
+    must_lie_flat(s_.gravity);
+    for (const Body& body : s_.bodies) must_lie_flat(body.velocity);
   }
 
   void check_smoothing_ratio() {
-    if (!p_.good({"dimensions", "fluid.smoothing_ratio", "fluid.mass"}) || s_.fluid.mass) return;
+    if (!good(s_.dimensions, s_.fluid.smoothing_ratio, s_.fluid.mass) || s_.fluid.mass) return;
     const double least = least_smoothing_ratio(s_.dimensions);
     if (s_.fluid.smoothing_ratio < least)
-      add("fluid.smoothing_ratio",
+      add(s_.fluid.smoothing_ratio,
           "is " + to_text(s_.fluid.smoothing_ratio) +
               ": with so few neighbours the density cannot tell the rest lattice from a closer "
               "packing, and a pool loses volume; give at least " +
@@ -84,58 +95,54 @@ class Checker {
   }
 
   /// max > min along every axis.
-  bool above(const std::string& min_key, const std::string& max_key, const Double3& min,
-             const Double3& max) {
+  bool above(const Double3& min, const Double3& max) {
     bool ok = true;
     for (int a = 0; a < 3; ++a)
       if (!(max[a] > min[a])) {
-        add(max_key, std::string(kAxes[a]) + " is " + to_text(max[a]) + ", not above " + min_key +
-                         " (" + to_text(min[a]) + "): the box is " +
-                         (max[a] < min[a] ? "inverted" : "empty") +
-                         "; give the lower corner as min, "
-                         "the upper as max");
+        add(max, std::string(kAxes[a]) + " is " + to_text(max[a]) + ", not above " + name(min) +
+                     " (" + to_text(min[a]) + "): the box is " +
+                     (max[a] < min[a] ? "inverted" : "empty") +
+                     "; give the lower corner as min, "
+                     "the upper as max");
         ok = false;
       }
     return ok;
   }
 
   void check_solver() {
-    if (!p_.good({"solver.tolerance", "solver.iterations", "solver.max_iterations"}) ||
-        s_.solver.tolerance == 0)
-      return;
-    if (s_.solver.iterations == 0)
-      add("solver.tolerance", "nothing can meet it with solver.iterations 0; give at least 1");
-    if (s_.solver.max_iterations < s_.solver.iterations)
-      add("solver.max_iterations",
-          "is " + std::to_string(s_.solver.max_iterations) + ", below solver.iterations (" +
-              std::to_string(s_.solver.iterations) + "), which make one round; raise it");
+    const SolverSettings& v = s_.solver;
+    if (!good(v.tolerance, v.iterations, v.max_iterations) || v.tolerance == 0) return;
+    if (v.iterations == 0)
+      add(v.tolerance, "nothing can meet it with solver.iterations 0; give at least 1");
+    if (v.max_iterations < v.iterations)
+      add_below(v.max_iterations, v.iterations, ", which make one round; raise it");
   }
 
   void check_domain() {
     double thinnest = s_.domain.max[0] - s_.domain.min[0];
     for (int a = flat() ? 2 : 1; a < 3; ++a)
       thinnest = std::min(thinnest, s_.domain.max[a] - s_.domain.min[a]);
-    if (p_.good({"solver.wall_margin"}) && !(2 * s_.solver.wall_margin < thinnest))
-      add("solver.wall_margin", "is " + to_text(s_.solver.wall_margin) +
-                                    ", but must be below half the thinnest side of the domain (" +
-                                    to_text(thinnest / 2) + " m); lower it");
+    if (good(s_.solver.wall_margin) && !(2 * s_.solver.wall_margin < thinnest))
+      add(s_.solver.wall_margin, "is " + to_text(s_.solver.wall_margin) +
+                                     ", but must be below half the thinnest side of the domain (" +
+                                     to_text(thinnest / 2) + " m); lower it");
   }
 
   /// Whether numbers of the precision can tell where a particle is, and where it is after a step.
   /// Nothing else limits the size of a domain: the grid's cells grow with it (lib/program).
   void check_rounding() {
-    if (!p_.good({"fluid.spacing", "fluid.smoothing_ratio", "precision", "dimensions", "gravity",
-                  "bodies", "time.step", "time.end", "solver.substeps"}))
+    if (!good(s_.fluid.spacing, s_.fluid.smoothing_ratio, s_.precision, s_.dimensions, s_.gravity,
+              s_.bodies, s_.time.step, s_.time.end, s_.solver.substeps))
       return;
     const Rounding r = rounding_of(s_);
     const bool single = s_.precision == Precision::single;
     const std::string precision = single ? "float" : "double";
     const std::string remedy = single ? "give precision: double, or " : "";
     if (r.spacing > kLargestSpacing)
-      return add("domain.max", "the box is so long that positions in " + precision + " are " +
-                                   to_text(r.spacing) + " h apart at its far end (at most " +
-                                   to_text(kLargestSpacing) + "): densities would be off; " +
-                                   remedy + "make the domain smaller or raise fluid.spacing");
+      return add(s_.domain.max, "the box is so long that positions in " + precision + " are " +
+                                    to_text(r.spacing) + " h apart at its far end (at most " +
+                                    to_text(kLargestSpacing) + "): densities would be off; " +
+                                    remedy + "make the domain smaller or raise fluid.spacing");
     const bool lost = r.lost > kLeastLoss;
     if (!lost && r.slow <= kLargestLoss) return;
     const std::string what =
@@ -144,122 +151,115 @@ class Checker {
                    to_text(r.spacing) + " h apart, steps shorter than half of that are none"
              : "makes so many steps in a fall that rounding in " + precision + " would take " +
                    format("%.3g", 100 * r.slow) + " % of its velocity";
-    add("time.step", what + "; " + remedy +
-                         (s_.solver.substeps > 1 ? "raise time.step or lower solver.substeps"
-                                                 : "raise time.step"));
+    add(s_.time.step, what + "; " + remedy +
+                          (s_.solver.substeps > 1 ? "raise time.step or lower solver.substeps"
+                                                  : "raise time.step"));
   }
 
   void check_bodies(bool domain) {
     double sum = 0;
-    bool known = p_.good({"fluid.spacing"});
+    bool known = good(s_.fluid.spacing);
     for (std::size_t b = 0; b < s_.bodies.size(); ++b) {
       const Body& body = s_.bodies[b];
-      const std::string key = "bodies[" + std::to_string(b) + "]";
+      const std::string key = name(s_.bodies) + "[" + std::to_string(b) + "]";
       if (body.shape == Shape::file || !check_place(body, key, domain)) {
         known = known && body.shape == Shape::file;  // files are opened when particles are made
         continue;
       }
-      if (!p_.good({"fluid.spacing", key + ".count"})) continue;
+      if (!good(s_.fluid.spacing, body.count)) continue;
       const double n = lattice_count(body, s_.fluid.spacing, plane());
       if (n < 1)
-        add(key, "makes no particle: the block is thinner than fluid.spacing (" +
-                     to_text(s_.fluid.spacing) + " m); enlarge it or lower fluid.spacing");
+        add_at(key, "makes no particle: the block is thinner than fluid.spacing (" +
+                        to_text(s_.fluid.spacing) + " m); enlarge it or lower fluid.spacing");
       sum += n;
     }
-    if (known && sum > kMaxParticles) add("bodies", too_many_text(sum));
+    if (known && sum > kMaxParticles) add(s_.bodies, too_many_text(sum));
   }
 
   std::optional<double> plane() const {
-    return p_.good({"domain.min", "domain.max", "dimensions"}) ? s_.plane() : std::nullopt;
+    return good(s_.domain.min, s_.domain.max, s_.dimensions) ? s_.plane() : std::nullopt;
   }
 
   /// Box or sphere well formed and inside the domain; with a plane, cut by it.
   bool check_place(const Body& body, const std::string& key, bool domain) {
     Double3 low = body.min, high = body.max;
-    if (!p_.good({key + ".shape"})) return false;
+    if (!good(body.shape)) return false;
     const bool sphere = body.shape == Shape::sphere;
     if (sphere) {
-      if (!p_.good({key + ".center", key + ".radius"})) return false;
+      if (!good(body.center, body.radius)) return false;
       for (int a = 0; a < 3; ++a) {
         low[a] = body.center[a] - body.radius;
         high[a] = body.center[a] + body.radius;
       }
-    } else if (!p_.good({key + ".min", key + ".max"}) ||
-               !above(key + ".min", key + ".max", low, high)) {
+    } else if (!good(body.min, body.max) || !above(body.min, body.max)) {
       return false;
     }
     bool inside = true;
     const std::optional<double> y = domain ? plane() : std::nullopt;
     if (y && !(low[1] <= *y && *y <= high[1])) {
       inside = false;
-      add(key, "its y goes from " + to_text(low[1]) + " to " + to_text(high[1]) +
-                   ", which leaves out the plane of the particles, y = " + to_text(*y) +
-                   " (dimensions: 2, the middle of the domain); move the body there");
+      add_at(key, "its y goes from " + to_text(low[1]) + " to " + to_text(high[1]) +
+                      ", which leaves out the plane of the particles, y = " + to_text(*y) +
+                      " (dimensions: 2, the middle of the domain); move the body there");
     }
     for (int a = 0; a < 3 && domain; a += y ? 2 : 1) {
       const double min = s_.domain.min[a], max = s_.domain.max[a], slack = 1e-9 * (max - min);
       const bool below = low[a] < min - slack;
       if (!below && high[a] <= max + slack) continue;
       inside = false;
-      add(sphere ? key : key + (below ? ".min" : ".max"),
-          std::string("reaches ") + kAxes[a] + " = " + to_text(below ? low[a] : high[a]) +
-              ", outside the domain (" + kAxes[a] + " from " + to_text(min) + " to " +
-              to_text(max) + " m); move the body or enlarge the domain");
+      add_at(sphere ? key : name(below ? body.min : body.max),
+             std::string("reaches ") + kAxes[a] + " = " + to_text(below ? low[a] : high[a]) +
+                 ", outside the domain (" + kAxes[a] + " from " + to_text(min) + " to " +
+                 to_text(max) + " m); move the body or enlarge the domain");
     }
     return inside;
   }
 
   void check_time() {
-    if (!p_.good({"time.step"})) return;
-    const double step = s_.time.step;
-    if (p_.good({"time.end"})) {
-      if (s_.time.end < step)
-        add("time.end", "is " + to_text(s_.time.end) + ", below time.step (" + to_text(step) +
-                            " s): no update would be done; raise it");
-      else if (s_.time.end / step > 2147483647.0)
-        add("time.end", "makes " + count_text(s_.time.end / step) +
-                            " updates, at most 2147483647 are possible; raise time.step or lower "
-                            "time.end");
+    const Time& time = s_.time;
+    if (!good(time.step)) return;
+    if (good(time.end)) {
+      if (time.end < time.step)
+        add_below(time.end, time.step, ": no update would be done; raise it");
+      else if (time.end / time.step > 2147483647.0)
+        add(time.end, "makes " + count_text(time.end / time.step) +
+                          " updates, at most 2147483647 are possible; raise time.step or lower "
+                          "time.end");
     }
-    if (s_.time.adaptive && s_.time.adaptive->step_min && p_.good({"time.adaptive.step_min"})) {
-      const double floor = *s_.time.adaptive->step_min;
-      if (floor > step)
-        add("time.adaptive.step_min",
-            "is " + to_text(floor) + ", above time.step (" + to_text(step) + " s); lower it");
-      else if (std::ldexp(floor, 20) < step)
-        add("time.adaptive.step_min", "is " + to_text(floor) + ", less than time.step/1048576 (" +
-                                          to_text(std::ldexp(step, -20)) + " s); raise it");
+    if (time.adaptive && time.adaptive->step_min && good(time.adaptive->step_min)) {
+      const double floor = *time.adaptive->step_min;
+      if (floor > time.step)
+        add(time.adaptive->step_min,
+            "is " + to_text(floor) + ", above time.step (" + to_text(time.step) + " s); lower it");
+      else if (std::ldexp(floor, 20) < time.step)
+        add(time.adaptive->step_min, "is " + to_text(floor) + ", less than time.step/1048576 (" +
+                                         to_text(std::ldexp(time.step, -20)) + " s); raise it");
     }
-    const double least = step * (1 - 1e-9);
-    if (s_.output && p_.good({"output.every"}) && s_.output->every < least)
-      add("output.every", "is " + to_text(s_.output->every) + ", below time.step (" +
-                              to_text(step) + " s); raise it to at least that");
-    if (s_.render && p_.good({"render.every"}) && s_.render->every < least)
-      add("render.every", "is " + to_text(s_.render->every) + ", below time.step (" +
-                              to_text(step) + " s); raise it to at least that");
+    const auto must_last_a_step = [&](const double& every) {
+      if (good(every) && every < time.step * (1 - 1e-9))
+        add_below(every, time.step, "; raise it to at least that");
+    };
+    if (s_.output) must_last_a_step(s_.output->every);
+    if (s_.render) must_last_a_step(s_.render->every);
   }
 
   void check_render() {
     if (!s_.render) return;
     const Render& r = *s_.render;
-    if (r.range && p_.good({"render.range"}) && !((*r.range)[0] < (*r.range)[1]))
-      add("render.range", "the lower end " + to_text((*r.range)[0]) +
-                              " is not below the upper end " + to_text((*r.range)[1]) +
-                              "; give [low, high] or auto");
-    if (s_.output && p_.good({"render.every", "output.every"}) &&
-        r.every < s_.output->every * (1 - 1e-9))
-      add("render.every", "is " + to_text(r.every) + ", below output.every (" +
-                              to_text(s_.output->every) +
-                              " s): pictures are made of output frames; raise it or lower "
-                              "output.every");
-    if (r.camera.position && r.camera.target &&
-        p_.good({"render.camera.position", "render.camera.target"}) &&
-        *r.camera.position == *r.camera.target)
-      add("render.camera.target", "is where the camera is; move one of them");
+    if (r.range && good(r.range) && !((*r.range)[0] < (*r.range)[1]))
+      add(r.range, "the lower end " + to_text((*r.range)[0]) + " is not below the upper end " +
+                       to_text((*r.range)[1]) + "; give [low, high] or auto");
+    if (s_.output && good(r.every, s_.output->every) && r.every < s_.output->every * (1 - 1e-9))
+      add_below(r.every, s_.output->every,
+                ": pictures are made of output frames; raise it or lower output.every");
+    const Camera& c = r.camera;
+    if (c.position && c.target && good(c.position, c.target) && *c.position == *c.target)
+      add(c.target, "is where the camera is; move one of them");
   }
 
   const PlacedScene& p_;
   const Scene& s_;
+  const std::map<const void*, std::string> names_;
   Problems& problems_;
 };
 

@@ -1,58 +1,50 @@
 #include "lib/scene/difference.h"
 
-#include <algorithm>
-
 #include "lib/scene/keys.h"
 
 namespace pbf::inline scene_module {
 namespace {
 
-/// The guard changes no particle, but where its alarms shorten the step.
-bool is_free(const std::string& path, const Scene& now) {
-  static const char* const kFree[] = {
-      "name", "time.end", "threads", "backend", "solver.reproducible", "checkpoint.every"};
-  if (path.rfind("guard.", 0) == 0) return !now.time.adaptive;
-  return std::find(std::begin(kFree), std::end(kFree), path) != std::end(kFree);
-}
-
 std::string changed(const std::string& path, const std::string& before, const std::string& now) {
   return before == now ? std::string() : path + ": " + before + " before, " + now + " now";
 }
 
-std::string body_difference(const Scene& before, const Scene& now) {
-  if (before.bodies.size() != now.bodies.size())
-    return changed("bodies", std::to_string(before.bodies.size()),
-                   std::to_string(now.bodies.size()));
-  for (std::size_t b = 0; b < now.bodies.size(); ++b) {
-    const unsigned shape = 1u << static_cast<unsigned>(now.bodies[b].shape);
-    for (const Key& key : scene_keys()) {
-      if (key.block() != "bodies[]" || !(key.shapes & shape)) continue;
-      const std::string path = "bodies[" + std::to_string(b) + "]." + key.leaf();
-      std::string what = changed(path, value_text(key, before, before.bodies[b]),
-                                 value_text(key, now, now.bodies[b]));
-      if (!what.empty()) return what;
-    }
+std::string list_difference(const Block& list, const Object& before, const Object& now,
+                            Effect least) {
+  const std::size_t n = list.size(now);
+  std::string what = changed(list.leaf(), std::to_string(list.size(before)), std::to_string(n));
+  for (std::size_t i = 0; i < n && what.empty(); ++i) {
+    const Object was = list.entry(before, i), is = list.entry(now, i);
+    for (const Key* key : list.keys)
+      if (what.empty() && (key->kinds & list.kind_of(is)) && key->effect >= least)
+        what = changed(join(list.entry_path(i), key->leaf()), value_text(*key, was),
+                       value_text(*key, is));
   }
-  return {};
+  return what;
 }
 
 }  // namespace
 
-std::string physics_difference(const Scene& before, const Scene& now) {
-  for (const Block& block : scene_blocks()) {
-    if (!block.optional || block.path == "checkpoint") continue;
-    if (block.path == "guard" && !now.time.adaptive) continue;
-    const bool was = block.present(before), is = block.present(now);
+std::string first_difference(const KeyTable& table, const Object& before, const Object& now,
+                             Effect least) {
+  for (const Block& block : table.blocks) {
+    if (!block.optional || block.effect < least) continue;
+    const bool was = block.size(before) > 0, is = block.size(now) > 0;
     if (was != is) return changed(block.path, was ? "on" : "off", is ? "on" : "off");
   }
-  for (const Key& key : scene_keys()) {
-    const std::string block = key.block();
-    if (block == "bodies[]" || is_free(key.path, now) || !is_present(now, block)) continue;
-    std::string what =
-        changed(key.path, value_text(key, before, Body{}), value_text(key, now, Body{}));
-    if (!what.empty()) return what;
-  }
-  return body_difference(before, now);
+  std::string what;
+  for (const Key& key : table.keys)
+    if (what.empty() && !key.block->list && key.effect >= least && key.block->is_present(now))
+      what = changed(key.path, value_text(key, before), value_text(key, now));
+  for (const Block& block : table.blocks)
+    if (what.empty() && block.list && block.effect >= least)
+      what = list_difference(block, before, now, least);
+  return what;
+}
+
+std::string physics_difference(const Scene& before, const Scene& now) {
+  return first_difference(scene_table(), object(before), object(now),
+                          now.time.adaptive ? Effect::adaptive : Effect::results);
 }
 
 }  // namespace pbf::inline scene_module

@@ -8,8 +8,8 @@
 namespace pbf::inline scene_module {
 
 /// The first key in which two scenes differ, and how: "solver.iterations: 4 before, 8 now"; empty
-/// when there is none. Keys that leave the results of a run alone up to its end are not looked at:
-/// name, time.end, threads, backend, solver.reproducible and those of checkpoint.
+/// when there is none. Keys that leave the results of a run alone up to its end (Effect, keys.h)
+/// are not looked at.
 std::string physics_difference(const Scene& before, const Scene& now);
 
 }  // namespace pbf::inline scene_module

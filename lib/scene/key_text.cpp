@@ -1,6 +1,7 @@
 // What the table of keys says about itself in words, and the search for a misspelt key.
 #include <algorithm>
 
+#include "lib/base/text.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/number.h"
 #include "lib/scene/value.h"
@@ -25,34 +26,7 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return last[b.size()];
 }
 
-std::string after_last_dot(const std::string& path) { return path.substr(path.rfind('.') + 1); }
-
 }  // namespace
-
-std::string Key::block() const {
-  const std::size_t dot = path.rfind('.');
-  return dot == std::string::npos ? "" : path.substr(0, dot);
-}
-
-std::string Key::leaf() const { return after_last_dot(path); }
-
-const Key* find_renamed(const std::string& path) {
-  for (const Key& key : scene_keys())
-    if (!key.was.empty() && key.was == path) return &key;
-  return nullptr;
-}
-
-const Key* find_key(const std::string& path) {
-  for (const Key& key : scene_keys())
-    if (key.path == path) return &key;
-  return nullptr;
-}
-
-const Block* find_block(const std::string& path) {
-  for (const Block& block : scene_blocks())
-    if (block.path == path) return &block;
-  return nullptr;
-}
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& words) {
   std::string best;
@@ -68,57 +42,53 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   return best;
 }
 
-std::string nearest_path(const std::string& path) {
-  std::vector<std::string> paths;
-  for (const Block& block : scene_blocks())
-    if (!block.path.empty()) paths.push_back(block.path == "bodies[]" ? "bodies" : block.path);
-  for (const Key& key : scene_keys()) paths.push_back(key.path);
+std::string KeyTable::nearest_path(const std::string& path) const {
+  std::vector<std::pair<std::string, std::string>> names;  // block and leaf
+  for (const Block& block : blocks)
+    if (block.parent != nullptr) names.emplace_back(block.parent->path, block.leaf());
+  for (const Key& key : keys) names.emplace_back(key.block->path, key.leaf());
   // First among the block's own keys: `solver.step` is near solver.sor, not time.step.
-  const auto parent = [](const std::string& p) {
-    const std::size_t dot = p.rfind('.');
-    return dot == std::string::npos ? std::string() : p.substr(0, dot);
-  };
-  const std::string leaf = after_last_dot(path);
-  std::vector<std::string> siblings;
-  for (const std::string& p : paths)
-    if (parent(p) == parent(path)) siblings.push_back(after_last_dot(p));
-  const std::string sibling = nearest_word(leaf, siblings);
-  if (!sibling.empty()) return parent(path).empty() ? sibling : parent(path) + "." + sibling;
+  const std::size_t dot = path.rfind('.');
+  const std::string in = dot == std::string::npos ? "" : path.substr(0, dot);
+  const std::string wrong = path.substr(dot + 1);
+  std::vector<std::string> siblings, paths;
+  for (const auto& [block, leaf] : names) {
+    if (block == in) siblings.push_back(leaf);
+    paths.push_back(join(block, leaf));
+  }
+  const std::string sibling = nearest_word(wrong, siblings);
+  if (!sibling.empty()) return join(in, sibling);
   // Then a key of the same name that lives elsewhere, then anything near.
-  for (const std::string& p : paths)
-    if (after_last_dot(p) == leaf) return p;
+  for (const auto& [block, leaf] : names)
+    if (leaf == wrong) return join(block, leaf);
   return nearest_word(path, paths);
 }
 
 std::string unit_text(const Key& key) {
-  if (!key.unit.empty()) return key.unit;
-  Scene scene = scene_with_all_blocks();
-  Body body;
-  return is_numeric(key.field(scene, body)) ? "1" : "";
+  return key.unit.empty() && is_numeric(key.field(key.standard)) ? "1" : key.unit;
 }
 
 std::string range_text(const Key& key) {
-  std::string text;
-  const auto join = [&text](const std::string& part) {
-    text += (text.empty() ? "" : " | ") + part;
-  };
-  if (!unit_text(key).empty()) {
-    const bool low = key.range.min > -std::numeric_limits<double>::infinity();
-    if (low)
-      text = (key.range.above_min ? "> " : "") + to_text(key.range.min) + " .. " +
-             (key.range.below_max ? "< " : "") + to_text(key.range.max);
-  }
-  for (const std::string& word : key.choices) join(word);
-  Scene scene = scene_with_all_blocks();
-  Body body;
-  if (std::holds_alternative<bool*>(key.field(scene, body))) join("true | false");
-  if (key.automatic) join("auto");
-  return text;
+  std::vector<std::string> parts;
+  const Range& r = key.range;
+  if (!unit_text(key).empty() && r.min > -std::numeric_limits<double>::infinity())
+    parts.push_back((r.above_min ? "> " : "") + to_text(r.min) + " .. " +
+                    (r.below_max ? "< " : "") + to_text(r.max));
+  parts.insert(parts.end(), key.choices.begin(), key.choices.end());
+  if (std::holds_alternative<bool*>(key.field(key.standard))) parts.push_back("true | false");
+  if (key.automatic) parts.push_back("auto");
+  return joined(parts, " | ");
 }
 
-std::string value_text(const Key& key, const Scene& scene, const Body& body) {
-  // The accessors are written once, for reading and writing; nothing is written here.
-  return format_field(key, key.field(const_cast<Scene&>(scene), const_cast<Body&>(body)));
+std::string value_text(const Key& key, const Object& holder) {
+  return format_field(key, key.field(holder));
+}
+
+std::string Key::kinds_text(unsigned bits) const {
+  std::vector<std::string> words;
+  for (std::size_t k = 0; k < choices.size(); ++k)
+    if (bits & (1u << k)) words.push_back(choices[k]);
+  return joined(words, ", ");
 }
 
 }  // namespace pbf::inline scene_module

@@ -1,10 +1,13 @@
 // The table of keys of a scene file. One table drives validation, --set, the reference scene, the
-// resolved scene and the JSON Schema.
+// resolved scene, the JSON Schema, what --resume takes and what a shorter step changes.
 #pragma once
 
+#include <any>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -13,13 +16,24 @@
 
 namespace pbf::inline scene_module {
 
+/// A struct whose members are keys, by pointer: the scene, or an entry of one of its lists.
+using Object = std::any;
+/// The accessors of the table are written once, for reading and writing; what takes an Object and
+/// does not say that it changes it reads only.
+template <class T>
+Object object(const T& holder) {
+  return const_cast<T*>(&holder);
+}
+
 /// A field that is one word of Key::choices; get and set speak of its index.
 struct ChoiceField {
+  const void* address;
   std::function<int()> get;
   std::function<void(int)> set;
+  operator const void*() const { return address; }  ///< of the member, as of the other fields
 };
 
-/// Where a key's value lives in a Scene or Body.
+/// Where a key's value lives in an Object.
 using Field =
     std::variant<double*, std::optional<double>*, int*, std::int64_t*, std::uint64_t*, bool*,
                  std::string*, std::vector<std::string>*, Double3*, std::optional<Double3>*,
@@ -33,58 +47,123 @@ struct Range {
   bool below_max = false;  ///< max itself is not allowed
 };
 
-struct Key {
-  std::string path;  ///< "fluid.spacing"; of a body "bodies[].min"
-  std::string help;  ///< one sentence or two, without unit, range and default
-  std::string unit;  ///< "m"; empty: not a number, or dimensionless ("1" is written for those)
-  Range range;
-  std::vector<std::string> choices;  ///< words allowed (ChoiceField), or elements (lists of words)
-  bool required = false;
-  bool automatic = false;  ///< `auto` is allowed: an absent optional, or 0 of a plain number
-  unsigned shapes = 0;     ///< bodies: bit 1 << Shape of every shape that has this key
-  std::function<Field(Scene&, Body&)> field;
-  std::string was{};  ///< its path in earlier versions; empty: the same
-
-  std::string block() const;  ///< "fluid", "" for the top level, "bodies[]"
-  std::string leaf() const;   ///< "spacing"
+/// Whether a change leaves the results of a run alone up to its end, so that --resume takes it.
+/// In order: what is more than another counts where that counts.
+enum class Effect {
+  none,      ///< it does
+  adaptive,  ///< it does without time.adaptive
+  results,   ///< it does not
 };
 
-/// A mapping in the scene file.
+struct Block;
+
+struct Key {
+  std::string path;  ///< "fluid.spacing"; of a list's entries "bodies[].min"
+  std::string help;  ///< one sentence or two, without unit, range and default
+  std::function<Field(const Object&)> field;
+  std::string unit{};  ///< "m"; empty: not a number, or dimensionless ("1" is written for those)
+  Range range{};
+  std::vector<std::string> choices{};  ///< words allowed (ChoiceField), or elements of a list
+  bool required = false;
+  bool automatic = false;  ///< `auto` is allowed: an absent optional, or 0 of a plain number
+  bool is_kind = false;    ///< of a list: the word that decides which other keys an entry has
+  unsigned kinds = ~0u;    ///< of a list: bit 1 << index of every kind that has this key
+  std::string was{};       ///< its path in earlier versions; empty: the same
+  /// What becomes of it where the step is 2^-level as long, for the same effect per time; null: it
+  /// stays.
+  double (*at_level)(double value, int level) = nullptr;
+  Effect effect = Effect::results;  ///< no more than its block's
+  // From the table:
+  const Block* block = nullptr;
+  Object standard{};  ///< where it has its default
+
+  std::string leaf() const;  ///< "spacing"
+  /// Of a kind: the words that the bits stand for, "block, random_box".
+  std::string kinds_text(unsigned kinds) const;
+};
+
+/// A list of structs, each a mapping in the scene file.
+struct List {
+  std::string entry_name{};  ///< "body", for messages
+  std::size_t least = 0;     ///< fewest entries
+  std::string remark{};      ///< what else the reference says of the list
+  std::string example{};     ///< an entry, for messages
+  std::string further{};     ///< one that the reference shows besides those it has; empty: none
+  std::function<const void*(const Object&)> address{};  ///< of the member
+  Object standard{};                                    ///< an entry with all defaults
+
+  std::string least_text() const;  ///< "at least one", "at least 2"
+};
+
+/// A mapping in the scene file that is always there, that may be absent, or a list of them: n
+/// structs that have its keys, of which the first two are the object around them itself.
 struct Block {
   std::string path;  ///< "solver", "render.camera"; "bodies[]" stands for one entry of the list
   std::string help;
+  std::function<std::size_t(const Object&)> size = [](const Object&) { return 1; };
+  /// Of a list: so many entries, all defaults. Of others: 1 leaves what is there as it is.
+  std::function<void(const Object&, std::size_t)> resize = [](const Object&, std::size_t) {};
+  std::function<Object(const Object&, std::size_t)> entry = [](const Object& o, auto) { return o; };
   bool optional = false;  ///< absent or `off`: the feature is off; {} or `on`: on, all defaults
-  std::function<bool(const Scene&)> present;
-  std::function<void(Scene&, bool)> set_present;
   bool on_by_default = false;  ///< optional, but on where the scene does not mention it
+  Effect effect = Effect::results;
+  std::optional<List> list{};
+  // From the table:
+  const Block* parent = nullptr;  ///< of the top level null
+  std::vector<const Key*> keys{};
+  const Key* kind = nullptr;  ///< decides which keys an entry of a list has; null: all of them
+
+  std::string leaf() const;                      ///< "camera", "bodies"
+  std::string entry_path(std::size_t i) const;   ///< "bodies[1]"; without a list the path
+  bool is_present(const Object& object) const;   ///< with those around it; lists are
+  unsigned kind_of(const Object& holder) const;  ///< its bit in Key::kinds; without kinds all
 };
 
-/// All keys, in the order of the reference scene. The top level's keys come with block "".
-const std::vector<Key>& scene_keys();
-/// All blocks, a parent before its children.
-const std::vector<Block>& scene_blocks();
-/// Names of the shapes, by Shape.
-const std::vector<std::string>& shape_names();
+/// Rows that belong together, in the order of the reference scene, a block before its children.
+struct KeyRows {
+  std::vector<Block> blocks;
+  std::vector<Key> keys;
+};
 
-const Key* find_key(const std::string& path);
-/// The key that had this path in earlier versions, or null.
-const Key* find_renamed(const std::string& path);
-const Block* find_block(const std::string& path);
-/// Whether a block and those that it stands in are there.
-bool is_present(const Scene& scene, const std::string& block);
+/// All keys and blocks of a struct. The top level is block "", which is a row too.
+struct KeyTable : KeyRows {
+  /// `defaults`: of the struct, kept by the caller; every optional block of it is made present.
+  KeyTable(const std::vector<KeyRows>& parts, const Object& defaults);
+  KeyTable(const KeyTable&) = delete;
+  KeyTable& operator=(const KeyTable&) = delete;
 
-/// Default scene with every optional block present: what defaults are taken from.
-Scene scene_with_all_blocks();
+  const Key* find_key(const std::string& path) const;
+  /// The key that had this path in earlier versions, or null.
+  const Key* find_renamed(const std::string& path) const;
+  const Block* find_block(const std::string& path) const;
+  void make_all_present(const Object& object) const;
+  /// Paths of all members that the object has by their addresses, and those of its lists.
+  std::map<const void*, std::string> names(const Object& object) const;
+  /// Nearest path of the table to a misspelt one ("bodies[].min" of a list's keys), or empty when
+  /// nothing is near.
+  std::string nearest_path(const std::string& path) const;
+};
 
-/// Nearest path of the table to a misspelt one (of the same body shape list "bodies[]" too), or
-/// empty when nothing is near.
-std::string nearest_path(const std::string& path);
+/// That of a Scene.
+const KeyTable& scene_table();
 
 /// "m" or "1"; empty for words and text.
 std::string unit_text(const Key& key);
 /// "> 0 .. 1.0e+09", "consistent | paper"; empty when anything goes.
 std::string range_text(const Key& key);
-/// YAML text of the key's value in a scene or body.
-std::string value_text(const Key& key, const Scene& scene, const Body& body);
+/// YAML text of the key's value in the object that holds it.
+std::string value_text(const Key& key, const Object& holder);
+/// "fluid", "spacing" -> "fluid.spacing"; of the top level the leaf.
+std::string join(const std::string& block, const std::string& leaf);
+
+// What load.h and difference.h do for scenes, for any struct with a table of keys.
+
+/// `comments`: as in the reference scene.
+std::string yaml_of(const KeyTable& table, const Object& object, bool comments);
+/// JSON Schema of the struct's mapping, without the document around it.
+std::string schema_of(const KeyTable& table);
+/// Keys and blocks with less effect than `least` are not looked at.
+std::string first_difference(const KeyTable& table, const Object& before, const Object& now,
+                             Effect least);
 
 }  // namespace pbf::inline scene_module

@@ -72,7 +72,8 @@ Node load_tree(const std::string& path, const std::string& what) {
 }
 
 Scene scene_of_tree(const Node& root, Problems& problems) {
-  const PlacedScene placed = validate(root, problems);
+  PlacedScene placed;
+  static_cast<Places&>(placed) = read_tree(scene_table(), root, object(placed.scene), problems);
   check_scene(placed, problems);
   return placed.scene;
 }
@@ -87,15 +88,28 @@ Scene scene_with_overrides(Node root, const std::vector<std::string>& overrides)
   return scene;
 }
 
-void use_new_names(Node& node, const std::string& block) {
-  for (std::size_t i = 0; i < node.keys.size(); ++i) {
-    const std::string path = (block.empty() ? "" : block + ".") + node.keys[i].text;
-    if (const Key* now = find_renamed(path)) node.keys[i].text = now->leaf();
-    use_new_names(node.items[i], path);
-  }
+template <class Parse>
+LoadedScene load(const std::string& path, const std::vector<std::string>& overrides, Parse parse) {
+  LoadedScene loaded;
+  loaded.path = path;
+  loaded.folder = std::filesystem::path(path).parent_path().string();
+  loaded.text = read_text_file(path, "scene");
+  loaded.overrides = overrides;
+  loaded.scene = parse(loaded.text, path, overrides);
+  return loaded;
 }
 
 }  // namespace
+
+void use_new_names(const KeyTable& table, Node& node, const std::string& block) {
+  if (node.kind == Node::Kind::list)
+    for (Node& item : node.items) use_new_names(table, item, block + "[]");
+  for (std::size_t i = 0; i < node.keys.size(); ++i) {
+    const std::string path = (block.empty() ? "" : block + ".") + node.keys[i].text;
+    if (const Key* now = table.find_renamed(path)) node.keys[i].text = now->leaf();
+    use_new_names(table, node.items[i], path);
+  }
+}
 
 Scene parse_scene(const std::string& text, const std::string& origin,
                   const std::vector<std::string>& overrides) {
@@ -105,27 +119,16 @@ Scene parse_scene(const std::string& text, const std::string& origin,
 Scene parse_stored_scene(const std::string& text, const std::string& origin,
                          const std::vector<std::string>& overrides) {
   Node root = tree_of(text, origin, "scene");
-  use_new_names(root, "");
+  use_new_names(scene_table(), root);
   return scene_with_overrides(std::move(root), overrides);
 }
 
 LoadedScene load_stored_scene(const std::string& path) {
-  LoadedScene loaded;
-  loaded.path = path;
-  loaded.folder = std::filesystem::path(path).parent_path().string();
-  loaded.text = read_text_file(path, "scene");
-  loaded.scene = parse_stored_scene(loaded.text, path, {});
-  return loaded;
+  return load(path, {}, parse_stored_scene);
 }
 
 LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides) {
-  LoadedScene loaded;
-  loaded.path = path;
-  loaded.folder = std::filesystem::path(path).parent_path().string();
-  loaded.text = read_text_file(path, "scene");
-  loaded.overrides = overrides;
-  loaded.scene = parse_scene(loaded.text, path, overrides);
-  return loaded;
+  return load(path, overrides, parse_scene);
 }
 
 }  // namespace pbf::inline scene_module

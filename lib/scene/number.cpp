@@ -11,28 +11,6 @@
 namespace pbf::inline scene_module {
 namespace {
 
-/// Whether `s` is a decimal number; `whole` tells whether it has digits (and a sign) only.
-bool is_decimal(const std::string& s, bool& whole) {
-  const auto is_digit = [&s](std::size_t k) { return k < s.size() && s[k] >= '0' && s[k] <= '9'; };
-  std::size_t k = !s.empty() && (s[0] == '+' || s[0] == '-') ? 1 : 0;
-  const std::size_t first = k;
-  while (is_digit(k)) ++k;
-  std::size_t digits = k - first;
-  whole = k == s.size();
-  if (k < s.size() && s[k] == '.') {
-    ++k;
-    while (is_digit(k)) ++k, ++digits;
-  }
-  if (digits == 0) return false;
-  if (k < s.size() && (s[k] == 'e' || s[k] == 'E')) {
-    ++k;
-    if (k < s.size() && (s[k] == '+' || s[k] == '-')) ++k;
-    if (!is_digit(k)) return false;
-    while (is_digit(k)) ++k;
-  }
-  return k == s.size();
-}
-
 bool names_non_finite(std::string s) {
   std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return std::tolower(c); });
   if (!s.empty() && (s[0] == '+' || s[0] == '-')) s.erase(0, 1);
@@ -59,11 +37,13 @@ std::string to_text(const Double3& v) {
 }
 
 NumberError read_double(const std::string& text, double& value) {
-  bool whole = false;
-  if (!is_decimal(text, whole))
+  // Nothing that from_chars takes beside decimal numbers, and a plus, which it does not take.
+  const bool decimal = !text.empty() && text.find_first_not_of("+-.0123456789eE") == text.npos;
+  const char* first = text.data() + (decimal && text[0] == '+' && text[1] != '-' ? 1 : 0);
+  const char* last = text.data() + text.size();
+  const auto result = std::from_chars(first, last, value);
+  if (!decimal || result.ec == std::errc::invalid_argument || result.ptr != last)
     return names_non_finite(text) ? NumberError::not_finite : NumberError::not_a_number;
-  const char* first = text.data() + (text[0] == '+' ? 1 : 0);
-  const auto result = std::from_chars(first, text.data() + text.size(), value);
   if (result.ec == std::errc::result_out_of_range) {
     // from_chars does not say which end was left; a number in magnitude above 1 has its digits so.
     const std::size_t e = text.find_first_of("eE");
@@ -76,14 +56,14 @@ NumberError read_double(const std::string& text, double& value) {
 }
 
 NumberError read_integer(const std::string& text, std::int64_t& value) {
-  bool whole = false;
-  if (is_decimal(text, whole) && whole) {
-    const char* first = text.data() + (text[0] == '+' ? 1 : 0);
-    const auto result = std::from_chars(first, text.data() + text.size(), value, 10);
-    return result.ec == std::errc{} ? NumberError::none : NumberError::too_large;
-  }
   double real = 0;
   const NumberError error = read_double(text, real);
+  const bool digits = text.find_first_of(".eE") == std::string::npos;
+  if (digits && (error == NumberError::none || error == NumberError::too_large)) {
+    const char* first = text.data() + (text[0] == '+' ? 1 : 0);
+    const auto result = std::from_chars(first, text.data() + text.size(), value);
+    return result.ec == std::errc{} ? NumberError::none : NumberError::too_large;
+  }
   if (error != NumberError::none) return error;
   if (real != std::floor(real)) return NumberError::not_whole;
   if (std::fabs(real) > 0x1p53) return NumberError::too_large;
@@ -92,21 +72,13 @@ NumberError read_integer(const std::string& text, std::int64_t& value) {
 }
 
 std::string describe(NumberError error) {
-  switch (error) {
-    case NumberError::none:
-      return "";
-    case NumberError::not_a_number:
-      return "is not a number";
-    case NumberError::not_finite:
-      return "is not finite";
-    case NumberError::too_large:
-      return "is too large to be represented";
-    case NumberError::too_small:
-      return "is too small to be represented; write 0";
-    case NumberError::not_whole:
-      return "is not a whole number";
-  }
-  return "";
+  static const char* const kTexts[] = {"",  // in the order of NumberError
+                                       "is not a number",
+                                       "is not finite",
+                                       "is too large to be represented",
+                                       "is too small to be represented; write 0",
+                                       "is not a whole number"};
+  return kTexts[static_cast<int>(error)];
 }
 
 std::string count_text(double count) { return format(count < 1e10 ? "%.0f" : "%.3g", count); }

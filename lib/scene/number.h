@@ -11,6 +11,7 @@ namespace pbf::inline scene_module {
 /// Fewest digits that read back to the same double: 0.1, 1000, 1.0e-05. An exponent always comes
 /// with a point, for YAML 1.1 readers take 1e-05 for text.
 std::string to_text(double value);
+inline std::string to_text(int value) { return std::to_string(value); }
 /// [x, y, z]
 std::string to_text(const Double3& value);
 

@@ -35,19 +35,7 @@ std::vector<std::string> segments(const std::string& path) {
 }
 
 Node made(const Node& like, Node::Kind kind, const std::string& text) {
-  Node node;
-  node.kind = kind;
-  node.text = text;
-  node.origin = like.origin;
-  node.line = like.line;
-  node.column = like.column;
-  return node;
-}
-
-/// What a block may be overwritten from: nothing, or the words that turn it off, or on as it is.
-bool is_word_for_block(const Node& node) {
-  if (node.kind != Node::Kind::scalar) return node.kind == Node::Kind::null;
-  return node.text == "off" || node.text == "false" || node.text == "on" || node.text == "true";
+  return {kind, text, false, {}, {}, like.origin, like.line, like.column};
 }
 
 /// Child of `at` named by `segment`, made when a block lacks it; nullptr with the reason in `why`.
@@ -64,7 +52,9 @@ Node* child(Node& at, const std::string& segment, const Node& value, const std::
           "\" is no index of it (the first is 0)";
     return nullptr;
   }
-  if (is_word_for_block(at)) at = made(value, Node::Kind::map, "");
+  // A block may stand for nothing, or for the words that turn it off, or on as it is.
+  if (at.kind == Node::Kind::null || at.is_word({"off", "false", "on", "true"}))
+    at = made(value, Node::Kind::map, "");
   if (at.kind != Node::Kind::map) {
     why = here + " is no block, it has no key \"" + segment + "\"";
     return nullptr;

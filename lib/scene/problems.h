@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lib/base/error.h"
+#include "lib/base/text.h"
 
 namespace pbf::inline scene_module {
 
@@ -25,8 +26,7 @@ class Problems {
   /// a file that is no scene at all would fill the terminal.
   void raise() const {
     if (lines_.empty()) return;
-    std::string text;
-    for (const std::string& line : lines_) text += (text.empty() ? "" : "\n") + line;
+    std::string text = joined(lines_, "\n");
     if (known_.size() > lines_.size())
       text += "\n... and " + std::to_string(known_.size() - lines_.size()) + " more problems";
     throw Error(ExitCode::bad_input, text);

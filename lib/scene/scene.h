@@ -1,5 +1,5 @@
 // A scene as plain data: everything a run depends on, in SI units, with defaults.
-// The table of keys (keys.cpp) maps every field below to its YAML key, range and help text.
+// The table of keys (keys_*.cpp) maps every field below to its YAML key, range and help text.
 #pragma once
 
 #include <array>
@@ -20,6 +20,7 @@ enum class BoundaryMode { density, clamp };          ///< walls with a density c
 enum class SolverMethod { jacobi, chebyshev };       ///< omega of a sweep: constant, or a sequence
 enum class Precision { single, dbl };                ///< YAML: float, double
 enum class Backend { cpu, cuda };
+enum class Compression { none, gzip };
 enum class ColorBy { speed, density, id };
 
 /// A body of fluid. Which members count depends on `shape`; the loader refuses the others.
@@ -126,7 +127,7 @@ struct Output {
   double every = 0.02;  ///< s between frames, rounded to whole updates
   std::vector<std::string> fields{"velocity", "density"};  ///< besides position and id
   Precision precision = Precision::single;                 ///< of floating-point fields on disk
-  bool gzip = false;  ///< compression: none | gzip (shuffle + deflate 1)
+  Compression compression = Compression::none;             ///< gzip: shuffle + deflate 1
   bool operator==(const Output&) const = default;
 };
 

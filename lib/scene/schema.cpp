@@ -1,4 +1,6 @@
 // JSON Schema of a scene file, for editors that complete and check while one types.
+#include <algorithm>
+
 #include "lib/base/text.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/load.h"
@@ -54,9 +56,7 @@ struct TypeSchema {
 };
 
 std::string key_schema(const Key& key) {
-  Scene scene = scene_with_all_blocks();
-  Body body;
-  const Field field = key.field(scene, body);
+  const Field field = key.field(key.standard);
   const std::string type = std::visit(TypeSchema{key}, field);
   const std::string unit = unit_text(key);
   std::string text =
@@ -80,26 +80,31 @@ std::string key_schema(const Key& key) {
   return text + "}";
 }
 
-/// Object with the keys and blocks that stand directly in `block`. shape < 0: not a body.
-std::string object_schema(const std::string& block, int shape);
+/// Object with the keys and blocks that stand directly in `block`. kind < 0: of no kind.
+std::string object_schema(const KeyTable& table, const Block& block, int kind);
 
-std::string block_schema(const Block& block) {
-  const std::string object = object_schema(block.path, -1);
+std::string block_schema(const KeyTable& table, const Block& block) {
+  const std::string object = object_schema(table, block, -1);
   if (!block.optional) return object;
   return "{\"description\":" + json_string(block.help) + ",\"anyOf\":[" + object +
          ",{\"enum\":[\"on\",\"off\",true,false]}]}";
 }
 
-std::string bodies_schema() {
-  std::string shapes;
-  for (std::size_t s = 0; s < shape_names().size(); ++s)
-    shapes.append(s > 0 ? "," : "").append(object_schema("bodies[]", static_cast<int>(s)));
-  return "{\"description\":\"Bodies of fluid.\",\"type\":\"array\",\"minItems\":1,\"items\":"
-         "{\"oneOf\":[" +
-         shapes + "]}}";
+std::string list_schema(const KeyTable& table, const Block& block) {
+  std::string items;
+  if (block.kind != nullptr) {
+    for (std::size_t k = 0; k < block.kind->choices.size(); ++k)
+      items.append(k > 0 ? "," : "").append(object_schema(table, block, static_cast<int>(k)));
+    items = "{\"oneOf\":[" + items + "]}";
+  } else {
+    items = object_schema(table, block, -1);
+  }
+  return "{\"description\":" + json_string(block.help + ".") +
+         ",\"type\":\"array\",\"minItems\":" + std::to_string(block.list->least) +
+         ",\"items\":" + items + "}";
 }
 
-std::string object_schema(const std::string& block, int shape) {
+std::string object_schema(const KeyTable& table, const Block& block, int kind) {
   std::string properties, required;
   const auto property = [&properties](const std::string& name, const std::string& schema) {
     properties += (properties.empty() ? "" : ",\n") + json_string(name) + ":" + schema;
@@ -107,43 +112,39 @@ std::string object_schema(const std::string& block, int shape) {
   const auto require = [&required](const std::string& name) {
     required.append(required.empty() ? "" : ",").append(json_string(name));
   };
-  for (const Key& key : scene_keys()) {
-    if (key.block() != block) continue;
-    if (shape >= 0 && !(key.shapes & (1u << shape))) continue;
-    const bool is_shape = shape >= 0 && key.leaf() == "shape";
-    property(key.leaf(),
-             is_shape
-                 ? "{\"const\":" + json_string(shape_names()[static_cast<std::size_t>(shape)]) + "}"
-                 : key_schema(key));
-    if (key.required) require(key.leaf());
+  for (const Key* key : block.keys) {
+    if (kind >= 0 && !(key->kinds & (1u << kind))) continue;
+    property(key->leaf(),
+             key->is_kind
+                 ? "{\"const\":" + json_string(key->choices[static_cast<std::size_t>(kind)]) + "}"
+                 : key_schema(*key));
+    if (key->required) require(key->leaf());
   }
-  for (const Block& child : scene_blocks()) {
-    const std::size_t dot = child.path.rfind('.');
-    const std::string parent = dot == std::string::npos ? "" : child.path.substr(0, dot);
-    if (child.path.empty() || child.path == "bodies[]" || parent != block || shape >= 0) continue;
-    const std::string leaf = child.path.substr(dot == std::string::npos ? 0 : dot + 1);
-    property(leaf, block_schema(child));
-    for (const Key& key : scene_keys())
-      if (key.required && key.block() == child.path) {
-        require(leaf);
-        break;
-      }
+  for (const Block& child : table.blocks) {
+    if (child.list || child.parent != &block) continue;
+    property(child.leaf(), block_schema(table, child));
+    if (std::any_of(child.keys.begin(), child.keys.end(), [](auto* key) { return key->required; }))
+      require(child.leaf());
   }
-  if (block.empty()) {
-    property("bodies", bodies_schema());
-    require("bodies");
+  for (const Block& child : table.blocks) {
+    if (!child.list || child.parent != &block) continue;
+    property(child.leaf(), list_schema(table, child));
+    if (child.list->least > 0) require(child.leaf());
   }
   std::string text = "{\"type\":\"object\",\"additionalProperties\":false";
-  if (!block.empty() && shape < 0)
-    text += ",\"description\":" + json_string(find_block(block)->help);
+  if (block.parent != nullptr && !block.list) text += ",\"description\":" + json_string(block.help);
   if (!required.empty()) text += ",\"required\":[" + required + "]";
   return text + ",\"properties\":{\n" + properties + "}}";
 }
 
 }  // namespace
 
+std::string schema_of(const KeyTable& table) {
+  return object_schema(table, *table.find_block(""), -1);
+}
+
 std::string json_schema() {
-  const std::string object = object_schema("", -1);
+  const std::string object = schema_of(scene_table());
   return "{\"$schema\":\"https://json-schema.org/draft/2020-12/schema\",\"title\":\"Scene of "
          "pbf\"," +
          object.substr(1) + "\n";

@@ -8,61 +8,61 @@
 namespace pbf::inline scene_module {
 namespace {
 
-std::string join(const std::string& block, const std::string& leaf) {
-  return block.empty() ? leaf : block + "." + leaf;
+/// What a key stands in: "bodies[0].min", "bodies[0]", "bodies", "".
+std::string around(const std::string& path) {
+  const std::size_t end = path.find_last_of(".[");
+  return end == std::string::npos ? "" : path.substr(0, end);
 }
 
 /// `off` anywhere; null from the command line only: in a file it is a block whose keys were
 /// forgotten or commented out.
 bool turns_off(const Node& node) {
   if (node.kind == Node::Kind::null) return node.line < 0;
-  return node.kind == Node::Kind::scalar && !node.quoted &&
-         (node.text == "off" || node.text == "false");
+  return !node.quoted && node.is_word({"off", "false"});
 }
 
-bool turns_on(const Node& node) {
-  return node.kind == Node::Kind::scalar && !node.quoted &&
-         (node.text == "on" || node.text == "true");
-}
+bool turns_on(const Node& node) { return !node.quoted && node.is_word({"on", "true"}); }
 
-/// A key of the block, to show what one looks like.
-std::string example_of(const std::string& block) {
-  for (const Key& key : scene_keys())
-    if (key.block() == block) return key.leaf() + ": ...";
-  return "...";
-}
-
-std::string shapes_text(unsigned mask) {
-  std::string text;
-  for (std::size_t s = 0; s < shape_names().size(); ++s)
-    if (mask & (1u << s)) text += (text.empty() ? "" : ", ") + shape_names()[s];
-  return text;
+/// "at least one body"; "gauges" of a list that may be empty.
+std::string least_text(const Block& list) {
+  const List& l = *list.list;
+  if (l.least == 0) return list.leaf();
+  return l.least_text() + " " + (l.least == 1 ? l.entry_name : list.leaf());
 }
 
 class Validator {
  public:
-  explicit Validator(Problems& problems) : problems_(problems) {}
+  Validator(const KeyTable& table, const Object& object, Problems& problems)
+      : table_(table), object_(object), problems_(problems) {}
 
-  PlacedScene run(const Node& root) {
+  Places run(const Node& root) {
     out_.places[""] = root.place();
     if (root.kind == Node::Kind::map)
-      read_block("", "", root, nullptr);
+      read_block(*table_.find_block(""), "", root, object_, ~0u);
     else
       report(root.place(), "",
-             "expected a scene: keys such as domain, fluid, bodies; got " + root.shown());
+             "expected a scene: keys such as " + examples() + "; got " + root.shown());
     return std::move(out_);
   }
 
  private:
+  /// Blocks of the top level, to show what a scene looks like.
+  std::string examples() const {
+    std::string text;
+    for (std::size_t i = 1; i < std::min<std::size_t>(4, table_.blocks.size()); ++i)
+      text += (i == 1 ? "" : ", ") + table_.blocks[i].leaf();
+    return text;
+  }
+
   void report(const std::string& place, const std::string& key, const std::string& what) {
     problems_.add(place, key, what);
     out_.bad.insert(key);
   }
 
-  /// Reads a map as block `table` ("bodies[]") called `shown` ("bodies[0]").
-  void read_block(const std::string& table, const std::string& shown, const Node& node,
-                  Body* body) {
-    const unsigned shape = body != nullptr ? read_shape(shown, node, *body) : 0;
+  /// Reads a map as a block or entry called `shown` ("bodies[0]") into the members of `holder`.
+  /// `kind`: bit of an entry's kind, 0 where that is missing or wrong.
+  void read_block(const Block& block, const std::string& shown, const Node& node,
+                  const Object& holder, unsigned kind) {
     std::map<std::string, std::size_t> seen;  // every key and which of the node's it is first
     for (std::size_t i = 0; i < node.keys.size(); ++i) {
       const Node& name = node.keys[i];
@@ -82,25 +82,25 @@ class Validator {
         report(name.place(), path, "given twice, first at " + before->second + "; remove one");
         continue;
       }
-      read_entry(join(table, name.text), path, name, node.items[i], body, shape);
+      read_entry(block, path, name, node.items[i], holder, kind);
     }
-    require(table, shown, seen, body, shape);
+    require(block, shown, seen, kind);
   }
 
-  void read_entry(const std::string& table, const std::string& path, const Node& name,
-                  const Node& value, Body* body, unsigned shape) {
-    if (table == "bodies") return read_bodies(value);
-    if (const Block* block = table == "bodies[]" ? nullptr : find_block(table))
-      return read_child(*block, path, value);
-    const Key* key = find_key(table);
+  void read_entry(const Block& in, const std::string& path, const Node& name, const Node& value,
+                  const Object& holder, unsigned kind) {
+    const std::string table = join(in.path, name.text);
+    if (const Block* list = table_.find_block(table + "[]")) return read_list(*list, value);
+    const Block* block = table_.find_block(table);
+    if (block != nullptr && !block->list) return read_child(*block, path, value);
+    const Key* key = table_.find_key(table);
     if (key == nullptr) {
-      if (const Key* now = find_renamed(table))
+      if (const Key* now = table_.find_renamed(table))
         return report(name.place(), path, "is called " + now->path + " now; rename it");
       std::string what = "unknown key";
-      std::string near = problems_.full() ? "" : nearest_path(table);
-      const std::size_t list = near.find("[]");
-      if (list != std::string::npos && body != nullptr)  // say which body, as the path does
-        near = path.substr(0, path.find('.')) + near.substr(list + 2);
+      std::string near = problems_.full() ? "" : table_.nearest_path(table);
+      if (near.rfind(in.path + ".", 0) == 0)  // say which entry of a list, as the path does
+        near = path.substr(0, path.size() - name.text.size() - 1) + near.substr(in.path.size());
       if (!near.empty()) what += ", did you mean " + near + "?";
       // The name may be anything: no line breaks in a message, no page of text.
       std::string clean = name.shown();
@@ -108,108 +108,119 @@ class Validator {
       const std::string parent = path.substr(0, path.size() - name.text.size());
       return report(name.place(), parent + clean, what);
     }
-    if (body != nullptr && shape != 0 && !(key->shapes & shape))
+    // A path in one word reaches into blocks that are there.
+    if (const Block& own = *key->block; &own != &in && (own.list || !own.is_present(object_)))
       return report(name.place(), path,
-                    "belongs to shape " + shapes_text(key->shapes) + ", this body is a " +
-                        shapes_text(shape) + "; remove it or change the shape");
-    Body none;
-    const std::string problem =
-        read_field(*key, value, key->field(out_.scene, body != nullptr ? *body : none));
+                    "belongs into " +
+                        (own.list ? "an entry of " + own.leaf() : "the block " + own.path) +
+                        "; write it there");
+    if (kind != 0 && !(key->kinds & kind)) {
+      const std::string leaf = in.kind->leaf();
+      return report(name.place(), path,
+                    "belongs to " + leaf + " " + in.kind->kinds_text(key->kinds) + ", this " +
+                        in.list->entry_name + " is a " + in.kind->kinds_text(kind) +
+                        "; remove it or change the " + leaf);
+    }
+    const std::string problem = read_field(*key, value, key->field(holder));
     if (!problem.empty()) report(value.place(), path, problem);
   }
 
   void read_child(const Block& block, const std::string& path, const Node& value) {
     if (value.kind == Node::Kind::map) {
-      block.set_present(out_.scene, true);
-      return read_block(block.path, path, value, nullptr);
+      block.resize(object_, 1);
+      return read_block(block, path, value, object_, ~0u);
     }
     if (block.optional && (turns_on(value) || turns_off(value)))
-      return block.set_present(out_.scene, turns_on(value));
-    std::string what = "expected a block {" + example_of(block.path) + "}, got " + value.shown();
+      return block.resize(object_, turns_on(value));
+    std::string what = "expected a block {" +
+                       (block.keys.empty() ? "" : block.keys[0]->leaf() + ": ") + "...}, got " +
+                       value.shown();
     if (block.optional) what += "; write {} or on for on with the defaults, off for off";
     report(value.place(), path, what);
   }
 
-  void read_bodies(const Node& value) {
-    if (value.kind != Node::Kind::list || value.items.empty())
-      return report(value.place(), "bodies",
-                    "expected a list of at least one body, e.g. - {shape: block, min: [0, 0, 0], "
-                    "max: [1, 1, 1]}; got " +
-                        value.shown());
-    out_.scene.bodies.assign(value.items.size(), Body{});
+  void read_list(const Block& block, const Node& value) {
+    const List& list = *block.list;
+    const std::string name = block.leaf();
+    if (value.kind != Node::Kind::list || value.items.size() < list.least)
+      return report(value.place(), name,
+                    "expected a list of " + least_text(block) + ", e.g. - " + list.example +
+                        "; got " + value.shown());
+    block.resize(object_, value.items.size());
     for (std::size_t i = 0; i < value.items.size(); ++i) {
       const Node& item = value.items[i];
-      const std::string shown = "bodies[" + std::to_string(i) + "]";
+      const std::string shown = block.entry_path(i);
       out_.places[shown] = item.place();
+      const Object entry = block.entry(object_, i);
       if (item.kind == Node::Kind::map)
-        read_block("bodies[]", shown, item, &out_.scene.bodies[i]);
+        read_block(block, shown, item, entry, read_kind(block, shown, item, entry));
       else
-        report(item.place(), shown,
-               "expected a body such as {shape: block, min: [0, 0, 0], max: "
-               "[1, 1, 1]}, got " +
-                   item.shown());
+        report(
+            item.place(), shown,
+            "expected a " + list.entry_name + " such as " + list.example + ", got " + item.shown());
     }
   }
 
-  /// Bit of the body's shape, or 0 when it is missing or wrong (reported with the other keys). Read
-  /// before them, for it decides which they are.
-  unsigned read_shape(const std::string& shown, const Node& node, Body& body) {
-    const Node* shape = const_cast<Node&>(node).find("shape");
-    const Key& key = *find_key("bodies[].shape");
-    if (shape == nullptr || !read_field(key, *shape, key.field(out_.scene, body)).empty()) {
-      out_.bad.insert(shown + ".shape");
-      return 0;
+  /// As Block::kind_of, or 0 when the word is missing or wrong (reported with the other keys).
+  /// Read before them, for it decides which they are.
+  unsigned read_kind(const Block& list, const std::string& shown, const Node& node,
+                     const Object& entry) {
+    if (const Key* kind = list.kind) {
+      const Node* word = const_cast<Node&>(node).find(kind->leaf());
+      if (word == nullptr || !read_field(*kind, *word, kind->field(entry)).empty()) {
+        out_.bad.insert(join(shown, kind->leaf()));
+        return 0;
+      }
     }
-    return 1u << static_cast<unsigned>(body.shape);
+    return list.kind_of(entry);
   }
 
-  void require(const std::string& table, const std::string& shown,
-               const std::map<std::string, std::size_t>& seen, const Body* body, unsigned shape) {
+  void require(const Block& block, const std::string& shown,
+               const std::map<std::string, std::size_t>& seen, unsigned kind) {
     const std::string place = out_.places[shown];
-    for (const Key& key : scene_keys()) {
-      const std::string in = key.block();
-      const std::string leaf = key.leaf();
-      const bool direct = in == table;
+    for (const Key& key : table_.keys) {
+      const Block& in = *key.block;
+      const bool direct = &in == &block;
+      if (!key.required || (direct && seen.count(key.leaf()))) continue;
       // A required block that is absent altogether: each of its required keys is missing.
-      const bool below = table.empty() && !in.empty() && in != "bodies[]" && !seen.count(in);
-      if (!key.required || (!direct && !below) || (direct && seen.count(leaf))) continue;
-      if (body != nullptr && leaf != "shape" && !(key.shapes & shape)) continue;
+      if (!direct && (block.parent != nullptr || seen.count(in.path) || in.list)) continue;
+      if (!key.is_kind && !(key.kinds & kind)) continue;
       const std::string range = range_text(key), unit = unit_text(key);
       std::string what = "missing; required";
       if (!unit.empty()) what += ", in " + unit;
       if (!key.choices.empty()) what += ": " + range;
-      report(place, direct ? join(shown, leaf) : key.path, what + " (" + key.help + ")");
+      report(place, direct ? join(shown, key.leaf()) : key.path, what + " (" + key.help + ")");
     }
-    if (table.empty() && !seen.count("bodies"))
-      report(place, "bodies", "missing; required, a list of at least one body");
+    for (const Block& child : table_.blocks)
+      if (child.list && child.list->least > 0 && child.parent == &block &&
+          !seen.count(child.leaf()))
+        report(place, child.leaf(), "missing; required, a list of " + least_text(child));
   }
 
+  const KeyTable& table_;
+  const Object& object_;
   Problems& problems_;
-  PlacedScene out_;
+  Places out_;
 };
 
 }  // namespace
 
-std::string PlacedScene::place(const std::string& key) const {
-  for (std::string path = key;;) {
-    const auto it = places.find(path);
-    if (it != places.end()) return it->second;
-    const std::size_t end = path.find_last_of(".[");
-    path = end == std::string::npos ? "" : path.substr(0, end);
-  }
+std::string Places::place(const std::string& key) const {
+  const auto it = places.find(key);
+  return it != places.end() ? it->second : place(around(key));
 }
 
-bool PlacedScene::good(std::initializer_list<std::string> keys) const {
+bool Places::good(std::initializer_list<std::string> keys) const {
   return std::none_of(keys.begin(), keys.end(), [this](const std::string& key) {
-    for (std::string path = key; !path.empty();) {
-      if (bad.count(path)) return true;
-      const std::size_t end = path.find_last_of(".[");
-      path = end == std::string::npos ? "" : path.substr(0, end);
-    }
-    return false;
+    std::string path = key;
+    while (!path.empty() && !bad.count(path)) path = around(path);
+    return !path.empty();
   });
 }
 
-PlacedScene validate(const Node& root, Problems& problems) { return Validator(problems).run(root); }
+Places read_tree(const KeyTable& table, const Node& root, const Object& object,
+                 Problems& problems) {
+  return Validator(table, object, problems).run(root);
+}
 
 }  // namespace pbf::inline scene_module

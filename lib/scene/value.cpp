@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "lib/base/text.h"
 #include "lib/scene/number.h"
 
 namespace pbf::inline scene_module {
 namespace {
-
-std::string list_of(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
 
 std::string instead_of(const std::string& wanted, const Node& node) {
   return "expected " + wanted + ", got " + node.shown();
@@ -25,10 +20,6 @@ std::string check_range(const Key& key, double v, const Node& node) {
   if (!below && !above) return "";
   const std::string unit = key.unit.empty() ? "" : " " + key.unit;
   return node.shown() + " is out of range, allowed: " + range_text(key) + unit;
-}
-
-bool is_word(const Node& node, const char* word) {
-  return node.kind == Node::Kind::scalar && node.text == word;
 }
 
 /// One number, double or integer.
@@ -72,7 +63,7 @@ std::string read_numbers(const Key& key, const Node& node, std::array<T, N>& out
 }
 
 std::string not_among(const std::vector<std::string>& choices, const Node& node) {
-  std::string text = node.shown() + " is not one of " + list_of(choices);
+  std::string text = node.shown() + " is not one of " + joined(choices, ", ");
   const std::string near =
       node.kind == Node::Kind::scalar ? nearest_word(node.text, choices) : std::string();
   return near.empty() ? text : text + "; did you mean " + near + "?";
@@ -115,7 +106,7 @@ struct Reader {
 
   template <class T>
   std::string operator()(std::optional<T>* field) const {
-    if (is_word(node, "auto")) {
+    if (node.is_word({"auto"})) {
       *field = std::nullopt;
       return "";
     }
@@ -126,16 +117,15 @@ struct Reader {
   }
   template <class T>
   requires std::is_arithmetic_v<T> std::string operator()(T* field) const {
-    if (key.automatic && is_word(node, "auto")) {
+    if (key.automatic && node.is_word({"auto"})) {
       *field = 0;
       return "";
     }
     return read_number(key, node, *field);
   }
   std::string operator()(bool* field) const {
-    const bool on = is_word(node, "true"), off = is_word(node, "false");
-    if (node.quoted || (!on && !off)) return instead_of("true or false", node);
-    *field = on;
+    if (node.quoted || !node.is_word({"true", "false"})) return instead_of("true or false", node);
+    *field = node.text == "true";
     return "";
   }
   template <class T, std::size_t N>
@@ -172,7 +162,7 @@ struct Writer {
   }
   std::string operator()(const std::string* field) const { return yaml_text(*field); }
   std::string operator()(const std::vector<std::string>* field) const {
-    return std::string("[").append(list_of(*field)).append("]");
+    return std::string("[").append(joined(*field, ", ")).append("]");
   }
   std::string operator()(const ChoiceField& field) const {
     return key.choices[static_cast<std::size_t>(field.get())];

@@ -62,14 +62,7 @@ class TreeBuilder : public YAML::EventHandler {
 
  private:
   Node make(const YAML::Mark& mark, Node::Kind kind) const {
-    Node node;
-    node.kind = kind;
-    node.origin = origin_;
-    if (lines_) {
-      node.line = mark.line;
-      node.column = mark.column;
-    }
-    return node;
+    return {kind, "", false, {}, {}, origin_, lines_ ? mark.line : -1, lines_ ? mark.column : -1};
   }
   void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) const {
     if (anchor != 0) throw Refused{mark, "anchors (&name) are not supported; write the value out"};
@@ -139,6 +132,10 @@ Node* Node::find(const std::string& key) {
   for (std::size_t i = 0; i < keys.size(); ++i)
     if (keys[i].kind == Kind::scalar && keys[i].text == key) return &items[i];
   return nullptr;
+}
+
+bool Node::is_word(std::initializer_list<const char*> words) const {
+  return kind == Kind::scalar && std::find(words.begin(), words.end(), text) != words.end();
 }
 
 std::string Node::shown() const {

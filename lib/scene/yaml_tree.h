@@ -1,6 +1,7 @@
 // YAML text -> a plain tree that knows where everything stood. yaml-cpp is used behind this only.
 #pragma once
 
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +23,8 @@ struct Node {
   std::string place() const;
   /// Child of a map (the first of that name), or nullptr.
   Node* find(const std::string& key);
+  /// Whether it is one of these words; in quotes too.
+  bool is_word(std::initializer_list<const char*> words) const;
   /// For messages: "4", "a list", "a block", "nothing".
   std::string shown() const;
 };

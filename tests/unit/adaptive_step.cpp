@@ -62,6 +62,15 @@ TEST_CASE("step levels: a scene at a level has the step and what goes with it, a
   CHECK(two == s);
 }
 
+TEST_CASE("step levels: what is off stays off at every level, and only numbers are scaled") {
+  Scene s = adaptive();
+  const Scene three = scene_at_level(s, 3);
+  CHECK_FALSE(three.viscosity);
+  CHECK_FALSE(three.tensile);
+  s.time.step = three.time.step;  // without damping and limit nothing else has a scale
+  CHECK(three == s);
+}
+
 TEST_CASE("longest step: the smaller of cfl h/v and force sqrt(h/a), no limit from what is zero") {
   const Scene s = adaptive("{cfl: 0.5, force: 0.1}");
   CHECK(longest_step(s, 20, 0) == Approx(0.5 * 0.2 / 20));

@@ -36,6 +36,10 @@ const std::vector<Case> kAppended{
     {"solver.iterations: 9\nsolver: {iterations: 4}\n",
      "7:10: solver.iterations: given twice, first at scene.yaml:6:20; remove one"},
     {"solver.iterations: 9\nsolver.iterations: 4\n", "given twice, first at scene.yaml:6:1"},
+    // paths in one word into what is not there
+    {"tensile.k: 5\n", "6:1: tensile.k: belongs into the block tensile; write it there"},
+    {"render.camera.fov: 40\n", "render.camera.fov: belongs into the block render.camera"},
+    {"bodies[].count: 5\n", "bodies[].count: belongs into an entry of bodies; write it there"},
     // names that lead out of the folder of runs
     {"name: ../../evil\n", "6:7: name: is \"../../evil\", and runs are kept in out/<name>"},
     {"name: /etc\n", "runs are kept in out/<name>"},
@@ -316,12 +320,12 @@ TEST_CASE("scene: no mutilated scene does anything but parse or raise a bad-inpu
 }
 
 TEST_CASE("scene: every key of the table can be misspelt and is found again") {
-  for (const Key& key : scene_keys()) {
+  for (const Key& key : scene_table().keys) {
     if (key.leaf().size() < 5) continue;
     std::string wrong = key.path;
     std::swap(wrong[wrong.size() - 1], wrong[wrong.size() - 2]);
     CAPTURE(wrong);
-    CHECK(nearest_path(wrong) == key.path);
+    CHECK(scene_table().nearest_path(wrong) == key.path);
   }
 }
 

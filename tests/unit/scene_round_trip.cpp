@@ -59,7 +59,7 @@ Scene unlike_default() {
   s.vorticity = Vorticity{2.5};
   s.measure_every = 17;
   s.guard = GuardSettings{1000.5, 0.25, 999};
-  s.output = Output{1.0 / 30, {"density"}, Precision::dbl, true};
+  s.output = Output{1.0 / 30, {"density"}, Precision::dbl, Compression::gzip};
   s.render = Render{0.5,
                     {640, 480},
                     ColorBy::density,
@@ -70,6 +70,13 @@ Scene unlike_default() {
   s.precision = Precision::dbl;
   s.threads = 12;
   return s;
+}
+
+/// Defaults alone, every optional block on.
+Scene scene_with_all_blocks() {
+  Scene scene;
+  scene_table().make_all_present(object(scene));
+  return scene;
 }
 
 }  // namespace
@@ -89,10 +96,10 @@ TEST_CASE("resolved scene: each key of the table makes a difference when it chan
   // unlike_default differs from the default in every key, so a key that the table forgets or maps
   // to the wrong field is seen here.
   const Scene other = unlike_default(), defaults = scene_with_all_blocks();
-  for (const Key& key : scene_keys()) {
-    if (key.block() == "bodies[]" || key.path == "name") continue;
+  for (const Key& key : scene_table().keys) {
+    if (key.block->path == "bodies[]" || key.path == "name") continue;
     CAPTURE(key.path);
-    CHECK(value_text(key, other, Body{}) != value_text(key, defaults, Body{}));
+    CHECK(value_text(key, object(other)) != value_text(key, object(defaults)));
   }
 }
 
@@ -139,14 +146,14 @@ TEST_CASE("reference scene: the committed file is what the code writes") {
 TEST_CASE("reference scene: documents every key, and optional keys stand at their defaults") {
   const std::string text = reference_yaml();
   const Scene s = parse(text), defaults = scene_with_all_blocks();
-  for (const Key& key : scene_keys()) {
+  for (const Key& key : scene_table().keys) {
     CAPTURE(key.path);
     CHECK(contains(text, key.leaf() + ": "));
     CHECK_FALSE(key.help.empty());
     const bool numeric = !unit_text(key).empty();
     CHECK((!numeric || (std::isfinite(key.range.min) && std::isfinite(key.range.max))));
-    if (!key.required && key.path != "name" && key.block() != "bodies[]")
-      CHECK(value_text(key, s, Body{}) == value_text(key, defaults, Body{}));
+    if (!key.required && key.path != "name" && key.block->path != "bodies[]")
+      CHECK(value_text(key, object(s)) == value_text(key, object(defaults)));
   }
   std::size_t start = 0;
   for (std::size_t end; (end = text.find('\n', start)) != std::string::npos; start = end + 1)
@@ -155,17 +162,19 @@ TEST_CASE("reference scene: documents every key, and optional keys stand at thei
 
 TEST_CASE("table of keys: every default lies in its own range") {
   const Scene defaults = scene_with_all_blocks();
-  for (const Key& key : scene_keys()) {
+  const Body entry;
+  for (const Key& key : scene_table().keys) {
     if (key.required) continue;
     Scene scene = scene_with_all_blocks();
     Body body;
     Node node;
-    const std::string text = value_text(key, defaults, Body{});
+    const bool of_body = key.block->path == "bodies[]";
+    const std::string text = value_text(key, of_body ? object(entry) : object(defaults));
     if (text[0] == '[') continue;  // lists: read back as part of the reference scene
     node.kind = Node::Kind::scalar;
     node.text = text;
     CAPTURE(key.path, text);
-    CHECK(read_field(key, node, key.field(scene, body)).empty());
+    CHECK(read_field(key, node, key.field(of_body ? object(body) : object(scene))).empty());
   }
 }
 
@@ -187,7 +196,7 @@ TEST_CASE("schema: balanced JSON that has every key and refuses the others") {
   CHECK(depth == 0);
   CHECK(lowest == 1);
   CHECK_FALSE(in_string);
-  for (const Key& key : scene_keys())
+  for (const Key& key : scene_table().keys)
     CHECK(contains(text, std::string("\"").append(key.leaf()).append("\":{")));
   std::size_t objects = 0, closed = 0;
   for (std::size_t p = 0; (p = text.find("\"type\":\"object\"", p)) != std::string::npos; ++p)
@@ -196,7 +205,9 @@ TEST_CASE("schema: balanced JSON that has every key and refuses the others") {
        ++p)
     ++closed;
   CHECK(objects == closed);
-  CHECK(objects == scene_blocks().size() - 1 + shape_names().size());  // one object per shape
+  // One object for every shape of a body.
+  CHECK(objects ==
+        scene_table().blocks.size() - 1 + scene_table().find_key("bodies[].shape")->choices.size());
 }
 
 TEST_CASE("numbers: the text of a double reads back to the same double") {

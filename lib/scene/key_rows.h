@@ -1,0 +1,110 @@
+// How the rows of a table of keys are written. Included by the rows alone.
+#pragma once
+
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "lib/scene/keys.h"
+
+namespace pbf::inline scene_module {
+
+/// The first arguments of a row, the path of a member and how to get at it: MEMBER(Scene,
+/// output->every) is "output.every".
+#define MEMBER(Struct, member) \
+#member, +[](const Object& o) -> auto& { return std::any_cast<Struct*>(o)->member; }
+/// The same in an entry of a list: MEMBER_OF(bodies, Body, min) is "bodies[].min".
+#define MEMBER_OF(list, Struct, member) #list "[]." MEMBER(Struct, member)
+
+// Bounds that hold off overflow in float arithmetic and nothing that anyone simulates: boxes from
+// 1e-6 m to 1e6 m, up to a million box lengths from the origin.
+inline constexpr Range kCoordinate{-1e12, 1e12};
+inline constexpr Range kLength{1e-9, 1e9};
+inline constexpr Range kSeconds{1e-12, 1e9};
+inline constexpr Range kRate{-1e12, 1e12};
+
+/// "a->b" is "a.b" in the file.
+std::string path_of(std::string member);
+
+/// The row of a member by its type. `values`: number(), one_of() (enums, lists of words) or plain.
+template <class Member>
+Key key(const char* member, Member& (*get)(const Object&), auto values, const char* help,
+        auto... traits) {
+  Key row{path_of(member), help, [get](const Object& o) -> Field {
+            Member& m = get(o);
+            if constexpr (std::is_enum_v<Member>)
+              return ChoiceField{&m, [&m] { return static_cast<int>(m); },
+                                 [&m](int i) { m = static_cast<Member>(i); }};
+            else
+              return &m;
+          }};
+  values(row);
+  (traits(row), ...);
+  return row;
+}
+
+inline auto number(const char* unit, Range range) {
+  return [=](Key& row) { row.unit = std::string(unit), row.range = range; };
+}
+/// The words of an enum in its order, or those that a list may hold.
+inline auto one_of(std::vector<std::string> words) {
+  return [=](Key& row) { row.choices = words; };
+}
+/// A switch, or text.
+inline void plain(Key&) {}
+inline void required(Key& row) { row.required = true; }
+inline void automatic(Key& row) { row.automatic = true; }
+inline void is_kind(Key& row) { row.is_kind = true; }
+/// Of entries of these kinds only.
+auto of(auto... kinds) {
+  return [=](Key& row) { row.kinds = ((1u << static_cast<unsigned>(kinds)) | ...); };
+}
+inline auto renamed(const char* was) {
+  return [=](Key& row) { row.was = std::string(was); };
+}
+inline auto scaled(double (*at_level)(double, int)) {
+  return [=](Key& row) { row.at_level = at_level; };
+}
+inline double linear(double x, int level) { return std::ldexp(x, -level); }
+inline double quadratic(double x, int level) { return std::ldexp(x, -2 * level); }
+/// Of a factor that each step applies.
+inline double root(double x, int level) { return std::pow(x, std::ldexp(1, -level)); }
+/// Of a key or a block.
+inline auto effect(Effect effect) {
+  return [=](auto& row) { row.effect = effect; };
+}
+
+/// A block that is a std::optional.
+template <class Member>
+Block optional_block(const char* member, Member& (*get)(const Object&), const char* help,
+                     auto... traits) {
+  Block block{path_of(member), help, [get](const Object& o) { return get(o) ? 1 : 0; },
+              [get](const Object& o, std::size_t n) {
+                auto& m = get(o);
+                if (n == 0)
+                  m.reset();
+                else if (!m)
+                  m.emplace();
+              }};
+  block.optional = true;
+  (traits(block), ...);
+  return block;
+}
+inline void on_by_default(Block& block) { block.on_by_default = true; }
+
+/// A block that is a std::vector of structs. `list`: what List says in words.
+template <class Entry>
+Block list_block(const char* member, std::vector<Entry>& (*get)(const Object&), const char* help,
+                 List list, auto... traits) {
+  list.address = [get](const Object& o) { return &get(o); };
+  static const Entry standard{};
+  list.standard = object(standard);
+  Block block{path_of(member) + "[]", help, [get](const Object& o) { return get(o).size(); },
+              [get](const Object& o, std::size_t n) { get(o).assign(n, Entry{}); },
+              [get](const Object& o, std::size_t i) { return object(get(o)[i]); }};
+  block.list = std::move(list);
+  (traits(block), ...);
+  return block;
+}
+
+}  // namespace pbf::inline scene_module

@@ -1,0 +1,72 @@
+// Keys of a run: measures, guard, files, pictures, machine.
+#include "lib/scene/key_rows.h"
+
+namespace pbf::inline scene_module {
+
+#define KEY(member) MEMBER(Scene, member)
+
+KeyRows run_rows() {
+  const std::vector<std::string> floats{"float", "double"};
+  return {
+      {optional_block(KEY(guard),
+                      "Stops a run at a measure that makes no sense, and names the culprit.",
+                      on_by_default, effect(Effect::adaptive)),
+       optional_block(KEY(output), "Frames in run.vtkhdf."),
+       optional_block(KEY(checkpoint),
+                      "The whole state, now and then and at the end. A run that a signal or the "
+                      "wall-time limit stops saves it also without this block.",
+                      effect(Effect::none)),
+       optional_block(KEY(render), "Pictures, drawn while the simulation runs."),
+       {"render.camera", "The camera of the pictures."}},
+      {key(KEY(measure_every), number("", {1, 2147483647}),
+           "Updates between two measures (density error, energy, momentum, ...)."),
+       key(KEY(guard->speed), number("m/s", {0, 1e30, true}),
+           "Fastest speed allowed, in any update. auto: 10 times the sum of the fastest speed at "
+           "the start, that of a fall through the domain, and h per update. With "
+           "solver.speed_limit, only speeds at a measure count.",
+           automatic),
+       key(KEY(guard->energy), number("", {0, 1e30, true}),
+           "Growth of kinetic plus potential energy allowed, as a share of what it was at the "
+           "start above the floor and the motion of the whole. auto: 0.1, and more while a "
+           "compressed start comes apart.",
+           automatic),
+       key(KEY(guard->neighbors), number("", {0, 2147483647, true}),
+           "Neighbours of one particle allowed. auto: 4 times the most at the start, at least 16 "
+           "times those at rest.",
+           automatic),
+       key(KEY(output->every), number("s", kSeconds),
+           "Time between frames, rounded to whole updates; at least time.step."),
+       key(KEY(output->fields), one_of({"velocity", "density"}),
+           "Fields besides position and id, as a list."),
+       key(KEY(output->precision), one_of(floats), "Of floating-point fields in the file."),
+       key(KEY(output->compression), one_of({"none", "gzip"}),
+           "gzip: files about 1.45 times smaller, written more slowly."),
+       key(KEY(checkpoint->every), number("s", {1e-3, 1e9}),
+           "Wall time between checkpoints, from which --resume goes on after a crash."),
+       key(KEY(render->every), number("s", kSeconds),
+           "Time between pictures, rounded to whole frames of `output`; not below output.every."),
+       key(KEY(render->size), number("px", {16, 16384}), "Width and height of a picture."),
+       key(KEY(render->color), one_of({"speed", "density", "id"}), "What colours the particles."),
+       key(KEY(render->range), number("", {-1e30, 1e30}),
+           "Ends of the colour bar, [low, high], in the unit of the field.", automatic),
+       key(KEY(render->radius), number("m", {0, 1e9, true}),
+           "Drawn radius of a particle. auto: half the spacing.", automatic),
+       key(KEY(render->camera.position), number("m", kCoordinate),
+           "Where the camera is. auto: outside the longest side; in two dimensions in front of "
+           "the plane.",
+           automatic),
+       key(KEY(render->camera.target), number("m", kCoordinate),
+           "What the camera looks at. auto: the centre of the domain.", automatic),
+       key(KEY(render->camera.fov), number("deg", {1, 170}), "Vertical field of view."),
+       key(KEY(render->camera.orbit), number("deg/s", {-36000, 36000}),
+           "Turn about the vertical axis per second of simulated time."),
+       key(KEY(backend), one_of({"cpu", "cuda"}), "Where the simulation runs.",
+           effect(Effect::none)),
+       key(KEY(precision), one_of(floats), "Of the computation."),
+       key(KEY(threads), number("", {1, 4096}),
+           "CPU threads. auto: one below 4096 particles, else one for every 1024, at most all "
+           "that the process may use.",
+           automatic, effect(Effect::none))}};
+}
+
+}  // namespace pbf::inline scene_module

@@ -1,0 +1,69 @@
+// Keys of what there is at the start: box, fluid, bodies.
+#include "lib/scene/key_rows.h"
+
+namespace pbf::inline scene_module {
+
+#define KEY(member) MEMBER(Scene, member)
+#define BODY(member) MEMBER_OF(bodies, Body, member)
+
+KeyRows start_rows() {
+  return {
+      {{"", "A scene."},
+       {"domain", "The box that holds the fluid."},
+       {"fluid", "The fluid and its particles."},
+       list_block(KEY(bodies), "Bodies of fluid",
+                  {.entry_name = "body",
+                   .least = 1,
+                   .remark = "ids count through them in this order",
+                   .example = "{shape: block, min: [0, 0, 0], max: [1, 1, 1]}",
+                   .further = "{shape: file, path: particles.csv, velocity: [0, 0, 0]}"})},
+      {key(KEY(name), plain, "Name of the scene, for titles and logs.", effect(Effect::none)),
+       key(KEY(dimensions), number("", {2, 3}),
+           "2: the fluid lies in the x-z plane in the middle of the domain's y, whose extent is "
+           "the thickness of the slab, at most h, without walls. Bodies are cut by that plane. "
+           "3: space."),
+       key(KEY(domain.min), number("m", kCoordinate), "Lower corner of the box, [x, y, z].",
+           required),
+       key(KEY(domain.max), number("m", kCoordinate),
+           "Upper corner of the box; above domain.min along every axis.", required),
+       key(KEY(domain.open), one_of({"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"}),
+           "Faces of the box without a wall, as a list."),
+       key(KEY(fluid.rest_density), number("kg/m^3", {1e-6, 1e9}), "Rest density rho0."),
+       key(KEY(fluid.spacing), number("m", kLength),
+           "Edge d of the rest lattice's cell: the distance of neighbouring particles at rest. "
+           "Halving it makes 8 times the particles, 4 in two dimensions.",
+           required),
+       key(KEY(fluid.smoothing_ratio), number("", {1, 10}),
+           "Smoothing length over spacing, h/d. 2 gives about 33 neighbours, 12 in two "
+           "dimensions. With fluid.mass: auto at least 1.6, in two dimensions 1.5: below, a pool "
+           "packs itself into less than 0.97 of its volume."),
+       key(KEY(fluid.mass), number("kg", {0, 1e30, true}),
+           "Mass of one particle. auto: rho0 d^3 (in two dimensions rho0 d^2 times the "
+           "thickness), with the density sum calibrated so that the rest lattice has density "
+           "rho0. A number is used as it is.",
+           automatic),
+       key(BODY(shape), one_of({"block", "sphere", "random_box", "file"}),
+           "Shape of the body; decides which keys it has.", required, is_kind),
+       key(BODY(min), number("m", kCoordinate), "Lower corner of the box.", required,
+           of(Shape::block, Shape::random_box)),
+       key(BODY(max), number("m", kCoordinate), "Upper corner of the box.", required,
+           of(Shape::block, Shape::random_box)),
+       key(BODY(center), number("m", kCoordinate), "Centre of the sphere.", required,
+           of(Shape::sphere)),
+       key(BODY(radius), number("m", kLength), "Radius of the sphere.", required,
+           of(Shape::sphere)),
+       key(BODY(count), number("", {1, 2147483647}), "Number of particles, uniformly distributed.",
+           required, of(Shape::random_box)),
+       key(BODY(seed), number("", {0, 9223372036854775807.0}),
+           "Seed of the random numbers; the same seed gives the same particles.",
+           of(Shape::random_box)),
+       key(BODY(path), plain,
+           "Particle file, relative to the scene file: CSV with the header x,y,z or "
+           "x,y,z,vx,vy,vz, or HDF5 with datasets position (N, 3) and, if wanted, velocity (N, "
+           "3).",
+           required, of(Shape::file)),
+       key(BODY(velocity), number("m/s", kRate),
+           "Initial velocity, added to every particle of the body.")}};
+}
+
+}  // namespace pbf::inline scene_module
