@@ -17,7 +17,6 @@
 #include "lib/campaign/batch_summary.h"
 #include "lib/io/report.h"
 #include "lib/run/emit.h"
-#include "lib/run/finished_run.h"
 #include "lib/run/load_run.h"
 #include "lib/run/resume.h"
 #include "lib/run/schedule.h"

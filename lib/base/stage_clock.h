@@ -28,16 +28,17 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_;
 };
 
+/// Seconds booked to one stage.
+struct StageTime {
+  std::string name;
+  double seconds = 0;      ///< s
+  std::int64_t calls = 0;  ///< marks
+};
+
 /// Books wall-clock time to named stages: begin(), then mark("grid") books what has passed since
 /// begin() or the last mark. Entries keep the order of their first mark. For one thread.
 class StageClock {
  public:
-  struct Entry {
-    std::string name;
-    double seconds = 0;      ///< s
-    std::int64_t calls = 0;  ///< marks
-  };
-
   /// Time before this call belongs to nobody.
   void begin() { watch_.reset(); }
 
@@ -46,24 +47,24 @@ class StageClock {
 
   /// Books seconds measured elsewhere (a device, another thread).
   void add(std::string_view stage, double seconds, std::int64_t calls = 1) {
-    Entry& e = entry(stage);
+    StageTime& e = entry(stage);
     e.seconds += seconds;
     e.calls += calls;
   }
 
   /// The entry of `stage`, made with zero seconds when new (so that names and order are fixed).
-  Entry& entry(std::string_view stage) {
-    for (Entry& e : entries_)
+  StageTime& entry(std::string_view stage) {
+    for (StageTime& e : entries_)
       if (e.name == stage) return e;
     entries_.push_back({std::string(stage), 0, 0});
     return entries_.back();
   }
 
-  const std::vector<Entry>& entries() const { return entries_; }
+  const std::vector<StageTime>& entries() const { return entries_; }
 
  private:
   Stopwatch watch_;
-  std::vector<Entry> entries_;  // a dozen: a linear search beats a map
+  std::vector<StageTime> entries_;  // a dozen: a linear search beats a map
 };
 
 }  // namespace pbf::inline base_module

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include "lib/base/machine.h"
-#include "lib/base/stage_clock.h"
 #include "lib/base/stages.h"
 #include "lib/exec/make_solver.h"
 #include "lib/program/plan.h"
 #include "lib/run/emit.h"
 #include "lib/run/prestabilize.h"
+#include "lib/run/session.h"
 #include "lib/run/start_neighbors.h"
 
 namespace pbf::inline campaign_module {
@@ -67,16 +66,16 @@ std::vector<StageTime> per_update(const std::vector<StageTime>& before,
   return out;
 }
 
-void time_state(Solver& solver, const BenchSettings& s, BenchRow& row) {
-  row.first_update = solver.updates();
+void time_state(Session& session, const BenchSettings& s, BenchRow& row) {
+  Solver& solver = session.solver();
+  row.first_update = session.update();
   const auto before = solver.info().stages;
   std::vector<double> ms, cpu_ms;
   for (int r = 0; r < s.repeats; ++r) {
-    const Stopwatch watch;
-    const std::clock_t cpu = std::clock();
-    solver.step(s.updates);  // returns when the device has done them
-    ms.push_back(watch.seconds() * 1e3 / s.updates);
-    cpu_ms.push_back(double(std::clock() - cpu) * 1e3 / CLOCKS_PER_SEC / s.updates);
+    const StepSeconds start = session.seconds();
+    session.run(session.update() + s.updates);  // returns when the device has done them
+    ms.push_back((session.seconds().wall - start.wall) * 1e3 / s.updates);
+    cpu_ms.push_back((session.seconds().cpu - start.cpu) * 1e3 / s.updates);
   }
   std::sort(ms.begin(), ms.end());
   std::sort(cpu_ms.begin(), cpu_ms.end());
@@ -104,16 +103,16 @@ std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const Be
   row.dt = scene.time.step;
   row.h = scene.h();
   // First use of every kernel; without a warm-up every update counts.
-  if (s.warmup > 0) solver->step(2);
+  Session session(*solver);
+  if (s.warmup > 0) session.run(2);
   std::vector<BenchRow> rows;
   row.state = "start";
-  time_state(*solver, s, row);
+  time_state(session, s, row);
   rows.push_back(row);
   if (s.warmup == 0) return rows;
-  const std::int64_t left = s.warmup - solver->updates();
-  if (left > 0) solver->step(int(left));
+  session.run(s.warmup);
   row.state = "late";
-  time_state(*solver, s, row);
+  time_state(session, s, row);
   rows.push_back(row);
   return rows;
 }

@@ -274,14 +274,17 @@ Projection project_exactly(const Scene& scene, const Plan& plan, const std::vect
                : project<Smoothing::consistent>(scene, plan, x);
 }
 
-ProjectionError projection_error(Solver& solver, const Scene& scene, const Plan& plan) {
+std::vector<double> projection_start(Solver& solver, const Scene& scene, const Plan& plan) {
   if (scene.solver.substeps != 1)
     throw Error(ExitCode::bad_input,
                 "projection: one update is compared with one projection; set solver.substeps to 1");
   const Snapshot before = solver.download({"velocity"}, ScalarType::f64).get();
-  const auto start = predicted_positions(scene, plan, positions(before.fields[0]),
-                                         positions(*before.find("velocity")));
-  solver.step(1);
+  return predicted_positions(scene, plan, positions(before.fields[0]),
+                             positions(*before.find("velocity")));
+}
+
+ProjectionError projection_error(Solver& solver, const Scene& scene, const Plan& plan,
+                                 const std::vector<double>& start) {
   const auto after = positions(solver.download({}, ScalarType::f64).get().fields[0]);
   ProjectionError e;
   e.exact = project_exactly(scene, plan, start);
@@ -295,7 +298,7 @@ ProjectionError projection_error(Solver& solver, const Scene& scene, const Plan&
     squares += r * r;
     e.max = std::max(e.max, r);
   }
-  const double n = double(before.count);
+  const double n = double(after.size() / 3);
   e.mean /= n;
   e.rms = std::sqrt(squares / n);
   return e;

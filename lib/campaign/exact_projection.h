@@ -37,7 +37,11 @@ struct ProjectionError {
   Projection exact;
 };
 
-/// Advances `solver` (of this scene and plan) by one update and compares.
-ProjectionError projection_error(Solver& solver, const Scene& scene, const Plan& plan);
+/// The predicted positions of the next update of a solver of this scene and plan. Error(bad_input)
+/// where an update is several steps.
+std::vector<double> projection_start(Solver& solver, const Scene& scene, const Plan& plan);
+/// The error of that update, after which the solver is now.
+ProjectionError projection_error(Solver& solver, const Scene& scene, const Plan& plan,
+                                 const std::vector<double>& start);
 
 }  // namespace pbf::inline campaign_module

@@ -16,36 +16,24 @@ Course run_course(const Scene& scene, const std::string& dir,
   c.particles = count_particles(scene, dir);
   const Plan plan = make_plan(scene, c.particles);
   const auto solver = start_solver(scene, plan, emit_particles(scene, dir));
-  const std::int64_t updates =
-      std::max<std::int64_t>(1, std::llround(scene.time.end / scene.time.step));
-  c.first = c.last = solver->measure();
-  c.scale = energy_scale(c.first, scene, plan.mass, c.particles);
-  c.released = released_energy(c.first, scene, plan) / (c.scale > 0 ? c.scale : 1);
-  Watch watch(scene, plan, *solver, c.first, c.first, [](const std::string&) {});
   std::vector<std::pair<double, double>> compression;
-  const auto look = [&] {
-    if (watch.look(c.last) == Verdict::back) return;
-    const double rise = total_energy(c.last) - total_energy(c.first);
+  Watch watch(scene, plan, *solver, [&](const Measures& m, double) {
+    if (compression.empty()) {
+      c.first = m;
+      c.scale = energy_scale(m, scene, plan.mass, c.particles);
+      c.released = released_energy(m, scene, plan) / (c.scale > 0 ? c.scale : 1);
+    }
+    const double rise = total_energy(m) - total_energy(c.first);
     // Without gravity and at rest there is no scale: any rise counts in full.
     c.energy_rise = std::max(c.energy_rise, c.scale > 0 ? rise / c.scale : rise);
-    c.speed_max = std::max(c.speed_max, c.last.speed_max);
-    compression.push_back({c.last.compression_mean, c.last.compression_max});
-    if (!watch.event() && c.last.update % scene.measure_every == 0) watch.choose(c.last);
-  };
-  look();
-  while (c.updates < updates && !watch.event()) {
-    const std::int64_t n = std::min<std::int64_t>(scene.measure_every, updates - c.updates);
-    solver->step(int(n), watch.options());
-    c.updates += n;
-    c.last = solver->measure();
-    look();
-    if (!watch.event()) c.updates = solver->updates();
-  }
-  c.event = watch.event();
-  if (watch.adaptive()) {
-    c.steps = watch.adaptive()->history();
-    c.steps->updates = watch.adaptive()->updates_at_levels(c.updates);
-  }
+    c.speed_max = std::max(c.speed_max, m.speed_max);
+    compression.push_back({m.compression_mean, m.compression_max});
+  });
+  Session(*solver, {&watch, &watch.choosing()}).run(make_schedule(scene).updates);
+  c.last = watch.last();
+  c.updates = c.last.update;
+  if (watch.event()) c.event = *watch.event();
+  c.steps = watch.steps(c.updates);
   const std::size_t settled = std::max<std::size_t>(1, compression.size() / 4);
   for (std::size_t k = compression.size() - settled; k < compression.size(); ++k) {
     c.compression_mean += compression[k].first / double(settled);

@@ -1,13 +1,11 @@
 #include "lib/campaign/study_member.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "lib/base/error.h"
-#include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
 #include "lib/campaign/exact_projection.h"
 #include "lib/exec/make_solver.h"
@@ -15,6 +13,8 @@
 #include "lib/program/plan.h"
 #include "lib/run/emit.h"
 #include "lib/run/prestabilize.h"
+#include "lib/run/schedule.h"
+#include "lib/run/session.h"
 #include "lib/run/start_neighbors.h"
 
 namespace pbf::inline campaign_module {
@@ -22,54 +22,15 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Updates of a short repeat: a tenth of the run, but no fewer than 20.
-std::int64_t short_updates(std::int64_t updates) {
-  return std::min(updates, std::max<std::int64_t>(20, updates / 10));
+/// s, by the clock of the study.
+double seconds_of(const Session& session, const Study& study) {
+  return study.cpu_clock ? session.seconds().cpu : session.seconds().wall;
 }
-
-Plan plan_of(const Scene& scene, const std::string& dir) {
-  const std::int64_t n = count_particles(scene, dir);
-  return make_plan(scene, n, start_neighbors(scene, dir, n));
-}
-
-/// One simulation with its clock.
-class Simulation {
- public:
-  Simulation(const Study& study, const StudyMember& member)
-      : scene_(member.scene),
-        cpu_clock_(study.cpu_clock),
-        plan_(plan_of(scene_, study.scene_dir)),
-        solver_((refuse_if_too_large(scene_, plan_),
-                 start_solver(scene_, plan_, emit_particles(scene_, study.scene_dir)))) {}
-
-  /// Seconds that n updates took, by the clock of the study.
-  double step(std::int64_t n) {
-    const Stopwatch watch;
-    const double before = cpu_seconds();
-    solver_->step(int(n));
-    return cpu_clock_ ? cpu_seconds() - before : watch.seconds();
-  }
-  Solver& solver() { return *solver_; }
-  const Plan& plan() const { return plan_; }
-
- private:
-  /// Of all threads of this process.
-  static double cpu_seconds() {
-    timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-  }
-
-  const Scene& scene_;
-  bool cpu_clock_;
-  Plan plan_;
-  std::unique_ptr<Solver> solver_;
-};
 
 /// Adds a row to the columns; whether the run may go on.
-bool measure(Simulation& run, const Scene& scene, EnergyTrack& energy, MemberResult& out) {
+bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, MemberResult& out) {
   LogRow row;
-  row.measures = run.solver().measure();
+  row.measures = solver.measure();
   energy.follow(row.measures);
   row.iterations = scene.solver.iterations;
   row.dt = scene.time.step;
@@ -136,57 +97,75 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
                                        const std::function<bool()>& stop,
                                        const std::function<void(double)>& progress) {
   const Scene& scene = member.scene;
+  const Schedule schedule = make_schedule(scene);
   MemberResult out;
-  out.updates = std::max<std::int64_t>(1, std::llround(scene.time.end / scene.time.step));
-  const std::int64_t early = short_updates(out.updates);
-  std::vector<std::int64_t> moments;
-  for (const double t : study.projection)
-    if (const auto u = std::llround(t / scene.time.step); u < out.updates) moments.push_back(u);
-  std::sort(moments.begin(), moments.end());
-  moments.erase(std::unique(moments.begin(), moments.end()), moments.end());
+  out.updates = schedule.updates;
+  out.particles = count_particles(scene, study.scene_dir);
+  const Plan plan =
+      make_plan(scene, out.particles, start_neighbors(scene, study.scene_dir, out.particles));
+  refuse_if_too_large(scene, plan);
+  const auto start = [&] {
+    return start_solver(scene, plan, emit_particles(scene, study.scene_dir));
+  };
+  // A short repeat is a tenth of the run, but no fewer than 20 updates.
+  const std::int64_t early = std::min(out.updates, std::max<std::int64_t>(20, out.updates / 10));
+  std::set<std::int64_t> moments;
+  for (const double t : study.projection) moments.insert(std::llround(t / scene.time.step));
 
-  double early_seconds = 0, timed = 0;
-  std::int64_t early_timed = 0, timed_updates = 0;
+  double early_seconds = 0, timed = 0, booked = 0;
+  std::int64_t early_timed = 0, timed_updates = 0, last = 0;
   ProjectionSum projection;
+  std::optional<std::vector<double>> compared;  // of an update that is under way, its start
+  bool stopped = false;
   {
-    Simulation run(study, member);
-    EnergyTrack energy;
-    const SolverInfo info = run.solver().info();
+    const std::unique_ptr<Solver> solver = start();
+    const SolverInfo info = solver->info();
     out.backend = info.backend, out.precision = info.precision, out.device = info.device;
     out.threads = info.threads;
-    out.particles = run.plan().particles;
-    bool good = measure(run, scene, energy, out);
-    for (std::int64_t u = 0; u < out.updates && good;) {
-      if (stop()) return std::nullopt;
-      if (std::binary_search(moments.begin(), moments.end(), u)) {
-        projection.add(projection_error(run.solver(), scene, run.plan()));
-        ++u;
+    EnergyTrack energy;
+    const auto next = [&](std::int64_t u) {
+      if (compared) return u + 1;
+      const auto moment = moments.upper_bound(u);
+      return std::min({schedule.next_measure(u), u < early ? early : kNever,
+                       moment == moments.end() ? kNever : *moment});
+    };
+    const auto at = [&](Session& session) {
+      const std::int64_t u = session.update(), updates = u - last;
+      const double seconds = seconds_of(session, study) - booked;
+      if (compared) {
+        projection.add(projection_error(*solver, scene, plan, *compared));
+        compared.reset();
       } else {
-        std::int64_t to =
-            std::min(out.updates, (u / scene.measure_every + 1) * scene.measure_every);
-        if (u < early) to = std::min(to, early);
-        for (const std::int64_t moment : moments)
-          if (moment > u) to = std::min(to, moment);
-        const double seconds = run.step(to - u);
         timed += seconds;
-        timed_updates += to - u;
-        if (to <= early) early_seconds += seconds, early_timed += to - u;
-        u = to;
+        timed_updates += updates;
+        if (u <= early) early_seconds += seconds, early_timed += updates;
       }
-      if (u % scene.measure_every == 0 || u == out.updates) {
-        good = measure(run, scene, energy, out);
-        progress(double(u) / double(out.updates));
+      booked += seconds;
+      last = u;
+      if (schedule.measures(u)) {
+        const bool good = measure(*solver, scene, energy, out);
+        if (u > 0) progress(double(u) / double(out.updates));
+        if (!good) return Now::stop;
       }
-    }
+      stopped = u < out.updates && stop();
+      if (u < out.updates && !stopped && moments.contains(u))
+        compared = projection_start(*solver, scene, plan);
+      return stopped ? Now::stop : Now::go_on;
+    };
+    Callback course(next, at);
+    Session(*solver, {&course}).run(out.updates);
   }
+  if (stopped) return std::nullopt;
   projection.give(out);
   // An update at which the projection was looked at is not timed; it took as long as the others.
   if (timed_updates > 0) out.seconds = timed * double(out.updates) / double(timed_updates);
   if (out.status != "finished") return out;
   for (int r = 1; r < study.repeats && early_timed > 0; ++r) {
     if (stop()) return std::nullopt;
-    Simulation again(study, member);
-    out.ratios.push_back(again.step(early_timed) / early_seconds);
+    const std::unique_ptr<Solver> solver = start();
+    Session again(*solver);
+    again.run(early_timed);
+    out.ratios.push_back(seconds_of(again, study) / early_seconds);
   }
   return out;
 }

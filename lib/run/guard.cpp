@@ -3,21 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/base/text.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/time_levels.h"
 
 namespace pbf::inline run_module {
 namespace {
 
-double length(const double (&v)[3]) { return std::hypot(v[0], v[1], v[2]); }
-
 double mass_of(const Plan& plan) { return plan.mass * double(plan.particles); }
 
-constexpr double kShare = 0.1;   // of the energy scale, that a run may gain
-constexpr double kApart = 0.01;  // mean compression of a start that has come apart
-
-double gravity_of(const Scene& s) { return std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]); }
+constexpr double kShare = 0.1;  // of the energy scale, that a run may gain
 
 /// h, of the domain.
 double longest_edge(const Scene& s) {
@@ -28,26 +22,6 @@ double longest_edge(const Scene& s) {
 
 /// m/s, of a move by h in a step of level 0.
 double h_per_step(const Scene& s) { return s.h() / s.time.step * s.solver.substeps; }
-
-/// What each alarm is about: words for it, unit, and its key.
-struct Words {
-  const char *what, *unit, *limit_key;
-};
-Words words(Alarm alarm) {
-  switch (alarm) {
-    case Alarm::non_finite:
-      return {"is not finite", "", ""};
-    case Alarm::outside:
-      return {"is outside the walls", "", ""};
-    case Alarm::speed:
-      return {"is too fast", "m/s", "guard.speed"};
-    case Alarm::energy:
-      return {"is the fastest while the energy grows without a source", "J", "guard.energy"};
-    case Alarm::neighbors:
-      return {"has too many neighbours", "", "guard.neighbors"};
-  }
-  return {};
-}
 
 }  // namespace
 
@@ -86,7 +60,8 @@ double position_rounding(const Scene& s) {
 
 GuardLimits guard_limits(const Scene& s, const Plan& plan, const Measures& first) {
   const GuardSettings& g = *s.guard;
-  const double per_step = h_per_step(s), mass = mass_of(plan), gravity = gravity_of(s);
+  const double per_step = h_per_step(s), mass = mass_of(plan),
+               gravity = std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
   const double scale = energy_scale(first, s, plan.mass, plan.particles);
   double slack = 0.5 * mass * std::pow(0.01 * per_step, 2);
   if (gravity > 0) slack = std::min(slack, kShare * mass * gravity * s.h());
@@ -157,12 +132,6 @@ std::optional<Alarm> Guard::alarm(const Measures& m) const {
   return std::nullopt;
 }
 
-std::optional<GuardEvent> Guard::check(const Measures& m) {
-  if (const std::optional<Alarm> wrong = alarm(m)) return locate(*wrong, m, options());
-  keep(m);
-  return std::nullopt;
-}
-
 void Guard::keep(const Measures& m) {
   solver_.keep();
   good_ = m;
@@ -204,107 +173,6 @@ GuardEvent Guard::locate(Alarm alarm, const Measures& m, const StepOptions& opti
       e.value = e.stage ? e.stage->value : double(e.measure.non_finite + e.measure.outside);
   }
   return e;
-}
-
-std::string Guard::text(const GuardEvent& e) const {
-  const Words w = words(e.alarm);
-  std::string out = "stopped by the guard: ";
-  if (e.stage) {
-    const double v[3] = {e.velocity[0], e.velocity[1], e.velocity[2]};
-    out += format("at update %lld, in stage %s", static_cast<long long>(e.stage->update),
-                  e.stage->stage.c_str());
-    if (e.stage->sweep > 0) out += format(" of sweep %d", e.stage->sweep);
-    out += format(
-        ", particle %d at (%.6g, %.6g, %.6g) m, velocity (%.4g, %.4g, %.4g) m/s "
-        "(%.4g m/s), %s",
-        e.stage->id, e.position[0], e.position[1], e.position[2], v[0], v[1], v[2], length(v),
-        w.what);
-  } else if (e.last_good.updates == e.measure.update) {
-    out += format("at the start, before the first update, a particle %s", w.what);
-  } else {
-    out += format(
-        "between the updates %lld and %lld (the repeated updates did not show it again) "
-        "a particle %s",
-        static_cast<long long>(e.last_good.updates), static_cast<long long>(e.measure.update),
-        w.what);
-  }
-  const std::string unit = w.unit[0] ? std::string(" ").append(w.unit) : std::string();
-  out += format(": %.6g%s", e.value, unit.c_str());
-  if (w.limit_key[0]) out += format(", limit %.6g%s (%s)", e.limit, unit.c_str(), w.limit_key);
-  if (scene_.time.adaptive) {
-    const Scene finest = scene_at_level(scene_, finest_level(scene_));
-    out += format("; with the shortest step, %.6g s (time.adaptive.step_min)", finest.time.step);
-  }
-  return out + format("; seen at t = %.6g s. To help: %s", e.measure.time, remedy(e).c_str());
-}
-
-/// The keys that help, by what there is to blame.
-std::string Guard::remedy(const GuardEvent& e) const {
-  const std::string stage = e.stage ? e.stage->stage : std::string();
-  if (stage == "xsph") return "lower viscosity.xsph";
-  if (stage == "curl" || stage == "vorticity") return "lower vorticity.epsilon";
-  const bool shaken = e.alarm == Alarm::speed || e.alarm == Alarm::energy;
-  if (first_.compression_mean > kApart && (e.alarm == Alarm::neighbors || shaken)) {
-    std::string help =
-        format("the start is compressed by %.3g %% (mean)", 100 * first_.compression_mean);
-    if (!scene_.solver.prestabilize) help += "; leave solver.prestabilize on";
-    help += "; spread the bodies, or give them room";
-    if (scene_.fluid.mass) help += "; check fluid.mass";
-    return help + ". A shorter time.step makes it worse";
-  }
-  std::string help;
-  if (shaken && scene_.tensile) help += "lower tensile.k, which acts as k/time.step^2; ";
-  if (shaken && scene_.solver.constraint == ConstraintMode::two_sided)
-    help += "use solver.constraint: one_sided; ";
-  switch (e.alarm) {
-    case Alarm::speed:
-      return help + "lower time.step, raise solver.iterations, or ask for solver.speed_limit";
-    case Alarm::energy:
-      return help + "lower time.step, raise solver.iterations, or lower solver.sor";
-    case Alarm::neighbors:
-      return "raise solver.iterations, lower time.step, or spread the bodies";
-    default:
-      return "lower time.step, or raise solver.iterations";
-  }
-}
-
-Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const {
-  const int level = finest_level(scene_);  // a coarser one would not have ended the run
-  Scene s = scene_at_level(scene_, level);
-  s.time.adaptive.reset();
-  s.solver.prestabilize = false;  // it goes on from a state
-  s.name += "_event";
-  Body body;
-  body.shape = Shape::file;
-  body.path = path;
-  s.bodies = {body};
-  s.output.reset();
-  s.render.reset();
-  s.measure_every = 1;
-  const std::int64_t updates = (e.measure.update - e.last_good.updates) << level;
-  s.time.end = s.time.step * double(std::max<std::int64_t>(updates, 1) + 2);
-  // The same limits, though the run starts elsewhere.
-  s.guard->speed = limits_.speed;
-  s.guard->neighbors = limits_.neighbors;
-  const double scale = energy_scale(good_, s, plan_.mass, plan_.particles);
-  if (scale > 0)
-    s.guard->energy = std::max((event_limit(e.measure) - total_energy(good_)) / scale, 1e-12);
-  return s;
-}
-
-Particles to_particles(const SolverState& state, const Scene& s) {
-  Particles p;
-  p.position.resize(state.id.size());
-  p.velocity.resize(state.id.size());
-  const double h = s.h();
-  for (std::size_t i = 0; i < state.id.size(); ++i)
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto id = std::size_t(state.id[i]);
-      p.position[id][a] = std::clamp(s.origin()[a] + h * state.position[3 * i + a], s.domain.min[a],
-                                     s.domain.max[a]);
-      p.velocity[id][a] = h * state.velocity[3 * i + a];
-    }
-  return p;
 }
 
 }  // namespace pbf::inline run_module

@@ -10,6 +10,9 @@
 
 namespace pbf::inline run_module {
 
+/// Mean compression of a start that has come apart, 1.
+inline constexpr double kApart = 0.01;
+
 /// Kinetic and potential energy as the guard and the stability suite count it, J.
 double total_energy(const Measures& m);
 /// What growth is measured by, J: the kinetic energy relative to the centre of mass, which is the
@@ -69,15 +72,14 @@ class Guard {
   Guard(const Scene& scene, const Plan& plan, Solver& solver, const Measures& first,
         const Measures& now, std::optional<double> released = {});
 
-  /// Looks at a new measure: nothing, and the state is kept as the last good one; or what is wrong,
-  /// found by repeating the updates since then stage by stage. The solver has then gone back.
-  std::optional<GuardEvent> check(const Measures& m);
   /// What the updates are to be made with, at level 0.
   StepOptions options() const { return {.watched_speed = limits_.speed}; }
-  /// The parts of check(): what is wrong with a measure, if anything; the state of a good one is
-  /// kept; what is wrong is found. `options`: those that the updates were made with.
+  /// What is wrong with a new measure, if anything.
   std::optional<Alarm> alarm(const Measures& m) const;
+  /// Keeps the state of a good one as the last good state.
   void keep(const Measures& m);
+  /// Finds what is wrong by repeating the updates since then stage by stage, with the `options`
+  /// that they were made with. The solver has then gone back.
   GuardEvent locate(Alarm alarm, const Measures& m, const StepOptions& options);
   const Measures& last_good() const { return good_; }
 

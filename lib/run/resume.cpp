@@ -4,13 +4,13 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <sstream>
 
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
-#include "lib/run/finished_run.h"
 #include "lib/run/schedule.h"
 #include "lib/scene/difference.h"
 #include "lib/scene/load.h"
@@ -62,9 +62,9 @@ class Finder {
     }
     const LoadedScene record = load_stored_scene(folder_.file("scene.resolved.yaml"));
     const Scene& before = record.scene;
-    const std::string files = recorded_files(record.text);
-    refuse_other("", before, files);
-    if (files.empty() && !files_.empty())
+    if (const std::string other = difference_of_record(record, scene_, files_); !other.empty())
+      refuse("", other);
+    if (recorded_files(record.text).empty() && !files_.empty())
       point_.notes.push_back(folder_.path() +
                              ": begun by an earlier version, which kept no SHA-256 "
                              "of its particle files: they are taken as they are");
@@ -103,9 +103,11 @@ class Finder {
   }
 
  private:
-  /// That the folder, or a file in it, is of this scene and its files.
-  void refuse_other(const std::string& name, const Scene& before, const std::string& files) const {
-    std::string difference = physics_difference(before, scene_);
+  /// That a file of the folder is of this scene and its files.
+  void refuse_other(const std::string& name, const std::string& scene,
+                    const std::string& files) const {
+    std::string difference = physics_difference(
+        parse_stored_scene(scene, folder_.file(name) + ": its scene", {}), scene_);
     if (difference.empty()) difference = files_difference(files, files_);
     if (!difference.empty()) refuse(name, difference);
   }
@@ -115,10 +117,6 @@ class Finder {
                     (name.empty() ? "" : "it is of another scene: ") + difference +
                     "; only time.end, checkpoint, threads and backend may change. Restore it, or "
                     "start again with --overwrite");
-  }
-  void refuse_other(const std::string& name, const std::string& scene,
-                    const std::string& files) const {
-    refuse_other(name, parse_stored_scene(scene, folder_.file(name) + ": its scene", {}), files);
   }
 
   void check_checkpoint(std::int64_t particles) {
@@ -159,9 +157,10 @@ class Finder {
     refuse_other(kRunFile, info.resolved_scene, info.scene_files);  // no files in older ones
     point_.keep_file = true;
     const std::int64_t u = point_.update();
-    point_.rows = point_.saved ? prefix(file->log_column("update"), u,
-                                        [&](std::int64_t k) { return update_of_row(k); })
-                               : 0;
+    point_.rows = point_.saved
+                      ? prefix(file->log_column("update"), u,
+                               [&](std::int64_t k) { return schedule_.update_of_measure(k); })
+                      : 0;
     // Frames behind the checkpoint stay when the run to come writes the same.
     const bool same = exact(before) && exact(scene_) && info.commit == commit_;
     point_.frames = prefix(file->updates(), same ? schedule_.updates : u,
@@ -182,8 +181,6 @@ class Finder {
                         " and whose results are others; resume with that program, or start again "
                         "with --overwrite");
   }
-  std::int64_t update_of_row(std::int64_t k) const { return schedule_.update_of_measure(k); }
-
   /// Without what came before it in run.vtkhdf a checkpoint is of no use.
   void forget(const std::string& why) {
     if (point_.saved && !why.empty())
@@ -231,6 +228,39 @@ void prepare_resume(const RunFolder& folder, const ResumePoint& from) {
     if (std::rename(folder.file(kRunFile).c_str(), aside.c_str()) != 0)
       throw Error(ExitCode::io, aside + ": cannot be made: " + std::strerror(errno));
   }
+}
+
+std::string difference_of_file(const std::string& folder, const Scene& scene) {
+  const std::string path = folder + "/" + kRunFile;
+  try {
+    try_run_file(path);
+    return physics_difference(
+        parse_stored_scene(RunReader(path).info().resolved_scene, path + ": its scene", {}), scene);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+std::string why_not_finished(const std::string& folder, const Scene& scene) {
+  if (!scene.output) return {};
+  const std::string path = folder + "/" + kRunFile;
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return "run.vtkhdf is missing";
+  try {
+    try_run_file(path);
+    const RunReader file(path);
+    if (file.status() != "finished") return "run.vtkhdf is of a run that is " + file.status();
+    // The last frame is that of the end. The log is not asked: one of an earlier version will do.
+    const std::vector<std::int64_t> frames = file.updates();
+    const std::int64_t end = make_schedule(scene).updates,
+                       last = frames.empty() ? 0 : frames.back();
+    if (last < end)
+      return format("the frames of run.vtkhdf end at update %lld, the run at %lld",
+                    static_cast<long long>(last), static_cast<long long>(end));
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return {};
 }
 
 }  // namespace pbf::inline run_module

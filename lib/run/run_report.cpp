@@ -6,6 +6,7 @@
 #include "lib/base/machine.h"
 #include "lib/base/stages.h"
 #include "lib/base/text.h"
+#include "lib/run/run.h"
 #include "lib/solver/diagnostics.h"
 
 namespace pbf::inline run_module {
@@ -15,12 +16,6 @@ double percent(double part, double whole) { return whole > 0 ? 100 * part / whol
 
 std::string row(const std::string& name, double seconds, double wall) {
   return format("  %-28s %10.3f s  %5.1f %%\n", name.c_str(), seconds, percent(seconds, wall));
-}
-
-double booked(const RunTotals& t) {
-  double sum = 0;
-  for (const auto& s : t.stages) sum += s.seconds;
-  return sum;
 }
 
 /// Nothing when the scene does not define the measure.
@@ -33,21 +28,20 @@ std::string pool_line(const Measures& m) {
 }
 
 /// Changes of the step, and how long it was.
-std::string step_lines(const RunTotals& t) {
-  const StepHistory& s = *t.steps;
-  double updates = 0, steps = 0, shortest = t.step;
+std::string step_lines(const StepHistory& s, double step, std::int64_t all) {
+  double updates = 0, steps = 0, shortest = step;
   std::string shares;
   for (std::size_t k = 0; k < s.updates.size(); ++k) {
     if (s.updates[k] == 0) continue;
-    shortest = std::ldexp(t.step, -int(k));
+    shortest = std::ldexp(step, -int(k));
     updates += double(s.updates[k]);
     steps += std::ldexp(double(s.updates[k]), int(k));
     shares += format("%s%.4g s in %.3g %%", shares.empty() ? "" : ", ", shortest,
-                     percent(double(s.updates[k]), double(t.updates)));
+                     percent(double(s.updates[k]), double(all)));
   }
   std::string out =
       format("time step           %lld changes, shortest %.4g s, mean %.4g s\n",
-             static_cast<long long>(s.changes), shortest, steps > 0 ? t.step * updates / steps : 0);
+             static_cast<long long>(s.changes), shortest, steps > 0 ? step * updates / steps : 0);
   if (s.changes > 0) out += "                    " + shares + " of the updates\n";
   if (s.repeats > 0)
     out += format("                    %lld times back to the last good state\n",
@@ -58,38 +52,43 @@ std::string step_lines(const RunTotals& t) {
   return out;
 }
 
-}  // namespace
-
-std::string stage_table(const RunTotals& t) {
+std::string stage_table(const std::vector<StageTime>& stages, double wall, bool fused) {
   std::string out = "time per stage\n";
-  for (const auto& s : t.stages)
-    out += row(s.name + (s.name == "lambda" && t.fused ? " (with the density)" : ""), s.seconds,
-               t.wall);
-  out += row("other", t.wall - booked(t), t.wall);
-  out += row("total", t.wall, t.wall);
-  if (t.render_thread > 0)
-    out += format("  drawing took %.3f s on a thread of its own, beside the stages above\n",
-                  t.render_thread);
-  return out;
+  double rest = wall;
+  for (const auto& s : stages) {
+    out +=
+        row(s.name + (s.name == "lambda" && fused ? " (with the density)" : ""), s.seconds, wall);
+    rest -= s.seconds;
+  }
+  return out + row("other", rest, wall) + row("total", wall, wall);
 }
 
-std::string group_table(const RunTotals& t) {
+/// The same folded into seven groups, initialization ... post-processing.
+std::string group_table(const std::vector<StageTime>& stages, double wall, bool fused) {
   std::string out = "time per group of stages\n";
-  double rest = t.wall;
+  double rest = wall;
   for (std::size_t g = 0; g < std::size(kStageGroupNames); ++g) {
     double sum = 0;
     for (const Stage& stage : kStages)
-      for (const auto& s : t.stages)
+      for (const auto& s : stages)
         if (static_cast<std::size_t>(stage.group) == g && s.name == stage.name) sum += s.seconds;
     rest -= sum;
     std::string name = kStageGroupNames[g];
-    if (t.fused && name == "densities") name += " (in lambdas)";
-    out += row(name, sum, t.wall);
+    if (fused && name == "densities") name += " (in lambdas)";
+    out += row(name, sum, wall);
   }
-  return out + row("other", rest, t.wall);
+  return out + row("other", rest, wall);
 }
 
-std::string run_summary(const RunTotals& t) {
+}  // namespace
+
+std::string run_summary(const RunParts& run, const Watch& watch,
+                        const std::vector<StageTime>& stages) {
+  const Scene& scene = run.scene;
+  const Plan& plan = run.plan;
+  const Measures &first = watch.first(), &last = watch.last();
+  const std::int64_t updates = run.solver.updates();
+  const double wall = run.wall.seconds(), loop = run.loop_seconds;
   std::string out = format(
       "particles           %lld\n"
       "updates             %lld  (%.6g s simulated)\n"
@@ -102,38 +101,45 @@ std::string run_summary(const RunTotals& t) {
       "%%, "
       "largest rise %.3g %%\n"
       "peak memory         %s\n",
-      static_cast<long long>(t.particles), static_cast<long long>(t.updates), t.simulated,
-      duration_text(t.wall).c_str(), duration_text(t.loop).c_str(),
-      t.loop > 0
-          ? si_number(double(t.particles) * double(t.updates - t.first_update) / t.loop).c_str()
+      static_cast<long long>(plan.particles), static_cast<long long>(updates),
+      double(updates) * scene.time.step, duration_text(wall).c_str(), duration_text(loop).c_str(),
+      loop > 0
+          ? si_number(double(plan.particles) * double(updates - run.from.update()) / loop).c_str()
           : "0",
-      100 * t.last.compression_mean, 100 * t.last.compression_rms, 100 * t.last.compression_p99,
-      100 * t.last.compression_max, 100 * t.compression_max, 100 * t.last.share_above_1,
-      100 * t.last.share_above_10, t.last.energy, t.last.kinetic_energy, t.first.energy,
-      100 * t.last.energy_drift, 100 * t.last.energy_rise,
-      bytes_text(double(peak_memory())).c_str());
-  out += pool_line(t.last);
-  if (t.last.non_finite > 0)
+      100 * last.compression_mean, 100 * last.compression_rms, 100 * last.compression_p99,
+      100 * last.compression_max, 100 * run.compression_max, 100 * last.share_above_1,
+      100 * last.share_above_10, last.energy, last.kinetic_energy, first.energy,
+      100 * last.energy_drift, 100 * last.energy_rise, bytes_text(double(peak_memory())).c_str());
+  out += pool_line(last);
+  if (last.non_finite > 0)
     out += format("not finite          %lld particles at the end, left out of the figures above\n",
-                  static_cast<long long>(t.last.non_finite));
-  if (t.tolerance > 0)
+                  static_cast<long long>(last.non_finite));
+  if (plan.tolerance > 0)
     out += format(
         "sweeps              %.3g per substep on average, at most %d, for a tolerance of %.4g %%\n",
-        double(t.last.sweeps) / (double(t.updates) * t.substeps), t.max_sweeps, 100 * t.tolerance);
-  if (t.last.unresolved > 0)
+        double(last.sweeps) / (double(updates) * plan.substeps),
+        scene.solver.iterations * (1 + plan.more_rounds), 100 * plan.tolerance);
+  if (last.unresolved > 0)
     out += format("fast past neighbours %lld times more than %g h in a step, at most %.3g h\n",
-                  static_cast<long long>(t.last.unresolved), kResolvedWay, t.last.relative_way_max);
-  if (t.steps) out += step_lines(t);
-  if (t.speed_limit > 0)
+                  static_cast<long long>(last.unresolved), kResolvedWay, last.relative_way_max);
+  if (const auto steps = watch.steps(updates)) out += step_lines(*steps, scene.time.step, updates);
+  if (scene.solver.speed_limit > 0)
     out += format("speed limit         %lld times a particle was slowed down to %.4g m/s\n",
-                  static_cast<long long>(t.last.fast), t.speed_limit);
-  out += stage_table(t) + group_table(t);
-  out += "files in            " + t.folder;
-  if (t.frames > 0)
-    out += format("\n  run.vtkhdf        %lld frames, %s", static_cast<long long>(t.frames),
-                  bytes_text(double(t.bytes)).c_str());
-  if (t.pictures > 0)
-    out += format("\n  frames/           %lld pictures", static_cast<long long>(t.pictures));
+                  static_cast<long long>(last.fast),
+                  scene.solver.speed_limit * scene.h() / scene.time.step);
+  out += stage_table(stages, wall, scene.solver.fused);
+  if (run.drawing_seconds > 0)
+    out += format("  drawing took %.3f s on a thread of its own, beside the stages above\n",
+                  run.drawing_seconds);
+  out += group_table(stages, wall, scene.solver.fused);
+  out += "files in            " + run.folder.path();
+  if (run.frames_written > 0)
+    out +=
+        format("\n  run.vtkhdf        %lld frames, %s", static_cast<long long>(run.frames_written),
+               bytes_text(double(run.bytes)).c_str());
+  if (run.pictures_drawn > 0)
+    out +=
+        format("\n  frames/           %lld pictures", static_cast<long long>(run.pictures_drawn));
   return out;
 }
 

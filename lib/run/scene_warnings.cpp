@@ -187,4 +187,10 @@ std::vector<Warning> scene_warnings(const Scene& scene, const std::string& scene
   return list;
 }
 
+std::string warning_lines(const std::vector<Warning>& warnings) {
+  std::string text;
+  for (const Warning& w : warnings) text += (text.empty() ? "" : "\npbf: error: ") + w.text;
+  return text;
+}
+
 }  // namespace pbf::inline run_module

@@ -12,13 +12,6 @@ std::int64_t whole(double ratio) {
 
 }  // namespace
 
-std::int64_t Schedule::next_event(std::int64_t u) const {
-  std::int64_t next = updates;
-  for (const std::int64_t every : {measure_every, frame_every, picture_every})
-    if (every > 0) next = std::min(next, (u / every + 1) * every);
-  return next;
-}
-
 Schedule make_schedule(const Scene& s) {
   Schedule out;
   out.updates = whole(s.time.end / s.time.step);

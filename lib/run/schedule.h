@@ -1,11 +1,17 @@
 // When a run measures, writes and draws, in whole updates.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "lib/scene/scene.h"
 
 namespace pbf::inline run_module {
+
+/// The first multiple of `every` after u (-1: the start is to come).
+inline std::int64_t next_multiple(std::int64_t u, std::int64_t every) {
+  return (u + every) / every * every;
+}
 
 /// Numbers of updates; 0: never. Update 0 is the initial state.
 struct Schedule {
@@ -29,8 +35,15 @@ struct Schedule {
   /// The update of the k-th measure and frame (from 0).
   std::int64_t update_of_measure(std::int64_t k) const { return at(k, measure_every); }
   std::int64_t update_of_frame(std::int64_t k) const { return at(k, frame_every); }
-  /// The first update after u at which something is due, at most the last one.
-  std::int64_t next_event(std::int64_t u) const;
+  /// The first update after u (-1: the start is to come) at which there is a measure, a frame or
+  /// picture, or either; at most the last one.
+  std::int64_t next_measure(std::int64_t u) const { return next(u, measure_every); }
+  std::int64_t next_output(std::int64_t u) const {
+    return std::min(next(u, frame_every), next(u, picture_every));
+  }
+  std::int64_t next_event(std::int64_t u) const {
+    return std::min(next_measure(u), next_output(u));
+  }
 
  private:
   std::int64_t count(std::int64_t u, std::int64_t every, bool end) const {
@@ -39,6 +52,9 @@ struct Schedule {
   }
   std::int64_t at(std::int64_t k, std::int64_t every) const {
     return k > updates / every ? updates : k * every;
+  }
+  std::int64_t next(std::int64_t u, std::int64_t every) const {
+    return every > 0 ? std::min(updates, next_multiple(u, every)) : updates;
   }
   static bool due(std::int64_t u, std::int64_t every) { return every > 0 && u % every == 0; }
 };

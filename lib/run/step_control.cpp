@@ -11,8 +11,6 @@ namespace {
 
 constexpr std::int64_t kEarly = 8, kLongestHold = std::int64_t(1) << 30;  // due measures
 
-double gravity_of(const Scene& s) { return std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]); }
-
 }  // namespace
 
 double longest_step(const Scene& s, double speed, double acceleration) {
@@ -39,7 +37,7 @@ AdaptiveStep::AdaptiveStep(const Scene& scene, const StepHistory& before)
 double AdaptiveStep::step(int level) const { return std::ldexp(scene_.time.step, -level); }
 
 std::optional<std::string> AdaptiveStep::follow(const Measures& m) {
-  double acceleration = gravity_of(scene_);
+  double acceleration = std::hypot(scene_.gravity[0], scene_.gravity[1], scene_.gravity[2]);
   if (h_.speed >= 0 && m.time > h_.time)
     acceleration = std::max(acceleration, std::fabs(m.speed_max - h_.speed) / (m.time - h_.time));
   h_.time = m.time;

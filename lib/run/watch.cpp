@@ -8,20 +8,92 @@
 
 namespace pbf::inline run_module {
 
-Watch::Watch(const Scene& scene, const Plan& plan, Solver& solver, const Measures& first,
-             const Measures& now, std::function<void(const std::string&)> note,
-             const StepHistory& before, std::optional<double> released)
-    : whole_(scene.time.step), solver_(solver), note_(std::move(note)) {
-  if (scene.guard) guard_.emplace(scene, plan, solver, first, now, released);
-  if (scene.time.adaptive) step_.emplace(scene, before);
+Watch::Watch(const Scene& scene, const Plan& plan, Solver& solver, Take take,
+             std::function<void(const std::string&)> note, StageClock* clock)
+    : scene_(scene),
+      plan_(plan),
+      solver_(solver),
+      take_(std::move(take)),
+      note_(std::move(note)),
+      clock_(clock),
+      schedule_(make_schedule(scene)) {}
+
+Measures& Watch::go_on_from(const SavedRun& saved) {
+  first_ = saved.first;
+  first_.energy = saved.energy.first;
+  last_ = solver_.measure();
+  begin(last_, saved.steps.value_or(StepHistory{}), saved.released);
+  if (schedule_.measures(last_.update)) taken_ = last_.update;
+  return last_;
 }
 
-Verdict Watch::look(const Measures& m, bool keep) {
-  if (!guard_) return Verdict::good;
+void Watch::begin(const Measures& now, const StepHistory& before, std::optional<double> released) {
+  begun_ = true;
+  if (scene_.guard) guard_.emplace(scene_, plan_, solver_, first_, now, released);
+  if (scene_.time.adaptive) step_.emplace(scene_, before);
+}
+
+std::int64_t Watch::next(std::int64_t u) const {
+  return goes_back() ? schedule_.next_event(u) : schedule_.next_measure(u);
+}
+
+Now Watch::at(Session& session) {
+  if (schedule_.measures(session.update()))
+    measure(true);
+  else
+    look(solver_.measure());
+  session.use(options());
+  return event_ ? Now::stop : Now::go_on;
+}
+
+/// Stopped between two measures; what it has gone back to is known to be good.
+void Watch::end(Session& session) {
+  if (!event_ && taken_ != session.update()) measure(!goes_back());
+}
+
+std::int64_t Watch::next_choice(std::int64_t u) const {
+  return scene_.time.adaptive ? next_multiple(u, schedule_.measure_every) : kNever;
+}
+
+Now Watch::choose(Session& session) {
+  booked([&] {
+    const int level = step_->level();
+    if (const auto change = step_->follow(last_)) take(*change, level);
+  });
+  session.use(options());
+  return Now::go_on;
+}
+
+bool Watch::state_is_good() {
+  if (guard_ && !goes_back() && taken_ != solver_.updates()) look(solver_.measure());
+  return !event_;
+}
+
+void Watch::measure(bool judged) {
+  const Measures m = solver_.measure();
+  const bool first = !begun_;
+  if (first) first_ = m, begin(m, {}, {});
+  const double dt = std::ldexp(scene_.time.step, -options().level);
+  if (judged && !look(m)) return;
+  taken_ = m.update;
+  last_ = m;
+  take_(last_, dt);
+  if (first) first_ = last_;
+}
+
+/// Whether the measure stays: false where the session goes back.
+bool Watch::look(const Measures& m) {
+  bool stays = true;
+  if (guard_) booked([&] { stays = judge(m); });
+  return stays;
+}
+
+/// Where alarms take a run back, a state is kept before anything of it is written down.
+bool Watch::judge(const Measures& m) {
   const std::optional<Alarm> alarm = guard_->alarm(m);
   if (!alarm) {
-    if (keep) guard_->keep(m);
-    return Verdict::good;
+    if (!goes_back() || schedule_.has(m.update)) guard_->keep(m);
+    return true;
   }
   const std::int64_t back = guard_->last_good().update;
   // What is wrong at the start is wrong with any step.
@@ -30,17 +102,24 @@ Verdict Watch::look(const Measures& m, bool keep) {
     if (const auto change = step_->refine(kAlarmNames[static_cast<int>(*alarm)], m, back)) {
       go_back();
       take(*change, before);
-      return Verdict::back;
+      return false;
     }
   }
   event_ = guard_->locate(*alarm, m, options());
-  return Verdict::stop;
+  return true;
 }
 
-void Watch::choose(const Measures& m) {
-  if (!step_) return;
-  const int before = step_->level();
-  if (const auto change = step_->follow(m)) take(*change, before);
+/// Books what `action` takes, but for what the solver books itself.
+void Watch::booked(const std::function<void()>& action) {
+  const auto solver_seconds = [&] {
+    double sum = 0;
+    for (const StageTime& s : solver_.info().stages) sum += s.seconds;
+    return sum;
+  };
+  const double before = solver_seconds();
+  const Stopwatch stopwatch;
+  action();
+  if (clock_) clock_->add("guard", stopwatch.seconds() - (solver_seconds() - before));
 }
 
 void Watch::go_back() {
@@ -48,12 +127,17 @@ void Watch::go_back() {
     solver_.set_state(solver_.state(Which::kept));
 }
 
-double Watch::step() const { return step_ ? step_->step(step_->level()) : whole_; }
-
 StepOptions Watch::options() const {
   StepOptions o = guard_ ? guard_->options() : StepOptions{};
   if (step_) o.level = step_->level();
   return o;
+}
+
+std::optional<StepHistory> Watch::steps(std::optional<std::int64_t> update) const {
+  if (!step_) return std::nullopt;
+  StepHistory h = step_->history();
+  if (update) h.updates = step_->updates_at_levels(*update);
+  return h;
 }
 
 void Watch::take(const std::string& change, int level_before) {

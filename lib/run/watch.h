@@ -1,61 +1,88 @@
-// What follows from a measure of a run: whether it goes on (guard), and with which step
-// (time.adaptive).
+// The measures of a session, and what follows from them: whether it goes on (guard), and with which
+// step (time.adaptive).
 #pragma once
 
 #include <functional>
 #include <optional>
 #include <string>
 
+#include "lib/base/stage_clock.h"
+#include "lib/io/checkpoint.h"
 #include "lib/run/guard.h"
+#include "lib/run/schedule.h"
+#include "lib/run/session.h"
 #include "lib/run/step_control.h"
 
 namespace pbf::inline run_module {
 
-/// good: the run goes on. back: the solver has gone back to the last good state, and repeats the
-/// updates since with half the step. stop: the guard ends the run; the solver has gone back, too.
-enum class Verdict { good, back, stop };
-
-class Watch {
+/// Measures where it is due. Where the guard objects, the session goes back to the last good state
+/// and repeats the updates since with half the step, or it ends; the solver has gone back, too.
+class Watch : public Observer {
  public:
-  /// `first`: the measure that the run began with, `now`: that of the present state; `before`: what
-  /// a checkpoint remembers, and `released` what it does of Guard::released(). `note` gets a line
-  /// for every change of the step.
-  Watch(const Scene& scene, const Plan& plan, Solver& solver, const Measures& first,
-        const Measures& now, std::function<void(const std::string&)> note,
-        const StepHistory& before = {}, std::optional<double> released = {});
+  /// Gets every measure but those that the session goes back from; dt: of the steps before, s.
+  using Take = std::function<void(Measures& m, double dt)>;
+  /// `note` gets a line for every change of the step, `clock` what the guard takes, as "guard".
+  Watch(
+      const Scene& scene, const Plan& plan, Solver& solver, Take take,
+      std::function<void(const std::string&)> note = [](const std::string&) {},
+      StageClock* clock = nullptr);
+  /// Before the session: the solver has the state already. last() is its measure, to be completed.
+  Measures& go_on_from(const SavedRun& saved);
 
-  /// Judges a measure. `keep`: its state, if good, is the one to go back to; where alarms take a
-  /// run back, that must come before anything of the state is written down.
-  Verdict look(const Measures& m, bool keep = true);
+  std::int64_t next(std::int64_t u) const override;
+  Now at(Session& session) override;
+  void end(Session& session) override;
+  /// Chooses the step of the updates to come, behind the observers that need the state as it was
+  /// measured. A measure at the end of a run alone chooses nothing: a longer run would not have it.
+  Observer& choosing() { return choosing_; }
 
-  /// After a good measure of the scene's measure_every, and no other: chooses the step of the
-  /// updates to come.
-  void choose(const Measures& m);
-
+  /// Whether the guard leaves the state of a run that has no way back as it is; measured if need
+  /// be.
+  bool state_is_good();
   /// Whether an alarm may take the run back. Then a checkpoint holds the last good state, not the
   /// present one: what happens after it does not depend on when it was written.
   bool goes_back() const { return guard_ && step_; }
   /// Takes the solver back to the last good state, where it is not there already.
   void go_back();
 
-  double step() const;  ///< s, at present
-  /// What the solver's updates are to be made with.
+  /// What the session's updates are to be made with; it is told when they change.
   StepOptions options() const;
-  /// Null without guard, or time.adaptive.
+  /// Null without guard, and before the first measure.
   const Guard* guard() const { return guard_ ? &*guard_ : nullptr; }
-  const AdaptiveStep* adaptive() const { return step_ ? &*step_ : nullptr; }
-  const std::optional<GuardEvent>& event() const { return event_; }  ///< after `stop`
+  /// With time.adaptive: what was chosen; its `updates` up to `update`, or as a checkpoint has
+  /// them.
+  std::optional<StepHistory> steps(std::optional<std::int64_t> update = {}) const;
+  /// What the guard stopped the session for; null unless it did.
+  const GuardEvent* event() const { return event_ ? &*event_ : nullptr; }
+  const Measures& first() const { return first_; }
+  const Measures& last() const { return last_; }
 
  private:
+  std::int64_t next_choice(std::int64_t u) const;
+  Now choose(Session& session);
+  void begin(const Measures& now, const StepHistory& before, std::optional<double> released);
+  void measure(bool judged);
+  bool look(const Measures& m);
+  bool judge(const Measures& m);
   void take(const std::string& change, int level_before);
   std::string relax(int levels);
+  void booked(const std::function<void()>& action);
 
-  double whole_;  ///< s, time.step
+  const Scene& scene_;
+  const Plan& plan_;
   Solver& solver_;
+  Take take_;
   std::function<void(const std::string&)> note_;
+  StageClock* clock_;
+  Schedule schedule_;
+  Callback choosing_{[this](std::int64_t u) { return next_choice(u); },
+                     [this](Session& session) { return choose(session); }};
   std::optional<Guard> guard_;
   std::optional<AdaptiveStep> step_;
   std::optional<GuardEvent> event_;
+  Measures first_, last_;
+  std::int64_t taken_ = -1;  // update of the last measure that was taken
+  bool begun_ = false;
 };
 
 }  // namespace pbf::inline run_module

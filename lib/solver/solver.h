@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/base/stage_clock.h"
 #include "lib/scene/particles.h"
 #include "lib/scene/scene.h"
 #include "lib/solver/measures.h"
@@ -22,13 +23,6 @@ struct Plan;
 
 namespace pbf::inline solver_module {
 
-/// Seconds spent in one stage since the solver was made. `name` is the name of the stage.
-struct StageTime {
-  std::string name;
-  double seconds = 0;
-  std::int64_t calls = 0;
-};
-
 /// What ran where; goes into the run file.
 struct SolverInfo {
   std::string backend;    ///< cpu, cuda
@@ -40,7 +34,7 @@ struct SolverInfo {
   double wall_scale = 0;  ///< factor on the walls' density, from the calibration
   std::size_t bytes = 0;  ///< of the arrays held now (device memory on cuda)
   double launches = 0;    ///< cuda: kernels and fills of one step; 0 before one was recorded
-  std::vector<StageTime> stages{};
+  std::vector<StageTime> stages{};  ///< since it was made
 };
 
 /// How the updates of one call are made.

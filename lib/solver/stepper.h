@@ -110,6 +110,7 @@ class Stepper {
   /// this sort changes no bit of the updates that follow.
   bool find_pairs() {
     if (c_.lists_are_current) return false;
+    c_.exec.begin();
     c_.booked_as = "measure";
     for (const int pass : {Passes::index_of<Sort>(), Passes::index_of<MakeLists>()}) launch(pass);
     c_.booked_as = nullptr;

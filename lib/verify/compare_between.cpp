@@ -6,6 +6,7 @@
 #include "lib/exec/make_solver.h"
 #include "lib/run/emit.h"
 #include "lib/run/prestabilize.h"
+#include "lib/run/session.h"
 #include "lib/scene/random.h"
 #include "lib/verify/compare_parts.h"
 
@@ -89,13 +90,7 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   const std::unique_ptr<Solver> reference = make(plain, particles, false);
   const Plan plan = make_plan(on_a, std::int64_t(particles.size()));
 
-  Comparison c;
-  c.settings = &settings;
-  c.plan = &plan;
-  c.scene = &on_a;
-  c.a = a.get();
-  c.b = b.get();
-  c.reference = reference.get();
+  Comparison c{&settings, &plan, &on_a, a.get(), b.get(), reference.get()};
   c.u = std::max(roundoff(settings.a.precision), roundoff(settings.b.precision));
   c.sides = settings.a.precision == settings.b.precision ? 2 : 1;
   const bool promised = settings.a.backend == settings.b.backend ||
@@ -119,7 +114,7 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   const std::string relieved = prestabilized_text(prestabilize(*a, on_a, plan));
   if (!relieved.empty()) result.notes.push_back(relieved);
   if (progress) progress(format("%d updates of warm-up on %s", settings.warmup, result.a.c_str()));
-  a->step(settings.warmup);
+  advance(*a, settings.warmup);
   SolverState start = a->state();
   if (c.u == roundoff(Precision::single)) round_to_float(start);
   result.parts.push_back(compare_stages(c, start, result));
@@ -131,7 +126,7 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   for (const std::int64_t after : {failure - 1, std::int64_t(settings.updates)}) {
     if (!result.stage.empty() || failure < 1) break;
     a->set_state(start);
-    a->step(int(after));
+    advance(*a, after);
     SolverState later = a->state();
     if (c.u == roundoff(Precision::single)) round_to_float(later);
     ComparePart part = compare_stages(c, later, result);

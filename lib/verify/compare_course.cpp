@@ -3,20 +3,15 @@
 #include <cmath>
 
 #include "lib/base/text.h"
+#include "lib/run/session.h"
 #include "lib/verify/compare_parts.h"
 #include "lib/verify/statistics.h"
 
 namespace pbf::inline verify_module {
 namespace {
 
-/// Positions by id, h.
-std::vector<double> positions(Solver& solver) {
-  const SolverState s = solver.state();
-  std::vector<double> x(s.position.size());
-  for (std::size_t k = 0; k < s.id.size(); ++k)
-    std::copy_n(&s.position[3 * k], 3, &x[3 * std::size_t(s.id[k])]);
-  return x;
-}
+/// By id, h.
+std::vector<double> positions(Solver& solver) { return solver.state(Which::positions).position; }
 
 struct Distance {
   double rms = 0, worst = 0;
@@ -163,12 +158,12 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
   first_failure = -1;
   const int updates = c.settings->updates, every = std::max(1, updates / 10);
   for (int t = 1; t <= updates; ++t) {
-    c.a->step(1);
-    c.b->step(1);
+    advance(*c.a, 1);
+    advance(*c.b, 1);
     const Distance d = distance(positions(*c.a), positions(*c.b));
     double now = 0;
     if (!c.same_bits) {
-      c.reference->step(1);
+      advance(*c.reference, 1);
       const std::vector<double> r = positions(*c.reference);
       for (std::size_t m = 0; m < c.members.size(); ++m) {
         // Every update its own roundings.

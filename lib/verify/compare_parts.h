@@ -22,11 +22,11 @@ struct Comparison {
   const Scene* scene;  ///< A's
   Solver *a, *b;
   Solver* reference;  ///< A's scene on cpu in double, without fused density
-  std::vector<std::unique_ptr<Solver>> members;  ///< like the reference
-  double u = 0;                                  ///< unit roundoff of the coarser precision
-  double sides = 1;                              ///< how many of the two round to it
+  std::vector<std::unique_ptr<Solver>> members{};  ///< like the reference
+  double u = 0;                                    ///< unit roundoff of the coarser precision
+  double sides = 1;                                ///< how many of the two round to it
   bool same_bits = false;  ///< both sides promise the same bits: every tolerance is 0
-  std::function<void(const std::string&)> progress;
+  std::function<void(const std::string&)> progress{};
 };
 
 /// One update from `start` on both sides, stage by stage. Sets result.stage.

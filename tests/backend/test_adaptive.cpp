@@ -6,6 +6,7 @@
 #include "lib/run/watch.h"
 #include "tests/backend/backend.h"
 #include "tests/catch.h"
+#include "tests/guard_check.h"
 
 using namespace oracle_test;
 using backend_test::here;
@@ -49,30 +50,29 @@ struct Course {
   std::vector<std::string> notes;
   pbf::Measures last;
   double energy_start = 0, energy_most = 0, shortest = 1;
-  pbf::Verdict end = pbf::Verdict::good;
+  bool stopped = false;
   std::int64_t repeats = 0;
 };
 
-/// Under a Watch, measured every `every` updates.
+/// A session under a Watch, measured every `every` updates.
 Course watched(const Case& c, pbf::Solver& solver, int updates, int every) {
   Course course;
-  const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
-  const pbf::Measures first = solver.measure();
-  pbf::Watch watch(c.scene, plan, solver, first, first,
-                   [&](const std::string& line) { course.notes.push_back(line); });
-  course.energy_start = course.energy_most = pbf::total_energy(first);
-  watch.choose(first);
-  while (solver.updates() < updates && course.end != pbf::Verdict::stop) {
-    solver.step(every, watch.options());
-    course.last = solver.measure();
-    course.end = watch.look(course.last);
-    if (course.end == pbf::Verdict::good) {
-      course.energy_most = std::max(course.energy_most, pbf::total_energy(course.last));
-      watch.choose(course.last);
-    }
-    course.shortest = std::min(course.shortest, watch.step());
-  }
-  course.repeats = watch.adaptive()->history().repeats;
+  pbf::Scene scene = c.scene;
+  scene.measure_every = every;
+  scene.time.end = updates * scene.time.step;
+  const pbf::Plan plan = pbf::make_plan(scene, std::int64_t(c.particles.size()));
+  pbf::Watch watch(
+      scene, plan, solver,
+      [&](const pbf::Measures& m, double dt) {
+        if (m.update == 0) course.energy_start = pbf::total_energy(m);
+        course.energy_most = std::max(course.energy_most, pbf::total_energy(m));
+        course.shortest = std::min(course.shortest, dt);
+      },
+      [&](const std::string& line) { course.notes.push_back(line); });
+  pbf::Session(solver, {&watch, &watch.choosing()}).run(updates);
+  course.last = watch.last();
+  course.stopped = watch.event() != nullptr;
+  course.repeats = watch.steps()->repeats;
   return course;
 }
 
@@ -176,13 +176,13 @@ TEST_CASE("an alarm takes the run back, and with a shorter step it comes to its 
   std::optional<pbf::GuardEvent> event;
   while (!event && fixed->updates() < 100) {
     fixed->step(5, guard.options());
-    event = guard.check(fixed->measure());
+    event = check(guard, fixed->measure());
   }
   REQUIRE(event);  // the guard stops it today
 
   auto solver = make(c);
   const Course course = watched(c, *solver, 100, 5);
-  CHECK(course.end == pbf::Verdict::good);
+  CHECK_FALSE(course.stopped);
   CHECK(solver->updates() == 100);
   CHECK(course.repeats >= 1);
   REQUIRE(!course.notes.empty());
@@ -204,7 +204,7 @@ TEST_CASE("with the shortest step the guard stops the run, at the update of the 
   auto solver = make(c);
   solver->inspection()->inject({7, "delta", 2, 40, 1e6});
   const Course course = watched(c, *solver, 20, 5);
-  CHECK(course.end == pbf::Verdict::stop);
+  CHECK(course.stopped);
   CHECK(course.repeats == 2);
   CHECK(solver->updates() == 7);
   CHECK(course.notes.size() == 2);
@@ -214,10 +214,10 @@ TEST_CASE("what is wrong at the start is not tried again with a shorter step") {
   Case c = everything();
   c.scene.guard->speed = 1e-3;
   auto solver = make(c);
-  const pbf::Measures first = solver->measure();
   const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
-  pbf::Watch watch(c.scene, plan, *solver, first, first, [](const std::string&) {});
-  CHECK(watch.look(first) == pbf::Verdict::stop);
+  pbf::Watch watch(c.scene, plan, *solver, [](const pbf::Measures&, double) {});
+  pbf::Session(*solver, {&watch}).run(10);
+  CHECK(solver->updates() == 0);
   REQUIRE(watch.event());
   CHECK(watch.guard()->text(*watch.event()).find("before the first update") != std::string::npos);
 }

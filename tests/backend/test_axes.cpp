@@ -7,6 +7,7 @@
 #include "lib/run/guard.h"
 #include "tests/backend/backend.h"
 #include "tests/catch.h"
+#include "tests/guard_check.h"
 
 using namespace oracle_test;
 using backend_test::here;
@@ -195,7 +196,7 @@ TEST_CASE("a thrown particle is where a hand calculation puts it, in any box, in
   pbf::Guard guard(c.scene, plan, *faulty, first, first);
   faulty->inspection()->inject({1, "predict", 0, 0, 1e6});
   faulty->step(1, guard.options());
-  const auto e = guard.check(faulty->measure());
+  const auto e = check(guard, faulty->measure());
   REQUIRE(e);
   CHECK(e->velocity[0] == Approx(1e6 * h).epsilon(1e-6));
   for (std::size_t k = 1; k < 3; ++k)

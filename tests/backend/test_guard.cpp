@@ -5,6 +5,7 @@
 #include "lib/run/guard.h"
 #include "tests/backend/backend.h"
 #include "tests/catch.h"
+#include "tests/guard_check.h"
 
 using namespace oracle_test;
 using backend_test::here;
@@ -31,7 +32,7 @@ std::optional<pbf::GuardEvent> caught(const Case& c, const pbf::Fault& fault, in
   pbf::Guard guard(c.scene, plan_of(c), *solver, first, first);
   solver->inspection()->inject(fault);
   solver->step(updates, guard.options());
-  return guard.check(solver->measure());
+  return check(guard, solver->measure());
 }
 
 bool same_state(const pbf::SolverState& a, const pbf::SolverState& b) {
@@ -75,7 +76,7 @@ TEST_CASE(
   pbf::Guard guard(c.scene, plan_of(c), *guarded, first, first);
   for (int k = 0; k < 4; ++k) {
     guarded->step(5, guard.options());
-    REQUIRE_FALSE(guard.check(guarded->measure()));
+    REQUIRE_FALSE(check(guard, guarded->measure()));
     for (int u = 0; u < 5; ++u) REQUIRE_FALSE(looked_at->inspection()->step_checked({}));
   }
   bare->step(20);

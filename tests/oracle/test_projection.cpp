@@ -205,7 +205,10 @@ TEST_CASE(
   const auto after = [&](int iterations, double sor) {
     c.scene.solver.iterations = iterations;
     c.scene.solver.sor = sor;
-    const auto e = pbf::projection_error(*make(c), c.scene, plan_of(c));
+    const auto solver = make(c);
+    const auto start = pbf::projection_start(*solver, c.scene, plan_of(c));
+    solver->step(1);
+    const auto e = pbf::projection_error(*solver, c.scene, plan_of(c), start);
     CHECK(e.converged);
     CHECK(e.mean <= e.rms);
     CHECK(e.rms <= e.max);

@@ -7,6 +7,7 @@
 #include "lib/run/emit.h"
 #include "lib/run/prestabilize.h"
 #include "tests/catch.h"
+#include "tests/guard_check.h"
 #include "tests/unit/scene_samples.h"
 
 namespace pbf::scene_test {
@@ -132,7 +133,7 @@ TEST_CASE(
   SECTION("apart: what it has by then, and the usual share") {
     m.compression_mean = 0.005;
     m.kinetic_energy = 100;
-    CHECK_FALSE(guard.check(m));
+    CHECK_FALSE(check(guard, m));
     Measures next = m;
     next.compression_mean = 0.3;  // pressed together again: that releases nothing
     next.update = 10;
@@ -153,7 +154,7 @@ TEST_CASE(
     const double soon = other.energy_limit(late);
     CHECK(soon > other.limits().energy);
     late.update = release_updates(two.scene) + 1;
-    REQUIRE_FALSE(other.check(late));
+    REQUIRE_FALSE(check(other, late));
     CHECK(other.energy_limit(late) == Approx(other.limits().energy));
   }
 }

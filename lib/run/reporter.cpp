@@ -1,0 +1,139 @@
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/relative_motion.h"
+#include "lib/base/text.h"
+#include "lib/run/run.h"
+
+namespace pbf::inline run_module {
+namespace {
+
+double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+
+/// Splashes of a few particles are in any lively flow.
+constexpr double kMuch = 1e-3;  // of particles times steps
+
+std::string passed_through_text(const Scene& s, const Measures& m, double share) {
+  // With time.adaptive the longest way may be that of a step much shorter than time.step.
+  const std::string remedy =
+      s.time.adaptive
+          ? std::string("lower time.adaptive.cfl")
+          : format("time.step %.2g s resolves it", s.time.step * kResolvedWay / m.relative_way_max);
+  return format(
+             "fluid may have passed through fluid: %lld times (%.2g %% of particles times steps) a "
+             "particle moved by more than %g h relative to a neighbour in a step, by up to %.3g "
+             "h; ",
+             static_cast<long long>(m.unresolved), 100 * share, kResolvedWay, m.relative_way_max) +
+         remedy;
+}
+
+}  // namespace
+
+Reporter::Reporter(RunParts& run, const Watch& watch)
+    : run_(run), watch_(watch), progress_(run.log) {
+  for (const Warning& w : run.of_scene) told_.emplace(w.kind, w.text);
+  if (run.from.saved) compressed_ = run.from.saved->compressed_updates;
+  progress_.start_at(run.from.update());
+}
+
+Now Reporter::at(Session& session) {
+  const std::int64_t u = session.update(), updates = run_.schedule.updates;
+  if (u < updates)
+    for (const Warning& w : found(false))
+      if (told_.emplace(w.kind, w.text).second) run_.log.warning(w.text);
+  const Measures& m = watch_.last();
+  progress_.update({u, updates, run_.plan.particles, double(u) * run_.scene.time.step,
+                    m.compression_mean, m.compression_max, run_.from.update()});
+  return Now::go_on;
+}
+
+void Reporter::end(Session& session) {
+  if (!run_.scene.domain.open.empty()) {
+    const std::vector<double> x = run_.solver.state(Which::positions).position;
+    const Double3 origin = run_.scene.origin();
+    const double h = run_.scene.h();
+    count_outside(x.size() / 3, [&](std::size_t i, int a) { return origin[a] + h * x[3 * i + a]; });
+  }
+  all_ = run_.of_scene;
+  const bool finished = !watch_.event() && session.update() == run_.schedule.updates;
+  for (const Warning& w : found(finished)) all_.push_back(w);
+}
+
+std::vector<Warning> Reporter::untold() const {
+  std::vector<Warning> out;
+  for (const Warning& w : all_)
+    if (const auto at = told_.find(w.kind); at == told_.end() || at->second != w.text)
+      out.push_back(w);
+  return out;
+}
+
+void Reporter::follow(const Measures& m) {
+  if (m.update == 0 || m.compression_mean <= kNoLiquid) return;
+  const std::int64_t every = run_.scene.measure_every, rest = m.update % every;
+  compressed_ += rest == 0 ? every : rest;
+}
+
+template <class Coordinate>
+void Reporter::count_outside(std::size_t n, const Coordinate& coordinate) {
+  left_ = 0;
+  farthest_ = 0;
+  std::vector<std::int64_t> through(run_.scene.domain.open.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    bool out = false;
+    for (std::size_t f = 0; f < through.size(); ++f) {
+      const std::string& face = run_.scene.domain.open[f];
+      const int a = face[0] - 'x';
+      const double x = coordinate(i, a);
+      const double beyond =
+          face.ends_with("min") ? run_.scene.domain.min[a] - x : x - run_.scene.domain.max[a];
+      // By more than what a float in m may be off.
+      if (!(beyond > 1e-3 * run_.scene.fluid.spacing)) continue;
+      out = true;
+      ++through[f];
+      farthest_ = std::max(farthest_, beyond);
+    }
+    left_ += out;
+  }
+  faces_.clear();
+  for (std::size_t f = 0; f < through.size(); ++f)
+    if (through[f] > 0) faces_ += (faces_.empty() ? "" : ", ") + run_.scene.domain.open[f];
+}
+
+void Reporter::look_outside(const Snapshot& s) {
+  const FieldArray* x = s.find("position");
+  if (run_.scene.domain.open.empty() || !x) return;
+  const bool wide = x->type == ScalarType::f64;
+  count_outside(s.count, [&](std::size_t i, int a) {
+    return wide ? x->as<double>()[3 * i + a] : double(x->as<float>()[3 * i + a]);
+  });
+}
+
+std::vector<Warning> Reporter::found(bool end) const {
+  const Measures& m = watch_.last();
+  std::vector<Warning> list;
+  const bool long_time = 10 * compressed_ >= run_.schedule.updates;
+  const bool at_end = end && m.compression_mean > kNoLiquid;
+  if ((long_time && compressed_ > 0) || at_end)
+    list.push_back(
+        {"compressed",
+         format("the fluid is no liquid: mean compression above %g %% through %.3g %% of the "
+                "updates, %.3g %% at %s; give a shorter time.step or more solver.iterations",
+                100 * kNoLiquid, percent(double(compressed_), double(run_.schedule.updates)),
+                100 * m.compression_mean, end ? "the end" : "present")});
+  const double share =
+      double(m.unresolved) /
+      (double(run_.plan.particles) * double(run_.schedule.updates) * run_.scene.solver.substeps);
+  if (m.unresolved > 0 && (share >= kMuch || m.relative_way_max >= 1))
+    list.push_back({"passed_through", passed_through_text(run_.scene, m, share)});
+  if (left_ > 0)
+    list.push_back(
+        {"left",
+         format("%lld of %lld particles (%.2g %%) have left the domain through "
+                "an open face (%s), the farthest %.3g m beyond it; they are "
+                "simulated on",
+                static_cast<long long>(left_), static_cast<long long>(run_.plan.particles),
+                percent(double(left_), double(run_.plan.particles)), faces_.c_str(), farthest_)});
+  return list;
+}
+
+}  // namespace pbf::inline run_module

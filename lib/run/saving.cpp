@@ -1,0 +1,64 @@
+#include "lib/run/run.h"
+#include "lib/run/signals.h"
+
+namespace pbf::inline run_module {
+
+Now Saving::at(Session& session) {
+  if (session.update() >= run_.schedule.updates) return Now::go_on;
+  const auto& checkpoint = run_.scene.checkpoint;
+  const bool due = checkpoint && since_save_.seconds() >= checkpoint->every;
+  if ((save_asked() || due) && !save()) return Now::stop;
+  // A run that alarms take back goes on to its first measure or frame, so that it gains something.
+  const bool goes_back = watch_.goes_back();
+  if (goes_back && watch_.guard()->last_good().update <= run_.from.update()) return Now::go_on;
+  run_.stop_reason = why_stop();
+  if (run_.stop_reason.empty()) return Now::go_on;
+  if (goes_back) watch_.go_back();  // nothing beyond the last good state is in the files
+  save();
+  return Now::stop;
+}
+
+std::string Saving::why_stop() const {
+  if (std::string signal = signal_seen(); !signal.empty()) return signal;
+  if (run_.max_walltime > 0 && run_.wall.seconds() >= run_.max_walltime) return "--max-walltime";
+  return run_.strict && reporter_.has_told() ? "--strict" : "";
+}
+
+/// All that comes before the state is on the disk before the checkpoint is. A state that the guard
+/// objects to is not saved: no run could go on from it; false.
+bool Saving::save() {
+  frames_.hand_over();
+  if (!watch_.state_is_good()) return false;
+  run_.clock.begin();
+#ifdef PBF_HAS_RENDER
+  if (run_.pictures) run_.pictures->wait();
+#endif
+  if (run_.writer) run_.writer->sync();
+  SavedRun saved = rows_.due();
+  saved.first = watch_.first();
+  saved.state = watch_.goes_back() ? run_.solver.state(Which::kept) : run_.solver.state();
+  if (watch_.guard()) saved.released = watch_.guard()->released();
+  saved.steps = watch_.steps();
+  write_checkpoint(run_.folder.path(), saved);
+  run_.clock.mark("write");
+  since_save_.reset();
+  return true;
+}
+
+void Saving::end(Session& session) {
+  const std::int64_t u = session.update();
+  run_.status = watch_.event() ? "diverged" : u < run_.schedule.updates ? "stopped" : "finished";
+  if (run_.writer) {
+    run_.clock.begin();
+    RunEnding ending{run_.status, run_.stop_reason, u, {}};
+    for (const Warning& w : reporter_.warnings()) ending.warnings.push_back(w.text);
+    run_.writer->finish(ending);
+    run_.frames_written = run_.writer->frames_written();
+    run_.bytes = run_.writer->bytes_written();
+    run_.writer.reset();
+    run_.clock.mark("write");
+  }
+  if (run_.status == "finished" && run_.scene.checkpoint) save();
+}
+
+}  // namespace pbf::inline run_module
