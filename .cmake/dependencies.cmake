@@ -5,6 +5,7 @@ find_package(HDF5 REQUIRED COMPONENTS C)
 find_package(yaml-cpp REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(nlohmann_json REQUIRED)
 
 add_library(pbf_dependencies INTERFACE)
 if(TARGET yaml-cpp::yaml-cpp)  # 0.8 and later
@@ -13,7 +14,7 @@ else()
   set(PBF_YAML yaml-cpp)
 endif()
 target_link_libraries(pbf_dependencies INTERFACE
-  Threads::Threads CLI11::CLI11 Eigen3::Eigen ${CMAKE_DL_LIBS})
+  Threads::Threads CLI11::CLI11 Eigen3::Eigen nlohmann_json::nlohmann_json ${CMAKE_DL_LIBS})
 
 include(${CMAKE_CURRENT_LIST_DIR}/archives.cmake)
 if(PBF_STATIC)

@@ -9,13 +9,13 @@
 #include "lib/base/error.h"
 #include "lib/base/log.h"
 #include "lib/base/machine.h"
+#include "lib/base/output_file.h"
 #include "lib/base/own_file.h"
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
 #include "lib/campaign/batch_jobs.h"
 #include "lib/campaign/batch_list.h"
 #include "lib/campaign/batch_summary.h"
-#include "lib/io/report.h"
 #include "lib/run/emit.h"
 #include "lib/run/load_run.h"
 #include "lib/run/resume.h"
@@ -184,7 +184,7 @@ class Batch {
 }  // namespace
 
 int command_batch(const BatchOptions& o) {
-  std::vector<BatchAxis> axes;
+  std::vector<GridAxis> axes;
   for (const std::string& g : o.grid) axes.push_back(parse_axis(g));
   std::vector<BatchMember> members = batch_members(o.input, axes);
   const fs::path input(o.input);

@@ -5,7 +5,7 @@
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
 #include "lib/base/log.h"
-#include "lib/io/report.h"
+#include "lib/base/output_file.h"
 #include "lib/scene/load.h"
 #include "lib/verify/compare.h"
 

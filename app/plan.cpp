@@ -2,9 +2,11 @@
 #include "lib/program/plan.h"
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "app/commands.h"
+#include "lib/base/json.h"
 #include "lib/base/log.h"
 #include "lib/base/machine.h"
 #include "lib/base/text.h"
@@ -26,26 +28,23 @@ std::string time_text(const std::optional<TimeEstimate>& time) {
                 time->basis.c_str());
 }
 
-std::string time_json(const std::optional<TimeEstimate>& time) {
-  if (!time) return ",\"time_per_update_ms\":null";
-  return format(",\"time_per_update_ms\":%.6g,\"time_measured_on\":", time->ms) +
-         json_string(time->basis);
-}
-
 std::string warnings_text(const std::vector<Warning>& warnings) {
   std::string text = "\nwarnings\n";
   for (const Warning& w : warnings) text += "  " + w.text + "\n";
   return warnings.empty() ? std::string() : text;
 }
 
-std::string warnings_json(const std::vector<Warning>& warnings) {
-  std::string text = ",\"warnings\":[";
-  for (const Warning& w : warnings) {
-    if (text.back() != '[') text += ',';
-    text += "{\"kind\":" + json_string(w.kind);
-    text += ",\"text\":" + json_string(w.text) + "}";
+std::string json(const Plan& plan, const Scene& scene, const std::optional<TimeEstimate>& time,
+                 const std::vector<Warning>& warnings) {
+  Json out = plan_json(plan, scene);
+  out["time_per_update_ms"] = nullptr;
+  if (time) {
+    out["time_per_update_ms"] = time->ms;
+    out["time_measured_on"] = time->basis;
   }
-  return text + "]";
+  Json& list = out["warnings"] = Json::array();
+  for (const Warning& w : warnings) list.push_back({{"kind", w.kind}, {"text", w.text}});
+  return json_text(out);
 }
 
 }  // namespace
@@ -63,7 +62,7 @@ int command_plan(const PlanOptions& options) {
   const std::vector<Warning> warnings = scene_warnings(loaded.scene, dir, n);
   std::string text =
       options.resolved ? resolved_yaml(loaded.scene)
-      : options.json   ? plan_json(plan, loaded.scene, time_json(time) + warnings_json(warnings))
+      : options.json   ? json(plan, loaded.scene, time, warnings)
                        : plan_text(plan, loaded.scene) + time_text(time) + warnings_text(warnings);
   while (!text.empty() && text.back() == '\n') text.pop_back();
   log.result(text);

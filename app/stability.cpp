@@ -13,21 +13,30 @@
 #include "lib/base/text.h"
 #include "lib/campaign/stability.h"
 #include "lib/campaign/stability_map.h"
-#include "lib/io/report.h"
+#include "lib/io/table.h"
 
 namespace pbf::inline app_module {
 namespace {
 
-/// Calls work(k) for k below n on `jobs` threads; the first exception is thrown at the end.
-template <class Work>
-void in_parallel(std::size_t n, int jobs, const Work& work) {
+/// work(k) for k below n on `jobs` threads, with a line of progress after each: "k of n WHAT, time"
+/// and name(row). The first exception is thrown at the end.
+template <class Row, class Work, class Name>
+std::vector<Row> in_parallel(std::size_t n, int jobs, Log& log, const char* what, const Work& work,
+                             const Name& name) {
+  const Stopwatch watch;
+  std::vector<Row> rows(n);
+  std::size_t done = 0;
   std::atomic<std::size_t> next{0};
   std::exception_ptr failed;
   std::mutex mutex;
   const auto loop = [&] {
     for (std::size_t k = next++; k < n; k = next++) {
       try {
-        work(k);
+        Row row = work(k);
+        const std::lock_guard lock(mutex);
+        log.transient(format("%zu of %zu %s, %.0f s", ++done, n, what, watch.seconds()) +
+                      name(row));
+        rows[k] = std::move(row);
       } catch (...) {
         const std::lock_guard lock(mutex);
         if (!failed) failed = std::current_exception();
@@ -43,6 +52,7 @@ void in_parallel(std::size_t n, int jobs, const Work& work) {
   loop();
   for (std::thread& t : threads) t.join();
   if (failed) std::rethrow_exception(failed);
+  return rows;
 }
 
 std::vector<StabilityCase> chosen(const StabilityCommandOptions& o) {
@@ -86,67 +96,60 @@ std::string row_text(const StabilityRow& r) {
                 margin.c_str(), r.must.c_str(), "did ", cut(r.happened, 150).c_str());
 }
 
-void write_csv(const std::string& path, const std::vector<StabilityRow>& rows,
+Table table_of(const std::vector<StabilityRow>& rows, const StabilityCommandOptions& o) {
+  using R = const StabilityRow&;
+  return TableOf<StabilityRow>({{"case", [](R r) { return r.name; }},
+                                {"group", [](R r) { return r.group; }},
+                                {"backend", [&](R) { return o.backend; }},
+                                {"precision", [&](R) { return o.precision; }},
+                                {"size", [&](R) { return o.reduced ? "reduced" : "full"; }},
+                                {"particles", [](R r) { return r.particles; }},
+                                {"updates", [](R r) { return r.updates; }},
+                                {"dt_hat", [](R r) { return r.dt_hat; }},
+                                {"verdict", [](R r) { return r.good ? "ok" : "fail"; }},
+                                {"used", [](R r) { return r.used; }},
+                                {"tightest", [](R r) { return r.tightest; }},
+                                {"must", [](R r) { return r.must; }},
+                                {"happened", [](R r) { return r.happened; }},
+                                {"speed_max", [](R r) { return r.speed_max; }},
+                                {"energy_rise", [](R r) { return r.energy_rise; }},
+                                {"compression_mean", [](R r) { return r.compression_mean; }},
+                                {"compression_max", [](R r) { return r.compression_max; }},
+                                {"nearest", [](R r) { return r.nearest; }},
+                                {"slowed_down", [](R r) { return r.fast; }},
+                                {"seconds", [](R r) { return r.seconds; }}},
+                               rows);
+}
+
+Table table_of(const std::vector<MapCell>& cells, const StabilityMap& map,
                const StabilityCommandOptions& o) {
-  CsvTable table({"case",
-                  "group",
-                  "backend",
-                  "precision",
-                  "size",
-                  "particles",
-                  "updates",
-                  "dt_hat",
-                  "verdict",
-                  "used",
-                  "tightest",
-                  "must",
-                  "happened",
-                  "speed_max",
-                  "energy_rise",
-                  "compression_mean",
-                  "compression_max",
-                  "nearest",
-                  "slowed_down",
-                  "seconds"});
-  for (const StabilityRow& r : rows)
-    table.add({r.name,
-               r.group,
-               o.backend,
-               o.precision,
-               std::string(o.reduced ? "reduced" : "full"),
-               r.particles,
-               r.updates,
-               r.dt_hat,
-               std::string(r.good ? "ok" : "fail"),
-               r.used,
-               r.tightest,
-               r.must,
-               r.happened,
-               r.speed_max,
-               r.energy_rise,
-               r.compression_mean,
-               r.compression_max,
-               r.nearest,
-               r.fast,
-               r.seconds});
-  write_text_file(path, table.text());
+  using C = const MapCell&;
+  return TableOf<MapCell>({{"scene", [](C c) { return c.scene; }},
+                           {"backend", [&](C) { return o.backend; }},
+                           {"precision", [&](C) { return o.precision; }},
+                           {"x_key", [&](C) { return map.x_key; }},
+                           {"y_key", [&](C) { return map.y_key; }},
+                           {"x", [](C c) { return c.x; }},
+                           {"y", [](C c) { return c.y; }},
+                           {"iterations", [](C c) { return c.iterations; }},
+                           {"class", [](C c) { return kMapClassNames[int(c.verdict)]; }},
+                           {"dt_hat", [](C c) { return c.dt_hat; }},
+                           {"compression_mean", [](C c) { return c.compression_mean; }},
+                           {"compression_max", [](C c) { return c.compression_max; }},
+                           {"energy_rise", [](C c) { return c.energy_rise; }},
+                           {"stopped_for", [](C c) { return c.stopped_for; }}},
+                          cells);
 }
 
 int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int jobs) {
   Log log(o.quiet);
   const std::vector<StabilityCase> cases = chosen(o);
   check_output("--csv", o.csv);
-  std::vector<StabilityRow> rows(cases.size());
-  std::mutex mutex;
-  std::size_t done = 0;
   const Stopwatch watch;
-  in_parallel(cases.size(), jobs, [&](std::size_t k) {
-    StabilityRow row = run_stability_case(cases[k], run);
-    const std::lock_guard lock(mutex);
-    rows[k] = std::move(row);
-    log.transient(format("%zu of %zu cases, %.0f s: %s", ++done, cases.size(), watch.seconds(),
-                         cases[k].name.c_str()));
-  });
+  auto rows = in_parallel<StabilityRow>(
+      cases.size(), jobs, log, "cases",
+      [&](std::size_t k) { return run_stability_case(cases[k], run); },
+      [](const StabilityRow& r) { return ": " + r.name; });
   judge_likeness(cases, rows);
   std::int64_t failed = 0;
   std::string group;
@@ -159,7 +162,7 @@ int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int
   log.result(format("%zu cases on %s %s%s: %lld failed, %.1f s", rows.size(), o.backend.c_str(),
                     o.precision.c_str(), o.reduced ? ", reduced" : "",
                     static_cast<long long>(failed), watch.seconds()));
-  if (!o.csv.empty()) write_csv(o.csv, rows, o);
+  if (!o.csv.empty()) write_text_file(o.csv, table_of(rows, o).csv());
   return static_cast<int>(failed == 0 ? ExitCode::done : ExitCode::difference);
 }
 
@@ -182,30 +185,14 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
   check_output("--csv", o.csv);
   Log log(o.quiet);
   const std::vector<MapCell> grid = map_cells(map);
-  std::vector<MapCell> cells(grid.size());
-  std::mutex mutex;
-  std::size_t done = 0;
   const Stopwatch watch;
-  in_parallel(grid.size(), jobs, [&](std::size_t k) {
-    MapCell cell = run_map_cell(map, grid[k]);
-    const std::lock_guard lock(mutex);
-    cells[k] = std::move(cell);
-    log.transient(format("%zu of %zu runs, %.0f s", ++done, grid.size(), watch.seconds()));
-  });
-  CsvTable table({"scene", "backend", "precision", "x_key", "y_key", "x", "y", "iterations",
-                  "class", "dt_hat", "compression_mean", "compression_max", "energy_rise",
-                  "stopped_for"});
+  const auto cells = in_parallel<MapCell>(
+      grid.size(), jobs, log, "runs", [&](std::size_t k) { return run_map_cell(map, grid[k]); },
+      [](const MapCell&) { return std::string(); });
   std::int64_t count[3] = {0, 0, 0};
-  for (const MapCell& c : cells) {
-    ++count[static_cast<int>(c.verdict)];
-    table.add({c.scene, o.backend, o.precision, map.x_key, map.y_key, c.x, c.y,
-               std::int64_t(c.iterations), std::string(kMapClassNames[static_cast<int>(c.verdict)]),
-               c.dt_hat, c.compression_mean, c.compression_max, c.energy_rise, c.stopped_for});
-  }
-  if (o.csv.empty())
-    log.result(table.text());
-  else
-    write_text_file(o.csv, table.text());
+  for (const MapCell& c : cells) ++count[static_cast<int>(c.verdict)];
+  const std::string csv = table_of(cells, map, o).csv();
+  o.csv.empty() ? log.result(csv) : write_text_file(o.csv, csv);
   log.result(format("%zu runs: %lld stable, %lld degraded, %lld stopped, %.0f s", cells.size(),
                     static_cast<long long>(count[0]), static_cast<long long>(count[1]),
                     static_cast<long long>(count[2]), watch.seconds()));

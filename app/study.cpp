@@ -77,9 +77,9 @@ void write_tables(const Study& study, const std::vector<StudyRow>& rows, const s
   const auto write = [&](const char* name, const std::string& text) {
     write_text_file(out + "/" + name, text, Naming::own);
   };
-  write("study.csv", study_table(study, rows).text());
+  write("study.csv", study_table(study, rows).csv());
   write("study.json", study_json(study, rows));
-  if (study.front) write("front.csv", front_table(study, rows).text());
+  if (study.front) write("front.csv", front_table(study, rows).csv());
 }
 
 std::string list_text(const Study& study) {

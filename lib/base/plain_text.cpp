@@ -93,14 +93,13 @@ std::string one_line(std::string_view text, std::size_t most) {
   return out;
 }
 
-std::string json_string(std::string_view text) {
-  std::string out = "\"";
+std::string utf8(std::string_view text) {
+  std::string out;
   for (Character c; !text.empty(); text.remove_prefix(c.bytes)) {
     c = first_character(text);
-    if (c.code == '"' || c.code == '\\' || c.code < 0) out += '\\';
-    out += shown(text, c, true);
+    out += c.code < 0 ? shown(text, c, true) : std::string(text.substr(0, c.bytes));
   }
-  return out + '"';
+  return out;
 }
 
 }  // namespace pbf::inline base_module

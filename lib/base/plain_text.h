@@ -27,4 +27,7 @@ std::string escaped(std::string_view text);
 /// "..." where something is missing. Pure.
 std::string one_line(std::string_view text, std::size_t most = 200);
 
+/// The text with only the bytes that are not UTF-8 written out, \x9b. Pure.
+std::string utf8(std::string_view text);
+
 }  // namespace pbf::inline base_module

@@ -50,10 +50,6 @@ std::string duration_text(double s) {
   return format("%lld h %02lld min", whole / 3600, whole % 3600 / 60);
 }
 
-std::string json_number(double value) {
-  return std::isfinite(value) ? format("%.17g", value) : "null";
-}
-
 bool is_file_name(std::string_view text) {
   if (text.empty() || text == "." || text == ".." || text.size() > 200) return false;
   return text.find_first_of("/\t\n\r") == text.npos && !find_bad_text(text);

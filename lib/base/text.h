@@ -1,4 +1,4 @@
-// Small helpers for text: formatting, numbers and durations for people, JSON pieces.
+// Small helpers for text: formatting, numbers and durations for people.
 #pragma once
 
 #include <string>
@@ -21,13 +21,6 @@ std::string bytes_text(double bytes);
 
 /// Seconds for people: "0.4 s", "12 s", "3 min 20 s", "2 h 05 min".
 std::string duration_text(double seconds);
-
-/// "text" as JSON, in UTF-8 without control characters whatever it is: a byte that is not UTF-8
-/// becomes the characters \x9b (plain_text.cpp).
-std::string json_string(std::string_view text);
-
-/// All 17 digits; null for what JSON cannot hold (nan, inf).
-std::string json_number(double value);
 
 /// Whether it can name a file or folder in another one: not empty, no "." or "..", no slash, no
 /// line break, nothing that is no text (plain_text.h), at most 200 bytes.

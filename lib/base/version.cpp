@@ -10,7 +10,8 @@ BuildInfo build_info() {
   info.libraries = {{"HDF5", PBF_VERSION_HDF5},
                     {"yaml-cpp", PBF_VERSION_YAML_CPP},
                     {"CLI11", PBF_VERSION_CLI11},
-                    {"Eigen", PBF_VERSION_EIGEN}};
+                    {"Eigen", PBF_VERSION_EIGEN},
+                    {"nlohmann", PBF_VERSION_JSON}};
   if (*PBF_VERSION_PNG) info.libraries.emplace_back("libpng", PBF_VERSION_PNG);
   return info;
 }

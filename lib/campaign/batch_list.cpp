@@ -105,52 +105,29 @@ void name_all(std::vector<BatchMember>& all) {
 
 }  // namespace
 
-BatchAxis parse_axis(const std::string& text) {
+GridAxis parse_axis(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     bad("--grid " + text, "expected KEY=V1,V2,..., e.g. --grid solver.iterations=2,4,8");
-  BatchAxis axis{text.substr(0, equals), {""}};
-  int depth = 0;
-  char quote = 0;
-  for (const char c : text.substr(equals + 1)) {
-    if (quote) {
-      if (c == quote) quote = 0;
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-    } else if (c == '[' || c == '{') {
-      ++depth;
-    } else if (c == ']' || c == '}') {
-      --depth;
-    } else if (c == ',' && depth == 0) {
-      axis.values.emplace_back();
-      continue;
-    }
-    axis.values.back() += c;
-  }
-  for (const std::string& v : axis.values)
+  const std::vector<std::string> values = listed_values(text.substr(equals + 1));
+  for (const std::string& v : values)
     if (v.empty()) bad("--grid " + text, "has an empty value");
-  return axis;
+  return grid_axis(text.substr(0, equals), values);
 }
 
-std::vector<BatchMember> batch_members(const std::string& input,
-                                       const std::vector<BatchAxis>& axes) {
+std::vector<BatchMember> batch_members(const std::string& input, std::vector<GridAxis> axes) {
   std::error_code error;
-  std::vector<BatchMember> all;
+  std::vector<BatchMember> scenes, all;
   if (fs::is_directory(input, error))
-    all = of_folder(input);
+    scenes = of_folder(input);
   else if (is_scene(input))
-    all = {{"", input, {}}};
+    scenes = {{"", input, {}}};
   else
-    all = of_list(input);
-  for (const BatchAxis& axis : axes) {
-    std::vector<BatchMember> more;
-    for (const BatchMember& m : all)
-      for (const std::string& value : axis.values) {
-        if (more.size() >= kMostMembers) bad("--grid", "makes more than 100000 runs");
-        more.push_back(m);
-        more.back().overrides.push_back(axis.key + "=" + value);
-      }
-    all = std::move(more);
+    scenes = of_list(input);
+  axes.insert(axes.begin(), GridAxis(scenes.size()));
+  for (const GridMember& m : grid_members(axes, kMostMembers, "--grid")) {
+    std::vector<std::string>& overrides = all.emplace_back(scenes[m.at[0]]).overrides;
+    for (const std::string& text : override_texts(m.settings)) overrides.push_back(text);
   }
   name_all(all);
   return all;

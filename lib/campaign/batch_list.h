@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "lib/campaign/grid.h"
+
 namespace pbf::inline campaign_module {
 
 struct BatchMember {
@@ -12,20 +14,13 @@ struct BatchMember {
   std::vector<std::string> overrides;  ///< key.path=value: of the list, then of the grid
 };
 
-/// A `--grid key=v1,v2`: commas inside [], {} and quotes do not separate.
-struct BatchAxis {
-  std::string key;
-  std::vector<std::string> values;
-};
-
-/// Throws Error(bad_input) for what is no KEY=V1,V2,...
-BatchAxis parse_axis(const std::string& text);
+/// Of `--grid key=v1,v2`. Throws Error(bad_input) for what is no KEY=V1,V2,...
+GridAxis parse_axis(const std::string& text);
 
 /// `input`: a folder (its *.yaml and *.yml, in order of names), a scene (*.yaml, *.yml, or a run
 /// file *.h5), or a list: a text file with a scene on each line, relative to the list, followed by
 /// key.path=value where wanted; # begins a comment. The last axis runs fastest. Throws
 /// Error(bad_input) naming file and line.
-std::vector<BatchMember> batch_members(const std::string& input,
-                                       const std::vector<BatchAxis>& axes);
+std::vector<BatchMember> batch_members(const std::string& input, std::vector<GridAxis> axes);
 
 }  // namespace pbf::inline campaign_module

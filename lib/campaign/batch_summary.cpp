@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "lib/base/error.h"
-#include "lib/io/report.h"
 #include "lib/io/run_file.h"
+#include "lib/io/table.h"
 #include "lib/solver/diagnostics.h"
 
 namespace pbf::inline campaign_module {
@@ -73,7 +73,7 @@ std::string batch_summary(const std::vector<BatchMember>& members,
   const std::vector<std::string> names = last_values();
   columns.insert(columns.end(), names.begin(), names.end());
   columns.insert(columns.end(), {"frames", "warnings", "seconds"});
-  CsvTable table(columns);
+  Table table(columns);
   for (const BatchMember& m : members) {
     const auto at = ends.find(m.name);
     const JobEnd end = at == ends.end() ? JobEnd{-1, ""} : at->second;
@@ -88,7 +88,7 @@ std::string batch_summary(const std::vector<BatchMember>& members,
     add_results(out + "/" + m.name + "/" + kRunFile, row);
     table.add(row);
   }
-  return table.text();
+  return table.csv();
 }
 
 }  // namespace pbf::inline campaign_module

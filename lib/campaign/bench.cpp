@@ -97,6 +97,7 @@ std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const Be
   refuse_if_too_large(scene, plan);
   const std::unique_ptr<Solver> solver = start_solver(scene, plan, emit_particles(scene, dir));
   BenchRow row;
+  row.scene = scene.name;
   row.particles = n;
   row.settings = s;
   row.iterations = scene.solver.iterations;

@@ -18,6 +18,7 @@ struct BenchSettings {
 
 /// One line of the benchmark. Times in ms per update; a repeat is `updates` updates timed as one.
 struct BenchRow {
+  std::string scene;  ///< its name
   SolverInfo solver;
   std::int64_t particles = 0;
   std::string state;  ///< "start" (from the initial lattice on) or "late" (after the warm-up)

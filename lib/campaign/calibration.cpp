@@ -15,7 +15,7 @@
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 #include "lib/io/csv.h"
-#include "lib/io/report.h"
+#include "lib/io/table.h"
 
 namespace pbf::inline campaign_module {
 namespace {
@@ -147,12 +147,12 @@ void store_calibration(const std::string& path, const std::vector<StageCosts>& r
   for (const StageCosts& row : rows)
     std::erase_if(all, [&](const StageCosts& old) { return same_case(old, row); });
   all.insert(all.end(), rows.begin(), rows.end());
-  CsvTable table(kColumns);
+  Table table(kColumns);
   for (const StageCosts& row : all)
     for (const auto& [stage, ms] : row.ms)
       table.add({row.backend, row.precision, std::int64_t(row.threads), row.device, row.particles,
                  stage, ms});
-  write_text_file(path, table.text());
+  write_text_file(path, table.csv());
 }
 
 std::optional<TimeEstimate> estimate_time(const Plan& plan, const Scene& s,

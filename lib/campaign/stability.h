@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "lib/campaign/grid.h"
 #include "lib/run/watch.h"
-#include "lib/scene/yaml_tree.h"
 
 namespace pbf::inline campaign_module {
 
@@ -33,9 +33,9 @@ struct Criteria {
 /// One case of a suite file.
 struct StabilityCase {
   std::string name, group, about;
-  std::string scene;                                ///< path
-  std::vector<std::pair<std::string, Node>> set;    ///< keys replaced
-  std::vector<std::pair<std::string, Node>> small;  ///< and these as well in the reduced size
+  std::string scene;  ///< path
+  Settings set;       ///< keys replaced
+  Settings small;     ///< and these as well in the reduced size
   Criteria must;
 };
 

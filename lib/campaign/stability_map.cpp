@@ -13,6 +13,8 @@
 namespace pbf::inline campaign_module {
 namespace {
 
+constexpr std::size_t kMostCells = 10000000;
+
 [[noreturn]] void bad(const std::string& what) { throw Error(ExitCode::bad_input, what); }
 
 double length(const Double3& v) { return std::hypot(v[0], v[1], v[2]); }
@@ -43,98 +45,59 @@ double value_of(Scene& s, const std::string& key) {
   bad("--map: " + key + " is not a number");
 }
 
-/// KEY=VALUE for the scene reader; of a vector, its length in its own direction, else downwards.
-std::string setting(Scene& s, const std::string& key, double value) {
+/// The key's values for the scene reader; of a vector, its length in its own direction, else
+/// downwards.
+GridAxis axis_of(Scene& s, const std::string& key, const std::vector<double>& values) {
   const Field f = field_of(s, key);
-  if (const auto* v = std::get_if<Double3*>(&f)) {
-    Double3 direction = **v;
-    const double l = length(direction);
-    if (l == 0) direction = {0, 0, -1};
-    for (double& x : direction) x *= value / (l > 0 ? l : 1);
-    return key + "=" + to_text(direction);
+  std::vector<std::string> texts;
+  for (const double value : values) {
+    texts.push_back(to_text(value));
+    if (std::holds_alternative<int*>(f)) texts.back() = std::to_string(std::llround(value));
+    if (const auto* v = std::get_if<Double3*>(&f)) {
+      const double l = length(**v);
+      Double3 direction = l > 0 ? **v : Double3{0, 0, -1};
+      for (double& x : direction) x *= value / (l > 0 ? l : 1);
+      texts.back() = to_text(direction);
+    }
   }
-  if (std::holds_alternative<int*>(f)) return key + "=" + std::to_string(std::llround(value));
-  return key + "=" + to_text(value);
-}
-
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> parts(1);
-  for (char c : text)
-    if (c == at)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  return parts;
-}
-
-double number(const std::string& text, const std::string& key) {
-  double v = 0;
-  if (const NumberError e = read_double(text, v); e != NumberError::none)
-    bad("values of " + key + ": \"" + text + "\" " + describe(e));
-  return v;
+  return grid_axis(key, texts);
 }
 
 }  // namespace
 
 std::vector<double> map_values(const std::string& path, const std::vector<std::string>& overrides,
                                const std::string& key, const std::string& text) {
-  std::vector<double> values;
-  if (text.empty()) {
-    Scene s = scene_with(path, overrides, {});
-    const double own = value_of(s, key);
-    if (own == 0) bad("--map: " + key + " is 0 in " + path + "; give its values with --x or --y");
-    for (const double factor : {0.25, 0.5, 1.0, 2.0, 4.0, 8.0}) values.push_back(own * factor);
-    if (std::holds_alternative<int*>(field_of(s, key))) {
-      for (double& v : values) v = std::max(1.0, std::round(v));
-      values.erase(std::unique(values.begin(), values.end()), values.end());
-    }
-    return values;
-  }
-  const auto range = split(text, ':');
   Scene s = scene_with(path, overrides, {});
   const bool whole = std::holds_alternative<int*>(field_of(s, key));
-  if (range.size() == 1) {
-    for (const std::string& v : split(text, ',')) {
-      values.push_back(number(v, key));
-      if (whole && values.back() != std::floor(values.back()))
-        bad("values of " + key + ": " + v + " " + describe(NumberError::not_whole));
-    }
-    return values;
-  }
-  if (range.size() != 3) bad("values of " + key + ": expected a,b,c or LOW:HIGH:COUNT");
-  const double low = number(range[0], key), high = number(range[1], key),
-               count = number(range[2], key);
-  if (!(low > 0 && high > low && count >= 2 && count <= 1000 && count == std::floor(count)))
-    bad("values of " + key + ": " + text + " is no range with 0 < LOW < HIGH and 2 to 1000 values");
-  for (int k = 0; k < int(count); ++k) {
-    const double v = low * std::pow(high / low, k / (count - 1));
-    if (!whole)
-      values.push_back(v);
-    else if (values.empty() || values.back() != std::round(v))
-      values.push_back(std::round(v));
-  }
+  if (!text.empty()) return numbers_listed(key, text, whole);
+  const double own = value_of(s, key);
+  if (own == 0) bad("--map: " + key + " is 0 in " + path + "; give its values with --x or --y");
+  std::vector<double> values;
+  for (const double factor : {0.25, 0.5, 1.0, 2.0, 4.0, 8.0})
+    values.push_back(whole ? std::max(1.0, std::round(own * factor)) : own * factor);
+  values.erase(std::unique(values.begin(), values.end()), values.end());
   return values;
 }
 
 std::vector<MapCell> map_cells(const StabilityMap& m) {
+  Scene base = scene_with(m.scene, m.run.overrides, {});
   std::vector<MapCell> cells;
-  for (const int iterations : m.iterations)
-    for (const double y : m.y)
-      for (const double x : m.x) {
-        MapCell c;
-        c.x = x;
-        c.y = y;
-        c.iterations = iterations;
-        cells.push_back(c);
-      }
+  for (const GridMember& member :
+       grid_members({grid_axis("solver.iterations", m.iterations), axis_of(base, m.y_key, m.y),
+                     axis_of(base, m.x_key, m.x)},
+                    kMostCells, "--map")) {
+    MapCell& c = cells.emplace_back();
+    c.settings = override_texts(member.settings);
+    c.iterations = m.iterations[member.at[0]];
+    c.y = m.y[member.at[1]];
+    c.x = m.x[member.at[2]];
+  }
   return cells;
 }
 
 MapCell run_map_cell(const StabilityMap& m, MapCell c) {
-  Scene base = scene_with(m.scene, m.run.overrides, {});
-  const std::vector<std::string> settings{"solver.iterations=" + std::to_string(c.iterations),
-                                          setting(base, m.x_key, c.x), setting(base, m.y_key, c.y)};
-  Scene s = scene_with(m.scene, m.run.overrides, settings);
+  const Scene base = scene_with(m.scene, m.run.overrides, {});
+  Scene s = scene_with(m.scene, m.run.overrides, c.settings);
   const double g0 = length(base.gravity), g = length(s.gravity);
   if (g0 > 0 && g > 0) s.time.end *= std::sqrt(g0 / base.h() / (g / s.h()));
   s.time.end = std::max(s.time.end, s.time.step);

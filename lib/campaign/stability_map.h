@@ -25,7 +25,8 @@ struct StabilityMap {
 struct MapCell {
   double x = 0, y = 0;
   int iterations = 0;
-  std::string scene;  ///< its name
+  std::vector<std::string> settings;  ///< that make the cell, KEY=VALUE
+  std::string scene;                  ///< its name
   MapClass verdict = MapClass::stable;
   double dt_hat = 0;  ///< dt sqrt(|g|/h)
   double compression_mean = 0, compression_max = 0, energy_rise = 0;

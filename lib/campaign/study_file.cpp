@@ -1,7 +1,6 @@
 // Study files: YAML in, members out.
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 #include "lib/base/error.h"
 #include "lib/base/text.h"
@@ -13,32 +12,6 @@
 namespace pbf::inline campaign_module {
 namespace fs = std::filesystem;
 using Kind = Node::Kind;
-
-void StudyReader::read_map(const Node& map, const std::string& block, const Entries& entries) {
-  if (map.kind != Kind::map)
-    return bad(map, block, "is " + map.shown() + ", expected a block of keys");
-  std::set<std::string> seen;
-  for (std::size_t i = 0; i < map.items.size(); ++i) {
-    const std::string key = study_text_of(map.keys[i]);
-    const std::string full = block.empty() ? key : block + "." + key;
-    const auto found =
-        std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return e.first == key; });
-    if (found == entries.end()) {
-      std::vector<std::string> names;
-      for (const auto& e : entries) names.push_back(e.first);
-      const std::string near = nearest_word(key, names);
-      std::string all;
-      for (const auto& name : names) all += (all.empty() ? "" : " ") + name;
-      bad(map.keys[i], full,
-          "unknown key, " +
-              (near.empty() ? "the keys here are " + all : "did you mean " + near + "?"));
-    } else if (!seen.insert(key).second) {
-      bad(map.keys[i], full, "is given twice");
-    } else {
-      found->second(map.items[i]);
-    }
-  }
-}
 
 void StudyReader::number(const Node& n, const std::string& key, double low, double high,
                          double& out) {
@@ -71,31 +44,6 @@ void StudyReader::numbers(const Node& n, const std::string& key, double low,
     return bad(n, key, "is " + n.shown() + ", expected a list of numbers");
   out.assign(n.items.size(), 0);
   for (std::size_t i = 0; i < n.items.size(); ++i) number(n.items[i], key, low, 1e9, out[i]);
-}
-
-void StudyReader::text(const Node& n, const std::string& key, std::string& out) {
-  if (n.kind != Kind::scalar || n.text.empty())
-    return bad(n, key, "is " + n.shown() + ", expected text");
-  out = n.text;
-}
-
-/// A path, taken from the folder of the study file.
-std::string StudyReader::file(const Node& n, const std::string& key) {
-  std::string name;
-  text(n, key, name);
-  return (fs::path(path_).parent_path() / name).string();
-}
-
-StudySettings StudyReader::settings(const Node& n, const std::string& key) {
-  StudySettings out;
-  if (n.kind != Kind::map) {
-    bad(n, key,
-        "is " + n.shown() + ", expected keys of the scene with values, {solver.iterations: 4}");
-    return out;
-  }
-  for (std::size_t i = 0; i < n.items.size(); ++i)
-    out.emplace_back(study_text_of(n.keys[i]), n.items[i]);
-  return out;
 }
 
 void StudyReader::front(const Node& n) {

@@ -22,41 +22,28 @@ std::string too_many_text(const Node& n) {
 
 using Kind = Node::Kind;
 
-/// A value as the study file has it, on one line.
-std::string study_text_of(const Node& node) {
-  if (node.kind == Kind::scalar) return node.text;
-  std::string out;
-  for (std::size_t i = 0; i < node.items.size(); ++i) {
-    if (i > 0) out += ", ";
-    if (node.kind == Kind::map) out += study_text_of(node.keys[i]) + ": ";
-    out += study_text_of(node.items[i]);
-  }
-  if (node.kind == Kind::null) return "off";
-  std::string text = node.kind == Kind::map ? "{" : "[";
-  text += out;
-  return text += node.kind == Kind::map ? "}" : "]";
-}
-
 void StudyReader::axis(const Node& n) {
-  StudyAxis axis;
+  GridAxis axis;
   if (too_many(n)) return bad(n, "grid", too_many_text(n));
   for (const auto& [key, values] : settings(n, "grid")) {
     if (values.kind != Kind::list || values.items.empty())
       return bad(values, "grid." + key,
                  "is " + values.shown() + ", expected the list of its values");
-    if (!axis.values.empty() && values.items.size() != axis.values[0].size())
+    if (!axis.empty() && values.items.size() != axis.size())
       return bad(values, "grid." + key,
-                 "has " + std::to_string(values.items.size()) + " values, " + axis.keys[0] +
-                     " beside it " + std::to_string(axis.values[0].size()) +
+                 "has " + std::to_string(values.items.size()) + " values, " +
+                     axis[0].settings[0].first + " beside it " + std::to_string(axis.size()) +
                      "; keys of one entry vary together");
-    for (const StudyAxis& other : axes_)
-      for (const std::string& taken : other.keys)
-        if (taken == key) return bad(values, "grid." + key, "is given twice");
-    axis.keys.push_back(key);
-    axis.values.push_back(values.items);
+    if (std::find(study_.keys.begin(), study_.keys.end(), key) != study_.keys.end())
+      return bad(values, "grid." + key, "is given twice");
     study_.keys.push_back(key);
+    axis.resize(values.items.size());
+    for (std::size_t k = 0; k < axis.size(); ++k) {
+      if (axis[k].settings.empty()) axis[k].name = key + "=" + setting_text(values.items[k]);
+      axis[k].settings.emplace_back(key, values.items[k]);
+    }
   }
-  if (!axis.keys.empty()) axes_.push_back(axis);
+  if (!axis.empty()) axes_.push_back(axis);
 }
 
 void StudyReader::grid(const Node& n) {
@@ -82,18 +69,18 @@ void StudyReader::variants(const Node& n) {
   if (too_many(n)) return bad(n, "variants", too_many_text(n));
   study_.has_variants = true;
   for (const Node& entry : n.items) {
-    StudyVariant v;
+    GridStep v;
     read_map(entry, "variants",
              {{"name", [&](const Node& at) { text(at, "variants.name", v.name); }},
               {"set", [&](const Node& at) { v.settings = settings(at, "variants.set"); }}});
     if (v.name.empty()) bad(entry, "variants", "has an entry without a name");
-    for (const StudyVariant& other : variants_)
+    for (const GridStep& other : variants_)
       if (other.name == v.name) bad(entry, "variants", "has two entries named " + v.name);
     variants_.push_back(v);
   }
 }
 
-StudyMember StudyReader::member(Node scene, const StudySettings& more) {
+StudyMember StudyReader::member(Node scene, const Settings& more) {
   for (const auto& [key, value] : more) set_value(scene, key, value, problems_);
   StudyMember m;
   m.scene = scene_of_tree(scene, problems_);
@@ -107,35 +94,16 @@ void StudyReader::make_members(const Node& scene, const std::vector<std::string>
   Node base = scene;
   for (const auto& [key, value] : base_) set_value(base, key, value, problems_);
   for (const std::string& o : overrides) apply_override(base, o, problems_);
-  std::size_t count = std::max<std::size_t>(1, variants_.size());
-  for (const StudyAxis& a : axes_) {
-    count *= a.values[0].size();
-    if (count > kMostMembers)
-      return problems_.add(path_, "grid",
-                           "makes more than " + std::to_string(kMostMembers) + " runs");
-  }
   if (variants_.empty()) variants_.emplace_back();
-  for (const StudyVariant& variant : variants_)
-    for (std::size_t k = 0; k < count / variants_.size() && !problems_.full(); ++k) {
-      StudySettings more = variant.settings;
-      std::string label = variant.name;
-      std::vector<std::string> values;
-      std::size_t rest = k, block = count / variants_.size();
-      for (const StudyAxis& a : axes_) {  // the last axis runs fastest
-        block /= a.values[0].size();
-        const std::size_t at = rest / block;
-        rest %= block;
-        for (std::size_t key = 0; key < a.keys.size(); ++key) {
-          more.emplace_back(a.keys[key], a.values[key][at]);
-          values.push_back(study_text_of(a.values[key][at]));
-        }
-        label += (label.empty() ? "" : " ") + a.keys[0] + "=" + study_text_of(a.values[0][at]);
-      }
-      study_.members.push_back(member(base, more));
-      study_.members.back().variant = variant.name;
-      study_.members.back().values = values;
-      study_.members.back().label = label.empty() ? study_.name : label;
-    }
+  axes_.insert(axes_.begin(), variants_);
+  for (const GridMember& m : grid_members(axes_, kMostMembers, path_ + ": grid")) {
+    if (problems_.full()) break;
+    StudyMember& made = study_.members.emplace_back(member(base, m.settings));
+    made.variant = variants_[m.at[0]].name;
+    for (std::size_t k = m.settings.size() - study_.keys.size(); k < m.settings.size(); ++k)
+      made.values.push_back(setting_text(m.settings[k].second));
+    made.label = m.name.empty() ? study_.name : m.name;
+  }
   for (const StudyMember& m : study_.members)
     if (study_.cpu_clock && m.scene.backend == Backend::cuda)
       problems_.add(root_.find("clock")->place(), "clock",

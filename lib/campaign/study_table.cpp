@@ -88,25 +88,18 @@ bool has_own_column(const std::string& key) {
   return key == "backend" || key == "precision" || key == "threads";
 }
 
-void setting_columns(const Study& study, std::vector<std::string>& columns) {
-  if (study.has_variants) columns.push_back("variant");
-  for (const auto& key : study.keys)
-    if (!has_own_column(key)) columns.push_back(key);
-  for (const char* name : {"backend", "precision", "threads", "particles"}) columns.push_back(name);
-}
-
-void setting_cells(const Study& study, const StudyRow& row, std::vector<Cell>& cells) {
-  if (study.has_variants) cells.push_back(row.member->variant);
+std::vector<Column<StudyRow>> setting_columns(const Study& study) {
+  using R = const StudyRow&;
+  std::vector<Column<StudyRow>> columns;
+  if (study.has_variants) columns.push_back({"variant", [](R r) { return r.member->variant; }});
   for (std::size_t k = 0; k < study.keys.size(); ++k)
-    if (!has_own_column(study.keys[k])) cells.push_back(cell_of(row.member->values[k]));
-  const MemberResult& r = row.result;
-  cells.insert(cells.end(), {r.backend, r.precision, r.threads, r.particles});
-}
-
-/// Empty for NaN.
-void add_number(std::vector<Cell>& cells, double v) {
-  cells.emplace_back();
-  if (!std::isnan(v)) cells.back() = v;
+    if (!has_own_column(study.keys[k]))
+      columns.push_back({study.keys[k], [k](R r) { return cell_of(r.member->values[k]); }});
+  columns.push_back({"backend", [](R r) { return r.result.backend; }});
+  columns.push_back({"precision", [](R r) { return r.result.precision; }});
+  columns.push_back({"threads", [](R r) { return r.result.threads; }});
+  columns.push_back({"particles", [](R r) { return r.result.particles; }});
+  return columns;
 }
 
 bool counts(const Study& study, const StudyRow& row) {
@@ -114,6 +107,14 @@ bool counts(const Study& study, const StudyRow& row) {
 }
 
 }  // namespace
+
+double StudyRow::seconds_median() const {
+  return status == "unavailable" ? kNaN : result.seconds_median();
+}
+
+double StudyRow::seconds_spread() const {
+  return status == "unavailable" ? kNaN : result.seconds_spread();
+}
 
 std::vector<std::string> study_error_measures(const Study& study) {
   std::vector<std::string> names;
@@ -186,43 +187,36 @@ void mark_front(const Study& study, std::vector<StudyRow>& rows) {
   }
 }
 
-CsvTable study_table(const Study& study, const std::vector<StudyRow>& rows) {
-  std::vector<std::string> columns;
-  setting_columns(study, columns);
-  columns.insert(columns.end(), {"updates", "seconds_median", "seconds_spread"});
+Table study_table(const Study& study, const std::vector<StudyRow>& rows) {
+  using R = const StudyRow&;
+  auto columns = setting_columns(study);
+  columns.push_back({"updates", [](R r) { return r.result.updates; }});
+  columns.push_back({"seconds_median", [](R r) { return known(r.seconds_median()); }});
+  columns.push_back({"seconds_spread", [](R r) { return known(r.seconds_spread()); }});
   const auto names = study_error_measures(study);
-  columns.insert(columns.end(), names.begin(), names.end());
-  columns.insert(columns.end(), {"device", "status", "message", "pareto"});
-  CsvTable table(columns);
-  for (const StudyRow& row : rows) {
-    std::vector<Cell> cells;
-    setting_cells(study, row, cells);
-    const MemberResult& r = row.result;
-    cells.emplace_back(r.updates);
-    const bool ran = row.status != "unavailable";
-    add_number(cells, ran ? r.seconds_median() : kNaN);
-    add_number(cells, ran ? r.seconds_spread() : kNaN);
-    for (const double m : row.measures) add_number(cells, m);
-    cells.insert(cells.end(), {r.device, row.status, row.message, row.pareto});
-    table.add(cells);
-  }
-  return table;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    columns.push_back({names[k], [k](R r) { return known(r.measures[k]); }});
+  columns.push_back({"device", [](R r) { return r.result.device; }});
+  columns.push_back({"status", [](R r) { return r.status; }});
+  columns.push_back({"message", [](R r) { return r.message; }});
+  columns.push_back({"pareto", [](R r) { return r.pareto; }});
+  return TableOf<StudyRow>(columns, rows);
 }
 
-CsvTable front_table(const Study& study, const std::vector<StudyRow>& rows) {
-  std::vector<std::string> columns;
-  setting_columns(study, columns);
-  columns.insert(columns.end(), {"T", "Z"});
-  CsvTable table(columns);
+Table front_table(const Study& study, const std::vector<StudyRow>& rows) {
+  struct Point {
+    const StudyRow& row;
+    double T, Z;
+  };
+  std::vector<Column<Point>> columns;
+  for (const auto& c : setting_columns(study))
+    columns.push_back({c.name, [value = c.value](const Point& p) { return value(p.row); }});
+  columns.push_back({"T", [](const Point& p) { return p.T; }});
+  columns.push_back({"Z", [](const Point& p) { return p.Z; }});
+  TableOf<Point> table(columns);
   for (const StudyRow& row : rows)
     for (const FrontCurve& curve : row.front)
-      for (std::size_t k = 0; k < curve.T.size(); ++k) {
-        std::vector<Cell> cells;
-        setting_cells(study, row, cells);
-        cells.emplace_back(curve.T[k]);
-        cells.emplace_back(curve.Z[k]);
-        table.add(cells);
-      }
+      for (std::size_t k = 0; k < curve.T.size(); ++k) table.add({row, curve.T[k], curve.Z[k]});
   return table;
 }
 

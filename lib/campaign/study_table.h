@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lib/campaign/study_member.h"
-#include "lib/io/report.h"
+#include "lib/io/table.h"
 
 namespace pbf::inline campaign_module {
 
@@ -22,6 +22,9 @@ struct StudyRow {
   std::vector<double> measures;   ///< by study_error_measures(); NaN: not defined
   std::vector<FrontCurve> front;  ///< one, or none
   bool pareto = false;
+
+  double seconds_median() const;  ///< s, NaN where it never ran
+  double seconds_spread() const;
 };
 
 /// The row of a result. `reference`: that of Study::reference, null without.
@@ -34,8 +37,8 @@ double measure_of(const Study& study, const StudyRow& row, const std::string& na
 void mark_front(const Study& study, std::vector<StudyRow>& rows);
 
 /// Rows, and for every moment of the fronts, as tables (CSV and JSON).
-CsvTable study_table(const Study& study, const std::vector<StudyRow>& rows);
-CsvTable front_table(const Study& study, const std::vector<StudyRow>& rows);
+Table study_table(const Study& study, const std::vector<StudyRow>& rows);
+Table front_table(const Study& study, const std::vector<StudyRow>& rows);
 
 /// The setting with the smallest seconds_median of those with an error of at most `target`, by
 /// variant ("" : of all). Null when there is none.

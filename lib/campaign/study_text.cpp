@@ -1,6 +1,7 @@
 // A study's table for people, and all of it as JSON.
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "lib/base/text.h"
 #include "lib/base/version.h"
@@ -67,37 +68,33 @@ std::string cheapest_text(const Study& study, const std::vector<StudyRow>& rows,
 }  // namespace
 
 std::string study_text(const Study& study, const std::vector<StudyRow>& rows) {
-  std::size_t width = 7;
-  for (const StudyRow& row : rows) width = std::max(width, setting(row).size());
-  const int w = int(width);
-  const bool other = study.error != "compression_mean";
-  std::string out =
-      format("  %-*s %9s %12s %10s %11s %11s %11s %11s", w, "setting", "particles", "seconds",
-             "spread", "compr.mean", "compr.max", "energy rise", "height kept");
-  if (other) out += " " + study.error;
-  out += "\n";
-  for (const StudyRow& row : rows) {
-    const auto share = [&](const char* name) {
-      const double v = measure_of(study, row, name);
-      return std::isnan(v) ? std::string("-") : format("%.3g %%", 100 * v);
+  using R = const StudyRow&;
+  const auto share = [&](const char* name) {
+    return [&study, name](R r) -> Cell {
+      const double v = measure_of(study, r, name);
+      return std::isnan(v) ? Cell() : Cell(format("%.3g %%", 100 * v));
     };
-    out += format("%c %-*s ", row.pareto ? '*' : ' ', w, setting(row).c_str());
-    if (row.status == "unavailable") {
-      out += row.status + ": " + row.message + "\n";
-      continue;
-    }
-    const double height = measure_of(study, row, "height_kept");
-    out += format("%9lld %12.4g %10.2g %11s %11s %11s %11s",
-                  static_cast<long long>(row.result.particles), row.result.seconds_median(),
-                  row.result.seconds_spread(), share("compression_mean").c_str(),
-                  share("compression_max").c_str(), share("energy_rise").c_str(),
-                  std::isnan(height) ? "-" : format("%.4f", height).c_str());
-    if (other)
-      out += format(" %*s", int(study.error.size()),
-                    error_text(study.error, measure_of(study, row, study.error)).c_str());
-    if (row.status != "finished") out += "  " + row.status + " " + row.message;
-    out += "\n";
-  }
+  };
+  std::vector<Column<StudyRow>> columns{
+      {"  setting", [](R r) { return (r.pareto ? "* " : "  ") + setting(r); }, -9},
+      {"particles",
+       [](R r) { return r.status == "unavailable" ? Cell() : Cell(r.result.particles); }, 9},
+      {"seconds", [](R r) { return known(r.seconds_median()); }, 12, "%.4g"},
+      {"spread", [](R r) { return known(r.seconds_spread()); }, 10, "%.2g"},
+      {"compr.mean", share("compression_mean"), 11},
+      {"compr.max", share("compression_max"), 11},
+      {"energy rise", share("energy_rise"), 11},
+      {"height kept", [&](R r) { return known(measure_of(study, r, "height_kept")); }, 11, "%.4f"}};
+  if (study.error != "compression_mean")
+    columns.push_back({study.error, [&](R r) {
+                         return error_text(study.error, measure_of(study, r, study.error));
+                       }});
+  const auto note = [](R r) {
+    const char* colon = r.status == "unavailable" ? ": " : " ";
+    return r.status == "finished" ? "" : " " + r.status + colon + r.message;
+  };
+  columns.push_back({"", note, -1});
+  std::string out = TableOf<StudyRow>(columns, rows).text();
   out += "* on the Pareto front of seconds and " + study.error + "\n";
   for (const double target : study.targets) out += cheapest_text(study, rows, target);
   if (study.front)
@@ -115,20 +112,21 @@ std::string study_text(const Study& study, const std::vector<StudyRow>& rows) {
 
 std::string study_json(const Study& study, const std::vector<StudyRow>& rows) {
   const BuildInfo build = build_info();
-  JsonObject object;
-  object.add("study", study.name).add("error", study.error);
-  object.add("version", build.version).add("commit", build.commit);
-  object.add_json("rows", study_table(study, rows).json());
-  std::vector<std::string> best;
+  Json best = Json::array();
   for (const double target : study.targets) {
-    JsonObject item;
-    item.add("target", target);
-    const StudyRow* row = cheapest(study, rows, target, "");
-    if (row) item.add("setting", setting(*row)).add("seconds", row->result.seconds_median());
-    best.push_back(item.text());
+    Json& item = best.emplace_back(Json{{"target", target}});
+    if (const StudyRow* row = cheapest(study, rows, target, "")) {
+      item["setting"] = setting(*row);
+      item["seconds"] = row->result.seconds_median();
+    }
   }
-  object.add_json("cheapest", json_array(best));
-  return object.text() + "\n";
+  const Json out{{"study", study.name},
+                 {"error", study.error},
+                 {"version", build.version},
+                 {"commit", build.commit},
+                 {"rows", study_table(study, rows).json()},
+                 {"cheapest", best}};
+  return json_text(out, 1) + "\n";
 }
 
 }  // namespace pbf::inline campaign_module

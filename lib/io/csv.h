@@ -1,4 +1,4 @@
-// Reading CSV files: lines, cells, and small tables as a whole. Writing: report.h.
+// Reading CSV files: lines, cells, and small tables as a whole. Writing: table.h.
 #pragma once
 
 #include <cstdint>

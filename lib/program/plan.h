@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernels/axes.h"
+#include "lib/base/json.h"
 #include "lib/program/memory.h"
 #include "lib/program/program.h"
 #include "lib/scene/scene.h"
@@ -70,7 +71,7 @@ Plan make_plan(const Scene& scene, std::int64_t particles, StartNeighbors start 
 /// The plan for people: passes, arrays, files, what was left out and because of which key.
 std::string plan_text(const Plan& plan, const Scene& scene);
 
-/// The same as one JSON object. `members`: more of them, as JSON text, each with a comma in front.
-std::string plan_json(const Plan& plan, const Scene& scene, const std::string& members = {});
+/// The same as one JSON object.
+Json plan_json(const Plan& plan, const Scene& scene);
 
 }  // namespace pbf::inline program_module

@@ -1,4 +1,7 @@
 // The plan as text and as JSON.
+#include <nlohmann/json.hpp>
+
+#include "lib/base/json.h"
 #include "lib/base/text.h"
 #include "lib/program/axes.h"
 #include "lib/program/plan.h"
@@ -7,17 +10,6 @@
 
 namespace pbf::inline program_module {
 namespace {
-
-/// "[a,b,...]" from one string per element.
-template <class Range, class F>
-std::string list(const Range& range, F&& f) {
-  std::string out = "[";
-  for (const auto& e : range) {
-    if (out.size() > 1) out += ',';
-    out += f(e);
-  }
-  return out + "]";
-}
 
 std::string backend_text(const Scene& s) {
   return std::string(s.backend == Backend::cuda ? "cuda" : "cpu") +
@@ -40,41 +32,35 @@ std::string peak_text(std::int64_t arrays, std::int64_t fixed) {
   return format("%.2f + %.0f MB", double(arrays) / 1e6, double(fixed) / 1e6);
 }
 
-std::string arrays_json(const MemoryPlan& memory) {
-  return list(memory.arrays, [](const PlanArray& a) {
-    return "{\"name\":" + json_string(a.name) + ",\"type\":" + json_string(a.type) +
-           format(",\"components\":%d,\"elements\":%lld,\"bytes\":%lld", a.components,
-                  static_cast<long long>(a.elements), static_cast<long long>(a.bytes)) +
-           ",\"held\":" + json_string(held_name(a.held)) +
-           ",\"place\":" + (a.on_device ? "\"device\"}" : "\"host\"}");
-  });
-}
-
 /// One object per backend and precision, with its arrays.
-std::string memory_json(const Plan& plan, const Scene& scene) {
-  std::string out;
+Json memory_json(const Plan& plan, const Scene& scene) {
+  Json out = Json::array();
+  const auto place = [](bool on_device) { return on_device ? "device" : "host"; };
   for_each_choice(plan, scene, [&](const Scene& s, const MemoryPlan& m) {
-    out += out.empty() ? "[" : ",";
-    out += "{\"backend\":" + json_string(s.backend == Backend::cuda ? "cuda" : "cpu");
-    out += ",\"precision\":" + json_string(s.precision == Precision::dbl ? "double" : "float");
-    const auto number = [&](const char* name, std::int64_t value) {
-      out += format(",\"%s\":%lld", name, static_cast<long long>(value));
-    };
-    number("solver_bytes", m.solver_bytes());
-    number("host_arrays", m.host_arrays);
-    number("host_fixed", m.fixed_bytes(false));
-    number("host_peak", m.host_peak());
-    number("device_arrays", m.device_arrays);
-    number("device_fixed", m.fixed_bytes(true));
-    number("device_peak", m.device_peak());
-    out += ",\"fixed\":" + list(m.fixed, [](const FixedMemory& f) {
-             return "{\"name\":" + json_string(f.name) +
-                    format(",\"bytes\":%lld", static_cast<long long>(f.bytes)) +
-                    ",\"place\":" + (f.on_device ? "\"device\"}" : "\"host\"}");
-           });
-    out += ",\"arrays\":" + arrays_json(m) + "}";
+    Json fixed = Json::array(), arrays = Json::array();
+    for (const FixedMemory& f : m.fixed)
+      fixed.push_back({{"name", f.name}, {"bytes", f.bytes}, {"place", place(f.on_device)}});
+    for (const PlanArray& a : m.arrays)
+      arrays.push_back({{"name", a.name},
+                        {"type", a.type},
+                        {"components", a.components},
+                        {"elements", a.elements},
+                        {"bytes", a.bytes},
+                        {"held", held_name(a.held)},
+                        {"place", place(a.on_device)}});
+    out.push_back({{"backend", s.backend == Backend::cuda ? "cuda" : "cpu"},
+                   {"precision", s.precision == Precision::dbl ? "double" : "float"},
+                   {"solver_bytes", m.solver_bytes()},
+                   {"host_arrays", m.host_arrays},
+                   {"host_fixed", m.fixed_bytes(false)},
+                   {"host_peak", m.host_peak()},
+                   {"device_arrays", m.device_arrays},
+                   {"device_fixed", m.fixed_bytes(true)},
+                   {"device_peak", m.device_peak()},
+                   {"fixed", fixed},
+                   {"arrays", arrays}});
   });
-  return out + "]";
+  return out;
 }
 
 }  // namespace
@@ -133,37 +119,36 @@ std::string plan_text(const Plan& plan, const Scene& s) {
   return out;
 }
 
-std::string plan_json(const Plan& plan, const Scene& s, const std::string& members) {
-  std::string out = "{\"scene\":" + json_string(s.name);
-  out += format(",\"particles\":%lld,\"bytes\":%lld,\"cells\":[%d,%d,%d],\"cell_edge_h\":%.17g",
-                static_cast<long long>(plan.particles), static_cast<long long>(plan.bytes()),
-                plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge);
-  out += format(",\"vol\":%.17g,\"wall_scale\":%.17g,\"wall_range_h\":%.17g,\"mass_kg\":%.17g",
-                plan.vol, plan.wall_scale, plan.wall_range, plan.mass);
-  out += ",\"axes\":" +
-         list(plan.axes.of, [](int axis) { return json_string(std::string(1, char('x' + axis))); });
-  out += format(",\"finest_level\":%d,\"lists_per_update\":%d,\"threads\":%d", plan.finest_level,
-                plan.lists_per_update,
-                s.backend == Backend::cpu ? solver_threads(s, plan.particles) : 0);
-  out += ",\"passes\":" + list(count_passes(plan.program), [](const PassCount& c) {
-           return "{\"name\":" + json_string(c.pass->name) +
-                  ",\"stage\":" + json_string(c.pass->stage) +
-                  ",\"reads\":" + json_string(field_names(c.pass->reads)) +
-                  ",\"writes\":" + json_string(field_names(c.pass->writes)) +
-                  ",\"gathers\":" + json_string(gathers_text(*c.pass)) +
-                  format(",\"per_update\":%d}", c.times);
-         });
-  out += ",\"memory\":" + memory_json(plan, s);
-  out += ",\"files\":" + list(plan.files, [](const PlanFile& f) {
-           return "{\"name\":" + json_string(f.name) +
-                  format(",\"number\":%lld,\"bytes\":%lld}", static_cast<long long>(f.number),
-                         static_cast<long long>(f.bytes));
-         });
-  out +=
-      ",\"left_out\":" + list(plan.left_out, [](const LeftOut& l) {
-        return "{\"what\":" + json_string(l.what) + ",\"because\":" + json_string(l.because) + "}";
-      });
-  return out + members + "}";
+Json plan_json(const Plan& plan, const Scene& s) {
+  Json axes = Json::array(), passes = Json::array(), files = Json::array(), left = Json::array();
+  for (const int axis : plan.axes.of) axes.push_back(std::string(1, char('x' + axis)));
+  for (const PassCount& c : count_passes(plan.program))
+    passes.push_back({{"name", c.pass->name},
+                      {"stage", c.pass->stage},
+                      {"reads", field_names(c.pass->reads)},
+                      {"writes", field_names(c.pass->writes)},
+                      {"gathers", gathers_text(*c.pass)},
+                      {"per_update", c.times}});
+  for (const PlanFile& f : plan.files)
+    files.push_back({{"name", f.name}, {"number", f.number}, {"bytes", f.bytes}});
+  for (const LeftOut& l : plan.left_out) left.push_back({{"what", l.what}, {"because", l.because}});
+  return {{"scene", s.name},
+          {"particles", plan.particles},
+          {"bytes", plan.bytes()},
+          {"cells", {plan.cells[0], plan.cells[1], plan.cells[2]}},
+          {"cell_edge_h", plan.cell_edge},
+          {"vol", plan.vol},
+          {"wall_scale", plan.wall_scale},
+          {"wall_range_h", plan.wall_range},
+          {"mass_kg", plan.mass},
+          {"axes", axes},
+          {"finest_level", plan.finest_level},
+          {"lists_per_update", plan.lists_per_update},
+          {"threads", s.backend == Backend::cpu ? solver_threads(s, plan.particles) : 0},
+          {"passes", passes},
+          {"memory", memory_json(plan, s)},
+          {"files", files},
+          {"left_out", left}};
 }
 
 }  // namespace pbf::inline program_module

@@ -1,8 +1,10 @@
 #include "lib/run/run_report.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "kernels/relative_motion.h"
+#include "lib/base/json.h"
 #include "lib/base/machine.h"
 #include "lib/base/stages.h"
 #include "lib/base/text.h"
@@ -145,30 +147,18 @@ std::string run_summary(const RunParts& run, const Watch& watch,
 
 std::string measure_json(const Measures& m, double wall, std::int64_t frames,
                          const std::vector<StageTime>& stages) {
-  const auto item = [](const char* name, double value) {
-    return json_string(name) + ": " + json_number(value);
-  };
-  std::string out = "{";  // appended to: GCC 12 warns of overlap when a literal comes first
-  out += item("update", double(m.update)) + ", " + item("time", m.time) + ", " +
-         item("wall", wall) + ", " + item("frames", double(frames));
-  const std::vector<Diagnostic>& all = diagnostics();
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const std::string name = all[k].name;
-    if (!name.ends_with("_x")) {
-      (out += ", ") += item(name.c_str(), all[k].value(m));
-      continue;
-    }
-    out += ", " + json_string(name.substr(0, name.size() - 2)) + ": [";  // the vector's three rows
-    for (std::size_t a = 0; a < 3; ++a) (out += a ? ", " : "") += json_number(all[k + a].value(m));
-    out += "]";
-    k += 2;
+  Json out{{"update", m.update}, {"time", m.time}, {"wall", wall}, {"frames", frames}};
+  for (const Diagnostic& d : diagnostics()) {
+    const std::string name = d.name;
+    const Json value = d.number ? Json(d.number(m)) : Json(d.integer(m));
+    if (name.ends_with("_x") || name.ends_with("_y") || name.ends_with("_z"))
+      out[name.substr(0, name.size() - 2)].push_back(value);  // the vector's next component
+    else
+      out[name] = value;
   }
-  out += ", \"stages\": {";
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    if (i > 0) out += ", ";
-    out += item(stages[i].name.c_str(), stages[i].seconds);
-  }
-  return out + "}}";
+  Json& times = out["stages"] = Json::object();
+  for (const StageTime& s : stages) times[s.name] = s.seconds;
+  return json_text(out);
 }
 
 }  // namespace pbf::inline run_module

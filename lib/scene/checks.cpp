@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/base/plain_text.h"
 #include "lib/base/text.h"
 #include "lib/scene/lattice.h"
 #include "lib/scene/number.h"
@@ -54,8 +55,8 @@ class Checker {
   void check_name() {
     if (good(s_.name) && !is_file_name(s_.name))
       add(s_.name,
-          "is " + json_string(s_.name.substr(0, 60)) +
-              ", and runs are kept in out/<name>; give a word without slashes, not . or ..");
+          "is \"" + one_line(s_.name, 60) +
+              "\", and runs are kept in out/<name>; give a word without slashes, not . or ..");
   }
 
   bool flat() const { return good(s_.dimensions) && s_.dimensions == 2; }

@@ -1,18 +1,27 @@
 // A comparison as text, JSON and one HTML page.
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "lib/base/text.h"
-#include "lib/io/report.h"
+#include "lib/io/table.h"
 #include "lib/verify/compare.h"
 #include "lib/verify/diagram_scale.h"
 
 namespace pbf::inline verify_module {
 namespace {
 
-std::string row_text(const CompareRow& r) {
-  return format("  %-34s %10.3g %10.3g %9.2g %9.3g %10.3g %-11s %s\n", r.what.c_str(), r.error,
-                r.rms, r.relative, r.ulps, r.tolerance, r.unit.c_str(), verdict_name(r.verdict));
+TableOf<CompareRow> table_of(const std::vector<CompareRow>& rows) {
+  using R = const CompareRow&;
+  return TableOf<CompareRow>({{"", [](R r) { return r.what; }, -34},
+                              {"error", [](R r) { return r.error; }, 10, "%.3g"},
+                              {"rms", [](R r) { return r.rms; }, 10, "%.3g"},
+                              {"relative", [](R r) { return r.relative; }, 9, "%.2g"},
+                              {"ulps", [](R r) { return r.ulps; }, 9, "%.3g"},
+                              {"tolerance", [](R r) { return r.tolerance; }, 10, "%.3g"},
+                              {"unit", [](R r) { return r.unit; }, -11},
+                              {"verdict", [](R r) { return verdict_name(r.verdict); }, -7}},
+                             rows);
 }
 
 std::string escaped(const std::string& s) {
@@ -72,64 +81,48 @@ std::string compare_text(const CompareResult& r) {
   for (const ComparePart& p : r.parts) {
     out += "\n" + p.name + ": " + verdict_name(p.verdict) + "\n  " + p.finding +
            "\n  tolerance: " + p.tolerance_source + "\n";
-    if (!p.rows.empty())
-      out += format("  %-34s %10s %10s %9s %9s %10s %-11s %s\n", "", "error", "rms", "relative",
-                    "ulps", "tolerance", "unit", "verdict");
-    for (const CompareRow& row : p.rows) out += row_text(row);
+    if (!p.rows.empty()) out += table_of(p.rows).text("  ");
   }
   return out + "\n" + conclusion(r);
 }
 
 std::string compare_json(const CompareResult& r) {
-  std::vector<std::string> notes, parts, diagrams;
-  for (const auto& n : r.notes) notes.push_back(json(Cell(n)));
+  Json parts = Json::array(), curves = Json::array();
   for (const ComparePart& p : r.parts) {
-    std::vector<std::string> rows;
+    Json rows = Json::array();
     for (const CompareRow& x : p.rows)
-      rows.push_back(JsonObject()
-                         .add("what", x.what)
-                         .add("unit", x.unit)
-                         .add("error", x.error)
-                         .add("rms", x.rms)
-                         .add("relative", x.relative)
-                         .add("ulps", x.ulps)
-                         .add("tolerance", x.tolerance)
-                         .add("verdict", std::string(verdict_name(x.verdict)))
-                         .text());
-    parts.push_back(JsonObject()
-                        .add("part", p.name)
-                        .add("verdict", std::string(verdict_name(p.verdict)))
-                        .add("finding", p.finding)
-                        .add("tolerance_source", p.tolerance_source)
-                        .add_json("rows", json_array(rows))
-                        .text());
+      rows.push_back({{"what", x.what},
+                      {"unit", x.unit},
+                      {"error", x.error},
+                      {"rms", x.rms},
+                      {"relative", x.relative},
+                      {"ulps", x.ulps},
+                      {"tolerance", x.tolerance},
+                      {"verdict", verdict_name(x.verdict)}});
+    parts.push_back({{"part", p.name},
+                     {"verdict", verdict_name(p.verdict)},
+                     {"finding", p.finding},
+                     {"tolerance_source", p.tolerance_source},
+                     {"rows", rows}});
   }
   for (const Diagram& d : r.diagrams)
-    for (const Curve& c : d.curves) {
-      std::vector<std::string> x, y;
-      for (const double v : c.x) x.push_back(json(Cell(v)));
-      for (const double v : c.y) y.push_back(json(Cell(v)));
-      diagrams.push_back(JsonObject()
-                             .add("diagram", d.title)
-                             .add("curve", c.name)
-                             .add("x_label", d.x_label)
-                             .add("y_label", d.y_label)
-                             .add_json("x", json_array(x))
-                             .add_json("y", json_array(y))
-                             .text());
-    }
-  return JsonObject()
-             .add("a", r.a)
-             .add("b", r.b)
-             .add("same", r.same())
-             .add("stage", r.stage)
-             .add("e_folding_updates", r.e_folding > 0 ? Cell(r.e_folding) : Cell())
-             .add("horizon_updates", r.horizon >= 0 ? Cell(r.horizon) : Cell())
-             .add_json("notes", json_array(notes))
-             .add_json("parts", json_array(parts))
-             .add_json("curves", json_array(diagrams))
-             .text() +
-         "\n";
+    for (const Curve& c : d.curves)
+      curves.push_back({{"diagram", d.title},
+                        {"curve", c.name},
+                        {"x_label", d.x_label},
+                        {"y_label", d.y_label},
+                        {"x", c.x},
+                        {"y", c.y}});
+  const Json out{{"a", r.a},
+                 {"b", r.b},
+                 {"same", r.same()},
+                 {"stage", r.stage},
+                 {"e_folding_updates", r.e_folding > 0 ? Json(r.e_folding) : Json()},
+                 {"horizon_updates", r.horizon >= 0 ? Json(r.horizon) : Json()},
+                 {"notes", r.notes},
+                 {"parts", parts},
+                 {"curves", curves}};
+  return json_text(out, 1) + "\n";
 }
 
 std::string compare_html(const CompareResult& r) {
@@ -151,11 +144,12 @@ std::string compare_html(const CompareResult& r) {
                   escaped(p.tolerance_source).c_str());
     if (p.rows.empty()) continue;
     out += "<table><tr><th><th>error<th>rms<th>relative<th>ulps<th>tolerance<th>unit<th>verdict\n";
-    for (const CompareRow& x : p.rows)
-      out += format("<tr%s><td>%s<td>%.3g<td>%.3g<td>%.2g<td>%.3g<td>%.3g<td>%s<td>%s\n",
-                    x.verdict == Verdict::differs ? " class=bad" : "", escaped(x.what).c_str(),
-                    x.error, x.rms, x.relative, x.ulps, x.tolerance, escaped(x.unit).c_str(),
-                    verdict_name(x.verdict));
+    const auto rows = table_of(p.rows).words();
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      out += p.rows[k].verdict == Verdict::differs ? "<tr class=bad>" : "<tr>";
+      for (const std::string& word : rows[k]) out += "<td>" + escaped(word);
+      out += "\n";
+    }
     out += "</table>\n";
   }
   return out + "</html>\n";

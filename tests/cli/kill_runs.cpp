@@ -44,7 +44,7 @@ int number(const char* name, int otherwise) {
 std::int64_t reported(const fs::path& json) {
   std::istringstream lines(read_text(json));
   std::int64_t most = 0;
-  const std::string key = "\"frames\": ";
+  const std::string key = "\"frames\":";
   for (std::string line; std::getline(lines, line);)
     if (const std::size_t at = line.find(key); at != std::string::npos && line.back() == '}')
       most = std::max(most, std::int64_t(std::atoll(line.c_str() + at + key.size())));

@@ -39,7 +39,7 @@ TEST_CASE("a run leaves its file, resolved scene, log and DONE, and says so") {
   CHECK(has(read_text(run / "log.txt"), o.err));
   const std::string json = read_text(folder / "m.json");
   CHECK(std::count(json.begin(), json.end(), '\n') == 3);
-  CHECK(has(json, "{\"update\": 20, "));
+  CHECK(has(json, "{\"update\":20,"));
 }
 
 TEST_CASE("a run warns where fluid may have passed through fluid, and names the step that helps") {

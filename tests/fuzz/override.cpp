@@ -16,7 +16,7 @@ constexpr const char* kScene =
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   try {
-    if (pbf::parse_axis(text).values.empty()) std::abort();
+    if (pbf::parse_axis(text).empty()) std::abort();
   } catch (const pbf::Error&) {
   }
   try {

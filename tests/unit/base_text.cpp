@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
+#include "lib/base/json.h"
 #include "lib/base/log.h"
 #include "lib/base/stage_clock.h"
 #include "tests/catch.h"
@@ -30,11 +32,16 @@ TEST_CASE("durations never show 60 seconds or 60 minutes, and tell when they are
   CHECK(duration_text(std::numeric_limits<double>::infinity()) == "unknown");
 }
 
-TEST_CASE("JSON pieces escape what must be escaped and write null for what JSON lacks") {
-  CHECK(json_string("a\"b\\c\n") == "\"a\\\"b\\\\c\\n\"");
-  CHECK(json_number(0.1) == "0.10000000000000001");
-  CHECK(json_number(std::nan("")) == "null");
-  CHECK(json_number(-std::numeric_limits<double>::infinity()) == "null");
+TEST_CASE("JSON keeps the order, escapes text and has null for what it lacks") {
+  const Json o{{"z", 1.5},
+               {"a", "q\"\\\n\t\x01"},
+               {"none", nullptr},
+               {"inf", -std::numeric_limits<double>::infinity()},
+               {"nan", std::nan("")},
+               {"list", {true, 3}}};
+  CHECK(json_text(o) ==
+        "{\"z\":1.5,\"a\":\"q\\\"\\\\\\n\\t\\u0001\",\"none\":null,\"inf\":null,"
+        "\"nan\":null,\"list\":[true,3]}");
 }
 
 TEST_CASE("a progress line gives the rate since the last line and the time left at the mean rate") {

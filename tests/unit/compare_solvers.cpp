@@ -142,6 +142,6 @@ TEST_CASE("reports hold every part, and the page needs nothing from elsewhere", 
   for (const char* foreign : {"http", "src=", "<script", "@import", "nan", "inf,"})
     CHECK(page.find(foreign) == std::string::npos);
   CHECK(data.find("\"stage\": \"lambda\"") != std::string::npos);
-  CHECK(data.find("\"tolerance\": 1,") != std::string::npos);
+  CHECK(data.find("\"tolerance\": 1.0,") != std::string::npos);
   CHECK(data.find("\"horizon_updates\": null") != std::string::npos);
 }

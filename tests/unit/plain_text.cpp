@@ -1,7 +1,9 @@
 // What is text, and how messages show what is not. The oracle is the table of RFC 3629, section 4.
 #include "lib/base/plain_text.h"
 
-#include "lib/base/text.h"
+#include <nlohmann/json.hpp>
+
+#include "lib/base/json.h"
 #include "tests/catch.h"
 
 using namespace pbf;
@@ -82,5 +84,5 @@ TEST_CASE("escaped text is text, keeps what was text, and shows the rest") {
   CHECK(one_line(std::string(300, 'x')) == std::string(200, 'x') + "...");
   CHECK(one_line("\u20ac\u20ac\u20ac", 4) == "\u20ac\u20ac...");
   CHECK(one_line("abc", 3) == "abc");
-  CHECK(json_string(nasty) == "\"a\\u001b[2J\\u007f\\u0000\\u009b\\\\xff\\\\xed\\\\xa0\\\\x80z\"");
+  CHECK(json_text(nasty) == "\"a\\u001b[2J\\u007f\\u0000\\u009b\\\\xff\\\\xed\\\\xa0\\\\x80z\"");
 }

@@ -1,5 +1,8 @@
 // Which axis of the box becomes which axis of the internal frame.
 #include "lib/program/axes.h"
+
+#include <nlohmann/json.hpp>
+
 #include "lib/program/plan.h"
 #include "tests/catch.h"
 
@@ -75,5 +78,5 @@ TEST_CASE("the plan holds the axes, says them, and numbers its cells along them"
   CHECK(p.cells[1] == 11);
   CHECK(p.cells[2] == 31);
   CHECK(plan_text(p, s).find("internal axes x, y, z: y, z, x of the scene") != std::string::npos);
-  CHECK(plan_json(p, s).find("\"axes\":[\"y\",\"z\",\"x\"]") != std::string::npos);
+  CHECK(json_text(plan_json(p, s)).find("\"axes\":[\"y\",\"z\",\"x\"]") != std::string::npos);
 }

@@ -197,12 +197,12 @@ TEST_CASE("schema: balanced JSON that has every key and refuses the others") {
   CHECK(lowest == 1);
   CHECK_FALSE(in_string);
   for (const Key& key : scene_table().keys)
-    CHECK(contains(text, std::string("\"").append(key.leaf()).append("\":{")));
+    CHECK(contains(text, std::string("\"").append(key.leaf()).append("\": {")));
   std::size_t objects = 0, closed = 0;
-  for (std::size_t p = 0; (p = text.find("\"type\":\"object\"", p)) != std::string::npos; ++p)
+  for (std::size_t p = 0; (p = text.find("\"type\": \"object\"", p)) != std::string::npos; ++p)
     ++objects;
-  for (std::size_t p = 0; (p = text.find("\"additionalProperties\":false", p)) != std::string::npos;
-       ++p)
+  for (std::size_t p = 0;
+       (p = text.find("\"additionalProperties\": false", p)) != std::string::npos; ++p)
     ++closed;
   CHECK(objects == closed);
   // One object for every shape of a body.

@@ -61,7 +61,7 @@ TEST_CASE("a run that made energy, diverged or never ran is neither on the front
         "cheapest setting for compression_mean <= 1 %: solver.iterations=2 on cpu float, 2 s",
         "cheapest setting for compression_mean <= 0.1 %: solver.iterations=4"})
     CHECK(text.find(part) != std::string::npos);
-  const std::string csv = study_table(study, rows).text();
+  const std::string csv = study_table(study, rows).csv();
   CHECK(csv.rfind("solver.iterations,backend,precision,threads,particles,updates,seconds_median,"
                   "seconds_spread,compression_mean,compression_rms,compression_p99,compression_max,"
                   "share_above_1,share_above_10,height_kept,hydrostatic_deviation,",
@@ -191,22 +191,29 @@ TEST_CASE("a stored result that is not whole is refused by file and column") {
   const std::vector<std::array<std::string, 3>> cases{
       {"\"compression_mean\"", "\"compression_men\"", "log has no column compression_mean"},
       {"\"front_x\"", "\"front\"", "log has no column front_x"},
-      {"\"time\": [", "\"time\": [0.5,", "has 3 rows, time has 4"},
-      {"\"log\"", "\"lok\"", "has no log"},
-      {"\"seconds\": 4", "\"seconds\": null", "seconds: not a time"},
-      {"\"updates\": 20", "\"updates\": 20.5", "updates: \"20.5\" is not a whole number"},
-      {"\"particles\": 64", "\"particles\": 1e300", "particles: \"1e300\" is too large"},
-      {"\"threads\": 1", "\"threads\": -1", "threads: \"-1\" is below 0"},
+      {"\"time\":[", "\"time\":[0.5,", "has 3 rows, time has 4"},
+      {"\"log\"", "\"lok\"", "key 'log' not found"},
+      {"\"seconds\":4", "\"seconds\":null,\"was\":4", "seconds: not a time"},
+      {"\"updates\":20", "\"updates\":20.5", "updates is 20.5, expected a whole number"},
+      {"\"particles\":64", "\"particles\":1e300", "particles is 1e+300, expected a whole number"},
+      {"\"particles\":64", "\"particles\":1e400", "number overflow"},
+      {"\"particles\":64", "\"particles\":18446744073709551615", "expected a whole number"},
+      {"\"threads\":1", "\"threads\":-1", "threads is -1, expected a whole number not below 0"},
       {"\"finished\"", "\"finish\"", "neither finished nor diverged"},
-      {"\"device\": \"none\"", "\"device\": [1]", "device is"},
-      {"\"ratios\": []", "\"ratios\": 3", "ratios is"},
-      {"\"time\": [", "\"time\": [x,", "log.time: \"x\" is not a number"}};
+      {"\"device\":\"none\"", "\"device\":[1]", "device is [1], expected text"},
+      {"\"ratios\":[]", "\"ratios\":3", "ratios is 3, expected a list"},
+      {"\"log\":{", "\"log\":[],\"lok\":{", "log has no column time"},
+      {"\"time\":[", "\"time\":[\"x\",", "log.time is \"x\", expected a number"},
+      {"\"time\":[", "\"time\":[x,", "parse error at line 1"}};
   for (const auto& [from, to, message] : cases) {
     CAPTURE(from, to);
     CHECK_THAT(error(from, to), Catch::Contains(message));
   }
   write_member(path, result_of(4, {}));
   CHECK_THROWS_WITH(read_member(path), Catch::Contains("a run has one at least"));
+  const std::string first = PBF_SOURCE_DIR "/tests/samples/first_edition/study/members/";
+  CHECK_THROWS_WITH(read_member(first + "0b4f9b13665633e4.json"),
+                    Catch::Contains("0b4f9b13665633e4.json: log has no column unresolved"));
 }
 
 TEST_CASE("a run that is thrown out of every number stops and says when") {

@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "lib/base/error.h"
-#include "lib/base/hash.h"
 #include "lib/base/machine.h"
 #include "lib/base/stage_clock.h"
 #include "lib/campaign/stability.h"
 #include "lib/campaign/study.h"
 #include "lib/scene/load.h"
+#include "tests/regression/frozen/hash.h"
 #ifdef PBF_HAS_CUDA
 #include "lib/exec/cuda/cuda_solver.h"
 #endif
@@ -71,7 +71,7 @@ Scene scene_of(const Case& c, Precision precision, Backend backend) {
 std::string field_hash(const Snapshot& snapshot, const std::string& name) {
   for (const FieldArray& f : snapshot.fields)
     if (f.name == name) {
-      Hash hash;
+      test::Hash hash;
       hash.add({reinterpret_cast<const char*>(f.bytes.data()), f.bytes.size()});
       return hash.text();
     }

@@ -3,29 +3,18 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <string_view>
 
-#include "lib/base/regular_file.h"
 #include "lib/base/text.h"
 
-namespace pbf::inline base_module {
+namespace pbf::test {
 
 class Hash {
  public:
   /// Adds a text and its end, so that "ab", "c" and "a", "bc" differ.
   void add(std::string_view text) {
     bytes(text);
-    value_ = (value_ ^ 256u) * kPrime;
-  }
-  /// Adds the contents of a file; one that cannot be read, or is no regular one, counts as empty.
-  void add_file(const std::string& path) {
-    std::ifstream in;
-    if (not_regular(path).empty()) in.open(path, std::ios::binary);
-    char block[1 << 16];
-    while (in.read(block, sizeof block), in.gcount() > 0)
-      bytes({block, static_cast<std::size_t>(in.gcount())});
     value_ = (value_ ^ 256u) * kPrime;
   }
   /// 16 hexadecimal digits.
@@ -39,4 +28,4 @@ class Hash {
   std::uint64_t value_ = 14695981039346656037u;
 };
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::test
