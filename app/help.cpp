@@ -17,8 +17,9 @@ const char* const kExitCodes =
     "  75  stopped early by a signal or the wall-time limit, after saving\n\n"
     "Example: pbf run configs/dam_break.yaml --out out/dam_break";
 
-std::string measures() {
-  return "Measures (formulas: lib/solver/DIAGNOSTICS.md; c = max(rho/rho0 - 1, 0) of a particle, "
+std::string diagnostics_text() {
+  return "Diagnostics (formulas: lib/solver/DIAGNOSTICS.md; c = max(rho/rho0 - 1, 0) of a "
+         "particle, "
          "walls\n"
          "included; H0 = volume of the fluid / area of the floor):\n" +
          diagnostics_help();

@@ -7,7 +7,7 @@ namespace pbf::inline app_module::help {
 
 extern const char* const kExitCodes;
 /// The measures of a run, a line each.
-std::string measures();
+std::string diagnostics_text();
 extern const char* const kPlanHelp;
 extern const char* const kRenderHelp;
 extern const char* const kCompareHelp;

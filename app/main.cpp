@@ -54,7 +54,7 @@ void add_run(CLI::App& app, RunOptions& o, Command& command) {
   c->add_option("--log-json", o.log_json, "One JSON object per line and measure, into this file");
   c->add_option("--max-walltime", o.max_walltime, "Stop after so many seconds, save, exit 75")
       ->transform(seconds_above_0());
-  c->footer(std::string(help::kRunHelp) + help::measures());
+  c->footer(std::string(help::kRunHelp) + help::diagnostics_text());
   c->callback([&] { command = [&] { return command_run(o); }; });
 }
 
@@ -196,7 +196,7 @@ void add_study(CLI::App& app, StudyOptions& o, Command& command) {
       ->transform(whole_number(1, 1000));
   c->add_flag("--list", o.list, "Print the runs and do nothing");
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
-  c->footer(std::string(help::kStudyHelp) + help::measures() + help::kStudyMeasures);
+  c->footer(std::string(help::kStudyHelp) + help::diagnostics_text() + help::kStudyMeasures);
   c->callback([&] { command = [&] { return command_study(o); }; });
 }
 

@@ -20,8 +20,8 @@ struct MeasureCounts {
   double penetration = 0;  ///< largest distance behind the limit where particles are clamped
   std::int64_t above_1 = 0, above_10 = 0;  ///< particles compressed by more than 1 %, 10 %
   std::int64_t neighbors = 0, neighbors_max = 0, outside = 0, non_finite = 0;
-  std::int64_t fast = 0, rounds = 0, unresolved = 0;  ///< StepCounts so far
-  double way_squared = 0;                             ///< the same
+  std::int64_t fast = 0, repeats = 0, unresolved = 0;  ///< StepCounts so far
+  double way_squared = 0;                              ///< the same
 
   PBF_HD void add(const MeasureCounts& o) {
     const auto take_larger = [](auto& a, auto b) { a = a > b ? a : b; };
@@ -40,7 +40,7 @@ struct MeasureCounts {
     outside += o.outside;
     non_finite += o.non_finite;
     fast += o.fast;
-    rounds += o.rounds;
+    repeats += o.repeats;
     unresolved += o.unresolved;
     take_larger(way_squared, o.way_squared);
   }
@@ -117,7 +117,7 @@ struct MeasurePass {
     MeasureCounts s;
     if (i == 0) {
       s.fast = std::int64_t(step_counts->fast);
-      s.rounds = std::int64_t(step_counts->rounds);
+      s.repeats = std::int64_t(step_counts->repeats);
       s.unresolved = std::int64_t(step_counts->unresolved);
       s.way_squared = step_counts->way_squared;
     }

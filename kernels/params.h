@@ -28,7 +28,7 @@ struct Params {
   Real damping = 1;                 ///< factor on the velocity, once per update
   Real speed_squared = Real(1e30);  ///< (h/s)^2, faster particles are counted ...
   bool limit_speed = false;         ///< ... and slowed down to it
-  /// (h/s)^2, faster ones look how they pass their neighbours in the first sweep.
+  /// (h/s)^2, faster ones look how they pass their neighbours in the first iteration.
   Real passing_squared = Real(1e30);
   Box<Real> boundary;
   int cells_x = 1, cells_y = 1, cells_z = 1;  ///< cells_x counts half cells; in 2-D cells_y = 1
@@ -38,7 +38,7 @@ struct Params {
   bool two_sided = false;                     ///< C = rho - 1 instead of max(rho - 1, 0)
   Real cfm = 0;                               ///< eps^ = eps h^2
   Real sor = 1;                               ///< omega
-  bool ease_crowds = false;                   ///< smaller steps where the density is above 1
+  bool under_relax = false;                   ///< smaller steps where the density is above 1
   Real tensile_k = 0;                         ///< h^2
   Real tensile_scale = 0;                     ///< 1/shape(delta_q)
   int tensile_n = 4;

@@ -1,5 +1,5 @@
-// delta and move: the position correction of one Jacobi sweep. Macklin & Mueller 2013, eq. 12, 14;
-// artificial pressure eq. 13; walls as in boundary.h.
+// delta and move: the position correction of one Jacobi iteration. Macklin & Mueller 2013, eq. 12,
+// 14; artificial pressure eq. 13; walls as in boundary.h.
 #pragma once
 
 #include "kernels/pair_sum.h"
@@ -23,7 +23,7 @@ PBF_HD Real power(Real x, int n) {
 }
 
 /// dx_i = omega [ sum_j (lambda_i + lambda_j + s_corr) grad W_ij vol + lambda_i grad wall ].
-/// The velocity takes dx/dt at once: after the last sweep it is (x* - x)/dt, without the
+/// The velocity takes dx/dt at once: after the last iteration it is (x* - x)/dt, without the
 /// cancellation of that difference.
 template <class Real, class Lists, Smoothing S, bool tensile>
 struct DeltaPass {

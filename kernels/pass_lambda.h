@@ -58,16 +58,16 @@ PBF_HD Real constraint(Real density, const Params<Real>& p) {
 /// What lambda is divided by where the scene leaves the step length to the program: 1 + 3 C above
 /// the rest density, at most 2. As omega falls with the number of neighbours at rest
 /// (lib/program/plan.h), so it falls here with their number where there are too many, for Jacobi
-/// sweeps overshoot with them. At most 2: with 1 + 3 C without end, or rho^3, a pool under large
-/// steps collapsed.
+/// iterations overshoot with them. At most 2: with 1 + 3 C without end, or rho^3, a pool under
+/// large steps collapsed.
 template <class Real>
-PBF_HD Real crowd(Real density, const Params<Real>& p) {
-  if (!p.ease_crowds || !(density > Real(1))) return Real(1);
+PBF_HD Real under_relaxation(Real density, const Params<Real>& p) {
+  if (!p.under_relax || !(density > Real(1))) return Real(1);
   return min2(Real(3) * density - Real(2), Real(2));
 }
 
-/// lambda_i = -C_i / (sum_k |grad_k C_i|^2 + eps^) / crowd(rho_i), in h^2. with_density: the
-/// density is summed in the same loop (fused); otherwise it is read.
+/// lambda_i = -C_i / (sum_k |grad_k C_i|^2 + eps^) / under_relaxation(rho_i), in h^2. with_density:
+/// the density is summed in the same loop (fused); otherwise it is read.
 template <class Real, class Lists, Smoothing S, bool with_density>
 struct LambdaPass {
   Params<Real> p;
@@ -126,7 +126,8 @@ struct LambdaPass {
     const Real c = constraint(rho, p);
     const Real denominator = a * a * s.squares + dot(own_gradient, own_gradient) + p.cfm;
     // No neighbour, no wall and no cfm: nothing to move along.
-    const Real lambda = denominator > Real(0) ? -c / (crowd(rho, p) * denominator) : Real(0);
+    const Real lambda =
+        denominator > Real(0) ? -c / (under_relaxation(rho, p) * denominator) : Real(0);
     position_out[i] = with_w(in_space(x), lambda);
     // Last, where nothing else is held in registers.
     if (load(position, i).w < Real(0)) count_unresolved(i, p, lists, velocity, counts);

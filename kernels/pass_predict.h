@@ -73,7 +73,7 @@ struct BinPass {
 };
 
 /// Puts the particles in the order of bins; with `moving`, as predicted. Position's w = 1
-/// (1/density, until a sweep replaces it), or -1 as a mark for the first sweep.
+/// (1/density, until an iteration replaces it), or -1 as a mark for the first iteration.
 template <class Real, bool moving>
 struct GatherPass {
   Params<Real> p;

@@ -1,4 +1,4 @@
-// The mean compression that decides whether more sweeps follow (solver.tolerance). Summed as an
+// The mean compression that decides whether more iterations follow (solver.tolerance). Summed as an
 // integer, so the same for any number of threads and in any order.
 #pragma once
 
@@ -15,7 +15,7 @@ constexpr double kResidualMax = 8;         ///< more counts as this: 2^31 partic
 /// counts as the most, so that a spoilt state is never taken for a solved one.
 template <class Real>
 struct ResidualPass {
-  const Real* density;  ///< rho0, of the last sweep, before it moved the particles
+  const Real* density;  ///< rho0, of the last iteration, before it moved the particles
   PBF_HD std::uint64_t operator()(int i) const {
     const double c = double(density[i]) - 1;
     if (c <= 0) return 0;

@@ -16,8 +16,9 @@ PBF_HD Vec<V, D> weighted_gradient(Vec<V, D> d, V inv_rho_j, const Params<Real>&
 }
 
 /// omega_i = sum_j m/rho_j grad W_ij x (v_j - v_i), 1/s, and the share of it that the particle's
-/// confinement may put back, by the rate at which its neighbours approach: the sweeps take their
-/// energy from approach, and there is none in a rigid motion. In two dimensions only y is summed.
+/// confinement may put back, by the rate at which its neighbours approach: the iterations take
+/// their energy from approach, and there is none in a rigid motion. In two dimensions only y is
+/// summed.
 template <class Real, class Lists, int dimensions>
 struct CurlPass {
   Params<Real> p;
@@ -87,9 +88,9 @@ PBF_HD CurlOther<V> curl_other(const Vec4<V>& x, V magnitude) {
 }
 
 /// v += h N x (gain omega), N = eta/(|eta| + 0.1 |omega|/h + tiny), eta = grad |omega|; the gain is
-/// CurlPass's. Left out where the density of the last sweep is below rho0: the sweeps do not act
-/// there, so nothing is lost, and at the surface eta is the gradient of missing neighbours. N is no
-/// longer a unit vector where |omega| is flat, so it is defined at eta = 0.
+/// CurlPass's. Left out where the density of the last iteration is below rho0: the iterations do
+/// not act there, so nothing is lost, and at the surface eta is the gradient of missing neighbours.
+/// N is no longer a unit vector where |omega| is flat, so it is defined at eta = 0.
 template <class Real, class Lists, int dimensions>
 struct VorticityPass {
   Params<Real> p;

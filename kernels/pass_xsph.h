@@ -18,9 +18,9 @@ PBF_HD XsphOwn<V, dimensions> xsph_own(const Vec4<V>& x, const Vec4<V>& v) {
   return {point<dimensions>(x), point<dimensions>(v), x.w};
 }
 
-/// v_i += c sum_j (m/rho_i + m/rho_j)/2 (v_j - v_i) W_ij, with the density of the last sweep. What
-/// i takes from j, j takes from i: momentum is kept to rounding. It also gives the particle its
-/// bin in the next update, where one follows: that update's `predict`.
+/// v_i += c sum_j (m/rho_i + m/rho_j)/2 (v_j - v_i) W_ij, with the density of the last iteration.
+/// What i takes from j, j takes from i: momentum is kept to rounding. It also gives the particle
+/// its bin in the next update, where one follows: that update's `predict`.
 template <class Real, class Lists, Smoothing S>
 struct XsphPass {
   Params<Real> p;

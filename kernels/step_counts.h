@@ -6,8 +6,8 @@
 namespace pbf::inline PBF_VARIANT {
 
 struct StepCounts {
-  unsigned long long fast = 0;        ///< particle-updates above the watched speed (Params)
-  unsigned long long rounds = 0;      ///< rounds of sweeps beyond the first of every substep
+  unsigned long long fast = 0;     ///< particle-updates above the watched speed (Params)
+  unsigned long long repeats = 0;  ///< repeats of the iterations beyond the first of every substep
   unsigned long long unresolved = 0;  ///< particles times steps (relative_motion.h)
   float way_squared = 0;              ///< h^2, of the longest way of these relative to a neighbour
 };

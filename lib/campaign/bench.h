@@ -28,7 +28,7 @@ struct BenchRow {
   double dt = 0, h = 0;  ///< s, m
   double ms_median = 0, ms_min = 0, ms_max = 0;
   double cpu_ms_median = 0;  ///< CPU time of all threads: what other programs take does not count
-  Measures measures;
+  Diagnostics measures;
   double peak_mb = 0;             ///< host memory of the process so far, MiB
   std::vector<StageTime> stages;  ///< seconds per update (`calls`: 1)
 };

@@ -83,7 +83,7 @@ void judge_likeness(const std::vector<StabilityCase>& cases, std::vector<Stabili
 
 /// What a run went through, of what the criteria ask for.
 struct Course {
-  Measures first, last;
+  Diagnostics first, last;
   double scale = 0;                       ///< J, energy_scale() at the start
   double released = 0;                    ///< released_energy(), share of scale
   double speed_max = 0, energy_rise = 0;  ///< m/s; share of scale

@@ -17,7 +17,7 @@ Course run_course(const Scene& scene, const std::string& dir,
   const Plan plan = make_plan(scene, c.particles);
   const auto solver = start_solver(scene, plan, emit_particles(scene, dir));
   std::vector<std::pair<double, double>> compression;
-  Watch watch(scene, plan, *solver, [&](const Measures& m, double) {
+  Watch watch(scene, plan, *solver, [&](const Diagnostics& m, double) {
     if (compression.empty()) {
       c.first = m;
       c.scale = energy_scale(m, scene, plan.mass, c.particles);

@@ -42,7 +42,7 @@ bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, MemberResu
     }
     out.columns[k++].push_back(c.value(row));
   }
-  const Measures& m = row.measures;
+  const Diagnostics& m = row.measures;
   if (m.non_finite == 0 && m.outside == 0) return true;
   out.status = "diverged";
   out.message = format("at update %lld, t = %.4g s: %lld particles not finite, %lld outside",

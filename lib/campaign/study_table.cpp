@@ -15,7 +15,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Those of the table of diagnostics that a study sums up.
-std::vector<Diagnostic> measures() {
+std::vector<Diagnostic> study_diagnostics() {
   std::vector<Diagnostic> all = diagnostics();
   std::erase_if(all, [](const Diagnostic& d) { return d.over == Over::none; });
   return all;
@@ -118,7 +118,7 @@ double StudyRow::seconds_spread() const {
 
 std::vector<std::string> study_error_measures(const Study& study) {
   std::vector<std::string> names;
-  for (const Diagnostic& m : measures()) names.push_back(m.name);
+  for (const Diagnostic& m : study_diagnostics()) names.push_back(m.name);
   names.push_back("height_error");
   if (!study.projection.empty())
     names.insert(names.end(), {"projection_mean", "projection_rms", "projection_max"});
@@ -140,7 +140,8 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
     row.measures.assign(names.size(), kNaN);
     return row;
   }
-  for (const Diagnostic& m : measures()) row.measures.push_back(over_window(result, m, study.from));
+  for (const Diagnostic& m : study_diagnostics())
+    row.measures.push_back(over_window(result, m, study.from));
   row.measures.push_back(std::fabs(1 - row.measures[index_of(study, "height_kept")]));
   if (!study.projection.empty())
     row.measures.insert(row.measures.end(),

@@ -130,7 +130,7 @@ void write_file(const std::string& path, const SavedRun& s) {
     h5::write_numbers(file, "steps", &s.state.steps);
     h5::write_numbers(file, "particles", &s.particles);
     h5::write_numbers(file, "fast", &s.state.fast);
-    h5::write_numbers(file, "rounds", &s.state.rounds);
+    h5::write_numbers(file, "rounds", &s.state.repeats);
     h5::write_numbers(file, "unresolved", &s.state.unresolved);
     h5::write_numbers(file, "first_neighbors_max", &s.first.neighbors_max);
     h5::write_numbers(file, "energy_started", &started);
@@ -169,7 +169,7 @@ SavedRun read_file(const std::string& path) {
   if (h5::has_attribute(file, "step_level")) s.steps = read_steps(file);
   s.particles = h5::read_number<std::int64_t>(file, "particles");
   s.state.fast = h5::read_number<std::int64_t>(file, "fast");
-  s.state.rounds = h5::read_number<std::int64_t>(file, "rounds");
+  s.state.repeats = h5::read_number<std::int64_t>(file, "rounds");
   if (h5::has_attribute(file, "unresolved"))  // newer as well
     s.state.unresolved = h5::read_number<std::int64_t>(file, "unresolved");
   if (h5::has_attribute(file, "compressed_updates"))

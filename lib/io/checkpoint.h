@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lib/program/time_levels.h"
-#include "lib/solver/measures.h"
+#include "lib/solver/diagnostics.h"
 #include "lib/solver/step_trace.h"
 
 namespace pbf::inline io_module {
@@ -17,7 +17,7 @@ struct SavedRun {
   SolverState state;
   EnergyHistory energy;        ///< of the measures that are due until then
   double compression_max = 0;  ///< 1, largest of the measures that are due until then
-  Measures first;              ///< of the run: what guard_limits() needs of it, lib/run/guard.h
+  Diagnostics first;           ///< of the run: what guard_limits() needs of it, lib/run/guard.h
   std::optional<StepHistory> steps;     ///< with time.adaptive
   std::optional<double> released;       ///< J, Guard::released()
   std::int64_t compressed_updates = 0;  ///< RunWarnings::compressed_updates()

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lib/scene/scene.h"
-#include "lib/solver/measures.h"
+#include "lib/solver/diagnostics.h"
 #include "lib/solver/snapshot.h"
 #include "lib/solver/solver.h"
 
@@ -57,7 +57,7 @@ struct RunEnding {
 
 /// One row of the log: the measures, and the seconds per stage since the row before.
 struct LogRow {
-  Measures measures;
+  Diagnostics measures;
   int iterations = 0;
   double dt = 0;                  ///< s, of the steps of the update that the measure follows
   std::vector<StageTime> stages;  ///< the same names in every row of a run

@@ -8,7 +8,7 @@
 #include "kernels/measure.h"
 #include "kernels/smoothing.h"
 #include "lib/base/text.h"
-#include "lib/program/list_room.h"
+#include "lib/program/list_capacity.h"
 #include "lib/program/plan.h"
 #include "lib/program/threads.h"
 
@@ -116,34 +116,35 @@ void add_cpu_lists(const Scene& s, const Plan& plan, const Adder& add) {
 }
 
 /// At first, and grown to the start's lists as the solver does.
-ListRoom list_room(const Scene& s, const Plan& plan) {
+ListCapacity list_capacity(const Scene& s, const Plan& plan) {
   const std::int64_t n = plan.particles;
-  ListRoom room = first_list_room(rest_neighbors(s), n);
+  ListCapacity capacity = first_list_capacity(rest_neighbors(s), n);
   const std::vector<int>& sample = plan.start.count;
-  if (sample.empty()) return room;
+  if (sample.empty()) return capacity;
   const int longest = *std::max_element(sample.begin(), sample.end());
   for (;;) {
     const auto more = std::count_if(sample.begin(), sample.end(),
-                                    [&](int entries) { return entries > 4 * room.first; });
-    const auto tails = std::int64_t(double(more) * double(n) / double(sample.size()));
-    if (tails <= room.tails && longest <= room.longest()) return room;
-    room = larger_list_room(room, tails, longest > room.longest() ? longest : 0, n);
+                                    [&](int entries) { return entries > 4 * capacity.first; });
+    const auto overflows = std::int64_t(double(more) * double(n) / double(sample.size()));
+    if (overflows <= capacity.overflows && longest <= capacity.longest()) return capacity;
+    capacity =
+        larger_list_capacity(capacity, overflows, longest > capacity.longest() ? longest : 0, n);
   }
 }
 
 void add_cuda_lists(const Scene& s, const Plan& plan, std::int64_t bins, const std::string& real,
                     const Adder& add) {
   const std::int64_t n = plan.particles;
-  const ListRoom room = list_room(s, plan);
+  const ListCapacity capacity = list_capacity(s, plan);
   if (n > kSortParticles || bins > kSortBins) {
     add("particles of each bin", "int32", 1, bins + 1);
     add("scratch of the scan", "byte", 1, bins / 240 + 1024);  // CUB: 16 bytes a tile
   }
   add("slot", "int32", 1, n);
-  add("lists", "int32", 4, std::int64_t(list_stride(int(n))) * room.first);
-  add("tails of long lists", "int32", 4, std::int64_t(room.tails) * room.tail);
+  add("lists", "int32", 4, std::int64_t(list_stride(int(n))) * capacity.first);
+  add("overflow of long lists", "int32", 4, std::int64_t(capacity.overflows) * capacity.overflow);
   add("length of a list", "int32", 1, n);
-  add("tail of a list", "int32", 1, n);
+  add("overflow of a list", "int32", 1, n);
   add("saved position", real, 4, n);  // a batch of updates is done again when a list outgrows it
   add("saved velocity", real, 4, n);
   add("saved id", "int32", 1, n);

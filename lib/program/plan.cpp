@@ -42,19 +42,19 @@ void plan_grid(Plan& plan, const Scene& scene) {
 /// iteration whose error polynomial is Chebyshev's on [a, b] = [1/2, 3/2] (Young 1954, On
 /// Richardson's method). Large and small ones alternate, because each alone may amplify; the
 /// smallest comes late, because it smooths. Measured (column of 48 layers and dam break, h = 2 d):
-/// against omega = 1, mean compression x 0.77 and 0.68 with 2 sweeps, 0.79 and 0.62 with 4, 0.74
-/// and 0.50 with 8, and energy rises no more; from a = 0.4 on down the column heats with 2 or 3
-/// sweeps. In two dimensions (column of 24 layers, dam break, h = 2 d): x 0.86 and 0.80 with 2
-/// sweeps, 0.85 and 0.82 with 4, 0.85 and 0.84 with 8; a = 0.4 takes another eighth off, with a =
-/// 0.3 the dam break gains twice its energy.
-std::vector<double> chebyshev_factors(int sweeps) {
+/// against omega = 1, mean compression x 0.77 and 0.68 with 2 iterations, 0.79 and 0.62 with 4,
+/// 0.74 and 0.50 with 8, and energy rises no more; from a = 0.4 on down the column heats with 2 or
+/// 3 iterations. In two dimensions (column of 24 layers, dam break, h = 2 d): x 0.86 and 0.80 with
+/// 2 iterations, 0.85 and 0.82 with 4, 0.85 and 0.84 with 8; a = 0.4 takes another eighth off, with
+/// a = 0.3 the dam break gains twice its energy.
+std::vector<double> chebyshev_factors(int iterations) {
   constexpr double a = 0.5, b = 1.5;
   std::vector<double> rising, out;
-  for (int m = 1; m <= sweeps; ++m)
-    rising.push_back(2 / ((b + a) + (b - a) * std::cos((2 * m - 1) * kPi / (2 * sweeps))));
-  int low = sweeps / 2 - 1, high = sweeps - 1;
-  while (int(out.size()) < sweeps) {
-    if (high >= sweeps / 2) out.push_back(rising[std::size_t(high--)]);
+  for (int m = 1; m <= iterations; ++m)
+    rising.push_back(2 / ((b + a) + (b - a) * std::cos((2 * m - 1) * kPi / (2 * iterations))));
+  int low = iterations / 2 - 1, high = iterations - 1;
+  while (int(out.size()) < iterations) {
+    if (high >= iterations / 2) out.push_back(rising[std::size_t(high--)]);
     if (low >= 0) out.push_back(rising[std::size_t(low--)]);
   }
   return out;
@@ -79,7 +79,7 @@ void plan_left_out(Plan& plan, const Scene& s) {
       "solver.kernels is consistent");
   out(s.solver.boundary == BoundaryMode::clamp, "wall density", "solver.boundary is clamp");
   out(s.domain.open.size() == 6, "walls: their density and the clamp", "domain.open names all six");
-  out(plan.more_rounds == 0, "sweeps until a tolerance is met", "solver.tolerance is 0");
+  out(plan.repeats == 0, "iterations until a tolerance is met", "solver.tolerance is 0");
   out(!plan.program.has_pairs(),
       "sort and neighbour lists, but for a measure and for densities of a frame",
       "solver.iterations is 0; no keys viscosity, vorticity");
@@ -133,7 +133,7 @@ void plan_files(Plan& plan, const Scene& s) {
 
 }  // namespace
 
-UpdateShape Plan::shape() const { return {substeps, lists_per_update, more_rounds}; }
+UpdateShape Plan::shape() const { return {substeps, lists_per_update, repeats}; }
 
 Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   Plan plan;
@@ -152,13 +152,13 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   }
   plan.sor = s.solver.sor.value_or(default_sor(s.fluid.smoothing_ratio, s.dimensions));
   if (s.solver.method == SolverMethod::chebyshev)
-    plan.sweep_factors = chebyshev_factors(s.solver.iterations);
+    plan.sor_factors = chebyshev_factors(s.solver.iterations);
   plan.substeps = s.solver.substeps;
   plan.lists_per_update = lists_per_update(s);
   plan.finest_level = finest_level(s);
   if (s.solver.tolerance > 0 && s.solver.iterations > 0) {
     plan.tolerance = s.solver.tolerance;
-    plan.more_rounds = s.solver.max_iterations / s.solver.iterations - 1;
+    plan.repeats = s.solver.max_iterations / s.solver.iterations - 1;
   }
   plan.program = make_program(s, plan.shape());
   plan_grid(plan, s);

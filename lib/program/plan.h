@@ -36,7 +36,7 @@ struct Plan {
   int cells[3] = {1, 1, 1};  ///< of the grid, in internal axes; along x half cells
   double vol = 1;            ///< m/(rho0 h^3), in 2-D m/(rho0 h^2 thickness); solver/calibrate.h
   double wall_scale = 1, wall_range = 1;  ///< amplitude; range in h
-  /// omega. By default min(1, (2.5 d/h)^2): one Jacobi sweep moves every particle for all its
+  /// omega. By default min(1, (2.5 d/h)^2): one Jacobi iteration moves every particle for all its
   /// neighbours' constraints at once, so its stable step falls with their number. Measured on a
   /// column of 24 layers: 1 is stable at h = 2.5 d and throws particles up at 3 d, 0.7 is stable at
   /// 3 d and 0.3 at 4 d. In two dimensions min(1, (3 d/h)^(4/3)), the same power of the number of
@@ -46,14 +46,15 @@ struct Plan {
   /// box with 1.3 times its particles boiled with 58 times the energy of its start, and now comes
   /// to rest.
   double sor = 1;
-  /// Factors on omega, one per sweep of a substep; empty: 1 in all (solver.method: jacobi).
-  std::vector<double> sweep_factors;
+  /// Factors on omega, one per iteration of a substep; empty: 1 in all (solver.method: jacobi).
+  std::vector<double> sor_factors;
   int substeps = 1;
   int lists_per_update = 1;  ///< substeps share lists (substep_lists.h)
   int finest_level = 0;      ///< of time.adaptive: an update is up to 2^finest_level steps
-  double tolerance = 0;  ///< mean compression above which rounds of sweeps are repeated; 0: none is
-  int more_rounds = 0;   ///< at most so many, besides the first
-  double mass = 0;       ///< kg, of one particle as reported
+  double tolerance =
+      0;            ///< mean compression above which the iterations are repeated; 0: they are not
+  int repeats = 0;  ///< at most so many, besides the first
+  double mass = 0;  ///< kg, of one particle as reported
   Program program;
   MemoryPlan memory;
   std::vector<LeftOut> left_out;

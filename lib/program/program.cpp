@@ -65,14 +65,14 @@ Steps joined(const Steps& steps) {
 }
 
 /// One range of substeps that share lists.
-void add_substeps(Steps& to, const Builder& b, int iterations, int more_rounds, int substeps) {
+void add_substeps(Steps& to, const Builder& b, int iterations, int repeats, int substeps) {
   for (int s = 0; s < substeps; ++s) {
     to.push_back(step_of<Predict>());
     if (s == 0) to.insert(to.end(), {step_of<Sort>(), step_of<MakeLists>()});
     if (b.in_iteration.empty()) continue;
     const ProgramStep round{ProgramStep::iterate, -1, 0, iterations, b.in_iteration};
     to.push_back(round);
-    if (more_rounds > 0) to.push_back({ProgramStep::until, -1, 0, more_rounds, {round}});
+    if (repeats > 0) to.push_back({ProgramStep::until, -1, 0, repeats, {round}});
   }
 }
 
@@ -135,7 +135,7 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
     // The ranges are as equal as can be.
     for (int r = 0, from = 0; r < shape.lists_per_update; ++r) {
       const int to = int(std::int64_t(shape.substeps) * (r + 1) / shape.lists_per_update);
-      add_substeps(middle, b, scene.solver.iterations, shape.more_rounds, to - from);
+      add_substeps(middle, b, scene.solver.iterations, shape.repeats, to - from);
       from = to;
     }
   }

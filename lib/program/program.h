@@ -46,7 +46,7 @@ std::vector<PassCount> count_passes(const Program& program);
 
 /// How an update is divided, and what may be repeated.
 struct UpdateShape {
-  int substeps = 1, lists_per_update = 1, more_rounds = 0;
+  int substeps = 1, lists_per_update = 1, repeats = 0;
 };
 
 /// The update of a scene, or its step without time.

@@ -1,5 +1,5 @@
-// An update at level k is 2^k steps of time.step/2^k, sort, lists, sweeps and all; level 0 is an
-// update without time.adaptive. All that is scheduled stays in whole updates.
+// An update at level k is 2^k steps of time.step/2^k, sort, lists, iterations and all; level 0 is
+// an update without time.adaptive. All that is scheduled stays in whole updates.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct StepHistory {
   std::int64_t changes = 0;
   std::int64_t repeats = 0;             ///< alarms that took the run back
   std::int64_t floor = 0;               ///< due measures that asked for less than step_min
-  std::int64_t unresolved = 0;          ///< Measures::unresolved of the last due measure
+  std::int64_t unresolved = 0;          ///< Diagnostics::unresolved of the last due measure
   std::int64_t since = 0;               ///< the update at which the present level began
   std::vector<std::int64_t> updates{};  ///< at each level, until `since`
   bool operator==(const StepHistory&) const = default;

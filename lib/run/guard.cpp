@@ -25,16 +25,16 @@ double h_per_step(const Scene& s) { return s.h() / s.time.step * s.solver.subste
 
 }  // namespace
 
-double total_energy(const Measures& m) { return m.kinetic_energy + m.potential_energy; }
+double total_energy(const Diagnostics& m) { return m.kinetic_energy + m.potential_energy; }
 
-double energy_scale(const Measures& m, const Scene& s, double mass, std::int64_t particles) {
+double energy_scale(const Diagnostics& m, const Scene& s, double mass, std::int64_t particles) {
   const double all = mass * double(particles);
   double together = 0;
   for (const double p : m.momentum) together += p * p / (2 * all);
   return std::max(m.kinetic_energy - together, 0.0) + energy_of_height(m, s, mass, particles);
 }
 
-double energy_of_height(const Measures& m, const Scene& s, double mass, std::int64_t particles) {
+double energy_of_height(const Diagnostics& m, const Scene& s, double mass, std::int64_t particles) {
   const double all = mass * double(particles);
   double height = 0;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -44,7 +44,7 @@ double energy_of_height(const Measures& m, const Scene& s, double mass, std::int
   return height;
 }
 
-double released_energy(const Measures& first, const Scene& s, const Plan& plan) {
+double released_energy(const Diagnostics& first, const Scene& s, const Plan& plan) {
   const double share = std::max(first.compression_mean - kApart, 0.0) +
                        (s.solver.constraint == ConstraintMode::two_sided ? 0.01 : 0);
   return 0.5 * mass_of(plan) * std::pow(h_per_step(s), 2) * share;
@@ -58,7 +58,7 @@ double position_rounding(const Scene& s) {
   return longest_edge(s) * (s.precision == Precision::dbl ? 0x1p-53 : 0x1p-24);
 }
 
-GuardLimits guard_limits(const Scene& s, const Plan& plan, const Measures& first) {
+GuardLimits guard_limits(const Scene& s, const Plan& plan, const Diagnostics& first) {
   const GuardSettings& g = *s.guard;
   const double per_step = h_per_step(s), mass = mass_of(plan),
                gravity = std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
@@ -76,8 +76,8 @@ GuardLimits guard_limits(const Scene& s, const Plan& plan, const Measures& first
   return l;
 }
 
-Guard::Guard(const Scene& scene, const Plan& plan, Solver& solver, const Measures& first,
-             const Measures& now, std::optional<double> released)
+Guard::Guard(const Scene& scene, const Plan& plan, Solver& solver, const Diagnostics& first,
+             const Diagnostics& now, std::optional<double> released)
     : scene_(scene),
       plan_(plan),
       solver_(solver),
@@ -89,12 +89,12 @@ Guard::Guard(const Scene& scene, const Plan& plan, Solver& solver, const Measure
   solver_.keep();
 }
 
-bool Guard::came_apart(const Measures& m) const {
+bool Guard::came_apart(const Diagnostics& m) const {
   // A two-sided fluid is never without compression: what it releases is that of its surface.
   return m.compression_mean <= kApart || scene_.solver.constraint == ConstraintMode::two_sided;
 }
 
-double Guard::energy_limit(const Measures& m) const {
+double Guard::energy_limit(const Diagnostics& m) const {
   if (scene_.guard->energy) return limits_.energy;
   const double first = energy_scale(first_, scene_, plan_.mass, plan_.particles);
   const double now = energy_scale(m, scene_, plan_.mass, plan_.particles);
@@ -107,11 +107,11 @@ double Guard::energy_limit(const Measures& m) const {
 }
 
 /// That of the last good measure at most: the energy that has come since widens the limit of `m`.
-double Guard::event_limit(const Measures& m) const {
+double Guard::event_limit(const Diagnostics& m) const {
   return std::min(energy_limit(good_), energy_limit(m));
 }
 
-void Guard::follow_release(const Measures& m) {
+void Guard::follow_release(const Diagnostics& m) {
   if (released_) return;
   const bool late = m.update > release_updates(scene_);
   const bool surface = scene_.solver.constraint == ConstraintMode::two_sided;
@@ -121,7 +121,7 @@ void Guard::follow_release(const Measures& m) {
     released_ = total_energy(first_);
 }
 
-std::optional<Alarm> Guard::alarm(const Measures& m) const {
+std::optional<Alarm> Guard::alarm(const Diagnostics& m) const {
   if (m.non_finite > 0) return Alarm::non_finite;
   if (m.outside > 0) return Alarm::outside;
   // With a speed limit the count is that of particles slowed down, which the scene asked for.
@@ -132,13 +132,13 @@ std::optional<Alarm> Guard::alarm(const Measures& m) const {
   return std::nullopt;
 }
 
-void Guard::keep(const Measures& m) {
+void Guard::keep(const Diagnostics& m) {
   solver_.keep();
   good_ = m;
   follow_release(m);
 }
 
-GuardEvent Guard::locate(Alarm alarm, const Measures& m, const StepOptions& options) {
+GuardEvent Guard::locate(Alarm alarm, const Diagnostics& m, const StepOptions& options) {
   GuardEvent e;
   e.alarm = alarm;
   e.measure = m;

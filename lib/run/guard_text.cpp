@@ -38,7 +38,7 @@ std::string Guard::text(const GuardEvent& e) const {
     const double v[3] = {e.velocity[0], e.velocity[1], e.velocity[2]};
     out += format("at update %lld, in stage %s", static_cast<long long>(e.stage->update),
                   e.stage->stage.c_str());
-    if (e.stage->sweep > 0) out += format(" of sweep %d", e.stage->sweep);
+    if (e.stage->iteration > 0) out += format(" of iteration %d", e.stage->iteration);
     out += format(
         ", particle %d at (%.6g, %.6g, %.6g) m, velocity (%.4g, %.4g, %.4g) m/s "
         "(%.4g m/s), %s",

@@ -13,10 +13,10 @@
 namespace pbf::inline run_module {
 namespace {
 
-constexpr int kRound = 8;           // steps of one round, at most
-constexpr int kMostSweeps = 2048;   // in all; 32 steps at least
-constexpr int kPatience = 64;       // sweeps before anything is called hopeless; 4 steps at least
-constexpr double kShare = 1e-5;     // of the energy scale
+constexpr int kRound = 8;              // steps of one round, at most
+constexpr int kMostIterations = 2048;  // in all; 32 steps at least
+constexpr int kPatience = 64;    // iterations before anything is called hopeless; 4 steps at least
+constexpr double kShare = 1e-5;  // of the energy scale
 constexpr double kProgress = 0.75;  // of the kick that twice the steps may leave
 constexpr double kStill = 1e-6;     // h, a move that counts for nothing where all is at rest
 
@@ -54,7 +54,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
                            const std::function<void(const std::string&)>& progress) {
   Prestabilized p;
   if (!s.solver.prestabilize || s.solver.iterations == 0) return p;
-  const Measures before = solver.measure();
+  const Diagnostics before = solver.measure();
   p.compression_before = p.compression_after = before.compression_mean;
   p.most_before = before.compression_max;
   const double dt = std::ldexp(s.time.step / plan.substeps, -finest_level(s));
@@ -70,9 +70,9 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   if (p.relieved() || before.non_finite > 0) return p;
   std::vector<double> from = solver.state(Which::positions).position;
   std::vector<Point> course;
-  const std::int64_t sweeps = std::int64_t(s.solver.iterations) * plan.substeps;
-  const std::int64_t most = std::max<std::int64_t>(kMostSweeps / sweeps, 32);
-  const std::int64_t patience = std::max<std::int64_t>(kPatience / sweeps, 4);
+  const std::int64_t iterations = std::int64_t(s.solver.iterations) * plan.substeps;
+  const std::int64_t most = std::max<std::int64_t>(kMostIterations / iterations, 32);
+  const std::int64_t patience = std::max<std::int64_t>(kPatience / iterations, 4);
   for (int round = 1; p.steps < most; round = std::min(p.steps, kRound)) {
     solver.step(round, {.without_time = 1.0});
     p.steps += round;

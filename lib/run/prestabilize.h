@@ -27,11 +27,11 @@ struct Prestabilized {
 /// particle physics for real-time applications, ACM TOG 33(4), "initial conditions"), until the
 /// kick of one more, sum m |dx|^2/2 / dt^2, is below 1e-5 of energy_scale() or what rounding of the
 /// positions alone gives; or until twice the steps take less than a quarter off it (an over-full
-/// box); in at most 2048 sweeps. dt is that of a substep, at the finest level of time.adaptive.
-/// Velocities stay. Nothing happens where solver.prestabilize is false, without sweeps, and beyond
-/// one measure where the compression is harmless. The same bits on any number of threads. To be
-/// called before the first measure and never for a state that a run goes on from. `progress` gets a
-/// line after every round.
+/// box); in at most 2048 iterations. dt is that of a substep, at the finest level of time.adaptive.
+/// Velocities stay. Nothing happens where solver.prestabilize is false, without iterations, and
+/// beyond one measure where the compression is harmless. The same bits on any number of threads. To
+/// be called before the first measure and never for a state that a run goes on from. `progress`
+/// gets a line after every round.
 Prestabilized prestabilize(Solver& solver, const Scene& scene, const Plan& plan,
                            const std::function<void(const std::string&)>& progress = {});
 

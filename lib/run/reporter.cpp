@@ -13,7 +13,7 @@ double percent(double part, double whole) { return whole > 0 ? 100 * part / whol
 /// Splashes of a few particles are in any lively flow.
 constexpr double kMuch = 1e-3;  // of particles times steps
 
-std::string passed_through_text(const Scene& s, const Measures& m, double share) {
+std::string passed_through_text(const Scene& s, const Diagnostics& m, double share) {
   // With time.adaptive the longest way may be that of a step much shorter than time.step.
   const std::string remedy =
       s.time.adaptive
@@ -41,7 +41,7 @@ Now Reporter::at(Session& session) {
   if (u < updates)
     for (const Warning& w : found(false))
       if (told_.emplace(w.kind, w.text).second) run_.log.warning(w.text);
-  const Measures& m = watch_.last();
+  const Diagnostics& m = watch_.last();
   progress_.update({u, updates, run_.plan.particles, double(u) * run_.scene.time.step,
                     m.compression_mean, m.compression_max, run_.from.update()});
   return Now::go_on;
@@ -67,7 +67,7 @@ std::vector<Warning> Reporter::untold() const {
   return out;
 }
 
-void Reporter::follow(const Measures& m) {
+void Reporter::follow(const Diagnostics& m) {
   if (m.update == 0 || m.compression_mean <= kNoLiquid) return;
   const std::int64_t every = run_.scene.measure_every, rest = m.update % every;
   compressed_ += rest == 0 ? every : rest;
@@ -109,7 +109,7 @@ void Reporter::look_outside(const Snapshot& s) {
 }
 
 std::vector<Warning> Reporter::found(bool end) const {
-  const Measures& m = watch_.last();
+  const Diagnostics& m = watch_.last();
   std::vector<Warning> list;
   const bool long_time = 10 * compressed_ >= run_.schedule.updates;
   const bool at_end = end && m.compression_mean > kNoLiquid;

@@ -21,7 +21,7 @@ Rows::Rows(RunParts& run, Reporter& reporter) : run_(run), reporter_(reporter) {
   due_.particles = run.plan.particles;
 }
 
-void Rows::take(Measures& m, double dt) {
+void Rows::take(Diagnostics& m, double dt) {
   energy_.follow(m);
   double& most = run_.compression_max;
   most = std::max(most, m.compression_max);

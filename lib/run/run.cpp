@@ -79,7 +79,7 @@ void run_session(RunParts& run) {
   const Stopwatch loop;
   std::optional<Rows> rows;
   Watch watch(
-      run.scene, run.plan, run.solver, [&](Measures& m, double dt) { rows->take(m, dt); },
+      run.scene, run.plan, run.solver, [&](Diagnostics& m, double dt) { rows->take(m, dt); },
       [&](const std::string& line) { run.log.note(line); }, &run.clock);
   Reporter reporter(run, watch);
   rows.emplace(run, reporter);

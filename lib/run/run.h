@@ -62,7 +62,7 @@ class Reporter : public Observer {
   Now at(Session& session) override;
   void end(Session& session) override;
   /// To be given every measure that is due, in order.
-  void follow(const Measures& due);
+  void follow(const Diagnostics& due);
   /// Counts the particles beyond open faces.
   void look_outside(const Snapshot& snapshot);
   /// Updates so far whose next measure found a mean compression above kNoLiquid.
@@ -93,9 +93,9 @@ class Rows {
  public:
   Rows(RunParts& run, Reporter& reporter);
   /// Fills in what the energy's track knows. Error(io) where the JSON cannot be written.
-  void take(Measures& m, double dt);
+  void take(Diagnostics& m, double dt);
   /// The same for a measure whose row is there.
-  void follow(Measures& m) const { EnergyTrack(energy_).follow(m); }
+  void follow(Diagnostics& m) const { EnergyTrack(energy_).follow(m); }
   /// As of the last measure that is due, without a state.
   const SavedRun& due() const { return due_; }
   /// Seconds per stage. The names of the whole run from the start, so that every row of the log has

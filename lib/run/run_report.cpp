@@ -21,7 +21,7 @@ std::string row(const std::string& name, double seconds, double wall) {
 }
 
 /// Nothing when the scene does not define the measure.
-std::string pool_line(const Measures& m) {
+std::string pool_line(const Diagnostics& m) {
   if (std::isnan(m.height_kept)) return {};
   return format(
       "height kept         %.4f of the depth at rest, deviation from hydrostatic %.2g %% (both for "
@@ -88,7 +88,7 @@ std::string run_summary(const RunParts& run, const Watch& watch,
                         const std::vector<StageTime>& stages) {
   const Scene& scene = run.scene;
   const Plan& plan = run.plan;
-  const Measures &first = watch.first(), &last = watch.last();
+  const Diagnostics &first = watch.first(), &last = watch.last();
   const std::int64_t updates = run.solver.updates();
   const double wall = run.wall.seconds(), loop = run.loop_seconds;
   std::string out = format(
@@ -118,9 +118,10 @@ std::string run_summary(const RunParts& run, const Watch& watch,
                   static_cast<long long>(last.non_finite));
   if (plan.tolerance > 0)
     out += format(
-        "sweeps              %.3g per substep on average, at most %d, for a tolerance of %.4g %%\n",
-        double(last.sweeps) / (double(updates) * plan.substeps),
-        scene.solver.iterations * (1 + plan.more_rounds), 100 * plan.tolerance);
+        "iterations              %.3g per substep on average, at most %d, for a tolerance of %.4g "
+        "%%\n",
+        double(last.iterations_done) / (double(updates) * plan.substeps),
+        scene.solver.iterations * (1 + plan.repeats), 100 * plan.tolerance);
   if (last.unresolved > 0)
     out += format("fast past neighbours %lld times more than %g h in a step, at most %.3g h\n",
                   static_cast<long long>(last.unresolved), kResolvedWay, last.relative_way_max);
@@ -145,7 +146,7 @@ std::string run_summary(const RunParts& run, const Watch& watch,
   return out;
 }
 
-std::string measure_json(const Measures& m, double wall, std::int64_t frames,
+std::string measure_json(const Diagnostics& m, double wall, std::int64_t frames,
                          const std::vector<StageTime>& stages) {
   Json out{{"update", m.update}, {"time", m.time}, {"wall", wall}, {"frames", frames}};
   for (const Diagnostic& d : diagnostics()) {

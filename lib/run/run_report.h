@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "lib/solver/measures.h"
+#include "lib/solver/diagnostics.h"
 #include "lib/solver/solver.h"
 
 namespace pbf::inline run_module {
 
 /// One JSON object on one line: the measures, wall-clock seconds, frames that are safe on the disk,
 /// seconds per stage.
-std::string measure_json(const Measures& measures, double wall, std::int64_t frames,
+std::string measure_json(const Diagnostics& measures, double wall, std::int64_t frames,
                          const std::vector<StageTime>& stages);
 
 }  // namespace pbf::inline run_module

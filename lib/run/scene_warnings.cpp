@@ -156,9 +156,10 @@ void add_output(const Scene& s, std::vector<Warning>& list) {
 
 double compression_at_rest(const Scene& s, std::int64_t particles) {
   const double g = length(s.gravity), h = s.h();
-  const int sweeps = s.solver.tolerance > 0 ? std::max(s.solver.iterations, s.solver.max_iterations)
-                                            : s.solver.iterations;
-  if (g == 0 || sweeps == 0) return 0;
+  const int iterations = s.solver.tolerance > 0
+                             ? std::max(s.solver.iterations, s.solver.max_iterations)
+                             : s.solver.iterations;
+  if (g == 0 || iterations == 0) return 0;
   int down = 0;  // the axis along which the fluid lies on a wall
   for (int a = 1; a < 3; ++a)
     if (std::abs(s.gravity[a]) > std::abs(s.gravity[down])) down = a;
@@ -173,7 +174,7 @@ double compression_at_rest(const Scene& s, std::int64_t particles) {
   const double depth =
       std::min(volume(s, double(particles)) / area, s.domain.max[down] - s.domain.min[down]);
   const double dt = longest_step(s);
-  return 2.0 / 3 * g * dt * dt / h * (depth / h) / sweeps;
+  return 2.0 / 3 * g * dt * dt / h * (depth / h) / iterations;
 }
 
 std::vector<Warning> scene_warnings(const Scene& scene, const std::string& scene_dir,

@@ -36,7 +36,7 @@ AdaptiveStep::AdaptiveStep(const Scene& scene, const StepHistory& before)
 
 double AdaptiveStep::step(int level) const { return std::ldexp(scene_.time.step, -level); }
 
-std::optional<std::string> AdaptiveStep::follow(const Measures& m) {
+std::optional<std::string> AdaptiveStep::follow(const Diagnostics& m) {
   double acceleration = std::hypot(scene_.gravity[0], scene_.gravity[1], scene_.gravity[2]);
   if (h_.speed >= 0 && m.time > h_.time)
     acceleration = std::max(acceleration, std::fabs(m.speed_max - h_.speed) / (m.time - h_.time));
@@ -61,7 +61,7 @@ std::optional<std::string> AdaptiveStep::follow(const Measures& m) {
          (unresolved ? "; neighbours moved too far past each other" : "");
 }
 
-std::optional<std::string> AdaptiveStep::refine(const std::string& alarm, const Measures& m,
+std::optional<std::string> AdaptiveStep::refine(const std::string& alarm, const Diagnostics& m,
                                                 std::int64_t back) {
   if (level() == finest_) return std::nullopt;
   ++h_.repeats;

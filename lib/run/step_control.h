@@ -8,7 +8,7 @@
 
 #include "lib/program/time_levels.h"
 #include "lib/scene/scene.h"
-#include "lib/solver/measures.h"
+#include "lib/solver/diagnostics.h"
 
 namespace pbf::inline run_module {
 
@@ -32,11 +32,12 @@ class AdaptiveStep {
   /// time in between: it needs no array, and sees what speeds up the fastest particle. A coarser
   /// step that proves too long within 8 due measures, here or by an alarm, was tried too early: the
   /// next try waits 16 of them, then 32, and so on, so that M measures see some log2(M) of these.
-  std::optional<std::string> follow(const Measures& m);
+  std::optional<std::string> follow(const Diagnostics& m);
 
   /// One level finer from update `back` on, after an alarm (its name) at measure m; nothing where
   /// there is no finer one. The next coarser step waits at least 8 due measures.
-  std::optional<std::string> refine(const std::string& alarm, const Measures& m, std::int64_t back);
+  std::optional<std::string> refine(const std::string& alarm, const Diagnostics& m,
+                                    std::int64_t back);
 
   int level() const { return int(h_.level); }
   double step(int level) const;  ///< s

@@ -18,7 +18,7 @@ Watch::Watch(const Scene& scene, const Plan& plan, Solver& solver, Take take,
       clock_(clock),
       schedule_(make_schedule(scene)) {}
 
-Measures& Watch::go_on_from(const SavedRun& saved) {
+Diagnostics& Watch::go_on_from(const SavedRun& saved) {
   first_ = saved.first;
   first_.energy = saved.energy.first;
   last_ = solver_.measure();
@@ -27,7 +27,8 @@ Measures& Watch::go_on_from(const SavedRun& saved) {
   return last_;
 }
 
-void Watch::begin(const Measures& now, const StepHistory& before, std::optional<double> released) {
+void Watch::begin(const Diagnostics& now, const StepHistory& before,
+                  std::optional<double> released) {
   begun_ = true;
   if (scene_.guard) guard_.emplace(scene_, plan_, solver_, first_, now, released);
   if (scene_.time.adaptive) step_.emplace(scene_, before);
@@ -70,7 +71,7 @@ bool Watch::state_is_good() {
 }
 
 void Watch::measure(bool judged) {
-  const Measures m = solver_.measure();
+  const Diagnostics m = solver_.measure();
   const bool first = !begun_;
   if (first) first_ = m, begin(m, {}, {});
   const double dt = std::ldexp(scene_.time.step, -options().level);
@@ -82,14 +83,14 @@ void Watch::measure(bool judged) {
 }
 
 /// Whether the measure stays: false where the session goes back.
-bool Watch::look(const Measures& m) {
+bool Watch::look(const Diagnostics& m) {
   bool stays = true;
   if (guard_) booked([&] { stays = judge(m); });
   return stays;
 }
 
 /// Where alarms take a run back, a state is kept before anything of it is written down.
-bool Watch::judge(const Measures& m) {
+bool Watch::judge(const Diagnostics& m) {
   const std::optional<Alarm> alarm = guard_->alarm(m);
   if (!alarm) {
     if (!goes_back() || schedule_.has(m.update)) guard_->keep(m);
@@ -142,20 +143,20 @@ std::optional<StepHistory> Watch::steps(std::optional<std::int64_t> update) cons
 
 void Watch::take(const std::string& change, int level_before) {
   const int finer = step_->level() - level_before;
-  note_(change + (finer > 0 ? relax(finer) : std::string()));
+  note_(change + (finer > 0 ? prestabilize(finer) : std::string()));
 }
 
 /// A step of dt holds up the fluid with a compression in proportion to dt^2. Left to a step 2^k
-/// times shorter, it pushes with 4^k times the weight of the fluid and throws it up: with one sweep
-/// and dt sqrt(g/h) = 0.2 a pool of 12 layers, gone back to a mean compression of 39 %, gained 7
-/// times its energy with a step 64 times shorter. So the compression is first taken down by 4^k,
-/// in steps without time (Macklin et al. 2014, Unified particle physics for real-time applications,
-/// ACM TOG 33(4), part contacts that are there at the start so), and what lifting the fluid adds to
-/// its energy is taken from its motion.
-std::string Watch::relax(int levels) {
+/// times shorter, it pushes with 4^k times the weight of the fluid and throws it up: with one
+/// iteration and dt sqrt(g/h) = 0.2 a pool of 12 layers, gone back to a mean compression of 39 %,
+/// gained 7 times its energy with a step 64 times shorter. So the compression is first taken down
+/// by 4^k, in steps without time (Macklin et al. 2014, Unified particle physics for real-time
+/// applications, ACM TOG 33(4), part contacts that are there at the start so), and what lifting the
+/// fluid adds to its energy is taken from its motion.
+std::string Watch::prestabilize(int levels) {
   constexpr int kMost = 64, kAtOnce = 4;
   constexpr double kHarmless = 1e-3;
-  Measures m = solver_.measure();
+  Diagnostics m = solver_.measure();
   const double compression = m.compression_mean, energy = total_energy(m);
   const double target = std::ldexp(compression, -2 * levels);
   if (std::ldexp(compression, 2 * levels) <= kHarmless) return {};

@@ -15,19 +15,20 @@
 
 namespace pbf::inline run_module {
 
-/// Measures where it is due. Where the guard objects, the session goes back to the last good state
-/// and repeats the updates since with half the step, or it ends; the solver has gone back, too.
+/// Diagnostics where it is due. Where the guard objects, the session goes back to the last good
+/// state and repeats the updates since with half the step, or it ends; the solver has gone back,
+/// too.
 class Watch : public Observer {
  public:
   /// Gets every measure but those that the session goes back from; dt: of the steps before, s.
-  using Take = std::function<void(Measures& m, double dt)>;
+  using Take = std::function<void(Diagnostics& m, double dt)>;
   /// `note` gets a line for every change of the step, `clock` what the guard takes, as "guard".
   Watch(
       const Scene& scene, const Plan& plan, Solver& solver, Take take,
       std::function<void(const std::string&)> note = [](const std::string&) {},
       StageClock* clock = nullptr);
   /// Before the session: the solver has the state already. last() is its measure, to be completed.
-  Measures& go_on_from(const SavedRun& saved);
+  Diagnostics& go_on_from(const SavedRun& saved);
 
   std::int64_t next(std::int64_t u) const override;
   Now at(Session& session) override;
@@ -54,18 +55,18 @@ class Watch : public Observer {
   std::optional<StepHistory> steps(std::optional<std::int64_t> update = {}) const;
   /// What the guard stopped the session for; null unless it did.
   const GuardEvent* event() const { return event_ ? &*event_ : nullptr; }
-  const Measures& first() const { return first_; }
-  const Measures& last() const { return last_; }
+  const Diagnostics& first() const { return first_; }
+  const Diagnostics& last() const { return last_; }
 
  private:
   std::int64_t next_choice(std::int64_t u) const;
   Now choose(Session& session);
-  void begin(const Measures& now, const StepHistory& before, std::optional<double> released);
+  void begin(const Diagnostics& now, const StepHistory& before, std::optional<double> released);
   void measure(bool judged);
-  bool look(const Measures& m);
-  bool judge(const Measures& m);
+  bool look(const Diagnostics& m);
+  bool judge(const Diagnostics& m);
   void take(const std::string& change, int level_before);
-  std::string relax(int levels);
+  std::string prestabilize(int levels);
   void booked(const std::function<void()>& action);
 
   const Scene& scene_;
@@ -80,7 +81,7 @@ class Watch : public Observer {
   std::optional<Guard> guard_;
   std::optional<AdaptiveStep> step_;
   std::optional<GuardEvent> event_;
-  Measures first_, last_;
+  Diagnostics first_, last_;
   std::int64_t taken_ = -1;  // update of the last measure that was taken
   bool begun_ = false;
 };

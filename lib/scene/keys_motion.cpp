@@ -31,18 +31,20 @@ KeyRows motion_rows() {
            "A step is at most so many sqrt(h/a), a the acceleration of gravity or, if that is "
            "more, the change of the fastest speed between two measures over their time."),
        key(KEY(solver.iterations), number("", {0, 100000}),
-           "Sweeps over the constraints per substep; with a tolerance, in a round of them."),
+           "Iterations over the constraints per substep; with a tolerance, at least."),
        key(KEY(solver.tolerance), number("", {0, 1}),
-           "Rounds of sweeps are repeated while the mean compression that the last sweep found, "
-           "before it moved the particles, is above this. 0: one round."),
+           "The iterations are repeated while the mean compression that the last one found, before "
+           "it moved the particles, is above this. 0: they are not."),
        key(KEY(solver.max_iterations), number("", {1, 100000}),
-           "Sweeps per substep at most, in whole rounds, where there is a tolerance."),
+           "Iterations per substep at most, a multiple of solver.iterations, where there is a "
+           "tolerance."),
        key(KEY(solver.substeps), number("", {1, 1000}),
            "Time steps of time.step/substeps that share one update's sort and neighbour lists, "
            "as long as little moves meanwhile (pbf plan says how many lists an update makes); "
            "viscosity and vorticity act once per update."),
        key(KEY(solver.method), one_of({"jacobi", "chebyshev"}),
-           "jacobi: every sweep with omega = sor. chebyshev: omega follows Chebyshev's steps for "
+           "jacobi: every iteration with omega = sor. chebyshev: omega follows Chebyshev's steps "
+           "for "
            "eigenvalues from 1/2 to 3/2 of Jacobi's matrix, large ones first: less error for the "
            "same work from 2 iterations on."),
        key(KEY(solver.kernels), one_of({"consistent", "paper"}),
@@ -56,7 +58,8 @@ KeyRows motion_rows() {
            "Larger is softer.",
            renamed("solver.relaxation")),
        key(KEY(solver.sor), number("", {0, 2, true}),
-           "Factor omega on the position change of one sweep (successive over-relaxation; below "
+           "Factor omega on the position change of one iteration (successive over-relaxation; "
+           "below "
            "1 it under-relaxes). auto: min(1, (2.5 d/h)^2), in two dimensions min(1, (3 "
            "d/h)^(4/3)), since more neighbours need smaller steps, and less where the density is "
            "above rest_density.",

@@ -17,8 +17,8 @@ enum class Shape { block, sphere, random_box, file };
 enum class KernelMode { consistent, paper };         ///< density kernel and gradient kernel
 enum class ConstraintMode { one_sided, two_sided };  ///< C = max(rho/rho0 - 1, 0) or rho/rho0 - 1
 enum class BoundaryMode { density, clamp };          ///< walls with a density contribution, or bare
-enum class SolverMethod { jacobi, chebyshev };       ///< omega of a sweep: constant, or a sequence
-enum class Precision { single, dbl };                ///< YAML: float, double
+enum class SolverMethod { jacobi, chebyshev };  ///< omega of an iteration: constant, or a sequence
+enum class Precision { single, dbl };           ///< YAML: float, double
 enum class Backend { cpu, cuda };
 enum class Compression { none, gzip };
 enum class ColorBy { speed, density, id };
@@ -74,15 +74,15 @@ struct Time {
 };
 
 struct SolverSettings {
-  int iterations = 4;       ///< sweeps over the constraints per substep; at least, with a tolerance
-  double tolerance = 0;     ///< mean compression above which more sweeps follow; 0: none do
-  int max_iterations = 32;  ///< sweeps per substep at most, with a tolerance
+  int iterations = 4;  ///< iterations over the constraints per substep; at least, with a tolerance
+  double tolerance = 0;     ///< mean compression above which more iterations follow; 0: none do
+  int max_iterations = 32;  ///< iterations per substep at most, with a tolerance
   int substeps = 1;  ///< time steps of time.step/substeps that share one update's neighbour lists
   SolverMethod method = SolverMethod::jacobi;
   KernelMode kernels = KernelMode::consistent;
   ConstraintMode constraint = ConstraintMode::one_sided;
   double cfm = 1e-4;          ///< dimensionless eps^ = eps h^2 in lambda's denominator
-  std::optional<double> sor;  ///< omega, factor on the position change of one sweep;
+  std::optional<double> sor;  ///< omega, factor on the position change of one iteration;
                               ///< absent: from h/d, see lib/program/plan.h
   BoundaryMode boundary = BoundaryMode::density;
   double wall_margin = 0;       ///< m, distance to a wall at which particles are clamped

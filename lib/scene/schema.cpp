@@ -117,7 +117,7 @@ Json object_schema(const KeyTable& table, const Block& block, int kind) {
 }  // namespace
 
 std::string schema_of(const KeyTable& table) {
-  return json_text(object_schema(table, *table.find_block(""), -1), 1);
+  return json_text(object_schema(table, *table.find_block(""), -1));
 }
 
 std::string json_schema() {

@@ -11,11 +11,11 @@
 namespace pbf::inline solver_module {
 namespace {
 
-using M = const Measures&;
+using M = const Diagnostics&;
 using enum Over;
 
 /// Volume kept and distance to the hydrostatic profile; lib/solver/DIAGNOSTICS.md has the formulas.
-void measure_pool(const MeasureSums& s, const RestPool& pool, double counted, Measures& m) {
+void measure_pool(const MeasureSums& s, const RestPool& pool, double counted, Diagnostics& m) {
   m.height_kept = m.hydrostatic_deviation = std::numeric_limits<double>::quiet_NaN();
   if (pool.axis < 0 || counted == 0) return;
   const double center = s.x[pool.axis] / counted;
@@ -30,12 +30,12 @@ void measure_pool(const MeasureSums& s, const RestPool& pool, double counted, Me
 
 }  // namespace
 
-Measures to_measures(const MeasureSums& s, const Scene& scene, const Plan& plan,
-                     std::int64_t update, std::int64_t steps) {
+Diagnostics to_diagnostics(const MeasureSums& s, const Scene& scene, const Plan& plan,
+                           std::int64_t update, std::int64_t steps) {
   const double h = scene.h(), n = double(plan.particles), mass = plan.mass;
   const Double3 origin = scene.origin();
   const double counted = double(plan.particles - s.non_finite);
-  Measures m;
+  Diagnostics m;
   m.time = double(update) * scene.time.step;
   m.update = update;
   m.compression_mean = s.compression / n;
@@ -67,7 +67,7 @@ Measures to_measures(const MeasureSums& s, const Scene& scene, const Plan& plan,
   m.fast = s.fast;
   m.unresolved = s.unresolved;
   m.relative_way_max = std::sqrt(s.way_squared);
-  m.sweeps = scene.solver.iterations * (plan.substeps * steps + s.rounds);
+  m.iterations_done = scene.solver.iterations * (plan.substeps * steps + s.repeats);
   return m;
 }
 
@@ -117,8 +117,8 @@ const std::vector<Diagnostic>& diagnostics() {
        nullptr, [](M m) { return m.non_finite; }},
       {"fast", "1", "particles x updates above solver.speed_limit or guard.speed so far", none,
        false, nullptr, [](M m) { return m.fast; }},
-      {"sweeps", "1", "over the constraints so far", none, false, nullptr,
-       [](M m) { return m.sweeps; }},
+      {"iterations_done", "1", "over the constraints so far", none, false, nullptr,
+       [](M m) { return m.iterations_done; }},
       {"unresolved", "1", "particles x steps that moved by more than 0.4 h past a neighbour so far",
        none, false, nullptr, [](M m) { return m.unresolved; }},
       {"relative_way_max", "h", "longest such way in a step", none, false,

@@ -82,7 +82,7 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   p.two_sided = s.solver.constraint == ConstraintMode::two_sided;
   p.cfm = Real(s.solver.cfm);
   p.sor = Real(plan.sor);
-  p.ease_crowds = !s.solver.sor;
+  p.under_relax = !s.solver.sor;
   if (s.tensile) {
     p.tensile_k = Real(s.tensile->k);
     const double q = s.tensile->delta_q, t = 1 - q;
@@ -98,9 +98,9 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   return p;
 }
 
-/// A step without time: velocities take the factor `damping`, and the sweeps part what is too near
-/// without changing them. One-sided: what pulls a free surface in is no overlap, and without the
-/// artificial pressure that goes with it the particles would draw together in clusters.
+/// A step without time: velocities take the factor `damping`, and the iterations part what is too
+/// near without changing them. One-sided: what pulls a free surface in is no overlap, and without
+/// the artificial pressure that goes with it the particles would draw together in clusters.
 template <class Real>
 Params<Real> without_time(Params<Real> p, double damping) {
   p.dt = p.inv_dt = 0;

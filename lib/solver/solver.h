@@ -12,7 +12,7 @@
 #include "lib/base/stage_clock.h"
 #include "lib/scene/particles.h"
 #include "lib/scene/scene.h"
-#include "lib/solver/measures.h"
+#include "lib/solver/diagnostics.h"
 #include "lib/solver/snapshot.h"
 #include "lib/solver/stage_event.h"
 #include "lib/solver/step_trace.h"
@@ -40,12 +40,12 @@ struct SolverInfo {
 /// How the updates of one call are made.
 struct StepOptions {
   int level = 0;  ///< an update is 2^level steps (lib/run/step_control.h)
-  /// m/s: particles faster than this are counted in Measures::fast. Without effect where the scene
-  /// has a solver.speed_limit: then those above it are counted.
+  /// m/s: particles faster than this are counted in Diagnostics::fast. Without effect where the
+  /// scene has a solver.speed_limit: then those above it are counted.
   double watched_speed = std::numeric_limits<double>::infinity();
-  /// Steps without time instead of updates: new lists and sweeps, which part what is too near and
-  /// draw nothing together (one-sided, whatever the scene's constraint), while velocities change by
-  /// this factor per step alone. No update is counted, and the level does not matter.
+  /// Steps without time instead of updates: new lists and iterations, which part what is too near
+  /// and draw nothing together (one-sided, whatever the scene's constraint), while velocities
+  /// change by this factor per step alone. No update is counted, and the level does not matter.
   std::optional<double> without_time{};
   bool operator==(const StepOptions&) const = default;
 };
@@ -66,7 +66,7 @@ class Solver {
   /// run while the copy is under way: get() waits for it, not for them. At most one at a time.
   virtual std::future<Snapshot> download(const std::vector<std::string>& fields,
                                          ScalarType type) = 0;
-  virtual Measures measure() = 0;
+  virtual Diagnostics measure() = 0;
   /// set_state() of the state, in this or in another solver of the same scene and precision,
   /// continues to the last bit. Positions and velocities of a double are rounded where they go into
   /// a solver of float. Error(internal) when the number of particles differs or the ids are not

@@ -25,7 +25,7 @@ struct StageEvent {
   Alarm alarm = Alarm::non_finite;
   std::int64_t update = 0;  ///< the first update is 1
   std::string stage;        ///< name of the pass
-  int sweep = 0;            ///< 1, 2, ... within the iterations, 0 outside them
+  int iteration = 0;        ///< 1, 2, ... within the iterations, 0 outside them
   int id = 0;
   double position[3] = {0, 0, 0}, velocity[3] = {0, 0, 0};
   double value = 0;  ///< speed, energy or number of neighbours; else the value that is wrong
@@ -37,7 +37,7 @@ struct StageEvent {
 struct Fault {
   std::int64_t update = 1;
   std::string stage;
-  int sweep = 0;  ///< 1, 2, ... for density, lambda and delta
+  int iteration = 0;  ///< 1, 2, ... for density, lambda and delta
   int id = 0;
   double value = 0;  ///< h/s for a velocity
 };

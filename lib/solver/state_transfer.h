@@ -70,7 +70,7 @@ SolverState download_state(Exec& exec, std::size_t n, const Axes& axes,
   StepCounts counts;
   exec.to_host(from.counts, 1, &counts);
   s.fast = std::int64_t(counts.fast);
-  s.rounds = std::int64_t(counts.rounds);
+  s.repeats = std::int64_t(counts.repeats);
   s.unresolved = std::int64_t(counts.unresolved);
   s.way_squared = counts.way_squared;
   return s;
@@ -92,7 +92,7 @@ void upload_state(Exec& exec, const Axes& axes, const SolverState& s, const Stat
   exec.to_device(s.id.data(), n, to.id);
   StepCounts counts;
   counts.fast = std::uint64_t(s.fast);
-  counts.rounds = std::uint64_t(s.rounds);
+  counts.repeats = std::uint64_t(s.repeats);
   counts.unresolved = std::uint64_t(s.unresolved);
   counts.way_squared = float(s.way_squared);
   exec.to_device(&counts, 1, to.counts);

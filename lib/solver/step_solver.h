@@ -115,9 +115,9 @@ class StepSolver final : public Solver, public Inspection {
     });
   }
 
-  Measures measure() override {
+  Diagnostics measure() override {
     find_pairs();
-    return to_measures(stepper_->measure(), scene_, plan_, updates_, steps_);
+    return to_diagnostics(stepper_->measure(), scene_, plan_, updates_, steps_);
   }
 
   SolverState state(Which which) override {

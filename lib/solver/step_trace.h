@@ -20,14 +20,14 @@ struct SolverState {
   std::vector<double> velocity;          ///< 3n, h/s
   std::vector<std::int32_t> id;          ///< n
   /// kernels/step_counts.h, so far.
-  std::int64_t fast = 0, rounds = 0, unresolved = 0;
+  std::int64_t fast = 0, repeats = 0, unresolved = 0;
   double way_squared = 0;
 };
 
 /// One array that a pass left behind, along the scene's axes; row = particle id.
 struct TraceArray {
   std::string stage;     ///< name of the pass: predict, grid, lambda, ...
-  int sweep = 0;         ///< 1, 2, ... within the iterations, 0 outside them
+  int iteration = 0;     ///< 1, 2, ... within the iterations, 0 outside them
   std::string quantity;  ///< position, velocity, bin, density, lambda, curl ...
   std::string unit;      ///< of the internal frame
   int components = 1;    ///< scalars per row

@@ -34,7 +34,7 @@ class Stepper {
         program_(&plan.program) {
     for (int k = 0; k < scene.solver.iterations; ++k)
       c_.factors.push_back(
-          Real(plan.sor * (plan.sweep_factors.empty() ? 1 : plan.sweep_factors[std::size_t(k)])));
+          Real(plan.sor * (plan.sor_factors.empty() ? 1 : plan.sor_factors[std::size_t(k)])));
     c_.make(plan.program.fields, position, velocity, id);
     find_pairs();
     sum_density();
@@ -197,7 +197,7 @@ class Stepper {
           break;
         case ProgramStep::until:
           c_.exec.repeat_while("residual", size(), s.times, ResidualPass<Real>{c_.density()},
-                               residual_limit_, &c_.counts()->rounds, [&] { run(s.body, seen); });
+                               residual_limit_, &c_.counts()->repeats, [&] { run(s.body, seen); });
           break;
       }
   }

@@ -50,7 +50,7 @@ class Tracer {
   void record(const PassInfo& pass, int number) {
     for (const Written& w : pass.writes) {
       stage_ = w.stage ? w.stage : pass.stage;
-      sweep_ = number;
+      iteration_ = number;
       amplitude_ = options_.unit_roundoff * (w.sum ? 4 + std::sqrt(most_terms_) : 1);
       const FieldInfo& f = *w.to.field;
       const auto vectors = [&] { return w.to.other ? c_.other(f) : c_.vectors(f); };
@@ -114,7 +114,7 @@ class Tracer {
   void array(const Written& w, int components, T* from, const Component& component, int sign = 1) {
     std::vector<T> v = host(from);
     id_ = host(w.before_sort ? c_.template other_data<int>(field::id) : c_.ids());
-    trace_.arrays.push_back({stage_, sweep_, w.quantity, w.unit, components, {}});
+    trace_.arrays.push_back({stage_, iteration_, w.quantity, w.unit, components, {}});
     TraceArray& to = trace_.arrays.back();
     to.values.resize(n_ * std::size_t(components));
     const TraceArray* follow = followed(to);
@@ -141,7 +141,7 @@ class Tracer {
     if (!options_.follow) return nullptr;
     if (at < options_.follow->arrays.size()) {
       const TraceArray& other = options_.follow->arrays[at];
-      if (other.stage == mine.stage && other.sweep == mine.sweep &&
+      if (other.stage == mine.stage && other.iteration == mine.iteration &&
           other.quantity == mine.quantity && other.values.size() == mine.values.size())
         return &other;
     }
@@ -171,7 +171,7 @@ class Tracer {
   TraceOptions options_;
   SplitMix64 random_;
   std::string stage_;
-  int sweep_ = 0;
+  int iteration_ = 0;
   double amplitude_ = 0;
   double most_terms_ = 0;  ///< of the longest sum over neighbours, once lists() has seen them
   std::vector<int> id_;

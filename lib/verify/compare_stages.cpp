@@ -35,12 +35,12 @@ Size difference(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 std::string name_of(const TraceArray& t) {
-  return t.sweep ? format("%s %d: %s", t.stage.c_str(), t.sweep, t.quantity.c_str())
-                 : format("%s: %s", t.stage.c_str(), t.quantity.c_str());
+  return t.iteration ? format("%s %d: %s", t.stage.c_str(), t.iteration, t.quantity.c_str())
+                     : format("%s: %s", t.stage.c_str(), t.quantity.c_str());
 }
 
 bool same_kind(const TraceArray& x, const TraceArray& y) {
-  return x.stage == y.stage && x.sweep == y.sweep && x.quantity == y.quantity;
+  return x.stage == y.stage && x.iteration == y.iteration && x.quantity == y.quantity;
 }
 
 /// Terms of the sums of a stage: rounding within them is not in the ensemble.
@@ -184,12 +184,12 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
     add("neighbors: pairs", "h", set_difference(a, b, position),
         c.same_bits ? 0 : 4 * position_tolerance + 8 * c.u, "neighbors");
   if (k < a.arrays.size() || k < b.arrays.size()) {
-    const bool only_b = k >= a.arrays.size() || (k < b.arrays.size() && b.arrays[k].sweep > 0);
+    const bool only_b = k >= a.arrays.size() || (k < b.arrays.size() && b.arrays[k].iteration > 0);
     const TraceArray& t = only_b ? b.arrays[k] : a.arrays[k];
     CompareRow r{name_of(t),      "only on " + std::string(only_b ? "B" : "A"), 0, 0, 0, 0, 0,
                  Verdict::differs};
     part.rows.push_back(r);
-    if (result.stage.empty()) result.stage = t.sweep > 0 ? "iterations" : t.stage;
+    if (result.stage.empty()) result.stage = t.iteration > 0 ? "iterations" : t.stage;
   }
   part.verdict = result.stage.empty() ? Verdict::same : Verdict::differs;
   part.finding = result.stage.empty()

@@ -30,8 +30,8 @@ bool same(const pbf::SolverState& a, const pbf::SolverState& b) {
   return a.position == b.position && a.velocity == b.velocity && a.id == b.id;
 }
 
-/// A pool with one sweep and five times the step that it can bear; it sinks into itself, and the
-/// energy of that throws it up.
+/// A pool with one iteration and five times the step that it can bear; it sinks into itself, and
+/// the energy of that throws it up.
 Case unstable_pool() {
   Case c = here(jittered_block(8, 8, 12, 0, 0));
   const pbf::Double3 low = c.scene.domain.min;
@@ -48,7 +48,7 @@ Case unstable_pool() {
 
 struct Course {
   std::vector<std::string> notes;
-  pbf::Measures last;
+  pbf::Diagnostics last;
   double energy_start = 0, energy_most = 0, shortest = 1;
   bool stopped = false;
   std::int64_t repeats = 0;
@@ -63,7 +63,7 @@ Course watched(const Case& c, pbf::Solver& solver, int updates, int every) {
   const pbf::Plan plan = pbf::make_plan(scene, std::int64_t(c.particles.size()));
   pbf::Watch watch(
       scene, plan, solver,
-      [&](const pbf::Measures& m, double dt) {
+      [&](const pbf::Diagnostics& m, double dt) {
         if (m.update == 0) course.energy_start = pbf::total_energy(m);
         course.energy_most = std::max(course.energy_most, pbf::total_energy(m));
         course.shortest = std::min(course.shortest, dt);
@@ -98,7 +98,7 @@ TEST_CASE("an update at level k is 2^k updates of the scene with what goes with 
   }
   CHECK(coarse->updates() == 12);
   CHECK(coarse->state().steps == fine->state().steps);
-  CHECK(coarse->measure().sweeps == fine->measure().sweeps);
+  CHECK(coarse->measure().iterations_done == fine->measure().iterations_done);
 }
 
 TEST_CASE("levels that change in the middle: the bits of the pieces, in one solver or in several") {
@@ -146,11 +146,11 @@ TEST_CASE("steps without time part the particles, and velocities take the dampin
   const double before = s->measure().compression_mean;
   const auto v = s->download({"velocity"}, pbf::ScalarType::f64).get();
   s->step(24, {.without_time = 1.0});
-  const pbf::Measures m = s->measure();
+  const pbf::Diagnostics m = s->measure();
   CHECK(before > 0.1);
   CHECK(m.compression_mean < 0.1 * before);
   CHECK(m.outside == 0);
-  CHECK(m.sweeps == 24 * c.scene.solver.iterations);
+  CHECK(m.iterations_done == 24 * c.scene.solver.iterations);
   CHECK(s->updates() == 0);
   const auto w = s->download({"velocity"}, pbf::ScalarType::f64).get();
   CHECK(w.find("velocity")->bytes == v.find("velocity")->bytes);
@@ -171,7 +171,7 @@ TEST_CASE("an alarm takes the run back, and with a shorter step it comes to its 
   const Case c = unstable_pool();
   const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
   auto fixed = make(c);
-  const pbf::Measures first = fixed->measure();
+  const pbf::Diagnostics first = fixed->measure();
   pbf::Guard guard(c.scene, plan, *fixed, first, first);
   std::optional<pbf::GuardEvent> event;
   while (!event && fixed->updates() < 100) {
@@ -215,7 +215,7 @@ TEST_CASE("what is wrong at the start is not tried again with a shorter step") {
   c.scene.guard->speed = 1e-3;
   auto solver = make(c);
   const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
-  pbf::Watch watch(c.scene, plan, *solver, [](const pbf::Measures&, double) {});
+  pbf::Watch watch(c.scene, plan, *solver, [](const pbf::Diagnostics&, double) {});
   pbf::Session(*solver, {&watch}).run(10);
   CHECK(solver->updates() == 0);
   REQUIRE(watch.event());

@@ -74,7 +74,7 @@ void check_same_fields(const pbf::Snapshot& a, const pbf::Snapshot& b, const Tur
   CHECK(a.find("density")->bytes == b.find("density")->bytes);
 }
 
-void check_same_measures(const pbf::Measures& a, const pbf::Measures& b, const Turn& t) {
+void check_same_measures(const pbf::Diagnostics& a, const pbf::Diagnostics& b, const Turn& t) {
   for (std::size_t k = 0; k < 3; ++k) {
     CHECK(a.momentum[t[k]] == b.momentum[k]);
     CHECK(a.center_of_mass[t[k]] == b.center_of_mass[k]);
@@ -101,7 +101,7 @@ TEST_CASE("a scene with its axes exchanged gives the same bits, exchanged back")
   first->step(20);
   const std::vector<std::string> fields{"velocity", "density"};
   const pbf::Snapshot snap = first->download(fields, pbf::ScalarType::f64).get();
-  const pbf::Measures measures = first->measure();
+  const pbf::Diagnostics measures = first->measure();
   const pbf::SolverState state = first->state();
   const pbf::StepTrace trace = first->inspection()->trace();
   for (const Turn& t : kTurns) {
@@ -174,7 +174,7 @@ TEST_CASE("a thrown particle is where a hand calculation puts it, in any box, in
   auto s = make(c);
   s->step(n);
   const pbf::Snapshot snap = s->download({"velocity"}, pbf::ScalarType::f64).get();
-  const pbf::Measures m = s->measure();
+  const pbf::Diagnostics m = s->measure();
   const pbf::SolverState state = s->state();
   double potential = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -192,7 +192,7 @@ TEST_CASE("a thrown particle is where a hand calculation puts it, in any box, in
   // The guard says where a particle is that a fault makes too fast along x.
   const pbf::Plan plan = pbf::make_plan(c.scene, 1);
   auto faulty = make(c);
-  const pbf::Measures first = faulty->measure();
+  const pbf::Diagnostics first = faulty->measure();
   pbf::Guard guard(c.scene, plan, *faulty, first, first);
   faulty->inspection()->inject({1, "predict", 0, 0, 1e6});
   faulty->step(1, guard.options());
@@ -233,7 +233,7 @@ TEST_CASE("a face is open or a wall by its name, in any box") {
   CHECK(x[axis] == Approx(0.5 + speed * 20 * c.scene.time.step));
   CHECK(x[3 + axis] >= 0);
   CHECK(x[3 + axis] <= c.scene.domain.max[axis]);
-  const pbf::Measures m = s->measure();
+  const pbf::Diagnostics m = s->measure();
   CHECK(m.outside == 0);
   CHECK(m.front[axis] == Approx(std::max(x[axis], x[3 + axis])));
 }

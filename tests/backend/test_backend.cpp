@@ -27,7 +27,7 @@ std::vector<double> positions(pbf::Solver& s) {
 /// Differences of all coordinates, in h, from the CPU in double after `updates` updates.
 struct Distance {
   double rms = 0, worst = 0;
-  pbf::Measures here, reference;
+  pbf::Diagnostics here, reference;
 };
 Distance from_cpu(Case c, int updates) {
   auto a = make(c);

@@ -44,7 +44,7 @@ TEST_CASE("cubes that meet by 2 h a step pass through each other, which is count
   auto solver = make(c);
   solver->step(6);
   CHECK(kept(*solver, 10) > 0.7);
-  const pbf::Measures m = solver->measure();
+  const pbf::Diagnostics m = solver->measure();
   CHECK(m.unresolved > 100);
   CHECK(m.relative_way_max > 1.9);
 }
@@ -77,7 +77,7 @@ TEST_CASE("an adaptive step is halved while neighbours move too far past each ot
   Case c = here(cubes(0, 0.004));
   c.scene.time.adaptive = pbf::AdaptiveTime{};
   pbf::AdaptiveStep step(c.scene);
-  pbf::Measures m;
+  pbf::Diagnostics m;
   m.speed_max = 0.1;
   CHECK_FALSE(step.follow(m));
   m.unresolved = 5;

@@ -28,7 +28,7 @@ pbf::Plan plan_of(const Case& c) {
 /// What the guard finds in `updates` updates with the fault in one of them.
 std::optional<pbf::GuardEvent> caught(const Case& c, const pbf::Fault& fault, int updates) {
   auto solver = make(c);
-  const pbf::Measures first = solver->measure();
+  const pbf::Diagnostics first = solver->measure();
   pbf::Guard guard(c.scene, plan_of(c), *solver, first, first);
   solver->inspection()->inject(fault);
   solver->step(updates, guard.options());
@@ -44,22 +44,22 @@ bool same_state(const pbf::SolverState& a, const pbf::SolverState& b) {
 
 TEST_CASE(
     "guard: a NaN, an infinity and a huge velocity put into any stage are caught by the next "
-    "measure, which names update, stage, sweep and particle") {
+    "measure, which names update, stage, iteration and particle") {
   const Case c = all_stages();
   const double nan = std::numeric_limits<double>::quiet_NaN(),
                infinity = std::numeric_limits<double>::infinity();
   for (const char* stage :
        {"predict", "grid", "neighbors", "density", "lambda", "delta", "xsph", "vorticity"}) {
     const std::string name = stage;
-    const int sweep = name == "density" || name == "lambda" || name == "delta" ? 3 : 0;
+    const int iteration = name == "density" || name == "lambda" || name == "delta" ? 3 : 0;
     for (const double value : {nan, infinity, 1e6})
       for (const int update : {2, 5}) {  // in the middle of the interval, and its last
         CAPTURE(stage, value, update);
-        const auto e = caught(c, {update, stage, sweep, 40, value}, 5);
+        const auto e = caught(c, {update, stage, iteration, 40, value}, 5);
         REQUIRE(e);
         REQUIRE(e->stage);
         CHECK(e->stage->stage == name);
-        CHECK(e->stage->sweep == sweep);
+        CHECK(e->stage->iteration == iteration);
         CHECK(e->stage->update == update);
         CHECK(e->stage->id == 40);
         CHECK(e->alarm == (std::isfinite(value) ? pbf::Alarm::speed : pbf::Alarm::non_finite));
@@ -72,7 +72,7 @@ TEST_CASE(
     "guard: a run without a fault raises no alarm, and looking at every stage changes no bit") {
   const Case c = all_stages();
   auto guarded = make(c), looked_at = make(c), bare = make(c);
-  const pbf::Measures first = guarded->measure();
+  const pbf::Diagnostics first = guarded->measure();
   pbf::Guard guard(c.scene, plan_of(c), *guarded, first, first);
   for (int k = 0; k < 4; ++k) {
     guarded->step(5, guard.options());

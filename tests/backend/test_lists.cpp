@@ -40,7 +40,7 @@ ByAllPairs by_all_pairs(const Case& c, const pbf::Snapshot& s) {
 }
 
 void check_against_all_pairs(const Case& c, pbf::Solver& solver) {
-  const pbf::Measures m = solver.measure();
+  const pbf::Diagnostics m = solver.measure();
   const auto snapshot = solver.download({"density"}, pbf::ScalarType::f64).get();
   const ByAllPairs e = by_all_pairs(c, snapshot);
   const double tolerance = is_double() ? 1e-9 : 1e-4;
@@ -104,7 +104,7 @@ TEST_CASE("a dam break gains no energy with however many substeps in an update")
   double highest = 0;
   for (double t = 0; t < 0.5; t += step) {
     solver->step(1);
-    const pbf::Measures m = solver->measure();
+    const pbf::Diagnostics m = solver->measure();
     highest = std::max(highest, m.energy);
     REQUIRE(m.non_finite + m.outside == 0);
   }

@@ -13,7 +13,7 @@ using backend_test::is_double;
 
 namespace {
 
-/// Measures by the definitions of lib/solver/DIAGNOSTICS.md, from brute-force densities.
+/// Diagnostics by the definitions of lib/solver/DIAGNOSTICS.md, from brute-force densities.
 struct Expected {
   double mean = 0, rms = 0, p99 = 0, max = 0, above_1 = 0, above_10 = 0;
 };
@@ -40,7 +40,7 @@ Expected expected(const Case& c) {
 
 void check_compression(const Case& c) {
   const Expected e = expected(c);
-  const pbf::Measures m = make(c)->measure();
+  const pbf::Diagnostics m = make(c)->measure();
   const double tolerance = is_double() ? 1e-10 : 3e-6;
   CHECK(m.compression_mean == Approx(e.mean).margin(tolerance));
   CHECK(m.compression_rms == Approx(e.rms).margin(tolerance));
@@ -89,7 +89,7 @@ double deviation(const Case& c, double depth) {
 }  // namespace
 
 TEST_CASE("a lattice is not compressed, neither free nor between walls away from edges") {
-  const pbf::Measures free = make(free_lattice(12, 1))->measure();
+  const pbf::Diagnostics free = make(free_lattice(12, 1))->measure();
   const double rounding = is_double() ? 1e-13 : 1e-6;
   CHECK(free.compression_max < rounding);
   CHECK(free.compression_p99 < rounding);
@@ -120,7 +120,7 @@ TEST_CASE("one displaced particle compresses its neighbours as brute force says,
   Case c = free_lattice(12, 1);
   c.particles.position[5 * 144 + 5 * 12 + 5][0] += 0.4 * c.scene.fluid.spacing;
   check_compression(c);
-  const pbf::Measures m = make(c)->measure();
+  const pbf::Diagnostics m = make(c)->measure();
   CHECK(m.compression_max > 0.01);
   CHECK(m.share_above_1 * 1728 < 34);
   CHECK(m.compression_p99 < m.compression_max);
@@ -135,12 +135,12 @@ TEST_CASE("a pool at rest keeps its height and its hydrostatic profile, a sunken
   const double rounding = is_double() ? 1e-12 : 1e-6;
   for (const int layers : {9, 16, 40}) {
     Case c = pool(layers);
-    const pbf::Measures m = make(c)->measure();
+    const pbf::Diagnostics m = make(c)->measure();
     CHECK(m.height_kept == Approx(1).margin(rounding));
     CHECK(m.hydrostatic_deviation < rounding);
     const double depth = layers * c.scene.fluid.spacing, low = c.scene.domain.min[2];
     for (auto& p : c.particles.position) p[2] = low + 0.9 * (p[2] - low);
-    const pbf::Measures sunken = make(c)->measure();
+    const pbf::Diagnostics sunken = make(c)->measure();
     CHECK(sunken.height_kept == Approx(0.9).margin(rounding));
     CHECK(sunken.hydrostatic_deviation == Approx(deviation(c, depth)).margin(10 * rounding));
     CHECK(sunken.hydrostatic_deviation > 0.04);
@@ -149,17 +149,17 @@ TEST_CASE("a pool at rest keeps its height and its hydrostatic profile, a sunken
 
 TEST_CASE("the pool may rest on any wall that gravity points at, and must have one") {
   Case c = pool(12);
-  const pbf::Measures down = make(c)->measure();
+  const pbf::Diagnostics down = make(c)->measure();
   // Upside down: mirrored in z, gravity up.
   Case up = c;
   for (auto& p : up.particles.position) p[2] = c.scene.domain.min[2] + c.scene.domain.max[2] - p[2];
   up.scene.gravity = {0, 0, 9.81};
-  const pbf::Measures mirrored = make(up)->measure();
+  const pbf::Diagnostics mirrored = make(up)->measure();
   CHECK(mirrored.height_kept == Approx(1).margin(2e-6));
   CHECK(mirrored.hydrostatic_deviation < 2e-6);
   CHECK(mirrored.energy == Approx(down.energy).epsilon(1e-5));
   const auto undefined = [](const Case& with) {
-    const pbf::Measures m = make(with)->measure();
+    const pbf::Diagnostics m = make(with)->measure();
     return std::isnan(m.height_kept) && std::isnan(m.hydrostatic_deviation);
   };
   Case other = c;
@@ -209,7 +209,7 @@ TEST_CASE("penetration is the distance behind the clamp, whichever wall it is") 
 }
 
 TEST_CASE(
-    "without sweeps, viscosity and vorticity particles fall freely, measured often or never") {
+    "without iterations, viscosity and vorticity particles fall freely, measured often or never") {
   Case c = free_lattice(9, 0.9);
   c.scene.solver.iterations = 0;
   c.scene.solver.substeps = GENERATE(1, 2);
@@ -240,7 +240,7 @@ TEST_CASE(
   }
   CHECK(worst < (is_double() ? 1e-12 : 5e-6));
   // The lattice has only moved: its density is what it was, and so are measures from new lists.
-  const pbf::Measures m = often->measure();
+  const pbf::Diagnostics m = often->measure();
   CHECK(m.compression_mean == Approx(moved->measure().compression_mean).margin(1e-5));
   CHECK(never->measure().compression_mean == m.compression_mean);
 }
@@ -264,7 +264,7 @@ TEST_CASE("measures of positions and velocities have the same bits in any order 
   }
   a->set_state(s);
   b->set_state(shuffled);
-  const pbf::Measures x = a->measure(), y = b->measure();
+  const pbf::Diagnostics x = a->measure(), y = b->measure();
   for (int k = 0; k < 3; ++k) {
     CHECK(x.momentum[k] == y.momentum[k]);
     CHECK(x.center_of_mass[k] == y.center_of_mass[k]);
@@ -286,9 +286,9 @@ TEST_CASE("free fall gains m g t of momentum to rounding, and keeps what is leve
   for (std::size_t i = 0; i < c.particles.size(); ++i)
     c.particles.velocity[i] = {0.5 * (i % 3 ? 1 : -2), 0.25, -1};
   auto s = make(c);
-  const pbf::Measures before = s->measure();
+  const pbf::Diagnostics before = s->measure();
   s->step(100);
-  const pbf::Measures after = s->measure();
+  const pbf::Diagnostics after = s->measure();
   const double mass = 1000 * std::pow(c.scene.fluid.spacing, 3) * double(c.particles.size());
   // Every third of them goes the other way, twice as fast.
   CHECK(std::fabs(after.momentum[0]) < 1e-12 * mass);

@@ -197,7 +197,7 @@ TEST_CASE("a state of another number of particles, or with ids that are not 0..n
 TEST_CASE("coincident particles part by their ids, whatever the order of rows") {
   const bool flat = GENERATE(false, true);
   Case c = here(flat ? flat_block(30, 20, 0.3, 0.4) : jittered_block(11, 9, 10, 0.3, 0.4));
-  // One sweep, for which the others see the same positions in the same order.
+  // One iteration, for which the others see the same positions in the same order.
   c.scene.solver.iterations = 1;
   const auto put_on = [&](std::size_t i, std::size_t j) {
     c.particles.position[i] = c.particles.position[j];

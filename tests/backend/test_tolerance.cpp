@@ -1,4 +1,4 @@
-// Sweeps that go on until a tolerance is met (solver.tolerance).
+// Iterations that go on until a tolerance is met (solver.tolerance).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,7 +21,7 @@ Case crowded() {
   return c;
 }
 
-/// max(rho - 1, 0) of every sweep of an update, averaged on the host.
+/// max(rho - 1, 0) of every iteration of an update, averaged on the host.
 std::vector<double> mean_compressions(const pbf::StepTrace& t) {
   std::vector<double> out;
   for (const pbf::TraceArray& a : t.arrays) {
@@ -39,44 +39,44 @@ bool same(const pbf::SolverState& a, const pbf::SolverState& b) {
 
 }  // namespace
 
-TEST_CASE("sweeps go on until the mean compression is within the tolerance, and no further") {
+TEST_CASE("iterations go on until the mean compression is within the tolerance, and no further") {
   Case fixed = crowded();
   fixed.scene.solver.iterations = 24;
   const std::vector<double> all = mean_compressions(make(fixed)->inspection()->trace());
   REQUIRE(all.size() == 24);
-  for (const int sweeps : {2, 5, 17}) {
-    CAPTURE(sweeps);
-    // Between what sweeps - 1 and what `sweeps` found.
-    const double before = all[std::size_t(sweeps - 2)], now = all[std::size_t(sweeps - 1)];
+  for (const int iterations : {2, 5, 17}) {
+    CAPTURE(iterations);
+    // Between what iterations - 1 and what `iterations` found.
+    const double before = all[std::size_t(iterations - 2)], now = all[std::size_t(iterations - 1)];
     REQUIRE(now < before);
     Case c = crowded();
     c.scene.solver.tolerance = std::sqrt(before * now);
     auto solver = make(c);
     solver->step(1);
-    CHECK(solver->measure().sweeps == sweeps);
+    CHECK(solver->measure().iterations_done == iterations);
     Case asked = crowded();
-    asked.scene.solver.iterations = sweeps;
+    asked.scene.solver.iterations = iterations;
     auto expected = make(asked);
     expected->step(1);
     CHECK(same(solver->state(), expected->state()));
   }
 }
 
-TEST_CASE("whole rounds of sweeps follow, and no more than max_iterations allows") {
+TEST_CASE("whole repeats of the iterations follow, and no more than max_iterations allows") {
   Case c = crowded();
   c.scene.solver.iterations = 3;
   c.scene.solver.max_iterations = 8;
   c.scene.solver.tolerance = 1e-9;
   auto solver = make(c);
   solver->step(2);
-  CHECK(solver->measure().sweeps == 2 * 6);
+  CHECK(solver->measure().iterations_done == 2 * 6);
   c.scene.solver.tolerance = 1;
   solver = make(c);
   solver->step(2);
-  CHECK(solver->measure().sweeps == 2 * 3);
+  CHECK(solver->measure().iterations_done == 2 * 3);
 }
 
-TEST_CASE("a tolerance is met in the same sweeps in one call, in many, and pass by pass") {
+TEST_CASE("a tolerance is met in the same iterations in one call, in many, and pass by pass") {
   Case c = crowded();
   c.scene.solver.iterations = 2;
   c.scene.solver.substeps = 2;
@@ -87,11 +87,11 @@ TEST_CASE("a tolerance is met in the same sweeps in one call, in many, and pass 
   once->step(updates);
   for (int u = 0; u < updates; ++u) singly->step(1);
   for (int u = 0; u < updates; ++u) traced->inspection()->trace();
-  const auto sweeps = once->measure().sweeps;
-  CHECK(sweeps > 4 * updates);
-  CHECK(sweeps < 4 * 16 * updates);
-  CHECK(singly->measure().sweeps == sweeps);
-  CHECK(traced->measure().sweeps == sweeps);
+  const auto iterations = once->measure().iterations_done;
+  CHECK(iterations > 4 * updates);
+  CHECK(iterations < 4 * 16 * updates);
+  CHECK(singly->measure().iterations_done == iterations);
+  CHECK(traced->measure().iterations_done == iterations);
   CHECK(same(once->state(), singly->state()));
   CHECK(same(once->state(), traced->state()));
 }

@@ -18,8 +18,8 @@ namespace {
 
 using Args = std::vector<std::string>;
 
-/// A dam break with one sweep and a step that the guard stops; frames between the measures. Alarms
-/// and criteria change the step on the way.
+/// A dam break with one iteration and a step that the guard stops; frames between the measures.
+/// Alarms and criteria change the step on the way.
 std::string scene(const Scratch& folder, const std::string& adaptive) {
   return folder.write("s.yaml",
                       "name: s\n"

@@ -66,7 +66,7 @@ TEST_CASE(
   const std::vector<std::string> blow{"run", scene, "--out", "o", "--set", "tensile.k=1000"};
   const Outcome o = pbf::test::pbf(blow, folder.path());
   CHECK(o.code == 3);
-  for (const char* part : {"stopped by the guard: at update ", ", in stage delta of sweep ",
+  for (const char* part : {"stopped by the guard: at update ", ", in stage delta of iteration ",
                            ", particle ", " m, velocity (", "time.step", "guard_scene.yaml"})
     CHECK(has(o.err, part));
   CHECK(has(read_text(folder / "o/log.txt"), "stopped by the guard"));
@@ -75,7 +75,7 @@ TEST_CASE(
   CHECK(has(read_text(folder / "o/guard_scene.yaml"), "prestabilize: false"));
   const Outcome again = pbf::test::pbf({"run", "o/guard_scene.yaml", "--out", "p"}, folder.path());
   CHECK(again.code == 3);
-  const auto told = [](const std::string& text) {  // stage, sweep and particle
+  const auto told = [](const std::string& text) {  // stage, iteration and particle
     const std::size_t from = text.find(", in stage"), id = text.find(", particle ", from);
     return text.substr(from, text.find(" at ", id) - from);
   };

@@ -139,7 +139,7 @@ TEST_CASE("fluid that leaves through an open face is counted also without frames
 
 TEST_CASE("a stopped run counts what it has warned of on from its checkpoint") {
   const Scratch folder;
-  // Squeezed at the start alone: one sweep, and a wave that comes to rest.
+  // Squeezed at the start alone: one iteration, and a wave that comes to rest.
   folder.write("s.yaml", squeezed("solver: {iterations: 2}\ncheckpoint: {every: 1000}\n"));
   REQUIRE(run(folder, {"s.yaml", "--out", "a", "--max-walltime", "0.001"}).code == 75);
   REQUIRE(run(folder, {"s.yaml", "--out", "a", "--resume"}).code == 0);

@@ -28,7 +28,7 @@ inline oracle::Settings settings_of(const Case& c) {
   o.dt = s.time.step;
   o.cfm = s.solver.cfm;
   o.sor = pbf::make_plan(s, std::int64_t(c.particles.size())).sor;
-  o.smaller_steps_in_crowds = !s.solver.sor;
+  o.under_relax = !s.solver.sor;
   o.damping = s.solver.velocity_damping;
   o.margin = s.solver.wall_margin;
   o.iterations = s.solver.iterations;

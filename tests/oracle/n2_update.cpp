@@ -158,7 +158,7 @@ void update(State& s, const Settings& c) {
   const Real m = c.mass / c.rest_density;  // volume, m^3
   s.density.assign(n, c.rest_density);
   auto kernel = [&](Real r) { return c.paper ? poly6(r, c) : spiky(r, c); };
-  for (int sweep = 0; sweep < c.iterations; ++sweep) {
+  for (int iteration = 0; iteration < c.iterations; ++iteration) {
     std::vector<Real> lambda(n);
     std::vector<Wall> wall(n);
     for (std::size_t i = 0; i < n; ++i) {
@@ -176,8 +176,7 @@ void update(State& s, const Settings& c) {
       const Real constraint = c.two_sided ? ratio - 1 : std::max<Real>(ratio - 1, 0);
       squares += own[0] * own[0] + own[1] * own[1] + own[2] * own[2];
       lambda[i] = -constraint / (squares + c.cfm / (c.h * c.h));
-      if (c.smaller_steps_in_crowds && ratio > 1)
-        lambda[i] /= std::min<Real>(1 + 3 * (ratio - 1), 2);
+      if (c.under_relax && ratio > 1) lambda[i] /= std::min<Real>(1 + 3 * (ratio - 1), 2);
     }
     std::vector<V> next = s.x;
     for (std::size_t i = 0; i < n; ++i) {

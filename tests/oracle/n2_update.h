@@ -18,7 +18,7 @@ struct Settings {
   Real sor = 1, damping = 1, wall_scale = 0, wall_range = 1, margin = 0;
   V gravity{0, 0, -9.81L}, low{0, 0, 0}, high{1, 1, 1};
   int iterations = 4;
-  bool paper = false, two_sided = false, wall_density = true, smaller_steps_in_crowds = false;
+  bool paper = false, two_sided = false, wall_density = true, under_relax = false;
   Real tensile_k = 0, tensile_q = 0.3L;  // k in h^2
   int tensile_n = 4;
   Real xsph = 0, vorticity = 0;  // 1, 1/s
@@ -26,7 +26,7 @@ struct Settings {
 
 struct State {
   std::vector<V> x, v;
-  std::vector<Real> density;  ///< kg/m^3, of the last sweep
+  std::vector<Real> density;  ///< kg/m^3, of the last iteration
 };
 
 /// Advances by one update.

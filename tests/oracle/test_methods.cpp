@@ -8,12 +8,12 @@
 using namespace oracle_test;
 
 TEST_CASE("the error polynomial of Chebyshev's steps is as small as any can be on [1/2, 3/2]") {
-  for (int sweeps : {1, 2, 3, 4, 5, 8, 16}) {
+  for (int iterations : {1, 2, 3, 4, 5, 8, 16}) {
     pbf::Scene s;
     s.solver.method = pbf::SolverMethod::chebyshev;
-    s.solver.iterations = sweeps;
-    const auto factors = pbf::make_plan(s, 1000).sweep_factors;
-    REQUIRE(int(factors.size()) == sweeps);
+    s.solver.iterations = iterations;
+    const auto factors = pbf::make_plan(s, 1000).sor_factors;
+    REQUIRE(int(factors.size()) == iterations);
     double largest = 0;
     for (int k = 0; k <= 1000; ++k) {
       const double eigenvalue = 0.5 + k / 1000.0;
@@ -22,11 +22,11 @@ TEST_CASE("the error polynomial of Chebyshev's steps is as small as any can be o
       largest = std::max(largest, std::fabs(p));
     }
     // 1/T_K((b + a)/(b - a)), T_K(x) = cosh(K arcosh x).
-    CHECK(largest == Approx(1 / std::cosh(sweeps * std::acosh(2.0))).epsilon(1e-9));
+    CHECK(largest == Approx(1 / std::cosh(iterations * std::acosh(2.0))).epsilon(1e-9));
     CHECK(factors.back() <= 1);
   }
   pbf::Scene plain;
-  CHECK(pbf::make_plan(plain, 1000).sweep_factors.empty());
+  CHECK(pbf::make_plan(plain, 1000).sor_factors.empty());
 }
 
 TEST_CASE("substeps are updates of a shorter step, but for pairs that come into reach between") {

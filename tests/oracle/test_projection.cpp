@@ -1,5 +1,5 @@
 // The exact projection against a dense solve that shares no line with it, against thousands of
-// Jacobi sweeps, and against hydrostatics.
+// Jacobi iterations, and against hydrostatics.
 #include "lib/campaign/exact_projection.h"
 
 #include <cmath>
@@ -79,7 +79,7 @@ struct Problem {
 
 /// The nearest feasible point by sequential linearisation, each dual problem by projected
 /// Gauss-Seidel (Hildreth 1957) on dense rows, going on from the multipliers of the one before.
-std::vector<double> nearest_point(const Problem& p, int linearisations, int sweeps) {
+std::vector<double> nearest_point(const Problem& p, int linearisations, int iterations) {
   const std::size_t all = p.start.size();
   std::vector<Real> x = p.start, value;
   std::vector<double> mu;
@@ -100,7 +100,7 @@ std::vector<double> nearest_point(const Problem& p, int linearisations, int swee
         step[q] -= j[i][q] * mu[i];
       }
     }
-    for (int s = 0; s < sweeps; ++s)
+    for (int s = 0; s < iterations; ++s)
       for (std::size_t i = 0; i < j.size(); ++i) {
         double left = double(value[i]);
         for (std::size_t q = 0; q < all; ++q) left += j[i][q] * step[q];
@@ -196,9 +196,10 @@ TEST_CASE("nothing moves where every constraint holds") {
 }
 
 TEST_CASE(
-    "thousands of Jacobi sweeps end half the way from the exact projection, small ones near it") {
+    "thousands of Jacobi iterations end half the way from the exact projection, small ones near "
+    "it") {
   // With whole steps neighbours push each other twice as far as they need to, and a one-sided
-  // constraint never pulls back: no number of sweeps mends that.
+  // constraint never pulls back: no number of iterations mends that.
   Case c = jittered_block(6, 6, 6, 0.05, 0, 5, 0.985);
   for (std::size_t k = 0; k < 3; ++k) c.scene.domain.min[k] -= 0.1, c.scene.domain.max[k] += 0.1;
   c.scene.gravity = {0, 0, 0};

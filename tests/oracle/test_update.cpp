@@ -63,7 +63,7 @@ TEST_CASE("one update is exact in boxes of far more than 2^31 cells, at either e
 
 TEST_CASE("the default step is exact also for strongly squeezed states and single particles") {
   SECTION("squeezed to 0.6 of the spacing") {
-    // One sweep: after it particles clamped to one corner coincide, and their directions are
+    // One iteration: after it particles clamped to one corner coincide, and their directions are
     // chosen.
     Case c = jittered_block(6, 6, 6, 0.2, 0, 3, 0.6);
     c.scene.solver.iterations = 1;

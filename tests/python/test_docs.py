@@ -71,7 +71,7 @@ def test_the_figures_of_the_readme_are_drawn_again_from_committed_times(tmp_path
                           env=ENVIRONMENT, capture_output=True)
     assert done.returncode == 0, done.stderr
     readme = (ROOT / "README.md").read_text()
-    for name in ("seed_speedup", "seed_stages"):
+    for name in ("reference_speedup", "reference_stages"):
         committed = imread(ROOT / f".github/{name}.png")
         assert abs(imread(tmp_path / f"{name}.png").shape[1] / committed.shape[1] - 1) < 0.05
         assert f".github/{name}.png" in readme

@@ -10,7 +10,7 @@ from matplotlib.image import imread
 from pbf_tools import Table, front_data, plot_front, plot_stages, plot_study, style
 from pbf_tools.bench import Setup
 
-SEED = ROOT / "tests/regression/bench/seed_speedup_nvidia_h200.csv"
+SEED = ROOT / "tests/regression/bench/reference_speedup_nvidia_h200.csv"
 
 
 def drawn(path):

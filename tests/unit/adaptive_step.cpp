@@ -20,8 +20,8 @@ Scene adaptive(const std::string& keys = "{}") {
       keys + "}\n");
 }
 
-Measures at(std::int64_t update, double speed) {
-  Measures m;
+Diagnostics at(std::int64_t update, double speed) {
+  Diagnostics m;
   m.update = update;
   m.time = 0.01 * double(update);
   m.speed_max = speed;
@@ -176,7 +176,7 @@ TEST_CASE("adaptive step: one that goes on from its history chooses as the one b
   a.refine("energy", at(5, 1), 0);
   for (std::int64_t u = 5; u < 300; u += 5) {
     AdaptiveStep b(adaptive(), a.history());
-    const Measures m = at(u, std::fmod(double(u * u), 23));
+    const Diagnostics m = at(u, std::fmod(double(u * u), 23));
     CHECK(a.follow(m) == b.follow(m));
     CHECK(a.level() == b.level());
   }

@@ -27,7 +27,7 @@ SavedRun saved(Precision precision, std::int64_t update) {
   s.energy = {true, 1.25, 0.1, 1e-300};
   s.compression_max = 0.3;
   s.state.fast = 7;
-  s.state.rounds = 1000;
+  s.state.repeats = 1000;
   s.state.unresolved = 12;
   s.state.way_squared = 2.5;
   s.state.steps = 3 * update;
@@ -50,7 +50,7 @@ bool same(const SavedRun& a, const SavedRun& b) {
          a.energy.first == b.energy.first && a.energy.lowest == b.energy.lowest &&
          a.energy.rise == b.energy.rise && a.compression_max == b.compression_max &&
          a.particles == b.particles && a.state.fast == b.state.fast &&
-         a.state.rounds == b.state.rounds && a.state.unresolved == b.state.unresolved &&
+         a.state.repeats == b.state.repeats && a.state.unresolved == b.state.unresolved &&
          a.state.way_squared == b.state.way_squared && a.state.steps == b.state.steps &&
          a.steps == b.steps && a.released == b.released &&
          std::equal(a.first.momentum, a.first.momentum + 3, b.first.momentum);
@@ -73,7 +73,7 @@ TEST_CASE("the guard of a resumed run has the limits of the run from its start")
   REQUIRE(read);
   const GuardLimits limits = guard_limits(scene, plan, first.first);
   CHECK(same(limits, guard_limits(scene, plan, read->first)));
-  CHECK_FALSE(same(limits, guard_limits(scene, plan, Measures{})));
+  CHECK_FALSE(same(limits, guard_limits(scene, plan, Diagnostics{})));
 }
 
 TEST_CASE("a checkpoint comes back to the last bit, and the one before is kept") {

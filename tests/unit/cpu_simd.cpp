@@ -57,7 +57,7 @@ void check_same_bits(const Case& c) {
     REQUIRE(lanes.trace.arrays.size() == scalar.trace.arrays.size());
     for (std::size_t k = 0; k < lanes.trace.arrays.size(); ++k) {
       const TraceArray &a = lanes.trace.arrays[k], &b = scalar.trace.arrays[k];
-      CAPTURE(a.stage, a.sweep, a.quantity);
+      CAPTURE(a.stage, a.iteration, a.quantity);
       CHECK(a.stage == b.stage);
       CHECK(a.values == b.values);
     }

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lib/solver/measures.h"
+#include "lib/solver/diagnostics.h"
 #include "tests/catch.h"
 
 using namespace pbf;
@@ -11,7 +11,7 @@ TEST_CASE("the energy's drift is from the start, its rise from the lowest value 
   const double energy[] = {10, 8, 8.5, 7, 9, 6}, drift[] = {0, -0.2, -0.15, -0.3, -0.1, -0.4},
                rise[] = {0, 0, 0.05, 0.05, 0.2, 0.2};
   for (int k = 0; k < 6; ++k) {
-    Measures m;
+    Diagnostics m;
     m.energy = energy[k];
     track.follow(m);
     CHECK(m.energy_drift == Approx(drift[k]).margin(1e-15));
@@ -22,7 +22,7 @@ TEST_CASE("the energy's drift is from the start, its rise from the lowest value 
 TEST_CASE(
     "of a start without energy the rise is a share of the most energy since, never infinite") {
   EnergyTrack track;
-  Measures m;
+  Diagnostics m;
   track.follow(m);
   CHECK(m.energy_drift == 0);
   CHECK(m.energy_rise == 0);
@@ -37,7 +37,7 @@ TEST_CASE(
 
 TEST_CASE("energy lost and made again after a start of next to none counts by its own size") {
   EnergyTrack track;
-  Measures m;
+  Diagnostics m;
   for (const double e : {1e-320, 5.0, 1.0, 2.0}) {
     m.energy = e;
     track.follow(m);
@@ -48,7 +48,7 @@ TEST_CASE("energy lost and made again after a start of next to none counts by it
 
 TEST_CASE("a history with an infinite rise, as old checkpoints hold, goes on finite") {
   EnergyTrack track({true, 0, 0, 0, std::numeric_limits<double>::infinity()});
-  Measures m;
+  Diagnostics m;
   m.energy = 3;
   track.follow(m);
   CHECK(m.energy_rise == 1);

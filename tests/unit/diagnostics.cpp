@@ -45,7 +45,7 @@ TEST_CASE("the page of diagnostics has every row of the table, and no other") {
 }
 
 TEST_CASE("every diagnostic is a column of the log and a member of each line of JSON") {
-  Measures m;
+  Diagnostics m;
   m.front[1] = 7;
   m.unresolved = 9;
   const std::string json = measure_json(m, 1, 2, {});

@@ -25,25 +25,26 @@ struct Watched {
   Scene scene;
   Plan plan;
   std::unique_ptr<Solver> solver;
-  Measures first;
+  Diagnostics first;
   explicit Watched(const Scene& s)
       : scene(s),
         plan(make_plan(s, count_particles(s, "."))),
         solver(make_solver(s, plan, emit_particles(s, "."))),
         first(solver->measure()) {}
-  Guard guard(const Measures& start) { return Guard(scene, plan, *solver, start, start); }
+  Guard guard(const Diagnostics& start) { return Guard(scene, plan, *solver, start, start); }
   double mass() const { return plan.mass * double(plan.particles); }
 };
 
 /// The measure seen from a frame that moves by -v along x.
-Measures moving(Measures m, double mass, double v) {
+Diagnostics moving(Diagnostics m, double mass, double v) {
   m.kinetic_energy += m.momentum[0] * v + 0.5 * mass * v * v;
   m.momentum[0] += mass * v;
   return m;
 }
 
 /// What a guard says to a fault of that kind in a stage.
-std::string advice(const Scene& s, const Measures* start, Alarm alarm, const std::string& stage) {
+std::string advice(const Scene& s, const Diagnostics* start, Alarm alarm,
+                   const std::string& stage) {
   Watched w(s);
   const Guard guard = w.guard(start ? *start : w.first);
   GuardEvent e;
@@ -102,16 +103,16 @@ TEST_CASE("guard: a jittered ball without gravity runs to its end, however fast 
 TEST_CASE("guard: the energy that a run may gain is the same for every observer") {
   for (const char* gravity : {"gravity=[0, 0, 0]", "gravity=[0, 0, -10]"}) {
     Watched w(shipped("extreme/drop", {gravity}));
-    Measures first = w.first;
+    Diagnostics first = w.first;
     first.kinetic_energy += 3;  // of an inner motion
-    Measures later = first;
+    Diagnostics later = first;
     later.update = 50;
     later.kinetic_energy += 40;
     const double seen = w.guard(first).energy_limit(later) - total_energy(first);
     CHECK(seen > 0);
     for (const double v : {-0.5, 1.0, 20.0, 1e3}) {
       CAPTURE(gravity, v);
-      const Measures a = moving(first, w.mass(), v), b = moving(later, w.mass(), v);
+      const Diagnostics a = moving(first, w.mass(), v), b = moving(later, w.mass(), v);
       CHECK(w.guard(a).energy_limit(b) - total_energy(a) == Approx(seen).epsilon(1e-6));
     }
   }
@@ -121,10 +122,10 @@ TEST_CASE(
     "guard: a compressed start may release energy until it has come apart, and no start for "
     "ever") {
   Watched w(shipped("stiff/overfull", {}));
-  Measures start = w.first;
+  Diagnostics start = w.first;
   start.compression_mean = 0.5;
   const double first = total_energy(start), bare = w.guard(start).limits().energy;
-  Measures m = start;
+  Diagnostics m = start;
   m.update = 5;
   Guard guard = w.guard(start);
   const double while_apart = guard.energy_limit(m);
@@ -134,7 +135,7 @@ TEST_CASE(
     m.compression_mean = 0.005;
     m.kinetic_energy = 100;
     CHECK_FALSE(check(guard, m));
-    Measures next = m;
+    Diagnostics next = m;
     next.compression_mean = 0.3;  // pressed together again: that releases nothing
     next.update = 10;
     CHECK(guard.energy_limit(next) < first + 100 + 0.2 * (first + 100));
@@ -150,7 +151,7 @@ TEST_CASE(
   SECTION("two-sided: its surface, for the same time") {
     Watched two(shipped("stiff/pool", {"solver.constraint=two_sided"}));
     Guard other = two.guard(two.first);
-    Measures late = two.first;
+    Diagnostics late = two.first;
     const double soon = other.energy_limit(late);
     CHECK(soon > other.limits().energy);
     late.update = release_updates(two.scene) + 1;
@@ -163,7 +164,8 @@ TEST_CASE("guard: with gravity, a shorter step does not widen what the energy ma
   const auto allowed = [](const char* step) {
     Watched w(shipped("tank_at_rest", {"fluid.spacing=0.04", std::string("time.step=") + step,
                                        "precision=double"}));
-    const Measures apart = start_solver(w.scene, w.plan, emit_particles(w.scene, "."))->measure();
+    const Diagnostics apart =
+        start_solver(w.scene, w.plan, emit_particles(w.scene, "."))->measure();
     return w.guard(apart).energy_limit(apart) - total_energy(apart);
   };
   CHECK(allowed("1e-6") == Approx(allowed("1e-4")).epsilon(0.01));
@@ -183,7 +185,7 @@ TEST_CASE("guard: the advice fits the cause") {
              Alarm::energy, "delta");
   CHECK(contains(tensile, "lower tensile.k"));
   CHECK(contains(tensile, "solver.constraint: one_sided"));
-  Measures squeezed;
+  Diagnostics squeezed;
   squeezed.compression_mean = 0.46;
   const std::string full = advice(plain, &squeezed, Alarm::energy, "delta");
   CHECK(contains(full, "compressed by 46 % (mean); spread the bodies, or give them room"));

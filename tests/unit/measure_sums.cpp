@@ -21,7 +21,7 @@ struct Lengths {
 };
 
 template <class Real>
-struct Rows {
+struct TestRows {
   std::vector<Vec4<Real>> position, velocity;
   std::vector<Real> density;
   std::vector<int> length;
@@ -35,8 +35,8 @@ struct Rows {
         MeasurePass<Real, Lengths>{
             p, {length.data()}, position.data(), velocity.data(), density.data(), &counts});
   }
-  Rows in_order(const std::vector<std::size_t>& order) const {
-    Rows r{{}, {}, {}, {}, p};
+  TestRows in_order(const std::vector<std::size_t>& order) const {
+    TestRows r{{}, {}, {}, {}, p};
     for (const std::size_t k : order) {
       r.position.push_back(position[k]);
       r.velocity.push_back(velocity[k]);
@@ -49,10 +49,10 @@ struct Rows {
 
 /// n particles over a pool at rest; speeds and densities over `decades` powers of ten.
 template <class Real>
-Rows<Real> random_rows(int n, double decades) {
+TestRows<Real> random_rows(int n, double decades) {
   std::mt19937 gen(5);
   const auto r = [&] { return double(gen()) / 4294967295.0; };
-  Rows<Real> rows;
+  TestRows<Real> rows;
   rows.p.boundary.extent = {20, 10, 8};
   rows.p.rest = {2, 0, 1, 4, 0.5};
   for (int i = 0; i < n; ++i) {
@@ -72,7 +72,7 @@ bool same_bits(const MeasureSums& a, const MeasureSums& b) {
 }
 
 template <class Real, class Term>
-double brute_force(const Rows<Real>& rows, const Term& term) {
+double brute_force(const TestRows<Real>& rows, const Term& term) {
   long double sum = 0;
   for (std::size_t i = 0; i < rows.density.size(); ++i) sum += term(i);
   return double(sum);
@@ -83,7 +83,7 @@ double brute_force(const Rows<Real>& rows, const Term& term) {
 TEMPLATE_TEST_CASE("a measure has the same bits for any order of particles and number of threads",
                    "", float, double) {
   const int n = GENERATE(1, 2, 999, 30011);
-  Rows<TestType> rows = random_rows<TestType>(n, GENERATE(0.0, 12.0));
+  TestRows<TestType> rows = random_rows<TestType>(n, GENERATE(0.0, 12.0));
   if (n > 500) {
     rows.position[13].y = std::numeric_limits<TestType>::quiet_NaN();
     rows.density[480] = std::numeric_limits<TestType>::infinity();
@@ -105,7 +105,7 @@ TEMPLATE_TEST_CASE("a measure has the same bits for any order of particles and n
 
 TEMPLATE_TEST_CASE("the sums of a measure are those of long double to 1e-13", "", float, double) {
   const int n = GENERATE(1, 500, 20000);
-  const Rows<TestType> rows = random_rows<TestType>(n, GENERATE(0.0, 6.0));
+  const TestRows<TestType> rows = random_rows<TestType>(n, GENERATE(0.0, 6.0));
   const MeasureSums s = rows.measure(2);
   const auto close = [](double a, double b, double terms) {
     CAPTURE(a, b, terms);
@@ -140,7 +140,7 @@ TEMPLATE_TEST_CASE("the sums of a measure are those of long double to 1e-13", ""
 }
 
 TEST_CASE("momenta that cancel leave nothing, however many they are") {
-  Rows<double> rows = random_rows<double>(20000, 6);
+  TestRows<double> rows = random_rows<double>(20000, 6);
   for (std::size_t i = 0; i < 10000; ++i) {
     const auto& v = rows.velocity[i];
     rows.velocity[19999 - i] = {-v.x, -v.y, -v.z, 0};
@@ -152,7 +152,7 @@ TEST_CASE("momenta that cancel leave nothing, however many they are") {
 TEST_CASE("terms of any size neither overflow nor vanish") {
   using Limits = std::numeric_limits<double>;
   const double size = GENERATE(0.0, Limits::denorm_min(), 1e-300, 1e-160, 1e-3, 1.0, 1e100, 1e150);
-  Rows<double> rows = random_rows<double>(3000, 0);
+  TestRows<double> rows = random_rows<double>(3000, 0);
   for (std::size_t i = 0; i < 3000; ++i) {
     rows.velocity[i] = {size, -size, size / 2, 0};
     rows.position[i] = {size, -size, size / 2, 1};

@@ -232,7 +232,7 @@ TEST_CASE("the plan says what each pass over pairs reads of the neighbours' rows
 namespace {
 
 /// Bodies in a box of 1 m with h = 0.1 m.
-Scene crowd(const std::string& bodies, const std::vector<std::string>& overrides = {}) {
+Scene under_relaxation(const std::string& bodies, const std::vector<std::string>& overrides = {}) {
   return scene_test::parse(
       "domain: {min: [0, 0, 0], max: [1, 1, 1]}\n"
       "fluid: {spacing: 0.05}\n"
@@ -261,7 +261,7 @@ TEST_CASE("the neighbours of a start are those that a look at every pair finds")
         kBlock + (", " + random_box(200, 0.2, 0.1))})
     for (const int dimensions : {3, 2}) {
       CAPTURE(bodies, dimensions);
-      Scene s = crowd(bodies);
+      Scene s = under_relaxation(bodies);
       if (dimensions == 2) {  // the plane cuts the bodies
         s.dimensions = 2;
         s.domain.min[1] = 0.385;
@@ -288,7 +288,7 @@ TEST_CASE("the neighbours of a start are those that a look at every pair finds")
 }
 
 TEST_CASE("a sample of a large start has the mean of all, and bodies side by side need none") {
-  const Scene s = crowd(random_box(20000, 0.3));
+  const Scene s = under_relaxation(random_box(20000, 0.3));
   const auto sample = start_neighbors(s, ".", 20000).count;
   CHECK(sample.size() == 4096);
   double mean = 0;
@@ -303,9 +303,9 @@ TEST_CASE("a sample of a large start has the mean of all, and bodies side by sid
       all += (r2 < s.h() * s.h()) / 2000.0;
     }
   CHECK(mean == Approx(all).epsilon(0.02));
-  CHECK(start_neighbors(crowd(kBlock), ".", 512).empty());
-  CHECK(start_neighbors(crowd(kBlock + std::string(", {shape: block, min: [0.4, 0, 0], "
-                                                   "max: [0.8, 0.4, 0.4]}")),
+  CHECK(start_neighbors(under_relaxation(kBlock), ".", 512).empty());
+  CHECK(start_neighbors(under_relaxation(kBlock + std::string(", {shape: block, min: [0.4, 0, 0], "
+                                                              "max: [0.8, 0.4, 0.4]}")),
                         ".", 1024)
             .empty());
 }
@@ -317,7 +317,8 @@ TEST_CASE("the plan counts the bytes that the CPU solver holds for crowded start
         block + ", " + block + ", " + block, block + ", " + random_box(4000, 0.03)})
     for (const bool dbl : {false, true}) {
       CAPTURE(bodies, dbl);
-      const Scene s = crowd(bodies, {std::string("precision=") + (dbl ? "double" : "float")});
+      const Scene s =
+          under_relaxation(bodies, {std::string("precision=") + (dbl ? "double" : "float")});
       const std::int64_t n = count_particles(s, ".");
       const Plan plan = make_plan(s, n, start_neighbors(s, ".", n));
       const auto solver = make_solver(s, plan, emit_particles(s, "."));
@@ -328,7 +329,7 @@ TEST_CASE("the plan counts the bytes that the CPU solver holds for crowded start
 }
 
 TEST_CASE("a start too crowded for the memory is refused with the number of neighbours") {
-  const Scene s = crowd(random_box(3000000, 0.02));
+  const Scene s = under_relaxation(random_box(3000000, 0.02));
   CHECK(scene_test::error_of([&] { refuse_if_too_large(s, make_plan(s, 3000000)); }) == "no error");
   const Plan plan =
       make_plan(s, 3000000, {std::vector<int>(256, 3000000), std::vector<double>(256)});

@@ -207,7 +207,7 @@ TEST_CASE("prestabilize: an over-full box ends it, and the text says that there 
   CHECK(p.steps < 64);
   CHECK(lines > 0);
   CHECK(contains(prestabilized_text(p), "is there room for all of them?"));
-  const Measures m = solver->measure();
+  const Diagnostics m = solver->measure();
   CHECK(m.outside == 0);
   CHECK(m.non_finite == 0);
   CHECK(m.kinetic_energy == 0);

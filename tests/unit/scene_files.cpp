@@ -94,7 +94,8 @@ TEST_CASE("tank at rest: the block fills the floor, 24 layers deep") {
 }
 
 TEST_CASE("seed scenes: the numbers of the original set-up, made dimensionless") {
-  for (const char* name : {"seed/blob.yaml", "seed/stream.yaml"}) {
+  for (const char* name :
+       {"reference_implementation/blob.yaml", "reference_implementation/stream.yaml"}) {
     const Scene s = shipped(name);
     const double mass = 1.0 / 30, h = 0.1;
     CAPTURE(name);

@@ -40,7 +40,7 @@ class CountingSolver : public Solver {
   std::future<Snapshot> download(const std::vector<std::string>&, ScalarType) override {
     return std::async(std::launch::deferred, [] { return Snapshot{}; });
   }
-  Measures measure() override { return {}; }
+  Diagnostics measure() override { return {}; }
   SolverInfo info() const override { return {}; }
 
  private:

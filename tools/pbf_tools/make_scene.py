@@ -1,8 +1,8 @@
 """Writes a scene: one of the usual set-ups for a number of particles, or an image or a mesh filled
 with particles.
 
-blob and stream have the geometry of the seed scenes (y up, box 2 x 8 x 2 m), filled at rest density
-with any number of particles; configs/seed/ has them in the seed's own formulation, over-full and at
+blob and stream have the geometry of the scenes of the reference implementation (y up, box 2 x 8 x 2 m), filled at rest density
+with any number of particles; configs/reference_implementation/ has them in the reference implementation's own formulation, over-full and at
 random. block is a dam break.
 image turns the dark pixels of a picture into fluid, the picture standing upright in x and z; mesh
 fills a closed surface (.stl, .ply, .obj, .vtp; needs PyVista). The last two write the particles
@@ -95,9 +95,9 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-# Of the seed's two scenes, m: the box, the fluid in it; y points up.
-SEED_BOX = ([-1.0, 0.0, -1.0], [1.0, 8.0, 1.0])
-SEED_FLUID = {"blob": ([-1.0, 1.0, -0.5], [0.0, 4.0, 0.5]),
+# Of the reference implementation's two scenes, m: the box, the fluid in it; y points up.
+REFERENCE_BOX = ([-1.0, 0.0, -1.0], [1.0, 8.0, 1.0])
+REFERENCE_FLUID = {"blob": ([-1.0, 1.0, -0.5], [0.0, 4.0, 0.5]),
               "stream": ([-0.1, 1.0, -0.1], [0.1, 7.0, 0.1])}
 
 
@@ -109,8 +109,8 @@ def _block(args: argparse.Namespace, name: str, count: int) -> tuple[str, int]:
             raise BadInput("--size is larger than --box")
         domain, gravity = ([0.0, 0.0, 0.0], box), "[0, 0, -9.81]"
     else:
-        low, high = SEED_FLUID[args.shape]
-        domain, gravity = SEED_BOX, "[0, -9.81, 0]"
+        low, high = REFERENCE_FLUID[args.shape]
+        domain, gravity = REFERENCE_BOX, "[0, -9.81, 0]"
     spacing, count = lattice_spacing(np.subtract(high, low), count)
     corners = [", ".join(f"{v:.9g}" for v in corner) for corner in (low, high)]
     body = f"{{shape: block, min: [{corners[0]}], max: [{corners[1]}]}}"

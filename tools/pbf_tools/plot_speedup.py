@@ -13,8 +13,8 @@ from . import bench, style
 from .errors import BadInput
 from .table import Table
 
-EXAMPLE = """example (the seed scenes, one CPU thread against the GPU):
-  python -m pbf_tools plot-speedup tests/regression/bench/seed_speedup_nvidia_h200.csv \\
+EXAMPLE = """example (the scenes of the reference implementation, one CPU thread against the GPU):
+  python -m pbf_tools plot-speedup tests/regression/bench/reference_speedup_nvidia_h200.csv \\
       --base cpu:1 --target cuda -o speedup.png"""
 
 

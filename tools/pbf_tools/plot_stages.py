@@ -16,7 +16,7 @@ from .run import Run
 from .table import Table
 
 EXAMPLE = """examples:
-  python -m pbf_tools plot-stages tests/regression/bench/seed_speedup_nvidia_h200.csv -o stages.png
+  python -m pbf_tools plot-stages tests/regression/bench/reference_speedup_nvidia_h200.csv -o stages.png
   python -m pbf_tools plot-stages out/dam_break/run.vtkhdf --grouped"""
 
 

@@ -98,17 +98,17 @@ class CpuExec {
   }
 
   /// Calls body() while the sum of pass(i) is above `limit`, at most `times` times, and counts the
-  /// calls in *rounds. Marks `stage` after every sum.
+  /// calls in *repeats. Marks `stage` after every sum.
   template <class Pass, class Body>
   void repeat_while(const char* stage, int n, int times, const Pass& pass, std::uint64_t limit,
-                    unsigned long long* rounds, const Body& body) {
+                    unsigned long long* repeats, const Body& body) {
     for (int k = 0; k < times; ++k) {
       std::uint64_t sum = 0;
 #pragma omp parallel for schedule(static) reduction(+ : sum) num_threads(threads_) if (n > 4096)
       for (int i = 0; i < n; ++i) sum += pass(i);
       mark(stage);
       if (sum <= limit) return;
-      ++*rounds;
+      ++*repeats;
       body();
     }
   }

@@ -2,7 +2,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-CudaExec::CudaExec(ListRoom room, std::int64_t total) : room_(room), total_(total) {
+CudaExec::CudaExec(ListCapacity capacity, std::int64_t total) : capacity_(capacity), total_(total) {
   int device = 0, major = 0;
   PBF_CUDA_CHECK(cudaGetDevice(&device));
   PBF_CUDA_CHECK(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device));
@@ -104,10 +104,10 @@ bool CudaExec::asked_to_repeat() {
 }
 
 void CudaExec::allocate_lists(int n) {
-  words_.resize(std::size_t(list_stride(n)) * std::size_t(room_.first));
-  tails_.resize(std::size_t(room_.tails) * std::size_t(room_.tail));
+  words_.resize(std::size_t(list_stride(n)) * std::size_t(capacity_.first));
+  overflows_.resize(std::size_t(capacity_.overflows) * std::size_t(capacity_.overflow));
   count_.resize(std::size_t(n));
-  tail_of_.resize(std::size_t(n));
+  overflow_of_.resize(std::size_t(n));
 }
 
 bool CudaExec::grow_lists(int n) {
@@ -116,12 +116,13 @@ bool CudaExec::grow_lists(int n) {
   synchronize();
   const ListState& short_of = *list_state_host_.data();  // since it was cleared
   if (short_of.wanted == 0 && short_of.longest == 0) return false;
-  room_ = larger_list_room(room_, std::max(short_of.used, short_of.wanted), short_of.longest, n);
+  capacity_ = larger_list_capacity(capacity_, std::max(short_of.used, short_of.wanted),
+                                   short_of.longest, n);
   words_.resize(0);  // first, so that the old and the new lists need not fit together
-  tails_.resize(0);
+  overflows_.resize(0);
   allocate_lists(n);
   clear_overflow();
-  forget_recorded();  // it holds the old room
+  forget_recorded();  // it holds the old capacity
   return true;
 }
 

@@ -27,10 +27,10 @@ class CudaExec {
   template <class T>
   using Buffer = DeviceBuffer<T>;
 
-  /// room: for the lists at first. Lists that outgrow it: the build records by how much, nothing is
-  /// written beyond the room, and grow_lists() gives more.
-  /// total: particles of the whole scene, for the number of threads of a sum.
-  CudaExec(ListRoom room, std::int64_t total);
+  /// capacity: for the lists at first. Lists that outgrow it: the build records by how much,
+  /// nothing is written beyond the capacity, and grow_lists() gives more. total: particles of the
+  /// whole scene, for the number of threads of a sum.
+  CudaExec(ListCapacity capacity, std::int64_t total);
   ~CudaExec();
   CudaExec(const CudaExec&) = delete;
   CudaExec& operator=(const CudaExec&) = delete;
@@ -132,12 +132,12 @@ class CudaExec {
   /// without asking the host; else the host waits for every sum.
   template <class Pass, class Body>
   void repeat_while(const char* stage, int n, int times, const Pass& pass, std::uint64_t limit,
-                    unsigned long long* rounds, const Body& body) {
+                    unsigned long long* repeats, const Body& body) {
     if (repeat_.size() == 0) {
       repeat_.resize(1);
       PBF_CUDA_CHECK(cudaMemsetAsync(repeat_.data(), 0, repeat_.bytes(), stream_));
     }
-    Repetition r{repeat_.data(), rounds, limit, unsigned(times), true, false, {}};
+    Repetition r{repeat_.data(), repeats, limit, unsigned(times), true, false, {}};
     const auto decide = [&] {
       launch(repeat_kernel<Pass>, std::min(n, kBlock * kRepeatBlocks), kBlock, 0, n, pass, r);
       mark(stage);
@@ -155,7 +155,7 @@ class CudaExec {
     }
   }
 
-  /// See CpuExec; `order` is room for the arrivals.
+  /// See CpuExec; `order` is memory for the arrivals.
   template <class First, class Gather>
   void sort_by_bin(const char* stage, const First& first, int n, int bins, const int* id,
                    int* order, int* start, const Gather& gather) {
@@ -194,14 +194,14 @@ class CudaExec {
     allocate_lists(n);
     p.dimensions == 2 ? make_lists<2>(n, far, position, bin_start, p)
                       : make_lists<3>(n, far, position, bin_start, p);
-    return {words_.data(),  tails_.data(), count_.data(), tail_of_.data(),
-            list_stride(n), room_.first,   room_.tail,    far};
+    return {words_.data(),  overflows_.data(), count_.data(),      overflow_of_.data(),
+            list_stride(n), capacity_.first,   capacity_.overflow, far};
   }
 
   std::size_t bytes() const {
-    return words_.bytes() + tails_.bytes() + tail_of_.bytes() + count_.bytes() + counts_.bytes() +
-           slot_.bytes() + scan_.bytes() + measure_.bytes() + in_bins_.bytes() + repeat_.bytes() +
-           copy_.bytes();
+    return words_.bytes() + overflows_.bytes() + overflow_of_.bytes() + count_.bytes() +
+           counts_.bytes() + slot_.bytes() + scan_.bytes() + measure_.bytes() + in_bins_.bytes() +
+           repeat_.bytes() + copy_.bytes();
   }
 
  private:
@@ -241,11 +241,11 @@ class CudaExec {
                                  position,
                                  bin_start,
                                  words_.data(),
-                                 tails_.data(),
+                                 overflows_.data(),
                                  count_.data(),
-                                 tail_of_.data(),
+                                 overflow_of_.data(),
                                  list_state_.data(),
-                                 room_,
+                                 capacity_,
                                  list_stride(n),
                                  n,
                                  far};
@@ -271,7 +271,7 @@ class CudaExec {
   cudaStream_t other_stream_ = nullptr;  ///< while a repeated body is captured: that of the graph
   bool overlap_ = false;                 ///< the device knows programmatic dependent launch
   bool after_condition_ = false;         ///< ... which is for kernels behind kernels
-  ListRoom room_;
+  ListCapacity capacity_;
   std::int64_t total_;
   bool profiling_ = false;
   int since_profile_ = 0;
@@ -280,12 +280,12 @@ class CudaExec {
   StageClock clock_;
   std::vector<cudaEvent_t> events_;
   std::vector<const char*> stages_;  ///< of the marks since begin()
-  MeasureRoom measure_;
+  MeasureSpace measure_;
   DeviceBuffer<unsigned long long> in_bins_;
   PinnedBuffer<unsigned long long> in_bins_host_;
   std::vector<std::int64_t> counted_;
-  DeviceBuffer<int4> words_, tails_;
-  DeviceBuffer<int> count_, tail_of_, counts_, slot_;
+  DeviceBuffer<int4> words_, overflows_;
+  DeviceBuffer<int> count_, overflow_of_, counts_, slot_;
   DeviceBuffer<ListState> list_state_;
   PinnedBuffer<ListState> list_state_host_;
   DeviceBuffer<char> scan_;

@@ -8,11 +8,11 @@
 namespace pbf::inline PBF_VARIANT {
 
 std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& plan,
-                                             Particles particles, ListRoom room) {
+                                             Particles particles, ListCapacity capacity) {
   if (scene.precision == Precision::dbl)
-    return std::make_unique<StepSolver<double, CudaExec>>(scene, plan, std::move(particles), room,
-                                                          plan.particles);
-  return std::make_unique<StepSolver<float, CudaExec>>(scene, plan, std::move(particles), room,
+    return std::make_unique<StepSolver<double, CudaExec>>(scene, plan, std::move(particles),
+                                                          capacity, plan.particles);
+  return std::make_unique<StepSolver<float, CudaExec>>(scene, plan, std::move(particles), capacity,
                                                        plan.particles);
 }
 

@@ -3,18 +3,18 @@
 
 #include <memory>
 
-#include "lib/program/list_room.h"
+#include "lib/program/list_capacity.h"
 #include "lib/solver/solver.h"
 
 namespace pbf {
 
 inline namespace plain {
 std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& plan,
-                                             Particles particles, ListRoom room);
+                                             Particles particles, ListCapacity capacity);
 }
 namespace pinned {
 std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& plan,
-                                             Particles particles, ListRoom room);
+                                             Particles particles, ListCapacity capacity);
 }
 
 }  // namespace pbf

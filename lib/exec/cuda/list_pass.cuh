@@ -16,9 +16,9 @@ __device__ __forceinline__ unsigned push_sign(double x, unsigned mask) {
 
 /// What the making of lists tells the host, on the device.
 struct ListState {
-  int used;     ///< tails taken in this update
-  int wanted;   ///< tails asked for in any update that had too few
-  int longest;  ///< list that did not fit in any update, with its tail
+  int used;     ///< overflows taken in this update
+  int wanted;   ///< overflows asked for in any update that had too few
+  int longest;  ///< list that did not fit in any update, with its overflow
 };
 
 /// D: dimensions of the scene.
@@ -29,10 +29,10 @@ struct ListPass {
   Params<Real> p;
   const Vec4<Real>* position;
   const int* bin_start;
-  int4 *words, *tails;
-  int *count, *tail_of;
+  int4 *words, *overflows;
+  int *count, *overflow_of;
   ListState* state;
-  ListRoom room;
+  ListCapacity capacity;
   int stride;
   int n, far;  ///< particles, and the row that fills up lists
 
@@ -59,13 +59,13 @@ struct ListPass {
     int4* out = words + i;
     std::size_t step = std::size_t(stride);
     int4 word{0, 0, 0, 0};
-    int found = 0, limit = room.first + room.tail;
+    int found = 0, limit = capacity.first + capacity.overflow;
     const auto put = [&](int j) {
       word = {word.y, word.z, word.w, j};
       if (++found & 3) return;
       const int k = (found >> 2) - 1;
-      if (k == room.first) {
-        out = take_tail(i);
+      if (k == capacity.first) {
+        out = take_overflow(i);
         step = 1;
         if (!out) limit = k;
       }
@@ -107,17 +107,17 @@ struct ListPass {
     }
     const int all = __shfl_sync(0xffffffffu, place, lanes - 1, lanes);
     place -= mine;
-    int4* tail = nullptr;
-    if (last && all > 4 * room.first) tail = take_tail(i);
+    int4* overflow = nullptr;
+    if (last && all > 4 * capacity.first) overflow = take_overflow(i);
     // A pointer travels as two words.
-    tail = reinterpret_cast<int4*>(
-        __shfl_sync(0xffffffffu, reinterpret_cast<std::uint64_t>(tail), lanes - 1, lanes));
-    const List list{words + i, tail};
+    overflow = reinterpret_cast<int4*>(
+        __shfl_sync(0xffffffffu, reinterpret_cast<std::uint64_t>(overflow), lanes - 1, lanes));
+    const List list{words + i, overflow};
     place = write_row(i, xi, a, place, list);
     write_row(i, xi, b, place, list);
     if (!valid || !last) return;
     for (int at = all; at & 3; ++at) put(list, at, far);
-    finish(i, all, room.first + (tail ? room.tail : 0));
+    finish(i, all, capacity.first + (overflow ? capacity.overflow : 0));
   }
 
  private:
@@ -139,9 +139,9 @@ struct ListPass {
       r.bits = bits;
     });
   }
-  /// Where the words of a list are; tail is null where it needs none or gets none.
+  /// Where the words of a list are; overflow is null where it needs none or gets none.
   struct List {
-    int4 *words, *tail;
+    int4 *words, *overflow;
   };
   __device__ __forceinline__ int write_bits(int first, unsigned bits, int place,
                                             const List& list) const {
@@ -161,25 +161,26 @@ struct ListPass {
   }
   __device__ __forceinline__ void put(const List& list, int at, int j) const {
     const int k = at >> 2;
-    int4* word = k < room.first                            ? list.words + std::size_t(k) * stride
-                 : list.tail && k < room.first + room.tail ? list.tail + (k - room.first)
-                                                           : nullptr;
+    int4* word = k < capacity.first ? list.words + std::size_t(k) * stride
+                 : list.overflow && k < capacity.first + capacity.overflow
+                     ? list.overflow + (k - capacity.first)
+                     : nullptr;
     if (word) reinterpret_cast<int*>(word)[at & 3] = j;
   }
   /// Null when there is none left.
-  __device__ __forceinline__ int4* take_tail(int i) const {
+  __device__ __forceinline__ int4* take_overflow(int i) const {
     const int mine = atomicAdd(&state->used, 1);
-    if (mine >= room.tails) {
+    if (mine >= capacity.overflows) {
       atomicMax(&state->wanted, mine + 1);
       return nullptr;
     }
-    tail_of[i] = mine;
-    return tails + std::size_t(mine) * room.tail;
+    overflow_of[i] = mine;
+    return overflows + std::size_t(mine) * capacity.overflow;
   }
   /// limit: words that were kept.
   __device__ __forceinline__ void finish(int i, int all, int limit) const {
     count[i] = min(all, 4 * limit);
-    if (all > room.longest()) atomicMax(&state->longest, all);
+    if (all > capacity.longest()) atomicMax(&state->longest, all);
   }
 };
 

@@ -39,10 +39,11 @@ std::unique_ptr<Solver> make_cuda_solver(const Scene& scene, const Plan& plan, P
                 "backend cuda: no usable GPU here (" + why +
                     "); run with --backend cpu, or where `nvidia-smi` lists a device");
   refuse_if_device_too_small(scene, plan);
-  const ListRoom room = first_list_room(rest_neighbors(scene), plan.particles, first_entries);
+  const ListCapacity capacity =
+      first_list_capacity(rest_neighbors(scene), plan.particles, first_entries);
   return scene.solver.reproducible
-             ? pinned::make_stepping_solver(scene, plan, std::move(particles), room)
-             : plain::make_stepping_solver(scene, plan, std::move(particles), room);
+             ? pinned::make_stepping_solver(scene, plan, std::move(particles), capacity)
+             : plain::make_stepping_solver(scene, plan, std::move(particles), capacity);
 }
 
 }  // namespace pbf::inline exec_module

@@ -4,7 +4,7 @@
 #include "kernels/measure.h"
 #include "lib/exec/cuda/device_buffer.h"
 #include "lib/exec/cuda/kernel_start.cuh"
-#include "lib/program/list_room.h"
+#include "lib/program/list_capacity.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -74,7 +74,7 @@ __global__ void __launch_bounds__(kBlock)
 }
 
 /// The memory of a measure's two reductions.
-class MeasureRoom {
+class MeasureSpace {
  public:
   struct Totals {
     MeasureCounts counts;

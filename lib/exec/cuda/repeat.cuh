@@ -18,7 +18,7 @@ struct RepeatState {
 
 struct Repetition {
   RepeatState* state;  ///< all 0 at first; left so again, but for `left` and `go`
-  unsigned long long* rounds;
+  unsigned long long* repeats;
   std::uint64_t limit;
   unsigned times;
   bool first;  ///< of its sequence
@@ -51,7 +51,7 @@ __global__ void __launch_bounds__(kBlock) repeat_kernel(int n, Pass pass, Repeti
   s.blocks_done = 0;
   s.left = go ? left - 1 : left;
   s.go = go;
-  if (go) ++*r.rounds;
+  if (go) ++*r.repeats;
   if (r.in_graph) cudaGraphSetConditional(r.handle, go ? 1 : 0);
 }
 

@@ -27,7 +27,7 @@ struct CountPass : First {
   }
   __device__ void arrive(int i) const { arrival[i] = atomicAdd(&count[First::bin[i]], 1); }
 };
-/// Also clears the counters for the next sort, and the use of the lists' tails.
+/// Also clears the counters for the next sort, and the use of the lists' overflows.
 struct PlacePass {
   const int *bin, *start, *arrival;
   int *slot, *count;

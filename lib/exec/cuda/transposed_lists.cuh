@@ -1,13 +1,13 @@
 // Neighbour lists for coalesced reading: word k of 4 entries of particle i lies at
 // words[k stride + i], so the lanes of a warp read adjacent 16-byte words. Few lists are longer
-// than most, so there is room of one length for all, and a list that outgrows it takes a tail of
-// its own from a common pool.
+// than most, so there is one capacity for all, and a list that outgrows it takes an overflow block
+// of its own from a common pool.
 #pragma once
 
 #include <type_traits>
 
 #include "kernels/pair_sum.h"
-#include "lib/program/list_room.h"
+#include "lib/program/list_capacity.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -25,12 +25,12 @@ __device__ __forceinline__ int4 load_once(const int4* word) {
 /// contribution to every sum is zero: no test per entry.
 struct TransposedLists {
   static constexpr bool skip_inactive = false;  ///< a branch per pair costs more than the pair
-  const int4 *words = nullptr, *tails = nullptr;
-  const int* count = nullptr;    ///< neighbours stored for each particle
-  const int* tail_of = nullptr;  ///< which tail, where count is above 4 first
-  int stride = 0;                ///< words between word k and k + 1 of one particle
-  int first = 0, tail = 0;       ///< see ListRoom
-  int far = 0;                   ///< the row that fills up lists
+  const int4 *words = nullptr, *overflows = nullptr;
+  const int* count = nullptr;        ///< neighbours stored for each particle
+  const int* overflow_of = nullptr;  ///< which overflow, where count is above 4 first
+  int stride = 0;                    ///< words between word k and k + 1 of one particle
+  int first = 0, overflow = 0;       ///< see ListCapacity
+  int far = 0;                       ///< the row that fills up lists
 
   /// f(j) for every neighbour j of i, or for the share of one of `lanes` threads.
   template <class F>
@@ -40,7 +40,7 @@ struct TransposedLists {
     std::size_t step = std::size_t(lanes) * stride;
     for (int k = lane; k < n; k += lanes, w += step) {
       if (k >= first && k < first + lanes) {
-        w = tails + std::size_t(tail_of[i]) * tail + (k - first);
+        w = overflows + std::size_t(overflow_of[i]) * overflow + (k - first);
         step = lanes;
       }
       const int4 j = load_once(w);
@@ -53,7 +53,7 @@ struct TransposedLists {
   /// Word k of particle i.
   __device__ __forceinline__ int4 word(int i, int k) const {
     return load_once(k < first ? words + i + std::size_t(k) * stride
-                               : tails + std::size_t(tail_of[i]) * tail + (k - first));
+                               : overflows + std::size_t(overflow_of[i]) * overflow + (k - first));
   }
   __device__ __forceinline__ int size(int i) const { return count[i]; }
 };

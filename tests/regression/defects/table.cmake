@@ -105,5 +105,5 @@ seeded_defect(clean_reciprocal_root none kernels/vec3.h
   [[const Real inverse = Real(1) / square_root(q_squared);
   return {q_squared * inverse, inverse};]])
 seeded_defect(clean_unfused_division none kernels/pass_lambda.h
-  [[-c / (crowd(rho, p) * denominator)]]
-  [[-c * (Real(1) / (crowd(rho, p) * denominator))]])
+  [[-c / (under_relaxation(rho, p) * denominator)]]
+  [[-c * (Real(1) / (under_relaxation(rho, p) * denominator))]])
