@@ -3,6 +3,9 @@
 
 #include <cuda_runtime.h>
 
+#include <map>
+#include <utility>
+
 #include "lib/exec/cuda/check.h"
 
 namespace pbf::inline exec_module {
@@ -19,7 +22,7 @@ class RecordedUpdates {
   void repeat(int left, Updates& u, cudaStream_t stream) {
     for (const int size : {0, 1, 2})
       for (; left >= kUpdates[size]; left -= kUpdates[size]) {
-        cudaGraphExec_t& graph = graph_[size][u.placement()];
+        cudaGraphExec_t& graph = graph_[{size, u.placement()}];
         if (!graph) record(graph, kUpdates[size], u, stream);
         PBF_CUDA_CHECK(cudaGraphLaunch(graph, stream));
         u.moved();
@@ -27,11 +30,9 @@ class RecordedUpdates {
     if (left) u.step(1);
   }
   void drop() {
-    for (auto& size : graph_)
-      for (cudaGraphExec_t& g : size) {
-        if (g) cudaGraphExecDestroy(g);
-        g = nullptr;
-      }
+    for (const auto& [key, graph] : graph_)
+      if (graph) cudaGraphExecDestroy(graph);
+    graph_.clear();
   }
   /// Kernels and fills of one step; 0 before one was recorded.
   double launches() const { return launches_; }
@@ -55,7 +56,7 @@ class RecordedUpdates {
     PBF_CUDA_CHECK(made);
   }
 
-  cudaGraphExec_t graph_[3][4] = {};  ///< by size and placement
+  std::map<std::pair<int, int>, cudaGraphExec_t> graph_;  ///< by size and placement
   double launches_ = 0;
 };
 
