@@ -3,10 +3,14 @@
 namespace pbf::inline PBF_VARIANT {
 
 CudaExec::CudaExec(ListCapacity capacity, std::int64_t total) : capacity_(capacity), total_(total) {
-  int device = 0, major = 0;
+  int device = 0, driver = 0;
+  cudaDeviceProp p{};
   PBF_CUDA_CHECK(cudaGetDevice(&device));
-  PBF_CUDA_CHECK(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device));
-  overlap_ = major >= 9;
+  PBF_CUDA_CHECK(cudaGetDeviceProperties(&p, device));
+  PBF_CUDA_CHECK(cudaDriverGetVersion(&driver));
+  overlap_ = p.major >= 9;
+  device_ = p.name;
+  driver_ = "CUDA " + std::to_string(driver / 1000) + "." + std::to_string(driver % 100 / 10);
   PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
   list_state_.resize(1);
   list_state_host_.resize(1);
@@ -140,14 +144,9 @@ std::vector<StageTime> CudaExec::stages(double seconds) const {
 }
 
 void CudaExec::describe(SolverInfo& info) const {
-  int device = 0, driver = 0;
-  cudaDeviceProp p{};
-  PBF_CUDA_CHECK(cudaGetDevice(&device));
-  PBF_CUDA_CHECK(cudaGetDeviceProperties(&p, device));
-  PBF_CUDA_CHECK(cudaDriverGetVersion(&driver));
   info.backend = "cuda";
-  info.device = p.name;
-  info.driver = "CUDA " + std::to_string(driver / 1000) + "." + std::to_string(driver % 100 / 10);
+  info.device = device_;
+  info.driver = driver_;
   info.launches = recorded_.launches();
 }
 

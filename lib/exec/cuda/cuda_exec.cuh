@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cub/device/device_scan.cuh>
+#include <string>
 #include <vector>
 
 #include "lib/base/stage_clock.h"
@@ -267,6 +268,7 @@ class CudaExec {
   /// Exclusive sums of the counts.
   void scan(int n, int* start);
 
+  std::string device_, driver_;  ///< names
   cudaStream_t stream_ = nullptr;
   cudaStream_t other_stream_ = nullptr;  ///< while a repeated body is captured: that of the graph
   bool overlap_ = false;                 ///< the device knows programmatic dependent launch
