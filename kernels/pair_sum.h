@@ -28,6 +28,13 @@ enum Fields : unsigned {
   kCurl = 16,
   kId = 32
 };
+struct FieldName {
+  unsigned field;
+  const char* name;
+};
+inline constexpr FieldName kFieldNames[] = {
+    {kPlace, "position"},    {kLambda, "lambda"}, {kInverseDensity, "1/density"},
+    {kVelocity, "velocity"}, {kCurl, "curl"},     {kId, "id"}};
 
 /// One particle on one thread: the sequential form, and the reference for the others.
 template <class Pass>

@@ -180,10 +180,7 @@ std::string field_names(const std::vector<Written>& fields) {
 
 std::string gathers_text(const PassInfo& pass) {
   std::string out;
-  const std::pair<unsigned, const char*> names[] = {
-      {kPlace, "position"},    {kLambda, "lambda"}, {kInverseDensity, "1/density"},
-      {kVelocity, "velocity"}, {kCurl, "curl"},     {kId, "id"}};
-  for (const auto& [field, name] : names)
+  for (const auto& [field, name] : kFieldNames)
     if (pass.gathers & field) out.append(out.empty() ? "" : " ").append(name);
   return out;
 }
