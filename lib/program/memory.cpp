@@ -9,29 +9,12 @@
 #include "kernels/smoothing.h"
 #include "lib/base/text.h"
 #include "lib/program/list_capacity.h"
+#include "lib/program/list_memory.h"
 #include "lib/program/plan.h"
 #include "lib/program/threads.h"
 
 namespace pbf::inline program_module {
 namespace {
-
-std::int64_t size_of(const std::string& type) {
-  if (type == "byte") return 1;
-  return type == "double" || type == "int64" ? 8 : 4;
-}
-
-/// Adds arrays to a plan, one kind of lifetime and place at a time.
-struct Adder {
-  MemoryPlan& memory;
-  bool on_device;
-  Held held;
-  void operator()(const char* name, const std::string& type, int components,
-                  std::int64_t elements) const {
-    if (elements > 0)
-      memory.arrays.push_back({name, type, components, elements,
-                               size_of(type) * components * elements, on_device, held});
-  }
-};
 
 bool has_field(const Scene& s, const char* name) {
   if (s.output) {
@@ -62,92 +45,19 @@ void add_state(const Plan& plan, std::int64_t bins, bool guard, const std::strin
         add((std::string(f->name) + which).c_str(), f->type == Type::real ? real : "int32",
             f->components, rows);
   }
-  if (guard) {  // the last good state
-    add("kept position", real, 4, n);
-    add("kept velocity", real, 4, n);
-    add("kept id", "int32", 1, n);
+  for (const FieldInfo* f : plan.program.fields) {
+    if (!f->state) continue;
+    // The last good state; and a batch of updates is done again when a list outgrows its capacity.
+    const std::pair<bool, const char*> copies[] = {{guard, "kept "}, {add.on_device, "saved "}};
+    for (const auto& [is_there, copy] : copies)
+      if (is_there)
+        add((copy + std::string(f->name)).c_str(), f->type == Type::real ? real : "int32",
+            f->components, n);
   }
   if (add.on_device)
     add("sums of a measure by block", "int64",
         int((sizeof(MeasureCounts) + sizeof(MeasureTerms)) / 8), reduce_blocks(n) + 1);
   add("histogram of compression", "int64", 1, kCompressionBins);
-}
-
-bool has_random_places(const Scene& s) {
-  return std::any_of(s.bodies.begin(), s.bodies.end(),
-                     [](const Body& b) { return b.shape == Shape::random_box; });
-}
-
-/// The largest of 8 or 16 random numbers is 1.42 or 1.77 standard deviations above their mean.
-double deviations_of_longest(const Scene& s) { return s.precision == Precision::dbl ? 1.42 : 1.77; }
-
-/// Entries of one list, what fills up its group included: of the longest, and on average. 0 where
-/// the start was not counted.
-struct StartEntries {
-  double mean = 0, most = 0;
-};
-StartEntries start_entries(const Scene& s, const Plan& plan) {
-  StartEntries e;
-  const bool random = has_random_places(s);
-  const double n = double(plan.start.count.size()), deviations = deviations_of_longest(s);
-  for (std::size_t i = 0; i < plan.start.count.size(); ++i) {
-    // Random places scatter like Poisson's numbers at least, others by a fifth, from the surface of
-    // a body to its inside.
-    const double m = plan.start.count[i], poisson = deviations * std::sqrt(m);
-    const double entries = m + std::max(random ? poisson : std::min(poisson, 0.2 * m),
-                                        deviations * plan.start.scatter[i]);
-    e.mean += entries / n;
-    e.most = std::max(e.most, entries);
-  }
-  return e;
-}
-
-void add_cpu_lists(const Scene& s, const Plan& plan, const Adder& add) {
-  const std::int64_t n = plan.particles, chunks = (n + 1023) / 1024;
-  const int entries = cpu_list_entries(s), threads = solver_threads(s, n);
-  const StartEntries start = start_entries(s, plan);
-  add("lists", "int32", 1, std::int64_t(double(n) * std::max(double(entries), start.mean)));
-  add("groups of lists", "int32", 2, chunks * 1024 / 8);
-  add("table of lists", "int64", 3, chunks);
-  add("neighbours found by each thread", "int32", 1,
-      std::min<std::int64_t>(threads, chunks) *
-          std::max(cpu_scratch_entries(entries),  // grows by a quarter more than it must
-                   std::int64_t(1.25 * double(std::min<std::int64_t>(n, 1024)) * start.most)));
-}
-
-/// At first, and grown to the start's lists as the solver does.
-ListCapacity list_capacity(const Scene& s, const Plan& plan) {
-  const std::int64_t n = plan.particles;
-  ListCapacity capacity = first_list_capacity(rest_neighbors(s), n);
-  const std::vector<int>& sample = plan.start.count;
-  if (sample.empty()) return capacity;
-  const int longest = *std::max_element(sample.begin(), sample.end());
-  for (;;) {
-    const auto more = std::count_if(sample.begin(), sample.end(),
-                                    [&](int entries) { return entries > 4 * capacity.first; });
-    const auto overflows = std::int64_t(double(more) * double(n) / double(sample.size()));
-    if (overflows <= capacity.overflows && longest <= capacity.longest()) return capacity;
-    capacity =
-        larger_list_capacity(capacity, overflows, longest > capacity.longest() ? longest : 0, n);
-  }
-}
-
-void add_cuda_lists(const Scene& s, const Plan& plan, std::int64_t bins, const std::string& real,
-                    const Adder& add) {
-  const std::int64_t n = plan.particles;
-  const ListCapacity capacity = list_capacity(s, plan);
-  if (n > kSortParticles || bins > kSortBins) {
-    add("particles of each bin", "int32", 1, bins + 1);
-    add("scratch of the scan", "byte", 1, bins / 240 + 1024);  // CUB: 16 bytes a tile
-  }
-  add("slot", "int32", 1, n);
-  add("lists", "int32", 4, std::int64_t(list_stride(int(n))) * capacity.first);
-  add("overflow of long lists", "int32", 4, std::int64_t(capacity.overflows) * capacity.overflow);
-  add("length of a list", "int32", 1, n);
-  add("overflow of a list", "int32", 1, n);
-  add("saved position", real, 4, n);  // a batch of updates is done again when a list outgrows it
-  add("saved velocity", real, 4, n);
-  add("saved id", "int32", 1, n);
 }
 
 /// While the solver is made. Emission and conversion let go of each array as soon as it is used.
@@ -260,36 +170,6 @@ std::int64_t MemoryPlan::fixed_bytes(bool on_device) const {
   return bytes;
 }
 
-double rest_neighbors(const Scene& s) {
-  const double ratio = s.fluid.smoothing_ratio;
-  return s.dimensions == 2 ? kPi * ratio * ratio : 4.0 / 3.0 * kPi * std::pow(ratio, 3);
-}
-
-int cpu_list_entries(const Scene& s) {
-  const double mean = rest_neighbors(s);
-  const double spread = deviations_of_longest(s) * std::sqrt(mean);
-  const double entries = has_random_places(s) ? mean + spread : 1.1 * mean;
-  return std::clamp(int(std::ceil(entries)), 1, 1 << 20);
-}
-
-StartCrowd start_crowd(const Scene& s, const Plan& plan) {
-  StartCrowd crowd;
-  for (const int m : plan.start.count) crowd.neighbors += m / double(plan.start.count.size());
-  crowd.decides = start_entries(s, plan).mean > cpu_list_entries(s);
-  return crowd;
-}
-
-std::string memory_remedy(const Scene& s, const Plan& plan) {
-  const StartCrowd crowd = start_crowd(s, plan);
-  if (!crowd.decides) return "increase fluid.spacing";
-  return format(
-      "its particles start so close that each has about %.0f neighbours within h = %g m, where "
-      "fluid at rest has %.0f, and each takes room in a list: spread the bodies (bodies[].min, "
-      "max), "
-      "give fewer particles (bodies[].count)",
-      crowd.neighbors, s.h(), rest_neighbors(s));
-}
-
 MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
   MemoryPlan memory;
   const bool cuda = s.backend == Backend::cuda;
@@ -299,7 +179,7 @@ MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
   const Adder solver{memory, cuda, Held::solver};
   add_state(plan, bins, bool(s.guard), real, solver);
   if (cuda)
-    add_cuda_lists(s, plan, bins, real, solver);
+    add_cuda_lists(s, plan, bins, solver);
   else
     add_cpu_lists(s, plan, solver);
   add_output(s, plan, memory);

@@ -1,0 +1,33 @@
+// The part of the memory plan that the neighbour lists of the executors take.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "lib/program/memory.h"
+
+namespace pbf::inline program_module {
+
+/// Bytes of a component.
+inline std::int64_t size_of(const std::string& type) {
+  if (type == "byte") return 1;
+  return type == "double" || type == "int64" ? 8 : 4;
+}
+
+/// Adds arrays to a plan, one kind of lifetime and place at a time.
+struct Adder {
+  MemoryPlan& memory;
+  bool on_device;
+  Held held;
+  void operator()(const char* name, const std::string& type, int components,
+                  std::int64_t elements) const {
+    if (elements > 0)
+      memory.arrays.push_back({name, type, components, elements,
+                               size_of(type) * components * elements, on_device, held});
+  }
+};
+
+void add_cpu_lists(const Scene& scene, const Plan& plan, const Adder& add);
+void add_cuda_lists(const Scene& scene, const Plan& plan, std::int64_t bins, const Adder& add);
+
+}  // namespace pbf::inline program_module
