@@ -1,4 +1,4 @@
-"""What the documents show works: doctests, the example, the README, --help, tools/figures."""
+"""What the documents show works: doctests, the example, the pages, --help, tools/figures."""
 
 import doctest
 import importlib
@@ -18,6 +18,8 @@ from pbf_tools.__main__ import COMMANDS
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT / "tools"), "PYTHONDONTWRITEBYTECODE": "1",
                "PYTHON": sys.executable}
+FOLDERS = (".github", "app", "configs", "kernels", "lib", "tests", "tools")
+PAGES = [ROOT / "README.md", *(p for f in FOLDERS for p in sorted((ROOT / f).rglob("*.md")))]
 
 
 def test_the_examples_in_docstrings_hold(minimal, tmp_path, monkeypatch):
@@ -59,21 +61,97 @@ def test_the_example_script_runs(demo):
     assert "4000 particles" in out and "energy: 62.78 J at the start" in out
 
 
-def test_the_readmes_python_examples_run(demo):
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+def test_the_pages_python_examples_run(demo):
+    blocks = [b for page in PAGES
+              for b in re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)]
     assert len(blocks) >= 2 and any("pbf_tools.open" in b for b in blocks)
+    assert any("import h5py" in b for b in blocks)
     for block in blocks:
         assert run_python(["-c", block], demo).strip()
 
 
-def test_the_figures_of_the_readme_are_drawn_again_from_committed_times(tmp_path):
+def test_the_figures_of_speed_are_drawn_again_from_committed_times(tmp_path):
     done = subprocess.run([ROOT / "tools/figures", "--from-data", "--out", tmp_path], text=True,
                           env=ENVIRONMENT, capture_output=True)
     assert done.returncode == 0, done.stderr
-    readme = (ROOT / "README.md").read_text()
+    page = (ROOT / "tests/regression/bench/README.md").read_text()
     for name in ("reference_speedup", "reference_stages"):
         committed = imread(ROOT / f".github/{name}.png")
         assert abs(imread(tmp_path / f"{name}.png").shape[1] / committed.shape[1] - 1) < 0.05
-        assert f".github/{name}.png" in readme
+        assert f".github/{name}.png" in page
     done = subprocess.run([ROOT / "tools/figures", "--everything"], capture_output=True, text=True)
     assert done.returncode == 2 and "--everything" in done.stderr
+
+
+def anchors(page):
+    """Of a page's headings, as sites that show Markdown make them."""
+    headings = re.findall(r"^#+ (.*)$", page.read_text(), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", h.lower()).replace(" ", "-") for h in headings}
+
+
+def broken_links(page):
+    text = re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL)
+    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+        if re.match(r"[a-z]+://", target):
+            continue
+        path, _, anchor = target.partition("#")
+        there = page.parent / path if path else page
+        if not there.exists() or anchor and anchor not in anchors(there):
+            yield target
+
+
+def test_every_link_between_pages_leads_somewhere(tmp_path):
+    assert len(PAGES) > 15
+    for page in PAGES:
+        assert not list(broken_links(page)), page
+    (tmp_path / "there.md").write_text("# A heading, with `code`\n")
+    (tmp_path / "page.md").write_text("[a](there.md) [b](there.md#a-heading-with-code) [c](none.md)"
+                                      " [d](there.md#none) [e](https://example.org)")
+    assert list(broken_links(tmp_path / "page.md")) == ["none.md", "there.md#none"]
+
+
+def test_the_front_page_leads_to_every_other_and_is_short():
+    front = ROOT / "README.md"
+    assert len(front.read_text().splitlines()) <= 150
+    linked, to_read = {front}, [front]
+    while to_read:
+        page = to_read.pop()
+        for target in re.findall(r"\]\(([^)#\s]+\.md)", page.read_text()):
+            there = (page.parent / target).resolve()
+            if "://" not in target and there not in linked:
+                linked.add(there)
+                to_read.append(there)
+    assert not {p.resolve() for p in PAGES} - linked
+
+
+def test_the_scene_of_the_front_page_is_the_minimal_one():
+    shown = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    lines = (ROOT / "configs/minimal.yaml").read_text().splitlines(keepends=True)
+    assert shown == ["".join(line for line in lines if not line.startswith("#"))]
+
+
+def test_the_table_of_commands_has_every_command_of_the_program():
+    """And the table of exit codes every code, as pbf --help lists them."""
+    out = subprocess.run([os.environ["PBF_BINARY"], "--help"], capture_output=True, text=True).stdout
+    commands = re.search(r"Subcommands:\n(.*?)\n\n", out, re.DOTALL).group(1)
+    codes = re.search(r"Exit codes:\n(.*?)\n\n", out, re.DOTALL).group(1)
+    page = (ROOT / "app/README.md").read_text()
+    assert set(re.findall(r"^\| `pbf (\w+)", page, re.MULTILINE)) == set(
+        re.findall(r"^  (\w+)", commands, re.MULTILINE))
+    assert re.findall(r"^\| (\d+) \|", page, re.MULTILINE) == re.findall(
+        r"^  (\d+) ", codes, re.MULTILINE)
+
+
+def test_the_commands_of_the_front_page_run_one_after_the_other(tmp_path):
+    shutil.copytree(ROOT / "configs", tmp_path / "configs")
+    (tmp_path / "build").mkdir()
+    (tmp_path / "build/pbf").symlink_to(os.environ["PBF_BINARY"])
+    lines = [line for line in (ROOT / "README.md").read_text().splitlines()
+             if line.startswith(("build/pbf ", "cp "))]
+    assert len(lines) == 4
+    for line in lines:
+        done = subprocess.run(line, shell=True, cwd=tmp_path, capture_output=True, text=True)
+        if done.returncode == 4 and ("OpenGL" in done.stderr or "no pictures" in done.stderr):
+            pytest.skip("no OpenGL")
+        assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out/my/run.vtkhdf").exists() and list(tmp_path.glob("out/my/frames/*.png"))

@@ -1,4 +1,4 @@
-// The program's list of stages is that of the README and of the plots, and nothing is booked beside
+// The program's list of stages is that of the page and of the plots, and nothing is booked beside
 // it.
 #include "lib/base/stages.h"
 
@@ -54,9 +54,9 @@ std::string between(const std::string& text, const std::string& begin, const std
 
 }  // namespace
 
-TEST_CASE("the README's table of stages has every stage of the program in its group, no other") {
+TEST_CASE("app/README.md's table of stages has every stage of the program in its group, no other") {
   const std::string table = between(
-      text_of("README.md"), "| stage | does | group in the summary |\n|---|---|---|\n", "\n\n");
+      text_of("app/README.md"), "| stage | does | group in the summary |\n|---|---|---|\n", "\n\n");
   std::map<std::string, std::string> there;
   std::istringstream lines(table);
   for (std::string line; std::getline(lines, line);) {

@@ -28,7 +28,7 @@ STAGES = {"init": "#000000", "predict": "#F0E442", "grid": "#E69F00", "neighbors
           "xsph": "#CC79A7", "vorticity": "#7A3E9D", "measure": "#B0B0B0", "guard": "#C4B08B",
           "download": "#8A8A8A", "write": "#666666", "render": "#444444", "other": "#D9D9D9"}
 
-# The seven groups in the summary of `pbf run` (README, "Stages").
+# The seven groups in the summary of `pbf run` (app/README.md).
 GROUPS = {"initialization": ("init",), "gridding/neighbours": ("grid", "neighbors"),
           "densities": ("density",), "lambdas": ("lambda", "residual"), "deltas": ("delta",),
           "position/velocity updates": ("predict", "xsph", "vorticity"),
