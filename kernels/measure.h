@@ -78,7 +78,7 @@ struct MeasureTerms {
   }
 };
 
-/// All of it as numbers; lib/solver/step_solver.cpp turns them into SI units.
+/// All of it as numbers; lib/solver/diagnostics.cpp turns them into SI units.
 struct MeasureSums : MeasureCounts {
   static constexpr int levels = MeasureTerms::levels;
   double compression = 0, compression_squared = 0, speed_squared = 0;

@@ -119,7 +119,7 @@ void add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
       std::int64_t(std::max(0.0, 6000 * std::pow(double(n), 0.8) - 8e6)));
 }
 
-/// Measured: see tests/regression/lean_check and the table in the README.
+/// Measured: see tests/regression/lean_check and tests/regression/lean/README.md.
 void add_fixed(const Scene& s, MemoryPlan& memory) {
   const auto mb = [](double x) { return std::int64_t(x * 1e6); };
 #ifdef PBF_HAS_CUDA

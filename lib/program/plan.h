@@ -34,7 +34,7 @@ struct Plan {
   double cell_edge = 1;      ///< in h, >= 1: larger only where the box would need too many cells
   Axes axes;                 ///< of the internal frame; lib/program/axes.h
   int cells[3] = {1, 1, 1};  ///< of the grid, in internal axes; along x half cells
-  double vol = 1;            ///< m/(rho0 h^3), in 2-D m/(rho0 h^2 thickness); solver/calibrate.h
+  double vol = 1;            ///< m/(rho0 h^3), in 2-D m/(rho0 h^2 thickness); calibrate.h
   double wall_scale = 1, wall_range = 1;  ///< amplitude; range in h
   /// omega. By default min(1, (2.5 d/h)^2): one Jacobi iteration moves every particle for all its
   /// neighbours' constraints at once, so its stable step falls with their number. Measured on a

@@ -45,7 +45,7 @@ struct Domain {
 
 /// Smallest fluid.smoothing_ratio with fluid.mass: auto. Below it the density sum holds little but
 /// the nearest neighbours, and counts the many of a close packing like the few of the lattice
-/// farther out: a pool sinks into the packing without being compressed (solver/calibrate.h).
+/// farther out: a pool sinks into the packing without being compressed (lib/program/calibrate.h).
 constexpr double least_smoothing_ratio(int dimensions) { return dimensions == 2 ? 1.5 : 1.6; }
 
 struct Fluid {
