@@ -12,7 +12,7 @@
 #include <catch2/catch.hpp>
 #endif
 
-#include "tests/backend/backend.h"
+#include "tests/support/backend.h"
 #ifdef PBF_HAS_CUDA
 #include "lib/exec/cuda/cuda_solver.h"
 #endif

@@ -1,14 +1,11 @@
 // Every backend and precision against the same oracles, and against the CPU.
-#include "tests/backend/backend.h"
-#include "tests/catch.h"
-#ifdef PBF_HAS_CUDA
-#include "lib/base/error.h"
-#include "lib/exec/cuda/cuda_solver.h"
-#endif
+#include "tests/support/backend.h"
+#include "tests/support/catch.h"
 
 using namespace oracle_test;
 using backend_test::here;
 using backend_test::is_double;
+using backend_test::same_bytes;
 
 namespace {
 
@@ -45,13 +42,6 @@ Distance from_cpu(Case c, int updates) {
   }
   d.rms = std::sqrt(d.rms / double(x.size()));
   return d;
-}
-
-bool same_bytes(const pbf::Snapshot& a, const pbf::Snapshot& b) {
-  if (a.fields.size() != b.fields.size()) return false;
-  for (std::size_t f = 0; f < a.fields.size(); ++f)
-    if (a.fields[f].bytes != b.fields[f].bytes) return false;
-  return true;
 }
 
 }  // namespace
@@ -254,57 +244,3 @@ TEST_CASE("degenerate states stay finite and inside") {
   CHECK(m.non_finite == 0);
   CHECK(m.outside == 0);
 }
-
-#ifdef PBF_HAS_CUDA
-TEST_CASE("lists that outgrow their room grow, and the result is the same") {
-  if (backend_test::backend() != pbf::Backend::cuda) return;
-  const bool flat = GENERATE(false, true);
-  Case c = here(flat ? flat_block(40, 40, 0.3, 0.4, 5, 0.5)
-                     : jittered_block(12, 12, 12, 0.3, 0.4, 5, 0.7));
-  const auto plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
-  auto roomy = pbf::make_cuda_solver(c.scene, plan, c.particles, 512);
-  auto tight = pbf::make_cuda_solver(c.scene, plan, c.particles, 4);
-  CHECK(roomy->measure().neighbors_max == tight->measure().neighbors_max);
-  CHECK(tight->measure().neighbors_max > (flat ? 40 : 60));
-  roomy->step(40);
-  tight->step(40);
-  CHECK(same_bytes(roomy->download({"velocity"}, pbf::ScalarType::f32).get(),
-                   tight->download({"velocity"}, pbf::ScalarType::f32).get()));
-  CHECK(tight->info().bytes < roomy->info().bytes);
-}
-
-TEST_CASE("lists that outgrow their room in the middle of a run grow, and nothing is lost") {
-  if (backend_test::backend() != pbf::Backend::cuda) return;
-  // A blob falls into its own lower half: the counts rise long after the start.
-  Case c = here(jittered_block(10, 10, 20, 0.3, 0));
-  for (std::size_t i = 0; i < c.particles.size(); ++i)
-    c.particles.velocity[i] = {0, 0, c.particles.position[i][2] > -1.8 ? -30.0 : 30.0};
-  const auto plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
-  auto roomy = pbf::make_cuda_solver(c.scene, plan, c.particles, 1024);
-  auto tight = pbf::make_cuda_solver(c.scene, plan, c.particles, 40);
-  const auto at_start = tight->measure().neighbors_max;
-  std::int64_t most = 0;
-  for (int k = 0; k < 12; ++k) {
-    roomy->step(5);
-    tight->step(5);
-    most = std::max(most, roomy->measure().neighbors_max);
-  }
-  CHECK(most > at_start);
-  CHECK(same_bytes(roomy->download({"velocity"}, pbf::ScalarType::f32).get(),
-                   tight->download({"velocity"}, pbf::ScalarType::f32).get()));
-}
-
-TEST_CASE("more particles than the device's memory holds are refused before the run") {
-  if (backend_test::backend() != pbf::Backend::cuda) return;
-  Case c = here(jittered_block(4, 4, 4, 0, 0));
-  auto plan = pbf::make_plan(c.scene, 2000000000);
-  try {
-    pbf::make_cuda_solver(c.scene, plan, c.particles);
-    FAIL("not refused");
-  } catch (const pbf::Error& e) {
-    CHECK(e.code() == pbf::ExitCode::unavailable);
-    CHECK(std::string(e.what()).find("2000000000 particles need") != std::string::npos);
-    CHECK(std::string(e.what()).find("are free") != std::string::npos);
-  }
-}
-#endif

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "lib/run/step_control.h"
-#include "tests/backend/backend.h"
-#include "tests/catch.h"
+#include "tests/support/backend.h"
+#include "tests/support/catch.h"
 
 using namespace oracle_test;
 using backend_test::here;

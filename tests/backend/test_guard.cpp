@@ -3,9 +3,9 @@
 #include <limits>
 
 #include "lib/run/guard.h"
-#include "tests/backend/backend.h"
-#include "tests/catch.h"
-#include "tests/guard_check.h"
+#include "tests/support/backend.h"
+#include "tests/support/catch.h"
+#include "tests/support/guard_check.h"
 
 using namespace oracle_test;
 using backend_test::here;

@@ -4,8 +4,8 @@
 #include <numeric>
 #include <random>
 
-#include "tests/backend/backend.h"
-#include "tests/catch.h"
+#include "tests/support/backend.h"
+#include "tests/support/catch.h"
 
 using namespace oracle_test;
 using backend_test::here;

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/backend/backend.h"
-#include "tests/catch.h"
+#include "tests/support/backend.h"
+#include "tests/support/catch.h"
 
 using namespace oracle_test;
 using backend_test::here;

@@ -7,9 +7,9 @@
 #include <thread>
 
 #include "lib/io/run_file.h"
-#include "tests/catch.h"
-#include "tests/cli/process.h"
-#include "tests/cli/same_run.h"
+#include "tests/support/catch.h"
+#include "tests/support/process.h"
+#include "tests/support/same_run.h"
 
 using namespace pbf::test;
 namespace fs = std::filesystem;
@@ -46,12 +46,6 @@ Outcome run(const Scratch& folder, const std::string& out, const Args& more = {}
 
 std::string difference(const Scratch& folder) {
   return run_difference(folder / "a/run.vtkhdf", folder / "b/run.vtkhdf");
-}
-
-int count(const std::string& text, const std::string& part) {
-  int n = 0;
-  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++n;
-  return n;
 }
 
 }  // namespace
@@ -117,7 +111,7 @@ TEST_CASE("an adaptive run stopped again and again ends in the bytes of the undi
 }
 
 TEST_CASE(
-    "a killed adaptive run ends in the same bytes; a prolonged one in those of the long one") {
+    "a killed adaptive run ends in the same bytes, a prolonged one in those of the long one") {
   const Scratch folder;
   scene(folder, kAlarms);
   const Args set{"--resume", "--set", "checkpoint.every=0.001"};
@@ -184,7 +178,7 @@ TEST_CASE("of an adaptive run the guard is part of what may not change") {
   }
 }
 
-TEST_CASE("the plan names the steps of an update; a study refuses them, compare leaves them out") {
+TEST_CASE("the plan names the steps of an update, a study refuses them, compare leaves them out") {
   const Scratch folder;
   scene(folder, "{step_min: 0.004}");
   const Outcome plan = pbf::test::pbf({"plan", "s.yaml"}, folder.path());

@@ -1,8 +1,8 @@
 // pbf compare as a user runs it: two run files, or one scene on two sides.
 #include <fstream>
 
-#include "tests/catch.h"
-#include "tests/cli/process.h"
+#include "tests/support/catch.h"
+#include "tests/support/process.h"
 
 using namespace pbf::test;
 namespace fs = std::filesystem;

@@ -4,8 +4,8 @@
 
 #include "lib/io/checkpoint.h"
 #include "lib/io/run_file.h"
-#include "tests/catch.h"
-#include "tests/cli/process.h"
+#include "tests/support/catch.h"
+#include "tests/support/process.h"
 
 using namespace pbf::test;
 namespace fs = std::filesystem;

@@ -2,8 +2,8 @@
 // entry with every other took minutes to hours for these, which the timeout of the test catches.
 #include <functional>
 
-#include "tests/catch.h"
-#include "tests/cli/process.h"
+#include "tests/support/catch.h"
+#include "tests/support/process.h"
 
 using namespace pbf::test;
 

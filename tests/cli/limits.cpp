@@ -1,7 +1,7 @@
 // Limits of the system on a process: sizes of files, numbers of threads, closed streams.
 #include "lib/io/run_file.h"
-#include "tests/catch.h"
-#include "tests/cli/process.h"
+#include "tests/support/catch.h"
+#include "tests/support/process.h"
 
 using namespace pbf::test;
 namespace fs = std::filesystem;
@@ -60,10 +60,7 @@ TEST_CASE("where no thread can be started, the error names the limit and the rem
   const auto run = [&](const std::string& words) {
     return shell("ulimit -u 1; exec $STRANGER \"$PBF\" " + words, folder.path());
   };
-  if (cannot_run(run("--version"))) {
-    WARN("the program cannot be run as another user");
-    return;
-  }
+  if (cannot_run(run("--version"))) PBF_SKIP("the program cannot be run as another user");
   const char* const cases[] = {
       "run tiny.yaml --threads 2 --out a",  // before it runs
       "run tiny.yaml --threads 2 --out b --set output=off --set fluid.spacing=0.03",  // OpenMP

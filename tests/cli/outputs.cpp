@@ -1,8 +1,8 @@
 // Files that the user names for tables, reports and measures: what they replace, and what not.
 #include <sys/stat.h>
 
-#include "tests/catch.h"
-#include "tests/cli/process.h"
+#include "tests/support/catch.h"
+#include "tests/support/process.h"
 
 using namespace pbf::test;
 namespace fs = std::filesystem;
@@ -29,10 +29,7 @@ TEST_CASE("a table goes into a device, which stays one") {
                                           : "ln -s /dev/null null; ln -s /dev/full full\n";
   const Outcome o = shell(make + kBench + "--csv null --json null && test -c null", folder.path());
   CAPTURE(o.err);
-  if (o.code == 126) {
-    WARN("no right to make devices");
-    return;
-  }
+  if (o.code == 126) PBF_SKIP("no right to make devices");
   CHECK(o.code == 0);
   const Outcome full = shell(kBench + "--csv full", folder.path());
   CHECK(full.code == 5);
@@ -114,10 +111,7 @@ TEST_CASE("a folder that cannot be written is told before the work, with exit co
       "chmod 777 .; mkdir closed; chmod 555 closed; $STRANGER " + kBench + "--csv closed/a.csv",
       folder.path());
   CAPTURE(o.err);
-  if (o.code == 126 || o.code == 127) {
-    WARN("the program cannot be run as another user");
-    return;
-  }
+  if (o.code == 126 || o.code == 127) PBF_SKIP("the program cannot be run as another user");
   CHECK(o.code == 5);
   CHECK(o.out.empty());
   CHECK(has(o.err, "--csv closed/a.csv: its folder closed cannot be written: Permission denied"));
@@ -185,7 +179,8 @@ TEST_CASE("the measures of a run go into none of its own files, two tables not i
   CHECK(has(o.err, "--csv and --json name one file"));
 }
 
-TEST_CASE("measures follow a link and go to a pipe; a reader that has gone does not end the run") {
+TEST_CASE(
+    "measures follow a link and go to a pipe, and a reader that has gone does not end the run") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());
   fs::create_symlink("real.json", folder / "m.json");

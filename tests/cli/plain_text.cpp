@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <fstream>
 
-#include "tests/catch.h"
-#include "tests/cli/process.h"
+#include "tests/support/catch.h"
+#include "tests/support/process.h"
 
 using namespace pbf::test;
 

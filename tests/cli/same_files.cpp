@@ -4,9 +4,9 @@
 
 #include "lib/io/h5.h"
 #include "lib/io/run_file.h"
-#include "tests/catch.h"
-#include "tests/cli/process.h"
-#include "tests/cli/same_run.h"
+#include "tests/support/catch.h"
+#include "tests/support/process.h"
+#include "tests/support/same_run.h"
 
 using namespace pbf::test;
 namespace fs = std::filesystem;

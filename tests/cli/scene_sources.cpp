@@ -1,8 +1,8 @@
 // Where scenes come from, and where their names lead to.
 #include <cstdlib>
 
-#include "tests/catch.h"
-#include "tests/cli/process.h"
+#include "tests/support/catch.h"
+#include "tests/support/process.h"
 
 using namespace pbf::test;
 namespace fs = std::filesystem;

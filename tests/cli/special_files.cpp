@@ -1,8 +1,8 @@
 // Links, FIFOs, devices and folders under the names of files that a run writes and reads.
 #include <sys/stat.h>
 
-#include "tests/catch.h"
-#include "tests/cli/process.h"
+#include "tests/support/catch.h"
+#include "tests/support/process.h"
 
 using namespace pbf::test;
 namespace fs = std::filesystem;

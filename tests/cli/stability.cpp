@@ -1,7 +1,7 @@
 // pbf stability, and what the guard leaves behind in a run folder.
 #include "lib/io/run_file.h"
-#include "tests/catch.h"
-#include "tests/cli/process.h"
+#include "tests/support/catch.h"
+#include "tests/support/process.h"
 
 using namespace pbf::test;
 namespace fs = std::filesystem;
@@ -60,7 +60,7 @@ TEST_CASE("stability: a map is a CSV with a class per run") {
 
 TEST_CASE(
     "guard: a run that blows up ends with exit 3, says where, and leaves a scene that repeats "
-    "it; without the guard it goes on") {
+    "it, and without the guard it goes on") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());
   const std::vector<std::string> blow{"run", scene, "--out", "o", "--set", "tensile.k=1000"};

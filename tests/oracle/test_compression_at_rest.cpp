@@ -3,8 +3,8 @@
 
 #include "lib/run/prestabilize.h"
 #include "lib/run/warnings.h"
-#include "tests/catch.h"
-#include "tests/oracle/states.h"
+#include "tests/support/catch.h"
+#include "tests/support/states.h"
 
 using namespace oracle_test;
 

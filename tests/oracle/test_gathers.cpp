@@ -12,7 +12,7 @@
 #include "kernels/pass_vorticity.h"
 #include "kernels/pass_xsph.h"
 #include "lib/exec/cpu/cpu_exec.h"
-#include "tests/catch.h"
+#include "tests/support/catch.h"
 
 using namespace pbf;
 

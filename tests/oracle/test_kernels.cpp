@@ -3,8 +3,8 @@
 
 #include "kernels/boundary/box.h"
 #include "kernels/smoothing.h"
-#include "tests/catch.h"
-#include "tests/oracle/quadrature.h"
+#include "tests/support/catch.h"
+#include "tests/support/quadrature.h"
 
 using namespace oracle_test;
 using namespace pbf;

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/catch.h"
-#include "tests/oracle/compare.h"
+#include "tests/support/against_oracle.h"
+#include "tests/support/catch.h"
 
 using namespace oracle_test;
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "lib/exec/cpu/cpu_exec.h"
-#include "tests/catch.h"
+#include "tests/support/catch.h"
 
 using namespace pbf;
 

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "kernels/boundary/box.h"
-#include "tests/catch.h"
-#include "tests/oracle/compare.h"
-#include "tests/oracle/quadrature.h"
+#include "tests/support/against_oracle.h"
+#include "tests/support/catch.h"
+#include "tests/support/quadrature.h"
 
 using namespace oracle_test;
 using namespace pbf;

@@ -1,8 +1,8 @@
 // One update of the solver against the brute-force oracle, and the solver against itself.
 #include <cmath>
 
-#include "tests/catch.h"
-#include "tests/oracle/compare.h"
+#include "tests/support/against_oracle.h"
+#include "tests/support/catch.h"
 
 using namespace oracle_test;
 

@@ -1,8 +1,8 @@
 // Standing waves against linear theory, and against what the packing of the particles adds to it.
 #include <cmath>
 
-#include "tests/catch.h"
-#include "tests/oracle/states.h"
+#include "tests/support/catch.h"
+#include "tests/support/states.h"
 
 using namespace oracle_test;
 

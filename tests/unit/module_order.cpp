@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/catch.h"
+#include "tests/support/catch.h"
 
 namespace fs = std::filesystem;
 
@@ -92,7 +92,7 @@ TEST_CASE("an arrow that is turned round is found") {
   CHECK(count("lib/render/renderer.h", "lib/io/h5.h") == 1);
   CHECK(count("lib/run/guard.h", "app/commands.h") == 1);
   CHECK(count("app/main.cpp", "lib/run/guard.h") == 0);
-  CHECK(count("lib/base/text.h", "tests/catch.h") == 1);
+  CHECK(count("lib/base/text.h", "tests/support/catch.h") == 1);
 }
 
 TEST_CASE("every file of lib and app is in the namespace of its module") {

@@ -1,0 +1,81 @@
+// A solver's update held to the brute-force oracle.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/oracle/n2_update.h"
+#include "tests/support/states.h"
+
+namespace oracle_test {
+
+inline oracle::Settings settings_of(const Case& c) {
+  const pbf::Scene& s = c.scene;
+  oracle::Settings o;
+  o.h = s.h();
+  o.rest_density = s.fluid.rest_density;
+  o.dimensions = s.dimensions;
+  if (s.fluid.mass) {
+    o.mass = *s.fluid.mass;
+    if (s.dimensions == 2) o.mass /= s.domain.max[1] - s.domain.min[1];
+    o.wall_scale = 1;
+  } else {
+    const auto cal = pbf::calibrate(s.solver.kernels, s.fluid.smoothing_ratio, s.dimensions);
+    o.mass = static_cast<long double>(cal.vol) * o.rest_density * powl(o.h, s.dimensions);
+    o.wall_scale = cal.wall_scale;
+    o.wall_range = cal.wall_range;
+  }
+  o.dt = s.time.step;
+  o.cfm = s.solver.cfm;
+  o.sor = pbf::make_plan(s, std::int64_t(c.particles.size())).sor;
+  o.under_relax = !s.solver.sor;
+  o.damping = s.solver.velocity_damping;
+  o.margin = s.solver.wall_margin;
+  o.iterations = s.solver.iterations;
+  o.paper = s.solver.kernels == pbf::KernelMode::paper;
+  o.two_sided = s.solver.constraint == pbf::ConstraintMode::two_sided;
+  o.wall_density = s.solver.boundary == pbf::BoundaryMode::density;
+  for (int k = 0; k < 3; ++k) {
+    o.gravity[k] = s.gravity[k];
+    o.low[k] = s.domain.min[k];
+    o.high[k] = s.domain.max[k];
+  }
+  if (s.tensile) {
+    o.tensile_k = s.tensile->k;
+    o.tensile_q = s.tensile->delta_q;
+    o.tensile_n = s.tensile->n;
+  }
+  if (s.viscosity) o.xsph = s.viscosity->xsph;
+  if (s.vorticity) o.vorticity = s.vorticity->epsilon;
+  return o;
+}
+
+struct Difference {
+  double position = 0;  // in units of h
+  double velocity = 0;  // in units of h/dt
+};
+
+/// Largest difference after one update from the same state.
+inline Difference against_oracle(const Case& c) {
+  const oracle::Settings o = settings_of(c);
+  oracle::State s;
+  for (std::size_t i = 0; i < c.particles.size(); ++i) {
+    const auto &x = c.particles.position[i], &v = c.particles.velocity[i];
+    s.x.push_back({x[0], x[1], x[2]});
+    s.v.push_back({v[0], v[1], v[2]});
+  }
+  oracle::update(s, o);
+  auto solver = make(c);
+  solver->step(1);
+  const pbf::Snapshot snap = solver->download({"velocity"}, pbf::ScalarType::f64).get();
+  const auto x = snap.fields[0].as<double>(), v = snap.find("velocity")->as<double>();
+  Difference d;
+  for (std::size_t i = 0; i < s.x.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      d.position = std::max(d.position, double(fabsl(x[3 * i + k] - s.x[i][k]) / o.h));
+      d.velocity = std::max(d.velocity, double(fabsl(v[3 * i + k] - s.v[i][k]) * o.dt / o.h));
+    }
+  return d;
+}
+
+}  // namespace oracle_test

@@ -1,0 +1,42 @@
+// Studies for tests: a small scene, and results made by hand.
+#pragma once
+
+#include "lib/campaign/study_table.h"
+#include "lib/io/run_layout.h"
+#include "tests/support/folder.h"
+
+namespace pbf::test {
+
+/// A folder with a scene of 64 particles, 20 updates of 0.002 s, measured every 5.
+struct StudyFolder : TemporaryFolder {
+  StudyFolder() {
+    write("scene.yaml",
+          "domain: {min: [0, 0, 0], max: [0.4, 0.2, 0.4]}\n"
+          "fluid: {spacing: 0.04}\n"
+          "bodies:\n  - {shape: block, min: [0, 0, 0], max: [0.16, 0.16, 0.16]}\n"
+          "time: {step: 0.002, end: 0.04}\nmeasure_every: 5\nthreads: 1\n");
+  }
+  Study study(const std::string& text) const {
+    return load_study(write("study.yaml", "scene: scene.yaml\n" + text), {});
+  }
+};
+
+/// A finished run of `seconds` with a log of these times; every other column 0.
+inline MemberResult result_of(double seconds, const std::vector<double>& time) {
+  MemberResult r;
+  r.backend = "cpu", r.precision = "float", r.device = "none";
+  r.threads = 1, r.particles = 64, r.updates = 20;
+  r.seconds = seconds;
+  for (const auto& c : run_layout::log_columns()) {
+    r.names.push_back(c.name);
+    r.columns.emplace_back(time.size(), 0.0);
+  }
+  r.columns[0] = time;
+  return r;
+}
+inline void set(MemberResult& r, const std::string& name, const std::vector<double>& values) {
+  for (std::size_t k = 0; k < r.names.size(); ++k)
+    if (r.names[k] == name) r.columns[k] = values;
+}
+
+}  // namespace pbf::test

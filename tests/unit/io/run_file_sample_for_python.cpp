@@ -1,0 +1,60 @@
+// Files for tests/python: not a test by itself, hence hidden; ctest runs it before the scripts.
+#include <cmath>
+#include <cstdlib>
+
+#include "lib/io/run_file.h"
+#include "tests/support/catch.h"
+#include "tests/support/run_file_samples.h"
+
+using namespace pbf;
+
+namespace {
+
+/// A block of n^3 particles that falls and spreads; frame k at time 0.02 k.
+Snapshot falling_block(std::int64_t frame, std::int64_t n, ScalarType real) {
+  const auto count = static_cast<std::size_t>(n * n * n);
+  Snapshot s = test::sample(frame, count, real);
+  const auto set = [&](const char* name, std::size_t at, double v) {
+    auto& f = *const_cast<FieldArray*>(s.find(name));
+    if (real == ScalarType::f64) {
+      f.as<double>()[at] = v;
+    } else {
+      f.as<float>()[at] = static_cast<float>(v);
+    }
+  };
+  const double t = s.time;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto k = static_cast<std::int64_t>(i);
+    const double cell[3] = {static_cast<double>(k % n), static_cast<double>(k / n % n),
+                            static_cast<double>(k / (n * n))};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double gravity = c == 2 ? -9.81 : 0, spread = c == 2 ? 0 : 0.5 * cell[c] * 0.02;
+      set("position", 3 * i + c, cell[c] * 0.02 + spread * t + 0.5 * gravity * t * t);
+      set("velocity", 3 * i + c, spread + gravity * t);
+    }
+    set("density", i, 1000 - 20 * t);
+  }
+  return s;
+}
+
+void write_sample(const std::string& path, bool varying, bool gzip, ScalarType real) {
+  RunWriter writer(path, test::sample_info(1000), gzip);
+  for (std::int64_t k = 0; k < 8; ++k) {
+    writer.log(test::sample_row(k));
+    writer.write(falling_block(k, varying ? 10 + k % 3 - k / 4 : 10, real));
+  }
+  writer.finish({"finished"});
+}
+
+}  // namespace
+
+TEST_CASE("run files for the Python checks", "[.][sample]") {
+  const char* folder = std::getenv("PBF_SAMPLE_FOLDER");
+  REQUIRE(folder != nullptr);
+  const std::string path = folder;
+  std::filesystem::remove_all(path);
+  std::filesystem::create_directories(path);
+  write_sample(path + "/constant.h5", false, false, ScalarType::f32);
+  write_sample(path + "/varying.h5", true, false, ScalarType::f32);
+  write_sample(path + "/gzip_double.h5", false, true, ScalarType::f64);
+}

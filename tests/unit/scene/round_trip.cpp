@@ -1,0 +1,227 @@
+// resolved_yaml, reference_yaml and json_schema speak of the same table as the loader.
+#include <cmath>
+#include <limits>
+
+#include "lib/scene/keys.h"
+#include "lib/scene/number.h"
+#include "lib/scene/value.h"
+#include "tests/support/catch.h"
+#include "tests/support/scene_samples.h"
+
+namespace pbf::scene_test {
+namespace {
+
+/// A scene in which no field has its default.
+Scene unlike_default() {
+  Scene s;
+  s.dimensions = 2;
+  s.name = "a \"quoted\\ name: # with, signs";
+  s.domain = {{-1.0 / 3, -0.02, 1e-7}, {0.1 + 0.2, 0.06, 3}, {"x_min", "z_max"}};
+  s.fluid = {998.2, 0.1 / 3, 3.1072325059538572, 1.0 / 30};
+  Body block;
+  block.min = {-0.3, -1, 0.5};
+  block.max = {0.1, 1, 1.5};
+  block.velocity = {-1e11, 0, 1.0 / 7};
+  Body sphere;
+  sphere.shape = Shape::sphere;
+  sphere.center = {0, 0.1, 1};
+  sphere.radius = 0.2;
+  Body random;
+  random.shape = Shape::random_box;
+  random.min = {0, -5, 1};
+  random.max = {0.1, 6, 2};
+  random.count = 123456789;
+  random.seed = 9223372036854775807u;
+  Body file;
+  file.shape = Shape::file;
+  file.path = "odd name #1: [x].csv";
+  s.bodies = {block, sphere, random, file};
+  s.gravity = {1.0 / 3, 0, 5e-300};
+  s.time = {1.0 / 60, 500.0 / 60, AdaptiveTime{1e-4, 0.3, 0.2}};
+  s.solver.iterations = 7;
+  s.solver.substeps = 3;
+  s.solver.tolerance = 0.001;
+  s.solver.max_iterations = 24;
+  s.solver.method = SolverMethod::chebyshev;
+  s.solver.kernels = KernelMode::paper;
+  s.solver.constraint = ConstraintMode::two_sided;
+  s.solver.cfm = 100.0 / 3;
+  s.solver.sor = 0.7;
+  s.solver.boundary = BoundaryMode::clamp;
+  s.solver.wall_margin = 0.01;
+  s.solver.velocity_damping = 0.999;
+  s.solver.speed_limit = 0.25;
+  s.solver.prestabilize = false;
+  s.solver.fused = false;
+  s.solver.reproducible = true;
+  s.tensile = Tensile{0.01, 0.2, 6};
+  s.viscosity = Viscosity{0.125};
+  s.vorticity = Vorticity{2.5};
+  s.measure_every = 17;
+  s.guard = GuardSettings{1000.5, 0.25, 999};
+  s.output = Output{1.0 / 30, {"density"}, Precision::dbl, Compression::gzip};
+  s.render = Render{0.5,
+                    {640, 480},
+                    ColorBy::density,
+                    std::array<double, 2>{900, 1100},
+                    0.02,
+                    Camera{Double3{1, 2, 3}, Double3{4, 5, 6}, 60, -12.5}};
+  s.backend = Backend::cuda;
+  s.precision = Precision::dbl;
+  s.threads = 12;
+  return s;
+}
+
+/// Defaults alone, every optional block on.
+Scene scene_with_all_blocks() {
+  Scene scene;
+  scene_table().make_all_present(object(scene));
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("resolved scene: reads back to an equal scene, bit for bit") {
+  const Scene plain = parse(kMinimal), other = unlike_default(), all = parse(reference_yaml());
+  for (const Scene& s : {plain, other, all}) {
+    const std::string text = resolved_yaml(s);
+    CAPTURE(text);
+    CHECK(parse(text) == s);
+    CHECK(resolved_yaml(parse(text)) == text);
+  }
+  CHECK_FALSE(plain == other);
+}
+
+TEST_CASE("resolved scene: each key of the table makes a difference when it changes") {
+  // unlike_default differs from the default in every key, so a key that the table forgets or maps
+  // to the wrong field is seen here.
+  const Scene other = unlike_default(), defaults = scene_with_all_blocks();
+  for (const Key& key : scene_table().keys) {
+    if (key.block->path == "bodies[]" || key.path == "name") continue;
+    CAPTURE(key.path);
+    CHECK(value_text(key, object(other)) != value_text(key, object(defaults)));
+  }
+}
+
+TEST_CASE("resolved scene: absent blocks are written as off") {
+  const std::string text = resolved_yaml(parse(kMinimal));
+  for (const char* block : {"tensile", "viscosity", "vorticity", "output", "render"})
+    CHECK(contains(text, std::string("\n") + block + ": off\n"));
+  CHECK(contains(text, "\nguard:\n"));  // on where the scene does not mention it
+  const std::string off = resolved_yaml(parse(kMinimal + "guard: off\n"));
+  CHECK(contains(off, "\nguard: off\n"));
+  CHECK_FALSE(parse(off).guard);
+  CHECK_FALSE(contains(text, "camera"));
+}
+
+TEST_CASE("minimal scene: everything not given has the default of scene.h") {
+  Scene s;
+  s.domain = {{0, 0, 0}, {1, 1, 1}, {}};
+  s.fluid.spacing = 0.1;
+  s.bodies.resize(1);
+  s.bodies[0].max = {1, 1, 0.5};
+  s.time = {0.01, 1, {}};
+  CHECK(parse(kMinimal) == s);
+}
+
+TEST_CASE("blocks given as {}: on, with the defaults of scene.h") {
+  const Scene s = parse(kMinimal +
+                        "tensile: {}\nviscosity: {}\nvorticity: {}\noutput: {}\n"
+                        "render: {camera: {}}\n");
+  CHECK(s.tensile == Tensile{});
+  const Scene words = parse(kMinimal + "tensile: on\noutput: true\nvorticity: false\n");
+  CHECK(words.tensile == Tensile{});
+  CHECK(words.output == Output{});
+  CHECK_FALSE(words.vorticity);
+  CHECK(s.viscosity == Viscosity{});
+  CHECK(s.vorticity == Vorticity{});
+  CHECK(s.output == Output{});
+  CHECK(s.render == Render{});
+}
+
+TEST_CASE("reference scene: the committed file is what the code writes") {
+  CHECK(read_file(PBF_SOURCE_DIR "/configs/reference.yaml") == reference_yaml());
+}
+
+TEST_CASE("reference scene: documents every key, and optional keys stand at their defaults") {
+  const std::string text = reference_yaml();
+  const Scene s = parse(text), defaults = scene_with_all_blocks();
+  for (const Key& key : scene_table().keys) {
+    CAPTURE(key.path);
+    CHECK(contains(text, key.leaf() + ": "));
+    CHECK_FALSE(key.help.empty());
+    const bool numeric = !unit_text(key).empty();
+    CHECK((!numeric || (std::isfinite(key.range.min) && std::isfinite(key.range.max))));
+    if (!key.required && key.path != "name" && key.block->path != "bodies[]")
+      CHECK(value_text(key, object(s)) == value_text(key, object(defaults)));
+  }
+  std::size_t start = 0;
+  for (std::size_t end; (end = text.find('\n', start)) != std::string::npos; start = end + 1)
+    CHECK((end - start <= 105));
+}
+
+TEST_CASE("table of keys: every default lies in its own range") {
+  const Scene defaults = scene_with_all_blocks();
+  const Body entry;
+  for (const Key& key : scene_table().keys) {
+    if (key.required) continue;
+    Scene scene = scene_with_all_blocks();
+    Body body;
+    Node node;
+    const bool of_body = key.block->path == "bodies[]";
+    const std::string text = value_text(key, of_body ? object(entry) : object(defaults));
+    if (text[0] == '[') continue;  // lists: read back as part of the reference scene
+    node.kind = Node::Kind::scalar;
+    node.text = text;
+    CAPTURE(key.path, text);
+    CHECK(read_field(key, node, key.field(of_body ? object(body) : object(scene))).empty());
+  }
+}
+
+TEST_CASE("schema: balanced JSON that has every key and refuses the others") {
+  const std::string text = json_schema();
+  int depth = 0, lowest = 1;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (in_string && text[i] == '\\')
+      ++i;
+    else if (text[i] == '"')
+      in_string = !in_string;
+    else if (!in_string && (text[i] == '{' || text[i] == '['))
+      ++depth;
+    else if (!in_string && (text[i] == '}' || text[i] == ']'))
+      --depth;
+    if (i + 2 < text.size()) lowest = std::min(lowest, depth);
+  }
+  CHECK(depth == 0);
+  CHECK(lowest == 1);
+  CHECK_FALSE(in_string);
+  for (const Key& key : scene_table().keys)
+    CHECK(contains(text, std::string("\"").append(key.leaf()).append("\": {")));
+  std::size_t objects = 0, closed = 0;
+  for (std::size_t p = 0; (p = text.find("\"type\": \"object\"", p)) != std::string::npos; ++p)
+    ++objects;
+  for (std::size_t p = 0;
+       (p = text.find("\"additionalProperties\": false", p)) != std::string::npos; ++p)
+    ++closed;
+  CHECK(objects == closed);
+  // One object for every shape of a body.
+  CHECK(objects ==
+        scene_table().blocks.size() - 1 + scene_table().find_key("bodies[].shape")->choices.size());
+}
+
+TEST_CASE("numbers: the text of a double reads back to the same double") {
+  for (double v : {0.0, 0.1, 1.0 / 3, 1e-5, 1e-4, 9999999.0, 1e7, 123456789.0, 1e22, 5e-300, 1e300,
+                   -2.5, std::nextafter(1.0, 2.0), std::numeric_limits<double>::max(),
+                   std::numeric_limits<double>::min()}) {
+    double back = 0;
+    CAPTURE(v, to_text(v));
+    CHECK(read_double(to_text(v), back) == NumberError::none);
+    CHECK(back == v);
+  }
+  CHECK(to_text(0.1) == "0.1");
+  CHECK(to_text(1e-5) == "1.0e-05");  // YAML 1.1 takes 1e-05 for text
+  CHECK(to_text(1000.0) == "1000");
+}
+
+}  // namespace pbf::scene_test

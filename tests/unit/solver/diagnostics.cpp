@@ -1,0 +1,72 @@
+// The table of diagnostics is that of the page, of the log and of every line of JSON.
+#include "lib/solver/diagnostics.h"
+
+#include <fstream>
+#include <regex>
+#include <set>
+
+#include "lib/io/run_layout.h"
+#include "lib/run/run_report.h"
+#include "tests/support/catch.h"
+
+using namespace pbf;
+
+namespace {
+
+/// `height_kept`, `front_x,y,z`, ... of the first column of the page's tables of names.
+std::set<std::string> on_the_page() {
+  std::ifstream in(std::string(PBF_SOURCE_DIR) + "/lib/solver/DIAGNOSTICS.md");
+  REQUIRE(in);
+  std::set<std::string> names;
+  const std::regex code("`([a-z_0-9]+(?:,[yz])*)`");
+  bool table = false;
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind("## Of a study", 0) == 0) break;
+    table = line.rfind("| name |", 0) == 0 || (table && line[0] == '|');
+    if (!table || line.rfind("| `", 0) != 0) continue;
+    const std::string cell = line.substr(0, line.find('|', 1));
+    for (std::sregex_iterator m(cell.begin(), cell.end(), code), end; m != end; ++m) {
+      const std::string name = (*m)[1];
+      const std::size_t comma = name.find(',');
+      names.insert(name.substr(0, comma));
+      if (comma == std::string::npos) continue;
+      for (const char* axis : {"y", "z"}) names.insert(name.substr(0, comma - 1) + axis);
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("the page of diagnostics has every row of the table, and no other") {
+  std::set<std::string> table;
+  for (const Diagnostic& d : diagnostics()) CHECK(table.insert(d.name).second);
+  CHECK(on_the_page() == table);
+}
+
+TEST_CASE("every diagnostic is a column of the log and a member of each line of JSON") {
+  Diagnostics m;
+  m.front[1] = 7;
+  m.unresolved = 9;
+  const std::string json = measure_json(m, 1, 2, {});
+  CHECK(json.find("\"front\":[0.0,7.0,0.0]") != std::string::npos);
+  CHECK(json.find("\"unresolved\":9,") != std::string::npos);
+  std::size_t k = 4;  // behind time, dt, update, iterations
+  const auto& columns = run_layout::log_columns();
+  REQUIRE(columns.size() == k + diagnostics().size());
+  for (const Diagnostic& d : diagnostics()) {
+    CAPTURE(d.name);
+    CHECK(std::string(columns[k].name) == d.name);
+    CHECK(columns[k].real == (d.number != nullptr));
+    CHECK((d.number != nullptr) != (d.integer != nullptr));
+    const std::string name = d.name;
+    const bool part = name.ends_with("_x") || name.ends_with("_y") || name.ends_with("_z");
+    CHECK(json.find("\"" + (part ? name.substr(0, name.size() - 2) : name) + "\":") !=
+          std::string::npos);
+    ++k;
+  }
+  LogRow row;
+  row.measures = m;
+  for (const auto& c : columns)
+    if (std::string(c.name) == "unresolved") CHECK((c.whole(row) == 9 && c.value(row) == 9));
+}
