@@ -51,26 +51,16 @@ void Log::clear_transient() {
   dirty_ = false;
 }
 
-void Log::note(const std::string& text) {
+void Log::say(std::FILE* stream, const std::string& text) {
   const std::string lines = escaped(text) + "\n";
   clear_transient();
-  if (!quiet_) write_to(stderr, lines);
+  if (stream) write_to(stream, lines);
   to_file(lines);
 }
 
-void Log::warning(const std::string& text) {
-  clear_transient();
-  const std::string line = "pbf: warning: " + escaped(text) + "\n";
-  write_to(stderr, line);
-  to_file(line);
-}
-
-void Log::result(const std::string& text) {
-  const std::string lines = escaped(text) + "\n";
-  clear_transient();
-  write_to(stdout, lines);
-  to_file(lines);
-}
+void Log::note(const std::string& text) { say(quiet_ ? nullptr : stderr, text); }
+void Log::warning(const std::string& text) { say(stderr, "pbf: warning: " + text); }
+void Log::result(const std::string& text) { say(stdout, text); }
 
 void Log::transient(const std::string& text) {
   if (!terminal_) return;

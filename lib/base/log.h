@@ -40,6 +40,7 @@ class Log {
 
  private:
   void clear_transient();
+  void say(std::FILE* stream, const std::string& text);
   void to_file(const std::string& text);
 
   bool quiet_, terminal_, dirty_ = false;

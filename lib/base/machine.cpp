@@ -16,24 +16,25 @@ bool read_number(const std::string& path, std::size_t& value) {
   return static_cast<bool>(in >> value);
 }
 
-/// "MemAvailable:   123 kB" -> bytes; 0 when there is no such line.
-std::size_t memory_line(const char* file, const std::string& wanted) {
+/// What stands behind the colon of the line "name: ..."; empty when there is none.
+std::string value_of(const char* file, const std::string& name) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);)
-    if (line.rfind(wanted, 0) == 0) return std::stoull(line.substr(wanted.size())) * 1024;
-  return 0;
+    if (line.starts_with(name)) return line.substr(line.find(':') + 1);
+  return {};
+}
+
+/// "MemAvailable:   123 kB" -> bytes; 0 when there is no such line.
+std::size_t memory_line(const char* file, const std::string& name) {
+  const std::string value = value_of(file, name);
+  return value.empty() ? 0 : std::stoull(value) * 1024;
 }
 
 }  // namespace
 
 std::string cpu_model() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);) {
-    const auto colon = line.find(": ");
-    if (colon != std::string::npos && line.rfind("model name", 0) == 0)
-      return line.substr(colon + 2);
-  }
-  return "unknown CPU";
+  const std::string value = value_of("/proc/cpuinfo", "model name");
+  return value.size() > 1 ? value.substr(1) : "unknown CPU";
 }
 
 int usable_threads() {

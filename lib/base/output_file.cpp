@@ -37,8 +37,7 @@ OutputFile::OutputFile(const std::string& path, Naming naming) : path_(path) {
   }
   target_ = t.path;
   folder_ = t.folder();
-  if (const std::string why = obstacle(t); !why.empty())
-    throw Error(ExitCode::io, path + ": " + why);
+  require_writable(t, path);
   // Without a name nothing is left behind, however the program ends. Not every file system can.
   if (::access("/proc/self/fd", X_OK) == 0)
     fd_ = ::open(folder_.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
@@ -124,9 +123,7 @@ void check_output(const std::string& option, const std::string& path) {
   if (path.empty()) return;
   try {
     const OutputTarget t = output_target(path);
-    if (t.stream()) return;
-    if (const std::string why = obstacle(t); !why.empty())
-      throw Error(ExitCode::io, path + ": " + why);
+    if (!t.stream()) require_writable(t, path);
   } catch (const Error& e) {
     throw Error(e.code(), option + " " + e.what());
   }

@@ -89,17 +89,16 @@ OutputTarget own_target(const std::string& path) {
   return t;
 }
 
-std::string obstacle(const OutputTarget& t) {
-  const auto writable = [](const std::string& path, int how) {
-    return ::faccessat(AT_FDCWD, path.c_str(), how, AT_EACCESS) == 0;
+void require_writable(const OutputTarget& t, const std::string& path) {
+  const auto writable = [](const std::string& place, int how) {
+    return ::faccessat(AT_FDCWD, place.c_str(), how, AT_EACCESS) == 0;
   };
   if (!writable(t.folder(), W_OK | X_OK)) {
     const int reason = errno;
-    return "its folder " + t.folder() + " cannot be written: " + std::strerror(reason);
+    fail(path, "its folder " + t.folder() + " cannot be written: " + std::strerror(reason));
   }
   if (t.there && !writable(t.path, W_OK))
-    return std::string("it cannot be replaced: ") + std::strerror(errno);
-  return {};
+    fail(path, std::string("it cannot be replaced: ") + std::strerror(errno));
 }
 
 int open_stream(const OutputTarget& target, const std::string& path) {

@@ -27,9 +27,9 @@ OutputTarget output_target(const std::string& path);
 /// Of a file that the program names itself; see require_own_file().
 OutputTarget own_target(const std::string& path);
 
-/// Why nothing can be put in place there, "its folder x cannot be written: Permission denied";
-/// empty: it can.
-std::string obstacle(const OutputTarget& target);
+/// Throws Error(io) where nothing can be put in place: "its folder x cannot be written: Permission
+/// denied". `path` is what the user wrote.
+void require_writable(const OutputTarget& target, const std::string& path);
 
 /// A descriptor to write to a target that is a stream. Throws Error(io), also for a FIFO without a
 /// reader. `path` is what the user wrote.

@@ -38,15 +38,27 @@ bool is_blank(std::string_view text) {
   return c == '\t' || c == '\n' || (c == '\r' && (text.size() == 1 || text[1] == '\n'));
 }
 
+enum class Form { lines, one_line, utf8 };
+
 /// How the first character of a text stands in a message.
-std::string shown(std::string_view text, const Character& c, bool one_line) {
+std::string shown(std::string_view text, const Character& c, Form form) {
   if (c.code < 0) return format("\\x%02x", static_cast<unsigned char>(text[0]));
-  if (!is_control(c.code) || (!one_line && is_blank(text)))
+  if (!is_control(c.code) || form == Form::utf8 || (form == Form::lines && is_blank(text)))
     return std::string(text.substr(0, c.bytes));
   if (c.code == '\n') return "\\n";
   if (c.code == '\r') return "\\r";
   if (c.code == '\t') return "\\t";
   return format("\\u%04lx", static_cast<unsigned long>(c.code));
+}
+
+std::string written(std::string_view text, Form form, std::size_t most = std::string::npos) {
+  std::string out;
+  for (Character c; !text.empty(); text.remove_prefix(c.bytes)) {
+    if (out.size() >= most) return out + "...";
+    c = first_character(text);
+    out += shown(text, c, form);
+  }
+  return out;
 }
 
 }  // namespace
@@ -74,32 +86,12 @@ std::optional<BadText> find_bad_text(std::string_view text) {
   return std::nullopt;
 }
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (Character c; !text.empty(); text.remove_prefix(c.bytes)) {
-    c = first_character(text);
-    out += shown(text, c, false);
-  }
-  return out;
-}
+std::string escaped(std::string_view text) { return written(text, Form::lines); }
 
 std::string one_line(std::string_view text, std::size_t most) {
-  std::string out;
-  for (Character c; !text.empty(); text.remove_prefix(c.bytes)) {
-    if (out.size() >= most) return out + "...";
-    c = first_character(text);
-    out += shown(text, c, true);
-  }
-  return out;
+  return written(text, Form::one_line, most);
 }
 
-std::string utf8(std::string_view text) {
-  std::string out;
-  for (Character c; !text.empty(); text.remove_prefix(c.bytes)) {
-    c = first_character(text);
-    out += c.code < 0 ? shown(text, c, true) : std::string(text.substr(0, c.bytes));
-  }
-  return out;
-}
+std::string utf8(std::string_view text) { return written(text, Form::utf8); }
 
 }  // namespace pbf::inline base_module

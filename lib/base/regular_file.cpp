@@ -42,10 +42,9 @@ RegularFile::RegularFile(const std::string& path, const std::string& expected,
                                   (reason == ENOENT ? missing : std::string()));
   }
   struct stat state {};
-  const bool other = ::fstat(fd_, &state) == 0 && !S_ISREG(state.st_mode);
-  const std::string kind = other ? file_kind(state.st_mode) : std::string();
-  if (!kind.empty()) ::close(fd_);
-  refuse(kind);
+  if (::fstat(fd_, &state) != 0 || S_ISREG(state.st_mode)) return;
+  ::close(fd_);
+  refuse(file_kind(state.st_mode));
 }
 
 RegularFile::~RegularFile() { ::close(fd_); }

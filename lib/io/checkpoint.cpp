@@ -29,15 +29,13 @@ constexpr hsize_t kChunkRows = hsize_t{1} << 18;
 template <class T>
 void write_rows(hid_t file, const char* name, const char* unit, hid_t type, hsize_t components,
                 const std::vector<T>& values) {
-  const hsize_t rows = values.size() / components, size[2] = {rows, components};
+  const hsize_t rows = values.size() / components;
   const hsize_t chunk[2] = {std::clamp<hsize_t>(rows, 1, kChunkRows), components};
-  const h5::Space space(H5Screate_simple(2, size, nullptr));
   const h5::Properties create(H5Pcreate(H5P_DATASET_CREATE));
   check(H5Pset_chunk(create, 2, chunk));
   check(H5Pset_fletcher32(create));
-  const h5::Dataset d(H5Dcreate2(file, name, type, space, H5P_DEFAULT, create, H5P_DEFAULT));
-  if (rows > 0) check(H5Dwrite(d, h5::native<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
-  h5::write_text(d, "units", unit);
+  h5::write_dataset(file, name, type, {rows, components}, h5::native<T>(), values.data(), unit,
+                    create);
 }
 
 template <class T>
@@ -52,9 +50,20 @@ void read_rows(hid_t file, const char* name, std::int64_t n, std::size_t compone
     check(H5Dread(d, h5::native<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
 }
 
-/// f(attribute name, number) of the members that are doubles: one list for both directions.
+/// f(attribute name, number, older files lack it) of the members that are numbers: one list for
+/// both directions.
 template <class Saved, class F>
 void for_each_number(Saved& s, F&& f) {
+  constexpr bool newer = true;
+  f("update", s.state.updates);
+  f("steps", s.state.steps, newer);
+  f("particles", s.particles);
+  f("fast", s.state.fast);
+  f("rounds", s.state.repeats);
+  f("unresolved", s.state.unresolved, newer);
+  f("first_neighbors_max", s.first.neighbors_max);
+  f("energy_started", s.energy.started);
+  f("compressed_updates", s.compressed_updates, newer);
   f("energy_first", s.energy.first);
   f("energy_lowest", s.energy.lowest);
   f("energy_rise", s.energy.rise);
@@ -66,47 +75,53 @@ void for_each_number(Saved& s, F&& f) {
   f("first_center_of_mass_x", s.first.center_of_mass[0]);
   f("first_center_of_mass_y", s.first.center_of_mass[1]);
   f("first_center_of_mass_z", s.first.center_of_mass[2]);
-}
-
-/// The same for those that older files lack.
-template <class Saved, class F>
-void for_each_newer_number(Saved& s, F&& f) {
-  f("energy_largest", s.energy.largest);
-  f("way_squared", s.state.way_squared);
-  f("first_momentum_x", s.first.momentum[0]);
-  f("first_momentum_y", s.first.momentum[1]);
-  f("first_momentum_z", s.first.momentum[2]);
+  f("energy_largest", s.energy.largest, newer);
+  f("way_squared", s.state.way_squared, newer);
+  f("first_momentum_x", s.first.momentum[0], newer);
+  f("first_momentum_y", s.first.momentum[1], newer);
+  f("first_momentum_z", s.first.momentum[2], newer);
 }
 
 /// The same for the numbers of a StepHistory but its list. Their names begin with "step_".
-template <class History, class Integer, class Number>
-void for_each_step(History& s, Integer&& integer, Number&& number) {
-  integer("step_level", s.level);
-  integer("step_hold", s.hold);
-  integer("step_hold_length", s.hold_length);
-  integer("step_coarse", s.coarse);
-  integer("step_changes", s.changes);
-  integer("step_repeats", s.repeats);
-  integer("step_floor", s.floor);
-  integer("step_since", s.since);
-  number("step_time", s.time);
-  number("step_speed", s.speed);
+template <class History, class F>
+void for_each_step(History& s, F&& f) {
+  f("step_level", s.level);
+  f("step_hold", s.hold);
+  f("step_hold_length", s.hold_length);
+  f("step_coarse", s.coarse);
+  f("step_changes", s.changes);
+  f("step_repeats", s.repeats);
+  f("step_floor", s.floor);
+  f("step_since", s.since);
+  f("step_time", s.time);
+  f("step_speed", s.speed);
+  f("step_unresolved", s.unresolved, true);
+}
+
+auto writing(hid_t file) {
+  return [file](const char* name, const auto& v, bool = false) {
+    using T = std::remove_cvref_t<decltype(v)>;
+    h5::write_number(file, name, std::conditional_t<std::is_same_v<T, bool>, std::int64_t, T>(v));
+  };
+}
+
+auto reading(hid_t file) {
+  return [file](const char* name, auto& v, bool newer = false) {
+    using T = std::remove_reference_t<decltype(v)>;
+    using Stored = std::conditional_t<std::is_same_v<T, bool>, std::int64_t, T>;
+    if (!newer || h5::has_attribute(file, name))
+      v = static_cast<T>(h5::read_number<Stored>(file, name));
+  };
 }
 
 void write_steps(hid_t file, const StepHistory& s) {
-  const auto write = [&](const char* name, const auto& v) { h5::write_numbers(file, name, &v); };
-  for_each_step(s, write, write);
-  write("step_unresolved", s.unresolved);
+  for_each_step(s, writing(file));
   h5::write_numbers(file, "step_updates", s.updates.data(), s.updates.size());
 }
 
 StepHistory read_steps(hid_t file) {
   StepHistory s;
-  const auto read = [&](const char* name, auto& v) {
-    v = h5::read_number<std::remove_reference_t<decltype(v)>>(file, name);
-  };
-  for_each_step(s, read, read);
-  if (h5::has_attribute(file, "step_unresolved")) read("step_unresolved", s.unresolved);
+  for_each_step(s, reading(file));
   s.updates = h5::read_integers(file, "step_updates");
   if (s.level < 0 || s.level >= std::int64_t(s.updates.size()))
     throw h5::Failure("a level of the step that cannot be");
@@ -123,22 +138,10 @@ void write_file(const std::string& path, const SavedRun& s) {
     write_rows(file, "position", "h", real, 3, s.state.position);
     write_rows(file, "velocity", "h/s", real, 3, s.state.velocity);
     write_rows(file, "id", "1", H5T_STD_I32LE, 1, s.state.id);
-    const std::int64_t started = s.energy.started;
-    h5::write_numbers(file, "format_version", &kFormat);
+    h5::write_number(file, "format_version", kFormat);
     h5::write_text(file, "precision", wide ? "double" : "float");
-    h5::write_numbers(file, "update", &s.state.updates);
-    h5::write_numbers(file, "steps", &s.state.steps);
-    h5::write_numbers(file, "particles", &s.particles);
-    h5::write_numbers(file, "fast", &s.state.fast);
-    h5::write_numbers(file, "rounds", &s.state.repeats);
-    h5::write_numbers(file, "unresolved", &s.state.unresolved);
-    h5::write_numbers(file, "first_neighbors_max", &s.first.neighbors_max);
-    h5::write_numbers(file, "energy_started", &started);
-    h5::write_numbers(file, "compressed_updates", &s.compressed_updates);
-    const auto write = [&](const char* name, double v) { h5::write_numbers(file, name, &v); };
-    for_each_number(s, write);
-    for_each_newer_number(s, write);
-    if (s.released) write("released_energy", *s.released);
+    for_each_number(s, writing(file));
+    if (s.released) h5::write_number(file, "released_energy", *s.released);
     if (s.steps) write_steps(file, *s.steps);
     h5::write_text(file, "resolved_scene", s.scene);
     h5::write_text(file, "scene_files", s.files);
@@ -162,26 +165,12 @@ SavedRun read_file(const std::string& path) {
   SavedRun s;
   s.state.precision =
       h5::read_text(file, "precision") == "double" ? Precision::dbl : Precision::single;
-  s.state.updates = h5::read_number<std::int64_t>(file, "update");
+  for_each_number(s, reading(file));
   // Files written before there were levels hold neither.
-  s.state.steps = h5::has_attribute(file, "steps") ? h5::read_number<std::int64_t>(file, "steps")
-                                                   : s.state.updates;
+  if (!h5::has_attribute(file, "steps")) s.state.steps = s.state.updates;
   if (h5::has_attribute(file, "step_level")) s.steps = read_steps(file);
-  s.particles = h5::read_number<std::int64_t>(file, "particles");
-  s.state.fast = h5::read_number<std::int64_t>(file, "fast");
-  s.state.repeats = h5::read_number<std::int64_t>(file, "rounds");
-  if (h5::has_attribute(file, "unresolved"))  // newer as well
-    s.state.unresolved = h5::read_number<std::int64_t>(file, "unresolved");
-  if (h5::has_attribute(file, "compressed_updates"))
-    s.compressed_updates = h5::read_number<std::int64_t>(file, "compressed_updates");
-  s.first.neighbors_max = h5::read_number<std::int64_t>(file, "first_neighbors_max");
-  s.energy.started = h5::read_number<std::int64_t>(file, "energy_started") != 0;
-  const auto read = [&](const char* name, double& v) { v = h5::read_number<double>(file, name); };
-  for_each_number(s, read);
-  for_each_newer_number(s, [&](const char* name, double& v) {
-    if (h5::has_attribute(file, name)) read(name, v);
-  });
-  if (h5::has_attribute(file, "released_energy")) read("released_energy", s.released.emplace());
+  if (h5::has_attribute(file, "released_energy"))
+    s.released = h5::read_number<double>(file, "released_energy");
   if (h5::has_attribute(file, "scene_sha256")) {
     s.scene = h5::read_text(file, "resolved_scene");
     s.files = h5::read_text(file, "scene_files");

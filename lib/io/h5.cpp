@@ -9,15 +9,8 @@
 namespace pbf::inline io_module::h5 {
 namespace {
 
-std::mutex& process_mutex() {
-  static std::mutex m;
-  return m;
-}
-
-bool& held_here() {
-  static thread_local bool held = false;
-  return held;
-}
+std::mutex process_mutex;
+thread_local bool held_here = false;
 
 std::string name_of(hid_t object) {
   char name[200] = "";
@@ -32,8 +25,8 @@ herr_t take_first(unsigned, const H5E_error2_t* error, void* out) {
 
 }  // namespace
 
-Lock::Lock() : lock_(process_mutex()) {
-  held_here() = true;
+Lock::Lock() : lock_(process_mutex) {
+  held_here = true;
   static const bool once = [] {
     H5dont_atexit();           // fails when HDF5 is already in use: then its own clean-up stays
     H5PLset_loading_state(0);  // filters of plugins: code of a folder that the environment names
@@ -44,9 +37,9 @@ Lock::Lock() : lock_(process_mutex()) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // a setting of the calling thread's stack
 }
 
-Lock::~Lock() { held_here() = false; }
+Lock::~Lock() { held_here = false; }
 
-bool Lock::held() { return held_here(); }
+bool Lock::held() { return held_here; }
 
 void require_lock() {
   if (!Lock::held()) throw Error(ExitCode::internal, "HDF5 is used without h5::Lock");
@@ -110,6 +103,21 @@ void write_ascii(hid_t object, const char* name, const std::string& value) {
   const Space space(H5Screate(H5S_SCALAR));
   const Attribute a(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
   check(H5Awrite(a, type, value.data()));
+}
+
+void write_dataset(hid_t parent, const char* name, hid_t type, const std::vector<hsize_t>& shape,
+                   hid_t from, const void* values, const char* unit, hid_t create) {
+  const Space space(shape.empty() ? H5Screate(H5S_SCALAR)
+                                  : H5Screate_simple(int(shape.size()), shape.data(), nullptr));
+  const Dataset d(H5Dcreate2(parent, name, type, space, H5P_DEFAULT, create, H5P_DEFAULT));
+  check(H5Dwrite(d, from, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+  write_text(d, "units", unit);
+}
+
+int descriptor(hid_t file) {
+  void* handle = nullptr;
+  check(H5Fget_vfd_handle(file, H5P_DEFAULT, &handle));
+  return *static_cast<int*>(handle);
 }
 
 bool has_attribute(hid_t object, const char* name) { return H5Aexists(object, name) > 0; }

@@ -23,8 +23,6 @@ class Lock {
  public:
   Lock();
   ~Lock();
-  Lock(const Lock&) = delete;
-  Lock& operator=(const Lock&) = delete;
   static bool held();  ///< by this thread
 
  private:
@@ -118,6 +116,18 @@ void write_numbers(hid_t object, const char* name, const T* values, hsize_t coun
   const Attribute a(H5Acreate2(object, name, native<T>(), space, H5P_DEFAULT, H5P_DEFAULT));
   check(H5Awrite(a, native<T>(), values));
 }
+
+template <class T>
+void write_number(hid_t object, const char* name, T value) {
+  write_numbers(object, name, &value);
+}
+
+/// Makes a dataset of `shape` (none: one value) from `values` of memory type `from`.
+void write_dataset(hid_t parent, const char* name, hid_t type, const std::vector<hsize_t>& shape,
+                   hid_t from, const void* values, const char* unit, hid_t create = H5P_DEFAULT);
+
+/// The descriptor behind an open file; it stays HDF5's.
+int descriptor(hid_t file);
 
 bool has_attribute(hid_t object, const char* name);
 bool has_link(hid_t group, const std::string& path);  ///< every part of the path is looked at

@@ -4,6 +4,26 @@
 
 namespace pbf::inline io_module::h5 {
 
+hid_t memory_type(ScalarType t) {
+  if (t == ScalarType::i32) return H5T_NATIVE_INT32;
+  return t == ScalarType::f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
+}
+
+hid_t file_type(ScalarType t) {
+  if (t == ScalarType::i32) return H5T_STD_I32LE;
+  return t == ScalarType::f64 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+}
+
+ScalarType scalar_type(hid_t dataset, const std::string& path) {
+  const Type type(H5Dget_type(dataset));
+  const bool real = H5Tget_class(type) == H5T_FLOAT;
+  const std::size_t size = H5Tget_size(type);
+  if (real && size == 8) return ScalarType::f64;
+  if (real && size == 4) return ScalarType::f32;
+  if (!real && H5Tget_class(type) == H5T_INTEGER && size == 4) return ScalarType::i32;
+  throw Failure(path + " has a type that this program does not write");
+}
+
 Column::Column(hid_t parent, const std::string& path, hid_t type, const Layout& layout)
     : chunk_rows_(std::max<hsize_t>(1, layout.chunk_rows)), components_(layout.components) {
   const int rank = components_ ? 2 : 1;

@@ -5,8 +5,15 @@
 #include <vector>
 
 #include "lib/io/h5.h"
+#include "lib/solver/snapshot.h"
 
 namespace pbf::inline io_module::h5 {
+
+/// The types of a snapshot's numbers, in memory and in files.
+hid_t memory_type(ScalarType t);
+hid_t file_type(ScalarType t);
+/// Of what the dataset at `path` holds. Failure for a type that this program does not write.
+ScalarType scalar_type(hid_t dataset, const std::string& path);
 
 /// How a growing dataset is laid out and labelled.
 struct Layout {

@@ -8,16 +8,6 @@
 #include <cstring>
 
 namespace pbf::inline io_module::h5 {
-namespace {
-
-int descriptor(hid_t file) {
-  void* handle = nullptr;
-  check(H5Fget_vfd_handle(file, H5P_DEFAULT, &handle));
-  return *static_cast<int*>(handle);
-}
-
-}  // namespace
-
 Properties writer_access() {
   Properties p = file_access();
   check(H5Pset_cache(p, 0, 0, 0, 0));

@@ -50,12 +50,6 @@ Reading::Reading(const std::string& path) {
   file_ = File(H5Fopen(path.c_str(), H5F_ACC_RDONLY, file_access()));
 }
 
-int Reading::descriptor() const {
-  void* handle = nullptr;
-  check(H5Fget_vfd_handle(file_, H5P_DEFAULT, &handle));
-  return *static_cast<int*>(handle);
-}
-
 void stay_inside(hid_t parent, const std::string& path) {
   require_lock();
   follow(parent, path, 0);

@@ -15,8 +15,6 @@ class Reading {
  public:
   explicit Reading(const std::string& path);
   operator hid_t() const { return file_; }
-  /// The descriptor that HDF5 reads from.
-  int descriptor() const;
 
  private:
   Lock lock_;  // first: released last

@@ -87,8 +87,8 @@ std::string hash_of(int fd) {
 std::int64_t read_hdf5(const std::string& path, Particles* out, std::string* sha256) {
   try {
     const h5::Reading file(path);
-    const struct stat before = state_of(file.descriptor());
-    if (sha256) *sha256 = hash_of(file.descriptor());
+    const struct stat before = state_of(h5::descriptor(file));
+    if (sha256) *sha256 = hash_of(h5::descriptor(file));
     if (!h5::has_link(file, "position"))
       bad(path + ": dataset position", "is missing; a particle file needs position (N, 3)");
     const auto count = read_rows(file, path, "position", out ? &out->position : nullptr);
@@ -100,7 +100,7 @@ std::int64_t read_hdf5(const std::string& path, Particles* out, std::string* sha
     } else if (out != nullptr) {
       out->velocity.assign(static_cast<std::size_t>(count), Double3{});
     }
-    const struct stat after = state_of(file.descriptor());
+    const struct stat after = state_of(h5::descriptor(file));
     if (after.st_size != before.st_size || after.st_mtim.tv_sec != before.st_mtim.tv_sec ||
         after.st_mtim.tv_nsec != before.st_mtim.tv_nsec)
       throw h5::Failure("it was written to while it was read; wait until it is whole");

@@ -17,12 +17,8 @@ void write_particle_file(const std::string& path, const Particles& particles) {
   try {
     h5::File file(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT));
     const auto write = [&](const char* name, const char* unit, const std::vector<Double3>& rows) {
-      const hsize_t shape[] = {rows.size(), 3};
-      const h5::Space space(H5Screate_simple(2, shape, nullptr));
-      const h5::Dataset d(
-          H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-      h5::check(H5Dwrite(d, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()));
-      h5::write_text(d, "units", unit);
+      h5::write_dataset(file, name, H5T_IEEE_F64LE, {rows.size(), 3}, H5T_NATIVE_DOUBLE,
+                        rows.data(), unit);
     };
     write("position", "m", particles.position);
     write("velocity", "m/s", particles.velocity);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lib/io/run_file.h"
@@ -73,6 +74,18 @@ void for_each_text(Info& info, F&& f) {
   f("precision", info.solver.precision);
   f("device", info.solver.device);
   f("driver", info.solver.driver);
+}
+
+/// f(dataset name, unit, values) for every quantity of a RunInfo (const or not).
+template <class Info, class F>
+void for_each_quantity(Info& info, F&& f) {
+  f("domain_min", "m", info.domain_min);
+  f("domain_max", "m", info.domain_max);
+  f("spacing", "m", std::span(&info.spacing, 1));
+  f("smoothing_length", "m", std::span(&info.smoothing_length, 1));
+  f("rest_density", "kg/m^3", std::span(&info.rest_density, 1));
+  f("particle_weight", "1", std::span(&info.solver.vol, 1));
+  f("wall_scale", "1", std::span(&info.solver.wall_scale, 1));
 }
 
 /// The same for those that older files lack.

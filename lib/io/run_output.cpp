@@ -12,7 +12,6 @@ namespace {
 
 using h5::check;
 using h5::Column;
-using h5::Layout;
 
 // Half the number of chunks that one node of a dataset's index holds. A node that is full splits,
 // which HDF5 does in an order that makes the dataset unreadable for the microseconds in between;
@@ -20,16 +19,10 @@ using h5::Layout;
 // the price of 17 kB a dataset. The tables of steps have their first chunk full at that frame.
 constexpr unsigned index_rank = 256;
 
-hid_t memory_type(ScalarType t) {
-  if (t == ScalarType::i32) return H5T_NATIVE_INT32;
-  return t == ScalarType::f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
-}
-
 }  // namespace
 
 RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
-    : RunOutput(gzip) {  // from here on the destructor runs when this throws
-  expected_ = static_cast<std::size_t>(std::max<std::int64_t>(0, info.particles));
+    : RunOutput(info, gzip) {  // from here on the destructor runs when this throws
   const h5::Properties create(H5Pcreate(H5P_FILE_CREATE));
   check(H5Pset_istore_k(create, index_rank));
   const h5::Properties access = h5::writer_access();
@@ -38,14 +31,12 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
   const std::int64_t version[2] = {2, 2};
   h5::write_numbers(vtk_, "Version", version, 2);
   h5::write_ascii(vtk_, "Type", "PolyData");
-  create_steps();
+  steps_ = h5::make_group(vtk_, "Steps");
+  h5::write_number(steps_, "NSteps", std::int64_t{0});
+  make_tables(0);
   pbf_ = h5::make_group(file_, "pbf");
   write_info(info);
-  updates_ = Column(pbf_, "frames/update", H5T_STD_I64LE, {run_layout::step_rows, 0, false, "1"});
-  for (const auto& c : run_layout::log_columns())
-    log_[c.name] =
-        Column(pbf_, std::string("log/") + c.name, c.real ? H5T_IEEE_F64LE : H5T_STD_I64LE,
-               {run_layout::log_rows, 0, false, c.unit});
+  make_log(0, 0);
   make_sessions();
   begin_session(info);
   sync();
@@ -67,17 +58,17 @@ void RunOutput::write_frame(const Snapshot& s) {
   for (const FieldArray& f : s.fields) {
     if (f.name == "id") continue;
     Field& field = fields_[k++];
-    field.data.write(first, s.count, memory_type(f.type), f.bytes.data());
+    field.data.write(first, s.count, h5::memory_type(f.type), f.bytes.data());
     if (field.offsets.open()) field.offsets.append(start);
   }
   end_row_ = first + s.count;
   grow_ids(s.count);
   id_offsets_.append(std::int64_t{0});
-  const Part part = part_of(s.count);
-  part_offsets_.append(part.index);
+  const std::int64_t part = part_of(s.count);
+  part_offsets_.append(part);
   part_counts_.append(std::int64_t{1});
   point_offsets_.append(start);
-  cell_offsets_.append(std::vector<std::int64_t>{part.cell_offset, 0, 0, 0});
+  cell_offsets_.append(std::vector<std::int64_t>{part, 0, 0, 0});
   id_starts_.append(std::vector<std::int64_t>{0, 0, 0, 0});
   updates_.append(s.update);
   last_times_[times_.rows() % run_layout::step_rows] = s.time;

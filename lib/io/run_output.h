@@ -25,7 +25,6 @@ class RunOutput {
   RunOutput(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
             std::int64_t rows);
   ~RunOutput();
-  RunOutput(const RunOutput&) = delete;
   /// Appends a frame and commits it: from the return on a killed process leaves it readable.
   void write_frame(const Snapshot& snapshot);
   /// Keeps the row until the next commit: a frame, close, or enough rows or seconds gathered.
@@ -38,7 +37,7 @@ class RunOutput {
   std::int64_t bytes() const { return bytes_; }    ///< size of the file at the last commit
 
  private:
-  explicit RunOutput(bool gzip) : gzip_(gzip) {}
+  RunOutput(const RunInfo& info, bool gzip);
 
   struct Field {
     std::string name, unit;
@@ -47,27 +46,28 @@ class RunOutput {
     h5::Column data;     // /VTKHDF/Points or /VTKHDF/PointData/<name>
     h5::Column offsets;  // /VTKHDF/Steps/PointDataOffsets/<name>; closed for Points
   };
-  struct Part {  // a row of the tables of parts: frames of the same count share it
-    std::size_t count;
-    std::int64_t index, cell_offset;
-  };
   struct Topology {  // one of Vertices, Lines, Polygons, Strips
     h5::Column cells, ids, ends;
   };
 
-  void create_steps();
+  /// The column at `path`: made, or while `opening_` opened and cut to `rows` rows.
+  h5::Column column(hid_t parent, const std::string& path, hid_t type, const h5::Layout& layout,
+                    hsize_t rows) const;
+  h5::Column offsets(const std::string& field, hsize_t frames) const;
+  void make_tables(hsize_t frames);
+  void make_ids(hsize_t frames, hsize_t rows);
+  void make_log(hsize_t frames, hsize_t rows);
   void write_info(const RunInfo& info);
   void write_warnings(const std::vector<std::string>& warnings);
   void make_sessions();
   void begin_session(const RunInfo& info);
   void end_session(const std::string& reason, std::int64_t last_update);
   void open_steps(std::int64_t frames);
-  void open_parts(const std::vector<std::int64_t>& counts, std::int64_t parts);
   void open_fields(std::int64_t frames);
-  void open_log(std::int64_t rows);
+  void open_stages(hsize_t rows);
   void create_fields(const Snapshot& first);
   void check_fields(const Snapshot& snapshot) const;
-  Part part_of(std::size_t count);
+  std::int64_t part_of(std::size_t count);
   void grow_ids(std::size_t count);
   void commit_frames(std::int64_t frames);
   void set_steps(std::int64_t frames);  // NSteps
@@ -76,15 +76,15 @@ class RunOutput {
   void flush();
 
   h5::File file_;  // first: destroyed last
-  bool gzip_ = false, closed_ = false;
+  bool gzip_, opening_ = false, closed_ = false;
   std::int64_t frames_ = 0, bytes_ = 0;
-  std::size_t expected_ = 0;  // particles, from RunInfo
+  std::size_t expected_;  // particles, from RunInfo
   h5::Group vtk_, steps_, pbf_;
   std::vector<Field> fields_;
   hsize_t chunk_rows_ = 1, end_row_ = 0;
   h5::Column ids_, id_offsets_, connectivity_, points_per_part_, updates_;
   std::array<Topology, 4> topologies_;
-  std::vector<Part> parts_;
+  std::vector<std::int64_t> parts_;  // particles of each part; frames of the same number share it
   std::vector<double> last_times_ = std::vector<double>(run_layout::step_rows);  ///< s, last chunk
   h5::Column times_, part_offsets_, part_counts_, point_offsets_, cell_offsets_, id_starts_;
   std::vector<LogRow> waiting_;

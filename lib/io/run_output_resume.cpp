@@ -44,14 +44,16 @@ void put_text(Column& column, hsize_t row, const std::string& text) {
 
 RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
                      std::int64_t rows)
-    : RunOutput(gzip) {
-  expected_ = static_cast<std::size_t>(std::max<std::int64_t>(0, info.particles));
+    : RunOutput(info, gzip) {
+  opening_ = true;
   file_ = open_again(path);
   vtk_ = h5::open_group(file_, "VTKHDF");
   steps_ = h5::open_group(vtk_, "Steps");
   pbf_ = h5::open_group(file_, "pbf");
   open_steps(frames);
-  open_log(rows);
+  make_log(static_cast<hsize_t>(frames), static_cast<hsize_t>(rows));
+  open_stages(static_cast<hsize_t>(rows));
+  opening_ = false;
   sync();  // Values is never longer than NSteps
   set_steps(frames);
   frames_ = frames;
@@ -70,49 +72,20 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, st
 
 void RunOutput::open_steps(std::int64_t frames) {
   const auto n = static_cast<hsize_t>(frames);
-  const auto table = [&](hid_t parent, const std::string& name, hsize_t rows) {
-    Column c = Column::existing(parent, name);
-    c.truncate(rows);
-    return c;
-  };
-  times_ = table(steps_, "Values", n);
+  const auto points = h5::read_all<std::int64_t>(vtk_, "NumberOfPoints");
+  std::size_t used = 0;
+  for (const std::int64_t p : h5::read_all<std::int64_t>(steps_, "PartOffsets", n)) {
+    const auto part = static_cast<std::size_t>(p);
+    if (p < 0 || part >= points.size() || points[part] < 0)
+      throw h5::Failure("a frame has no number of points");
+    used = std::max(used, part + 1);
+  }
+  parts_.assign(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(used));
+  make_tables(n);
   const auto times = h5::read_all<double>(steps_, "Values");
   std::copy(times.begin() + frames / run_layout::step_rows * run_layout::step_rows, times.end(),
             last_times_.begin());
-  part_offsets_ = table(steps_, "PartOffsets", n);
-  part_counts_ = table(steps_, "NumberOfParts", n);
-  point_offsets_ = table(steps_, "PointOffsets", n);
-  cell_offsets_ = table(steps_, "CellOffsets", n);
-  id_starts_ = table(steps_, "ConnectivityIdOffsets", n);
-  updates_ = table(pbf_, "frames/update", n);
-  const auto parts = h5::read_all<std::int64_t>(steps_, "PartOffsets");
-  const auto points = h5::read_all<std::int64_t>(vtk_, "NumberOfPoints");
-  std::int64_t used = 0;
-  for (const std::int64_t p : parts) {
-    if (p < 0 || static_cast<std::size_t>(p) >= points.size() ||
-        points[static_cast<std::size_t>(p)] < 0)
-      throw h5::Failure("a frame has no number of points");
-    used = std::max(used, p + 1);
-  }
-  open_parts(points, used);
   open_fields(frames);
-}
-
-void RunOutput::open_parts(const std::vector<std::int64_t>& counts, std::int64_t parts) {
-  const auto n = static_cast<hsize_t>(parts);
-  points_per_part_ = Column::existing(vtk_, "NumberOfPoints");
-  points_per_part_.truncate(n);
-  for (std::size_t t = 0; t < topologies_.size(); ++t) {
-    const std::string group = run_layout::topologies[t];
-    topologies_[t].cells = Column::existing(vtk_, group + "/NumberOfCells");
-    topologies_[t].ids = Column::existing(vtk_, group + "/NumberOfConnectivityIds");
-    topologies_[t].ends = Column::existing(vtk_, group + "/Offsets");
-    topologies_[t].cells.truncate(n);
-    topologies_[t].ids.truncate(n);
-    topologies_[t].ends.truncate(t == 0 ? 2 * n : n);
-  }
-  for (std::int64_t k = 0; k < parts; ++k)
-    parts_.push_back({static_cast<std::size_t>(counts[static_cast<std::size_t>(k)]), k, k});
 }
 
 void RunOutput::open_fields(std::int64_t frames) {
@@ -120,29 +93,19 @@ void RunOutput::open_fields(std::int64_t frames) {
   const auto n = static_cast<hsize_t>(frames);
   const auto starts = h5::read_all<std::int64_t>(steps_, "PointOffsets");
   const auto parts = h5::read_all<std::int64_t>(steps_, "PartOffsets");
-  std::size_t most = 0;
-  for (const std::int64_t p : parts)
-    most = std::max(most, parts_[static_cast<std::size_t>(p)].count);
-  end_row_ =
-      static_cast<hsize_t>(starts.back()) + parts_[static_cast<std::size_t>(parts.back())].count;
+  std::int64_t most = 0;
+  for (const std::int64_t p : parts) most = std::max(most, parts_[static_cast<std::size_t>(p)]);
+  end_row_ = static_cast<hsize_t>(starts.back() + parts_[static_cast<std::size_t>(parts.back())]);
   const auto open = [&](const std::string& name, const std::string& path) {
     const h5::Dataset d = h5::open_dataset(vtk_, path);
-    const h5::Type type(H5Dget_type(d));
-    const bool wide = H5Tget_size(type) == 8, real = H5Tget_class(type) == H5T_FLOAT;
     const auto dims = h5::shape(d);
     Field f{name,
             "",
-            !real  ? ScalarType::i32
-            : wide ? ScalarType::f64
-                   : ScalarType::f32,
+            h5::scalar_type(d, path),
             dims.size() == 2 ? static_cast<int>(dims[1]) : 1,
             Column::existing(vtk_, path),
-            Column()};
+            name == "position" ? Column() : offsets(name, n)};
     f.data.truncate(end_row_);
-    if (name != "position") {
-      f.offsets = Column::existing(steps_, "PointDataOffsets/" + name);
-      f.offsets.truncate(n);
-    }
     return f;
   };
   fields_.push_back(open("position", "Points"));
@@ -151,22 +114,14 @@ void RunOutput::open_fields(std::int64_t frames) {
   for (const char* name : {"velocity", "density"})
     if (h5::has_link(vtk_, std::string("PointData/") + name))
       fields_.push_back(open(name, std::string("PointData/") + name));
-  ids_ = Column::existing(vtk_, "PointData/id");
-  id_offsets_ = Column::existing(steps_, "PointDataOffsets/id");
-  connectivity_ = Column::existing(vtk_, "Vertices/Connectivity");
-  ids_.truncate(most);
-  id_offsets_.truncate(n);
-  connectivity_.truncate(most);
+  make_ids(n, static_cast<hsize_t>(most));
 }
 
-void RunOutput::open_log(std::int64_t rows) {
-  const auto n = static_cast<hsize_t>(rows);
-  for (const auto& c : run_layout::log_columns())
-    (log_[c.name] = Column::existing(pbf_, std::string("log/") + c.name)).truncate(n);
+void RunOutput::open_stages(hsize_t rows) {
   if (!h5::has_link(pbf_, "log/stage")) return;
   const h5::Group group = h5::open_group(pbf_, "log/stage");
   for (const auto& name : h5::children(group, H5O_TYPE_DATASET))
-    (stages_[name] = Column::existing(group, name)).truncate(n);
+    (stages_[name] = Column::existing(group, name)).truncate(rows);
 }
 
 void RunOutput::make_sessions() {

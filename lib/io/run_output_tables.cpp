@@ -9,45 +9,70 @@
 namespace pbf::inline io_module {
 namespace {
 
-using h5::check;
 using h5::Column;
 using run_layout::step_rows;
 
 constexpr hsize_t max_chunk_rows = hsize_t{1} << 22;  // 50 MB of float positions
 
-hid_t file_type(ScalarType t) {
-  if (t == ScalarType::i32) return H5T_STD_I32LE;
-  return t == ScalarType::f64 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
-}
-
 }  // namespace
 
-void RunOutput::create_steps() {
-  const std::int64_t none = 0;
-  steps_ = h5::make_group(vtk_, "Steps");
-  h5::write_numbers(steps_, "NSteps", &none);
-  const auto table = [](hid_t parent, const std::string& name, int components = 0) {
-    return Column(parent, name, H5T_STD_I64LE, {step_rows, components, false, ""});
+RunOutput::RunOutput(const RunInfo& info, bool gzip)
+    : gzip_(gzip), expected_(static_cast<std::size_t>(std::max<std::int64_t>(0, info.particles))) {}
+
+Column RunOutput::column(hid_t parent, const std::string& path, hid_t type,
+                         const h5::Layout& layout, hsize_t rows) const {
+  if (!opening_) return Column(parent, path, type, layout);
+  Column c = Column::existing(parent, path);
+  c.truncate(rows);
+  return c;
+}
+
+/// Of `frames` frames and the parts that these name.
+void RunOutput::make_tables(hsize_t frames) {
+  const hsize_t parts = parts_.size();
+  const auto table = [&](hid_t parent, const std::string& name, hsize_t rows, int components = 0) {
+    return column(parent, name, H5T_STD_I64LE, {step_rows, components, false, ""}, rows);
   };
-  times_ = Column(steps_, "Values", H5T_IEEE_F64LE, {step_rows, 0, false, "s"});
-  part_offsets_ = table(steps_, "PartOffsets");
-  part_counts_ = table(steps_, "NumberOfParts");
-  point_offsets_ = table(steps_, "PointOffsets");
-  cell_offsets_ = table(steps_, "CellOffsets", 4);
-  id_starts_ = table(steps_, "ConnectivityIdOffsets", 4);
-  points_per_part_ = table(vtk_, "NumberOfPoints");
+  times_ = column(steps_, "Values", H5T_IEEE_F64LE, {step_rows, 0, false, "s"}, frames);
+  part_offsets_ = table(steps_, "PartOffsets", frames);
+  part_counts_ = table(steps_, "NumberOfParts", frames);
+  point_offsets_ = table(steps_, "PointOffsets", frames);
+  cell_offsets_ = table(steps_, "CellOffsets", frames, 4);
+  id_starts_ = table(steps_, "ConnectivityIdOffsets", frames, 4);
+  points_per_part_ = table(vtk_, "NumberOfPoints", parts);
   for (std::size_t t = 0; t < topologies_.size(); ++t) {
     const std::string group = run_layout::topologies[t];
-    topologies_[t].cells = table(vtk_, group + "/NumberOfCells");
-    topologies_[t].ids = table(vtk_, group + "/NumberOfConnectivityIds");
-    topologies_[t].ends = table(vtk_, group + "/Offsets");
-    if (t > 0) table(vtk_, group + "/Connectivity");  // stays empty
+    topologies_[t].cells = table(vtk_, group + "/NumberOfCells", parts);
+    topologies_[t].ids = table(vtk_, group + "/NumberOfConnectivityIds", parts);
+    topologies_[t].ends = table(vtk_, group + "/Offsets", t == 0 ? 2 * parts : parts);
+    if (t > 0) table(vtk_, group + "/Connectivity", 0);  // stays empty
   }
+}
+
+Column RunOutput::offsets(const std::string& field, hsize_t frames) const {
+  return column(steps_, "PointDataOffsets/" + field, H5T_STD_I64LE, {step_rows, 0, false, ""},
+                frames);
+}
+
+/// Row i is particle i in every frame, so ids and the vertices' points are stored once.
+void RunOutput::make_ids(hsize_t frames, hsize_t rows) {
+  ids_ = column(vtk_, "PointData/id", H5T_STD_I32LE, {chunk_rows_, 0, gzip_, "1"}, rows);
+  id_offsets_ = offsets("id", frames);
+  connectivity_ =
+      column(vtk_, "Vertices/Connectivity", H5T_STD_I64LE, {chunk_rows_, 0, gzip_, ""}, rows);
+}
+
+void RunOutput::make_log(hsize_t frames, hsize_t rows) {
+  updates_ = column(pbf_, "frames/update", H5T_STD_I64LE, {step_rows, 0, false, "1"}, frames);
+  for (const auto& c : run_layout::log_columns())
+    log_[c.name] =
+        column(pbf_, std::string("log/") + c.name, c.real ? H5T_IEEE_F64LE : H5T_STD_I64LE,
+               {run_layout::log_rows, 0, false, c.unit}, rows);
 }
 
 void RunOutput::write_info(const RunInfo& info) {
   h5::write_text(pbf_, "status", "running");
-  h5::write_numbers(pbf_, "format_version", &run_layout::format_version);
+  h5::write_number(pbf_, "format_version", run_layout::format_version);
   const auto write = [&](const char* name, const std::string& text) {
     h5::write_text(pbf_, name, text);
   };
@@ -55,26 +80,14 @@ void RunOutput::write_info(const RunInfo& info) {
   run_layout::for_each_newer_text(info, write);
   h5::write_texts(pbf_, "overrides", info.overrides);
   write_warnings(info.warnings);
-  const std::int64_t threads = info.solver.threads;
-  const std::uint64_t bytes = info.solver.bytes;
-  h5::write_numbers(pbf_, "threads", &threads);
-  h5::write_numbers(pbf_, "solver_bytes", &bytes);
-  h5::write_numbers(pbf_, "particles", &info.particles);
-  const auto quantity = [this](const char* name, const char* unit, const double* value,
-                               hsize_t count) {
-    const h5::Space space(count > 1 ? H5Screate_simple(1, &count, nullptr) : H5Screate(H5S_SCALAR));
-    const h5::Dataset d(
-        H5Dcreate2(pbf_, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-    check(H5Dwrite(d, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, value));
-    h5::write_text(d, "units", unit);
-  };
-  quantity("domain_min", "m", info.domain_min.data(), 3);
-  quantity("domain_max", "m", info.domain_max.data(), 3);
-  quantity("spacing", "m", &info.spacing, 1);
-  quantity("smoothing_length", "m", &info.smoothing_length, 1);
-  quantity("rest_density", "kg/m^3", &info.rest_density, 1);
-  quantity("particle_weight", "1", &info.solver.vol, 1);
-  quantity("wall_scale", "1", &info.solver.wall_scale, 1);
+  h5::write_number(pbf_, "threads", std::int64_t{info.solver.threads});
+  h5::write_number(pbf_, "solver_bytes", std::uint64_t{info.solver.bytes});
+  h5::write_number(pbf_, "particles", info.particles);
+  run_layout::for_each_quantity(info, [this](const char* name, const char* unit,
+                                             std::span<const double> values) {
+    const std::vector<hsize_t> shape(values.size() > 1 ? 1 : 0, values.size());
+    h5::write_dataset(pbf_, name, H5T_IEEE_F64LE, shape, H5T_NATIVE_DOUBLE, values.data(), unit);
+  });
 }
 
 /// One a line: a text is replaced in place, a list of another length could not be.
@@ -88,22 +101,16 @@ void RunOutput::create_fields(const Snapshot& first) {
   const hsize_t rows = std::max<hsize_t>(1, std::max(expected_, first.count));
   const hsize_t chunks = (rows + max_chunk_rows - 1) / max_chunk_rows;
   chunk_rows_ = (rows + chunks - 1) / chunks;
-  const auto offsets = [this](const std::string& name) {
-    return Column(steps_, "PointDataOffsets/" + name, H5T_STD_I64LE, {step_rows, 0, false, ""});
-  };
   for (const FieldArray& f : first.fields) {
     if (f.name == "id") continue;
     const bool points = fields_.empty();  // VTK wants three components there, one-row arrays flat
     const int components = points || f.components > 1 ? f.components : 0;
     fields_.push_back({f.name, f.unit, f.type, f.components,
-                       Column(vtk_, points ? "Points" : "PointData/" + f.name, file_type(f.type),
-                              {chunk_rows_, components, gzip_, f.unit}),
-                       points ? Column() : offsets(f.name)});
+                       Column(vtk_, points ? "Points" : "PointData/" + f.name,
+                              h5::file_type(f.type), {chunk_rows_, components, gzip_, f.unit}),
+                       points ? Column() : offsets(f.name, 0)});
   }
-  // Row i is particle i in every frame, so ids and the vertices' points are stored once.
-  ids_ = Column(vtk_, "PointData/id", H5T_STD_I32LE, {chunk_rows_, 0, gzip_, "1"});
-  id_offsets_ = offsets("id");
-  connectivity_ = Column(vtk_, "Vertices/Connectivity", H5T_STD_I64LE, {chunk_rows_, 0, gzip_, ""});
+  make_ids(0, 0);
 }
 
 void RunOutput::check_fields(const Snapshot& s) const {
@@ -134,11 +141,11 @@ void RunOutput::check_fields(const Snapshot& s) const {
 }
 
 /// The row of the tables of parts for frames of `count` particles, made when there is none.
-RunOutput::Part RunOutput::part_of(std::size_t count) {
-  for (const Part& p : parts_)
-    if (p.count == count) return p;
-  const auto index = static_cast<std::int64_t>(parts_.size());
+std::int64_t RunOutput::part_of(std::size_t count) {
   const auto n = static_cast<std::int64_t>(count);
+  const auto found = std::find(parts_.begin(), parts_.end(), n);
+  const std::int64_t index = found - parts_.begin();
+  if (found != parts_.end()) return index;
   points_per_part_.append(n);
   for (std::size_t t = 0; t < topologies_.size(); ++t) {
     topologies_[t].cells.append(std::int64_t{t == 0});
@@ -146,8 +153,8 @@ RunOutput::Part RunOutput::part_of(std::size_t count) {
     topologies_[t].ends.append(t == 0 ? std::vector<std::int64_t>{0, n}
                                       : std::vector<std::int64_t>{0});
   }
-  parts_.push_back({count, index, index});
-  return parts_.back();
+  parts_.push_back(n);
+  return index;
 }
 
 void RunOutput::grow_ids(std::size_t count) {

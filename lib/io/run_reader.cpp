@@ -8,6 +8,7 @@
 
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
+#include "lib/io/h5_column.h"
 #include "lib/io/h5_read.h"
 #include "lib/io/h5_trial.h"
 #include "lib/io/run_file.h"
@@ -25,25 +26,10 @@ struct FieldPlace {
   int components = 1;
 };
 
-ScalarType scalar_type(hid_t dataset, const std::string& path) {
-  const h5::Type type(H5Dget_type(dataset));
-  const bool real = H5Tget_class(type) == H5T_FLOAT;
-  const std::size_t size = H5Tget_size(type);
-  if (real && size == 8) return ScalarType::f64;
-  if (real && size == 4) return ScalarType::f32;
-  if (!real && H5Tget_class(type) == H5T_INTEGER && size == 4) return ScalarType::i32;
-  throw h5::Failure(path + " has a type that this program does not write");
-}
-
-hid_t memory_type(ScalarType t) {
-  if (t == ScalarType::i32) return H5T_NATIVE_INT32;
-  return t == ScalarType::f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
-}
-
 FieldPlace describe(hid_t vtk, const std::string& name, const std::string& path, std::size_t n) {
   FieldPlace f{name, "", path, {}};
   const h5::Dataset d = h5::open_dataset(vtk, path);
-  f.type = scalar_type(d, path);
+  f.type = h5::scalar_type(d, path);
   const auto dims = h5::shape(d);
   if (dims.empty() || dims.size() > 2 || (dims.size() == 2 && (dims[1] < 1 || dims[1] > 64)))
     throw h5::Failure(path + " has a shape that this program does not write");
@@ -68,16 +54,8 @@ FieldArray read_rows(hid_t vtk, const FieldPlace& place, std::size_t frame, std:
   const h5::Space file(H5Dget_space(d));
   check(H5Sselect_hyperslab(file, H5S_SELECT_SET, start, nullptr, block, nullptr));
   const h5::Space memory(H5Screate_simple(static_cast<int>(dims.size()), block, nullptr));
-  check(H5Dread(d, memory_type(f.type), memory, file, H5P_DEFAULT, f.bytes.data()));
+  check(H5Dread(d, h5::memory_type(f.type), memory, file, H5P_DEFAULT, f.bytes.data()));
   return f;
-}
-
-/// The `count` numbers of a small dataset under /pbf.
-void read_quantity(hid_t pbf, const char* name, double* out, std::size_t count) {
-  const auto values = h5::read_all<double>(pbf, name);
-  if (values.size() != count)
-    throw h5::Failure(std::string("/pbf/") + name + " has the wrong size");
-  std::copy(values.begin(), values.end(), out);
 }
 
 RunInfo read_info(hid_t pbf) {
@@ -95,14 +73,12 @@ RunInfo read_info(hid_t pbf) {
   info.solver.threads = static_cast<int>(h5::read_number<std::int64_t>(pbf, "threads"));
   info.solver.bytes = h5::read_number<std::uint64_t>(pbf, "solver_bytes");
   info.particles = h5::read_number<std::int64_t>(pbf, "particles");
-  read_quantity(pbf, "domain_min", info.domain_min.data(), 3);
-  read_quantity(pbf, "domain_max", info.domain_max.data(), 3);
-  const std::pair<const char*, double*> numbers[] = {{"spacing", &info.spacing},
-                                                     {"smoothing_length", &info.smoothing_length},
-                                                     {"rest_density", &info.rest_density},
-                                                     {"particle_weight", &info.solver.vol},
-                                                     {"wall_scale", &info.solver.wall_scale}};
-  for (const auto& [name, value] : numbers) read_quantity(pbf, name, value, 1);
+  run_layout::for_each_quantity(info, [&](const char* name, const char*, std::span<double> out) {
+    const auto values = h5::read_all<double>(pbf, name);
+    if (values.size() != out.size())
+      throw h5::Failure(std::string("/pbf/") + name + " has the wrong size");
+    std::copy(values.begin(), values.end(), out.begin());
+  });
   return info;
 }
 

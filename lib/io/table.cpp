@@ -3,19 +3,20 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
+#include <iomanip>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "lib/base/error.h"
 #include "lib/base/plain_text.h"
+#include "lib/base/text.h"
 
 namespace pbf::inline io_module {
 namespace {
 
 std::string number(double v) {
-  if (std::isnan(v)) return "nan";
-  if (std::isinf(v)) return v > 0 ? "inf" : "-inf";
+  if (std::isnan(v)) return "nan";  // of either sign
   char buffer[32];
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, v).ptr;
   return {buffer, end};
@@ -32,19 +33,14 @@ std::string plain(const Cell& value) {
 std::string csv_text(const std::string& text) {
   const std::string s = escaped(text);
   if (s.find_first_of(",\"\r\n") == std::string::npos) return s;
-  std::string out = "\"";
-  for (const char c : s) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
+  return (std::ostringstream() << std::quoted(s, '"', '"')).str();
 }
 
 /// As people read it.
 std::string word(const Cell& value, const char* number_format) {
   if (std::holds_alternative<std::monostate>(value)) return "-";
   const auto* d = std::get_if<double>(&value);
-  if (!d) return plain(value);
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, number_format, *d);
-  return buffer;
+  return d ? format(number_format, *d) : plain(value);
 }
 
 }  // namespace
@@ -103,10 +99,11 @@ std::vector<std::vector<std::string>> Table::words() const {
 std::string Table::text(const std::string& indent) const {
   std::vector<std::vector<std::string>> lines = words();
   auto& head = *lines.emplace(lines.begin());
-  for (const Form& column : columns_) head.push_back(column.name);
   std::vector<std::size_t> widths;
-  for (const Form& column : columns_)
+  for (const Form& column : columns_) {
+    head.push_back(column.name);
     widths.push_back(static_cast<std::size_t>(std::abs(column.width)));
+  }
   for (const auto& line : lines)
     for (std::size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], line[c].size());
   std::string out;

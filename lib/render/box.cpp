@@ -14,12 +14,6 @@ constexpr std::array<std::uint8_t, 4> kEdge{92, 102, 116, 0}, kFloor{218, 224, 2
 // Edges are drawn on the same lines of sight, nearer by this factor: they win over the floor.
 constexpr double kNearer = 0.999;
 
-Double3 corner(const View& view, unsigned bits) {
-  Double3 p{};
-  for (unsigned k = 0; k < 3; ++k) p[k] = (bits >> k & 1 ? view.domain_max : view.domain_min)[k];
-  return p;
-}
-
 FlatVertex vertex(const Double3& v, std::array<std::uint8_t, 4> color, double u = 0, double w = 0) {
   return {static_cast<float>(v[0]),
           static_cast<float>(v[1]),
@@ -39,8 +33,8 @@ void add_box_edges(const View& view, const Projection& projection, double width,
   for (unsigned axis = 0; axis < 3; ++axis)
     for (unsigned from = 0; from < 8; ++from) {
       if (from >> axis & 1) continue;
-      Double3 a = projection.to_view(corner(view, from));
-      Double3 b = projection.to_view(corner(view, from | 1u << axis));
+      Double3 a = projection.to_view(corner_of(view, from));
+      Double3 b = projection.to_view(corner_of(view, from | 1u << axis));
       if (a[2] > b[2]) std::swap(a, b);
       if (b[2] <= near_depth) continue;
       if (a[2] < near_depth) a = a + (near_depth - a[2]) / (b[2] - a[2]) * (b - a);
@@ -75,9 +69,8 @@ void add_floor(const View& view, const Projection& projection, std::vector<FlatV
   std::array<FlatVertex, 4> quad;
   for (unsigned i = 0; i < 4; ++i) {
     const unsigned bits = (i & 1) << u | (i >> 1) << w | static_cast<unsigned>(!upward) << vertical;
-    const Double3 p = corner(view, bits);
-    quad[i] =
-        vertex(projection.to_view(p), kFloor, (i & 1) * box[u] / cell, (i >> 1) * box[w] / cell);
+    quad[i] = vertex(projection.to_view(corner_of(view, bits)), kFloor, (i & 1) * box[u] / cell,
+                     (i >> 1) * box[w] / cell);
   }
   add_quad(quad, out);
 }

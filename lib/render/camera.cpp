@@ -58,9 +58,7 @@ struct Extent {
   double x0 = 1e300, x1 = -1e300, y0 = 1e300, y1 = -1e300;
   void add(const Projection& axes, const View& view, const Double3& target, double distance) {
     for (unsigned corner = 0; corner < 8; ++corner) {
-      Double3 q{};
-      for (unsigned k = 0; k < 3; ++k)
-        q[k] = (corner >> k & 1 ? view.domain_max : view.domain_min)[k] - target[k];
+      const Double3 q = corner_of(view, corner) - target;
       const double depth = distance + dot(q, axes.forward);
       if (depth <= 0) x1 = y1 = 1e300, x0 = y0 = -1e300;  // behind the eye: far too near
       x0 = std::min(x0, dot(q, axes.right) / depth);
@@ -97,6 +95,12 @@ double fit(Projection& p, const std::vector<Projection>& axes, const View& view,
 }
 
 }  // namespace
+
+Double3 corner_of(const View& view, unsigned bits) {
+  Double3 p{};
+  for (unsigned k = 0; k < 3; ++k) p[k] = (bits >> k & 1 ? view.domain_max : view.domain_min)[k];
+  return p;
+}
 
 Double3 Projection::to_view(const Double3& p) const {
   const Double3 q = p - eye;

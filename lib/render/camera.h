@@ -24,6 +24,9 @@ struct Projection {
   double pixel() const { return 2 * tan_half / size[1]; }
 };
 
+/// A corner of the domain; bit k of `bits`: whether it lies at the upper end of axis k.
+Double3 corner_of(const View& view, unsigned bits);
+
 /// Camera of `view` at `time` (s): the orbit turns it about `up` through the target. The default
 /// stands outside the longest horizontal side, a little above and beside, as near as it sees the
 /// whole box (at every time, when it orbits); that of a scene in two dimensions in front of its

@@ -12,24 +12,15 @@ namespace {
 
 // llvmpipe takes its number of threads from the environment when its screen is made, and nowhere
 // else; the variable is put back so that nothing started later inherits it.
-class RasterThreads {
- public:
-  explicit RasterThreads(int threads) {
-    if (threads > 0 && !std::getenv(kName)) {
-      setenv(kName, threads == 1 ? "0" : std::to_string(threads).c_str(), 0);  // beside the caller
-      set_ = true;
-    }
-  }
-  ~RasterThreads() {
-    if (set_) unsetenv(kName);
-  }
-  RasterThreads(const RasterThreads&) = delete;
-  RasterThreads& operator=(const RasterThreads&) = delete;
-
- private:
-  static constexpr const char* kName = "LP_NUM_THREADS";
-  bool set_ = false;
+struct Unset {
+  void operator()(const char* name) const { unsetenv(name); }
 };
+std::unique_ptr<const char, Unset> limit_threads(int threads) {
+  constexpr const char* kName = "LP_NUM_THREADS";
+  if (threads <= 0 || std::getenv(kName)) return nullptr;
+  setenv(kName, threads == 1 ? "0" : std::to_string(threads).c_str(), 0);  // beside the caller
+  return std::unique_ptr<const char, Unset>(kName);
+}
 
 /// `threads`, or 1 where so many cannot be started: Mesa would wait for ever for those it lacks.
 int startable(int threads) {
@@ -40,12 +31,13 @@ int startable(int threads) {
 
 }  // namespace
 
-void* open_library(const std::vector<std::string>& names, std::string& tried) {
+void* open_library(const std::vector<std::string>& names) {
+  std::string tried;
   for (const auto& name : names) {
     if (void* library = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL)) return library;
     tried += "\n  " + std::string(dlerror());
   }
-  return nullptr;
+  throw NoPlatform(tried);
 }
 
 GlContext::GlContext(int threads, const GlLibraries& libraries) {
@@ -54,14 +46,20 @@ GlContext::GlContext(int threads, const GlLibraries& libraries) {
   if (!wanted.empty() && wanted != "osmesa" && wanted != "egl" && wanted != "egl-device")
     throw Error(ExitCode::bad_input, "environment variable PBF_GL is \"" + wanted +
                                          "\"; use osmesa, egl or egl-device, or unset it");
-  const auto may = [&](const char* name) {
-    return !platform_ && (wanted.empty() || wanted == name);
-  };
-  const RasterThreads limit(startable(threads));
+  const auto limit = limit_threads(startable(threads));
   std::string tried, way;
-  if (may("osmesa")) platform_ = open_osmesa(libraries.osmesa, tried), way = "OSMesa";
-  if (may("egl")) platform_ = open_egl(libraries.egl, false, tried), way = "EGL surfaceless";
-  if (may("egl-device")) platform_ = open_egl(libraries.egl, true, tried), way = "EGL device";
+  const auto attempt = [&](const char* name, const char* title, const auto& open) {
+    if (platform_ || (!wanted.empty() && wanted != name)) return;
+    way = title;
+    try {
+      platform_ = open();
+    } catch (const NoPlatform& e) {
+      tried += e.what();
+    }
+  };
+  attempt("osmesa", "OSMesa", [&] { return open_osmesa(libraries.osmesa); });
+  attempt("egl", "EGL surfaceless", [&] { return open_egl(libraries.egl, false); });
+  attempt("egl-device", "EGL device", [&] { return open_egl(libraries.egl, true); });
   if (!platform_)
     throw Error(ExitCode::unavailable,
                 "pictures need OpenGL 3.3 and none could be opened; tried:" + tried +

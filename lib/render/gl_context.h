@@ -27,8 +27,6 @@ class GlContext {
   /// for an unknown PBF_GL.
   explicit GlContext(int threads = 0, const GlLibraries& libraries = {});
   ~GlContext();
-  GlContext(const GlContext&) = delete;
-  GlContext& operator=(const GlContext&) = delete;
 
   void make_current() { platform_->make_current(); }
   void release() { platform_->release(); }
@@ -47,7 +45,6 @@ class GlCurrent {
   explicit GlCurrent(GlContext& context) : context_(context) { context_.make_current(); }
   ~GlCurrent() { context_.release(); }
   GlCurrent(const GlCurrent&) = delete;
-  GlCurrent& operator=(const GlCurrent&) = delete;
 
  private:
   GlContext& context_;

@@ -1,13 +1,11 @@
 // EGL without a window: Mesa's surfaceless platform, or one of the devices that EGL lists (this is
 // how NVIDIA's driver renders on a node without a display).
-#include <dlfcn.h>
-
 #include <array>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 
 #include "lib/base/error.h"
+#include "lib/base/text.h"
 #include "lib/render/gl_platform.h"
 
 namespace pbf::inline render_module {
@@ -42,8 +40,7 @@ struct Egl {
 
   bool load(void* library) {
     const auto get = [&](auto& f, const char* name) {
-      f = reinterpret_cast<std::remove_reference_t<decltype(f)>>(dlsym(library, name));
-      return f != nullptr;
+      return render_module::load(library, f, name);
     };
     if (!(get(GetProcAddress, "eglGetProcAddress") && get(QueryString, "eglQueryString") &&
           get(Initialize, "eglInitialize") && get(BindAPI, "eglBindAPI") &&
@@ -76,32 +73,23 @@ struct EglPlatform final : GlPlatform {
   void* function(const char* name) const override { return egl.GetProcAddress(name); }
 };
 
-std::string error_text(const Egl& egl, const char* what) {
-  char code[16];
-  std::snprintf(code, sizeof code, "0x%x", static_cast<unsigned>(egl.GetError()));
-  return std::string(what) + " failed (EGL error " + code + ")";
-}
-
-/// A context on one display, or null with the reason in `why`.
-std::unique_ptr<GlPlatform> context_on(const Egl& egl, Display display, std::string& why) {
+/// A context on one display. Throws NoPlatform with the reason, and nothing in front of it.
+std::unique_ptr<GlPlatform> context_on(const Egl& egl, Display display) {
+  const auto require = [&egl](bool good, const char* what) {
+    if (!good)
+      throw NoPlatform(
+          format("%s failed (EGL error 0x%x)", what, static_cast<unsigned>(egl.GetError())));
+  };
   Int major = 0, minor = 0, configs = 0;
-  if (!display || !egl.Initialize(display, &major, &minor)) {
-    why = error_text(egl, "eglInitialize");
-    return nullptr;
-  }
+  require(display && egl.Initialize(display, &major, &minor), "eglInitialize");
   Config config = nullptr;
   constexpr std::array config_wanted{kRenderableType, kOpenglBit, kSurfaceType, 0, kNone};
   constexpr std::array context_wanted{kMajor, 3, kMinor, 3, kProfileMask, kCoreProfile, kNone};
-  if (!egl.BindAPI(kOpenglApi) ||
-      !egl.ChooseConfig(display, config_wanted.data(), &config, 1, &configs) || configs < 1) {
-    why = error_text(egl, "finding a configuration for OpenGL");
-    return nullptr;
-  }
+  require(egl.BindAPI(kOpenglApi) &&
+              egl.ChooseConfig(display, config_wanted.data(), &config, 1, &configs) && configs >= 1,
+          "finding a configuration for OpenGL");
   Context context = egl.CreateContext(display, config, nullptr, context_wanted.data());
-  if (!context) {
-    why = error_text(egl, "eglCreateContext for OpenGL 3.3 core");
-    return nullptr;
-  }
+  require(context, "eglCreateContext for OpenGL 3.3 core");
   auto platform = std::make_unique<EglPlatform>();
   platform->egl = egl;
   platform->display = display;
@@ -111,44 +99,39 @@ std::unique_ptr<GlPlatform> context_on(const Egl& egl, Display display, std::str
 
 }  // namespace
 
-std::unique_ptr<GlPlatform> open_egl(const std::vector<std::string>& libraries, bool device,
-                                     std::string& tried) {
-  void* library = open_library(libraries, tried);
-  if (!library) return nullptr;
-  const std::string label = device ? "\n  EGL device: " : "\n  EGL surfaceless: ";
+std::unique_ptr<GlPlatform> open_egl(const std::vector<std::string>& libraries, bool device) {
+  void* library = open_library(libraries);
+  const auto fail = [device](const std::string& why) {
+    throw NoPlatform((device ? "\n  EGL device: " : "\n  EGL surfaceless: ") + why);
+  };
   Egl egl;
-  if (!egl.load(library)) {
-    tried += label + "the library lacks EGL_EXT_platform_base";
-    return nullptr;
-  }
-  std::string why;
+  if (!egl.load(library)) fail("the library lacks EGL_EXT_platform_base");
   if (!device) {
     const char* extensions = egl.QueryString(nullptr, kExtensions);
     if (!extensions ||
-        std::string(extensions).find("EGL_MESA_platform_surfaceless") == std::string::npos) {
-      tried += label + "the platform is not there (Mesa's EGL driver is not installed)";
-      return nullptr;
+        std::string(extensions).find("EGL_MESA_platform_surfaceless") == std::string::npos)
+      fail("the platform is not there (Mesa's EGL driver is not installed)");
+    try {
+      return context_on(egl, egl.GetPlatformDisplay(kPlatformSurfaceless, nullptr, nullptr));
+    } catch (const NoPlatform& e) {
+      fail(e.what());
     }
-    auto platform =
-        context_on(egl, egl.GetPlatformDisplay(kPlatformSurfaceless, nullptr, nullptr), why);
-    if (!platform) tried += label + why;
-    return platform;
   }
   std::array<Device, 32> devices{};
   Int count = 0;
   if (!egl.QueryDevices ||
-      !egl.QueryDevices(static_cast<Int>(devices.size()), devices.data(), &count)) {
-    tried += label + "the library cannot list devices";
-    return nullptr;
-  }
-  why = "no device";
+      !egl.QueryDevices(static_cast<Int>(devices.size()), devices.data(), &count))
+    fail("the library cannot list devices");
+  std::string why = "no device";
   for (Int i = 0; i < count; ++i) {
-    auto platform = context_on(
-        egl, egl.GetPlatformDisplay(kPlatformDevice, devices[static_cast<std::size_t>(i)], nullptr),
-        why);
-    if (platform) return platform;
+    try {
+      return context_on(egl, egl.GetPlatformDisplay(kPlatformDevice,
+                                                    devices[static_cast<std::size_t>(i)], nullptr));
+    } catch (const NoPlatform& e) {
+      why = e.what();
+    }
   }
-  tried += label + std::to_string(count) + " listed; " + why;
+  fail(std::to_string(count) + " listed; " + why);
   return nullptr;
 }
 

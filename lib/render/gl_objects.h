@@ -16,7 +16,6 @@ class Program {
   Program(const Table& gl, const char* vertex, const char* fragment);
   ~Program() { gl_.DeleteProgram(name_); }
   Program(const Program&) = delete;
-  Program& operator=(const Program&) = delete;
   void use() const { gl_.UseProgram(name_); }
   Int uniform(const char* name) const { return gl_.GetUniformLocation(name_, name); }
 
@@ -40,7 +39,6 @@ class Buffer {
   Buffer(const Table& gl, Size stride, std::initializer_list<Attribute> attributes, Uint divisor);
   ~Buffer();
   Buffer(const Buffer&) = delete;
-  Buffer& operator=(const Buffer&) = delete;
   void fill(const void* data, std::size_t bytes) const;
   void bind() const { gl_.BindVertexArray(array_); }
 
@@ -55,7 +53,6 @@ class Target {
   Target(const Table& gl, Size width, Size height, bool depth);
   ~Target();
   Target(const Target&) = delete;
-  Target& operator=(const Target&) = delete;
   void draw_into() const;
   Size width() const { return width_; }
   Size height() const { return height_; }

@@ -3,7 +3,10 @@
 // open for the life of the process: unloading LLVM underneath its own threads is not safe.
 #pragma once
 
+#include <dlfcn.h>
+
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -18,13 +21,23 @@ class GlPlatform {
   virtual void* function(const char* name) const = 0;  ///< null when the library lacks it
 };
 
-/// Opens one platform, or returns null and appends one line of reason to `tried`.
-std::unique_ptr<GlPlatform> open_osmesa(const std::vector<std::string>& libraries,
-                                        std::string& tried);
-std::unique_ptr<GlPlatform> open_egl(const std::vector<std::string>& libraries, bool device,
-                                     std::string& tried);
+/// Why a platform cannot be opened, in lines that begin with "\n  ".
+struct NoPlatform : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
-/// dlopen of the first library that opens; null with the reasons appended to `tried`.
-void* open_library(const std::vector<std::string>& names, std::string& tried);
+/// Opens one platform. Throws NoPlatform.
+std::unique_ptr<GlPlatform> open_osmesa(const std::vector<std::string>& libraries);
+std::unique_ptr<GlPlatform> open_egl(const std::vector<std::string>& libraries, bool device);
+
+/// dlopen of the first library that opens. Throws NoPlatform with the reasons of all.
+void* open_library(const std::vector<std::string>& names);
+
+/// Sets `function` to the one of that name; false when the library lacks it.
+template <class Function>
+bool load(void* library, Function& function, const char* name) {
+  function = reinterpret_cast<Function>(dlsym(library, name));
+  return function != nullptr;
+}
 
 }  // namespace pbf::inline render_module

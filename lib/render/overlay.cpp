@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "lib/base/text.h"
 #include "lib/render/colormap.h"
 #include "lib/render/font.h"
 
@@ -12,10 +12,8 @@ namespace {
 
 constexpr Rgb kInk{42, 48, 58};
 
-std::string number(const char* format, int digits, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, digits, value == 0 ? 0.0 : value);  // no "-0"
-  return text;
+std::string number(const char* pattern, int digits, double value) {
+  return format(pattern, digits, value == 0 ? 0.0 : value);  // no "-0"
 }
 
 /// Fills [x0, x1) x [y0, y1), clipped; the colour of a row comes from `color(y)`.

@@ -26,19 +26,6 @@ Double3 vector(const FieldArray& field, std::size_t i) {
   return {value(field, 3 * i), value(field, 3 * i + 1), value(field, 3 * i + 2)};
 }
 
-/// Name of the field that gives the colour; "" when the row number does.
-const char* field_of(ColorBy color) {
-  switch (color) {
-    case ColorBy::speed:
-      return "velocity";
-    case ColorBy::density:
-      return "density";
-    case ColorBy::id:
-      break;
-  }
-  return "";
-}
-
 void check_field(const Snapshot& snapshot, const std::string& name, int components,
                  const std::string& what) {
   const FieldArray* field = snapshot.find(name);
@@ -62,25 +49,26 @@ void check_field(const Snapshot& snapshot, const std::string& name, int componen
 
 }  // namespace
 
-void check_fields(const Snapshot& snapshot, ColorBy color) {
-  check_field(snapshot, "position", 3, "a picture");
-  if (color == ColorBy::speed) check_field(snapshot, "velocity", 3, "a picture coloured by speed");
-  if (color == ColorBy::density)
-    check_field(snapshot, "density", 1, "a picture coloured by density");
+const ColorSource& source_of(ColorBy color) {
+  static const ColorSource speed{"speed", "velocity", 3}, density{"density", "density", 1},
+      id{"id", "", 0};
+  return color == ColorBy::speed ? speed : color == ColorBy::density ? density : id;
 }
 
-ColorTitle color_title(const Snapshot& snapshot, ColorBy color) {
-  const FieldArray* field = snapshot.find(field_of(color));
-  const std::string unit_text = field && field->unit != "1" ? field->unit : "";
-  if (color == ColorBy::id) return {"id", ""};
-  return {color == ColorBy::speed ? "speed" : "density", unit_text};
+void check_fields(const Snapshot& snapshot, ColorBy color) {
+  check_field(snapshot, "position", 3, "a picture");
+  const ColorSource& source = source_of(color);
+  if (source.components > 0)
+    check_field(snapshot, source.field, source.components,
+                std::string("a picture coloured by ") + source.title);
 }
 
 void collect(const Snapshot& snapshot, const View& view, const Projection& projection,
              ParticleVertices& out) {
   check_fields(snapshot, view.color);
   const FieldArray& position = *snapshot.find("position");
-  const FieldArray* field = snapshot.find(field_of(view.color));
+  const ColorSource& source = source_of(view.color);
+  const FieldArray* field = snapshot.find(source.field);
   out = {std::move(out.list)};
   out.list.clear();
   out.list.reserve(snapshot.count);
@@ -102,8 +90,8 @@ void collect(const Snapshot& snapshot, const View& view, const Projection& proje
           v[1] < top * v[2] + reach_top && v[2] < 1e30))
       continue;
     double shown = static_cast<double>(i);
-    if (view.color == ColorBy::speed) shown = length(vector(*field, i));
-    if (view.color == ColorBy::density) shown = value(*field, i);
+    if (source.components == 3) shown = length(vector(*field, i));
+    if (source.components == 1) shown = value(*field, i);
     out.list.push_back({static_cast<float>(v[0]), static_cast<float>(v[1]),
                         static_cast<float>(v[2]), viridis((shown - low) / span)});
     out.nearest = std::min(out.nearest, v[2] - r);

@@ -1,29 +1,23 @@
 // Pictures drawn beside the solver.
 #include <atomic>
-#include <chrono>
-#include <condition_variable>
-#include <cstdio>
-#include <deque>
 #include <exception>
 #include <filesystem>
-#include <mutex>
-#include <thread>
 #include <utility>
 
 #include "lib/base/error.h"
-#include "lib/base/start_thread.h"
+#include "lib/base/stage_clock.h"
+#include "lib/base/text.h"
+#include "lib/base/worker.h"
 #include "lib/render/particles.h"
 #include "lib/render/renderer.h"
 
 namespace pbf::inline render_module {
 namespace {
 
-constexpr std::size_t kWaiting = 2;  // pictures; each holds a copy of its particles
+constexpr int kWaiting = 2;  // pictures; each holds a copy of its particles
 
 std::string frame_path(const std::string& dir, std::int64_t index) {
-  char name[40];
-  std::snprintf(name, sizeof name, "frame_%06lld.png", static_cast<long long>(index));
-  return (std::filesystem::path(dir) / name).string();
+  return std::filesystem::path(dir) / format("frame_%06lld.png", static_cast<long long>(index));
 }
 
 /// The fields of a picture, without those that it does not read.
@@ -31,8 +25,7 @@ Snapshot needed_part(const Snapshot& snapshot, ColorBy color) {
   check_fields(snapshot, color);
   Snapshot part{snapshot.update, snapshot.time, snapshot.count, {}};
   for (const auto& field : snapshot.fields)
-    if (field.name == "position" || (field.name == "velocity" && color == ColorBy::speed) ||
-        (field.name == "density" && color == ColorBy::density))
+    if (field.name == "position" || field.name == source_of(color).field)
       part.fields.push_back(field);
   return part;
 }
@@ -43,62 +36,23 @@ struct RenderThread::Impl {
   std::string dir;
   ColorBy color;
   Renderer renderer;  // opened by the caller's thread, so that its errors come at once
-  std::mutex mutex;
-  std::condition_variable changed;
-  std::deque<std::pair<Snapshot, std::int64_t>> queue;
-  std::exception_ptr error;
-  bool failed = false, ending = false, busy = false;
   std::atomic<double> seconds = 0;
-  std::thread thread;  // last: it uses all of the above
+  bool told = false;            // of an error
+  Worker worker{kWaiting + 1};  // last: its jobs use the rest
 
-  Impl(const View& view, std::string folder)
-      : dir(std::move(folder)),
-        color(view.color),
-        renderer(view, 1),
-        thread(start_thread([this] { work(); })) {}
+  Impl(const View& view, const std::string& folder)
+      : dir(folder), color(view.color), renderer(view, 1) {}
 
-  void work() {
-    std::unique_lock lock(mutex);
-    for (;;) {
-      changed.wait(lock, [this] { return ending || !queue.empty(); });
-      if (queue.empty()) return;
-      const auto [snapshot, index] = std::move(queue.front());
-      queue.pop_front();
-      changed.notify_all();
-      if (failed) continue;
-      busy = true;
-      lock.unlock();
-      std::exception_ptr caught;
-      const auto start = std::chrono::steady_clock::now();
-      try {
-        write_png(frame_path(dir, index), renderer.draw(snapshot));
-      } catch (...) {
-        caught = std::current_exception();
-      }
-      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-      seconds = seconds + spent.count();
-      lock.lock();
-      busy = false;
-      if (caught) {
-        error = caught;
-        failed = true;
-      }
-      changed.notify_all();
-    }
+  void draw(const Snapshot& snapshot, std::int64_t index) {
+    const Stopwatch watch;
+    write_png(frame_path(dir, index), renderer.draw(snapshot));
+    seconds = seconds + watch.seconds();
   }
 
-  /// With the lock held: throws what the thread has caught, once.
+  /// Throws what the thread has caught, once.
   void rethrow() {
-    if (error) std::rethrow_exception(std::exchange(error, nullptr));
-  }
-
-  void join() {
-    {
-      const std::lock_guard lock(mutex);
-      ending = true;
-    }
-    changed.notify_all();
-    if (thread.joinable()) thread.join();
+    const std::exception_ptr failure = worker.failure();
+    if (failure && !std::exchange(told, true)) std::rethrow_exception(failure);
   }
 };
 
@@ -111,31 +65,23 @@ RenderThread::RenderThread(const View& view, const std::string& dir) {
   impl_ = std::make_unique<Impl>(view, dir);
 }
 
-RenderThread::~RenderThread() {
-  if (impl_) impl_->join();
-}
+RenderThread::~RenderThread() = default;
 
 void RenderThread::draw(const Snapshot& snapshot, std::int64_t index) {
-  Snapshot part = needed_part(snapshot, impl_->color);
-  std::unique_lock lock(impl_->mutex);
-  impl_->changed.wait(lock, [this] { return impl_->queue.size() < kWaiting || impl_->failed; });
-  impl_->rethrow();
-  if (impl_->failed) return;
-  if (impl_->ending) throw Error(ExitCode::internal, "RenderThread::draw after finish");
-  impl_->queue.emplace_back(std::move(part), index);
-  impl_->changed.notify_all();
+  Impl& i = *impl_;
+  auto job = [&i, index, part = needed_part(snapshot, i.color)] { i.draw(part, index); };
+  const bool taken = !i.worker.ended() && i.worker.push(std::move(job), true);
+  i.rethrow();
+  if (!taken && !i.told) throw Error(ExitCode::internal, "RenderThread::draw after finish");
 }
 
 void RenderThread::wait() {
-  std::unique_lock lock(impl_->mutex);
-  impl_->changed.wait(lock,
-                      [this] { return (impl_->queue.empty() && !impl_->busy) || impl_->failed; });
+  impl_->worker.wait();
   impl_->rethrow();
 }
 
 void RenderThread::finish() {
-  impl_->join();
-  const std::lock_guard lock(impl_->mutex);
+  impl_->worker.join();
   impl_->rethrow();
 }
 

@@ -116,11 +116,9 @@ void Renderer::Impl::draw_scene(const Projection& projection) {
   const double diagonal = length(view.domain_max - view.domain_min);
   double near = particles.nearest, far = particles.farthest;
   for (unsigned corner = 0; corner < 8; ++corner) {
-    Double3 q{};
-    for (unsigned k = 0; k < 3; ++k)
-      q[k] = (corner >> k & 1 ? view.domain_max : view.domain_min)[k];
-    near = std::min(near, projection.to_view(q)[2]);
-    far = std::max(far, projection.to_view(q)[2]);
+    const double depth = projection.to_view(corner_of(view, corner))[2];
+    near = std::min(near, depth);
+    far = std::max(far, depth);
   }
   near = std::max(0.99 * near, 1e-3 * diagonal);
   far = std::max(1.01 * far, 2 * near) + 0.01 * diagonal;
@@ -198,8 +196,10 @@ Image Renderer::draw(const Snapshot& snapshot) {
     impl_->draw_scene(projection);
     image = impl_->read_back();
   }
-  const ColorTitle bar = color_title(snapshot, view.color);
-  draw_overlay(image, bar.title, bar.unit, view.range, snapshot.time);
+  const ColorSource& source = source_of(view.color);
+  const FieldArray* field = snapshot.find(source.field);
+  draw_overlay(image, source.title, field && field->unit != "1" ? field->unit : "", view.range,
+               snapshot.time);
   return image;
 }
 

@@ -45,8 +45,6 @@ class Renderer {
   /// that cannot be drawn.
   explicit Renderer(const View& view, int threads = 0);
   ~Renderer();
-  Renderer(const Renderer&) = delete;
-  Renderer& operator=(const Renderer&) = delete;
   /// From any thread, one at a time. Particles with a non-finite position are left out, those with
   /// a non-finite value are magenta.
   /// Error(bad_input) when the snapshot lacks the field that `color` needs.
@@ -70,8 +68,6 @@ class RenderThread {
   RenderThread(const View& view, const std::string& dir);
   /// Draws what is queued; an error that finish() would have thrown is lost.
   ~RenderThread();
-  RenderThread(const RenderThread&) = delete;
-  RenderThread& operator=(const RenderThread&) = delete;
   /// Queues a copy of the fields that the picture needs; blocks while 2 wait. An error of the
   /// thread is thrown by the next draw() or by finish(), once; later pictures are dropped.
   void draw(const Snapshot& snapshot, std::int64_t index);

@@ -1,6 +1,7 @@
 // The updates after the frozen step: how far particles drift apart, and what stays the same.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "lib/base/text.h"
 #include "lib/run/session.h"
@@ -29,16 +30,20 @@ Distance distance(const std::vector<double>& x, const std::vector<double>& y) {
   return d;
 }
 
-/// The worst moment of one quantity of the third part.
-struct Watched {
-  CompareRow row;
-  double spread = 0;  ///< largest change over the ensemble so far
-  double worst = -1;  ///< error/tolerance
-};
-
 class Samples {
  public:
-  explicit Samples(const Comparison& c) : c_(c) {}
+  explicit Samples(const Comparison& c) : c_(c) {
+    part_.name = "distributions";
+    part_.verdict = Verdict::same;
+    part_.tolerance_source =
+        c.same_bits
+            ? std::string("0: both sides promise the same bits")
+            : format(
+                  "%g x the largest change so far over the %zu randomly rounded references (what "
+                  "chaos alone makes), + (4 + updates) u |value| (of a momentum: of the mean "
+                  "speed) or two particles",
+                  kSpreadFactor, c.members.size());
+  }
   std::int64_t first_failure = -1;  ///< update of the first sample outside a tolerance
 
   /// `update`: counted from the frozen step on.
@@ -60,7 +65,7 @@ class Samples {
         spread = std::max(spread, std::fabs(m.numbers[k].value - r.numbers[k].value));
       const double scale = std::max(
           {std::fabs(a.numbers[k].value), std::fabs(b.numbers[k].value), a.numbers[k].scale});
-      note(a.numbers[k].name, a.numbers[k].unit, std::fabs(a.numbers[k].value - b.numbers[k].value),
+      take(a.numbers[k].name, a.numbers[k].unit, std::fabs(a.numbers[k].value - b.numbers[k].value),
            scale, spread, roundings * c_.u * scale);
     }
     for (std::size_t k = 0; k < a.distributions.size(); ++k) {
@@ -70,30 +75,18 @@ class Samples {
             std::max(spread, ks_distance(m.distributions[k].values, r.distributions[k].values));
       // The resolution of the distance is one particle.
       const double one = 1 / double(a.distributions[k].values.size());
-      note("distribution of " + a.distributions[k].name, "KS distance",
+      take("distribution of " + a.distributions[k].name, "KS distance",
            ks_distance(a.distributions[k].values, b.distributions[k].values), 0, spread, 2 * one);
     }
   }
 
   ComparePart part() const {
-    ComparePart p;
-    p.name = "distributions";
-    p.tolerance_source =
-        c_.same_bits
-            ? std::string("0: both sides promise the same bits")
-            : format(
-                  "%g x the largest change so far over the %zu randomly rounded references (what "
-                  "chaos alone makes), + (4 + updates) u |value| (of a momentum: of the mean "
-                  "speed) or two particles",
-                  kSpreadFactor, c_.members.size());
-    p.verdict = Verdict::same;
+    ComparePart p = part_;
     double worst = 0;
     std::string name;
-    for (const auto& w : watched_) {
-      p.rows.push_back(w.row);
-      if (w.worst >= worst) worst = w.worst, name = w.row.what;
-      if (w.row.verdict == Verdict::differs) p.verdict = Verdict::differs;
-    }
+    for (const CompareRow& row : p.rows)
+      if (const double share = share_of(row.error, row.tolerance); share >= worst)
+        worst = share, name = row.what;
     p.finding = c_.same_bits
                     ? std::string(p.verdict == Verdict::same ? "all equal" : "not equal")
                     : format("the largest share of a tolerance is %.2g (%s)", worst, name.c_str());
@@ -105,35 +98,19 @@ class Samples {
     return frame_statistics(s.download({"velocity", "density"}, ScalarType::f64).get(),
                             c_.scene->domain.min, c_.scene->gravity, c_.scene->fluid.rest_density);
   }
-  void note(const std::string& what, const std::string& unit, double error, double scale,
+  void take(const std::string& what, const std::string& unit, double error, double scale,
             double spread, double floor) {
-    auto at = std::find_if(watched_.begin(), watched_.end(),
-                           [&](const Watched& w) { return w.row.what == what; });
-    if (at == watched_.end()) {
-      watched_.push_back({});
-      at = watched_.end() - 1;
-      at->row.what = what;
-      at->row.unit = unit;
-      at->row.verdict = Verdict::same;
-    }
-    at->spread = std::max(at->spread, spread);
-    const double tolerance = c_.same_bits ? 0 : c_.sides * (kSpreadFactor * at->spread + floor);
-    const double share = error == 0 ? 0 : tolerance > 0 ? error / tolerance : HUGE_VAL;
-    if (!(share <= at->worst)) {
-      at->worst = share;
-      at->row.error = error;
-      at->row.relative = scale > 0 ? error / scale : error;
-      at->row.ulps = scale > 0 ? error / ulp(scale, c_.u) : 0;
-      at->row.tolerance = tolerance;
-    }
-    if (error <= tolerance) return;
-    at->row.verdict = Verdict::differs;
-    if (first_failure < 0) first_failure = update_;
+    double& widest = spread_[what];
+    widest = std::max(widest, spread);
+    const double tolerance = c_.same_bits ? 0 : c_.sides * (kSpreadFactor * widest + floor);
+    if (!note(part_, what, unit, error, scale, tolerance, c_.u) && first_failure < 0)
+      first_failure = update_;
   }
 
   const Comparison& c_;
   std::int64_t update_ = 0;
-  std::vector<Watched> watched_;
+  ComparePart part_;
+  std::map<std::string, double> spread_;  ///< largest change over the ensemble so far
 };
 
 }  // namespace
@@ -180,7 +157,7 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
     const double tolerance = c.same_bits ? 0 : c.sides * kNoiseFactor * spread;
     // Past the horizon particles are as far apart as any two: the third part judges that.
     if (result.horizon < 0 || t == 1 || first_failure >= 0) {
-      const double s = d.rms == 0 ? 0 : tolerance > 0 ? d.rms / tolerance : HUGE_VAL;
+      const double s = share_of(d.rms, tolerance);
       if (s > share) share = s, row.error = d.rms, row.rms = d.rms, row.tolerance = tolerance;
       if (s > 1 && first_failure < 0) first_failure = t;
     }

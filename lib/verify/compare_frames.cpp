@@ -24,11 +24,6 @@ constexpr double kFront = 0.01;
 /// Edge of the cells whose particles may move as one, h: what reaches each other.
 constexpr double kCluster = 2;
 
-std::vector<double> numbers_of(const FieldArray& f) {
-  if (f.type == ScalarType::f64) return {f.as<double>().begin(), f.as<double>().end()};
-  return {f.as<float>().begin(), f.as<float>().end()};
-}
-
 double largest_of(const FieldArray* f) {
   double largest = 0;
   if (f)
@@ -46,9 +41,8 @@ Distance distance(const Snapshot& a, const Snapshot& b) {
   for (std::size_t i = 0; i < x.size(); i += 3) {
     double r2 = 0;
     for (std::size_t k = i; k < i + 3; ++k) {
-      const double e = x[k] - y[k];
-      if (x[k] == y[k] || (std::isnan(x[k]) && std::isnan(y[k]))) continue;
-      r2 += std::isfinite(e) ? e * e : HUGE_VAL;
+      const double e = apart(x[k], y[k]);
+      r2 += e * e;
     }
     d.worst = std::max(d.worst, std::sqrt(r2));
     d.rms += r2;
@@ -109,40 +103,12 @@ Resolution resolution_of(const Resolution& computed, const Snapshot& x, const Sn
           computed.cluster};
 }
 
-/// The row of a name, made when new.
-CompareRow& row_of(ComparePart& p, const std::string& what, const std::string& unit) {
-  for (CompareRow& r : p.rows)
-    if (r.what == what) return r;
-  p.rows.push_back({what, unit, -1, 0, 0, 0, 0, Verdict::same});
-  return p.rows.back();
-}
-
-/// Keeps the worst share of a tolerance.
-void note(ComparePart& p, const std::string& what, const std::string& unit, double error,
-          double scale, double tolerance) {
-  CompareRow& r = row_of(p, what, unit);
-  const auto share = [](double e, double t) { return e == 0 ? 0 : t > 0 ? e / t : HUGE_VAL; };
-  if (r.error < 0 || share(error, tolerance) > share(r.error, r.tolerance)) {
-    r.error = error;
-    r.relative = scale > 0 ? error / scale : error;
-    r.tolerance = tolerance;
-  }
-  if (error != 0 && !(error <= tolerance)) r.verdict = p.verdict = Verdict::differs;
-}
-
-/// |a - b|; 0 where neither is a number, infinite where one alone is not.
-double difference(double a, double b) {
-  if (a == b || (std::isnan(a) && std::isnan(b))) return 0;
-  const double e = std::fabs(a - b);
-  return std::isnan(e) ? HUGE_VAL : e;
-}
-
 void compare_samples(ComparePart& p, const FrameStatistics& a, const FrameStatistics& b) {
   for (const Statistic& x : a.numbers)
     for (const Statistic& y : b.numbers)
       if (x.name == y.name) {
         const double open = std::hypot(x.uncertainty, y.uncertainty);
-        note(p, x.name, x.unit, difference(x.value, y.value),
+        note(p, x.name, x.unit, apart(x.value, y.value),
              std::max(std::fabs(x.value), std::fabs(y.value)),
              (std::isnan(open) ? 0 : open) + std::max(x.resolution, y.resolution));
       }

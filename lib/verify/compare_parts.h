@@ -41,6 +41,18 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
 /// The state with every number rounded at random: value (1 + r u), r uniform in [-1, 1).
 SolverState rounded(const SolverState& s, double u, std::uint64_t seed);
 
+/// |a - b|; 0 where neither is a number, infinite where one alone is not.
+double apart(double a, double b);
+
+/// Keeps the worst share of a tolerance in the row of this name, which is made when new, with
+/// `scale` for the relative error, and a unit roundoff `u` for that in units of the last place.
+/// False, with the verdicts of the row and the part, where the error is outside its tolerance.
+bool note(ComparePart& p, const std::string& what, const std::string& unit, double error,
+          double scale, double tolerance, double u = 0);
+
+/// Error over tolerance; 0 without an error, infinite without a tolerance.
+double share_of(double error, double tolerance);
+
 /// Unit in the last place of `value` for a unit roundoff u.
 double ulp(double value, double u);
 

@@ -6,7 +6,6 @@
 #include "lib/base/text.h"
 #include "lib/io/table.h"
 #include "lib/verify/compare.h"
-#include "lib/verify/diagram_scale.h"
 
 namespace pbf::inline verify_module {
 namespace {
@@ -40,8 +39,42 @@ std::string conclusion(const CompareResult& r) {
 
 const char* const kColors[] = {"#2563eb", "#93b4f5", "#d97706", "#16a34a"};
 
+/// Where the points of a diagram go, in pixels, y downwards: x linear, y logarithmic over whole
+/// powers of ten that hold every positive finite point.
+struct DiagramScale {
+  static constexpr double width = 760, height = 330, left = 60, right = width - 20, top = 44,
+                          bottom = height - 40;
+  double x1 = 1, log0 = -1, log1 = 0;  ///< end of x, which begins at 0; range of log10(y)
+  std::vector<std::pair<double, std::string>> x_ticks, y_ticks;
+
+  explicit DiagramScale(const Diagram& d) {
+    double low = HUGE_VAL, high = 0;
+    for (const Curve& c : d.curves)
+      for (std::size_t k = 0; k < c.x.size(); ++k) {
+        x1 = std::max(x1, c.x[k]);
+        if (!(c.y[k] > 0) || !std::isfinite(c.y[k])) continue;
+        low = std::min(low, c.y[k]);
+        high = std::max(high, c.y[k]);
+      }
+    if (high > 0) {
+      log0 = std::floor(std::log10(low));
+      log1 = std::max(log0 + 1, std::ceil(std::log10(high)));
+    }
+    const int every = std::max(1, int((log1 - log0) / 8));
+    for (int p = int(log0); p <= int(log1); p += every)
+      y_ticks.emplace_back(std::pow(10.0, p), format("1e%d", p));
+    const double raw = x1 / 6, power = std::pow(10, std::floor(std::log10(raw)));
+    const double step = power * (raw / power < 1.5 ? 1 : raw / power < 3.5 ? 2 : 5);
+    for (double v = 0; v <= x1 * (1 + 1e-9); v += step) x_ticks.emplace_back(v, format("%g", v));
+  }
+  double x(double v) const { return left + v / x1 * (right - left); }
+  double y(double v) const {
+    return bottom - (std::log10(v) - log0) / (log1 - log0) * (bottom - top);
+  }
+};
+
 std::string svg(const Diagram& d) {
-  const DiagramScale s = diagram_scale(d, 760, 330);
+  const DiagramScale s(d);
   std::string out = format("<svg viewBox=\"0 0 %g %g\" width=\"%g\" height=\"%g\">\n", s.width,
                            s.height, s.width, s.height);
   out +=

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "lib/base/error.h"
 #include "lib/scene/number.h"
 #include "lib/verify/compare.h"
@@ -50,9 +52,8 @@ const char* verdict_name(Verdict v) {
 }
 
 bool CompareResult::same() const {
-  for (const ComparePart& p : parts)
-    if (p.verdict == Verdict::differs) return false;
-  return true;
+  return std::none_of(parts.begin(), parts.end(),
+                      [](const ComparePart& p) { return p.verdict == Verdict::differs; });
 }
 
 }  // namespace pbf::inline verify_module

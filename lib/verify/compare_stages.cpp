@@ -16,16 +16,10 @@ struct Size {
   double worst = 0, rms = 0, scale = 0;
 };
 
-double distance(double a, double b) {
-  if (a == b || (std::isnan(a) && std::isnan(b))) return 0;
-  const double d = std::fabs(a - b);
-  return std::isnan(d) ? std::numeric_limits<double>::infinity() : d;
-}
-
 Size difference(const std::vector<double>& a, const std::vector<double>& b) {
   Size s;
   for (std::size_t k = 0; k < a.size(); ++k) {
-    const double d = distance(a[k], b[k]);
+    const double d = apart(a[k], b[k]);
     s.worst = std::max(s.worst, d);
     s.rms += d * d;
     if (std::isfinite(a[k])) s.scale = std::max(s.scale, std::fabs(a[k]));
@@ -119,11 +113,6 @@ const std::vector<double>& values_of(const StepTrace& t, const char* stage, cons
 }
 
 }  // namespace
-
-double ulp(double value, double u) {
-  if (!(value > 0) || !std::isfinite(value)) return 0;
-  return 2 * u * std::exp2(std::floor(std::log2(value)));
-}
 
 ComparePart compare_stages(const Comparison& c, const SolverState& start, CompareResult& result) {
   ComparePart part;

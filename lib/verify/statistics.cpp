@@ -9,20 +9,8 @@
 namespace pbf::inline verify_module {
 namespace {
 
-std::vector<double> numbers_of(const FieldArray& f) {
-  std::vector<double> out;
-  if (f.type == ScalarType::f64)
-    out.assign(f.as<double>().begin(), f.as<double>().end());
-  else
-    out.assign(f.as<float>().begin(), f.as<float>().end());
-  return out;
-}
-
 /// NaN behind everything, so that the order is total.
-void sort(std::vector<double>& v) {
-  std::sort(v.begin(), v.end(),
-            [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; });
-}
+bool before(double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; }
 
 /// `effect`: how many particles move as one.
 Statistic mean(const std::string& name, const std::string& unit, const std::vector<double>& v,
@@ -49,6 +37,11 @@ Statistic quantile(const std::string& name, const std::string& unit, const std::
 
 }  // namespace
 
+std::vector<double> numbers_of(const FieldArray& f) {
+  if (f.type == ScalarType::f64) return {f.as<double>().begin(), f.as<double>().end()};
+  return {f.as<float>().begin(), f.as<float>().end()};
+}
+
 FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const Double3& gravity,
                                  double rest_density, const Resolution& resolution) {
   FrameStatistics out;
@@ -62,7 +55,7 @@ FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const
   const auto distribute = [&](const char* name, const char* unit, std::vector<double> v,
                               double resolution_of_it, const Clusters* together = nullptr) {
     std::vector<double> sorted = v;
-    sort(sorted);
+    std::sort(sorted.begin(), sorted.end(), before);
     const double effect = together ? together->design_effect_of_shares(v, sorted) : 1;
     out.distributions.push_back(
         {name, unit, std::move(sorted), resolution_of_it, double(v.size()) / effect});
@@ -133,7 +126,6 @@ namespace {
 /// By how much the share of `a` up to some value exceeds that of `b` up to `rounding` above it. The
 /// first grows at the values of `a` alone.
 double excess(const std::vector<double>& a, const std::vector<double>& b, double rounding) {
-  const auto before = [](double x, double y) { return std::isnan(y) ? !std::isnan(x) : x < y; };
   double largest = 0;
   for (std::size_t i = 0, k = 0; i < a.size();) {
     const double x = a[i];

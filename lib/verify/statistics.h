@@ -46,6 +46,9 @@ struct Resolution {
   double cluster = 0;
 };
 
+/// Of a field of floating-point numbers.
+std::vector<double> numbers_of(const FieldArray& f);
+
 struct FrameStatistics {
   std::vector<Statistic> numbers;
   std::vector<Distribution> distributions;

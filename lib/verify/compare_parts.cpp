@@ -1,0 +1,40 @@
+#include "lib/verify/compare_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pbf::inline verify_module {
+
+double ulp(double value, double u) {
+  if (!(value > 0) || !std::isfinite(value)) return 0;
+  return 2 * u * std::exp2(std::floor(std::log2(value)));
+}
+
+double apart(double a, double b) {
+  if (a == b || (std::isnan(a) && std::isnan(b))) return 0;
+  const double d = std::fabs(a - b);
+  return std::isnan(d) ? HUGE_VAL : d;
+}
+
+double share_of(double error, double tolerance) {
+  return error == 0 ? 0 : tolerance > 0 ? error / tolerance : HUGE_VAL;
+}
+
+bool note(ComparePart& p, const std::string& what, const std::string& unit, double error,
+          double scale, double tolerance, double u) {
+  auto r = std::find_if(p.rows.begin(), p.rows.end(),
+                        [&](const CompareRow& row) { return row.what == what; });
+  const bool fresh = r == p.rows.end();
+  if (fresh) r = p.rows.insert(r, {what, unit, 0, 0, 0, 0, 0, Verdict::same});
+  if (fresh || !(share_of(error, tolerance) <= share_of(r->error, r->tolerance))) {
+    r->error = error;
+    r->relative = scale > 0 ? error / scale : error;
+    r->ulps = scale > 0 && u > 0 ? error / ulp(scale, u) : 0;
+    r->tolerance = tolerance;
+  }
+  const bool within = error == 0 || error <= tolerance;
+  if (!within) r->verdict = p.verdict = Verdict::differs;
+  return within;
+}
+
+}  // namespace pbf::inline verify_module
