@@ -5,6 +5,7 @@
 #include <map>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "app/shell_quote.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
@@ -24,6 +25,30 @@
 
 namespace pbf::inline app_module {
 namespace {
+
+struct BatchOptions {
+  std::string input;                         ///< folder, scene or list
+  std::string out;                           ///< folder of the runs; empty: out/batch_<name>
+  std::vector<std::string> grid, overrides;  ///< key=v1,v2; key.path=value
+  int jobs = 1, threads = 0;                 ///< at a time; CPU threads of each, 0: all / jobs
+  std::int64_t only = -1;                    ///< this run alone, from 0
+  double max_walltime = 0;                   ///< s, 0: none
+  bool list = false, slurm = false, collect = false, quiet = false;
+  bool strict = false;  ///< of every run
+};
+
+const char* const kBatchHelp =
+    "Every run is `pbf run --resume` in a folder of its own: what is finished (DONE is there, and\n"
+    "run.vtkhdf is whole, of this scene, up to its end; --collect looks too) is left alone,\n"
+    "what was stopped or killed goes on, so the same command can be given again until all is\n"
+    "done. OUT/summary.csv has a row per run: why it ended, its last measures. SIGTERM, SIGINT\n"
+    "and --max-walltime save all runs.\n"
+    "Exit code 0 when all are finished, 75 when some are to go on, 6 when some failed.\n"
+    "Examples:\n"
+    "  pbf batch configs/dam_break.yaml --grid solver.iterations=2,4,8 \\\n"
+    "      --grid time.step=0.002,0.001 --jobs 2\n"
+    "  pbf batch scenes/ --out out/scenes --set checkpoint.every=60\n"
+    "  pbf batch scenes/ --out out/scenes --slurm > job.sh; sbatch job.sh";
 
 namespace fs = std::filesystem;
 
@@ -85,8 +110,8 @@ class Batch {
 
   void run() {
     const auto stop = [this] { return !signal_seen().empty() || time_is_up(); };
-    JobPool(o_.jobs).run(
-        members_.size(), [this](std::size_t k) { return arguments(members_[k]); }, stop,
+    run_jobs(
+        o_.jobs, members_.size(), [this](std::size_t k) { return arguments(members_[k]); }, stop,
         [this](std::size_t k, const JobEnd& end) { ended(members_[k], end); });
   }
 
@@ -106,16 +131,15 @@ class Batch {
     std::size_t finished = 0, failed = 0;
     for (const auto& [name, end] : ends_) {
       finished += end.code == 0;
-      failed += end.code != 0 && resumable(end.code) == false;
+      failed += end.code != 0 && !resumable(end.code);
     }
     const std::size_t open = members_.size() - finished - failed;
     log_.result(format("%zu runs: %zu finished, %zu failed, %zu to go on with; %s/summary.csv",
                        members_.size(), finished, failed, open, out_.c_str()));
-    if (open > 0) {
-      log_.note("pbf: the same command goes on from there");
-      return static_cast<int>(ExitCode::resumable);
-    }
-    return static_cast<int>(failed > 0 ? ExitCode::difference : ExitCode::done);
+    if (open > 0) log_.note("pbf: the same command goes on from there");
+    return static_cast<int>(open > 0     ? ExitCode::resumable
+                            : failed > 0 ? ExitCode::difference
+                                         : ExitCode::done);
   }
 
  private:
@@ -130,16 +154,14 @@ class Batch {
       const std::string other =
           difference_of_record(record, loaded.scene, scene_files(loaded.scene, loaded.folder));
       if (!other.empty())
-        return {static_cast<int>(ExitCode::bad_input), folder + " is of another scene: " + other};
+        throw Error(ExitCode::bad_input, folder + " is of another scene: " + other);
       const std::string file = difference_of_file(folder, loaded.scene);
       if (!file.empty())
-        return {static_cast<int>(ExitCode::bad_input),
-                folder + "/run.vtkhdf is of another scene: " + file};
+        throw Error(ExitCode::bad_input, folder + "/run.vtkhdf is of another scene: " + file);
       const std::string doubt = why_not_finished(folder, loaded.scene);
-      if (!doubt.empty())
-        return {static_cast<int>(ExitCode::resumable), "DONE is there, but " + doubt};
+      if (!doubt.empty()) throw Error(ExitCode::resumable, "DONE is there, but " + doubt);
       if (make_schedule(loaded.scene).updates > make_schedule(record.scene).updates)
-        return {static_cast<int>(ExitCode::resumable), "time.end has grown"};
+        throw Error(ExitCode::resumable, "time.end has grown");
     } catch (const Error& e) {
       return {static_cast<int>(e.code()), e.what()};
     }
@@ -181,8 +203,6 @@ class Batch {
   std::map<std::string, JobEnd> ends_;
 };
 
-}  // namespace
-
 int command_batch(const BatchOptions& o) {
   std::vector<GridAxis> axes;
   for (const std::string& g : o.grid) axes.push_back(parse_axis(g));
@@ -196,8 +216,8 @@ int command_batch(const BatchOptions& o) {
     return 0;
   }
   if (o.only >= std::int64_t(members.size()))
-    throw Error(ExitCode::bad_input, format("--only %lld: there are %zu runs, counted from 0",
-                                            static_cast<long long>(o.only), members.size()));
+    throw Error(ExitCode::bad_input,
+                format("--only %ld: there are %zu runs, counted from 0", o.only, members.size()));
   std::error_code error;
   fs::create_directories(out, error);
   if (error) throw Error(ExitCode::io, out + ": the folder cannot be made: " + error.message());
@@ -209,6 +229,35 @@ int command_batch(const BatchOptions& o) {
   Batch batch(o, members, out, log);
   o.collect ? batch.collect() : batch.run();
   return one ? batch.code() : batch.finish();
+}
+
+}  // namespace
+
+void add_batch(CLI::App& app, int& code) {
+  const auto [c, o] = add_command(
+      app, code, command_batch, "batch",
+      "Many scenes, or one with a grid of settings: each run in a process of its own", kBatchHelp);
+  c->add_option("INPUT", o.input,
+                "Folder of scenes (*.yaml), a scene, or a list: a scene on each line, then "
+                "KEY.PATH=VALUE where wanted")
+      ->required();
+  c->add_option("--out", o.out, "Folder of the run folders; out/batch_<name> when not given");
+  add_repeatable(c, "--grid", o.grid,
+                 "KEY=V1,V2,...: a run for every value; repeatable, then for every combination");
+  add_overrides(c, o.overrides);
+  c->add_option("--jobs", o.jobs, "Runs at a time")->transform(whole_number(1, 4096));
+  c->add_option("--threads", o.threads, "CPU threads of a run; all, shared among --jobs")
+      ->transform(whole_number(1, 4096));
+  c->add_option("--max-walltime", o.max_walltime, "Stop all after so many seconds, save, exit 75")
+      ->transform(number_from(0, true, "seconds"));
+  CLI::Option* only = c->add_option("--only", o.only, "Run this one alone, counted from 0")
+                          ->transform(whole_number(0));
+  c->add_flag("--collect", o.collect, "Run nothing, write the summary of what is there")
+      ->excludes(only);
+  c->add_flag("--strict", o.strict, "A warning ends its run with exit 6");
+  c->add_flag("--list", o.list, "Print the runs and do nothing");
+  c->add_flag("--slurm", o.slurm, "Print a Slurm array script and do nothing");
+  c->add_flag("--quiet", o.quiet, "No progress on stderr");
 }
 
 }  // namespace pbf::inline app_module

@@ -1,8 +1,8 @@
 // pbf bench: time per update over sizes, backends, precisions and threads.
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
 #include "lib/base/stages.h"
@@ -16,6 +16,26 @@
 
 namespace pbf::inline app_module {
 namespace {
+
+struct BenchOptions {
+  std::vector<std::string> scenes;  ///< paths; empty: the built-in dam break
+  std::vector<std::int64_t> particles{10000, 100000};
+  std::vector<std::string> backends{"cpu"}, precisions{"float"};
+  std::vector<int> threads{0};  ///< 0: as a run would choose
+  std::vector<std::string> overrides;
+  BenchSettings settings;
+  std::string csv, json;   ///< paths, empty: none
+  bool calibrate = false;  ///< store the costs of the stages for `pbf plan`
+};
+
+const char* const kBenchHelp =
+    "Two lines per case: from the first updates on (start), and after the warm-up (late).\n"
+    "Stage times on cuda are those of one update in 64 to 1024, timed by\n"
+    "device events, and share the time of all. With time.adaptive an update is one step here.\n"
+    "Examples:\n"
+    "  pbf bench --n 10000,100000 --backend cpu --threads 1,2 --precision float,double \\\n"
+    "      --csv bench.csv\n"
+    "  pbf bench --calibrate --n 10000,100000 --warmup 100 --updates 20";
 
 std::vector<Column<BenchRow>> columns() {
   using R = const BenchRow&;
@@ -60,31 +80,24 @@ std::vector<Column<BenchRow>> columns() {
 }
 
 std::string line(const BenchRow& r) {
-  std::string out =
-      format("%-12s %-4s %-6s %3d %10lld %-5s %10.4f ms (%.4f..%.4f) %8.4f us/particle",
-             r.scene.c_str(), r.solver.backend.c_str(), r.solver.precision.c_str(),
-             r.solver.threads, static_cast<long long>(r.particles), r.state.c_str(), r.ms_median,
-             r.ms_min, r.ms_max, r.ms_median * 1e3 / double(r.particles));
-  out += format("  nbrs %.1f/%lld  %.0f B/particle ", r.measures.neighbors_mean,
-                static_cast<long long>(r.measures.neighbors_max),
-                double(r.solver.bytes) / double(r.particles));
+  std::string out = format(
+      "%-12s %-4s %-6s %3d %10ld %-5s %10.4f ms (%.4f..%.4f) %8.4f us/particle", r.scene.c_str(),
+      r.solver.backend.c_str(), r.solver.precision.c_str(), r.solver.threads, r.particles,
+      r.state.c_str(), r.ms_median, r.ms_min, r.ms_max, r.ms_median * 1e3 / double(r.particles));
+  out += format("  nbrs %.1f/%ld  %.0f B/particle ", r.measures.neighbors_mean,
+                r.measures.neighbors_max, double(r.solver.bytes) / double(r.particles));
   for (const StageTime& s : r.stages) out += format(" %s %.4f", s.name.c_str(), s.seconds * 1e3);
   return out;
 }
 
-}  // namespace
-
 int command_bench(const BenchOptions& o) {
   Log log(false);
   TableOf<BenchRow> table(columns());
-  std::vector<std::pair<Scene, std::string>> scenes;  // with the folder of the file
+  std::vector<LoadedScene> scenes;
+  for (const std::string& path : o.scenes) scenes.push_back(load_scene(path, o.overrides));
   if (o.scenes.empty())
-    scenes.push_back({parse_scene(o.calibrate ? calibration_scene_yaml() : bench_scene_yaml(),
-                                  "built-in scene", o.overrides),
-                      "."});
-  for (const std::string& path : o.scenes)
-    scenes.push_back(
-        {load_scene(path, o.overrides).scene, std::filesystem::path(path).parent_path().string()});
+    scenes.emplace_back().scene = parse_scene(
+        o.calibrate ? calibration_scene_yaml() : bench_scene_yaml(), "built-in scene", o.overrides);
   check_output("--csv", o.csv);
   check_output("--json", o.json);
   if (!o.csv.empty() && !o.json.empty() && same_output(o.csv, o.json))
@@ -97,20 +110,19 @@ int command_bench(const BenchOptions& o) {
       write_text_file(o.json, json_text(table.json(), 1) + "\n");
   };
   std::vector<StageCosts> costs;
-  const BenchSettings settings{o.warmup, o.updates, o.repeats};
   const std::vector<GridMember> grid =
       grid_members({grid_axis("n", o.particles), grid_axis("backend", o.backends),
                     grid_axis("precision", o.precisions), grid_axis("threads", o.threads)},
                    1000000, "bench");
-  for (const auto& [base, dir] : scenes)
+  for (const LoadedScene& base : scenes)
     for (const GridMember& m : grid) {
       const bool cuda = o.backends[m.at[1]] == "cuda";
       if (cuda && m.at[3] > 0) continue;  // threads are the CPU's alone
-      Scene s = scaled_to(base, o.particles[m.at[0]], dir);
+      Scene s = scaled_to(base.scene, o.particles[m.at[0]], base.folder);
       s.backend = cuda ? Backend::cuda : Backend::cpu;
       s.precision = o.precisions[m.at[2]] == "double" ? Precision::dbl : Precision::single;
       s.threads = cuda ? 0 : o.threads[m.at[3]];
-      const std::vector<BenchRow> rows = bench(s, dir, settings);
+      const std::vector<BenchRow> rows = bench(s, base.folder, o.settings);
       if (o.calibrate) costs.push_back(calibration_of(rows.back()));
       for (const BenchRow& row : rows) {
         table.add(row);
@@ -124,6 +136,42 @@ int command_bench(const BenchOptions& o) {
     log.note("stored in " + calibration_path());
   }
   return 0;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, int& code) {
+  const auto [c, o] = add_command(
+      app, code, command_bench, "bench",
+      "Time per update and per stage over sizes, backends, precisions and threads", kBenchHelp);
+  CLI::Option* scenes =
+      c->add_option("SCENE", o.scenes, "Scene files; a built-in dam break when none is given");
+  c->add_flag("--calibrate", o.calibrate,
+              "Time every pass of the built-in scene and store it, for the times of pbf plan, in "
+              "$PBF_CALIBRATION, else ~/.local/share/pbf/calibration.csv")
+      ->excludes(scenes);
+  c->add_option("--n", o.particles, "Numbers of particles, separated by commas")
+      ->delimiter(',')
+      ->transform(whole_number(1));
+  c->add_option("--backend", o.backends, "cpu, cuda or both, separated by commas")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"cpu", "cuda"}));
+  c->add_option("--precision", o.precisions, "float, double or both")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"float", "double"}));
+  c->add_option("--threads", o.threads,
+                "Numbers of CPU threads; as a run would choose when not given")
+      ->delimiter(',')
+      ->transform(whole_number(1, 4096));
+  add_overrides(c, o.overrides);
+  c->add_option("--warmup", o.settings.warmup, "Updates before the state counts as late")
+      ->transform(whole_number(0));
+  c->add_option("--updates", o.settings.updates, "Updates of one repeat")
+      ->transform(whole_number(1));
+  c->add_option("--repeats", o.settings.repeats, "Repeats; the median counts")
+      ->transform(whole_number(1));
+  c->add_option("--csv", o.csv, "Write the table to this file");
+  c->add_option("--json", o.json, "Write the table to this file, as a JSON array");
 }
 
 }  // namespace pbf::inline app_module

@@ -1,30 +1,52 @@
 // pbf compare: two run files, or one scene on two backends.
-#include <filesystem>
+#include "lib/verify/compare.h"
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
 #include "lib/base/log.h"
 #include "lib/base/output_file.h"
 #include "lib/scene/load.h"
-#include "lib/verify/compare.h"
 
 namespace pbf::inline app_module {
 namespace {
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
+struct CompareOptions {
+  std::vector<std::string> inputs;                  ///< two run files, or one scene with `between`
+  std::vector<std::string> between;                 ///< two sides, BACKEND:PRECISION[@THREADS]
+  std::vector<std::string> overrides, overrides_b;  ///< of both sides, of B alone
+  CompareSettings settings;
+  std::string report;  ///< path, .html or .json; empty: none
+  bool quiet = false;
+};
+
+const char* const kCompareHelp =
+    "With --between: one update from one state, stage by stage; then how far particles drift\n"
+    "apart; then statistics that chaos leaves alone. Each against what rounding at random does\n"
+    "to references in double on the CPU (so allow for their time: the number of --members).\n"
+    "Of two run files: the scenes' physics; status, end, frames, fields and rows of the log, "
+    "where\n"
+    "what only one file holds is a difference; particles, where the same bits are promised; the\n"
+    "particles of every frame as two samples. There, values up to 16 roundings apart are equal:\n"
+    "of the coarser of computed and stored precision, relative to the box for positions, to the\n"
+    "box over a step for velocities, to 1 + box/h for densities. A difference of all the fluid\n"
+    "at once, after chaos has grown, may still be one of rounding: --between tells.\n"
+    "Exit code 0 when nothing differs by more, 6 when something does.\n"
+    "Examples:\n"
+    "  pbf compare configs/minimal.yaml --between cpu:double,cuda:float --report compare.html\n"
+    "  pbf compare configs/minimal.yaml --between cpu:float@1,cpu:float@2\n"
+    "  pbf compare out/a/run.vtkhdf out/b/run.vtkhdf";
 
 void check_report(const std::string& path) {
-  if (path.empty() || ends_with(path, ".html") || ends_with(path, ".json")) return;
+  if (path.empty() || path.ends_with(".html") || path.ends_with(".json")) return;
   throw Error(ExitCode::bad_input,
               "--report " + path + ": the name must end in .html (with diagrams) or .json");
 }
 
 void write_report(const std::string& path, const CompareResult& result) {
   if (path.empty()) return;
-  write_text_file(path, ends_with(path, ".json") ? compare_json(result) : compare_html(result));
+  write_text_file(path, path.ends_with(".json") ? compare_json(result) : compare_html(result));
 }
 
 CompareResult between(const CompareOptions& o, Log& log) {
@@ -34,21 +56,16 @@ CompareResult between(const CompareOptions& o, Log& log) {
   if (o.inputs.size() != 1)
     throw Error(ExitCode::bad_input, "--between compares one scene; " +
                                          std::to_string(o.inputs.size()) + " files are given");
-  CompareSettings s;
+  CompareSettings s = o.settings;
   s.a = parse_side(o.between[0]);
   s.b = parse_side(o.between[1]);
-  s.warmup = o.warmup;
-  s.updates = o.updates;
-  s.members = o.members;
-  s.seed = o.seed;
   const LoadedScene a = load_scene(o.inputs[0], o.overrides);
   std::vector<std::string> more = o.overrides;
   more.insert(more.end(), o.overrides_b.begin(), o.overrides_b.end());
   const LoadedScene b = load_scene(o.inputs[0], more);
   check_output("--report", o.report);
-  CompareResult result =
-      compare_between(a.scene, b.scene, std::filesystem::path(a.path).parent_path().string(), s,
-                      [&](const std::string& line) { log.note(line); });
+  CompareResult result = compare_between(a.scene, b.scene, a.folder, s,
+                                         [&](const std::string& line) { log.note(line); });
   for (const std::string& key : o.overrides_b) result.notes.push_back("on B alone: " + key);
   return result;
 }
@@ -65,8 +82,6 @@ CompareResult files(const CompareOptions& o) {
   return compare_files(o.inputs[0], o.inputs[1]);
 }
 
-}  // namespace
-
 int command_compare(const CompareOptions& o) {
   check_report(o.report);
   Log log(o.quiet);
@@ -74,6 +89,33 @@ int command_compare(const CompareOptions& o) {
   log.result(compare_text(result));
   write_report(o.report, result);
   return static_cast<int>(result.same() ? ExitCode::done : ExitCode::difference);
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, int& code) {
+  const auto [c, o] = add_command(
+      app, code, command_compare, "compare",
+      "Whether two runs, or one scene on two backends, differ by more than rounding", kCompareHelp);
+  c->add_option("INPUT", o.inputs, "Two run files (run.vtkhdf), or one scene file with --between")
+      ->required();
+  c->add_option("--between", o.between,
+                "A,B: two sides BACKEND:PRECISION or BACKEND:PRECISION@THREADS")
+      ->delimiter(',');
+  add_overrides(c, o.overrides);
+  add_repeatable(c, "--set-b", o.overrides_b, "The same for B alone, to see what a key changes");
+  c->add_option("--warmup", o.settings.warmup, "Updates on A before the frozen step")
+      ->transform(whole_number(0, 1000000000));
+  c->add_option("--updates", o.settings.updates, "Updates after it")
+      ->transform(whole_number(1, 1000000000));
+  c->add_option("--members", o.settings.members,
+                "Randomly rounded references that give the tolerances")
+      ->transform(whole_number(2, 1000));
+  c->add_option("--seed", o.settings.seed, "Of the random roundings")
+      ->transform(whole_number(0, std::numeric_limits<std::int64_t>::max()));
+  c->add_option("--report", o.report,
+                "Write the result to this file: .html, with diagrams, or .json");
+  c->add_flag("--quiet", o.quiet, "No progress on stderr");
 }
 
 }  // namespace pbf::inline app_module

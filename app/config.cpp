@@ -1,15 +1,33 @@
 // pbf config: the scene format, as an example with every key or as a JSON Schema.
 #include "app/commands.h"
+#include "app/options.h"
 #include "lib/base/log.h"
 #include "lib/scene/load.h"
 
 namespace pbf::inline app_module {
+
+namespace {
+
+struct ConfigOptions {
+  bool schema = false, example = false;
+};
 
 int command_config(const ConfigOptions& options) {
   std::string text = options.schema ? json_schema() : reference_yaml();
   if (!text.empty() && text.back() == '\n') text.pop_back();  // result() ends the line
   Log(false).result(text);
   return 0;
+}
+
+}  // namespace
+
+void add_config(CLI::App& app, int& code) {
+  const auto [c, o] = add_command(app, code, command_config, "config", "The scene format",
+                                  "Example:\n  pbf config --example > my_scene.yaml");
+  CLI::Option_group* one = c->add_option_group("what");
+  one->add_flag("--example", o.example, "The reference scene: every key, default, unit, meaning");
+  one->add_flag("--schema", o.schema, "JSON Schema of a scene file, for editors");
+  one->require_option(1);
 }
 
 }  // namespace pbf::inline app_module

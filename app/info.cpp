@@ -9,6 +9,8 @@
 
 namespace pbf::inline app_module {
 
+namespace {
+
 int command_info() {
   const BuildInfo b = build_info();
   std::string text = "pbf " + b.version + "\n";
@@ -29,6 +31,13 @@ int command_info() {
   text.pop_back();
   Log(false).result(text);
   return 0;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, int& code) {
+  CLI::App* c = app.add_subcommand("info", "Version, build features, libraries, devices");
+  c->footer("Example:\n  pbf info")->callback([&code] { code = command_info(); });
 }
 
 }  // namespace pbf::inline app_module

@@ -1,11 +1,11 @@
 // pbf plan: what a scene would do and need; runs nothing.
 #include "lib/program/plan.h"
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "lib/base/json.h"
 #include "lib/base/log.h"
 #include "lib/base/machine.h"
@@ -19,6 +19,17 @@
 
 namespace pbf::inline app_module {
 namespace {
+
+struct PlanOptions {
+  std::string scene;
+  std::vector<std::string> overrides;
+  bool resolved = false, json = false;
+};
+
+const char* const kPlanHelp =
+    "The time per update is an estimate from what `pbf bench --calibrate` has stored on this\n"
+    "machine; without it none is printed.\n"
+    "Example:\n  pbf plan configs/dam_break.yaml --set fluid.spacing=0.005";
 
 std::string time_text(const std::optional<TimeEstimate>& time) {
   if (!time)
@@ -47,12 +58,10 @@ std::string json(const Plan& plan, const Scene& scene, const std::optional<TimeE
   return json_text(out);
 }
 
-}  // namespace
-
 int command_plan(const PlanOptions& options) {
   const LoadedScene loaded = load_scene(options.scene, options.overrides);
   Log log(false);
-  const std::string dir = std::filesystem::path(loaded.path).parent_path().string();
+  const std::string& dir = loaded.folder;
   // Counted for --resolved too: a scene that cannot run is an error in every form of the answer.
   const std::int64_t n = count_particles(loaded.scene, dir);
   const Plan plan = make_plan(loaded.scene, n, start_neighbors(loaded.scene, dir, n));
@@ -67,6 +76,19 @@ int command_plan(const PlanOptions& options) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   log.result(text);
   return 0;
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, int& code) {
+  const auto [c, o] = add_command(
+      app, code, command_plan, "plan",
+      "Passes, arrays, memory and files of a scene, and what is left out; runs nothing", kPlanHelp);
+  c->add_option("SCENE", o.scene, "Scene file (YAML)")->required();
+  add_overrides(c, o.overrides);
+  CLI::Option* resolved =
+      c->add_flag("--resolved", o.resolved, "Print the scene with every default filled in");
+  c->add_flag("--json", o.json, "Print the plan as one JSON object")->excludes(resolved);
 }
 
 }  // namespace pbf::inline app_module

@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "app/render_options.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
@@ -15,6 +16,13 @@
 #endif
 
 namespace pbf::inline app_module {
+
+namespace {
+
+const char* const kRenderHelp =
+    "Example:\n"
+    "  pbf render out/dam_break/run.vtkhdf --frames 0:-1:5 --size 1920x1080 --color density \\\n"
+    "      --camera 'position=3,-4,2;fov=30'";
 
 #ifndef PBF_HAS_RENDER
 int command_render(const RenderOptions&) {
@@ -43,8 +51,7 @@ int command_render(const RenderOptions& options) {
   log.note(format("%zu picture%s of %dx%d with %s", frames.size(), frames.size() == 1 ? "" : "s",
                   view.size[0], view.size[1], renderer.backend().c_str()));
   for (const std::int64_t k : frames) {
-    const std::string file =
-        (folder / format("frame_%06lld.png", static_cast<long long>(k))).string();
+    const std::string file = (folder / format("frame_%06ld.png", k)).string();
     check_output("--out", file);
     Stopwatch watch;
     const Snapshot snapshot = reader.frame(k);
@@ -54,5 +61,20 @@ int command_render(const RenderOptions& options) {
   return 0;
 }
 #endif
+
+}  // namespace
+
+void add_render(CLI::App& app, int& code) {
+  const auto [c, o] = add_command(app, code, command_render, "render",
+                                  "Pictures from the frames of a run file", kRenderHelp);
+  c->add_option("RUN", o.run, "Run file (run.vtkhdf)")->required();
+  c->add_option("--frames", o.frames, "all, k, a:b or a:b:step; b excluded, negative from the end");
+  c->add_option("--size", o.size, "WIDTHxHEIGHT in pixels");
+  c->add_option("--camera", o.camera, "position=x,y,z;target=x,y,z;fov=degrees;orbit=degrees/s");
+  c->add_option("--color", o.color, "What colours the particles")
+      ->check(CLI::IsMember({"speed", "density", "id"}));
+  c->add_option("--range", o.range, "LOW,HIGH of the colour bar, in the unit of the field");
+  c->add_option("--out", o.out, "Folder of the pictures; render/ beside the run file");
+}
 
 }  // namespace pbf::inline app_module

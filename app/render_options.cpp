@@ -28,7 +28,7 @@ bool read_numbers(const std::string& text, char separator, std::size_t n, double
   const auto parts = split(text, separator);
   if (parts.size() != n) return false;
   for (std::size_t i = 0; i < n; ++i) {
-    const NumberError e = read_double(parts[i], out[i]);
+    const NumberError e = read_number(parts[i], out[i]);
     if (e == NumberError::too_small) out[i] = 0;
     if (e != NumberError::none && e != NumberError::too_small) return false;
   }
@@ -65,16 +65,12 @@ std::vector<std::int64_t> select_frames(const std::string& text, std::int64_t fr
   if (frames == 0) throw Error(ExitCode::bad_input, "the run file holds no frame yet");
   std::vector<std::int64_t> out;
   const auto parts = split(text, ':');
-  const std::int64_t bounds[2] = {0, frames};
   std::int64_t range[2] = {0, frames}, step = 1;
   if (text != "all") {
     if (parts.size() > 3) bad("--frames", text, want);
     for (std::size_t i = 0; i < std::min<std::size_t>(2, parts.size()); ++i) {
-      if (parts[i].empty() && parts.size() > 1) {
-        range[i] = bounds[i];
-        continue;
-      }
-      if (read_integer(parts[i], range[i]) != NumberError::none) bad("--frames", text, want);
+      if (parts[i].empty() && parts.size() > 1) continue;  // the end
+      if (read_number(parts[i], range[i]) != NumberError::none) bad("--frames", text, want);
       if (range[i] < 0) range[i] += frames;
     }
     if (parts.size() == 1) {
@@ -82,7 +78,7 @@ std::vector<std::int64_t> select_frames(const std::string& text, std::int64_t fr
         bad("--frames", text, "a frame from 0 to " + std::to_string(frames - 1));
       return {range[0]};
     }
-    if (parts.size() == 3 && (read_integer(parts[2], step) != NumberError::none || step < 1))
+    if (parts.size() == 3 && (read_number(parts[2], step) != NumberError::none || step < 1))
       bad("--frames", text, want);
   }
   range[0] = std::max<std::int64_t>(0, range[0]);

@@ -6,10 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "app/commands.h"
 #include "lib/scene/scene.h"
 
 namespace pbf::inline app_module {
+
+struct RenderOptions {
+  std::string run;             ///< path of run.vtkhdf
+  std::string frames = "all";  ///< k, a:b, a:b:step (b excluded, negative from the end) or all
+  std::string size;            ///< WxH, empty: as the scene says
+  std::string camera;          ///< position=x,y,z;target=x,y,z;fov=deg;orbit=deg/s
+  std::string color, range;    ///< empty: as the scene says
+  std::string out;             ///< folder, empty: render/ beside the run file
+};
 
 /// "all", "k", "a:b" or "a:b:step", as Python slices: b excluded, negative from the end, empty for
 /// the ends. Refuses what selects nothing of `frames` frames.

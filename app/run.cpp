@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "lib/base/error.h"
 #include "lib/base/output_file.h"
 #include "lib/base/text.h"
@@ -25,6 +26,30 @@
 namespace pbf::inline app_module {
 namespace {
 
+struct RunOptions {
+  std::string scene;                   ///< path
+  std::string out;                     ///< run folder; empty: out/<scene name>
+  std::string backend, precision;      ///< empty: as the scene says
+  int threads = 0;                     ///< 0: as the scene says
+  std::vector<std::string> overrides;  ///< key.path=value
+  bool overwrite = false, resume = false, quiet = false;
+  bool strict = false;      ///< warnings are errors
+  std::string log_json;     ///< path, empty: none
+  double max_walltime = 0;  ///< s, 0: none
+};
+
+const char* const kRunHelp =
+    "Examples:\n"
+    "  pbf run configs/dam_break.yaml\n"
+    "  pbf run configs/dam_break.yaml --out out/fine --set fluid.spacing=0.01 --threads 8\n"
+    "  pbf run configs/dam_break.yaml --set checkpoint.every=60 --resume\n"
+    "  pbf run out/fine/run.vtkhdf --out out/again\n"
+    "SIGTERM and SIGINT finish the update, save a checkpoint and exit 75, as --max-walltime\n"
+    "does; a second one ends at once. SIGUSR1 saves a checkpoint and goes on. With\n"
+    "time.adaptive and the guard, checkpoints are of the last measure or frame, and no run\n"
+    "ends before its first.\n"
+    "Exit codes are listed in pbf --help.\n\n";
+
 std::vector<std::string> all_overrides(const RunOptions& o) {
   std::vector<std::string> list = o.overrides;  // the options win: they come last
   if (!o.backend.empty()) list.push_back("backend=" + o.backend);
@@ -39,12 +64,10 @@ std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
   const BuildInfo build = build_info();
   std::string where = i.backend + " " + i.precision;
   if (i.backend == "cpu") where += ", " + threads_text(scene, plan.particles);
-  return format("pbf %s (%s)  scene %s: %lld particles, %lld updates of %.4g s\n%s on %s, %s -> %s",
-                build.version.c_str(), build.commit.c_str(), scene.name.c_str(),
-                static_cast<long long>(plan.particles),
-                static_cast<long long>(make_schedule(scene).updates), scene.time.step,
-                where.c_str(), i.device.c_str(), bytes_text(double(i.bytes)).c_str(),
-                folder.c_str());
+  return format("pbf %s (%s)  scene %s: %ld particles, %ld updates of %.4g s\n%s on %s, %s -> %s",
+                build.version.c_str(), build.commit.c_str(), scene.name.c_str(), plan.particles,
+                make_schedule(scene).updates, scene.time.step, where.c_str(), i.device.c_str(),
+                bytes_text(double(i.bytes)).c_str(), folder.c_str());
 }
 
 /// A folder that is missing is told before the run folder is made. It may be the run folder itself.
@@ -109,8 +132,7 @@ int simulate(RunParts& parts, const std::string& start_note, const std::string& 
   if (!from.saved && !start_note.empty()) log.note("pbf: " + start_note);
   if (from.saved) {
     parts.solver.set_state(from.saved->state);
-    log.note(format("pbf: goes on from the checkpoint of update %lld",
-                    static_cast<long long>(from.update())));
+    log.note(format("pbf: goes on from the checkpoint of update %ld", from.update()));
   } else {
     parts.clock.mark("init");
     relieve(parts.solver, parts.scene, parts.plan, log);
@@ -121,10 +143,10 @@ int simulate(RunParts& parts, const std::string& start_note, const std::string& 
   run_session(parts);
   if (parts.status == "stopped") {
     log.note(
-        format("pbf: stopped early by %s after update %lld of %lld, after saving; the files "
+        format("pbf: stopped early by %s after update %ld of %ld, after saving; the files "
                "in %s hold the run up to there: the same command with --resume goes on",
-               parts.stop_reason.c_str(), static_cast<long long>(parts.solver.updates()),
-               static_cast<long long>(parts.schedule.updates), folder.path().c_str()));
+               parts.stop_reason.c_str(), parts.solver.updates(), parts.schedule.updates,
+               folder.path().c_str()));
     log.close();
     return static_cast<int>(ExitCode::resumable);
   }
@@ -132,8 +154,6 @@ int simulate(RunParts& parts, const std::string& start_note, const std::string& 
   folder.write_text("DONE", "finished " + utc_now() + "\n");
   return 0;
 }
-
-}  // namespace
 
 int command_run(const RunOptions& options) {
   watch_signals();
@@ -197,6 +217,36 @@ int command_run(const RunOptions& options) {
     }
     throw;
   }
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& code) {
+  const auto [c, o] = add_command(app, code, command_run, "run",
+                                  "Simulate a scene: run.vtkhdf and pictures in one folder",
+                                  std::string(kRunHelp) + diagnostics_text());
+  c->add_option("SCENE", o.scene, "Scene file (YAML), or the run file of a run to repeat")
+      ->required();
+  c->add_option("--out", o.out, "Run folder; out/<scene name> when not given");
+  c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember({"cpu", "cuda"}));
+  c->add_option("--precision", o.precision, "Of the computation")
+      ->check(CLI::IsMember({"float", "double"}));
+  c->add_option("--threads", o.threads, "CPU threads")->transform(whole_number(1, 4096));
+  add_overrides(c, o.overrides);
+  CLI::Option* overwrite =
+      c->add_flag("--overwrite", o.overwrite, "Replace the run in an existing folder");
+  c->add_flag(
+       "--resume", o.resume,
+       "Go on from the last checkpoint; leave a finished run as it is and exit 0, or prolong "
+       "it to a later time.end; start it when the folder is not there")
+      ->excludes(overwrite);
+  c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  c->add_flag("--strict", o.strict,
+              "A warning ends the run with exit 6: before it where the scene gives it, else after "
+              "saving");
+  c->add_option("--log-json", o.log_json, "One JSON object per line and measure, into this file");
+  c->add_option("--max-walltime", o.max_walltime, "Stop after so many seconds, save, exit 75")
+      ->transform(number_from(0, true, "seconds"));
 }
 
 }  // namespace pbf::inline app_module

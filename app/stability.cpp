@@ -1,12 +1,12 @@
 // pbf stability: the suite of stiff and extreme cases, and maps over two scene keys.
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <mutex>
 #include <system_error>
 #include <thread>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
 #include "lib/base/machine.h"
@@ -17,6 +17,26 @@
 
 namespace pbf::inline app_module {
 namespace {
+
+struct StabilityCommandOptions {
+  std::vector<std::string> cases;  ///< names or groups, empty: all; of a map: the scene's path
+  std::string suite = "configs/stability.yaml";
+  std::string backend = "cpu", precision = "float";
+  bool reduced = false, quiet = false;
+  int jobs = 0;  ///< cases at once; 0: as many as there are threads on cpu, 1 on cuda
+  std::vector<std::string> overrides;
+  std::string csv;        ///< path, empty: none
+  std::string map, x, y;  ///< X_KEY,Y_KEY and their values; empty: no map
+  StabilityMap settings;  ///< of the map: iterations and limit
+};
+
+const char* const kStabilityHelp =
+    "Exit code 6 when a case is not as it must be.\n"
+    "Examples:\n"
+    "  pbf stability --reduced --csv stability.csv\n"
+    "  pbf stability stiffness column_48 --precision double\n"
+    "  pbf stability --map time.step,gravity --x 0.001:0.05:6 --y 1,10,100 --csv map.csv\n"
+    "  python -m pbf_tools plot-map map.csv -o map.png";
 
 /// work(k) for k below n on `jobs` threads, with a line of progress after each: "k of n WHAT, time"
 /// and name(row). The first exception is thrown at the end.
@@ -59,9 +79,7 @@ std::vector<StabilityCase> chosen(const StabilityCommandOptions& o) {
   std::vector<StabilityCase> all = read_stability_suite(o.suite), out;
   if (o.cases.empty()) return all;
   const auto add = [&](const StabilityCase& c) {
-    for (const StabilityCase& have : out)
-      if (have.name == c.name) return;
-    out.push_back(c);
+    if (std::ranges::count(out, c.name, &StabilityCase::name) == 0) out.push_back(c);
   };
   for (const std::string& name : o.cases) {
     bool found = false;
@@ -159,9 +177,8 @@ int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int
     log.result(row_text(r));
     failed += r.good ? 0 : 1;
   }
-  log.result(format("%zu cases on %s %s%s: %lld failed, %.1f s", rows.size(), o.backend.c_str(),
-                    o.precision.c_str(), o.reduced ? ", reduced" : "",
-                    static_cast<long long>(failed), watch.seconds()));
+  log.result(format("%zu cases on %s %s%s: %ld failed, %.1f s", rows.size(), o.backend.c_str(),
+                    o.precision.c_str(), o.reduced ? ", reduced" : "", failed, watch.seconds()));
   if (!o.csv.empty()) write_text_file(o.csv, table_of(rows, o).csv());
   return static_cast<int>(failed == 0 ? ExitCode::done : ExitCode::difference);
 }
@@ -170,10 +187,8 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
   if (o.cases.size() > 1)
     throw Error(ExitCode::bad_input,
                 "--map takes one scene file, not " + std::to_string(o.cases.size()));
-  StabilityMap map;
+  StabilityMap map = o.settings;
   map.scene = o.cases.empty() ? "configs/stiff/pool.yaml" : o.cases[0];
-  map.limit = o.limit;
-  map.iterations = o.iterations;
   map.run = run;
   const std::size_t comma = o.map.find(',');
   if (comma == std::string::npos || o.map.find(',', comma + 1) != std::string::npos)
@@ -193,13 +208,10 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
   for (const MapCell& c : cells) ++count[static_cast<int>(c.verdict)];
   const std::string csv = table_of(cells, map, o).csv();
   o.csv.empty() ? log.result(csv) : write_text_file(o.csv, csv);
-  log.result(format("%zu runs: %lld stable, %lld degraded, %lld stopped, %.0f s", cells.size(),
-                    static_cast<long long>(count[0]), static_cast<long long>(count[1]),
-                    static_cast<long long>(count[2]), watch.seconds()));
+  log.result(format("%zu runs: %ld stable, %ld degraded, %ld stopped, %.0f s", cells.size(),
+                    count[0], count[1], count[2], watch.seconds()));
   return 0;
 }
-
-}  // namespace
 
 int command_stability(const StabilityCommandOptions& o) {
   const int jobs = o.jobs > 0 ? o.jobs : o.backend == "cpu" ? usable_threads() : 1;
@@ -210,6 +222,43 @@ int command_stability(const StabilityCommandOptions& o) {
   run.threads = std::max(1, usable_threads() / jobs);
   run.overrides = o.overrides;
   return o.map.empty() ? run_suite(o, run, jobs) : run_map(o, run, jobs);
+}
+
+}  // namespace
+
+void add_stability(CLI::App& app, int& code) {
+  const auto [c, o] =
+      add_command(app, code, command_stability, "stability",
+                  "Stiff and extreme cases, a verdict for each; maps of where a scene is stable",
+                  kStabilityHelp);
+  c->add_option("CASE", o.cases,
+                "Cases or groups of the suite, all when none is given; with --map "
+                "the scene file (configs/stiff/pool.yaml)");
+  c->add_option("--suite", o.suite, "Suite file (configs/stability.yaml)");
+  c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember({"cpu", "cuda"}));
+  c->add_option("--precision", o.precision, "Of the computation")
+      ->check(CLI::IsMember({"float", "double"}));
+  c->add_flag("--reduced", o.reduced, "Fewer particles and updates, where the suite says so");
+  c->add_option("--jobs", o.jobs, "Cases at once; all CPU threads when not given, 1 on cuda")
+      ->transform(whole_number(1, 4096));
+  add_overrides(c, o.overrides);
+  c->add_option("--csv", o.csv, "Write the table to this file");
+  c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  CLI::Option* map = c->add_option(
+      "--map", o.map, "X_KEY,Y_KEY: run a scene over a grid of two of its keys instead");
+  for (const auto& [name, values] : {std::pair{"--x", &o.x}, {"--y", &o.y}})
+    c->add_option(name, *values,
+                  "Values along this axis of the map: a,b,c or LOW:HIGH:COUNT in equal ratios; the "
+                  "scene's own times 1/4 ... 8 when not given")
+        ->needs(map);
+  c->add_option("--iterations", o.settings.iterations, "Of the map, separated by commas")
+      ->delimiter(',')
+      ->transform(whole_number(0, 100000))
+      ->needs(map);
+  c->add_option("--limit", o.settings.limit,
+                "Mean compression above which a run of a map is degraded")
+      ->transform(number_from(0, false, ""))
+      ->needs(map);
 }
 
 }  // namespace pbf::inline app_module

@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
 #include "lib/base/own_file.h"
@@ -14,6 +15,48 @@
 namespace pbf::inline app_module {
 namespace {
 
+struct StudyOptions {
+  std::string study;                   ///< path of the study file
+  std::string out;                     ///< folder; empty: out/study_<name>
+  std::vector<std::string> overrides;  ///< key.path=value, for every run
+  int repeats = 0;                     ///< 0: as the study says
+  bool list = false, quiet = false;
+};
+
+const char* const kStudyHelp =
+    "A study file:\n"
+    "  scene: ../dam_break.yaml           # from this file's folder\n"
+    "  set: {time.end: 0.5, render: off}  # keys of the scene, for every run\n"
+    "  variants:                          # curves; each a set of keys\n"
+    "    - {name: paper, set: {solver.kernels: paper}}\n"
+    "    - {name: consistent}\n"
+    "  grid:                              # every combination of these entries;\n"
+    "    - {solver.iterations: [1, 4]}    # keys of one entry vary together\n"
+    "    - {time.step: [0.002, 0.001], measure_every: [10, 20]}\n"
+    "  error: compression_mean            # set against the run time [default]\n"
+    "  targets: [0.01, 0.001]             # of the error [default]\n"
+    "  from: 0.1                          # s, measures count from here [0]\n"
+    "  repeats: 3                         # of the timing [default]\n"
+    "  clock: wall                        # or cpu, of all threads: on busy machines\n"
+    "  energy_limit: 0.03                 # larger energy_rise: no verdict [default]\n"
+    "  projection: [0.2, 0.4]             # s, compare with the exact projection\n"
+    "  reference: {solver.iterations: 64} # keys; reference_distance to this run\n"
+    "  front: {axis: x, length: 0.1, factor: 2, data: [front.csv]}\n"
+    "                                     # T = t sqrt(factor g/length), Z = x/length\n"
+    "Results are kept per run in OUT/members: the same command goes on where a killed\n"
+    "one ended, and runs only what is new. OUT/study.csv and study.json hold the table:\n"
+    "compression and pool measures are means over time (compression_rms: root of the\n"
+    "mean square, maxima: the largest) from `from` on, seconds_median those of all\n"
+    "updates. * in the table on the terminal: no other run is both faster and better.\n"
+    "\n";
+
+const char* const kStudyMeasures =
+    "  projection_mean, _rms, _max  distance of one update from the exact projection [spacings]\n"
+    "  reference_distance     RMS distance of the centres of mass / (volume)^(1/3) [1]\n"
+    "  front_rms_<data>       RMS of Z - Z published [1]; all fronts in OUT/front.csv\n\n"
+    "Example:\n"
+    "  pbf study configs/study/dam_break.yaml --out out/study --set threads=2";
+
 namespace fs = std::filesystem;
 
 void make_folder(const std::string& path) {
@@ -24,54 +67,43 @@ void make_folder(const std::string& path) {
                                   "; choose another one with --out");
 }
 
-/// Runs members one after the other and keeps their results in a folder.
-class StudyRunner {
- public:
-  StudyRunner(const Study& study, const std::string& folder, Log& log)
-      : study_(study), folder_(folder), log_(log) {}
-
-  /// The result of the k-th of n runs: kept from before, or simulated now. Empty when a signal
-  /// came. Throws Error(unavailable) where it cannot run here.
-  std::optional<MemberResult> result(const StudyMember& member, std::size_t k, std::size_t n) {
-    const std::string head = format("[%zu/%zu] %s", k, n, member.label.c_str());
-    const std::string path = folder_ + "/members/" + member_key(study_, member) + ".json";
-    require_own_file(path);
-    try {
-      if (auto kept = read_member(path)) {
-        log_.note(head + ": kept from before");
-        return kept;
-      }
-    } catch (const Error& e) {
-      log_.note(head + ": its result is damaged and made again: " + e.what());
+/// The result of a run, `name` among people: kept in the folder from before, or simulated now.
+/// Empty when a signal came. Throws Error(unavailable) where it cannot run here.
+std::optional<MemberResult> result_of(const Study& study, const StudyMember& member,
+                                      const std::string& folder, const std::string& name,
+                                      Log& log) {
+  const std::string path = folder + "/members/" + member_key(study, member) + ".json";
+  require_own_file(path);
+  try {
+    if (auto kept = read_member(path)) {
+      log.note(name + ": kept from before");
+      return kept;
     }
-    const Stopwatch watch;
-    double told = 0;
-    const auto progress = [&](double share) {
-      if (watch.seconds() - told < (log_.terminal() ? 0.5 : 10)) return;
-      told = watch.seconds();
-      const std::string line = head + format(": %.0f %%, %s left", 100 * share,
-                                             duration_text(told / share - told).c_str());
-      log_.terminal() ? log_.transient(line) : log_.note(line);
-    };
-    auto result = run_member(
-        study_, member, [] { return !signal_seen().empty(); }, progress);
-    if (!result) return result;
-    write_member(path, *result);
-    const std::vector<double>& mean = result->series("compression_mean");
-    log_.note(head +
-              format(": %s in all; updates %.4g s (spread %.2g s), mean compression %.3g %% at the "
-                     "end%s",
-                     duration_text(watch.seconds()).c_str(), result->seconds_median(),
-                     result->seconds_spread(), 100 * mean.back(),
-                     result->status == "finished" ? "" : (", " + result->status).c_str()));
-    return result;
+  } catch (const Error& e) {
+    log.note(name + ": its result is damaged and made again: " + e.what());
   }
-
- private:
-  const Study& study_;
-  std::string folder_;
-  Log& log_;
-};
+  const Stopwatch watch;
+  double told = 0;
+  const auto progress = [&](double share) {
+    if (watch.seconds() - told < (log.terminal() ? 0.5 : 10)) return;
+    told = watch.seconds();
+    const std::string line = name + format(": %.0f %%, %s left", 100 * share,
+                                           duration_text(told / share - told).c_str());
+    log.terminal() ? log.transient(line) : log.note(line);
+  };
+  auto result = run_member(
+      study, member, [] { return !signal_seen().empty(); }, progress);
+  if (!result) return result;
+  write_member(path, *result);
+  const std::vector<double>& mean = result->series("compression_mean");
+  log.note(name +
+           format(": %s in all; updates %.4g s (spread %.2g s), mean compression %.3g %% at the "
+                  "end%s",
+                  duration_text(watch.seconds()).c_str(), result->seconds_median(),
+                  result->seconds_spread(), 100 * mean.back(),
+                  result->status == "finished" ? "" : (", " + result->status).c_str()));
+  return result;
+}
 
 void write_tables(const Study& study, const std::vector<StudyRow>& rows, const std::string& out) {
   const auto write = [&](const char* name, const std::string& text) {
@@ -89,8 +121,6 @@ std::string list_text(const Study& study) {
   return out;
 }
 
-}  // namespace
-
 int command_study(const StudyOptions& o) {
   Study study = load_study(o.study, o.overrides);
   if (o.repeats > 0) study.repeats = o.repeats;
@@ -106,7 +136,6 @@ int command_study(const StudyOptions& o) {
     check_output("--out", out + "/" + name);
   }
   watch_signals();
-  StudyRunner runner(study, out, log);
   const std::size_t n = study.members.size() + (study.reference ? 1 : 0);
   const auto stopped = [&](std::size_t done) {
     log.note(
@@ -115,18 +144,22 @@ int command_study(const StudyOptions& o) {
                signal_seen().c_str(), done, n));
     return static_cast<int>(ExitCode::resumable);
   };
+  const auto name_of = [n](const StudyMember& member, std::size_t k) {
+    return format("[%zu/%zu] %s", k, n, member.label.c_str());
+  };
   std::size_t k = 0;
   std::optional<MemberResult> reference;
   if (study.reference) {
-    reference = runner.result(*study.reference, ++k, n);
+    reference = result_of(study, *study.reference, out, name_of(*study.reference, ++k), log);
     if (!reference) return stopped(k - 1);
   }
   std::vector<StudyRow> rows;
   std::size_t unavailable = 0;
   for (const StudyMember& member : study.members) {
+    const std::string name = name_of(member, ++k);
     std::optional<MemberResult> result;
     try {
-      result = runner.result(member, ++k, n);
+      result = result_of(study, member, out, name, log);
       if (!result) return stopped(k - 1);
     } catch (const Error& e) {
       if (e.code() != ExitCode::unavailable) throw;
@@ -134,9 +167,9 @@ int command_study(const StudyOptions& o) {
       result.emplace();
       result->status = "unavailable";
       result->message = e.what();
-      result->backend = member.scene.backend == Backend::cuda ? "cuda" : "cpu";
-      result->precision = member.scene.precision == Precision::dbl ? "double" : "float";
-      log.note(format("[%zu/%zu] %s: ", k, n, member.label.c_str()) + e.what());
+      result->backend = word(member.scene.backend);
+      result->precision = word(member.scene.precision);
+      log.note(name + ": " + e.what());
     }
     rows.push_back(study_row(study, member, *result, reference ? &*reference : nullptr));
     mark_front(study, rows);
@@ -148,6 +181,23 @@ int command_study(const StudyOptions& o) {
     throw Error(ExitCode::unavailable,
                 format("%zu of %zu runs could not run here: their rows say why", unavailable, n));
   return 0;
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, int& code) {
+  const auto [c, o] = add_command(app, code, command_study, "study",
+                                  "Error against run time over a grid of settings",
+                                  std::string(kStudyHelp) + diagnostics_text() + kStudyMeasures);
+  c->add_option("STUDY", o.study, "Study file (YAML)")->required();
+  c->add_option("--out", o.out, "Folder of the tables; out/study_<name> when not given");
+  add_repeatable(c, "--set", o.overrides,
+                 "Replace one key of the scene in every run, KEY.PATH=VALUE; the study's variants "
+                 "and grid come after it");
+  c->add_option("--repeats", o.repeats, "Repeats of the timing; as the study says when not given")
+      ->transform(whole_number(1, 1000));
+  c->add_flag("--list", o.list, "Print the runs and do nothing");
+  c->add_flag("--quiet", o.quiet, "No progress on stderr");
 }
 
 }  // namespace pbf::inline app_module

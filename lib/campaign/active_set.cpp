@@ -1,7 +1,6 @@
 #include "lib/campaign/active_set.h"
 
 #include <Eigen/SparseCholesky>
-#include <cmath>
 
 namespace pbf::inline campaign_module {
 

@@ -38,9 +38,13 @@ std::string error_line(int fd) {
   return line;
 }
 
-}  // namespace
+struct Job {
+  pid_t pid;
+  std::size_t index;
+  int err;  // descriptor of what it writes to stderr
+};
 
-JobPool::Job JobPool::start(std::size_t index, const std::vector<std::string>& args) const {
+Job start(std::size_t index, const std::vector<std::string>& args) {
   // Everything is made before the fork: only system calls may follow it.
   std::vector<std::string> texts{"pbf"};
   texts.insert(texts.end(), args.begin(), args.end());
@@ -72,15 +76,17 @@ JobPool::Job JobPool::start(std::size_t index, const std::vector<std::string>& a
   return {pid, index, err};
 }
 
-void JobPool::run(std::size_t count,
-                  const std::function<std::vector<std::string>(std::size_t)>& args,
-                  const std::function<bool()>& stop,
-                  const std::function<void(std::size_t, const JobEnd&)>& ended) {
+}  // namespace
+
+void run_jobs(int jobs, std::size_t count,
+              const std::function<std::vector<std::string>(std::size_t)>& args,
+              const std::function<bool()>& stop,
+              const std::function<void(std::size_t, const JobEnd&)>& ended) {
   std::vector<Job> running;
   std::size_t next = 0;
   bool told = false;
   while (!running.empty() || (next < count && !stop())) {
-    while (running.size() < jobs_ && next < count && !stop()) {
+    while (running.size() < std::size_t(jobs) && next < count && !stop()) {
       try {
         running.push_back(start(next, args(next)));
       } catch (const Error&) {

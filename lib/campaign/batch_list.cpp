@@ -1,6 +1,7 @@
 #include "lib/campaign/batch_list.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -72,14 +73,11 @@ std::vector<BatchMember> of_list(const std::string& path) {
 /// What may stand in the name of a folder on any system.
 std::string plain(const std::string& text) {
   std::string out;
-  for (const char c : text) {
-    const bool good = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                      c == '.' || c == '-' || c == '=' || c == '_';
-    if (good)
+  for (const char c : text)
+    if (std::isalnum(static_cast<unsigned char>(c)) || std::string(".-=_").find(c) != text.npos)
       out += c;
     else if (!out.empty() && out.back() != '-')
       out += '-';
-  }
   while (!out.empty() && out.back() == '-') out.pop_back();
   return out.substr(0, 150);
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "lib/base/error.h"
+#include "lib/base/text.h"
 #include "lib/io/run_file.h"
 #include "lib/io/table.h"
 #include "lib/solver/diagnostics.h"
@@ -45,26 +46,18 @@ void add_results(const std::string& path, std::vector<Cell>& row) {
 }  // namespace
 
 std::string exit_reason(int code) {
-  switch (code) {
-    case 0:
-      return "finished";
-    case static_cast<int>(ExitCode::bad_input):
-      return "bad input";
-    case static_cast<int>(ExitCode::guard):
-      return "diverged";
-    case static_cast<int>(ExitCode::unavailable):
-      return "unavailable";
-    case static_cast<int>(ExitCode::io):
-      return "file error";
-    case static_cast<int>(ExitCode::difference):
-      return "warned";  // --strict
-    case static_cast<int>(ExitCode::resumable):
-      return "stopped";
-    case -1:
-      return "waiting";
-    default:
-      return code > 128 ? "killed by signal " + std::to_string(code - 128) : "internal error";
-  }
+  static const std::map<int, std::string> kReasons{
+      {-1, "waiting"},
+      {int(ExitCode::done), "finished"},
+      {int(ExitCode::bad_input), "bad input"},
+      {int(ExitCode::guard), "diverged"},
+      {int(ExitCode::unavailable), "unavailable"},
+      {int(ExitCode::io), "file error"},
+      {int(ExitCode::difference), "warned"},  // --strict
+      {int(ExitCode::resumable), "stopped"}};
+  if (code > 128) return "killed by signal " + std::to_string(code - 128);
+  const auto known = kReasons.find(code);
+  return known == kReasons.end() ? "internal error" : known->second;
 }
 
 std::string batch_summary(const std::vector<BatchMember>& members,
@@ -75,13 +68,10 @@ std::string batch_summary(const std::vector<BatchMember>& members,
   columns.insert(columns.end(), {"frames", "warnings", "seconds"});
   Table table(columns);
   for (const BatchMember& m : members) {
-    const auto at = ends.find(m.name);
-    const JobEnd end = at == ends.end() ? JobEnd{-1, ""} : at->second;
-    std::string settings;
-    for (const std::string& o : m.overrides) settings += (settings.empty() ? "" : " ") + o;
+    const JobEnd end = ends.contains(m.name) ? ends.at(m.name) : JobEnd{-1, ""};
     std::vector<Cell> row{m.name,
                           m.scene,
-                          settings,
+                          joined(m.overrides, " "),
                           end.code < 0 ? Cell{} : Cell{std::int64_t{end.code}},
                           exit_reason(end.code),
                           end.message};

@@ -5,12 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
+#include <tuple>
 
 #include "lib/base/error.h"
 #include "lib/base/text.h"
@@ -40,9 +39,9 @@ class FolderLock {
   int fd_;
 };
 
-bool same_case(const StageCosts& a, const StageCosts& b) {
-  return a.backend == b.backend && a.precision == b.precision && a.device == b.device &&
-         a.threads == b.threads && a.particles == b.particles;
+/// What tells two measured states apart.
+auto case_of(const StageCosts& c) {
+  return std::tie(c.backend, c.precision, c.device, c.threads, c.particles);
 }
 
 template <class T>
@@ -60,8 +59,7 @@ bool add_line(const std::vector<std::string>& cell, std::vector<StageCosts>& row
       row.threads < 0 || row.particles < 1 || !(ms >= 0))
     return false;
   row.backend = cell[0], row.precision = cell[1], row.device = cell[3];
-  const auto known =
-      std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return same_case(r, row); });
+  const auto known = std::ranges::find(rows, case_of(row), case_of);
   StageCosts& into = known != rows.end() ? *known : rows.emplace_back(row);
   into.ms[cell[5]] = ms;
   return true;
@@ -69,8 +67,8 @@ bool add_line(const std::vector<std::string>& cell, std::vector<StageCosts>& row
 
 /// A device's name without what would end a cell.
 std::string plain_name(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c == ',' || c == '"'; }, ' ');
+  std::ranges::replace_if(
+      name, [](char c) { return c == ',' || c == '"'; }, ' ');
   return name;
 }
 
@@ -119,16 +117,11 @@ std::vector<StageCosts> read_calibration(const std::string& path) {
   std::vector<StageCosts> rows;
   if (!std::filesystem::exists(path)) return rows;
   const std::string remedy = "; remove the file and run pbf bench --calibrate again";
-  const auto joined = [](const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& n : names) text += (text.empty() ? "" : ",") + n;
-    return text;
-  };
   const std::vector<CsvRow> lines = read_csv(path, remedy);
   if (!lines.empty() && lines[0].cells != kColumns)
     throw Error(ExitCode::bad_input, lines[0].where + ": the columns are " +
-                                         joined(lines[0].cells) + ", expected " + joined(kColumns) +
-                                         remedy);
+                                         joined(lines[0].cells, ",") + ", expected " +
+                                         joined(kColumns, ",") + remedy);
   for (std::size_t k = 1; k < lines.size(); ++k)
     if (!add_line(lines[k].cells, rows))
       throw Error(ExitCode::bad_input, lines[k].where + ": not a line of a calibration" + remedy);
@@ -145,7 +138,7 @@ void store_calibration(const std::string& path, const std::vector<StageCosts>& r
   const FolderLock lock(folder.empty() ? "." : folder.string());
   std::vector<StageCosts> all = read_calibration(path);
   for (const StageCosts& row : rows)
-    std::erase_if(all, [&](const StageCosts& old) { return same_case(old, row); });
+    std::erase_if(all, [&](const StageCosts& old) { return case_of(old) == case_of(row); });
   all.insert(all.end(), rows.begin(), rows.end());
   Table table(kColumns);
   for (const StageCosts& row : all)
@@ -159,11 +152,10 @@ std::optional<TimeEstimate> estimate_time(const Plan& plan, const Scene& s,
                                           const std::vector<StageCosts>& rows, int threads,
                                           const std::string& cpu) {
   const bool cuda = s.backend == Backend::cuda;
-  const std::string precision = s.precision == Precision::dbl ? "double" : "float";
   std::map<std::string, std::vector<std::pair<double, double>>> measured;  // stage: n, ms
   TimeEstimate out;
   for (const StageCosts& row : rows) {
-    if (row.backend != (cuda ? "cuda" : "cpu") || row.precision != precision) continue;
+    if (row.backend != word(s.backend) || row.precision != word(s.precision)) continue;
     if (cuda ? !out.basis.empty() && row.device != out.basis
              : row.threads != threads || row.device != plain_name(cpu))
       continue;

@@ -20,31 +20,27 @@ using Vector = Eigen::VectorXd;
 using V3 = Vec3<double>;
 using V4 = Vec4<double>;
 
-std::vector<V4> to_frame(const Scene& s, const Plan& plan, const std::vector<double>& si,
-                         bool place) {
-  std::vector<V4> out(si.size() / 3);
-  const Double3 low = s.origin();
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const auto at = [&](int axis) {
-      const auto k = std::size_t(plan.axes.of[axis]);
-      return (si[3 * i + k] - (place ? low[k] : 0)) / s.h();
-    };
-    out[i] = {at(0), at(1), at(2), 0};
+/// All coordinates in the internal frame, `low` at 0.
+Vector to_frame(const Scene& s, const Plan& plan, const std::vector<double>& si,
+                const Double3& low) {
+  Vector out(Eigen::Index(si.size()));
+  for (std::size_t i = 0; i < si.size(); ++i) {
+    const auto k = std::size_t(plan.axes.of[i % 3]);
+    out[Eigen::Index(i)] = (si[i - i % 3 + k] - low[k]) / s.h();
   }
   return out;
 }
 
-std::vector<double> to_si(const Scene& s, const Plan& plan, const std::vector<V4>& x) {
-  std::vector<double> out(3 * x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double at[3] = {x[i].x, x[i].y, x[i].z};
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto k = std::size_t(plan.axes.of[axis]);
-      out[3 * i + k] = s.origin()[k] + s.h() * at[axis];
-    }
+std::vector<double> to_si(const Scene& s, const Plan& plan, const Vector& x) {
+  std::vector<double> out(std::size_t(x.size()));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto k = std::size_t(plan.axes.of[i % 3]);
+    out[i - i % 3 + k] = s.origin()[k] + s.h() * x[Eigen::Index(i)];
   }
   return out;
 }
+
+V3 point(const Vector& x, Eigen::Index i) { return {x[3 * i], x[3 * i + 1], x[3 * i + 2]}; }
 
 /// The constraints in the internal frame (kernels/README.md, 4 to 6, 9), over all 3n coordinates.
 /// The density is the kernels' own; in `paper` the gradient here is that of its Poly6, for only
@@ -52,8 +48,8 @@ std::vector<double> to_si(const Scene& s, const Plan& plan, const std::vector<V4
 template <Smoothing S>
 class Constraints {
  public:
-  Constraints(const Params<double>& p, const std::vector<V4>& start)
-      : p_(p), n_(int(start.size())), exec_(1), start_(start), lists_(make_lists()) {}
+  Constraints(const Params<double>& p, const Vector& start)
+      : p_(p), n_(int(start.size() / 3)), exec_(1), start_(start), lists_(make_lists()) {}
 
   /// Values and Jacobian at x: n densities, then the walls near which a particle is.
   void linearise(const Vector& x, ConstraintSet& out) const {
@@ -68,8 +64,6 @@ class Constraints {
   }
 
  private:
-  static V3 point(const Vector& x, int i) { return {x[3 * i], x[3 * i + 1], x[3 * i + 2]}; }
-
   static double density_shape_at(double q2) {
     return density_shape<double, S>(q2, Spiky<double>::t(root_of(q2).q));
   }
@@ -119,13 +113,12 @@ class Constraints {
   void wall_rows(int i, const Vector& x, std::vector<double>& value,
                  std::vector<Eigen::Triplet<double>>& entries) const {
     const double box[3] = {p_.boundary.extent.x, p_.boundary.extent.y, p_.boundary.extent.z};
-    const V4& s = start_[std::size_t(i)];
-    const double from[3] = {s.x, s.y, s.z};
     for (int k = 0; k < 3; ++k)
       for (const int side : {0, 1}) {
         const double limit = side ? box[k] - p_.boundary.margin : p_.boundary.margin,
                      sign = side ? 1 : -1;
-        if (!(p_.boundary.walls & (1u << (2 * k + side))) || sign * (from[k] - limit) < -1)
+        if (!(p_.boundary.walls & (1u << (2 * k + side))) ||
+            sign * (start_[3 * i + k] - limit) < -1)
           continue;
         entries.emplace_back(int(value.size()), 3 * i + k, sign);
         value.push_back(sign * (x[3 * i + k] - limit));
@@ -134,38 +127,35 @@ class Constraints {
 
   /// Sorts `start_` by bin; order()[k] is then the index that particle k had.
   ChunkedLists make_lists() {
-    const int n = n_;
-    std::vector<V4> from = start_;
-    std::vector<int> bin(from.size()), row(from.size()), bin_order(from.size());
+    const auto n = std::size_t(n_);
+    std::vector<V4> from(n), sorted(n);
+    for (int i = 0; i < n_; ++i) from[std::size_t(i)] = with_w(point(start_, i), 0.0);
+    std::vector<int> bin(n), row(n), bin_order(n);
     std::iota(row.begin(), row.end(), 0);
     bin_start_.resize(std::size_t(bin_count(p_)) + 1);
-    order_.resize(from.size());
+    order_.resize(n);
     const auto gather = [&](int old, int now) {
-      start_[std::size_t(now)] = from[std::size_t(old)];
+      sorted[std::size_t(now)] = from[std::size_t(old)];
       order_[std::size_t(now)] = old;
     };
-    exec_.sort_by_bin("grid", BinPass<double, dimensions_of(S)>{p_, from.data(), bin.data()}, n,
+    exec_.sort_by_bin("grid", BinPass<double, dimensions_of(S)>{p_, from.data(), bin.data()}, n_,
                       bin_count(p_), row.data(), bin_order.data(), bin_start_.data(), gather);
-    return exec_.build_lists(n, n, start_.data(), bin_start_.data(), p_);
+    const Vector before = start_;
+    for (Eigen::Index k = 0; k < n_; ++k)
+      start_.segment<3>(3 * k) = before.segment<3>(3 * order_[std::size_t(k)]);
+    return exec_.build_lists(n_, n_, sorted.data(), bin_start_.data(), p_);
   }
 
   Params<double> p_;
   int n_;
   CpuExec exec_;
-  std::vector<V4> start_;
+  Vector start_;
   std::vector<int> order_, bin_start_;
   ChunkedLists lists_;
 
  public:
   const std::vector<int>& order() const { return order_; }
-  Vector start() const {
-    Vector x(3 * n_);
-    for (int i = 0; i < n_; ++i) {
-      const V4& s = start_[std::size_t(i)];
-      x[3 * i] = s.x, x[3 * i + 1] = s.y, x[3 * i + 2] = s.z;
-    }
-    return x;
-  }
+  const Vector& start() const { return start_; }
 };
 
 /// Anderson's method on the fixed point x = x + step(x): the curvature of the constraints, which a
@@ -206,10 +196,10 @@ double violation(const ConstraintSet& c) {
 }
 
 template <Smoothing S>
-Projection project(const Scene& scene, const Plan& plan, const std::vector<V4>& start) {
+Projection project(const Scene& scene, const Plan& plan, const Vector& start) {
   const Params<double> p = make_params<double>(scene, plan);
   const Constraints<S> constraints(p, start);
-  const Vector target = constraints.start();
+  const Vector& target = constraints.start();
   Vector x = target;
   ConstraintSet set;
   Multipliers multipliers;
@@ -233,16 +223,14 @@ Projection project(const Scene& scene, const Plan& plan, const std::vector<V4>& 
   constraints.linearise(x, set);
   const Vector& mu = multipliers.value();
   out.violation = violation(set);
-  std::vector<V4> moved(start.size());
   if (mu.size() == set.value.size()) {
     const Vector residual = x - target + set.jacobian.transpose() * mu;
     out.stationarity = residual.lpNorm<Eigen::Infinity>() * scene.fluid.smoothing_ratio;
     out.complementarity = mu.cwiseProduct(set.value).lpNorm<Eigen::Infinity>();
   }
-  for (std::size_t k = 0; k < start.size(); ++k) {
-    const auto i = Eigen::Index(k), to = Eigen::Index(constraints.order()[k]);
-    moved[std::size_t(to)] = {x[3 * i], x[3 * i + 1], x[3 * i + 2], 0};
-  }
+  Vector moved(x.size());
+  for (Eigen::Index k = 0; 3 * k < x.size(); ++k)
+    moved.segment<3>(3 * constraints.order()[std::size_t(k)]) = x.segment<3>(3 * k);
   out.position = to_si(scene, plan, moved);
   return out;
 }
@@ -258,14 +246,17 @@ std::vector<double> predicted_positions(const Scene& scene, const Plan& plan,
                                         const std::vector<double>& position,
                                         const std::vector<double>& velocity) {
   const Params<double> p = make_params<double>(scene, plan);
-  std::vector<V4> x = to_frame(scene, plan, position, true),
-                  v = to_frame(scene, plan, velocity, false);
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = with_w(predict(xyz(x[i]), xyz(v[i]), p).x, 0.0);
+  Vector x = to_frame(scene, plan, position, scene.origin());
+  const Vector v = to_frame(scene, plan, velocity, {});
+  for (Eigen::Index i = 0; 3 * i < x.size(); ++i) {
+    const V3 to = predict(point(x, i), point(v, i), p).x;
+    x.segment<3>(3 * i) << to.x, to.y, to.z;
+  }
   return to_si(scene, plan, x);
 }
 
 Projection project_exactly(const Scene& scene, const Plan& plan, const std::vector<double>& start) {
-  const std::vector<V4> x = to_frame(scene, plan, start, true);
+  const Vector x = to_frame(scene, plan, start, scene.origin());
   const bool paper = scene.solver.kernels == KernelMode::paper;
   if (scene.dimensions == 2)
     return paper ? project<Smoothing::paper_2d>(scene, plan, x)

@@ -27,7 +27,7 @@ FrontData read_front_data(const std::string& path) {
     const auto number = [&](std::size_t column) {
       double value = 0;
       const std::string& text = rows[k].cells[column];
-      if (const NumberError e = read_double(text, value);
+      if (const NumberError e = read_number(text, value);
           e != NumberError::none && e != NumberError::too_small)
         throw Error(ExitCode::bad_input, rows[k].where + ": \"" + text + "\" " + describe(e));
       return value;

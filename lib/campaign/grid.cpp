@@ -89,7 +89,7 @@ std::vector<double> numbers_listed(const std::string& key, const std::string& te
   const std::string where = "values of " + key;
   const auto number = [&](const std::string& word) {
     double v = 0;
-    if (const NumberError e = read_double(word, v); e != NumberError::none)
+    if (const NumberError e = read_number(word, v); e != NumberError::none)
       bad(where, "\"" + word + "\" " + describe(e));
     return v;
   };

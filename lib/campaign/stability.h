@@ -5,7 +5,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "lib/campaign/grid.h"
@@ -50,15 +49,23 @@ struct StabilityCheck {
   bool good = false;
 };
 
-struct StabilityRow {
+/// What of a run stands in tables.
+struct Figures {
+  std::int64_t particles = 0, updates = 0;
+  double speed_max = 0, energy_rise = 0;  ///< m/s; share of Course::scale
+  /// Of the last quarter of the measures, or of the last state with new lists where that is more.
+  double compression_mean = 0, compression_max = 0;
+};
+
+struct StabilityRow : Figures {
   std::string name, group, must, happened;
   bool good = false;
   double used = 0;       ///< largest value over its limit: below 1 where the case is good
   std::string tightest;  ///< the criterion that this is of
   std::vector<StabilityCheck> checks;  ///< empty where the run did not come to its end
-  std::int64_t particles = 0, updates = 0, fast = 0;
+  std::int64_t fast = 0;
   double dt_hat = 0;  ///< dt sqrt(|g|/h)
-  double speed_max = 0, energy_rise = 0, compression_mean = 0, compression_max = 0, nearest = 0;
+  double nearest = 0;
   Double3 center{};  ///< of mass at the end, in h from the domain's lower corner
   double seconds = 0;
 };
@@ -71,6 +78,9 @@ struct StabilityOptions {
   std::vector<std::string> overrides;  ///< --set, after the case's own
 };
 
+/// Without output, and where and with what the options say.
+void prepare(Scene& scene, const StabilityOptions& o);
+
 /// Runs one case and judges it, but for `like`. Throws Error(unavailable) where the backend is not
 /// there; every other error of the case is judged.
 StabilityRow run_stability_case(const StabilityCase& c, const StabilityOptions& o);
@@ -82,14 +92,10 @@ constexpr double kLikeness = 0.05;
 void judge_likeness(const std::vector<StabilityCase>& cases, std::vector<StabilityRow>& rows);
 
 /// What a run went through, of what the criteria ask for.
-struct Course {
+struct Course : Figures {
   Diagnostics first, last;
-  double scale = 0;                       ///< J, energy_scale() at the start
-  double released = 0;                    ///< released_energy(), share of scale
-  double speed_max = 0, energy_rise = 0;  ///< m/s; share of scale
-  /// Of the last quarter of the measures, or of the last state with new lists where that is more.
-  double compression_mean = 0, compression_max = 0;
-  std::int64_t particles = 0, updates = 0;
+  double scale = 0;     ///< J, energy_scale() at the start
+  double released = 0;  ///< released_energy(), share of scale
   std::optional<GuardEvent> event;
   std::string guard_text;
   std::optional<StepHistory> steps;  ///< with time.adaptive; its `updates` up to the end

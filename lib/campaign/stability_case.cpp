@@ -21,11 +21,7 @@ Scene scene_of(const StabilityCase& c, const StabilityOptions& o) {
   for (const std::string& argument : o.overrides) apply_override(root, argument, problems);
   Scene s = scene_of_tree(root, problems);
   problems.raise();
-  s.output.reset();
-  s.render.reset();
-  s.backend = o.backend;
-  s.precision = o.precision;
-  s.threads = o.threads;
+  prepare(s, o);
   return s;
 }
 
@@ -94,8 +90,7 @@ void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s
   }
   if (c.steps)
     row.happened +=
-        format(", %lld changes of the step, %lld times back",
-               static_cast<long long>(c.steps->changes), static_cast<long long>(c.steps->repeats));
+        format(", %ld changes of the step, %ld times back", c.steps->changes, c.steps->repeats);
 }
 
 void run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
@@ -108,13 +103,8 @@ void run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
     const auto x = snap.fields[0].as<double>();
     row.nearest = nearest_distance({x.begin(), x.end()}) / s.fluid.spacing;
   });
-  row.particles = course.particles;
-  row.updates = course.updates;
+  static_cast<Figures&>(row) = course;
   row.fast = course.last.fast;
-  row.speed_max = course.speed_max;
-  row.energy_rise = course.energy_rise;
-  row.compression_mean = course.compression_mean;
-  row.compression_max = course.compression_max;
   for (std::size_t a = 0; a < 3; ++a)
     row.center[a] = (course.last.center_of_mass[a] - s.domain.min[a]) / s.h();
   const bool must_stop = !c.must.guard.empty() && c.must.guard != "allowed";
@@ -129,6 +119,14 @@ void run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
 }
 
 }  // namespace
+
+void prepare(Scene& s, const StabilityOptions& o) {
+  s.output.reset();
+  s.render.reset();
+  s.backend = o.backend;
+  s.precision = o.precision;
+  s.threads = o.threads;
+}
 
 StabilityRow run_stability_case(const StabilityCase& c, const StabilityOptions& o) {
   StabilityRow row;
@@ -151,9 +149,7 @@ StabilityRow run_stability_case(const StabilityCase& c, const StabilityOptions& 
 void judge_likeness(const std::vector<StabilityCase>& cases, std::vector<StabilityRow>& rows) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (cases[k].must.like.empty()) continue;
-    const auto other = std::find_if(rows.begin(), rows.end(), [&](const StabilityRow& r) {
-      return r.name == cases[k].must.like;
-    });
+    const auto other = std::ranges::find(rows, cases[k].must.like, &StabilityRow::name);
     if (other == rows.end()) {
       rows[k].happened += ", " + cases[k].must.like + " was not run";
       continue;

@@ -3,7 +3,6 @@
 #include <limits>
 #include <numeric>
 
-#include "lib/base/error.h"
 #include "lib/campaign/stability.h"
 #include "lib/run/emit.h"
 #include "lib/run/prestabilize.h"

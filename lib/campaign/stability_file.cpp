@@ -1,8 +1,8 @@
 // Suite files: YAML in, cases out.
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
-#include "lib/base/error.h"
 #include "lib/campaign/stability.h"
 #include "lib/campaign/strict_reader.h"
 #include "lib/scene/load.h"
@@ -39,7 +39,7 @@ class SuiteReader : StrictReader {
   Read number(Out& out) {
     return [this, &out](const Node& n) {
       double v = 0;
-      if (n.kind != Node::Kind::scalar || read_double(n.text, v) != NumberError::none || v < 0)
+      if (n.kind != Node::Kind::scalar || read_number(n.text, v) != NumberError::none || v < 0)
         return bad(n, "", "expected a number not below 0, got " + n.shown());
       out = v;
     };
@@ -48,7 +48,7 @@ class SuiteReader : StrictReader {
   Read exit_code(std::optional<int>& out) {
     return [this, &out](const Node& n) {
       std::int64_t v = 0;
-      if (n.kind != Node::Kind::scalar || read_integer(n.text, v) != NumberError::none || v < 0 ||
+      if (n.kind != Node::Kind::scalar || read_number(n.text, v) != NumberError::none || v < 0 ||
           v > 255)
         return bad(n, "", "expected an exit code, 0 to 255, got " + n.shown());
       out = int(v);
@@ -85,12 +85,8 @@ class SuiteReader : StrictReader {
                                  }}});
     for (const char* key : {"name", "group", "scene", "must"})
       if (!seen.count(key)) bad(n, key, "missing; required");
-    if (!m.guard.empty() && m.guard != "allowed") {
-      bool known = false;
-      for (const char* alarm : kAlarmNames) known = known || m.guard == alarm;
-      if (!known)
-        bad(n, "must.guard", "\"" + m.guard + "\" is no alarm of the guard, nor \"allowed\"");
-    }
+    if (!m.guard.empty() && m.guard != "allowed" && std::ranges::count(kAlarmNames, m.guard) == 0)
+      bad(n, "must.guard", "\"" + m.guard + "\" is no alarm of the guard, nor \"allowed\"");
     c.scene = (std::filesystem::path(path_).parent_path() / c.scene).string();
     places_.push_back(n);
     cases_.push_back(std::move(c));

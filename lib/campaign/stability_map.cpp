@@ -8,7 +8,6 @@
 #include "lib/scene/keys.h"
 #include "lib/scene/load.h"
 #include "lib/scene/number.h"
-#include "lib/scene/overrides.h"
 
 namespace pbf::inline campaign_module {
 namespace {
@@ -101,20 +100,14 @@ MapCell run_map_cell(const StabilityMap& m, MapCell c) {
   const double g0 = length(base.gravity), g = length(s.gravity);
   if (g0 > 0 && g > 0) s.time.end *= std::sqrt(g0 / base.h() / (g / s.h()));
   s.time.end = std::max(s.time.end, s.time.step);
-  s.output.reset();
-  s.render.reset();
-  s.backend = m.run.backend;
-  s.precision = m.run.precision;
-  s.threads = m.run.threads;
+  prepare(s, m.run);
   if (!s.guard) s.guard.emplace();
   // Some hundred measures of every run, however many updates it takes.
   s.measure_every = std::max(1, int(s.time.end / s.time.step / 200));
   c.scene = s.name;
   c.dt_hat = s.time.step * std::sqrt(g / s.h());
   const Course course = run_course(s, std::filesystem::path(m.scene).parent_path().string());
-  c.compression_mean = course.compression_mean;
-  c.compression_max = course.compression_max;
-  c.energy_rise = course.energy_rise;
+  static_cast<Figures&>(c) = course;
   if (course.event) {
     c.verdict = MapClass::stopped;
     c.stopped_for = kAlarmNames[static_cast<int>(course.event->alarm)];

@@ -17,19 +17,18 @@ struct StabilityMap {
   std::string scene;         ///< path
   std::string x_key, y_key;  ///< number keys of a scene; of a vector, its length is meant
   std::vector<double> x, y;
-  std::vector<int> iterations;
+  std::vector<int> iterations{1, 2, 4, 8, 16};
   double limit = 0.01;  ///< mean compression of the settled part: above it a run is degraded
   StabilityOptions run;
 };
 
-struct MapCell {
+struct MapCell : Figures {
   double x = 0, y = 0;
   int iterations = 0;
   std::vector<std::string> settings;  ///< that make the cell, KEY=VALUE
   std::string scene;                  ///< its name
   MapClass verdict = MapClass::stable;
-  double dt_hat = 0;  ///< dt sqrt(|g|/h)
-  double compression_mean = 0, compression_max = 0, energy_rise = 0;
+  double dt_hat = 0;        ///< dt sqrt(|g|/h)
   std::string stopped_for;  ///< the guard's alarm
 };
 

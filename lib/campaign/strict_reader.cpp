@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "lib/base/text.h"
 #include "lib/scene/value.h"
 
 namespace pbf::inline campaign_module {
@@ -18,17 +19,14 @@ std::set<std::string> StrictReader::read_map(const Node& map, const std::string&
   for (std::size_t i = 0; i < map.items.size(); ++i) {
     const std::string key = setting_text(map.keys[i]);
     const std::string full = block.empty() ? key : block + "." + key;
-    const auto found =
-        std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return e.first == key; });
+    const auto found = std::ranges::find(entries, key, &Entries::value_type::first);
     if (found == entries.end()) {
       std::vector<std::string> names;
       for (const auto& e : entries) names.push_back(e.first);
       const std::string near = nearest_word(key, names);
-      std::string all;
-      for (const auto& name : names) all += (all.empty() ? "" : " ") + name;
       bad(map.keys[i], full,
-          "unknown key, " +
-              (near.empty() ? "the keys here are " + all : "did you mean " + near + "?"));
+          "unknown key, " + (near.empty() ? "the keys here are " + joined(names, " ")
+                                          : "did you mean " + near + "?"));
     } else if (!seen.insert(key).second) {
       bad(map.keys[i], full, "is given twice");
     } else {

@@ -1,7 +1,6 @@
 // A study: many runs of one scene with some keys varied, their errors and their run times.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

@@ -13,29 +13,16 @@ namespace pbf::inline campaign_module {
 namespace fs = std::filesystem;
 using Kind = Node::Kind;
 
-void StudyReader::number(const Node& n, const std::string& key, double low, double high,
-                         double& out) {
-  double v = 0;
-  const NumberError e = n.kind == Kind::scalar ? read_double(n.text, v) : NumberError::not_a_number;
+template <class T>
+void StudyReader::number(const Node& n, const std::string& key, T low, T high, T& out) {
+  std::conditional_t<std::is_integral_v<T>, std::int64_t, double> v = 0;
+  const NumberError e = n.kind == Kind::scalar ? read_number(n.text, v) : NumberError::not_a_number;
   if (e != NumberError::none)
     bad(n, key, n.shown() + " " + describe(e));
   else if (v < low || v > high)
     bad(n, key, n.shown() + " is out of range, " + to_text(low) + " .. " + to_text(high));
   else
-    out = v;
-}
-
-void StudyReader::whole(const Node& n, const std::string& key, int low, int high, int& out) {
-  std::int64_t v = 0;
-  const NumberError e =
-      n.kind == Kind::scalar ? read_integer(n.text, v) : NumberError::not_a_number;
-  if (e != NumberError::none)
-    bad(n, key, n.shown() + " " + describe(e));
-  else if (v < low || v > high)
-    bad(n, key,
-        n.shown() + " is out of range, " + std::to_string(low) + " .. " + std::to_string(high));
-  else
-    out = int(v);
+    out = T(v);
 }
 
 void StudyReader::numbers(const Node& n, const std::string& key, double low,
@@ -95,7 +82,7 @@ Study StudyReader::read(const std::vector<std::string>& overrides) {
             {"set", [&](const Node& n) { base_ = settings(n, "set"); }},
             {"variants", [&](const Node& n) { variants(n); }},
             {"grid", [&](const Node& n) { grid(n); }},
-            {"repeats", [&](const Node& n) { whole(n, "repeats", 1, 1000, study_.repeats); }},
+            {"repeats", [&](const Node& n) { number(n, "repeats", 1, 1000, study_.repeats); }},
             {"clock",
              [&](const Node& n) {
                study_.cpu_clock = n.text == "cpu";
@@ -104,9 +91,9 @@ Study StudyReader::read(const std::vector<std::string>& overrides) {
              }},
             {"error", [&](const Node& n) { text(n, "error", study_.error); }},
             {"targets", [&](const Node& n) { numbers(n, "targets", 0, study_.targets); }},
-            {"from", [&](const Node& n) { number(n, "from", 0, 1e9, study_.from); }},
+            {"from", [&](const Node& n) { number(n, "from", 0., 1e9, study_.from); }},
             {"energy_limit",
-             [&](const Node& n) { number(n, "energy_limit", 0, 1e9, study_.energy_limit); }},
+             [&](const Node& n) { number(n, "energy_limit", 0., 1e9, study_.energy_limit); }},
             {"projection", [&](const Node& n) { numbers(n, "projection", 0, study_.projection); }},
             {"reference",
              [&](const Node& n) {
@@ -122,11 +109,10 @@ Study StudyReader::read(const std::vector<std::string>& overrides) {
   const auto known = study_error_measures(study_);
   if (std::find(known.begin(), known.end(), study_.error) == known.end()) {
     const std::string near = nearest_word(study_.error, known);
-    std::string all;
-    for (const auto& k : known) all += " " + k;
-    problems_.add(root_.find("error")->place(), "error",
-                  "\"" + study_.error + "\" is no measure of this study" +
-                      (near.empty() ? "; there are" + all : ", did you mean " + near + "?"));
+    problems_.add(
+        root_.find("error")->place(), "error",
+        "\"" + study_.error + "\" is no measure of this study" +
+            (near.empty() ? "; there are " + joined(known, " ") : ", did you mean " + near + "?"));
   }
   problems_.raise();
   for (const StudyMember& m : study_.members)

@@ -45,9 +45,8 @@ bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, MemberResu
   const Diagnostics& m = row.measures;
   if (m.non_finite == 0 && m.outside == 0) return true;
   out.status = "diverged";
-  out.message = format("at update %lld, t = %.4g s: %lld particles not finite, %lld outside",
-                       static_cast<long long>(m.update), m.time,
-                       static_cast<long long>(m.non_finite), static_cast<long long>(m.outside));
+  out.message = format("at update %ld, t = %.4g s: %ld particles not finite, %ld outside", m.update,
+                       m.time, m.non_finite, m.outside);
   return false;
 }
 

@@ -16,8 +16,8 @@ class StudyReader : StrictReader {
   Study read(const std::vector<std::string>& overrides);
 
  private:
-  void number(const Node& n, const std::string& key, double low, double high, double& out);
-  void whole(const Node& n, const std::string& key, int low, int high, int& out);
+  template <class T>
+  void number(const Node& n, const std::string& key, T low, T high, T& out);
   void numbers(const Node& n, const std::string& key, double low, std::vector<double>& out);
   void grid(const Node& n);
   void axis(const Node& n);

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "lib/base/text.h"
-#include "lib/base/version.h"
 #include "lib/scene/number.h"
 #include "lib/solver/diagnostics.h"
 
@@ -32,19 +31,10 @@ double over_window(const MemberResult& r, const Diagnostic& m, double from) {
     ++n;
   }
   if (n == 0) return kNaN;  // ended before the window
-  switch (m.over) {
-    case Over::mean:
-      return sum / double(n);
-    case Over::rms:
-      return std::sqrt(sum / double(n));
-    case Over::max:
-      return std::isnan(sum) ? kNaN : largest;
-    case Over::last:
-      return values.back();
-    case Over::none:
-      break;
-  }
-  return kNaN;
+  if (m.over == Over::mean) return sum / double(n);
+  if (m.over == Over::rms) return std::sqrt(sum / double(n));
+  if (m.over == Over::max) return std::isnan(sum) ? kNaN : largest;
+  return values.back();
 }
 
 /// Linear in time; NaN beyond the last sample.
@@ -78,8 +68,8 @@ std::size_t index_of(const Study& study, const std::string& name) {
 Cell cell_of(const std::string& text) {
   double v = 0;
   std::int64_t i = 0;
-  if (read_integer(text, i) == NumberError::none) return i;
-  if (read_double(text, v) == NumberError::none) return v;
+  if (read_number(text, i) == NumberError::none) return i;
+  if (read_number(text, v) == NumberError::none) return v;
   return text;
 }
 
@@ -108,14 +98,6 @@ bool counts(const Study& study, const StudyRow& row) {
 
 }  // namespace
 
-double StudyRow::seconds_median() const {
-  return status == "unavailable" ? kNaN : result.seconds_median();
-}
-
-double StudyRow::seconds_spread() const {
-  return status == "unavailable" ? kNaN : result.seconds_spread();
-}
-
 std::vector<std::string> study_error_measures(const Study& study) {
   std::vector<std::string> names;
   for (const Diagnostic& m : study_diagnostics()) names.push_back(m.name);
@@ -138,6 +120,7 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
   const auto names = study_error_measures(study);
   if (result.columns.empty()) {  // never ran
     row.measures.assign(names.size(), kNaN);
+    row.result.seconds = kNaN;
     return row;
   }
   for (const Diagnostic& m : study_diagnostics())
@@ -192,8 +175,8 @@ Table study_table(const Study& study, const std::vector<StudyRow>& rows) {
   using R = const StudyRow&;
   auto columns = setting_columns(study);
   columns.push_back({"updates", [](R r) { return r.result.updates; }});
-  columns.push_back({"seconds_median", [](R r) { return known(r.seconds_median()); }});
-  columns.push_back({"seconds_spread", [](R r) { return known(r.seconds_spread()); }});
+  columns.push_back({"seconds_median", [](R r) { return known(r.result.seconds_median()); }});
+  columns.push_back({"seconds_spread", [](R r) { return known(r.result.seconds_spread()); }});
   const auto names = study_error_measures(study);
   for (std::size_t k = 0; k < names.size(); ++k)
     columns.push_back({names[k], [k](R r) { return known(r.measures[k]); }});

@@ -1,7 +1,6 @@
 // The results of a study as a table: measures over the window, Pareto front, cheapest settings.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,13 +17,10 @@ namespace pbf::inline campaign_module {
 struct StudyRow {
   const StudyMember* member = nullptr;
   std::string status, message;
-  MemberResult result;
+  MemberResult result;            ///< `seconds`: NaN where it never ran
   std::vector<double> measures;   ///< by study_error_measures(); NaN: not defined
   std::vector<FrontCurve> front;  ///< one, or none
   bool pareto = false;
-
-  double seconds_median() const;  ///< s, NaN where it never ran
-  double seconds_spread() const;
 };
 
 /// The row of a result. `reference`: that of Study::reference, null without.

@@ -126,20 +126,15 @@ Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     const std::size_t first = all.size();
-    switch (body.shape) {
-      case Shape::block:
-      case Shape::sphere:
-      case Shape::random_box:
-        for_each_point(body, scene.fluid.spacing, scene.plane(),
-                       [&](const Double3& x) { all.position.push_back(x); });
-        break;
-      case Shape::file: {
-        SceneFile& file = all.files.emplace_back(SceneFile{body.path, ""});
-        const Particles p = read_particle_file(resolved_path(body, scene_dir), &file.sha256);
-        if (scene.dimensions == 2) refuse_velocity_along_y(b, p.velocity);
-        all.position.insert(all.position.end(), p.position.begin(), p.position.end());
-        all.velocity.insert(all.velocity.end(), p.velocity.begin(), p.velocity.end());
-      }
+    if (body.shape == Shape::file) {
+      SceneFile& file = all.files.emplace_back(SceneFile{body.path, ""});
+      const Particles p = read_particle_file(resolved_path(body, scene_dir), &file.sha256);
+      if (scene.dimensions == 2) refuse_velocity_along_y(b, p.velocity);
+      all.position.insert(all.position.end(), p.position.begin(), p.position.end());
+      all.velocity.insert(all.velocity.end(), p.velocity.begin(), p.velocity.end());
+    } else {
+      for_each_point(body, scene.fluid.spacing, scene.plane(),
+                     [&](const Double3& x) { all.position.push_back(x); });
     }
     all.velocity.resize(all.position.size(), Double3{});
     for (std::size_t i = first; i < all.size(); ++i)

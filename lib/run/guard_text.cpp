@@ -9,35 +9,31 @@
 namespace pbf::inline run_module {
 namespace {
 
-/// What each alarm is about: words for it, unit, and its key.
+/// What each alarm is about: words for it, unit with a blank before it, its key, and what helps.
 struct Words {
-  const char *what, *unit, *limit_key;
+  const char *what, *unit, *limit_key, *help;
 };
-Words words(Alarm alarm) {
-  switch (alarm) {
-    case Alarm::non_finite:
-      return {"is not finite", "", ""};
-    case Alarm::outside:
-      return {"is outside the walls", "", ""};
-    case Alarm::speed:
-      return {"is too fast", "m/s", "guard.speed"};
-    case Alarm::energy:
-      return {"is the fastest while the energy grows without a source", "J", "guard.energy"};
-    case Alarm::neighbors:
-      return {"has too many neighbours", "", "guard.neighbors"};
-  }
-  return {};
-}
+constexpr const char* kShorterStep = "lower time.step, or raise solver.iterations";
+constexpr Words kWords[] = {
+    // in the order of Alarm
+    {"is not finite", "", "", kShorterStep},
+    {"is outside the walls", "", "", kShorterStep},
+    {"is too fast", " m/s", "guard.speed",
+     "lower time.step, raise solver.iterations, or ask for solver.speed_limit"},
+    {"is the fastest while the energy grows without a source", " J", "guard.energy",
+     "lower time.step, raise solver.iterations, or lower solver.sor"},
+    {"has too many neighbours", "", "guard.neighbors",
+     "raise solver.iterations, lower time.step, or spread the bodies"}};
+const Words& words(Alarm alarm) { return kWords[static_cast<int>(alarm)]; }
 
 }  // namespace
 
 std::string Guard::text(const GuardEvent& e) const {
-  const Words w = words(e.alarm);
+  const Words& w = words(e.alarm);
   std::string out = "stopped by the guard: ";
   if (e.stage) {
-    const double v[3] = {e.velocity[0], e.velocity[1], e.velocity[2]};
-    out += format("at update %lld, in stage %s", static_cast<long long>(e.stage->update),
-                  e.stage->stage.c_str());
+    const Double3& v = e.velocity;
+    out += format("at update %ld, in stage %s", e.stage->update, e.stage->stage.c_str());
     if (e.stage->iteration > 0) out += format(" of iteration %d", e.stage->iteration);
     out += format(
         ", particle %d at (%.6g, %.6g, %.6g) m, velocity (%.4g, %.4g, %.4g) m/s "
@@ -48,14 +44,12 @@ std::string Guard::text(const GuardEvent& e) const {
     out += format("at the start, before the first update, a particle %s", w.what);
   } else {
     out += format(
-        "between the updates %lld and %lld (the repeated updates did not show it again) "
+        "between the updates %ld and %ld (the repeated updates did not show it again) "
         "a particle %s",
-        static_cast<long long>(e.last_good.updates), static_cast<long long>(e.measure.update),
-        w.what);
+        e.last_good.updates, e.measure.update, w.what);
   }
-  const std::string unit = w.unit[0] ? std::string(" ").append(w.unit) : std::string();
-  out += format(": %.6g%s", e.value, unit.c_str());
-  if (w.limit_key[0]) out += format(", limit %.6g%s (%s)", e.limit, unit.c_str(), w.limit_key);
+  out += format(": %.6g%s", e.value, w.unit);
+  if (w.limit_key[0]) out += format(", limit %.6g%s (%s)", e.limit, w.unit, w.limit_key);
   if (scene_.time.adaptive) {
     const Scene finest = scene_at_level(scene_, finest_level(scene_));
     out += format("; with the shortest step, %.6g s (time.adaptive.step_min)", finest.time.step);
@@ -81,16 +75,7 @@ std::string Guard::remedy(const GuardEvent& e) const {
   if (shaken && scene_.tensile) help += "lower tensile.k, which acts as k/time.step^2; ";
   if (shaken && scene_.solver.constraint == ConstraintMode::two_sided)
     help += "use solver.constraint: one_sided; ";
-  switch (e.alarm) {
-    case Alarm::speed:
-      return help + "lower time.step, raise solver.iterations, or ask for solver.speed_limit";
-    case Alarm::energy:
-      return help + "lower time.step, raise solver.iterations, or lower solver.sor";
-    case Alarm::neighbors:
-      return "raise solver.iterations, lower time.step, or spread the bodies";
-    default:
-      return "lower time.step, or raise solver.iterations";
-  }
+  return help + words(e.alarm).help;
 }
 
 Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const {

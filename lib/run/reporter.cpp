@@ -1,14 +1,12 @@
 #include <algorithm>
-#include <cmath>
 
 #include "kernels/relative_motion.h"
 #include "lib/base/text.h"
 #include "lib/run/run.h"
+#include "lib/run/run_report.h"
 
 namespace pbf::inline run_module {
 namespace {
-
-double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
 
 /// Splashes of a few particles are in any lively flow.
 constexpr double kMuch = 1e-3;  // of particles times steps
@@ -20,10 +18,10 @@ std::string passed_through_text(const Scene& s, const Diagnostics& m, double sha
           ? std::string("lower time.adaptive.cfl")
           : format("time.step %.2g s resolves it", s.time.step * kResolvedWay / m.relative_way_max);
   return format(
-             "fluid may have passed through fluid: %lld times (%.2g %% of particles times steps) a "
+             "fluid may have passed through fluid: %ld times (%.2g %% of particles times steps) a "
              "particle moved by more than %g h relative to a neighbour in a step, by up to %.3g "
              "h; ",
-             static_cast<long long>(m.unresolved), 100 * share, kResolvedWay, m.relative_way_max) +
+             m.unresolved, 100 * share, kResolvedWay, m.relative_way_max) +
          remedy;
 }
 
@@ -126,13 +124,12 @@ std::vector<Warning> Reporter::found(bool end) const {
   if (m.unresolved > 0 && (share >= kMuch || m.relative_way_max >= 1))
     list.push_back({"passed_through", passed_through_text(run_.scene, m, share)});
   if (left_ > 0)
-    list.push_back(
-        {"left",
-         format("%lld of %lld particles (%.2g %%) have left the domain through "
-                "an open face (%s), the farthest %.3g m beyond it; they are "
-                "simulated on",
-                static_cast<long long>(left_), static_cast<long long>(run_.plan.particles),
-                percent(double(left_), double(run_.plan.particles)), faces_.c_str(), farthest_)});
+    list.push_back({"left", format("%ld of %ld particles (%.2g %%) have left the domain through "
+                                   "an open face (%s), the farthest %.3g m beyond it; they are "
+                                   "simulated on",
+                                   left_, run_.plan.particles,
+                                   percent(double(left_), double(run_.plan.particles)),
+                                   faces_.c_str(), farthest_)});
   return list;
 }
 

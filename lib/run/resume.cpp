@@ -54,10 +54,7 @@ class Finder {
   ResumePoint find(std::int64_t particles) {
     if (!folder_.has("scene.resolved.yaml")) {
       if (folder_.holds_other_files())
-        throw Error(ExitCode::bad_input,
-                    folder_.path() +
-                        ": holds no run to resume, but other files; give another folder with "
-                        "--out");
+        bad("holds no run to resume, but other files; give another folder with --out");
       return {};  // killed before it had begun
     }
     const LoadedScene record = load_stored_scene(folder_.file("scene.resolved.yaml"));
@@ -69,26 +66,25 @@ class Finder {
                              ": begun by an earlier version, which kept no SHA-256 "
                              "of its particle files: they are taken as they are");
     if (folder_.has(kEarlierRunFile) && !folder_.has(kRunFile))
-      throw Error(ExitCode::bad_input,
-                  folder_.path() + ": cannot resume: holds " + kEarlierRunFile +
-                      ", as an earlier version of pbf called its run file, whose results are "
-                      "others; resume with that program, or start again with --overwrite");
+      bad(std::string("cannot resume: holds ") + kEarlierRunFile +
+          ", as an earlier version of pbf called its run file, whose results are others" +
+          kOtherwise);
     const std::int64_t done = make_schedule(before).updates;
-    const bool is_done = folder_.has("DONE") && schedule_.updates <= done;
-    if (const std::string other =
-            is_done && scene_.output ? difference_of_file(folder_.path(), scene_) : std::string();
-        !other.empty())
-      refuse(kRunFile, other);
-    const std::string doubt = is_done ? why_not_finished(folder_.path(), scene_) : std::string();
-    if (!doubt.empty()) point_.notes.push_back("DONE is there, but " + doubt);
-    if (is_done && doubt.empty()) {
-      if (schedule_.updates < done)
-        point_.notes.push_back(
-            format("%s: the run is finished up to update %lld, beyond the end "
-                   "that the scene now has",
-                   folder_.path().c_str(), static_cast<long long>(done)));
-      point_.finished = true;
-      return point_;
+    if (folder_.has("DONE") && schedule_.updates <= done) {
+      const std::string other =
+          scene_.output ? difference_of_file(folder_.path(), scene_) : std::string();
+      if (!other.empty()) refuse(kRunFile, other);
+      const std::string doubt = why_not_finished(folder_.path(), scene_);
+      if (doubt.empty()) {
+        if (schedule_.updates < done)
+          point_.notes.push_back(
+              format("%s: the run is finished up to update %ld, beyond the end "
+                     "that the scene now has",
+                     folder_.path().c_str(), done));
+        point_.finished = true;
+        return point_;
+      }
+      point_.notes.push_back("DONE is there, but " + doubt);
     }
     point_.started = true;
     point_.saved = read_checkpoint(folder_.path(), point_.notes);
@@ -96,13 +92,16 @@ class Finder {
     if (scene_.output) look_at_file(before);
     if (!point_.saved)
       point_.notes.push_back("there is no checkpoint: the run starts again from its first update" +
-                             (point_.frames > 0 ? format("; the %lld frames that are there stay",
-                                                         static_cast<long long>(point_.frames))
-                                                : std::string()));
+                             (point_.frames > 0
+                                  ? format("; the %ld frames that are there stay", point_.frames)
+                                  : std::string()));
     return point_;
   }
 
  private:
+  [[noreturn]] void bad(const std::string& what) const {
+    throw Error(ExitCode::bad_input, folder_.path() + ": " + what);
+  }
   /// That a file of the folder is of this scene and its files.
   void refuse_other(const std::string& name, const std::string& scene,
                     const std::string& files) const {
@@ -123,21 +122,19 @@ class Finder {
     if (!point_.saved) return;
     const SavedRun& s = *point_.saved;
     if (s.scene.empty())
-      throw Error(ExitCode::bad_input,
-                  folder_.path() +
-                      ": cannot resume: checkpoint.h5 is of an earlier version of pbf, which kept "
-                      "no scene in it and whose results are others; resume with that program, or "
-                      "start again with --overwrite");
+      bad(std::string("cannot resume: checkpoint.h5 is of an earlier version of pbf, which kept no "
+                      "scene in it and whose results are others") +
+          kOtherwise);
     refuse_other("checkpoint.h5", s.scene, s.files);
     if (s.particles != particles || s.state.precision != scene_.precision)
       throw Error(ExitCode::io, folder_.path() +
                                     "/checkpoint.h5: holds another number of particles or another "
                                     "precision than the scene; remove it to start again");
     if (s.state.updates > schedule_.updates)
-      throw Error(ExitCode::bad_input,
-                  folder_.path() + ": cannot resume: time.end ends after update " +
-                      std::to_string(schedule_.updates) + ", the checkpoint is of update " +
-                      std::to_string(s.state.updates) + "; raise time.end");
+      bad(
+          format("cannot resume: time.end ends after update %ld, the checkpoint is of update %ld; "
+                 "raise time.end",
+                 schedule_.updates, s.state.updates));
   }
 
   void look_at_file(const Scene& before) {
@@ -174,12 +171,9 @@ class Finder {
     const std::vector<std::string> there = file.log_columns();
     for (const auto& column : run_layout::log_columns())
       if (std::find(there.begin(), there.end(), column.name) == there.end())
-        throw Error(ExitCode::bad_input,
-                    folder_.path() + ": cannot resume: run.vtkhdf was written by pbf " +
-                        info.program_version + " (" + info.commit + "), whose log has no column " +
-                        column.name +
-                        " and whose results are others; resume with that program, or start again "
-                        "with --overwrite");
+        bad("cannot resume: run.vtkhdf was written by pbf " + info.program_version + " (" +
+            info.commit + "), whose log has no column " + column.name +
+            " and whose results are others" + kOtherwise);
   }
   /// Without what came before it in run.vtkhdf a checkpoint is of no use.
   void forget(const std::string& why) {
@@ -191,6 +185,8 @@ class Finder {
     point_.rows = 0;
   }
 
+  static constexpr const char* kOtherwise =
+      "; resume with that program, or start again with --overwrite";
   const RunFolder& folder_;
   const Scene& scene_;
   const std::vector<SceneFile>& files_;
@@ -255,8 +251,7 @@ std::string why_not_finished(const std::string& folder, const Scene& scene) {
     const std::int64_t end = make_schedule(scene).updates,
                        last = frames.empty() ? 0 : frames.back();
     if (last < end)
-      return format("the frames of run.vtkhdf end at update %lld, the run at %lld",
-                    static_cast<long long>(last), static_cast<long long>(end));
+      return format("the frames of run.vtkhdf end at update %ld, the run at %ld", last, end);
   } catch (const Error& e) {
     return e.what();
   }

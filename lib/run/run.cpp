@@ -51,8 +51,8 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   throw Error(
       ExitCode::guard,
       guard.text(e) + format(". %s holds the run up to there, guard_state.h5 the last good state "
-                             "(update %lld); to repeat: pbf run %s",
-                             folder.path().c_str(), static_cast<long long>(e.last_good.updates),
+                             "(update %ld); to repeat: pbf run %s",
+                             folder.path().c_str(), e.last_good.updates,
                              folder.file("guard_scene.yaml").c_str()));
 }
 
@@ -103,13 +103,11 @@ void run_session(RunParts& run) {
     for (const Warning& w : reporter.untold()) run.log.warning(w.text);
   if (watch.event()) report_alarm(watch, run.scene, run.folder);
   if (run.strict && !reporter.warnings().empty())
-    throw Error(
-        ExitCode::difference,
-        "--strict: " + warning_lines(reporter.warnings()) +
-            format("\npbf: the files in %s hold the run up to update %lld of %lld; the same "
-                   "command with --resume and without --strict goes on",
-                   run.folder.path().c_str(), static_cast<long long>(run.solver.updates()),
-                   static_cast<long long>(run.schedule.updates)));
+    throw Error(ExitCode::difference,
+                "--strict: " + warning_lines(reporter.warnings()) +
+                    format("\npbf: the files in %s hold the run up to update %ld of %ld; the same "
+                           "command with --resume and without --strict goes on",
+                           run.folder.path().c_str(), run.solver.updates(), run.schedule.updates));
 }
 
 }  // namespace pbf::inline run_module

@@ -29,11 +29,9 @@ namespace {
                                 "; choose another folder with --out, or free space and rights");
 }
 
-bool starts_with(const std::string& s, const char* prefix) { return s.rfind(prefix, 0) == 0; }
-
 bool own_picture(const std::string& name) {
-  return starts_with(name, kTemporaryPrefix) ||
-         (starts_with(name, "frame_") && fs::path(name).extension() == ".png");
+  return name.starts_with(kTemporaryPrefix) ||
+         (name.starts_with("frame_") && fs::path(name).extension() == ".png");
 }
 
 bool own_file(const std::string& name) {
@@ -49,7 +47,7 @@ bool own_file(const std::string& name) {
                                        "checkpoint.h5.tmp",
                                        "guard_state.h5",
                                        "guard_scene.yaml"};
-  return starts_with(name, kTemporaryPrefix) ||
+  return name.starts_with(kTemporaryPrefix) ||
          std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
 }
 

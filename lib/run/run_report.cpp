@@ -14,8 +14,6 @@
 namespace pbf::inline run_module {
 namespace {
 
-double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
-
 std::string row(const std::string& name, double seconds, double wall) {
   return format("  %-28s %10.3f s  %5.1f %%\n", name.c_str(), seconds, percent(seconds, wall));
 }
@@ -41,16 +39,14 @@ std::string step_lines(const StepHistory& s, double step, std::int64_t all) {
     shares += format("%s%.4g s in %.3g %%", shares.empty() ? "" : ", ", shortest,
                      percent(double(s.updates[k]), double(all)));
   }
-  std::string out =
-      format("time step           %lld changes, shortest %.4g s, mean %.4g s\n",
-             static_cast<long long>(s.changes), shortest, steps > 0 ? step * updates / steps : 0);
+  std::string out = format("time step           %ld changes, shortest %.4g s, mean %.4g s\n",
+                           s.changes, shortest, steps > 0 ? step * updates / steps : 0);
   if (s.changes > 0) out += "                    " + shares + " of the updates\n";
   if (s.repeats > 0)
-    out += format("                    %lld times back to the last good state\n",
-                  static_cast<long long>(s.repeats));
+    out += format("                    %ld times back to the last good state\n", s.repeats);
   if (s.floor > 0)
-    out += format("                    %lld measures asked for less than time.adaptive.step_min\n",
-                  static_cast<long long>(s.floor));
+    out += format("                    %ld measures asked for less than time.adaptive.step_min\n",
+                  s.floor);
   return out;
 }
 
@@ -92,8 +88,8 @@ std::string run_summary(const RunParts& run, const Watch& watch,
   const std::int64_t updates = run.solver.updates();
   const double wall = run.wall.seconds(), loop = run.loop_seconds;
   std::string out = format(
-      "particles           %lld\n"
-      "updates             %lld  (%.6g s simulated)\n"
+      "particles           %ld\n"
+      "updates             %ld  (%.6g s simulated)\n"
       "wall time           %s  (%s in updates and output)\n"
       "speed               %s particle-updates/s\n"
       "compression         mean %.3g %%, RMS %.3g %%, 99th percentile %.3g %%, max %.3g %% at the "
@@ -103,8 +99,8 @@ std::string run_summary(const RunParts& run, const Watch& watch,
       "%%, "
       "largest rise %.3g %%\n"
       "peak memory         %s\n",
-      static_cast<long long>(plan.particles), static_cast<long long>(updates),
-      double(updates) * scene.time.step, duration_text(wall).c_str(), duration_text(loop).c_str(),
+      plan.particles, updates, double(updates) * scene.time.step, duration_text(wall).c_str(),
+      duration_text(loop).c_str(),
       loop > 0
           ? si_number(double(plan.particles) * double(updates - run.from.update()) / loop).c_str()
           : "0",
@@ -114,8 +110,8 @@ std::string run_summary(const RunParts& run, const Watch& watch,
       100 * last.energy_drift, 100 * last.energy_rise, bytes_text(double(peak_memory())).c_str());
   out += pool_line(last);
   if (last.non_finite > 0)
-    out += format("not finite          %lld particles at the end, left out of the figures above\n",
-                  static_cast<long long>(last.non_finite));
+    out += format("not finite          %ld particles at the end, left out of the figures above\n",
+                  last.non_finite);
   if (plan.tolerance > 0)
     out += format(
         "iterations              %.3g per substep on average, at most %d, for a tolerance of %.4g "
@@ -123,13 +119,12 @@ std::string run_summary(const RunParts& run, const Watch& watch,
         double(last.iterations_done) / (double(updates) * plan.substeps),
         scene.solver.iterations * (1 + plan.repeats), 100 * plan.tolerance);
   if (last.unresolved > 0)
-    out += format("fast past neighbours %lld times more than %g h in a step, at most %.3g h\n",
-                  static_cast<long long>(last.unresolved), kResolvedWay, last.relative_way_max);
+    out += format("fast past neighbours %ld times more than %g h in a step, at most %.3g h\n",
+                  last.unresolved, kResolvedWay, last.relative_way_max);
   if (const auto steps = watch.steps(updates)) out += step_lines(*steps, scene.time.step, updates);
   if (scene.solver.speed_limit > 0)
-    out += format("speed limit         %lld times a particle was slowed down to %.4g m/s\n",
-                  static_cast<long long>(last.fast),
-                  scene.solver.speed_limit * scene.h() / scene.time.step);
+    out += format("speed limit         %ld times a particle was slowed down to %.4g m/s\n",
+                  last.fast, scene.solver.speed_limit * scene.h() / scene.time.step);
   out += stage_table(stages, wall, scene.solver.fused);
   if (run.drawing_seconds > 0)
     out += format("  drawing took %.3f s on a thread of its own, beside the stages above\n",
@@ -137,12 +132,10 @@ std::string run_summary(const RunParts& run, const Watch& watch,
   out += group_table(stages, wall, scene.solver.fused);
   out += "files in            " + run.folder.path();
   if (run.frames_written > 0)
-    out +=
-        format("\n  run.vtkhdf        %lld frames, %s", static_cast<long long>(run.frames_written),
-               bytes_text(double(run.bytes)).c_str());
+    out += format("\n  run.vtkhdf        %ld frames, %s", run.frames_written,
+                  bytes_text(double(run.bytes)).c_str());
   if (run.pictures_drawn > 0)
-    out +=
-        format("\n  frames/           %lld pictures", static_cast<long long>(run.pictures_drawn));
+    out += format("\n  frames/           %ld pictures", run.pictures_drawn);
   return out;
 }
 

@@ -10,6 +10,9 @@
 
 namespace pbf::inline run_module {
 
+/// 0 of nothing.
+inline double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+
 /// One JSON object on one line: the measures, wall-clock seconds, frames that are safe on the disk,
 /// seconds per stage.
 std::string measure_json(const Diagnostics& measures, double wall, std::int64_t frames,

@@ -91,15 +91,14 @@ void add_overlap(const Scene& s, const std::string& dir, std::vector<Warning>& l
   std::string text;
   if (o.inside + o.pairs > 0)
     text = format(
-        "bodies[%zu] and bodies[%zu] overlap: %lld particles start inside another body, "
-        "%s%lld pairs of two bodies are closer than half of fluid.spacing; ",
-        o.first, o.second, static_cast<long long>(o.inside), least,
-        static_cast<long long>(o.pairs));
+        "bodies[%zu] and bodies[%zu] overlap: %ld particles start inside another body, "
+        "%s%ld pairs of two bodies are closer than half of fluid.spacing; ",
+        o.first, o.second, o.inside, least, o.pairs);
   else if (o.within > 0 && 100 * o.within > o.of_files)  // some pairs are so near in any flow
     text = format(
-        "bodies[%zu]: %s%lld pairs of the file's particles are closer than half of "
+        "bodies[%zu]: %s%ld pairs of the file's particles are closer than half of "
         "fluid.spacing; ",
-        o.file, least, static_cast<long long>(o.within));
+        o.file, least, o.within);
   if (text.empty()) return;
   const char* then = s.solver.prestabilize
                          ? "steps without time part them, so the fluid takes more "

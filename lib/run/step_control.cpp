@@ -54,8 +54,7 @@ std::optional<std::string> AdaptiveStep::follow(const Diagnostics& m) {
   if (step(to) > longest) ++h_.floor;
   if (to == level()) return std::nullopt;
   const double h = scene_.h();
-  return format("update %lld, %.6g s: ", static_cast<long long>(m.update), m.time) +
-         change(to, m.update, false) +
+  return format("update %ld, %.6g s: ", m.update, m.time) + change(to, m.update, false) +
          format(": v_max dt %.3g h, dt sqrt(a/h) %.3g before", m.speed_max * before / h,
                 before * std::sqrt(acceleration / h)) +
          (unresolved ? "; neighbours moved too far past each other" : "");
@@ -65,9 +64,8 @@ std::optional<std::string> AdaptiveStep::refine(const std::string& alarm, const 
                                                 std::int64_t back) {
   if (level() == finest_) return std::nullopt;
   ++h_.repeats;
-  return format("update %lld, %.6g s: alarm of the guard (%s), back to update %lld: ",
-                static_cast<long long>(m.update), m.time, alarm.c_str(),
-                static_cast<long long>(back)) +
+  return format("update %ld, %.6g s: alarm of the guard (%s), back to update %ld: ", m.update,
+                m.time, alarm.c_str(), back) +
          change(level() + 1, back, true);
 }
 

@@ -137,7 +137,7 @@ class Checker {
       return;
     const Rounding r = rounding_of(s_);
     const bool single = s_.precision == Precision::single;
-    const std::string precision = single ? "float" : "double";
+    const std::string precision = word(s_.precision);
     const std::string remedy = single ? "give precision: double, or " : "";
     if (r.spacing > kLargestSpacing)
       return add(s_.domain.max, "the box is so long that positions in " + precision + " are " +

@@ -65,21 +65,6 @@ Node tree_of(const std::string& text, const std::string& origin, const std::stri
                                                        : ""));
 }
 
-}  // namespace
-
-Node load_tree(const std::string& path, const std::string& what) {
-  return tree_of(read_text_file(path, what), path, what);
-}
-
-Scene scene_of_tree(const Node& root, Problems& problems) {
-  PlacedScene placed;
-  static_cast<Places&>(placed) = read_tree(scene_table(), root, object(placed.scene), problems);
-  check_scene(placed, problems);
-  return placed.scene;
-}
-
-namespace {
-
 Scene scene_with_overrides(Node root, const std::vector<std::string>& overrides) {
   Problems problems;
   for (const std::string& argument : overrides) apply_override(root, argument, problems);
@@ -100,6 +85,17 @@ LoadedScene load(const std::string& path, const std::vector<std::string>& overri
 }
 
 }  // namespace
+
+Node load_tree(const std::string& path, const std::string& what) {
+  return tree_of(read_text_file(path, what), path, what);
+}
+
+Scene scene_of_tree(const Node& root, Problems& problems) {
+  PlacedScene placed;
+  static_cast<Places&>(placed) = read_tree(scene_table(), root, object(placed.scene), problems);
+  check_scene(placed, problems);
+  return placed.scene;
+}
 
 void use_new_names(const KeyTable& table, Node& node, const std::string& block) {
   if (node.kind == Node::Kind::list)

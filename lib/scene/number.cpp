@@ -36,7 +36,7 @@ std::string to_text(const Double3& v) {
   return std::string("[") + to_text(v[0]) + ", " + to_text(v[1]) + ", " + to_text(v[2]) + "]";
 }
 
-NumberError read_double(const std::string& text, double& value) {
+NumberError read_number(const std::string& text, double& value) {
   // Nothing that from_chars takes beside decimal numbers, and a plus, which it does not take.
   const bool decimal = !text.empty() && text.find_first_not_of("+-.0123456789eE") == text.npos;
   const char* first = text.data() + (decimal && text[0] == '+' && text[1] != '-' ? 1 : 0);
@@ -55,9 +55,9 @@ NumberError read_double(const std::string& text, double& value) {
   return NumberError::none;
 }
 
-NumberError read_integer(const std::string& text, std::int64_t& value) {
+NumberError read_number(const std::string& text, std::int64_t& value) {
   double real = 0;
-  const NumberError error = read_double(text, real);
+  const NumberError error = read_number(text, real);
   const bool digits = text.find_first_of(".eE") == std::string::npos;
   if (digits && (error == NumberError::none || error == NumberError::too_large)) {
     const char* first = text.data() + (text[0] == '+' ? 1 : 0);

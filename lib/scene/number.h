@@ -20,9 +20,9 @@ enum class NumberError { none, not_a_number, not_finite, too_large, too_small, n
 
 /// Decimal numbers only ([+-]digits[.digits][e[+-]digits]); no octal, hex, underscores. Denormal
 /// values are `too_small`: arithmetic on them loses digits and speed.
-NumberError read_double(const std::string& text, double& value);
+NumberError read_number(const std::string& text, double& value);
 /// The same grammar; 1e3 and 4.0 are whole. Leading zeros are decimal: 010 is 10.
-NumberError read_integer(const std::string& text, std::int64_t& value);
+NumberError read_number(const std::string& text, std::int64_t& value);
 /// "is not finite" and the like, to follow the text itself in a message.
 std::string describe(NumberError error);
 

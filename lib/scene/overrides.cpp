@@ -85,10 +85,7 @@ void put(Node& root, const std::string& path, const Node& value, const std::stri
   std::string so_far, why;
   for (const std::string& part : segments(path)) {
     at = child(*at, part, value, so_far, why);
-    if (at == nullptr) {
-      problems.add(place, path, why);
-      return;
-    }
+    if (at == nullptr) return problems.add(place, path, why);
     so_far += (so_far.empty() ? "" : ".") + part;
   }
   *at = value;
@@ -101,24 +98,19 @@ void apply_override(Node& root, const std::string& argument, Problems& problems)
   if (const auto found = find_bad_text(argument))
     return problems.add(place, "", found->what + "; leave it out");
   const std::size_t equals = argument.find('=');
-  if (equals == std::string::npos || equals == 0) {
-    problems.add(place, "", "expected key.path=value, e.g. --set solver.iterations=8");
-    return;
-  }
+  if (equals == std::string::npos || equals == 0)
+    return problems.add(place, "", "expected key.path=value, e.g. --set solver.iterations=8");
   const std::string path = argument.substr(0, equals);
   if (!is_path(path, place, problems)) return;
   Node value;
   try {
     value = parse_yaml(argument.substr(equals + 1), place, false);
   } catch (const YamlError& e) {
-    problems.add(e.place, path, e.what);
-    return;
+    return problems.add(e.place, path, e.what);
   }
   // An explicit null or ~ stays null: it removes an optional block.
-  if (argument.find_first_not_of(" \t", equals + 1) == std::string::npos) {
-    problems.add(place, path, "has no value; write " + path + "=VALUE");
-    return;
-  }
+  if (argument.find_first_not_of(" \t", equals + 1) == std::string::npos)
+    return problems.add(place, path, "has no value; write " + path + "=VALUE");
   put(root, path, value, place, problems);
 }
 

@@ -20,6 +20,9 @@ enum class BoundaryMode { density, clamp };          ///< walls with a density c
 enum class SolverMethod { jacobi, chebyshev };  ///< omega of an iteration: constant, or a sequence
 enum class Precision { single, dbl };           ///< YAML: float, double
 enum class Backend { cpu, cuda };
+/// Their words in scenes, tables and messages.
+constexpr const char* word(Precision p) { return p == Precision::dbl ? "double" : "float"; }
+constexpr const char* word(Backend b) { return b == Backend::cuda ? "cuda" : "cpu"; }
 enum class Compression { none, gzip };
 enum class ColorBy { speed, density, id };
 

@@ -31,22 +31,23 @@ Json list_schema(const Key& key, bool whole, int n) {
 
 struct TypeSchema {
   const Key& key;
-  Json operator()(const double*) const { return number_schema(key, false); }
-  Json operator()(const std::optional<double>*) const { return number_schema(key, false); }
-  Json operator()(const int*) const { return number_schema(key, true); }
-  Json operator()(const std::int64_t*) const { return number_schema(key, true); }
-  Json operator()(const std::uint64_t*) const { return number_schema(key, true); }
+  template <class T>
+  Json operator()(const std::optional<T>*) const {
+    return (*this)(static_cast<const T*>(nullptr));
+  }
+  template <class T>
+  requires std::is_arithmetic_v<T> Json operator()(const T*) const {
+    return number_schema(key, std::is_integral_v<T>);
+  }
+  template <class T, std::size_t N>
+  Json operator()(const std::array<T, N>*) const {
+    return list_schema(key, std::is_integral_v<T>, N);
+  }
   Json operator()(const bool*) const { return {{"type", "boolean"}}; }
   Json operator()(const std::string*) const { return {{"type", "string"}, {"minLength", 1}}; }
   Json operator()(const std::vector<std::string>*) const {
     return {{"type", "array"}, {"uniqueItems", true}, {"items", enumeration(key.choices)}};
   }
-  Json operator()(const Double3*) const { return list_schema(key, false, 3); }
-  Json operator()(const std::optional<Double3>*) const { return list_schema(key, false, 3); }
-  Json operator()(const std::optional<std::array<double, 2>>*) const {
-    return list_schema(key, false, 2);
-  }
-  Json operator()(const std::array<int, 2>*) const { return list_schema(key, true, 2); }
   Json operator()(const ChoiceField&) const { return enumeration(key.choices); }
 };
 

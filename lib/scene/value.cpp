@@ -24,18 +24,14 @@ std::string check_range(const Key& key, double v, const Node& node) {
 
 /// One number, double or integer.
 template <class T>
-std::string read_number(const Key& key, const Node& node, T& out) {
+std::string read_one(const Key& key, const Node& node, T& out) {
   constexpr bool whole = std::is_integral_v<T>;
   const std::string wanted =
       std::string(whole ? "a whole number" : "a number") + (key.automatic ? " or auto" : "");
   if (node.kind != Node::Kind::scalar) return instead_of(wanted, node);
   if (node.quoted) return instead_of(wanted, node) + " in quotes; remove them";
   std::conditional_t<whole, std::int64_t, double> v{};
-  NumberError error{};
-  if constexpr (whole)
-    error = read_integer(node.text, v);
-  else
-    error = read_double(node.text, v);
+  const NumberError error = read_number(node.text, v);
   if (error == NumberError::not_a_number) return instead_of(wanted, node);
   if (error != NumberError::none)
     return node.shown() + " " + describe(error) + ", expected " + wanted;
@@ -55,7 +51,7 @@ std::string read_numbers(const Key& key, const Node& node, std::array<T, N>& out
   Key element = key;
   element.automatic = false;
   for (std::size_t i = 0; i < N; ++i) {
-    const std::string problem = read_number(element, node.items[i], values[i]);
+    const std::string problem = read_one(element, node.items[i], values[i]);
     if (!problem.empty()) return "element " + std::to_string(i) + ": " + problem;
   }
   out = values;
@@ -121,7 +117,7 @@ struct Reader {
       *field = 0;
       return "";
     }
-    return read_number(key, node, *field);
+    return read_one(key, node, *field);
   }
   std::string operator()(bool* field) const {
     if (node.quoted || !node.is_word({"true", "false"})) return instead_of("true or false", node);
@@ -198,18 +194,15 @@ std::string format_field(const Key& key, const Field& field) {
 }
 
 std::string yaml_text(const std::string& text) {
-  const auto safe = [](unsigned char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-' || c == '.' || c == '/';
-  };
-  const bool letter =
-      !text.empty() && ((text[0] >= 'a' && text[0] <= 'z') || (text[0] >= 'A' && text[0] <= 'Z'));
+  static const std::string kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+  const bool letter = !text.empty() && kLetters.find(text[0]) != text.npos;
+  const bool safe = text.find_first_not_of(kLetters + "0123456789_-./") == text.npos;
   static const std::vector<std::string> kReserved{
       "null", "Null", "NULL", "true", "True", "TRUE", "false", "False", "FALSE",
       "yes",  "Yes",  "YES",  "no",   "No",   "NO",   "on",    "On",    "ON",
       "off",  "Off",  "OFF",  "y",    "Y",    "n",    "N"};
-  const bool reserved = std::find(kReserved.begin(), kReserved.end(), text) != kReserved.end();
-  if (letter && !reserved && std::all_of(text.begin(), text.end(), safe)) return text;
+  const bool reserved = std::ranges::count(kReserved, text) > 0;
+  if (letter && !reserved && safe) return text;
   std::string out = "\"";
   for (char c : text) {
     if (c == '"' || c == '\\') out += '\\';

@@ -5,7 +5,6 @@
 #include "lib/base/text.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/load.h"
-#include "lib/scene/value.h"
 
 namespace pbf::inline scene_module {
 namespace {

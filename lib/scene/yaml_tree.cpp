@@ -139,16 +139,9 @@ bool Node::is_word(std::initializer_list<const char*> words) const {
 }
 
 std::string Node::shown() const {
-  switch (kind) {
-    case Kind::null:
-      return "nothing";
-    case Kind::list:
-      return "a list of " + std::to_string(items.size());
-    case Kind::map:
-      return "a block";
-    case Kind::scalar:
-      break;
-  }
+  if (kind == Kind::null) return "nothing";
+  if (kind == Kind::list) return "a list of " + std::to_string(items.size());
+  if (kind == Kind::map) return "a block";
   return std::string("\"").append(one_line(text, 60)) + "\"";
 }
 

@@ -39,7 +39,7 @@ CompareSide parse_side(const std::string& text) {
   side.precision = precision == "double" ? Precision::dbl : Precision::single;
   if (at != std::string::npos) {
     std::int64_t n = 0;
-    if (read_integer(text.substr(at + 1), n) != NumberError::none || n < 1 || n > 4096)
+    if (read_number(text.substr(at + 1), n) != NumberError::none || n < 1 || n > 4096)
       fail("the number of threads is not a whole number from 1 to 4096");
     if (side.backend == Backend::cuda) fail("threads are the CPU's alone");
     side.threads = int(n);

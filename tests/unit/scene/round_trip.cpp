@@ -216,7 +216,7 @@ TEST_CASE("numbers: the text of a double reads back to the same double") {
                    std::numeric_limits<double>::min()}) {
     double back = 0;
     CAPTURE(v, to_text(v));
-    CHECK(read_double(to_text(v), back) == NumberError::none);
+    CHECK(read_number(to_text(v), back) == NumberError::none);
     CHECK(back == v);
   }
   CHECK(to_text(0.1) == "0.1");

@@ -1,0 +1,73 @@
+// What the options of several commands share. Numbers are read as in scenes: "1e3" is 1000, "010"
+// ten, "1.5" no whole number.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lib/scene/number.h"
+
+namespace pbf::inline app_module {
+
+/// The command `name`, and its options, which live as long as `app`. Where it is the one that is
+/// given, `code` becomes what `work` makes of them.
+template <class Options>
+std::pair<CLI::App*, Options&> add_command(CLI::App& app, int& code, int (*work)(const Options&),
+                                           const char* name, const char* help,
+                                           const std::string& footer) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(name, help)->footer(footer);
+  command->callback([options, work, &code] { code = work(*options); });
+  return {command, *options};
+}
+
+/// An option that can be given several times, with one value each.
+inline void add_repeatable(CLI::App* command, const char* name, std::vector<std::string>& values,
+                           const char* help) {
+  command->add_option(name, values, help)->take_all()->allow_extra_args(false);
+}
+
+inline void add_overrides(CLI::App* command, std::vector<std::string>& overrides) {
+  add_repeatable(command, "--set", overrides,
+                 "Replace one key of the scene, KEY.PATH=VALUE; repeatable");
+}
+
+/// The measures of a run, a line each, for help.
+std::string diagnostics_text();
+
+/// For Option::transform: a whole number from `low` to `high`, handed on in plain digits.
+inline CLI::Validator whole_number(std::int64_t low,
+                                   std::int64_t high = std::numeric_limits<int>::max()) {
+  const std::string range = std::to_string(low) + " to " + std::to_string(high);
+  return CLI::Validator(
+      [low, high, range](std::string& text) -> std::string {
+        std::int64_t v = 0;
+        if (const NumberError e = read_number(text, v); e != NumberError::none)
+          return "\"" + text + "\" " + describe(e) + "; give a whole number from " + range;
+        if (v < low || v > high) return text + " is out of range, " + range;
+        text = std::to_string(v);
+        return "";
+      },
+      range);
+}
+
+/// For Option::transform: a number not below `low`, or above it, in `unit`.
+inline CLI::Validator number_from(double low, bool above, const std::string& unit) {
+  const std::string what = "a number" + (unit.empty() ? unit : " of " + unit) +
+                           (above ? " above " : " from ") + to_text(low) + (above ? "" : " on");
+  return CLI::Validator(
+      [low, above, what](std::string& text) -> std::string {
+        double v = 0;
+        if (const NumberError e = read_number(text, v); e != NumberError::none)
+          return "\"" + text + "\" " + describe(e) + "; give " + what;
+        return v < low || (above && v <= low) ? text + " is not " + what : std::string();
+      },
+      what);
+}
+
+}  // namespace pbf::inline app_module
