@@ -3,6 +3,9 @@
 #ifdef PBF_CATCH3
 #include <catch2/catch_all.hpp>
 using Catch::Approx;
+namespace Catch {
+inline auto Contains(const std::string& text) { return Matchers::ContainsSubstring(text); }
+}
 #else
 #include <catch2/catch.hpp>
 #endif
