@@ -37,6 +37,12 @@ inline constexpr FieldInfo bin_start{"bin_start", Type::int32, 1, Rows::bins};
 inline constexpr FieldInfo lists{"lists", Type::int32, 0, Rows::particles};
 }  // namespace field
 
+/// Rows of one of its arrays. padding: of the executor.
+constexpr std::int64_t rows_of(const FieldInfo& f, std::int64_t particles, std::int64_t padding,
+                               std::int64_t bins) {
+  return f.rows == Rows::bins ? bins + 1 : particles + (f.rows == Rows::padded ? padding : 0);
+}
+
 /// A field that a pass reads or writes. other: the second of its two arrays, "position'".
 struct Access {
   const FieldInfo* field;

@@ -34,16 +34,13 @@ int downloaded_scalars(const Scene& s) {
 void add_state(const Plan& plan, std::int64_t bins, bool guard, const std::string& real,
                const Adder& add) {
   // The lists name one particle more, far away, and lanes read further (padding of the executors).
-  const std::int64_t n = plan.particles, padded = n + (add.on_device ? 1 : 16);
+  const std::int64_t n = plan.particles, padding = add.on_device ? 1 : 16;
   for (const FieldInfo* f : plan.program.fields) {
     if (f == &field::order && !add.on_device) continue;  // it stands in id'
-    const std::int64_t rows = f->rows == Rows::bins     ? bins + 1
-                              : f->rows == Rows::padded ? padded
-                                                        : n;
     for (const char* which : {"", "'"})
       if (*which == '\0' || f->doubled)
         add((std::string(f->name) + which).c_str(), f->type == Type::real ? real : "int32",
-            f->components, rows);
+            f->components, rows_of(*f, n, padding, bins));
   }
   for (const FieldInfo* f : plan.program.fields) {
     if (!f->state) continue;

@@ -70,7 +70,7 @@ void plan_left_out(Plan& plan, const Scene& s) {
   auto out = [&](bool absent, const char* what, const char* why) {
     if (absent) plan.left_out.push_back({what, why});
   };
-  const std::vector<LeftOut> features = features_left_out(s);
+  const std::vector<LeftOut>& features = plan.program.left_out;
   out(s.dimensions == 2,
       "the third dimension: 18 of 27 cells around a particle, y in the pair loops",
       "dimensions is 2");

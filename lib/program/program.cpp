@@ -29,12 +29,6 @@ struct Builder {
   void left_out(const char* what, const char* because) { without.push_back({what, because}); }
 };
 
-Builder built(const Scene& scene) {
-  Builder b;
-  Features::add(scene, b);
-  return b;
-}
-
 /// Joins b to the end of `steps`, where one pass does the work of both: false where none does.
 /// The last of several iterations is then one by itself.
 bool join(Steps& steps, int b) {
@@ -125,7 +119,8 @@ const std::vector<PassInfo>& pass_infos() {
 }
 
 Program make_program(const Scene& scene, const UpdateShape& shape, bool without_time) {
-  Builder b = built(scene);
+  Builder b;
+  Features::add(scene, b);
   if (without_time) b.behind.clear();
   Program p;
   Steps middle;
@@ -151,6 +146,7 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
   p.fields = {&field::position, &field::velocity, &field::density,  &field::id,
               &field::bin,      &field::order,    &field::bin_start};
   collect_fields(p.update, p.fields);
+  p.left_out = b.without;
   return p;
 }
 
@@ -160,8 +156,6 @@ std::vector<PassCount> count_passes(const Steps& steps) {
   return out;
 }
 std::vector<PassCount> count_passes(const Program& p) { return count_passes(p.next + p.rest); }
-
-std::vector<LeftOut> features_left_out(const Scene& scene) { return built(scene).without; }
 
 std::string field_names(const std::vector<Access>& fields) {
   std::string out;

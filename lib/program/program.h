@@ -23,6 +23,10 @@ struct ProgramStep {
 };
 using Steps = std::vector<ProgramStep>;
 
+struct LeftOut {
+  std::string what, because;  ///< e.g. "xsph", "no key viscosity"
+};
+
 struct Program {
   /// An update pass by pass, as it is observed.
   Steps update;
@@ -31,6 +35,7 @@ struct Program {
   Steps first, rest, next, last;
   /// Every field of the passes, and those that a solver has in any case.
   std::vector<const FieldInfo*> fields;
+  std::vector<LeftOut> left_out;  ///< the features that the scene does without
 
   bool has_pairs() const { return !first.empty(); }  ///< else particles only move
 };
@@ -54,12 +59,6 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
 
 /// What the passes say of themselves, by index in Passes.
 const std::vector<PassInfo>& pass_infos();
-
-struct LeftOut {
-  std::string what, because;  ///< e.g. "xsph", "no key viscosity"
-};
-/// The features that a scene does without.
-std::vector<LeftOut> features_left_out(const Scene& scene);
 
 /// "position velocity'"
 std::string field_names(const std::vector<Access>& fields);

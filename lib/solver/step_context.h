@@ -127,9 +127,7 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
   rows_ = capacity_ = int(n);
   for (const FieldInfo* f : fields) {
     if (f == &field::order && Exec::order_in_place) continue;
-    const std::size_t count = f->rows == Rows::bins     ? std::size_t(bin_count(p)) + 1
-                              : f->rows == Rows::padded ? n + Exec::padding
-                                                        : n;
+    const auto count = std::size_t(rows_of(*f, rows_, std::int64_t(Exec::padding), bin_count(p)));
     const std::size_t row =
         std::size_t(f->components) * (f->type == Type::real ? sizeof(Real) : sizeof(int));
     slots_.push_back({f, {}, 0});

@@ -123,10 +123,9 @@ class Stepper {
     sum_density();
   }
 
-  /// Sums at the present positions, over lists of their own.
+  /// Sums at the present positions, after find_pairs().
   MeasureSums measure() {
     c_.exec.begin();
-    find_pairs();
     sum_density();
     const int n = size();
     auto sums =
@@ -140,14 +139,12 @@ class Stepper {
   }
 
   /// SI units, the scene's axes, id order, into device-visible buffers; null where not asked for.
+  /// Densities after find_pairs().
   template <class Out>
   void export_to(double h, double rest_density, const Double3& origin, Out* position, Out* velocity,
                  Out* density) {
     c_.exec.begin();
-    if (density) {
-      find_pairs();
-      sum_density();
-    }
+    if (density) sum_density();
     const auto from = [&](int k) { return origin[std::size_t(plan_.axes.of[k])]; };
     c_.each(ExportPass<Real, Out>{h,
                                   rest_density,

@@ -9,17 +9,13 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// What a pass gathers is the same in every form of it.
-template <template <class, class, Smoothing> class Pass>
-constexpr unsigned gathered = Pass<float, ChunkedLists, Smoothing::consistent>::gathers;
-
 struct Density {
   static PassInfo info() {
     return {"density",
             "density",
             {{&field::position}, {&field::lists}},
             {{{&field::density}, Written::scalar, "density", "rho0", true}},
-            gathered<DensityPass>,
+            DensityPass<float, ChunkedLists, Smoothing::consistent>::gathers,
             0};
   }
   template <class C>
@@ -30,6 +26,10 @@ struct Density {
     });
   }
 };
+
+/// What a pass gathers is the same in every form of it.
+constexpr unsigned kLambdaGathers =
+    LambdaPass<float, ChunkedLists, Smoothing::consistent, true>::gathers;
 
 template <bool with_density, class C>
 void launch_lambda(C& c) {
@@ -45,8 +45,12 @@ inline Written written_lambda() {
 
 struct Lambda {
   static PassInfo info() {
-    return {"lambda",           "lambda", {{&field::position}, {&field::lists}, {&field::density}},
-            {written_lambda()}, kPlace,   0};
+    return {"lambda",
+            "lambda",
+            {{&field::position}, {&field::lists}, {&field::density}},
+            {written_lambda()},
+            kLambdaGathers,
+            0};
   }
   template <class C>
   static void launch(C& c) {
@@ -61,7 +65,7 @@ struct DensityLambda {
             {{&field::position}, {&field::lists}},
             {{{&field::density}, Written::scalar, "density", "rho0", true, false, false, "density"},
              written_lambda()},
-            kPlace,
+            kLambdaGathers,
             1};
   }
   template <class C>
@@ -89,7 +93,7 @@ inline PassInfo delta_info(const char* name) {
           {vector({&field::position}, "position", "h"),
            {{&field::position}, Written::fourth, "1/density", "1/rho0"},
            vector({&field::velocity}, "velocity", "h/s")},
-          kPlace | kLambda | kId};
+          DeltaPass<float, ChunkedLists, Smoothing::consistent, true>::gathers};
 }
 
 struct Delta {

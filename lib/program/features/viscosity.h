@@ -19,7 +19,7 @@ void with_xsph(C& c, int* bin, const Use& use) {
 inline PassInfo xsph_info(PassInfo writes, const char* name) {
   writes.name = name;
   writes.reads = {{&field::position}, {&field::velocity}, {&field::lists}};
-  writes.gathers = kPlace | kInverseDensity | kVelocity;
+  writes.gathers = XsphPass<float, ChunkedLists, Smoothing::consistent>::gathers;
   return writes;
 }
 
