@@ -116,12 +116,13 @@ int command_bench(const BenchOptions& o) {
                    1000000, "bench");
   for (const LoadedScene& base : scenes)
     for (const GridMember& m : grid) {
-      const bool cuda = o.backends[m.at[1]] == "cuda";
-      if (cuda && m.at[3] > 0) continue;  // threads are the CPU's alone
+      const Backend backend = *named<Backend>(o.backends[m.at[1]]);
+      const bool on_device = about(backend).on_device;
+      if (on_device && m.at[3] > 0) continue;  // it has no threads
       Scene s = scaled_to(base.scene, o.particles[m.at[0]], base.folder);
-      s.backend = cuda ? Backend::cuda : Backend::cpu;
-      s.precision = o.precisions[m.at[2]] == "double" ? Precision::dbl : Precision::single;
-      s.threads = cuda ? 0 : o.threads[m.at[3]];
+      s.backend = backend;
+      s.precision = *named<Precision>(o.precisions[m.at[2]]);
+      s.threads = on_device ? 0 : o.threads[m.at[3]];
       const std::vector<BenchRow> rows = bench(s, base.folder, o.settings);
       if (o.calibrate) costs.push_back(calibration_of(rows.back()));
       for (const BenchRow& row : rows) {
@@ -155,10 +156,10 @@ void add_bench(CLI::App& app, int& code) {
       ->transform(whole_number(1));
   c->add_option("--backend", o.backends, "cpu, cuda or both, separated by commas")
       ->delimiter(',')
-      ->check(CLI::IsMember({"cpu", "cuda"}));
+      ->check(CLI::IsMember(words_of<Backend>()));
   c->add_option("--precision", o.precisions, "float, double or both")
       ->delimiter(',')
-      ->check(CLI::IsMember({"float", "double"}));
+      ->check(CLI::IsMember(words_of<Precision>()));
   c->add_option("--threads", o.threads,
                 "Numbers of CPU threads; as a run would choose when not given")
       ->delimiter(',')

@@ -63,7 +63,7 @@ std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
   const SolverInfo i = solver.info();
   const BuildInfo build = build_info();
   std::string where = i.backend + " " + i.precision;
-  if (i.backend == "cpu") where += ", " + threads_text(scene, plan.particles);
+  if (!about(scene.backend).on_device) where += ", " + threads_text(scene, plan.particles);
   return format("pbf %s (%s)  scene %s: %ld particles, %ld updates of %.4g s\n%s on %s, %s -> %s",
                 build.version.c_str(), build.commit.c_str(), scene.name.c_str(), plan.particles,
                 make_schedule(scene).updates, scene.time.step, where.c_str(), i.device.c_str(),
@@ -228,9 +228,9 @@ void add_run(CLI::App& app, int& code) {
   c->add_option("SCENE", o.scene, "Scene file (YAML), or the run file of a run to repeat")
       ->required();
   c->add_option("--out", o.out, "Run folder; out/<scene name> when not given");
-  c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember({"cpu", "cuda"}));
+  c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember(words_of<Backend>()));
   c->add_option("--precision", o.precision, "Of the computation")
-      ->check(CLI::IsMember({"float", "double"}));
+      ->check(CLI::IsMember(words_of<Precision>()));
   c->add_option("--threads", o.threads, "CPU threads")->transform(whole_number(1, 4096));
   add_overrides(c, o.overrides);
   CLI::Option* overwrite =

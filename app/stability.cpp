@@ -23,7 +23,7 @@ struct StabilityCommandOptions {
   std::string suite = "configs/stability.yaml";
   std::string backend = "cpu", precision = "float";
   bool reduced = false, quiet = false;
-  int jobs = 0;  ///< cases at once; 0: as many as there are threads on cpu, 1 on cuda
+  int jobs = 0;  ///< cases at once; 0: as many as there are threads, 1 on a device
   std::vector<std::string> overrides;
   std::string csv;        ///< path, empty: none
   std::string map, x, y;  ///< X_KEY,Y_KEY and their values; empty: no map
@@ -214,11 +214,11 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
 }
 
 int command_stability(const StabilityCommandOptions& o) {
-  const int jobs = o.jobs > 0 ? o.jobs : o.backend == "cpu" ? usable_threads() : 1;
   StabilityOptions run;
+  run.backend = *named<Backend>(o.backend);
+  run.precision = *named<Precision>(o.precision);
+  const int jobs = o.jobs > 0 ? o.jobs : about(run.backend).on_device ? 1 : usable_threads();
   run.reduced = o.reduced;
-  run.backend = o.backend == "cuda" ? Backend::cuda : Backend::cpu;
-  run.precision = o.precision == "double" ? Precision::dbl : Precision::single;
   run.threads = std::max(1, usable_threads() / jobs);
   run.overrides = o.overrides;
   return o.map.empty() ? run_suite(o, run, jobs) : run_map(o, run, jobs);
@@ -235,9 +235,9 @@ void add_stability(CLI::App& app, int& code) {
                 "Cases or groups of the suite, all when none is given; with --map "
                 "the scene file (configs/stiff/pool.yaml)");
   c->add_option("--suite", o.suite, "Suite file (configs/stability.yaml)");
-  c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember({"cpu", "cuda"}));
+  c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember(words_of<Backend>()));
   c->add_option("--precision", o.precision, "Of the computation")
-      ->check(CLI::IsMember({"float", "double"}));
+      ->check(CLI::IsMember(words_of<Precision>()));
   c->add_flag("--reduced", o.reduced, "Fewer particles and updates, where the suite says so");
   c->add_option("--jobs", o.jobs, "Cases at once; all CPU threads when not given, 1 on cuda")
       ->transform(whole_number(1, 4096));

@@ -151,13 +151,12 @@ void store_calibration(const std::string& path, const std::vector<StageCosts>& r
 std::optional<TimeEstimate> estimate_time(const Plan& plan, const Scene& s,
                                           const std::vector<StageCosts>& rows, int threads,
                                           const std::string& cpu) {
-  const bool cuda = s.backend == Backend::cuda;
   std::map<std::string, std::vector<std::pair<double, double>>> measured;  // stage: n, ms
   TimeEstimate out;
   for (const StageCosts& row : rows) {
     if (row.backend != word(s.backend) || row.precision != word(s.precision)) continue;
-    if (cuda ? !out.basis.empty() && row.device != out.basis
-             : row.threads != threads || row.device != plain_name(cpu))
+    if (about(s.backend).on_device ? !out.basis.empty() && row.device != out.basis
+                                   : row.threads != threads || row.device != plain_name(cpu))
       continue;
     out.basis = row.device;
     for (const auto& [stage, ms] : row.ms) measured[stage].push_back({double(row.particles), ms});

@@ -105,7 +105,7 @@ void StudyReader::make_members(const Node& scene, const std::vector<std::string>
     made.label = m.name.empty() ? study_.name : m.name;
   }
   for (const StudyMember& m : study_.members)
-    if (study_.cpu_clock && m.scene.backend == Backend::cuda)
+    if (study_.cpu_clock && about(m.scene.backend).on_device)
       problems_.add(root_.find("clock")->place(), "clock",
                     "cpu does not count the time of a GPU (" + m.label + "); use wall");
   if (has_reference_) {

@@ -97,7 +97,7 @@ std::string member_key(const Study& study, const StudyMember& m) {
   scene.name.clear();
   const Json key{"2",  // of the format below
                  program,
-                 m.scene.backend == Backend::cuda ? cuda_device_report() : cpu_model(),
+                 about(m.scene.backend).on_device ? cuda_device_report() : cpu_model(),
                  usable_threads(),
                  resolved_yaml(scene),
                  files_text(scene_files(m.scene, study.scene_dir)),

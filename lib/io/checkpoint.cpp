@@ -139,7 +139,7 @@ void write_file(const std::string& path, const SavedRun& s) {
     write_rows(file, "velocity", "h/s", real, 3, s.state.velocity);
     write_rows(file, "id", "1", H5T_STD_I32LE, 1, s.state.id);
     h5::write_number(file, "format_version", kFormat);
-    h5::write_text(file, "precision", wide ? "double" : "float");
+    h5::write_text(file, "precision", word(s.state.precision));
     for_each_number(s, writing(file));
     if (s.released) h5::write_number(file, "released_energy", *s.released);
     if (s.steps) write_steps(file, *s.steps);
@@ -163,8 +163,9 @@ SavedRun read_file(const std::string& path) {
     throw h5::Failure("format version " + std::to_string(format) + "; this program reads version " +
                       std::to_string(kFormat));
   SavedRun s;
-  s.state.precision =
-      h5::read_text(file, "precision") == "double" ? Precision::dbl : Precision::single;
+  const std::string precision = h5::read_text(file, "precision");
+  if (!named<Precision>(precision)) throw h5::Failure("no precision \"" + precision + "\"");
+  s.state.precision = *named<Precision>(precision);
   for_each_number(s, reading(file));
   // Files written before there were levels hold neither.
   if (!h5::has_attribute(file, "steps")) s.state.steps = s.state.updates;

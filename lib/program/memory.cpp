@@ -80,7 +80,7 @@ std::int64_t add_prestabilize(const Scene& s, const Plan& plan, const std::strin
   if (!s.solver.prestabilize || s.solver.iterations == 0) return 0;
   const std::int64_t n = plan.particles, kept = n * (8 * size_of(real) + 4);
   Adder{memory, false, Held::start}("positions around steps without time", "double", 3, 2 * n);
-  return 48 * n - (s.guard && s.backend == Backend::cpu ? kept : 0);
+  return 48 * n - (s.guard && !about(s.backend).on_device ? kept : 0);
 }
 
 /// What frames and pictures take: on the host beside the solver, and the staging on the device.
@@ -88,14 +88,14 @@ void add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   const int scalars = downloaded_scalars(s);
   if (scalars == 0) return;
   const std::int64_t n = plan.particles;
-  const bool cuda = s.backend == Backend::cuda;
-  const std::string real = s.output && s.output->precision == Precision::dbl ? "double" : "float";
-  if (cuda) {
+  const bool on_device = about(s.backend).on_device;
+  const std::string real = word(s.output ? s.output->precision : Precision::single);
+  if (on_device) {
     Adder{memory, true, Held::solver}("staging of a download", real, scalars, n);
     Adder{memory, false, Held::solver}("pinned copy of a download", real, scalars, n);
   }
   // Updates on a device outrun the writer, which lets two frames wait; those of a CPU do not.
-  const int frames = cuda ? 3 : 1;
+  const int frames = on_device ? 3 : 1;
   const Adder add{memory, false, Held::output};
   add("frames under way", real, scalars, frames * n);
   add("ids of frames under way", "int32", 1, frames * n);
@@ -169,13 +169,12 @@ std::int64_t MemoryPlan::fixed_bytes(bool on_device) const {
 
 MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
   MemoryPlan memory;
-  const bool cuda = s.backend == Backend::cuda;
-  const std::string real = s.precision == Precision::dbl ? "double" : "float";
+  const std::string real = word(s.precision);
   const std::int64_t bins =
       std::int64_t(plan.cells[0]) * plan.cells[1] * plan.cells[2] * bins_per_cell(s.dimensions);
-  const Adder solver{memory, cuda, Held::solver};
+  const Adder solver{memory, about(s.backend).on_device, Held::solver};
   add_state(plan, bins, bool(s.guard), real, solver);
-  if (cuda)
+  if (solver.on_device)
     add_cuda_lists(s, plan, bins, solver);
   else
     add_cpu_lists(s, plan, solver);

@@ -67,7 +67,7 @@ double default_sor(double ratio, int dimensions) {
 }
 
 void plan_left_out(Plan& plan, const Scene& s) {
-  auto out = [&](bool absent, const char* what, const char* why) {
+  auto out = [&](bool absent, const char* what, const std::string& why) {
     if (absent) plan.left_out.push_back({what, why});
   };
   const std::vector<LeftOut>& features = plan.program.left_out;
@@ -90,10 +90,11 @@ void plan_left_out(Plan& plan, const Scene& s) {
   out(!s.checkpoint, "checkpoints, but where the run is stopped", "no key checkpoint");
   out(!s.render, "pictures, the GL library and its thread", "no key render");
   out(!s.output && !s.render, "copies of the particles in SI units", "no keys output, render");
-  out(s.backend == Backend::cpu, "CUDA context and driver", "backend is cpu");
-  out(s.backend == Backend::cuda && !s.output && !s.render, "staging of downloads on the device",
+  out(s.backend != Backend::cuda, "CUDA context and driver",
+      std::string("backend is ") + word(s.backend));
+  out(about(s.backend).on_device && !s.output && !s.render, "staging of downloads on the device",
       "no keys output, render");
-  out(!s.solver.reproducible && s.backend == Backend::cuda, "the host's arithmetic on the device",
+  out(!s.solver.reproducible && !about(s.backend).exact, "the host's arithmetic on the device",
       "solver.reproducible is false");
 }
 
@@ -108,7 +109,7 @@ void plan_files(Plan& plan, const Scene& s) {
   add("DONE", 1, 30);
   const double all = std::max(1.0, std::round(s.time.end / s.time.step));
   if (s.output) {
-    const double scalar = s.output->precision == Precision::dbl ? 8 : 4;
+    const double scalar = about(s.output->precision).bytes;
     double row = 3 * scalar;  // position
     for (const auto& f : s.output->fields) row += (f == "velocity" ? 3 : 1) * scalar;
     const double updates = std::max(1.0, std::round(s.output->every / s.time.step));
@@ -127,8 +128,7 @@ void plan_files(Plan& plan, const Scene& s) {
     add("frames/frame_*.png", pictures, pictures * 0.32 * pixels, "0.32 bytes a pixel");
   }
   if (s.checkpoint)
-    add("checkpoint.h5, checkpoint_prev.h5", 2,
-        2 * (6 * (s.precision == Precision::dbl ? 8 : 4) + 4) * n + 2e4);
+    add("checkpoint.h5, checkpoint_prev.h5", 2, 2 * (6 * (about(s.precision).bytes) + 4) * n + 2e4);
 }
 
 }  // namespace

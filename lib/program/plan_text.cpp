@@ -12,15 +12,14 @@ namespace pbf::inline program_module {
 namespace {
 
 std::string backend_text(const Scene& s) {
-  return std::string(s.backend == Backend::cuda ? "cuda" : "cpu") +
-         (s.precision == Precision::dbl ? " double" : " float");
+  return std::string(word(s.backend)) + " " + word(s.precision);
 }
 
-/// f(scene, memory) for both backends and both precisions.
+/// f(scene, memory) for every backend and precision.
 template <class F>
 void for_each_choice(const Plan& plan, const Scene& scene, F&& f) {
-  for (const Backend backend : {Backend::cpu, Backend::cuda})
-    for (const Precision precision : {Precision::single, Precision::dbl}) {
+  for (const Backend backend : all_of<Backend>())
+    for (const Precision precision : all_of<Precision>()) {
       Scene choice = scene;
       choice.backend = backend;
       choice.precision = precision;
@@ -48,8 +47,8 @@ Json memory_json(const Plan& plan, const Scene& scene) {
                         {"bytes", a.bytes},
                         {"held", held_name(a.held)},
                         {"place", place(a.on_device)}});
-    out.push_back({{"backend", s.backend == Backend::cuda ? "cuda" : "cpu"},
-                   {"precision", s.precision == Precision::dbl ? "double" : "float"},
+    out.push_back({{"backend", word(s.backend)},
+                   {"precision", word(s.precision)},
                    {"solver_bytes", m.solver_bytes()},
                    {"host_arrays", m.host_arrays},
                    {"host_fixed", m.fixed_bytes(false)},
@@ -72,7 +71,7 @@ std::string plan_text(const Plan& plan, const Scene& s) {
   out += format(
       "grid %d (half) x %d x %d cells of edge %g h; internal axes x, y, z: %s of the scene\n",
       plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge, axes_text(plan.axes).c_str());
-  if (s.backend == Backend::cpu) out += threads_text(s, plan.particles) + "\n";
+  if (!about(s.backend).on_device) out += threads_text(s, plan.particles) + "\n";
   if (const StartCrowd crowd = start_crowd(s, plan); crowd.neighbors > 0)
     out += format("start: about %.0f neighbours of a particle, at rest %.0f%s\n", crowd.neighbors,
                   rest_neighbors(s),
@@ -144,7 +143,7 @@ Json plan_json(const Plan& plan, const Scene& s) {
           {"axes", axes},
           {"finest_level", plan.finest_level},
           {"lists_per_update", plan.lists_per_update},
-          {"threads", s.backend == Backend::cpu ? solver_threads(s, plan.particles) : 0},
+          {"threads", about(s.backend).on_device ? 0 : solver_threads(s, plan.particles)},
           {"passes", passes},
           {"memory", memory_json(plan, s)},
           {"files", files},

@@ -54,9 +54,7 @@ std::int64_t release_updates(const Scene& s) {
   return 20 + std::int64_t(std::min(2 * longest_edge(s), 1e9));
 }
 
-double position_rounding(const Scene& s) {
-  return longest_edge(s) * (s.precision == Precision::dbl ? 0x1p-53 : 0x1p-24);
-}
+double position_rounding(const Scene& s) { return longest_edge(s) * about(s.precision).roundoff; }
 
 GuardLimits guard_limits(const Scene& s, const Plan& plan, const Diagnostics& first) {
   const GuardSettings& g = *s.guard;

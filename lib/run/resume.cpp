@@ -28,7 +28,7 @@ std::string recorded_files(const std::string& record) {
 }
 
 /// Runs of such scenes give the same bits with one program, whatever the machine.
-bool exact(const Scene& s) { return s.backend == Backend::cpu || s.solver.reproducible; }
+bool exact(const Scene& s) { return about(s.backend).exact || s.solver.reproducible; }
 
 /// How many of the values stand where the schedule has them, from the first on.
 template <class Values, class Expected>

@@ -6,7 +6,7 @@ namespace pbf::inline scene_module {
 #define KEY(member) MEMBER(Scene, member)
 
 KeyRows run_rows() {
-  const std::vector<std::string> floats{"float", "double"};
+  const std::vector<std::string> floats = words_of<Precision>();
   return {
       {optional_block(KEY(guard),
                       "Stops a run at a measure that makes no sense, and names the culprit.",
@@ -60,7 +60,7 @@ KeyRows run_rows() {
        key(KEY(render->camera.fov), number("deg", {1, 170}), "Vertical field of view."),
        key(KEY(render->camera.orbit), number("deg/s", {-36000, 36000}),
            "Turn about the vertical axis per second of simulated time."),
-       key(KEY(backend), one_of({"cpu", "cuda"}), "Where the simulation runs.",
+       key(KEY(backend), one_of(words_of<Backend>()), "Where the simulation runs.",
            effect(Effect::none)),
        key(KEY(precision), one_of(floats), "Of the computation."),
        key(KEY(threads), number("", {1, 4096}),

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "lib/scene/backend.h"
+
 namespace pbf::inline scene_module {
 
 using Double3 = std::array<double, 3>;
@@ -18,11 +20,6 @@ enum class KernelMode { consistent, paper };         ///< density kernel and gra
 enum class ConstraintMode { one_sided, two_sided };  ///< C = max(rho/rho0 - 1, 0) or rho/rho0 - 1
 enum class BoundaryMode { density, clamp };          ///< walls with a density contribution, or bare
 enum class SolverMethod { jacobi, chebyshev };  ///< omega of an iteration: constant, or a sequence
-enum class Precision { single, dbl };           ///< YAML: float, double
-enum class Backend { cpu, cuda };
-/// Their words in scenes, tables and messages.
-constexpr const char* word(Precision p) { return p == Precision::dbl ? "double" : "float"; }
-constexpr const char* word(Backend b) { return b == Backend::cuda ? "cuda" : "cpu"; }
 enum class Compression { none, gzip };
 enum class ColorBy { speed, density, id };
 

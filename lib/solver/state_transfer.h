@@ -60,7 +60,7 @@ SolverState download_state(Exec& exec, std::size_t n, const Axes& axes,
                            const StateArrays<Real>& from, std::int64_t updates,
                            std::int64_t steps) {
   SolverState s;
-  s.precision = sizeof(Real) == 8 ? Precision::dbl : Precision::single;
+  s.precision = precision_of<Real>;
   s.updates = updates;
   s.steps = steps;
   s.position = rows_by_id(exec, axes, n, from.position, from.id);

@@ -140,7 +140,7 @@ class StepSolver final : public Solver, public Inspection {
 
   SolverInfo info() const override {
     SolverInfo i;
-    i.precision = sizeof(Real) == 8 ? "double" : "float";
+    i.precision = word(precision_of<Real>);
     i.vol = plan_.vol;
     i.wall_scale = plan_.wall_scale;
     i.bytes = stepper_->bytes() + saved_.bytes() + kept_.bytes();

@@ -36,8 +36,6 @@ std::unique_ptr<Solver> make(const Scene& scene, const Particles& particles, boo
   return make_solver(scene, plan, particles);
 }
 
-double roundoff(Precision p) { return p == Precision::dbl ? 0x1p-53 : 0x1p-24; }
-
 void round_to_float(SolverState& s) {
   for (auto* v : {&s.position, &s.velocity})
     for (double& x : *v) x = double(float(x));
@@ -91,7 +89,7 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   const Plan plan = make_plan(on_a, std::int64_t(particles.size()));
 
   Comparison c{&settings, &plan, &on_a, a.get(), b.get(), reference.get()};
-  c.u = std::max(roundoff(settings.a.precision), roundoff(settings.b.precision));
+  c.u = std::max(about(settings.a.precision).roundoff, about(settings.b.precision).roundoff);
   c.sides = settings.a.precision == settings.b.precision ? 2 : 1;
   const bool promised = settings.a.backend == settings.b.backend ||
                         (on_a.solver.reproducible && on_b.solver.reproducible);
@@ -116,7 +114,7 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   if (progress) progress(format("%d updates of warm-up on %s", settings.warmup, result.a.c_str()));
   advance(*a, settings.warmup);
   SolverState start = a->state();
-  if (c.u == roundoff(Precision::single)) round_to_float(start);
+  if (c.u == about(Precision::single).roundoff) round_to_float(start);
   result.parts.push_back(compare_stages(c, start, result));
   if (progress) progress("frozen step: " + result.parts[0].finding);
   std::int64_t failure = -1;
@@ -128,7 +126,7 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
     a->set_state(start);
     advance(*a, after);
     SolverState later = a->state();
-    if (c.u == roundoff(Precision::single)) round_to_float(later);
+    if (c.u == about(Precision::single).roundoff) round_to_float(later);
     ComparePart part = compare_stages(c, later, result);
     part.name = format("frozen step at update %lld", static_cast<long long>(later.updates));
     result.parts.push_back(std::move(part));

@@ -66,7 +66,9 @@ bool same_numbers(const Snapshot& a, const Snapshot& b) {
   return true;
 }
 
-double unit_roundoff(bool single) { return single ? 0x1p-24 : 0x1p-53; }
+double unit_roundoff(bool single) {
+  return about(single ? Precision::single : Precision::dbl).roundoff;
+}
 
 /// What rounding makes of two runs. Positions are lengths of the box's extent, velocities ways over
 /// a step, densities sums over distances in units of h.

@@ -7,9 +7,7 @@
 namespace pbf::inline verify_module {
 
 std::string CompareSide::name() const {
-  std::string s = backend == Backend::cpu ? "cpu" : "cuda";
-  if (variant) s += "+defect";
-  s += precision == Precision::dbl ? ":double" : ":float";
+  std::string s = std::string(word(backend)) + (variant ? "+defect:" : ":") + word(precision);
   return threads > 0 ? s + "@" + std::to_string(threads) : s;
 }
 
@@ -31,17 +29,19 @@ CompareSide parse_side(const std::string& text) {
 #endif
     backend = "cpu";
   }
-  if (backend != "cpu" && backend != "cuda") fail("no backend \"" + backend + "\"");
-  side.backend = backend == "cuda" ? Backend::cuda : Backend::cpu;
+  const std::optional<Backend> found = named<Backend>(backend);
+  if (!found) fail("no backend \"" + backend + "\"");
+  side.backend = *found;
   const std::string precision =
       text.substr(colon + 1, at == std::string::npos ? at : at - colon - 1);
-  if (precision != "float" && precision != "double") fail("no precision \"" + precision + "\"");
-  side.precision = precision == "double" ? Precision::dbl : Precision::single;
+  const std::optional<Precision> numbers = named<Precision>(precision);
+  if (!numbers) fail("no precision \"" + precision + "\"");
+  side.precision = *numbers;
   if (at != std::string::npos) {
     std::int64_t n = 0;
     if (read_number(text.substr(at + 1), n) != NumberError::none || n < 1 || n > 4096)
       fail("the number of threads is not a whole number from 1 to 4096");
-    if (side.backend == Backend::cuda) fail("threads are the CPU's alone");
+    if (about(side.backend).on_device) fail("threads are the CPU's alone");
     side.threads = int(n);
   }
   return side;
