@@ -12,6 +12,20 @@
 
 namespace pbf {
 
+/// Where all the fluid would rest: on the wall that gravity points at, between
+/// walls on all four sides. axis -1: there is no such place.
+struct RestPool {
+  int axis = -1;
+  double floor = 0, up = 1;  ///< h, coordinate of the floor; +1 or -1, away from it
+  double depth = 0;          ///< h, volume of the fluid over the floor's area
+  double spacing = 0;        ///< h, of the rest lattice
+};
+
+/// What a measure takes from the scene, in the internal frame.
+struct MeasureConstants {
+  RestPool rest;
+};
+
 /// Maxima and counts, in the internal frame (h, s, rho0).
 struct MeasureCounts {
   double compression_max = 0, speed_squared_max = 0;
@@ -112,6 +126,7 @@ struct MeasurePass {
   const Vec4<Real>*position, *velocity;
   const Real* density;
   const StepCounts* step_counts;
+  MeasureConstants given;
 
   PBF_HD MeasureCounts counts(int i) const {
     MeasureCounts s;
@@ -153,11 +168,11 @@ struct MeasurePass {
       s.x[k] = fixed_term(a.x[k] * power_of_two(-unit.x[k]));
       s.v[k] = fixed_term(a.v[k] * power_of_two(-unit.v[k]));
     }
-    if (p.rest.axis < 0) return s;
-    const double height = p.rest.up * (a.x[p.rest.axis] - p.rest.floor);
+    if (given.rest.axis < 0) return s;
+    const double height = given.rest.up * (a.x[given.rest.axis] - given.rest.floor);
     for (int k = 0; k < MeasureTerms::levels; ++k) {
-      const double level = p.rest.depth * (k + 1) / MeasureTerms::levels;
-      s.below[k] = fixed_term(max2((level - height) / p.rest.spacing + 0.5, 0.0));  // at most 1
+      const double level = given.rest.depth * (k + 1) / MeasureTerms::levels;
+      s.below[k] = fixed_term(max2((level - height) / given.rest.spacing + 0.5, 0.0));  // at most 1
     }
     return s;
   }

@@ -11,15 +11,6 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Where all the fluid would rest, for the measures: on the wall that gravity points at, between
-/// walls on all four sides. axis -1: there is no such place.
-struct RestPool {
-  int axis = -1;
-  double floor = 0, up = 1;  ///< h, coordinate of the floor; +1 or -1, away from it
-  double depth = 0;          ///< h, volume of the fluid over the floor's area
-  double spacing = 0;        ///< h, of the rest lattice
-};
-
 template <class Real>
 struct Params {
   int dimensions = 3;               ///< 2: every y is 0, and v_y
@@ -45,7 +36,6 @@ struct Params {
   Real xsph = 0;       ///< c
   Real vorticity = 0;  ///< 1/s, epsilon
   Real update_dt = 0;  ///< s, of all substeps together: confinement acts once for them
-  RestPool rest;
 };
 
 }  // namespace pbf::inline PBF_VARIANT

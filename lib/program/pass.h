@@ -37,6 +37,8 @@ struct PassInfo {
   std::vector<Written> writes;
   unsigned gathers = 0;  ///< Fields of neighbours' rows that it reads (kernels/pair_sum.h)
   int stored = -1;       ///< of `writes`: what a fault that is no number is put into; -1: velocity
+  const char* remedy = "";  ///< "lower viscosity.xsph", where particles go wrong here; empty: none
+                            ///< of its own, but those of the whole step
 };
 
 template <class First, class Second>

@@ -59,9 +59,7 @@ std::string Guard::text(const GuardEvent& e) const {
 
 /// The keys that help, by what there is to blame.
 std::string Guard::remedy(const GuardEvent& e) const {
-  const std::string stage = e.stage ? e.stage->stage : std::string();
-  if (stage == "xsph") return "lower viscosity.xsph";
-  if (stage == "curl" || stage == "vorticity") return "lower vorticity.epsilon";
+  if (e.stage && !e.stage->remedy.empty()) return e.stage->remedy;
   const bool shaken = e.alarm == Alarm::speed || e.alarm == Alarm::energy;
   if (first_.compression_mean > kApart && (e.alarm == Alarm::neighbors || shaken)) {
     std::string help =

@@ -14,6 +14,34 @@ namespace {
 using M = const Diagnostics&;
 using enum Over;
 
+RestPool rest_pool(const Scene& scene, const Plan& plan) {
+  const Scene s = in_internal_axes(scene, plan.axes);
+  const unsigned walls = make_params<double>(scene, plan).boundary.walls;
+  const double h = s.h();
+  double extent[3], area = 1;
+  int axis = -1, along = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto i = std::size_t(k);
+    extent[k] = (s.domain.max[i] - s.domain.min[i]) / h;
+    if (s.gravity[i] != 0) axis = k, ++along;
+  }
+  RestPool pool;
+  if (along != 1) return pool;
+  const bool points_up = s.gravity[std::size_t(axis)] > 0;
+  for (int k = 0; k < 3; ++k) {
+    const bool wall = k != 1 || s.dimensions == 3;  // the slab's faces hold the fluid by themselves
+    const unsigned low = 1u << (2 * k), needed = k == axis ? (points_up ? 2 * low : low) : 3 * low;
+    if (wall && (walls & needed) != needed) return pool;
+    if (k != axis) area *= extent[k];
+  }
+  pool.axis = axis;
+  pool.up = points_up ? -1 : 1;
+  pool.floor = points_up ? extent[axis] : 0;
+  pool.depth = plan.mass * double(plan.particles) / (s.fluid.rest_density * h * h * h) / area;
+  pool.spacing = s.fluid.spacing / h;
+  return pool;
+}
+
 /// Volume kept and distance to the hydrostatic profile; lib/solver/DIAGNOSTICS.md has the formulas.
 void measure_pool(const MeasureSums& s, const RestPool& pool, double counted, Diagnostics& m) {
   m.height_kept = m.hydrostatic_deviation = std::numeric_limits<double>::quiet_NaN();
@@ -29,6 +57,10 @@ void measure_pool(const MeasureSums& s, const RestPool& pool, double counted, Di
 }
 
 }  // namespace
+
+MeasureConstants measure_constants(const Scene& scene, const Plan& plan) {
+  return {rest_pool(scene, plan)};
+}
 
 Diagnostics to_diagnostics(const MeasureSums& s, const Scene& scene, const Plan& plan,
                            std::int64_t update, std::int64_t steps) {
@@ -57,8 +89,7 @@ Diagnostics to_diagnostics(const MeasureSums& s, const Scene& scene, const Plan&
     m.front[axis] = origin[axis] + h * s.front[k];
   }
   m.energy += m.kinetic_energy + m.potential_energy;
-  const Params<double> p = make_params<double>(scene, plan);
-  measure_pool(s, p.rest, counted, m);
+  measure_pool(s, rest_pool(scene, plan), counted, m);
   m.speed_max = h * std::sqrt(s.speed_squared_max);
   m.neighbors_mean = double(s.neighbors) / n;
   m.neighbors_max = s.neighbors_max;

@@ -86,6 +86,8 @@ class EnergyTrack {
   EnergyHistory h_;
 };
 
+MeasureConstants measure_constants(const Scene& scene, const Plan& plan);
+
 /// Sums in the internal frame, after so many updates and steps -> Diagnostics in SI units and the
 /// scene's axes (lib/solver/DIAGNOSTICS.md).
 Diagnostics to_diagnostics(const MeasureSums& sums, const Scene& scene, const Plan& plan,

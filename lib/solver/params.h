@@ -12,33 +12,6 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// See RestPool. The scene is in internal axes. `mass` (kg) of one of the `n` particles.
-inline RestPool rest_pool(const Scene& s, double mass, std::int64_t n, unsigned walls) {
-  const double h = s.h();
-  double extent[3], area = 1;
-  int axis = -1, along = 0;
-  for (int k = 0; k < 3; ++k) {
-    const auto i = std::size_t(k);
-    extent[k] = (s.domain.max[i] - s.domain.min[i]) / h;
-    if (s.gravity[i] != 0) axis = k, ++along;
-  }
-  RestPool pool;
-  if (along != 1) return pool;
-  const bool points_up = s.gravity[std::size_t(axis)] > 0;
-  for (int k = 0; k < 3; ++k) {
-    const bool wall = k != 1 || s.dimensions == 3;  // the slab's faces hold the fluid by themselves
-    const unsigned low = 1u << (2 * k), needed = k == axis ? (points_up ? 2 * low : low) : 3 * low;
-    if (wall && (walls & needed) != needed) return pool;
-    if (k != axis) area *= extent[k];
-  }
-  pool.axis = axis;
-  pool.up = points_up ? -1 : 1;
-  pool.floor = points_up ? extent[axis] : 0;
-  pool.depth = mass * double(n) / (s.fluid.rest_density * h * h * h) / area;
-  pool.spacing = s.fluid.spacing / h;
-  return pool;
-}
-
 template <class Real>
 Params<Real> make_params(const Scene& scene, const Plan& plan) {
   const Scene s = in_internal_axes(scene, plan.axes);
@@ -91,7 +64,6 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
         Real(1 / (s.solver.kernels == KernelMode::paper ? Poly6<double>::shape(q * q) : t * t * t));
     p.tensile_n = s.tensile->n;
   }
-  p.rest = rest_pool(s, plan.mass, plan.particles, b.walls);
   if (s.viscosity) p.xsph = Real(s.viscosity->xsph);
   if (s.vorticity) p.vorticity = Real(s.vorticity->epsilon);
   p.update_dt = Real(s.time.step);

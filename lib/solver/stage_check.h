@@ -29,7 +29,7 @@ class StageCheck {
     if (fault_ && fault_->update == update_ && fault_->stage == pass.stage &&
         fault_->iteration == iteration)
       inject(a);
-    if (limits_) check(pass.stage, iteration, a);
+    if (limits_) check(pass, iteration, a);
   }
   const std::optional<StageEvent>& event() const { return event_; }
 
@@ -82,7 +82,7 @@ class StageCheck {
     }
   }
 
-  void check(const std::string& stage, int iteration, const Arrays& a) {
+  void check(const PassInfo& pass, int iteration, const Arrays& a) {
     const auto x = host<Vec4<Real>>(a.position), v = host<Vec4<Real>>(c_.velocity());
     const auto density = host<Real>(a.density);
     const auto id = host<int>(c_.ids()), neighbors = host<int>(a.neighbors);
@@ -90,7 +90,7 @@ class StageCheck {
     std::size_t fast = 0;
     const auto found = [&](Alarm alarm, std::size_t k, double value) {
       if (event_ && event_->id < id[k]) return;
-      event_ = StageEvent{alarm, update_, stage, iteration, id[k], {}, {}, value};
+      event_ = StageEvent{alarm, update_, pass.stage, pass.remedy, iteration, id[k], {}, {}, value};
       for (int c = 0; c < 3; ++c) {
         event_->position[axes_.of[c]] = double((&x[k].x)[c]);
         event_->velocity[axes_.of[c]] = double((&v[k].x)[c]);

@@ -25,6 +25,7 @@ struct StageEvent {
   Alarm alarm = Alarm::non_finite;
   std::int64_t update = 0;  ///< the first update is 1
   std::string stage;        ///< name of the pass
+  std::string remedy;       ///< of PassInfo
   int iteration = 0;        ///< 1, 2, ... within the iterations, 0 outside them
   int id = 0;
   double position[3] = {0, 0, 0}, velocity[3] = {0, 0, 0};

@@ -124,13 +124,13 @@ class Stepper {
   }
 
   /// Sums at the present positions, after find_pairs().
-  MeasureSums measure() {
+  MeasureSums measure(const MeasureConstants& given) {
     c_.exec.begin();
     sum_density();
     const int n = size();
     auto sums =
         c_.exec.reduce(n, MeasurePass<Real, Lists>{c_.p, c_.lists, c_.position(), c_.velocity(),
-                                                   c_.density(), c_.counts()});
+                                                   c_.density(), c_.counts(), given});
     sums.compression_p99 = compression_percentile(
         c_.exec.count_in_bins(n, kCompressionBins, CompressionBinPass<Real>{c_.density()}),
         n - n / 100, n, sums.compression_max);

@@ -22,8 +22,15 @@ int main(int argc, char** argv) {
   for (int k = 0; k < argc; ++k) {
     if (std::strcmp(argv[k], "--on") == 0 && k + 1 < argc) {
       const std::string on = argv[++k];
-      if (on.rfind("cuda:", 0) == 0) backend_test::backend() = pbf::Backend::cuda;
-      if (on.find(":double") != std::string::npos) backend_test::precision() = pbf::Precision::dbl;
+      const auto colon = on.find(':');
+      const auto backend = pbf::named<pbf::Backend>(on.substr(0, colon));
+      const auto precision = pbf::named<pbf::Precision>(on.substr(colon + 1));
+      if (!backend || !precision) {
+        std::printf("--on %s: give BACKEND:PRECISION, e.g. cpu:float\n", on.c_str());
+        return 2;
+      }
+      backend_test::backend() = *backend;
+      backend_test::precision() = *precision;
     } else {
       rest.push_back(argv[k]);
     }

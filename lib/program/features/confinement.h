@@ -13,6 +13,8 @@ inline constexpr FieldInfo curl{"curl", Type::real, 4, Rows::padded};
 
 namespace pbf::inline PBF_VARIANT {
 
+inline constexpr const char* kLessConfinement = "lower vorticity.epsilon";
+
 struct Curl {
   static PassInfo info() {
     Written curl = vector({&field::curl}, "curl times its gain", "1/s");
@@ -21,7 +23,9 @@ struct Curl {
             "vorticity",
             {{&field::position}, {&field::velocity}, {&field::lists}},
             {curl},
-            CurlPass<float, ChunkedLists, 3>::gathers};
+            CurlPass<float, ChunkedLists, 3>::gathers,
+            -1,
+            kLessConfinement};
   }
   template <class C>
   static void launch(C& c) {
@@ -38,7 +42,9 @@ struct Confine {
             "vorticity",
             {{&field::position}, {&field::curl}, {&field::lists}, {&field::velocity}},
             {vector({&field::velocity}, "velocity", "h/s")},
-            VorticityPass<float, ChunkedLists, 3>::gathers};
+            VorticityPass<float, ChunkedLists, 3>::gathers,
+            -1,
+            kLessConfinement};
   }
   template <class C>
   static void launch(C& c) {

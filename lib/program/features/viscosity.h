@@ -20,6 +20,7 @@ inline PassInfo xsph_info(PassInfo writes, const char* name) {
   writes.name = name;
   writes.reads = {{&field::position}, {&field::velocity}, {&field::lists}};
   writes.gathers = XsphPass<float, ChunkedLists, Smoothing::consistent>::gathers;
+  writes.remedy = "lower viscosity.xsph";
   return writes;
 }
 

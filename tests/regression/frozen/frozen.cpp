@@ -201,17 +201,16 @@ int main(int argc, char** argv) {
       write = true;
     } else if (std::strcmp(argv[k], "--times") == 0) {
       times = true;
-    } else if (std::strcmp(argv[k], "--on") == 0 && k + 1 < argc &&
-               std::strcmp(argv[k + 1], "cuda") == 0) {
-      backend = Backend::cuda;
-      ++k;
+    } else if (std::strcmp(argv[k], "--on") == 0 && k + 1 < argc && named<Backend>(argv[k + 1])) {
+      backend = *named<Backend>(argv[++k]);
     } else {
       std::printf(
           "Runs the cases of tests/regression/frozen/cases.txt and compares with hashes.csv.\n"
-          "Usage: frozen [--on cuda] [--write] [--times]\n"
-          "  --on cuda  with solver.reproducible on a GPU: the same hashes; exit 77 without one\n"
-          "  --write    write hashes.csv anew, where one and two threads agree\n"
-          "  --times    the time of every row, on stderr\n");
+          "Usage: frozen [--on BACKEND] [--write] [--times]\n"
+          "  --on BACKEND  with solver.reproducible: the same hashes; exit 77 without a GPU for "
+          "it\n"
+          "  --write       write hashes.csv anew, where one and two threads agree\n"
+          "  --times       the time of every row, on stderr\n");
       return std::strcmp(argv[k], "--help") == 0 ? 0 : 2;
     }
   }

@@ -26,6 +26,7 @@ struct TestRows {
   std::vector<Real> density;
   std::vector<int> length;
   Params<Real> p;
+  MeasureConstants given;
 
   MeasureSums measure(int threads) const {
     CpuExec exec(threads);
@@ -33,10 +34,10 @@ struct TestRows {
     return exec.reduce(
         int(density.size()),
         MeasurePass<Real, Lengths>{
-            p, {length.data()}, position.data(), velocity.data(), density.data(), &counts});
+            p, {length.data()}, position.data(), velocity.data(), density.data(), &counts, given});
   }
   TestRows in_order(const std::vector<std::size_t>& order) const {
-    TestRows r{{}, {}, {}, {}, p};
+    TestRows r{{}, {}, {}, {}, p, given};
     for (const std::size_t k : order) {
       r.position.push_back(position[k]);
       r.velocity.push_back(velocity[k]);
@@ -54,7 +55,7 @@ TestRows<Real> random_rows(int n, double decades) {
   const auto r = [&] { return double(gen()) / 4294967295.0; };
   TestRows<Real> rows;
   rows.p.boundary.extent = {20, 10, 8};
-  rows.p.rest = {2, 0, 1, 4, 0.5};
+  rows.given.rest = {2, 0, 1, 4, 0.5};
   for (int i = 0; i < n; ++i) {
     const double scale = std::pow(10, decades * (r() - 0.5));
     rows.position.push_back({Real(-1 + 22 * r()), Real(10 * r()), Real(8 * r()), Real(1)});

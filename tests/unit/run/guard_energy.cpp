@@ -4,6 +4,7 @@
 
 #include "lib/campaign/stability.h"
 #include "lib/exec/make_solver.h"
+#include "lib/program/program.h"
 #include "lib/run/emit.h"
 #include "lib/run/prestabilize.h"
 #include "tests/support/catch.h"
@@ -50,7 +51,9 @@ std::string advice(const Scene& s, const Diagnostics* start, Alarm alarm,
   GuardEvent e;
   e.alarm = alarm;
   e.measure = w.first;
-  e.stage = StageEvent{alarm, 3, stage, 0, 5, {}, {}, 1};
+  e.stage = StageEvent{alarm, 3, stage, "", 0, 5, {}, {}, 1};
+  for (const PassInfo& pass : pass_infos())
+    if (pass.stage == stage) e.stage->remedy = pass.remedy;
   const std::string text = guard.text(e);
   return text.substr(text.find("To help: "));
 }
