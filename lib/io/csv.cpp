@@ -45,9 +45,11 @@ bool CsvLines::next(std::string& line) {
   }
 }
 
-std::vector<CsvRow> read_csv(const std::string& path, const std::string& remedy) {
+std::vector<CsvRow> read_csv(const std::string& path, const std::string& remedy,
+                             std::string* sha256) {
   RegularFile file(path, "a CSV table", remedy);
-  CsvLines lines(file, path);
+  Sha256 hash;
+  CsvLines lines(file, path, {.hash = sha256 ? &hash : nullptr});
   std::vector<CsvRow> rows;
   for (std::string line; lines.next(line);) {
     const auto fail = [&](const std::string& what) {
@@ -68,6 +70,7 @@ std::vector<CsvRow> read_csv(const std::string& path, const std::string& remedy)
            std::to_string(rows[0].cells.size()));
     rows.push_back(std::move(row));
   }
+  if (sha256) *sha256 = hash.text();
   return rows;
 }
 

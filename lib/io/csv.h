@@ -50,8 +50,10 @@ struct CsvRow {
 
 /// A small table without quoted cells: the header, then rows of as many cells. Empty lines and
 /// those that begin with # are passed over. `remedy` ends every message ("; remove the file").
-/// Error(io) when the file cannot be read; Error(bad_input) naming the line for a row of another
-/// length and for what is no text.
-std::vector<CsvRow> read_csv(const std::string& path, const std::string& remedy = "");
+/// `sha256`: gets the SHA-256 of the bytes that were read, if given; a file that a scene names
+/// needs it (SceneFile). Error(io) when the file cannot be read; Error(bad_input) naming the line
+/// for a row of another length and for what is no text.
+std::vector<CsvRow> read_csv(const std::string& path, const std::string& remedy = "",
+                             std::string* sha256 = nullptr);
 
 }  // namespace pbf::inline io_module

@@ -38,6 +38,22 @@ TEST_CASE("a small CSV table is read with its places, without comments, blanks a
   CHECK(read_csv(folder.write("empty.csv", "")).empty());
 }
 
+TEST_CASE("the pass that reads a CSV table gives the SHA-256 of all its bytes") {
+  const scene_test::Folder folder;
+  // Comments, blank lines and line ends are no rows, but bytes. Digests of sha256sum.
+  std::string digest = "old";
+  CHECK(read_csv(folder.write("t.csv", "# from a book\r\n\r\nT, Z \r\n 1 ,2\n"), "", &digest)
+            .size() == 2);
+  CHECK(digest == "29e0ed7f7026bb98927a1d4f3a3cf280ed537f0a56ca3ca5a8adb24a85d78eec");
+  CHECK(read_csv(folder.write("empty.csv", ""), "", &digest).empty());
+  CHECK(digest == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  // More than one block of the reader.
+  std::string rows = "a,b\n";
+  for (int i = 0; i < 30000; ++i) rows += "1,2\n";
+  CHECK(read_csv(folder.write("long.csv", rows), "", &digest).size() == 30001);
+  CHECK(digest == "768c0e0e3002723f70a928d74f06bff27f0947aa5a60c7442ffcc75f292f9f7f");
+}
+
 TEST_CASE("what is no CSV table is refused with its line and the remedy") {
   CHECK(holds(error_of("a,b\n1,2\n1\n"), "t.csv:3: has 1 values, the header names 2; remove it"));
   CHECK(holds(error_of("a,b\n1,2,3\n"), "t.csv:2: has 3 values, the header names 2; remove it"));
