@@ -29,7 +29,7 @@ std::string first_difference(const KeyTable& table, const Object& before, const 
                              Effect least) {
   for (const Block& block : table.blocks) {
     if (!block.optional || block.effect < least) continue;
-    const bool was = block.size(before) > 0, is = block.size(now) > 0;
+    const bool was = block.is_present(before), is = block.is_present(now);
     if (was != is) return changed(block.path, was ? "on" : "off", is ? "on" : "off");
   }
   std::string what;

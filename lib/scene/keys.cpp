@@ -49,7 +49,7 @@ std::string Block::entry_path(std::size_t i) const {
 }
 
 bool Block::is_present(const Object& object) const {
-  return (list || size(object) > 0) && (parent == nullptr || parent->is_present(object));
+  return (parent == nullptr || parent->is_present(object)) && (list || size(object) > 0);
 }
 
 unsigned Block::kind_of(const Object& holder) const {
@@ -86,6 +86,18 @@ const Key* KeyTable::find_renamed(const std::string& path) const {
 }
 const Block* KeyTable::find_block(const std::string& path) const {
   return find(blocks, &Block::path, path);
+}
+
+bool KeyTable::has_required(const Block& block) const {
+  if (block.list) return block.list->least > 0;
+  return std::ranges::any_of(block.keys, &Key::required) ||
+         std::ranges::any_of(blocks, [&](const Block& child) {
+           return child.parent == &block && is_required(child);
+         });
+}
+
+bool KeyTable::is_required(const Block& block) const {
+  return (!block.optional || block.on_by_default) && has_required(block);
 }
 
 void KeyTable::make_all_present(const Object& object) const {

@@ -136,6 +136,11 @@ struct KeyTable : KeyRows {
   /// The key that had this path in earlier versions, or null.
   const Key* find_renamed(const std::string& path) const;
   const Block* find_block(const std::string& path) const;
+  /// Whether the block must say something where it is on: a list entries, another block a key of
+  /// its own or of a block in it.
+  bool has_required(const Block& block) const;
+  /// Whether what is around it must have it: nothing is complete without.
+  bool is_required(const Block& block) const;
   void make_all_present(const Object& object) const;
   /// Paths of all members that the object has by their addresses, and those of its lists.
   std::map<const void*, std::string> names(const Object& object) const;

@@ -1,5 +1,4 @@
 // JSON Schema of a scene file, for editors that complete and check while one types.
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "lib/base/json.h"
@@ -44,7 +43,9 @@ struct TypeSchema {
     return list_schema(key, std::is_integral_v<T>, N);
   }
   Json operator()(const bool*) const { return {{"type", "boolean"}}; }
-  Json operator()(const std::string*) const { return {{"type", "string"}, {"minLength", 1}}; }
+  Json operator()(const std::string*) const {
+    return {{"type", "string"}, {"minLength", may_be_empty(key) ? 0 : 1}};
+  }
   Json operator()(const std::vector<std::string>*) const {
     return {{"type", "array"}, {"uniqueItems", true}, {"items", enumeration(key.choices)}};
   }
@@ -53,6 +54,7 @@ struct TypeSchema {
 
 Json default_value(const Key& key, const Field& field) {
   if (const auto* list = std::get_if<std::vector<std::string>*>(&field)) return **list;
+  if (const auto* text = std::get_if<std::string*>(&field)) return **text;
   const std::string text = format_field(key, field);
   const bool word = text == "auto" || !(is_numeric(field) || std::holds_alternative<bool*>(field));
   return word ? Json(text) : Json::parse(text);  // the YAML of numbers is JSON
@@ -77,7 +79,9 @@ Json object_schema(const KeyTable& table, const Block& block, int kind);
 Json block_schema(const KeyTable& table, const Block& block) {
   const Json object = object_schema(table, block, -1);
   if (!block.optional) return object;
-  return {{"description", block.help}, {"anyOf", {object, {{"enum", {"on", "off", true, false}}}}}};
+  const Json words =
+      table.has_required(block) ? Json{"off", false} : Json{"on", "off", true, false};
+  return {{"description", block.help}, {"anyOf", {object, {{"enum", words}}}}};
 }
 
 Json list_schema(const KeyTable& table, const Block& block) {
@@ -103,10 +107,7 @@ Json object_schema(const KeyTable& table, const Block& block, int kind) {
     for (const Block& child : table.blocks) {
       if (bool(child.list) != lists || child.parent != &block) continue;
       properties[child.leaf()] = lists ? list_schema(table, child) : block_schema(table, child);
-      if (lists ? child.list->least > 0
-                : std::any_of(child.keys.begin(), child.keys.end(),
-                              [](auto* key) { return key->required; }))
-        required.push_back(child.leaf());
+      if (table.is_required(child)) required.push_back(child.leaf());
     }
   Json out{{"type", "object"}, {"additionalProperties", false}};
   if (block.parent != nullptr && !block.list) out["description"] = block.help;

@@ -130,12 +130,17 @@ class Validator {
       block.resize(object_, 1);
       return read_block(block, path, value, object_, ~0u);
     }
-    if (block.optional && (turns_on(value) || turns_off(value)))
-      return block.resize(object_, turns_on(value));
+    if (block.optional && (turns_on(value) || turns_off(value))) {
+      block.resize(object_, turns_on(value));
+      if (turns_on(value)) require(block, path, {}, ~0u);
+      return;
+    }
     std::string what = "expected a block {" +
                        (block.keys.empty() ? "" : block.keys[0]->leaf() + ": ") + "...}, got " +
                        value.shown();
-    if (block.optional) what += "; write {} or on for on with the defaults, off for off";
+    if (block.optional)
+      what += table_.has_required(block) ? "; write off for off"
+                                         : "; write {} or on for on with the defaults, off for off";
     report(value.place(), path, what);
   }
 
@@ -175,6 +180,15 @@ class Validator {
     return list.kind_of(entry);
   }
 
+  /// Whether `in` is on without being mentioned, in `around`: each of its required keys is missing.
+  bool is_on_unseen(const Block& in, const Block& around,
+                    const std::map<std::string, std::size_t>& seen) const {
+    if (in.parent == nullptr || in.list) return false;
+    const bool inside =
+        in.parent == &around ? !seen.count(in.leaf()) : is_on_unseen(*in.parent, around, seen);
+    return inside && in.size(object_) > 0;
+  }
+
   void require(const Block& block, const std::string& shown,
                const std::map<std::string, std::size_t>& seen, unsigned kind) {
     const std::string place = out_.places[shown];
@@ -182,8 +196,7 @@ class Validator {
       const Block& in = *key.block;
       const bool direct = &in == &block;
       if (!key.required || (direct && seen.count(key.leaf()))) continue;
-      // A required block that is absent altogether: each of its required keys is missing.
-      if (!direct && (block.parent != nullptr || seen.count(in.path) || in.list)) continue;
+      if (!direct && !is_on_unseen(in, block, seen)) continue;
       if (!key.is_kind && !(key.kinds & kind)) continue;
       const std::string range = range_text(key), unit = unit_text(key);
       std::string what = "missing; required";

@@ -72,9 +72,9 @@ int choice_of(const Key& key, const Node& node) {
   return it == key.choices.end() ? -1 : static_cast<int>(it - key.choices.begin());
 }
 
-std::string read_text(const Node& node, std::string& out) {
+std::string read_text(const Key& key, const Node& node, std::string& out) {
   if (node.kind != Node::Kind::scalar) return instead_of("text", node);
-  if (node.text.empty()) return "is empty, expected text";
+  if (node.text.empty() && !may_be_empty(key)) return "is empty, expected text";
   if (node.text.size() > 1000) return "is longer than 1000 bytes";
   if (node.text.find_first_of("\n\r\t") != std::string::npos)
     return node.shown() + " holds a line break or a tab, expected one line";
@@ -128,7 +128,7 @@ struct Reader {
   std::string operator()(std::array<T, N>* field) const {
     return read_numbers(key, node, *field);
   }
-  std::string operator()(std::string* field) const { return read_text(node, *field); }
+  std::string operator()(std::string* field) const { return read_text(key, node, *field); }
   std::string operator()(std::vector<std::string>* field) const {
     return read_words(key, node, *field);
   }
@@ -177,6 +177,10 @@ struct Writer {
 };
 
 }  // namespace
+
+bool may_be_empty(const Key& key) {
+  return !key.required && std::get<std::string*>(key.field(key.standard))->empty();
+}
 
 bool is_numeric(const Field& field) {
   return !std::holds_alternative<bool*>(field) && !std::holds_alternative<std::string*>(field) &&

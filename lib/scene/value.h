@@ -12,6 +12,9 @@ namespace pbf::inline scene_module {
 /// Whether the field is a number or a group of numbers.
 bool is_numeric(const Field& field);
 
+/// Whether "" is a value of the key, which holds text: "" is its default, and none is required.
+bool may_be_empty(const Key& key);
+
 /// Reads `node` into `field`, checking type, choices and range of `key`. Returns what is wrong,
 /// with the remedy, or an empty string. The field is unchanged when something is wrong.
 std::string read_field(const Key& key, const Node& node, const Field& field);

@@ -67,20 +67,24 @@ class Writer {
     const std::string leaf = entry.leaf();
     const std::string indent = indent_of(entry).substr(2);
     if (!entry.is_present(object_)) {  // children of an absent block say nothing
-      if (entry.optional) out_ += indent + leaf + ": off\n";
+      if (entry.optional && entry.parent->is_present(object_)) out_ += indent + leaf + ": off\n";
       return;
     }
-    if (comments_)
-      out_ += comment(
-          entry.help + (entry.on_by_default ? " Optional: on with the defaults without this "
-                                              "block; off with `" +
-                                                  leaf + ": off`."
-                        : entry.optional ? " Optional: without this block, or with `" + leaf +
-                                               ": off`, it is off; {} or `on` turns it "
-                                               "on with the defaults."
-                                         : ""),
-          indent);
+    if (comments_) out_ += comment(entry.help + how_it_is_off(entry), indent);
     out_ += indent + leaf + ":\n";
+  }
+
+  std::string how_it_is_off(const Block& block) const {
+    const std::string off = "`" + block.leaf() + ": off`";
+    const bool on_with_defaults = !table_.has_required(block);
+    if (!block.optional) return "";
+    if (block.on_by_default)
+      return (on_with_defaults ? " Optional: on with the defaults without this block; off with "
+                               : " Optional: off with ") +
+             off + ".";
+    return " Optional: without this block, or with " + off +
+           (on_with_defaults ? ", it is off; {} or `on` turns it on with the defaults."
+                             : ", it is off.");
   }
 
   void write_list(const Block& block) {
