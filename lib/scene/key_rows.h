@@ -73,6 +73,18 @@ inline double root(double x, int level) { return std::pow(x, std::ldexp(1, -leve
 inline auto effect(Effect effect) {
   return [=](auto& row) { row.effect = effect; };
 }
+/// Of a key or a block whose numbers are not rounded at random: why not.
+inline auto exact(const char* why) {
+  return [=](auto& row) { row.draw.exact = why; };
+}
+/// In this turn, 0 first; those that do not say come last, in the order of the table.
+inline auto drawn(int turn) {
+  return [=](Key& row) { row.draw.turn = turn; };
+}
+/// This value turns what the key is for off, and is not rounded.
+inline auto off_at(double value) {
+  return [=](Key& row) { row.draw.off = value; };
+}
 
 /// A block that is a std::optional.
 template <class Member>

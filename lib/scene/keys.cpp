@@ -66,7 +66,10 @@ KeyTable::KeyTable(const std::vector<KeyRows>& parts, const Object& defaults) {
     keys.insert(keys.end(), part.keys.begin(), part.keys.end());
   }
   for (Block& block : blocks)
-    if (!block.path.empty()) block.parent = find_block(before_last_dot(block.path));
+    if (!block.path.empty()) {
+      block.parent = find_block(before_last_dot(block.path));
+      if (block.draw.exact == nullptr) block.draw.exact = block.parent->draw.exact;
+    }
   for (Key& key : keys) {
     Block& block = const_cast<Block&>(*find_block(before_last_dot(key.path)));
     block.keys.push_back(&key);
@@ -74,6 +77,7 @@ KeyTable::KeyTable(const std::vector<KeyRows>& parts, const Object& defaults) {
     key.block = &block;
     key.standard = block.list ? block.list->standard : defaults;
     key.effect = std::min(key.effect, block.effect);
+    if (block.draw.exact != nullptr) key.draw.exact = block.draw.exact;
   }
   make_all_present(defaults);
 }

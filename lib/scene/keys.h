@@ -55,6 +55,16 @@ enum class Effect {
   results,   ///< it does not
 };
 
+/// How `pbf compare` rounds a real number of a scene at random for a member of its ensemble, as a
+/// solver of lower precision rounds it once. Every number on which results depend is rounded.
+struct Draw {
+  static constexpr int kLast = 9;
+  const char* exact = nullptr;  ///< why it is not; null: it is
+  int turn = kLast;             ///< smaller ones first: a new key leaves the others' numbers alone
+  /// The value that turns it off, which stays and takes no random number; none: 0 stays 0.
+  double off = std::numeric_limits<double>::quiet_NaN();
+};
+
 struct Block;
 
 struct Key {
@@ -73,6 +83,7 @@ struct Key {
   /// stays.
   double (*at_level)(double value, int level) = nullptr;
   Effect effect = Effect::results;  ///< no more than its block's
+  Draw draw{};                      ///< exact where its block is
   // From the table:
   const Block* block = nullptr;
   Object standard{};  ///< where it has its default
@@ -107,6 +118,7 @@ struct Block {
   bool optional = false;  ///< absent or `off`: the feature is off; {} or `on`: on, all defaults
   bool on_by_default = false;  ///< optional, but on where the scene does not mention it
   Effect effect = Effect::results;
+  Draw draw{};  ///< `exact` holds for its keys and for blocks in it
   std::optional<List> list{};
   // From the table:
   const Block* parent = nullptr;  ///< of the top level null

@@ -12,14 +12,16 @@ KeyRows motion_rows() {
            KEY(time.adaptive),
            "Updates of 2^k steps of time.step/2^k, k chosen at every measure so that the "
            "flow keeps the limits below, or finer: where the guard would stop the run, it "
-           "goes back to the last good state and goes on with half the step."),
+           "goes back to the last good state and goes on with half the step.",
+           exact("a comparison makes an update one step")),
        {"solver", "The constraint solver."},
        optional_block(KEY(tensile), "Artificial pressure against clusters (s_corr)."),
        optional_block(KEY(viscosity), "XSPH viscosity."),
        optional_block(KEY(vorticity), "Vorticity confinement.")},
-      {key(KEY(gravity), number("m/s^2", kRate), "Acceleration of gravity, [x, y, z]."),
+      {key(KEY(gravity), number("m/s^2", kRate), "Acceleration of gravity, [x, y, z].", drawn(2)),
        key(KEY(time.step), number("s", kSeconds),
-           "Time of one update, dt. About 0.03 sqrt(h/g) is safe.", required, scaled(linear)),
+           "Time of one update, dt. About 0.03 sqrt(h/g) is safe.", required, scaled(linear),
+           drawn(0)),
        key(KEY(time.end), number("s", kSeconds),
            "Time simulated, rounded to whole updates; at least time.step.", required,
            effect(Effect::none)),
@@ -34,7 +36,8 @@ KeyRows motion_rows() {
            "Iterations over the constraints per substep; with a tolerance, at least."),
        key(KEY(solver.tolerance), number("", {0, 1}),
            "The iterations are repeated while the mean compression that the last one found, before "
-           "it moved the particles, is above this. 0: they are not."),
+           "it moved the particles, is above this. 0: they are not.",
+           exact("a threshold, which enters no sum")),
        key(KEY(solver.max_iterations), number("", {1, 100000}),
            "Iterations per substep at most, a multiple of solver.iterations, where there is a "
            "tolerance."),
@@ -56,27 +59,29 @@ KeyRows motion_rows() {
        key(KEY(solver.cfm), number("", {0, 1e12}),
            "eps h^2, in the denominator of lambda (constraint force mixing, made dimensionless). "
            "Larger is softer.",
-           renamed("solver.relaxation")),
+           renamed("solver.relaxation"), drawn(1)),
        key(KEY(solver.sor), number("", {0, 2, true}),
            "Factor omega on the position change of one iteration (successive over-relaxation; "
            "below "
            "1 it under-relaxes). auto: min(1, (2.5 d/h)^2), in two dimensions min(1, (3 "
            "d/h)^(4/3)), since more neighbours need smaller steps, and less where the density is "
            "above rest_density.",
-           renamed("solver.step_length"), automatic),
+           renamed("solver.step_length"), automatic, drawn(3)),
        key(KEY(solver.boundary), one_of({"density", "clamp"}),
            "density: walls count in the density like fluid behind them. clamp: particles are "
            "only put back into the box."),
        key(KEY(solver.wall_margin), number("m", {0, 1e9}),
            "Distance to a wall at which particles are clamped. What is nearer at the start is "
-           "put there; by more than half of fluid.spacing it is refused."),
+           "put there; by more than half of fluid.spacing it is refused.",
+           drawn(1)),
        key(KEY(solver.velocity_damping), number("", {0, 1}),
-           "Factor on every velocity, once per update. 1: no damping.", scaled(root)),
+           "Factor on every velocity, once per update. 1: no damping.", scaled(root), drawn(2),
+           off_at(1)),
        key(KEY(solver.speed_limit), number("h per update", {0, 1e6}),
            "Particles that would move farther than this in time.step, however many steps that is "
            "(time.adaptive), are slowed down to it; how often is counted and reported. 0: no "
            "limit.",
-           scaled(linear)),
+           scaled(linear), exact("a bound, which all but a few particles keep")),
        key(KEY(solver.prestabilize), plain,
            "Steps without time before the first update, while the compression of the start "
            "(blocks in corners, bodies that overlap) would add to the energy: they move "

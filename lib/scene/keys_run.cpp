@@ -5,18 +5,20 @@ namespace pbf::inline scene_module {
 
 #define KEY(member) MEMBER(Scene, member)
 
+constexpr const char* kNoPhysics = "what is written, not what is computed";
+
 KeyRows run_rows() {
   const std::vector<std::string> floats = words_of<Precision>();
   return {
       {optional_block(KEY(guard),
                       "Stops a run at a measure that makes no sense, and names the culprit.",
                       on_by_default, effect(Effect::adaptive)),
-       optional_block(KEY(output), "Frames in run.vtkhdf."),
+       optional_block(KEY(output), "Frames in run.vtkhdf.", exact(kNoPhysics)),
        optional_block(KEY(checkpoint),
                       "The whole state, now and then and at the end. A run that a signal or the "
                       "wall-time limit stops saves it also without this block.",
                       effect(Effect::none)),
-       optional_block(KEY(render), "Pictures, drawn while the simulation runs."),
+       optional_block(KEY(render), "Pictures, drawn while the simulation runs.", exact(kNoPhysics)),
        {"render.camera", "The camera of the pictures."}},
       {key(KEY(measure_every), number("", {1, 2147483647}),
            "Updates between two measures (density error, energy, momentum, ...)."),

@@ -6,6 +6,8 @@ namespace pbf::inline scene_module {
 #define KEY(member) MEMBER(Scene, member)
 #define BODY(member) MEMBER_OF(bodies, Body, member)
 
+constexpr const char* kFrame = "coordinates count from it and the grid is laid by it";
+
 KeyRows start_rows() {
   return {
       {{"", "A scene."},
@@ -16,27 +18,30 @@ KeyRows start_rows() {
                    .least = 1,
                    .remark = "ids count through them in this order",
                    .example = "{shape: block, min: [0, 0, 0], max: [1, 1, 1]}",
-                   .further = "{shape: file, path: particles.csv, velocity: [0, 0, 0]}"})},
+                   .further = "{shape: file, path: particles.csv, velocity: [0, 0, 0]}"},
+                  exact("all solvers of a comparison start from the same particles"))},
       {key(KEY(name), plain, "Name of the scene, for titles and logs.", effect(Effect::none)),
        key(KEY(dimensions), number("", {2, 3}),
            "2: the fluid lies in the x-z plane in the middle of the domain's y, whose extent is "
            "the thickness of the slab, at most h, without walls. Bodies are cut by that plane. "
            "3: space."),
        key(KEY(domain.min), number("m", kCoordinate), "Lower corner of the box, [x, y, z].",
-           required),
+           required, exact(kFrame)),
        key(KEY(domain.max), number("m", kCoordinate),
-           "Upper corner of the box; above domain.min along every axis.", required),
+           "Upper corner of the box; above domain.min along every axis.", required, exact(kFrame)),
        key(KEY(domain.open), one_of({"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"}),
            "Faces of the box without a wall, as a list."),
-       key(KEY(fluid.rest_density), number("kg/m^3", {1e-6, 1e9}), "Rest density rho0."),
+       key(KEY(fluid.rest_density), number("kg/m^3", {1e-6, 1e9}), "Rest density rho0.",
+           exact("the unit of densities")),
        key(KEY(fluid.spacing), number("m", kLength),
            "Edge d of the rest lattice's cell: the distance of neighbouring particles at rest. "
            "Halving it makes 8 times the particles, 4 in two dimensions.",
-           required),
+           required, exact("the particles stand so far apart; h is rounded by smoothing_ratio")),
        key(KEY(fluid.smoothing_ratio), number("", {1, 10}),
            "Smoothing length over spacing, h/d. 2 gives about 33 neighbours, 12 in two "
            "dimensions. With fluid.mass: auto at least 1.6, in two dimensions 1.5: below, a pool "
-           "packs itself into less than 0.97 of its volume."),
+           "packs itself into less than 0.97 of its volume.",
+           drawn(1)),
        key(KEY(fluid.mass), number("kg", {0, 1e30, true}),
            "Mass of one particle. auto: rho0 d^3 (in two dimensions rho0 d^2 times the "
            "thickness), with the density sum calibrated so that the rest lattice has density "

@@ -7,6 +7,7 @@
 #include "lib/run/emit.h"
 #include "lib/run/prestabilize.h"
 #include "lib/run/session.h"
+#include "lib/scene/keys.h"
 #include "lib/scene/random.h"
 #include "lib/verify/compare_parts.h"
 
@@ -41,21 +42,11 @@ void round_to_float(SolverState& s) {
     for (double& x : *v) x = double(float(x));
 }
 
-/// The scene with every constant of the update rounded at random, as a solver of lower precision
-/// rounds them once: an error that is the same for all particles and does not average out.
+/// The scene with its constants rounded at random: an error that is the same for all particles and
+/// does not average out.
 Scene rounded(const Scene& scene, double u, std::uint64_t seed) {
-  SplitMix64 random(seed);
   Scene s = scene;
-  const auto round = [&](double& x) { x *= 1 + u * (2 * random.uniform() - 1); };
-  for (double* x : {&s.time.step, &s.fluid.smoothing_ratio, &s.solver.cfm, &s.solver.wall_margin,
-                    &s.gravity[0], &s.gravity[1], &s.gravity[2]})
-    round(*x);
-  if (s.solver.velocity_damping < 1) round(s.solver.velocity_damping);
-  if (s.solver.sor) round(*s.solver.sor);
-  if (s.fluid.mass) round(*s.fluid.mass);
-  if (s.tensile) round(s.tensile->k), round(s.tensile->delta_q);
-  if (s.viscosity) round(s.viscosity->xsph);
-  if (s.vorticity) round(s.vorticity->epsilon);
+  round_at_random(scene_table(), object(s), u, seed);
   return s;
 }
 
