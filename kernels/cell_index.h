@@ -24,12 +24,12 @@ PBF_HD int cell_coordinate(Real x, Real inv_cell, int cells) {
 /// x counts half cells: the runs of candidates below are then 2.5 cells long, not 3. z is counted
 /// from the first layer that is here: a slab of the grid has the bins of the whole one, from the
 /// first of its layers on.
-struct Cell {
+struct GridCell {
   int x, y, z;
 };
 
 template <int D, class Real>
-PBF_HD Cell cell_of(Vec3<Real> x, const Params<Real>& p) {
+PBF_HD GridCell cell_of(Vec3<Real> x, const Params<Real>& p) {
   return {cell_coordinate(x.x, p.inv_cell + p.inv_cell, p.cells_x),
           D == 2 ? 0 : cell_coordinate(x.y, p.inv_cell, p.cells_y),
           cell_coordinate(x.z, p.inv_cell, p.cells_z) - p.first_layer};
@@ -42,7 +42,7 @@ constexpr int bins_per_cell(int dimensions) { return dimensions == 2 ? 2 : 4; }
 
 template <int D, class Real>
 PBF_HD int bin_of(Vec3<Real> x, const Params<Real>& p) {
-  const Cell c = cell_of<D>(x, p);
+  const GridCell c = cell_of<D>(x, p);
   const Real twice = p.inv_cell + p.inv_cell;
   if constexpr (D == 2) {
     const int z = cell_coordinate(x.z, twice, 2 * p.cells_z) & 1;
@@ -80,7 +80,7 @@ PBF_HD void for_each_run(int x_low, int x_high, int y, int z, const int* bin_sta
 /// The runs of one particle.
 template <int D, class Real, class F>
 PBF_HD void for_each_run(Vec3<Real> x, const int* bin_start, const Params<Real>& p, F&& f) {
-  const Cell c = cell_of<D>(x, p);
+  const GridCell c = cell_of<D>(x, p);
   for_each_run<D>(c.x, c.x, c.y, c.z, bin_start, p, f);
 }
 

@@ -28,4 +28,9 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
+/// Throws Error(bad_input): `where` (a file, line, option or key) and what is wrong there.
+[[noreturn]] inline void bad_input(const std::string& where, const std::string& what) {
+  throw Error(ExitCode::bad_input, where + ": " + what);
+}
+
 }  // namespace pbf::inline base_module

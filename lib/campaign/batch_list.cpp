@@ -19,11 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostMembers = 100000;
-
-[[noreturn]] void bad(const std::string& where, const std::string& what) {
-  throw Error(ExitCode::bad_input, where + ": " + what);
-}
+constexpr std::size_t kMostRuns = 100000;
 
 bool is_scene(const fs::path& p) {
   return p.extension() == ".yaml" || p.extension() == ".yml" || p.extension() == ".h5";
@@ -35,8 +31,8 @@ std::vector<BatchMember> of_folder(const std::string& path) {
   for (const auto& entry : fs::directory_iterator(path, error))
     if (is_scene(entry.path()) && entry.path().extension() != ".h5")
       all.push_back({"", entry.path().string(), {}});
-  if (error) bad(path, "cannot be read: " + error.message());
-  if (all.empty()) bad(path, "holds no scene (*.yaml)");
+  if (error) bad_input(path, "cannot be read: " + error.message());
+  if (all.empty()) bad_input(path, "holds no scene (*.yaml)");
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.scene < b.scene; });
   return all;
 }
@@ -44,29 +40,32 @@ std::vector<BatchMember> of_folder(const std::string& path) {
 std::vector<BatchMember> of_list(const std::string& path) {
   note_input(path);
   std::ifstream in(path);
-  if (!in) bad(path, std::string("cannot be opened: ") + std::strerror(errno));
+  if (!in) bad_input(path, std::string("cannot be opened: ") + std::strerror(errno));
   std::vector<BatchMember> all;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     std::istringstream words(line.substr(0, line.find('#')));
     const std::string where = path + ":" + std::to_string(number);
-    if (const auto found = find_bad_text(line)) bad(where, found->what + "; " + found->remedy);
+    if (const auto found = find_bad_text(line))
+      bad_input(where, found->what + "; " + found->remedy);
     BatchMember m;
     for (std::string word; words >> word;) {
       if (m.scene.empty()) {
         m.scene = (fs::path(path).parent_path() / word).string();
       } else {
         if (word.find('=') == std::string::npos)
-          bad(where, "\"" + word + "\" is not key.path=value; a line is a scene and such settings");
+          bad_input(where,
+                    "\"" + word + "\" is not key.path=value; a line is a scene and such settings");
         m.overrides.push_back(word);
       }
     }
     if (m.scene.empty()) continue;
-    if (!is_scene(m.scene)) bad(where, m.scene + " is no scene (*.yaml) and no run file (*.h5)");
+    if (!is_scene(m.scene))
+      bad_input(where, m.scene + " is no scene (*.yaml) and no run file (*.h5)");
     all.push_back(m);
-    if (all.size() > kMostMembers) bad(path, "has more than 100000 lines");
+    if (all.size() > kMostRuns) bad_input(path, "has more than 100000 lines");
   }
-  if (all.empty()) bad(path, "names no scene");
+  if (all.empty()) bad_input(path, "names no scene");
   return all;
 }
 
@@ -106,10 +105,10 @@ void name_all(std::vector<BatchMember>& all) {
 GridAxis parse_axis(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-    bad("--grid " + text, "expected KEY=V1,V2,..., e.g. --grid solver.iterations=2,4,8");
+    bad_input("--grid " + text, "expected KEY=V1,V2,..., e.g. --grid solver.iterations=2,4,8");
   const std::vector<std::string> values = listed_values(text.substr(equals + 1));
   for (const std::string& v : values)
-    if (v.empty()) bad("--grid " + text, "has an empty value");
+    if (v.empty()) bad_input("--grid " + text, "has an empty value");
   return grid_axis(text.substr(0, equals), values);
 }
 
@@ -123,7 +122,7 @@ std::vector<BatchMember> batch_members(const std::string& input, std::vector<Gri
   else
     scenes = of_list(input);
   axes.insert(axes.begin(), GridAxis(scenes.size()));
-  for (const GridMember& m : grid_members(axes, kMostMembers, "--grid")) {
+  for (const GridMember& m : grid_members(axes, kMostRuns, "--grid")) {
     std::vector<std::string>& overrides = all.emplace_back(scenes[m.at[0]]).overrides;
     for (const std::string& text : override_texts(m.settings)) overrides.push_back(text);
   }

@@ -6,14 +6,6 @@
 #include "lib/scene/number.h"
 
 namespace pbf::inline campaign_module {
-namespace {
-
-[[noreturn]] void bad(const std::string& where, const std::string& what) {
-  throw Error(ExitCode::bad_input, where + ": " + what);
-}
-
-}  // namespace
-
 std::string setting_text(const Node& value) {
   if (value.kind == Node::Kind::scalar) return value.text;
   if (value.kind == Node::Kind::null) return "off";
@@ -49,7 +41,7 @@ std::vector<GridMember> grid_members(const std::vector<GridAxis>& axes, std::siz
   std::vector<GridMember> all(1);
   for (const GridAxis& axis : axes) {
     if (all.size() * axis.size() > most)
-      bad(where, "makes more than " + std::to_string(most) + " runs");
+      bad_input(where, "makes more than " + std::to_string(most) + " runs");
     std::vector<GridMember> more;
     for (const GridMember& member : all)
       for (std::size_t k = 0; k < axis.size(); ++k) {
@@ -90,7 +82,7 @@ std::vector<double> numbers_listed(const std::string& key, const std::string& te
   const auto number = [&](const std::string& word) {
     double v = 0;
     if (const NumberError e = read_number(word, v); e != NumberError::none)
-      bad(where, "\"" + word + "\" " + describe(e));
+      bad_input(where, "\"" + word + "\" " + describe(e));
     return v;
   };
   std::vector<double> values;
@@ -99,17 +91,17 @@ std::vector<double> numbers_listed(const std::string& key, const std::string& te
     for (const std::string& word : listed_values(text)) {
       values.push_back(number(word));
       if (whole && values.back() != std::floor(values.back()))
-        bad(where, word + " " + describe(NumberError::not_whole));
+        bad_input(where, word + " " + describe(NumberError::not_whole));
     }
     return values;
   }
   if (first == last || text.find(':', first + 1) != last)
-    bad(where, "expected a,b,c or LOW:HIGH:COUNT");
+    bad_input(where, "expected a,b,c or LOW:HIGH:COUNT");
   const double low = number(text.substr(0, first)),
                high = number(text.substr(first + 1, last - first - 1)),
                count = number(text.substr(last + 1));
   if (!(low > 0 && high > low && count >= 2 && count <= 1000 && count == std::floor(count)))
-    bad(where, text + " is no range with 0 < LOW < HIGH and 2 to 1000 values");
+    bad_input(where, text + " is no range with 0 < LOW < HIGH and 2 to 1000 values");
   for (int k = 0; k < int(count); ++k) {
     const double v = low * std::pow(high / low, k / (count - 1));
     if (!whole)

@@ -14,8 +14,6 @@ namespace {
 
 constexpr std::size_t kMostCells = 10000000;
 
-[[noreturn]] void bad(const std::string& what) { throw Error(ExitCode::bad_input, what); }
-
 double length(const Double3& v) { return std::hypot(v[0], v[1], v[2]); }
 
 Scene scene_with(const std::string& path, const std::vector<std::string>& overrides,
@@ -29,7 +27,7 @@ Scene scene_with(const std::string& path, const std::vector<std::string>& overri
 Field field_of(Scene& s, const std::string& key) {
   const Key* k = scene_table().find_key(key);
   if (k == nullptr || key.find("[]") != std::string::npos)
-    bad("--map: " + key + " is no key of a scene that a map can vary; try time.step,gravity");
+    bad_input("--map", key + " is no key of a scene that a map can vary; try time.step,gravity");
   for (const Block* b = k->block; b != nullptr; b = b->parent) b->resize(object(s), 1);
   return k->field(object(s));
 }
@@ -41,7 +39,7 @@ double value_of(Scene& s, const std::string& key) {
   if (const auto* v = std::get_if<std::optional<double>*>(&f)) return (*v)->value_or(0);
   if (const auto* v = std::get_if<int*>(&f)) return **v;
   if (const auto* v = std::get_if<Double3*>(&f)) return length(**v);
-  bad("--map: " + key + " is not a number");
+  bad_input("--map", key + " is not a number");
 }
 
 /// The key's values for the scene reader; of a vector, its length in its own direction, else
@@ -70,7 +68,7 @@ std::vector<double> map_values(const std::string& path, const std::vector<std::s
   const bool whole = std::holds_alternative<int*>(field_of(s, key));
   if (!text.empty()) return numbers_listed(key, text, whole);
   const double own = value_of(s, key);
-  if (own == 0) bad("--map: " + key + " is 0 in " + path + "; give its values with --x or --y");
+  if (own == 0) bad_input("--map", key + " is 0 in " + path + "; give its values with --x or --y");
   std::vector<double> values;
   for (const double factor : {0.25, 0.5, 1.0, 2.0, 4.0, 8.0})
     values.push_back(whole ? std::max(1.0, std::round(own * factor)) : own * factor);

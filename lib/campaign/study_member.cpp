@@ -20,8 +20,6 @@
 namespace pbf::inline campaign_module {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 /// s, by the clock of the study.
 double seconds_of(const Session& session, const Study& study) {
   return study.cpu_clock ? session.seconds().cpu : session.seconds().wall;
@@ -63,9 +61,9 @@ struct ProjectionSum {
   }
   void give(MemberResult& out) const {
     const bool known = n > 0 && failed == 0;
-    out.projection_mean = known ? mean / n : kNaN;
-    out.projection_rms = known ? std::sqrt(squares / n) : kNaN;
-    out.projection_max = known ? max : kNaN;
+    out.projection_mean = known ? mean / n : NAN;
+    out.projection_rms = known ? std::sqrt(squares / n) : NAN;
+    out.projection_max = known ? max : NAN;
     if (failed) out.message = "the exact projection did not converge";
   }
 };

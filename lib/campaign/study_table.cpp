@@ -11,8 +11,6 @@
 namespace pbf::inline campaign_module {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 /// Those of the table of diagnostics that a study sums up.
 std::vector<Diagnostic> study_diagnostics() {
   std::vector<Diagnostic> all = diagnostics();
@@ -30,17 +28,17 @@ double over_window(const MemberResult& r, const Diagnostic& m, double from) {
     largest = std::max(largest, values[k]);
     ++n;
   }
-  if (n == 0) return kNaN;  // ended before the window
+  if (n == 0) return NAN;  // ended before the window
   if (m.over == Over::mean) return sum / double(n);
   if (m.over == Over::rms) return std::sqrt(sum / double(n));
-  if (m.over == Over::max) return std::isnan(sum) ? kNaN : largest;
+  if (m.over == Over::max) return std::isnan(sum) ? NAN : largest;
   return values.back();
 }
 
 /// Linear in time; NaN beyond the last sample.
 double at_time(const std::vector<double>& time, const std::vector<double>& values, double t) {
   const auto next = std::lower_bound(time.begin(), time.end(), t - 1e-9 * std::fabs(t));
-  if (next == time.end()) return kNaN;
+  if (next == time.end()) return NAN;
   const auto i = std::size_t(next - time.begin());
   if (i == 0 || time[i] <= t) return values[i];
   const double part = (t - time[i - 1]) / (time[i] - time[i - 1]);
@@ -119,8 +117,8 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
   row.message = result.message;
   const auto names = study_error_measures(study);
   if (result.columns.empty()) {  // never ran
-    row.measures.assign(names.size(), kNaN);
-    row.result.seconds = kNaN;
+    row.measures.assign(names.size(), NAN);
+    row.result.seconds = NAN;
     return row;
   }
   for (const Diagnostic& m : study_diagnostics())
@@ -135,7 +133,7 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
     const double cells =
         double(result.particles) * s.particle_mass() / (s.fluid.rest_density * s.cell_volume());
     const double length = s.fluid.spacing * std::pow(cells, 1.0 / s.dimensions);
-    row.measures.push_back(reference ? reference_distance(result, *reference, length) : kNaN);
+    row.measures.push_back(reference ? reference_distance(result, *reference, length) : NAN);
   }
   if (study.front) {
     const double g = std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
@@ -156,7 +154,7 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
 
 double measure_of(const Study& study, const StudyRow& row, const std::string& name) {
   const std::size_t k = index_of(study, name);
-  return k < row.measures.size() ? row.measures[k] : kNaN;
+  return k < row.measures.size() ? row.measures[k] : NAN;
 }
 
 void mark_front(const Study& study, std::vector<StudyRow>& rows) {

@@ -16,10 +16,6 @@ constexpr const char* kNames[] = {"x", "y", "z", "vx", "vy", "vz"};
 constexpr std::size_t kLongestLine = 4096;  // bytes; six numbers need a few hundred
 constexpr const char* kExpected = "expected x,y,z or x,y,z,vx,vy,vz";
 
-[[noreturn]] void bad(const std::string& where, const std::string& what) {
-  throw Error(ExitCode::bad_input, where + ": " + what);
-}
-
 bool printable(std::string_view s) {
   return std::all_of(s.begin(), s.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
@@ -45,7 +41,7 @@ int csv_columns(std::string_view line, const std::string& where) {
   if (header.rfind("\xEF\xBB\xBF", 0) == 0) header.erase(0, 3);  // byte order mark of spreadsheets
   if (header == "x,y,z") return 3;
   if (header == "x,y,z,vx,vy,vz") return 6;
-  bad(where, wrong_header(header) + ", " + kExpected);
+  bad_input(where, wrong_header(header) + ", " + kExpected);
 }
 
 void parse_row(std::string_view line, int columns, const CsvLines& lines, double* row) {
@@ -62,10 +58,10 @@ void parse_row(std::string_view line, int columns, const CsvLines& lines, double
         const std::string value = printable(cell)
                                       ? std::string("\"").append(cell.substr(0, 40)) + "\""
                                       : "what stands there, no plain text,";
-        bad(lines.where(), std::string(kNames[column]) + ": " + value + what);
+        bad_input(lines.where(), std::string(kNames[column]) + ": " + value + what);
       };
       if (cell.empty())
-        bad(lines.where(), std::string(kNames[column]) + ": empty, expected a number");
+        bad_input(lines.where(), std::string(kNames[column]) + ": empty, expected a number");
       if (ec == std::errc::result_out_of_range) refuse(" does not fit a double");
       if (ec != std::errc{} || stop != end) refuse(" is not a number");
       if (!std::isfinite(row[column])) refuse(" is not finite");
@@ -74,8 +70,8 @@ void parse_row(std::string_view line, int columns, const CsvLines& lines, double
     rest.remove_prefix(comma + 1);
   }
   if (column + 1 != columns)
-    bad(lines.where(),
-        std::to_string(column + 1) + " columns, the header has " + std::to_string(columns));
+    bad_input(lines.where(),
+              std::to_string(column + 1) + " columns, the header has " + std::to_string(columns));
 }
 
 /// Calls `use(line, columns, where)` for every data line.
@@ -90,7 +86,8 @@ void for_each_row(RegularFile& file, const std::string& path, Sha256* hash, Use 
     else
       use(std::string_view(line), columns, lines);
   }
-  if (columns == 0) bad(path, "empty, expected a header x,y,z or x,y,z,vx,vy,vz and particles");
+  if (columns == 0)
+    bad_input(path, "empty, expected a header x,y,z or x,y,z,vx,vy,vz and particles");
 }
 
 }  // namespace

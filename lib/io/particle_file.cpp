@@ -20,10 +20,6 @@
 namespace pbf::inline io_module {
 namespace {
 
-[[noreturn]] void bad(const std::string& where, const std::string& what) {
-  throw Error(ExitCode::bad_input, where + ": " + what);
-}
-
 RegularFile open_file(const std::string& path) {
   note_input(path);
   return RegularFile(path, "a particle file (CSV or HDF5)",
@@ -44,12 +40,13 @@ std::int64_t read_rows(hid_t file, const std::string& path, const char* name,
   const h5::Dataset data = h5::open_dataset(file, name);
   const h5::Type type(H5Dget_type(data));
   const H5T_class_t kind = H5Tget_class(type);
-  if (kind != H5T_FLOAT && kind != H5T_INTEGER) bad(where, "does not hold numbers");
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER) bad_input(where, "does not hold numbers");
   const std::vector<hsize_t> dims = h5::shape(data);
-  if (dims.size() != 2) bad(where, "has the wrong rank, expected (N, 3)");
-  if (dims[1] != 3) bad(where, "has " + std::to_string(dims[1]) + " columns, expected 3: x, y, z");
+  if (dims.size() != 2) bad_input(where, "has the wrong rank, expected (N, 3)");
+  if (dims[1] != 3)
+    bad_input(where, "has " + std::to_string(dims[1]) + " columns, expected 3: x, y, z");
   if (dims[0] > 2147483647u)
-    bad(where, "has " + std::to_string(dims[0]) + " rows; at most 2147483647 particles fit");
+    bad_input(where, "has " + std::to_string(dims[0]) + " rows; at most 2147483647 particles fit");
   h5::claimed(data, dims, sizeof(double));
   if (out != nullptr) {
     out->resize(dims[0]);
@@ -57,7 +54,7 @@ std::int64_t read_rows(hid_t file, const std::string& path, const char* name,
       h5::check(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out->data()));
     for (std::size_t i = 0; i < out->size(); ++i)
       for (double value : (*out)[i])
-        if (!std::isfinite(value)) bad(where, "row " + std::to_string(i) + " is not finite");
+        if (!std::isfinite(value)) bad_input(where, "row " + std::to_string(i) + " is not finite");
   }
   return static_cast<std::int64_t>(dims[0]);
 }
@@ -90,13 +87,13 @@ std::int64_t read_hdf5(const std::string& path, Particles* out, std::string* sha
     const struct stat before = state_of(h5::descriptor(file));
     if (sha256) *sha256 = hash_of(h5::descriptor(file));
     if (!h5::has_link(file, "position"))
-      bad(path + ": dataset position", "is missing; a particle file needs position (N, 3)");
+      bad_input(path + ": dataset position", "is missing; a particle file needs position (N, 3)");
     const auto count = read_rows(file, path, "position", out ? &out->position : nullptr);
     if (h5::has_link(file, "velocity")) {
       const auto rows = read_rows(file, path, "velocity", out ? &out->velocity : nullptr);
       if (rows != count)
-        bad(path, "position has " + std::to_string(count) + " rows, velocity " +
-                      std::to_string(rows) + "; they must agree");
+        bad_input(path, "position has " + std::to_string(count) + " rows, velocity " +
+                            std::to_string(rows) + "; they must agree");
     } else if (out != nullptr) {
       out->velocity.assign(static_cast<std::size_t>(count), Double3{});
     }

@@ -11,7 +11,6 @@ namespace pbf::inline io_module {
 namespace {
 
 using h5::check;
-using h5::Column;
 
 // Half the number of chunks that one node of a dataset's index holds. A node that is full splits,
 // which HDF5 does in an order that makes the dataset unreadable for the microseconds in between;

@@ -7,7 +7,6 @@
 namespace pbf::inline io_module {
 namespace {
 
-using h5::Column;
 using run_layout::log_rows;
 
 constexpr std::size_t max_waiting_rows = 256;
@@ -29,7 +28,7 @@ void RunOutput::write_log() {
   std::vector<std::int64_t> integers(waiting_.size());
   std::vector<double> numbers(waiting_.size());
   for (const auto& c : run_layout::log_columns()) {
-    Column& column = log_.at(c.name);
+    h5::Column& column = log_.at(c.name);
     if (c.real) {
       std::transform(waiting_.begin(), waiting_.end(), numbers.begin(),
                      [&](const LogRow& row) { return c.value(row); });
@@ -49,8 +48,9 @@ void RunOutput::write_stages() {
   const hsize_t first = log_.at("time").rows() - waiting_.size();
   for (const LogRow& row : waiting_)
     for (const StageTime& stage : row.stages)
-      if (Column& column = stages_[stage.name]; !column.open()) {
-        column = Column(pbf_, "log/stage/" + stage.name, H5T_IEEE_F64LE, {log_rows, 0, false, "s"});
+      if (h5::Column& column = stages_[stage.name]; !column.open()) {
+        column =
+            h5::Column(pbf_, "log/stage/" + stage.name, H5T_IEEE_F64LE, {log_rows, 0, false, "s"});
         column.append(std::vector<double>(first, 0.0));
       }
   for (auto& [name, column] : stages_) {

@@ -12,7 +12,6 @@ namespace pbf::inline io_module {
 namespace {
 
 using h5::check;
-using h5::Column;
 
 /// What a process killed in the middle of a commit has left may lie behind the end that the file
 /// knows of; space is taken only behind that.
@@ -31,7 +30,7 @@ h5::Type session_text() {
   return t;
 }
 
-void put_text(Column& column, hsize_t row, const std::string& text) {
+void put_text(h5::Column& column, hsize_t row, const std::string& text) {
   char bytes[run_layout::session_text] = {};
   std::size_t size = std::min(text.size(), sizeof bytes);
   while (size < text.size() && size > 0 && (static_cast<unsigned char>(text[size]) & 0xC0) == 0x80)
@@ -103,8 +102,8 @@ void RunOutput::open_fields(std::int64_t frames) {
             "",
             h5::scalar_type(d, path),
             dims.size() == 2 ? static_cast<int>(dims[1]) : 1,
-            Column::existing(vtk_, path),
-            name == "position" ? Column() : offsets(name, n)};
+            h5::Column::existing(vtk_, path),
+            name == "position" ? h5::Column() : offsets(name, n)};
     f.data.truncate(end_row_);
     return f;
   };
@@ -121,7 +120,7 @@ void RunOutput::open_stages(hsize_t rows) {
   if (!h5::has_link(pbf_, "log/stage")) return;
   const h5::Group group = h5::open_group(pbf_, "log/stage");
   for (const auto& name : h5::children(group, H5O_TYPE_DATASET))
-    (stages_[name] = Column::existing(group, name)).truncate(rows);
+    (stages_[name] = h5::Column::existing(group, name)).truncate(rows);
 }
 
 void RunOutput::make_sessions() {
@@ -129,7 +128,8 @@ void RunOutput::make_sessions() {
   const h5::Layout layout{run_layout::session_rows, 0, false, ""};
   const auto column = [&](const char* name, hid_t type) {
     const std::string path = std::string("sessions/") + name;
-    sessions_[name] = there ? Column::existing(pbf_, path) : Column(pbf_, path, type, layout);
+    sessions_[name] =
+        there ? h5::Column::existing(pbf_, path) : h5::Column(pbf_, path, type, layout);
   };
   RunSession none;
   run_layout::for_each_text(none,

@@ -9,7 +9,6 @@
 namespace pbf::inline io_module {
 namespace {
 
-using h5::Column;
 using run_layout::step_rows;
 
 constexpr hsize_t max_chunk_rows = hsize_t{1} << 22;  // 50 MB of float positions
@@ -19,10 +18,10 @@ constexpr hsize_t max_chunk_rows = hsize_t{1} << 22;  // 50 MB of float position
 RunOutput::RunOutput(const RunInfo& info, bool gzip)
     : gzip_(gzip), expected_(static_cast<std::size_t>(std::max<std::int64_t>(0, info.particles))) {}
 
-Column RunOutput::column(hid_t parent, const std::string& path, hid_t type,
-                         const h5::Layout& layout, hsize_t rows) const {
-  if (!opening_) return Column(parent, path, type, layout);
-  Column c = Column::existing(parent, path);
+h5::Column RunOutput::column(hid_t parent, const std::string& path, hid_t type,
+                             const h5::Layout& layout, hsize_t rows) const {
+  if (!opening_) return h5::Column(parent, path, type, layout);
+  h5::Column c = h5::Column::existing(parent, path);
   c.truncate(rows);
   return c;
 }
@@ -49,7 +48,7 @@ void RunOutput::make_tables(hsize_t frames) {
   }
 }
 
-Column RunOutput::offsets(const std::string& field, hsize_t frames) const {
+h5::Column RunOutput::offsets(const std::string& field, hsize_t frames) const {
   return column(steps_, "PointDataOffsets/" + field, H5T_STD_I64LE, {step_rows, 0, false, ""},
                 frames);
 }
@@ -106,9 +105,9 @@ void RunOutput::create_fields(const Snapshot& first) {
     const bool points = fields_.empty();  // VTK wants three components there, one-row arrays flat
     const int components = points || f.components > 1 ? f.components : 0;
     fields_.push_back({f.name, f.unit, f.type, f.components,
-                       Column(vtk_, points ? "Points" : "PointData/" + f.name,
-                              h5::file_type(f.type), {chunk_rows_, components, gzip_, f.unit}),
-                       points ? Column() : offsets(f.name, 0)});
+                       h5::Column(vtk_, points ? "Points" : "PointData/" + f.name,
+                                  h5::file_type(f.type), {chunk_rows_, components, gzip_, f.unit}),
+                       points ? h5::Column() : offsets(f.name, 0)});
   }
   make_ids(0, 0);
 }

@@ -15,16 +15,16 @@
 #include "lib/io/run_layout.h"
 
 namespace pbf::inline io_module {
-namespace {
-
-using h5::check;
-
 struct FieldPlace {
   std::string name, unit, path;  ///< path under /VTKHDF
   std::vector<std::int64_t> offsets;
   ScalarType type = ScalarType::f32;
   int components = 1;
 };
+
+namespace {
+
+using h5::check;
 
 FieldPlace describe(hid_t vtk, const std::string& name, const std::string& path, std::size_t n) {
   FieldPlace f{name, "", path, {}};

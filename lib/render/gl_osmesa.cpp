@@ -10,8 +10,10 @@ namespace pbf::inline render_module {
 namespace {
 
 // Values of GL/osmesa.h.
-constexpr int kFormat = 0x22, kDepthBits = 0x30, kStencilBits = 0x31, kAccumBits = 0x32;
-constexpr int kProfile = 0x33, kCoreProfile = 0x34, kMajor = 0x36, kMinor = 0x37;
+constexpr int kOsmesaFormat = 0x22, kOsmesaDepthBits = 0x30, kOsmesaStencilBits = 0x31,
+              kOsmesaAccumBits = 0x32;
+constexpr int kOsmesaProfile = 0x33, kOsmesaCoreProfile = 0x34, kOsmesaMajor = 0x36,
+              kOsmesaMinor = 0x37;
 
 using Context = void*;
 
@@ -43,19 +45,19 @@ std::unique_ptr<GlPlatform> open_osmesa(const std::vector<std::string>& librarie
                         load(library, platform->destroy_context, "OSMesaDestroyContext") &&
                         load(library, platform->make_context_current, "OSMesaMakeCurrent") &&
                         load(library, platform->get_proc, "OSMesaGetProcAddress");
-  constexpr std::array attributes{kFormat,
+  constexpr std::array attributes{kOsmesaFormat,
                                   static_cast<int>(gl::RGBA),
-                                  kDepthBits,
+                                  kOsmesaDepthBits,
                                   0,
-                                  kStencilBits,
+                                  kOsmesaStencilBits,
                                   0,
-                                  kAccumBits,
+                                  kOsmesaAccumBits,
                                   0,
-                                  kProfile,
-                                  kCoreProfile,
-                                  kMajor,
+                                  kOsmesaProfile,
+                                  kOsmesaCoreProfile,
+                                  kOsmesaMajor,
                                   3,
-                                  kMinor,
+                                  kOsmesaMinor,
                                   3,
                                   0};
   if (complete) platform->context = platform->create_context(attributes.data(), nullptr);

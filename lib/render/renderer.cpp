@@ -47,6 +47,8 @@ int samples_per_edge(const gl::Table& gl, std::array<int, 2> size) {
   return 2 * size[0] <= wide && 2 * size[1] <= high ? 2 : 1;
 }
 
+}  // namespace
+
 /// Everything that lives inside a context; destroyed while the context is current.
 struct Pipeline {
   const gl::Table& gl;
@@ -85,8 +87,6 @@ struct Pipeline {
                  static_cast<float>(depth_b));
   }
 };
-
-}  // namespace
 
 struct Renderer::Impl {
   View view;

@@ -11,7 +11,7 @@ namespace {
 
 double mass_of(const Plan& plan) { return plan.mass * double(plan.particles); }
 
-constexpr double kShare = 0.1;  // of the energy scale, that a run may gain
+constexpr double kMayGain = 0.1;  // of the energy scale, that a run may gain
 
 /// h, of the domain.
 double longest_edge(const Scene& s) {
@@ -62,13 +62,13 @@ GuardLimits guard_limits(const Scene& s, const Plan& plan, const Diagnostics& fi
                gravity = std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
   const double scale = energy_scale(first, s, plan.mass, plan.particles);
   double slack = 0.5 * mass * std::pow(0.01 * per_step, 2);
-  if (gravity > 0) slack = std::min(slack, kShare * mass * gravity * s.h());
+  if (gravity > 0) slack = std::min(slack, kMayGain * mass * gravity * s.h());
   const double rounded = 8 * position_rounding(s) * std::ldexp(per_step, finest_level(s));
   slack += 0.5 * mass * rounded * rounded;
   const double at_rest = rest_neighbors(s);
   GuardLimits l;
   l.speed = g.speed ? *g.speed : 10 * (first.speed_max + fall_speed(s) + per_step);
-  l.energy = total_energy(first) + (g.energy ? *g.energy * scale : kShare * scale + slack);
+  l.energy = total_energy(first) + (g.energy ? *g.energy * scale : kMayGain * scale + slack);
   l.neighbors =
       g.neighbors > 0 ? g.neighbors : std::max(4 * first.neighbors_max, std::int64_t(16 * at_rest));
   return l;
@@ -101,7 +101,7 @@ double Guard::energy_limit(const Diagnostics& m) const {
     released = std::max(*released_ - total_energy(first_), 0.0);
   else if (m.update <= release_updates(scene_) || came_apart(m))
     released = released_energy(first_, scene_, plan_);
-  return limits_.energy + released + kShare * std::max(now - first, 0.0);
+  return limits_.energy + released + kMayGain * std::max(now - first, 0.0);
 }
 
 /// That of the last good measure at most: the energy that has come since widens the limit of `m`.

@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kRound = 8;              // steps of one round, at most
 constexpr int kMostIterations = 2048;  // in all; 32 steps at least
-constexpr int kPatience = 64;    // iterations before anything is called hopeless; 4 steps at least
-constexpr double kShare = 1e-5;  // of the energy scale
+constexpr int kPatience = 64;  // iterations before anything is called hopeless; 4 steps at least
+constexpr double kHarmless = 1e-5;  // of the energy scale
 constexpr double kProgress = 0.75;  // of the kick that twice the steps may leave
 constexpr double kStill = 1e-6;     // h, a move that counts for nothing where all is at rest
 
@@ -63,7 +63,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   const auto energy = [&](double squares) { return 0.5 * plan.mass * squares * speed * speed; };
   const double n = double(plan.particles), noise = n * std::pow(position_rounding(s), 2);
   const double scale = energy_scale(before, s, plan.mass, plan.particles);
-  p.harmless = scale > 0 ? std::max(kShare * scale, energy(noise))
+  p.harmless = scale > 0 ? std::max(kHarmless * scale, energy(noise))
                          : energy(std::max(noise, n * kStill * kStill));
   // A step moves particles by about c h. Twice that is no less than any scene has shown.
   p.kick = energy(n * std::pow(2 * before.compression_rms, 2));

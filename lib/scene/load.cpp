@@ -23,15 +23,12 @@ std::size_t limit_of(const std::string& what) {
   return what == "scene" || what == "study" ? kMaxBytes : kMaxResult;
 }
 
-[[noreturn]] void bad(const std::string& place, const std::string& what) {
-  throw Error(ExitCode::bad_input, place + ": " + what);
-}
-
 void check_text(const std::string& text, const std::string& origin, const std::string& what) {
   if (text.size() > limit_of(what))
-    bad(origin, "is larger than 4 MiB; many particles belong into a file body (shape: file)");
+    bad_input(origin, "is larger than 4 MiB; many particles belong into a file body (shape: file)");
   if (const auto found = find_bad_text(text))
-    bad(origin + ":" + std::to_string(found->line + 1) + ":" + std::to_string(found->column + 1),
+    bad_input(
+        origin + ":" + std::to_string(found->line + 1) + ":" + std::to_string(found->column + 1),
         "is not plain text: " + found->what + "; " + found->remedy + "; expected a " + what +
             " in YAML");
 }
@@ -40,14 +37,14 @@ std::string read_text_file(const std::string& path, const std::string& what) {
   namespace fs = std::filesystem;
   std::error_code ec;
   const fs::file_status status = fs::status(path, ec);
-  if (fs::is_directory(status)) bad(path, "is a directory, expected a " + what + " file");
+  if (fs::is_directory(status)) bad_input(path, "is a directory, expected a " + what + " file");
   note_input(path);
   std::ifstream in(path, std::ios::binary);
-  if (!in) bad(path, "cannot be opened: " + std::string(std::strerror(errno)));
+  if (!in) bad_input(path, "cannot be opened: " + std::string(std::strerror(errno)));
   // One byte more than allowed tells a file that is too large, without reading all of it.
   std::string text(limit_of(what) + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (in.bad()) bad(path, "reading failed");
+  if (in.bad()) bad_input(path, "reading failed");
   text.resize(static_cast<std::size_t>(in.gcount()));
   return text;
 }
@@ -58,11 +55,12 @@ Node tree_of(const std::string& text, const std::string& origin, const std::stri
     Node root = parse_yaml(text, origin, true);
     if (root.kind != Node::Kind::null) return root;
   } catch (const YamlError& e) {
-    bad(e.place, e.what);
+    bad_input(e.place, e.what);
   }
-  bad(origin, "is empty" + std::string(what == "scene" ? "; `pbf config --example` prints a scene "
-                                                         "to start from"
-                                                       : ""));
+  bad_input(origin,
+            "is empty" + std::string(what == "scene" ? "; `pbf config --example` prints a scene "
+                                                       "to start from"
+                                                     : ""));
 }
 
 Scene scene_with_overrides(Node root, const std::vector<std::string>& overrides) {

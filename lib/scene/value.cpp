@@ -140,12 +140,12 @@ struct Reader {
   }
 };
 
-struct Writer {
+struct ValueWriter {
   const Key& key;
 
   template <class T>
   std::string operator()(const std::optional<T>* field) const {
-    return *field ? Writer{key}.plain(**field) : "auto";
+    return *field ? ValueWriter{key}.plain(**field) : "auto";
   }
   template <class T>
   requires std::is_arithmetic_v<T> std::string operator()(const T* field) const {
@@ -194,7 +194,7 @@ std::string read_field(const Key& key, const Node& node, const Field& field) {
 }
 
 std::string format_field(const Key& key, const Field& field) {
-  return std::visit(Writer{key}, field);
+  return std::visit(ValueWriter{key}, field);
 }
 
 std::string yaml_text(const std::string& text) {

@@ -14,20 +14,10 @@ namespace {
 /// By id, h.
 std::vector<double> positions(Solver& solver) { return solver.state(Which::positions).position; }
 
-struct Distance {
-  double rms = 0, worst = 0;
-};
-Distance distance(const std::vector<double>& x, const std::vector<double>& y) {
-  Distance d;
-  for (std::size_t i = 0; i < x.size(); i += 3) {
-    const double a = x[i] - y[i], b = x[i + 1] - y[i + 1], c = x[i + 2] - y[i + 2];
-    const double r2 = a * a + b * b + c * c;
-    d.worst = std::max(d.worst, std::sqrt(r2));
-    d.rms += r2;
-  }
-  d.rms = std::sqrt(d.rms / double(std::max<std::size_t>(x.size() / 3, 1)));
-  if (std::isnan(d.rms)) d.rms = d.worst = HUGE_VAL;
-  return d;
+/// Infinite where a position is not finite, on both sides too.
+Distance strict_distance(const std::vector<double>& x, const std::vector<double>& y) {
+  const Distance d = distance(x, y, [](double a, double b) { return a - b; });
+  return std::isnan(d.rms) ? Distance{HUGE_VAL, HUGE_VAL} : d;
 }
 
 class Samples {
@@ -137,7 +127,7 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
   for (int t = 1; t <= updates; ++t) {
     advance(*c.a, 1);
     advance(*c.b, 1);
-    const Distance d = distance(positions(*c.a), positions(*c.b));
+    const Distance d = strict_distance(positions(*c.a), positions(*c.b));
     double now = 0;
     if (!c.same_bits) {
       advance(*c.reference, 1);
@@ -146,7 +136,7 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
         // Every update its own roundings.
         c.members[m]->inspection()->trace(
             {c.u, c.settings->seed + 1000 * std::uint64_t(t) + m, nullptr});
-        now = std::max(now, distance(positions(*c.members[m]), r).rms);
+        now = std::max(now, strict_distance(positions(*c.members[m]), r).rms);
       }
       spread = std::max(spread, now);
     }

@@ -32,25 +32,6 @@ double largest_of(const FieldArray* f) {
   return largest;
 }
 
-struct Distance {
-  double rms = 0, worst = 0;  ///< m; infinite where a coordinate is not finite on one side
-};
-Distance distance(const Snapshot& a, const Snapshot& b) {
-  const std::vector<double> x = numbers_of(a.fields[0]), y = numbers_of(b.fields[0]);
-  Distance d;
-  for (std::size_t i = 0; i < x.size(); i += 3) {
-    double r2 = 0;
-    for (std::size_t k = i; k < i + 3; ++k) {
-      const double e = apart(x[k], y[k]);
-      r2 += e * e;
-    }
-    d.worst = std::max(d.worst, std::sqrt(r2));
-    d.rms += r2;
-  }
-  d.rms = std::sqrt(d.rms / double(std::max<std::size_t>(a.count, 1)));
-  return d;
-}
-
 /// The same bits; where one file holds float and the other double, those of float.
 bool same_numbers(const FieldArray& f, const FieldArray& g) {
   if (f.type == g.type) return f.bytes == g.bytes;
@@ -167,7 +148,7 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
                  x.count, x.time, y.count);
     }
     if (paired) {
-      const Distance e = distance(x, y);
+      const Distance e = distance(numbers_of(x.fields[0]), numbers_of(y.fields[0]));
       bytes = bytes && same_numbers(x, y);
       last = e.rms / h;
       const double update = double(x.update);

@@ -16,6 +16,22 @@ double apart(double a, double b) {
   return std::isnan(d) ? HUGE_VAL : d;
 }
 
+Distance distance(const std::vector<double>& x, const std::vector<double>& y,
+                  double (*difference)(double, double)) {
+  Distance d;
+  for (std::size_t i = 0; i < x.size(); i += 3) {
+    double r2 = 0;
+    for (std::size_t k = i; k < i + 3; ++k) {
+      const double e = difference(x[k], y[k]);
+      r2 += e * e;
+    }
+    d.worst = std::max(d.worst, std::sqrt(r2));
+    d.rms += r2;
+  }
+  d.rms = std::sqrt(d.rms / double(std::max<std::size_t>(x.size() / 3, 1)));
+  return d;
+}
+
 double share_of(double error, double tolerance) {
   return error == 0 ? 0 : tolerance > 0 ? error / tolerance : HUGE_VAL;
 }

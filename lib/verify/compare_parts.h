@@ -48,6 +48,13 @@ void round_at_random(const KeyTable& table, const Object& object, double u, std:
 /// |a - b|; 0 where neither is a number, infinite where one alone is not.
 double apart(double a, double b);
 
+struct Distance {
+  double rms = 0, worst = 0;  ///< m
+};
+/// Of the particles at x from those at y, both by id.
+Distance distance(const std::vector<double>& x, const std::vector<double>& y,
+                  double (*difference)(double, double) = apart);
+
 /// Keeps the worst share of a tolerance in the row of this name, which is made when new, with
 /// `scale` for the relative error, and a unit roundoff `u` for that in units of the last place.
 /// False, with the verdicts of the row and the part, where the error is outside its tolerance.

@@ -11,10 +11,11 @@
 using namespace oracle_test;
 using backend_test::here;
 using backend_test::is_double;
+using backend_test::same_particles;
 
 namespace {
 
-Case everything() {
+Case everything_adaptive() {
   Case c = here(jittered_block(10, 9, 11, 0.3, 0.4));
   c.scene.domain.max[0] += 0.1;
   c.scene.time.adaptive = pbf::AdaptiveTime{};
@@ -24,10 +25,6 @@ Case everything() {
   c.scene.viscosity = pbf::Viscosity{0.2};
   c.scene.vorticity = pbf::Vorticity{5};
   return c;
-}
-
-bool same(const pbf::SolverState& a, const pbf::SolverState& b) {
-  return a.position == b.position && a.velocity == b.velocity && a.id == b.id;
 }
 
 /// A pool with one iteration and five times the step that it can bear; it sinks into itself, and
@@ -81,7 +78,7 @@ Course watched(const Case& c, pbf::Solver& solver, int updates, int every) {
 TEST_CASE("an update at level k is 2^k updates of the scene with what goes with the shorter step") {
   const int level = GENERATE(0, 1, 3);
   CAPTURE(level);
-  Case c = everything();
+  Case c = everything_adaptive();
   if (GENERATE(false, true)) c.scene.vorticity.reset();  // then XSPH also predicts
   auto coarse = make(c);
   const int steps = 1 << level;
@@ -94,7 +91,7 @@ TEST_CASE("an update at level k is 2^k updates of the scene with what goes with 
   for (const int updates : {1, 2, 9}) {
     coarse->step(updates, {.level = level});
     fine->step(updates * steps);
-    REQUIRE(same(coarse->state(), fine->state()));
+    REQUIRE(same_particles(coarse->state(), fine->state()));
   }
   CHECK(coarse->updates() == 12);
   CHECK(coarse->state().steps == fine->state().steps);
@@ -102,7 +99,7 @@ TEST_CASE("an update at level k is 2^k updates of the scene with what goes with 
 }
 
 TEST_CASE("levels that change in the middle: the bits of the pieces, in one solver or in several") {
-  const Case c = everything();
+  const Case c = everything_adaptive();
   auto one = make(c);
   pbf::SolverState state = one->state();
   for (const int level : {0, 2, 1, 0, 3, 0}) {
@@ -111,7 +108,7 @@ TEST_CASE("levels that change in the middle: the bits of the pieces, in one solv
     other->set_state(state);
     other->step(3, {.level = level});
     state = other->state();
-    REQUIRE(same(one->state(), state));
+    REQUIRE(same_particles(one->state(), state));
     CHECK(one->state().steps == state.steps);
   }
   CHECK(state.updates == 18);
@@ -119,7 +116,7 @@ TEST_CASE("levels that change in the middle: the bits of the pieces, in one solv
 }
 
 TEST_CASE("updates with changing levels move every particle as the CPU in double does") {
-  Case c = everything();
+  Case c = everything_adaptive();
   auto a = make(c);
   c.scene.backend = pbf::Backend::cpu;
   c.scene.precision = pbf::Precision::dbl;
@@ -164,7 +161,7 @@ TEST_CASE("steps without time part the particles, and velocities take the dampin
   fresh->set_state(s->state());
   s->step(5);
   fresh->step(5);
-  CHECK(same(s->state(), fresh->state()));
+  CHECK(same_particles(s->state(), fresh->state()));
 }
 
 TEST_CASE("an alarm takes the run back, and with a shorter step it comes to its end") {
@@ -199,7 +196,7 @@ TEST_CASE("an alarm takes the run back, and with a shorter step it comes to its 
 }
 
 TEST_CASE("with the shortest step the guard stops the run, at the update of the event") {
-  Case c = everything();
+  Case c = everything_adaptive();
   c.scene.time.adaptive->step_min = c.scene.time.step / 4;
   auto solver = make(c);
   solver->inspection()->inject({7, "delta", 2, 40, 1e6});
@@ -211,7 +208,7 @@ TEST_CASE("with the shortest step the guard stops the run, at the update of the 
 }
 
 TEST_CASE("what is wrong at the start is not tried again with a shorter step") {
-  Case c = everything();
+  Case c = everything_adaptive();
   c.scene.guard->speed = 1e-3;
   auto solver = make(c);
   const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));

@@ -28,8 +28,7 @@ bool same_bytes(pbf::Solver& a, pbf::Solver& b) {
 }
 
 bool same(const pbf::SolverState& a, const pbf::SolverState& b) {
-  return a.precision == b.precision && a.updates == b.updates && a.position == b.position &&
-         a.velocity == b.velocity && a.id == b.id;
+  return a.precision == b.precision && a.updates == b.updates && backend_test::same_particles(a, b);
 }
 
 const pbf::TraceArray& last(const pbf::StepTrace& t, const char* quantity) {

@@ -9,6 +9,7 @@
 
 using namespace oracle_test;
 using backend_test::here;
+using backend_test::same_particles;
 
 namespace {
 
@@ -33,10 +34,6 @@ std::vector<double> mean_compressions(const pbf::StepTrace& t) {
   return out;
 }
 
-bool same(const pbf::SolverState& a, const pbf::SolverState& b) {
-  return a.position == b.position && a.velocity == b.velocity && a.id == b.id;
-}
-
 }  // namespace
 
 TEST_CASE("iterations go on until the mean compression is within the tolerance, and no further") {
@@ -58,7 +55,7 @@ TEST_CASE("iterations go on until the mean compression is within the tolerance, 
     asked.scene.solver.iterations = iterations;
     auto expected = make(asked);
     expected->step(1);
-    CHECK(same(solver->state(), expected->state()));
+    CHECK(same_particles(solver->state(), expected->state()));
   }
 }
 
@@ -92,8 +89,8 @@ TEST_CASE("a tolerance is met in the same iterations in one call, in many, and p
   CHECK(iterations < 4 * 16 * updates);
   CHECK(singly->measure().iterations_done == iterations);
   CHECK(traced->measure().iterations_done == iterations);
-  CHECK(same(once->state(), singly->state()));
-  CHECK(same(once->state(), traced->state()));
+  CHECK(same_particles(once->state(), singly->state()));
+  CHECK(same_particles(once->state(), traced->state()));
 }
 
 TEST_CASE("a residual counts compression alone, and what is no number as the most") {

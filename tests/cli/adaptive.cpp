@@ -16,11 +16,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Args = std::vector<std::string>;
-
 /// A dam break with one iteration and a step that the guard stops; frames between the measures.
 /// Alarms and criteria change the step on the way.
-std::string scene(const Scratch& folder, const std::string& adaptive) {
+std::string write_adaptive(const Scratch& folder, const std::string& adaptive) {
   return folder.write("s.yaml",
                       "name: s\n"
                       "domain: {min: [0, 0, 0], max: [1.2, 0.4, 0.8]}\n"
@@ -38,12 +36,6 @@ std::string scene(const Scratch& folder, const std::string& adaptive) {
 /// Only alarms change the step; the criteria allow any.
 const char* const kAlarms = "{cfl: 100, force: 100}";
 
-Outcome run(const Scratch& folder, const std::string& out, const Args& more = {}) {
-  Args args{"run", "s.yaml", "--out", out, "--threads", "1", "--quiet"};
-  args.insert(args.end(), more.begin(), more.end());
-  return pbf::test::pbf(args, folder.path());
-}
-
 std::string difference(const Scratch& folder) {
   return run_difference(folder / "a/run.vtkhdf", folder / "b/run.vtkhdf");
 }
@@ -52,10 +44,10 @@ std::string difference(const Scratch& folder) {
 
 TEST_CASE("a run that the guard stops goes on with time.adaptive, and says what it did") {
   const Scratch folder;
-  scene(folder, "off");
-  REQUIRE(run(folder, "fixed").code == 3);
-  scene(folder, GENERATE(as<std::string>{}, "on", kAlarms));
-  const Outcome o = run(folder, "a");
+  write_adaptive(folder, "off");
+  REQUIRE(run_scene(folder, "fixed").code == 3);
+  write_adaptive(folder, GENERATE(as<std::string>{}, "on", kAlarms));
+  const Outcome o = run_scene(folder, "a");
   CAPTURE(o.err, o.out);
   REQUIRE(o.code == 0);
   const std::string log = read_text(folder / "a/log.txt");
@@ -85,14 +77,14 @@ TEST_CASE("a run that the guard stops goes on with time.adaptive, and says what 
 
 TEST_CASE("an adaptive run stopped again and again ends in the bytes of the undisturbed run") {
   const Scratch folder;
-  scene(folder, GENERATE(as<std::string>{}, "{step_min: 0.0003}", kAlarms));
+  write_adaptive(folder, GENERATE(as<std::string>{}, "{step_min: 0.0003}", kAlarms));
   const std::string guard = GENERATE("guard={}", "guard=off");
-  REQUIRE(run(folder, "a", {"--set", guard}).code == 0);
+  REQUIRE(run_scene(folder, "a", {"--set", guard}).code == 0);
   int stops = 0, code = 75;
   double limit = 0.03;  // s, longer every time: the end comes on any machine
   while (code == 75 && stops < 60) {
-    const Outcome o =
-        run(folder, "b", {"--set", guard, "--resume", "--max-walltime", std::to_string(limit)});
+    const Outcome o = run_scene(
+        folder, "b", {"--set", guard, "--resume", "--max-walltime", std::to_string(limit)});
     limit += 0.02;
     CAPTURE(o.err);
     code = o.code;
@@ -113,9 +105,9 @@ TEST_CASE("an adaptive run stopped again and again ends in the bytes of the undi
 TEST_CASE(
     "a killed adaptive run ends in the same bytes, a prolonged one in those of the long one") {
   const Scratch folder;
-  scene(folder, kAlarms);
+  write_adaptive(folder, kAlarms);
   const Args set{"--resume", "--set", "checkpoint.every=0.001"};
-  REQUIRE(run(folder, "a", set).code == 0);
+  REQUIRE(run_scene(folder, "a", set).code == 0);
   SECTION("killed") {
     for (int k = 0; k < 3; ++k) {
       Args args{"run", "s.yaml", "--out", "b", "--threads", "1", "--quiet"};
@@ -125,7 +117,7 @@ TEST_CASE(
       p.send(SIGKILL);
       p.wait();
     }
-    REQUIRE(run(folder, "b", set).code == 0);
+    REQUIRE(run_scene(folder, "b", set).code == 0);
     CHECK(difference(folder) == "");
   }
   SECTION("prolonged from ends at a measure, at a frame, and at neither") {
@@ -133,8 +125,8 @@ TEST_CASE(
       CAPTURE(end);
       Args first = set;
       first.insert(first.end(), {"--set", std::string("time.end=") + end});
-      REQUIRE(run(folder, "b", first).code == 0);
-      REQUIRE(run(folder, "b", set).code == 0);
+      REQUIRE(run_scene(folder, "b", first).code == 0);
+      REQUIRE(run_scene(folder, "b", set).code == 0);
       CHECK(difference(folder) == "");
       fs::remove_all(folder / "b");
     }
@@ -143,8 +135,8 @@ TEST_CASE(
 
 TEST_CASE("with the shortest step the guard ends an adaptive run, with a scene that repeats it") {
   const Scratch folder;
-  scene(folder, "{cfl: 100, force: 100, step_min: 0.01}");
-  const Outcome o = run(folder, "a", {"--set", "tensile.k=1000"});
+  write_adaptive(folder, "{cfl: 100, force: 100, step_min: 0.01}");
+  const Outcome o = run_scene(folder, "a", {"--set", "tensile.k=1000"});
   CHECK(o.code == 3);
   CHECK(has(o.err, "with the shortest step, 0.01 s (time.adaptive.step_min)"));
   CHECK(has(o.out, "1 times back to the last good state"));
@@ -164,14 +156,14 @@ TEST_CASE("with the shortest step the guard ends an adaptive run, with a scene t
 
 TEST_CASE("of an adaptive run the guard is part of what may not change") {
   const Scratch folder;
-  scene(folder, "on");
-  REQUIRE(run(folder, "a", {"--max-walltime", "0.02"}).code == 75);
+  write_adaptive(folder, "on");
+  REQUIRE(run_scene(folder, "a", {"--max-walltime", "0.02"}).code == 75);
   for (const auto& [set, text] : std::vector<std::pair<std::string, std::string>>{
            {"guard.energy=0.3", "guard.energy: auto before, 0.3 now"},
            {"guard=off", "guard: on before, off now"},
            {"time.adaptive=off", "time.adaptive: on before, off now"},
            {"time.adaptive.cfl=0.3", "time.adaptive.cfl: 0.4 before, 0.3 now"}}) {
-    const Outcome o = run(folder, "a", {"--resume", "--set", set});
+    const Outcome o = run_scene(folder, "a", {"--resume", "--set", set});
     CAPTURE(o.err);
     CHECK(o.code == 2);
     CHECK(has(o.err, text));
@@ -180,7 +172,7 @@ TEST_CASE("of an adaptive run the guard is part of what may not change") {
 
 TEST_CASE("the plan names the steps of an update, a study refuses them, compare leaves them out") {
   const Scratch folder;
-  scene(folder, "{step_min: 0.004}");
+  write_adaptive(folder, "{step_min: 0.004}");
   const Outcome plan = pbf::test::pbf({"plan", "s.yaml"}, folder.path());
   CHECK(has(plan.out, "passes of one step; 2^k of them in an update at level k = 0 ... 2"));
   CHECK_FALSE(has(plan.out, "halving of the step"));

@@ -10,7 +10,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Runs the tiny scene into `out`; the path of its run file.
-std::string run(const Scratch& folder, const std::string& out, std::vector<std::string> more = {}) {
+std::string run_tiny(const Scratch& folder, const std::string& out,
+                     std::vector<std::string> more = {}) {
   folder.write("tiny.yaml", tiny_scene());
   more.insert(more.begin(), {"run", "tiny.yaml", "--quiet", "--out", out});
   const Outcome o = pbf::test::pbf(more, folder.path());
@@ -28,8 +29,8 @@ Outcome compare(const Scratch& folder, std::vector<std::string> args) {
 
 TEST_CASE("compare: two runs of one scene are the same bytes, with other threads too") {
   const Scratch folder;
-  const std::string a = run(folder, "a", {"--threads", "1"}),
-                    b = run(folder, "b", {"--threads", "2"});
+  const std::string a = run_tiny(folder, "a", {"--threads", "1"}),
+                    b = run_tiny(folder, "b", {"--threads", "2"});
   const Outcome o = compare(folder, {a, b});
   CAPTURE(o.out, o.err);
   CHECK(o.code == 0);
@@ -40,7 +41,7 @@ TEST_CASE("compare: two runs of one scene are the same bytes, with other threads
 
 TEST_CASE("compare: float and double of one scene cannot be told apart as samples") {
   const Scratch folder;
-  const std::string a = run(folder, "a"), b = run(folder, "b", {"--precision", "double"});
+  const std::string a = run_tiny(folder, "a"), b = run_tiny(folder, "b", {"--precision", "double"});
   const Outcome o = compare(folder, {a, b});
   CAPTURE(o.out, o.err);
   CHECK(o.code == 0);
@@ -50,7 +51,7 @@ TEST_CASE("compare: float and double of one scene cannot be told apart as sample
 
 TEST_CASE("compare: run files of other scenes, particles, frames or fields say what differs") {
   const Scratch folder;
-  const std::string a = run(folder, "a");
+  const std::string a = run_tiny(folder, "a");
   std::vector<std::string> key;
   std::vector<std::string> fragments;
   SECTION("another scene") {
@@ -79,7 +80,7 @@ TEST_CASE("compare: run files of other scenes, particles, frames or fields say w
     fragments = {"5 frames of A have no frame of B", "the first at 0.02 s"};
   }
   key.insert(key.begin(), {"--precision", "float"});
-  const Outcome o = compare(folder, {a, run(folder, "b", key)});
+  const Outcome o = compare(folder, {a, run_tiny(folder, "b", key)});
   CAPTURE(o.out, o.err);
   CHECK(o.code == 6);
   for (const auto& f : fragments) CHECK(has(o.out, f));
@@ -116,7 +117,7 @@ TEST_CASE("compare: shipped scenes in float and in double are the same") {
 
 TEST_CASE("compare: a run that was stopped differs until it is resumed") {
   const Scratch folder;
-  const std::string a = run(folder, "a");
+  const std::string a = run_tiny(folder, "a");
   const std::vector<std::string> again{"run", "tiny.yaml", "--quiet", "--out", "b"};
   std::vector<std::string> stopped = again, resumed = again;
   stopped.insert(stopped.end(), {"--max-walltime", "0.000001"});
@@ -159,7 +160,7 @@ TEST_CASE("compare: one scene on two sides, with reports") {
 
 TEST_CASE("compare: what cannot be compared gets its exit code and a message that names it") {
   const Scratch folder;
-  const std::string a = run(folder, "a");
+  const std::string a = run_tiny(folder, "a");
   const std::string scene = (folder / "tiny.yaml").string();
   const std::string whole = read_text(folder / a);
   folder.write("cut.h5", whole.substr(0, whole.size() / 2));

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// 600 updates with a frame after every second one; checkpoints often enough to be hit as well.
-std::string scene(const Scratch& folder) {
+std::string write_frequent(const Scratch& folder) {
   return folder.write("s.yaml",
                       "name: s\n"
                       "domain: {min: [0, 0, 0], max: [1, 0.6, 1]}\n"
@@ -70,7 +70,7 @@ TEST_CASE("runs killed at random moments lose no reported frame and end in the s
   const unsigned seed = static_cast<unsigned>(number("PBF_SEED", 1));
   std::mt19937 random(seed);
   const Scratch folder;
-  scene(folder);
+  write_frequent(folder);
   const std::string gzip = number("PBF_GZIP", 0) ? "gzip" : "none";
   const std::vector<std::string> args{
       "run",       "s.yaml", "--resume", "--quiet",

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// 400 updates with everything that keeps a memory: log, energies, frames at odd times.
-std::string scene(const Scratch& folder) {
+std::string write_scene(const Scratch& folder) {
   return folder.write("s.yaml",
                       "name: s\n"
                       "domain: {min: [0, 0, 0], max: [1, 0.6, 1]}\n"
@@ -31,12 +31,6 @@ std::string scene(const Scratch& folder) {
                       "output: {every: 0.01}\n");
 }
 
-using Args = std::vector<std::string>;
-Outcome run(const Scratch& folder, const std::string& out, const Args& more) {
-  Args args{"run", "s.yaml", "--out", out, "--threads", "1", "--quiet"};
-  args.insert(args.end(), more.begin(), more.end());
-  return pbf::test::pbf(args, folder.path());
-}
 std::string difference(const Scratch& folder, const std::string& a, const std::string& b) {
   return run_difference(folder / (a + "/run.vtkhdf"), folder / (b + "/run.vtkhdf"));
 }
@@ -63,9 +57,9 @@ Outcome end_by(const Scratch& folder, const Args& args, int signal, std::int64_t
 
 TEST_CASE("a run stopped again and again ends in the bytes of the undisturbed run") {
   const Scratch folder;
-  scene(folder);
+  write_scene(folder);
   const std::string precision = GENERATE("float", "double");
-  REQUIRE(run(folder, "a", {"--precision", precision}).code == 0);
+  REQUIRE(run_scene(folder, "a", {"--precision", precision}).code == 0);
   int stops = 0, code = 75;
   double limit = 0.1;  // s, grows: a slow machine takes that long to start
   for (; code == 75 && stops < 100; limit *= 1.1) {
@@ -99,10 +93,10 @@ TEST_CASE("a run stopped again and again ends in the bytes of the undisturbed ru
 
 TEST_CASE("a killed run keeps its frames and ends in the same bytes, with and without checkpoint") {
   const Scratch folder;
-  scene(folder);
+  write_scene(folder);
   const bool checkpoint = GENERATE(false, true);
   const std::string set = checkpoint ? "checkpoint.every=0.02" : "checkpoint=off";
-  REQUIRE(run(folder, "a", {"--set", set}).code == 0);
+  REQUIRE(run_scene(folder, "a", {"--set", set}).code == 0);
   const Args args{"run",     "s.yaml",    "--out", "b",     "--resume",
                   "--quiet", "--threads", "1",     "--set", set};
   std::int64_t before = 0;
@@ -117,32 +111,32 @@ TEST_CASE("a killed run keeps its frames and ends in the same bytes, with and wi
     CHECK(reader.sessions().back().ended.empty());
   }
   CHECK(fs::exists(folder / "b/checkpoint.h5") == checkpoint);
-  REQUIRE(run(folder, "b", {"--resume", "--set", set}).code == 0);
+  REQUIRE(run_scene(folder, "b", {"--resume", "--set", set}).code == 0);
   CHECK(difference(folder, "a", "b") == "");
 }
 
 TEST_CASE("a finished run can be prolonged, to the bytes of the long run") {
   const Scratch folder;
-  scene(folder);
+  write_scene(folder);
   const std::string end = GENERATE("0.113", "0.12");  // not at, and at, a frame
   for (const char* set : {"checkpoint={}", "checkpoint=off"}) {
     CAPTURE(set, end);
     fs::remove_all(folder / "a");
     fs::remove_all(folder / "b");
-    REQUIRE(run(folder, "a", {"--set", "time.end=0.2", "--set", set}).code == 0);
-    REQUIRE(run(folder, "b", {"--set", "time.end=" + end, "--set", set}).code == 0);
-    const Outcome o = run(folder, "b", {"--set", "time.end=0.2", "--set", set, "--resume"});
+    REQUIRE(run_scene(folder, "a", {"--set", "time.end=0.2", "--set", set}).code == 0);
+    REQUIRE(run_scene(folder, "b", {"--set", "time.end=" + end, "--set", set}).code == 0);
+    const Outcome o = run_scene(folder, "b", {"--set", "time.end=0.2", "--set", set, "--resume"});
     CAPTURE(o.err);
     REQUIRE(o.code == 0);
     CHECK(difference(folder, "a", "b") == "");
-    CHECK(run(folder, "b", {"--set", "time.end=0.1", "--resume"}).code == 0);  // it is done
+    CHECK(run_scene(folder, "b", {"--set", "time.end=0.1", "--resume"}).code == 0);  // it is done
   }
 }
 
 TEST_CASE("a run of an earlier version, whose log lacks a column, is refused by name") {
   const Scratch folder;
-  scene(folder);
-  REQUIRE(run(folder, "b", {"--set", "time.end=0.1"}).code == 0);
+  write_scene(folder);
+  REQUIRE(run_scene(folder, "b", {"--set", "time.end=0.1"}).code == 0);
   {
     const hid_t file =
         H5Fopen((folder / "b/run.vtkhdf").string().c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
@@ -150,7 +144,7 @@ TEST_CASE("a run of an earlier version, whose log lacks a column, is refused by 
     CHECK(H5Ldelete(file, "pbf/log/unresolved", H5P_DEFAULT) >= 0);
     CHECK(H5Fclose(file) >= 0);
   }
-  const Outcome o = run(folder, "b", {"--set", "time.end=0.2", "--resume"});
+  const Outcome o = run_scene(folder, "b", {"--set", "time.end=0.2", "--resume"});
   CHECK(o.code == 2);
   CHECK(has(o.err, "whose log has no column unresolved"));
   CHECK(has(o.err, "--overwrite"));
@@ -158,8 +152,8 @@ TEST_CASE("a run of an earlier version, whose log lacks a column, is refused by 
 
 TEST_CASE("a changed physics key is an error that names it, and other keys may change") {
   const Scratch folder;
-  scene(folder);
-  REQUIRE(run(folder, "b", {"--max-walltime", "0.02"}).code == 75);
+  write_scene(folder);
+  REQUIRE(run_scene(folder, "b", {"--max-walltime", "0.02"}).code == 75);
   const std::vector<std::pair<std::string, std::string>> bad{
       {"solver.iterations=5", "solver.iterations: 4 before, 5 now"},
       {"viscosity=off", "viscosity: on before, off now"},
@@ -167,24 +161,24 @@ TEST_CASE("a changed physics key is an error that names it, and other keys may c
       {"precision=double", "precision: float before, double now"},
       {"output.every=0.02", "output.every"}};
   for (const auto& [set, text] : bad) {
-    const Outcome o = run(folder, "b", {"--resume", "--set", set});
+    const Outcome o = run_scene(folder, "b", {"--resume", "--set", set});
     CAPTURE(o.err);
     CHECK(o.code == 2);
     CHECK(has(o.err, text));
     CHECK(has(o.err, "--overwrite"));
   }
-  CHECK(run(folder, "b",
-            {"--resume", "--set", "threads=2", "--set", "checkpoint.every=5", "--set",
-             "time.end=0.9", "--set", "name=other"})
+  CHECK(run_scene(folder, "b",
+                  {"--resume", "--set", "threads=2", "--set", "checkpoint.every=5", "--set",
+                   "time.end=0.9", "--set", "name=other"})
             .code == 0);
 }
 
 TEST_CASE("a damaged checkpoint is told and the one before it is taken") {
   const Scratch folder;
-  scene(folder);
-  REQUIRE(run(folder, "a", {}).code == 0);
-  REQUIRE(run(folder, "b", {"--max-walltime", "0.1"}).code == 75);
-  REQUIRE(run(folder, "b", {"--max-walltime", "0.1", "--resume"}).code == 75);
+  write_scene(folder);
+  REQUIRE(run_scene(folder, "a", {}).code == 0);
+  REQUIRE(run_scene(folder, "b", {"--max-walltime", "0.1"}).code == 75);
+  REQUIRE(run_scene(folder, "b", {"--max-walltime", "0.1", "--resume"}).code == 75);
   REQUIRE(fs::exists(folder / "b/checkpoint_prev.h5"));
   const fs::path newest = folder / "b/checkpoint.h5";
   std::string bytes = read_text(newest);
@@ -198,9 +192,9 @@ TEST_CASE("a damaged checkpoint is told and the one before it is taken") {
   CHECK(has(o.err, "cannot be read"));
   CHECK(difference(folder, "a", "b") == "");
   // Both damaged: no silent start from the beginning.
-  REQUIRE(run(folder, "c", {"--max-walltime", "0.1"}).code == 75);
+  REQUIRE(run_scene(folder, "c", {"--max-walltime", "0.1"}).code == 75);
   fs::resize_file(folder / "c/checkpoint.h5", 1000);
-  const Outcome none = run(folder, "c", {"--resume"});
+  const Outcome none = run_scene(folder, "c", {"--resume"});
   CHECK(none.code == 5);
   CHECK(has(none.err, "checkpoint.h5"));
   CHECK(has(none.err, "remove it"));
@@ -208,7 +202,7 @@ TEST_CASE("a damaged checkpoint is told and the one before it is taken") {
 
 TEST_CASE("a run that is killed at its start leaves no process behind that holds its folder") {
   const Scratch folder;
-  scene(folder);
+  write_scene(folder);
   const Args args{"run",       "s.yaml", "--out",          "b",   "--resume", "--quiet",
                   "--threads", "1",      "--max-walltime", "0.1", "--set",    "time.end=90"};
   REQUIRE(pbf::test::pbf(args, folder.path()).code == 75);
@@ -227,7 +221,7 @@ TEST_CASE("a run that is killed at its start leaves no process behind that holds
 
 TEST_CASE("two runs cannot write to one folder") {
   const Scratch folder;
-  scene(folder);
+  write_scene(folder);
   Process first({"run", "s.yaml", "--out", "b", "--quiet", "--set", "time.end=1000"},
                 folder.path());
   for (int i = 0; i < 500 && !fs::exists(folder / "b/run.vtkhdf"); ++i)
@@ -242,14 +236,14 @@ TEST_CASE("two runs cannot write to one folder") {
   }
   first.send(SIGKILL);
   first.wait();
-  CHECK(run(folder, "b", {"--overwrite"}).code == 0);  // the lock went with the process
+  CHECK(run_scene(folder, "b", {"--overwrite"}).code == 0);  // the lock went with the process
   CHECK_FALSE(fs::exists(folder / "b/.lock"));
 }
 
 TEST_CASE("a run file runs again to the same bytes") {
   const Scratch folder;
-  scene(folder);
-  REQUIRE(run(folder, "a", {"--set", "solver.iterations=2"}).code == 0);
+  write_scene(folder);
+  REQUIRE(run_scene(folder, "a", {"--set", "solver.iterations=2"}).code == 0);
   const Outcome o = pbf::test::pbf({"run", "a/run.vtkhdf", "--out", "b", "--quiet"}, folder.path());
   CAPTURE(o.err);
   REQUIRE(o.code == 0);

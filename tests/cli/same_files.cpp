@@ -14,8 +14,6 @@ namespace h5 = pbf::h5;
 
 namespace {
 
-using Args = std::vector<std::string>;
-
 const std::string kParticles = "x,y,z\n0.3,0.5,0.2\n0.4,0.5,0.2\n0.5,0.5,0.2\n0.3,0.5,0.3\n";
 
 std::string scene_of(const std::string& path) {

@@ -11,8 +11,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Args = std::vector<std::string>;
-
 /// A scene with frames whose step squeezes the fluid.
 std::string squeezed(const std::string& more = "") {
   return "name: squeezed\n"

@@ -11,7 +11,7 @@ using namespace pbf;
 
 namespace {
 
-double w(bool paper, double q) {
+double kernel_3d(bool paper, double q) {
   const double t = Spiky<double>::t(q);
   return paper ? Poly6<double>::norm * density_shape<double, Smoothing::paper>(q * q, t)
                : Spiky<double>::norm * density_shape<double, Smoothing::consistent>(q * q, t);
@@ -26,7 +26,7 @@ double quadrant(bool paper, double a, double b) {
       const double x = a + (i + 0.5) * (1 - a) / n, y = b + (j + 0.5) * (1 - b) / n;
       const double s = x * x + y * y;
       if (s < 1)
-        sum += 2 * integrate([&](double z) { return w(paper, std::sqrt(s + z * z)); }, 0,
+        sum += 2 * integrate([&](double z) { return kernel_3d(paper, std::sqrt(s + z * z)); }, 0,
                              std::sqrt(1 - s), 60);
     }
   return sum * (1 - a) * (1 - b) / (n * n);
@@ -36,16 +36,16 @@ double quadrant(bool paper, double a, double b) {
 
 TEST_CASE("smoothing functions integrate to 1 over the unit ball and vanish at its rim") {
   for (bool paper : {false, true}) {
-    CHECK(integrate([&](double q) { return 4 * kPi * q * q * w(paper, q); }, 0, 1, 20000) ==
+    CHECK(integrate([&](double q) { return 4 * kPi * q * q * kernel_3d(paper, q); }, 0, 1, 20000) ==
           Approx(1).epsilon(1e-8));
-    CHECK(w(paper, 1) == 0);
-    CHECK(w(paper, 1.5) == 0);
+    CHECK(kernel_3d(paper, 1) == 0);
+    CHECK(kernel_3d(paper, 1.5) == 0);
   }
 }
 
 TEST_CASE("the Spiky gradient is the derivative of the Spiky function") {
   for (double q : {0.01, 0.2, 0.5, 0.77, 0.99}) {
-    const double e = 1e-6, slope = (w(false, q + e) - w(false, q - e)) / (2 * e);
+    const double e = 1e-6, slope = (kernel_3d(false, q + e) - kernel_3d(false, q - e)) / (2 * e);
     const double t = Spiky<double>::t(q);
     CHECK(Spiky<double>::gradient_norm * t * t == Approx(slope).epsilon(1e-6));
   }
@@ -55,8 +55,8 @@ TEST_CASE("a half space's density equals the integral of the kernel over it") {
   // Caps: a sphere of radius r has the share (r - a)/(2r) of its area beyond the plane at a.
   for (double a : {0.0, 0.1, 0.25, 0.5, 0.9, 0.999}) {
     for (bool paper : {false, true}) {
-      const double exact =
-          integrate([&](double r) { return w(paper, r) * 2 * kPi * r * (r - a); }, a, 1, 20000);
+      const double exact = integrate(
+          [&](double r) { return kernel_3d(paper, r) * 2 * kPi * r * (r - a); }, a, 1, 20000);
       const auto d = paper ? half_space_poly6(a) : half_space_spiky(a);
       CHECK(d.density == Approx(exact).epsilon(1e-6).margin(1e-12));
       const double e = 1e-6;

@@ -24,6 +24,11 @@ inline oracle_test::Case here(oracle_test::Case c) {
   return c;
 }
 
+/// Particles alone: the same after other updates too.
+inline bool same_particles(const pbf::SolverState& a, const pbf::SolverState& b) {
+  return a.position == b.position && a.velocity == b.velocity && a.id == b.id;
+}
+
 inline bool same_bytes(const pbf::Snapshot& a, const pbf::Snapshot& b) {
   if (a.fields.size() != b.fields.size()) return false;
   for (std::size_t f = 0; f < a.fields.size(); ++f)

@@ -101,6 +101,12 @@ std::string Scratch::write(const std::string& name, const std::string& text) con
   return (path_ / name).string();
 }
 
+Outcome run_scene(const Scratch& folder, const std::string& out, const Args& more) {
+  Args args{"run", "s.yaml", "--out", out, "--threads", "1", "--quiet"};
+  args.insert(args.end(), more.begin(), more.end());
+  return pbf(args, folder.path());
+}
+
 std::string read_text(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};

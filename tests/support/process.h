@@ -38,6 +38,8 @@ class Process {
   std::filesystem::path out_, err_;
 };
 
+using Args = std::vector<std::string>;
+
 /// Runs `pbf args...` to its end.
 Outcome pbf(const std::vector<std::string>& args, const std::filesystem::path& folder,
             const std::vector<std::string>& environment = {});
@@ -59,6 +61,9 @@ class Scratch {
  private:
   std::filesystem::path path_;
 };
+
+/// Runs the folder's s.yaml on one thread into the folder `out` of it.
+Outcome run_scene(const Scratch& folder, const std::string& out, const Args& more = {});
 
 std::string read_text(const std::filesystem::path& path);
 

@@ -44,6 +44,14 @@ inline Scene parse(const std::string& text, const std::vector<std::string>& over
   return parse_scene(text, "scene.yaml", overrides);
 }
 
+/// The scene configs/NAME.yaml on one thread, without files of frames.
+inline Scene shipped(const std::string& name, std::vector<std::string> overrides = {}) {
+  overrides.push_back("threads=1");
+  Scene s = load_scene(PBF_SOURCE_DIR "/configs/" + name + ".yaml", overrides).scene;
+  s.output.reset();
+  return s;
+}
+
 /// Runs `action`; the message of the Error it throws, with its exit code in front: "2 message".
 /// "no error" when it throws none.
 template <class Action>

@@ -23,7 +23,7 @@ class NearbyParticles {
  public:
   const Candidates<Real, D>& of(Simd simd, Vec3<Real> x, const Vec4<Real>* position,
                                 const int* bin_start, const Params<Real>& p, int rows) {
-    const Cell cell = cell_of<D>(x, p);
+    const GridCell cell = cell_of<D>(x, p);
     if (cell.x == cell_.x && cell.y == cell_.y && cell.z == cell_.z) return candidates_;
     cell_ = cell;
     constexpr std::size_t block = Candidates<Real, D>::block;
@@ -49,7 +49,7 @@ class NearbyParticles {
   }
 
  private:
-  Cell cell_{-1, -1, -1};
+  GridCell cell_{-1, -1, -1};
   std::vector<Real> x_, y_, z_;
   std::vector<int> index_;
   Candidates<Real, D> candidates_{};  ///< of `cell_`

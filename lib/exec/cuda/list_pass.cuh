@@ -94,7 +94,7 @@ struct ListPass {
     const bool valid = i < n;
     const bool last = lane == lanes - 1;
     const Vec<Real, D> xi = point<D>(position[valid ? i : 0]);
-    const Cell c = cell_of<D>(in_space(xi), p);
+    const GridCell c = cell_of<D>(in_space(xi), p);
     Row a = row_of(c, valid ? lane : rows), b = row_of(c, valid && last ? lanes : rows);
     count_row(i, xi, a);
     count_row(i, xi, b);
@@ -126,7 +126,7 @@ struct ListPass {
     int begin = 0, end = 0, found = 0;
     unsigned bits = 0;
   };
-  __device__ __forceinline__ Row row_of(Cell c, int r) const {
+  __device__ __forceinline__ Row row_of(GridCell c, int r) const {
     const int y = D == 2 ? 0 : c.y + r % 3 - 1, z = c.z + (D == 2 ? r : r / 3) - 1;
     if (r >= rows || y < 0 || z < 0 || y >= p.cells_y || z >= p.layers) return {};
     const int row = (D == 2 ? z : z * p.cells_y + y) * p.cells_x;

@@ -43,7 +43,7 @@ SavedRun saved(Precision precision, std::int64_t update) {
   return s;
 }
 
-bool same(const SavedRun& a, const SavedRun& b) {
+bool same_saved(const SavedRun& a, const SavedRun& b) {
   return a.state.precision == b.state.precision && a.state.updates == b.state.updates &&
          a.state.position == b.state.position && a.state.velocity == b.state.velocity &&
          a.state.id == b.state.id && a.energy.started == b.energy.started &&
@@ -56,7 +56,7 @@ bool same(const SavedRun& a, const SavedRun& b) {
          std::equal(a.first.momentum, a.first.momentum + 3, b.first.momentum);
 }
 
-bool same(const GuardLimits& a, const GuardLimits& b) {
+bool same_limits(const GuardLimits& a, const GuardLimits& b) {
   return a.speed == b.speed && a.energy == b.energy && a.neighbors == b.neighbors;
 }
 
@@ -72,8 +72,8 @@ TEST_CASE("the guard of a resumed run has the limits of the run from its start")
   const auto read = read_checkpoint(folder.path, notes);
   REQUIRE(read);
   const GuardLimits limits = guard_limits(scene, plan, first.first);
-  CHECK(same(limits, guard_limits(scene, plan, read->first)));
-  CHECK_FALSE(same(limits, guard_limits(scene, plan, Diagnostics{})));
+  CHECK(same_limits(limits, guard_limits(scene, plan, read->first)));
+  CHECK_FALSE(same_limits(limits, guard_limits(scene, plan, Diagnostics{})));
 }
 
 TEST_CASE("a checkpoint comes back to the last bit, and the one before is kept") {
@@ -85,9 +85,9 @@ TEST_CASE("a checkpoint comes back to the last bit, and the one before is kept")
     write_checkpoint(folder.path, saved(p, 7));
     const auto read = read_checkpoint(folder.path, notes);
     REQUIRE(read);
-    CHECK(same(*read, saved(p, 7)));
+    CHECK(same_saved(*read, saved(p, 7)));
     std::filesystem::remove(folder / "checkpoint.h5");
-    CHECK(same(*read_checkpoint(folder.path, notes), saved(p, 5)));
+    CHECK(same_saved(*read_checkpoint(folder.path, notes), saved(p, 5)));
     CHECK(notes.empty());
   }
   CHECK_FALSE(std::filesystem::exists(folder / "checkpoint.h5.tmp"));
@@ -107,7 +107,7 @@ TEST_CASE("a disk that is full leaves the checkpoint before") {
       CHECK(e.code() == ExitCode::io);
       CHECK(std::string(e.what()).find("No space left") != std::string::npos);
     }
-    CHECK(same(*read_checkpoint(folder.path, notes), saved(Precision::dbl, 5)));
+    CHECK(same_saved(*read_checkpoint(folder.path, notes), saved(Precision::dbl, 5)));
     CHECK_FALSE(std::filesystem::exists(folder / "checkpoint.h5.tmp"));
   }
 }

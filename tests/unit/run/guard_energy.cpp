@@ -14,13 +14,6 @@
 namespace pbf::scene_test {
 namespace {
 
-Scene shipped(const std::string& name, std::vector<std::string> overrides) {
-  overrides.push_back("threads=1");
-  Scene s = load_scene(PBF_SOURCE_DIR "/configs/" + name + ".yaml", overrides).scene;
-  s.output.reset();
-  return s;
-}
-
 /// A guard over a solver of the scene as it is given.
 struct Watched {
   Scene scene;
@@ -124,7 +117,7 @@ TEST_CASE("guard: the energy that a run may gain is the same for every observer"
 TEST_CASE(
     "guard: a compressed start may release energy until it has come apart, and no start for "
     "ever") {
-  Watched w(shipped("stiff/overfull", {}));
+  Watched w(shipped("stiff/overfull"));
   Diagnostics start = w.first;
   start.compression_mean = 0.5;
   const double first = total_energy(start), bare = w.guard(start).limits().energy;
@@ -175,7 +168,7 @@ TEST_CASE("guard: with gravity, a shorter step does not widen what the energy ma
 }
 
 TEST_CASE("guard: the advice fits the cause") {
-  const Scene plain = shipped("stiff/pool", {});
+  const Scene plain = shipped("stiff/pool");
   const std::string usual = advice(plain, nullptr, Alarm::energy, "delta");
   CHECK(contains(usual, "lower time.step"));
   CHECK_FALSE(contains(usual, "prestabilize"));

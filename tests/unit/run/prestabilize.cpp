@@ -12,11 +12,6 @@
 namespace pbf::scene_test {
 namespace {
 
-Scene shipped(const std::string& name, std::vector<std::string> overrides) {
-  overrides.push_back("threads=1");
-  return load_scene(PBF_SOURCE_DIR "/configs/" + name + ".yaml", overrides).scene;
-}
-
 std::unique_ptr<Solver> start(const Scene& s, const std::string& dir = ".") {
   return start_solver(s, make_plan(s, count_particles(s, dir)), emit_particles(s, dir));
 }

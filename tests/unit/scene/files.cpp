@@ -15,7 +15,7 @@ std::string load_error(const std::string& path) {
   return error_of([&] { load_scene(path, {}); });
 }
 
-Scene shipped(const std::string& name, const std::vector<std::string>& overrides = {}) {
+Scene shipped_file(const std::string& name, const std::vector<std::string>& overrides = {}) {
   return load_scene(PBF_SOURCE_DIR "/configs/" + name, overrides).scene;
 }
 
@@ -75,7 +75,7 @@ TEST_CASE("shipped scenes: every one is valid and makes particles inside its dom
 }
 
 TEST_CASE("dam break: over 30000 particles, 2 s, frames and pictures often enough to watch") {
-  const Scene s = shipped("dam_break.yaml");
+  const Scene s = shipped_file("dam_break.yaml");
   CHECK(count_particles(s, "") >= 30000);
   CHECK(s.time.end == 2);
   CHECK(s.viscosity);
@@ -86,7 +86,7 @@ TEST_CASE("dam break: over 30000 particles, 2 s, frames and pictures often enoug
 }
 
 TEST_CASE("tank at rest: the block fills the floor, 24 layers deep") {
-  const Scene s = shipped("tank_at_rest.yaml");
+  const Scene s = shipped_file("tank_at_rest.yaml");
   CHECK(s.bodies[0].min == s.domain.min);
   CHECK(s.bodies[0].max[0] == s.domain.max[0]);
   CHECK(s.bodies[0].max[1] == s.domain.max[1]);
@@ -96,7 +96,7 @@ TEST_CASE("tank at rest: the block fills the floor, 24 layers deep") {
 TEST_CASE("seed scenes: the numbers of the original set-up, made dimensionless") {
   for (const char* name :
        {"reference_implementation/blob.yaml", "reference_implementation/stream.yaml"}) {
-    const Scene s = shipped(name);
+    const Scene s = shipped_file(name);
     const double mass = 1.0 / 30, h = 0.1;
     CAPTURE(name);
     CHECK(s.h() == h);
@@ -111,7 +111,7 @@ TEST_CASE("seed scenes: the numbers of the original set-up, made dimensionless")
     CHECK(s.solver.boundary == BoundaryMode::clamp);
     CHECK(count_particles(s, "") == 16384);
     for (int n = 1024; n <= 131072; n *= 2)
-      CHECK(count_particles(shipped(name, {"bodies.0.count=" + std::to_string(n)}), "") == n);
+      CHECK(count_particles(shipped_file(name, {"bodies.0.count=" + std::to_string(n)}), "") == n);
   }
 }
 
