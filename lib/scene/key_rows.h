@@ -75,15 +75,11 @@ inline auto effect(Effect effect) {
 }
 /// Of a key or a block whose numbers are not rounded at random: why not.
 inline auto exact(const char* why) {
-  return [=](auto& row) { row.draw.exact = why; };
-}
-/// In this turn, 0 first; those that do not say come last, in the order of the table.
-inline auto drawn(int turn) {
-  return [=](Key& row) { row.draw.turn = turn; };
+  return [=](auto& row) { row.exact = why; };
 }
 /// This value turns what the key is for off, and is not rounded.
 inline auto off_at(double value) {
-  return [=](Key& row) { row.draw.off = value; };
+  return [=](Key& row) { row.off = value; };
 }
 
 /// A block that is a std::optional.

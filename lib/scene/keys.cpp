@@ -68,7 +68,7 @@ KeyTable::KeyTable(const std::vector<KeyRows>& parts, const Object& defaults) {
   for (Block& block : blocks)
     if (!block.path.empty()) {
       block.parent = find_block(before_last_dot(block.path));
-      if (block.draw.exact == nullptr) block.draw.exact = block.parent->draw.exact;
+      if (block.exact == nullptr) block.exact = block.parent->exact;
     }
   for (Key& key : keys) {
     Block& block = const_cast<Block&>(*find_block(before_last_dot(key.path)));
@@ -77,7 +77,7 @@ KeyTable::KeyTable(const std::vector<KeyRows>& parts, const Object& defaults) {
     key.block = &block;
     key.standard = block.list ? block.list->standard : defaults;
     key.effect = std::min(key.effect, block.effect);
-    if (block.draw.exact != nullptr) key.draw.exact = block.draw.exact;
+    if (block.exact != nullptr) key.exact = block.exact;
   }
   make_all_present(defaults);
 }

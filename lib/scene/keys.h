@@ -55,16 +55,6 @@ enum class Effect {
   results,   ///< it does not
 };
 
-/// How `pbf compare` rounds a real number of a scene at random for a member of its ensemble, as a
-/// solver of lower precision rounds it once. Every number on which results depend is rounded.
-struct Draw {
-  static constexpr int kLast = 9;
-  const char* exact = nullptr;  ///< why it is not; null: it is
-  int turn = kLast;             ///< smaller ones first: a new key leaves the others' numbers alone
-  /// The value that turns it off, which stays and takes no random number; none: 0 stays 0.
-  double off = std::numeric_limits<double>::quiet_NaN();
-};
-
 struct Block;
 
 struct Key {
@@ -83,7 +73,11 @@ struct Key {
   /// stays.
   double (*at_level)(double value, int level) = nullptr;
   Effect effect = Effect::results;  ///< no more than its block's
-  Draw draw{};                      ///< exact where its block is
+  /// Numbers on which results depend are rounded at random for the ensemble of `pbf compare`, as a
+  /// solver of lower precision rounds them once. Why this one is not; null: it is. Or its block's.
+  const char* exact = nullptr;
+  /// The value that turns it off, which is not rounded; none: 0 stays 0.
+  double off = std::numeric_limits<double>::quiet_NaN();
   // From the table:
   const Block* block = nullptr;
   Object standard{};  ///< where it has its default
@@ -118,7 +112,7 @@ struct Block {
   bool optional = false;  ///< absent or `off`: the feature is off; {} or `on`: on, all defaults
   bool on_by_default = false;  ///< optional, but on where the scene does not mention it
   Effect effect = Effect::results;
-  Draw draw{};  ///< `exact` holds for its keys and for blocks in it
+  const char* exact = nullptr;  ///< of all its keys, and of blocks in it
   std::optional<List> list{};
   // From the table:
   const Block* parent = nullptr;  ///< of the top level null

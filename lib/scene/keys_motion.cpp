@@ -18,10 +18,9 @@ KeyRows motion_rows() {
        optional_block(KEY(tensile), "Artificial pressure against clusters (s_corr)."),
        optional_block(KEY(viscosity), "XSPH viscosity."),
        optional_block(KEY(vorticity), "Vorticity confinement.")},
-      {key(KEY(gravity), number("m/s^2", kRate), "Acceleration of gravity, [x, y, z].", drawn(2)),
+      {key(KEY(gravity), number("m/s^2", kRate), "Acceleration of gravity, [x, y, z]."),
        key(KEY(time.step), number("s", kSeconds),
-           "Time of one update, dt. About 0.03 sqrt(h/g) is safe.", required, scaled(linear),
-           drawn(0)),
+           "Time of one update, dt. About 0.03 sqrt(h/g) is safe.", required, scaled(linear)),
        key(KEY(time.end), number("s", kSeconds),
            "Time simulated, rounded to whole updates; at least time.step.", required,
            effect(Effect::none)),
@@ -59,24 +58,22 @@ KeyRows motion_rows() {
        key(KEY(solver.cfm), number("", {0, 1e12}),
            "eps h^2, in the denominator of lambda (constraint force mixing, made dimensionless). "
            "Larger is softer.",
-           renamed("solver.relaxation"), drawn(1)),
+           renamed("solver.relaxation")),
        key(KEY(solver.sor), number("", {0, 2, true}),
            "Factor omega on the position change of one iteration (successive over-relaxation; "
            "below "
            "1 it under-relaxes). auto: min(1, (2.5 d/h)^2), in two dimensions min(1, (3 "
            "d/h)^(4/3)), since more neighbours need smaller steps, and less where the density is "
            "above rest_density.",
-           renamed("solver.step_length"), automatic, drawn(3)),
+           renamed("solver.step_length"), automatic),
        key(KEY(solver.boundary), one_of({"density", "clamp"}),
            "density: walls count in the density like fluid behind them. clamp: particles are "
            "only put back into the box."),
        key(KEY(solver.wall_margin), number("m", {0, 1e9}),
            "Distance to a wall at which particles are clamped. What is nearer at the start is "
-           "put there; by more than half of fluid.spacing it is refused.",
-           drawn(1)),
+           "put there; by more than half of fluid.spacing it is refused."),
        key(KEY(solver.velocity_damping), number("", {0, 1}),
-           "Factor on every velocity, once per update. 1: no damping.", scaled(root), drawn(2),
-           off_at(1)),
+           "Factor on every velocity, once per update. 1: no damping.", scaled(root), off_at(1)),
        key(KEY(solver.speed_limit), number("h per update", {0, 1e6}),
            "Particles that would move farther than this in time.step, however many steps that is "
            "(time.adaptive), are slowed down to it; how often is counted and reported. 0: no "

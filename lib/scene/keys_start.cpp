@@ -40,8 +40,7 @@ KeyRows start_rows() {
        key(KEY(fluid.smoothing_ratio), number("", {1, 10}),
            "Smoothing length over spacing, h/d. 2 gives about 33 neighbours, 12 in two "
            "dimensions. With fluid.mass: auto at least 1.6, in two dimensions 1.5: below, a pool "
-           "packs itself into less than 0.97 of its volume.",
-           drawn(1)),
+           "packs itself into less than 0.97 of its volume."),
        key(KEY(fluid.mass), number("kg", {0, 1e30, true}),
            "Mass of one particle. auto: rho0 d^3 (in two dimensions rho0 d^2 times the "
            "thickness), with the density sum calibrated so that the rest lattice has density "

@@ -75,7 +75,7 @@ class Writer {
   }
 
   std::string how_it_is_off(const Block& block) const {
-    const std::string off = "`" + block.leaf() + ": off`";
+    const std::string off = format("`%s: off`", block.leaf().c_str());
     const bool on_with_defaults = !table_.has_required(block);
     if (!block.optional) return "";
     if (block.on_by_default)

@@ -42,7 +42,7 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
 /// The state with every number rounded at random: value (1 + r u), r uniform in [-1, 1).
 SolverState rounded(const SolverState& s, double u, std::uint64_t seed);
 
-/// The same for every number of the object that the table says is rounded (Draw).
+/// The same for every number of the object that the table says is rounded (Key::exact).
 void round_at_random(const KeyTable& table, const Object& object, double u, std::uint64_t seed);
 
 /// |a - b|; 0 where neither is a number, infinite where one alone is not.

@@ -1,23 +1,23 @@
 // The constants of a scene, rounded as a solver of lower precision rounds them.
-#include <algorithm>
-
 #include "lib/scene/random.h"
 #include "lib/verify/compare_parts.h"
 
 namespace pbf::inline verify_module {
 namespace {
 
-struct Constant {
-  const Draw* draw;
-  double* value;
-};
+/// Every key has random numbers of its own, so that a new key leaves those of the others alone.
+SplitMix64 random_of(const Key& key, std::uint64_t seed) {
+  for (const char c : key.path) seed = SplitMix64(seed + static_cast<unsigned char>(c)).next();
+  return SplitMix64(seed);
+}
 
-/// The real numbers of a field that are there.
-struct Collect {
-  const Draw& draw;
-  std::vector<Constant>& out;
+/// Rounds the real numbers of a field that are there.
+struct Round {
+  double off;
+  double u;
+  SplitMix64& random;
   void operator()(double* x) const {
-    if (*x != draw.off) out.push_back({&draw, x});
+    if (*x != off) *x *= 1 + u * (2 * random.uniform() - 1);
   }
   template <std::size_t N>
   void operator()(std::array<double, N>* values) const {
@@ -33,17 +33,14 @@ struct Collect {
 }  // namespace
 
 void round_at_random(const KeyTable& table, const Object& object, double u, std::uint64_t seed) {
-  std::vector<Constant> constants;
   for (const Key& key : table.keys) {
     const Block& block = *key.block;
-    if (key.effect != Effect::results || key.draw.exact || !block.is_present(object)) continue;
+    if (key.effect != Effect::results || key.exact || !block.is_present(object)) continue;
+    SplitMix64 random = random_of(key, seed);
     for (std::size_t i = 0; i < block.size(object); ++i)
       if (const Object holder = block.entry(object, i); key.kinds & block.kind_of(holder))
-        std::visit(Collect{key.draw, constants}, key.field(holder));
+        std::visit(Round{key.off, u, random}, key.field(holder));
   }
-  std::ranges::stable_sort(constants, {}, [](const Constant& c) { return c.draw->turn; });
-  SplitMix64 random(seed);
-  for (const Constant& c : constants) *c.value *= 1 + u * (2 * random.uniform() - 1);
 }
 
 }  // namespace pbf::inline verify_module
