@@ -4,9 +4,7 @@
 option(PBF_UNITY "Compile the sources of a folder together" ON)
 function(pbf_unity target)  # pbf_unity(target): after the target has all its sources
   get_target_property(sources ${target} SOURCES)
-  # Alone stand lib/exec/cpu, whose solver is half a minute's work with any neighbour, and what
-  # defines Catch2's main.
-  list(FILTER sources EXCLUDE REGEX "/lib/exec/cpu/|/main\\.cpp$")
+  list(FILTER sources EXCLUDE REGEX "/lib/exec/cpu/")  # few, long to compile
   foreach(source IN LISTS sources)
     cmake_path(ABSOLUTE_PATH source)
     cmake_path(GET source PARENT_PATH folder)

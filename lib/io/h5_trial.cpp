@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <optional>
 
 #include "lib/base/error.h"
 #include "lib/io/h5.h"
@@ -16,10 +15,10 @@
 namespace pbf::inline io_module::h5 {
 
 void trial(const std::string& path, const std::function<void()>& action, unsigned seconds) {
-  std::optional<Lock> held;
-  held.emplace();  // no other thread is inside HDF5 while the process is copied
-  const pid_t parent = getpid(), child = fork();
-  held.reset();
+  const pid_t parent = getpid(), child = [] {
+    const Lock alone;  // no other thread is inside HDF5 while the process is copied
+    return fork();
+  }();
   if (child < 0) return;  // no process to be had: the file is read without a trial
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // it is of no use to anyone else

@@ -5,14 +5,8 @@
 #include <string>
 #include <vector>
 
-#ifdef PBF_CATCH3
-#include <catch2/catch_session.hpp>
-#else
-#define CATCH_CONFIG_RUNNER
-#include <catch2/catch.hpp>
-#endif
-
 #include "tests/support/backend.h"
+#include "tests/support/catch.h"
 #ifdef PBF_HAS_CUDA
 #include "lib/exec/cuda/cuda_solver.h"
 #endif
@@ -38,10 +32,10 @@ int main(int argc, char** argv) {
   if (backend_test::backend() == pbf::Backend::cuda) {
     std::string why = "this build has no CUDA backend";
 #ifdef PBF_HAS_CUDA
-    if (pbf::cuda_available(&why)) return Catch::Session().run(int(rest.size()), rest.data());
+    if (pbf::cuda_available(&why)) return run_catch(int(rest.size()), rest.data());
 #endif
     std::printf("skipped: %s\n", why.c_str());
     return 77;
   }
-  return Catch::Session().run(int(rest.size()), rest.data());
+  return run_catch(int(rest.size()), rest.data());
 }

@@ -10,6 +10,9 @@ inline auto Contains(const std::string& text) { return Matchers::ContainsSubstri
 #include <catch2/catch.hpp>
 #endif
 
+/// Runs the test cases that the arguments ask for; the exit code of main().
+int run_catch(int argc, char** argv);
+
 // Ends a test case that this machine cannot run. ctest reads the words "test skipped:" and reports
 // it as skipped, not as passed; they win over a failure, so REQUIRE what must hold before.
 #ifdef PBF_CATCH3

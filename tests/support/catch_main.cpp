@@ -1,9 +1,4 @@
-// With Catch2 3 main() comes from Catch2WithMain; with 2.13 it is made here, once.
-#ifndef PBF_CATCH3
-#define CATCH_CONFIG_MAIN
-#include <catch2/catch.hpp>
-#else
-namespace {
-[[maybe_unused]] int unused;
-}
-#endif
+// Of the test binaries that need no main() of their own.
+int run_catch(int argc, char** argv);
+
+int main(int argc, char** argv) { return run_catch(argc, argv); }
