@@ -4,7 +4,8 @@
 option(PBF_UNITY "Compile the sources of a folder together" ON)
 function(pbf_unity target)  # pbf_unity(target): after the target has all its sources
   get_target_property(sources ${target} SOURCES)
-  list(FILTER sources EXCLUDE REGEX "/lib/exec/cpu/")  # few, long to compile
+  # Those that take long to optimise would hold up their folder.
+  list(FILTER sources EXCLUDE REGEX "/lib/exec/cpu/|/lib/campaign/exact_projection\\.cpp$")
   foreach(source IN LISTS sources)
     cmake_path(ABSOLUTE_PATH source)
     cmake_path(GET source PARENT_PATH folder)
@@ -12,6 +13,6 @@ function(pbf_unity target)  # pbf_unity(target): after the target has all its so
     string(MAKE_C_IDENTIFIER "${folder}" group)
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
   endforeach()
-  # A source without a group is compiled alone.
+  # A source without a group is compiled by itself.
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${PBF_UNITY} UNITY_BUILD_MODE GROUP)
 endfunction()
