@@ -1,6 +1,10 @@
 // pbf compare on two solvers: what is the same passes, what is not is found in its stage.
 #include "lib/base/error.h"
+#include "lib/exec/make_solver.h"
+#include "lib/program/plan.h"
+#include "lib/run/emit.h"
 #include "lib/scene/load.h"
+#include "lib/solver/solver.h"
 #include "lib/verify/compare.h"
 #include "tests/support/catch.h"
 
@@ -43,6 +47,20 @@ TEST_CASE("sides are read as they are written, and wrong ones are refused by nam
       CHECK(std::string(e.what()).find("e.g. cpu:double") != std::string::npos);
     }
   }
+}
+
+// A search that leaves these cells out would go unseen otherwise.
+TEST_CASE("in the scene of the seeded defects particles are in the grid's last half cells",
+          "[compare]") {
+  const Particles particles = emit_particles(scene(), ".");
+  const Plan plan = make_plan(scene(), std::int64_t(particles.size()));
+  const auto solver = make_solver(scene(), plan, particles);
+  solver->step(50);
+  const SolverState s = solver->state();
+  int there = 0;
+  for (std::size_t k = 0; k < s.id.size(); ++k)
+    there += 2 * s.position[3 * k + std::size_t(plan.axes.of[0])] > plan.cells[0] - 1;
+  CHECK(there > 10);
 }
 
 TEST_CASE("threads change no bit, and compare asks for that", "[compare]") {
