@@ -121,7 +121,7 @@ Found run_case(const Case& c, Precision precision, Backend backend) try {
   const std::string dir = c.file.parent_path().string();
   s.threads = 1;
   Found found{result_of(s, dir), {}, 0};
-  if (backend == Backend::cuda || std::stoi(found.row) <= 1024) return found;
+  if (about(backend).on_device || std::stoi(found.row) <= 1024) return found;
   s.threads = 2;
   if (result_of(s, dir) != found.row) found.note = "two threads give other bits than one";
   return found;
@@ -150,7 +150,8 @@ std::vector<Found> run_all(const std::vector<Case>& cases, Backend backend, int 
 int main_of(bool write, Backend backend, bool times) {
   const std::vector<Case> cases = read_cases();
   const Stopwatch watch;
-  const auto found = run_all(cases, backend, backend == Backend::cpu ? usable_threads() : 1, times);
+  const auto found =
+      run_all(cases, backend, about(backend).on_device ? 1 : usable_threads(), times);
   const Table frozen = read_table();
   std::string text = std::string(kHead) + "\n";
   std::size_t wrong = 0, rows = 0;
