@@ -49,3 +49,17 @@ def tools(capsys):
         return code, out.out, out.err
 
     return call
+
+
+@pytest.fixture
+def pictures(tmp_path):
+    """A run folder with 12 pictures of 64 x 48 that turn from black to red."""
+    import numpy as np
+    from matplotlib.image import imsave
+    folder = tmp_path / "dam" / "frames"
+    folder.mkdir(parents=True)
+    for k in range(12):
+        pixels = np.zeros((48, 64, 3))
+        pixels[..., 0] = k / 11
+        imsave(folder / f"frame_{k}.png", pixels)  # 10 sorts before 2 as text
+    return folder.parent
