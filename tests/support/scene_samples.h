@@ -7,6 +7,8 @@
 
 #include "lib/base/error.h"
 #include "lib/scene/load.h"
+#include "lib/scene/overrides.h"
+#include "lib/scene/validate.h"
 #include "tests/support/folder.h"
 
 namespace pbf::scene_test {
@@ -42,6 +44,19 @@ inline std::string jittered_ball(double jitter, std::mt19937& gen) {
 
 inline Scene parse(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return parse_scene(text, "scene.yaml", overrides);
+}
+
+/// Any struct with a table of keys, read from YAML and settings ("key=value").
+template <class Struct>
+Struct read_struct(const KeyTable& table, const std::string& text, const std::string& file,
+                   const std::vector<std::string>& settings) {
+  Node root = parse_yaml(text, file, true);
+  Problems problems;
+  for (const std::string& setting : settings) apply_override(root, setting, problems);
+  Struct out;
+  read_tree(table, root, object(out), problems);
+  problems.raise();
+  return out;
 }
 
 /// The scene configs/NAME.yaml on one thread, without files of frames.

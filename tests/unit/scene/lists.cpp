@@ -50,13 +50,7 @@ const KeyTable& tank_table() {
 }
 
 Tank read(const std::string& text, const std::vector<std::string>& settings = {}) {
-  Node root = parse_yaml(text, "tank.yaml", true);
-  Problems problems;
-  for (const std::string& setting : settings) apply_override(root, setting, problems);
-  Tank tank;
-  read_tree(tank_table(), root, object(tank), problems);
-  problems.raise();
-  return tank;
+  return read_struct<Tank>(tank_table(), text, "tank.yaml", settings);
 }
 std::string error(const std::string& text, const std::vector<std::string>& settings = {}) {
   return error_of([&] { read(text, settings); });

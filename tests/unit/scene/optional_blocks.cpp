@@ -59,21 +59,10 @@ const KeyTable& lit_table() {
   return table;
 }
 
-template <class Struct>
-Struct read(const KeyTable& table, const std::string& text,
-            const std::vector<std::string>& settings = {}) {
-  Node root = parse_yaml(text, "rig.yaml", true);
-  Problems problems;
-  for (const std::string& setting : settings) apply_override(root, setting, problems);
-  Struct s;
-  read_tree(table, root, object(s), problems);
-  problems.raise();
-  return s;
-}
 Rig rig(const std::string& text, const std::vector<std::string>& settings = {}) {
-  return read<Rig>(rig_table(), text, settings);
+  return read_struct<Rig>(rig_table(), text, "rig.yaml", settings);
 }
-std::string error(const std::string& text, const std::vector<std::string>& settings = {}) {
+std::string rig_error(const std::string& text, const std::vector<std::string>& settings = {}) {
   return error_of([&] { rig(text, settings); });
 }
 std::string yaml(const Rig& r, bool comments = false) {
@@ -98,25 +87,27 @@ TEST_CASE("an optional block that is absent or off needs none of its required ke
 TEST_CASE("an optional block that is given in any way must have its required keys") {
   const std::string radius = "probe.radius: missing; required, in m (Radius.)",
                     label = "probe.label: missing; required (Label.)";
-  CHECK(error("probe: {gain: 3, label: a}\n") == "2 rig.yaml:1:8: " + radius);
+  CHECK(rig_error("probe: {gain: 3, label: a}\n") == "2 rig.yaml:1:8: " + radius);
   for (const char* text : {"probe: {}\n", "probe: on\n", "probe: {gain: 3}\n"}) {
     CAPTURE(text);
-    CHECK(error(text) == "2 rig.yaml:1:8: " + radius + "\nrig.yaml:1:8: " + label);
+    CHECK(rig_error(text) == "2 rig.yaml:1:8: " + radius + "\nrig.yaml:1:8: " + label);
   }
-  CHECK(contains(error("length: 2\n", {"probe=on"}), "--set probe=on: " + radius));
-  CHECK(contains(error("length: 2\n", {"probe.label=a"}), radius));
+  CHECK(contains(rig_error("length: 2\n", {"probe=on"}), "--set probe=on: " + radius));
+  CHECK(contains(rig_error("length: 2\n", {"probe.label=a"}), radius));
   CHECK(rig("length: 2\n", {"probe.label=a", "probe.radius=4"}).probe->radius == 4);
   // A block within, optional too: needed where it is given.
   for (const char* filter : {"{}", "on"})
-    CHECK(error("probe: {radius: 1, label: a, filter: " + std::string(filter) + "}\n") ==
+    CHECK(rig_error("probe: {radius: 1, label: a, filter: " + std::string(filter) + "}\n") ==
           "2 rig.yaml:1:38: probe.filter.width: missing; required, in m (Width.)");
   CHECK(rig("probe: {radius: 1, label: a, filter: {width: 3}}\n").probe->filter->width == 3);
-  CHECK(contains(error("probe: 3\n"),
+  CHECK(contains(rig_error("probe: 3\n"),
                  "probe: expected a block {radius: ...}, got \"3\"; write off "));
 }
 
 TEST_CASE("a block that is on by default and has a required key must be given or turned off") {
-  const auto lit = [](const char* text) { return read<Lit>(lit_table(), text); };
+  const auto lit = [](const char* text) {
+    return read_struct<Lit>(lit_table(), text, "lit.yaml", {});
+  };
   CHECK(error_of([&] { lit("{}\n"); }) ==
         "2 rig.yaml:1:1: lamp.power: missing; required, in W (Power.)");
   CHECK(lit("lamp: {power: 4}\n").lamp->power == 4);
@@ -190,14 +181,14 @@ TEST_CASE("a text is empty only where its default is and none is required") {
     CHECK(contains(yaml(r), "  path: \"\"\n"));
     CHECK(yaml(rig(yaml(r))) == yaml(r));
   }
-  CHECK(error("owner: \"\"\n") == "2 rig.yaml:1:8: owner: is empty, expected text");
-  CHECK(error("probe: {radius: 1, label: \"\"}\n") ==
+  CHECK(rig_error("owner: \"\"\n") == "2 rig.yaml:1:8: owner: is empty, expected text");
+  CHECK(rig_error("probe: {radius: 1, label: \"\"}\n") ==
         "2 rig.yaml:1:27: probe.label: is empty, expected text");
-  CHECK(error(probe, {"probe.label=\"\""}) ==
+  CHECK(rig_error(probe, {"probe.label=\"\""}) ==
         "2 --set probe.label=\"\": probe.label: is empty, expected text");
   // Nothing at all is a value forgotten.
-  CHECK(contains(error("note:\n"), "note: has no value"));
-  CHECK(contains(error(probe, {"note="}), "note: has no value"));
+  CHECK(contains(rig_error("note:\n"), "note: has no value"));
+  CHECK(contains(rig_error(probe, {"note="}), "note: has no value"));
   const auto schema = nlohmann::json::parse(schema_of(rig_table()))["properties"];
   CHECK(schema["note"]["minLength"] == 0);
   CHECK(schema["note"]["default"] == "");
