@@ -109,7 +109,7 @@ TEST_CASE("a block that is on by default and has a required key must be given or
     return read_struct<Lit>(lit_table(), text, "lit.yaml", {});
   };
   CHECK(error_of([&] { lit("{}\n"); }) ==
-        "2 rig.yaml:1:1: lamp.power: missing; required, in W (Power.)");
+        "2 lit.yaml:1:1: lamp.power: missing; required, in W (Power.)");
   CHECK(lit("lamp: {power: 4}\n").lamp->power == 4);
   CHECK_FALSE(lit("lamp: off\n").lamp);
   Lit room;
