@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/pair_sum.h"
+#include "kernels/pass_levels.h"
 #include "kernels/pass_predict.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -25,7 +26,7 @@ PBF_HD Real power(Real x, int n) {
 /// dx_i = omega [ sum_j (lambda_i + lambda_j + s_corr) grad W_ij vol + lambda_i grad wall ].
 /// The velocity takes dx/dt at once: after the last iteration it is (x* - x)/dt, without the
 /// cancellation of that difference.
-template <class Real, class Lists, Smoothing S, bool tensile>
+template <class Real, class Lists, Smoothing S, bool tensile, class Coarse>
 struct DeltaPass {
   Params<Real> p;
   Lists lists;
@@ -35,6 +36,7 @@ struct DeltaPass {
   Vec4<Real>* position_out;  ///< out; w = 1/density
   Vec4<Real>* velocity;      ///< in/out, h/s
   StepCounts* moves_on;      ///< not null: on to the next substep's x* and velocity at once
+  [[no_unique_address]] Coarse coarse;  ///< LevelMove or NoLevelMove
 
   static constexpr int D = dimensions_of(S);
   static constexpr unsigned gathers = kPlace | kLambda | kId;
@@ -83,7 +85,8 @@ struct DeltaPass {
     const Vec3<Real> move = s.closeness > Real(0.5e12) ? pairs + separate(i, own) : pairs;
     const Real a = p.vol * Spiky<Real, D>::gradient_norm;
     const Vec3<Real> wall = own.w * p.boundary.template term<S>(x).gradient;
-    const Vec3<Real> free = p.sor * (a * move + wall);
+    Vec3<Real> free = p.sor * (a * move + wall);
+    if constexpr (Coarse::on) free = free + coarse(x);
     const Vec3<Real> target = x + free;
     const Vec3<Real> inside = p.boundary.path_end(x, target);
     const Vec3<Real> v = xyz(velocity[i]) + p.inv_dt * (free + (inside - target));

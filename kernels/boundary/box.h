@@ -50,6 +50,10 @@ struct Box {
     }
     return deepest;
   }
+  PBF_HD bool inside(Vec3<Real> x) const {
+    return x.x >= Real(0) && x.y >= Real(0) && x.z >= Real(0) && x.x <= extent.x &&
+           x.y <= extent.y && x.z <= extent.z;
+  }
   /// Whether x is beyond a wall.
   PBF_HD bool beyond(const double (&x)[3]) const {
     const double high[3] = {extent.x, extent.y, extent.z};

@@ -19,13 +19,13 @@ struct Stage {
 };
 
 inline constexpr Stage kStages[] = {
-    {"init", StageGroup::init, false},       {"predict", StageGroup::move, true},
-    {"grid", StageGroup::grid, true},        {"neighbors", StageGroup::grid, true},
-    {"density", StageGroup::density, true},  {"lambda", StageGroup::lambda, true},
-    {"delta", StageGroup::delta, true},      {"residual", StageGroup::lambda, true},
-    {"xsph", StageGroup::move, true},        {"vorticity", StageGroup::move, true},
-    {"measure", StageGroup::output, false},  {"guard", StageGroup::output, false},
-    {"download", StageGroup::output, false}, {"write", StageGroup::output, false},
-    {"render", StageGroup::output, false}};
+    {"init", StageGroup::init, false},      {"predict", StageGroup::move, true},
+    {"grid", StageGroup::grid, true},       {"neighbors", StageGroup::grid, true},
+    {"density", StageGroup::density, true}, {"lambda", StageGroup::lambda, true},
+    {"levels", StageGroup::lambda, true},   {"delta", StageGroup::delta, true},
+    {"residual", StageGroup::lambda, true}, {"xsph", StageGroup::move, true},
+    {"vorticity", StageGroup::move, true},  {"measure", StageGroup::output, false},
+    {"guard", StageGroup::output, false},   {"download", StageGroup::output, false},
+    {"write", StageGroup::output, false},   {"render", StageGroup::output, false}};
 
 }  // namespace pbf::inline base_module

@@ -4,6 +4,8 @@
 
 #include "lib/program/features/confinement.h"
 #include "lib/program/features/constraint.h"
+#include "lib/program/features/correction.h"
+#include "lib/program/features/levels.h"
 #include "lib/program/features/motion.h"
 #include "lib/program/features/viscosity.h"
 
@@ -18,7 +20,8 @@ struct FeatureList {
   }
 };
 
-using Features = FeatureList<Motion, Constraint, XsphViscosity, VorticityConfinement>;
+using Features =
+    FeatureList<Motion, Constraint, Levels, Correction, XsphViscosity, VorticityConfinement>;
 using Passes = Features::Passes;
 
 }  // namespace pbf::inline PBF_VARIANT

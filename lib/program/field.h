@@ -7,11 +7,16 @@
 
 namespace pbf::inline program_module {
 
-enum class Type { real, int32 };  ///< real: of the scene's precision
+enum class Type { real, int32, int64 };  ///< real: of the scene's precision
 
 /// How many rows a field has. padded: one per particle, and behind them what the lists of an
-/// executor may read beyond the last one.
-enum class Rows { particles, padded, bins };
+/// executor may read beyond the last one. cells, nodes: of the grids of solver.levels.
+enum class Rows { particles, padded, bins, cells, nodes };
+
+/// How many of each there are. padding: of the executor.
+struct RowCounts {
+  std::int64_t particles = 0, padding = 0, bins = 0, cells = 0, nodes = 0;
+};
 
 struct FieldInfo {
   const char* name;
@@ -37,10 +42,21 @@ inline constexpr FieldInfo bin_start{"bin_start", Type::int32, 1, Rows::bins};
 inline constexpr FieldInfo lists{"lists", Type::int32, 0, Rows::particles};
 }  // namespace field
 
-/// Rows of one of its arrays. padding: of the executor.
-constexpr std::int64_t rows_of(const FieldInfo& f, std::int64_t particles, std::int64_t padding,
-                               std::int64_t bins) {
-  return f.rows == Rows::bins ? bins + 1 : particles + (f.rows == Rows::padded ? padding : 0);
+/// Rows of one of its arrays.
+constexpr std::int64_t rows_of(const FieldInfo& f, const RowCounts& n) {
+  switch (f.rows) {
+    case Rows::particles:
+      break;
+    case Rows::padded:
+      return n.particles + n.padding;
+    case Rows::bins:
+      return n.bins + 1;
+    case Rows::cells:
+      return n.cells;
+    case Rows::nodes:
+      return n.nodes;
+  }
+  return n.particles;
 }
 
 /// A field that a pass reads or writes. other: the second of its two arrays, "position'".

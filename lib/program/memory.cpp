@@ -35,12 +35,16 @@ void add_state(const Plan& plan, std::int64_t bins, bool guard, const std::strin
                const Adder& add) {
   // The lists name one particle more, far away, and lanes read further (padding of the executors).
   const std::int64_t n = plan.particles, padding = add.on_device ? 1 : 16;
+  const RowCounts counts{n, padding, bins, plan.levels.cells(), plan.levels.nodes()};
   for (const FieldInfo* f : plan.program.fields) {
     if (f == &field::order && !add.on_device) continue;  // it stands in id'
     for (const char* which : {"", "'"})
       if (*which == '\0' || f->doubled)
-        add((std::string(f->name) + which).c_str(), f->type == Type::real ? real : "int32",
-            f->components, rows_of(*f, n, padding, bins));
+        add((std::string(f->name) + which).c_str(),
+            f->type == Type::real    ? real
+            : f->type == Type::int64 ? "int64"
+                                     : "int32",
+            f->components, rows_of(*f, counts));
   }
   for (const FieldInfo* f : plan.program.fields) {
     if (!f->state) continue;

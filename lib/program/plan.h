@@ -8,6 +8,7 @@
 
 #include "kernels/axes.h"
 #include "lib/base/json.h"
+#include "lib/program/levels.h"
 #include "lib/program/memory.h"
 #include "lib/program/program.h"
 #include "lib/scene/scene.h"
@@ -55,6 +56,7 @@ struct Plan {
       0;            ///< mean compression above which the iterations are repeated; 0: they are not
   int repeats = 0;  ///< at most so many, besides the first
   double mass = 0;  ///< kg, of one particle as reported
+  LevelPlan levels;
   Program program;
   MemoryPlan memory;
   std::vector<LeftOut> left_out;

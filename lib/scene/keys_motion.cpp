@@ -44,6 +44,10 @@ KeyRows motion_rows() {
            "Time steps of time.step/substeps that share one update's sort and neighbour lists, "
            "as long as little moves meanwhile (pbf plan says how many lists an update makes); "
            "viscosity and vorticity act once per update."),
+       key(KEY(solver.levels), one_of({"off", "auto", "on"}),
+           "Corrections over a hierarchy of grids coarser than h, in every iteration: the "
+           "compression of deep fluid then does not grow with its depth. auto: from 64 layers of "
+           "fluid on."),
        key(KEY(solver.method), one_of({"jacobi", "chebyshev"}),
            "jacobi: every iteration with omega = sor. chebyshev: omega follows Chebyshev's steps "
            "for "

@@ -20,6 +20,8 @@ enum class KernelMode { consistent, paper };         ///< density kernel and gra
 enum class ConstraintMode { one_sided, two_sided };  ///< C = max(rho/rho0 - 1, 0) or rho/rho0 - 1
 enum class BoundaryMode { density, clamp };          ///< walls with a density contribution, or bare
 enum class SolverMethod { jacobi, chebyshev };  ///< omega of an iteration: constant, or a sequence
+/// Corrections over grids coarser than h (kernels/README.md, "Levels"); automatic: in deep fluid.
+enum class LevelsMode { off, automatic, on };
 enum class Compression { none, gzip };
 enum class ColorBy { speed, density, id };
 
@@ -79,6 +81,7 @@ struct SolverSettings {
   int max_iterations = 32;  ///< iterations per substep at most, with a tolerance
   int substeps = 1;  ///< time steps of time.step/substeps that share one update's neighbour lists
   SolverMethod method = SolverMethod::jacobi;
+  LevelsMode levels = LevelsMode::off;
   KernelMode kernels = KernelMode::consistent;
   ConstraintMode constraint = ConstraintMode::one_sided;
   double cfm = 1e-4;          ///< dimensionless eps^ = eps h^2 in lambda's denominator

@@ -25,12 +25,14 @@ struct StepContext {
   template <class T>
   using Buffer = typename Exec::template Buffer<T>;
 
-  StepContext(Exec& executor, Scene along_axes, const Params<Real>& parameters)
-      : exec(executor), scene(std::move(along_axes)), p(parameters) {}
+  StepContext(Exec& executor, Scene along_axes, const Params<Real>& parameters,
+              const LevelPlan& grids)
+      : exec(executor), scene(std::move(along_axes)), p(parameters), levels(grids) {}
 
   Exec& exec;
   Scene scene;  ///< along the internal axes, with the present step
   Params<Real> p;
+  const LevelPlan& levels;
   Lists lists{};
   bool lists_are_current = false;
   const char* booked_as = nullptr;  ///< instead of the passes' own stages
@@ -44,6 +46,11 @@ struct StepContext {
   template <class Pass>
   void each(const Pass& pass) {
     exec.for_each(rows_, pass);
+  }
+  /// Over cells or nodes: n of them.
+  template <class Pass>
+  void over(int n, const Pass& pass) {
+    exec.for_each(n, pass);
   }
   template <class F>
   void with_smoothing(F&& f) const {
@@ -125,11 +132,15 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
                                    std::vector<int>& first_id) {
   const std::size_t n = first_position.size();
   rows_ = capacity_ = int(n);
+  const RowCounts sizes{rows_, std::int64_t(Exec::padding), bin_count(p), levels.cells(),
+                        levels.nodes()};
   for (const FieldInfo* f : fields) {
     if (f == &field::order && Exec::order_in_place) continue;
-    const auto count = std::size_t(rows_of(*f, rows_, std::int64_t(Exec::padding), bin_count(p)));
+    const auto count = std::size_t(rows_of(*f, sizes));
     const std::size_t row =
-        std::size_t(f->components) * (f->type == Type::real ? sizeof(Real) : sizeof(int));
+        std::size_t(f->components) * (f->type == Type::real    ? sizeof(Real)
+                                      : f->type == Type::int64 ? sizeof(std::int64_t)
+                                                               : sizeof(int));
     slots_.push_back({f, {}, 0});
     for (int k = 0; k < (f->doubled ? 2 : 1); ++k) {
       slots_.back().rows[k].resize(count * row);

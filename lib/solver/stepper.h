@@ -29,7 +29,7 @@ class Stepper {
   Stepper(Exec& exec, const Scene& scene, const Plan& plan, std::vector<Vec4<Real>> position,
           std::vector<Vec4<Real>> velocity, std::vector<int> id)
       : plan_(plan),
-        c_(exec, in_internal_axes(scene, plan.axes), make_params<Real>(scene, plan)),
+        c_(exec, in_internal_axes(scene, plan.axes), make_params<Real>(scene, plan), plan.levels),
         residual_limit_(residual_limit(plan.tolerance, int(plan.particles))),
         program_(&plan.program) {
     for (int k = 0; k < scene.solver.iterations; ++k)

@@ -166,14 +166,14 @@ void check_all() {
   });
   const auto delta = [](auto tensile) {
     return [](const P& p, const L& lists, R& in, R& out) {
-      return DeltaPass<Real, L, S, decltype(tensile)::value>{p,
-                                                             lists,
-                                                             in.position.data(),
-                                                             in.density.data(),
-                                                             in.id.data(),
-                                                             out.position.data(),
-                                                             out.velocity.data(),
-                                                             nullptr};
+      return DeltaPass<Real, L, S, decltype(tensile)::value, NoLevelMove<Real>>{p,
+                                                                                lists,
+                                                                                in.position.data(),
+                                                                                in.density.data(),
+                                                                                in.id.data(),
+                                                                                out.position.data(),
+                                                                                out.velocity.data(),
+                                                                                nullptr};
     };
   };
   check<Real, D>(delta(std::false_type{}));

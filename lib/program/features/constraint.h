@@ -1,8 +1,6 @@
-// The density constraint: density, lambda and the position correction of one iteration, with the
-// artificial pressure in the latter's loop.
+// The density constraint: density and lambda of one iteration.
 #pragma once
 
-#include "kernels/pass_delta.h"
 #include "kernels/pass_lambda.h"
 #include "kernels/pass_residual.h"
 #include "lib/program/features/motion.h"
@@ -74,48 +72,8 @@ struct DensityLambda {
   }
 };
 
-template <class C>
-void launch_delta(C& c, StepCounts* moves_on) {
-  auto p = c.p;
-  p.sor = c.sor();
-  c.with_smoothing([&](auto s) {
-    with_bool(c.scene.tensile && c.scene.tensile->k != 0, [&](auto tensile) {
-      c.each(DeltaPass<typename C::Real, typename C::Lists, decltype(s)::value,
-                       decltype(tensile)::value>{p, c.lists, c.other(field::position), c.density(),
-                                                 c.ids(), c.position(), c.velocity(), moves_on});
-    });
-  });
-}
-inline PassInfo delta_info(const char* name) {
-  return {name,
-          "delta",
-          {other(field::position), {&field::lists}, {&field::density}, {&field::velocity}},
-          {vector({&field::position}, "position", "h"),
-           {{&field::position}, Written::fourth, "1/density", "1/rho0"},
-           vector({&field::velocity}, "velocity", "h/s")},
-          DeltaPass<float, ChunkedLists, Smoothing::consistent, true>::gathers};
-}
-
-struct Delta {
-  static PassInfo info() { return delta_info("delta"); }
-  template <class C>
-  static void launch(C& c) {
-    launch_delta(c, nullptr);
-  }
-};
-
-/// Takes the particles to the next substep as well: the same arithmetic in one launch less.
-struct DeltaPredict {
-  using Fuses = Pair<Delta, Predict>;
-  static PassInfo info() { return delta_info("delta+predict"); }
-  template <class C>
-  static void launch(C& c) {
-    launch_delta(c, c.counts());
-  }
-};
-
 struct Constraint {
-  using Passes = PassList<Density, Lambda, DensityLambda, Delta, DeltaPredict>;
+  using Passes = PassList<Density, Lambda, DensityLambda>;
   template <class B>
   static void add(const Scene& s, B& b) {
     if (s.solver.iterations == 0)
@@ -127,9 +85,6 @@ struct Constraint {
       b.template iteration<Density>();
       b.template iteration<Lambda>();
     }
-    b.template iteration<Delta>();
-    if (!s.tensile || s.tensile->k == 0)
-      b.left_out("artificial pressure in the delta loop", "no key tensile");
   }
 };
 

@@ -1,0 +1,76 @@
+// A hierarchy of grids over the box, for corrections that reach farther than h (kernels/README.md,
+// "Levels"). The cells of level 0 are 2 x 2 x 2 cells of the search grid (4 x 2 x 2 with its half
+// cells along x), the last one of an axis longer or shorter, so that its end is the wall. Nodes are
+// the corners; every level has every other node of the one before.
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/params.h"
+
+namespace pbf {
+
+/// How an axis of a level follows from that of the finer one.
+enum class Coarsened { first, halved, folded, kept };  ///< folded: two nodes become one
+
+/// One level: where its nodes stand in arrays that hold those of all levels, and how many.
+struct LevelShape {
+  int first = 0;
+  int nodes[3] = {1, 1, 1};
+  Coarsened from[3] = {Coarsened::first, Coarsened::first, Coarsened::first};
+
+  PBF_HD int size() const { return nodes[0] * nodes[1] * nodes[2]; }
+  PBF_HD int at(int x, int y, int z) const { return first + (z * nodes[1] + y) * nodes[0] + x; }
+};
+
+/// The finest level, and what its cells hold at rest. Lengths in h.
+struct LevelCells {
+  int cells[3] = {1, 1, 1};
+  double edge = 2;             ///< of a cell
+  double last[3] = {2, 2, 2};  ///< of the last one along each axis
+  double half_full = 32;       ///< particles in half a cell of edge^3 (edge^2) at rest
+
+  PBF_HD int size() const { return cells[0] * cells[1] * cells[2]; }
+};
+
+/// Taps of a coarse node `i` on the finer level's axis of n nodes: indices and weights in halves.
+struct Taps {
+  int count = 0, index[3] = {0, 0, 0}, halves[3] = {0, 0, 0};
+  PBF_HD void add(int at, int weight) {
+    index[count] = at;
+    halves[count++] = weight;
+  }
+};
+PBF_HD Taps finer_nodes(Coarsened from, int i, int n) {
+  Taps t;
+  if (from == Coarsened::halved) {
+    for (int d = -1; d <= 1; ++d)
+      if (2 * i + d >= 0 && 2 * i + d < n) t.add(2 * i + d, d == 0 ? 2 : 1);
+  } else {
+    t.add(0, 2);
+    if (from == Coarsened::folded) t.add(1, 2);
+  }
+  return t;
+}
+/// Taps of a fine node on the coarser level's axis.
+PBF_HD Taps coarser_nodes(Coarsened from, int i) {
+  Taps t;
+  if (from != Coarsened::halved) {
+    t.add(0, 2);
+  } else if (i % 2 == 0) {
+    t.add(i / 2, 2);
+  } else {
+    t.add(i / 2, 1);
+    t.add(i / 2 + 1, 1);
+  }
+  return t;
+}
+
+/// Sums of a cell or a node: of clipped C in units of 2^-30, of particles in units of 2^-20. Whole
+/// numbers, so that no order of summation shows.
+struct LevelSum {
+  std::int64_t excess = 0, particles = 0;
+  static constexpr double excess_unit = 1.0 / (1 << 30), particle_unit = 1.0 / (1 << 20);
+};
+
+}  // namespace pbf

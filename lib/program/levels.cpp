@@ -1,0 +1,80 @@
+#include "lib/program/levels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/smoothing.h"
+
+namespace pbf::inline program_module {
+namespace {
+
+constexpr double kDeep = 64;  ///< layers
+
+/// Of the bodies' bounding box along gravity, in layers; bodies from files count as nothing.
+double layers(const Scene& s) {
+  double deepest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (s.gravity[k] == 0) continue;
+    double low = s.domain.max[k], high = s.domain.min[k];
+    for (const Body& b : s.bodies) {
+      if (b.shape == Shape::file) continue;
+      const bool ball = b.shape == Shape::sphere;
+      low = std::min(low, ball ? b.center[k] - b.radius : b.min[k]);
+      high = std::max(high, ball ? b.center[k] + b.radius : b.max[k]);
+    }
+    deepest = std::max(deepest, (high - low) / s.fluid.spacing);
+  }
+  return deepest;
+}
+
+double lattice_gamma(double ratio, double vol, int dimensions) {
+  const int reach = int(std::ceil(ratio)), y_reach = dimensions == 2 ? 0 : reach;
+  const double norm =
+      dimensions == 2 ? Spiky<double, 2>::gradient_norm : Spiky<double, 3>::gradient_norm;
+  double sum = 0;
+  for (int i = -reach; i <= reach; ++i)
+    for (int j = -y_reach; j <= y_reach; ++j)
+      for (int k = -reach; k <= reach; ++k) {
+        const double q = std::sqrt(double(i * i + j * j + k * k)) / ratio;
+        if (q > 0 && q < 1) sum += (1 - q) * (1 - q) * q;
+      }
+  return std::fabs(vol * norm * sum / dimensions);
+}
+
+}  // namespace
+
+bool has_levels(const Scene& s) {
+  if (s.solver.iterations == 0 || s.solver.levels == LevelsMode::off) return false;
+  return s.solver.levels == LevelsMode::on || layers(s) >= kDeep;
+}
+
+LevelPlan plan_levels(const Scene& s, double cell_edge, double vol) {
+  LevelPlan plan;
+  const double ratio = s.fluid.smoothing_ratio, edge = 2 * cell_edge;
+  LevelShape level;
+  plan.grid.edge = edge;
+  plan.grid.half_full = 0.5 * std::pow(edge * ratio, s.dimensions);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (s.dimensions == 2 && k == 1) continue;
+    const double box = (s.domain.max[k] - s.domain.min[k]) / s.h();
+    plan.grid.cells[k] = std::max(1, int(std::lround(box / edge)));
+    plan.grid.last[k] = box - edge * (plan.grid.cells[k] - 1);
+    level.nodes[k] = plan.grid.cells[k] + 1;
+  }
+  for (;;) {
+    plan.levels.push_back(level);
+    if (*std::max_element(level.nodes, level.nodes + 3) <= 2) break;
+    level.first += level.size();
+    for (int k = 0; k < 3; ++k) {
+      const int intervals = level.nodes[k] - 1;
+      level.from[k] = intervals > 1    ? Coarsened::halved
+                      : intervals == 1 ? Coarsened::folded
+                                       : Coarsened::kept;
+      level.nodes[k] = intervals > 1 ? (intervals + 1) / 2 + 1 : 1;
+    }
+  }
+  plan.gamma = lattice_gamma(ratio, vol, s.dimensions);
+  return plan;
+}
+
+}  // namespace pbf::inline program_module

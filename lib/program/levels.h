@@ -1,0 +1,32 @@
+// The grids of solver.levels: whether a scene has them, and their shape (kernels/levels.h).
+#pragma once
+
+#include <vector>
+
+#include "kernels/levels.h"
+#include "lib/scene/scene.h"
+
+namespace pbf::inline program_module {
+
+struct LevelPlan {
+  LevelCells grid;
+  std::vector<LevelShape> levels;  ///< the finest first; empty: none
+  /// Share of the squared edge of a level's cells by which it answers to the mean C around a node.
+  double beta = 0.2;
+  /// -grad k -> displacement: what the sum over pairs makes of a multiplier with that gradient on
+  /// the rest lattice, vol sum |grad W| q / D.
+  double gamma = 0;
+
+  std::int64_t nodes() const {
+    return levels.empty() ? 0 : levels.back().first + levels.back().size();
+  }
+  std::int64_t cells() const { return levels.empty() ? 0 : grid.size(); }
+};
+
+/// solver.levels, `auto` decided: from 64 layers of fluid along gravity on.
+bool has_levels(const Scene& scene);
+
+/// cell_edge: h, of the search grid's cells. The scene is in internal axes.
+LevelPlan plan_levels(const Scene& scene, double cell_edge, double vol);
+
+}  // namespace pbf::inline program_module
