@@ -33,6 +33,13 @@ struct LevelCells {
   PBF_HD int size() const { return cells[0] * cells[1] * cells[2]; }
 };
 
+/// The finest level first. An axis has fewer than 2^30 cells, and each level halves them.
+struct LevelHierarchy {
+  static constexpr int most = 32;
+  int count = 0;
+  LevelShape level[most];
+};
+
 /// Taps of a coarse node `i` on the finer level's axis of n nodes: indices and weights in halves.
 struct Taps {
   int count = 0, index[3] = {0, 0, 0}, halves[3] = {0, 0, 0};

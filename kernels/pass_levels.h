@@ -151,6 +151,37 @@ struct LevelUpPass {
   }
 };
 
+/// The levels from `first` on, which are small: down to the coarsest and up again, one step after
+/// the other.
+template <class Real>
+struct LevelChainPass {
+  LevelHierarchy all;
+  int first;
+  Real stiffness;  ///< of level 0; four times as large on each coarser one
+  LevelSum* node;
+  Real* multiplier;
+
+  PBF_HD int steps() const { return 2 * (all.count - first); }
+  PBF_HD int level_of(int step) const {
+    const int down = all.count - first;
+    return step < down ? first + step : all.count - 1 - (step - down);
+  }
+  PBF_HD int size(int step) const { return all.level[level_of(step)].size(); }
+  PBF_HD void operator()(int step, int n) const {
+    const int k = level_of(step);
+    if (step < all.count - first)
+      LevelDownPass{all.level[k - 1], all.level[k], node}(n);
+    else
+      up(k)(n);
+  }
+  PBF_HD LevelUpPass<Real> up(int k) const {
+    const bool coarsest = k + 1 == all.count;
+    Real s = stiffness;
+    for (int l = 0; l < k; ++l) s *= Real(4);
+    return {all.level[k], all.level[coarsest ? k : k + 1], coarsest, s, node, multiplier};
+  }
+};
+
 /// -gamma grad k at x, k interpolated linearly between the nodes of level 0.
 template <class Real>
 struct LevelMove {

@@ -62,7 +62,7 @@ LevelPlan plan_levels(const Scene& s, double cell_edge, double vol) {
     level.nodes[k] = plan.grid.cells[k] + 1;
   }
   for (;;) {
-    plan.levels.push_back(level);
+    plan.all.level[plan.all.count++] = level;
     if (*std::max_element(level.nodes, level.nodes + 3) <= 2) break;
     level.first += level.size();
     for (int k = 0; k < 3; ++k) {

@@ -10,7 +10,7 @@ namespace pbf::inline program_module {
 
 struct LevelPlan {
   LevelCells grid;
-  std::vector<LevelShape> levels;  ///< the finest first; empty: none
+  LevelHierarchy all;  ///< none: no levels
   /// Share of the squared edge of a level's cells by which it answers to the mean C around a node.
   double beta = 0.2;
   /// -grad k -> displacement: what the sum over pairs makes of a multiplier with that gradient on
@@ -18,9 +18,11 @@ struct LevelPlan {
   double gamma = 0;
 
   std::int64_t nodes() const {
-    return levels.empty() ? 0 : levels.back().first + levels.back().size();
+    if (all.count == 0) return 0;
+    const LevelShape& last = all.level[all.count - 1];
+    return last.first + last.size();
   }
-  std::int64_t cells() const { return levels.empty() ? 0 : grid.size(); }
+  std::int64_t cells() const { return all.count == 0 ? 0 : grid.size(); }
 };
 
 /// solver.levels, `auto` decided: from 64 layers of fluid along gravity on.

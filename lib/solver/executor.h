@@ -25,6 +25,11 @@ namespace archetype {
 struct Pass {
   PBF_HD void operator()(int) const {}
 };
+struct Steps {
+  PBF_HD int steps() const { return 0; }
+  PBF_HD int size(int) const { return 0; }
+  PBF_HD void operator()(int, int) const {}
+};
 struct Residual {
   PBF_HD std::uint64_t operator()(int) const { return 0; }
 };
@@ -81,6 +86,8 @@ concept Executor = requires(E e, const E c, int* ints, unsigned long long* count
   e.finish_copy(targets);
   // pass(i) for every particle, sums of all of them.
   e.for_each(1, archetype::Pass{});
+  // pass(step, i) for every i < pass.size(step), one step after the other: for small sizes.
+  e.in_turn(archetype::Steps{});
   { e.reduce(1, archetype::Measure{}) } -> std::same_as<MeasureSums>;
   { e.count_in_bins(1, 1, archetype::Bin{}) } -> std::convertible_to<std::vector<std::int64_t>>;
   // body() while the sum of a pass is above a limit.

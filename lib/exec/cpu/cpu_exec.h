@@ -89,6 +89,13 @@ class CpuExec {
     }
   }
 
+  /// pass(step, i) for every i below pass.size(step), one step after the other.
+  template <class Pass>
+  void in_turn(const Pass& pass) {
+    for (int step = 0; step < pass.steps(); ++step)
+      for_each(pass.size(step), [&](int i) { pass(step, i); });
+  }
+
   /// A measure: its maxima and counts, then the sums in units that these decide.
   template <class Pass>
   MeasureSums reduce(int n, const Pass& pass) {

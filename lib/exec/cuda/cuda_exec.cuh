@@ -101,6 +101,11 @@ class CudaExec {
     launch(apply_kernel<Pass>, n, kBlock, 0, n, pass);
   }
 
+  template <class Pass>
+  void in_turn(const Pass& pass) {
+    launch(in_turn_kernel<Pass>, kTurnBlock, kTurnBlock, 0, pass);
+  }
+
   /// See CpuExec. The maxima stay on the device for the sums, so the host waits once.
   template <class Pass>
   MeasureSums reduce(int n, const Pass& pass) {

@@ -21,14 +21,28 @@ template <class C, class F>
 void with_level_move(C& c, F&& f) {
   using Real = typename C::Real;
   const LevelPlan& l = c.levels;
-  if (l.levels.empty()) return f(NoLevelMove<Real>{});
+  if (l.all.count == 0) return f(NoLevelMove<Real>{});
   const auto inverse = [&](int k) { return Real(1 / l.grid.last[k]); };
   f(LevelMove<Real>{l.grid,
-                    l.levels[0],
+                    l.all.level[0],
                     {inverse(0), inverse(1), inverse(2)},
                     Real(1 / l.grid.edge),
                     Real(l.gamma),
                     c.template data<Real>(field::multiplier)});
+}
+
+/// Levels of up to so many nodes are made together, by one block of a device: its launches take
+/// longer than the work.
+inline constexpr int kLevelsTogether = 4096;
+
+template <class C>
+LevelChainPass<typename C::Real> level_chain(C& c) {
+  const LevelPlan& l = c.levels;
+  int first = 1;
+  while (first < l.all.count && l.all.level[first].size() > kLevelsTogether) ++first;
+  return {l.all, first, typename C::Real(l.beta * l.grid.edge * l.grid.edge),
+          c.template data<LevelSum>(field::level_node),
+          c.template data<typename C::Real>(field::multiplier)};
 }
 
 struct LevelSums {
@@ -41,17 +55,18 @@ struct LevelSums {
   template <class C>
   static void launch(C& c) {
     const LevelPlan& l = c.levels;
+    const auto chain = level_chain(c);
     auto* cell = c.template data<LevelSum>(field::level_cell);
-    auto* node = c.template data<LevelSum>(field::level_node);
     with_dimensions(c.p.dimensions, [&](auto d) {
       c.over(l.grid.size(), LevelCellPass<typename C::Real, decltype(d)::value>{
                                 c.p, l.grid, c.template data<int>(field::bin_start), c.position(),
                                 c.density(), cell});
     });
-    c.over(l.levels[0].size(),
-           LevelNodePass<typename C::Real>{c.p.boundary.walls, l.grid, l.levels[0], cell, node});
-    for (std::size_t k = 1; k < l.levels.size(); ++k)
-      c.over(l.levels[k].size(), LevelDownPass{l.levels[k - 1], l.levels[k], node});
+    c.over(l.all.level[0].size(),
+           LevelNodePass<typename C::Real>{c.p.boundary.walls, l.grid, l.all.level[0], cell,
+                                           chain.node});
+    for (int k = 1; k < chain.first; ++k)
+      c.over(l.all.level[k].size(), LevelDownPass{l.all.level[k - 1], l.all.level[k], chain.node});
   }
 };
 
@@ -61,16 +76,9 @@ struct LevelMultipliers {
   }
   template <class C>
   static void launch(C& c) {
-    using Real = typename C::Real;
-    const LevelPlan& l = c.levels;
-    for (std::size_t k = l.levels.size(); k-- > 0;) {
-      const bool coarsest = k + 1 == l.levels.size();
-      const double edge = std::ldexp(l.grid.edge, int(k));
-      c.over(l.levels[k].size(), LevelUpPass<Real>{l.levels[k], l.levels[coarsest ? k : k + 1],
-                                                   coarsest, Real(l.beta * edge * edge),
-                                                   c.template data<LevelSum>(field::level_node),
-                                                   c.template data<Real>(field::multiplier)});
-    }
+    const auto chain = level_chain(c);
+    if (chain.steps() > 0) c.exec.in_turn(chain);
+    for (int k = chain.first; k-- > 0;) c.over(c.levels.all.level[k].size(), chain.up(k));
   }
 };
 
