@@ -40,37 +40,23 @@ struct LevelHierarchy {
   LevelShape level[most];
 };
 
-/// Taps of a coarse node `i` on the finer level's axis of n nodes: indices and weights in halves.
-struct Taps {
-  int count = 0, index[3] = {0, 0, 0}, halves[3] = {0, 0, 0};
-  PBF_HD void add(int at, int weight) {
-    index[count] = at;
-    halves[count++] = weight;
-  }
+/// A node of another level and its weight, in halves along one axis; 0: there is none.
+struct Tap {
+  int node, halves;
 };
-PBF_HD Taps finer_nodes(Coarsened from, int i, int n) {
-  Taps t;
+/// Of a coarse node i, the finer level's nodes d = 0, 1, 2; n of them along the axis.
+PBF_HD Tap finer_node(Coarsened from, int i, int d, int n) {
   if (from == Coarsened::halved) {
-    for (int d = -1; d <= 1; ++d)
-      if (2 * i + d >= 0 && 2 * i + d < n) t.add(2 * i + d, d == 0 ? 2 : 1);
-  } else {
-    t.add(0, 2);
-    if (from == Coarsened::folded) t.add(1, 2);
+    const int node = 2 * i + d - 1;
+    return node >= 0 && node < n ? Tap{node, d == 1 ? 2 : 1} : Tap{0, 0};
   }
-  return t;
+  return d == 0 || (d == 1 && from == Coarsened::folded) ? Tap{d, 2} : Tap{0, 0};
 }
-/// Taps of a fine node on the coarser level's axis.
-PBF_HD Taps coarser_nodes(Coarsened from, int i) {
-  Taps t;
-  if (from != Coarsened::halved) {
-    t.add(0, 2);
-  } else if (i % 2 == 0) {
-    t.add(i / 2, 2);
-  } else {
-    t.add(i / 2, 1);
-    t.add(i / 2 + 1, 1);
-  }
-  return t;
+/// Of a fine node i, the coarser level's nodes d = 0, 1.
+PBF_HD Tap coarser_node(Coarsened from, int i, int d) {
+  if (from != Coarsened::halved) return {0, d == 0 ? 2 : 0};
+  if (i % 2 == 0) return {i / 2, d == 0 ? 2 : 0};
+  return {i / 2 + d, 1};
 }
 
 /// Sums of a cell or a node: of clipped C in units of 2^-30, of particles in units of 2^-20. Whole

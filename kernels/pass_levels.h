@@ -10,35 +10,46 @@ namespace pbf::inline PBF_VARIANT {
 /// The mean C of a cell is that of its packing if one particle of many is crowded by others.
 inline constexpr double kLevelClip = 0.1;
 
-/// Sums over the particles of a cell, which are those that were in it when the lists were made.
+/// The rows of half cells along x that a cell is summed in, one thread each.
+template <int D>
+constexpr int kRowsPerCell = D == 2 ? 2 : 4;
+
+/// Sums over the particles in a row of a cell: those that were in it when the lists were made.
 template <class Real, int D>
 struct LevelCellPass {
   Params<Real> p;
   LevelCells grid;
   const int* bin_start;
-  const Vec4<Real>* position;  ///< where a face is open, those beyond it do not count
+  const Vec4<Real>* position;  ///< null where no face is open; else those beyond do not count
   const Real* density;
-  LevelSum* cell;  ///< out
+  LevelSum* row;  ///< out
 
-  PBF_HD void operator()(int c) const {
-    const int cx = c % grid.cells[0], cy = c / grid.cells[0] % grid.cells[1];
-    const int cz = c / grid.cells[0] / grid.cells[1];
+  PBF_HD void operator()(int n) const {
+    const int c = n / kRowsPerCell<D>, part = n % kRowsPerCell<D>;
+    const int cx = c % grid.cells[0], yz = c / grid.cells[0];
+    const int cy = yz % grid.cells[1], cz = yz / grid.cells[1];
     const int x0 = 4 * cx, x1 = cx + 1 < grid.cells[0] ? x0 + 4 : p.cells_x;
-    const int y0 = 2 * cy, y1 = D == 2 ? 1 : cy + 1 < grid.cells[1] ? y0 + 2 : p.cells_y;
-    const int z0 = 2 * cz, z1 = cz + 1 < grid.cells[2] ? z0 + 2 : p.cells_z;
+    // The first row of two, or the others: a last cell may have one or three.
+    const auto rows = [](int cell, int cells, int of, int second, int& from, int& to) {
+      from = 2 * cell + second;
+      to = !second ? from + 1 : cell + 1 < cells ? from + 1 : of;
+    };
+    int y0 = 0, y1 = 1, z0, z1;
+    if constexpr (D == 3) rows(cy, grid.cells[1], p.cells_y, part / 2, y0, y1);
+    rows(cz, grid.cells[2], p.cells_z, part % 2, z0, z1);
     LevelSum sum;
     for (int z = z0; z < z1; ++z)
       for (int y = y0; y < y1; ++y) {
-        const int row = (D == 2 ? z : z * p.cells_y + y) * p.cells_x;
-        const int end = bin_start[(row + x1) * bins_per_cell(D)];
-        for (int i = bin_start[(row + x0) * bins_per_cell(D)]; i < end; ++i) add(sum, i);
+        const int at = (D == 2 ? z : z * p.cells_y + y) * p.cells_x;
+        const int end = bin_start[(at + x1) * bins_per_cell(D)];
+        for (int i = bin_start[(at + x0) * bins_per_cell(D)]; i < end; ++i) add(sum, i);
       }
-    cell[c] = sum;
+    row[n] = sum;
   }
 
  private:
   PBF_HD void add(LevelSum& sum, int i) const {
-    if (!p.boundary.inside(xyz(position[i]))) return;
+    if (position && !p.boundary.inside(xyz(position[i]))) return;
     const Real c = min2(density[i] - Real(1), Real(kLevelClip));
     if (c >= Real(-1)) sum.excess += std::int64_t(c * Real(1 << 30));
     sum.particles += 1 << 20;
@@ -47,12 +58,12 @@ struct LevelCellPass {
 
 /// A node of level 0: the sums of the cells around it. Off (particles = -1) where one of them is
 /// not half full or beyond an open face: a hat must not reach into the air.
-template <class Real>
+template <int D>
 struct LevelNodePass {
   unsigned walls;
   LevelCells grid;
   LevelShape level;
-  const LevelSum* cell;
+  const LevelSum* row;
   LevelSum* node;  ///< out
 
   PBF_HD void operator()(int n) const {
@@ -71,7 +82,7 @@ struct LevelNodePass {
     for (int c = low[2]; c <= high[2]; ++c)
       for (int b = low[1]; b <= high[1]; ++b)
         for (int a = low[0]; a <= high[0]; ++a) {
-          const LevelSum& s = cell[(c * grid.cells[1] + b) * grid.cells[0] + a];
+          const LevelSum s = of_cell((c * grid.cells[1] + b) * grid.cells[0] + a);
           sum.excess += s.excess;
           sum.particles += s.particles;
           double needed = grid.half_full;
@@ -83,6 +94,17 @@ struct LevelNodePass {
     if (!on) sum.particles = -1 - sum.particles;
     node[n] = sum;
   }
+
+ private:
+  PBF_HD LevelSum of_cell(int c) const {
+    LevelSum sum;
+    for (int r = 0; r < kRowsPerCell<D>; ++r) {
+      const LevelSum s = row[c * kRowsPerCell<D> + r];
+      sum.excess += s.excess;
+      sum.particles += s.particles;
+    }
+    return sum;
+  }
 };
 
 /// A node of a coarser level: the finer ones around it, weights 1 and 1/2 along each axis.
@@ -93,19 +115,21 @@ struct LevelDownPass {
   PBF_HD void operator()(int n) const {
     const int at[3] = {n % level.nodes[0], n / level.nodes[0] % level.nodes[1],
                        n / level.nodes[0] / level.nodes[1]};
-    Taps t[3];
-    for (int k = 0; k < 3; ++k) t[k] = finer_nodes(level.from[k], at[k], fine.nodes[k]);
     LevelSum sum;
     bool on = true;
-    for (int c = 0; c < t[2].count; ++c)
-      for (int b = 0; b < t[1].count; ++b)
-        for (int a = 0; a < t[0].count; ++a) {
-          LevelSum s = node[fine.at(t[0].index[a], t[1].index[b], t[2].index[c])];
+    for (int c = 0; c < 3; ++c)
+      for (int b = 0; b < 3; ++b)
+        for (int a = 0; a < 3; ++a) {
+          const Tap x = finer_node(level.from[0], at[0], a, fine.nodes[0]);
+          const Tap y = finer_node(level.from[1], at[1], b, fine.nodes[1]);
+          const Tap z = finer_node(level.from[2], at[2], c, fine.nodes[2]);
+          const int eighths = x.halves * y.halves * z.halves;
+          if (eighths == 0) continue;
+          LevelSum s = node[fine.at(x.node, y.node, z.node)];
           if (s.particles < 0) {
             on = false;
             s.particles = -1 - s.particles;
           }
-          const int eighths = t[0].halves[a] * t[1].halves[b] * t[2].halves[c];
           sum.excess += eighths * s.excess;
           sum.particles += eighths * s.particles;
         }
@@ -137,14 +161,15 @@ struct LevelUpPass {
     if (!coarsest) {
       const int at[3] = {n % level.nodes[0], n / level.nodes[0] % level.nodes[1],
                          n / level.nodes[0] / level.nodes[1]};
-      Taps t[3];
-      for (int i = 0; i < 3; ++i) t[i] = coarser_nodes(coarse.from[i], at[i]);
-      for (int c = 0; c < t[2].count; ++c)
-        for (int b = 0; b < t[1].count; ++b)
-          for (int a = 0; a < t[0].count; ++a) {
-            const int eighths = t[0].halves[a] * t[1].halves[b] * t[2].halves[c];
-            k += Real(eighths) * Real(0.125) *
-                 multiplier[coarse.at(t[0].index[a], t[1].index[b], t[2].index[c])];
+      for (int c = 0; c < 2; ++c)
+        for (int b = 0; b < 2; ++b)
+          for (int a = 0; a < 2; ++a) {
+            const Tap x = coarser_node(coarse.from[0], at[0], a);
+            const Tap y = coarser_node(coarse.from[1], at[1], b);
+            const Tap z = coarser_node(coarse.from[2], at[2], c);
+            const int eighths = x.halves * y.halves * z.halves;
+            if (eighths == 0) continue;
+            k += Real(eighths) * Real(0.125) * multiplier[coarse.at(x.node, y.node, z.node)];
           }
     }
     multiplier[level.first + n] = k;

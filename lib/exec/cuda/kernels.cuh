@@ -31,7 +31,7 @@ __global__ void __launch_bounds__(kBlock) apply_kernel(int n, Pass pass) {
 /// Small steps one after the other, by one block.
 constexpr int kTurnBlock = 1024;
 template <class Pass>
-__global__ void __launch_bounds__(kTurnBlock) in_turn_kernel(Pass pass) {
+__global__ void __launch_bounds__(kTurnBlock) in_turn_kernel(const __grid_constant__ Pass pass) {
   wait_for_previous();
   for (int step = 0; step < pass.steps(); ++step) {
     for (int i = threadIdx.x; i < pass.size(step); i += kTurnBlock) pass(step, i);

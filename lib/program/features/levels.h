@@ -8,8 +8,9 @@
 #include "lib/program/pass.h"
 
 namespace pbf::inline program_module::field {
-/// LevelSum of each cell and node; h^2, the multipliers of the nodes.
-inline constexpr FieldInfo level_cell{"level cell", Type::int64, 2, Rows::cells};
+/// LevelSum of each row of a cell (four, in two dimensions two) and of each node; h^2, the
+/// multipliers of the nodes.
+inline constexpr FieldInfo level_row{"level row", Type::int64, 8, Rows::cells};
 inline constexpr FieldInfo level_node{"level node", Type::int64, 2, Rows::nodes};
 inline constexpr FieldInfo multiplier{"multiplier", Type::real, 1, Rows::nodes};
 }  // namespace pbf::inline program_module::field
@@ -50,21 +51,22 @@ struct LevelSums {
     return {"level sums",
             "levels",
             {{&field::density}, {&field::bin_start}},
-            {hidden({&field::level_cell}), hidden({&field::level_node})}};
+            {hidden({&field::level_row}), hidden({&field::level_node})}};
   }
   template <class C>
   static void launch(C& c) {
     const LevelPlan& l = c.levels;
     const auto chain = level_chain(c);
-    auto* cell = c.template data<LevelSum>(field::level_cell);
+    auto* row = c.template data<LevelSum>(field::level_row);
+    const bool open = !c.scene.domain.open.empty();
     with_dimensions(c.p.dimensions, [&](auto d) {
-      c.over(l.grid.size(), LevelCellPass<typename C::Real, decltype(d)::value>{
-                                c.p, l.grid, c.template data<int>(field::bin_start), c.position(),
-                                c.density(), cell});
+      constexpr int D = decltype(d)::value;
+      c.over(l.grid.size() * kRowsPerCell<D>,
+             LevelCellPass<typename C::Real, D>{c.p, l.grid, c.template data<int>(field::bin_start),
+                                                open ? c.position() : nullptr, c.density(), row});
+      c.over(l.all.level[0].size(),
+             LevelNodePass<D>{c.p.boundary.walls, l.grid, l.all.level[0], row, chain.node});
     });
-    c.over(l.all.level[0].size(),
-           LevelNodePass<typename C::Real>{c.p.boundary.walls, l.grid, l.all.level[0], cell,
-                                           chain.node});
     for (int k = 1; k < chain.first; ++k)
       c.over(l.all.level[k].size(), LevelDownPass{l.all.level[k - 1], l.all.level[k], chain.node});
   }
