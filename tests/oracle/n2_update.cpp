@@ -1,4 +1,4 @@
-#include "tests/oracle/n2_update.h"
+#include "tests/oracle/n2_levels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,13 +28,6 @@ Real spiky_norm(const Settings& c) {
   return flat(c) ? 10 / (pi * powl(c.h, 5)) : 15 / (pi * powl(c.h, 6));
 }
 Real spiky(Real r, const Settings& c) { return r >= c.h ? 0 : spiky_norm(c) * powl(c.h - r, 3); }
-V spiky_gradient(const V& d, const Settings& c) {
-  const Real r = length(d);
-  if (r >= c.h || r == 0) return {0, 0, 0};
-  V g{};
-  axpy(g, -3 * spiky_norm(c) * (c.h - r) * (c.h - r) / r, d);
-  return g;
-}
 
 /// The polynomials of kernels/README.md (9) for half planes, and their derivative in q.
 struct HalfPlane {
@@ -87,11 +80,22 @@ Real half_space_slope(Real a, Real h) {
 }
 
 void clamp(V& x, const Settings& c) {
-  for (int k = 0; k < 3; ++k)
-    x[k] = std::min(std::max(x[k], c.low[k] + c.margin), c.high[k] - c.margin);
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t face = 2 * std::size_t(k);
+    if (!c.open[face]) x[k] = std::max(x[k], c.low[k] + c.margin);
+    if (!c.open[face + 1]) x[k] = std::min(x[k], c.high[k] - c.margin);
+  }
 }
 
 }  // namespace
+
+V spiky_gradient(const V& d, const Settings& c) {
+  const Real r = length(d);
+  if (r >= c.h || r == 0) return {0, 0, 0};
+  V g{};
+  axpy(g, -3 * spiky_norm(c) * (c.h - r) * (c.h - r) / r, d);
+  return g;
+}
 
 Wall walls(const V& x, const Settings& c) {
   Wall out;
@@ -103,7 +107,7 @@ Wall walls(const V& x, const Settings& c) {
     const int axis = f / 2;
     factor[f] = 1;
     slope[f] = 0;
-    if (flat(c) && axis == 1) continue;
+    if ((flat(c) && axis == 1) || c.open[std::size_t(f)]) continue;
     const Real a = f % 2 ? c.high[axis] - x[axis] : x[axis] - c.low[axis];
     if (flat(c)) {
       const Real q = a / c.wall_range / c.h;
@@ -141,15 +145,25 @@ std::vector<Real> densities(const std::vector<V>& x, const Settings& c) {
   return out;
 }
 
-void update(State& s, const Settings& c) {
+void update(State& s, const Settings& c, LevelNodes* nodes) {
   const std::size_t n = s.x.size();
-  const std::vector<V> old = s.x;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (int k = 0; k < 3; ++k) s.v[i][k] = c.damping * s.v[i][k] + c.dt * c.gravity[k];
-    axpy(s.x[i], c.dt, s.v[i]);
-    clamp(s.x[i], c);
-  }
-  // The pairs of an update are those closer than h here.
+  const Real dt = c.dt / c.substeps, damping = powl(c.damping, 1 / Real(c.substeps));
+  std::vector<V> old;
+  const auto predict = [&] {
+    old = s.x;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (int k = 0; k < 3; ++k) s.v[i][k] = damping * s.v[i][k] + dt * c.gravity[k];
+      axpy(s.x[i], dt, s.v[i]);
+      clamp(s.x[i], c);
+    }
+  };
+  const auto end_substep = [&] {
+    for (std::size_t i = 0; i < n; ++i)
+      for (int k = 0; k < 3; ++k) s.v[i][k] = (s.x[i][k] - old[i][k]) / dt;
+  };
+  predict();
+  // The pairs of an update are those closer than h here, the cells of the levels hold who is here.
+  const std::vector<V> listed = s.x;
   std::vector<std::vector<std::size_t>> pairs(n);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
@@ -158,8 +172,12 @@ void update(State& s, const Settings& c) {
   const Real m = c.mass / c.rest_density;  // volume, m^3
   s.density.assign(n, c.rest_density);
   auto kernel = [&](Real r) { return c.paper ? poly6(r, c) : spiky(r, c); };
-  for (int iteration = 0; iteration < c.iterations; ++iteration) {
-    std::vector<Real> lambda(n);
+  for (int k = 0; k < c.substeps * c.iterations; ++k) {
+    if (k > 0 && k % c.iterations == 0) {
+      end_substep();
+      predict();
+    }
+    std::vector<Real> lambda(n), ratios(n);
     std::vector<Wall> wall(n);
     for (std::size_t i = 0; i < n; ++i) {
       wall[i] = walls(s.x[i], c);
@@ -173,12 +191,15 @@ void update(State& s, const Settings& c) {
         squares += m * m * (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
       }
       s.density[i] = c.rest_density * ratio;
+      ratios[i] = ratio;
       const Real constraint = c.two_sided ? ratio - 1 : std::max<Real>(ratio - 1, 0);
       squares += own[0] * own[0] + own[1] * own[1] + own[2] * own[2];
       lambda[i] = -constraint / (squares + c.cfm / (c.h * c.h));
       if (c.under_relax && ratio > 1) lambda[i] /= std::min<Real>(1 + 3 * (ratio - 1), 2);
     }
-    std::vector<V> next = s.x;
+    std::vector<V> next = s.x, coarse(n);
+    LevelNodes unseen;
+    if (c.levels) coarse = level_moves(listed, s.x, ratios, c, nodes ? *nodes : unseen);
     for (std::size_t i = 0; i < n; ++i) {
       V delta{};
       for (std::size_t j : pairs[i]) {
@@ -191,12 +212,12 @@ void update(State& s, const Settings& c) {
       }
       axpy(delta, lambda[i], wall[i].gradient);
       axpy(next[i], c.sor, delta);
+      axpy(next[i], 1, coarse[i]);
       clamp(next[i], c);
     }
     s.x = next;
   }
-  for (std::size_t i = 0; i < n; ++i)
-    for (int k = 0; k < 3; ++k) s.v[i][k] = (s.x[i][k] - old[i][k]) / c.dt;
+  end_substep();
 
   if (c.xsph != 0) {
     const std::vector<V> v = s.v;

@@ -18,6 +18,10 @@ struct Settings {
   Real sor = 1, damping = 1, wall_scale = 0, wall_range = 1, margin = 0;
   V gravity{0, 0, -9.81L}, low{0, 0, 0}, high{1, 1, 1};
   int iterations = 4;
+  int substeps = 1;            // of dt together, on one list
+  std::array<bool, 6> open{};  // x_min, x_max, y_min ...: no wall
+  bool levels = false;
+  Real spacing = 0;  // with levels
   bool paper = false, two_sided = false, wall_density = true, under_relax = false;
   Real tensile_k = 0, tensile_q = 0.3L;  // k in h^2
   int tensile_n = 4;
@@ -29,8 +33,9 @@ struct State {
   std::vector<Real> density;  ///< kg/m^3, of the last iteration
 };
 
-/// Advances by one update.
-void update(State& s, const Settings& c);
+struct LevelNodes;
+/// Advances by one update. nodes: of the levels in the last iteration.
+void update(State& s, const Settings& c, LevelNodes* nodes = nullptr);
 
 /// Density at the present positions, kg/m^3, walls included.
 std::vector<Real> densities(const std::vector<V>& x, const Settings& c);
@@ -41,5 +46,8 @@ struct Wall {
   V gradient{};      ///< 1/m
 };
 Wall walls(const V& x, const Settings& c);
+
+/// Of the Spiky kernel, 1/m^4 (1/m^3 in two dimensions).
+V spiky_gradient(const V& d, const Settings& c);
 
 }  // namespace oracle

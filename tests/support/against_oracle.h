@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/oracle/n2_update.h"
+#include "tests/oracle/n2_levels.h"
 #include "tests/support/states.h"
 
 namespace oracle_test {
@@ -29,6 +29,12 @@ inline oracle::Settings settings_of(const Case& c) {
   o.cfm = s.solver.cfm;
   o.sor = pbf::make_plan(s, std::int64_t(c.particles.size())).sor;
   o.under_relax = !s.solver.sor;
+  o.substeps = s.solver.substeps;
+  o.levels = s.solver.levels == pbf::LevelsMode::on;
+  o.spacing = s.fluid.spacing;
+  const char* faces[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+  for (std::size_t f = 0; f < 6; ++f)
+    o.open[f] = std::count(s.domain.open.begin(), s.domain.open.end(), faces[f]) > 0;
   o.damping = s.solver.velocity_damping;
   o.margin = s.solver.wall_margin;
   o.iterations = s.solver.iterations;
@@ -53,6 +59,7 @@ inline oracle::Settings settings_of(const Case& c) {
 struct Difference {
   double position = 0;  // in units of h
   double velocity = 0;  // in units of h/dt
+  oracle::LevelNodes nodes;
 };
 
 /// Largest difference after one update from the same state.
@@ -64,12 +71,12 @@ inline Difference against_oracle(const Case& c) {
     s.x.push_back({x[0], x[1], x[2]});
     s.v.push_back({v[0], v[1], v[2]});
   }
-  oracle::update(s, o);
+  Difference d;
+  oracle::update(s, o, &d.nodes);
   auto solver = make(c);
   solver->step(1);
   const pbf::Snapshot snap = solver->download({"velocity"}, pbf::ScalarType::f64).get();
   const auto x = snap.fields[0].as<double>(), v = snap.find("velocity")->as<double>();
-  Difference d;
   for (std::size_t i = 0; i < s.x.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       d.position = std::max(d.position, double(fabsl(x[3 * i + k] - s.x[i][k]) / o.h));

@@ -24,13 +24,15 @@ GREY = "#8A8A8A"
 # lib/base/stages.h, the program's list (a test holds this one against it): a stage has one colour
 # in every plot; `other` is what no stage booked.
 STAGES = {"init": "#000000", "predict": "#F0E442", "grid": "#E69F00", "neighbors": "#D55E00",
-          "density": "#009E73", "lambda": "#0072B2", "delta": "#56B4E9", "residual": "#1B3A5C",
-          "xsph": "#CC79A7", "vorticity": "#7A3E9D", "measure": "#B0B0B0", "guard": "#C4B08B",
-          "download": "#8A8A8A", "write": "#666666", "render": "#444444", "other": "#D9D9D9"}
+          "density": "#009E73", "lambda": "#0072B2", "levels": "#88CCAA", "delta": "#56B4E9",
+          "residual": "#1B3A5C", "xsph": "#CC79A7", "vorticity": "#7A3E9D", "measure": "#B0B0B0",
+          "guard": "#C4B08B", "download": "#8A8A8A", "write": "#666666", "render": "#444444",
+          "other": "#D9D9D9"}
 
 # The seven groups in the summary of `pbf run` (app/README.md).
 GROUPS = {"initialization": ("init",), "gridding/neighbours": ("grid", "neighbors"),
-          "densities": ("density",), "lambdas": ("lambda", "residual"), "deltas": ("delta",),
+          "densities": ("density",), "lambdas": ("lambda", "levels", "residual"),
+          "deltas": ("delta",),
           "position/velocity updates": ("predict", "xsph", "vorticity"),
           "post-processing": ("measure", "guard", "download", "write", "render")}
 GROUP_COLORS = dict(zip(GROUPS, ("#000000", "#D55E00", "#009E73", "#0072B2", "#56B4E9", "#CC79A7",

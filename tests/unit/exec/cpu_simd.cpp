@@ -123,6 +123,10 @@ TEST_CASE("lanes of every width give the bits of one particle at a time, pass by
     c.scene.fluid.smoothing_ratio = 3;
     c.scene.solver.substeps = 3;
   }
+  SECTION("levels, and two substeps") {
+    c.scene.solver.levels = LevelsMode::on;
+    c.scene.solver.substeps = 2;
+  }
   SECTION("particles in one place, lists of very different lengths") {
     for (std::size_t i = 1; i < 60; ++i) c.particles.position[i] = c.particles.position[0];
   }

@@ -74,6 +74,8 @@ const std::vector<std::vector<std::string>> kFeatures{
     {"solver.substeps=40", "time.step=0.02"},
     {"gravity=[0, 0, 0]"},
     {"guard=off"},
+    {"solver.levels=on"},
+    {"solver.levels=on", "solver.substeps=3", "solver.fused=false", "precision=double"},
     {"domain.open=[x_min, x_max, y_min, y_max, z_min, z_max]"},
     {"tensile={}", "viscosity={}", "vorticity={}", "precision=double"}};
 
@@ -109,6 +111,7 @@ TEST_CASE("every stage that the plan names runs as often as it says, and no othe
     const int k = m.scene.solver.iterations * m.plan.substeps;
     CHECK(times["lambda"] == k);
     CHECK(times["delta"] == k);
+    CHECK(times["levels"] == (m.scene.solver.levels == LevelsMode::on ? 2 * k : 0));
     // A measure's own lists count as part of it.
     for (const char* stage : {"neighbors", "density", "lambda", "delta", "xsph", "vorticity"}) {
       CAPTURE(stage);

@@ -43,6 +43,7 @@ Scene unlike_default() {
   s.solver.tolerance = 0.001;
   s.solver.max_iterations = 24;
   s.solver.method = SolverMethod::chebyshev;
+  s.solver.levels = LevelsMode::automatic;
   s.solver.kernels = KernelMode::paper;
   s.solver.constraint = ConstraintMode::two_sided;
   s.solver.cfm = 100.0 / 3;

@@ -1,0 +1,145 @@
+// Levels (solver.levels) against brute force over all nodes, on every backend and precision.
+#include "tests/support/backend.h"
+#include "tests/support/catch.h"
+
+using namespace oracle_test;
+using backend_test::here;
+using backend_test::is_double;
+using backend_test::same_bytes;
+
+namespace {
+
+/// The block in a box of this many spacings, with levels.
+Case in_box(Case c, pbf::Double3 spacings) {
+  for (std::size_t k = 0; k < 3; ++k)
+    c.scene.domain.max[k] = c.scene.domain.min[k] + c.scene.fluid.spacing * spacings[k];
+  c.scene.solver.levels = pbf::LevelsMode::on;
+  return here(c);
+}
+/// Boxes that are no multiple of 2 h, full of fluid that is compressed by a few percent.
+Case column() { return in_box(jittered_block(6, 5, 26, 0.1, 0.4, 1, 0.985), {6.4, 5.2, 26.6}); }
+Case flat_column() { return in_box(flat_block(11, 40, 0.1, 0.4, 1, 0.985), {11.4, 1, 40.6}); }
+
+/// h, the farthest that levels alone take a particle in an update.
+double reach_of_levels(Case c) {
+  auto a = make(c);
+  c.scene.solver.levels = pbf::LevelsMode::off;
+  auto b = make(c);
+  a->step(1);
+  b->step(1);
+  const auto x = a->download({}, pbf::ScalarType::f64).get(),
+             y = b->download({}, pbf::ScalarType::f64).get();
+  double most = 0;
+  const auto p = x.fields[0].as<double>(), q = y.fields[0].as<double>();
+  for (std::size_t k = 0; k < p.size(); ++k)
+    most = std::max(most, std::fabs(p[k] - q[k]) / c.scene.h());
+  return most;
+}
+
+/// Sums at nodes count C in steps of 1e-9.
+void check_against_oracle(const Case& c) {
+  const Difference d = against_oracle(c);
+  REQUIRE(d.nodes.closest > 0.01);  // no rounding decides which nodes are on
+  CHECK(d.position < (is_double() ? 1e-8 : 2e-5));
+  CHECK(d.velocity < (is_double() ? 2e-8 : 4e-5));
+}
+
+}  // namespace
+
+TEST_CASE("one update with levels equals the brute-force oracle, feature by feature") {
+  const bool flat = GENERATE(false, true);
+  Case c = flat ? flat_column() : column();
+  SECTION("defaults") { CHECK(against_oracle(c).nodes.off == 0); }
+  SECTION("one iteration") { c.scene.solver.iterations = 1; }
+  SECTION("unfused, walls that only clamp") {
+    c.scene.solver.fused = false;
+    c.scene.solver.boundary = pbf::BoundaryMode::clamp;
+  }
+  SECTION("the paper's kernels, a fixed omega") {
+    c.scene.solver.kernels = pbf::KernelMode::paper;
+    c.scene.solver.sor = 0.6;
+  }
+  SECTION("h = 1.6 d") { c.scene.fluid.smoothing_ratio = 1.6; }
+  SECTION("h = 3 d") { c.scene.fluid.smoothing_ratio = 3; }
+  SECTION("a given mass") { c.scene.fluid.mass = 0.0085; }
+  SECTION("three substeps, damped") {
+    c.scene.solver.substeps = 3;
+    c.scene.solver.velocity_damping = 0.9;
+    REQUIRE(pbf::make_plan(c.scene, 100).lists_per_update == 1);
+  }
+  SECTION("all in all three substeps, two iterations, tensile, viscosity") {
+    c.scene.solver.substeps = 3;
+    c.scene.solver.iterations = 2;
+    c.scene.tensile = pbf::Tensile{0.002, 0.3, 4};
+    c.scene.viscosity = pbf::Viscosity{0.1};
+  }
+  check_against_oracle(c);
+  CHECK(reach_of_levels(c) > 1e-3);
+}
+
+TEST_CASE("levels with gravity and the long edge along x equal the brute-force oracle") {
+  Case c = in_box(jittered_block(26, 6, 5, 0.1, 0.4, 1, 0.985), {26.6, 6.4, 5.2});
+  c.scene.gravity = {-9.81, 0, 0};
+  check_against_oracle(c);
+  CHECK(reach_of_levels(c) > 1e-3);
+}
+
+TEST_CASE("nodes beside air and open faces are off, as in the brute-force oracle") {
+  SECTION("a box half empty") {
+    const Case c = in_box(jittered_block(6, 5, 13, 0.1, 0.4, 1, 0.985), {6.4, 5.2, 26.6});
+    const auto nodes = against_oracle(c).nodes;
+    CHECK(nodes.on > 0);
+    CHECK(nodes.off > nodes.on);
+    check_against_oracle(c);
+    CHECK(reach_of_levels(c) > 1e-3);
+  }
+  SECTION("a box half empty, in two dimensions") {
+    const Case c = in_box(flat_block(11, 21, 0.1, 0.4, 1, 0.985), {11.4, 1, 40.6});
+    CHECK(against_oracle(c).nodes.off > 0);
+    check_against_oracle(c);
+    CHECK(reach_of_levels(c) > 1e-3);
+  }
+  SECTION("open faces, and particles that leave through them") {
+    Case c = in_box(jittered_block(10, 5, 26, 0.1, 0.4, 1, 0.985), {10.8, 5.2, 26.6});
+    c.scene.domain.open = {"x_max", "z_max"};
+    for (std::size_t i = 9; i < c.particles.size(); i += 50) c.particles.velocity[i] = {60, 0, 0};
+    const auto nodes = against_oracle(c).nodes;
+    CHECK(nodes.on > 0);
+    CHECK(nodes.off > 0);
+    check_against_oracle(c);
+    CHECK(reach_of_levels(c) > 1e-3);
+  }
+  SECTION("nothing but air: no correction") {
+    const Case c = in_box(jittered_block(6, 5, 4, 0.1, 0.4), {20.8, 20.8, 26.6});
+    CHECK(against_oracle(c).nodes.on == 0);
+    check_against_oracle(c);
+    CHECK(reach_of_levels(c) == 0);
+  }
+}
+
+TEST_CASE("levels count a crowd as compressed by a tenth, as the brute-force oracle does") {
+  Case c = in_box(jittered_block(8, 7, 30, 0.05, 0, 3, 0.9), {7.2, 6.3, 27.4});
+  c.scene.solver.iterations = 1;
+  check_against_oracle(c);
+  CHECK(reach_of_levels(c) > 1e-3);
+}
+
+TEST_CASE("with levels and solver.reproducible the CPU's bytes come out, on 1 thread or more") {
+  const bool flat = GENERATE(false, true);
+  Case c = flat ? in_box(flat_block(150, 150, 0.2, 0.2), {151, 1, 163})
+                : in_box(jittered_block(24, 24, 40, 0.2, 0.2), {24.4, 27, 46});
+  SECTION("defaults") {}
+  SECTION("three substeps, the paper's kernels") {
+    c.scene.solver.substeps = 3;
+    c.scene.solver.kernels = pbf::KernelMode::paper;
+  }
+  c.scene.solver.reproducible = true;
+  auto a = make(c);
+  c.scene.backend = pbf::Backend::cpu;
+  c.scene.threads = 1;
+  auto b = make(c);
+  a->step(8);
+  b->step(8);
+  CHECK(same_bytes(a->download({"velocity", "density"}, pbf::ScalarType::f64).get(),
+                   b->download({"velocity", "density"}, pbf::ScalarType::f64).get()));
+}

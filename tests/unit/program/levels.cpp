@@ -1,0 +1,94 @@
+// Whether a scene has levels, and what the plan says of them.
+#include "lib/program/levels.h"
+
+#include <algorithm>
+
+#include "lib/program/plan.h"
+#include "tests/support/catch.h"
+#include "tests/support/scene_samples.h"
+
+using namespace pbf;
+
+namespace {
+
+Scene tank(const std::string& levels, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> overrides{"solver.levels=" + levels};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return scene_test::parse(
+      "domain: {min: [0, 0, 0], max: [0.4, 0.4, 1.9]}\n"
+      "fluid: {spacing: 0.02}\n"
+      "bodies: [{shape: block, min: [0, 0, 0], max: [0.4, 0.4, 1.28]}]\n"  // 64 layers
+      "time: {step: 0.002, end: 1}\n",
+      overrides);
+}
+Plan plan_of(const Scene& s) { return make_plan(s, 1000); }
+
+std::string why_without(const Plan& plan) {
+  for (const LeftOut& l : plan.left_out)
+    if (l.what.rfind("levels", 0) == 0) return l.because;
+  return "there";
+}
+
+std::int64_t bytes_of(const Plan& plan, const std::string& name) {
+  for (const PlanArray& a : plan.memory.arrays)
+    if (a.name == name) return a.bytes;
+  return -1;
+}
+
+bool has_stage(const Plan& plan) {
+  const auto passes = count_passes(plan.program);
+  return std::any_of(passes.begin(), passes.end(),
+                     [](const PassCount& c) { return std::string(c.pass->stage) == "levels"; });
+}
+
+}  // namespace
+
+TEST_CASE("without levels the plan has no pass, no array and says why") {
+  for (const Scene& s :
+       {tank("off"), tank("auto", {"fluid.spacing=0.04"}), tank("on", {"solver.iterations=0"})}) {
+    const Plan plan = plan_of(s);
+    CHECK_FALSE(has_stage(plan));
+    CHECK(plan.levels.all.count == 0);
+    for (const char* array : {"level cell", "level node", "multiplier"})
+      CHECK(bytes_of(plan, array) == -1);
+    CHECK(plan_text(plan, s).find("\n  levels: grids coarser than h: ") != std::string::npos);
+  }
+  CHECK(why_without(plan_of(tank("off"))) == "solver.levels is off");
+}
+
+TEST_CASE("with levels the plan counts the bytes of cells of 2 h and of all nodes") {
+  const Scene s = tank("on");  // a box of 5 x 5 x 23.75 cells
+  const Plan plan = plan_of(s);
+  CHECK(has_stage(plan));
+  CHECK(why_without(plan) == "there");
+  // Intervals 5 5 24; 3 3 12; 2 2 6; 1 1 3; - - 2; - - 1.
+  const int nodes = 6 * 6 * 25 + 4 * 4 * 13 + 3 * 3 * 7 + 2 * 2 * 4 + 3 + 2;
+  CHECK(plan.levels.nodes() == nodes);
+  CHECK(bytes_of(plan, "level cell") == 5 * 5 * 24 * 16);
+  CHECK(bytes_of(plan, "level node") == nodes * 16);
+  CHECK(bytes_of(plan, "multiplier") == nodes * 4);
+  CHECK(bytes_of(plan_of(tank("on", {"precision=double"})), "multiplier") == nodes * 8);
+  CHECK(plan.bytes() - plan_of(tank("off")).bytes() == 5 * 5 * 24 * 16 + nodes * 20);
+  const std::string text = plan_text(plan, s);
+  CHECK(text.find("  level sums ") != std::string::npos);
+  CHECK(text.find("  level multipliers ") != std::string::npos);
+  CHECK(text.find("levels: grids coarser") == std::string::npos);
+}
+
+TEST_CASE("levels auto: on from 64 layers of fluid along gravity on, of all bodies together") {
+  CHECK(has_levels(tank("auto")));
+  CHECK_FALSE(has_levels(tank("auto", {"fluid.spacing=0.0201"})));
+  CHECK_FALSE(has_levels(tank("auto", {"gravity=[9.81, 0, 0]"})));
+  CHECK_FALSE(has_levels(tank("auto", {"gravity=[0, 0, 0]"})));
+  CHECK(has_levels(tank("auto", {"gravity=[1, 0, -9.81]"})));
+  CHECK(has_levels(tank("on", {"fluid.spacing=0.1"})));
+  CHECK_FALSE(has_levels(tank("off", {"fluid.spacing=0.005"})));
+  const auto bodies = [](const std::string& text) {
+    return has_levels(tank("auto", {"bodies=[" + text + "]"}));
+  };
+  const std::string pool = "{shape: block, min: [0, 0, 0], max: [0.4, 0.4, 0.64]}";
+  CHECK_FALSE(bodies(pool));
+  CHECK(bodies(pool + ", {shape: sphere, center: [0.2, 0.2, 1.2], radius: 0.1}"));
+  CHECK_FALSE(bodies(pool + ", {shape: sphere, center: [0.2, 0.2, 1.1], radius: 0.1}"));
+  CHECK_FALSE(bodies("{shape: file, path: deep.csv}"));  // not known before it is read
+}
