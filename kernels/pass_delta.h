@@ -36,7 +36,7 @@ struct DeltaPass {
   Vec4<Real>* position_out;  ///< out; w = 1/density
   Vec4<Real>* velocity;      ///< in/out, h/s
   StepCounts* moves_on;      ///< not null: on to the next substep's x* and velocity at once
-  [[no_unique_address]] Coarse coarse;  ///< LevelMove or NoLevelMove
+  [[no_unique_address]] Coarse coarse{};  ///< LevelMove or NoLevelMove
 
   static constexpr int D = dimensions_of(S);
   static constexpr unsigned gathers = kPlace | kLambda | kId;

@@ -48,6 +48,13 @@ bool has_levels(const Scene& s) {
   return s.solver.levels == LevelsMode::on || layers(s) >= kDeep;
 }
 
+const char* why_no_levels(const Scene& s) {
+  if (s.solver.iterations == 0) return "solver.iterations is 0";
+  return s.solver.levels == LevelsMode::off
+             ? "solver.levels is off"
+             : "solver.levels is auto, the fluid less than 64 layers deep";
+}
+
 LevelPlan plan_levels(const Scene& s, double cell_edge, double vol) {
   LevelPlan plan;
   const double ratio = s.fluid.smoothing_ratio, edge = 2 * cell_edge;

@@ -28,6 +28,9 @@ struct LevelPlan {
 /// solver.levels, `auto` decided: from 64 layers of fluid along gravity on.
 bool has_levels(const Scene& scene);
 
+/// Of a scene without: "solver.levels is off".
+const char* why_no_levels(const Scene& scene);
+
 /// cell_edge: h, of the search grid's cells. The scene is in internal axes.
 LevelPlan plan_levels(const Scene& scene, double cell_edge, double vol);
 

@@ -54,6 +54,9 @@ TEST_CASE("without levels the plan has no pass, no array and says why") {
     CHECK(plan_text(plan, s).find("\n  levels: grids coarser than h: ") != std::string::npos);
   }
   CHECK(why_without(plan_of(tank("off"))) == "solver.levels is off");
+  CHECK(why_without(plan_of(tank("auto", {"fluid.spacing=0.04"}))) ==
+        "solver.levels is auto, the fluid less than 64 layers deep");
+  CHECK(why_without(plan_of(tank("on", {"solver.iterations=0"}))) == "solver.iterations is 0");
 }
 
 TEST_CASE("with levels the plan counts the bytes of cells of 2 h and of all nodes") {
