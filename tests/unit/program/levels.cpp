@@ -59,7 +59,7 @@ TEST_CASE("without levels the plan has no pass, no array and says why") {
   CHECK(why_without(plan_of(tank("on", {"solver.iterations=0"}))) == "solver.iterations is 0");
 }
 
-TEST_CASE("with levels the plan counts the bytes of cells of 2 h and of all nodes") {
+TEST_CASE("with levels the plan counts the bytes of the rows of cells of 2 h and of all nodes") {
   const Scene s = tank("on");  // a box of 5 x 5 x 23.75 cells
   const Plan plan = plan_of(s);
   CHECK(has_stage(plan));
@@ -67,11 +67,11 @@ TEST_CASE("with levels the plan counts the bytes of cells of 2 h and of all node
   // Intervals 5 5 24; 3 3 12; 2 2 6; 1 1 3; - - 2; - - 1.
   const int nodes = 6 * 6 * 25 + 4 * 4 * 13 + 3 * 3 * 7 + 2 * 2 * 4 + 3 + 2;
   CHECK(plan.levels.nodes() == nodes);
-  CHECK(bytes_of(plan, "level cell") == 5 * 5 * 24 * 16);
+  CHECK(bytes_of(plan, "level row") == 5 * 5 * 24 * 64);
   CHECK(bytes_of(plan, "level node") == nodes * 16);
   CHECK(bytes_of(plan, "multiplier") == nodes * 4);
   CHECK(bytes_of(plan_of(tank("on", {"precision=double"})), "multiplier") == nodes * 8);
-  CHECK(plan.bytes() - plan_of(tank("off")).bytes() == 5 * 5 * 24 * 16 + nodes * 20);
+  CHECK(plan.bytes() - plan_of(tank("off")).bytes() == 5 * 5 * 24 * 64 + nodes * 20);
   const std::string text = plan_text(plan, s);
   CHECK(text.find("  level sums ") != std::string::npos);
   CHECK(text.find("  level multipliers ") != std::string::npos);
