@@ -106,8 +106,10 @@ TEST_CASE("CSV: an error shows nothing of a file that is no particle file") {
     const std::string path = folder.write("p.csv", text), error = read_error(path);
     CAPTURE(text.substr(0, 100), error);
     CHECK(error[0] == '2');
+    std::string told = error;  // but for the folder's random name
+    told.erase(told.find(path), path.size());
     for (const char* part : {"root", "$y$", "short", "pw", "1234", "abc", "title", "red", "kk"})
-      CHECK_FALSE(contains(error, part));
+      CHECK_FALSE(contains(told, part));
     CHECK(std::all_of(error.begin(), error.end(), [](char c) { return c >= ' '; }));
     CHECK(error.size() < 300);
   }
