@@ -8,7 +8,7 @@
 namespace pbf::inline program_module {
 namespace {
 
-constexpr double kDeep = 64;  ///< layers
+constexpr double kDeep = 64;  ///< layers; why_no_levels() names it
 
 /// Of the bodies' bounding box along gravity, in layers; bodies from files count as nothing.
 double layers(const Scene& s) {
@@ -43,16 +43,12 @@ double lattice_gamma(double ratio, double vol, int dimensions) {
 
 }  // namespace
 
-bool has_levels(const Scene& s) {
-  if (s.solver.iterations == 0 || s.solver.levels == LevelsMode::off) return false;
-  return s.solver.levels == LevelsMode::on || layers(s) >= kDeep;
-}
-
 const char* why_no_levels(const Scene& s) {
   if (s.solver.iterations == 0) return "solver.iterations is 0";
-  return s.solver.levels == LevelsMode::off
-             ? "solver.levels is off"
-             : "solver.levels is auto, the fluid less than 64 layers deep";
+  if (s.solver.levels == LevelsMode::off) return "solver.levels is off";
+  if (s.solver.levels == LevelsMode::automatic && layers(s) < kDeep)
+    return "solver.levels is auto, the fluid less than 64 layers deep";
+  return nullptr;
 }
 
 LevelPlan plan_levels(const Scene& s, double cell_edge, double vol) {

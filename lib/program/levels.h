@@ -1,8 +1,6 @@
 // The grids of solver.levels: whether a scene has them, and their shape (kernels/levels.h).
 #pragma once
 
-#include <vector>
-
 #include "kernels/levels.h"
 #include "lib/scene/scene.h"
 
@@ -26,10 +24,9 @@ struct LevelPlan {
 };
 
 /// solver.levels, `auto` decided: from 64 layers of fluid along gravity on.
-bool has_levels(const Scene& scene);
-
-/// Of a scene without: "solver.levels is off".
+/// Why a scene has none, "solver.levels is off"; null where it has.
 const char* why_no_levels(const Scene& scene);
+inline bool has_levels(const Scene& scene) { return why_no_levels(scene) == nullptr; }
 
 /// cell_edge: h, of the search grid's cells. The scene is in internal axes.
 LevelPlan plan_levels(const Scene& scene, double cell_edge, double vol);

@@ -62,8 +62,8 @@ MeasureConstants measure_constants(const Scene& scene, const Plan& plan) {
   return {rest_pool(scene, plan)};
 }
 
-Diagnostics to_diagnostics(const MeasureSums& s, const Scene& scene, const Plan& plan,
-                           std::int64_t update, std::int64_t steps) {
+Diagnostics to_diagnostics(const MeasureSums& s, const MeasureConstants& given, const Scene& scene,
+                           const Plan& plan, std::int64_t update, std::int64_t steps) {
   const double h = scene.h(), n = double(plan.particles), mass = plan.mass;
   const Double3 origin = scene.origin();
   const double counted = double(plan.particles - s.non_finite);
@@ -89,7 +89,7 @@ Diagnostics to_diagnostics(const MeasureSums& s, const Scene& scene, const Plan&
     m.front[axis] = origin[axis] + h * s.front[k];
   }
   m.energy += m.kinetic_energy + m.potential_energy;
-  measure_pool(s, rest_pool(scene, plan), counted, m);
+  measure_pool(s, given.rest, counted, m);
   m.speed_max = h * std::sqrt(s.speed_squared_max);
   m.neighbors_mean = double(s.neighbors) / n;
   m.neighbors_max = s.neighbors_max;

@@ -90,8 +90,9 @@ MeasureConstants measure_constants(const Scene& scene, const Plan& plan);
 
 /// Sums in the internal frame, after so many updates and steps -> Diagnostics in SI units and the
 /// scene's axes (lib/solver/DIAGNOSTICS.md).
-Diagnostics to_diagnostics(const MeasureSums& sums, const Scene& scene, const Plan& plan,
-                           std::int64_t update, std::int64_t steps);
+Diagnostics to_diagnostics(const MeasureSums& sums, const MeasureConstants& given,
+                           const Scene& scene, const Plan& plan, std::int64_t update,
+                           std::int64_t steps);
 
 /// How a study sums a measure up over its window.
 enum class Over { none, mean, rms, max, last };

@@ -117,8 +117,8 @@ class StepSolver final : public Solver, public Inspection {
 
   Diagnostics measure() override {
     find_pairs();
-    return to_diagnostics(stepper_->measure(measure_constants(scene_, plan_)), scene_, plan_,
-                          updates_, steps_);
+    const MeasureConstants given = measure_constants(scene_, plan_);
+    return to_diagnostics(stepper_->measure(given), given, scene_, plan_, updates_, steps_);
   }
 
   SolverState state(Which which) override {

@@ -88,7 +88,7 @@ struct Levels {
   using Passes = PassList<LevelSums, LevelMultipliers>;
   template <class B>
   static void add(const Scene& s, B& b) {
-    if (!has_levels(s)) return b.left_out("levels: grids coarser than h", why_no_levels(s));
+    if (const char* why = why_no_levels(s)) return b.left_out("levels: grids coarser than h", why);
     b.template iteration<LevelSums>();
     b.template iteration<LevelMultipliers>();
   }
