@@ -13,6 +13,15 @@ namespace pbf {
 /// How an axis of a level follows from that of the finer one.
 enum class Coarsened { first, halved, folded, kept };  ///< folded: two nodes become one
 
+/// Numbers of a node or a cell along x, y, z.
+struct GridPlace {
+  int k[3];
+  PBF_HD int operator[](int axis) const { return k[axis]; }
+};
+PBF_HD GridPlace place_of(int n, const int (&of)[3]) {
+  return {{n % of[0], n / of[0] % of[1], n / of[0] / of[1]}};
+}
+
 /// One level: where its nodes stand in arrays that hold those of all levels, and how many.
 struct LevelShape {
   int first = 0;
@@ -21,6 +30,8 @@ struct LevelShape {
 
   PBF_HD int size() const { return nodes[0] * nodes[1] * nodes[2]; }
   PBF_HD int at(int x, int y, int z) const { return first + (z * nodes[1] + y) * nodes[0] + x; }
+  /// Of the n-th node of this level.
+  PBF_HD GridPlace place(int n) const { return place_of(n, nodes); }
 };
 
 /// The finest level, and what its cells hold at rest. Lengths in h.
@@ -31,6 +42,13 @@ struct LevelCells {
   double half_full = 32;       ///< particles in half a cell of edge^3 (edge^2) at rest
 
   PBF_HD int size() const { return cells[0] * cells[1] * cells[2]; }
+  PBF_HD int at(int x, int y, int z) const { return (z * cells[1] + y) * cells[0] + x; }
+  PBF_HD GridPlace place(int c) const { return place_of(c, cells); }
+  PBF_HD double length(int axis, int i) const { return i + 1 == cells[axis] ? last[axis] : edge; }
+  /// Particles in half of that cell at rest.
+  PBF_HD double half(int x, int y, int z) const {
+    return half_full * (length(0, x) / edge) * (length(1, y) / edge) * (length(2, z) / edge);
+  }
 };
 
 /// The finest level first. An axis has fewer than 2^30 cells, and each level halves them.
@@ -59,11 +77,44 @@ PBF_HD Tap coarser_node(Coarsened from, int i, int d) {
   return {i / 2 + d, 1};
 }
 
-/// Sums of a cell or a node: of clipped C in units of 2^-30, of particles in units of 2^-20. Whole
-/// numbers, so that no order of summation shows.
-struct LevelSum {
-  std::int64_t excess = 0, particles = 0;
-  static constexpr double excess_unit = 1.0 / (1 << 30), particle_unit = 1.0 / (1 << 20);
+/// f(node, weight in eighths) for the nodes of `fine` under node `at` of `level`.
+template <class F>
+PBF_HD void for_finer_nodes(const LevelShape& fine, const LevelShape& level, GridPlace at, F&& f) {
+  for (int c = 0; c < 3; ++c)
+    for (int b = 0; b < 3; ++b)
+      for (int a = 0; a < 3; ++a) {
+        const Tap x = finer_node(level.from[0], at[0], a, fine.nodes[0]);
+        const Tap y = finer_node(level.from[1], at[1], b, fine.nodes[1]);
+        const Tap z = finer_node(level.from[2], at[2], c, fine.nodes[2]);
+        const int eighths = x.halves * y.halves * z.halves;
+        if (eighths > 0) f(fine.at(x.node, y.node, z.node), eighths);
+      }
+}
+/// f(node, weight in eighths) for the nodes of `coarse` around node `at` of the finer level.
+template <class F>
+PBF_HD void for_coarser_nodes(const LevelShape& coarse, GridPlace at, F&& f) {
+  for (int c = 0; c < 2; ++c)
+    for (int b = 0; b < 2; ++b)
+      for (int a = 0; a < 2; ++a) {
+        const Tap x = coarser_node(coarse.from[0], at[0], a);
+        const Tap y = coarser_node(coarse.from[1], at[1], b);
+        const Tap z = coarser_node(coarse.from[2], at[2], c);
+        const int eighths = x.halves * y.halves * z.halves;
+        if (eighths > 0) f(coarse.at(x.node, y.node, z.node), eighths);
+      }
+}
+
+/// Sums over cells and nodes are whole numbers, so that no order of summation shows: of clipped C
+/// in these units, of particles in the other. 2^33 particles fit.
+inline constexpr double kExcessUnit = 1.0 / (1 << 30), kCountUnit = 1.0 / (1 << 20);
+
+/// The particles around a node, in kCountUnit, and whether the node is on.
+struct LevelCount {
+  std::int64_t marked = 0;  ///< below 0: off, and -1 - the number
+
+  PBF_HD static LevelCount of(std::int64_t n, bool on) { return {on ? n : -1 - n}; }
+  PBF_HD bool on() const { return marked >= 0; }
+  PBF_HD std::int64_t number() const { return on() ? marked : -1 - marked; }
 };
 
 }  // namespace pbf

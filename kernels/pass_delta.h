@@ -86,7 +86,7 @@ struct DeltaPass {
     const Real a = p.vol * Spiky<Real, D>::gradient_norm;
     const Vec3<Real> wall = own.w * p.boundary.template term<S>(x).gradient;
     Vec3<Real> free = p.sor * (a * move + wall);
-    if constexpr (Coarse::on) free = free + coarse(x);
+    if constexpr (Coarse::on) free = free + coarse(i);
     const Vec3<Real> target = x + free;
     const Vec3<Real> inside = p.boundary.path_end(x, target);
     const Vec3<Real> v = xyz(velocity[i]) + p.inv_dt * (free + (inside - target));

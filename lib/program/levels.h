@@ -10,7 +10,7 @@ struct LevelPlan {
   LevelCells grid;
   LevelHierarchy all;  ///< none: no levels
   /// Share of the squared edge of a level's cells by which it answers to the mean C around a node.
-  double beta = 0.2;
+  double beta = 0.25;
   /// -grad k -> displacement: what the sum over pairs makes of a multiplier with that gradient on
   /// the rest lattice, vol sum |grad W| q / D.
   double gamma = 0;

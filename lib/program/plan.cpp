@@ -60,10 +60,12 @@ std::vector<double> chebyshev_factors(int iterations) {
   return out;
 }
 
-/// See Plan::sor. ratio: h/d.
-double default_sor(double ratio, int dimensions) {
-  if (dimensions == 2) return std::min(1.0, std::pow(3 / ratio, 4.0 / 3.0));
-  return std::min(1.0, 2.5 / ratio * (2.5 / ratio));
+/// See Plan::sor.
+double default_sor(const Scene& s) {
+  const double ratio = s.fluid.smoothing_ratio, stable = has_levels(s) ? 0.8 : 1;
+  if (s.dimensions == 2) return std::min(1.0, std::pow(3 * stable / ratio, 4.0 / 3.0));
+  const double root = 2.5 * stable / ratio;
+  return std::min(1.0, root * root);
 }
 
 void plan_left_out(Plan& plan, const Scene& s) {
@@ -150,7 +152,7 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
     plan.wall_scale = c.wall_scale;
     plan.wall_range = c.wall_range;
   }
-  plan.sor = s.solver.sor.value_or(default_sor(s.fluid.smoothing_ratio, s.dimensions));
+  plan.sor = s.solver.sor.value_or(default_sor(s));
   if (s.solver.method == SolverMethod::chebyshev)
     plan.sor_factors = chebyshev_factors(s.solver.iterations);
   plan.substeps = s.solver.substeps;

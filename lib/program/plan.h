@@ -45,7 +45,8 @@ struct Plan {
   /// at 4 d and throws particles up at 5 d, 0.7 is stable at 4 d and 0.5 at 5 d. Unless the scene
   /// sets it, it falls further where the density is above rho0 (kernels/pass_lambda.h): a closed
   /// box with 1.3 times its particles boiled with 58 times the energy of its start, and now comes
-  /// to rest.
+  /// to rest. With levels 2 d/h and 2.4 d/h in place of 2.5 and 3: they need more damping of what
+  /// is short; kernels/README.md, "Levels".
   double sor = 1;
   /// Factors on omega, one per iteration of a substep; empty: 1 in all (solver.method: jacobi).
   std::vector<double> sor_factors;

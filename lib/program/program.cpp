@@ -15,9 +15,13 @@ ProgramStep step_of() {
 
 /// What features say of a scene.
 struct Builder {
-  Steps in_iteration, behind;
+  Steps with_lists, in_iteration, behind;
   std::vector<LeftOut> without;
 
+  template <class P>
+  void lists() {
+    with_lists.push_back(step_of<P>());
+  }
   template <class P>
   void iteration() {
     in_iteration.push_back(step_of<P>());
@@ -62,7 +66,10 @@ Steps joined(const Steps& steps) {
 void add_substeps(Steps& to, const Builder& b, int iterations, int repeats, int substeps) {
   for (int s = 0; s < substeps; ++s) {
     to.push_back(step_of<Predict>());
-    if (s == 0) to.insert(to.end(), {step_of<Sort>(), step_of<MakeLists>()});
+    if (s == 0) {
+      to.insert(to.end(), {step_of<Sort>(), step_of<MakeLists>()});
+      to.insert(to.end(), b.with_lists.begin(), b.with_lists.end());
+    }
     if (b.in_iteration.empty()) continue;
     const ProgramStep round{ProgramStep::iterate, -1, 0, iterations, b.in_iteration};
     to.push_back(round);

@@ -2,17 +2,27 @@
 // grids. Delta moves the particles by their gradient.
 #pragma once
 
+#include <algorithm>
+
 #include "kernels/pass_levels.h"
 #include "lib/program/as_types.h"
 #include "lib/program/levels.h"
 #include "lib/program/pass.h"
 
 namespace pbf::inline program_module::field {
-/// LevelSum of each row of a cell (four, in two dimensions two) and of each node; h^2, the
-/// multipliers of the nodes.
-inline constexpr FieldInfo level_row{"level row", Type::int64, 8, Rows::cells};
-inline constexpr FieldInfo level_node{"level node", Type::int64, 2, Rows::nodes};
-inline constexpr FieldInfo multiplier{"multiplier", Type::real, 1, Rows::nodes};
+/// Of each particle the cell that it was in when the lists were made.
+inline constexpr FieldInfo level_home{"level home", Type::int32, 1, Rows::particles};
+/// Of each row of a cell (four, in two dimensions two): particles, and the sum of C.
+inline constexpr FieldInfo row_count{"level row count", Type::int32, 4, Rows::cells};
+inline constexpr FieldInfo row_sum{"level row sum", Type::int64, 4, Rows::cells};
+/// Of each node: what LevelNodes names, the sum of C, the multiplier (h^2).
+inline constexpr FieldInfo node_count{"level node count", Type::int64, 1, Rows::nodes};
+inline constexpr FieldInfo node_sum{"level node sum", Type::int64, 1, Rows::nodes};
+inline constexpr FieldInfo node_answer{"level answer", Type::real, 1, Rows::nodes};
+inline constexpr FieldInfo multiplier{"level multiplier", Type::real, 1, Rows::nodes};
+inline constexpr FieldInfo node_walls{"level walls", Type::int32, 1, Rows::nodes};
+/// Of each cell, h.
+inline constexpr FieldInfo level_move{"level move", Type::real, 4, Rows::cells};
 }  // namespace pbf::inline program_module::field
 
 namespace pbf::inline PBF_VARIANT {
@@ -21,75 +31,108 @@ namespace pbf::inline PBF_VARIANT {
 template <class C, class F>
 void with_level_move(C& c, F&& f) {
   using Real = typename C::Real;
-  const LevelPlan& l = c.levels;
-  if (l.all.count == 0) return f(NoLevelMove<Real>{});
-  const auto inverse = [&](int k) { return Real(1 / l.grid.last[k]); };
-  f(LevelMove<Real>{l.grid,
-                    l.all.level[0],
-                    {inverse(0), inverse(1), inverse(2)},
-                    Real(1 / l.grid.edge),
-                    Real(l.gamma),
-                    c.template data<Real>(field::multiplier)});
+  if (c.levels.all.count == 0) return f(NoLevelMove<Real>{});
+  f(LevelMove<Real>{c.template data<int>(field::level_home), c.vectors(field::level_move)});
 }
 
 /// Levels of up to so many nodes are made together, by one block of a device: its launches take
 /// longer than the work.
 inline constexpr int kLevelsTogether = 4096;
 
-template <class C>
-LevelChainPass<typename C::Real> level_chain(C& c) {
-  const LevelPlan& l = c.levels;
+inline LevelSteps small_levels(const LevelPlan& l) {
   int first = 1;
   while (first < l.all.count && l.all.level[first].size() > kLevelsTogether) ++first;
-  return {l.all, first, typename C::Real(l.beta * l.grid.edge * l.grid.edge),
-          c.template data<LevelSum>(field::level_node),
-          c.template data<typename C::Real>(field::multiplier)};
+  return {l.all, first};
+}
+template <class C>
+const int* homes_beside_open_faces(C& c) {
+  return c.scene.domain.open.empty() ? nullptr : c.template data<int>(field::level_home);
 }
 
-struct LevelSums {
+/// Who is in which cell, and what each node makes of its sum: as long as the lists.
+struct LevelCellsAndNodes {
   static PassInfo info() {
-    return {"level sums",
+    return {"level cells",
             "levels",
-            {{&field::density}, {&field::bin_start}},
-            {hidden({&field::level_row}), hidden({&field::level_node})}};
+            {{&field::position}, {&field::bin_start}},
+            {{{&field::level_home}, Written::scalar, "level cell"},
+             hidden({&field::row_count}),
+             hidden({&field::node_count}),
+             hidden({&field::node_answer}),
+             hidden({&field::node_walls})}};
   }
   template <class C>
   static void launch(C& c) {
+    using Real = typename C::Real;
     const LevelPlan& l = c.levels;
-    const auto chain = level_chain(c);
-    auto* row = c.template data<LevelSum>(field::level_row);
-    const bool open = !c.scene.domain.open.empty();
+    int* count = c.template data<int>(field::row_count);
+    const LevelNodeChain<Real> chain{small_levels(l), l.beta * l.grid.edge * l.grid.edge,
+                                     {c.template data<LevelCount>(field::node_count),
+                                      c.template data<Real>(field::node_answer),
+                                      c.template data<int>(field::node_walls)}};
     with_dimensions(c.p.dimensions, [&](auto d) {
       constexpr int D = decltype(d)::value;
       c.over(l.grid.size() * kRowsPerCell<D>,
-             LevelCellPass<typename C::Real, D>{c.p, l.grid, c.template data<int>(field::bin_start),
-                                                open ? c.position() : nullptr, c.density(), row});
+             LevelHomePass<Real, D>{c.p, l.grid, c.template data<int>(field::bin_start),
+                                    c.scene.domain.open.empty() ? nullptr : c.position(),
+                                    c.template data<int>(field::level_home), count});
       c.over(l.all.level[0].size(),
-             LevelNodePass<D>{c.p.boundary.walls, l.grid, l.all.level[0], row, chain.node});
+             LevelNodePass<Real, D>{c.p.boundary.walls, l.grid, l.all.level[0], chain.stiffness,
+                                    count, chain.node});
     });
-    for (int k = 1; k < chain.first; ++k)
-      c.over(l.all.level[k].size(), LevelDownPass{l.all.level[k - 1], l.all.level[k], chain.node});
+    for (int k = 1; k < chain.first; ++k) c.over(l.all.level[k].size(), chain.coarser(k));
+    if (chain.steps() > 0) c.exec.in_turn(chain);
+    for (int k = std::min(chain.first, l.all.count - 1); k-- > 0;)
+      c.over(l.all.level[k].size(), chain.up(k));
   }
 };
 
 struct LevelMultipliers {
   static PassInfo info() {
-    return {"level multipliers", "levels", {{&field::level_node}}, {hidden({&field::multiplier})}};
+    return {"level multipliers",
+            "levels",
+            {{&field::density},
+             {&field::bin_start},
+             {&field::level_home},
+             {&field::node_answer},
+             {&field::node_walls},
+             {&field::row_count}},
+            {hidden({&field::row_sum}), hidden({&field::node_sum}), hidden({&field::multiplier}),
+             hidden({&field::level_move})}};
   }
   template <class C>
   static void launch(C& c) {
-    const auto chain = level_chain(c);
-    if (chain.steps() > 0) c.exec.in_turn(chain);
-    for (int k = chain.first; k-- > 0;) c.over(c.levels.all.level[k].size(), chain.up(k));
+    using Real = typename C::Real;
+    const LevelPlan& l = c.levels;
+    auto* row = c.template data<std::int64_t>(field::row_sum);
+    const LevelChain<Real> chain{small_levels(l), c.template data<Real>(field::node_answer),
+                                 c.template data<std::int64_t>(field::node_sum),
+                                 c.template data<Real>(field::multiplier)};
+    with_dimensions(c.p.dimensions, [&](auto d) {
+      constexpr int D = decltype(d)::value;
+      c.over(l.grid.size() * kRowsPerCell<D>,
+             LevelSumPass<Real, D>{c.p, l.grid, c.template data<int>(field::bin_start),
+                                   homes_beside_open_faces(c), c.density(), row});
+      c.over(l.all.level[0].size(),
+             LevelNodeSumPass<Real, D>{l.grid, l.all.level[0], chain.answer, row, chain.sum});
+      for (int k = 1; k < chain.first; ++k) c.over(l.all.level[k].size(), chain.coarser(k));
+      if (chain.steps() > 0) c.exec.in_turn(chain);
+      for (int k = chain.first; k-- > 0;) c.over(l.all.level[k].size(), chain.up(k));
+      c.over(l.grid.size(),
+             LevelMovePass<Real, D>{l.grid, l.all.level[0], Real(l.gamma), chain.multiplier,
+                                    c.template data<int>(field::node_walls),
+                                    c.template data<int>(field::row_count),
+                                    c.vectors(field::level_move)});
+    });
   }
 };
 
 struct Levels {
-  using Passes = PassList<LevelSums, LevelMultipliers>;
+  using Passes = PassList<LevelCellsAndNodes, LevelMultipliers>;
   template <class B>
   static void add(const Scene& s, B& b) {
     if (const char* why = why_no_levels(s)) return b.left_out("levels: grids coarser than h", why);
-    b.template iteration<LevelSums>();
+    b.template lists<LevelCellsAndNodes>();
     b.template iteration<LevelMultipliers>();
   }
 };
