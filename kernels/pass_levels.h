@@ -126,8 +126,8 @@ struct LevelNodePass {
   }
 };
 
-/// A node of a coarser level: the finer ones around it, weights 1 and 1/2 along each axis; off where
-/// one of them is.
+/// A node of a coarser level: the finer ones around it, weights 1 and 1/2 along each axis; off
+/// where one of them is.
 template <class Real>
 struct LevelCoarserPass {
   LevelShape fine, level;

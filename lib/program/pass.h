@@ -17,13 +17,14 @@ namespace pbf::inline program_module {
 struct Written {
   enum Part { hidden, vector, fourth, scalar, pairs };
   Access to;
-  Part part = hidden;           ///< x, y, z; w; a number per particle; the lists
-  const char* quantity = "";    ///< "position"
-  const char* unit = "1";       ///< of the internal frame
-  bool sum = false;             ///< over neighbours: carries the rounding of its terms
-  bool axial = false;           ///< a cross product: its sign depends on the hand of the axes
-  bool before_sort = false;     ///< its rows are in the order before the sort
-  const char* stage = nullptr;  ///< shown as that of another stage than the pass's
+  Part part = hidden;              ///< x, y, z; w; a number per particle; the lists
+  const char* quantity = "";       ///< "position"
+  const char* unit = "1";          ///< of the internal frame
+  bool sum = false;                ///< over neighbours: carries the rounding of its terms
+  bool axial = false;              ///< a cross product: its sign depends on the hand of the axes
+  bool before_sort = false;        ///< its rows are in the order before the sort
+  const char* stage = nullptr;     ///< shown as that of another stage than the pass's
+  const FieldInfo* row = nullptr;  ///< not null: it names each particle's row, -1: none
 };
 inline Written vector(Access to, const char* quantity, const char* unit) {
   return {to, Written::vector, quantity, unit};

@@ -104,15 +104,27 @@ class Tracer {
 
   template <class T>
   std::vector<T> host(const T* from) {
-    std::vector<T> v(n_);
-    c_.exec.to_host(from, n_, v.data());
+    return host(from, n_);
+  }
+  template <class T>
+  std::vector<T> host(const T* from, std::size_t n) {
+    std::vector<T> v(n);
+    c_.exec.to_host(from, n, v.data());
     return v;
+  }
+  /// Of a field whose rows particles name.
+  std::size_t rows_named(const FieldInfo& f) const {
+    return std::size_t(rows_of(f, {.cells = c_.levels.cells(), .nodes = c_.levels.nodes()}));
   }
   /// Records n rows of `components` scalars, component(row, c) of what lies at `from`; rounds them
   /// and puts the values to follow in their place, where asked to. sign: of the scene's vector.
   template <class T, class Component>
   void array(const Written& w, int components, T* from, const Component& component, int sign = 1) {
-    std::vector<T> v = host(from);
+    const std::vector<int> named = w.row ? host(c_.template data<int>(*w.row)) : std::vector<int>{};
+    std::vector<T> all = w.row ? host(from, rows_named(*w.to.field)) : std::vector<T>{};
+    std::vector<T> v = w.row ? std::vector<T>(n_) : host(from);
+    for (std::size_t k = 0; k < named.size(); ++k)
+      if (named[k] >= 0) v[k] = all[std::size_t(named[k])];
     id_ = host(w.before_sort ? c_.template other_data<int>(field::id) : c_.ids());
     trace_.arrays.push_back({stage_, iteration_, w.quantity, w.unit, components, {}});
     TraceArray& to = trace_.arrays.back();
@@ -132,7 +144,12 @@ class Tracer {
           if (follow) x = rounded(Real(sign * follow->values[row]));
         }
       }
-    if (!std::is_integral_v<Scalar> && (amplitude_ > 0 || follow))
+    if (std::is_integral_v<Scalar> || (amplitude_ == 0 && !follow)) return;
+    for (std::size_t k = 0; k < named.size(); ++k)
+      if (named[k] >= 0) all[std::size_t(named[k])] = v[k];
+    if (w.row)
+      c_.exec.to_device(all.data(), all.size(), from);
+    else
       c_.exec.to_device(v.data(), n_, from);
   }
   /// The array of the other trace that belongs to the present one.

@@ -22,14 +22,16 @@ struct Axis {
     if (intervals[std::size_t(level) + 1] == 0) return 1;
     return std::max<Real>(0, 1 - std::fabs(Real(j - 2 * i)) / 2);
   }
-  /// Value and slope at x of the hat of node i of level 0.
-  std::array<Real, 2> hat_at(Real x, int i) const {
+  /// Do the hats of node i of the next level and of node j of this one overlap?
+  bool overlap(int level, int i, int j) const {
+    return intervals[std::size_t(level) + 1] == 0 || std::abs(j - 2 * i) < 3;
+  }
+  Real length(int c) const { return c == intervals[0] - 1 ? last : edge; }
+  /// Value and slope, in the middle of cell c, of the hat of node i of level 0.
+  std::array<Real, 2> hat_in(int c, int i) const {
     if (intervals[0] == 0) return {1, 0};
-    const int c = cell(x);
-    const Real length = c == intervals[0] - 1 ? last : edge;
-    const Real t = std::min<Real>(std::max<Real>((x - Real(c) * edge) / length, 0), 1);
-    if (i == c) return {1 - t, -1 / length};
-    if (i == c + 1) return {t, 1 / length};
+    if (i == c) return {0.5L, -1 / length(c)};
+    if (i == c + 1) return {0.5L, 1 / length(c)};
     return {0, 0};
   }
 };
@@ -37,7 +39,25 @@ struct Axis {
 struct Sums {
   Real excess = 0, particles = 0;
   bool on = true;
+  std::array<bool, 3> held{};  // by a wall across that axis
 };
+
+/// The cell that a particle is in; -1 beyond an open face.
+Node cell_of(const std::array<Axis, 3>& axes, const V& at, const Settings& c) {
+  Node cell{0, 0, 0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (at[k] < c.low[k] || at[k] > c.high[k]) return {-1, -1, -1};
+    if (axes[k].intervals[0] > 0) cell[k] = axes[k].cell(at[k] - c.low[k]);
+  }
+  return cell;
+}
+/// Particles in it at rest.
+Real full_cell(const std::array<Axis, 3>& axes, const Node& cell, const Settings& c) {
+  Real full = 1;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (axes[k].intervals[0] > 0) full *= axes[k].length(cell[k]) / c.spacing;
+  return full;
+}
 
 template <class F>
 void for_each_node(const std::array<Axis, 3>& axes, int level, F&& f) {
@@ -71,14 +91,8 @@ std::array<Axis, 3> make_axes(const Settings& c) {
 }
 
 /// Sums at the nodes of level 0.
-std::vector<Sums> finest(const std::array<Axis, 3>& axes, const std::vector<V>& in_cell,
-                         const std::vector<V>& x, const std::vector<Real>& ratio, const Settings& c,
-                         LevelNodes& found) {
-  const auto counts = [&](const V& p) {
-    for (int k = 0; k < 3; ++k)
-      if (p[k] < c.low[k] || p[k] > c.high[k]) return false;
-    return true;
-  };
+std::vector<Sums> finest(const std::array<Axis, 3>& axes, const std::vector<Node>& home,
+                         const std::vector<Real>& ratio, const Settings& c, LevelNodes& found) {
   const auto touches = [&](int k, int node, int cell) {
     const Axis& a = axes[std::size_t(k)];
     return a.intervals[0] == 0 || cell == node || cell == node - 1;
@@ -91,20 +105,12 @@ std::vector<Sums> finest(const std::array<Axis, 3>& axes, const std::vector<V>& 
       for (int cx = 0; cx < cells[0]; ++cx) {
         const Node cell{cx, cy, cz};
         Sums s;
-        for (std::size_t i = 0; i < x.size(); ++i) {
-          bool in = counts(x[i]);
-          for (int k = 0; k < 3; ++k)
-            if (axes[std::size_t(k)].intervals[0] > 0)
-              in =
-                  in && axes[std::size_t(k)].cell(in_cell[i][k] - c.low[k]) == cell[std::size_t(k)];
-          if (!in) continue;
+        for (std::size_t i = 0; i < home.size(); ++i) {
+          if (home[i] != cell) continue;
           s.particles += 1;
           s.excess += std::min<Real>(ratio[i] - 1, 0.1L);
         }
-        Real full = 1;  // particles at rest
-        for (std::size_t k = 0; k < 3; ++k)
-          if (axes[k].intervals[0] > 0)
-            full *= (cell[k] == cells[k] - 1 ? axes[k].last : axes[k].edge) / c.spacing;
+        const Real full = full_cell(axes, cell, c);
         found.closest = std::min(found.closest, std::fabs(s.particles - full / 2));
         for_each_node(axes, 0, [&](const Node& n) {
           for (int k = 0; k < 3; ++k)
@@ -122,7 +128,9 @@ std::vector<Sums> finest(const std::array<Axis, 3>& axes, const std::vector<V>& 
       if (last == 0) continue;
       if (n[k] == 0 && c.open[2 * k]) node.on = false;
       if (n[k] == last && c.open[2 * k + 1]) node.on = false;
+      node.held[k] = n[k] == 0 || n[k] == last;
     }
+    if (!node.on) node.held = {};
     ++(node.on ? found.on : found.off);
   });
   return nodes;
@@ -145,17 +153,19 @@ Real lattice_answer(const Settings& c) {
 
 }  // namespace
 
-std::vector<V> level_moves(const std::vector<V>& in_cell, const std::vector<V>& x,
-                           const std::vector<Real>& ratio, const Settings& c, LevelNodes& found) {
+std::vector<V> level_moves(const std::vector<V>& in_cell, const std::vector<Real>& ratio,
+                           const Settings& c, LevelNodes& found) {
   const std::array<Axis, 3> axes = make_axes(c);
   found = {};
   found.levels = int(axes[0].intervals.size());
+  std::vector<Node> home;
+  for (const V& at : in_cell) home.push_back(cell_of(axes, at, c));
   const auto hat = [&](int level, const Node& coarse, const Node& fine) {
     Real w = 1;
     for (std::size_t k = 0; k < 3; ++k) w *= axes[k].hat(level, coarse[k], fine[k]);
     return w;
   };
-  std::vector<std::vector<Sums>> sums{finest(axes, in_cell, x, ratio, c, found)};
+  std::vector<std::vector<Sums>> sums{finest(axes, home, ratio, c, found)};
   for (int l = 0; l + 1 < found.levels; ++l) {
     std::vector<Sums> next;
     for_each_node(axes, l + 1, [&](const Node& coarse) {
@@ -166,7 +176,9 @@ std::vector<V> level_moves(const std::vector<V>& in_cell, const std::vector<V>& 
         s.excess += w * f.excess;
         s.particles += w * f.particles;
         s.on = s.on && (w == 0 || f.on);
+        for (std::size_t k = 0; k < 3; ++k) s.held[k] = s.held[k] || (w > 0 && f.held[k]);
       });
+      if (!s.on) s.held = {};
       next.push_back(s);
     });
     sums.push_back(next);
@@ -176,30 +188,47 @@ std::vector<V> level_moves(const std::vector<V>& in_cell, const std::vector<V>& 
     coarser.swap(multiplier);
     multiplier.clear();
     for_each_node(axes, l, [&](const Node& n) {
-      const Sums& s = sums[std::size_t(l)][place(axes, l, n)];
-      const Real edge = 2 * c.h * powl(2, l), beta = 0.2L;
+      Sums& s = sums[std::size_t(l)][place(axes, l, n)];
+      const Real edge = 2 * c.h * powl(2, l), beta = 0.25L;
       Real k = s.on && s.particles > 0
                    ? beta * edge * edge * std::max<Real>(0, s.excess / s.particles)
                    : 0;
       if (l + 1 < found.levels)
         for_each_node(axes, l + 1, [&](const Node& coarse) {
           k += hat(l, coarse, n) * coarser[place(axes, l + 1, coarse)];
+          const Sums& other = sums[std::size_t(l) + 1][place(axes, l + 1, coarse)];
+          for (std::size_t a = 0; a < 3; ++a) {
+            bool both = true;
+            for (std::size_t b = 0; b < 3; ++b) both = both && axes[b].overlap(l, coarse[b], n[b]);
+            s.held[a] = s.held[a] || (both && other.held[a]);
+          }
         });
       multiplier.push_back(k);
     });
   }
   const Real gamma = lattice_answer(c);
   std::vector<V> moves;
-  for (const V& p : x) {
+  for (const Node& cell : home) {
     V move{};
+    if (cell[0] < 0) {
+      moves.push_back(move);
+      continue;
+    }
+    Real inside = 0;
+    for (const Node& other : home) inside += other == cell ? 1 : 0;
+    std::array<bool, 3> held{};
     for_each_node(axes, 0, [&](const Node& n) {
       std::array<std::array<Real, 2>, 3> h;
-      for (std::size_t k = 0; k < 3; ++k) h[k] = axes[k].hat_at(p[k] - c.low[k], n[k]);
+      for (std::size_t k = 0; k < 3; ++k) h[k] = axes[k].hat_in(cell[k], n[k]);
       const Real k = -gamma * multiplier[place(axes, 0, n)];
       move[0] += k * h[0][1] * h[1][0] * h[2][0];
       move[1] += k * h[0][0] * h[1][1] * h[2][0];
       move[2] += k * h[0][0] * h[1][0] * h[2][1];
+      if (h[0][0] * h[1][0] * h[2][0] > 0)
+        for (std::size_t a = 0; a < 3; ++a) held[a] = held[a] || sums[0][place(axes, 0, n)].held[a];
     });
+    for (int a = 0; a < 3; ++a)
+      if (!held[std::size_t(a)]) move[a] *= full_cell(axes, cell, c) / inside, ++found.free;
     moves.push_back(move);
   }
   return moves;

@@ -199,7 +199,7 @@ void update(State& s, const Settings& c, LevelNodes* nodes) {
     }
     std::vector<V> next = s.x, coarse(n);
     LevelNodes unseen;
-    if (c.levels) coarse = level_moves(listed, s.x, ratios, c, nodes ? *nodes : unseen);
+    if (c.levels) coarse = level_moves(listed, ratios, c, nodes ? *nodes : unseen);
     for (std::size_t i = 0; i < n; ++i) {
       V delta{};
       for (std::size_t j : pairs[i]) {

@@ -66,10 +66,11 @@ struct LevelCellsAndNodes {
     using Real = typename C::Real;
     const LevelPlan& l = c.levels;
     int* count = c.template data<int>(field::row_count);
-    const LevelNodeChain<Real> chain{small_levels(l), l.beta * l.grid.edge * l.grid.edge,
-                                     {c.template data<LevelCount>(field::node_count),
-                                      c.template data<Real>(field::node_answer),
-                                      c.template data<int>(field::node_walls)}};
+    const LevelNodeChain<Real> chain{
+        small_levels(l),
+        l.beta * l.grid.edge * l.grid.edge,
+        {c.template data<LevelCount>(field::node_count), c.template data<Real>(field::node_answer),
+         c.template data<int>(field::node_walls)}};
     with_dimensions(c.p.dimensions, [&](auto d) {
       constexpr int D = decltype(d)::value;
       c.over(l.grid.size() * kRowsPerCell<D>,
@@ -98,7 +99,12 @@ struct LevelMultipliers {
              {&field::node_walls},
              {&field::row_count}},
             {hidden({&field::row_sum}), hidden({&field::node_sum}), hidden({&field::multiplier}),
-             hidden({&field::level_move})}};
+             move()}};
+  }
+  static Written move() {
+    Written w = vector({&field::level_move}, "level displacement", "h");
+    w.row = &field::level_home;
+    return w;
   }
   template <class C>
   static void launch(C& c) {

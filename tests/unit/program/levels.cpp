@@ -49,7 +49,7 @@ TEST_CASE("without levels the plan has no pass, no array and says why") {
     const Plan plan = plan_of(s);
     CHECK_FALSE(has_stage(plan));
     CHECK(plan.levels.all.count == 0);
-    for (const char* array : {"level cell", "level node", "multiplier"})
+    for (const char* array : {"level home", "level row sum", "level multiplier"})
       CHECK(bytes_of(plan, array) == -1);
     CHECK(plan_text(plan, s).find("\n  levels: grids coarser than h: ") != std::string::npos);
   }
@@ -59,7 +59,9 @@ TEST_CASE("without levels the plan has no pass, no array and says why") {
   CHECK(why_without(plan_of(tank("on", {"solver.iterations=0"}))) == "solver.iterations is 0");
 }
 
-TEST_CASE("with levels the plan counts the bytes of the rows of cells of 2 h and of all nodes") {
+TEST_CASE(
+    "with levels the plan counts the bytes of the cells of 2 h, of all nodes and of each "
+    "particle's cell") {
   const Scene s = tank("on");  // a box of 5 x 5 x 23.75 cells
   const Plan plan = plan_of(s);
   CHECK(has_stage(plan));
@@ -67,13 +69,20 @@ TEST_CASE("with levels the plan counts the bytes of the rows of cells of 2 h and
   // Intervals 5 5 24; 3 3 12; 2 2 6; 1 1 3; - - 2; - - 1.
   const int nodes = 6 * 6 * 25 + 4 * 4 * 13 + 3 * 3 * 7 + 2 * 2 * 4 + 3 + 2;
   CHECK(plan.levels.nodes() == nodes);
-  CHECK(bytes_of(plan, "level row") == 5 * 5 * 24 * 64);
-  CHECK(bytes_of(plan, "level node") == nodes * 16);
-  CHECK(bytes_of(plan, "multiplier") == nodes * 4);
-  CHECK(bytes_of(plan_of(tank("on", {"precision=double"})), "multiplier") == nodes * 8);
-  CHECK(plan.bytes() - plan_of(tank("off")).bytes() == 5 * 5 * 24 * 64 + nodes * 20);
+  const std::int64_t cells = 5 * 5 * 24, particles = 1000;
+  CHECK(bytes_of(plan, "level home") == particles * 4);
+  CHECK(bytes_of(plan, "level row count") == cells * 4 * 4);
+  CHECK(bytes_of(plan, "level row sum") == cells * 4 * 8);
+  CHECK(bytes_of(plan, "level move") == cells * 16);
+  CHECK(bytes_of(plan, "level node count") == nodes * 8);
+  CHECK(bytes_of(plan, "level node sum") == nodes * 8);
+  CHECK(bytes_of(plan, "level answer") == nodes * 4);
+  CHECK(bytes_of(plan, "level multiplier") == nodes * 4);
+  CHECK(bytes_of(plan, "level walls") == nodes * 4);
+  CHECK(bytes_of(plan_of(tank("on", {"precision=double"})), "level multiplier") == nodes * 8);
+  CHECK(plan.bytes() - plan_of(tank("off")).bytes() == particles * 4 + cells * 64 + nodes * 28);
   const std::string text = plan_text(plan, s);
-  CHECK(text.find("  level sums ") != std::string::npos);
+  CHECK(text.find("  level cells ") != std::string::npos);
   CHECK(text.find("  level multipliers ") != std::string::npos);
   CHECK(text.find("levels: grids coarser") == std::string::npos);
 }
