@@ -185,14 +185,17 @@ struct LevelSumPass {
   PBF_HD void operator()(int n) const {
     std::int64_t sum = 0;
     for_row_of_cell<D>(p, grid, bin_start, n, [&](int from, int to) {
-      for (int i = from; i < to; ++i) {
-        const Real c = min2(density[i] - Real(1), Real(kLevelClip));
-        // What is no number is left out: the guard looks for it elsewhere.
-        const int excess = c >= Real(-1) ? int(c * Real(1 << 30)) : 0;
-        sum += !home || home[i] >= 0 ? excess : 0;
-      }
+      if (!home)
+        for (int i = from; i < to; ++i) sum += excess(density[i]);
+      else
+        for (int i = from; i < to; ++i) sum += home[i] >= 0 ? excess(density[i]) : 0;
     });
     row[n] = sum;
+  }
+  /// What is no number counts as the clip: the guard looks for it elsewhere.
+  PBF_HD static int excess(Real density) {
+    const Real c = max2(min2(density - Real(1), Real(kLevelClip)), Real(-1));
+    return int(c * Real(1 << 30));
   }
 };
 
