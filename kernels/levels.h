@@ -77,31 +77,30 @@ PBF_HD Tap coarser_node(Coarsened from, int i, int d) {
   return {i / 2 + d, 1};
 }
 
-/// f(node, weight in eighths) for the nodes of `fine` under node `at` of `level`.
+/// f(node, weight in eighths) for the nodes of `fine` under node `at` of `level`: every of-th of
+/// them, from the lane-th on.
 template <class F>
-PBF_HD void for_finer_nodes(const LevelShape& fine, const LevelShape& level, GridPlace at, F&& f) {
-  for (int c = 0; c < 3; ++c)
-    for (int b = 0; b < 3; ++b)
-      for (int a = 0; a < 3; ++a) {
-        const Tap x = finer_node(level.from[0], at[0], a, fine.nodes[0]);
-        const Tap y = finer_node(level.from[1], at[1], b, fine.nodes[1]);
-        const Tap z = finer_node(level.from[2], at[2], c, fine.nodes[2]);
-        const int eighths = x.halves * y.halves * z.halves;
-        if (eighths > 0) f(fine.at(x.node, y.node, z.node), eighths);
-      }
+PBF_HD void for_finer_nodes(const LevelShape& fine, const LevelShape& level, GridPlace at, int lane,
+                            int of, F&& f) {
+  for (int n = lane; n < 27; n += of) {
+    const Tap x = finer_node(level.from[0], at[0], n % 3, fine.nodes[0]);
+    const Tap y = finer_node(level.from[1], at[1], n / 3 % 3, fine.nodes[1]);
+    const Tap z = finer_node(level.from[2], at[2], n / 9, fine.nodes[2]);
+    const int eighths = x.halves * y.halves * z.halves;
+    if (eighths > 0) f(fine.at(x.node, y.node, z.node), eighths);
+  }
 }
 /// f(node, weight in eighths) for the nodes of `coarse` around node `at` of the finer level.
 template <class F>
 PBF_HD void for_coarser_nodes(const LevelShape& coarse, GridPlace at, F&& f) {
-  for (int c = 0; c < 2; ++c)
-    for (int b = 0; b < 2; ++b)
-      for (int a = 0; a < 2; ++a) {
-        const Tap x = coarser_node(coarse.from[0], at[0], a);
-        const Tap y = coarser_node(coarse.from[1], at[1], b);
-        const Tap z = coarser_node(coarse.from[2], at[2], c);
-        const int eighths = x.halves * y.halves * z.halves;
-        if (eighths > 0) f(coarse.at(x.node, y.node, z.node), eighths);
-      }
+  Tap tap[3][2];
+  for (int k = 0; k < 3; ++k)
+    for (int d = 0; d < 2; ++d) tap[k][d] = coarser_node(coarse.from[k], at[k], d);
+  for (int n = 0; n < 8; ++n) {
+    const Tap x = tap[0][n & 1], y = tap[1][n >> 1 & 1], z = tap[2][n >> 2];
+    const int eighths = x.halves * y.halves * z.halves;
+    if (eighths > 0) f(coarse.at(x.node, y.node, z.node), eighths);
+  }
 }
 
 /// Sums over cells and nodes are whole numbers, so that no order of summation shows: of clipped C
@@ -110,11 +109,10 @@ inline constexpr double kExcessUnit = 1.0 / (1 << 30), kCountUnit = 1.0 / (1 << 
 
 /// The particles around a node, in kCountUnit, and whether the node is on.
 struct LevelCount {
-  std::int64_t marked = 0;  ///< below 0: off, and -1 - the number
+  std::int64_t marked = 0;  ///< below 0: off, and of no other meaning
 
-  PBF_HD static LevelCount of(std::int64_t n, bool on) { return {on ? n : -1 - n}; }
+  PBF_HD static LevelCount of(std::int64_t n, bool on) { return {on ? n : -1}; }
   PBF_HD bool on() const { return marked >= 0; }
-  PBF_HD std::int64_t number() const { return on() ? marked : -1 - marked; }
 };
 
 }  // namespace pbf

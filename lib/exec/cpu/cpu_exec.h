@@ -85,15 +85,20 @@ class CpuExec {
       if constexpr (requires { typename Pass::Sum; })
         sum_over_neighbors(simd_, pass, first, last);
       else
-        for (int i = first; i < last; ++i) pass(i);
+        for (int i = first; i < last; ++i) one(pass, i);
     }
   }
 
-  /// pass(step, i) for every i below pass.size(step), one step after the other.
+  /// The steps of a pass, one after the other.
   template <class Pass>
   void in_turn(const Pass& pass) {
     for (int step = 0; step < pass.steps(); ++step)
-      for_each(pass.size(step), [&](int i) { pass(step, i); });
+      for_each(pass.size(step), [&](int i) {
+        if (pass.shared(step))
+          pass.finish(step, i, pass.part(step, i, 0, 1));
+        else
+          pass(step, i);
+      });
   }
 
   /// A measure: its maxima and counts, then the sums in units that these decide.
@@ -185,6 +190,14 @@ class CpuExec {
   std::size_t bytes() const;
 
  private:
+  /// Of a pass that threads could share, one makes the whole.
+  template <class Pass>
+  static void one(const Pass& pass, int i) {
+    if constexpr (requires { typename Pass::Part; })
+      pass.finish(i, pass.part(i, 0, 1));
+    else
+      pass(i);
+  }
   /// Of term(i), whose additions have no order.
   template <class Sum, class Term>
   Sum sum(int n, const Term& term) {

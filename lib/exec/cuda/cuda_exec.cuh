@@ -14,6 +14,7 @@
 #include "lib/exec/cuda/recorded.cuh"
 #include "lib/exec/cuda/reduce.cuh"
 #include "lib/exec/cuda/repeat.cuh"
+#include "lib/exec/cuda/shared_pass.cuh"
 #include "lib/exec/cuda/sort_kernels.cuh"
 #include "lib/solver/executor.h"
 
@@ -98,7 +99,10 @@ class CudaExec {
       if (launch_lanes < space ? 4 : 2, kFourLanes > (n, pass)) return;
       if (launch_lanes < 2, space ? kTwoLanes : 0 > (n, pass)) return;
     }
-    launch(apply_kernel<Pass>, n, kBlock, 0, n, pass);
+    if constexpr (requires { typename Pass::Part; })
+      launch(shared_kernel<Pass>, n * Pass::lanes, kBlock, 0, n, pass);
+    else
+      launch(apply_kernel<Pass>, n, kBlock, 0, n, pass);
   }
 
   template <class Pass>

@@ -28,17 +28,6 @@ __global__ void __launch_bounds__(kBlock) apply_kernel(int n, Pass pass) {
   if (i < n) pass(i);
 }
 
-/// Small steps one after the other, by one block.
-constexpr int kTurnBlock = 1024;
-template <class Pass>
-__global__ void __launch_bounds__(kTurnBlock) in_turn_kernel(const __grid_constant__ Pass pass) {
-  wait_for_previous();
-  for (int step = 0; step < pass.steps(); ++step) {
-    for (int i = threadIdx.x; i < pass.size(step); i += kTurnBlock) pass(step, i);
-    __syncthreads();
-  }
-}
-
 /// Adds the number of particles that pass(i) puts into each bin: in shared memory first, since most
 /// particles of a fluid share few bins. Integers: the order of the additions does not matter.
 constexpr int kBinBlock = 256, kBinBlocks = 512;

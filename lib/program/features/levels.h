@@ -12,9 +12,9 @@
 namespace pbf::inline program_module::field {
 /// Of each particle the cell that it was in when the lists were made.
 inline constexpr FieldInfo level_home{"level home", Type::int32, 1, Rows::particles};
-/// Of each row of a cell (four, in two dimensions two): particles, and the sum of C.
-inline constexpr FieldInfo row_count{"level row count", Type::int32, 4, Rows::cells};
-inline constexpr FieldInfo row_sum{"level row sum", Type::int64, 4, Rows::cells};
+/// Of each cell: particles, and the sum of C.
+inline constexpr FieldInfo cell_count{"level cell count", Type::int32, 1, Rows::cells};
+inline constexpr FieldInfo cell_sum{"level cell sum", Type::int64, 1, Rows::cells};
 /// Of each node: what LevelNodes names, the sum of C, the multiplier (h^2).
 inline constexpr FieldInfo node_count{"level node count", Type::int64, 1, Rows::nodes};
 inline constexpr FieldInfo node_sum{"level node sum", Type::int64, 1, Rows::nodes};
@@ -37,7 +37,7 @@ void with_level_move(C& c, F&& f) {
 
 /// Levels of up to so many nodes are made together, by one block of a device: its launches take
 /// longer than the work.
-inline constexpr int kLevelsTogether = 4096;
+inline constexpr int kLevelsTogether = 1024;
 
 inline LevelSteps small_levels(const LevelPlan& l) {
   int first = 1;
@@ -56,7 +56,7 @@ struct LevelCellsAndNodes {
             "levels",
             {{&field::position}, {&field::bin_start}},
             {{{&field::level_home}, Written::scalar, "level cell"},
-             hidden({&field::row_count}),
+             hidden({&field::cell_count}),
              hidden({&field::node_count}),
              hidden({&field::node_answer}),
              hidden({&field::node_walls})}};
@@ -65,26 +65,24 @@ struct LevelCellsAndNodes {
   static void launch(C& c) {
     using Real = typename C::Real;
     const LevelPlan& l = c.levels;
-    int* count = c.template data<int>(field::row_count);
+    int* count = c.template data<int>(field::cell_count);
     const LevelNodeChain<Real> chain{
         small_levels(l),
         l.beta * l.grid.edge * l.grid.edge,
         {c.template data<LevelCount>(field::node_count), c.template data<Real>(field::node_answer),
          c.template data<int>(field::node_walls)}};
     with_dimensions(c.p.dimensions, [&](auto d) {
-      constexpr int D = decltype(d)::value;
-      c.over(l.grid.size() * kRowsPerCell<D>,
-             LevelHomePass<Real, D>{c.p, l.grid, c.template data<int>(field::bin_start),
-                                    c.scene.domain.open.empty() ? nullptr : c.position(),
-                                    c.template data<int>(field::level_home), count});
-      c.over(l.all.level[0].size(),
-             LevelNodePass<Real, D>{c.p.boundary.walls, l.grid, l.all.level[0], chain.stiffness,
-                                    count, chain.node});
+      c.over(l.grid.size(), LevelHomePass<Real, decltype(d)::value>{
+                                c.p, l.grid, c.template data<int>(field::bin_start),
+                                c.scene.domain.open.empty() ? nullptr : c.position(),
+                                c.template data<int>(field::level_home), count});
     });
+    c.over(l.all.level[0].size(), LevelNodePass<Real>{c.p.boundary.walls, l.grid, l.all.level[0],
+                                                      chain.stiffness, count, chain.node});
     for (int k = 1; k < chain.first; ++k) c.over(l.all.level[k].size(), chain.coarser(k));
     if (chain.steps() > 0) c.exec.in_turn(chain);
     for (int k = std::min(chain.first, l.all.count - 1); k-- > 0;)
-      c.over(l.all.level[k].size(), chain.up(k));
+      c.over(l.all.level[k].size(), chain.walls(k));
   }
 };
 
@@ -97,8 +95,8 @@ struct LevelMultipliers {
              {&field::level_home},
              {&field::node_answer},
              {&field::node_walls},
-             {&field::row_count}},
-            {hidden({&field::row_sum}), hidden({&field::node_sum}), hidden({&field::multiplier}),
+             {&field::cell_count}},
+            {hidden({&field::cell_sum}), hidden({&field::node_sum}), hidden({&field::multiplier}),
              move()}};
   }
   static Written move() {
@@ -110,24 +108,24 @@ struct LevelMultipliers {
   static void launch(C& c) {
     using Real = typename C::Real;
     const LevelPlan& l = c.levels;
-    auto* row = c.template data<std::int64_t>(field::row_sum);
+    auto* cell = c.template data<std::int64_t>(field::cell_sum);
     const LevelChain<Real> chain{small_levels(l), c.template data<Real>(field::node_answer),
                                  c.template data<std::int64_t>(field::node_sum),
                                  c.template data<Real>(field::multiplier)};
     with_dimensions(c.p.dimensions, [&](auto d) {
       constexpr int D = decltype(d)::value;
-      c.over(l.grid.size() * kRowsPerCell<D>,
+      c.over(l.grid.size(),
              LevelSumPass<Real, D>{c.p, l.grid, c.template data<int>(field::bin_start),
-                                   homes_beside_open_faces(c), c.density(), row});
+                                   homes_beside_open_faces(c), c.density(), cell});
       c.over(l.all.level[0].size(),
-             LevelNodeSumPass<Real, D>{l.grid, l.all.level[0], chain.answer, row, chain.sum});
+             LevelNodeSumPass<Real>{l.grid, l.all.level[0], chain.answer, cell, chain.sum});
       for (int k = 1; k < chain.first; ++k) c.over(l.all.level[k].size(), chain.coarser(k));
       if (chain.steps() > 0) c.exec.in_turn(chain);
       for (int k = chain.first; k-- > 0;) c.over(l.all.level[k].size(), chain.up(k));
       c.over(l.grid.size(),
              LevelMovePass<Real, D>{l.grid, l.all.level[0], Real(l.gamma), chain.multiplier,
                                     c.template data<int>(field::node_walls),
-                                    c.template data<int>(field::row_count),
+                                    c.template data<int>(field::cell_count),
                                     c.vectors(field::level_move)});
     });
   }

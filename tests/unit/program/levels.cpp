@@ -49,7 +49,7 @@ TEST_CASE("without levels the plan has no pass, no array and says why") {
     const Plan plan = plan_of(s);
     CHECK_FALSE(has_stage(plan));
     CHECK(plan.levels.all.count == 0);
-    for (const char* array : {"level home", "level row sum", "level multiplier"})
+    for (const char* array : {"level home", "level cell sum", "level multiplier"})
       CHECK(bytes_of(plan, array) == -1);
     CHECK(plan_text(plan, s).find("\n  levels: grids coarser than h: ") != std::string::npos);
   }
@@ -71,8 +71,8 @@ TEST_CASE(
   CHECK(plan.levels.nodes() == nodes);
   const std::int64_t cells = 5 * 5 * 24, particles = 1000;
   CHECK(bytes_of(plan, "level home") == particles * 4);
-  CHECK(bytes_of(plan, "level row count") == cells * 4 * 4);
-  CHECK(bytes_of(plan, "level row sum") == cells * 4 * 8);
+  CHECK(bytes_of(plan, "level cell count") == cells * 4);
+  CHECK(bytes_of(plan, "level cell sum") == cells * 8);
   CHECK(bytes_of(plan, "level move") == cells * 16);
   CHECK(bytes_of(plan, "level node count") == nodes * 8);
   CHECK(bytes_of(plan, "level node sum") == nodes * 8);
@@ -80,7 +80,7 @@ TEST_CASE(
   CHECK(bytes_of(plan, "level multiplier") == nodes * 4);
   CHECK(bytes_of(plan, "level walls") == nodes * 4);
   CHECK(bytes_of(plan_of(tank("on", {"precision=double"})), "level multiplier") == nodes * 8);
-  CHECK(plan.bytes() - plan_of(tank("off")).bytes() == particles * 4 + cells * 64 + nodes * 28);
+  CHECK(plan.bytes() - plan_of(tank("off")).bytes() == particles * 4 + cells * 28 + nodes * 28);
   const std::string text = plan_text(plan, s);
   CHECK(text.find("  level cells ") != std::string::npos);
   CHECK(text.find("  level multipliers ") != std::string::npos);
