@@ -70,13 +70,6 @@ PBF_HD Tap finer_node(Coarsened from, int i, int d, int n) {
   }
   return d == 0 || (d == 1 && from == Coarsened::folded) ? Tap{d, 2} : Tap{0, 0};
 }
-/// Of a fine node i, the coarser level's nodes d = 0, 1.
-PBF_HD Tap coarser_node(Coarsened from, int i, int d) {
-  if (from != Coarsened::halved) return {0, d == 0 ? 2 : 0};
-  if (i % 2 == 0) return {i / 2, d == 0 ? 2 : 0};
-  return {i / 2 + d, 1};
-}
-
 /// f(node, weight in eighths) for the nodes of `fine` under node `at` of `level`: every of-th of
 /// them, from the lane-th on.
 template <class F>
@@ -90,19 +83,6 @@ PBF_HD void for_finer_nodes(const LevelShape& fine, const LevelShape& level, Gri
     if (eighths > 0) f(fine.at(x.node, y.node, z.node), eighths);
   }
 }
-/// f(node, weight in eighths) for the nodes of `coarse` around node `at` of the finer level.
-template <class F>
-PBF_HD void for_coarser_nodes(const LevelShape& coarse, GridPlace at, F&& f) {
-  Tap tap[3][2];
-  for (int k = 0; k < 3; ++k)
-    for (int d = 0; d < 2; ++d) tap[k][d] = coarser_node(coarse.from[k], at[k], d);
-  for (int n = 0; n < 8; ++n) {
-    const Tap x = tap[0][n & 1], y = tap[1][n >> 1 & 1], z = tap[2][n >> 2];
-    const int eighths = x.halves * y.halves * z.halves;
-    if (eighths > 0) f(coarse.at(x.node, y.node, z.node), eighths);
-  }
-}
-
 /// Sums over cells and nodes are whole numbers, so that no order of summation shows: of clipped C
 /// in these units, of particles in the other. 2^33 particles fit.
 inline constexpr double kExcessUnit = 1.0 / (1 << 30), kCountUnit = 1.0 / (1 << 20);

@@ -50,7 +50,7 @@ struct LevelHomePass {
   int* home;                   ///< out; -1: in no cell
   int* count;                  ///< out, of each cell
 
-  static constexpr int lanes = 16;
+  static constexpr int lanes = 8;
   using Part = int;
   PBF_HD Part part(int c, int lane, int of) const {
     int inside = 0;
@@ -106,7 +106,7 @@ struct LevelNodePass {
   const int* count;
   LevelNodes<Real> node;  ///< out
 
-  static constexpr int lanes = 8;
+  static constexpr int lanes = 2;
   using Part = LevelPart;
   PBF_HD Part part(int n, int lane, int of) const {
     Part sum;
@@ -138,7 +138,7 @@ struct LevelCoarserPass {
   double stiffness;
   LevelNodes<Real> node;  ///< in: fine; out: level
 
-  static constexpr int lanes = 32;
+  static constexpr int lanes = 8;
   using Part = LevelPart;
   PBF_HD Part part(int n, int lane, int of) const {
     Part sum;
@@ -209,7 +209,7 @@ struct LevelNodeChain : LevelSteps {
   }
   PBF_HD LevelWallsPass<Real> walls(int k) const { return {all.level[k], coarser_than(k), node}; }
 
-  static constexpr int lanes = LevelCoarserPass<Real>::lanes;
+  static constexpr int lanes = 32;
   using Part = LevelPart;
   PBF_HD Part part(int step, int n, int lane, int of) const {
     return coarser(level_of(step)).part(n, lane, of);

@@ -20,7 +20,7 @@ struct LevelSumPass {
   const Real* density;
   std::int64_t* cell;  ///< out, in kExcessUnit
 
-  static constexpr int lanes = 16;
+  static constexpr int lanes = 4;
   using Part = std::int64_t;
   PBF_HD Part part(int c, int lane, int of) const {
     Part sum = 0;
@@ -42,6 +42,12 @@ struct LevelSumPass {
   }
 };
 
+/// A multiplier that only pushes.
+template <class Real>
+PBF_HD Real level_multiplier(Real answer, std::int64_t sum) {
+  return sum > 0 ? answer * Real(sum) : Real(0);
+}
+
 /// The sums around the nodes of level 0 that are on.
 template <class Real>
 struct LevelNodeSumPass {
@@ -51,25 +57,23 @@ struct LevelNodeSumPass {
   const std::int64_t* cell;
   std::int64_t* sum;  ///< out
 
-  static constexpr int lanes = 8;
-  using Part = std::int64_t;
-  PBF_HD Part part(int n, int lane, int of) const {
-    Part s = 0;
+  PBF_HD void operator()(int n) const {
+    std::int64_t s = 0;
     if (answer[n] != Real(0))
-      for_cells_around(grid, level.place(n), lane, of, [&](int c, int, int, int) { s += cell[c]; });
-    return s;
+      for_cells_around(grid, level.place(n), 0, 1, [&](int c, int, int, int) { s += cell[c]; });
+    sum[n] = s;
   }
-  PBF_HD void finish(int n, Part s) const { sum[n] = s; }
 };
 
-/// The same of a coarser level.
+/// The same of a coarser level, and the multipliers that follow from it alone.
 template <class Real>
 struct LevelCoarserSumPass {
   LevelShape fine, level;
   const Real* answer;
   std::int64_t* sum;  ///< in: fine; out: level
+  Real* multiplier;   ///< out, h^2
 
-  static constexpr int lanes = 32;
+  static constexpr int lanes = 8;
   using Part = std::int64_t;
   PBF_HD Part part(int n, int lane, int of) const {
     Part eight = 0;
@@ -78,44 +82,27 @@ struct LevelCoarserSumPass {
                       [&](int finer, int eighths) { eight += eighths * sum[finer]; });
     return eight;
   }
-  PBF_HD void finish(int n, Part eight) const { sum[level.first + n] = eight >> 3; }
-};
-
-/// The multiplier of a node: its own, and what the coarser level says there.
-template <class Real>
-struct LevelMultiplierPass {
-  LevelShape level, coarse;
-  bool coarsest;
-  const Real* answer;
-  const std::int64_t* sum;
-  Real* multiplier;  ///< in: coarse; out: level, h^2
-
-  PBF_HD void operator()(int n) const {
-    const std::int64_t s = sum[level.first + n];
-    Real k = s > 0 ? answer[level.first + n] * Real(s) : Real(0);
-    if (!coarsest)
-      for_coarser_nodes(coarse, level.place(n), [&](int coarser, int eighths) {
-        k += Real(eighths) * Real(0.125) * multiplier[coarser];
-      });
-    multiplier[level.first + n] = k;
+  PBF_HD void finish(int n, Part eight) const {
+    const int at = level.first + n;
+    const std::int64_t s = eight >> 3;
+    sum[at] = s;
+    multiplier[at] = level_multiplier(answer[at], s);
   }
 };
 
-/// The sums of the levels that are small, then their multipliers.
+/// Levels that are small, one after the other.
 template <class Real>
-struct LevelChain : LevelSteps {
+struct LevelSumChain : LevelSteps {
   const Real* answer;
   std::int64_t* sum;
   Real* multiplier;
 
   PBF_HD LevelCoarserSumPass<Real> coarser(int k) const {
-    return {all.level[k - 1], all.level[k], answer, sum};
-  }
-  PBF_HD LevelMultiplierPass<Real> up(int k) const {
-    return {all.level[k], coarser_than(k), k + 1 == all.count, answer, sum, multiplier};
+    return {all.level[k - 1], all.level[k], answer, sum, multiplier};
   }
 
-  static constexpr int lanes = LevelCoarserSumPass<Real>::lanes;
+  PBF_HD int steps() const { return down(); }
+  static constexpr int lanes = 32;
   using Part = std::int64_t;
   PBF_HD Part part(int step, int n, int lane, int of) const {
     return coarser(level_of(step)).part(n, lane, of);
@@ -123,7 +110,45 @@ struct LevelChain : LevelSteps {
   PBF_HD void finish(int step, int n, Part eight) const {
     coarser(level_of(step)).finish(n, eight);
   }
-  PBF_HD void operator()(int step, int n) const { up(level_of(step))(n); }
+  PBF_HD void operator()(int, int) const {}
+};
+
+/// The multiplier of a node of level 0: its own, and what every coarser level says there.
+template <class Real>
+struct LevelMultiplierPass {
+  LevelHierarchy all;
+  const Real* answer;
+  const std::int64_t* sum;
+  Real* multiplier;  ///< in: of the coarser levels; out: of level 0, h^2
+
+  PBF_HD void operator()(int n) const {
+    Real k = level_multiplier(answer[n], sum[n]);
+    if (answer[n] != Real(0))  // off: beyond the hats of all levels
+      for (int l = 1; l < all.count; ++l) k += interpolated(l, all.level[0].place(n));
+    multiplier[n] = k;
+  }
+
+ private:
+  /// Linearly between the nodes of level l, where the node `at` of level 0 is.
+  PBF_HD Real interpolated(int l, GridPlace at) const {
+    const LevelShape& level = all.level[l];
+    int low[3];
+    Real share[3];  // of the node behind
+    for (int k = 0; k < 3; ++k) {
+      const bool one = level.nodes[k] == 1;
+      low[k] = one ? 0 : at[k] >> l;
+      share[k] = one ? Real(0) : Real(at[k] - (low[k] << l)) / Real(1 << l);
+    }
+    Real k(0);
+    for (int m = 0; m < 8; ++m) {
+      Real weight(1);
+      for (int a = 0; a < 3; ++a) weight *= m >> a & 1 ? share[a] : Real(1) - share[a];
+      if (weight != Real(0))
+        k += weight *
+             multiplier[level.at(low[0] + (m & 1), low[1] + (m >> 1 & 1), low[2] + (m >> 2))];
+    }
+    return k;
+  }
 };
 
 /// The displacement that the particles of a cell share: -gamma times the gradient of the multiplier

@@ -37,7 +37,7 @@ void with_level_move(C& c, F&& f) {
 
 /// Levels of up to so many nodes are made together, by one block of a device: its launches take
 /// longer than the work.
-inline constexpr int kLevelsTogether = 1024;
+inline constexpr int kLevelsTogether = 64;
 
 inline LevelSteps small_levels(const LevelPlan& l) {
   int first = 1;
@@ -109,9 +109,9 @@ struct LevelMultipliers {
     using Real = typename C::Real;
     const LevelPlan& l = c.levels;
     auto* cell = c.template data<std::int64_t>(field::cell_sum);
-    const LevelChain<Real> chain{small_levels(l), c.template data<Real>(field::node_answer),
-                                 c.template data<std::int64_t>(field::node_sum),
-                                 c.template data<Real>(field::multiplier)};
+    const LevelSumChain<Real> chain{small_levels(l), c.template data<Real>(field::node_answer),
+                                    c.template data<std::int64_t>(field::node_sum),
+                                    c.template data<Real>(field::multiplier)};
     with_dimensions(c.p.dimensions, [&](auto d) {
       constexpr int D = decltype(d)::value;
       c.over(l.grid.size(),
@@ -121,7 +121,8 @@ struct LevelMultipliers {
              LevelNodeSumPass<Real>{l.grid, l.all.level[0], chain.answer, cell, chain.sum});
       for (int k = 1; k < chain.first; ++k) c.over(l.all.level[k].size(), chain.coarser(k));
       if (chain.steps() > 0) c.exec.in_turn(chain);
-      for (int k = chain.first; k-- > 0;) c.over(l.all.level[k].size(), chain.up(k));
+      c.over(l.all.level[0].size(),
+             LevelMultiplierPass<Real>{l.all, chain.answer, chain.sum, chain.multiplier});
       c.over(l.grid.size(),
              LevelMovePass<Real, D>{l.grid, l.all.level[0], Real(l.gamma), chain.multiplier,
                                     c.template data<int>(field::node_walls),
