@@ -15,6 +15,7 @@ struct StudyMember {
   std::string variant;              ///< its name, empty without variants
   std::vector<std::string> values;  ///< of Study::keys, as written
   Scene scene;
+  double energy_limit = 0;  ///< largest energy_rise of a valid run: its variant's or the study's
   /// "consistent solver.iterations=4", for people: the variant, the first key of each grid entry.
   std::string label;
 };
@@ -30,7 +31,7 @@ struct Study {
   std::string error = "compression_mean";    ///< the measure set against the run time
   std::vector<double> targets{0.01, 0.001};  ///< of the error
   double from = 0;                           ///< s, measures before do not count
-  double energy_limit = 0.03;                ///< largest energy_rise of a valid run
+  double energy_limit = 0.01;                ///< of members whose variant has none of its own
   int repeats = 3;                           ///< of the timing, the whole run counts as one
   bool cpu_clock = false;                    ///< seconds are the process's CPU time, not the wall's
   std::vector<double> projection;            ///< s, when the exact projection is compared

@@ -25,6 +25,10 @@ void StudyReader::number(const Node& n, const std::string& key, T low, T high, T
     out = T(v);
 }
 
+void StudyReader::energy_limit(const Node& n, const std::string& key, double& out) {
+  number(n, key, 0., 1e9, out);
+}
+
 void StudyReader::numbers(const Node& n, const std::string& key, double low,
                           std::vector<double>& out) {
   if (n.kind != Kind::list || n.items.empty())
@@ -93,7 +97,7 @@ Study StudyReader::read(const std::vector<std::string>& overrides) {
             {"targets", [&](const Node& n) { numbers(n, "targets", 0, study_.targets); }},
             {"from", [&](const Node& n) { number(n, "from", 0., 1e9, study_.from); }},
             {"energy_limit",
-             [&](const Node& n) { number(n, "energy_limit", 0., 1e9, study_.energy_limit); }},
+             [&](const Node& n) { energy_limit(n, "energy_limit", study_.energy_limit); }},
             {"projection", [&](const Node& n) { numbers(n, "projection", 0, study_.projection); }},
             {"reference",
              [&](const Node& n) {

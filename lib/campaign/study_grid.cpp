@@ -70,9 +70,13 @@ void StudyReader::variants(const Node& n) {
   study_.has_variants = true;
   for (const Node& entry : n.items) {
     GridStep v;
+    std::optional<double>& limit = limits_.emplace_back();
     read_map(entry, "variants",
              {{"name", [&](const Node& at) { text(at, "variants.name", v.name); }},
-              {"set", [&](const Node& at) { v.settings = settings(at, "variants.set"); }}});
+              {"set", [&](const Node& at) { v.settings = settings(at, "variants.set"); }},
+              {"energy_limit", [&](const Node& at) {
+                 energy_limit(at, "variants.energy_limit", limit.emplace());
+               }}});
     if (v.name.empty()) bad(entry, "variants", "has an entry without a name");
     for (const GridStep& other : variants_)
       if (other.name == v.name) bad(entry, "variants", "has two entries named " + v.name);
@@ -94,12 +98,13 @@ void StudyReader::make_members(const Node& scene, const std::vector<std::string>
   Node base = scene;
   for (const auto& [key, value] : base_) set_value(base, key, value, problems_);
   for (const std::string& o : overrides) apply_override(base, o, problems_);
-  if (variants_.empty()) variants_.emplace_back();
+  if (variants_.empty()) variants_.emplace_back(), limits_.emplace_back();
   axes_.insert(axes_.begin(), variants_);
   for (const GridMember& m : grid_members(axes_, kMostMembers, path_ + ": grid")) {
     if (problems_.full()) break;
     StudyMember& made = study_.members.emplace_back(member(base, m.settings));
     made.variant = variants_[m.at[0]].name;
+    made.energy_limit = limits_[m.at[0]].value_or(study_.energy_limit);
     for (std::size_t k = m.settings.size() - study_.keys.size(); k < m.settings.size(); ++k)
       made.values.push_back(setting_text(m.settings[k].second));
     made.label = m.name.empty() ? study_.name : m.name;

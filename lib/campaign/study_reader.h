@@ -1,6 +1,7 @@
 // What reads a study file: study_file.cpp its keys, study_grid.cpp the runs they make.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@ class StudyReader : StrictReader {
  private:
   template <class T>
   void number(const Node& n, const std::string& key, T low, T high, T& out);
+  void energy_limit(const Node& n, const std::string& key, double& out);
   void numbers(const Node& n, const std::string& key, double low, std::vector<double>& out);
   void grid(const Node& n);
   void axis(const Node& n);
@@ -32,6 +34,7 @@ class StudyReader : StrictReader {
   Settings base_, reference_;
   bool has_reference_ = false;
   GridAxis variants_;
+  std::vector<std::optional<double>> limits_;  ///< energy_limit of each variant
   std::vector<GridAxis> axes_;
 };
 

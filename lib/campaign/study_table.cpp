@@ -144,10 +144,10 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
       row.measures.push_back(front_deviation(row.front[0], d));
   }
   const double rise = measure_of(study, row, "energy_rise");
-  if (row.status == "finished" && !(rise <= study.energy_limit)) {
+  if (row.status == "finished" && !(rise <= member.energy_limit)) {
     row.status = "energy_rose";
     row.message = format("by %.2g %% of its start, the limit is %.2g %%", 100 * rise,
-                         100 * study.energy_limit);
+                         100 * member.energy_limit);
   }
   return row;
 }

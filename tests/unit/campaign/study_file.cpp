@@ -31,6 +31,22 @@ TEST_CASE("a study makes every combination of its grid for every variant") {
   CHECK(s.members[10].values == std::vector<std::string>{"4", "0.001", "10"});
 }
 
+TEST_CASE("the energy of a run may rise by 1 %, or by what the study or its variant says") {
+  const StudyFolder folder;
+  const auto limits = [&](const std::string& text) {
+    std::vector<double> of;
+    for (const StudyMember& m : folder.study(text).members) of.push_back(m.energy_limit);
+    return of;
+  };
+  CHECK(limits("") == std::vector<double>{0.01});
+  CHECK(limits("energy_limit: 0.2\n") == std::vector<double>{0.2});
+  const std::string variants =
+      "variants:\n  - {name: a}\n  - {name: b, energy_limit: 0.03}\n"
+      "  - {name: c, energy_limit: 0}\ngrid: {solver.iterations: [1, 2]}\n";
+  CHECK(limits(variants) == std::vector<double>{0.01, 0.01, 0.03, 0.03, 0, 0});
+  CHECK(limits(variants + "energy_limit: 2\n") == std::vector<double>{2, 2, 0.03, 0.03, 0, 0});
+}
+
 TEST_CASE("a block as grid varies every key by itself, and --set comes before variants and grid") {
   const StudyFolder folder;
   const std::string path = folder.write(
@@ -81,6 +97,11 @@ TEST_CASE("what is wrong with a study is said with file, line and column, all at
       {"variants:\n  - {set: {}}", "without a name"},
       {"variants:\n  - {name: a}\n  - {name: a}", "two entries named a"},
       {"variants:\n  - {nme: a}", "variants.nme: unknown key, did you mean name?"},
+      {"variants:\n  - {name: a, energy_limit: 3 %}",
+       ":3:29: variants.energy_limit: \"3 %\" is not a number"},
+      {"variants:\n  - {name: a, energy_limit: -1}",
+       "variants.energy_limit: \"-1\" is out of range, 0 .. "},
+      {"energy_limit: [0.01]", ":2:15: energy_limit: a list of 1"},
       {"clock: sun", "clock: is \"sun\", expected wall or cpu"},
       {"clock: cpu\nset: {backend: cuda}", ":2:8: clock: cpu does not count the time of a GPU"},
       {"repeats: 0", "repeats: \"0\" is out of range, 1 .. 1000"},

@@ -70,6 +70,22 @@ TEST_CASE("a run that made energy, diverged or never ran is neither on the front
   CHECK(study_json(study, rows).find("\"seconds\": 4") != std::string::npos);
 }
 
+TEST_CASE("every variant is judged by its own limit on the energy, which its message names") {
+  const StudyFolder folder;
+  const Study study =
+      folder.study("variants:\n  - {name: ours}\n  - {name: paper, energy_limit: 0.03}\n");
+  const auto row = [&](std::size_t member, double rise) {
+    MemberResult r = result_of(1, {0, 0.04});
+    set(r, "energy_rise", {0, rise});
+    return study_row(study, study.members[member], r, nullptr);
+  };
+  CHECK(row(0, 0.01).status == "finished");
+  CHECK(row(0, 0.011).message == "by 1.1 % of its start, the limit is 1 %");
+  CHECK(row(1, 0.03).status == "finished");
+  CHECK(row(1, 0.031).message == "by 3.1 % of its start, the limit is 3 %");
+  CHECK(row(1, NAN).status == "energy_rose");
+}
+
 TEST_CASE("variants are compared with the first one that gets there") {
   const StudyFolder folder;
   const Study study = folder.study("variants:\n  - {name: a}\n  - {name: b}\n  - {name: c}\n");
