@@ -146,7 +146,7 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
   const double rise = measure_of(study, row, "energy_rise");
   if (row.status == "finished" && !(rise <= member.energy_limit)) {
     row.status = "energy_rose";
-    row.message = format("by %.2g %% of its start, the limit is %.2g %%", 100 * rise,
+    row.message = format("by %.3g %% of its start, the limit is %.3g %%", 100 * rise,
                          100 * member.energy_limit);
   }
   return row;

@@ -1,6 +1,7 @@
 """The plots: their numbers against computations apart, their pictures' existence, bad input."""
 
 import csv
+import re
 
 import numpy as np
 import pytest
@@ -107,6 +108,32 @@ def test_a_study_is_drawn_with_the_front_given_or_computed(tools, tmp_path):
         assert len(front) == 4 and all("stored" in line for line in front)
     code, _, err = tools("plot-study", table, "--y", "drift", "-o", tmp_path / "b.png")
     assert code == 2 and "no column drift" in err
+
+
+def test_panels_show_every_table_by_itself_with_one_look_per_series(tools, tmp_path):
+    one, two = study(tmp_path / "one.csv", False), tmp_path / "two.csv"
+    lines = one.read_text().splitlines()
+    two.write_text("\n".join([lines[0]] + lines[5:9]) + "\n")  # the second series alone
+    call = ("plot-study", one, two, "--series", "method", "-o", tmp_path / "a.svg")
+    code, out, _ = tools(*call, "--panels", "shallow", "deep", "--goal", "1:2", "0.5:3")
+    assert code == 0
+    front = [line for line in out.splitlines() if " s  compression_mean" in line]
+    assert len(front) == 8 and front[:4] == front[4:] and all("stored" in line for line in front)
+    panels = (tmp_path / "a.svg").read_text().split('id="axes_')[1:]
+    left, right = (set(re.findall(r'<use [^>]*y="([\d.]+)" style="fill: (#\w+)', p)) for p in panels)
+    heights = {y for y, _ in left}
+    assert len({color for _, color in left} - {"#ffffff"}) == 2
+    assert {color for y, color in right if y in heights} == {style.COLORS[1].lower()}
+    assert len([line for line in tools(*call)[1].splitlines() if "stored" in line]) == 4
+    for words, said in ((("--panels", "one"), "1 names for 2 tables"),
+                        (("--panels", "a", "b", "--goal", "1:2"), "1 goals for 2 panels"),
+                        (("--goal", "1"), "'1' is not TIME:ERROR"),
+                        (("--goal", "0:1"), "shows what is above 0")):
+        code, _, err = tools(*call, *words)
+        assert code == 2 and said in err
+    two.write_text(lines[0] + "\n1,stored,cpu,float,2,4000,0,0,0,0\n")
+    code, _, err = tools(*call, "--panels", "shallow", "deep")
+    assert code == 2 and "two.csv: no row that finished" in err
 
 
 def stability_map(path, change=lambda row: row):

@@ -2,7 +2,8 @@
 
 One curve per series (method, backend, precision) through its best settings, the other settings as
 faint points; the settings that no other beats in both time and error, the Pareto front, are joined
-by a thick grey line. Bars show the spread of the repeats.
+by a thick grey line. Bars show the spread of the repeats. With --panels every table gets axes of
+its own, on the same scales.
 """
 
 from __future__ import annotations
@@ -18,6 +19,9 @@ from .table import Table, need, read_csvs
 
 EXAMPLE = """example:
   python -m pbf_tools plot-study study.csv --y compression_mean -o study.png"""
+
+
+PANEL = " panel"  # a column that no table has: which CSV, counted from 0, a row is drawn with
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,7 +40,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                              "from --x and --y when not there, or with --pareto compute")
     parser.add_argument("--percent", action=argparse.BooleanOptionalAction, default=None,
                         help="draw the error in percent (default: for compression columns)")
+    parser.add_argument("--panels", nargs="+", metavar="NAME", default=[],
+                        help="draw every CSV in a panel of its own; a name for each")
+    parser.add_argument("--goal", nargs="+", metavar="TIME:ERROR", type=_goal, default=[],
+                        help="mark this time and error with a star; one for each panel, error in "
+                             "the unit of the axis")
     style.add_output(parser, "study.png")
+
+
+def _goal(text: str) -> tuple[float, float]:
+    """
+    >>> _goal("0.2:0.1")
+    (0.2, 0.1)
+    """
+    try:
+        time, error = (float(part) for part in text.split(":"))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not TIME:ERROR, such as 0.2:0.1") from None
+    if not (0 < time < np.inf and 0 < error < np.inf):
+        raise argparse.ArgumentTypeError(f"{text!r}: a logarithmic axis shows what is above 0")
+    return time, error
 
 
 def front(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -53,11 +76,49 @@ def front(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def run(args: argparse.Namespace) -> int:
+    titles = args.panels or [""]
+    if args.panels and len(args.panels) != len(args.csv):
+        raise BadInput(f"--panels: {len(args.panels)} names for {len(args.csv)} tables; give one "
+                       "for each")
+    if args.goal and len(args.goal) != len(titles):
+        raise BadInput(f"--goal: {len(args.goal)} goals for {len(titles)} panels; give one for each")
+    whole = _rows(args)
+    percent = args.y.startswith("compression") if args.percent is None else args.percent
+    keys = [c for c in args.series.split(",") if c in whole.columns]
+    names = np.array([", ".join(_text(whole[c][i]) for c in keys) for i in range(len(whole))])
+    looks = _looks(whole, keys, names)
+    fig, grid = style.figure(1, len(titles), size=(2.8 + 4.2 * len(titles), 4.8), sharey=True)
+    lines = []
+    for k, (axes, title) in enumerate(zip(grid[0], titles)):
+        own = whole[PANEL] == k
+        if not own.any():
+            raise BadInput(f"{args.csv[k]}: no row that finished has both {args.x} and {args.y}")
+        lines += _panel(axes, args, whole.where(own), percent, names[own], looks)
+        if args.goal:
+            axes.plot(*args.goal[k], "*", markersize=15, markerfacecolor="white", zorder=5,
+                      markeredgecolor="black", linestyle="", label="goal")
+        axes.set(xscale="log", yscale="log", xlabel=_label(args.x, "s"),
+                 ylabel="" if k else _label(args.y, "%" if percent else "1"))
+        style.title(axes, title or args.title or "Error against run time",
+                    _detail(whole.where(own)))
+    style.side_legend(grid[0][-1])
+    if args.panels and args.title:
+        fig.suptitle(args.title)
+    style.save(fig, args)
+    print("\n".join(lines))
+    return 0
+
+
+def _rows(args: argparse.Namespace) -> Table:
+    """The rows that can be drawn, each with its panel; what is left out is said on stderr."""
     table = read_csvs(args.csv)
     need(table, [args.x, args.y], ", ".join(args.csv))
     for name in (args.x, args.y):
         if table[name].dtype.kind != "f":
             raise BadInput(f"column {name} is not one of numbers")
+    lengths = [len(read_csvs([path])) for path in args.csv]
+    panel = np.repeat(np.arange(len(lengths)) * bool(args.panels), lengths)
+    table = Table({**table.columns, PANEL: panel})
     good = np.isfinite(table[args.x]) & (table[args.x] > 0) & (table[args.y] > 0) \
         & np.isfinite(table[args.y])
     if not good.any():
@@ -71,29 +132,23 @@ def run(args: argparse.Namespace) -> int:
         print(f"left out: {np.count_nonzero(status != 'finished')} rows that did not finish or made "
               "energy", file=sys.stderr)
         table = table.where(status == "finished")
-    percent = args.y.startswith("compression") if args.percent is None else args.percent
+    return table
+
+
+def _panel(axes, args: argparse.Namespace, table: Table, percent: bool, names: np.ndarray,
+           looks: dict[str, tuple[dict[str, object], str]]) -> list[str]:
+    """Draws a table; the settings on its front, one line of text each."""
     x, y = table[args.x], table[args.y] * (100 if percent else 1)
     spread = table.columns.get(args.x_spread)
-    keys = [c for c in args.series.split(",") if c in table.columns]
-    names = np.array([", ".join(_text(table[c][i]) for c in keys) for i in range(len(table))])
-
-    fig, ((axes,),) = style.figure(size=(7, 4.8))
     best = _pareto(table, args.pareto, x, y)
     at = np.flatnonzero(best)[np.argsort(x[best])]
     axes.plot(x[at], y[at], color="#BBBBBB", linewidth=7, solid_capstyle="round", zorder=1,
               label="Pareto front")
-    for name, (look, line) in _looks(table, keys, names).items():
+    for name, (look, line) in looks.items():
         _series(axes, x, y, spread, np.flatnonzero(names == name), name, look, line)
     axes.plot(x[at], y[at], "o", markersize=11, markerfacecolor="none", markeredgecolor="black",
               markeredgewidth=0.9, zorder=4)
-    axes.set(xscale="log", yscale="log", xlabel=_label(args.x, "s"),
-             ylabel=_label(args.y, "%" if percent else "1"))
-    style.side_legend(axes)
-    style.title(axes, args.title or "Error against run time", _detail(table))
-    style.save(fig, args)
-    for i in at:
-        print(f"{x[i]:10.4g} s  {args.y} {y[i]:.3g}{' %' if percent else ''}  {names[i]}")
-    return 0
+    return [f"{x[i]:10.4g} s  {args.y} {y[i]:.3g}{' %' if percent else ''}  {names[i]}" for i in at]
 
 
 def _looks(table: Table, keys: list[str],

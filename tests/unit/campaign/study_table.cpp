@@ -80,7 +80,7 @@ TEST_CASE("every variant is judged by its own limit on the energy, which its mes
     return study_row(study, study.members[member], r, nullptr);
   };
   CHECK(row(0, 0.01).status == "finished");
-  CHECK(row(0, 0.011).message == "by 1.1 % of its start, the limit is 1 %");
+  CHECK(row(0, 0.0104).message == "by 1.04 % of its start, the limit is 1 %");
   CHECK(row(1, 0.03).status == "finished");
   CHECK(row(1, 0.031).message == "by 3.1 % of its start, the limit is 3 %");
   CHECK(row(1, NAN).status == "energy_rose");
