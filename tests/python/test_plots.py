@@ -110,7 +110,7 @@ def test_a_study_is_drawn_with_the_front_given_or_computed(tools, tmp_path):
     assert code == 2 and "no column drift" in err
 
 
-def test_panels_show_every_table_by_itself_with_one_look_per_series(tools, tmp_path):
+def test_panels_show_the_tables_of_one_name_and_a_series_looks_the_same_in_all(tools, tmp_path):
     one, two = study(tmp_path / "one.csv", False), tmp_path / "two.csv"
     lines = one.read_text().splitlines()
     two.write_text("\n".join([lines[0]] + lines[5:9]) + "\n")  # the second series alone
@@ -124,7 +124,9 @@ def test_panels_show_every_table_by_itself_with_one_look_per_series(tools, tmp_p
     heights = {y for y, _ in left}
     assert len({color for _, color in left} - {"#ffffff"}) == 2
     assert {color for y, color in right if y in heights} == {style.COLORS[1].lower()}
-    assert len([line for line in tools(*call)[1].splitlines() if "stored" in line]) == 4
+    together = tools(*call)[1]
+    assert len([line for line in together.splitlines() if "stored" in line]) == 4
+    assert tools(*call, "--panels", "same", "same")[1] == together
     for words, said in ((("--panels", "one"), "1 names for 2 tables"),
                         (("--panels", "a", "b", "--goal", "1:2"), "1 goals for 2 panels"),
                         (("--goal", "1"), "'1' is not TIME:ERROR"),
@@ -133,7 +135,7 @@ def test_panels_show_every_table_by_itself_with_one_look_per_series(tools, tmp_p
         assert code == 2 and said in err
     two.write_text(lines[0] + "\n1,stored,cpu,float,2,4000,0,0,0,0\n")
     code, _, err = tools(*call, "--panels", "shallow", "deep")
-    assert code == 2 and "two.csv: no row that finished" in err
+    assert code == 2 and "panel deep: no row that finished" in err
 
 
 def stability_map(path, change=lambda row: row):

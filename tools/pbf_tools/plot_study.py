@@ -2,8 +2,8 @@
 
 One curve per series (method, backend, precision) through its best settings, the other settings as
 faint points; the settings that no other beats in both time and error, the Pareto front, are joined
-by a thick grey line. Bars show the spread of the repeats. With --panels every table gets axes of
-its own, on the same scales.
+by a thick grey line. Bars show the spread of the repeats. With --panels
+tables get axes of their own, on the same scales.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ EXAMPLE = """example:
   python -m pbf_tools plot-study study.csv --y compression_mean -o study.png"""
 
 
-PANEL = " panel"  # a column that no table has: which CSV, counted from 0, a row is drawn with
+PANEL = " panel"  # a column that no table has: which panel, counted from 0, shows a row
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--percent", action=argparse.BooleanOptionalAction, default=None,
                         help="draw the error in percent (default: for compression columns)")
     parser.add_argument("--panels", nargs="+", metavar="NAME", default=[],
-                        help="draw every CSV in a panel of its own; a name for each")
+                        help="a name for each CSV: those of one name are drawn in one panel")
     parser.add_argument("--goal", nargs="+", metavar="TIME:ERROR", type=_goal, default=[],
                         help="mark this time and error with a star; one for each panel, error in "
                              "the unit of the axis")
@@ -76,7 +76,7 @@ def front(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def run(args: argparse.Namespace) -> int:
-    titles = args.panels or [""]
+    titles = list(dict.fromkeys(args.panels)) or [""]
     if args.panels and len(args.panels) != len(args.csv):
         raise BadInput(f"--panels: {len(args.panels)} names for {len(args.csv)} tables; give one "
                        "for each")
@@ -92,7 +92,7 @@ def run(args: argparse.Namespace) -> int:
     for k, (axes, title) in enumerate(zip(grid[0], titles)):
         own = whole[PANEL] == k
         if not own.any():
-            raise BadInput(f"{args.csv[k]}: no row that finished has both {args.x} and {args.y}")
+            raise BadInput(f"panel {title}: no row that finished has both {args.x} and {args.y}")
         lines += _panel(axes, args, whole.where(own), percent, names[own], looks)
         if args.goal:
             axes.plot(*args.goal[k], "*", markersize=15, markerfacecolor="white", zorder=5,
@@ -116,8 +116,9 @@ def _rows(args: argparse.Namespace) -> Table:
     for name in (args.x, args.y):
         if table[name].dtype.kind != "f":
             raise BadInput(f"column {name} is not one of numbers")
-    lengths = [len(read_csvs([path])) for path in args.csv]
-    panel = np.repeat(np.arange(len(lengths)) * bool(args.panels), lengths)
+    titles = list(dict.fromkeys(args.panels))
+    panel = np.repeat([titles.index(name) for name in args.panels] or [0] * len(args.csv),
+                      [len(read_csvs([path])) for path in args.csv])
     table = Table({**table.columns, PANEL: panel})
     good = np.isfinite(table[args.x]) & (table[args.x] > 0) & (table[args.y] > 0) \
         & np.isfinite(table[args.y])
