@@ -95,7 +95,7 @@ def run(args: argparse.Namespace) -> int:
             raise BadInput(f"panel {title}: no row that finished has both {args.x} and {args.y}")
         lines += _panel(axes, args, whole.where(own), percent, names[own], looks)
         if args.goal:
-            axes.plot(*args.goal[k], "*", markersize=15, markerfacecolor="white", zorder=5,
+            axes.plot(*args.goal[k], "*", markersize=15, markerfacecolor="white", zorder=1.5,
                       markeredgecolor="black", linestyle="", label="goal")
         axes.set(xscale="log", yscale="log", xlabel=_label(args.x, "s"),
                  ylabel="" if k else _label(args.y, "%" if percent else "1"))
