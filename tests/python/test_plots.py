@@ -120,7 +120,8 @@ def test_panels_show_the_tables_of_one_name_and_a_series_looks_the_same_in_all(t
     front = [line for line in out.splitlines() if " s  compression_mean" in line]
     assert len(front) == 8 and front[:4] == front[4:] and all("stored" in line for line in front)
     panels = (tmp_path / "a.svg").read_text().split('id="axes_')[1:]
-    left, right = (set(re.findall(r'<use [^>]*y="([\d.]+)" style="fill: (#\w+)', p)) for p in panels)
+    mark = re.compile(r'<use [^>]*y="([\d.]+)" style="fill: (#\w+)')
+    left, right = (set(mark.findall(panel)) for panel in panels)
     heights = {y for y, _ in left}
     assert len({color for _, color in left} - {"#ffffff"}) == 2
     assert {color for y, color in right if y in heights} == {style.COLORS[1].lower()}

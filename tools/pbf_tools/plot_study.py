@@ -2,8 +2,8 @@
 
 One curve per series (method, backend, precision) through its best settings, the other settings as
 faint points; the settings that no other beats in both time and error, the Pareto front, are joined
-by a thick grey line. Bars show the spread of the repeats. With --panels
-tables get axes of their own, on the same scales.
+by a thick grey line. Bars show the spread of the repeats. With --panels, tables of different names
+are drawn beside each other, on the same scale of errors.
 """
 
 from __future__ import annotations
@@ -81,7 +81,8 @@ def run(args: argparse.Namespace) -> int:
         raise BadInput(f"--panels: {len(args.panels)} names for {len(args.csv)} tables; give one "
                        "for each")
     if args.goal and len(args.goal) != len(titles):
-        raise BadInput(f"--goal: {len(args.goal)} goals for {len(titles)} panels; give one for each")
+        raise BadInput(f"--goal: {len(args.goal)} goals for {len(titles)} panels; give one for "
+                       "each")
     whole = _rows(args)
     percent = args.y.startswith("compression") if args.percent is None else args.percent
     keys = [c for c in args.series.split(",") if c in whole.columns]
