@@ -32,6 +32,8 @@ struct TraceArray {
   std::string unit;      ///< of the internal frame
   int components = 1;    ///< scalars per row
   std::vector<double> values;
+  /// By the pass that made it, for the next array: values that take its place come too late there.
+  bool used_at_once = false;
 };
 
 /// One update, pass by pass. A density that the lambda pass sums in its own loop stands under

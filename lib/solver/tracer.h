@@ -126,7 +126,8 @@ class Tracer {
     for (std::size_t k = 0; k < named.size(); ++k)
       if (named[k] >= 0) v[k] = all[std::size_t(named[k])];
     id_ = host(w.before_sort ? c_.template other_data<int>(field::id) : c_.ids());
-    trace_.arrays.push_back({stage_, iteration_, w.quantity, w.unit, components, {}});
+    trace_.arrays.push_back(
+        {stage_, iteration_, w.quantity, w.unit, components, {}, w.stage != nullptr});
     TraceArray& to = trace_.arrays.back();
     to.values.resize(n_ * std::size_t(components));
     const TraceArray* follow = followed(to);

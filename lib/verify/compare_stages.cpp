@@ -1,5 +1,6 @@
 // One frozen step: two solvers, one state, one update, every array that the passes leave behind.
-// Each stage of B starts from what the stage before left on A, so that no error is inherited.
+// Each stage of B starts from what the stage before left on A, so that no error is inherited. Where
+// one pass is two stages, what the second inherits is taken out of it.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -62,6 +63,28 @@ std::vector<double> noise_floor(const Comparison& c, const SolverState& start, c
   return noise;
 }
 
+/// A pass of B that makes an array and uses it at once, as a fused one the density, has not started
+/// from A's: what it makes of the difference says nothing of its second half, and lambda, of
+/// density
+/// - 1, shows it undiminished. Takes out of `b` what the reference makes of that difference.
+/// reference: of the values of `a`.
+void take_out_inherited(const Comparison& c, const SolverState& start, const StepTrace& a,
+                        const StepTrace& reference, StepTrace& b) {
+  StepTrace mixed = a;
+  std::vector<std::size_t> heirs;
+  for (std::size_t k = 0; k + 1 < std::min(a.arrays.size(), b.arrays.size()); ++k) {
+    if (!b.arrays[k].used_at_once || !same_kind(a.arrays[k], b.arrays[k])) continue;
+    mixed.arrays[k].values = b.arrays[k].values;
+    heirs.push_back(k + 1);
+  }
+  if (heirs.empty()) return;
+  c.reference->set_state(start);
+  const StepTrace own = c.reference->inspection()->trace({0, 1, &mixed});
+  for (const std::size_t k : heirs)
+    for (std::size_t i = 0; i < b.arrays[k].values.size(); ++i)
+      b.arrays[k].values[i] -= own.arrays[k].values[i] - reference.arrays[k].values[i];
+}
+
 /// Bins may differ where a coordinate is within rounding of a border: borders lie half a cell apart
 /// along every axis that has bins. The largest distance from a border of a particle whose bins
 /// differ.
@@ -119,10 +142,14 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
   part.name = "frozen step";
   c.a->set_state(start);
   c.b->set_state(start);
-  const StepTrace a = c.a->inspection()->trace(), b = c.b->inspection()->trace({0, 1, &a});
+  const StepTrace a = c.a->inspection()->trace();
+  StepTrace b = c.b->inspection()->trace({0, 1, &a});
   StepTrace reference;
   std::vector<double> noise;
-  if (!c.same_bits) noise = noise_floor(c, start, a, reference);
+  if (!c.same_bits) {
+    noise = noise_floor(c, start, a, reference);
+    take_out_inherited(c, start, a, reference, b);
+  }
   part.tolerance_source =
       c.same_bits
           ? std::string("0: both sides promise the same bits")
