@@ -1,4 +1,5 @@
-# Whether every text of table.cmake still stands exactly once in its file: cmake -P check.cmake
+# Whether every text of table.cmake still stands exactly once in its file, and every scene is there:
+# cmake -P check.cmake
 set(root ${CMAKE_CURRENT_LIST_DIR}/../../..)
 include(${CMAKE_CURRENT_LIST_DIR}/stands_once.cmake)
 set(count 0)
@@ -9,6 +10,9 @@ function(seeded_defect name stage file old new)
   stands_once("${text}" "${old}" once)
   if(NOT once)
     message(SEND_ERROR "${name}: its text must stand in ${file} exactly once:\n${old}")
+  endif()
+  if(ARGC GREATER 5 AND NOT EXISTS ${CMAKE_CURRENT_LIST_DIR}/${ARGV5}.yaml)
+    message(SEND_ERROR "${name}: there is no ${CMAKE_CURRENT_LIST_DIR}/${ARGV5}.yaml")
   endif()
 endfunction()
 include(${CMAKE_CURRENT_LIST_DIR}/table.cmake)
