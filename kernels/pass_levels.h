@@ -8,7 +8,7 @@ namespace pbf::inline PBF_VARIANT {
 
 /// C counts up to here in the mean of a cell: else a few particles in one place would push all
 /// those around them.
-inline constexpr double kLevelClip = 0.1;
+inline constexpr double kLevelClip = 0.05;
 
 /// Sums of C, signed and clipped, over the cells.
 template <class Real, int D>

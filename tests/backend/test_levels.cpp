@@ -165,7 +165,7 @@ TEST_CASE("levels keep the momentum of fluid that no wall holds, to rounding") {
     CHECK(std::fabs(after.momentum[k] - before.momentum[k]) < all * (is_double() ? 1e-13 : 1e-6));
 }
 
-TEST_CASE("levels count a crowd as compressed by a tenth, as the brute-force oracle does") {
+TEST_CASE("levels count a crowd as compressed by a twentieth, as the brute-force oracle does") {
   Case c = in_box(jittered_block(8, 7, 30, 0.05, 0, 3, 0.9), {7.2, 6.3, 27.4});
   c.scene.solver.iterations = 1;
   check_against_oracle(c);

@@ -108,7 +108,7 @@ std::vector<Sums> finest(const std::array<Axis, 3>& axes, const std::vector<Node
         for (std::size_t i = 0; i < home.size(); ++i) {
           if (home[i] != cell) continue;
           s.particles += 1;
-          s.excess += std::min<Real>(ratio[i] - 1, 0.1L);
+          s.excess += std::min<Real>(ratio[i] - 1, 0.05L);
         }
         const Real full = full_cell(axes, cell, c);
         found.closest = std::min(found.closest, std::fabs(s.particles - full / 2));

@@ -83,47 +83,47 @@ seeded_defect(one_iteration_less iterations lib/solver/stepper.h
   [[for (int k = 0; k < s.times; ++k) {]] [[for (int k = 0; k + 1 < s.times; ++k) {]])
 
 # levels, in the scene levels.yaml
-seeded_defect(level_cell_of_next_row levels kernels/pass_levels.h
-  [[home[i] = in ? n / kRowsPerCell<D> : -1;]]
-  [[home[i] = in ? (n + 1) / kRowsPerCell<D> : -1;]] levels)
-seeded_defect(level_last_row_left_out levels kernels/pass_levels.h
-  [[to = !second ? from + 1 : at + 1 < cells ? from + 1 : of;]]
-  [[to = from + 1 < of ? from + 1 : of;]] levels)
-seeded_defect(level_node_beside_air levels kernels/pass_levels.h
-  [[on = on && particles >= grid.half(x, y, z);]] [[on = on && all >= grid.half(x, y, z);]] levels)
-seeded_defect(level_open_face_opposite levels kernels/pass_levels.h
+seeded_defect(level_cell_of_next levels kernels/pass_level_cells.h
+  [[home[i] = in ? c : -1;]] [[home[i] = in ? (c + 1) % grid.size() : -1;]] levels)
+seeded_defect(level_last_row_left_out levels kernels/pass_level_cells.h
+  [[per_cell * (cell[axis] + 1) : all;]]
+  [[per_cell * (cell[axis] + 1) : min2(all, per_cell * (cell[axis] + 1));]] levels)
+seeded_defect(level_node_beside_air levels kernels/pass_level_cells.h
+  [[sum.off |= count[cell] < grid.half(x, y, z);]]
+  [[sum.off |= sum.number < grid.half(x, y, z);]] levels)
+seeded_defect(level_open_face_opposite levels kernels/pass_level_cells.h
   [[!(high && !(closed & (2u << (2 * k))))]] [[!(high && !(closed & (1u << (2 * k))))]] levels)
-seeded_defect(level_coarser_node_on levels kernels/pass_levels.h
-  [[on = on && c.on();]] [[on = on || c.on();]] levels)
-seeded_defect(level_stiffness levels kernels/pass_levels.h
+seeded_defect(level_coarser_node_on levels kernels/pass_level_cells.h
+  [[sum.off |= !c.on();]] [[sum.off = !c.on();]] levels)
+seeded_defect(level_stiffness levels kernels/pass_level_cells.h
   [[for (int l = 0; l < k; ++l) s *= 4;]] [[for (int l = 0; l < k; ++l) s *= 2;]] levels)
 seeded_defect(level_coarse_weights levels kernels/levels.h
   [[Tap{node, d == 1 ? 2 : 1}]] [[Tap{node, 2}]] levels)
-seeded_defect(level_walls_not_upward levels kernels/pass_levels.h
-  [[walls |= node.walls[finer];]] [[walls = node.walls[finer];]] levels)
-seeded_defect(level_walls_not_downward levels kernels/pass_levels.h
+seeded_defect(level_walls_not_upward levels kernels/pass_level_cells.h
+  [[sum.walls |= node.walls[finer];]] [[sum.walls = node.walls[finer];]] levels)
+seeded_defect(level_walls_not_downward levels kernels/pass_level_cells.h
   [[min2(at[k] / 2 + 1, coarse.nodes[k] - 1)]] [[min2(at[k] / 2, coarse.nodes[k] - 1)]] levels)
 seeded_defect(level_clip_missing levels kernels/pass_levels.h
-  [[min2(density[i] - Real(1), Real(kLevelClip));]] [[density[i] - Real(1);]] levels)
+  [[max2(min2(rho - Real(1), Real(kLevelClip)), Real(-1))]]
+  [[max2(rho - Real(1), Real(-1))]] levels)
 seeded_defect(level_sum_one_sided levels kernels/pass_levels.h
-  [[c >= Real(-1) ? int(c]] [[c >= Real(0) ? int(c]] levels)
+  [[Real(kLevelClip)), Real(-1))]] [[Real(kLevelClip)), Real(0))]] levels)
 seeded_defect(level_beyond_face_counted levels kernels/pass_levels.h
-  [[sum += !home || home[i] >= 0 ? excess : 0;]] [[sum += excess;]] levels)
-seeded_defect(level_row_left_out levels kernels/pass_levels.h
-  [[for (int r = 0; r < kRowsPerCell<D>; ++r) s += row]]
-  [[for (int r = 1; r < kRowsPerCell<D>; ++r) s += row]] levels)
+  [[sum += home[i] >= 0 ? excess(density[i]) : 0;]] [[sum += excess(density[i]);]] levels)
+seeded_defect(level_cell_left_out levels kernels/pass_level_cells.h
+  [[for (int n = lane; n < 8; n += of)]] [[for (int n = lane; n < 7; n += of)]] levels)
 seeded_defect(level_multiplier_signed levels kernels/pass_levels.h
-  [[Real k = s > 0 ? answer]] [[Real k = s != 0 ? answer]] levels)
-seeded_defect(level_from_one_coarse_node levels kernels/levels.h
-  [[if (i % 2 == 0) return {i / 2, d == 0 ? 2 : 0};
-  return {i / 2 + d, 1};]]
-  [[return {i / 2, d == 0 ? 2 : 0};]] levels)
+  [[return sum > 0 ? answer]] [[return sum != 0 ? answer]] levels)
+seeded_defect(level_from_one_coarse_node levels kernels/pass_levels.h
+  [[share[k] = one ? Real(0) : Real(at[k] - (low[k] << l)) / Real(1 << l);]]
+  [[share[k] = Real(0);]] levels)
 seeded_defect(level_last_cell_as_long levels kernels/pass_levels.h
   [[grid.length(a, at[a]))]] [[grid.edge)]] levels)
 seeded_defect(level_momentum_missing levels kernels/pass_levels.h
-  [[sum[a] *= Real(2 * grid.half(at[0], at[1], at[2]) / particles);]] [[sum[a] *= Real(1);]] levels)
+  [[sum[a] *= Real(2 * grid.half(at[0], at[1], at[2]) / count[c]);]]
+  [[sum[a] *= Real(1);]] levels)
 seeded_defect(level_momentum_at_walls levels kernels/pass_levels.h
-  [[if (!(against >> a & 1) && particles > 0)]] [[if (particles > 0)]] levels)
+  [[if (!(against >> a & 1) && count[c] > 0)]] [[if (count[c] > 0)]] levels)
 seeded_defect(level_displacement_sign delta kernels/pass_delta.h
   [[free = free + coarse(i);]] [[free = free - coarse(i);]] levels)
 
