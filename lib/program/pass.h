@@ -25,6 +25,7 @@ struct Written {
   bool before_sort = false;        ///< its rows are in the order before the sort
   const char* stage = nullptr;     ///< shown as that of another stage than the pass's
   const FieldInfo* row = nullptr;  ///< not null: it names each particle's row, -1: none
+  double grain = 0;                ///< in `unit`: finer steps than this it cannot make
 };
 inline Written vector(Access to, const char* quantity, const char* unit) {
   return {to, Written::vector, quantity, unit};

@@ -52,6 +52,7 @@ class Tracer {
       stage_ = w.stage ? w.stage : pass.stage;
       iteration_ = number;
       amplitude_ = options_.unit_roundoff * (w.sum ? 4 + std::sqrt(most_terms_) : 1);
+      grain_ = w.grain;
       const FieldInfo& f = *w.to.field;
       const auto vectors = [&] { return w.to.other ? c_.other(f) : c_.vectors(f); };
       const auto component = [](Vec4<Real>& x, int k) -> Real& { return (&x.x)[k]; };
@@ -167,7 +168,9 @@ class Tracer {
     return nullptr;
   }
   Real rounded(Real x) {
-    return amplitude_ > 0 ? Real(double(x) * (1 + amplitude_ * (2 * random_.uniform() - 1))) : x;
+    if (amplitude_ == 0) return x;
+    const double r = 2 * random_.uniform() - 1;
+    return Real(double(x) * (1 + amplitude_ * r) + (x != Real(0) ? grain_ * r : 0));
   }
   void by_id(const std::vector<int>& sizes, const std::vector<int>& starts,
              const std::vector<int>& all) {
@@ -190,7 +193,7 @@ class Tracer {
   SplitMix64 random_;
   std::string stage_;
   int iteration_ = 0;
-  double amplitude_ = 0;
+  double amplitude_ = 0, grain_ = 0;
   double most_terms_ = 0;  ///< of the longest sum over neighbours, once lists() has seen them
   std::vector<int> id_;
   StepTrace trace_;

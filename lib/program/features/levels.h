@@ -102,6 +102,7 @@ struct LevelMultipliers {
   static Written move() {
     Written w = vector({&field::level_move}, "level displacement", "h");
     w.row = &field::level_home;
+    w.grain = 4e-12;  // kExcessUnit of one particle among those around a node
     return w;
   }
   template <class C>
