@@ -46,7 +46,8 @@ KeyRows motion_rows() {
            "viscosity and vorticity act once per update."),
        key(KEY(solver.levels), one_of({"off", "auto", "on"}),
            "Corrections over a hierarchy of grids coarser than h, in every iteration: the "
-           "compression of deep fluid then does not grow with its depth. In flows use one iteration "
+           "compression of deep fluid then does not grow with its depth. In flows use one "
+           "iteration "
            "per substep: more of them raise the energy. auto: from 64 layers of fluid on."),
        key(KEY(solver.method), one_of({"jacobi", "chebyshev"}),
            "jacobi: every iteration with omega = sor. chebyshev: omega follows Chebyshev's steps "
@@ -68,7 +69,7 @@ KeyRows motion_rows() {
            "below "
            "1 it under-relaxes). auto: min(1, (2.5 d/h)^2), in two dimensions min(1, (3 "
            "d/h)^(4/3)), since more neighbours need smaller steps, and less where the density is "
-           "above rest_density.",
+           "above rest_density; with levels 2 and 2.4 in place of 2.5 and 3.",
            renamed("solver.step_length"), automatic),
        key(KEY(solver.boundary), one_of({"density", "clamp"}),
            "density: walls count in the density like fluid behind them. clamp: particles are "
