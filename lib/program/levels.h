@@ -23,8 +23,8 @@ struct LevelPlan {
   std::int64_t cells() const { return all.count == 0 ? 0 : grid.size(); }
 };
 
-/// solver.levels, `auto` decided: from 64 layers of fluid along gravity on.
-/// Why a scene has none, "solver.levels is off"; null where it has.
+/// Why a scene has none, "solver.levels is off"; null where it has. With `auto` it has them from 64
+/// layers of fluid along gravity on.
 const char* why_no_levels(const Scene& scene);
 inline bool has_levels(const Scene& scene) { return why_no_levels(scene) == nullptr; }
 

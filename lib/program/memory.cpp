@@ -35,25 +35,23 @@ void add_state(const Plan& plan, std::int64_t bins, bool guard, const std::strin
                const Adder& add) {
   // The lists name one particle more, far away, and lanes read further (padding of the executors).
   const std::int64_t n = plan.particles, padding = add.on_device ? 1 : 16;
+  const auto type_name = [&](const FieldInfo& f) -> std::string {
+    return f.type == Type::real ? real : f.type == Type::int64 ? "int64" : "int32";
+  };
   const RowCounts counts{n, padding, bins, plan.levels.cells(), plan.levels.nodes()};
   for (const FieldInfo* f : plan.program.fields) {
     if (f == &field::order && !add.on_device) continue;  // it stands in id'
     for (const char* which : {"", "'"})
       if (*which == '\0' || f->doubled)
-        add((std::string(f->name) + which).c_str(),
-            f->type == Type::real    ? real
-            : f->type == Type::int64 ? "int64"
-                                     : "int32",
-            f->components, rows_of(*f, counts));
+        add((std::string(f->name) + which).c_str(), type_name(*f), f->components,
+            rows_of(*f, counts));
   }
   for (const FieldInfo* f : plan.program.fields) {
     if (!f->state) continue;
     // The last good state; and a batch of updates is done again when a list outgrows its capacity.
     const std::pair<bool, const char*> copies[] = {{guard, "kept "}, {add.on_device, "saved "}};
     for (const auto& [is_there, copy] : copies)
-      if (is_there)
-        add((copy + std::string(f->name)).c_str(), f->type == Type::real ? real : "int32",
-            f->components, n);
+      if (is_there) add((copy + std::string(f->name)).c_str(), type_name(*f), f->components, n);
   }
   if (add.on_device)
     add("sums of a measure by block", "int64",

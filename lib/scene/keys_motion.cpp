@@ -47,8 +47,8 @@ KeyRows motion_rows() {
        key(KEY(solver.levels), one_of({"off", "auto", "on"}),
            "Corrections over a hierarchy of grids coarser than h, in every iteration: the "
            "compression of deep fluid then does not grow with its depth. In flows use one "
-           "iteration "
-           "per substep: more of them raise the energy. auto: from 64 layers of fluid on."),
+           "iteration per substep: more of them raise the energy. auto: from 64 layers of fluid "
+           "on."),
        key(KEY(solver.method), one_of({"jacobi", "chebyshev"}),
            "jacobi: every iteration with omega = sor. chebyshev: omega follows Chebyshev's steps "
            "for "
