@@ -26,9 +26,10 @@ PBF_HD Real power(Real x, int n) {
 /// dx_i = omega [ sum_j (lambda_i + lambda_j + s_corr) grad W_ij vol + lambda_i grad wall ].
 /// The velocity takes dx/dt at once: after the last iteration it is (x* - x)/dt, without the
 /// cancellation of that difference.
-template <class Real, class Lists, Smoothing S, bool tensile, class Coarse>
+template <class Real, class Lists, Smoothing S, bool tensile, class Coarse, class Boundary>
 struct DeltaPass {
   Params<Real> p;
+  Boundary boundary;
   Lists lists;
   const Vec4<Real>* position;  ///< w = lambda
   const Real* density;
@@ -84,14 +85,18 @@ struct DeltaPass {
     const Vec3<Real> pairs = in_space(s.move);
     const Vec3<Real> move = s.closeness > Real(0.5e12) ? pairs + separate(i, own) : pairs;
     const Real a = p.vol * Spiky<Real, D>::gradient_norm;
-    const Vec3<Real> wall = own.w * p.boundary.template term<S>(x).gradient;
+    const Vec3<Real> wall = own.w * boundary.template term<S>(x).gradient;
     Vec3<Real> free = p.sor * (a * move + wall);
     if constexpr (Coarse::on) free = free + coarse(i);
     const Vec3<Real> target = x + free;
-    const Vec3<Real> inside = p.boundary.path_end(x, target);
+    const Vec3<Real> inside = boundary.path_end(x, target);
+    if constexpr (Boundary::books) {
+      boundary.template book_push<S>(i, x, p.sor * own.w);
+      boundary.book_hold(i, inside, inside - target);
+    }
     const Vec3<Real> v = xyz(velocity[i]) + p.inv_dt * (free + (inside - target));
     if (moves_on) {
-      move_on(i, inside, v, p, position_out, velocity, moves_on);
+      move_on(i, inside, v, p, boundary, position_out, velocity, moves_on);
       return;
     }
     position_out[i] = with_w(inside, Real(1) / density[i]);

@@ -11,29 +11,37 @@ template <class Real>
 struct Moving {
   Vec3<Real> x, v;  ///< h, h/s
   bool fast;        ///< faster than the speed that is watched, before it was limited
+  Vec3<Real> held;  ///< h, by which a wall moved it back
   Real mark = 1;    ///< -1: so fast that it may pass a neighbour (relative_motion.h), else 1
 };
 
 /// Position is clamped to the walls, and the velocity follows what the clamp did: a particle never
 /// enters the constraint solve from behind a wall, also when there are no iterations.
-template <class Real>
-PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p) {
+template <class Real, class Boundary>
+PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
+                            const Boundary& boundary) {
   v = mul_add(p.damping, v, p.dt * p.gravity);
   const Real speed_squared = dot(v, v);
   const bool fast = speed_squared > p.speed_squared;
   if (p.limit_speed && fast) v = square_root(p.speed_squared / speed_squared) * v;
   const Vec3<Real> free = mul_add(p.dt, v, x);
-  x = p.boundary.path_end(x, free);
+  x = boundary.path_end(x, free);
   // Only a clamped coordinate changes v: elsewhere x - free is exactly 0.
   const Real mark = speed_squared > p.passing_squared ? Real(-1) : Real(1);
-  return {x, mul_add(p.inv_dt, x - free, v), fast, mark};
+  return {x, mul_add(p.inv_dt, x - free, v), fast, x - free, mark};
+}
+template <class Real>
+PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p) {
+  return predict(x, v, p, p.boundary);
 }
 
 /// Writes x* and the velocity that goes with it for particle i at x with velocity v.
-template <class Real>
-PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p, Vec4<Real>* position,
-                    Vec4<Real>* velocity, StepCounts* counts) {
-  const Moving<Real> m = predict(x, v, p);
+template <class Real, class Boundary>
+PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
+                    const Boundary& boundary, Vec4<Real>* position, Vec4<Real>* velocity,
+                    StepCounts* counts) {
+  const Moving<Real> m = predict(x, v, p, boundary);
+  if constexpr (Boundary::books) boundary.book_hold(i, m.x, m.held);
   if (m.fast) count_one(&counts->fast);
   position[i] = with_w(m.x, m.mark);
   velocity[i] = with_w(m.v, Real(0));
@@ -53,13 +61,14 @@ struct PredictPass {
 
 /// x* and the velocity that goes with it, in place: for further substeps, and for
 /// looking at this step alone.
-template <class Real>
+template <class Real, class Boundary>
 struct MovePass {
   Params<Real> p;
+  Boundary boundary;
   Vec4<Real>*position, *velocity;  ///< in/out
   StepCounts* counts;
   PBF_HD void operator()(int i) const {
-    move_on(i, xyz(position[i]), xyz(velocity[i]), p, position, velocity, counts);
+    move_on(i, xyz(position[i]), xyz(velocity[i]), p, boundary, position, velocity, counts);
   }
 };
 
@@ -74,17 +83,19 @@ struct BinPass {
 
 /// Puts the particles in the order of bins; with `moving`, as predicted. Position's w = 1
 /// (1/density, until an iteration replaces it), or -1 as a mark for the first iteration.
-template <class Real, bool moving>
+template <class Real, class Boundary, bool moving>
 struct GatherPass {
   Params<Real> p;
+  Boundary boundary;
   const Vec4<Real>*position, *velocity;
   const int* id;
   Vec4<Real>*position_out, *velocity_out;
   int* id_out;
   StepCounts* counts;
   PBF_HD void operator()(int from, int to) const {
-    Moving<Real> m{xyz(position[from]), xyz(velocity[from]), false};
-    if constexpr (moving) m = predict(m.x, m.v, p);
+    Moving<Real> m{xyz(position[from]), xyz(velocity[from]), false, {}};
+    if constexpr (moving) m = predict(m.x, m.v, p, boundary);
+    if constexpr (moving && Boundary::books) boundary.book_hold(to, m.x, m.held);
     if (m.fast) count_one(&counts->fast);
     position_out[to] = with_w(m.x, m.mark);
     velocity_out[to] = with_w(m.v, Real(0));

@@ -18,12 +18,13 @@ struct BoundaryTerm {
 /// during a step ends, and how far a particle is behind it. Passes ask nothing else.
 template <class Real>
 struct Box {
-  Vec3<Real> extent;         ///< h, of the domain
-  Real margin = 0;           ///< h, distance to a wall at which particles are clamped
-  unsigned walls = 63;       ///< WallBit mask of the faces that are walls
-  bool adds_density = true;  ///< boundary: density
-  Real scale = 1;            ///< amplitude of that contribution, kernels/README.md (9)
-  Real inv_range = 1;        ///< h over the range of that contribution
+  static constexpr bool books = false;  ///< loads on the walls: solids.h
+  Vec3<Real> extent;                    ///< h, of the domain
+  Real margin = 0;                      ///< h, distance to a wall at which particles are clamped
+  unsigned walls = 63;                  ///< WallBit mask of the faces that are walls
+  bool adds_density = true;             ///< boundary: density
+  Real scale = 1;                       ///< amplitude of that contribution, kernels/README.md (9)
+  Real inv_range = 1;                   ///< h over the range of that contribution
 
   /// Each wall adds A D(q/kappa), with amplitude A = `scale` and range kappa = 1/inv_range
   /// from lib/program/calibrate.h. The walls' union is taken by inclusion-exclusion,
@@ -32,6 +33,10 @@ struct Box {
   /// particles.
   template <Smoothing S>
   PBF_HD BoundaryTerm<Real> term(Vec3<Real> x) const;
+
+  /// What each wall contributes to the gradient, along its axis; false where none does.
+  template <Smoothing S>
+  PBF_HD bool slopes(Vec3<Real> x, Real (&of_wall)[6]) const;
 
   /// Where the way from a place inside to `to` ends: at the nearest place inside, for walls are
   /// planes without another side.
@@ -71,6 +76,30 @@ struct Box {
     return x;
   }
 };
+
+template <class Real>
+template <Smoothing S>
+PBF_HD bool Box<Real>::slopes(Vec3<Real> x, Real (&of_wall)[6]) const {
+  if (!adds_density) return false;
+  const Real one(1), distance[6] = {x.x, extent.x - x.x, x.y, extent.y - x.y, x.z, extent.z - x.z};
+  Real kept[6], slope[6];
+  bool any = false;
+  for (int wall = 0; wall < 6; ++wall) {
+    kept[wall] = one, slope[wall] = 0;
+    const Real q = distance[wall] * inv_range;
+    if (!(walls & (1u << wall)) || !(q < one)) continue;
+    const HalfSpace<Real> g = gradient_half_space<Real, S>(q);
+    kept[wall] = one - scale * g.density;
+    slope[wall] = scale * inv_range * (wall % 2 == 0 ? g.slope : -g.slope);
+    any = true;
+  }
+  for (int wall = 0; wall < 6; ++wall) {
+    const int b = (wall + 2) % 6 / 2 * 2, c = (wall + 4) % 6 / 2 * 2;
+    of_wall[wall] =
+        slope[wall] * kept[wall ^ 1] * (kept[b] * kept[b + 1]) * (kept[c] * kept[c + 1]);
+  }
+  return any;
+}
 
 template <class Real>
 template <Smoothing S>

@@ -128,6 +128,23 @@ StepHistory read_steps(hid_t file) {
   return s;
 }
 
+constexpr std::size_t kLoadNumbers = sizeof(Load) / sizeof(double);
+
+void write_loads(hid_t file, const std::vector<Load>& loads) {
+  std::vector<double> numbers(loads.size() * kLoadNumbers);
+  std::memcpy(numbers.data(), loads.data(), loads.size() * sizeof(Load));
+  write_rows(file, "loads", "1", H5T_IEEE_F64LE, kLoadNumbers, numbers);
+}
+
+std::vector<Load> read_loads(hid_t file) {
+  const auto rows = h5::shape(h5::open_dataset(file, "loads")).at(0);
+  std::vector<double> numbers;
+  read_rows(file, "loads", std::int64_t(rows), kLoadNumbers, numbers);
+  std::vector<Load> loads(rows);
+  std::memcpy(static_cast<void*>(loads.data()), numbers.data(), numbers.size() * sizeof(double));
+  return loads;
+}
+
 void write_file(const std::string& path, const SavedRun& s) {
   const h5::Properties access = h5::writer_access();
   ::unlink(path.c_str());  // what a killed run has left; whatever is there is not followed
@@ -138,6 +155,7 @@ void write_file(const std::string& path, const SavedRun& s) {
     write_rows(file, "position", "h", real, 3, s.state.position);
     write_rows(file, "velocity", "h/s", real, 3, s.state.velocity);
     write_rows(file, "id", "1", H5T_STD_I32LE, 1, s.state.id);
+    if (!s.state.loads.empty()) write_loads(file, s.state.loads);
     h5::write_number(file, "format_version", kFormat);
     h5::write_text(file, "precision", word(s.state.precision));
     for_each_number(s, writing(file));
@@ -183,6 +201,7 @@ SavedRun read_file(const std::string& path) {
   read_rows(file, "position", s.particles, 3, s.state.position);
   read_rows(file, "velocity", s.particles, 3, s.state.velocity);
   read_rows(file, "id", s.particles, 1, s.state.id);
+  if (h5::has_link(file, "loads")) s.state.loads = read_loads(file);
   std::vector<bool> seen(s.state.id.size());
   for (const std::int32_t id : s.state.id) {
     if (id < 0 || id >= s.particles || seen[static_cast<std::size_t>(id)])

@@ -226,4 +226,13 @@ std::vector<std::string> children(hid_t group, H5O_type_t kind) {
   return wanted;
 }
 
+std::vector<std::string> datasets_below(hid_t group, int groups) {
+  std::vector<std::string> all = children(group, H5O_TYPE_DATASET);
+  if (groups == 0) return all;
+  for (const std::string& name : children(group, H5O_TYPE_GROUP))
+    for (const std::string& below : datasets_below(open_group(group, name.c_str()), groups - 1))
+      all.push_back(name + "/" + below);
+  return all;
+}
+
 }  // namespace pbf::inline io_module::h5

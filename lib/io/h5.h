@@ -177,5 +177,7 @@ std::vector<T> read_all(hid_t group, const std::string& path, hsize_t rows = ~hs
 
 /// Names of the datasets (or of the groups) directly in a group, in alphabetical order.
 std::vector<std::string> children(hid_t group, H5O_type_t kind);
+/// Paths of the datasets in a group and in so many groups one in the other: "stage/lambda".
+std::vector<std::string> datasets_below(hid_t group, int groups);
 
 }  // namespace pbf::inline io_module::h5

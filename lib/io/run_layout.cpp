@@ -26,4 +26,13 @@ const std::vector<LogColumn>& log_columns() {
   return columns;
 }
 
+std::vector<FurtherNumber> further_numbers(const LogRow& row) {
+  std::vector<FurtherNumber> all;
+  for (const StageTime& s : row.stages) all.push_back({"stage/" + s.name, "s", s.seconds});
+  for (const WallLoad& l : row.measures.loads)
+    for (const LoadNumber& n : load_numbers())
+      all.push_back({"load/" + l.wall + "/" + n.name, n.unit, n.value(l)});
+  return all;
+}
+
 }  // namespace pbf::inline io_module::run_layout

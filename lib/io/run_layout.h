@@ -34,9 +34,19 @@ struct LogColumn {
   std::int64_t whole(const LogRow& row) const;  ///< where it is not real
 };
 
-/// All columns but the stages, in the order of their creation: what a row has besides measures,
+/// The columns of every run, in the order of their creation: what a row has besides measures,
 /// then the table of diagnostics.
 const std::vector<LogColumn>& log_columns();
+
+/// A number of a row whose column not every run has: "stage/lambda", "load/z_min/force_x".
+struct FurtherNumber {
+  std::string column;
+  const char* unit;
+  double value;
+};
+/// In so many groups below the log.
+inline constexpr int log_groups = 2;
+std::vector<FurtherNumber> further_numbers(const LogRow& row);
 
 /// f(column name, value) for every text, and every integer, of a RunSession: one list for both
 /// directions.

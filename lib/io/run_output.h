@@ -64,7 +64,7 @@ class RunOutput {
   void end_session(const std::string& reason, std::int64_t last_update);
   void open_steps(std::int64_t frames);
   void open_fields(std::int64_t frames);
-  void open_stages(hsize_t rows);
+  void open_further(hsize_t rows);
   void create_fields(const Snapshot& first);
   void check_fields(const Snapshot& snapshot) const;
   std::int64_t part_of(std::size_t count);
@@ -72,7 +72,7 @@ class RunOutput {
   void commit_frames(std::int64_t frames);
   void set_steps(std::int64_t frames);  // NSteps
   void write_log();
-  void write_stages();
+  void write_further();
   void flush();
 
   h5::File file_;  // first: destroyed last
@@ -89,7 +89,7 @@ class RunOutput {
   h5::Column times_, part_offsets_, part_counts_, point_offsets_, cell_offsets_, id_starts_;
   std::vector<LogRow> waiting_;
   Stopwatch since_log_;
-  std::map<std::string, h5::Column> log_, stages_, sessions_;
+  std::map<std::string, h5::Column> log_, further_, sessions_;
 };
 
 }  // namespace pbf::inline io_module

@@ -39,28 +39,28 @@ void RunOutput::write_log() {
       column.append(integers);
     }
   }
-  write_stages();
+  write_further();
   waiting_.clear();
 }
 
-/// A stage that a row does not name took no time in it.
-void RunOutput::write_stages() {
+/// What a row does not name is 0 in it: a stage that took no time.
+void RunOutput::write_further() {
   const hsize_t first = log_.at("time").rows() - waiting_.size();
-  for (const LogRow& row : waiting_)
-    for (const StageTime& stage : row.stages)
-      if (h5::Column& column = stages_[stage.name]; !column.open()) {
-        column =
-            h5::Column(pbf_, "log/stage/" + stage.name, H5T_IEEE_F64LE, {log_rows, 0, false, "s"});
+  std::map<std::string, std::vector<double>> values;
+  for (std::size_t k = 0; k < waiting_.size(); ++k)
+    for (const auto& n : run_layout::further_numbers(waiting_[k])) {
+      if (h5::Column& column = further_[n.column]; !column.open()) {
+        column = h5::Column(pbf_, "log/" + n.column, H5T_IEEE_F64LE, {log_rows, 0, false, n.unit});
         column.append(std::vector<double>(first, 0.0));
       }
-  for (auto& [name, column] : stages_) {
-    std::vector<double> seconds;
-    for (const LogRow& row : waiting_) {
-      seconds.push_back(0);
-      for (const StageTime& stage : row.stages)
-        if (stage.name == name) seconds.back() += stage.seconds;
+      auto& rows = values[n.column];
+      rows.resize(waiting_.size());
+      rows[k] += n.value;
     }
-    column.write(first, seconds.size(), H5T_NATIVE_DOUBLE, seconds.data());
+  for (auto& [name, column] : further_) {
+    auto& rows = values[name];
+    rows.resize(waiting_.size());
+    column.write(first, rows.size(), H5T_NATIVE_DOUBLE, rows.data());
   }
 }
 

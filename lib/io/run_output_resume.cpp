@@ -51,7 +51,7 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, st
   pbf_ = h5::open_group(file_, "pbf");
   open_steps(frames);
   make_log(static_cast<hsize_t>(frames), static_cast<hsize_t>(rows));
-  open_stages(static_cast<hsize_t>(rows));
+  open_further(static_cast<hsize_t>(rows));
   opening_ = false;
   sync();  // Values is never longer than NSteps
   set_steps(frames);
@@ -116,11 +116,10 @@ void RunOutput::open_fields(std::int64_t frames) {
   make_ids(n, static_cast<hsize_t>(most));
 }
 
-void RunOutput::open_stages(hsize_t rows) {
-  if (!h5::has_link(pbf_, "log/stage")) return;
-  const h5::Group group = h5::open_group(pbf_, "log/stage");
-  for (const auto& name : h5::children(group, H5O_TYPE_DATASET))
-    (stages_[name] = h5::Column::existing(group, name)).truncate(rows);
+void RunOutput::open_further(hsize_t rows) {
+  const h5::Group log = h5::open_group(pbf_, "log");
+  for (const auto& name : h5::datasets_below(log, run_layout::log_groups))
+    if (!log_.contains(name)) (further_[name] = h5::Column::existing(log, name)).truncate(rows);
 }
 
 void RunOutput::make_sessions() {

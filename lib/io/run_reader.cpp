@@ -240,12 +240,7 @@ std::vector<RunSession> RunReader::sessions() const {
 
 std::vector<std::string> RunReader::log_columns() const {
   return impl_->with_file("cannot read the log", [](const h5::Reading& file) {
-    const h5::Group log = h5::open_group(file, "pbf/log");
-    auto names = h5::children(log, H5O_TYPE_DATASET);
-    if (h5::has_link(log, "stage"))
-      for (const auto& s : h5::children(h5::open_group(log, "stage"), H5O_TYPE_DATASET))
-        names.push_back("stage/" + s);
-    return names;
+    return h5::datasets_below(h5::open_group(file, "pbf/log"), run_layout::log_groups);
   });
 }
 

@@ -6,6 +6,7 @@
 #include "lib/program/features/constraint.h"
 #include "lib/program/features/correction.h"
 #include "lib/program/features/levels.h"
+#include "lib/program/features/loads.h"
 #include "lib/program/features/motion.h"
 #include "lib/program/features/viscosity.h"
 
@@ -21,7 +22,7 @@ struct FeatureList {
 };
 
 using Features =
-    FeatureList<Motion, Constraint, Levels, Correction, XsphViscosity, VorticityConfinement>;
+    FeatureList<Motion, Constraint, Levels, Correction, XsphViscosity, VorticityConfinement, Loads>;
 using Passes = Features::Passes;
 
 }  // namespace pbf::inline PBF_VARIANT

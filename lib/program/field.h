@@ -10,12 +10,13 @@ namespace pbf::inline program_module {
 enum class Type { real, int32, int64 };  ///< real: of the scene's precision
 
 /// How many rows a field has. padded: one per particle, and behind them what the lists of an
-/// executor may read beyond the last one. cells, nodes: of the grids of solver.levels.
-enum class Rows { particles, padded, bins, cells, nodes };
+/// executor may read beyond the last one. cells, nodes: of the grids of solver.levels. walls: whose
+/// loads are summed.
+enum class Rows { particles, padded, bins, cells, nodes, walls };
 
 /// How many of each there are. padding: of the executor.
 struct RowCounts {
-  std::int64_t particles = 0, padding = 0, bins = 0, cells = 0, nodes = 0;
+  std::int64_t particles = 0, padding = 0, bins = 0, cells = 0, nodes = 0, walls = 0;
 };
 
 struct FieldInfo {
@@ -55,6 +56,8 @@ constexpr std::int64_t rows_of(const FieldInfo& f, const RowCounts& n) {
       return n.cells;
     case Rows::nodes:
       return n.nodes;
+    case Rows::walls:
+      return n.walls;
   }
   return n.particles;
 }

@@ -10,6 +10,7 @@
 #include "lib/base/text.h"
 #include "lib/program/list_capacity.h"
 #include "lib/program/list_memory.h"
+#include "lib/program/loads.h"
 #include "lib/program/plan.h"
 #include "lib/program/threads.h"
 
@@ -31,14 +32,14 @@ int downloaded_scalars(const Scene& s) {
   return 3 + (has_field(s, "velocity") ? 3 : 0) + (has_field(s, "density") ? 1 : 0);
 }
 
-void add_state(const Plan& plan, std::int64_t bins, bool guard, const std::string& real,
+void add_state(const Scene& s, const Plan& plan, std::int64_t bins, const std::string& real,
                const Adder& add) {
   // The lists name one particle more, far away, and lanes read further (padding of the executors).
   const std::int64_t n = plan.particles, padding = add.on_device ? 1 : 16;
   const auto type_name = [&](const FieldInfo& f) -> std::string {
     return f.type == Type::real ? real : f.type == Type::int64 ? "int64" : "int32";
   };
-  const RowCounts counts{n, padding, bins, plan.levels.cells(), plan.levels.nodes()};
+  const RowCounts counts{n, padding, bins, plan.levels.cells(), plan.levels.nodes(), load_walls(s)};
   for (const FieldInfo* f : plan.program.fields) {
     if (f == &field::order && !add.on_device) continue;  // it stands in id'
     for (const char* which : {"", "'"})
@@ -49,7 +50,8 @@ void add_state(const Plan& plan, std::int64_t bins, bool guard, const std::strin
   for (const FieldInfo* f : plan.program.fields) {
     if (!f->state) continue;
     // The last good state; and a batch of updates is done again when a list outgrows its capacity.
-    const std::pair<bool, const char*> copies[] = {{guard, "kept "}, {add.on_device, "saved "}};
+    const std::pair<bool, const char*> copies[] = {{bool(s.guard), "kept "},
+                                                   {add.on_device, "saved "}};
     for (const auto& [is_there, copy] : copies)
       if (is_there) add((copy + std::string(f->name)).c_str(), type_name(*f), f->components, n);
   }
@@ -175,7 +177,7 @@ MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
   const std::int64_t bins =
       std::int64_t(plan.cells[0]) * plan.cells[1] * plan.cells[2] * bins_per_cell(s.dimensions);
   const Adder solver{memory, about(s.backend).on_device, Held::solver};
-  add_state(plan, bins, bool(s.guard), real, solver);
+  add_state(s, plan, bins, real, solver);
   if (solver.on_device)
     add_cuda_lists(s, plan, bins, solver);
   else

@@ -15,7 +15,7 @@ ProgramStep step_of() {
 
 /// What features say of a scene.
 struct Builder {
-  Steps with_lists, in_iteration, behind;
+  Steps with_lists, in_iteration, behind, at_end;
   std::vector<LeftOut> without;
 
   template <class P>
@@ -29,6 +29,11 @@ struct Builder {
   template <class P>
   void after() {
     behind.push_back(step_of<P>());
+  }
+  /// Behind all others, with lists or without.
+  template <class P>
+  void end() {
+    at_end.push_back(step_of<P>());
   }
   void left_out(const char* what, const char* because) { without.push_back({what, because}); }
 };
@@ -128,7 +133,7 @@ const std::vector<PassInfo>& pass_infos() {
 Program make_program(const Scene& scene, const UpdateShape& shape, bool without_time) {
   Builder b;
   Features::add(scene, b);
-  if (without_time) b.behind.clear();
+  if (without_time) b.behind.clear(), b.at_end.clear();
   Program p;
   Steps middle;
   if (b.in_iteration.empty() && b.behind.empty()) {  // no pairs: particles only move
@@ -141,15 +146,16 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
       from = to;
     }
   }
-  p.update = middle + b.behind;
+  const Steps end = b.behind + b.at_end;
+  p.update = middle + end;
   // An update begins with the passes up to its first lists, which may follow on the one before.
   const bool pairs = p.update.size() > 2 && p.update[1].index == Passes::index_of<Sort>();
   const auto begin = middle.begin() + (pairs ? 2 : 0);
   const Steps head(middle.begin(), begin);
   p.first = joined(head);
   p.rest = joined(Steps(begin, middle.end()));
-  p.next = joined(b.behind + head);
-  p.last = joined(b.behind);
+  p.next = joined(end + head);
+  p.last = joined(end);
   p.fields = {&field::position, &field::velocity, &field::density,  &field::id,
               &field::bin,      &field::order,    &field::bin_start};
   collect_fields(p.update, p.fields);

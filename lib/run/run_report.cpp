@@ -150,6 +150,8 @@ std::string measure_json(const Diagnostics& m, double wall, std::int64_t frames,
     else
       out[name] = value;
   }
+  for (const WallLoad& l : m.loads)
+    for (const LoadNumber& n : load_numbers()) out["loads"][l.wall][n.name] = n.value(l);
   Json& times = out["stages"] = Json::object();
   for (const StageTime& s : stages) times[s.name] = s.seconds;
   return json_text(out);

@@ -71,7 +71,11 @@ bool Watch::state_is_good() {
 }
 
 void Watch::measure(bool judged) {
-  const Diagnostics m = solver_.measure();
+  Diagnostics m = solver_.measure();
+  // Before a state is kept, so that going back does not bring them again. A row between two
+  // measures, which a longer run does not have, ends no interval.
+  const bool regular = m.update % schedule_.measure_every == 0;
+  m.loads = solver_.loads(regular ? Interval::ends : Interval::goes_on);
   const bool first = !begun_;
   if (first) first_ = m, begin(m, {}, {});
   const double dt = std::ldexp(scene_.time.step, -options().level);

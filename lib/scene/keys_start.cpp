@@ -31,6 +31,9 @@ KeyRows start_rows() {
            "Upper corner of the box; above domain.min along every axis.", required, exact(kFrame)),
        key(KEY(domain.open), one_of({"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"}),
            "Faces of the box without a wall, as a list."),
+       key(KEY(domain.loads), plain,
+           "Sums the force and the torque of the fluid on each wall; columns load/x_min/force_x "
+           "and so on of the log."),
        key(KEY(fluid.rest_density), number("kg/m^3", {1e-6, 1e9}), "Rest density rho0.",
            exact("the unit of densities")),
        key(KEY(fluid.spacing), number("m", kLength),

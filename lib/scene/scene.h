@@ -42,6 +42,7 @@ struct Body {
 struct Domain {
   Double3 min{}, max{1, 1, 1};    ///< m
   std::vector<std::string> open;  ///< faces without a wall: x_min x_max y_min y_max z_min z_max
+  bool loads = false;             ///< the forces on the walls are summed and written down
   bool operator==(const Domain&) const = default;
 };
 

@@ -11,6 +11,7 @@
 
 #include "kernels/measure.h"
 #include "lib/program/plan.h"
+#include "lib/solver/wall_loads.h"
 
 namespace pbf::inline solver_module {
 
@@ -49,6 +50,8 @@ struct Diagnostics {
   /// neighbour (kernels/relative_motion.h): there fluid may pass through fluid.
   std::int64_t unresolved = 0;
   double relative_way_max = 0;  ///< h, the longest such way in a step; 0: there was none
+  /// Since the row before; filled by who writes rows.
+  std::vector<WallLoad> loads{};
 };
 
 /// What an EnergyTrack knows: enough to go on from a checkpoint. J, rise 1.

@@ -16,6 +16,7 @@
 #include "lib/solver/snapshot.h"
 #include "lib/solver/stage_event.h"
 #include "lib/solver/step_trace.h"
+#include "lib/solver/wall_loads.h"
 
 namespace pbf::inline program_module {
 struct Plan;
@@ -53,6 +54,9 @@ struct StepOptions {
 /// Which state is asked for: the present one, its positions alone, or the copy that keep() made.
 enum class Which { now, positions, kept };
 
+/// Whether the interval of loads that is looked at goes on, or ends and a new one begins.
+enum class Interval { goes_on, ends };
+
 class Inspection;
 
 /// One simulation. Two solvers may live in one process. Errors are thrown as Error.
@@ -67,6 +71,8 @@ class Solver {
   virtual std::future<Snapshot> download(const std::vector<std::string>& fields,
                                          ScalarType type) = 0;
   virtual Diagnostics measure() = 0;
+  /// Of the walls whose loads are summed, means since the start or since they were taken last.
+  virtual std::vector<WallLoad> loads(Interval interval) = 0;
   /// set_state() of the state, in this or in another solver of the same scene and precision,
   /// continues to the last bit. Positions and velocities of a double are rounded where they go into
   /// a solver of float. Error(internal) when the number of particles differs or the ids are not

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kernels/axes.h"
+#include "kernels/boundary/loads.h"
 #include "kernels/step_counts.h"
 #include "kernels/vec3.h"
 #include "lib/solver/step_trace.h"
@@ -18,6 +19,8 @@ struct StateArrays {
   Vec4<Real>*position, *velocity;
   int* id;
   StepCounts* counts;  ///< one
+  Load* load;
+  int walls;  ///< that have a load
 };
 
 /// A copy in one pass: a guarded run of few particles makes one at every measure.
@@ -28,7 +31,9 @@ struct CopyStatePass {
     to.position[i] = from.position[i];
     to.velocity[i] = from.velocity[i];
     to.id[i] = from.id[i];
-    if (i == 0) *to.counts = *from.counts;
+    if (i != 0) return;
+    *to.counts = *from.counts;
+    for (int wall = 0; wall < from.walls; ++wall) to.load[wall] = from.load[wall];
   }
 };
 
@@ -73,6 +78,8 @@ SolverState download_state(Exec& exec, std::size_t n, const Axes& axes,
   s.repeats = std::int64_t(counts.repeats);
   s.unresolved = std::int64_t(counts.unresolved);
   s.way_squared = counts.way_squared;
+  s.loads.resize(std::size_t(from.walls));
+  exec.to_host(from.load, s.loads.size(), s.loads.data());
   return s;
 }
 
@@ -96,6 +103,9 @@ void upload_state(Exec& exec, const Axes& axes, const SolverState& s, const Stat
   counts.unresolved = std::uint64_t(s.unresolved);
   counts.way_squared = float(s.way_squared);
   exec.to_device(&counts, 1, to.counts);
+  std::vector<Load> loads(std::size_t(to.walls));
+  if (s.loads.size() == loads.size()) loads = s.loads;
+  exec.to_device(loads.data(), loads.size(), to.load);
 }
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -12,6 +12,7 @@
 #include "lib/base/release.h"
 #include "lib/program/as_types.h"
 #include "lib/program/field.h"
+#include "lib/program/loads.h"
 #include "lib/scene/scene.h"
 #include "lib/solver/state_transfer.h"
 
@@ -87,7 +88,11 @@ struct StepContext {
     return Exec::order_in_place ? other_data<int>(field::id) : data<int>(field::order);
   }
   StepCounts* counts() { return counts_.data(); }
-  StateArrays<Real> state() { return {position(), velocity(), ids(), counts()}; }
+  /// One for each wall that has any.
+  Load* loads() { return loads_.data(); }
+  StateArrays<Real> state() {
+    return {position(), velocity(), ids(), counts(), loads(), int(loads_.size())};
+  }
 
   /// Which of the two arrays each field lies in, as bits: updates that were recorded hold for one
   /// such placement.
@@ -123,6 +128,7 @@ struct StepContext {
   int rows_ = 0, capacity_ = 0;
   std::vector<Slot> slots_;  ///< a dozen: a linear search beats a map
   Buffer<StepCounts> counts_;
+  Buffer<Load> loads_;
 };
 
 template <class Real, class Exec>
@@ -132,8 +138,9 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
                                    std::vector<int>& first_id) {
   const std::size_t n = first_position.size();
   rows_ = capacity_ = int(n);
-  const RowCounts sizes{rows_, std::int64_t(Exec::padding), bin_count(p), levels.cells(),
-                        levels.nodes()};
+  const RowCounts sizes{rows_,          std::int64_t(Exec::padding),
+                        bin_count(p),   levels.cells(),
+                        levels.nodes(), load_walls(scene)};
   for (const FieldInfo* f : fields) {
     if (f == &field::order && Exec::order_in_place) continue;
     const auto count = std::size_t(rows_of(*f, sizes));
@@ -156,6 +163,13 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
   counts_.resize(1);
   const StepCounts none;
   exec.to_device(&none, 1, counts());
+  const std::vector<Load> unloaded(std::size_t(load_walls(scene)));
+  loads_.resize(unloaded.size());
+  exec.to_device(unloaded.data(), unloaded.size(), loads());
+  if (!unloaded.empty()) {
+    const std::vector<LoadSums> nothing(unloaded.size() * kLoadParts);
+    exec.to_device(nothing.data(), nothing.size(), data<LoadSums>(field::load_sums));
+  }
   exec.to_device(first_position.data(), n, position());
   exec.to_device(first_velocity.data(), n, velocity());
   exec.to_device(first_id.data(), n, ids());
@@ -172,9 +186,13 @@ struct SavedState {
   Buffer<Vec4<Real>> position, velocity;
   Buffer<int> id;
   Buffer<StepCounts> counts;
+  Buffer<Load> loads;
 
   bool empty() const { return counts.size() == 0; }
-  StateArrays<Real> state() { return {position.data(), velocity.data(), id.data(), counts.data()}; }
+  StateArrays<Real> state() {
+    return {position.data(), velocity.data(), id.data(),
+            counts.data(),   loads.data(),    int(loads.size())};
+  }
   std::size_t bytes() const { return position.bytes() + velocity.bytes() + id.bytes(); }
 
   void save(StepContext<Real, Exec>& c) {
@@ -183,6 +201,7 @@ struct SavedState {
     velocity.resize(n);
     id.resize(n);
     counts.resize(1);
+    loads.resize(std::size_t(c.state().walls));
     c.each(CopyStatePass<Real>{c.state(), state()});
   }
   void restore(StepContext<Real, Exec>& c) { c.each(CopyStatePass<Real>{state(), c.state()}); }

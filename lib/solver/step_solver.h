@@ -121,6 +121,10 @@ class StepSolver final : public Solver, public Inspection {
     return to_diagnostics(stepper_->measure(given), given, scene_, plan_, updates_, steps_);
   }
 
+  std::vector<WallLoad> loads(Interval interval) override {
+    return wall_loads(stepper_->loads(interval), scene_, plan_);
+  }
+
   SolverState state(Which which) override {
     if (which == Which::positions) return stepper_->positions();
     if (which == Which::now) return stepper_->state(updates_, steps_);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/boundary/loads.h"
 #include "lib/scene/scene.h"
 
 namespace pbf::inline solver_module {
@@ -22,6 +23,8 @@ struct SolverState {
   /// kernels/step_counts.h, so far.
   std::int64_t fast = 0, repeats = 0, unresolved = 0;
   double way_squared = 0;
+  /// Of each wall that has any, along the internal axes; none: nothing was summed.
+  std::vector<Load> loads{};
 };
 
 /// One array that a pass left behind, along the scene's axes; row = particle id.

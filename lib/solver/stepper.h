@@ -81,6 +81,15 @@ class Stepper {
     program_ = &program;
   }
 
+  /// What each wall got since this was called with Interval::ends.
+  std::vector<Load> loads(Interval interval) {
+    const StateArrays<Real> state = c_.state();
+    std::vector<Load> now(std::size_t(state.walls)), none(now.size());
+    c_.exec.to_host(state.load, now.size(), now.data());
+    if (interval == Interval::ends) c_.exec.to_device(none.data(), none.size(), state.load);
+    return now;
+  }
+
   /// The rest of the state stays empty.
   SolverState positions() {
     SolverState s;

@@ -21,7 +21,7 @@ namespace {
 std::string write_adaptive(const Scratch& folder, const std::string& adaptive) {
   return folder.write("s.yaml",
                       "name: s\n"
-                      "domain: {min: [0, 0, 0], max: [1.2, 0.4, 0.8]}\n"
+                      "domain: {min: [0, 0, 0], max: [1.2, 0.4, 0.8], loads: true}\n"
                       "fluid: {spacing: 0.05}\n"
                       "bodies: [{shape: block, min: [0, 0, 0], max: [0.5, 0.4, 0.6]}]\n"
                       "gravity: [0, 0, -10]\n"

@@ -20,7 +20,7 @@ namespace {
 std::string write_scene(const Scratch& folder) {
   return folder.write("s.yaml",
                       "name: s\n"
-                      "domain: {min: [0, 0, 0], max: [1, 0.6, 1]}\n"
+                      "domain: {min: [0, 0, 0], max: [1, 0.6, 1], loads: true}\n"
                       "fluid: {spacing: 0.05}\n"
                       "bodies:\n"
                       "  - {shape: block, min: [0, 0, 0], max: [0.4, 0.6, 0.6]}\n"

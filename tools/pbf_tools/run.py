@@ -141,7 +141,8 @@ class Run:
 
     @property
     def log(self) -> Table:
-        """Measures and seconds per stage ("stage/lambda"), one row per measure; with units.
+        """Measures, seconds per stage ("stage/lambda") and loads on walls ("load/z_min/force_z"),
+        one row per measure; with units.
 
         >>> log = open("run.vtkhdf").log
         >>> log["time"][:2], log.units["kinetic_energy"], "stage/lambda" in log
@@ -161,8 +162,8 @@ class Run:
 
 def _log(file: h5py.File) -> Table:
     group = file["pbf/log"]
-    data = {name: d for name, d in group.items() if isinstance(d, h5py.Dataset)}
-    data.update({f"stage/{name}": d for name, d in group.get("stage", {}).items()})
+    data: dict[str, h5py.Dataset] = {}
+    group.visititems(lambda name, d: data.update({name: d} if isinstance(d, h5py.Dataset) else {}))
     # A process killed while it wrote the log may leave columns of different lengths.
     rows = min((len(d) for d in data.values()), default=0)
     order = ["time"] + [name for name in data if name != "time"]

@@ -15,10 +15,13 @@ void launch_delta(C& c, StepCounts* moves_on) {
   c.with_smoothing([&](auto s) {
     with_bool(c.scene.tensile && c.scene.tensile->k != 0, [&](auto tensile) {
       with_level_move(c, [&](const auto& coarse) {
-        c.each(DeltaPass<typename C::Real, typename C::Lists, decltype(s)::value,
-                         decltype(tensile)::value, std::decay_t<decltype(coarse)>>{
-            p, c.lists, c.other(field::position), c.density(), c.ids(), c.position(), c.velocity(),
-            moves_on, coarse});
+        with_boundary(c, [&](const auto& boundary) {
+          c.each(DeltaPass<typename C::Real, typename C::Lists, decltype(s)::value,
+                           decltype(tensile)::value, std::decay_t<decltype(coarse)>,
+                           std::decay_t<decltype(boundary)>>{
+              p, boundary, c.lists, c.other(field::position), c.density(), c.ids(), c.position(),
+              c.velocity(), moves_on, coarse});
+        });
       });
     });
   });
@@ -30,7 +33,8 @@ inline PassInfo delta_info(const char* name) {
           {vector({&field::position}, "position", "h"),
            {{&field::position}, Written::fourth, "1/density", "1/rho0"},
            vector({&field::velocity}, "velocity", "h/s")},
-          DeltaPass<float, ChunkedLists, Smoothing::consistent, true, NoLevelMove<float>>::gathers};
+          DeltaPass<float, ChunkedLists, Smoothing::consistent, true, NoLevelMove<float>,
+                    Box<float>>::gathers};
 }
 
 struct Delta {

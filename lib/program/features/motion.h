@@ -3,6 +3,7 @@
 
 #include "kernels/pass_predict.h"
 #include "lib/program/as_types.h"
+#include "lib/program/features/loads.h"
 #include "lib/program/pass.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -18,7 +19,10 @@ struct Predict {
   }
   template <class C>
   static void launch(C& c) {
-    c.each(MovePass<typename C::Real>{c.p, c.position(), c.velocity(), c.counts()});
+    with_boundary(c, [&](const auto& boundary) {
+      c.each(MovePass<typename C::Real, std::decay_t<decltype(boundary)>>{
+          c.p, boundary, c.position(), c.velocity(), c.counts()});
+    });
   }
 };
 
@@ -38,12 +42,18 @@ inline PassInfo sort_info(const char* name) {
 /// of bins; with `moving`, as predicted.
 template <bool moving, class C, class First>
 void sort_rows(C& c, const char* stage, const First& first) {
-  c.exec.sort_by_bin(
-      c.booked(stage), first, c.rows(), bin_count(c.p), c.ids(), c.sort_order(),
-      c.template data<int>(field::bin_start),
-      GatherPass<typename C::Real, moving>{c.p, c.position(), c.velocity(), c.ids(),
-                                           c.other(field::position), c.other(field::velocity),
-                                           c.template other_data<int>(field::id), c.counts()});
+  const auto sort = [&](const auto& boundary) {
+    c.exec.sort_by_bin(
+        c.booked(stage), first, c.rows(), bin_count(c.p), c.ids(), c.sort_order(),
+        c.template data<int>(field::bin_start),
+        GatherPass<typename C::Real, std::decay_t<decltype(boundary)>, moving>{
+            c.p, boundary, c.position(), c.velocity(), c.ids(), c.other(field::position),
+            c.other(field::velocity), c.template other_data<int>(field::id), c.counts()});
+  };
+  if constexpr (moving)
+    with_boundary(c, sort);
+  else
+    sort(c.p.boundary);
   c.flip(field::position);
   c.flip(field::velocity);
   c.flip(field::id);

@@ -2,6 +2,7 @@
 #include "lib/run/guard.h"
 #include "lib/scene/load.h"
 
+#include <cstring>
 #include <filesystem>
 
 #include "lib/base/error.h"
@@ -31,6 +32,7 @@ SavedRun saved(Precision precision, std::int64_t update) {
   s.state.unresolved = 12;
   s.state.way_squared = 2.5;
   s.state.steps = 3 * update;
+  if (update == 7) s.state.loads.assign(6, {{0.1, 1.0 / 3, -2}, {4, 5e-300, 6}, 1.0 / 7, 8});
   if (update == 7) s.steps = StepHistory{2, 3, 32, 5, 0.125, 1.0 / 3, 11, 4, 6, 8, 5, {1, 0, 4}};
   s.first.kinetic_energy = 0.1;
   s.first.potential_energy = -3;
@@ -43,6 +45,10 @@ SavedRun saved(Precision precision, std::int64_t update) {
   return s;
 }
 
+bool same_load(const Load& a, const Load& b) {
+  return std::memcmp(&a, &b, sizeof(Load)) == 0;  // eight doubles
+}
+
 bool same_saved(const SavedRun& a, const SavedRun& b) {
   return a.state.precision == b.state.precision && a.state.updates == b.state.updates &&
          a.state.position == b.state.position && a.state.velocity == b.state.velocity &&
@@ -52,6 +58,8 @@ bool same_saved(const SavedRun& a, const SavedRun& b) {
          a.particles == b.particles && a.state.fast == b.state.fast &&
          a.state.repeats == b.state.repeats && a.state.unresolved == b.state.unresolved &&
          a.state.way_squared == b.state.way_squared && a.state.steps == b.state.steps &&
+         std::equal(a.state.loads.begin(), a.state.loads.end(), b.state.loads.begin(),
+                    b.state.loads.end(), same_load) &&
          a.steps == b.steps && a.released == b.released &&
          std::equal(a.first.momentum, a.first.momentum + 3, b.first.momentum);
 }

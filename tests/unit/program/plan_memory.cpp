@@ -76,6 +76,8 @@ const std::vector<std::vector<std::string>> kFeatures{
     {"guard=off"},
     {"solver.levels=on"},
     {"solver.levels=on", "solver.substeps=3", "solver.fused=false", "precision=double"},
+    {"domain.loads=true", "solver.levels=on"},
+    {"domain.loads=true", "solver.iterations=0"},
     {"domain.open=[x_min, x_max, y_min, y_max, z_min, z_max]"},
     {"tensile={}", "viscosity={}", "vorticity={}", "precision=double"}};
 

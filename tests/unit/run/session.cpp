@@ -41,6 +41,7 @@ class CountingSolver : public Solver {
     return std::async(std::launch::deferred, [] { return Snapshot{}; });
   }
   Diagnostics measure() override { return {}; }
+  std::vector<WallLoad> loads(Interval) override { return {}; }
   SolverInfo info() const override { return {}; }
 
  private:

@@ -36,6 +36,7 @@ Scene unlike_default() {
   file.shape = Shape::file;
   file.path = "odd name #1: [x].csv";
   s.bodies = {block, sphere, random, file};
+  s.domain.loads = true;
   s.gravity = {1.0 / 3, 0, 5e-300};
   s.time = {1.0 / 60, 500.0 / 60, AdaptiveTime{1e-4, 0.3, 0.2}};
   s.solver.iterations = 7;

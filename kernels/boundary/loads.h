@@ -1,0 +1,99 @@
+// What the fluid does to the walls around it: every displacement that a wall gives a particle is
+// booked on that wall, in whole numbers, so that neither order nor threads change a sum.
+#pragma once
+
+#include "kernels/vec3.h"
+
+namespace pbf {
+
+/// A wall's sum lies in so many parts, which different threads write.
+inline constexpr int kLoadParts = 64;
+
+/// What one wall got within an update. Displacements in units of 2^-36 h, with the sign of what the
+/// wall feels; moments about the domain's lower corner in the same units times a power of two above
+/// the longest edge of the box.
+struct LoadSums {
+  std::int64_t way[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
+};
+
+/// What one wall got since it was asked last, per mass of a particle, in the internal frame.
+struct Load {
+  double impulse[3] = {0, 0, 0};  ///< h/s
+  double moment[3] = {0, 0, 0};   ///< h^2/s, about the domain's lower corner
+  double peak = 0;                ///< h/s^2, largest mean force of one update
+  double time = 0;                ///< s
+};
+
+}  // namespace pbf
+
+namespace pbf::inline PBF_VARIANT {
+
+PBF_HD void add_whole(std::int64_t* sum, std::int64_t term) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(reinterpret_cast<unsigned long long*>(sum), static_cast<unsigned long long>(term));
+#elif !defined(__CUDACC__)
+  __atomic_fetch_add(sum, term, __ATOMIC_RELAXED);
+#endif
+}
+
+/// Where loads are booked.
+template <class Real>
+struct LoadBook {
+  LoadSums* sums = nullptr;  ///< kLoadParts for each wall; null: nothing is booked
+  Real moment_scale = 1;     ///< 2^-e, 2^e above the longest edge of the box, h
+
+  /// Wall `wall` has moved particle i, which is at x, by `way` along an axis (h).
+  PBF_HD void add(int wall, int i, Vec3<Real> x, int axis, Real way) const {
+#if defined(__CUDA_ARCH__)
+    const int part = i % kLoadParts;  // threads side by side write side by side
+#else
+    const int part = (i >> 8) % kLoadParts;  // a thread has some 256 particles in a row
+#endif
+    LoadSums& to = sums[wall * kLoadParts + part];
+    const Real arm[3] = {x.x, x.y, x.z};
+    const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+    add_whole(&to.way[axis], units(-way));
+    add_whole(&to.moment[b], units(-way * arm[c] * moment_scale));
+    add_whole(&to.moment[c], units(way * arm[b] * moment_scale));
+  }
+
+ private:
+  /// Beyond 2^10 h, and what is no number, is for the guard to find.
+  PBF_HD static std::int64_t units(Real x) {
+    constexpr Real most(std::int64_t(1) << 46);
+    const Real u = max2(min2(x * Real(std::int64_t(1) << 36), most), -most);
+    return std::int64_t(u + (u < Real(0) ? Real(-0.5) : Real(0.5)));
+  }
+};
+
+/// The end of an update: adds what was booked to each wall's load and clears it.
+struct LoadPass {
+  LoadSums* sums;
+  Load* load;                             ///< in/out
+  double inv_dt, update_dt, moment_unit;  ///< 1/s of a substep, s, h
+
+  PBF_HD void operator()(int wall) const {
+    LoadSums all;
+    for (int part = 0; part < kLoadParts; ++part) {
+      LoadSums& one = sums[wall * kLoadParts + part];
+      for (int k = 0; k < 3; ++k) {
+        all.way[k] += one.way[k];
+        all.moment[k] += one.moment[k];
+      }
+      one = {};
+    }
+    Load& to = load[wall];
+    const double unit = inv_dt / double(std::int64_t(1) << 36);
+    double squares = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double impulse = unit * double(all.way[k]);
+      to.impulse[k] += impulse;
+      to.moment[k] += unit * moment_unit * double(all.moment[k]);
+      squares += impulse * impulse;
+    }
+    to.peak = max2(to.peak, square_root(squares) / update_dt);
+    to.time += update_dt;
+  }
+};
+
+}  // namespace pbf::inline PBF_VARIANT
