@@ -30,15 +30,21 @@ LoadSums* load_sums(C& c) {
   return c.template data<LoadSums>(field::load_sums);
 }
 
-/// f(the boundary of the scene): its box, or what books loads besides. Steps without time move
-/// nothing that a wall would feel.
+/// Steps without time move nothing that a wall would feel.
+template <class C>
+LoadBook<typename C::Real> load_book(C& c) {
+  return {c.p.dt > 0 ? load_sums(c) : nullptr,
+          typename C::Real(1 / moment_unit(c.p.boundary))};
+}
+
+/// f(the boundary of the scene): its box, or what books loads besides.
 template <class C, class F>
 void with_boundary(C& c, F&& f) {
   using Real = typename C::Real;
   if (!has_loads(c.scene)) return f(c.p.boundary);
   Solids<Real> solids;
   static_cast<Box<Real>&>(solids) = c.p.boundary;
-  solids.loads = {c.p.dt > 0 ? load_sums(c) : nullptr, Real(1 / moment_unit(c.p.boundary))};
+  solids.loads = load_book(c);
   f(solids);
 }
 

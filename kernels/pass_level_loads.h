@@ -1,0 +1,80 @@
+// What the levels do to the walls, where loads are asked for. kernels/README.md, "Levels".
+#pragma once
+
+#include "kernels/boundary/loads.h"
+#include "kernels/pass_levels.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// Over the nodes of level 0. The multiplier of a node, that of all levels together, pushes the
+/// cells on its two sides apart. On a wall there is one side only: that push is the pressure on the
+/// wall. Elsewhere what is left over, because the cells hold different numbers of particles, is
+/// booked on the wall that the fluid stands against, the nearer one of two.
+template <class Real>
+struct LevelLoadPass {
+  LevelHierarchy all;
+  LevelCells grid;
+  double gamma;
+  const Real* multiplier;
+  const int *walls, *count;  ///< of cells
+  Vec3<Real> extent;         ///< h
+  LoadBook<Real> loads;      ///< sums is not null
+
+  PBF_HD void operator()(int n) const {
+    const LevelShape& nodes = all.level[0];
+    const GridPlace at = nodes.place(n);
+    Real k(0);
+    for (int l = 0; l < all.count; ++l) k += multiplier_at(l, at);
+    if (k == Real(0)) return;
+    GridPlace low, end;  // the cells around it
+    for (int a = 0; a < 3; ++a) {
+      low.k[a] = max2(at[a] - 1, 0);
+      end.k[a] = min2(at[a] + 1, grid.cells[a]);
+    }
+    for (int a = 0; a < 3; ++a)
+      if (nodes.nodes[a] > 1) push(n, at, low, end, a, double(k));
+  }
+
+ private:
+  PBF_HD void push(int n, GridPlace at, GridPlace low, GridPlace end, int axis, double k) const {
+    double particles = 0;  // on the low side less those on the high one, over the edge of the cell
+    unsigned against = 0;
+    for_box(low, end, 0, 1, [&](int x, int y, int z) {
+      const GridPlace cell{{x, y, z}};
+      const int c = grid.at(x, y, z);
+      const unsigned held = unsigned(walls[c]) >> 2 * axis & 3;
+      if (held == 0) return;  // there nothing is left over
+      against |= held;
+      particles += (cell[axis] < at[axis] ? 1 : -1) * count[c] / grid.length(axis, cell[axis]);
+    });
+    if (against == 0) return;
+    for (int a = 0; a < 3; ++a)
+      if (a != axis && all.level[0].nodes[a] > 1) particles /= 2;
+    const int last = all.level[0].nodes[axis] - 1;
+    const bool high = against == 3 ? 2 * at[axis] > last : against == 2;
+    const Real edge = Real(grid.edge);
+    const Vec3<Real> x{min2(Real(at[0]) * edge, extent.x), min2(Real(at[1]) * edge, extent.y),
+                       min2(Real(at[2]) * edge, extent.z)};
+    loads.add(2 * axis + high, n, x, axis, Real(-gamma * k * particles));
+  }
+  /// Linearly between the nodes of level l, where the node `at` of level 0 is.
+  PBF_HD Real multiplier_at(int l, GridPlace at) const {
+    const LevelShape& level = all.level[l];
+    Real sum(0);
+    for (int m = 0; m < 8; ++m) {
+      Real weight(1);
+      int node[3];
+      for (int a = 0; a < 3; ++a) {
+        const bool one = level.nodes[a] == 1, up = m >> a & 1;
+        const int below = one ? 0 : at[a] >> l;
+        const Real share = one ? Real(0) : Real(at[a] - (below << l)) / Real(1 << l);
+        node[a] = below + up;
+        weight *= up ? share : Real(1) - share;
+      }
+      if (weight != Real(0)) sum += weight * multiplier[level.at(node[0], node[1], node[2])];
+    }
+    return sum;
+  }
+};
+
+}  // namespace pbf::inline PBF_VARIANT
