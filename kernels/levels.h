@@ -10,9 +10,6 @@
 
 namespace pbf {
 
-/// How an axis of a level follows from that of the finer one.
-enum class Coarsened { first, halved, folded, kept };  ///< folded: two nodes become one
-
 /// Numbers of a node or a cell along x, y, z.
 struct GridPlace {
   int k[3];
@@ -22,11 +19,11 @@ PBF_HD GridPlace place_of(int n, const int (&of)[3]) {
   return {{n % of[0], n / of[0] % of[1], n / of[0] / of[1]}};
 }
 
-/// One level: where its nodes stand in arrays that hold those of all levels, and how many.
+/// One level: where its nodes stand in arrays that hold those of all levels, and how many. A single
+/// one along an axis lies under a hat that is constant.
 struct LevelShape {
   int first = 0;
   int nodes[3] = {1, 1, 1};
-  Coarsened from[3] = {Coarsened::first, Coarsened::first, Coarsened::first};
 
   PBF_HD int size() const { return nodes[0] * nodes[1] * nodes[2]; }
   PBF_HD int at(int x, int y, int z) const { return first + (z * nodes[1] + y) * nodes[0] + x; }
@@ -51,48 +48,115 @@ struct LevelCells {
   }
 };
 
-/// The finest level first. An axis has fewer than 2^30 cells, and each level halves them.
+/// The finest level first. An axis has fewer than 2^28 cells, and each level halves them.
 struct LevelHierarchy {
   static constexpr int most = 32;
   int count = 0;
   LevelShape level[most];
+
+  /// The level of a node of all.
+  PBF_HD int of(int node) const {
+    int l = 0;
+    while (l + 1 < count && node >= level[l + 1].first) ++l;
+    return l;
+  }
+  /// Ends of an axis that the hat of its i-th node on level l lies over: 1 the low, 2 the high one.
+  PBF_HD unsigned ends(int l, int axis, int i) const {
+    const int last = level[0].nodes[axis] - 1;  // 0: the axis that a plane has not
+    return last == 0 ? 0u : (i == 0 ? 1u : 0u) | (last < (i + 1) << l ? 2u : 0u);
+  }
 };
 
-/// A node of another level and its weight, in halves along one axis; 0: there is none.
-struct Tap {
-  int node, halves;
-};
-/// Of a coarse node i, the finer level's nodes d = 0, 1, 2; n of them along the axis.
-PBF_HD Tap finer_node(Coarsened from, int i, int d, int n) {
-  if (from == Coarsened::halved) {
-    const int node = 2 * i + d - 1;
-    return node >= 0 && node < n ? Tap{node, d == 1 ? 2 : 1} : Tap{0, 0};
-  }
-  return d == 0 || (d == 1 && from == Coarsened::folded) ? Tap{d, 2} : Tap{0, 0};
-}
-/// f(node, weight in eighths) for the nodes of `fine` under node `at` of `level`: every of-th of
-/// them, from the lane-th on.
+/// f(x, y, z) for the places from `low` to before `end`: those of the lane-th of `of` threads,
+/// which share rows first.
 template <class F>
-PBF_HD void for_finer_nodes(const LevelShape& fine, const LevelShape& level, GridPlace at, int lane,
-                            int of, F&& f) {
-  for (int n = lane; n < 27; n += of) {
-    const Tap x = finer_node(level.from[0], at[0], n % 3, fine.nodes[0]);
-    const Tap y = finer_node(level.from[1], at[1], n / 3 % 3, fine.nodes[1]);
-    const Tap z = finer_node(level.from[2], at[2], n / 9, fine.nodes[2]);
-    const int eighths = x.halves * y.halves * z.halves;
-    if (eighths > 0) f(fine.at(x.node, y.node, z.node), eighths);
+PBF_HD void for_box(GridPlace low, GridPlace end, int lane, int of, F&& f) {
+  int side_by_side = 1;
+  while (side_by_side < of && side_by_side < end[0] - low[0]) side_by_side *= 2;
+  int z = low[2];
+  for (int y = low[1] + lane / side_by_side;; y += of / side_by_side) {
+    for (; y >= end[1]; y -= end[1] - low[1])
+      if (++z >= end[2]) return;
+    for (int x = low[0] + lane % side_by_side; x < end[0]; x += side_by_side) f(x, y, z);
   }
 }
+
+/// What lies under a hat along an axis, and its weights.
+struct HatSpan {
+  static constexpr int bits = 6;  ///< behind the point of a weight: exact up to the 64-fold edge
+
+  int first, end;
+  int offset, top, up, down;
+
+  PBF_HD int weight(int i) const {
+    const int away = 2 * i + offset;
+    return top - ((away < 0 ? -away : away) << up >> down);
+  }
+};
+
+/// What the sums at nodes are made of: the cells, or the nodes of a level.
+struct LevelSource {
+  LevelShape grid;  ///< the cells: as many nodes, the first being 0
+  bool cells;
+  int level;  ///< of the nodes; 0 with cells
+  const std::int64_t* value;
+
+  /// Under the hat of node i of a coarser level l (0 and up with cells): the linear one over nodes;
+  /// over cells the sum of those at their two ends. One is 2^bits.
+  PBF_HD HatSpan under(const LevelShape& coarse, int l, int axis, int i) const {
+    const int wide = l - level, edge = 1 << wide, middle = i << wide;
+    const int shift = wide + !cells - HatSpan::bits;
+    const bool constant = coarse.nodes[axis] == 1;
+    return {max2(middle - edge + !cells, 0),
+            min2(middle + edge, grid.nodes[axis]),
+            cells - 2 * middle,
+            1 << (HatSpan::bits + cells),
+            constant || shift > 0 ? 0 : -shift,
+            constant ? 31 : max2(shift, 0)};
+  }
+};
+
 /// Sums over cells and nodes are whole numbers, so that no order of summation shows: of clipped C
-/// in these units, of particles in the other. 2^33 particles fit.
+/// in these units, of particles in the other. 2^33 particles fit; into a cell 80 000 at the clip.
 inline constexpr double kExcessUnit = 1.0 / (1 << 30), kCountUnit = 1.0 / (1 << 20);
 
-/// The particles around a node, in kCountUnit, and whether the node is on.
-struct LevelCount {
-  std::int64_t marked = 0;  ///< below 0: off, and of no other meaning
+/// Sums at the nodes of levels from .. to - 1. Its items are those nodes, the coarsest first: they
+/// have most to add, so many threads share them.
+struct LevelSums {
+  LevelHierarchy all;
+  int from, to;
+  LevelSource source;
 
-  PBF_HD static LevelCount of(std::int64_t n, bool on) { return {on ? n : -1}; }
-  PBF_HD bool on() const { return marked >= 0; }
+  PBF_HD int end() const { return all.level[to - 1].first + all.level[to - 1].size(); }
+  PBF_HD int items() const { return end() - all.level[from].first; }
+  PBF_HD int node(int item) const { return end() - 1 - item; }
+
+  /// Groups of items that the same number of threads share.
+  PBF_HD int groups() const { return to - from; }
+  PBF_HD int size(int group) const { return all.level[to - 1 - group].size(); }
+  /// 8, 64, 512, ... terms. many: all that can add up together.
+  PBF_HD int lanes(int group, int many) const {
+    const int wide = to - 1 - group - source.level;
+    return wide == 0 ? 1 : wide == 1 ? 8 : wide == 2 ? 32 : many;
+  }
+
+  /// f(value, weight) for what lies under the hat of a node: the share of the lane-th thread.
+  template <class F>
+  PBF_HD void for_terms(int node, int lane, int of, F&& f) const {
+    const int l = all.of(node);
+    const LevelShape& level = all.level[l];
+    const GridPlace at = level.place(node - level.first);
+    const HatSpan x = source.under(level, l, 0, at[0]), y = source.under(level, l, 1, at[1]),
+                  z = source.under(level, l, 2, at[2]);
+    for_box({{x.first, y.first, z.first}}, {{x.end, y.end, z.end}}, lane, of,
+            [&](int i, int j, int k) {
+              f(source.value[source.grid.at(i, j, k)], y.weight(j) * z.weight(k) * x.weight(i));
+            });
+  }
+  /// Rounded for each term, so that it does not matter who adds it.
+  PBF_HD static std::int64_t term(std::int64_t value, int weight) {
+    return value * weight >> 3 * HatSpan::bits;
+  }
 };
 
 }  // namespace pbf

@@ -1,5 +1,6 @@
 // Levels: what is made with the lists and lasts as long as they do. Who is in which cell, which
-// nodes are on and how strongly they answer. kernels/README.md, "Levels".
+// nodes are on and how strongly they answer, where walls hold the fluid. kernels/README.md,
+// "Levels".
 //
 // Passes with a type Part are shared by several threads where there are many: each adds up a part
 // of the terms, whole numbers or bits, so that it does not matter who adds what.
@@ -29,17 +30,6 @@ PBF_HD void for_particles_of_cell(const Params<Real>& p, const LevelCells& grid,
     }
 }
 
-/// f(cell, x, y, z) for the cells that a node of level 0 is a corner of: the lane-th of eight, and
-/// every of-th behind it.
-template <class F>
-PBF_HD void for_cells_around(const LevelCells& grid, GridPlace node, int lane, int of, F&& f) {
-  for (int n = lane; n < 8; n += of) {
-    const int x = node[0] - 1 + (n & 1), y = node[1] - 1 + (n >> 1 & 1), z = node[2] - 1 + (n >> 2);
-    if (x >= 0 && y >= 0 && z >= 0 && x < grid.cells[0] && y < grid.cells[1] && z < grid.cells[2])
-      f(grid.at(x, y, z), x, y, z);
-  }
-}
-
 /// The cell of each particle, and how many there are in it.
 template <class Real, int D>
 struct LevelHomePass {
@@ -49,6 +39,7 @@ struct LevelHomePass {
   const Vec4<Real>* position;  ///< null where no face is open; those beyond are in no cell
   int* home;                   ///< out; -1: in no cell
   int* count;                  ///< out, of each cell
+  std::int64_t* full;          ///< out: the same in kCountUnit, -1 where it is not half full
 
   static constexpr int lanes = 8;
   using Part = int;
@@ -61,165 +52,92 @@ struct LevelHomePass {
     });
     return inside;
   }
-  PBF_HD void finish(int c, Part inside) const { count[c] = inside; }
-};
-
-/// What is known of the nodes while the lists last. Of each: the particles around it; what it makes
-/// of the sum of C around it, multiplier = answer * sum (0 where it is off); and, as bits, the axes
-/// with a wall that the fluid around it stands against, as far as the nodes that are on reach.
-template <class Real>
-struct LevelNodes {
-  LevelCount* count;
-  Real* answer;
-  int* walls;
-
-  PBF_HD void set(int n, LevelCount around, double stiffness, int against) const {
-    count[n] = around;
-    answer[n] = around.marked > 0
-                    ? Real(stiffness * kExcessUnit / (double(around.marked) * kCountUnit))
-                    : Real(0);
-    walls[n] = around.on() ? against : 0;
+  PBF_HD void finish(int c, Part inside) const {
+    const GridPlace at = grid.place(c);
+    count[c] = inside;
+    full[c] = inside < grid.half(at[0], at[1], at[2]) ? -1 : std::int64_t(inside) << 20;
   }
 };
 
-/// What threads that share a node add up.
+/// What threads add up together.
 struct LevelPart {
-  std::int64_t number = 0;
-  int off = 0, walls = 0;  ///< walls: bits
+  std::int64_t number, bits;
 
   PBF_HD LevelPart& operator+=(const LevelPart& other) {
     number += other.number;
-    off |= other.off;
-    walls |= other.walls;
+    bits |= other.bits;
     return *this;
   }
 };
 
-/// A node of level 0: the particles in the cells around it. Off where one of them is not half full
-/// or beyond an open face: a hat must not reach into the air.
+/// What a node makes of the sum of C around it while the lists last: multiplier = answer * sum. Off
+/// (0) where a cell under its hat is not half full, or an open face: no hat may reach into the air.
 template <class Real>
-struct LevelNodePass {
-  unsigned closed;  ///< Box::walls
-  LevelCells grid;
-  LevelShape level;
-  double stiffness;
-  const int* count;
-  LevelNodes<Real> node;  ///< out
+struct LevelNodePass : LevelSums {
+  unsigned closed;     ///< Box::walls
+  double stiffness;    ///< of level 0; four times as large on each coarser one
+  std::int64_t* full;  ///< out: the particles around it in kCountUnit; -1: off
+  Real* answer;        ///< out
 
-  static constexpr int lanes = 2;
   using Part = LevelPart;
-  PBF_HD Part part(int n, int lane, int of) const {
-    Part sum;
-    for_cells_around(grid, level.place(n), lane, of, [&](int cell, int x, int y, int z) {
-      sum.number += count[cell];
-      sum.off |= count[cell] < grid.half(x, y, z);
+  PBF_HD Part part(int item, int lane, int of) const {
+    Part sum{};
+    for_terms(node(item), lane, of, [&](std::int64_t value, int weight) {
+      sum.number += term(value, weight);
+      sum.bits |= value;  // below 0 where one is
     });
     return sum;
   }
-  PBF_HD void finish(int n, const Part& sum) const {
-    const GridPlace at = level.place(n);
-    bool on = !sum.off;
-    int walls = 0;
-    for (int k = 0; k < 3; ++k) {
-      if (level.nodes[k] == 1) continue;  // the axis that a plane has not
-      const bool low = at[k] == 0, high = at[k] == grid.cells[k];
-      if (low || high) walls |= 1 << k;
-      on = on && !(low && !(closed & (1u << (2 * k)))) && !(high && !(closed & (2u << (2 * k))));
-    }
-    node.set(n, LevelCount::of(sum.number << 20, on), stiffness, walls);
+  PBF_HD void finish(int item, const Part& sum) const {
+    const int n = node(item), l = all.of(n);
+    const GridPlace at = all.level[l].place(n - all.level[l].first);
+    bool on = sum.bits >= 0;
+    for (int k = 0; k < 3; ++k) on = on && !(all.ends(l, k, at[k]) & ~(closed >> 2 * k));
+    double s = stiffness;
+    for (int coarser = 0; coarser < l; ++coarser) s *= 4;
+    full[n] = on ? sum.number : -1;
+    answer[n] = on ? Real(s * kExcessUnit / (double(sum.number) * kCountUnit)) : Real(0);
   }
 };
 
-/// A node of a coarser level: the finer ones around it, weights 1 and 1/2 along each axis; off
-/// where one of them is.
+/// The axes with a wall that the fluid around a cell stands against, as bits: walls under the hats
+/// of its corners, under those of the next coarser level that overlap with these, and so on. Of
+/// nodes that are on.
 template <class Real>
-struct LevelCoarserPass {
-  LevelShape fine, level;
-  double stiffness;
-  LevelNodes<Real> node;  ///< in: fine; out: level
+struct LevelWallsPass {
+  LevelHierarchy all;
+  LevelCells grid;
+  const Real* answer;
+  int* walls;  ///< out
 
   static constexpr int lanes = 8;
   using Part = LevelPart;
-  PBF_HD Part part(int n, int lane, int of) const {
-    Part sum;
-    for_finer_nodes(fine, level, level.place(n), lane, of, [&](int finer, int eighths) {
-      const LevelCount c = node.count[finer];
-      sum.off |= !c.on();
-      sum.number += eighths * c.marked;
-      sum.walls |= node.walls[finer];
-    });
-    return sum;
-  }
-  PBF_HD void finish(int n, const Part& sum) const {
-    node.set(level.first + n, LevelCount::of(sum.number >> 3, !sum.off), stiffness, sum.walls);
-  }
-};
-
-/// The walls of a node are also those of the coarser ones whose hats overlap with its own.
-template <class Real>
-struct LevelWallsPass {
-  LevelShape level, coarse;
-  LevelNodes<Real> node;  ///< in: coarse; in/out: level
-
-  PBF_HD void operator()(int n) const {
-    const GridPlace at = level.place(n);
-    int low[3], high[3], walls = node.walls[level.first + n];
-    for (int k = 0; k < 3; ++k) {
-      const bool halved = coarse.from[k] == Coarsened::halved;
-      low[k] = halved ? max2((at[k] - 1) / 2, 0) : 0;
-      high[k] = halved ? min2(at[k] / 2 + 1, coarse.nodes[k] - 1) : 0;
+  PBF_HD Part part(int c, int lane, int of) const {
+    Part found{};
+    GridPlace low = grid.place(c), end = low;
+    for (int k = 0; k < 3; ++k) end.k[k] += 1 + (all.level[0].nodes[k] > 1);
+    for (int l = 0; l < all.count; ++l) {
+      const LevelShape& level = all.level[l];
+      int within = 0;  // walls that its nodes from `low` on may know
+      for (int k = 0; k < 3; ++k) {
+        if (l > 0) {
+          low.k[k] = level.nodes[k] == 1 ? 0 : (low[k] - 1) / 2;
+          end.k[k] = min2((end[k] - 1) / 2 + 2, level.nodes[k]);
+        }
+        within |= at_wall(l, k, low[k]) | at_wall(l, k, end[k] - 1);
+      }
+      if (within & ~found.bits)
+        for_box(low, end, lane, of, [&](int x, int y, int z) {
+          if (answer[level.at(x, y, z)] != Real(0))
+            found.bits |= at_wall(l, 0, x) | at_wall(l, 1, y) | at_wall(l, 2, z);
+        });
     }
-    for (int z = low[2]; z <= high[2]; ++z)
-      for (int y = low[1]; y <= high[1]; ++y)
-        for (int x = low[0]; x <= high[0]; ++x) walls |= node.walls[coarse.at(x, y, z)];
-    node.walls[level.first + n] = walls;
+    return found;
   }
-};
+  PBF_HD void finish(int c, const Part& found) const { walls[c] = int(found.bits); }
 
-/// Steps over levels that are small: from `first` down to the coarsest and up again, each made of
-/// the one before.
-struct LevelSteps {
-  LevelHierarchy all;
-  int first;
-
-  PBF_HD int down() const { return all.count - first; }
-  PBF_HD int steps() const { return 2 * down(); }
-  /// Steps that threads share.
-  PBF_HD bool shared(int step) const { return step < down(); }
-  PBF_HD int level_of(int step) const {
-    return shared(step) ? first + step : all.count - 1 - (step - down());
-  }
-  PBF_HD int size(int step) const { return all.level[level_of(step)].size(); }
-  /// The next coarser one; of the coarsest itself.
-  PBF_HD const LevelShape& coarser_than(int k) const {
-    return all.level[k + 1 < all.count ? k + 1 : k];
-  }
-};
-
-/// What is known of the nodes of those levels.
-template <class Real>
-struct LevelNodeChain : LevelSteps {
-  double stiffness;  ///< of level 0; four times as large on each coarser one
-  LevelNodes<Real> node;
-
-  PBF_HD LevelCoarserPass<Real> coarser(int k) const {
-    double s = stiffness;
-    for (int l = 0; l < k; ++l) s *= 4;
-    return {all.level[k - 1], all.level[k], s, node};
-  }
-  PBF_HD LevelWallsPass<Real> walls(int k) const { return {all.level[k], coarser_than(k), node}; }
-
-  static constexpr int lanes = 32;
-  using Part = LevelPart;
-  PBF_HD Part part(int step, int n, int lane, int of) const {
-    return coarser(level_of(step)).part(n, lane, of);
-  }
-  PBF_HD void finish(int step, int n, const Part& sum) const {
-    coarser(level_of(step)).finish(n, sum);
-  }
-  PBF_HD void operator()(int step, int n) const {
-    if (level_of(step) + 1 < all.count) walls(level_of(step))(n);
-  }
+ private:
+  PBF_HD int at_wall(int l, int axis, int i) const { return (all.ends(l, axis, i) != 0) << axis; }
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -42,147 +42,75 @@ struct LevelSumPass {
   }
 };
 
-/// A multiplier that only pushes.
+/// The sums around the nodes that are on, and the multipliers that follow: they only push.
 template <class Real>
-PBF_HD Real level_multiplier(Real answer, std::int64_t sum) {
-  return sum > 0 ? answer * Real(sum) : Real(0);
-}
-
-/// The sums around the nodes of level 0 that are on.
-template <class Real>
-struct LevelNodeSumPass {
-  LevelCells grid;
-  LevelShape level;
+struct LevelMultiplierPass : LevelSums {
   const Real* answer;
-  const std::int64_t* cell;
   std::int64_t* sum;  ///< out
-
-  PBF_HD void operator()(int n) const {
-    std::int64_t s = 0;
-    if (answer[n] != Real(0))
-      for_cells_around(grid, level.place(n), 0, 1, [&](int c, int, int, int) { s += cell[c]; });
-    sum[n] = s;
-  }
-};
-
-/// The same of a coarser level, and the multipliers that follow from it alone.
-template <class Real>
-struct LevelCoarserSumPass {
-  LevelShape fine, level;
-  const Real* answer;
-  std::int64_t* sum;  ///< in: fine; out: level
   Real* multiplier;   ///< out, h^2
 
-  static constexpr int lanes = 8;
   using Part = std::int64_t;
-  PBF_HD Part part(int n, int lane, int of) const {
-    Part eight = 0;
-    if (answer[level.first + n] != Real(0))
-      for_finer_nodes(fine, level, level.place(n), lane, of,
-                      [&](int finer, int eighths) { eight += eighths * sum[finer]; });
-    return eight;
+  PBF_HD Part part(int item, int lane, int of) const {
+    Part sum_here = 0;
+    if (answer[node(item)] != Real(0))
+      for_terms(node(item), lane, of,
+                [&](std::int64_t value, int weight) { sum_here += term(value, weight); });
+    return sum_here;
   }
-  PBF_HD void finish(int n, Part eight) const {
-    const int at = level.first + n;
-    const std::int64_t s = eight >> 3;
-    sum[at] = s;
-    multiplier[at] = level_multiplier(answer[at], s);
+  PBF_HD void finish(int item, Part sum_here) const {
+    const int n = node(item);
+    sum[n] = sum_here;
+    multiplier[n] = sum_here > 0 ? answer[n] * Real(sum_here) : Real(0);
   }
 };
 
-/// Levels that are small, one after the other.
+/// The displacement that the particles of a cell share: -gamma times the gradient, in its middle,
+/// of the multipliers of all levels, each linear between its nodes. Along an axis without a wall
+/// that could take it, the fluid must not get momentum: there cells with fewer particles move them
+/// farther, so that what a hat does adds up to 0.
 template <class Real>
-struct LevelSumChain : LevelSteps {
-  const Real* answer;
-  std::int64_t* sum;
-  Real* multiplier;
-
-  PBF_HD LevelCoarserSumPass<Real> coarser(int k) const {
-    return {all.level[k - 1], all.level[k], answer, sum, multiplier};
-  }
-
-  PBF_HD int steps() const { return down(); }
-  static constexpr int lanes = 32;
-  using Part = std::int64_t;
-  PBF_HD Part part(int step, int n, int lane, int of) const {
-    return coarser(level_of(step)).part(n, lane, of);
-  }
-  PBF_HD void finish(int step, int n, Part eight) const {
-    coarser(level_of(step)).finish(n, eight);
-  }
-  PBF_HD void operator()(int, int) const {}
-};
-
-/// The multiplier of a node of level 0: its own, and what every coarser level says there.
-template <class Real>
-struct LevelMultiplierPass {
-  LevelHierarchy all;
-  const Real* answer;
-  const std::int64_t* sum;
-  Real* multiplier;  ///< in: of the coarser levels; out: of level 0, h^2
-
-  PBF_HD void operator()(int n) const {
-    Real k = level_multiplier(answer[n], sum[n]);
-    if (answer[n] != Real(0))  // off: beyond the hats of all levels
-      for (int l = 1; l < all.count; ++l) k += interpolated(l, all.level[0].place(n));
-    multiplier[n] = k;
-  }
-
- private:
-  /// Linearly between the nodes of level l, where the node `at` of level 0 is.
-  PBF_HD Real interpolated(int l, GridPlace at) const {
-    const LevelShape& level = all.level[l];
-    int low[3];
-    Real share[3];  // of the node behind
-    for (int k = 0; k < 3; ++k) {
-      const bool one = level.nodes[k] == 1;
-      low[k] = one ? 0 : at[k] >> l;
-      share[k] = one ? Real(0) : Real(at[k] - (low[k] << l)) / Real(1 << l);
-    }
-    Real k(0);
-    for (int m = 0; m < 8; ++m) {
-      Real weight(1);
-      for (int a = 0; a < 3; ++a) weight *= m >> a & 1 ? share[a] : Real(1) - share[a];
-      if (weight != Real(0))
-        k += weight *
-             multiplier[level.at(low[0] + (m & 1), low[1] + (m >> 1 & 1), low[2] + (m >> 2))];
-    }
-    return k;
-  }
-};
-
-/// The displacement that the particles of a cell share: -gamma times the gradient of the multiplier
-/// in its middle. Along an axis without a wall that could take it, the fluid must not get momentum:
-/// there cells with fewer particles move them farther, so that what a hat does adds up to 0.
-template <class Real, int D>
 struct LevelMovePass {
+  LevelHierarchy all;
   LevelCells grid;
-  LevelShape level;
   Real gamma;
   const Real* multiplier;
-  const int* walls;  ///< of nodes
-  const int* count;  ///< of cells
-  Vec4<Real>* move;  ///< out, h
+  const int *walls, *count;  ///< of cells
+  Vec4<Real>* move;          ///< out, h
 
   PBF_HD void operator()(int c) const {
     const GridPlace at = grid.place(c);
-    Real sum[3] = {};
-    int against = 0;
-    for (int n = 0; n < 8; ++n) {
-      const int up[3] = {n & 1, n >> 1 & 1, n >> 2};
-      if (D == 2 && up[1]) continue;
-      const int node = level.at(at[0] + up[0], at[1] + up[1], at[2] + up[2]);
-      const Real k = multiplier[node];
-      for (int a = 0; a < 3; ++a) sum[a] += up[a] ? k : -k;
-      against |= walls[node];
-    }
+    Vec3<Real> slope{};
+    for (int l = 0; l < all.count; ++l) slope = slope + slope_of(l, at);
+    Real to[3] = {slope.x, slope.y, slope.z};
     for (int a = 0; a < 3; ++a) {
-      if (D == 2 && a == 1) sum[a] = Real(0);
-      sum[a] *= -gamma * Real(1 / ((D == 2 ? 2 : 4) * grid.length(a, at[a])));
-      if (!(against >> a & 1) && count[c] > 0)
-        sum[a] *= Real(2 * grid.half(at[0], at[1], at[2]) / count[c]);
+      to[a] *= -gamma * Real(1 / grid.length(a, at[a]));
+      if (!(walls[c] >> a & 1) && count[c] > 0)
+        to[a] *= Real(2 * grid.half(at[0], at[1], at[2]) / count[c]);
     }
-    move[c] = {sum[0], sum[1], sum[2], Real(0)};
+    move[c] = {to[0], to[1], to[2], Real(0)};
+  }
+
+ private:
+  PBF_HD static Real between(Real a, Real b, Real share) { return a + share * (b - a); }
+  /// Of level l, per cell.
+  PBF_HD Vec3<Real> slope_of(int l, GridPlace at) const {
+    const LevelShape& level = all.level[l];
+    const Real cell = Real(1) / Real(1 << l);
+    const GridPlace low{{at[0] >> l, at[1] >> l, at[2] >> l}};
+    Real share[3];  // of the nodes behind; a single node has itself there
+    for (int k = 0; k < 3; ++k) share[k] = (Real(at[k] - (low[k] << l)) + Real(0.5)) * cell;
+    const int x = level.nodes[0] > 1 ? 1 : 0, y = level.nodes[1] > 1 ? level.nodes[0] : 0;
+    const Real* k = multiplier + level.at(low[0], low[1], low[2]);
+    Real value[2], along_x[2], along_y[2];
+    for (int z = 0; z < 2; ++z) {
+      const Real a = k[0], b = k[x], c = k[y], d = k[y + x];
+      along_x[z] = between(b - a, d - c, share[1]);
+      along_y[z] = between(c - a, d - b, share[0]);
+      value[z] = between(between(a, b, share[0]), between(c, d, share[0]), share[1]);
+      if (level.nodes[2] > 1) k += level.nodes[0] * level.nodes[1];
+    }
+    return cell * Vec3<Real>{between(along_x[0], along_x[1], share[2]),
+                             between(along_y[0], along_y[1], share[2]), value[1] - value[0]};
   }
 };
 

@@ -70,9 +70,6 @@ LevelPlan plan_levels(const Scene& s, double cell_edge, double vol) {
     level.first += level.size();
     for (int k = 0; k < 3; ++k) {
       const int intervals = level.nodes[k] - 1;
-      level.from[k] = intervals > 1    ? Coarsened::halved
-                      : intervals == 1 ? Coarsened::folded
-                                       : Coarsened::kept;
       level.nodes[k] = intervals > 1 ? (intervals + 1) / 2 + 1 : 1;
     }
   }

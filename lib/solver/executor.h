@@ -25,16 +25,6 @@ namespace archetype {
 struct Pass {
   PBF_HD void operator()(int) const {}
 };
-struct Steps {
-  static constexpr int lanes = 1;
-  using Part = int;
-  PBF_HD int steps() const { return 0; }
-  PBF_HD int size(int) const { return 0; }
-  PBF_HD bool shared(int) const { return false; }
-  PBF_HD Part part(int, int, int, int) const { return 0; }
-  PBF_HD void finish(int, int, Part) const {}
-  PBF_HD void operator()(int, int) const {}
-};
 struct Residual {
   PBF_HD std::uint64_t operator()(int) const { return 0; }
 };
@@ -91,9 +81,6 @@ concept Executor = requires(E e, const E c, int* ints, unsigned long long* count
   e.finish_copy(targets);
   // pass(i) for every particle, sums of all of them.
   e.for_each(1, archetype::Pass{});
-  // The same of every i < pass.size(step), one step after the other: for small sizes. Where the
-  // step is shared, by parts (kernels/pass_level_cells.h).
-  e.in_turn(archetype::Steps{});
   { e.reduce(1, archetype::Measure{}) } -> std::same_as<MeasureSums>;
   { e.count_in_bins(1, 1, archetype::Bin{}) } -> std::convertible_to<std::vector<std::int64_t>>;
   // body() while the sum of a pass is above a limit.

@@ -76,29 +76,19 @@ class CpuExec {
   }
 
   /// pass(i) for i in 0..n-1. Dynamic pieces: particles at the surface have fewer neighbours, and
-  /// another program may take a core for a while.
+  /// another program may take a core for a while. What threads could share is more work each.
   template <class Pass>
   void for_each(int n, const Pass& pass) {
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (n > kChunk)
-    for (int first = 0; first < n; first += kPiece) {
-      const int last = std::min(n - first, kPiece) + first;
+    constexpr int share = requires { typename Pass::Part; }
+    ? 16 : 1, piece = kPiece / share;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (n > kChunk / share)
+    for (int first = 0; first < n; first += piece) {
+      const int last = std::min(n - first, piece) + first;
       if constexpr (requires { typename Pass::Sum; })
         sum_over_neighbors(simd_, pass, first, last);
       else
         for (int i = first; i < last; ++i) one(pass, i);
     }
-  }
-
-  /// The steps of a pass, one after the other.
-  template <class Pass>
-  void in_turn(const Pass& pass) {
-    for (int step = 0; step < pass.steps(); ++step)
-      for_each(pass.size(step), [&](int i) {
-        if (pass.shared(step))
-          pass.finish(step, i, pass.part(step, i, 0, 1));
-        else
-          pass(step, i);
-      });
   }
 
   /// A measure: its maxima and counts, then the sums in units that these decide.

@@ -99,15 +99,14 @@ class CudaExec {
       if (launch_lanes < space ? 4 : 2, kFourLanes > (n, pass)) return;
       if (launch_lanes < 2, space ? kTwoLanes : 0 > (n, pass)) return;
     }
-    if constexpr (requires { typename Pass::Part; })
+    if constexpr (requires { pass.groups(); }) {
+      int blocks = 0;
+      for (int g = 0; g < pass.groups(); ++g) blocks += team_blocks(pass, g);
+      launch(team_kernel<Pass>, blocks * kTeam, kTeam, 0, pass);
+    } else if constexpr (requires { typename Pass::Part; })
       launch(shared_kernel<Pass>, n * Pass::lanes, kBlock, 0, n, pass);
     else
       launch(apply_kernel<Pass>, n, kBlock, 0, n, pass);
-  }
-
-  template <class Pass>
-  void in_turn(const Pass& pass) {
-    launch(in_turn_kernel<Pass>, kTurnBlock, kTurnBlock, 0, pass);
   }
 
   /// See CpuExec. The maxima stay on the device for the sums, so the host waits once.
@@ -215,23 +214,12 @@ class CudaExec {
   }
 
  private:
-  /// Enough blocks of `block` threads for `threads`; from sm_90 on with programmatic dependent
-  /// launch, which hides most of the time between two kernels.
+  /// Enough blocks of `block` threads for `threads`.
   template <class... P, class... A>
   void launch(void (*kernel)(P...), int threads, int block, std::size_t shared, const A&... args) {
     if (threads == 0) return;
-    cudaLaunchConfig_t config{};
-    config.gridDim = dim3(unsigned((std::int64_t(threads) + block - 1) / block));
-    config.blockDim = dim3(unsigned(block));
-    config.dynamicSmemBytes = shared;
-    config.stream = stream_;
-    cudaLaunchAttribute overlap{};
-    overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
-    overlap.val.programmaticStreamSerializationAllowed = 1;
-    config.attrs = &overlap;
-    config.numAttrs = overlap_ && !after_condition_ ? 1 : 0;
+    start_kernel(stream_, overlap_ && !after_condition_, kernel, threads, block, shared, args...);
     after_condition_ = false;
-    PBF_CUDA_CHECK(cudaLaunchKernelEx(&config, kernel, P(args)...));
   }
   /// Where the scene has at most `most` particles.
   template <int lanes, int most, class Pass>

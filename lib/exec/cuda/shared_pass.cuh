@@ -8,12 +8,12 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// The sum over `lanes` threads side by side, in the first of them.
-template <int lanes, class Part>
-__device__ Part sum_of_lanes(Part mine) {
+/// The sum over `lanes` <= 32 threads side by side, in the first of them.
+template <class Part>
+__device__ __forceinline__ Part sum_of_lanes(Part mine, int lanes) {
   static_assert(std::is_trivially_copyable_v<Part> && sizeof(Part) % 4 == 0);
   const unsigned mine_first = threadIdx.x % 32 / lanes * lanes;
-  const unsigned mask = (lanes == 32 ? ~0u : (1u << lanes % 32) - 1) << mine_first;
+  const unsigned mask = ~0u >> (32 - lanes) << mine_first;
   for (int step = lanes / 2; step > 0; step /= 2) {
     unsigned words[sizeof(Part) / 4];
     memcpy(words, &mine, sizeof(Part));
@@ -26,35 +26,41 @@ __device__ Part sum_of_lanes(Part mine) {
 }
 
 template <class Pass>
-__global__ void __launch_bounds__(kBlock) shared_kernel(int n, Pass pass) {
+__global__ void __launch_bounds__(kBlock) shared_kernel(int n, const __grid_constant__ Pass pass) {
   wait_for_previous();
   constexpr int lanes = Pass::lanes;
   const int thread = blockIdx.x * kBlock + threadIdx.x, i = thread / lanes, lane = thread % lanes;
   typename Pass::Part mine{};
   if (i < n) mine = pass.part(i, lane, lanes);
-  mine = sum_of_lanes<lanes>(mine);
+  mine = sum_of_lanes(mine, lanes);
   if (i < n && lane == 0) pass.finish(i, mine);
 }
 
-/// Small steps one after the other, by one block.
-constexpr int kTurnBlock = 1024;
+/// Groups of items that are shared by 32 threads and fewer, or by a block. A block is of one group.
+constexpr int kTeam = 1024;
 template <class Pass>
-__global__ void __launch_bounds__(kTurnBlock) in_turn_kernel(const __grid_constant__ Pass pass) {
+__host__ __device__ int team_blocks(const Pass& pass, int group) {
+  return int((std::int64_t(pass.size(group)) * pass.lanes(group, kTeam) + kTeam - 1) / kTeam);
+}
+template <class Pass>
+__global__ void __launch_bounds__(kTeam) team_kernel(const __grid_constant__ Pass pass) {
+  using Part = typename Pass::Part;
+  __shared__ Part of_warp[32];
   wait_for_previous();
-  constexpr int lanes = Pass::lanes;
-  const int thread = threadIdx.x;
-  for (int step = 0; step < pass.steps(); ++step) {
-    const int n = pass.size(step);
-    if (pass.shared(step)) {
-      for (int i = thread / lanes; i < n; i += kTurnBlock / lanes) {
-        const auto sum = sum_of_lanes<lanes>(pass.part(step, i, thread % lanes, lanes));
-        if (thread % lanes == 0) pass.finish(step, i, sum);
-      }
-    } else {
-      for (int i = thread; i < n; i += kTurnBlock) pass(step, i);
-    }
+  int group = 0, first = 0, block = blockIdx.x;
+  for (int b; block >= (b = team_blocks(pass, group)); block -= b) first += pass.size(group++);
+  const int lanes = pass.lanes(group, kTeam), lane = threadIdx.x % lanes;
+  const int i = block * (kTeam / lanes) + threadIdx.x / lanes;
+  const bool mine_is_one = i < pass.size(group);
+  Part mine{};
+  if (mine_is_one) mine = pass.part(first + i, lane, lanes);
+  mine = sum_of_lanes(mine, min(lanes, 32));
+  if (lanes > 32) {
+    if (lane % 32 == 0) of_warp[lane / 32] = mine;
     __syncthreads();
+    if (lane < 32) mine = sum_of_lanes(of_warp[lane], 32);
   }
+  if (mine_is_one && lane == 0) pass.finish(first + i, mine);
 }
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -12,15 +12,14 @@
 namespace pbf::inline program_module::field {
 /// Of each particle the cell that it was in when the lists were made.
 inline constexpr FieldInfo level_home{"level home", Type::int32, 1, Rows::particles};
-/// Of each cell: particles, and the sum of C.
+/// Of each cell: particles; sums, of particles while the lists are made, of C in iterations; walls.
 inline constexpr FieldInfo cell_count{"level cell count", Type::int32, 1, Rows::cells};
 inline constexpr FieldInfo cell_sum{"level cell sum", Type::int64, 1, Rows::cells};
-/// Of each node: what LevelNodes names, the sum of C, the multiplier (h^2).
-inline constexpr FieldInfo node_count{"level node count", Type::int64, 1, Rows::nodes};
+inline constexpr FieldInfo cell_walls{"level walls", Type::int32, 1, Rows::cells};
+/// Of each node: the same sums, what it makes of that of C, the multiplier (h^2).
 inline constexpr FieldInfo node_sum{"level node sum", Type::int64, 1, Rows::nodes};
 inline constexpr FieldInfo node_answer{"level answer", Type::real, 1, Rows::nodes};
 inline constexpr FieldInfo multiplier{"level multiplier", Type::real, 1, Rows::nodes};
-inline constexpr FieldInfo node_walls{"level walls", Type::int32, 1, Rows::nodes};
 /// Of each cell, h.
 inline constexpr FieldInfo level_move{"level move", Type::real, 4, Rows::cells};
 }  // namespace pbf::inline program_module::field
@@ -35,14 +34,23 @@ void with_level_move(C& c, F&& f) {
   f(LevelMove<Real>{c.template data<int>(field::level_home), c.vectors(field::level_move)});
 }
 
-/// Levels of up to so many nodes are made together, by one block of a device: its launches take
-/// longer than the work.
-inline constexpr int kLevelsTogether = 64;
+/// Up to so many cells the nodes of all levels ask the cells, as a launch takes longer than the
+/// work; with more of them the nodes from level 2 on ask those of level 1.
+inline constexpr int kCellsForAll = 1 << 15;
 
-inline LevelSteps small_levels(const LevelPlan& l) {
-  int first = 1;
-  while (first < l.all.count && l.all.level[first].size() > kLevelsTogether) ++first;
-  return {l.all, first};
+/// f(LevelSums) until the sums at the nodes of all levels are there.
+template <class C, class F>
+void for_level_sums(C& c, const F& f) {
+  const LevelPlan& l = c.levels;
+  LevelShape cells;
+  std::copy_n(l.grid.cells, 3, cells.nodes);
+  const int first = l.grid.size() > kCellsForAll ? std::min(2, l.all.count) : l.all.count;
+  f(LevelSums{l.all, 0, first, {cells, true, 0, c.template data<std::int64_t>(field::cell_sum)}});
+  if (first < l.all.count)
+    f(LevelSums{l.all,
+                first,
+                l.all.count,
+                {l.all.level[1], false, 1, c.template data<std::int64_t>(field::node_sum)}});
 }
 template <class C>
 const int* homes_beside_open_faces(C& c) {
@@ -57,32 +65,31 @@ struct LevelCellsAndNodes {
             {{&field::position}, {&field::bin_start}},
             {{{&field::level_home}, Written::scalar, "level cell"},
              hidden({&field::cell_count}),
-             hidden({&field::node_count}),
-             hidden({&field::node_answer}),
-             hidden({&field::node_walls})}};
+             hidden({&field::cell_sum}),
+             hidden({&field::cell_walls}),
+             hidden({&field::node_sum}),
+             hidden({&field::node_answer})}};
   }
   template <class C>
   static void launch(C& c) {
     using Real = typename C::Real;
     const LevelPlan& l = c.levels;
-    int* count = c.template data<int>(field::cell_count);
-    const LevelNodeChain<Real> chain{
-        small_levels(l),
-        l.beta * l.grid.edge * l.grid.edge,
-        {c.template data<LevelCount>(field::node_count), c.template data<Real>(field::node_answer),
-         c.template data<int>(field::node_walls)}};
+    auto* answer = c.template data<Real>(field::node_answer);
     with_dimensions(c.p.dimensions, [&](auto d) {
-      c.over(l.grid.size(), LevelHomePass<Real, decltype(d)::value>{
-                                c.p, l.grid, c.template data<int>(field::bin_start),
-                                c.scene.domain.open.empty() ? nullptr : c.position(),
-                                c.template data<int>(field::level_home), count});
+      c.over(l.grid.size(),
+             LevelHomePass<Real, decltype(d)::value>{
+                 c.p, l.grid, c.template data<int>(field::bin_start),
+                 c.scene.domain.open.empty() ? nullptr : c.position(),
+                 c.template data<int>(field::level_home), c.template data<int>(field::cell_count),
+                 c.template data<std::int64_t>(field::cell_sum)});
     });
-    c.over(l.all.level[0].size(), LevelNodePass<Real>{c.p.boundary.walls, l.grid, l.all.level[0],
-                                                      chain.stiffness, count, chain.node});
-    for (int k = 1; k < chain.first; ++k) c.over(l.all.level[k].size(), chain.coarser(k));
-    if (chain.steps() > 0) c.exec.in_turn(chain);
-    for (int k = std::min(chain.first, l.all.count - 1); k-- > 0;)
-      c.over(l.all.level[k].size(), chain.walls(k));
+    for_level_sums(c, [&](const LevelSums& sums) {
+      c.over(sums.items(),
+             LevelNodePass<Real>{sums, c.p.boundary.walls, l.beta * l.grid.edge * l.grid.edge,
+                                 c.template data<std::int64_t>(field::node_sum), answer});
+    });
+    c.over(l.grid.size(),
+           LevelWallsPass<Real>{l.all, l.grid, answer, c.template data<int>(field::cell_walls)});
   }
 };
 
@@ -94,7 +101,7 @@ struct LevelMultipliers {
              {&field::bin_start},
              {&field::level_home},
              {&field::node_answer},
-             {&field::node_walls},
+             {&field::cell_walls},
              {&field::cell_count}},
             {hidden({&field::cell_sum}), hidden({&field::node_sum}), hidden({&field::multiplier}),
              move()}};
@@ -109,27 +116,22 @@ struct LevelMultipliers {
   static void launch(C& c) {
     using Real = typename C::Real;
     const LevelPlan& l = c.levels;
-    auto* cell = c.template data<std::int64_t>(field::cell_sum);
-    const LevelSumChain<Real> chain{small_levels(l), c.template data<Real>(field::node_answer),
-                                    c.template data<std::int64_t>(field::node_sum),
-                                    c.template data<Real>(field::multiplier)};
+    auto* multiplier = c.template data<Real>(field::multiplier);
     with_dimensions(c.p.dimensions, [&](auto d) {
-      constexpr int D = decltype(d)::value;
       c.over(l.grid.size(),
-             LevelSumPass<Real, D>{c.p, l.grid, c.template data<int>(field::bin_start),
-                                   homes_beside_open_faces(c), c.density(), cell});
-      c.over(l.all.level[0].size(),
-             LevelNodeSumPass<Real>{l.grid, l.all.level[0], chain.answer, cell, chain.sum});
-      for (int k = 1; k < chain.first; ++k) c.over(l.all.level[k].size(), chain.coarser(k));
-      if (chain.steps() > 0) c.exec.in_turn(chain);
-      c.over(l.all.level[0].size(),
-             LevelMultiplierPass<Real>{l.all, chain.answer, chain.sum, chain.multiplier});
-      c.over(l.grid.size(),
-             LevelMovePass<Real, D>{l.grid, l.all.level[0], Real(l.gamma), chain.multiplier,
-                                    c.template data<int>(field::node_walls),
-                                    c.template data<int>(field::cell_count),
-                                    c.vectors(field::level_move)});
+             LevelSumPass<Real, decltype(d)::value>{
+                 c.p, l.grid, c.template data<int>(field::bin_start), homes_beside_open_faces(c),
+                 c.density(), c.template data<std::int64_t>(field::cell_sum)});
     });
+    for_level_sums(c, [&](const LevelSums& sums) {
+      c.over(sums.items(),
+             LevelMultiplierPass<Real>{sums, c.template data<Real>(field::node_answer),
+                                       c.template data<std::int64_t>(field::node_sum), multiplier});
+    });
+    c.over(l.grid.size(), LevelMovePass<Real>{l.all, l.grid, Real(l.gamma), multiplier,
+                                              c.template data<int>(field::cell_walls),
+                                              c.template data<int>(field::cell_count),
+                                              c.vectors(field::level_move)});
   }
 };
 
