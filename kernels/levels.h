@@ -77,20 +77,22 @@ PBF_HD void for_box(GridPlace low, GridPlace end, int lane, int of, F&& f) {
   for (int y = low[1] + lane / side_by_side;; y += of / side_by_side) {
     for (; y >= end[1]; y -= end[1] - low[1])
       if (++z >= end[2]) return;
-    for (int x = low[0] + lane % side_by_side; x < end[0]; x += side_by_side) f(x, y, z);
+    for (int x = low[0] + lane % side_by_side; x < end[0]; x += side_by_side)
+      if (f(x, y, z)) return;
   }
 }
 
 /// What lies under a hat along an axis, and its weights.
 struct HatSpan {
-  static constexpr int bits = 6;  ///< behind the point of a weight: exact up to the 64-fold edge
+  static constexpr int bits = 6;  ///< behind the point of a weight: exact up to an edge of 64
 
   int first, end;
-  int offset, top, up, down;
+  int offset, top;
+  unsigned slope;  ///< 2^-24
 
   PBF_HD int weight(int i) const {
     const int away = 2 * i + offset;
-    return top - ((away < 0 ? -away : away) << up >> down);
+    return top - int(unsigned(away < 0 ? -away : away) * slope >> 24);
   }
 };
 
@@ -105,14 +107,9 @@ struct LevelSource {
   /// over cells the sum of those at their two ends. One is 2^bits.
   PBF_HD HatSpan under(const LevelShape& coarse, int l, int axis, int i) const {
     const int wide = l - level, edge = 1 << wide, middle = i << wide;
-    const int shift = wide + !cells - HatSpan::bits;
-    const bool constant = coarse.nodes[axis] == 1;
-    return {max2(middle - edge + !cells, 0),
-            min2(middle + edge, grid.nodes[axis]),
-            cells - 2 * middle,
-            1 << (HatSpan::bits + cells),
-            constant || shift > 0 ? 0 : -shift,
-            constant ? 31 : max2(shift, 0)};
+    return {max2(middle - edge + !cells, 0), min2(middle + edge, grid.nodes[axis]),
+            cells - 2 * middle, 1 << (HatSpan::bits + cells),
+            coarse.nodes[axis] == 1 ? 0u : 1u << (24 + HatSpan::bits) >> (wide + !cells)};
   }
 };
 
@@ -140,7 +137,8 @@ struct LevelSums {
     return wide == 0 ? 1 : wide == 1 ? 8 : wide == 2 ? 32 : many;
   }
 
-  /// f(value, weight) for what lies under the hat of a node: the share of the lane-th thread.
+  /// f(value, weight) for what lies under the hat of a node, until it is true: the share of the
+  /// lane-th thread.
   template <class F>
   PBF_HD void for_terms(int node, int lane, int of, F&& f) const {
     const int l = all.of(node);
@@ -148,10 +146,10 @@ struct LevelSums {
     const GridPlace at = level.place(node - level.first);
     const HatSpan x = source.under(level, l, 0, at[0]), y = source.under(level, l, 1, at[1]),
                   z = source.under(level, l, 2, at[2]);
-    for_box({{x.first, y.first, z.first}}, {{x.end, y.end, z.end}}, lane, of,
-            [&](int i, int j, int k) {
-              f(source.value[source.grid.at(i, j, k)], y.weight(j) * z.weight(k) * x.weight(i));
-            });
+    for_box(
+        {{x.first, y.first, z.first}}, {{x.end, y.end, z.end}}, lane, of, [&](int i, int j, int k) {
+          return f(source.value[source.grid.at(i, j, k)], y.weight(j) * z.weight(k) * x.weight(i));
+        });
   }
   /// Rounded for each term, so that it does not matter who adds it.
   PBF_HD static std::int64_t term(std::int64_t value, int weight) {

@@ -78,13 +78,15 @@ struct LevelNodePass : LevelSums {
   double stiffness;    ///< of level 0; four times as large on each coarser one
   std::int64_t* full;  ///< out: the particles around it in kCountUnit; -1: off
   Real* answer;        ///< out
+  int* walls;          ///< out: axes with a wall under its hat, as bits; none where it is off
 
   using Part = LevelPart;
   PBF_HD Part part(int item, int lane, int of) const {
     Part sum{};
     for_terms(node(item), lane, of, [&](std::int64_t value, int weight) {
       sum.number += term(value, weight);
-      sum.bits |= value;  // below 0 where one is
+      sum.bits |= value;
+      return value < 0;  // off, whatever else is there
     });
     return sum;
   }
@@ -92,52 +94,53 @@ struct LevelNodePass : LevelSums {
     const int n = node(item), l = all.of(n);
     const GridPlace at = all.level[l].place(n - all.level[l].first);
     bool on = sum.bits >= 0;
-    for (int k = 0; k < 3; ++k) on = on && !(all.ends(l, k, at[k]) & ~(closed >> 2 * k));
+    int against = 0;
+    for (int k = 0; k < 3; ++k) {
+      const unsigned ends = all.ends(l, k, at[k]);
+      on = on && !(ends & ~(closed >> 2 * k));
+      against |= (ends != 0) << k;
+    }
     double s = stiffness;
     for (int coarser = 0; coarser < l; ++coarser) s *= 4;
     full[n] = on ? sum.number : -1;
     answer[n] = on ? Real(s * kExcessUnit / (double(sum.number) * kCountUnit)) : Real(0);
+    walls[n] = on ? against : 0;
   }
 };
 
-/// The axes with a wall that the fluid around a cell stands against, as bits: walls under the hats
-/// of its corners, under those of the next coarser level that overlap with these, and so on. Of
-/// nodes that are on.
-template <class Real>
+/// The axes with a wall that the fluid around a cell stands against: those of its corners, those of
+/// the next coarser nodes whose hats overlap with the corners', and so on.
 struct LevelWallsPass {
   LevelHierarchy all;
   LevelCells grid;
-  const Real* answer;
-  int* walls;  ///< out
+  const int* count;  ///< of each cell: an empty one needs no walls
+  const int* node;   ///< the walls of each
+  int* walls;        ///< out
 
   static constexpr int lanes = 8;
   using Part = LevelPart;
   PBF_HD Part part(int c, int lane, int of) const {
     Part found{};
+    if (count[c] == 0) return found;
     GridPlace low = grid.place(c), end = low;
-    for (int k = 0; k < 3; ++k) end.k[k] += 1 + (all.level[0].nodes[k] > 1);
+    for (int k = 0; k < 3; ++k) end.k[k] += all.level[0].nodes[k] == 1 ? 1 : 2;
     for (int l = 0; l < all.count; ++l) {
       const LevelShape& level = all.level[l];
-      int within = 0;  // walls that its nodes from `low` on may know
-      for (int k = 0; k < 3; ++k) {
-        if (l > 0) {
-          low.k[k] = level.nodes[k] == 1 ? 0 : (low[k] - 1) / 2;
-          end.k[k] = min2((end[k] - 1) / 2 + 2, level.nodes[k]);
-        }
-        within |= at_wall(l, k, low[k]) | at_wall(l, k, end[k] - 1);
+      for (int k = 0; k < 3 && l > 0; ++k) {
+        low.k[k] = level.nodes[k] == 1 ? 0 : (low[k] - 1) / 2;
+        end.k[k] = min2((end[k] - 1) / 2 + 2, level.nodes[k]);
       }
-      if (within & ~found.bits)
+      unsigned any = 0;
+      for (int k = 0; k < 3; ++k) any |= all.ends(l, k, low[k]) | all.ends(l, k, end[k] - 1);
+      if (any)
         for_box(low, end, lane, of, [&](int x, int y, int z) {
-          if (answer[level.at(x, y, z)] != Real(0))
-            found.bits |= at_wall(l, 0, x) | at_wall(l, 1, y) | at_wall(l, 2, z);
+          found.bits |= node[level.at(x, y, z)];
+          return false;
         });
     }
     return found;
   }
   PBF_HD void finish(int c, const Part& found) const { walls[c] = int(found.bits); }
-
- private:
-  PBF_HD int at_wall(int l, int axis, int i) const { return (all.ends(l, axis, i) != 0) << axis; }
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -53,8 +53,10 @@ struct LevelMultiplierPass : LevelSums {
   PBF_HD Part part(int item, int lane, int of) const {
     Part sum_here = 0;
     if (answer[node(item)] != Real(0))
-      for_terms(node(item), lane, of,
-                [&](std::int64_t value, int weight) { sum_here += term(value, weight); });
+      for_terms(node(item), lane, of, [&](std::int64_t value, int weight) {
+        sum_here += term(value, weight);
+        return false;
+      });
     return sum_here;
   }
   PBF_HD void finish(int item, Part sum_here) const {
@@ -78,14 +80,14 @@ struct LevelMovePass {
   Vec4<Real>* move;          ///< out, h
 
   PBF_HD void operator()(int c) const {
+    if (count[c] == 0) return void(move[c] = {});
     const GridPlace at = grid.place(c);
     Vec3<Real> slope{};
     for (int l = 0; l < all.count; ++l) slope = slope + slope_of(l, at);
     Real to[3] = {slope.x, slope.y, slope.z};
     for (int a = 0; a < 3; ++a) {
       to[a] *= -gamma * Real(1 / grid.length(a, at[a]));
-      if (!(walls[c] >> a & 1) && count[c] > 0)
-        to[a] *= Real(2 * grid.half(at[0], at[1], at[2]) / count[c]);
+      if (!(walls[c] >> a & 1)) to[a] *= Real(2 * grid.half(at[0], at[1], at[2]) / count[c]);
     }
     move[c] = {to[0], to[1], to[2], Real(0)};
   }

@@ -15,9 +15,10 @@ inline constexpr FieldInfo level_home{"level home", Type::int32, 1, Rows::partic
 /// Of each cell: particles; sums, of particles while the lists are made, of C in iterations; walls.
 inline constexpr FieldInfo cell_count{"level cell count", Type::int32, 1, Rows::cells};
 inline constexpr FieldInfo cell_sum{"level cell sum", Type::int64, 1, Rows::cells};
-inline constexpr FieldInfo cell_walls{"level walls", Type::int32, 1, Rows::cells};
-/// Of each node: the same sums, what it makes of that of C, the multiplier (h^2).
+inline constexpr FieldInfo cell_walls{"level cell walls", Type::int32, 1, Rows::cells};
+/// Of each node: the same sums and walls, what it makes of the sum of C, the multiplier (h^2).
 inline constexpr FieldInfo node_sum{"level node sum", Type::int64, 1, Rows::nodes};
+inline constexpr FieldInfo node_walls{"level node walls", Type::int32, 1, Rows::nodes};
 inline constexpr FieldInfo node_answer{"level answer", Type::real, 1, Rows::nodes};
 inline constexpr FieldInfo multiplier{"level multiplier", Type::real, 1, Rows::nodes};
 /// Of each cell, h.
@@ -68,28 +69,30 @@ struct LevelCellsAndNodes {
              hidden({&field::cell_sum}),
              hidden({&field::cell_walls}),
              hidden({&field::node_sum}),
+             hidden({&field::node_walls}),
              hidden({&field::node_answer})}};
   }
   template <class C>
   static void launch(C& c) {
     using Real = typename C::Real;
     const LevelPlan& l = c.levels;
-    auto* answer = c.template data<Real>(field::node_answer);
+    int* walls = c.template data<int>(field::node_walls);
+    int* count = c.template data<int>(field::cell_count);
     with_dimensions(c.p.dimensions, [&](auto d) {
-      c.over(l.grid.size(),
-             LevelHomePass<Real, decltype(d)::value>{
-                 c.p, l.grid, c.template data<int>(field::bin_start),
-                 c.scene.domain.open.empty() ? nullptr : c.position(),
-                 c.template data<int>(field::level_home), c.template data<int>(field::cell_count),
-                 c.template data<std::int64_t>(field::cell_sum)});
+      c.over(l.grid.size(), LevelHomePass<Real, decltype(d)::value>{
+                                c.p, l.grid, c.template data<int>(field::bin_start),
+                                c.scene.domain.open.empty() ? nullptr : c.position(),
+                                c.template data<int>(field::level_home), count,
+                                c.template data<std::int64_t>(field::cell_sum)});
     });
     for_level_sums(c, [&](const LevelSums& sums) {
       c.over(sums.items(),
              LevelNodePass<Real>{sums, c.p.boundary.walls, l.beta * l.grid.edge * l.grid.edge,
-                                 c.template data<std::int64_t>(field::node_sum), answer});
+                                 c.template data<std::int64_t>(field::node_sum),
+                                 c.template data<Real>(field::node_answer), walls});
     });
     c.over(l.grid.size(),
-           LevelWallsPass<Real>{l.all, l.grid, answer, c.template data<int>(field::cell_walls)});
+           LevelWallsPass{l.all, l.grid, count, walls, c.template data<int>(field::cell_walls)});
   }
 };
 
