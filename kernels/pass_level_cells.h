@@ -78,7 +78,7 @@ struct LevelNodePass : LevelSums {
   double stiffness;    ///< of level 0; four times as large on each coarser one
   std::int64_t* full;  ///< out: the particles around it in kCountUnit; -1: off
   Real* answer;        ///< out
-  int* walls;          ///< out: axes with a wall under its hat, as bits; none where it is off
+  int* walls;          ///< out: WallBits of those under its hat; none where it is off
 
   using Part = LevelPart;
   PBF_HD Part part(int item, int lane, int of) const {
@@ -98,7 +98,7 @@ struct LevelNodePass : LevelSums {
     for (int k = 0; k < 3; ++k) {
       const unsigned ends = all.ends(l, k, at[k]);
       on = on && !(ends & ~(closed >> 2 * k));
-      against |= (ends != 0) << k;
+      against |= int(ends) << 2 * k;
     }
     double s = stiffness;
     for (int coarser = 0; coarser < l; ++coarser) s *= 4;
@@ -108,8 +108,8 @@ struct LevelNodePass : LevelSums {
   }
 };
 
-/// The axes with a wall that the fluid around a cell stands against: those of its corners, those of
-/// the next coarser nodes whose hats overlap with the corners', and so on.
+/// The walls that the fluid around a cell stands against, as WallBits: those of its corners, those
+/// of the next coarser nodes whose hats overlap with the corners', and so on.
 struct LevelWallsPass {
   LevelHierarchy all;
   LevelCells grid;

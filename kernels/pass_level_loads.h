@@ -43,9 +43,11 @@ struct LevelLoadPass {
       const GridPlace cell{{x, y, z}};
       const int c = grid.at(x, y, z);
       const unsigned held = unsigned(walls[c]) >> 2 * axis & 3;
-      if (held == 0) return;  // there nothing is left over
       against |= held;
-      particles += (cell[axis] < at[axis] ? 1 : -1) * count[c] / grid.length(axis, cell[axis]);
+      // As in LevelMovePass: nothing is left over where no cell is held.
+      const double moved = held ? count[c] : count[c] > 0 ? 2 * grid.half(x, y, z) : 0;
+      particles += (cell[axis] < at[axis] ? 1 : -1) * moved / grid.length(axis, cell[axis]);
+      return false;
     });
     if (against == 0) return;
     for (int a = 0; a < 3; ++a)

@@ -87,7 +87,7 @@ struct LevelMovePass {
     Real to[3] = {slope.x, slope.y, slope.z};
     for (int a = 0; a < 3; ++a) {
       to[a] *= -gamma * Real(1 / grid.length(a, at[a]));
-      if (!(walls[c] >> a & 1)) to[a] *= Real(2 * grid.half(at[0], at[1], at[2]) / count[c]);
+      if (!(walls[c] >> 2 * a & 3)) to[a] *= Real(2 * grid.half(at[0], at[1], at[2]) / count[c]);
     }
     move[c] = {to[0], to[1], to[2], Real(0)};
   }

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 
-#include "kernels/pass_levels.h"
+#include "kernels/pass_level_loads.h"
 #include "lib/program/as_types.h"
+#include "lib/program/features/loads.h"
 #include "lib/program/levels.h"
 #include "lib/program/pass.h"
 
@@ -138,13 +139,35 @@ struct LevelMultipliers {
   }
 };
 
+/// Behind the multipliers, where loads are asked for.
+struct BookLevels {
+  static PassInfo info() {
+    return {"loads of the levels",
+            "levels",
+            {{&field::multiplier}, {&field::cell_walls}, {&field::cell_count}},
+            {hidden({&field::load_sums})}};
+  }
+  template <class C>
+  static void launch(C& c) {
+    using Real = typename C::Real;
+    if (!(c.p.dt > 0)) return;
+    const LevelPlan& l = c.levels;
+    c.over(l.all.level[0].size(),
+           LevelLoadPass<Real>{l.all, l.grid, l.gamma, c.template data<Real>(field::multiplier),
+                               c.template data<int>(field::cell_walls),
+                               c.template data<int>(field::cell_count), c.p.boundary.extent,
+                               load_book(c)});
+  }
+};
+
 struct Levels {
-  using Passes = PassList<LevelCellsAndNodes, LevelMultipliers>;
+  using Passes = PassList<LevelCellsAndNodes, LevelMultipliers, BookLevels>;
   template <class B>
   static void add(const Scene& s, B& b) {
     if (const char* why = why_no_levels(s)) return b.left_out("levels: grids coarser than h", why);
     b.template lists<LevelCellsAndNodes>();
     b.template iteration<LevelMultipliers>();
+    if (has_loads(s)) b.template iteration<BookLevels>();
   }
 };
 
