@@ -31,7 +31,7 @@ struct LevelShape {
   PBF_HD GridPlace place(int n) const { return place_of(n, nodes); }
 };
 
-/// The finest level, and what its cells hold at rest. Lengths in h.
+/// Cells of the finest level, and what they hold at rest. Lengths in h.
 struct LevelCells {
   int cells[3] = {1, 1, 1};
   double edge = 2;             ///< of a cell
@@ -39,12 +39,13 @@ struct LevelCells {
   double half_full = 32;       ///< particles in half a cell of edge^3 (edge^2) at rest
 
   PBF_HD int size() const { return cells[0] * cells[1] * cells[2]; }
-  PBF_HD int at(int x, int y, int z) const { return (z * cells[1] + y) * cells[0] + x; }
   PBF_HD GridPlace place(int c) const { return place_of(c, cells); }
   PBF_HD double length(int axis, int i) const { return i + 1 == cells[axis] ? last[axis] : edge; }
   /// Particles in half of that cell at rest.
-  PBF_HD double half(int x, int y, int z) const {
-    return half_full * (length(0, x) / edge) * (length(1, y) / edge) * (length(2, z) / edge);
+  PBF_HD double half(GridPlace at) const {
+    double n = half_full;
+    for (int k = 0; k < 3; ++k) n *= length(k, at[k]) / edge;
+    return n;
   }
 };
 
@@ -67,8 +68,8 @@ struct LevelHierarchy {
   }
 };
 
-/// f(x, y, z) for the places from `low` to before `end`: those of the lane-th of `of` threads,
-/// which share rows first.
+/// f(x, y, z) for the places from `low` to before `end`, until it is true: those of the lane-th of
+/// `of` threads, which share rows first.
 template <class F>
 PBF_HD void for_box(GridPlace low, GridPlace end, int lane, int of, F&& f) {
   int side_by_side = 1;

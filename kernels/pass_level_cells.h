@@ -53,9 +53,8 @@ struct LevelHomePass {
     return inside;
   }
   PBF_HD void finish(int c, Part inside) const {
-    const GridPlace at = grid.place(c);
     count[c] = inside;
-    full[c] = inside < grid.half(at[0], at[1], at[2]) ? -1 : std::int64_t(inside) << 20;
+    full[c] = inside < grid.half(grid.place(c)) ? -1 : std::int64_t(inside) << 20;
   }
 };
 
@@ -86,7 +85,7 @@ struct LevelNodePass : LevelSums {
     for_terms(node(item), lane, of, [&](std::int64_t value, int weight) {
       sum.number += term(value, weight);
       sum.bits |= value;
-      return value < 0;  // off, whatever else is there
+      return sum.bits < 0;  // off, whatever else is there
     });
     return sum;
   }
@@ -108,14 +107,19 @@ struct LevelNodePass : LevelSums {
   }
 };
 
-/// The walls that the fluid around a cell stands against, as WallBits: those of its corners, those
-/// of the next coarser nodes whose hats overlap with the corners', and so on.
-struct LevelWallsPass {
+/// What a cell makes of the slope of the multipliers in its middle, per cell: the displacement is
+/// -gamma times their gradient. Along an axis without a wall that could take it, the fluid must not
+/// get momentum: there cells with fewer particles move them farther, so that what a hat does adds
+/// up to 0. The walls are those of the cell's corners, of the next coarser nodes whose hats overlap
+/// with the corners', and so on.
+template <class Real>
+struct LevelFactorPass {
   LevelHierarchy all;
   LevelCells grid;
-  const int* count;  ///< of each cell: an empty one needs no walls
-  const int* node;   ///< the walls of each
-  int* walls;        ///< out
+  double gamma;
+  const int* count;    ///< of each cell
+  const int* walls;    ///< of each node
+  Vec4<Real>* factor;  ///< out, 1/h; 0 where nobody is; w: those walls, as WallBits
 
   static constexpr int lanes = 8;
   using Part = LevelPart;
@@ -134,13 +138,21 @@ struct LevelWallsPass {
       for (int k = 0; k < 3; ++k) any |= all.ends(l, k, low[k]) | all.ends(l, k, end[k] - 1);
       if (any)
         for_box(low, end, lane, of, [&](int x, int y, int z) {
-          found.bits |= node[level.at(x, y, z)];
+          found.bits |= walls[level.at(x, y, z)];
           return false;
         });
     }
     return found;
   }
-  PBF_HD void finish(int c, const Part& found) const { walls[c] = int(found.bits); }
+  PBF_HD void finish(int c, const Part& found) const {
+    const GridPlace at = grid.place(c);
+    Real along[3] = {};
+    for (int k = 0; k < 3 && count[c] > 0; ++k) {
+      const double share = found.bits >> 2 * k & 3 ? 1 : 2 * grid.half(at) / count[c];
+      along[k] = Real(-gamma / grid.length(k, at[k]) * share);
+    }
+    factor[c] = {along[0], along[1], along[2], Real(int(found.bits))};
+  }
 };
 
 }  // namespace pbf::inline PBF_VARIANT

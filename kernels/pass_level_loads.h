@@ -14,9 +14,9 @@ template <class Real>
 struct LevelLoadPass {
   LevelHierarchy all;
   LevelCells grid;
-  double gamma;
   const Real* multiplier;
-  const int *walls, *count;  ///< of cells
+  const Vec4<Real>* factor;  ///< of cells, LevelFactorPass
+  const int* count;          ///< of cells
   Vec3<Real> extent;         ///< h
   LoadBook<Real> loads;      ///< sums is not null
 
@@ -37,27 +37,25 @@ struct LevelLoadPass {
 
  private:
   PBF_HD void push(int n, GridPlace at, GridPlace low, GridPlace end, int axis, double k) const {
-    double particles = 0;  // on the low side less those on the high one, over the edge of the cell
+    double way = 0;  // of all particles around it together
     unsigned against = 0;
     for_box(low, end, 0, 1, [&](int x, int y, int z) {
-      const GridPlace cell{{x, y, z}};
-      const int c = grid.at(x, y, z);
-      const unsigned held = unsigned(walls[c]) >> 2 * axis & 3;
-      against |= held;
-      // As in LevelMovePass: nothing is left over where no cell is held.
-      const double moved = held ? count[c] : count[c] > 0 ? 2 * grid.half(x, y, z) : 0;
-      particles += (cell[axis] < at[axis] ? 1 : -1) * moved / grid.length(axis, cell[axis]);
+      const int c = (z * grid.cells[1] + y) * grid.cells[0] + x;
+      const Real along[3] = {factor[c].x, factor[c].y, factor[c].z};
+      const bool below = (axis == 0 ? x : axis == 1 ? y : z) < at[axis];
+      way += (below ? k : -k) * count[c] * double(along[axis]);
+      against |= unsigned(factor[c].w) >> 2 * axis & 3;
       return false;
     });
-    if (against == 0) return;
+    if (against == 0) return;  // nothing is left over
     for (int a = 0; a < 3; ++a)
-      if (a != axis && all.level[0].nodes[a] > 1) particles /= 2;
+      if (a != axis && all.level[0].nodes[a] > 1) way /= 2;
     const int last = all.level[0].nodes[axis] - 1;
     const bool high = against == 3 ? 2 * at[axis] > last : against == 2;
     const Real edge = Real(grid.edge);
     const Vec3<Real> x{min2(Real(at[0]) * edge, extent.x), min2(Real(at[1]) * edge, extent.y),
                        min2(Real(at[2]) * edge, extent.z)};
-    loads.add(2 * axis + high, n, x, axis, Real(-gamma * k * particles));
+    loads.add(2 * axis + high, n, x, axis, Real(way));
   }
   /// Linearly between the nodes of level l, where the node `at` of level 0 is.
   PBF_HD Real multiplier_at(int l, GridPlace at) const {

@@ -66,30 +66,22 @@ struct LevelMultiplierPass : LevelSums {
   }
 };
 
-/// The displacement that the particles of a cell share: -gamma times the gradient, in its middle,
-/// of the multipliers of all levels, each linear between its nodes. Along an axis without a wall
-/// that could take it, the fluid must not get momentum: there cells with fewer particles move them
-/// farther, so that what a hat does adds up to 0.
+/// The displacement that the particles of a cell share, from the slope in its middle of the
+/// multipliers of all levels, each linear between its nodes.
 template <class Real>
 struct LevelMovePass {
   LevelHierarchy all;
   LevelCells grid;
-  Real gamma;
   const Real* multiplier;
-  const int *walls, *count;  ///< of cells
-  Vec4<Real>* move;          ///< out, h
+  const Vec4<Real>* factor;
+  Vec4<Real>* move;  ///< out, h
 
   PBF_HD void operator()(int c) const {
-    if (count[c] == 0) return void(move[c] = {});
-    const GridPlace at = grid.place(c);
+    const Vec4<Real> f = factor[c];
     Vec3<Real> slope{};
-    for (int l = 0; l < all.count; ++l) slope = slope + slope_of(l, at);
-    Real to[3] = {slope.x, slope.y, slope.z};
-    for (int a = 0; a < 3; ++a) {
-      to[a] *= -gamma * Real(1 / grid.length(a, at[a]));
-      if (!(walls[c] >> 2 * a & 3)) to[a] *= Real(2 * grid.half(at[0], at[1], at[2]) / count[c]);
-    }
-    move[c] = {to[0], to[1], to[2], Real(0)};
+    for (int l = 0; l < all.count && f.x != Real(0); ++l)
+      slope = slope + slope_of(l, grid.place(c));
+    move[c] = {f.x * slope.x, f.y * slope.y, f.z * slope.z, Real(0)};
   }
 
  private:

@@ -37,7 +37,7 @@ __global__ void __launch_bounds__(kBlock) shared_kernel(int n, const __grid_cons
 }
 
 /// Groups of items that are shared by 32 threads and fewer, or by a block. A block is of one group.
-constexpr int kTeam = 1024;
+constexpr int kTeam = 512;
 template <class Pass>
 __host__ __device__ int team_blocks(const Pass& pass, int group) {
   return int((std::int64_t(pass.size(group)) * pass.lanes(group, kTeam) + kTeam - 1) / kTeam);
@@ -45,7 +45,7 @@ __host__ __device__ int team_blocks(const Pass& pass, int group) {
 template <class Pass>
 __global__ void __launch_bounds__(kTeam) team_kernel(const __grid_constant__ Pass pass) {
   using Part = typename Pass::Part;
-  __shared__ Part of_warp[32];
+  __shared__ Part of_warp[kTeam / 32];
   wait_for_previous();
   int group = 0, first = 0, block = blockIdx.x;
   for (int b; block >= (b = team_blocks(pass, group)); block -= b) first += pass.size(group++);
@@ -58,7 +58,7 @@ __global__ void __launch_bounds__(kTeam) team_kernel(const __grid_constant__ Pas
   if (lanes > 32) {
     if (lane % 32 == 0) of_warp[lane / 32] = mine;
     __syncthreads();
-    if (lane < 32) mine = sum_of_lanes(of_warp[lane], 32);
+    if (lane < kTeam / 32) mine = sum_of_lanes(of_warp[lane], kTeam / 32);
   }
   if (mine_is_one && lane == 0) pass.finish(first + i, mine);
 }

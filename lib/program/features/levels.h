@@ -13,13 +13,15 @@
 namespace pbf::inline program_module::field {
 /// Of each particle the cell that it was in when the lists were made.
 inline constexpr FieldInfo level_home{"level home", Type::int32, 1, Rows::particles};
-/// Of each cell: particles; sums, of particles while the lists are made, of C in iterations; walls.
+/// Of each cell: particles; sums, of particles while the lists are made, of C in iterations; what
+/// LevelFactorPass names, 1/h.
 inline constexpr FieldInfo cell_count{"level cell count", Type::int32, 1, Rows::cells};
 inline constexpr FieldInfo cell_sum{"level cell sum", Type::int64, 1, Rows::cells};
-inline constexpr FieldInfo cell_walls{"level cell walls", Type::int32, 1, Rows::cells};
-/// Of each node: the same sums and walls, what it makes of the sum of C, the multiplier (h^2).
+inline constexpr FieldInfo cell_factor{"level factor", Type::real, 4, Rows::cells};
+/// Of each node: the same sums; WallBits of the walls under its hat; what it makes of the sum
+/// of C, the multiplier (h^2).
 inline constexpr FieldInfo node_sum{"level node sum", Type::int64, 1, Rows::nodes};
-inline constexpr FieldInfo node_walls{"level node walls", Type::int32, 1, Rows::nodes};
+inline constexpr FieldInfo node_walls{"level walls", Type::int32, 1, Rows::nodes};
 inline constexpr FieldInfo node_answer{"level answer", Type::real, 1, Rows::nodes};
 inline constexpr FieldInfo multiplier{"level multiplier", Type::real, 1, Rows::nodes};
 /// Of each cell, h.
@@ -68,7 +70,7 @@ struct LevelCellsAndNodes {
             {{{&field::level_home}, Written::scalar, "level cell"},
              hidden({&field::cell_count}),
              hidden({&field::cell_sum}),
-             hidden({&field::cell_walls}),
+             hidden({&field::cell_factor}),
              hidden({&field::node_sum}),
              hidden({&field::node_walls}),
              hidden({&field::node_answer})}};
@@ -92,8 +94,8 @@ struct LevelCellsAndNodes {
                                  c.template data<std::int64_t>(field::node_sum),
                                  c.template data<Real>(field::node_answer), walls});
     });
-    c.over(l.grid.size(),
-           LevelWallsPass{l.all, l.grid, count, walls, c.template data<int>(field::cell_walls)});
+    c.over(l.grid.size(), LevelFactorPass<Real>{l.all, l.grid, l.gamma, count, walls,
+                                                c.vectors(field::cell_factor)});
   }
 };
 
@@ -105,8 +107,7 @@ struct LevelMultipliers {
              {&field::bin_start},
              {&field::level_home},
              {&field::node_answer},
-             {&field::cell_walls},
-             {&field::cell_count}},
+             {&field::cell_factor}},
             {hidden({&field::cell_sum}), hidden({&field::node_sum}), hidden({&field::multiplier}),
              move()}};
   }
@@ -132,10 +133,9 @@ struct LevelMultipliers {
              LevelMultiplierPass<Real>{sums, c.template data<Real>(field::node_answer),
                                        c.template data<std::int64_t>(field::node_sum), multiplier});
     });
-    c.over(l.grid.size(), LevelMovePass<Real>{l.all, l.grid, Real(l.gamma), multiplier,
-                                              c.template data<int>(field::cell_walls),
-                                              c.template data<int>(field::cell_count),
-                                              c.vectors(field::level_move)});
+    c.over(l.grid.size(),
+           LevelMovePass<Real>{l.all, l.grid, multiplier, c.vectors(field::cell_factor),
+                               c.vectors(field::level_move)});
   }
 };
 
@@ -144,7 +144,7 @@ struct BookLevels {
   static PassInfo info() {
     return {"loads of the levels",
             "levels",
-            {{&field::multiplier}, {&field::cell_walls}, {&field::cell_count}},
+            {{&field::multiplier}, {&field::cell_factor}, {&field::cell_count}},
             {hidden({&field::load_sums})}};
   }
   template <class C>
@@ -152,11 +152,11 @@ struct BookLevels {
     using Real = typename C::Real;
     if (!(c.p.dt > 0)) return;
     const LevelPlan& l = c.levels;
-    c.over(l.all.level[0].size(),
-           LevelLoadPass<Real>{l.all, l.grid, l.gamma, c.template data<Real>(field::multiplier),
-                               c.template data<int>(field::cell_walls),
-                               c.template data<int>(field::cell_count), c.p.boundary.extent,
-                               load_book(c)});
+    c.over(
+        l.all.level[0].size(),
+        LevelLoadPass<Real>{l.all, l.grid, c.template data<Real>(field::multiplier),
+                            c.vectors(field::cell_factor), c.template data<int>(field::cell_count),
+                            c.p.boundary.extent, load_book(c)});
   }
 };
 

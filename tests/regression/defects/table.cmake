@@ -89,20 +89,19 @@ seeded_defect(level_last_row_left_out levels kernels/pass_level_cells.h
   [[per_cell * (cell[axis] + 1) : all;]]
   [[per_cell * (cell[axis] + 1) : min2(all, per_cell * (cell[axis] + 1));]] levels)
 seeded_defect(level_node_beside_air levels kernels/pass_level_cells.h
-  [[sum.off |= count[cell] < grid.half(x, y, z);]]
-  [[sum.off |= sum.number < grid.half(x, y, z);]] levels)
+  [[inside < grid.half(grid.place(c)) ? -1]] [[inside == 0 ? -1]] levels)
 seeded_defect(level_open_face_opposite levels kernels/pass_level_cells.h
-  [[!(high && !(closed & (2u << (2 * k))))]] [[!(high && !(closed & (1u << (2 * k))))]] levels)
+  [[~(closed >> 2 * k)]] [[~((closed >> 2 * k & 1) * 3)]] levels)
 seeded_defect(level_coarser_node_on levels kernels/pass_level_cells.h
-  [[sum.off |= !c.on();]] [[sum.off = !c.on();]] levels)
+  [[sum.bits |= value;]] [[sum.bits |= weight < 1 << 18 ? 0 : value;]] levels)
 seeded_defect(level_stiffness levels kernels/pass_level_cells.h
-  [[for (int l = 0; l < k; ++l) s *= 4;]] [[for (int l = 0; l < k; ++l) s *= 2;]] levels)
+  [[coarser < l; ++coarser) s *= 4;]] [[coarser < l; ++coarser) s *= 2;]] levels)
 seeded_defect(level_coarse_weights levels kernels/levels.h
-  [[Tap{node, d == 1 ? 2 : 1}]] [[Tap{node, 2}]] levels)
+  [[* slope >> 24);]] [[* (slope & 0u) >> 24);]] levels)
 seeded_defect(level_walls_not_upward levels kernels/pass_level_cells.h
-  [[sum.walls |= node.walls[finer];]] [[sum.walls = node.walls[finer];]] levels)
+  [[walls[n] = on ? against : 0;]] [[walls[n] = on && l == 0 ? against : 0;]] levels)
 seeded_defect(level_walls_not_downward levels kernels/pass_level_cells.h
-  [[min2(at[k] / 2 + 1, coarse.nodes[k] - 1)]] [[min2(at[k] / 2, coarse.nodes[k] - 1)]] levels)
+  [[min2((end[k] - 1) / 2 + 2, level.nodes[k])]] [[min2((end[k] - 1) / 2 + 1, level.nodes[k])]] levels)
 seeded_defect(level_clip_missing levels kernels/pass_levels.h
   [[max2(min2(rho - Real(1), Real(kLevelClip)), Real(-1))]]
   [[max2(rho - Real(1), Real(-1))]] levels)
@@ -110,20 +109,19 @@ seeded_defect(level_sum_one_sided levels kernels/pass_levels.h
   [[Real(kLevelClip)), Real(-1))]] [[Real(kLevelClip)), Real(0))]] levels)
 seeded_defect(level_beyond_face_counted levels kernels/pass_levels.h
   [[sum += home[i] >= 0 ? excess(density[i]) : 0;]] [[sum += excess(density[i]);]] levels)
-seeded_defect(level_cell_left_out levels kernels/pass_level_cells.h
-  [[for (int n = lane; n < 8; n += of)]] [[for (int n = lane; n < 7; n += of)]] levels)
+seeded_defect(level_cell_left_out levels kernels/levels.h
+  [[x < end[0]; x += side_by_side)]] [[x + 1 < end[0]; x += side_by_side)]] levels)
 seeded_defect(level_multiplier_signed levels kernels/pass_levels.h
-  [[return sum > 0 ? answer]] [[return sum != 0 ? answer]] levels)
+  [[sum_here > 0 ? answer]] [[sum_here != 0 ? answer]] levels)
 seeded_defect(level_from_one_coarse_node levels kernels/pass_levels.h
-  [[share[k] = one ? Real(0) : Real(at[k] - (low[k] << l)) / Real(1 << l);]]
-  [[share[k] = Real(0);]] levels)
-seeded_defect(level_last_cell_as_long levels kernels/pass_levels.h
-  [[grid.length(a, at[a]))]] [[grid.edge)]] levels)
-seeded_defect(level_momentum_missing levels kernels/pass_levels.h
-  [[sum[a] *= Real(2 * grid.half(at[0], at[1], at[2]) / count[c]);]]
-  [[sum[a] *= Real(1);]] levels)
-seeded_defect(level_momentum_at_walls levels kernels/pass_levels.h
-  [[if (!(against >> a & 1) && count[c] > 0)]] [[if (count[c] > 0)]] levels)
+  [[(Real(at[k] - (low[k] << l)) + Real(0.5)) * cell;]]
+  [[l == 0 ? Real(0.5) : Real(0);]] levels)
+seeded_defect(level_last_cell_as_long levels kernels/pass_level_cells.h
+  [[gamma / grid.length(k, at[k])]] [[gamma / grid.edge]] levels)
+seeded_defect(level_momentum_missing levels kernels/pass_level_cells.h
+  [[: 2 * grid.half(at) / count[c];]] [[: 1;]] levels)
+seeded_defect(level_momentum_at_walls levels kernels/pass_level_cells.h
+  [[found.bits >> k & 1 ? 1 : 2]] [[found.bits < 0 ? 1 : 2]] levels)
 seeded_defect(level_displacement_sign delta kernels/pass_delta.h
   [[free = free + coarse(i);]] [[free = free - coarse(i);]] levels)
 

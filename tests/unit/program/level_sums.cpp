@@ -136,7 +136,7 @@ TEST_CASE("a node is off where a finer one under its hat is, from the cells and 
   const unsigned closed = GENERATE(0x3fu, 0x3eu, 0x1fu);  // all, but for the low x or the high z
   std::vector<std::int64_t> cell(std::size_t(plan.cells()), std::int64_t(64) << 20),
       full(std::size_t(plan.nodes()));
-  cell[std::size_t(plan.grid.at(plan.grid.cells[0] - 1, 0, plan.grid.cells[2] / 3))] = -1;
+  cell[std::size_t(cells_of(plan).at(plan.grid.cells[0] - 1, 0, plan.grid.cells[2] / 3))] = -1;
   std::vector<double> answer(full.size());
   std::vector<int> walls(full.size());
   one_or_two_steps(plan, two_steps, cell.data(), full.data(), [&](const LevelSums& sums) {

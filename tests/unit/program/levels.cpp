@@ -77,10 +77,10 @@ TEST_CASE(
   CHECK(bytes_of(plan, "level node sum") == nodes * 8);
   CHECK(bytes_of(plan, "level answer") == nodes * 4);
   CHECK(bytes_of(plan, "level multiplier") == nodes * 4);
-  CHECK(bytes_of(plan, "level cell walls") == cells * 4);
-  CHECK(bytes_of(plan, "level node walls") == nodes * 4);
+  CHECK(bytes_of(plan, "level factor") == cells * 16);
+  CHECK(bytes_of(plan, "level walls") == nodes * 4);
   CHECK(bytes_of(plan_of(tank("on", {"precision=double"})), "level multiplier") == nodes * 8);
-  CHECK(plan.bytes() - plan_of(tank("off")).bytes() == particles * 4 + cells * 32 + nodes * 20);
+  CHECK(plan.bytes() - plan_of(tank("off")).bytes() == particles * 4 + cells * 44 + nodes * 20);
   const std::string text = plan_text(plan, s);
   CHECK(text.find("  level cells ") != std::string::npos);
   CHECK(text.find("  level multipliers ") != std::string::npos);
