@@ -109,11 +109,19 @@ void relieve(Solver& solver, const Scene& scene, const Plan& plan, Log& log) {
 
 /// What was done to the particles of the scene before the start; empty: nothing.
 std::string start_note(const Particles& p, const Scene& scene) {
-  if (p.put_on_margin == 0) return {};
-  return format(
-      "%zu particles were nearer to a wall than solver.wall_margin (%.6g m), by up to "
-      "%.3g m; they start at that distance",
-      p.put_on_margin, scene.solver.wall_margin, p.farthest_put);
+  std::string note;
+  if (p.put_on_margin > 0)
+    note = format(
+        "%zu particles were nearer to a wall than solver.wall_margin (%.6g m), by up to "
+        "%.3g m; they start at that distance",
+        p.put_on_margin, scene.solver.wall_margin, p.farthest_put);
+  for (std::size_t b = 0; b < p.in_obstacles.size(); ++b)
+    if (p.in_obstacles[b] > 0)
+      note += format(
+          "%s%zu particles of bodies[%zu] are in obstacles, or nearer to one than 0.4 "
+          "spacings, and are left out",
+          note.empty() ? "" : "; ", p.in_obstacles[b], b);
+  return note;
 }
 
 /// Everything from the made folder on, so that its log.txt also gets the error that ends it.

@@ -4,9 +4,13 @@
 
 #if defined(__CUDACC__)
 #define PBF_HD __host__ __device__ __forceinline__
+#define PBF_HD_APART __host__ __device__ __noinline__
 #else
 #define PBF_HD inline __attribute__((always_inline))
+#define PBF_HD_APART __attribute__((noinline))
 #endif
+// PBF_HD_APART: large, and only for the few particles at an obstacle. Everything else is inlined
+// into every pass.
 
 // Everything that holds arithmetic on particles lives in this inline namespace. A second
 // compilation under another name (with other floating-point options, say) can then be linked beside

@@ -119,9 +119,10 @@ namespace pbf::inline PBF_VARIANT {
 
 /// One particle's maxima and counts, then its terms. A non-finite particle counts as such and
 /// nowhere else.
-template <class Real, class Lists>
+template <class Real, class Lists, class Boundary>
 struct MeasurePass {
   Params<Real> p;
+  Boundary boundary;
   Lists lists;
   const Vec4<Real>*position, *velocity;
   const Real* density;
@@ -150,7 +151,7 @@ struct MeasurePass {
     }
     s.above_1 = a.compression > 0.01 ? 1 : 0;
     s.above_10 = a.compression > 0.1 ? 1 : 0;
-    s.penetration = p.boundary.penetration(a.x);
+    s.penetration = boundary.penetration(a.x);
     s.outside = p.boundary.beyond(a.x) ? 1 : 0;
     s.neighbors = s.neighbors_max = lists.size(i);
     return s;

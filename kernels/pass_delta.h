@@ -89,10 +89,12 @@ struct DeltaPass {
     Vec3<Real> free = p.sor * (a * move + wall);
     if constexpr (Coarse::on) free = free + coarse(i);
     const Vec3<Real> target = x + free;
-    const Vec3<Real> inside = boundary.path_end(x, target);
+    Vec3<Real> inside;
     if constexpr (Boundary::books) {
       boundary.template book_push<S>(i, x, p.sor * own.w);
-      boundary.book_hold(i, inside, inside - target);
+      inside = boundary.held(i, x, target);
+    } else {
+      inside = boundary.path_end(x, target);
     }
     const Vec3<Real> v = xyz(velocity[i]) + p.inv_dt * (free + (inside - target));
     if (moves_on) {

@@ -7,9 +7,10 @@
 namespace pbf::inline PBF_VARIANT {
 
 /// Density in units of rho0 at the present positions, walls included.
-template <class Real, class Lists, Smoothing S>
+template <class Real, class Lists, Smoothing S, class Boundary>
 struct DensityPass {
   Params<Real> p;
+  Boundary boundary;
   Lists lists;
   const Vec4<Real>* position;
   Real* density;  ///< out
@@ -42,7 +43,7 @@ struct DensityPass {
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
     // 1: the particle itself.
     density[i] = p.vol * density_norm<Real, S>() * (Real(1) + s.shape) +
-                 p.boundary.template term<S>(in_space(x)).density;
+                 boundary.template term<S>(in_space(x)).density;
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
@@ -68,9 +69,10 @@ PBF_HD Real under_relaxation(Real density, const Params<Real>& p) {
 
 /// lambda_i = -C_i / (sum_k |grad_k C_i|^2 + eps^) / under_relaxation(rho_i), in h^2. with_density:
 /// the density is summed in the same loop (fused); otherwise it is read.
-template <class Real, class Lists, Smoothing S, bool with_density>
+template <class Real, class Lists, Smoothing S, bool with_density, class Boundary>
 struct LambdaPass {
   Params<Real> p;
+  Boundary boundary;
   Lists lists;
   const Vec4<Real>* position;
   Vec4<Real>* position_out;    ///< out: the same position with w = lambda
@@ -113,7 +115,7 @@ struct LambdaPass {
     s.gradient = s.gradient + (t2 * root.inverse) * d;
   }
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
-    const BoundaryTerm<Real> wall = p.boundary.template term<S>(in_space(x));
+    const BoundaryTerm<Real> wall = boundary.template term<S>(in_space(x));
     Real rho;
     if constexpr (with_density) {
       rho = p.vol * density_norm<Real, S>() * (Real(1) + s.shape) + wall.density;

@@ -11,28 +11,37 @@ template <class Real>
 struct Moving {
   Vec3<Real> x, v;  ///< h, h/s
   bool fast;        ///< faster than the speed that is watched, before it was limited
-  Vec3<Real> held;  ///< h, by which a wall moved it back
   Real mark = 1;    ///< -1: so fast that it may pass a neighbour (relative_motion.h), else 1
 };
 
 /// Position is clamped to the walls, and the velocity follows what the clamp did: a particle never
 /// enters the constraint solve from behind a wall, also when there are no iterations.
-template <class Real, class Boundary>
-PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
-                            const Boundary& boundary) {
+/// path_end(from, to): of the boundary.
+template <class Real, class End>
+PBF_HD Moving<Real> predicted(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p, End&& path_end) {
   v = mul_add(p.damping, v, p.dt * p.gravity);
   const Real speed_squared = dot(v, v);
   const bool fast = speed_squared > p.speed_squared;
   if (p.limit_speed && fast) v = square_root(p.speed_squared / speed_squared) * v;
   const Vec3<Real> free = mul_add(p.dt, v, x);
-  x = boundary.path_end(x, free);
+  x = path_end(x, free);
   // Only a clamped coordinate changes v: elsewhere x - free is exactly 0.
   const Real mark = speed_squared > p.passing_squared ? Real(-1) : Real(1);
-  return {x, mul_add(p.inv_dt, x - free, v), fast, x - free, mark};
+  return {x, mul_add(p.inv_dt, x - free, v), fast, mark};
 }
-template <class Real>
-PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p) {
-  return predict(x, v, p, p.boundary);
+template <class Real, class Boundary>
+PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
+                            const Boundary& boundary) {
+  return predicted(x, v, p, [&](auto from, auto to) { return boundary.path_end(from, to); });
+}
+/// Of particle i; what the boundary does to it is booked.
+template <class Real, class Boundary>
+PBF_HD Moving<Real> predict_booked(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
+                                   const Boundary& boundary) {
+  if constexpr (Boundary::books)
+    return predicted(x, v, p, [&](auto from, auto to) { return boundary.held(i, from, to); });
+  else
+    return predict(x, v, p, boundary);
 }
 
 /// Writes x* and the velocity that goes with it for particle i at x with velocity v.
@@ -40,8 +49,7 @@ template <class Real, class Boundary>
 PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
                     const Boundary& boundary, Vec4<Real>* position, Vec4<Real>* velocity,
                     StepCounts* counts) {
-  const Moving<Real> m = predict(x, v, p, boundary);
-  if constexpr (Boundary::books) boundary.book_hold(i, m.x, m.held);
+  const Moving<Real> m = predict_booked(i, x, v, p, boundary);
   if (m.fast) count_one(&counts->fast);
   position[i] = with_w(m.x, m.mark);
   velocity[i] = with_w(m.v, Real(0));
@@ -49,13 +57,14 @@ PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
 
 /// The bin of x*. x* itself is computed once more where the particles are gathered, which is
 /// cheaper than writing and reading it.
-template <class Real, int D>
+template <class Real, class Boundary, int D>
 struct PredictPass {
   Params<Real> p;
+  Boundary boundary;
   const Vec4<Real>*position, *velocity;
   int* bin;  ///< out
   PBF_HD void operator()(int i) const {
-    bin[i] = bin_of<D>(predict(xyz(position[i]), xyz(velocity[i]), p).x, p);
+    bin[i] = bin_of<D>(predict(xyz(position[i]), xyz(velocity[i]), p, boundary).x, p);
   }
 };
 
@@ -93,9 +102,8 @@ struct GatherPass {
   int* id_out;
   StepCounts* counts;
   PBF_HD void operator()(int from, int to) const {
-    Moving<Real> m{xyz(position[from]), xyz(velocity[from]), false, {}};
-    if constexpr (moving) m = predict(m.x, m.v, p, boundary);
-    if constexpr (moving && Boundary::books) boundary.book_hold(to, m.x, m.held);
+    Moving<Real> m{xyz(position[from]), xyz(velocity[from]), false};
+    if constexpr (moving) m = predict_booked(to, m.x, m.v, p, boundary);
     if (m.fast) count_one(&counts->fast);
     position_out[to] = with_w(m.x, m.mark);
     velocity_out[to] = with_w(m.v, Real(0));

@@ -21,9 +21,10 @@ PBF_HD XsphOwn<V, dimensions> xsph_own(const Vec4<V>& x, const Vec4<V>& v) {
 /// v_i += c sum_j (m/rho_i + m/rho_j)/2 (v_j - v_i) W_ij, with the density of the last iteration.
 /// What i takes from j, j takes from i: momentum is kept to rounding. It also gives the particle
 /// its bin in the next update, where one follows: that update's `predict`.
-template <class Real, class Lists, Smoothing S>
+template <class Real, class Lists, Smoothing S, class Boundary>
 struct XsphPass {
   Params<Real> p;
+  Boundary boundary;
   Lists lists;
   const Vec4<Real>* position;  ///< w = 1/density
   const Vec4<Real>* velocity;  ///< h/s
@@ -55,7 +56,7 @@ struct XsphPass {
     const Vec3<Real> v =
         in_space(a.v + (Real(0.5) * p.xsph * p.vol * density_norm<Real, S>()) * s.v);
     velocity_out[i] = with_w(v, Real(0));
-    if (bin) bin[i] = bin_of<D>(predict(in_space(a.x), v, p).x, p);
+    if (bin) bin[i] = bin_of<D>(predict(in_space(a.x), v, p, boundary).x, p);
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };

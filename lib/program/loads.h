@@ -1,6 +1,7 @@
 // Which walls of a scene have their loads summed.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -9,15 +10,18 @@
 
 namespace pbf::inline program_module {
 
-inline bool has_loads(const Scene& scene) { return scene.domain.loads; }
+inline bool has_loads(const Scene& scene) {
+  const auto wanted = [](const Obstacle& o) { return o.loads; };
+  return scene.domain.loads || std::any_of(scene.obstacles.begin(), scene.obstacles.end(), wanted);
+}
 
 /// The faces of the domain in the order of WallBit's bits, along the axes of the scene.
 inline constexpr std::array<const char*, 6> kFaceNames = {"x_min", "x_max", "y_min",
                                                           "y_max", "z_min", "z_max"};
 
-/// How many walls have sums; those of open faces stay 0.
+/// How many have sums: the walls, of which those of open faces stay 0, and all obstacles.
 inline std::int64_t load_walls(const Scene& scene) {
-  return has_loads(scene) ? std::int64_t(kFaceNames.size()) : 0;
+  return has_loads(scene) ? std::int64_t(kFaceNames.size() + scene.obstacles.size()) : 0;
 }
 
 }  // namespace pbf::inline program_module

@@ -164,6 +164,7 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   }
   plan.program = make_program(s, plan.shape());
   plan_grid(plan, s);
+  plan.solids = solids_of(s, plan.axes);
   if (has_levels(s))
     plan.levels = plan_levels(in_internal_axes(s, plan.axes), plan.cell_edge, plan.vol);
   plan.memory = plan_memory(s, plan);

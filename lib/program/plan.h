@@ -10,6 +10,7 @@
 #include "lib/base/json.h"
 #include "lib/program/levels.h"
 #include "lib/program/memory.h"
+#include "lib/program/obstacles.h"
 #include "lib/program/program.h"
 #include "lib/scene/scene.h"
 
@@ -58,6 +59,7 @@ struct Plan {
   int repeats = 0;  ///< at most so many, besides the first
   double mass = 0;  ///< kg, of one particle as reported
   LevelPlan levels;
+  std::vector<Solid<double>> solids;  ///< of obstacles, in internal axes; lib/program/obstacles.h
   Program program;
   MemoryPlan memory;
   std::vector<LeftOut> left_out;

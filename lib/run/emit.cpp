@@ -6,6 +6,7 @@
 
 #include "lib/base/error.h"
 #include "lib/io/particle_file.h"
+#include "lib/program/obstacles.h"
 #include "lib/scene/number.h"
 #include "lib/scene/points.h"
 
@@ -36,11 +37,6 @@ void hold_inside(const Scene& scene, std::size_t body, std::size_t first, std::v
   }
 }
 
-bool is_open(const Domain& domain, int axis, bool high) {
-  const std::string face = std::string(1, "xyz"[axis]) + (high ? "_max" : "_min");
-  return std::find(domain.open.begin(), domain.open.end(), face) != domain.open.end();
-}
-
 /// Puts the particles from `first` on that are nearer to a wall than solver.wall_margin on it;
 /// refuses what would have to go farther than half a spacing, for layers would meet there.
 void hold_off_walls(const Scene& s, std::size_t body, std::size_t first, Particles& all) {
@@ -53,8 +49,8 @@ void hold_off_walls(const Scene& s, std::size_t body, std::size_t first, Particl
     for (int a = 0; a < 3; a += s.dimensions == 2 ? 2 : 1) {
       double& x = all.position[i][a];
       const double low = s.domain.min[a] + margin, high = s.domain.max[a] - margin, before = x;
-      if (x < low && !is_open(s.domain, a, false)) x = low;
-      if (x > high && !is_open(s.domain, a, true)) x = high;
+      if (x < low && !s.domain.is_open(a, false)) x = low;
+      if (x > high && !s.domain.is_open(a, true)) x = high;
       way = std::max(way, std::fabs(x - before));
     }
     if (way > 1e-6 * d) ++all.put_on_margin;  // the rest is rounding
@@ -81,6 +77,46 @@ void refuse_velocity_along_y(std::size_t body, const std::vector<Double3>& v) {
                       "give dimensions: 3");
 }
 
+/// What of a start obstacles leave: not what is in them, or nearer than 0.4 spacings to one.
+class FreePlaces {
+ public:
+  explicit FreePlaces(const Scene& scene)
+      : solids_(solids_of(scene)),
+        origin_(scene.origin()),
+        plane_(scene.plane()),
+        h_(scene.h()),
+        least_(least_distance(scene) / scene.h()) {}
+  bool all() const { return solids_.empty(); }
+  bool has(Double3 x) const {
+    if (plane_) x[1] = *plane_;
+    const Vec3<double> at{(x[0] - origin_[0]) / h_, (x[1] - origin_[1]) / h_,
+                          (x[2] - origin_[2]) / h_};
+    return std::none_of(solids_.begin(), solids_.end(), [&](const Solid<double>& s) {
+      return (plane_ ? distance<2>(s, at) : distance<3>(s, at)) < least_;
+    });
+  }
+
+ private:
+  std::vector<Solid<double>> solids_;
+  Double3 origin_;
+  std::optional<double> plane_;
+  double h_, least_;
+};
+
+/// Drops the particles from `first` on that are in obstacles; how many.
+std::size_t drop_inside(const FreePlaces& free, std::size_t first, Particles& all) {
+  std::size_t to = first;
+  for (std::size_t i = first; i < all.size(); ++i) {
+    if (!free.has(all.position[i])) continue;
+    all.position[to] = all.position[i];
+    all.velocity[to++] = all.velocity[i];
+  }
+  const std::size_t dropped = all.size() - to;
+  all.position.resize(to);
+  all.velocity.resize(to);
+  return dropped;
+}
+
 }  // namespace
 
 std::string resolved_path(const Body& body, const std::string& scene_dir) {
@@ -90,8 +126,18 @@ std::string resolved_path(const Body& body, const std::string& scene_dir) {
 
 std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {
   double sum = 0;
+  const FreePlaces free(scene);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
+    if (!free.all()) {
+      const auto count = [&](const Double3& x) { sum += free.has(x); };
+      if (body.shape == Shape::file)
+        for (const Double3& x : read_particle_file(resolved_path(body, scene_dir)).position)
+          count(x);
+      else
+        for_each_point(body, scene.fluid.spacing, scene.plane(), count);
+      continue;
+    }
     const double n = body.shape == Shape::file
                          ? static_cast<double>(count_particle_file(resolved_path(body, scene_dir)))
                          : lattice_count(body, scene.fluid.spacing, scene.plane());
@@ -102,8 +148,9 @@ std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {
   }
   if (sum < 1)
     throw Error(ExitCode::bad_input,
-                "bodies: the scene has 0 particles; add a body or lower "
-                "fluid.spacing");
+                std::string("bodies: the scene has 0 particles") +
+                    (free.all() ? "; add a body or lower fluid.spacing"
+                                : " outside the obstacles; move the bodies or the obstacles"));
   if (sum > kMaxParticles) throw Error(ExitCode::bad_input, "bodies: " + too_many_text(sum));
   return static_cast<std::int64_t>(sum);
 }
@@ -120,6 +167,7 @@ std::vector<SceneFile> scene_files(const Scene& scene, const std::string& scene_
 
 Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
   const auto total = static_cast<std::size_t>(count_particles(scene, scene_dir));
+  const FreePlaces free(scene);
   Particles all;
   all.position.reserve(total);
   all.velocity.reserve(total);
@@ -140,6 +188,7 @@ Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
     for (std::size_t i = first; i < all.size(); ++i)
       for (int a = 0; a < 3; ++a) all.velocity[i][a] += body.velocity[a];
     hold_inside(scene, b, first, all.position);
+    if (!free.all()) all.in_obstacles.push_back(drop_inside(free, first, all));
     hold_off_walls(scene, b, first, all);
   }
   return all;

@@ -2,6 +2,7 @@
 // The table of keys (keys_*.cpp) maps every field below to its YAML key, range and help text.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/boundary/obstacle.h"
 #include "lib/scene/backend.h"
 
 namespace pbf::inline scene_module {
@@ -39,11 +41,31 @@ struct Body {
   bool operator==(const Body&) const = default;
 };
 
+/// A solid in the domain. Which members count depends on `shape`; the loader refuses the others.
+struct Obstacle {
+  std::string name;
+  ObstacleShape shape = ObstacleShape::box;
+  Double3 min{}, max{};        ///< m, box before it is turned
+  Double3 turn_axis{0, 0, 1};  ///< box: the axis through its middle that it is turned about ...
+  double turn_angle = 0;       ///< degrees, ... by the right-hand rule
+  Double3 center{};            ///< m, sphere
+  double radius = 0;           ///< m, sphere, cylinder, capsule
+  Double3 from{}, to{};        ///< m, cylinder, capsule: ends of the axis
+  Double3 point{},
+      normal{0, 0, 1};  ///< m; plane: a point of its face, and the way out of the solid
+  bool loads = false;   ///< the force on it is summed and written down
+  bool operator==(const Obstacle&) const = default;
+};
+
 struct Domain {
   Double3 min{}, max{1, 1, 1};    ///< m
   std::vector<std::string> open;  ///< faces without a wall: x_min x_max y_min y_max z_min z_max
   bool loads = false;             ///< the forces on the walls are summed and written down
   bool operator==(const Domain&) const = default;
+  bool is_open(int axis, bool high) const {
+    const std::string face = std::string(1, "xyz"[axis]) + (high ? "_max" : "_min");
+    return std::find(open.begin(), open.end(), face) != open.end();
+  }
 };
 
 /// Smallest fluid.smoothing_ratio with fluid.mass: auto. Below it the density sum holds little but
@@ -166,6 +188,7 @@ struct Scene {
   Domain domain;
   Fluid fluid;
   std::vector<Body> bodies;
+  std::vector<Obstacle> obstacles;
   Double3 gravity{0, 0, -9.81};  ///< m/s^2
   Time time;
   SolverSettings solver;

@@ -14,6 +14,7 @@
 #include "lib/program/field.h"
 #include "lib/program/loads.h"
 #include "lib/scene/scene.h"
+#include "lib/solver/placed_solids.h"
 #include "lib/solver/state_transfer.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -27,8 +28,10 @@ struct StepContext {
   using Buffer = typename Exec::template Buffer<T>;
 
   StepContext(Exec& executor, Scene along_axes, const Params<Real>& parameters,
-              const LevelPlan& grids)
-      : exec(executor), scene(std::move(along_axes)), p(parameters), levels(grids) {}
+              const LevelPlan& grids, const std::vector<Solid<double>>& solids)
+      : exec(executor), scene(std::move(along_axes)), p(parameters), levels(grids) {
+    place(solids);
+  }
 
   Exec& exec;
   Scene scene;  ///< along the internal axes, with the present step
@@ -88,6 +91,8 @@ struct StepContext {
     return Exec::order_in_place ? other_data<int>(field::id) : data<int>(field::order);
   }
   StepCounts* counts() { return counts_.data(); }
+  /// The obstacles; the walls of it are not set.
+  const Solids<Real>& obstacles() const { return obstacles_; }
   /// One for each wall that has any.
   Load* loads() { return loads_.data(); }
   StateArrays<Real> state() {
@@ -110,7 +115,7 @@ struct StepContext {
   std::size_t bytes() const {
     std::size_t sum = 0;
     for (const Slot& s : slots_) sum += s.rows[0].bytes() + s.rows[1].bytes();
-    return sum;
+    return sum + placed_.bytes();
   }
 
  private:
@@ -129,6 +134,20 @@ struct StepContext {
   std::vector<Slot> slots_;  ///< a dozen: a linear search beats a map
   Buffer<StepCounts> counts_;
   Buffer<Load> loads_;
+  Buffer<PlacedSolid<Real>> placed_;
+  Solids<Real> obstacles_;
+
+  void place(const std::vector<Solid<double>>& solids) {
+    if (solids.empty()) return;
+    std::vector<PlacedSolid<Real>> all;
+    for (const Solid<double>& s : solids) all.push_back(placed(s, p.boundary));
+    placed_.resize(all.size());
+    exec.to_device(all.data(), all.size(), placed_.data());
+    obstacles_.solid = placed_.data();
+    obstacles_.count = int(all.size());
+    obstacles_.flat = p.dimensions == 2;
+    obstacles_.all = around(all);
+  }
 };
 
 template <class Real, class Exec>

@@ -29,7 +29,8 @@ class Stepper {
   Stepper(Exec& exec, const Scene& scene, const Plan& plan, std::vector<Vec4<Real>> position,
           std::vector<Vec4<Real>> velocity, std::vector<int> id)
       : plan_(plan),
-        c_(exec, in_internal_axes(scene, plan.axes), make_params<Real>(scene, plan), plan.levels),
+        c_(exec, in_internal_axes(scene, plan.axes), make_params<Real>(scene, plan), plan.levels,
+           plan.solids),
         residual_limit_(residual_limit(plan.tolerance, int(plan.particles))),
         program_(&plan.program) {
     for (int k = 0; k < scene.solver.iterations; ++k)
@@ -137,9 +138,12 @@ class Stepper {
     c_.exec.begin();
     sum_density();
     const int n = size();
-    auto sums =
-        c_.exec.reduce(n, MeasurePass<Real, Lists>{c_.p, c_.lists, c_.position(), c_.velocity(),
-                                                   c_.density(), c_.counts(), given});
+    MeasureSums sums;
+    with_boundary(c_, [&](const auto& boundary) {
+      sums = c_.exec.reduce(n, MeasurePass<Real, Lists, std::decay_t<decltype(boundary)>>{
+                                   c_.p, boundary, c_.lists, c_.position(), c_.velocity(),
+                                   c_.density(), c_.counts(), given});
+    });
     sums.compression_p99 = compression_percentile(
         c_.exec.count_in_bins(n, kCompressionBins, CompressionBinPass<Real>{c_.density()}),
         n - n / 100, n, sums.compression_max);

@@ -22,20 +22,11 @@ std::vector<WallLoad> wall_loads(const std::vector<Load>& loads, const Scene& sc
                                  const Plan& plan) {
   std::vector<WallLoad> out;
   if (loads.empty()) return out;
-  const Box<double> box = make_params<double>(scene, plan).boundary;
-  const double extent[3] = {box.extent.x, box.extent.y, box.extent.z}, h = scene.h();
   const auto& of = plan.axes.of;
   // A cross product turns its sign where the axes change hands.
-  const double hand = (of[1] - of[0] + 3) % 3 == 1 ? 1 : -1;
-  int internal[3];
-  for (int k = 0; k < 3; ++k) internal[of[k]] = k;
-  for (int face = 0; face < 6; ++face) {
-    const int axis = internal[face / 2], wall = 2 * axis + face % 2;
-    if (!(box.walls >> wall & 1)) continue;
-    const Load& load = loads[std::size_t(wall)];
-    WallLoad l{kFaceNames[std::size_t(face)]};
-    double middle[3];
-    for (int k = 0; k < 3; ++k) middle[k] = k != axis ? extent[k] / 2 : face % 2 ? extent[k] : 0;
+  const double hand = (of[1] - of[0] + 3) % 3 == 1 ? 1 : -1, h = scene.h();
+  const auto add = [&](const std::string& name, const Load& load, const double(&middle)[3]) {
+    WallLoad l{name};
     const double force = load.time > 0 ? plan.mass * h / load.time : 0;
     for (int k = 0; k < 3; ++k) {
       const int b = (k + 1) % 3, c = (k + 2) % 3;
@@ -46,6 +37,20 @@ std::vector<WallLoad> wall_loads(const std::vector<Load>& loads, const Scene& sc
     }
     l.peak = plan.mass * h * load.peak;
     out.push_back(std::move(l));
+  };
+  const Box<double> box = make_params<double>(scene, plan).boundary;
+  const double extent[3] = {box.extent.x, box.extent.y, box.extent.z};
+  for (int face = 0; scene.domain.loads && face < 6; ++face) {
+    const int axis = plan.axes.inside(face / 2), wall = 2 * axis + face % 2;
+    if (!(box.walls >> wall & 1)) continue;
+    double middle[3];
+    for (int k = 0; k < 3; ++k) middle[k] = k != axis ? extent[k] / 2 : face % 2 ? extent[k] : 0;
+    add(kFaceNames[std::size_t(face)], loads[std::size_t(wall)], middle);
+  }
+  for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
+    if (!scene.obstacles[k].loads) continue;
+    const auto& center = plan.solids[k].center;
+    add(scene.obstacles[k].name, loads[kFaceNames.size() + k], {center.x, center.y, center.z});
   }
   return out;
 }

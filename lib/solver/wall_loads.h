@@ -10,11 +10,12 @@
 
 namespace pbf::inline solver_module {
 
-/// What the fluid did to one wall in an interval, along the scene's axes. Without time all is 0.
+/// What the fluid did to a wall or an obstacle in an interval, along the scene's axes. Without time
+/// all is 0.
 struct WallLoad {
-  std::string wall;              ///< "z_min"
+  std::string wall;              ///< "z_min", or the name of an obstacle
   double force[3] = {0, 0, 0};   ///< N, mean
-  double torque[3] = {0, 0, 0};  ///< N m, mean, about the middle of the wall
+  double torque[3] = {0, 0, 0};  ///< N m, mean, about the middle of it
   double peak = 0;               ///< N, largest mean force of an update
 };
 

@@ -144,43 +144,53 @@ void check_all() {
   using R = Rows<Real>;
   static StepCounts counts;  // no row is marked: nothing is counted
   check<Real, D>([](const P& p, const L& lists, R& in, R& out) {
-    return DensityPass<Real, L, S>{p, lists, in.position.data(), out.density.data()};
+    return DensityPass<Real, L, S, Box<Real>>{p, p.boundary, lists, in.position.data(),
+                                              out.density.data()};
   });
   check<Real, D>([](const P& p, const L& lists, R& in, R& out) {
-    return LambdaPass<Real, L, S, true>{p,
-                                        lists,
-                                        in.position.data(),
-                                        out.position.data(),
-                                        out.density.data(),
-                                        in.velocity.data(),
-                                        &counts};
+    return LambdaPass<Real, L, S, true, Box<Real>>{p,
+                                                   p.boundary,
+                                                   lists,
+                                                   in.position.data(),
+                                                   out.position.data(),
+                                                   out.density.data(),
+                                                   in.velocity.data(),
+                                                   &counts};
   });
   check<Real, D>([](const P& p, const L& lists, R& in, R& out) {
-    return LambdaPass<Real, L, S, false>{p,
-                                         lists,
-                                         in.position.data(),
-                                         out.position.data(),
-                                         in.density.data(),
-                                         in.velocity.data(),
-                                         &counts};
+    return LambdaPass<Real, L, S, false, Box<Real>>{p,
+                                                    p.boundary,
+                                                    lists,
+                                                    in.position.data(),
+                                                    out.position.data(),
+                                                    in.density.data(),
+                                                    in.velocity.data(),
+                                                    &counts};
   });
   const auto delta = [](auto tensile) {
     return [](const P& p, const L& lists, R& in, R& out) {
-      return DeltaPass<Real, L, S, decltype(tensile)::value, NoLevelMove<Real>>{p,
-                                                                                lists,
-                                                                                in.position.data(),
-                                                                                in.density.data(),
-                                                                                in.id.data(),
-                                                                                out.position.data(),
-                                                                                out.velocity.data(),
-                                                                                nullptr};
+      return DeltaPass<Real, L, S, decltype(tensile)::value, NoLevelMove<Real>, Box<Real>>{
+          p,
+          p.boundary,
+          lists,
+          in.position.data(),
+          in.density.data(),
+          in.id.data(),
+          out.position.data(),
+          out.velocity.data(),
+          nullptr};
     };
   };
   check<Real, D>(delta(std::false_type{}));
   check<Real, D>(delta(std::true_type{}));
   check<Real, D>([](const P& p, const L& lists, R& in, R& out) {
-    return XsphPass<Real, L, S>{
-        p, lists, in.position.data(), in.velocity.data(), out.velocity.data(), out.bin.data()};
+    return XsphPass<Real, L, S, Box<Real>>{p,
+                                           p.boundary,
+                                           lists,
+                                           in.position.data(),
+                                           in.velocity.data(),
+                                           out.velocity.data(),
+                                           out.bin.data()};
   });
   check<Real, D>([](const P& p, const L& lists, R& in, R& out) {
     return CurlPass<Real, L, D>{p, lists, in.position.data(), in.velocity.data(), out.curl.data()};

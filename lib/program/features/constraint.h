@@ -13,28 +13,34 @@ struct Density {
             "density",
             {{&field::position}, {&field::lists}},
             {{{&field::density}, Written::scalar, "density", "rho0", true}},
-            DensityPass<float, ChunkedLists, Smoothing::consistent>::gathers,
+            DensityPass<float, ChunkedLists, Smoothing::consistent, Box<float>>::gathers,
             0};
   }
   template <class C>
   static void launch(C& c) {
     c.with_smoothing([&](auto s) {
-      c.each(DensityPass<typename C::Real, typename C::Lists, decltype(s)::value>{
-          c.p, c.lists, c.position(), c.density()});
+      with_boundary(c, [&](const auto& boundary) {
+        c.each(DensityPass<typename C::Real, typename C::Lists, decltype(s)::value,
+                           std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists, c.position(),
+                                                             c.density()});
+      });
     });
   }
 };
 
 /// What a pass gathers is the same in every form of it.
 constexpr unsigned kLambdaGathers =
-    LambdaPass<float, ChunkedLists, Smoothing::consistent, true>::gathers;
+    LambdaPass<float, ChunkedLists, Smoothing::consistent, true, Box<float>>::gathers;
 
 template <bool with_density, class C>
 void launch_lambda(C& c) {
   c.with_smoothing([&](auto s) {
-    c.each(LambdaPass<typename C::Real, typename C::Lists, decltype(s)::value, with_density>{
-        c.p, c.lists, c.position(), c.other(field::position), c.density(), c.velocity(),
-        c.counts()});
+    with_boundary(c, [&](const auto& boundary) {
+      c.each(LambdaPass<typename C::Real, typename C::Lists, decltype(s)::value, with_density,
+                        std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists, c.position(),
+                                                          c.other(field::position), c.density(),
+                                                          c.velocity(), c.counts()});
+    });
   });
 }
 inline Written written_lambda() {

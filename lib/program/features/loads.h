@@ -33,18 +33,17 @@ LoadSums* load_sums(C& c) {
 /// Steps without time move nothing that a wall would feel.
 template <class C>
 LoadBook<typename C::Real> load_book(C& c) {
-  return {c.p.dt > 0 ? load_sums(c) : nullptr,
-          typename C::Real(1 / moment_unit(c.p.boundary))};
+  return {c.p.dt > 0 ? load_sums(c) : nullptr, typename C::Real(1 / moment_unit(c.p.boundary))};
 }
 
-/// f(the boundary of the scene): its box, or what books loads besides.
+/// f(the boundary of the scene): its box, or a box with obstacles or loads.
 template <class C, class F>
 void with_boundary(C& c, F&& f) {
   using Real = typename C::Real;
-  if (!has_loads(c.scene)) return f(c.p.boundary);
-  Solids<Real> solids;
+  if (!has_loads(c.scene) && c.obstacles().count == 0) return f(c.p.boundary);
+  Solids<Real> solids = c.obstacles();
   static_cast<Box<Real>&>(solids) = c.p.boundary;
-  solids.loads = load_book(c);
+  if (has_loads(c.scene)) solids.loads = load_book(c);
   f(solids);
 }
 

@@ -80,9 +80,12 @@ struct PredictSort {
   template <class C>
   static void launch(C& c) {
     with_dimensions(c.p.dimensions, [&](auto d) {
-      sort_rows<true>(c, "predict",
-                      PredictPass<typename C::Real, decltype(d)::value>{
-                          c.p, c.position(), c.velocity(), c.template data<int>(field::bin)});
+      with_boundary(c, [&](const auto& boundary) {
+        sort_rows<true>(
+            c, "predict",
+            PredictPass<typename C::Real, std::decay_t<decltype(boundary)>, decltype(d)::value>{
+                c.p, boundary, c.position(), c.velocity(), c.template data<int>(field::bin)});
+      });
     });
   }
 };

@@ -12,14 +12,17 @@ template <class C, class Use>
 void with_xsph(C& c, int* bin, const Use& use) {
   c.flip(field::velocity);
   c.with_smoothing([&](auto s) {
-    use(XsphPass<typename C::Real, typename C::Lists, decltype(s)::value>{
-        c.p, c.lists, c.position(), c.other(field::velocity), c.velocity(), bin});
+    with_boundary(c, [&](const auto& boundary) {
+      use(XsphPass<typename C::Real, typename C::Lists, decltype(s)::value,
+                   std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists, c.position(),
+                                                     c.other(field::velocity), c.velocity(), bin});
+    });
   });
 }
 inline PassInfo xsph_info(PassInfo writes, const char* name) {
   writes.name = name;
   writes.reads = {{&field::position}, {&field::velocity}, {&field::lists}};
-  writes.gathers = XsphPass<float, ChunkedLists, Smoothing::consistent>::gathers;
+  writes.gathers = XsphPass<float, ChunkedLists, Smoothing::consistent, Box<float>>::gathers;
   writes.remedy = "lower viscosity.xsph";
   return writes;
 }

@@ -31,10 +31,14 @@ struct TestRows {
   MeasureSums measure(int threads) const {
     CpuExec exec(threads);
     const StepCounts counts;
-    return exec.reduce(
-        int(density.size()),
-        MeasurePass<Real, Lengths>{
-            p, {length.data()}, position.data(), velocity.data(), density.data(), &counts, given});
+    return exec.reduce(int(density.size()), MeasurePass<Real, Lengths, Box<Real>>{p,
+                                                                                  p.boundary,
+                                                                                  {length.data()},
+                                                                                  position.data(),
+                                                                                  velocity.data(),
+                                                                                  density.data(),
+                                                                                  &counts,
+                                                                                  given});
   }
   TestRows in_order(const std::vector<std::size_t>& order) const {
     TestRows r{{}, {}, {}, {}, p, given};

@@ -1,0 +1,136 @@
+#include "lib/program/obstacles.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pbf::inline program_module {
+namespace {
+
+using Matrix = std::array<Double3, 3>;
+constexpr Matrix kUnturned{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
+Double3 cross(const Double3& a, const Double3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Double3 unit(const Double3& v) {
+  // Scaled first: squares of the largest coordinates would overflow.
+  const double most = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
+  const double size = most * std::hypot(v[0] / most, v[1] / most, v[2] / most);
+  return {v[0] / size, v[1] / size, v[2] / size};
+}
+
+/// Rows: the axes of a body that was turned about `axis`.
+Matrix turned(const Double3& axis, double degrees) {
+  if (degrees == 0) return kUnturned;
+  const Double3 u = unit(axis);
+  const double quarter = degrees / 90;
+  // Quarters exactly, so that faces at right angles stay so.
+  const bool whole = quarter == std::round(quarter);
+  const int turns = int(std::fmod(std::fmod(std::round(quarter), 4) + 4, 4));
+  const double angle = degrees * 3.14159265358979323846 / 180;
+  const double c = whole ? (turns % 2 ? 0 : 1 - turns) : std::cos(angle);
+  const double s = whole ? (turns % 2 ? 2 - turns : 0) : std::sin(angle);
+  Matrix rows;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Double3 e = kUnturned[k], side = cross(u, e);
+    for (std::size_t i = 0; i < 3; ++i) rows[k][i] = c * e[i] + s * side[i] + (1 - c) * u[k] * u[i];
+  }
+  return rows;
+}
+
+/// Rows: a right-handed frame with `axis` as its last one, and along a coordinate where that is.
+Matrix frame_along(const Double3& axis) {
+  const Double3 z = unit(axis);
+  std::size_t least = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (std::fabs(z[k]) < std::fabs(z[least])) least = k;
+  const Double3 y = unit(cross(z, kUnturned[least]));
+  return {cross(y, z), y, z};
+}
+
+/// Where faces of the body, at right angles to its axes, lie on walls or behind them.
+unsigned behind_walls(const Scene& s, const Matrix& rows, const Double3& center,
+                      const Double3& half, unsigned faces) {
+  unsigned through = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (std::fabs(rows[axis][k]) < 1) continue;  // not along coordinate k
+      for (const int side : {-1, 1}) {
+        const unsigned bit = (side < 0 ? 1u : 2u) << (2 * axis);
+        const double along = side * rows[axis][k], at = center[k] + along * half[axis];
+        const double slack = 1e-9 * (s.domain.max[k] - s.domain.min[k]);
+        const bool reached =
+            along < 0 ? at <= s.domain.min[k] + slack : at >= s.domain.max[k] - slack;
+        if ((faces & bit) && reached && !s.domain.is_open(int(k), along > 0)) through |= bit;
+      }
+    }
+  return through;
+}
+
+Solid<double> solid_of(const Obstacle& o, const Scene& s) {
+  Solid<double> out;
+  out.shape = o.shape;
+  Matrix rows = kUnturned;
+  Double3 center{}, half{};
+  unsigned faces = 0;
+  switch (o.shape) {
+    case ObstacleShape::plane:
+      rows = frame_along(o.normal);
+      center = o.point;
+      break;
+    case ObstacleShape::box:
+      rows = turned(o.turn_axis, o.turn_angle);
+      for (std::size_t k = 0; k < 3; ++k) {
+        center[k] = 0.5 * o.min[k] + 0.5 * o.max[k];
+        half[k] = 0.5 * (o.max[k] - o.min[k]);
+      }
+      faces = 63;
+      break;
+    case ObstacleShape::sphere:
+      center = o.center;
+      half[0] = o.radius;
+      break;
+    case ObstacleShape::cylinder:
+    case ObstacleShape::capsule: {
+      Double3 along{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        center[k] = 0.5 * o.from[k] + 0.5 * o.to[k];
+        along[k] = o.to[k] - o.from[k];
+      }
+      rows = frame_along(along);
+      half = {o.radius, 0, 0.5 * std::hypot(along[0], along[1], along[2])};
+      faces = 48;
+      break;
+    }
+  }
+  out.through = behind_walls(s, rows, center, half, faces);
+  const double h = s.h();
+  const Double3 from = s.origin();
+  out.center = {(center[0] - from[0]) / h, (center[1] - from[1]) / h, (center[2] - from[2]) / h};
+  out.half = {half[0] / h, half[1] / h, half[2] / h};
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t k = 0; k < 3; ++k) out.turn[r][k] = rows[r][k];
+  return out;
+}
+
+}  // namespace
+
+std::vector<Solid<double>> solids_of(const Scene& scene) {
+  std::vector<Solid<double>> all;
+  for (const Obstacle& o : scene.obstacles) all.push_back(solid_of(o, scene));
+  return all;
+}
+
+std::vector<Solid<double>> solids_of(const Scene& scene, const Axes& axes) {
+  std::vector<Solid<double>> all = solids_of(scene);
+  for (Solid<double>& s : all) {
+    const Solid<double> along_scene = s;
+    const double center[3] = {s.center.x, s.center.y, s.center.z};
+    s.center = {center[axes.of[0]], center[axes.of[1]], center[axes.of[2]]};
+    for (int r = 0; r < 3; ++r)
+      for (int k = 0; k < 3; ++k) s.turn[r][k] = along_scene.turn[r][axes.of[k]];
+  }
+  return all;
+}
+
+}  // namespace pbf::inline program_module
