@@ -92,7 +92,7 @@ struct DeltaPass {
     Vec3<Real> inside;
     if constexpr (Boundary::books) {
       boundary.template book_push<S>(i, x, p.sor * own.w);
-      inside = boundary.held(i, x, target);
+      inside = boundary.path_end_booked(i, x, target);
     } else {
       inside = boundary.path_end(x, target);
     }

@@ -55,7 +55,9 @@ struct LevelLoadPass {
     const Real edge = Real(grid.edge);
     const Vec3<Real> x{min2(Real(at[0]) * edge, extent.x), min2(Real(at[1]) * edge, extent.y),
                        min2(Real(at[2]) * edge, extent.z)};
-    loads.add(2 * axis + high, n, x, axis, Real(way));
+    const Real w = Real(way), none(0);
+    loads.add(2 * axis + high, n, x,
+              {axis == 0 ? w : none, axis == 1 ? w : none, axis == 2 ? w : none});
   }
   /// Linearly between the nodes of level l, where the node `at` of level 0 is.
   PBF_HD Real multiplier_at(int l, GridPlace at) const {

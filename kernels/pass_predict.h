@@ -39,7 +39,8 @@ template <class Real, class Boundary>
 PBF_HD Moving<Real> predict_booked(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
                                    const Boundary& boundary) {
   if constexpr (Boundary::books)
-    return predicted(x, v, p, [&](auto from, auto to) { return boundary.held(i, from, to); });
+    return predicted(x, v, p,
+                     [&](auto from, auto to) { return boundary.path_end_booked(i, from, to); });
   else
     return predict(x, v, p, boundary);
 }

@@ -34,6 +34,12 @@ struct Box {
   template <Smoothing S>
   PBF_HD BoundaryTerm<Real> term(Vec3<Real> x) const;
 
+  /// Whether a wall may be within range.
+  PBF_HD bool near_wall(Vec3<Real> x) const {
+    const Real one(1);
+    return x.x < one || x.y < one || x.z < one || x.x > extent.x - one || x.y > extent.y - one ||
+           x.z > extent.z - one;
+  }
   /// What each wall contributes to the gradient, along its axis; false where none does.
   template <Smoothing S>
   PBF_HD bool slopes(Vec3<Real> x, Real (&of_wall)[6]) const;

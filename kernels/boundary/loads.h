@@ -42,23 +42,26 @@ struct LoadBook {
   LoadSums* sums = nullptr;  ///< kLoadParts for each wall; null: nothing is booked
   Real moment_scale = 1;     ///< 2^-e, 2^e above the longest edge of the box, h
 
-  /// Wall `wall` has moved particle i, which is at x, by `way` along an axis (h).
-  PBF_HD void add(int wall, int i, Vec3<Real> x, int axis, Real way) const {
+  /// Wall `wall` has moved particle i, which is at x, by `way` (h).
+  PBF_HD void add(int wall, int i, Vec3<Real> x, Vec3<Real> way) const {
 #if defined(__CUDA_ARCH__)
     const int part = i % kLoadParts;  // threads side by side write side by side
 #else
     const int part = (i >> 8) % kLoadParts;  // a thread has some 256 particles in a row
 #endif
     LoadSums& to = sums[wall * kLoadParts + part];
-    const Real arm[3] = {x.x, x.y, x.z};
-    const int b = (axis + 1) % 3, c = (axis + 2) % 3;
-    add_whole(&to.way[axis], units(-way));
-    add_whole(&to.moment[b], units(-way * arm[c] * moment_scale));
-    add_whole(&to.moment[c], units(way * arm[b] * moment_scale));
+    const Vec3<Real> moment = moment_scale * cross(x, way);
+    add_units(&to.way[0], way.x), add_units(&to.moment[0], moment.x);
+    add_units(&to.way[1], way.y), add_units(&to.moment[1], moment.y);
+    add_units(&to.way[2], way.z), add_units(&to.moment[2], moment.z);
   }
 
  private:
   /// Beyond 2^10 h, and what is no number, is for the guard to find.
+  /// The wall gets the opposite.
+  PBF_HD static void add_units(std::int64_t* to, Real x) {
+    if (x != Real(0)) add_whole(to, units(-x));
+  }
   PBF_HD static std::int64_t units(Real x) {
     constexpr Real most(std::int64_t(1) << 46);
     const Real u = max2(min2(x * Real(std::int64_t(1) << 36), most), -most);

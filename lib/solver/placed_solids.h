@@ -52,18 +52,27 @@ PlacedSolid<Real> placed(const Solid<double>& s, const Box<Real>& walls) {
     low[k] = center[k] - down - (round ? half[0] : 0);
     high[k] = center[k] + up + (round ? half[0] : 0);
   }
-  out.low = cast({low[0], low[1], low[2]});
-  out.high = cast({high[0], high[1], high[2]});
+  out.bounds = {cast({low[0], low[1], low[2]}), cast({high[0], high[1], high[2]})};
   return out;
 }
 
-/// The box around all of them.
 template <class Real>
-PlacedSolid<Real> around(const std::vector<PlacedSolid<Real>>& all) {
-  PlacedSolid<Real> out = all.front();
-  for (const PlacedSolid<Real>& s : all) {
-    out.low = {min2(out.low.x, s.low.x), min2(out.low.y, s.low.y), min2(out.low.z, s.low.z)};
-    out.high = {max2(out.high.x, s.high.x), max2(out.high.y, s.high.y), max2(out.high.z, s.high.z)};
+std::vector<PlacedSolid<Real>> placed_solids(const std::vector<Solid<double>>& solids,
+                                             const Box<Real>& walls) {
+  std::vector<PlacedSolid<Real>> all;
+  for (const Solid<double>& s : solids) all.push_back(placed(s, walls));
+  return all;
+}
+
+/// Around all of them.
+template <class Real>
+Bounds<Real> bounds_of(const std::vector<PlacedSolid<Real>>& all) {
+  Bounds<Real> out;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Bounds<Real>& b = all[k].bounds;
+    if (k == 0) out = b;
+    out.low = {min2(out.low.x, b.low.x), min2(out.low.y, b.low.y), min2(out.low.z, b.low.z)};
+    out.high = {max2(out.high.x, b.high.x), max2(out.high.y, b.high.y), max2(out.high.z, b.high.z)};
   }
   return out;
 }

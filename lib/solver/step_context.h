@@ -11,6 +11,7 @@
 #include "kernels/step_counts.h"
 #include "lib/base/release.h"
 #include "lib/program/as_types.h"
+#include "lib/program/features/loads.h"
 #include "lib/program/field.h"
 #include "lib/program/loads.h"
 #include "lib/scene/scene.h"
@@ -28,10 +29,8 @@ struct StepContext {
   using Buffer = typename Exec::template Buffer<T>;
 
   StepContext(Exec& executor, Scene along_axes, const Params<Real>& parameters,
-              const LevelPlan& grids, const std::vector<Solid<double>>& solids)
-      : exec(executor), scene(std::move(along_axes)), p(parameters), levels(grids) {
-    place(solids);
-  }
+              const LevelPlan& grids)
+      : exec(executor), scene(std::move(along_axes)), p(parameters), levels(grids) {}
 
   Exec& exec;
   Scene scene;  ///< along the internal axes, with the present step
@@ -91,8 +90,8 @@ struct StepContext {
     return Exec::order_in_place ? other_data<int>(field::id) : data<int>(field::order);
   }
   StepCounts* counts() { return counts_.data(); }
-  /// The obstacles; the walls of it are not set.
-  const Solids<Real>& obstacles() const { return obstacles_; }
+  /// For with_boundary() (features/loads.h); its walls are not set.
+  const Solids<Real>& solids() const { return solids_; }
   /// One for each wall that has any.
   Load* loads() { return loads_.data(); }
   StateArrays<Real> state() {
@@ -110,12 +109,13 @@ struct StepContext {
 
   /// Makes the arrays of n particles and takes over their state, whose vectors are empty then.
   void make(const std::vector<const FieldInfo*>& fields, std::vector<Vec4<Real>>& first_position,
-            std::vector<Vec4<Real>>& first_velocity, std::vector<int>& first_id);
+            std::vector<Vec4<Real>>& first_velocity, std::vector<int>& first_id,
+            const std::vector<Solid<double>>& obstacles);
 
   std::size_t bytes() const {
     std::size_t sum = 0;
     for (const Slot& s : slots_) sum += s.rows[0].bytes() + s.rows[1].bytes();
-    return sum + placed_.bytes();
+    return sum + placed_.bytes() + around_.bytes();
   }
 
  private:
@@ -135,26 +135,19 @@ struct StepContext {
   Buffer<StepCounts> counts_;
   Buffer<Load> loads_;
   Buffer<PlacedSolid<Real>> placed_;
-  Solids<Real> obstacles_;
+  Buffer<Surroundings<Real>> around_;
+  Solids<Real> solids_;
 
-  void place(const std::vector<Solid<double>>& solids) {
-    if (solids.empty()) return;
-    std::vector<PlacedSolid<Real>> all;
-    for (const Solid<double>& s : solids) all.push_back(placed(s, p.boundary));
-    placed_.resize(all.size());
-    exec.to_device(all.data(), all.size(), placed_.data());
-    obstacles_.solid = placed_.data();
-    obstacles_.count = int(all.size());
-    obstacles_.flat = p.dimensions == 2;
-    obstacles_.all = around(all);
-  }
+  /// The boundary of scenes that have more than walls. Behind make(): it knows where sums are.
+  void make_solids(const std::vector<Solid<double>>& obstacles);
 };
 
 template <class Real, class Exec>
 void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
                                    std::vector<Vec4<Real>>& first_position,
                                    std::vector<Vec4<Real>>& first_velocity,
-                                   std::vector<int>& first_id) {
+                                   std::vector<int>& first_id,
+                                   const std::vector<Solid<double>>& obstacles) {
   const std::size_t n = first_position.size();
   rows_ = capacity_ = int(n);
   const RowCounts sizes{rows_,          std::int64_t(Exec::padding),
@@ -189,12 +182,33 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
     const std::vector<LoadSums> nothing(unloaded.size() * kLoadParts);
     exec.to_device(nothing.data(), nothing.size(), data<LoadSums>(field::load_sums));
   }
+  make_solids(obstacles);
   exec.to_device(first_position.data(), n, position());
   exec.to_device(first_velocity.data(), n, velocity());
   exec.to_device(first_id.data(), n, ids());
   release(first_position);  // before the lists are made
   release(first_velocity);
   release(first_id);
+}
+
+template <class Real, class Exec>
+void StepContext<Real, Exec>::make_solids(const std::vector<Solid<double>>& obstacles) {
+  if (obstacles.empty() && !has_loads(scene)) return;
+  const std::vector<PlacedSolid<Real>> placed = placed_solids(obstacles, p.boundary);
+  placed_.resize(placed.size());
+  exec.to_device(placed.data(), placed.size(), placed_.data());
+  Surroundings<Real> around;
+  around.walls = p.boundary;
+  around.solid = placed_.data();
+  around.solids = int(placed.size());
+  around.flat = p.dimensions == 2;
+  if (has_loads(scene))
+    around.loads = {data<LoadSums>(field::load_sums), Real(1 / moment_unit(p.boundary))};
+  around_.resize(1);
+  exec.to_device(&around, 1, around_.data());
+  solids_.around = around_.data();
+  solids_.obstacles = !placed.empty();
+  solids_.bounds = bounds_of(placed);
 }
 
 /// A copy of the state, from which the updates since can be repeated.

@@ -29,14 +29,13 @@ class Stepper {
   Stepper(Exec& exec, const Scene& scene, const Plan& plan, std::vector<Vec4<Real>> position,
           std::vector<Vec4<Real>> velocity, std::vector<int> id)
       : plan_(plan),
-        c_(exec, in_internal_axes(scene, plan.axes), make_params<Real>(scene, plan), plan.levels,
-           plan.solids),
+        c_(exec, in_internal_axes(scene, plan.axes), make_params<Real>(scene, plan), plan.levels),
         residual_limit_(residual_limit(plan.tolerance, int(plan.particles))),
         program_(&plan.program) {
     for (int k = 0; k < scene.solver.iterations; ++k)
       c_.factors.push_back(
           Real(plan.sor * (plan.sor_factors.empty() ? 1 : plan.sor_factors[std::size_t(k)])));
-    c_.make(plan.program.fields, position, velocity, id);
+    c_.make(plan.program.fields, position, velocity, id, plan.solids);
     find_pairs();
     sum_density();
   }

@@ -29,21 +29,20 @@ template <class C>
 LoadSums* load_sums(C& c) {
   return c.template data<LoadSums>(field::load_sums);
 }
-
-/// Steps without time move nothing that a wall would feel.
 template <class C>
 LoadBook<typename C::Real> load_book(C& c) {
-  return {c.p.dt > 0 ? load_sums(c) : nullptr, typename C::Real(1 / moment_unit(c.p.boundary))};
+  return {load_sums(c), typename C::Real(1 / moment_unit(c.p.boundary))};
 }
 
-/// f(the boundary of the scene): its box, or a box with obstacles or loads.
+/// f(the boundary of the scene): its box, or a box with obstacles or loads. Steps without time move
+/// nothing that a wall would feel.
 template <class C, class F>
 void with_boundary(C& c, F&& f) {
   using Real = typename C::Real;
-  if (!has_loads(c.scene) && c.obstacles().count == 0) return f(c.p.boundary);
-  Solids<Real> solids = c.obstacles();
+  if (!c.solids().around) return f(c.p.boundary);
+  Solids<Real> solids = c.solids();
   static_cast<Box<Real>&>(solids) = c.p.boundary;
-  if (has_loads(c.scene)) solids.loads = load_book(c);
+  solids.booked = has_loads(c.scene) && c.p.dt > 0;
   f(solids);
 }
 

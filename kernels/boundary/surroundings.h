@@ -1,0 +1,135 @@
+// What a scene has around its fluid besides plain walls: obstacles, and loads on all of them. Only
+// the few particles there come here, so these functions are not inlined into the passes.
+#pragma once
+
+#include "kernels/boundary/keep_out.h"
+#include "kernels/boundary/loads.h"
+#include "kernels/boundary/solid_term.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// Edges along the axes, h.
+template <class Real>
+struct Bounds {
+  Vec3<Real> low, high;
+
+  PBF_HD bool has(Vec3<Real> x) const {
+    return x.z <= high.z && x.z >= low.z && x.x <= high.x && x.x >= low.x && x.y <= high.y &&
+           x.y >= low.y;
+  }
+  /// Whether a straight way may come through.
+  PBF_HD bool meets(Vec3<Real> from, Vec3<Real> to) const {
+    return !(from.z > high.z && to.z > high.z) && !(from.z < low.z && to.z < low.z) &&
+           !(from.x > high.x && to.x > high.x) && !(from.x < low.x && to.x < low.x) &&
+           !(from.y > high.y && to.y > high.y) && !(from.y < low.y && to.y < low.y);
+  }
+};
+
+/// An obstacle, and the bounds beyond which it adds nothing to the density.
+template <class Real>
+struct PlacedSolid {
+  Solid<Real> solid;
+  Bounds<Real> bounds;
+};
+
+/// Lies where the particles lie. Loads are those of the walls, 0 to 5 as WallBit's bits, and of the
+/// obstacles from 6 on.
+template <class Real>
+struct Surroundings {
+  Box<Real> walls;
+  const PlacedSolid<Real>* solid = nullptr;
+  int solids = 0;
+  bool flat = false;  ///< two dimensions
+  LoadBook<Real> loads{};
+};
+
+template <class Real>
+PBF_HD PathEnd<Real> keep_out(const Surroundings<Real>& s, int k, Vec3<Real> from, Vec3<Real> to) {
+  const PlacedSolid<Real>& placed = s.solid[k];
+  if (!placed.bounds.meets(from, to)) return {to, false};
+  return s.flat ? keep_out<2>(placed.solid, from, to) : keep_out<3>(placed.solid, from, to);
+}
+
+/// f(k, solid_term) of the obstacles around x.
+template <Smoothing S, class Real, class F>
+PBF_HD void for_solids_at(const Surroundings<Real>& s, Vec3<Real> x, F&& f) {
+  for (int k = 0; k < s.solids; ++k)
+    if (s.solid[k].bounds.has(x)) f(k, solid_term<S>(s.solid[k].solid, x, s.walls.inv_range));
+}
+
+/// Solids share the space with the walls by inclusion and exclusion, and do not overlap each other:
+/// A [1 - (1 - w/A)(1 - sum o_k)].
+template <Smoothing S, class Real>
+PBF_HD_APART BoundaryTerm<Real> surroundings_term(const Surroundings<Real>& s, Vec3<Real> x) {
+  BoundaryTerm<Real> w = s.walls.template term<S>(x);
+  if (!s.walls.adds_density) return w;
+  SolidTerm<Real> o;
+  for_solids_at<S>(s, x, [&](int, const SolidTerm<Real>& one) {
+    o.share += one.share;
+    o.gradient = o.gradient + one.gradient;
+  });
+  const Real free = max2(Real(1) - o.share, Real(0)), left = s.walls.scale - w.density;
+  const Real still = o.share < Real(1) ? left : Real(0);
+  w.gradient = free * w.gradient + still * o.gradient;
+  w.density = s.walls.scale - left * free;
+  return w;
+}
+
+/// Where the way of particle i ends. `booked`: what walls and obstacles do to it becomes load.
+template <class Real>
+PBF_HD_APART Vec3<Real> surroundings_path_end(const Surroundings<Real>& s, bool booked, int i,
+                                              Vec3<Real> from, Vec3<Real> to) {
+  const Vec3<Real> target = to;
+  const auto move_by = [&](int wall, Vec3<Real> way) {
+    if (booked) s.loads.add(wall, i, target, way);
+  };
+  const auto inside_walls = [&](Vec3<Real> x) {
+    const Vec3<Real> in = s.walls.path_end(from, x), way = in - x;
+    if (way.x != Real(0)) move_by(way.x < Real(0) ? 1 : 0, {way.x, Real(0), Real(0)});
+    if (way.y != Real(0)) move_by(way.y < Real(0) ? 3 : 2, {Real(0), way.y, Real(0)});
+    if (way.z != Real(0)) move_by(way.z < Real(0) ? 5 : 4, {Real(0), Real(0), way.z});
+    return in;
+  };
+  to = inside_walls(to);
+  // What slides along one obstacle may come to another, or to a wall. Where there is no way out
+  // after some rounds the particle stays where it was.
+  constexpr int rounds = 3;
+  for (int round = 0; round <= rounds; ++round) {
+    bool moved = false;
+    for (int k = 0; k < s.solids; ++k) {
+      const PathEnd<Real> end = keep_out(s, k, from, to);
+      if (!end.hit) continue;
+      const Vec3<Real> at = round < rounds ? end.x : from;
+      move_by(6 + k, at - to);
+      if (round == rounds) return from;
+      to = inside_walls(at);
+      moved = true;
+    }
+    if (!moved) break;
+  }
+  return to;
+}
+
+/// Particle i, at x, was moved by factor * the gradient of surroundings_term(): books it.
+template <Smoothing S, class Real>
+PBF_HD_APART void book_push(const Surroundings<Real>& s, int i, Vec3<Real> x, Real factor) {
+  Real of_wall[6], share(0);
+  if (!s.walls.adds_density) return;
+  const bool at_wall = s.walls.template slopes<S>(x, of_wall);
+  for_solids_at<S>(s, x, [&](int, const SolidTerm<Real>& one) { share += one.share; });
+  if (share > Real(0) && share < Real(1)) {
+    const Real left = s.walls.scale - s.walls.template term<S>(x).density;
+    for_solids_at<S>(s, x, [&](int k, const SolidTerm<Real>& one) {
+      s.loads.add(6 + k, i, x, (factor * left) * one.gradient);
+    });
+  }
+  const Real free = factor * max2(Real(1) - share, Real(0));
+  for (int wall = 0; at_wall && wall < 6; ++wall) {
+    const Real way = free * of_wall[wall];
+    s.loads.add(wall, i, x,
+                {wall / 2 == 0 ? way : Real(0), wall / 2 == 1 ? way : Real(0),
+                 wall / 2 == 2 ? way : Real(0)});
+  }
+}
+
+}  // namespace pbf::inline PBF_VARIANT
