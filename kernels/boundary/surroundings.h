@@ -50,6 +50,18 @@ PBF_HD PathEnd<Real> keep_out(const Surroundings<Real>& s, int k, Vec3<Real> fro
   return s.flat ? keep_out<2>(placed.solid, from, to) : keep_out<3>(placed.solid, from, to);
 }
 
+/// Whether a way back to the surface is no longer than rounding makes it: what slides along a face
+/// is behind it by that, again and again.
+template <class Real>
+PBF_HD bool within_rounding(Vec3<Real> way, Vec3<Real> x, Vec3<Real> center) {
+  const auto size = [](Vec3<Real> v) {
+    return max2(v.x, -v.x) + max2(v.y, -v.y) + max2(v.z, -v.z);
+  };
+  constexpr Real few(sizeof(Real) == 4 ? 1e-6 : 2e-15);  // some 8 of the last bits
+  const Real most = few * (Real(1) + size(x) + size(center));
+  return dot(way, way) <= most * most;
+}
+
 /// f(k, solid_term) of the obstacles around x.
 template <Smoothing S, class Real, class F>
 PBF_HD void for_solids_at(const Surroundings<Real>& s, Vec3<Real> x, F&& f) {
@@ -99,11 +111,13 @@ PBF_HD_APART Vec3<Real> surroundings_path_end(const Surroundings<Real>& s, bool 
     for (int k = 0; k < s.solids; ++k) {
       const PathEnd<Real> end = keep_out(s, k, from, to);
       if (!end.hit) continue;
-      const Vec3<Real> at = round < rounds ? end.x : from;
+      const bool wedged = !within_rounding(end.x - to, to, s.solid[k].solid.center);
+      const bool last = round == rounds && wedged;
+      const Vec3<Real> at = last ? from : end.x;
       move_by(6 + k, at - to);
-      if (round == rounds) return from;
+      if (last) return from;
       to = inside_walls(at);
-      moved = true;
+      moved = moved || wedged;
     }
     if (!moved) break;
   }

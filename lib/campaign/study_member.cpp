@@ -95,6 +95,9 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
                                        const std::function<void(double)>& progress) {
   const Scene& scene = member.scene;
   const Schedule schedule = make_schedule(scene);
+  if (!study.projection.empty() && !scene.obstacles.empty())
+    throw Error(ExitCode::bad_input,
+                "projection: the exact projection does not know obstacles; remove one of them");
   MemberResult out;
   out.updates = schedule.updates;
   out.particles = count_particles(scene, study.scene_dir);

@@ -80,6 +80,7 @@ void plan_left_out(Plan& plan, const Scene& s) {
   out(s.solver.kernels == KernelMode::consistent, "the second smoothing function (Poly6)",
       "solver.kernels is consistent");
   out(s.solver.boundary == BoundaryMode::clamp, "wall density", "solver.boundary is clamp");
+  out(s.obstacles.empty(), "obstacles", "no key obstacles");
   out(s.domain.open.size() == 6, "walls: their density and the clamp", "domain.open names all six");
   out(plan.repeats == 0, "iterations until a tolerance is met", "solver.tolerance is 0");
   out(!plan.program.has_pairs(),
