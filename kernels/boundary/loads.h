@@ -2,6 +2,8 @@
 // booked on that wall, in whole numbers, so that neither order nor threads change a sum.
 #pragma once
 
+#include <cstdint>
+
 #include "kernels/vec3.h"
 
 namespace pbf {

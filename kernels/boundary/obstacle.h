@@ -2,12 +2,7 @@
 #pragma once
 
 #include "kernels/boundary/box.h"
-
-namespace pbf {
-
-enum class ObstacleShape : int { plane, box, sphere, cylinder, capsule };
-
-}  // namespace pbf
+#include "kernels/boundary/obstacle_shape.h"
 
 namespace pbf::inline PBF_VARIANT {
 

@@ -103,6 +103,7 @@ Solid<double> solid_of(const Obstacle& o, const Scene& s) {
       break;
     }
   }
+  if (s.plane()) center[1] = *s.plane();  // no y counts there
   out.through = behind_walls(s, rows, center, half, faces);
   const double h = s.h();
   const Double3 from = s.origin();

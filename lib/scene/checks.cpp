@@ -232,8 +232,13 @@ class Checker {
     if (tube && good(o.from, o.to)) {
       if (o.from == o.to)
         add(o.to, "is where the axis begins (" + name(o.from) + "); give the other end");
-      else if (flat() && o.from[1] != o.to[1] && (o.from[0] != o.to[0] || o.from[2] != o.to[2]))
-        add(o.to, "with dimensions: 2 an axis lies in the x-z plane or along y");
+      else if (flat() && o.shape == ObstacleShape::capsule && o.from[1] != o.to[1])
+        add(o.to, "with dimensions: 2 a capsule lies in the x-z plane; give both ends the same y");
+      else if (flat() && o.shape == ObstacleShape::cylinder &&
+               (o.from[0] != o.to[0] || o.from[2] != o.to[2]))
+        add(o.to,
+            "with dimensions: 2 a cylinder stands on the x-z plane, which makes a disc of it; give "
+            "both ends the same x and z, or a box");
     }
     if (good(o.radius, s_.fluid.spacing, s_.fluid.smoothing_ratio) && o.radius < s_.h())
       add(o.radius, "is " + to_text(o.radius) + ", below the smoothing length (" + to_text(s_.h()) +

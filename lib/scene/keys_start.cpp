@@ -79,8 +79,7 @@ KeyRows start_rows() {
            required, of(Shape::file)),
        key(BODY(velocity), number("m/s", kRate),
            "Initial velocity, added to every particle of the body."),
-       key(OBSTACLE(name), plain, "Name, in the columns of the log.", required,
-           effect(Effect::none)),
+       key(OBSTACLE(name), plain, "Name, in the columns of the log.", required),
        key(OBSTACLE(shape), one_of({"plane", "box", "sphere", "cylinder", "capsule"}),
            "Shape of the obstacle; decides which keys it has. With dimensions: 2 the x-z plane "
            "cuts "

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/boundary/obstacle.h"
+#include "kernels/boundary/obstacle_shape.h"
 #include "lib/scene/backend.h"
 
 namespace pbf::inline scene_module {
