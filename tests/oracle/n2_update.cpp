@@ -79,12 +79,13 @@ Real half_space_slope(Real a, Real h) {
   return -30 / powl(h, 6) * (h * powl(s, 4) / 4 - powl(s, 5) / 5);
 }
 
-void clamp(V& x, const Settings& c) {
+void hold(const V& from, V& x, const Settings& c) {
   for (int k = 0; k < 3; ++k) {
     const std::size_t face = 2 * std::size_t(k);
     if (!c.open[face]) x[k] = std::max(x[k], c.low[k] + c.margin);
     if (!c.open[face + 1]) x[k] = std::min(x[k], c.high[k] - c.margin);
   }
+  x = path_end(from, x, c);
 }
 
 }  // namespace
@@ -129,8 +130,17 @@ Wall walls(const V& x, const Settings& c) {
       if (g != f) others *= factor[g];
     out.gradient[f / 2] += slope[f] * others;
   }
+  if (c.solids.empty()) return out;
+  // They share the space with the walls by inclusion and exclusion.
+  const Real solid = share(x, c.paper, c), left = c.wall_scale - out.density;
+  const V slopes = solid < 1 ? share_gradient(x, false, c) : V{};
+  for (int k = 0; k < 3; ++k)
+    out.gradient[k] = std::max<Real>(1 - solid, 0) * out.gradient[k] + left * slopes[k];
+  out.density = c.wall_scale - left * std::max<Real>(1 - solid, 0);
   return out;
 }
+
+Real half_plane_share(bool poly6, Real q) { return half_plane(poly6, q).density; }
 
 std::vector<Real> densities(const std::vector<V>& x, const Settings& c) {
   std::vector<Real> out;
@@ -154,7 +164,7 @@ void update(State& s, const Settings& c, LevelNodes* nodes) {
     for (std::size_t i = 0; i < n; ++i) {
       for (int k = 0; k < 3; ++k) s.v[i][k] = damping * s.v[i][k] + dt * c.gravity[k];
       axpy(s.x[i], dt, s.v[i]);
-      clamp(s.x[i], c);
+      hold(old[i], s.x[i], c);
     }
   };
   const auto end_substep = [&] {
@@ -213,7 +223,7 @@ void update(State& s, const Settings& c, LevelNodes* nodes) {
       axpy(delta, lambda[i], wall[i].gradient);
       axpy(next[i], c.sor, delta);
       axpy(next[i], 1, coarse[i]);
-      clamp(next[i], c);
+      hold(s.x[i], next[i], c);
     }
     s.x = next;
   }

@@ -2,13 +2,9 @@
 // written from the papers. Shares no code with kernels/ or lib/.
 #pragma once
 
-#include <array>
-#include <vector>
+#include "tests/oracle/n2_solids.h"
 
 namespace oracle {
-
-using Real = long double;
-using V = std::array<Real, 3>;
 
 /// SI units throughout; `mass` is the weight that enters density sums, in kg, in two dimensions
 /// (the x-z plane, no walls along y) in kg per metre of thickness.
@@ -26,6 +22,7 @@ struct Settings {
   Real tensile_k = 0, tensile_q = 0.3L;  // k in h^2
   int tensile_n = 4;
   Real xsph = 0, vorticity = 0;  // 1, 1/s
+  std::vector<Solid> solids;
 };
 
 struct State {
@@ -40,12 +37,16 @@ void update(State& s, const Settings& c, LevelNodes* nodes = nullptr);
 /// Density at the present positions, kg/m^3, walls included.
 std::vector<Real> densities(const std::vector<V>& x, const Settings& c);
 
-/// What all walls add to the density at x, and its gradient (that of the Spiky kernel).
+/// What all walls and solids add to the density at x, and its gradient (that of the Spiky kernel).
 struct Wall {
   Real density = 0;  ///< fraction of rho0
   V gradient{};      ///< 1/m
 };
 Wall walls(const V& x, const Settings& c);
+
+/// The share of the unit kernel beyond a line at distance q of its range, by the fit of
+/// kernels/README.md (9).
+Real half_plane_share(bool poly6, Real q);
 
 /// Of the Spiky kernel, 1/m^4 (1/m^3 in two dimensions).
 V spiky_gradient(const V& d, const Settings& c);

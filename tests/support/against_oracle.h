@@ -9,6 +9,51 @@
 
 namespace oracle_test {
 
+/// The obstacles, of which faces on walls or behind them are none: boxes that are not turned alone
+/// have such faces here.
+inline std::vector<oracle::Solid> oracle_solids(const pbf::Scene& s) {
+  using Shape = oracle::Solid::Shape;
+  std::vector<oracle::Solid> all;
+  for (const pbf::Obstacle& o : s.obstacles) {
+    oracle::Solid& to = all.emplace_back();
+    to.shape = Shape(int(o.shape));
+    oracle::V axis{o.turn_axis[0], o.turn_axis[1], o.turn_axis[2]};
+    long double angle = acosl(-1) / 180 * o.turn_angle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      long double low = o.min[k], high = o.max[k];
+      if (o.shape == pbf::ObstacleShape::box && o.turn_angle == 0) {
+        if (low <= s.domain.min[k] && !s.domain.is_open(int(k), false)) low -= 1e3;
+        if (high >= s.domain.max[k] && !s.domain.is_open(int(k), true)) high += 1e3;
+      }
+      if (o.shape == pbf::ObstacleShape::sphere) low = high = o.center[k];
+      if (o.shape == pbf::ObstacleShape::plane) low = high = o.point[k];
+      if (to.shape >= Shape::cylinder) low = high = (o.from[k] + o.to[k]) / 2;
+      to.center[k] = (low + high) / 2;
+      to.half[k] = (high - low) / 2;
+    }
+    if (to.shape >= Shape::sphere) to.half[0] = o.radius;
+    if (to.shape == Shape::plane || to.shape >= Shape::cylinder) {
+      // From z to the direction wanted, about what is at right angles to both.
+      oracle::V z;
+      for (std::size_t k = 0; k < 3; ++k)
+        z[k] = to.shape == Shape::plane ? o.normal[k] : o.to[k] - o.from[k];
+      to.half[2] = hypotl(hypotl(z[0], z[1]), z[2]) / 2;
+      axis = {-z[1], z[0], 0};
+      angle = atan2l(hypotl(z[0], z[1]), z[2]);
+    }
+    const long double size = hypotl(hypotl(axis[0], axis[1]), axis[2]);
+    for (std::size_t k = 0; size > 0 && k < 3; ++k) {
+      oracle::V &e = to.axes[k], u = axis;
+      for (auto& a : u) a /= size;
+      const long double along = u[k], c = cosl(angle), w = sinl(angle);
+      const oracle::V side{u[1] * e[2] - u[2] * e[1], u[2] * e[0] - u[0] * e[2],
+                           u[0] * e[1] - u[1] * e[0]};
+      for (std::size_t i = 0; i < 3; ++i) e[i] = c * e[i] + w * side[i] + (1 - c) * along * u[i];
+    }
+  }
+  return all;
+}
+
 inline oracle::Settings settings_of(const Case& c) {
   const pbf::Scene& s = c.scene;
   oracle::Settings o;
@@ -32,6 +77,7 @@ inline oracle::Settings settings_of(const Case& c) {
   o.substeps = s.solver.substeps;
   o.levels = s.solver.levels == pbf::LevelsMode::on;
   o.spacing = s.fluid.spacing;
+  o.solids = oracle_solids(s);
   const char* faces[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
   for (std::size_t f = 0; f < 6; ++f)
     o.open[f] = std::count(s.domain.open.begin(), s.domain.open.end(), faces[f]) > 0;

@@ -1,0 +1,229 @@
+// Obstacles over many updates: loads balance the momentum, buoyancy, and nothing gets through or
+// in, on every backend and precision.
+#include "tests/support/catch.h"
+#include "tests/support/obstacles.h"
+
+using namespace oracle_test;
+using namespace obstacle_test;
+using backend_test::here;
+using backend_test::is_double;
+using pbf::ObstacleShape;
+
+namespace {
+
+Case splash(bool flat) {
+  Case c = flat ? flat_block(14, 30, 0.1, 0.3) : jittered_block(9, 6, 14, 0.1, 0.3);
+  pbf::Scene& s = c.scene;
+  s.domain.max[0] = s.domain.min[0] + (flat ? 0.44 : 0.27);
+  if (!flat) s.domain.max[1] = s.domain.min[1] + 0.15;
+  s.domain.max[2] = s.domain.min[2] + 0.6;
+  s.gravity = {1.1, flat ? 0 : -0.6, -9.81};
+  s.time.step = 0.004;
+  s.domain.loads = true;
+  Placing put(s);
+  for (auto& x : c.particles.position) x[2] += 0.12;  // falls onto them
+  put.box({0.5, 0.4, 0.4}, {2, 1.9, 1.6}, {flat ? 0.0 : 1.0, 2, 0}, 25);
+  put.sphere({4, 2, 1.7}, 1.1);
+  put.tube(ObstacleShape::capsule, {5.5, 1, 5}, {5.9, 3, 5.2}, 1).to[1] =
+      flat ? s.obstacles.back().from[1] : s.domain.min[1] + 0.12;
+  return without_inner(here(c), 0.2);
+}
+
+/// h, along every axis; what a block of particles at so many h per step has for a velocity.
+pbf::Double3 per_step(const pbf::Scene& s, pbf::Double3 way) {
+  for (double& w : way) w *= s.h() / s.time.step;
+  return way;
+}
+
+/// A box of so many h with the block in it at `corner` (h).
+Case in_domain(Case c, const pbf::Double3& size, const pbf::Double3& corner) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (c.scene.dimensions == 2 && k == 1) continue;
+    c.scene.domain.max[k] = c.scene.domain.min[k] + c.scene.h() * size[k];
+    for (auto& x : c.particles.position) x[k] += c.scene.h() * corner[k];
+  }
+  return here(c);
+}
+
+/// Advances in parts and holds every particle to be outside of obstacles after each.
+void run_outside(const Case& c, pbf::Solver& s, int updates, int parts, int level = 0) {
+  double most = -1e9;
+  for (int k = 0; k < parts; ++k) {
+    s.step(updates / parts, {.level = level});
+    most = std::max(most, deepest(c, places_of(s)));
+  }
+  CHECK(most < fine());
+  CHECK(most > -0.5);  // they did meet it
+  const pbf::Diagnostics m = s.measure();
+  CHECK(m.outside == 0);
+  CHECK(m.non_finite == 0);
+  CHECK(m.penetration < fine());
+}
+
+}  // namespace
+
+TEST_CASE("loads on walls and obstacles are the weight less the change of momentum") {
+  Case c = splash(GENERATE(false, true));
+  SECTION("defaults") {}
+  SECTION("substeps") {
+    c.scene.solver.substeps = 3;
+    c.scene.solver.iterations = 1;
+  }
+  SECTION("bare surfaces") { c.scene.solver.boundary = pbf::BoundaryMode::clamp; }
+  SECTION("the paper's kernels, tensile, viscosity, Chebyshev's steps") {
+    c.scene.solver.kernels = pbf::KernelMode::paper;
+    c.scene.tensile = pbf::Tensile{0.002, 0.3, 4};
+    c.scene.viscosity = pbf::Viscosity{0.1};
+    c.scene.solver.method = pbf::SolverMethod::chebyshev;
+  }
+  auto solver = make(c);
+  const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
+  const double mass = plan.mass * double(plan.particles), time = 100 * c.scene.time.step;
+  const pbf::Diagnostics before = solver->measure();
+  solver->step(100);
+  const pbf::Diagnostics after = solver->measure();
+  double sum[3] = {0, 0, 0}, weight = 0;
+  for (const pbf::WallLoad& l : solver->loads(pbf::Interval::goes_on)) {
+    for (int k = 0; k < 3; ++k) sum[k] += l.force[k];
+    CAPTURE(l.wall);
+    if (l.wall[0] == 'o') CHECK(l.peak > 0.01 * mass);
+    for (const double t : l.torque) CHECK(std::fabs(t) <= 0.5 * l.peak);  // m
+  }
+  for (const double g : c.scene.gravity) weight += mass * mass * g * g;
+  double error = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    error = std::max(error, std::fabs(sum[k] - mass * c.scene.gravity[k] +
+                                      (after.momentum[k] - before.momentum[k]) / time));
+  CHECK(error / std::sqrt(weight) < (is_double() ? 1e-9 : 2e-4));
+}
+
+TEST_CASE("a submerged cube of 8 spacings is lifted by what it displaces, and not pushed aside") {
+  Case c = jittered_block(18, 18, 18, 0, 0);
+  const double d = c.scene.fluid.spacing, edge = 8 * d;
+  for (std::size_t k = 0; k < 3; ++k)
+    c.scene.domain.max[k] = c.scene.domain.min[k] + (k == 2 ? 22 : 18) * d;
+  c.scene.precision = pbf::Precision::single;
+  Placing(c.scene).box({2.5, 2.5, 2.5}, {6.5, 6.5, 6.5});
+  c = without_inner(here(c), 0.1);
+  REQUIRE(c.particles.size() == 18 * 18 * 18 - 8 * 8 * 8);
+  auto s = make(c);
+  s->step(150);
+  s->loads(pbf::Interval::ends);
+  s->step(250);
+  const auto load = s->loads(pbf::Interval::ends);
+  REQUIRE(load.size() == 1);
+  const double lift = 1000 * 9.81 * edge * edge * edge;
+  CAPTURE(load[0].force[0] / lift, load[0].force[1] / lift, load[0].force[2] / lift);
+  CHECK(load[0].force[2] == Approx(lift).epsilon(0.07));
+  CHECK(std::fabs(load[0].force[0]) < 0.01 * lift);
+  CHECK(std::fabs(load[0].force[1]) < 0.01 * lift);
+  for (const double t : load[0].torque) CHECK(std::fabs(t) < 0.01 * lift * edge);
+}
+
+TEST_CASE("a plate of 0.25 h holds fluid on its side for 2000 updates") {
+  const bool turned = GENERATE(false, true);
+  Case c = in_domain(jittered_block(5, 5, 7, 0.1, 0.3), {5, 2.5, 5}, {0, 0, 0});
+  c.scene.gravity = {8, 0, -9.81};
+  int level = 0;
+  SECTION("an update is a step") {}
+  SECTION("substeps") { c.scene.solver.substeps = 2; }
+  SECTION("4 steps in an update") { level = 2; }
+  const double high = turned ? 20 : 9;
+  Placing(c.scene).box({3.4, -2, 2.5 - high}, {3.65, 6, 2.5 + high}, {0, 1, 0}, turned ? 8 : 0);
+  auto s = make(c);
+  run_outside(c, *s, level ? 500 : 2000, 5, level);
+  const oracle::Solid plate = oracle_solids(c.scene)[0];
+  const pbf::Snapshot snap = places_of(*s);
+  const auto x = snap.fields[0].as<double>();
+  int behind = 0;
+  for (std::size_t i = 0; i < snap.count; ++i) {
+    long double across = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      across += plate.axes[0][k] * (x[3 * i + k] - plate.center[k]);
+    behind += across > 0;
+  }
+  CHECK(behind == 0);
+}
+
+TEST_CASE("fluid that falls onto crossed ramps, into a wedge, through a gap stays outside") {
+  const bool flat = GENERATE(false, true);
+  Case c = flat ? flat_block(16, 24, 0.1, 0.3) : jittered_block(10, 6, 12, 0.1, 0.3);
+  c = in_domain(c, {flat ? 9.0 : 6.0, 3.2, 14}, {0.4, 0, 5});
+  c.scene.gravity = {0.5, 0, -9.81};
+  c.scene.time.step = 0.004;
+  Placing put(c.scene);
+  const double middle = flat ? 4.5 : 3;
+  SECTION("crossed ramps") {
+    put.box({-3, -2, 2.8}, {9, 6, 3.1}, {0, 1, 0}, 35);
+    put.box({-3, -2, 2.8}, {9, 6, 3.1}, {0, 1, 0}, -35);
+  }
+  SECTION("a wedge of 20 degrees") {
+    put.box({middle - 3, -2, -6}, {middle - 1, 6, 6}, {0, 1, 0}, 10).loads = false;
+    put.box({middle + 1, -2, -6}, {middle + 3, 6, 6}, {0, 1, 0}, -10);
+    for (pbf::Obstacle& o : c.scene.obstacles) o.min[2] -= 0.04, o.max[2] -= 0.04;
+  }
+  SECTION("a gap of one spacing") {
+    put.box({-9, -2, 3}, {middle - 0.25, 6, 4});
+    put.box({middle + 0.25, -2, 3}, {20, 6, 4});
+  }
+  SECTION("a gap of one spacing between a ball and a plate, 4 steps in an update") {
+    put.sphere({middle, 1.6, 3}, 1.5);
+    put.box({middle + 2, -2, 1}, {middle + 2.25, 6, 5});
+  }
+  c = without_inner(c, 0.2);
+  REQUIRE(c.particles.size() > 300);
+  auto s = make(c);
+  const bool fine_steps = c.scene.obstacles[0].shape == ObstacleShape::sphere;
+  run_outside(c, *s, fine_steps ? 60 : 200, 10, fine_steps ? 2 : 0);
+}
+
+TEST_CASE("a block at 100 h a step is stopped by a plate, a ball and the edge of a box") {
+  const bool flat = GENERATE(false, true), iterate = GENERATE(false, true);
+  Case c = flat ? flat_block(12, 12, 0.3, 0) : jittered_block(6, 6, 6, 0.3, 0);
+  c = in_domain(c, {30, flat ? 0.5 : 12, 30}, {1, flat ? 0.0 : 4, 13});
+  c.scene.gravity = {0, 0, 0};
+  c.particles.velocity.assign(c.particles.size(), per_step(c.scene, {100, 0, 3}));
+  Placing put(c.scene);
+  bool closed = false;
+  SECTION("a plate") {
+    put.box({15, -1, -1}, {15.1, 40, 40});
+    closed = true;
+  }
+  SECTION("a ball") { put.sphere({17, 5.5, 15}, 5); }
+  SECTION("the edge of a box") { put.box({13, 1, 13}, {18, 10, 18}, {0, 1, 0}, 45); }
+  SECTION("a capsule") { put.tube(ObstacleShape::capsule, {15, 5, 12}, {15, 5, 20}, 2); }
+  if (!iterate) c.scene.solver.iterations = 0;
+  const auto solids = oracle_solids(c.scene);
+  auto s = make(c);
+  std::vector<double> before;
+  for (const auto& x : c.particles.position) before.insert(before.end(), x.begin(), x.end());
+  bool met = false;  // whether anything would fly through it
+  for (std::size_t i = 0; i < before.size(); i += 3)
+    for (double t = 0; t < 1; t += 1 / 2048.) {
+      double at[3];
+      for (std::size_t a = 0; a < 3; ++a)
+        at[a] = before[i + a] + t * c.scene.time.step * c.particles.velocity[i / 3][a];
+      met = met || depth_in(solids, c.scene, at) > 0.04;
+    }
+  CHECK(met);
+  for (int k = 0; k < 6; ++k) {
+    s->step(1);
+    const pbf::Snapshot snap = places_of(*s);
+    const auto x = snap.fields[0].as<double>();
+    const double most = deepest(c, snap);
+    CHECK(most < fine());
+    // Without iterations an update is one path: no place of the way from its start to its end is
+    // in the solid, for that is convex.
+    double through = -1e9;
+    for (std::size_t i = 0; !iterate && i < before.size(); i += 3)
+      for (double t = 0; t < 1; t += 1 / 256.) {
+        double at[3];
+        for (std::size_t a = 0; a < 3; ++a) at[a] = before[i + a] + t * (x[i + a] - before[i + a]);
+        through = std::max(through, depth_in(solids, c.scene, at));
+      }
+    CHECK(through < fine());
+    before.assign(x.begin(), x.end());
+    for (std::size_t i = 0; closed && i < before.size(); i += 3)
+      REQUIRE(x[i] <= c.scene.obstacles[0].min[0] + fine() * c.scene.h());
+  }
+}
