@@ -37,6 +37,35 @@ Scene unlike_default() {
   file.path = "odd name #1: [x].csv";
   s.bodies = {block, sphere, random, file};
   s.domain.loads = true;
+  Obstacle plane;
+  plane.name = "odd name #1: [a], \"b\"";
+  plane.shape = ObstacleShape::plane;
+  plane.point = {1.0 / 3, 0, -1e-7};
+  plane.normal = {-1.0 / 7, 0, 1e5};
+  Obstacle box;
+  box.name = "box";
+  box.min = {-0.1, -5, 1.0 / 3};
+  box.max = {0.1 + 0.2, 6, 0.5};
+  box.turn_axis = {0, -1.0 / 3, 0};
+  box.turn_angle = -360.0 / 7;
+  box.loads = true;
+  Obstacle ball;
+  ball.name = "x_minimum";
+  ball.shape = ObstacleShape::sphere;
+  ball.center = {1e-12, 0.02, 2.0 / 3};
+  ball.radius = 1.0 / 9;
+  Obstacle cylinder;
+  cylinder.name = "off";
+  cylinder.shape = ObstacleShape::cylinder;
+  cylinder.from = {0.1, -1.0 / 3, 0.2};
+  cylinder.to = {0.1, 1.0 / 3, 0.2};
+  cylinder.radius = 0.2;
+  Obstacle capsule = cylinder;
+  capsule.name = "7";
+  capsule.shape = ObstacleShape::capsule;
+  capsule.to = {-1e6, -1.0 / 3, 0.3};
+  capsule.loads = true;
+  s.obstacles = {plane, box, ball, cylinder, capsule};
   s.gravity = {1.0 / 3, 0, 5e-300};
   s.time = {1.0 / 60, 500.0 / 60, AdaptiveTime{1e-4, 0.3, 0.2}};
   s.solver.iterations = 7;
@@ -74,6 +103,8 @@ Scene unlike_default() {
   return s;
 }
 
+bool of_list(const Key& key) { return key.block->path.ends_with("[]"); }
+
 /// Defaults alone, every optional block on.
 Scene scene_with_all_blocks() {
   Scene scene;
@@ -99,7 +130,7 @@ TEST_CASE("resolved scene: each key of the table makes a difference when it chan
   // to the wrong field is seen here.
   const Scene other = unlike_default(), defaults = scene_with_all_blocks();
   for (const Key& key : scene_table().keys) {
-    if (key.block->path == "bodies[]" || key.path == "name") continue;
+    if (of_list(key) || key.path == "name") continue;
     CAPTURE(key.path);
     CHECK(value_text(key, object(other)) != value_text(key, object(defaults)));
   }
@@ -154,7 +185,7 @@ TEST_CASE("reference scene: documents every key, and optional keys stand at thei
     CHECK_FALSE(key.help.empty());
     const bool numeric = !unit_text(key).empty();
     CHECK((!numeric || (std::isfinite(key.range.min) && std::isfinite(key.range.max))));
-    if (!key.required && key.path != "name" && key.block->path != "bodies[]")
+    if (!key.required && key.path != "name" && !of_list(key))
       CHECK(value_text(key, object(s)) == value_text(key, object(defaults)));
   }
   std::size_t start = 0;
@@ -164,19 +195,27 @@ TEST_CASE("reference scene: documents every key, and optional keys stand at thei
 
 TEST_CASE("table of keys: every default lies in its own range") {
   const Scene defaults = scene_with_all_blocks();
-  const Body entry;
+  const Body body_entry;
+  const Obstacle obstacle_entry;
   for (const Key& key : scene_table().keys) {
     if (key.required) continue;
     Scene scene = scene_with_all_blocks();
     Body body;
+    Obstacle obstacle;
     Node node;
-    const bool of_body = key.block->path == "bodies[]";
-    const std::string text = value_text(key, of_body ? object(entry) : object(defaults));
+    const bool of_body = key.block->path == "bodies[]", of_scene = !of_list(key);
+    const std::string text = value_text(key, of_scene  ? object(defaults)
+                                             : of_body ? object(body_entry)
+                                                       : object(obstacle_entry));
     if (text[0] == '[') continue;  // lists: read back as part of the reference scene
     node.kind = Node::Kind::scalar;
     node.text = text;
     CAPTURE(key.path, text);
-    CHECK(read_field(key, node, key.field(of_body ? object(body) : object(scene))).empty());
+    CHECK(read_field(key, node,
+                     key.field(of_scene  ? object(scene)
+                               : of_body ? object(body)
+                                         : object(obstacle)))
+              .empty());
   }
 }
 
@@ -207,9 +246,10 @@ TEST_CASE("schema: balanced JSON that has every key and refuses the others") {
        (p = text.find("\"additionalProperties\": false", p)) != std::string::npos; ++p)
     ++closed;
   CHECK(objects == closed);
-  // One object for every shape of a body.
-  CHECK(objects ==
-        scene_table().blocks.size() - 1 + scene_table().find_key("bodies[].shape")->choices.size());
+  // One object for every shape of a body and of an obstacle.
+  CHECK(objects == scene_table().blocks.size() - 2 +
+                       scene_table().find_key("bodies[].shape")->choices.size() +
+                       scene_table().find_key("obstacles[].shape")->choices.size());
 }
 
 TEST_CASE("numbers: the text of a double reads back to the same double") {
