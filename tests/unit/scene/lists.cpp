@@ -41,7 +41,7 @@ const KeyTable& tank_table() {
          key(MEMBER_OF(gates, Gate, form), one_of({"disc", "pipe"}), "Form.", required, is_kind),
          key(MEMBER_OF(gates, Gate, radius), number("m", {0, 9, true}), "Radius.", required),
          key(MEMBER_OF(gates, Gate, length), number("m", {0, 9}), "Length.", of(Form::pipe)),
-         key(MEMBER_OF(gates, Gate, label), plain, "Label.", renamed("gates[].name"),
+         key(MEMBER_OF(gates, Gate, label), scene_module::plain, "Label.", renamed("gates[].name"),
              effect(Effect::none)),
          key(MEMBER_OF(gauges, Gauge, at), number("m", {-9, 9}), "Where.", required),
          key(MEMBER_OF(gauges, Gauge, every), number("", {1, 99}), "How often.")}}},

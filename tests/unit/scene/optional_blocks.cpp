@@ -33,11 +33,12 @@ const KeyTable& rig_table() {
          optional_block(MEMBER(Rig, probe), "Probe."),
          optional_block(MEMBER(Rig, probe->filter), "Filter.")},
         {key(MEMBER(Rig, length), number("m", {0, 9}), "Length."),
-         key(MEMBER(Rig, note), plain, "Note."), key(MEMBER(Rig, owner), plain, "Owner."),
+         key(MEMBER(Rig, note), scene_module::plain, "Note."),
+         key(MEMBER(Rig, owner), scene_module::plain, "Owner."),
          key(MEMBER(Rig, probe->radius), number("m", {0, 9, true}), "Radius.", required),
          key(MEMBER(Rig, probe->gain), number("", {0, 9}), "Gain."),
-         key(MEMBER(Rig, probe->label), plain, "Label.", required),
-         key(MEMBER(Rig, probe->path), plain, "File."),
+         key(MEMBER(Rig, probe->label), scene_module::plain, "Label.", required),
+         key(MEMBER(Rig, probe->path), scene_module::plain, "File."),
          key(MEMBER(Rig, probe->filter->width), number("m", {0, 9}), "Width.", required)}}},
       object(defaults));
   return table;
