@@ -11,8 +11,10 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kEdge{92, 102, 116, 0}, kFloor{218, 224, 230, 150};
 
-// Edges are drawn on the same lines of sight, nearer by this factor: they win over the floor.
+// Lines are drawn on the same lines of sight, nearer by this factor: they win over surfaces.
 constexpr double kNearer = 0.999;
+// The floor is farther by this one: obstacles that lie on it win.
+constexpr double kFarther = 1.0003;
 
 FlatVertex vertex(const Double3& v, std::array<std::uint8_t, 4> color, double u = 0, double w = 0) {
   return {static_cast<float>(v[0]),
@@ -28,31 +30,36 @@ void add_quad(const std::array<FlatVertex, 4>& q, std::vector<FlatVertex>& out) 
 
 }  // namespace
 
+void add_line(Double3 a, Double3 b, std::array<std::uint8_t, 4> color, const Projection& projection,
+              double width, double near_depth, std::vector<FlatVertex>& out) {
+  if (a[2] > b[2]) std::swap(a, b);
+  if (b[2] <= near_depth) return;
+  if (a[2] < near_depth) a = a + (near_depth - a[2]) / (b[2] - a[2]) * (b - a);
+  // Direction in the picture; an edge seen end-on has none, and is a dot of the line's width.
+  double dx = b[0] / b[2] - a[0] / a[2], dy = b[1] / b[2] - a[1] / a[2];
+  const double size = std::hypot(dx, dy);
+  if (size > 0)
+    dx /= size, dy /= size;
+  else
+    dx = 1;
+  const double half = 0.5 * width * projection.pixel();  // per unit of depth
+  const auto moved = [&](const Double3& p, double along, double aside) {
+    const double s = half * p[2];
+    const Double3 place{p[0] + s * (along * dx - aside * dy), p[1] + s * (along * dy + aside * dx),
+                        p[2]};
+    return vertex(kNearer * place, color);
+  };
+  add_quad({moved(a, -1, -1), moved(a, -1, 1), moved(b, 1, -1), moved(b, 1, 1)}, out);
+}
+
 void add_box_edges(const View& view, const Projection& projection, double width, double near_depth,
                    std::vector<FlatVertex>& out) {
   for (unsigned axis = 0; axis < 3; ++axis)
     for (unsigned from = 0; from < 8; ++from) {
       if (from >> axis & 1) continue;
-      Double3 a = projection.to_view(corner_of(view, from));
-      Double3 b = projection.to_view(corner_of(view, from | 1u << axis));
-      if (a[2] > b[2]) std::swap(a, b);
-      if (b[2] <= near_depth) continue;
-      if (a[2] < near_depth) a = a + (near_depth - a[2]) / (b[2] - a[2]) * (b - a);
-      // Direction in the picture; an edge seen end-on has none, and is a dot of the line's width.
-      double dx = b[0] / b[2] - a[0] / a[2], dy = b[1] / b[2] - a[1] / a[2];
-      const double size = std::hypot(dx, dy);
-      if (size > 0)
-        dx /= size, dy /= size;
-      else
-        dx = 1;
-      const double half = 0.5 * width * projection.pixel();  // per unit of depth
-      const auto moved = [&](const Double3& p, double along, double aside) {
-        const double s = half * p[2];
-        const Double3 place{p[0] + s * (along * dx - aside * dy),
-                            p[1] + s * (along * dy + aside * dx), p[2]};
-        return vertex(kNearer * place, kEdge);
-      };
-      add_quad({moved(a, -1, -1), moved(a, -1, 1), moved(b, 1, -1), moved(b, 1, 1)}, out);
+      add_line(projection.to_view(corner_of(view, from)),
+               projection.to_view(corner_of(view, from | 1u << axis)), kEdge, projection, width,
+               near_depth, out);
     }
 }
 
@@ -69,8 +76,8 @@ void add_floor(const View& view, const Projection& projection, std::vector<FlatV
   std::array<FlatVertex, 4> quad;
   for (unsigned i = 0; i < 4; ++i) {
     const unsigned bits = (i & 1) << u | (i >> 1) << w | static_cast<unsigned>(!upward) << vertical;
-    quad[i] = vertex(projection.to_view(corner_of(view, bits)), kFloor, (i & 1) * box[u] / cell,
-                     (i >> 1) * box[w] / cell);
+    quad[i] = vertex(kFarther * projection.to_view(corner_of(view, bits)), kFloor,
+                     (i & 1) * box[u] / cell, (i >> 1) * box[w] / cell);
   }
   add_quad(quad, out);
 }

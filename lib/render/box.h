@@ -15,8 +15,12 @@ struct FlatVertex {
   std::array<float, 2> grid;          ///< place on the floor in cells of its grid
 };
 
-/// Appends the 12 edges of the box, `width` pixels wide, as triangles that face the eye; parts
-/// nearer than `near_depth` (m) are cut off.
+/// Appends the line from a to b (view space, m), `width` pixels wide, as triangles that face the
+/// eye; what is nearer than `near_depth` (m) is cut off.
+void add_line(Double3 a, Double3 b, std::array<std::uint8_t, 4> color, const Projection& projection,
+              double width, double near_depth, std::vector<FlatVertex>& out);
+
+/// Appends the 12 edges of the box as lines.
 void add_box_edges(const View& view, const Projection& projection, double width, double near_depth,
                    std::vector<FlatVertex>& out);
 

@@ -13,6 +13,7 @@
 #include "lib/render/overlay.h"
 #include "lib/render/particles.h"
 #include "lib/render/shaders.h"
+#include "lib/render/solids.h"
 #include "lib/render/vector3.h"
 
 namespace pbf::inline render_module {
@@ -120,13 +121,21 @@ void Renderer::Impl::draw_scene(const Projection& projection) {
     near = std::min(near, depth);
     far = std::max(far, depth);
   }
+  const SolidSurfaces solids = surfaces_of(view, projection);
+  for (const FlatVertex& v : solids.triangles) {
+    near = std::min<double>(near, v.depth);
+    far = std::max<double>(far, v.depth);
+  }
   near = std::max(0.99 * near, 1e-3 * diagonal);
   far = std::max(1.01 * far, 2 * near) + 0.01 * diagonal;
   const double a = far / (far - near), b = a * near;
 
-  triangles.clear();
+  const double line = std::max(1.0, view.size[1] / 720.0);  // pixels
+  triangles = solids.triangles;
   add_floor(view, projection, triangles);
-  add_box_edges(view, projection, 1.6 * std::max(1.0, view.size[1] / 720.0), near, triangles);
+  for (const auto& [from, to] : solids.creases)
+    add_line(from, to, kCrease, projection, 1.2 * line, near, triangles);
+  add_box_edges(view, projection, 1.6 * line, near, triangles);
 
   p.samples.draw_into();
   gl.Enable(gl::DEPTH_TEST);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/boundary/obstacle.h"
 #include "lib/scene/scene.h"
 #include "lib/solver/snapshot.h"
 
@@ -29,13 +30,15 @@ struct View {
   std::array<double, 2> range{0, 1};  ///< of the colour bar, in the unit of the field
   std::array<int, 2> size{1280, 720};
   Camera camera;
+  std::vector<Solid<double>> solids{};        ///< obstacles: lengths in m, along the scene's axes
+  std::array<std::array<bool, 2>, 3> open{};  ///< of each axis, min and max: no wall, solids go on
 };
 
 /// View of a scene: default camera, radius d/2, and a colour range that holds for the whole run
 /// (speed: 0..sqrt(2 g H) of the box; density: 0.9..1.1 rho0; id: 0..n-1).
 View view_of(const Scene& scene, std::int64_t particles);
 
-/// Draws lit spheres (impostors), the box, a colour bar with unit, and the time.
+/// Draws lit spheres (impostors), obstacles, the box, a colour bar with unit, and the time.
 class Renderer {
  public:
   /// Opens OSMesa, else EGL surfaceless, else an EGL device; the environment variable PBF_GL

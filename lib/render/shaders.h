@@ -68,12 +68,13 @@ void main() {
 }
 )";
 
-// Box lines and floor: triangles in view space. The floor carries its place in grid cells.
+// Box lines, floor and obstacles: triangles in view space. The floor carries its place in grid
+// cells.
 inline constexpr const char* kFlatVertex = R"(
 layout(location = 0) in vec3 a_place;
 layout(location = 1) in vec4 a_color;
 layout(location = 2) in vec2 a_grid;
-flat out vec4 f_color;
+out vec4 f_color;
 out vec2 f_grid;
 void main() {
   f_color = a_color;
@@ -83,7 +84,7 @@ void main() {
 }
 )";
 inline constexpr const char* kFlatFragment = R"(
-flat in vec4 f_color;  // a: strength of the grid lines, 0 for none
+in vec4 f_color;  // a: strength of the grid lines, 0 for none
 in vec2 f_grid;
 out vec4 o_color;
 void main() {

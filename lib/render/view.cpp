@@ -2,10 +2,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/program/obstacles.h"
 #include "lib/render/renderer.h"
 #include "lib/render/vector3.h"
 
 namespace pbf::inline render_module {
+namespace {
+
+std::vector<Solid<double>> solids_in_metres(const Scene& scene) {
+  const double h = scene.h();
+  const auto [x, y, z] = scene.origin();
+  std::vector<Solid<double>> solids = solids_of(scene);
+  for (Solid<double>& s : solids) {
+    s.center = Vec3<double>{x, y, z} + h * s.center;
+    s.half = h * s.half;
+  }
+  return solids;
+}
+
+}  // namespace
 
 View view_of(const Scene& scene, std::int64_t particles) {
   const Render render = scene.render.value_or(Render{});
@@ -19,6 +34,9 @@ View view_of(const Scene& scene, std::int64_t particles) {
   view.color = render.color;
   view.size = render.size;
   view.camera = render.camera;
+  view.solids = solids_in_metres(scene);
+  for (int k = 0; k < 3; ++k)
+    view.open[k] = {scene.domain.is_open(k, false), scene.domain.is_open(k, true)};
   if (render.range) {
     view.range = *render.range;
   } else if (render.color == ColorBy::density) {

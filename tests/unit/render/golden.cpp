@@ -44,25 +44,48 @@ Snapshot leaning_column() {
   return s;
 }
 
-}  // namespace
-
-TEST_CASE("a small dam break looks like the kept picture", "[render]") {
-  PBF_NEEDS_GL();
-  View view;
-  view.domain_max = {2, 1, 1};
-  view.radius = 0.03;
-  view.range = {0, 4};
-  view.size = {320, 180};
+void check_kept(const View& view, const std::string& name) {
   Renderer renderer(view);
   if (renderer.backend().find("llvmpipe") == std::string::npos)
     PBF_SKIP("no OpenGL of Mesa, for which the kept picture holds: " << renderer.backend());
   const Image image = renderer.draw(leaning_column());
-  const std::string path = PBF_SOURCE_DIR "/tests/unit/render/golden/leaning_column.png";
+  const std::string path = PBF_SOURCE_DIR "/tests/unit/render/golden/" + name + ".png";
   if (std::getenv("PBF_UPDATE_GOLDEN")) write_png(path, image);
   const Image kept = read_png(path);
   REQUIRE(kept.width == 320);
   const double off = share_off(image, kept);
-  if (off > 1e-3) write_png("leaning_column_seen.png", image);
-  INFO("the picture seen is in leaning_column_seen.png in the working folder");
+  if (off > 1e-3) write_png(name + "_seen.png", image);
+  INFO("the picture seen is in " << name << "_seen.png in the working folder");
   CHECK(off <= 1e-3);
+}
+
+Scene tank() {
+  Scene scene;
+  scene.domain.max = {2, 1, 1};
+  scene.render = Render{};
+  scene.render->radius = 0.03;
+  scene.render->range = {0, 4};
+  scene.render->size = {320, 180};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a small dam break looks like the kept picture", "[render]") {
+  PBF_NEEDS_GL();
+  check_kept(view_of(tank(), 1), "leaning_column");
+}
+
+TEST_CASE("a small dam break among obstacles looks like the kept picture", "[render]") {
+  PBF_NEEDS_GL();
+  Scene scene = tank();
+  Obstacle box, ball, pillar, slope;
+  box.min = {1.1, -0.1, 0.1}, box.max = {1.6, 0.3, 0.3};
+  box.turn_axis = {0, 1, 0}, box.turn_angle = 20;
+  ball.shape = ObstacleShape::sphere, ball.center = {1.4, 0.7, 0.25}, ball.radius = 0.2;
+  pillar.shape = ObstacleShape::cylinder, pillar.radius = 0.1;
+  pillar.from = {1.8, 0.8, 0}, pillar.to = {1.8, 0.8, 0.7};
+  slope.shape = ObstacleShape::plane, slope.point = {1.7, 0, 0}, slope.normal = {-1, 0, 1};
+  scene.obstacles = {box, ball, pillar, slope};
+  check_kept(view_of(scene, 1), "obstacles");
 }

@@ -1,0 +1,246 @@
+#include "lib/render/solids.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "lib/render/vector3.h"
+
+namespace pbf::inline render_module {
+namespace {
+
+constexpr Double3 kColor{190, 176, 160};  // clay: neither the cool greys of the box nor viridis
+constexpr int kAround = 64;               // corners of a circle, a multiple of 4
+
+struct Corner {
+  Double3 place, normal;  // m; out of the solid, of the smooth surface
+  bool crease;            // the edge to the next corner is sharp
+};
+using Polygon = std::vector<Corner>;
+
+/// Where dot(normal, x) <= level.
+struct HalfSpace {
+  Double3 normal;
+  double level;
+  double beyond(const Double3& x) const { return dot(normal, x) - level; }
+};
+
+/// A convex polygon in the plane that bounds `inside`.
+struct Face {
+  Polygon polygon;
+  HalfSpace inside;
+};
+
+void clip(Polygon& polygon, const HalfSpace& keep) {
+  Polygon kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Corner &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double from = keep.beyond(a.place), to = keep.beyond(b.place);
+    if (from <= 0) kept.push_back(a);
+    if ((from <= 0) == (to <= 0)) continue;
+    const double t = from / (from - to);
+    // Behind the corner at which the polygon is left comes an edge along the cut.
+    kept.push_back({a.place + t * (b.place - a.place), a.normal + t * (b.normal - a.normal),
+                    from <= 0 || a.crease});
+  }
+  polygon = std::move(kept);
+}
+
+/// The side of a cuboid at the end of an axis.
+Polygon rectangle(std::size_t axis, int side, const Double3& min, const Double3& max) {
+  const std::size_t u = (axis + 1) % 3, w = (axis + 2) % 3;
+  Double3 normal{}, place{};
+  normal[axis] = side;
+  place[axis] = (side < 0 ? min : max)[axis];
+  Polygon polygon;
+  for (const unsigned corner : {0u, 1u, 3u, 2u}) {
+    place[u] = (corner & 1 ? max : min)[u], place[w] = (corner & 2 ? max : min)[w];
+    polygon.push_back({place, normal, true});
+  }
+  return polygon;
+}
+
+/// The convex body in the scene's frame, put together face by face.
+struct Body {
+  const Solid<double>& solid;
+  std::vector<Face> faces{};
+
+  Double3 turned(const Double3& d) const {
+    const Vec3<double> v = turned_back<3>(solid, Vec3<double>{d[0], d[1], d[2]});
+    return {v.x, v.y, v.z};
+  }
+  Double3 placed(const Double3& p) const {
+    return Double3{solid.center.x, solid.center.y, solid.center.z} + turned(p);
+  }
+  /// Corners and normals in the frame of the body.
+  void add(Polygon polygon) { add(polygon, polygon[0].normal); }
+  void add(Polygon polygon, const Double3& outward) {
+    for (Corner& c : polygon) c = {placed(c.place), turned(c.normal), c.crease};
+    const Double3 normal = turned(outward);
+    faces.push_back({polygon, {normal, dot(normal, polygon[0].place)}});
+  }
+
+  /// A ring about the body's z: radius and height, and the slope of the surface there.
+  struct Ring {
+    double radius, height, slope;  // angle of the normal over the x-y plane
+    bool crease;
+  };
+  static Corner on(const Ring& r, double turn) {
+    const double angle = 2 * std::numbers::pi * turn / kAround;
+    const double x = std::cos(angle), y = std::sin(angle);
+    return {{r.radius * x, r.radius * y, r.height},
+            {std::cos(r.slope) * x, std::cos(r.slope) * y, std::sin(r.slope)},
+            r.crease};
+  }
+  void add_bands(const std::vector<Ring>& rings) {
+    for (std::size_t k = 0; k + 1 < rings.size(); ++k)
+      for (int j = 0; j < kAround; ++j) {
+        const Ring &low = rings[k], &high = rings[k + 1];
+        Polygon polygon{on(low, j), on(low, j + 1), on(high, j + 1), on(high, j)};
+        polygon[1].crease = polygon[3].crease = false;  // edges from ring to ring
+        const double slope = std::atan2(low.radius - high.radius, high.height - low.height);
+        add(std::move(polygon), on({0, 0, slope, false}, j + 0.5).normal);
+      }
+  }
+  void add_tube(double radius, double half) {
+    add_bands({{radius, -half, 0, true}, {radius, half, 0, true}});
+    for (const double side : {-1.0, 1.0}) {
+      Polygon polygon;
+      for (int j = 0; j < kAround; ++j)
+        polygon.push_back(on({radius, side * half, side * std::numbers::pi / 2, true}, j));
+      add(std::move(polygon));
+    }
+  }
+  void add_capsule(double radius, double half) {
+    std::vector<Ring> rings;
+    for (const int side : {-1, 1})
+      for (int k = 0; k <= kAround / 4; ++k) {
+        if (side > 0 && k == 0 && half == 0) continue;  // a sphere's equator is one ring
+        const int step = side < 0 ? k - kAround / 4 : k;
+        const double slope = 2 * std::numbers::pi * step / kAround;
+        // At the poles exactly 0, so that no band has a hole.
+        const double r = std::abs(step) == kAround / 4 ? 0 : radius * std::cos(slope);
+        rings.push_back({r, side * half + radius * std::sin(slope), slope, false});
+      }
+    add_bands(rings);
+  }
+};
+
+/// The part of space in which a solid is drawn.
+struct Bounds {
+  Double3 min, max;
+};
+Bounds bounds_of(const View& view, const Solid<double>& solid) {
+  Bounds b{view.domain_min, view.domain_max};
+  const double further = length(b.max - b.min);  // as far as the picture may show
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (solid.shape == ObstacleShape::plane) break;
+    if (view.open[k][0]) b.min[k] -= further;
+    if (view.open[k][1]) b.max[k] += further;
+  }
+  if (view.flat) {
+    // So thin that a round body's cut is that of its middle, and no perspective is seen.
+    const double plane = 0.5 * (view.domain_min[1] + view.domain_max[1]);
+    b.min[1] = plane - 0.25 * view.radius, b.max[1] = plane + 0.25 * view.radius;
+  }
+  return b;
+}
+
+std::vector<Face> faces_of(const View& view, Solid<double> solid) {
+  const Bounds bounds = bounds_of(view, solid);
+  const double size = length(view.domain_max - view.domain_min);
+  Double3 half{solid.half.x, solid.half.y, solid.half.z};
+  if (view.flat) {
+    solid.center.y = 0.5 * (bounds.min[1] + bounds.max[1]);
+    for (std::size_t k = 0; k < 3; ++k)  // no ends along y
+      if (std::abs(solid.turn[k][1]) > 0.5 && (k == 2 || solid.shape == ObstacleShape::box))
+        half[k] = size;
+  }
+  Body body{solid};
+  switch (solid.shape) {
+    case ObstacleShape::plane: {
+      // Around the point that is nearest to the middle of the domain.
+      const Double3 away = 0.5 * (bounds.min + bounds.max) - body.placed({0, 0, 0}),
+                    up = body.turned({0, 0, 1});
+      const Double3 middle = body.placed({0, 0, 0}) + (away - dot(away, up) * up);
+      solid.center = {middle[0], middle[1], middle[2]};
+      body.add(rectangle(2, 1, {-size, -size, 0}, {size, size, 0}));
+      break;
+    }
+    case ObstacleShape::box:
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const int side : {-1, 1}) body.add(rectangle(axis, side, -1.0 * half, half));
+      break;
+    case ObstacleShape::sphere:
+      body.add_capsule(half[0], 0);
+      break;
+    case ObstacleShape::cylinder:
+      body.add_tube(half[0], half[2]);
+      break;
+    case ObstacleShape::capsule:
+      body.add_capsule(half[0], half[2]);
+      break;
+  }
+
+  // Cut at the bounds: what is inside of them, and the cuts themselves.
+  const std::vector<Face> whole = body.faces;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const int side : {-1, 1}) {
+      HalfSpace keep{{}, side < 0 ? -bounds.min[axis] : bounds.max[axis]};
+      keep.normal[axis] = side;
+      const bool crosses =
+          solid.shape == ObstacleShape::plane ||
+          std::any_of(whole.begin(), whole.end(), [&](const Face& face) {
+            return std::any_of(face.polygon.begin(), face.polygon.end(),
+                               [&](const Corner& c) { return keep.beyond(c.place) > 1e-9 * size; });
+          });
+      if (!crosses) continue;
+      for (Face& face : body.faces) clip(face.polygon, keep);
+      Polygon cut = rectangle(axis, side, bounds.min, bounds.max);
+      for (const Face& face : whole) clip(cut, face.inside);
+      body.faces.push_back({std::move(cut), keep});
+    }
+  return std::move(body.faces);
+}
+
+/// The particles' light, without a dark side: round bodies would look flat there.
+std::array<std::uint8_t, 4> lit(const Double3& normal) {
+  static const Double3 light = unit({-0.45, 0.75, -0.75});
+  const double shade = 0.70 + 0.38 * dot(unit(normal), light);
+  std::array<std::uint8_t, 4> color{};
+  for (std::size_t k = 0; k < 3; ++k)
+    color[k] = static_cast<std::uint8_t>(std::clamp(shade * kColor[k], 0.0, 255.0));
+  return color;
+}
+
+}  // namespace
+
+SolidSurfaces surfaces_of(const View& view, const Projection& projection) {
+  SolidSurfaces out;
+  const auto seen = [&](const Corner& c) {
+    const Double3 p = projection.to_view(c.place);
+    const Double3& n = c.normal;
+    return FlatVertex{
+        static_cast<float>(p[0]),
+        static_cast<float>(p[1]),
+        static_cast<float>(p[2]),
+        lit({dot(n, projection.right), dot(n, projection.up), dot(n, projection.forward)}),
+        {}};
+  };
+  for (const Solid<double>& solid : view.solids)
+    for (const Face& face : faces_of(view, solid)) {
+      const Polygon& polygon = face.polygon;
+      if (polygon.size() < 3 || face.inside.beyond(projection.eye) <= 0) continue;
+      for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+        for (const std::size_t k : {std::size_t{0}, i, i + 1})
+          out.triangles.push_back(seen(polygon[k]));
+      for (std::size_t i = 0; i < polygon.size(); ++i)
+        if (polygon[i].crease)
+          out.creases.push_back({projection.to_view(polygon[i].place),
+                                 projection.to_view(polygon[(i + 1) % polygon.size()].place)});
+    }
+  return out;
+}
+
+}  // namespace pbf::inline render_module
