@@ -34,17 +34,21 @@ struct LevelShape {
 /// Cells of the finest level, and what they hold at rest. Lengths in h.
 struct LevelCells {
   int cells[3] = {1, 1, 1};
-  double edge = 2;             ///< of a cell
-  double last[3] = {2, 2, 2};  ///< of the last one along each axis
-  double half_full = 32;       ///< particles in half a cell of edge^3 (edge^2) at rest
+  double edge = 2;              ///< of a cell
+  double last[3] = {2, 2, 2};   ///< of the last one along each axis
+  double share[3] = {1, 1, 1};  ///< the same over `edge`
+  double half_full = 32;        ///< particles in half a cell of edge^3 (edge^2) at rest
 
   PBF_HD int size() const { return cells[0] * cells[1] * cells[2]; }
   PBF_HD GridPlace place(int c) const { return place_of(c, cells); }
   PBF_HD double length(int axis, int i) const { return i + 1 == cells[axis] ? last[axis] : edge; }
+  /// Bricks of 4 x 4 x 4 cells, the last ones reach beyond the box.
+  PBF_HD int bricks(int axis) const { return (cells[axis] + 3) / 4; }
+  PBF_HD int bricks() const { return bricks(0) * bricks(1) * bricks(2); }
   /// Particles in half of that cell at rest.
   PBF_HD double half(GridPlace at) const {
     double n = half_full;
-    for (int k = 0; k < 3; ++k) n *= length(k, at[k]) / edge;
+    for (int k = 0; k < 3; ++k) n *= at[k] + 1 == cells[k] ? share[k] : 1;
     return n;
   }
 };
@@ -83,34 +87,69 @@ PBF_HD void for_box(GridPlace low, GridPlace end, int lane, int of, F&& f) {
   }
 }
 
+/// The places of a box by number, without a division for each.
+struct BoxPlaces {
+  GridPlace low;
+  unsigned wide, high, by_wide, by_high;
+  int count;
+
+  PBF_HD BoxPlaces(GridPlace first, GridPlace end)
+      : low(first),
+        wide(unsigned(end[0] - low[0])),
+        high(unsigned(end[1] - low[1])),
+        by_wide(~0u / wide),
+        by_high(~0u / high),
+        count(int(wide * high) * (end[2] - low[2])) {}
+  PBF_HD GridPlace operator()(int n) const {
+    const unsigned row = over(unsigned(n), wide, by_wide), layer = over(row, high, by_high);
+    return {{low[0] + int(unsigned(n) - row * wide), low[1] + int(row - layer * high),
+             low[2] + int(layer)}};
+  }
+
+ private:
+  /// n / by for n < 2^31: the product is at most 1 below it.
+  PBF_HD static unsigned over(unsigned n, unsigned by, unsigned inverse) {
+    const auto q = unsigned(std::uint64_t(n) * inverse >> 32);
+    return q + (n - q * by >= by ? 1u : 0u);
+  }
+};
+
 /// What lies under a hat along an axis, and its weights.
 struct HatSpan {
   static constexpr int bits = 6;  ///< behind the point of a weight: exact up to an edge of 64
 
   int first, end;
-  int offset, top;
+  bool cells;
+  int middle, top;
   unsigned slope;  ///< 2^-24
 
+  /// Places count twice: cell i is at 2 i + 1, the two corners of bricks at a node are at one.
   PBF_HD int weight(int i) const {
-    const int away = 2 * i + offset;
+    const int away = (cells ? 2 * i + 1 : (i + 1) / 2 * 2) - middle;
     return top - int(unsigned(away < 0 ? -away : away) * slope >> 24);
   }
 };
 
-/// What the sums at nodes are made of: the cells, or the nodes of a level.
+/// What the sums at nodes are made of: the cells for levels 0 and 1, for the coarser ones, whose
+/// hats are linear in a brick, what the cells of bricks give to their 8 corners.
 struct LevelSource {
-  LevelShape grid;  ///< the cells: as many nodes, the first being 0
+  LevelShape grid;  ///< the cells, or the corners, 2 for each brick along an axis
   bool cells;
-  int level;  ///< of the nodes; 0 with cells
   const std::int64_t* value;
 
-  /// Under the hat of node i of a coarser level l (0 and up with cells): the linear one over nodes;
-  /// over cells the sum of those at their two ends. One is 2^bits.
-  PBF_HD HatSpan under(const LevelShape& coarse, int l, int axis, int i) const {
-    const int wide = l - level, edge = 1 << wide, middle = i << wide;
-    return {max2(middle - edge + !cells, 0), min2(middle + edge, grid.nodes[axis]),
-            cells - 2 * middle, 1 << (HatSpan::bits + cells),
-            coarse.nodes[axis] == 1 ? 0u : 1u << (24 + HatSpan::bits) >> (wide + !cells)};
+  /// Under the hat of node i of level l: over corners the linear one, over cells the sum of those
+  /// at their two ends. One is 2^bits.
+  PBF_HD HatSpan under(const LevelShape& level, int l, int axis, int i) const {
+    const bool one = level.nodes[axis] == 1;
+    const int wide = cells ? l : l - 2, edge = 1 << wide, middle = i << wide;
+    const int first = cells ? middle - edge : 2 * (middle - edge) + 1;
+    const int end = cells ? middle + edge : 2 * (middle + edge) - 1 + one;
+    return {max2(first, 0),
+            min2(end, grid.nodes[axis]),
+            cells,
+            2 * middle,
+            1 << (HatSpan::bits + cells),
+            one ? 0u : 1u << (24 + HatSpan::bits) >> (wide + !cells)};
   }
 };
 
@@ -118,24 +157,22 @@ struct LevelSource {
 /// in these units, of particles in the other. 2^33 particles fit; into a cell 80 000 at the clip.
 inline constexpr double kExcessUnit = 1.0 / (1 << 30), kCountUnit = 1.0 / (1 << 20);
 
-/// Sums at the nodes of levels from .. to - 1. Its items are those nodes, the coarsest first: they
-/// have most to add, so many threads share them.
+/// Sums at the nodes of all levels. Its items are those nodes, the coarsest first: they have most
+/// to add, so many threads share them.
 struct LevelSums {
   LevelHierarchy all;
-  int from, to;
-  LevelSource source;
+  LevelSource cells, corners;
 
-  PBF_HD int end() const { return all.level[to - 1].first + all.level[to - 1].size(); }
-  PBF_HD int items() const { return end() - all.level[from].first; }
-  PBF_HD int node(int item) const { return end() - 1 - item; }
+  PBF_HD int items() const { return all.level[all.count - 1].first + size(0); }
+  PBF_HD int node(int item) const { return items() - 1 - item; }
 
   /// Groups of items that the same number of threads share.
-  PBF_HD int groups() const { return to - from; }
-  PBF_HD int size(int group) const { return all.level[to - 1 - group].size(); }
-  /// 8, 64, 512, ... terms. many: all that can add up together.
+  PBF_HD int groups() const { return all.count; }
+  PBF_HD int size(int group) const { return all.level[all.count - 1 - group].size(); }
+  /// 8 and 64 cells; 8, 216, 2744, ... corners. many: all that can add up together.
   PBF_HD int lanes(int group, int many) const {
-    const int wide = to - 1 - group - source.level;
-    return wide == 0 ? 1 : wide == 1 ? 8 : wide == 2 ? 32 : many;
+    const int l = all.count - 1 - group;
+    return l == 1 ? 4 : l < 3 ? 1 : l == 3 ? 32 : many;
   }
 
   /// f(value, weight) for what lies under the hat of a node, until it is true: the share of the
@@ -144,17 +181,88 @@ struct LevelSums {
   PBF_HD void for_terms(int node, int lane, int of, F&& f) const {
     const int l = all.of(node);
     const LevelShape& level = all.level[l];
+    const LevelSource from = l < 2 ? cells : corners;
     const GridPlace at = level.place(node - level.first);
-    const HatSpan x = source.under(level, l, 0, at[0]), y = source.under(level, l, 1, at[1]),
-                  z = source.under(level, l, 2, at[2]);
-    for_box(
-        {{x.first, y.first, z.first}}, {{x.end, y.end, z.end}}, lane, of, [&](int i, int j, int k) {
-          return f(source.value[source.grid.at(i, j, k)], y.weight(j) * z.weight(k) * x.weight(i));
-        });
+    const HatSpan x = from.under(level, l, 0, at[0]), y = from.under(level, l, 1, at[1]),
+                  z = from.under(level, l, 2, at[2]);
+    const GridPlace low{{x.first, y.first, z.first}}, end{{x.end, y.end, z.end}};
+    const BoxPlaces places(low, end);
+    if (of == 1 && places.count > at_once) {
+      for_box(low, end, 0, 1, [&](int i, int j, int k) {
+        return f(from.value[from.grid.at(i, j, k)], y.weight(j) * z.weight(k) * x.weight(i));
+      });
+      return;
+    }
+    bool stop = false;
+    for (int first = lane; first < places.count && !stop; first += at_once * of) {
+      std::int64_t value[at_once];
+      int weight[at_once];
+      for (int n = 0; n < at_once; ++n) {
+        const bool there = first + n * of < places.count;
+        const GridPlace p = places(first + n * of);
+        value[n] = there ? from.value[from.grid.at(p[0], p[1], p[2])] : 0;
+        weight[n] = y.weight(p[1]) * z.weight(p[2]) * x.weight(p[0]);
+      }
+      for (int n = 0; n < at_once; ++n) stop = f(value[n], weight[n]) || stop;
+    }
   }
+  static constexpr int at_once = 8;  ///< loads that need not wait for each other
+
   /// Rounded for each term, so that it does not matter who adds it.
   PBF_HD static std::int64_t term(std::int64_t value, int weight) {
     return value * weight >> 3 * HatSpan::bits;
+  }
+};
+
+/// What threads add up together.
+struct LevelPart {
+  std::int64_t number, bits;
+
+  PBF_HD LevelPart& operator+=(const LevelPart& other) {
+    number += other.number;
+    bits |= other.bits;
+    return *this;
+  }
+};
+
+/// Passes over bricks: what each cell finds goes to the corners of its brick too. lanes: threads
+/// that share a cell.
+template <int D>
+struct LevelBrickPass {
+  LevelCells grid;
+  std::int64_t* corner;  ///< out, as LevelSource has them
+
+  static constexpr int lanes = 4, brick_cells = D == 2 ? 16 : 64, brick_corners = 8;
+
+  /// Number of the k-th cell of a brick; -1: beyond the box.
+  PBF_HD int cell(int brick, int k) const {
+    const GridPlace b = place(brick), in = inside(k);
+    const GridPlace c{{4 * b[0] + in[0], 4 * b[1] + in[1], 4 * b[2] + in[2]}};
+    for (int a = 0; a < 3; ++a)
+      if (c[a] >= grid.cells[a]) return -1;
+    return (c[2] * grid.cells[1] + c[1]) * grid.cells[0] + c[0];
+  }
+  /// What its k-th cell gives to a corner.
+  PBF_HD LevelPart share(int which, int k, std::int64_t value) const {
+    const GridPlace in = inside(k);
+    int weight = 1;  // 16 of 128 for an eighth of the brick
+    for (int a = 0; a < 3; ++a) weight *= 16 * (which >> a & 1 ? 2 * in[a] + 1 : 7 - 2 * in[a]);
+    return {LevelSums::term(value, weight), value};
+  }
+  PBF_HD std::int64_t& at(int brick, int which) const {
+    const GridPlace b = place(brick);
+    const int x = 2 * b[0] + (which & 1), y = 2 * b[1] + (which >> 1 & 1);
+    const int z = 2 * b[2] + (which >> 2);
+    return corner[(z * 2 * grid.bricks(1) + y) * 2 * grid.bricks(0) + x];
+  }
+
+ private:
+  PBF_HD GridPlace place(int brick) const {
+    const int of[3] = {grid.bricks(0), grid.bricks(1), grid.bricks(2)};
+    return place_of(brick, of);
+  }
+  PBF_HD static GridPlace inside(int k) {
+    return D == 2 ? GridPlace{{k % 4, 0, k / 4}} : GridPlace{{k % 4, k / 4 % 4, k / 16}};
   }
 };
 

@@ -32,16 +32,15 @@ PBF_HD void for_particles_of_cell(const Params<Real>& p, const LevelCells& grid,
 
 /// The cell of each particle, and how many there are in it.
 template <class Real, int D>
-struct LevelHomePass {
+struct LevelHomePass : LevelBrickPass<D> {
+  using LevelBrickPass<D>::grid;
   Params<Real> p;
-  LevelCells grid;
   const int* bin_start;
   const Vec4<Real>* position;  ///< null where no face is open; those beyond are in no cell
   int* home;                   ///< out; -1: in no cell
   int* count;                  ///< out, of each cell
   std::int64_t* full;          ///< out: the same in kCountUnit, -1 where it is not half full
 
-  static constexpr int lanes = 8;
   using Part = int;
   PBF_HD Part part(int c, int lane, int of) const {
     int inside = 0;
@@ -52,20 +51,12 @@ struct LevelHomePass {
     });
     return inside;
   }
-  PBF_HD void finish(int c, Part inside) const {
+  PBF_HD std::int64_t finish(int c, Part inside) const {
     count[c] = inside;
-    full[c] = inside < grid.half(grid.place(c)) ? -1 : std::int64_t(inside) << 20;
+    return full[c] = inside < grid.half(grid.place(c)) ? -1 : std::int64_t(inside) << 20;
   }
-};
-
-/// What threads add up together.
-struct LevelPart {
-  std::int64_t number, bits;
-
-  PBF_HD LevelPart& operator+=(const LevelPart& other) {
-    number += other.number;
-    bits |= other.bits;
-    return *this;
+  PBF_HD void finish_corner(int brick, int which, const LevelPart& sum) const {
+    this->at(brick, which) = sum.bits < 0 ? -1 : sum.number;
   }
 };
 
@@ -73,11 +64,10 @@ struct LevelPart {
 /// (0) where a cell under its hat is not half full, or an open face: no hat may reach into the air.
 template <class Real>
 struct LevelNodePass : LevelSums {
-  unsigned closed;     ///< Box::walls
-  double stiffness;    ///< of level 0; four times as large on each coarser one
-  std::int64_t* full;  ///< out: the particles around it in kCountUnit; -1: off
-  Real* answer;        ///< out
-  int* walls;          ///< out: WallBits of those under its hat; none where it is off
+  unsigned closed;   ///< Box::walls
+  double stiffness;  ///< of level 0; four times as large on each coarser one
+  Real* answer;      ///< out
+  int* walls;        ///< out: WallBits of those under its hat; none where it is off
 
   using Part = LevelPart;
   PBF_HD Part part(int item, int lane, int of) const {
@@ -101,9 +91,52 @@ struct LevelNodePass : LevelSums {
     }
     double s = stiffness;
     for (int coarser = 0; coarser < l; ++coarser) s *= 4;
-    full[n] = on ? sum.number : -1;
     answer[n] = on ? Real(s * kExcessUnit / (double(sum.number) * kCountUnit)) : Real(0);
     walls[n] = on ? against : 0;
+  }
+};
+
+/// WallBits of the nodes of level `from` in the box, of the next coarser ones whose hats overlap
+/// with theirs, and so on before level `to`, for which the box is widened: the share of a thread.
+PBF_HD int walls_around(const LevelHierarchy& all, const int* walls, int from, int to,
+                        GridPlace& low, GridPlace& end, int lane, int of) {
+  int found = 0;
+  for (int l = from; l < to; ++l) {
+    const LevelShape& level = all.level[l];
+    unsigned any = 0;
+    for (int k = 0; k < 3; ++k) any |= all.ends(l, k, low[k]) | all.ends(l, k, end[k] - 1);
+    if (any)
+      for_box(low, end, lane, of, [&](int x, int y, int z) {
+        found |= walls[level.at(x, y, z)];
+        return false;
+      });
+    if (l + 1 < all.count)
+      for (int k = 0; k < 3; ++k) {
+        const int last = all.level[l + 1].nodes[k];
+        low.k[k] = last == 1 ? 0 : (low[k] - 1) / 2;
+        end.k[k] = min2((end[k] - 1) / 2 + 2, last);
+      }
+  }
+  return found;
+}
+
+/// Of level 2 and coarser nodes the walls that they and those around them know: a cell asks them.
+struct LevelReachPass {
+  static constexpr int level = 2;
+  LevelHierarchy all;
+  const int* walls;  ///< of each node
+  int* reach;        ///< out
+
+  PBF_HD int items() const { return all.count > level ? all.level[level].size() : 0; }
+
+  static constexpr int lanes = 32;
+  using Part = LevelPart;
+  PBF_HD Part part(int n, int lane, int of) const {
+    GridPlace low = all.level[level].place(n), end{{low[0] + 1, low[1] + 1, low[2] + 1}};
+    return {0, walls_around(all, walls, level, all.count, low, end, lane, of)};
+  }
+  PBF_HD void finish(int n, const Part& found) const {
+    reach[all.level[level].first + n] = int(found.bits);
   }
 };
 
@@ -119,36 +152,31 @@ struct LevelFactorPass {
   double gamma;
   const int* count;    ///< of each cell
   const int* walls;    ///< of each node
+  const int* reach;    ///< LevelReachPass
   Vec4<Real>* factor;  ///< out, 1/h; 0 where nobody is; w: those walls, as WallBits
 
-  static constexpr int lanes = 8;
+  static constexpr int lanes = 4;
   using Part = LevelPart;
   PBF_HD Part part(int c, int lane, int of) const {
     Part found{};
     if (count[c] == 0) return found;
     GridPlace low = grid.place(c), end = low;
     for (int k = 0; k < 3; ++k) end.k[k] += all.level[0].nodes[k] == 1 ? 1 : 2;
-    for (int l = 0; l < all.count; ++l) {
-      const LevelShape& level = all.level[l];
-      for (int k = 0; k < 3 && l > 0; ++k) {
-        low.k[k] = level.nodes[k] == 1 ? 0 : (low[k] - 1) / 2;
-        end.k[k] = min2((end[k] - 1) / 2 + 2, level.nodes[k]);
-      }
-      unsigned any = 0;
-      for (int k = 0; k < 3; ++k) any |= all.ends(l, k, low[k]) | all.ends(l, k, end[k] - 1);
-      if (any)
-        for_box(low, end, lane, of, [&](int x, int y, int z) {
-          found.bits |= walls[level.at(x, y, z)];
-          return false;
-        });
-    }
+    found.bits =
+        walls_around(all, walls, 0, min2(all.count, LevelReachPass::level), low, end, lane, of);
+    if (all.count > LevelReachPass::level)
+      for_box(low, end, lane, of, [&](int x, int y, int z) {
+        found.bits |= reach[all.level[LevelReachPass::level].at(x, y, z)];
+        return false;
+      });
     return found;
   }
   PBF_HD void finish(int c, const Part& found) const {
     const GridPlace at = grid.place(c);
+    const double at_rest = count[c] > 0 ? 2 * grid.half(at) / count[c] : 0;
     Real along[3] = {};
     for (int k = 0; k < 3 && count[c] > 0; ++k) {
-      const double share = found.bits >> 2 * k & 3 ? 1 : 2 * grid.half(at) / count[c];
+      const double share = found.bits >> 2 * k & 3 ? 1 : at_rest;
       along[k] = Real(-gamma / grid.length(k, at[k]) * share);
     }
     factor[c] = {along[0], along[1], along[2], Real(int(found.bits))};

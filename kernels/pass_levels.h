@@ -12,27 +12,29 @@ inline constexpr double kLevelClip = 0.05;
 
 /// Sums of C, signed and clipped, over the cells.
 template <class Real, int D>
-struct LevelSumPass {
+struct LevelSumPass : LevelBrickPass<D> {
+  using LevelBrickPass<D>::grid;
   Params<Real> p;
-  LevelCells grid;
   const int* bin_start;
   const int* home;  ///< null where no face is open
   const Real* density;
-  std::int64_t* cell;  ///< out, in kExcessUnit
+  std::int64_t* sum;  ///< out, of each cell in kExcessUnit
 
-  static constexpr int lanes = 4;
   using Part = std::int64_t;
   PBF_HD Part part(int c, int lane, int of) const {
-    Part sum = 0;
+    Part mine = 0;
     if (home)
       for_particles_of_cell<D>(p, grid, bin_start, c, lane, of,
-                               [&](int i) { sum += home[i] >= 0 ? excess(density[i]) : 0; });
+                               [&](int i) { mine += home[i] >= 0 ? excess(density[i]) : 0; });
     else
       for_particles_of_cell<D>(p, grid, bin_start, c, lane, of,
-                               [&](int i) { sum += excess(density[i]); });
-    return sum;
+                               [&](int i) { mine += excess(density[i]); });
+    return mine;
   }
-  PBF_HD void finish(int c, Part sum) const { cell[c] = sum; }
+  PBF_HD std::int64_t finish(int c, Part here) const { return sum[c] = here; }
+  PBF_HD void finish_corner(int brick, int which, const LevelPart& part) const {
+    this->at(brick, which) = part.number;
+  }
 
  private:
   /// What is no number counts as the clip: the guard looks for it elsewhere.
@@ -46,8 +48,7 @@ struct LevelSumPass {
 template <class Real>
 struct LevelMultiplierPass : LevelSums {
   const Real* answer;
-  std::int64_t* sum;  ///< out
-  Real* multiplier;   ///< out, h^2
+  Real* multiplier;  ///< out, h^2
 
   using Part = std::int64_t;
   PBF_HD Part part(int item, int lane, int of) const {
@@ -61,7 +62,6 @@ struct LevelMultiplierPass : LevelSums {
   }
   PBF_HD void finish(int item, Part sum_here) const {
     const int n = node(item);
-    sum[n] = sum_here;
     multiplier[n] = sum_here > 0 ? answer[n] * Real(sum_here) : Real(0);
   }
 };

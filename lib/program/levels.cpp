@@ -63,6 +63,7 @@ LevelPlan plan_levels(const Scene& s, double cell_edge, double vol) {
     const double box = (s.domain.max[k] - s.domain.min[k]) / s.h();
     plan.grid.cells[k] = std::max(1, int(std::lround(box / edge)));
     plan.grid.last[k] = box - edge * (plan.grid.cells[k] - 1);
+    plan.grid.share[k] = plan.grid.last[k] / edge;
     level.nodes[k] = plan.grid.cells[k] + 1;
   }
   for (;;) {

@@ -21,6 +21,7 @@ struct LevelPlan {
     return last.first + last.size();
   }
   std::int64_t cells() const { return all.count == 0 ? 0 : grid.size(); }
+  std::int64_t bricks() const { return all.count == 0 ? 0 : grid.bricks(); }
 };
 
 /// Why a scene has none, "solver.levels is off"; null where it has. With `auto` it has them from 64

@@ -39,7 +39,13 @@ void add_state(const Scene& s, const Plan& plan, std::int64_t bins, const std::s
   const auto type_name = [&](const FieldInfo& f) -> std::string {
     return f.type == Type::real ? real : f.type == Type::int64 ? "int64" : "int32";
   };
-  const RowCounts counts{n, padding, bins, plan.levels.cells(), plan.levels.nodes(), load_walls(s)};
+  const RowCounts counts{n,
+                         padding,
+                         bins,
+                         plan.levels.cells(),
+                         plan.levels.bricks(),
+                         plan.levels.nodes(),
+                         load_walls(s)};
   for (const FieldInfo* f : plan.program.fields) {
     if (f == &field::order && !add.on_device) continue;  // it stands in id'
     for (const char* which : {"", "'"})

@@ -150,9 +150,13 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
                                    const std::vector<Solid<double>>& obstacles) {
   const std::size_t n = first_position.size();
   rows_ = capacity_ = int(n);
-  const RowCounts sizes{rows_,          std::int64_t(Exec::padding),
-                        bin_count(p),   levels.cells(),
-                        levels.nodes(), load_walls(scene)};
+  const RowCounts sizes{rows_,
+                        std::int64_t(Exec::padding),
+                        bin_count(p),
+                        levels.cells(),
+                        levels.bricks(),
+                        levels.nodes(),
+                        load_walls(scene)};
   for (const FieldInfo* f : fields) {
     if (f == &field::order && Exec::order_in_place) continue;
     const auto count = std::size_t(rows_of(*f, sizes));

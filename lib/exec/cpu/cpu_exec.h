@@ -183,10 +183,26 @@ class CpuExec {
   /// Of a pass that threads could share, one makes the whole.
   template <class Pass>
   static void one(const Pass& pass, int i) {
-    if constexpr (requires { typename Pass::Part; })
+    if constexpr (requires { Pass::brick_corners; })
+      of_brick(pass, i);
+    else if constexpr (requires { typename Pass::Part; })
       pass.finish(i, pass.part(i, 0, 1));
     else
       pass(i);
+  }
+  /// See LevelBrickPass.
+  template <class Pass>
+  static void of_brick(const Pass& pass, int brick) {
+    std::int64_t found[Pass::brick_cells];
+    for (int k = 0; k < Pass::brick_cells; ++k) {
+      const int c = pass.cell(brick, k);
+      found[k] = c < 0 ? 0 : pass.finish(c, pass.part(c, 0, 1));
+    }
+    for (int which = 0; which < Pass::brick_corners; ++which) {
+      auto sum = pass.share(which, 0, found[0]);
+      for (int k = 1; k < Pass::brick_cells; ++k) sum += pass.share(which, k, found[k]);
+      pass.finish_corner(brick, which, sum);
+    }
   }
   /// Of term(i), whose additions have no order.
   template <class Sum, class Term>

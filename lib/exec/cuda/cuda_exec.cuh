@@ -99,7 +99,9 @@ class CudaExec {
       if (launch_lanes < space ? 4 : 2, kFourLanes > (n, pass)) return;
       if (launch_lanes < 2, space ? kTwoLanes : 0 > (n, pass)) return;
     }
-    if constexpr (requires { pass.groups(); }) {
+    if constexpr (requires { Pass::brick_corners; })
+      launch(brick_kernel<Pass>, n * kBrickBlock<Pass>, kBrickBlock<Pass>, 0, pass);
+    else if constexpr (requires { pass.groups(); }) {
       int blocks = 0;
       for (int g = 0; g < pass.groups(); ++g) blocks += team_blocks(pass, g);
       launch(team_kernel<Pass>, blocks * kTeam, kTeam, 0, pass);

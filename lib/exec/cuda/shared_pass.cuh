@@ -36,6 +36,31 @@ __global__ void __launch_bounds__(kBlock) shared_kernel(int n, const __grid_cons
   if (i < n && lane == 0) pass.finish(i, mine);
 }
 
+/// A block of a brick (kernels/levels.h).
+template <class Pass>
+constexpr int kBrickBlock = Pass::brick_cells* Pass::lanes;
+template <class Pass>
+__global__ void __launch_bounds__(kBrickBlock<Pass>)
+    brick_kernel(const __grid_constant__ Pass pass) {
+  __shared__ std::int64_t found[Pass::brick_cells];
+  wait_for_previous();
+  const int brick = blockIdx.x, k = threadIdx.x / Pass::lanes, lane = threadIdx.x % Pass::lanes;
+  const int c = pass.cell(brick, k);
+  typename Pass::Part mine{};
+  if (c >= 0) mine = pass.part(c, lane, Pass::lanes);
+  mine = sum_of_lanes(mine, Pass::lanes);
+  if (lane == 0) found[k] = c >= 0 ? pass.finish(c, mine) : 0;
+  __syncthreads();
+  constexpr int warps = kBrickBlock<Pass> / 32;
+  for (int which = threadIdx.x / 32; which < Pass::brick_corners; which += warps) {
+    decltype(pass.share(0, 0, 0)) sum{};
+    for (int j = threadIdx.x % 32; j < Pass::brick_cells; j += 32)
+      sum += pass.share(which, j, found[j]);
+    sum = sum_of_lanes(sum, 32);
+    if (threadIdx.x % 32 == 0) pass.finish_corner(brick, which, sum);
+  }
+}
+
 /// Groups of items that are shared by 32 threads and fewer, or by a block. A block is of one group.
 constexpr int kTeam = 512;
 template <class Pass>

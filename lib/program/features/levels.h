@@ -18,10 +18,12 @@ inline constexpr FieldInfo level_home{"level home", Type::int32, 1, Rows::partic
 inline constexpr FieldInfo cell_count{"level cell count", Type::int32, 1, Rows::cells};
 inline constexpr FieldInfo cell_sum{"level cell sum", Type::int64, 1, Rows::cells};
 inline constexpr FieldInfo cell_factor{"level factor", Type::real, 4, Rows::cells};
-/// Of each node: the same sums; WallBits of the walls under its hat; what it makes of the sum
-/// of C, the multiplier (h^2).
-inline constexpr FieldInfo node_sum{"level node sum", Type::int64, 1, Rows::nodes};
+/// Of each brick's corners: shares of the sums.
+inline constexpr FieldInfo corner_sum{"level corner sum", Type::int64, 8, Rows::bricks};
+/// Of each node: WallBits of the walls under its hat; those and what coarser ones around it know;
+/// what it makes of the sum of C, the multiplier (h^2).
 inline constexpr FieldInfo node_walls{"level walls", Type::int32, 1, Rows::nodes};
+inline constexpr FieldInfo node_reach{"level reach", Type::int32, 1, Rows::nodes};
 inline constexpr FieldInfo node_answer{"level answer", Type::real, 1, Rows::nodes};
 inline constexpr FieldInfo multiplier{"level multiplier", Type::real, 1, Rows::nodes};
 /// Of each cell, h.
@@ -38,23 +40,17 @@ void with_level_move(C& c, F&& f) {
   f(LevelMove<Real>{c.template data<int>(field::level_home), c.vectors(field::level_move)});
 }
 
-/// Up to so many cells the nodes of all levels ask the cells, as a launch takes longer than the
-/// work; with more of them the nodes from level 2 on ask those of level 1.
-inline constexpr int kCellsForAll = 1 << 15;
-
-/// f(LevelSums) until the sums at the nodes of all levels are there.
-template <class C, class F>
-void for_level_sums(C& c, const F& f) {
-  const LevelPlan& l = c.levels;
-  LevelShape cells;
-  std::copy_n(l.grid.cells, 3, cells.nodes);
-  const int first = l.grid.size() > kCellsForAll ? std::min(2, l.all.count) : l.all.count;
-  f(LevelSums{l.all, 0, first, {cells, true, 0, c.template data<std::int64_t>(field::cell_sum)}});
-  if (first < l.all.count)
-    f(LevelSums{l.all,
-                first,
-                l.all.count,
-                {l.all.level[1], false, 1, c.template data<std::int64_t>(field::node_sum)}});
+/// Over cells and bricks, and what lies at their corners.
+template <class C>
+LevelSums level_sums(C& c) {
+  LevelSums sums{c.levels.all,
+                 {{}, true, c.template data<std::int64_t>(field::cell_sum)},
+                 {{}, false, c.template data<std::int64_t>(field::corner_sum)}};
+  for (int k = 0; k < 3; ++k) {
+    sums.cells.grid.nodes[k] = c.levels.grid.cells[k];
+    sums.corners.grid.nodes[k] = 2 * c.levels.grid.bricks(k);
+  }
+  return sums;
 }
 template <class C>
 const int* homes_beside_open_faces(C& c) {
@@ -71,8 +67,9 @@ struct LevelCellsAndNodes {
              hidden({&field::cell_count}),
              hidden({&field::cell_sum}),
              hidden({&field::cell_factor}),
-             hidden({&field::node_sum}),
+             hidden({&field::corner_sum}),
              hidden({&field::node_walls}),
+             hidden({&field::node_reach}),
              hidden({&field::node_answer})}};
   }
   template <class C>
@@ -80,21 +77,25 @@ struct LevelCellsAndNodes {
     using Real = typename C::Real;
     const LevelPlan& l = c.levels;
     int* walls = c.template data<int>(field::node_walls);
+    int* reach = c.template data<int>(field::node_reach);
     int* count = c.template data<int>(field::cell_count);
     with_dimensions(c.p.dimensions, [&](auto d) {
-      c.over(l.grid.size(), LevelHomePass<Real, decltype(d)::value>{
-                                c.p, l.grid, c.template data<int>(field::bin_start),
-                                c.scene.domain.open.empty() ? nullptr : c.position(),
-                                c.template data<int>(field::level_home), count,
-                                c.template data<std::int64_t>(field::cell_sum)});
+      c.over(l.grid.bricks(), LevelHomePass<Real, decltype(d)::value>{
+                                  {l.grid, c.template data<std::int64_t>(field::corner_sum)},
+                                  c.p,
+                                  c.template data<int>(field::bin_start),
+                                  c.scene.domain.open.empty() ? nullptr : c.position(),
+                                  c.template data<int>(field::level_home),
+                                  count,
+                                  c.template data<std::int64_t>(field::cell_sum)});
     });
-    for_level_sums(c, [&](const LevelSums& sums) {
-      c.over(sums.items(),
-             LevelNodePass<Real>{sums, c.p.boundary.walls, l.beta * l.grid.edge * l.grid.edge,
-                                 c.template data<std::int64_t>(field::node_sum),
-                                 c.template data<Real>(field::node_answer), walls});
-    });
-    c.over(l.grid.size(), LevelFactorPass<Real>{l.all, l.grid, l.gamma, count, walls,
+    const LevelSums sums = level_sums(c);
+    c.over(sums.items(),
+           LevelNodePass<Real>{sums, c.p.boundary.walls, l.beta * l.grid.edge * l.grid.edge,
+                               c.template data<Real>(field::node_answer), walls});
+    const LevelReachPass reached{l.all, walls, reach};
+    c.over(reached.items(), reached);
+    c.over(l.grid.size(), LevelFactorPass<Real>{l.all, l.grid, l.gamma, count, walls, reach,
                                                 c.vectors(field::cell_factor)});
   }
 };
@@ -108,7 +109,7 @@ struct LevelMultipliers {
              {&field::level_home},
              {&field::node_answer},
              {&field::cell_factor}},
-            {hidden({&field::cell_sum}), hidden({&field::node_sum}), hidden({&field::multiplier}),
+            {hidden({&field::cell_sum}), hidden({&field::corner_sum}), hidden({&field::multiplier}),
              move()}};
   }
   static Written move() {
@@ -123,16 +124,17 @@ struct LevelMultipliers {
     const LevelPlan& l = c.levels;
     auto* multiplier = c.template data<Real>(field::multiplier);
     with_dimensions(c.p.dimensions, [&](auto d) {
-      c.over(l.grid.size(),
-             LevelSumPass<Real, decltype(d)::value>{
-                 c.p, l.grid, c.template data<int>(field::bin_start), homes_beside_open_faces(c),
-                 c.density(), c.template data<std::int64_t>(field::cell_sum)});
+      c.over(l.grid.bricks(), LevelSumPass<Real, decltype(d)::value>{
+                                  {l.grid, c.template data<std::int64_t>(field::corner_sum)},
+                                  c.p,
+                                  c.template data<int>(field::bin_start),
+                                  homes_beside_open_faces(c),
+                                  c.density(),
+                                  c.template data<std::int64_t>(field::cell_sum)});
     });
-    for_level_sums(c, [&](const LevelSums& sums) {
-      c.over(sums.items(),
-             LevelMultiplierPass<Real>{sums, c.template data<Real>(field::node_answer),
-                                       c.template data<std::int64_t>(field::node_sum), multiplier});
-    });
+    const LevelSums sums = level_sums(c);
+    c.over(sums.items(),
+           LevelMultiplierPass<Real>{sums, c.template data<Real>(field::node_answer), multiplier});
     c.over(l.grid.size(),
            LevelMovePass<Real>{l.all, l.grid, multiplier, c.vectors(field::cell_factor),
                                c.vectors(field::level_move)});
