@@ -41,10 +41,21 @@ struct LevelCells {
 
   PBF_HD int size() const { return cells[0] * cells[1] * cells[2]; }
   PBF_HD GridPlace place(int c) const { return place_of(c, cells); }
+  PBF_HD int at(GridPlace c) const { return (c[2] * cells[1] + c[1]) * cells[0] + c[0]; }
+  PBF_HD bool has(GridPlace c) const {
+    return c[0] < cells[0] && c[1] < cells[1] && c[2] < cells[2];
+  }
   PBF_HD double length(int axis, int i) const { return i + 1 == cells[axis] ? last[axis] : edge; }
   /// Bricks of 4 x 4 x 4 cells, the last ones reach beyond the box.
   PBF_HD int bricks(int axis) const { return (cells[axis] + 3) / 4; }
   PBF_HD int bricks() const { return bricks(0) * bricks(1) * bricks(2); }
+  /// Rows of the search grid along y or z: two for a cell, up to three for the last one.
+  PBF_HD int rows(int axis) const { return 2 * cells[axis] + 1; }
+  /// Of particles that stand side by side: those of a cell and a row. Behind those of a row is
+  /// their end.
+  PBF_HD int runs(int dimensions) const {
+    return (dimensions == 2 ? 1 : rows(1)) * rows(2) * (cells[0] + 1);
+  }
   /// Particles in half of that cell at rest.
   PBF_HD double half(GridPlace at) const {
     double n = half_full;
@@ -183,6 +194,7 @@ struct LevelSums {
     const LevelShape& level = all.level[l];
     const LevelSource from = l < 2 ? cells : corners;
     const GridPlace at = level.place(node - level.first);
+    if (l == 0) return for_cells_around(at, f);
     const HatSpan x = from.under(level, l, 0, at[0]), y = from.under(level, l, 1, at[1]),
                   z = from.under(level, l, 2, at[2]);
     const GridPlace low{{x.first, y.first, z.first}}, end{{x.end, y.end, z.end}};
@@ -206,8 +218,23 @@ struct LevelSums {
       for (int n = 0; n < at_once; ++n) stop = f(value[n], weight[n]) || stop;
     }
   }
+
   static constexpr int at_once = 8;  ///< loads that need not wait for each other
 
+  /// The same for a node of level 0.
+  template <class F>
+  PBF_HD void for_cells_around(GridPlace at, F&& f) const {
+    std::int64_t value[8];
+    int weight = 1 << 3 * HatSpan::bits;
+    for (int k = 0; k < 3; ++k) weight <<= all.level[0].nodes[k] == 1;
+    for (int m = 0; m < 8; ++m) {
+      const GridPlace c{{at[0] - 1 + (m & 1), at[1] - 1 + (m >> 1 & 1), at[2] - 1 + (m >> 2)}};
+      const bool there = c[0] >= 0 && c[1] >= 0 && c[2] >= 0 && c[0] < cells.grid.nodes[0] &&
+                         c[1] < cells.grid.nodes[1] && c[2] < cells.grid.nodes[2];
+      value[m] = there ? cells.value[cells.grid.at(c[0], c[1], c[2])] : 0;
+    }
+    for (int m = 0; m < 8; ++m) f(value[m], weight);
+  }
   /// Rounded for each term, so that it does not matter who adds it.
   PBF_HD static std::int64_t term(std::int64_t value, int weight) {
     return value * weight >> 3 * HatSpan::bits;
@@ -234,33 +261,29 @@ struct LevelBrickPass {
 
   static constexpr int lanes = 4, brick_cells = D == 2 ? 16 : 64, brick_corners = 8;
 
-  /// Number of the k-th cell of a brick; -1: beyond the box.
-  PBF_HD int cell(int brick, int k) const {
-    const GridPlace b = place(brick), in = inside(k);
-    const GridPlace c{{4 * b[0] + in[0], 4 * b[1] + in[1], 4 * b[2] + in[2]}};
-    for (int a = 0; a < 3; ++a)
-      if (c[a] >= grid.cells[a]) return -1;
-    return (c[2] * grid.cells[1] + c[1]) * grid.cells[0] + c[0];
+  PBF_HD GridPlace brick(int n) const {
+    const int of[3] = {grid.bricks(0), grid.bricks(1), grid.bricks(2)};
+    return place_of(n, of);
   }
-  /// What its k-th cell gives to a corner.
+  /// The k-th cell of a brick; it may lie beyond the box.
+  PBF_HD GridPlace cell(GridPlace b, int k) const {
+    const GridPlace in = inside(k);
+    return {{4 * b[0] + in[0], 4 * b[1] + in[1], 4 * b[2] + in[2]}};
+  }
+  /// What that gives to a corner.
   PBF_HD LevelPart share(int which, int k, std::int64_t value) const {
     const GridPlace in = inside(k);
     int weight = 1;  // 16 of 128 for an eighth of the brick
     for (int a = 0; a < 3; ++a) weight *= 16 * (which >> a & 1 ? 2 * in[a] + 1 : 7 - 2 * in[a]);
     return {LevelSums::term(value, weight), value};
   }
-  PBF_HD std::int64_t& at(int brick, int which) const {
-    const GridPlace b = place(brick);
+  PBF_HD std::int64_t& at(GridPlace b, int which) const {
     const int x = 2 * b[0] + (which & 1), y = 2 * b[1] + (which >> 1 & 1);
     const int z = 2 * b[2] + (which >> 2);
     return corner[(z * 2 * grid.bricks(1) + y) * 2 * grid.bricks(0) + x];
   }
 
  private:
-  PBF_HD GridPlace place(int brick) const {
-    const int of[3] = {grid.bricks(0), grid.bricks(1), grid.bricks(2)};
-    return place_of(brick, of);
-  }
   PBF_HD static GridPlace inside(int k) {
     return D == 2 ? GridPlace{{k % 4, 0, k / 4}} : GridPlace{{k % 4, k / 4 % 4, k / 16}};
   }

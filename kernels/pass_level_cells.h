@@ -11,23 +11,17 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// f(i) for the sorted particles of a cell: every of-th in each of its rows, from the lane-th on.
-template <int D, class Real, class F>
-PBF_HD void for_particles_of_cell(const Params<Real>& p, const LevelCells& grid,
-                                  const int* bin_start, int c, int lane, int of, F&& f) {
-  const GridPlace cell = grid.place(c);
-  const auto end = [&](int axis, int per_cell, int all) {
-    return cell[axis] + 1 < grid.cells[axis] ? per_cell * (cell[axis] + 1) : all;
+/// f(y, z, run) for the runs of a cell's particles and the rows of the search grid that they lie
+/// in.
+template <int D, class F>
+PBF_HD void for_runs(const LevelCells& grid, GridPlace cell, F&& f) {
+  const auto end = [&](int axis) {
+    return 2 * cell[axis] + (cell[axis] + 1 < grid.cells[axis] ? 2 : 3);
   };
-  const int x1 = end(0, 4, p.cells_x), z1 = end(2, 2, p.cells_z);
-  const int y0 = D == 2 ? 0 : 2 * cell[1], y1 = D == 2 ? 1 : end(1, 2, p.cells_y);
+  const int y0 = D == 2 ? 0 : 2 * cell[1], y1 = D == 2 ? 1 : end(1), z1 = end(2);
   for (int z = 2 * cell[2]; z < z1; ++z)
-    for (int y = y0; y < y1; ++y) {
-      const int row = (D == 2 ? z : z * p.cells_y + y) * p.cells_x;
-      const int last = bin_start[(row + x1) * bins_per_cell(D)];
-      for (int i = bin_start[(row + 4 * cell[0]) * bins_per_cell(D)] + lane; i < last; i += of)
-        f(i);
-    }
+    for (int y = y0; y < y1; ++y)
+      f(y, z, (D == 2 ? z : z * grid.rows(1) + y) * (grid.cells[0] + 1) + cell[0]);
 }
 
 /// The cell of each particle, and how many there are in it.
@@ -37,25 +31,39 @@ struct LevelHomePass : LevelBrickPass<D> {
   Params<Real> p;
   const int* bin_start;
   const Vec4<Real>* position;  ///< null where no face is open; those beyond are in no cell
+  int* run_start;              ///< out, LevelCells::runs
   int* home;                   ///< out; -1: in no cell
   int* count;                  ///< out, of each cell
   std::int64_t* full;          ///< out: the same in kCountUnit, -1 where it is not half full
 
   using Part = int;
-  PBF_HD Part part(int c, int lane, int of) const {
+  PBF_HD Part part(GridPlace cell, int lane, int of) const {
     int inside = 0;
-    for_particles_of_cell<D>(p, grid, bin_start, c, lane, of, [&](int i) {
-      const bool in = !position || p.boundary.inside(xyz(position[i]));
-      home[i] = in ? c : -1;
-      inside += in;
+    const int c = grid.at(cell);
+    const bool last = cell[0] + 1 == grid.cells[0];
+    for_runs<D>(grid, cell, [&](int y, int z, int run) {
+      int begin = 0, end = 0;
+      if (y < p.cells_y && z < p.cells_z) {
+        const int row = (z * p.cells_y + y) * p.cells_x;
+        begin = bin_start[(row + 4 * cell[0]) * bins_per_cell(D)];
+        end = bin_start[(row + (last ? p.cells_x : 4 * cell[0] + 4)) * bins_per_cell(D)];
+      }
+      if (lane == 0) run_start[run] = begin;
+      if (lane == 0 && last) run_start[run + 1] = end;
+      for (int i = begin + lane; i < end; i += of) {
+        const bool in = !position || p.boundary.inside(xyz(position[i]));
+        home[i] = in ? c : -1;
+        inside += in;
+      }
     });
     return inside;
   }
-  PBF_HD std::int64_t finish(int c, Part inside) const {
+  PBF_HD std::int64_t finish(GridPlace cell, Part inside) const {
+    const int c = grid.at(cell);
     count[c] = inside;
-    return full[c] = inside < grid.half(grid.place(c)) ? -1 : std::int64_t(inside) << 20;
+    return full[c] = inside < grid.half(cell) ? -1 : std::int64_t(inside) << 20;
   }
-  PBF_HD void finish_corner(int brick, int which, const LevelPart& sum) const {
+  PBF_HD void finish_corner(GridPlace brick, int which, const LevelPart& sum) const {
     this->at(brick, which) = sum.bits < 0 ? -1 : sum.number;
   }
 };
@@ -89,9 +97,13 @@ struct LevelNodePass : LevelSums {
       on = on && !(ends & ~(closed >> 2 * k));
       against |= int(ends) << 2 * k;
     }
-    double s = stiffness;
-    for (int coarser = 0; coarser < l; ++coarser) s *= 4;
-    answer[n] = on ? Real(s * kExcessUnit / (double(sum.number) * kCountUnit)) : Real(0);
+    Real a(0);
+    if (on) {
+      double s = stiffness;
+      for (int coarser = 0; coarser < l; ++coarser) s *= 4;
+      a = Real(s * kExcessUnit / (double(sum.number) * kCountUnit));
+    }
+    answer[n] = a;
     walls[n] = on ? against : 0;
   }
 };
@@ -149,11 +161,11 @@ template <class Real>
 struct LevelFactorPass {
   LevelHierarchy all;
   LevelCells grid;
-  double gamma;
-  const int* count;    ///< of each cell
-  const int* walls;    ///< of each node
-  const int* reach;    ///< LevelReachPass
-  Vec4<Real>* factor;  ///< out, 1/h; 0 where nobody is; w: those walls, as WallBits
+  double by_edge, by_last[3];  ///< gamma over the lengths of cells
+  const int* count;            ///< of each cell
+  const int* walls;            ///< of each node
+  const int* reach;            ///< LevelReachPass
+  Vec4<Real>* factor;          ///< out, 1/h; 0 where nobody is; w: those walls, as WallBits
 
   static constexpr int lanes = 4;
   using Part = LevelPart;
@@ -173,11 +185,12 @@ struct LevelFactorPass {
   }
   PBF_HD void finish(int c, const Part& found) const {
     const GridPlace at = grid.place(c);
-    const double at_rest = count[c] > 0 ? 2 * grid.half(at) / count[c] : 0;
+    const int particles = count[c];
+    const double at_rest = particles > 0 ? 2 * grid.half(at) / particles : 0;
     Real along[3] = {};
-    for (int k = 0; k < 3 && count[c] > 0; ++k) {
+    for (int k = 0; k < 3 && particles > 0; ++k) {
       const double share = found.bits >> 2 * k & 3 ? 1 : at_rest;
-      along[k] = Real(-gamma / grid.length(k, at[k]) * share);
+      along[k] = Real(-(at[k] + 1 == grid.cells[k] ? by_last[k] : by_edge) * share);
     }
     factor[c] = {along[0], along[1], along[2], Real(int(found.bits))};
   }

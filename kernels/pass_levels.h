@@ -14,26 +14,30 @@ inline constexpr double kLevelClip = 0.05;
 template <class Real, int D>
 struct LevelSumPass : LevelBrickPass<D> {
   using LevelBrickPass<D>::grid;
-  Params<Real> p;
-  const int* bin_start;
-  const int* home;  ///< null where no face is open
+  const int* run_start;  ///< LevelHomePass
+  const int* home;       ///< null where no face is open
   const Real* density;
   std::int64_t* sum;  ///< out, of each cell in kExcessUnit
 
   using Part = std::int64_t;
-  PBF_HD Part part(int c, int lane, int of) const {
+  PBF_HD Part part(GridPlace cell, int lane, int of) const {
     Part mine = 0;
-    if (home)
-      for_particles_of_cell<D>(p, grid, bin_start, c, lane, of,
-                               [&](int i) { mine += home[i] >= 0 ? excess(density[i]) : 0; });
-    else
-      for_particles_of_cell<D>(p, grid, bin_start, c, lane, of,
-                               [&](int i) { mine += excess(density[i]); });
+    for_runs<D>(grid, cell, [&](int, int, int run) {
+      const int end = run_start[run + 1];
+      if (home)
+        for (int i = run_start[run] + lane; i < end; i += of)
+          mine += home[i] >= 0 ? excess(density[i]) : 0;
+      else
+        for (int i = run_start[run] + lane; i < end; i += of) mine += excess(density[i]);
+    });
     return mine;
   }
-  PBF_HD std::int64_t finish(int c, Part here) const { return sum[c] = here; }
-  PBF_HD void finish_corner(int brick, int which, const LevelPart& part) const {
-    this->at(brick, which) = part.number;
+  PBF_HD std::int64_t finish(GridPlace cell, Part here) const { return sum[grid.at(cell)] = here; }
+  PBF_HD Part share(int which, int k, Part value) const {
+    return LevelBrickPass<D>::share(which, k, value).number;
+  }
+  PBF_HD void finish_corner(GridPlace brick, int which, Part here) const {
+    this->at(brick, which) = here;
   }
 
  private:

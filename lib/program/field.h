@@ -10,13 +10,14 @@ namespace pbf::inline program_module {
 enum class Type { real, int32, int64 };  ///< real: of the scene's precision
 
 /// How many rows a field has. padded: one per particle, and behind them what the lists of an
-/// executor may read beyond the last one. cells, bricks, nodes: of the grids of solver.levels.
-/// walls: whose loads are summed.
-enum class Rows { particles, padded, bins, cells, bricks, nodes, walls };
+/// executor may read beyond the last one. cells, runs, bricks, nodes: of the grids of
+/// solver.levels. walls: whose loads are summed.
+enum class Rows { particles, padded, bins, cells, runs, bricks, nodes, walls };
 
 /// How many of each there are. padding: of the executor.
 struct RowCounts {
-  std::int64_t particles = 0, padding = 0, bins = 0, cells = 0, bricks = 0, nodes = 0, walls = 0;
+  std::int64_t particles = 0, padding = 0, bins = 0, cells = 0, runs = 0, bricks = 0, nodes = 0,
+               walls = 0;
 };
 
 struct FieldInfo {
@@ -54,6 +55,8 @@ constexpr std::int64_t rows_of(const FieldInfo& f, const RowCounts& n) {
       return n.bins + 1;
     case Rows::cells:
       return n.cells;
+    case Rows::runs:
+      return n.runs;
     case Rows::bricks:
       return n.bricks;
     case Rows::nodes:

@@ -21,6 +21,8 @@ struct LevelPlan {
     return last.first + last.size();
   }
   std::int64_t cells() const { return all.count == 0 ? 0 : grid.size(); }
+  /// Of particles, in a scene of so many dimensions.
+  std::int64_t runs(int dimensions) const { return all.count == 0 ? 0 : grid.runs(dimensions); }
   std::int64_t bricks() const { return all.count == 0 ? 0 : grid.bricks(); }
 };
 

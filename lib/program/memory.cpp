@@ -43,6 +43,7 @@ void add_state(const Scene& s, const Plan& plan, std::int64_t bins, const std::s
                          padding,
                          bins,
                          plan.levels.cells(),
+                         plan.levels.runs(s.dimensions),
                          plan.levels.bricks(),
                          plan.levels.nodes(),
                          load_walls(s)};

@@ -154,6 +154,7 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
                         std::int64_t(Exec::padding),
                         bin_count(p),
                         levels.cells(),
+                        levels.runs(p.dimensions),
                         levels.bricks(),
                         levels.nodes(),
                         load_walls(scene)};

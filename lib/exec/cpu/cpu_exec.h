@@ -192,11 +192,12 @@ class CpuExec {
   }
   /// See LevelBrickPass.
   template <class Pass>
-  static void of_brick(const Pass& pass, int brick) {
+  static void of_brick(const Pass& pass, int n) {
+    const auto brick = pass.brick(n);
     std::int64_t found[Pass::brick_cells];
     for (int k = 0; k < Pass::brick_cells; ++k) {
-      const int c = pass.cell(brick, k);
-      found[k] = c < 0 ? 0 : pass.finish(c, pass.part(c, 0, 1));
+      const auto c = pass.cell(brick, k);
+      found[k] = pass.grid.has(c) ? pass.finish(c, pass.part(c, 0, 1)) : 0;
     }
     for (int which = 0; which < Pass::brick_corners; ++which) {
       auto sum = pass.share(which, 0, found[0]);

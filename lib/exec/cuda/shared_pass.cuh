@@ -44,12 +44,14 @@ __global__ void __launch_bounds__(kBrickBlock<Pass>)
     brick_kernel(const __grid_constant__ Pass pass) {
   __shared__ std::int64_t found[Pass::brick_cells];
   wait_for_previous();
-  const int brick = blockIdx.x, k = threadIdx.x / Pass::lanes, lane = threadIdx.x % Pass::lanes;
-  const int c = pass.cell(brick, k);
+  const GridPlace brick = pass.brick(blockIdx.x);
+  const int k = threadIdx.x / Pass::lanes, lane = threadIdx.x % Pass::lanes;
+  const GridPlace c = pass.cell(brick, k);
+  const bool there = pass.grid.has(c);
   typename Pass::Part mine{};
-  if (c >= 0) mine = pass.part(c, lane, Pass::lanes);
+  if (there) mine = pass.part(c, lane, Pass::lanes);
   mine = sum_of_lanes(mine, Pass::lanes);
-  if (lane == 0) found[k] = c >= 0 ? pass.finish(c, mine) : 0;
+  if (lane == 0) found[k] = there ? pass.finish(c, mine) : 0;
   __syncthreads();
   constexpr int warps = kBrickBlock<Pass> / 32;
   for (int which = threadIdx.x / 32; which < Pass::brick_corners; which += warps) {

@@ -13,6 +13,8 @@
 namespace pbf::inline program_module::field {
 /// Of each particle the cell that it was in when the lists were made.
 inline constexpr FieldInfo level_home{"level home", Type::int32, 1, Rows::particles};
+/// Of each run, its first particle.
+inline constexpr FieldInfo run_start{"level run start", Type::int32, 1, Rows::runs};
 /// Of each cell: particles; sums, of particles while the lists are made, of C in iterations; what
 /// LevelFactorPass names, 1/h.
 inline constexpr FieldInfo cell_count{"level cell count", Type::int32, 1, Rows::cells};
@@ -64,6 +66,7 @@ struct LevelCellsAndNodes {
             "levels",
             {{&field::position}, {&field::bin_start}},
             {{{&field::level_home}, Written::scalar, "level cell"},
+             hidden({&field::run_start}),
              hidden({&field::cell_count}),
              hidden({&field::cell_sum}),
              hidden({&field::cell_factor}),
@@ -85,6 +88,7 @@ struct LevelCellsAndNodes {
                                   c.p,
                                   c.template data<int>(field::bin_start),
                                   c.scene.domain.open.empty() ? nullptr : c.position(),
+                                  c.template data<int>(field::run_start),
                                   c.template data<int>(field::level_home),
                                   count,
                                   c.template data<std::int64_t>(field::cell_sum)});
@@ -95,7 +99,14 @@ struct LevelCellsAndNodes {
                                c.template data<Real>(field::node_answer), walls});
     const LevelReachPass reached{l.all, walls, reach};
     c.over(reached.items(), reached);
-    c.over(l.grid.size(), LevelFactorPass<Real>{l.all, l.grid, l.gamma, count, walls, reach,
+    const auto over = [&](int k) { return l.gamma / l.grid.last[k]; };
+    c.over(l.grid.size(), LevelFactorPass<Real>{l.all,
+                                                l.grid,
+                                                l.gamma / l.grid.edge,
+                                                {over(0), over(1), over(2)},
+                                                count,
+                                                walls,
+                                                reach,
                                                 c.vectors(field::cell_factor)});
   }
 };
@@ -105,7 +116,7 @@ struct LevelMultipliers {
     return {"level multipliers",
             "levels",
             {{&field::density},
-             {&field::bin_start},
+             {&field::run_start},
              {&field::level_home},
              {&field::node_answer},
              {&field::cell_factor}},
@@ -126,8 +137,7 @@ struct LevelMultipliers {
     with_dimensions(c.p.dimensions, [&](auto d) {
       c.over(l.grid.bricks(), LevelSumPass<Real, decltype(d)::value>{
                                   {l.grid, c.template data<std::int64_t>(field::corner_sum)},
-                                  c.p,
-                                  c.template data<int>(field::bin_start),
+                                  c.template data<int>(field::run_start),
                                   homes_beside_open_faces(c),
                                   c.density(),
                                   c.template data<std::int64_t>(field::cell_sum)});
