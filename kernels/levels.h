@@ -87,13 +87,13 @@ struct LevelHierarchy {
 /// `of` threads, which share rows first.
 template <class F>
 PBF_HD void for_box(GridPlace low, GridPlace end, int lane, int of, F&& f) {
-  int side_by_side = 1;
-  while (side_by_side < of && side_by_side < end[0] - low[0]) side_by_side *= 2;
+  int bits = 0;  // 2^bits side by side
+  while (1 << bits < of && 1 << bits < end[0] - low[0]) ++bits;
   int z = low[2];
-  for (int y = low[1] + lane / side_by_side;; y += of / side_by_side) {
+  for (int y = low[1] + (lane >> bits);; y += of >> bits) {
     for (; y >= end[1]; y -= end[1] - low[1])
       if (++z >= end[2]) return;
-    for (int x = low[0] + lane % side_by_side; x < end[0]; x += side_by_side)
+    for (int x = low[0] + lane % (1 << bits); x < end[0]; x += 1 << bits)
       if (f(x, y, z)) return;
   }
 }
@@ -183,7 +183,8 @@ struct LevelSums {
   /// 8 and 64 cells; 8, 216, 2744, ... corners. many: all that can add up together.
   PBF_HD int lanes(int group, int many) const {
     const int l = all.count - 1 - group;
-    return l == 1 ? 4 : l < 3 ? 1 : l == 3 ? 32 : many;
+    if (l == 1) return size(group) < 1 << 14 ? 8 : 4;
+    return l < 3 ? 1 : l < 5 ? 32 : many;
   }
 
   /// f(value, weight) for what lies under the hat of a node, until it is true: the share of the

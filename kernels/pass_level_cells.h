@@ -132,7 +132,8 @@ PBF_HD int walls_around(const LevelHierarchy& all, const int* walls, int from, i
   return found;
 }
 
-/// Of level 2 and coarser nodes the walls that they and those around them know: a cell asks them.
+/// Of nodes of level 2 the walls that they, those beside them and the coarser ones around these
+/// know.
 struct LevelReachPass {
   static constexpr int level = 2;
   LevelHierarchy all;
@@ -144,12 +145,14 @@ struct LevelReachPass {
   static constexpr int lanes = 32;
   using Part = LevelPart;
   PBF_HD Part part(int n, int lane, int of) const {
-    GridPlace low = all.level[level].place(n), end{{low[0] + 1, low[1] + 1, low[2] + 1}};
+    GridPlace low = all.level[level].place(n), end = low;
+    for (int k = 0; k < 3; ++k) {
+      low.k[k] = max2(low[k] - 1, 0);
+      end.k[k] = min2(end[k] + 2, all.level[level].nodes[k]);
+    }
     return {0, walls_around(all, walls, level, all.count, low, end, lane, of)};
   }
-  PBF_HD void finish(int n, const Part& found) const {
-    reach[all.level[level].first + n] = int(found.bits);
-  }
+  PBF_HD void finish(int n, const Part& found) const { reach[n] = int(found.bits); }
 };
 
 /// What a cell makes of the slope of the multipliers in its middle, per cell: the displacement is
@@ -167,32 +170,37 @@ struct LevelFactorPass {
   const int* reach;            ///< LevelReachPass
   Vec4<Real>* factor;          ///< out, 1/h; 0 where nobody is; w: those walls, as WallBits
 
-  static constexpr int lanes = 4;
-  using Part = LevelPart;
-  PBF_HD Part part(int c, int lane, int of) const {
-    Part found{};
-    if (count[c] == 0) return found;
-    GridPlace low = grid.place(c), end = low;
-    for (int k = 0; k < 3; ++k) end.k[k] += all.level[0].nodes[k] == 1 ? 1 : 2;
-    found.bits =
-        walls_around(all, walls, 0, min2(all.count, LevelReachPass::level), low, end, lane, of);
-    if (all.count > LevelReachPass::level)
-      for_box(low, end, lane, of, [&](int x, int y, int z) {
-        found.bits |= reach[all.level[LevelReachPass::level].at(x, y, z)];
-        return false;
-      });
-    return found;
-  }
-  PBF_HD void finish(int c, const Part& found) const {
+  PBF_HD void operator()(int c) const {
     const GridPlace at = grid.place(c);
     const int particles = count[c];
+    const unsigned found = particles > 0 ? walls_of(at) : 0;
     const double at_rest = particles > 0 ? 2 * grid.half(at) / particles : 0;
     Real along[3] = {};
     for (int k = 0; k < 3 && particles > 0; ++k) {
-      const double share = found.bits >> 2 * k & 3 ? 1 : at_rest;
+      const double share = found >> 2 * k & 3 ? 1 : at_rest;
       along[k] = Real(-(at[k] + 1 == grid.cells[k] ? by_last[k] : by_edge) * share);
     }
-    factor[c] = {along[0], along[1], along[2], Real(int(found.bits))};
+    factor[c] = {along[0], along[1], along[2], Real(int(found))};
+  }
+
+ private:
+  /// On level 2 the nodes around the cell's are those around one or two of them, along each axis.
+  PBF_HD unsigned walls_of(GridPlace at) const {
+    constexpr int coarse = LevelReachPass::level;
+    GridPlace low = at, end = at, last = at;
+    for (int k = 0; k < 3; ++k) end.k[k] += all.level[0].nodes[k] == 1 ? 1 : 2;
+    int found = walls_around(all, walls, 0, min2(all.count, coarse), low, end, 0, 1);
+    if (all.count <= coarse) return unsigned(found);
+    const LevelShape& level = all.level[coarse];
+    for (int k = 0; k < 3; ++k) {
+      low.k[k] = min2((at[k] + 1) / 4, level.nodes[k] - 1);
+      last.k[k] = min2((at[k] + 3) / 4, level.nodes[k] - 1);
+    }
+    for (int m = 0; m < 8; ++m)
+      found |= reach[level.at(m & 1 ? last[0] : low[0], m & 2 ? last[1] : low[1],
+                              m & 4 ? last[2] : low[2]) -
+                     level.first];
+    return unsigned(found);
   }
 };
 

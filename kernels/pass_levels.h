@@ -19,16 +19,13 @@ struct LevelSumPass : LevelBrickPass<D> {
   const Real* density;
   std::int64_t* sum;  ///< out, of each cell in kExcessUnit
 
+  static constexpr int lanes = 2;
   using Part = std::int64_t;
   PBF_HD Part part(GridPlace cell, int lane, int of) const {
     Part mine = 0;
     for_runs<D>(grid, cell, [&](int, int, int run) {
       const int end = run_start[run + 1];
-      if (home)
-        for (int i = run_start[run] + lane; i < end; i += of)
-          mine += home[i] >= 0 ? excess(density[i]) : 0;
-      else
-        for (int i = run_start[run] + lane; i < end; i += of) mine += excess(density[i]);
+      for (int i = run_start[run] + lane; i < end; i += of) mine += of_particle(i);
     });
     return mine;
   }
@@ -41,6 +38,7 @@ struct LevelSumPass : LevelBrickPass<D> {
   }
 
  private:
+  PBF_HD int of_particle(int i) const { return home && home[i] < 0 ? 0 : excess(density[i]); }
   /// What is no number counts as the clip: the guard looks for it elsewhere.
   PBF_HD static int excess(Real rho) {
     const Real c = max2(min2(rho - Real(1), Real(kLevelClip)), Real(-1));

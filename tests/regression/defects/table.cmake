@@ -86,10 +86,9 @@ seeded_defect(one_iteration_less iterations lib/solver/stepper.h
 seeded_defect(level_cell_of_next levels kernels/pass_level_cells.h
   [[home[i] = in ? c : -1;]] [[home[i] = in ? (c + 1) % grid.size() : -1;]] levels)
 seeded_defect(level_last_row_left_out levels kernels/pass_level_cells.h
-  [[per_cell * (cell[axis] + 1) : all;]]
-  [[per_cell * (cell[axis] + 1) : min2(all, per_cell * (cell[axis] + 1));]] levels)
+  [[(cell[axis] + 1 < grid.cells[axis] ? 2 : 3);]] [[2;]] levels)
 seeded_defect(level_node_beside_air levels kernels/pass_level_cells.h
-  [[inside < grid.half(grid.place(c)) ? -1]] [[inside == 0 ? -1]] levels)
+  [[inside < grid.half(cell) ? -1]] [[inside == 0 ? -1]] levels)
 seeded_defect(level_open_face_opposite levels kernels/pass_level_cells.h
   [[~(closed >> 2 * k)]] [[~((closed >> 2 * k & 1) * 3)]] levels)
 seeded_defect(level_coarser_node_on levels kernels/pass_level_cells.h
@@ -101,27 +100,27 @@ seeded_defect(level_coarse_weights levels kernels/levels.h
 seeded_defect(level_walls_not_upward levels kernels/pass_level_cells.h
   [[walls[n] = on ? against : 0;]] [[walls[n] = on && l == 0 ? against : 0;]] levels)
 seeded_defect(level_walls_not_downward levels kernels/pass_level_cells.h
-  [[min2((end[k] - 1) / 2 + 2, level.nodes[k])]] [[min2((end[k] - 1) / 2 + 1, level.nodes[k])]] levels)
+  [[min2((end[k] - 1) / 2 + 2, last)]] [[min2((end[k] - 1) / 2 + 1, last)]] levels)
 seeded_defect(level_clip_missing levels kernels/pass_levels.h
   [[max2(min2(rho - Real(1), Real(kLevelClip)), Real(-1))]]
   [[max2(rho - Real(1), Real(-1))]] levels)
 seeded_defect(level_sum_one_sided levels kernels/pass_levels.h
   [[Real(kLevelClip)), Real(-1))]] [[Real(kLevelClip)), Real(0))]] levels)
 seeded_defect(level_beyond_face_counted levels kernels/pass_levels.h
-  [[sum += home[i] >= 0 ? excess(density[i]) : 0;]] [[sum += excess(density[i]);]] levels)
+  [[home && home[i] < 0 ? 0 : excess]] [[excess]] levels)
 seeded_defect(level_cell_left_out levels kernels/levels.h
-  [[x < end[0]; x += side_by_side)]] [[x + 1 < end[0]; x += side_by_side)]] levels)
+  [[x < end[0]; x += 1 << bits)]] [[x + 1 < end[0]; x += 1 << bits)]] levels)
 seeded_defect(level_multiplier_signed levels kernels/pass_levels.h
   [[sum_here > 0 ? answer]] [[sum_here != 0 ? answer]] levels)
 seeded_defect(level_from_one_coarse_node levels kernels/pass_levels.h
   [[(Real(at[k] - (low[k] << l)) + Real(0.5)) * cell;]]
   [[l == 0 ? Real(0.5) : Real(0);]] levels)
 seeded_defect(level_last_cell_as_long levels kernels/pass_level_cells.h
-  [[gamma / grid.length(k, at[k])]] [[gamma / grid.edge]] levels)
+  [[at[k] + 1 == grid.cells[k] ? by_last[k] : by_edge]] [[by_edge]] levels)
 seeded_defect(level_momentum_missing levels kernels/pass_level_cells.h
-  [[: 2 * grid.half(at) / count[c];]] [[: 1;]] levels)
+  [[3 ? 1 : at_rest;]] [[3 ? 1 : 1;]] levels)
 seeded_defect(level_momentum_at_walls levels kernels/pass_level_cells.h
-  [[found.bits >> k & 1 ? 1 : 2]] [[found.bits < 0 ? 1 : 2]] levels)
+  [[found >> 2 * k & 3 ? 1]] [[found > 64 ? 1]] levels)
 seeded_defect(level_displacement_sign delta kernels/pass_delta.h
   [[free = free + coarse(i);]] [[free = free - coarse(i);]] levels)
 
