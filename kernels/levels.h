@@ -127,7 +127,7 @@ struct BoxPlaces {
 
 /// What lies under a hat along an axis, and its weights.
 struct HatSpan {
-  static constexpr int bits = 6;  ///< behind the point of a weight: exact up to an edge of 64
+  static constexpr int bits = 6;  ///< behind the point of a weight: exact up to 64 bricks
 
   int first, end;
   bool cells;

@@ -33,18 +33,37 @@ LevelShape cells_of(const LevelPlan& plan) {
   std::copy_n(plan.grid.cells, 3, cells.nodes);
   return cells;
 }
+/// Cells, and what the passes over bricks make of them for the corners.
+struct Sums {
+  LevelPlan plan;
+  std::vector<std::int64_t> cell = std::vector<std::int64_t>(std::size_t(plan.cells()));
+  std::vector<std::int64_t> corner = std::vector<std::int64_t>(std::size_t(plan.bricks() * 8));
+
+  template <class Pass>
+  void fill_corners(const Pass& pass) {
+    for (int n = 0; n < plan.grid.bricks(); ++n)
+      for (int which = 0; which < Pass::brick_corners; ++which) {
+        auto sum = pass.share(which, 0, 0);
+        for (int k = 0; k < Pass::brick_cells; ++k)
+          if (const GridPlace c = pass.cell(pass.brick(n), k); plan.grid.has(c))
+            sum += pass.share(which, k, cell[std::size_t(plan.grid.at(c))]);
+        pass.finish_corner(pass.brick(n), which, sum);
+      }
+  }
+  /// Pass<double, D>: the first of its members are the grid and the corners.
+  template <template <class, int> class Pass>
+  LevelSums make() {
+    const bool flat = plan.all.level[0].nodes[1] == 1;
+    flat ? fill_corners(Pass<double, 2>{{plan.grid, corner.data()}})
+         : fill_corners(Pass<double, 3>{{plan.grid, corner.data()}});
+    LevelSums sums{plan.all, {cells_of(plan), true, cell.data()}, {{}, false, corner.data()}};
+    for (int k = 0; k < 3; ++k) sums.corners.grid.nodes[k] = 2 * plan.grid.bricks(k);
+    return sums;
+  }
+};
 template <class Pass>
 void all_items(const Pass& pass) {
   for (int i = 0; i < pass.items(); ++i) pass.finish(i, pass.part(i, 0, 1));
-}
-
-/// f(LevelSums) in one go, or of levels 0 and 1 and then of the coarser ones from level 1.
-template <class F>
-void one_or_two_steps(const LevelPlan& plan, bool two, const std::int64_t* cell,
-                      const std::int64_t* node, const F& f) {
-  const int first = two ? 2 : plan.all.count;
-  f(LevelSums{plan.all, 0, first, {cells_of(plan), true, 0, cell}});
-  if (two) f(LevelSums{plan.all, first, plan.all.count, {plan.all.level[1], false, 1, node}});
 }
 
 /// Weight of node j of a level in the next one's node i, of so many.
@@ -86,63 +105,61 @@ LevelPlan some_boxes() {
 
 }  // namespace
 
-TEST_CASE("sums at nodes are those of the hats' definition, from the cells and from level 1") {
-  const LevelPlan plan = some_boxes();
-  const bool two_steps = GENERATE(false, true);
+TEST_CASE("multipliers are the sums of the hats' definition, 0 where they are below it") {
+  Sums sums{some_boxes()};
+  const LevelPlan& plan = sums.plan;
   REQUIRE(plan.all.count > 2);
   std::mt19937 random(7);
-  std::vector<std::int64_t> cell(std::size_t(plan.cells())), sum(std::size_t(plan.nodes()));
-  for (auto& c : cell) c = std::int64_t(random()) * 8 - (std::int64_t(1) << 33);
-  std::vector<double> answer(sum.size(), 1.0), multiplier(sum.size()), expected(sum.size());
-  one_or_two_steps(plan, two_steps, cell.data(), sum.data(), [&](const LevelSums& sums) {
-    all_items(LevelMultiplierPass<double>{sums, answer.data(), sum.data(), multiplier.data()});
-  });
+  for (auto& c : sums.cell) c = std::int64_t(random()) * 8 - (std::int64_t(1) << 33);
+  const auto nodes = std::size_t(plan.nodes());
+  std::vector<double> answer(nodes, 1.0), multiplier(nodes), expected(nodes);
+  all_items(
+      LevelMultiplierPass<double>{sums.make<LevelSumPass>(), answer.data(), multiplier.data()});
   by_definition(plan, [&](int level, int node, int below, double weight) {
     const auto finer = std::size_t(below);
-    expected[std::size_t(node)] += weight * (level == 0 ? double(cell[finer]) : expected[finer]);
+    expected[std::size_t(node)] +=
+        weight * (level == 0 ? double(sums.cell[finer]) : expected[finer]);
   });
   // In a plane, the constant hat along the axis that it has not counts two ends of one cell.
   const double ends = plan.all.level[0].nodes[1] == 1 ? 2 : 1;
-  for (std::size_t n = 0; n < sum.size(); ++n) {
+  int above = 0;
+  for (std::size_t n = 0; n < nodes; ++n) {
     CAPTURE(n);
-    CHECK(std::fabs(double(sum[n]) - ends * expected[n]) < 9.0 * double(cell.size()));
-    CHECK(multiplier[n] == std::max(0.0, double(sum[n])));
+    CHECK(std::fabs(multiplier[n] - std::max(0.0, ends * expected[n])) <
+          9.0 * double(sums.cell.size()));
+    above += multiplier[n] > 0;
   }
+  CHECK(above > 0);
 }
 
 TEST_CASE("any number of threads that share a node add up the same terms") {
-  const LevelPlan plan = some_boxes();
+  Sums sums{some_boxes()};
   std::mt19937 random(3);
-  std::vector<std::int64_t> cell(std::size_t(plan.cells())), sum(std::size_t(plan.nodes()));
-  for (auto& c : cell) c = std::int64_t(random()) - (std::int64_t(1) << 31);
-  const std::vector<double> answer(sum.size(), 1.0);
-  one_or_two_steps(plan, false, cell.data(), sum.data(), [&](const LevelSums& sums) {
-    const LevelMultiplierPass<double> pass{sums, answer.data(), sum.data(), nullptr};
-    for (int i = 0; i < pass.items(); ++i) {
-      const std::int64_t whole = pass.part(i, 0, 1);
-      for (const int of : {2, 8, 32, 256, 1024}) {
-        std::int64_t together = 0;
-        for (int lane = 0; lane < of; ++lane) together += pass.part(i, lane, of);
-        CAPTURE(i, of);
-        CHECK(together == whole);
-      }
+  for (auto& c : sums.cell) c = std::int64_t(random()) - (std::int64_t(1) << 31);
+  const std::vector<double> answer(std::size_t(sums.plan.nodes()), 1.0);
+  const LevelMultiplierPass<double> pass{sums.make<LevelSumPass>(), answer.data(), nullptr};
+  for (int i = 0; i < pass.items(); ++i) {
+    const std::int64_t whole = pass.part(i, 0, 1);
+    for (const int of : {2, 8, 32, 256, 1024}) {
+      std::int64_t together = 0;
+      for (int lane = 0; lane < of; ++lane) together += pass.part(i, lane, of);
+      CAPTURE(i, of);
+      CHECK(together == whole);
     }
-  });
+  }
 }
 
-TEST_CASE("a node is off where a finer one under its hat is, from the cells and from level 1") {
-  const LevelPlan plan = some_boxes();
-  const bool two_steps = GENERATE(false, true);
+TEST_CASE("a node is off where a finer one under its hat is, and knows the walls of those") {
+  Sums sums{some_boxes()};
+  const LevelPlan& plan = sums.plan;
   const unsigned closed = GENERATE(0x3fu, 0x3eu, 0x1fu);  // all, but for the low x or the high z
-  std::vector<std::int64_t> cell(std::size_t(plan.cells()), std::int64_t(64) << 20),
-      full(std::size_t(plan.nodes()));
-  cell[std::size_t(cells_of(plan).at(plan.grid.cells[0] - 1, 0, plan.grid.cells[2] / 3))] = -1;
-  std::vector<double> answer(full.size());
-  std::vector<int> walls(full.size());
-  one_or_two_steps(plan, two_steps, cell.data(), full.data(), [&](const LevelSums& sums) {
-    all_items(LevelNodePass<double>{sums, closed, 1.0, full.data(), answer.data(), walls.data()});
-  });
-  std::vector<int> off(full.size()), against(full.size());
+  std::fill(sums.cell.begin(), sums.cell.end(), std::int64_t(64) << 20);
+  sums.cell[std::size_t(cells_of(plan).at(plan.grid.cells[0] - 1, 0, plan.grid.cells[2] / 3))] = -1;
+  const auto nodes = std::size_t(plan.nodes());
+  std::vector<double> answer(nodes);
+  std::vector<int> walls(nodes), off(nodes), against(nodes);
+  all_items(
+      LevelNodePass<double>{sums.make<LevelHomePass>(), closed, 1.0, answer.data(), walls.data()});
   for (int n = 0; n < plan.all.level[0].size(); ++n) {
     const GridPlace at = plan.all.level[0].place(n);
     for (int k = 0; k < 3; ++k) {
@@ -155,16 +172,66 @@ TEST_CASE("a node is off where a finer one under its hat is, from the cells and 
   }
   by_definition(plan, [&](int level, int node, int below, double) {
     const auto n = std::size_t(node), finer = std::size_t(below);
-    off[n] |= level == 0 ? cell[finer] < 0 : off[finer];
+    off[n] |= level == 0 ? sums.cell[finer] < 0 : off[finer];
     if (level > 0) against[n] |= against[finer];
   });
   int on = 0;
-  for (std::size_t n = 0; n < full.size(); ++n) {
+  for (std::size_t n = 0; n < nodes; ++n) {
     CAPTURE(n);
-    CHECK((full[n] < 0) == (off[n] != 0));
     CHECK((answer[n] == 0) == (off[n] != 0));
     CHECK(walls[n] == (off[n] ? 0 : against[n]));
     on += !off[n];
   }
   CHECK(on > 0);
+}
+
+TEST_CASE("a cell knows the walls of all nodes around it, level by level") {
+  Sums sums{some_boxes()};
+  const LevelPlan& plan = sums.plan;
+  const LevelHierarchy& all = plan.all;
+  std::mt19937 random(11);
+  std::vector<int> walls(std::size_t(plan.nodes())), reach(walls.size()),
+      count(sums.cell.size(), 9);
+  for (int n = 0; n < int(walls.size()); ++n) {  // of some nodes those under the hat, as if off
+    const int l = all.of(n);
+    const GridPlace at = all.level[l].place(n - all.level[l].first);
+    for (int k = 0; k < 3; ++k) walls[std::size_t(n)] |= int(all.ends(l, k, at[k])) << 2 * k;
+    if (random() % 4) walls[std::size_t(n)] = 0;
+  }
+  const LevelReachPass reached{all, walls.data(), reach.data()};
+  all_items(reached);
+  std::vector<Vec4<double>> factor(count.size());
+  const LevelFactorPass<double> pass{all,          plan.grid,    1.0,          {1.0, 1.0, 1.0},
+                                     count.data(), walls.data(), reach.data(), factor.data()};
+  for (int c = 0; c < plan.grid.size(); ++c) {
+    pass(c);
+    // By definition: the corners, then of each level the nodes whose hats overlap with those.
+    const GridPlace cell = plan.grid.place(c);
+    std::vector<GridPlace> around;
+    for (int m = 0; m < 8; ++m)
+      around.push_back({{cell[0] + (m & 1), cell[1] + (m >> 1 & 1), cell[2] + (m >> 2)}});
+    int expected = 0;
+    for (int l = 0; l < all.count; ++l) {
+      std::vector<GridPlace> next;
+      for (int n = 0; n < all.level[l].size(); ++n) {
+        const GridPlace at = all.level[l].place(n);
+        bool there = false;
+        for (const GridPlace& finer : around) {
+          bool overlaps = true;
+          for (int k = 0; k < 3; ++k) {
+            const bool one = all.level[l].nodes[k] == 1;
+            overlaps = overlaps &&
+                       (one || (l == 0 ? at[k] == finer[k] : std::abs(2 * at[k] - finer[k]) < 3));
+          }
+          there = there || overlaps;
+        }
+        if (!there) continue;
+        next.push_back(at);
+        expected |= walls[std::size_t(all.level[l].first + n)];
+      }
+      around = next;
+    }
+    CAPTURE(c);
+    CHECK(int(factor[std::size_t(c)].w) == expected);
+  }
 }

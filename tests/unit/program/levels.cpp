@@ -74,13 +74,17 @@ TEST_CASE(
   CHECK(bytes_of(plan, "level cell count") == cells * 4);
   CHECK(bytes_of(plan, "level cell sum") == cells * 8);
   CHECK(bytes_of(plan, "level move") == cells * 16);
-  CHECK(bytes_of(plan, "level node sum") == nodes * 8);
+  const std::int64_t bricks = 2 * 2 * 6, runs = 11 * 49 * 6;
+  CHECK(bytes_of(plan, "level corner sum") == bricks * 64);
+  CHECK(bytes_of(plan, "level run start") == runs * 4);
+  CHECK(bytes_of(plan, "level reach") == nodes * 4);
   CHECK(bytes_of(plan, "level answer") == nodes * 4);
   CHECK(bytes_of(plan, "level multiplier") == nodes * 4);
   CHECK(bytes_of(plan, "level factor") == cells * 16);
   CHECK(bytes_of(plan, "level walls") == nodes * 4);
   CHECK(bytes_of(plan_of(tank("on", {"precision=double"})), "level multiplier") == nodes * 8);
-  CHECK(plan.bytes() - plan_of(tank("off")).bytes() == particles * 4 + cells * 44 + nodes * 20);
+  CHECK(plan.bytes() - plan_of(tank("off")).bytes() ==
+        particles * 4 + cells * 44 + nodes * 16 + bricks * 64 + runs * 4);
   const std::string text = plan_text(plan, s);
   CHECK(text.find("  level cells ") != std::string::npos);
   CHECK(text.find("  level multipliers ") != std::string::npos);
