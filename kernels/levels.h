@@ -165,7 +165,8 @@ struct LevelSource {
 };
 
 /// Sums over cells and nodes are whole numbers, so that no order of summation shows: of clipped C
-/// in these units, of particles in the other. 2^33 particles fit; into a cell 80 000 at the clip.
+/// in these units, of particles in the other. 2^33 particles fit, 10 000 a cell at
+/// the clip.
 inline constexpr double kExcessUnit = 1.0 / (1 << 30), kCountUnit = 1.0 / (1 << 20);
 
 /// Sums at the nodes of all levels. Its items are those nodes, the coarsest first: they have most
@@ -195,7 +196,7 @@ struct LevelSums {
     const LevelShape& level = all.level[l];
     const LevelSource from = l < 2 ? cells : corners;
     const GridPlace at = level.place(node - level.first);
-    if (l == 0) return for_cells_around(at, f);
+    if (l == 0) return lane == 0 ? for_cells_around(at, f) : void();
     const HatSpan x = from.under(level, l, 0, at[0]), y = from.under(level, l, 1, at[1]),
                   z = from.under(level, l, 2, at[2]);
     const GridPlace low{{x.first, y.first, z.first}}, end{{x.end, y.end, z.end}};

@@ -201,7 +201,8 @@ class CpuExec {
     }
     for (int which = 0; which < Pass::brick_corners; ++which) {
       auto sum = pass.share(which, 0, found[0]);
-      for (int k = 1; k < Pass::brick_cells; ++k) sum += pass.share(which, k, found[k]);
+      for (int k = 1; k < Pass::brick_cells; ++k)
+        if (found[k] != 0) sum += pass.share(which, k, found[k]);
       pass.finish_corner(brick, which, sum);
     }
   }

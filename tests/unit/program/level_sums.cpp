@@ -40,7 +40,10 @@ struct Sums {
   std::vector<std::int64_t> corner = std::vector<std::int64_t>(std::size_t(plan.bricks() * 8));
 
   template <class Pass>
-  void fill_corners(const Pass& pass) {
+  void fill_corners() {
+    Pass pass{};
+    pass.grid = plan.grid;
+    pass.corner = corner.data();
     for (int n = 0; n < plan.grid.bricks(); ++n)
       for (int which = 0; which < Pass::brick_corners; ++which) {
         auto sum = pass.share(which, 0, 0);
@@ -50,12 +53,10 @@ struct Sums {
         pass.finish_corner(pass.brick(n), which, sum);
       }
   }
-  /// Pass<double, D>: the first of its members are the grid and the corners.
   template <template <class, int> class Pass>
   LevelSums make() {
-    const bool flat = plan.all.level[0].nodes[1] == 1;
-    flat ? fill_corners(Pass<double, 2>{{plan.grid, corner.data()}})
-         : fill_corners(Pass<double, 3>{{plan.grid, corner.data()}});
+    plan.all.level[0].nodes[1] == 1 ? fill_corners<Pass<double, 2>>()
+                                    : fill_corners<Pass<double, 3>>();
     LevelSums sums{plan.all, {cells_of(plan), true, cell.data()}, {{}, false, corner.data()}};
     for (int k = 0; k < 3; ++k) sums.corners.grid.nodes[k] = 2 * plan.grid.bricks(k);
     return sums;
@@ -167,7 +168,7 @@ TEST_CASE("a node is off where a finer one under its hat is, and knows the walls
       const bool low = at[k] == 0, high = at[k] == plan.grid.cells[k];
       if ((low && !(closed >> 2 * k & 1)) || (high && !(closed >> 2 * k & 2)))
         off[std::size_t(n)] = 1;
-      if (low || high) against[std::size_t(n)] |= 1 << k;
+      against[std::size_t(n)] |= (int(low) | int(high) << 1) << 2 * k;
     }
   }
   by_definition(plan, [&](int level, int node, int below, double) {
