@@ -155,7 +155,7 @@ struct LevelMultipliers {
 struct BookLevels {
   static PassInfo info() {
     return {"loads of the levels",
-            "levels",
+            "measure",
             {{&field::multiplier}, {&field::cell_factor}, {&field::cell_count}},
             {hidden({&field::load_sums})}};
   }
