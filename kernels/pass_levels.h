@@ -24,8 +24,11 @@ struct LevelSumPass : LevelBrickPass<D> {
   PBF_HD Part part(GridPlace cell, int lane, int of) const {
     Part mine = 0;
     for_runs<D>(grid, cell, [&](int, int, int run) {
-      const int end = run_start[run + 1];
-      for (int i = run_start[run] + lane; i < end; i += of) mine += of_particle(i);
+      const int first = run_start[run] + lane, end = run_start[run + 1];
+      if (home)
+        for (int i = first; i < end; i += of) mine += home[i] >= 0 ? excess(density[i]) : 0;
+      else
+        for (int i = first; i < end; i += of) mine += excess(density[i]);
     });
     return mine;
   }
@@ -38,7 +41,6 @@ struct LevelSumPass : LevelBrickPass<D> {
   }
 
  private:
-  PBF_HD int of_particle(int i) const { return home && home[i] < 0 ? 0 : excess(density[i]); }
   /// What is no number counts as the clip: the guard looks for it elsewhere.
   PBF_HD static int excess(Real rho) {
     const Real c = max2(min2(rho - Real(1), Real(kLevelClip)), Real(-1));

@@ -107,7 +107,7 @@ seeded_defect(level_clip_missing levels kernels/pass_levels.h
 seeded_defect(level_sum_one_sided levels kernels/pass_levels.h
   [[Real(kLevelClip)), Real(-1))]] [[Real(kLevelClip)), Real(0))]] levels)
 seeded_defect(level_beyond_face_counted levels kernels/pass_levels.h
-  [[home && home[i] < 0 ? 0 : excess]] [[excess]] levels)
+  [[mine += home[i] >= 0 ? excess(density[i]) : 0;]] [[mine += excess(density[i]);]] levels)
 seeded_defect(level_cell_left_out levels kernels/levels.h
   [[x < end[0]; x += 1 << bits)]] [[x + 1 < end[0]; x += 1 << bits)]] levels)
 seeded_defect(level_multiplier_signed levels kernels/pass_levels.h
