@@ -81,9 +81,9 @@ KeyRows start_rows() {
            "Initial velocity, added to every particle of the body."),
        key(OBSTACLE(name), plain, "Name, in the columns of the log.", required),
        key(OBSTACLE(shape), one_of({"plane", "box", "sphere", "cylinder", "capsule"}),
-           "Shape of the obstacle; decides which keys it has. With dimensions: 2 the x-z plane "
-           "cuts "
-           "it: sphere is a disc.",
+           "Shape of the obstacle; decides which keys it has. With dimensions: 2 y does not count, "
+           "and a "
+           "sphere is a disc.",
            required, is_kind),
        key(OBSTACLE(min), number("m", kCoordinate), "Lower corner of the box before it is turned.",
            required, of(ObstacleShape::box)),

@@ -12,7 +12,7 @@ seeded_defect(wrong_dt predict kernels/pass_predict.h
 seeded_defect(damping_ignored predict kernels/pass_predict.h
   [[mul_add(p.damping, v,]] [[mul_add(Real(1), v,]])
 seeded_defect(predict_clamp_dropped predict kernels/pass_predict.h
-  [[x = p.boundary.path_end(x, free);]] [[x = free;]])
+  [[  x = path_end(x, free);]] [[  x = free;]])
 
 # grid
 seeded_defect(stale_bins grid kernels/pass_predict.h
@@ -69,7 +69,7 @@ seeded_defect(s_corr_sign delta kernels/pass_delta.h [[w -= p.tensile_k]] [[w +=
 seeded_defect(frozen_particle delta kernels/pass_delta.h
   [[with_w(inside, Real(1) / density[i])]] [[with_w(i == 7 ? x : inside, Real(1) / density[i])]])
 seeded_defect(wall_clamp_dropped delta kernels/pass_delta.h
-  [[inside = p.boundary.path_end(x, target);]] [[inside = target;]])
+  [[inside = boundary.path_end(x, target);]] [[inside = target;]])
 seeded_defect(velocity_not_updated delta kernels/pass_delta.h
   [[xyz(velocity[i]) + p.inv_dt * (free + (inside - target))]] [[xyz(velocity[i])]])
 seeded_defect(neighbours_lambda_missing delta kernels/pass_delta.h
