@@ -2,27 +2,19 @@
 // table's.
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "lib/base/plain_text.h"
 #include "lib/base/text.h"
 #include "lib/scene/lattice.h"
-#include "lib/scene/number.h"
 #include "lib/scene/rounding.h"
-#include "lib/scene/validate.h"
+#include "lib/scene/scene_rules.h"
 
 namespace pbf::inline scene_module {
 namespace {
 
-constexpr const char* kAxes[] = {"x", "y", "z"};
-
-class Checker {
+class Checker : public SceneRules {
  public:
-  Checker(const PlacedScene& placed, Problems& problems)
-      : p_(placed),
-        s_(placed.scene),
-        names_(scene_table().names(object(placed.scene))),
-        problems_(problems) {}
+  using SceneRules::SceneRules;
 
   void run() {
     const bool domain = good(s_.domain.min, s_.domain.max) && above(s_.domain.min, s_.domain.max);
@@ -31,7 +23,7 @@ class Checker {
     check_name();
     check_smoothing_ratio();
     if (good(s_.bodies)) check_bodies(domain);
-    check_obstacles();
+    check_obstacles(p_, problems_);
     check_time();
     check_solver();
     if (domain) check_rounding();
@@ -39,20 +31,6 @@ class Checker {
   }
 
  private:
-  const std::string& name(const auto& member) const { return names_.at(&member); }
-  /// Whether all of these were read without a problem.
-  bool good(const auto&... members) const { return p_.good({name(members)...}); }
-  void add_at(const std::string& path, const std::string& what) {
-    problems_.add(p_.place(path), path, what);
-  }
-  void add(const auto& member, const std::string& what) { add_at(name(member), what); }
-  /// "is 2, below time.step (3 s)" and the rest.
-  void add_below(const auto& member, const auto& other, const std::string& rest) {
-    const std::string& unit = scene_table().find_key(name(other))->unit;
-    add(member, "is " + to_text(member) + ", below " + name(other) + " (" + to_text(other) +
-                    (unit.empty() ? "" : " " + unit) + ")" + rest);
-  }
-
   /// It becomes a folder of out/, also where the scene comes from a stranger's run file.
   void check_name() {
     if (good(s_.name) && !is_file_name(s_.name))
@@ -60,8 +38,6 @@ class Checker {
           "is \"" + one_line(s_.name, 60) +
               "\", and runs are kept in out/<name>; give a word without slashes, not . or ..");
   }
-
-  bool flat() const { return good(s_.dimensions) && s_.dimensions == 2; }
 
   /// What a scene in two dimensions must not have along y.
   void check_plane(bool domain) {
@@ -95,21 +71,6 @@ class Checker {
               "packing, and a pool loses volume; give at least " +
               to_text(least) + (flat() ? "" : " (1.5 with dimensions: 2)") +
               ", 2 is the default, or set fluid.mass");
-  }
-
-  /// max > min along every axis.
-  bool above(const Double3& min, const Double3& max) {
-    bool ok = true;
-    for (int a = 0; a < 3; ++a)
-      if (!(max[a] > min[a])) {
-        add(max, std::string(kAxes[a]) + " is " + to_text(max[a]) + ", not above " + name(min) +
-                     " (" + to_text(min[a]) + "): the box is " +
-                     (max[a] < min[a] ? "inverted" : "empty") +
-                     "; give the lower corner as min, "
-                     "the upper as max");
-        ok = false;
-      }
-    return ok;
   }
 
   void check_solver() {
@@ -179,72 +140,6 @@ class Checker {
       sum += n;
     }
     if (known && sum > kMaxParticles) add(s_.bodies, too_many_text(sum));
-  }
-
-  void check_obstacles() {
-    std::map<std::string, std::size_t> seen;
-    for (std::size_t k = 0; k < s_.obstacles.size(); ++k) {
-      const Obstacle& o = s_.obstacles[k];
-      if (good(o.name)) {
-        if (o.name.empty() || o.name.find('/') != std::string::npos || o.name == "." ||
-            o.name == "..")
-          add(o.name,
-              "\"" + o.name + "\" cannot name columns of the log; give a word without \"/\"");
-        else if (is_face(o.name))
-          add(o.name, "is the name of a wall of the domain; choose another");
-        else if (const auto [first, fresh] = seen.try_emplace(o.name, k); !fresh)
-          add(o.name, "is also the name of obstacles[" + std::to_string(first->second) +
-                          "]; choose another");
-      }
-      if (good(o.shape)) check_obstacle(o);
-    }
-  }
-  static bool is_face(const std::string& name) {
-    return name.size() == 5 && std::string("xyz").find(name[0]) != std::string::npos &&
-           (name.ends_with("_min") || name.ends_with("_max"));
-  }
-  void check_obstacle(const Obstacle& o) {
-    const auto squared = [](const Double3& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
-    const bool tube = o.shape == ObstacleShape::cylinder || o.shape == ObstacleShape::capsule;
-    switch (o.shape) {
-      case ObstacleShape::plane:
-        if (good(o.normal) && squared(o.normal) == 0)
-          add(o.normal, "has no direction; give one away from the solid, [0, 0, 1] say");
-        else if (good(o.normal) && flat() && o.normal[1] != 0)
-          add(o.normal,
-              "has a y component, with dimensions: 2 planes stand on the x-z plane; give "
-              "0 for y");
-        break;
-      case ObstacleShape::box:
-        if (good(o.min, o.max)) above(o.min, o.max);
-        if (good(o.turn_axis) && squared(o.turn_axis) == 0)
-          add(o.turn_axis, "has no direction; give one, [0, 1, 0] say");
-        else if (good(o.turn_axis, o.turn_angle) && flat() && o.turn_angle != 0 &&
-                 (o.turn_axis[0] != 0 || o.turn_axis[2] != 0))
-          add(o.turn_axis, "with dimensions: 2 a box can only be turned about y; give [0, 1, 0]");
-        break;
-      case ObstacleShape::cylinder:
-      case ObstacleShape::capsule:
-      case ObstacleShape::sphere:
-        break;
-    }
-    if (!tube && !(o.shape == ObstacleShape::sphere && flat())) return;
-    if (tube && good(o.from, o.to)) {
-      if (o.from == o.to)
-        add(o.to, "is where the axis begins (" + name(o.from) + "); give the other end");
-      else if (flat() && o.shape == ObstacleShape::capsule && o.from[1] != o.to[1])
-        add(o.to, "with dimensions: 2 a capsule lies in the x-z plane; give both ends the same y");
-      else if (flat() && o.shape == ObstacleShape::cylinder &&
-               (o.from[0] != o.to[0] || o.from[2] != o.to[2]))
-        add(o.to,
-            "with dimensions: 2 a cylinder stands on the x-z plane, which makes a disc of it; give "
-            "both ends the same x and z, or a box");
-    }
-    if (good(o.radius, s_.fluid.spacing, s_.fluid.smoothing_ratio) && o.radius < s_.h())
-      add(o.radius, "is " + to_text(o.radius) + ", below the smoothing length (" + to_text(s_.h()) +
-                        " m): the fluid could not see how the surface is "
-                        "curved; enlarge it or lower fluid.spacing to " +
-                        to_text(o.radius / s_.fluid.smoothing_ratio));
   }
 
   std::optional<double> plane() const {
@@ -327,11 +222,6 @@ class Checker {
     if (c.position && c.target && good(c.position, c.target) && *c.position == *c.target)
       add(c.target, "is where the camera is; move one of them");
   }
-
-  const PlacedScene& p_;
-  const Scene& s_;
-  const std::map<const void*, std::string> names_;
-  Problems& problems_;
 };
 
 }  // namespace
