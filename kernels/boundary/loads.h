@@ -41,7 +41,7 @@ PBF_HD void add_whole(std::int64_t* sum, std::int64_t term) {
 /// Where loads are booked.
 template <class Real>
 struct LoadBook {
-  LoadSums* sums = nullptr;  ///< kLoadParts for each wall; null: nothing is booked
+  LoadSums* sums = nullptr;  ///< kLoadParts for each wall; null: there are none
   Real moment_scale = 1;     ///< 2^-e, 2^e above the longest edge of the box, h
 
   /// Wall `wall` has moved particle i, which is at x, by `way` (h).
@@ -59,11 +59,11 @@ struct LoadBook {
   }
 
  private:
-  /// Beyond 2^10 h, and what is no number, is for the guard to find.
   /// The wall gets the opposite.
   PBF_HD static void add_units(std::int64_t* to, Real x) {
     if (x != Real(0)) add_whole(to, units(-x));
   }
+  /// Beyond 2^10 h, and what is no number, is for the guard to find.
   PBF_HD static std::int64_t units(Real x) {
     constexpr Real most(std::int64_t(1) << 46);
     const Real u = max2(min2(x * Real(std::int64_t(1) << 36), most), -most);

@@ -2,9 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <string>
-#include <vector>
 
 #include "lib/scene/scene.h"
 
@@ -14,10 +11,6 @@ inline bool has_loads(const Scene& scene) {
   const auto wanted = [](const Obstacle& o) { return o.loads; };
   return scene.domain.loads || std::any_of(scene.obstacles.begin(), scene.obstacles.end(), wanted);
 }
-
-/// The faces of the domain in the order of WallBit's bits, along the axes of the scene.
-inline constexpr std::array<const char*, 6> kFaceNames = {"x_min", "x_max", "y_min",
-                                                          "y_max", "z_min", "z_max"};
 
 /// How many have sums: the walls, of which those of open faces stay 0, and all obstacles.
 inline std::int64_t load_walls(const Scene& scene) {

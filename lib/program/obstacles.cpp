@@ -3,26 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/scene/vector3.h"
+
 namespace pbf::inline program_module {
 namespace {
 
 using Matrix = std::array<Double3, 3>;
 constexpr Matrix kUnturned{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-Double3 cross(const Double3& a, const Double3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Double3 unit(const Double3& v) {
-  // Scaled first: squares of the largest coordinates would overflow.
+/// As unit(), of any size: scaled first, so that no square overflows.
+Double3 direction(const Double3& v) {
   const double most = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
   const double size = most * std::hypot(v[0] / most, v[1] / most, v[2] / most);
   return {v[0] / size, v[1] / size, v[2] / size};
 }
 
 /// Rows: the axes of a body that was turned about `axis`.
-Matrix turned(const Double3& axis, double degrees) {
+Matrix axes_turned(const Double3& axis, double degrees) {
   if (degrees == 0) return kUnturned;
-  const Double3 u = unit(axis);
+  const Double3 u = direction(axis);
   const double quarter = degrees / 90;
   // Quarters exactly, so that faces at right angles stay so.
   const bool whole = quarter == std::round(quarter);
@@ -31,20 +30,17 @@ Matrix turned(const Double3& axis, double degrees) {
   const double c = whole ? (turns % 2 ? 0 : 1 - turns) : std::cos(angle);
   const double s = whole ? (turns % 2 ? 2 - turns : 0) : std::sin(angle);
   Matrix rows;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Double3 e = kUnturned[k], side = cross(u, e);
-    for (std::size_t i = 0; i < 3; ++i) rows[k][i] = c * e[i] + s * side[i] + (1 - c) * u[k] * u[i];
-  }
+  for (std::size_t k = 0; k < 3; ++k) rows[k] = turned(kUnturned[k], u, c, s);
   return rows;
 }
 
 /// Rows: a right-handed frame with `axis` as its last one, and along a coordinate where that is.
 Matrix frame_along(const Double3& axis) {
-  const Double3 z = unit(axis);
+  const Double3 z = direction(axis);
   std::size_t least = 0;
   for (std::size_t k = 1; k < 3; ++k)
     if (std::fabs(z[k]) < std::fabs(z[least])) least = k;
-  const Double3 y = unit(cross(z, kUnturned[least]));
+  const Double3 y = direction(cross(z, kUnturned[least]));
   return {cross(y, z), y, z};
 }
 
@@ -79,7 +75,7 @@ Solid<double> solid_of(const Obstacle& o, const Scene& s) {
       center = o.point;
       break;
     case ObstacleShape::box:
-      rows = turned(o.turn_axis, o.turn_angle);
+      rows = axes_turned(o.turn_axis, o.turn_angle);
       for (std::size_t k = 0; k < 3; ++k) {
         center[k] = 0.5 * o.min[k] + 0.5 * o.max[k];
         half[k] = 0.5 * (o.max[k] - o.min[k]);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "lib/render/vector3.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline render_module {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lib/base/error.h"
-#include "lib/render/vector3.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline render_module {
 namespace {
@@ -15,12 +15,6 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kElevation = 20 * kDegree, kBeside = 24 * kDegree;  // of the default view
 constexpr double kMargin = 0.92;    // share of the free part of the picture that the box may fill
 constexpr double kBarShare = 0.12;  // share of the width kept for the colour bar
-
-/// `v` turned about the unit axis by `angle` (Rodrigues).
-Double3 turned(const Double3& v, const Double3& axis, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return c * v + s * cross(axis, v) + (1 - c) * dot(axis, v) * axis;
-}
 
 /// Right, up and forward of an eye that looks along `forward` (not unit).
 void set_axes(Projection& p, const Double3& forward, const Double3& up) {

@@ -14,7 +14,7 @@
 #include "lib/render/particles.h"
 #include "lib/render/shaders.h"
 #include "lib/render/solids.h"
-#include "lib/render/vector3.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline render_module {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <numbers>
 
-#include "lib/render/vector3.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline render_module {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "lib/program/obstacles.h"
 #include "lib/render/renderer.h"
-#include "lib/render/vector3.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline render_module {
 namespace {

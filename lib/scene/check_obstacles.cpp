@@ -29,8 +29,7 @@ class ObstacleChecker : public SceneRules {
 
  private:
   static bool is_face(const std::string& name) {
-    return name.size() == 5 && std::string("xyz").find(name[0]) != std::string::npos &&
-           (name.ends_with("_min") || name.ends_with("_max"));
+    return std::find(kFaceNames.begin(), kFaceNames.end(), name) != kFaceNames.end();
   }
   void check_obstacle(const Obstacle& o) {
     const auto squared = [](const Double3& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };

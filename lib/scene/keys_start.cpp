@@ -37,7 +37,7 @@ KeyRows start_rows() {
            required, exact(kFrame)),
        key(KEY(domain.max), number("m", kCoordinate),
            "Upper corner of the box; above domain.min along every axis.", required, exact(kFrame)),
-       key(KEY(domain.open), one_of({"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"}),
+       key(KEY(domain.open), one_of({kFaceNames.begin(), kFaceNames.end()}),
            "Faces of the box without a wall, as a list."),
        key(KEY(domain.loads), plain,
            "Sums the force and the torque of the fluid on each wall; columns load/x_min/force_x "

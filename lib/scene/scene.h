@@ -57,14 +57,18 @@ struct Obstacle {
   bool operator==(const Obstacle&) const = default;
 };
 
+/// The faces of the domain in the order of WallBit's bits.
+inline constexpr std::array<const char*, 6> kFaceNames = {"x_min", "x_max", "y_min",
+                                                          "y_max", "z_min", "z_max"};
+
 struct Domain {
   Double3 min{}, max{1, 1, 1};    ///< m
   std::vector<std::string> open;  ///< faces without a wall: x_min x_max y_min y_max z_min z_max
   bool loads = false;             ///< the forces on the walls are summed and written down
   bool operator==(const Domain&) const = default;
   bool is_open(int axis, bool high) const {
-    const std::string face = std::string(1, "xyz"[axis]) + (high ? "_max" : "_min");
-    return std::find(open.begin(), open.end(), face) != open.end();
+    return std::find(open.begin(), open.end(), kFaceNames[std::size_t(2 * axis + high)]) !=
+           open.end();
   }
 };
 

@@ -39,10 +39,8 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
               Real((s.domain.max[1] - s.domain.min[1]) / h),
               Real((s.domain.max[2] - s.domain.min[2]) / h)};
   b.margin = Real(s.solver.wall_margin / h);
-  const char* faces[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
-  for (const auto& open : s.domain.open)
-    for (int k = 0; k < 6; ++k)
-      if (open == faces[k]) b.walls &= ~(1u << k);
+  for (int k = 0; k < 6; ++k)
+    if (s.domain.is_open(k / 2, k % 2 == 1)) b.walls &= ~(1u << k);
   if (s.dimensions == 2) b.walls &= ~(y_min | y_max);
   b.adds_density = s.solver.boundary == BoundaryMode::density && b.walls != 0;
   b.scale = Real(plan.wall_scale);

@@ -207,8 +207,7 @@ void StepContext<Real, Exec>::make_solids(const std::vector<Solid<double>>& obst
   around.solid = placed_.data();
   around.solids = int(placed.size());
   around.flat = p.dimensions == 2;
-  if (has_loads(scene))
-    around.loads = {data<LoadSums>(field::load_sums), Real(1 / moment_unit(p.boundary))};
+  if (has_loads(scene)) around.loads = load_book(*this);
   around_.resize(1);
   exec.to_device(&around, 1, around_.data());
   solids_.around = around_.data();

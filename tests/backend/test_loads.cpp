@@ -160,31 +160,24 @@ TEST_CASE("loads do not depend on threads, pass-by-pass updates, or being handed
   auto a = make(c);
   a->step(40, {});
   const auto expected = a->loads(pbf::Interval::goes_on);
-  const auto same = [&](pbf::Solver& s) {
-    const auto got = s.loads(pbf::Interval::goes_on);
-    REQUIRE(got.size() == expected.size());
-    for (std::size_t w = 0; w < got.size(); ++w)
-      for (const pbf::LoadNumber& n : pbf::load_numbers())
-        CHECK(n.value(got[w]) == n.value(expected[w]));
-  };
   SECTION("threads") {
     c.scene.threads = 1;
     auto b = make(c);
     b->step(40, {});
-    same(*b);
+    backend_test::check_loads(*b, expected);
   }
   SECTION("pass by pass") {
     auto b = make(c);
     b->step(20, {});
     for (int k = 0; k < 20; ++k) b->inspection()->trace();
-    same(*b);
+    backend_test::check_loads(*b, expected);
   }
   SECTION("handed over in the middle") {
     auto first = make(c), second = make(c);
     first->step(25, {});
     second->set_state(first->state());
     second->step(15, {});
-    same(*second);
+    backend_test::check_loads(*second, expected);
   }
   SECTION("back to a kept state, and steps without time") {
     auto b = make(c);
@@ -198,6 +191,6 @@ TEST_CASE("loads do not depend on threads, pass-by-pass updates, or being handed
     CHECK(std::memcmp(back.loads.data(), there.loads.data(), 6 * sizeof(pbf::Load)) == 0);
     b->set_state(there);
     b->step(30, {});
-    same(*b);
+    backend_test::check_loads(*b, expected);
   }
 }

@@ -151,10 +151,7 @@ TEST_CASE("updates among obstacles have the same bits on 1 and 2 threads, and pa
   REQUIRE(loads.size() == (c.scene.dimensions == 3 ? 12u : 10u));
   const auto same = [&](pbf::Solver& s) {
     CHECK(same_bytes(first, s.download({"velocity", "density"}, pbf::ScalarType::f64).get()));
-    const auto got = s.loads(pbf::Interval::goes_on);
-    for (std::size_t w = 0; w < got.size(); ++w)
-      for (const pbf::LoadNumber& n : pbf::load_numbers())
-        CHECK(n.value(got[w]) == n.value(loads[w]));
+    backend_test::check_loads(s, loads);
   };
   SECTION("threads") {
     c.scene.threads = 1;

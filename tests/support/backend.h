@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/support/against_oracle.h"
+#include "tests/support/catch.h"
 
 namespace backend_test {
 
@@ -27,6 +28,15 @@ inline oracle_test::Case here(oracle_test::Case c) {
 /// Particles alone: the same after other updates too.
 inline bool same_particles(const pbf::SolverState& a, const pbf::SolverState& b) {
   return a.position == b.position && a.velocity == b.velocity && a.id == b.id;
+}
+
+/// The loads of the solver so far are `expected`, to the last bit.
+inline void check_loads(pbf::Solver& solver, const std::vector<pbf::WallLoad>& expected) {
+  const auto got = solver.loads(pbf::Interval::goes_on);
+  REQUIRE(got.size() == expected.size());
+  for (std::size_t w = 0; w < got.size(); ++w)
+    for (const pbf::LoadNumber& n : pbf::load_numbers())
+      CHECK(n.value(got[w]) == n.value(expected[w]));
 }
 
 inline bool same_bytes(const pbf::Snapshot& a, const pbf::Snapshot& b) {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <random>
 
-#include "lib/render/vector3.h"
+#include "lib/scene/vector3.h"
 #include "tests/support/render_support.h"
 
 using namespace pbf;

@@ -1,11 +1,11 @@
-// The little vector algebra that cameras need, in double.
+// The little vector algebra that cameras and obstacles need, in double.
 #pragma once
 
 #include <cmath>
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline render_module {
+namespace pbf::inline scene_module {
 
 inline Double3 operator+(const Double3& a, const Double3& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
@@ -22,5 +22,12 @@ inline Double3 cross(const Double3& a, const Double3& b) {
 }
 inline double length(const Double3& a) { return std::sqrt(dot(a, a)); }
 inline Double3 unit(const Double3& a) { return (1 / length(a)) * a; }
+/// `v` turned about the unit axis by an angle of cosine c and sine s (Rodrigues).
+inline Double3 turned(const Double3& v, const Double3& axis, double c, double s) {
+  return c * v + s * cross(axis, v) + (1 - c) * dot(axis, v) * axis;
+}
+inline Double3 turned(const Double3& v, const Double3& axis, double angle) {
+  return turned(v, axis, std::cos(angle), std::sin(angle));
+}
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::inline scene_module
