@@ -5,11 +5,14 @@
 #if defined(__CUDACC__)
 #define PBF_HD __host__ __device__ __forceinline__
 #define PBF_HD_APART __host__ __device__ __noinline__
+#define PBF_HD_RARE PBF_HD
 #else
 #define PBF_HD inline __attribute__((always_inline))
 #define PBF_HD_APART __attribute__((noinline))
+#define PBF_HD_RARE PBF_HD_APART
 #endif
-// PBF_HD_APART: large, and only for the few particles at an obstacle. Everything else is inlined
+// PBF_HD_APART: large, and only for the few particles at an obstacle. PBF_HD_RARE: small, and for
+// these few alone: inlined where a call costs every thread registers. Everything else is inlined
 // into every pass.
 
 // Everything that holds arithmetic on particles lives in this inline namespace. A second

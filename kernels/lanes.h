@@ -128,6 +128,40 @@ PBF_HD Vec4<Lanes<Real, W>> load(const Vec4<Real>* a, Scattered<W> i) {
   return transposed<Real, W>(a, i);
 }
 
+/// A number of each of W adjacent rows; the array must reach that far.
+template <class Real, int W>
+PBF_HD Lanes<Real, W> adjacent(const Real* a, Adjacent<W> i) {
+  return Lanes<Real, W>::at(a + i.first);
+}
+/// Whether a <= b in every lane; not where one is no number.
+template <class Real, int W>
+PBF_HD bool all_at_most(const Lanes<Real, W>& a, const Lanes<Real, W>& b) {
+  const auto within = a.v <= b.v;
+  auto all = within[0];
+  for (int l = 1; l < W; ++l) all &= within[l];
+  return all != 0;
+}
+
+/// What comes after the sums is short and has branches: one particle at a time. part: component c
+/// of lane l is at [c W + l]. finish(i, own, sum).
+template <int W, class Pass, class Real, class Finish>
+PBF_HD void finish_lanes(const Pass& pass, int i, int end, const Real* part, Finish&& finish) {
+  constexpr int parts = sizeof(typename Pass::Sum) / sizeof(Real);
+  for (int l = 0; l < W && i + l < end; ++l) {
+    Real mine[parts];
+    for (int c = 0; c < parts; ++c) mine[c] = part[c * W + l];
+    typename Pass::Sum one;
+    memcpy(&one, mine, sizeof one);
+    finish(i + l, pass.own(i + l), one);
+  }
+}
+/// Where some of them may be near solids.
+template <int W, class Pass, class Real>
+PBF_HD_APART void finish_each(const Pass& pass, int i, int end, const Real* part) {
+  finish_lanes<W>(pass, i, end, part,
+                  [&](int row, const auto& own, const auto& sum) { pass.finish(row, own, sum); });
+}
+
 /// The neighbour sums of W adjacent particles, the first of them a multiple of W, as many of them
 /// as there are before `end`. The lists are groups of W, filled up with the far particle.
 template <class Real, int W, class Pass>
@@ -138,16 +172,22 @@ PBF_HD void sum_over_neighbors_by_lanes(const Pass& pass, int i, int end) {
   const int* entry = pass.lists.group(i);
   for (int left = pass.lists.rounds(i); left > 0; --left, entry += W)
     pass.add(sum, own, pass.other(Scattered<W>{entry}), 0, 0, true);
-  // What comes after the sums is short and has branches: one particle at a time.
   constexpr int parts = sizeof(sum) / sizeof(V);
-  Real part[parts][W];
+  Real part[parts * W];
   memcpy(part, &sum, sizeof sum);
-  for (int l = 0; l < W && i + l < end; ++l) {
-    Real mine[parts];
-    for (int c = 0; c < parts; ++c) mine[c] = part[c][l];
-    typename Pass::Sum one;
-    memcpy(&one, mine, sizeof one);
-    pass.finish(i + l, pass.own(i + l), one);
+  if constexpr (Pass::far_only) {
+    if (!pass.all_far(Adjacent<W>{i}, own, sum)) return finish_each<W>(pass, i, end, part);
+    finish_lanes<W>(
+        pass, i, end,
+        part, [&](int row, const auto& mine, const auto& one) __attribute__((always_inline)) {
+          pass.finish_far(row, mine, one);
+        });
+  } else {
+    finish_lanes<W>(
+        pass, i, end,
+        part, [&](int row, const auto& mine, const auto& one) __attribute__((always_inline)) {
+          pass.finish(row, mine, one);
+        });
   }
 }
 

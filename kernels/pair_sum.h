@@ -9,6 +9,7 @@
 //   SumOf<V> (value-initialised to 0)  and each(f): f(V&) for every member
 //   add(SumOf<V>&, own, other, i, j, on)  one neighbour's share; none when `on` is false
 //   finish(i, Own, Sum) const          writes the result
+//   far_only                           solids are left to a second launch (boundary/far_box.h)
 // where V is Real for one particle, Lanes for several at once (kernels/lanes.h), and Own, Sum are
 // those of one particle.
 #pragma once

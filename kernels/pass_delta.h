@@ -40,6 +40,7 @@ struct DeltaPass {
   [[no_unique_address]] Coarse coarse{};  ///< LevelMove or NoLevelMove
 
   static constexpr int D = dimensions_of(S);
+  static constexpr bool far_only = Boundary::far_only;
   static constexpr unsigned gathers = kPlace | kLambda | kId;
   using Own = Vec4<Real>;
   template <class V>
@@ -81,13 +82,34 @@ struct DeltaPass {
     s.closeness += root.inverse;
   }
   PBF_HD void finish(int i, const Own& own, const Sum& s) const {
-    const Vec3<Real> x = xyz(own);
+    if constexpr (far_only) {
+      if (boundary.near.has(i)) return leave(i, s);
+      const Vec3<Real> x = xyz(own), free = free_move(i, own, s);
+      if (boundary.leaves(i, x, free)) return leave(i, s);
+      if (moves_on) {
+        const Vec3<Real> target = x + free, inside = boundary.path_end(x, target);
+        const Vec3<Real> next =
+            predict(inside, new_velocity(i, free, target, inside), p, boundary).x;
+        if (boundary.comes_near(inside, next)) return leave(i, s);
+      }
+    }
+    finish_far(i, own, s);
+  }
+  PBF_HD Vec3<Real> new_velocity(int i, Vec3<Real> free, Vec3<Real> target,
+                                 Vec3<Real> inside) const {
+    return xyz(velocity[i]) + p.inv_dt * (free + (inside - target));
+  }
+  /// dx_i as if nothing were in the way.
+  PBF_HD Vec3<Real> free_move(int i, const Own& own, const Sum& s) const {
     const Vec3<Real> pairs = in_space(s.move);
-    const Vec3<Real> move = s.closeness > Real(0.5e12) ? pairs + separate(i, own) : pairs;
-    const Real a = p.vol * Spiky<Real, D>::gradient_norm;
-    const Vec3<Real> wall = own.w * boundary.template term<S>(x).gradient;
-    Vec3<Real> free = p.sor * (a * move + wall);
-    if constexpr (Coarse::on) free = free + coarse(i);
+    const Vec3<Real> move = s.closeness > coincident() ? pairs + separate(i, own) : pairs;
+    const Vec3<Real> wall = own.w * boundary.template term<S>(xyz(own)).gradient;
+    const Vec3<Real> free = p.sor * (pair_factor() * move + wall);
+    if constexpr (Coarse::on) return free + coarse(i);
+    return free;
+  }
+  PBF_HD void finish_far(int i, const Own& own, const Sum& s) const {
+    const Vec3<Real> x = xyz(own), free = free_move(i, own, s);
     const Vec3<Real> target = x + free;
     Vec3<Real> inside;
     if constexpr (Boundary::books) {
@@ -96,7 +118,7 @@ struct DeltaPass {
     } else {
       inside = boundary.path_end(x, target);
     }
-    const Vec3<Real> v = xyz(velocity[i]) + p.inv_dt * (free + (inside - target));
+    const Vec3<Real> v = new_velocity(i, free, target, inside);
     if (moves_on) {
       move_on(i, inside, v, p, boundary, position_out, velocity, moves_on);
       return;
@@ -105,6 +127,28 @@ struct DeltaPass {
     velocity[i] = with_w(v, Real(0));
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
+  /// Whether all rows of a group stay far from solids, by a bound on their moves.
+  template <class Rows, class V>
+  PBF_HD bool all_far(Rows i, const Vec4<V>& own, const SumOf<V>& s) const {
+    if (Coarse::on || moves_on) return false;
+    const V twice(2), pairs(p.sor * pair_factor()), wall(p.sor * boundary.steepest());
+    const V w = wall * own.w;
+    return all_at_most(s.closeness, V(coincident())) &&
+           all_at_most(twice * (pairs * pairs * dot(s.move, s.move) + w * w),
+                       adjacent(boundary.near.room, i));
+  }
+  PBF_HD Real pair_factor() const { return p.vol * Spiky<Real, D>::gradient_norm; }
+  /// More than all sums of 1/q but those of neighbours in the same place.
+  static PBF_HD Real coincident() { return Real(0.5e12); }
+  /// To the near rows, with the sums.
+  PBF_HD_RARE void leave(int i, const Sum& s) const {
+    if (!boundary.near.has(i)) boundary.near.add(i);
+    boundary.near.sums[i] = with_w(in_space(s.move), s.closeness);
+  }
+  PBF_HD Sum kept(int i) const {
+    const Vec4<Real> s = boundary.near.sums[i];
+    return {point<D>(s), s.w};
+  }
 
   /// The share of the neighbours in the same place, whose zero distance vectors left no direction:
   /// a loop of its own, so that the pair loop need not choose.

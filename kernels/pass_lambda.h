@@ -16,6 +16,7 @@ struct DensityPass {
   Real* density;  ///< out
 
   static constexpr int D = dimensions_of(S);
+  static constexpr bool far_only = Boundary::far_only;
   static constexpr unsigned gathers = kPlace;
   using Own = Vec<Real, D>;
   template <class V>
@@ -41,9 +42,20 @@ struct DensityPass {
     s.shape += density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t(root_of(q2).q));
   }
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
+    if constexpr (far_only) {
+      if (boundary.near.has(i)) return void(density[i] = s.shape);
+    }
+    finish_far(i, x, s);
+  }
+  PBF_HD void finish_far(int i, const Own& x, const Sum& s) const {
     // 1: the particle itself.
     density[i] = p.vol * density_norm<Real, S>() * (Real(1) + s.shape) +
                  boundary.template term<S>(in_space(x)).density;
+  }
+  PBF_HD Sum kept(int i) const { return {density[i]}; }
+  template <class Rows, class V>
+  PBF_HD bool all_far(Rows i, const Vec<V, D>&, const SumOf<V>&) const {
+    return all_at_most(V(0), adjacent(boundary.near.room, i));
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
@@ -81,6 +93,7 @@ struct LambdaPass {
   StepCounts* counts;
 
   static constexpr int D = dimensions_of(S);
+  static constexpr bool far_only = Boundary::far_only;
   static constexpr unsigned gathers = kPlace;
   using Own = Vec<Real, D>;
   template <class V>
@@ -115,6 +128,12 @@ struct LambdaPass {
     s.gradient = s.gradient + (t2 * root.inverse) * d;
   }
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
+    if constexpr (far_only) {
+      if (boundary.near.has(i)) return keep(i, s);
+    }
+    finish_far(i, x, s);
+  }
+  PBF_HD void finish_far(int i, const Own& x, const Sum& s) const {
     const BoundaryTerm<Real> wall = boundary.template term<S>(in_space(x));
     Real rho;
     if constexpr (with_density) {
@@ -133,6 +152,18 @@ struct LambdaPass {
     position_out[i] = with_w(in_space(x), lambda);
     // Last, where nothing else is held in registers.
     if (load(position, i).w < Real(0)) count_unresolved(i, p, lists, velocity, counts);
+  }
+  PBF_HD void keep(int i, const Sum& s) const {
+    boundary.near.sums[i] = with_w(in_space(s.gradient), s.squares);
+    if constexpr (with_density) density[i] = s.shape;
+  }
+  PBF_HD Sum kept(int i) const {
+    const Vec4<Real> s = boundary.near.sums[i];
+    return {with_density ? density[i] : Real(0), s.w, point<D>(s)};
+  }
+  template <class Rows, class V>
+  PBF_HD bool all_far(Rows i, const Vec<V, D>&, const SumOf<V>&) const {
+    return all_at_most(V(0), adjacent(boundary.near.room, i));
   }
   PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };

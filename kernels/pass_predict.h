@@ -29,18 +29,43 @@ PBF_HD Moving<Real> predicted(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
   const Real mark = speed_squared > p.passing_squared ? Real(-1) : Real(1);
   return {x, mul_add(p.inv_dt, x - free, v), fast, mark};
 }
-template <class Real, class Boundary>
+template <class Real>
 PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
-                            const Boundary& boundary) {
-  return predicted(x, v, p, [&](auto from, auto to) { return boundary.path_end(from, to); });
+                            const Box<Real>& walls) {
+  return predicted(x, v, p, [&](auto from, auto to) { return walls.path_end(from, to); });
 }
-/// Of particle i; what the boundary does to it is booked.
+/// Whether row i, in the order of the last sort, is predicted as if there were plain walls alone.
 template <class Real, class Boundary>
-PBF_HD Moving<Real> predict_booked(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
-                                   const Boundary& boundary) {
+PBF_HD bool sees_plain_walls(int i, Vec3<Real> v, const Params<Real>& p, const Boundary& boundary) {
+  if constexpr (Boundary::books) {
+    v = mul_add(p.damping, v, p.dt * p.gravity);  // as predicted() has it
+    return boundary.near.may_go(i, dot(v, v));
+  }
+  return true;
+}
+/// Of particle `i`, with solids; what they do to it is booked with `book`.
+template <class Real, class Boundary>
+PBF_HD_APART Moving<Real> predict_at_solids(bool book, int i, Vec3<Real> x, Vec3<Real> v,
+                                            const Params<Real>& p, const Boundary& boundary) {
+  return predicted(x, v, p, [&](auto from, auto to) {
+    return boundary.path_end(book && boundary.booked, i, from, to);
+  });
+}
+/// What row i does, which becomes row `to`.
+template <class Real, class Boundary>
+PBF_HD Moving<Real> predict_row(bool book, int i, int to, Vec3<Real> x, Vec3<Real> v,
+                                const Params<Real>& p, const Boundary& boundary) {
+  if constexpr (Boundary::books) {
+    if (!sees_plain_walls(i, v, p, boundary)) return predict_at_solids(book, to, x, v, p, boundary);
+  }
+  return predict(x, v, p, boundary);
+}
+/// Of particle i, wherever it has come to since the last sort; booked.
+template <class Real, class Boundary>
+PBF_HD Moving<Real> predict_anywhere(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
+                                     const Boundary& boundary) {
   if constexpr (Boundary::books)
-    return predicted(x, v, p,
-                     [&](auto from, auto to) { return boundary.path_end_booked(i, from, to); });
+    return predict_at_solids(true, i, x, v, p, boundary);
   else
     return predict(x, v, p, boundary);
 }
@@ -50,7 +75,8 @@ template <class Real, class Boundary>
 PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
                     const Boundary& boundary, Vec4<Real>* position, Vec4<Real>* velocity,
                     StepCounts* counts) {
-  const Moving<Real> m = predict_booked(i, x, v, p, boundary);
+  const Moving<Real> m = predict_anywhere(i, x, v, p, boundary);
+  if constexpr (Boundary::books) boundary.came_to(i, m.x);
   if (m.fast) count_one(&counts->fast);
   position[i] = with_w(m.x, m.mark);
   velocity[i] = with_w(m.v, Real(0));
@@ -65,7 +91,12 @@ struct PredictPass {
   const Vec4<Real>*position, *velocity;
   int* bin;  ///< out
   PBF_HD void operator()(int i) const {
+    if (!sees_plain_walls(i, xyz(velocity[i]), p, boundary)) return at_solids(i);
     bin[i] = bin_of<D>(predict(xyz(position[i]), xyz(velocity[i]), p, boundary).x, p);
+  }
+  PBF_HD_APART void at_solids(int i) const {
+    const Vec3<Real> x = xyz(position[i]), v = xyz(velocity[i]);
+    bin[i] = bin_of<D>(predict_row(false, i, i, x, v, p, boundary).x, p);
   }
 };
 
@@ -103,8 +134,18 @@ struct GatherPass {
   int* id_out;
   StepCounts* counts;
   PBF_HD void operator()(int from, int to) const {
-    Moving<Real> m{xyz(position[from]), xyz(velocity[from]), false};
-    if constexpr (moving) m = predict_booked(to, m.x, m.v, p, boundary);
+    if (moving && !sees_plain_walls(from, xyz(velocity[from]), p, boundary))
+      return at_solids(from, to);
+    if constexpr (moving)
+      put(from, to, predict(xyz(position[from]), xyz(velocity[from]), p, boundary));
+    else
+      put(from, to, {xyz(position[from]), xyz(velocity[from]), false});
+  }
+  PBF_HD_APART void at_solids(int from, int to) const {
+    put(from, to,
+        predict_row(true, from, to, xyz(position[from]), xyz(velocity[from]), p, boundary));
+  }
+  PBF_HD void put(int from, int to, const Moving<Real>& m) const {
     if (m.fast) count_one(&counts->fast);
     position_out[to] = with_w(m.x, m.mark);
     velocity_out[to] = with_w(m.v, Real(0));

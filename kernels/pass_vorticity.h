@@ -28,6 +28,7 @@ struct CurlPass {
   Vec4<Real>* curl;  ///< out: min(dt eps, 2 dt approach, 0.05) omega; w = |omega|
 
   static constexpr int D = dimensions;
+  static constexpr bool far_only = false;
   static constexpr unsigned gathers = kPlace | kInverseDensity | kVelocity;
   using Own = MovingOwn<Real, D>;
   template <class V>
@@ -100,6 +101,7 @@ struct VorticityPass {
   Vec4<Real>* velocity;        ///< in/out
 
   static constexpr int D = dimensions;
+  static constexpr bool far_only = false;
   static constexpr unsigned gathers = kPlace | kInverseDensity | kCurl;
   using Own = CurlOwn<Real>;
   template <class V>

@@ -18,13 +18,14 @@ struct BoundaryTerm {
 /// during a step ends, and how far a particle is behind it. Passes ask nothing else.
 template <class Real>
 struct Box {
-  static constexpr bool books = false;  ///< loads on the walls: solids.h
-  Vec3<Real> extent;                    ///< h, of the domain
-  Real margin = 0;                      ///< h, distance to a wall at which particles are clamped
-  unsigned walls = 63;                  ///< WallBit mask of the faces that are walls
-  bool adds_density = true;             ///< boundary: density
-  Real scale = 1;                       ///< amplitude of that contribution, kernels/README.md (9)
-  Real inv_range = 1;                   ///< h over the range of that contribution
+  static constexpr bool books = false;     ///< loads on the walls: solids.h
+  static constexpr bool far_only = false;  ///< leaves rows near solids alone: far_box.h
+  Vec3<Real> extent;                       ///< h, of the domain
+  Real margin = 0;                         ///< h, distance to a wall at which particles are clamped
+  unsigned walls = 63;                     ///< WallBit mask of the faces that are walls
+  bool adds_density = true;                ///< boundary: density
+  Real scale = 1;      ///< amplitude of that contribution, kernels/README.md (9)
+  Real inv_range = 1;  ///< h over the range of that contribution
 
   /// Each wall adds A D(q/kappa), with amplitude A = `scale` and range kappa = 1/inv_range
   /// from lib/program/calibrate.h. The walls' union is taken by inclusion-exclusion,

@@ -1,6 +1,7 @@
 // The boundary of scenes with obstacles or loads.
 #pragma once
 
+#include "kernels/boundary/near_rows.h"
 #include "kernels/boundary/surroundings.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -11,23 +12,24 @@ struct Solids : Box<Real> {
   static constexpr bool books = true;
   const Surroundings<Real>* around = nullptr;
   Bounds<Real> bounds{};   ///< of all obstacles
+  Bounds<Real> clear{};    ///< far from every wall
   bool obstacles = false;  ///< there are any
   bool booked = false;     ///< loads are
+  NearRows<Real> near{};
+
+  PBF_HD const Box<Real>& walls() const { return *this; }
 
   template <Smoothing S>
   PBF_HD BoundaryTerm<Real> term(Vec3<Real> x) const {
     if (obstacles && bounds.has(x)) return surroundings_term<S>(*around, x);
     return Box<Real>::template term<S>(x);
   }
-  /// Where the way of particle i ends; books it with `booked`.
+  /// Where the way of particle i ends; what solids do to it is booked with `book`.
   PBF_HD Vec3<Real> path_end(bool book, int i, Vec3<Real> from, Vec3<Real> to) const {
     const Vec3<Real> in = Box<Real>::path_end(from, to);
     const bool free = in.x == to.x && in.y == to.y && in.z == to.z;
     if ((free || !book) && !(obstacles && bounds.meets(from, to))) return in;
     return surroundings_path_end(*around, book, i, from, to);
-  }
-  PBF_HD Vec3<Real> path_end(Vec3<Real> from, Vec3<Real> to) const {
-    return path_end(false, 0, from, to);
   }
   PBF_HD Vec3<Real> path_end_booked(int i, Vec3<Real> from, Vec3<Real> to) const {
     return path_end(booked, i, from, to);
@@ -38,6 +40,14 @@ struct Solids : Box<Real> {
     if (!booked || factor == Real(0)) return;
     if (this->near_wall(x) || (obstacles && bounds.has(x)))
       pbf::book_push<S>(*around, i, x, factor);
+  }
+  /// Whether a particle at x has to do with an obstacle, or with a wall where that has a load.
+  PBF_HD bool is_near(Vec3<Real> x) const {
+    return (booked && !clear.has(x)) || (obstacles && bounds.has(x) && near_obstacle(*around, x));
+  }
+  /// The way of row i, while the lists hold, ended at x.
+  PBF_HD void came_to(int i, Vec3<Real> x) const {
+    if (!near.has(i) && is_near(x)) near.add(i);
   }
   PBF_HD double penetration(const double (&x)[3]) const {
     double deepest = Box<Real>::penetration(x);

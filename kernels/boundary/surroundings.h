@@ -25,11 +25,12 @@ struct Bounds {
   }
 };
 
-/// An obstacle, and the bounds beyond which it adds nothing to the density.
+/// An obstacle, and how far around it a particle counts as near.
 template <class Real>
 struct PlacedSolid {
   Solid<Real> solid;
-  Bounds<Real> bounds;
+  Real reach = 0;       ///< h, from the surface
+  Bounds<Real> bounds;  ///< of all that is nearer
 };
 
 /// Lies where the particles lie. Loads are those of the walls, 0 to 5 as WallBit's bits, and of the
@@ -48,6 +49,17 @@ PBF_HD PathEnd<Real> keep_out(const Surroundings<Real>& s, int k, Vec3<Real> fro
   const PlacedSolid<Real>& placed = s.solid[k];
   if (!placed.bounds.meets(from, to)) return {to, false};
   return s.flat ? keep_out<2>(placed.solid, from, to) : keep_out<3>(placed.solid, from, to);
+}
+
+/// Whether x is nearer to an obstacle than its bounds are.
+template <class Real>
+PBF_HD_APART bool near_obstacle(const Surroundings<Real>& s, Vec3<Real> x) {
+  for (int k = 0; k < s.solids; ++k) {
+    const PlacedSolid<Real>& o = s.solid[k];
+    if (!o.bounds.has(x)) continue;
+    if ((s.flat ? distance<2>(o.solid, x) : distance<3>(o.solid, x)) < o.reach) return true;
+  }
+  return false;
 }
 
 /// Whether a way back to the surface is no longer than rounding makes it: what slides along a face
@@ -80,6 +92,8 @@ PBF_HD_APART BoundaryTerm<Real> surroundings_term(const Surroundings<Real>& s, V
     o.share += one.share;
     o.gradient = o.gradient + one.gradient;
   });
+  // Bit for bit what plain walls give: so nothing depends on which particles were asked about.
+  if (o.share == Real(0)) return w;
   const Real free = max2(Real(1) - o.share, Real(0)), left = s.walls.scale - w.density;
   const Real still = o.share < Real(1) ? left : Real(0);
   w.gradient = free * w.gradient + still * o.gradient;

@@ -8,6 +8,7 @@
 #include "lib/program/features/levels.h"
 #include "lib/program/features/loads.h"
 #include "lib/program/features/motion.h"
+#include "lib/program/features/solids.h"
 #include "lib/program/features/viscosity.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -21,8 +22,8 @@ struct FeatureList {
   }
 };
 
-using Features =
-    FeatureList<Motion, Constraint, Levels, Correction, XsphViscosity, VorticityConfinement, Loads>;
+using Features = FeatureList<Motion, NearSolids, Constraint, Levels, Correction, XsphViscosity,
+                             VorticityConfinement, Loads>;
 using Passes = Features::Passes;
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -159,6 +159,7 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
   p.fields = {&field::position, &field::velocity, &field::density,  &field::id,
               &field::bin,      &field::order,    &field::bin_start};
   collect_fields(p.update, p.fields);
+  collect_fields(b.with_lists, p.fields);  // a measure makes lists in any case
   p.left_out = b.without;
   return p;
 }

@@ -81,6 +81,7 @@ concept Executor = requires(E e, const E c, int* ints, unsigned long long* count
   e.finish_copy(targets);
   // pass(i) for every particle, sums of all of them.
   e.for_each(1, archetype::Pass{});
+  e.for_listed(ints, 1, archetype::Pass{});  // for as many as *ints says, at most 1
   { e.reduce(1, archetype::Measure{}) } -> std::same_as<MeasureSums>;
   { e.count_in_bins(1, 1, archetype::Bin{}) } -> std::convertible_to<std::vector<std::int64_t>>;
   // body() while the sum of a pass is above a limit.

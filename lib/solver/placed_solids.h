@@ -1,15 +1,17 @@
 // Obstacles with the boxes around them that tell passes which particles they do not concern.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "kernels/boundary/solids.h"
+#include "kernels/boundary/far_box.h"
+#include "kernels/cell_index.h"
+#include "lib/scene/scene.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-/// With the box, h, beyond which it is neither met nor felt: farther than the range of the walls'
-/// density, and half a cell for what rounding may add.
+/// With the box, h, beyond which it is not near: farther than it is met or felt.
 template <class Real>
 PlacedSolid<Real> placed(const Solid<double>& s, const Box<Real>& walls) {
   PlacedSolid<Real> out;
@@ -20,7 +22,8 @@ PlacedSolid<Real> placed(const Solid<double>& s, const Box<Real>& walls) {
   out.solid.center = cast(s.center);
   out.solid.half = cast(s.half);
   out.solid.through = s.through;
-  const double range = 1 / double(walls.inv_range) + 0.5, far = 1e9;
+  const double range = 1 / double(walls.inv_range) + kNearRoom, far = 1e9;
+  out.reach = Real(range);
   const double center[3] = {s.center.x, s.center.y, s.center.z};
   const double half[3] = {s.half.x, s.half.y, s.half.z};
   double low[3], high[3];
@@ -64,6 +67,18 @@ std::vector<PlacedSolid<Real>> placed_solids(const std::vector<Solid<double>>& s
   return all;
 }
 
+/// What is far from all walls.
+template <class Real>
+Bounds<Real> clear_of(const Box<Real>& walls) {
+  const Real reach = Real(1) / walls.inv_range + walls.margin + Real(kNearRoom), open(1e30);
+  const auto low = [&](unsigned wall) { return walls.walls & wall ? reach : -open; };
+  const auto high = [&](unsigned wall, Real end) {
+    return walls.walls & wall ? end - reach : open;
+  };
+  return {{low(x_min), low(y_min), low(z_min)},
+          {high(x_max, walls.extent.x), high(y_max, walls.extent.y), high(z_max, walls.extent.z)}};
+}
+
 /// Around all of them.
 template <class Real>
 Bounds<Real> bounds_of(const std::vector<PlacedSolid<Real>>& all) {
@@ -75,6 +90,44 @@ Bounds<Real> bounds_of(const std::vector<PlacedSolid<Real>>& all) {
     out.high = {max2(out.high.x, b.high.x), max2(out.high.y, b.high.y), max2(out.high.z, b.high.z)};
   }
   return out;
+}
+
+/// The half cells of the grid that something near solids can be in, in the order of their bins.
+/// None where particles outside of the grid have cells in it, too: open faces.
+template <class Real>
+std::vector<int> half_cells_near_solids(const Scene& scene,
+                                        const std::vector<Solid<double>>& solids,
+                                        const Params<Real>& p, const Bounds<Real>& clear,
+                                        bool booked) {
+  std::vector<int> cells;
+  if (!scene.domain.open.empty()) return cells;
+  const bool flat = p.dimensions == 2;
+  const double edge = 1 / double(p.inv_cell), rounding = 1e-3;
+  // From the middle of a half cell to its corners.
+  const double half[3] = {edge / 4, flat ? 0 : edge / 2, edge / 2};
+  const double reach = 1 / double(p.boundary.inv_range) + kNearRoom + rounding +
+                       std::hypot(half[0], half[1], half[2]);
+  const auto near = [&](const Vec3<double>& m) {
+    const auto beyond = [&](double x, double h, double low, double high) {
+      return x - h < low + rounding || x + h > high - rounding;
+    };
+    if (booked && (beyond(m.x, half[0], double(clear.low.x), double(clear.high.x)) ||
+                   beyond(m.y, half[1], double(clear.low.y), double(clear.high.y)) ||
+                   beyond(m.z, half[2], double(clear.low.z), double(clear.high.z))))
+      return true;
+    return std::any_of(solids.begin(), solids.end(), [&](const Solid<double>& s) {
+      return (flat ? distance<2>(s, m) : distance<3>(s, m)) < reach;
+    });
+  };
+  int n = 0;
+  for (int z = 0; z < p.cells_z; ++z)
+    for (int y = 0; y < p.cells_y; ++y)
+      for (int x = 0; x < p.cells_x; ++x, ++n) {
+        const Vec3<double> middle{(x + 0.5) * edge / 2, flat ? 0 : (y + 0.5) * edge,
+                                  (z + 0.5) * edge};
+        if (near(middle)) cells.push_back(n);
+      }
+  return cells;
 }
 
 }  // namespace pbf::inline PBF_VARIANT

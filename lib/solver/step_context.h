@@ -11,7 +11,7 @@
 #include "kernels/step_counts.h"
 #include "lib/base/release.h"
 #include "lib/program/as_types.h"
-#include "lib/program/features/loads.h"
+#include "lib/program/features/solids.h"
 #include "lib/program/field.h"
 #include "lib/program/loads.h"
 #include "lib/scene/scene.h"
@@ -90,12 +90,19 @@ struct StepContext {
     return Exec::order_in_place ? other_data<int>(field::id) : data<int>(field::order);
   }
   StepCounts* counts() { return counts_.data(); }
-  /// For with_boundary() (features/loads.h); its walls are not set.
+  /// For with_boundary() (features/solids.h); its walls are not set.
   const Solids<Real>& solids() const { return solids_; }
+  /// Where something can be near solids, by (layer, row, half cell); empty: anywhere.
+  Buffer<int>& near_half_cells() { return near_half_cells_; }
   /// One for each wall that has any.
   Load* loads() { return loads_.data(); }
   StateArrays<Real> state() {
     return {position(), velocity(), ids(), counts(), loads(), int(loads_.size())};
+  }
+
+  /// Positions came from elsewhere: until the lists are made all rows count as near solids.
+  void forget_near() {
+    if (solids_.around) each(AllNearPass<Real>{solids_.near, rows_});
   }
 
   /// Which of the two arrays each field lies in, as bits: updates that were recorded hold for one
@@ -108,14 +115,15 @@ struct StepContext {
   }
 
   /// Makes the arrays of n particles and takes over their state, whose vectors are empty then.
+  /// moves: of a particle in the iterations of a substep, at most.
   void make(const std::vector<const FieldInfo*>& fields, std::vector<Vec4<Real>>& first_position,
             std::vector<Vec4<Real>>& first_velocity, std::vector<int>& first_id,
-            const std::vector<Solid<double>>& obstacles);
+            const std::vector<Solid<double>>& obstacles, int moves);
 
   std::size_t bytes() const {
     std::size_t sum = 0;
     for (const Slot& s : slots_) sum += s.rows[0].bytes() + s.rows[1].bytes();
-    return sum + placed_.bytes() + around_.bytes();
+    return sum + placed_.bytes() + around_.bytes() + near_half_cells_.bytes();
   }
 
  private:
@@ -136,10 +144,11 @@ struct StepContext {
   Buffer<Load> loads_;
   Buffer<PlacedSolid<Real>> placed_;
   Buffer<Surroundings<Real>> around_;
+  Buffer<int> near_count_, near_half_cells_;
   Solids<Real> solids_;
 
   /// The boundary of scenes that have more than walls. Behind make(): it knows where sums are.
-  void make_solids(const std::vector<Solid<double>>& obstacles);
+  void make_solids(const std::vector<Solid<double>>& obstacles, int moves);
 };
 
 template <class Real, class Exec>
@@ -147,7 +156,7 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
                                    std::vector<Vec4<Real>>& first_position,
                                    std::vector<Vec4<Real>>& first_velocity,
                                    std::vector<int>& first_id,
-                                   const std::vector<Solid<double>>& obstacles) {
+                                   const std::vector<Solid<double>>& obstacles, int moves) {
   const std::size_t n = first_position.size();
   rows_ = capacity_ = int(n);
   const RowCounts sizes{rows_,
@@ -168,7 +177,7 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
     slots_.push_back({f, {}, 0});
     for (int k = 0; k < (f->doubled ? 2 : 1); ++k) {
       slots_.back().rows[k].resize(count * row);
-      if (f->rows != Rows::padded) continue;
+      if (f->rows != Rows::padded || f->components != 4) continue;
       // Behind the last row: infinitely far away for any kernel, and at rest.
       const Real far = f == &field::position ? Real(1e9) : Real(0);
       const std::vector<Vec4<Real>> rows(Exec::padding,
@@ -187,7 +196,8 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
     const std::vector<LoadSums> nothing(unloaded.size() * kLoadParts);
     exec.to_device(nothing.data(), nothing.size(), data<LoadSums>(field::load_sums));
   }
-  make_solids(obstacles);
+  make_solids(obstacles, moves);
+  forget_near();
   exec.to_device(first_position.data(), n, position());
   exec.to_device(first_velocity.data(), n, velocity());
   exec.to_device(first_id.data(), n, ids());
@@ -197,8 +207,8 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
 }
 
 template <class Real, class Exec>
-void StepContext<Real, Exec>::make_solids(const std::vector<Solid<double>>& obstacles) {
-  if (obstacles.empty() && !has_loads(scene)) return;
+void StepContext<Real, Exec>::make_solids(const std::vector<Solid<double>>& obstacles, int moves) {
+  if (!has_solids(scene)) return;
   const std::vector<PlacedSolid<Real>> placed = placed_solids(obstacles, p.boundary);
   placed_.resize(placed.size());
   exec.to_device(placed.data(), placed.size(), placed_.data());
@@ -213,6 +223,17 @@ void StepContext<Real, Exec>::make_solids(const std::vector<Solid<double>>& obst
   solids_.around = around_.data();
   solids_.obstacles = !placed.empty();
   solids_.bounds = bounds_of(placed);
+  solids_.clear = clear_of(p.boundary);
+  near_count_.resize(1);
+  const double move = 0.8 * kNearRoom / moves;
+  solids_.near = {data<Real>(field::near_room), data<int>(field::near_row), near_count_.data(),
+                  nullptr, Real(move * move)};
+  const std::vector<Real> behind(Exec::padding, solids_.near.far_room);
+  exec.to_device(behind.data(), behind.size(), data<Real>(field::near_room) + rows_);
+  const std::vector<int> cells =
+      half_cells_near_solids(scene, obstacles, p, solids_.clear, has_loads(scene));
+  near_half_cells_.resize(cells.size());
+  exec.to_device(cells.data(), cells.size(), near_half_cells_.data());
 }
 
 /// A copy of the state, from which the updates since can be repeated.

@@ -35,7 +35,8 @@ class Stepper {
     for (int k = 0; k < scene.solver.iterations; ++k)
       c_.factors.push_back(
           Real(plan.sor * (plan.sor_factors.empty() ? 1 : plan.sor_factors[std::size_t(k)])));
-    c_.make(plan.program.fields, position, velocity, id, plan.solids);
+    c_.make(plan.program.fields, position, velocity, id, plan.solids,
+            std::max(scene.solver.iterations, 1) * (1 + plan.shape().repeats));
     find_pairs();
     sum_density();
   }
@@ -105,11 +106,13 @@ class Stepper {
   /// Takes over a state of as many particles, in any order.
   void set_state(const SolverState& s) {
     upload_state<Real>(c_.exec, plan_.axes, s, c_.state());
+    c_.forget_near();
     moved();
   }
   void save(Saved& s) { s.save(c_); }
   void restore(Saved& s) {
     s.restore(c_);
+    c_.forget_near();
     moved();
   }
 
@@ -122,6 +125,7 @@ class Stepper {
     c_.exec.begin();
     c_.booked_as = "measure";
     for (const int pass : {Passes::index_of<Sort>(), Passes::index_of<MakeLists>()}) launch(pass);
+    if (c_.solids().around) launch(Passes::index_of<FindNear>());
     c_.booked_as = nullptr;
     return true;
   }

@@ -91,6 +91,12 @@ class CpuExec {
     }
   }
 
+  /// pass(k) for k in 0..*count-1; at most `most`.
+  template <class Pass>
+  void for_listed(const int* count, int, const Pass& pass) {
+    for_each(*count, pass);
+  }
+
   /// A measure: its maxima and counts, then the sums in units that these decide.
   template <class Pass>
   MeasureSums reduce(int n, const Pass& pass) {

@@ -111,6 +111,12 @@ class CudaExec {
       launch(apply_kernel<Pass>, n, kBlock, 0, n, pass);
   }
 
+  /// See CpuExec. How many they are is known on the device alone.
+  template <class Pass>
+  void for_listed(const int* count, int most, const Pass& pass) {
+    launch(listed_kernel<Pass>, std::min(most, kBlock * kListedBlocks), kBlock, 0, count, pass);
+  }
+
   /// See CpuExec. The maxima stay on the device for the sums, so the host waits once.
   template <class Pass>
   MeasureSums reduce(int n, const Pass& pass) {

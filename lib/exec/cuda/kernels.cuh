@@ -20,12 +20,22 @@ constexpr int kSixteenLanes = 4000, kEightLanes = 12000, kFourLanes = 40000, kTw
 #endif
 constexpr int kListLanes = 40000;
 constexpr int kRepeatBlocks = 512;
+constexpr int kListedBlocks = 1024;
 
 template <class Pass>
 __global__ void __launch_bounds__(kBlock) apply_kernel(int n, Pass pass) {
   wait_for_previous();
   const int i = blockIdx.x * kBlock + threadIdx.x;
   if (i < n) pass(i);
+}
+
+/// For as many items as *count says.
+template <class Pass>
+__global__ void __launch_bounds__(kBlock)
+    listed_kernel(const int* count, const __grid_constant__ Pass pass) {
+  wait_for_previous();
+  const int n = *count;
+  for (int k = blockIdx.x * kBlock + threadIdx.x; k < n; k += gridDim.x * kBlock) pass(k);
 }
 
 /// Adds the number of particles that pass(i) puts into each bin: in shared memory first, since most

@@ -19,10 +19,10 @@ struct Density {
   template <class C>
   static void launch(C& c) {
     c.with_smoothing([&](auto s) {
-      with_boundary(c, [&](const auto& boundary) {
-        c.each(DensityPass<typename C::Real, typename C::Lists, decltype(s)::value,
+      each_then_near<false>(c, [&](const auto& boundary) {
+        return DensityPass<typename C::Real, typename C::Lists, decltype(s)::value,
                            std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists, c.position(),
-                                                             c.density()});
+                                                             c.density()};
       });
     });
   }
@@ -35,11 +35,11 @@ constexpr unsigned kLambdaGathers =
 template <bool with_density, class C>
 void launch_lambda(C& c) {
   c.with_smoothing([&](auto s) {
-    with_boundary(c, [&](const auto& boundary) {
-      c.each(LambdaPass<typename C::Real, typename C::Lists, decltype(s)::value, with_density,
-                        std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists, c.position(),
-                                                          c.other(field::position), c.density(),
-                                                          c.velocity(), c.counts()});
+    each_then_near<false>(c, [&](const auto& boundary) {
+      return LambdaPass<typename C::Real, typename C::Lists, decltype(s)::value, with_density,
+                        std::decay_t<decltype(boundary)>>{
+          c.p,         boundary,     c.lists,   c.position(), c.other(field::position),
+          c.density(), c.velocity(), c.counts()};
     });
   });
 }

@@ -15,12 +15,13 @@ void launch_delta(C& c, StepCounts* moves_on) {
   c.with_smoothing([&](auto s) {
     with_bool(c.scene.tensile && c.scene.tensile->k != 0, [&](auto tensile) {
       with_level_move(c, [&](const auto& coarse) {
-        with_boundary(c, [&](const auto& boundary) {
-          c.each(DeltaPass<typename C::Real, typename C::Lists, decltype(s)::value,
+        each_then_near<true>(c, [&](const auto& boundary) {
+          return DeltaPass<typename C::Real, typename C::Lists, decltype(s)::value,
                            decltype(tensile)::value, std::decay_t<decltype(coarse)>,
                            std::decay_t<decltype(boundary)>>{
-              p, boundary, c.lists, c.other(field::position), c.density(), c.ids(), c.position(),
-              c.velocity(), moves_on, coarse});
+              p,           boundary, c.lists,      c.other(field::position),
+              c.density(), c.ids(),  c.position(), c.velocity(),
+              moves_on,    coarse};
         });
       });
     });

@@ -1,4 +1,4 @@
-// Loads: what the fluid does to the walls. The passes that move particles book it
+// Loads: what the fluid does to walls and obstacles. The passes that move particles book it
 // (kernels/boundary/loads.h); one at the end of an update sums it up.
 #pragma once
 
@@ -32,18 +32,6 @@ LoadSums* load_sums(C& c) {
 template <class C>
 LoadBook<typename C::Real> load_book(C& c) {
   return {load_sums(c), typename C::Real(1 / moment_unit(c.p.boundary))};
-}
-
-/// f(the boundary of the scene): its box, or a box with obstacles or loads. Steps without time move
-/// nothing that a wall would feel.
-template <class C, class F>
-void with_boundary(C& c, F&& f) {
-  using Real = typename C::Real;
-  if (!c.solids().around) return f(c.p.boundary);
-  Solids<Real> solids = c.solids();
-  static_cast<Box<Real>&>(solids) = c.p.boundary;
-  solids.booked = has_loads(c.scene) && c.p.dt > 0;
-  f(solids);
 }
 
 struct SumLoads {

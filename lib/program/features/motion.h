@@ -3,7 +3,7 @@
 
 #include "kernels/pass_predict.h"
 #include "lib/program/as_types.h"
-#include "lib/program/features/loads.h"
+#include "lib/program/features/solids.h"
 #include "lib/program/pass.h"
 
 namespace pbf::inline PBF_VARIANT {

@@ -1,0 +1,90 @@
+// How passes over all particles deal with solids: they leave what is near to a second launch, and
+// see plain walls.
+#pragma once
+
+#include "kernels/boundary/solids.h"
+#include "kernels/cell_index.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// The boundary of the first launch. What is far from all solids has to do with plain walls alone;
+/// of a near row a pass keeps the sums over its neighbours and goes on.
+template <class Real>
+struct FarBox : Box<Real> {
+  static constexpr bool far_only = true;
+  Bounds<Real> bounds{}, clear{};  ///< as those of Solids
+  bool obstacles = false, booked = false;
+  NearRows<Real> near{};
+
+  explicit FarBox(const Solids<Real>& s)
+      : Box<Real>(s),
+        bounds(s.bounds),
+        clear(s.clear),
+        obstacles(s.obstacles),
+        booked(s.booked),
+        near(s.near) {}
+
+  /// Whether a way may lead to a solid, or end near one.
+  PBF_HD_RARE bool comes_near(Vec3<Real> from, Vec3<Real> to) const {
+    return (booked && !clear.has(to)) || (obstacles && bounds.meets(from, to));
+  }
+  /// Whether row i, which is far, may be near after a move in an iteration.
+  PBF_HD bool leaves(int i, Vec3<Real> from, Vec3<Real> move) const {
+    return !(dot(move, move) <= near.room[i]) && comes_near(from, from + move);
+  }
+  /// At least the largest gradient of the walls' density, 1/h: of a half space it is below 1.6 over
+  /// the range, and three pairs of walls may be near.
+  PBF_HD Real steepest() const { return Real(6) * this->scale * this->inv_range; }
+};
+
+/// The second launch of a pass: for the near rows, from the sums that the first one kept. `pass` is
+/// the same one with the boundary Solids.
+template <class Pass>
+struct NearPass {
+  Pass pass;
+  PBF_HD void operator()(int k) const {
+    const int i = pass.boundary.near.row[k];
+    pass.finish(i, pass.own(i), pass.kept(i));
+  }
+};
+
+/// Which rows are near, once the lists are made; of all rows, or of those in the half cells that
+/// something can be near in. Before, all are far.
+template <class Real>
+struct FindNearPass {
+  Solids<Real> solids;
+  const Vec4<Real>* position;
+  const int* half_cell = nullptr;  ///< null: the pass is for rows
+  const int* bin_start = nullptr;
+  int bins = 0;  ///< of a half cell
+  PBF_HD void operator()(int k) const {
+    if (!half_cell) return solids.came_to(k, xyz(position[k]));
+    const int* start = bin_start + half_cell[k] * bins;
+    for (int i = start[0]; i < start[bins]; ++i) solids.came_to(i, xyz(position[i]));
+  }
+};
+
+/// Makes the rows of the list far again.
+template <class Real>
+struct ForgetNearPass {
+  NearRows<Real> near;
+  PBF_HD void operator()(int k) const { near.room[near.row[k]] = near.far_room; }
+};
+template <class Real>
+struct ClearNearPass {
+  NearRows<Real> near;
+  PBF_HD void operator()(int) const { *near.count = 0; }
+};
+/// Where nothing is known of the n rows all of them are near.
+template <class Real>
+struct AllNearPass {
+  NearRows<Real> near;
+  int n;
+  PBF_HD void operator()(int i) const {
+    near.room[i] = Real(-1);
+    near.row[i] = i;
+    if (i == 0) *near.count = n;
+  }
+};
+
+}  // namespace pbf::inline PBF_VARIANT
