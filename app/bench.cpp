@@ -12,6 +12,7 @@
 #include "lib/campaign/calibration.h"
 #include "lib/campaign/grid.h"
 #include "lib/io/table.h"
+#include "lib/run/motion_files.h"
 #include "lib/scene/load.h"
 
 namespace pbf::inline app_module {
@@ -94,7 +95,10 @@ int command_bench(const BenchOptions& o) {
   Log log(false);
   TableOf<BenchRow> table(columns());
   std::vector<LoadedScene> scenes;
-  for (const std::string& path : o.scenes) scenes.push_back(load_scene(path, o.overrides));
+  for (const std::string& path : o.scenes) {
+    scenes.push_back(load_scene(path, o.overrides));
+    read_motions(scenes.back().scene, scenes.back().folder);
+  }
   if (o.scenes.empty())
     scenes.emplace_back().scene = parse_scene(
         o.calibrate ? calibration_scene_yaml() : bench_scene_yaml(), "built-in scene", o.overrides);

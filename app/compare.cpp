@@ -7,6 +7,7 @@
 #include "lib/base/inputs.h"
 #include "lib/base/log.h"
 #include "lib/base/output_file.h"
+#include "lib/run/motion_files.h"
 #include "lib/scene/load.h"
 
 namespace pbf::inline app_module {
@@ -59,10 +60,12 @@ CompareResult between(const CompareOptions& o, Log& log) {
   CompareSettings s = o.settings;
   s.a = parse_side(o.between[0]);
   s.b = parse_side(o.between[1]);
-  const LoadedScene a = load_scene(o.inputs[0], o.overrides);
+  LoadedScene a = load_scene(o.inputs[0], o.overrides);
+  read_motions(a.scene, a.folder);
   std::vector<std::string> more = o.overrides;
   more.insert(more.end(), o.overrides_b.begin(), o.overrides_b.end());
-  const LoadedScene b = load_scene(o.inputs[0], more);
+  LoadedScene b = load_scene(o.inputs[0], more);
+  read_motions(b.scene, b.folder);
   check_output("--report", o.report);
   CompareResult result = compare_between(a.scene, b.scene, a.folder, s,
                                          [&](const std::string& line) { log.note(line); });

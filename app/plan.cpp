@@ -13,6 +13,7 @@
 #include "lib/campaign/calibration.h"
 #include "lib/program/threads.h"
 #include "lib/run/emit.h"
+#include "lib/run/motion_files.h"
 #include "lib/run/start_neighbors.h"
 #include "lib/run/warnings.h"
 #include "lib/scene/load.h"
@@ -59,7 +60,8 @@ std::string json(const Plan& plan, const Scene& scene, const std::optional<TimeE
 }
 
 int command_plan(const PlanOptions& options) {
-  const LoadedScene loaded = load_scene(options.scene, options.overrides);
+  LoadedScene loaded = load_scene(options.scene, options.overrides);
+  read_motions(loaded.scene, loaded.folder);
   Log log(false);
   const std::string& dir = loaded.folder;
   // Counted for --resolved too: a scene that cannot run is an error in every form of the answer.

@@ -10,6 +10,8 @@
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
 #include "lib/io/run_file.h"
+#include "lib/run/load_run.h"
+#include "lib/run/motion_files.h"
 #include "lib/scene/load.h"
 #ifdef PBF_HAS_RENDER
 #include "lib/render/renderer.h"
@@ -35,6 +37,7 @@ int command_render(const RenderOptions& options) {
   const RunInfo info = reader.info();
   Scene scene =
       parse_stored_scene(info.resolved_scene, options.run + " (the scene stored in it)", {});
+  read_motions(scene, folder_of_files(scene, options.run, info.scene_path));
   apply_render_options(options, scene);
   const auto frames = select_frames(options.frames, reader.frames());
   const std::filesystem::path folder =

@@ -14,12 +14,21 @@ struct Moving {
   Real mark = 1;    ///< -1: so fast that it may pass a neighbour (relative_motion.h), else 1
 };
 
-/// Position is clamped to the walls, and the velocity follows what the clamp did: a particle never
-/// enters the constraint solve from behind a wall, also when there are no iterations.
-/// path_end(from, to): of the boundary.
+/// The velocity with what gravity, or the tank's motion, and damping make of it in a step.
+template <class Real, class Boundary>
+PBF_HD Vec3<Real> accelerated(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
+                              const Boundary& boundary) {
+  if constexpr (Boundary::books) {
+    if (boundary.frame) return boundary.frame->accelerated(x, p.damping * v);
+  }
+  return mul_add(p.damping, v, p.dt * p.gravity);
+}
+
+/// v: accelerated. Position is clamped to the walls, and the velocity follows what the clamp did: a
+/// particle never enters the constraint solve from behind a wall, also when there are no
+/// iterations. path_end(from, to): of the boundary.
 template <class Real, class End>
 PBF_HD Moving<Real> predicted(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p, End&& path_end) {
-  v = mul_add(p.damping, v, p.dt * p.gravity);
   const Real speed_squared = dot(v, v);
   const bool fast = speed_squared > p.speed_squared;
   if (p.limit_speed && fast) v = square_root(p.speed_squared / speed_squared) * v;
@@ -29,16 +38,21 @@ PBF_HD Moving<Real> predicted(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
   const Real mark = speed_squared > p.passing_squared ? Real(-1) : Real(1);
   return {x, mul_add(p.inv_dt, x - free, v), fast, mark};
 }
-template <class Real>
+/// With plain walls.
+template <class Real, class Boundary>
 PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
-                            const Box<Real>& walls) {
-  return predicted(x, v, p, [&](auto from, auto to) { return walls.path_end(from, to); });
+                            const Boundary& boundary) {
+  const Box<Real>& walls = boundary;
+  return predicted(x, accelerated(x, v, p, boundary), p,
+                   [&](auto from, auto to) { return walls.path_end(from, to); });
 }
 /// Whether row i, in the order of the last sort, is predicted as if there were plain walls alone.
 template <class Real, class Boundary>
-PBF_HD bool sees_plain_walls(int i, Vec3<Real> v, const Params<Real>& p, const Boundary& boundary) {
+PBF_HD bool sees_plain_walls(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
+                             const Boundary& boundary) {
   if constexpr (Boundary::books) {
-    v = mul_add(p.damping, v, p.dt * p.gravity);  // as predicted() has it
+    if (!boundary.near.room) return true;
+    v = accelerated(x, v, p, boundary);
     return boundary.near.may_go(i, dot(v, v));
   }
   return true;
@@ -47,8 +61,8 @@ PBF_HD bool sees_plain_walls(int i, Vec3<Real> v, const Params<Real>& p, const B
 template <class Real, class Boundary>
 PBF_HD_APART Moving<Real> predict_at_solids(bool book, int i, Vec3<Real> x, Vec3<Real> v,
                                             const Params<Real>& p, const Boundary& boundary) {
-  return predicted(x, v, p, [&](auto from, auto to) {
-    return boundary.path_end(book && boundary.booked, i, from, to);
+  return predicted(x, accelerated(x, v, p, boundary), p, [&](auto from, auto to) {
+    return boundary.path_end(book && boundary.booked, true, i, from, to);
   });
 }
 /// What row i does, which becomes row `to`.
@@ -56,7 +70,8 @@ template <class Real, class Boundary>
 PBF_HD Moving<Real> predict_row(bool book, int i, int to, Vec3<Real> x, Vec3<Real> v,
                                 const Params<Real>& p, const Boundary& boundary) {
   if constexpr (Boundary::books) {
-    if (!sees_plain_walls(i, v, p, boundary)) return predict_at_solids(book, to, x, v, p, boundary);
+    if (!sees_plain_walls(i, x, v, p, boundary))
+      return predict_at_solids(book, to, x, v, p, boundary);
   }
   return predict(x, v, p, boundary);
 }
@@ -91,7 +106,7 @@ struct PredictPass {
   const Vec4<Real>*position, *velocity;
   int* bin;  ///< out
   PBF_HD void operator()(int i) const {
-    if (!sees_plain_walls(i, xyz(velocity[i]), p, boundary)) return at_solids(i);
+    if (!sees_plain_walls(i, xyz(position[i]), xyz(velocity[i]), p, boundary)) return at_solids(i);
     bin[i] = bin_of<D>(predict(xyz(position[i]), xyz(velocity[i]), p, boundary).x, p);
   }
   PBF_HD_APART void at_solids(int i) const {
@@ -134,7 +149,7 @@ struct GatherPass {
   int* id_out;
   StepCounts* counts;
   PBF_HD void operator()(int from, int to) const {
-    if (moving && !sees_plain_walls(from, xyz(velocity[from]), p, boundary))
+    if (moving && !sees_plain_walls(from, xyz(position[from]), xyz(velocity[from]), p, boundary))
       return at_solids(from, to);
     if constexpr (moving)
       put(from, to, predict(xyz(position[from]), xyz(velocity[from]), p, boundary));

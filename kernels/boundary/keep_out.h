@@ -144,10 +144,12 @@ PBF_HD Stay<Real> stay_in(const Solid<Real>& o, Vec3<Real> a, Vec3<Real> d, Tang
 /// the plane that touches the solid there. Obstacles are convex, so it ends outside, and on the
 /// side where it met the solid, however thin that is and however long the way. A path that starts
 /// inside, as by rounding or because the solid came there, starts at the nearest place of the
-/// surface instead.
+/// surface instead. `before`: where the solid was when the way began; seen from the solid the way
+/// is straight, so that a solid sweeps all that is in its way.
 template <int D, class Real>
-PBF_HD_APART PathEnd<Real> keep_out(const Solid<Real>& o, Vec3<Real> from, Vec3<Real> to) {
-  const Vec3<Real> a = body_point<D>(o, from), b = body_point<D>(o, to);
+PBF_HD_APART PathEnd<Real> keep_out(const Solid<Real>& before, const Solid<Real>& o,
+                                    Vec3<Real> from, Vec3<Real> to) {
+  const Vec3<Real> a = body_point<D>(before, from), b = body_point<D>(o, to);
   const Vec3<Real> d = b - a;
   Tangent<Real> face;
   if (o.shape == ObstacleShape::plane || body_distance<D>(o, a) < Real(0)) {
@@ -164,6 +166,11 @@ PBF_HD_APART PathEnd<Real> keep_out(const Solid<Real>& o, Vec3<Real> from, Vec3<
   const Real depth = face.level - dot(face.normal, b);
   if (!(depth > Real(0))) return {to, false};
   return {to + depth * turned_back<D>(o, face.normal), true};
+}
+/// Of a solid that stands.
+template <int D, class Real>
+PBF_HD PathEnd<Real> keep_out(const Solid<Real>& o, Vec3<Real> from, Vec3<Real> to) {
+  return keep_out<D>(o, o, from, to);
 }
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "kernels/boundary/moving.h"
 #include "kernels/vec3.h"
 
 namespace pbf {
@@ -24,6 +25,7 @@ struct Load {
   double moment[3] = {0, 0, 0};   ///< h^2/s, about the domain's lower corner
   double peak = 0;                ///< h/s^2, largest mean force of one update
   double time = 0;                ///< s
+  double work = 0;                ///< h^2/s^2, that an obstacle that moves has done
 };
 
 }  // namespace pbf
@@ -74,8 +76,9 @@ struct LoadBook {
 /// The end of an update: adds what was booked to each wall's load and clears it.
 struct LoadPass {
   LoadSums* sums;
-  Load* load;                             ///< in/out
-  double inv_dt, update_dt, moment_unit;  ///< 1/s of a substep, s, h
+  Load* load;                               ///< in/out
+  double inv_dt, update_dt, moment_unit;    ///< 1/s of a substep, s, h
+  const SolidVelocity* velocity = nullptr;  ///< of each obstacle; null: none moves
 
   PBF_HD void operator()(int wall) const {
     LoadSums all;
@@ -92,9 +95,14 @@ struct LoadPass {
     double squares = 0;
     for (int k = 0; k < 3; ++k) {
       const double impulse = unit * double(all.way[k]);
+      const double moment = unit * moment_unit * double(all.moment[k]);
       to.impulse[k] += impulse;
-      to.moment[k] += unit * moment_unit * double(all.moment[k]);
+      to.moment[k] += moment;
       squares += impulse * impulse;
+      if (velocity && wall >= 6) {
+        const SolidVelocity& v = velocity[wall - 6];
+        to.work -= impulse * v.linear[k] + moment * v.angular[k];
+      }
     }
     to.peak = max2(to.peak, square_root(squares) / update_dt);
     to.time += update_dt;

@@ -11,11 +11,12 @@ template <class Real>
 struct Solids : Box<Real> {
   static constexpr bool books = true;
   const Surroundings<Real>* around = nullptr;
-  Bounds<Real> bounds{};   ///< of all obstacles
-  Bounds<Real> clear{};    ///< far from every wall
-  bool obstacles = false;  ///< there are any
-  bool booked = false;     ///< loads are
-  NearRows<Real> near{};
+  Bounds<Real> bounds{};                   ///< of all obstacles
+  Bounds<Real> clear{};                    ///< far from every wall
+  bool obstacles = false;                  ///< there are any
+  bool booked = false;                     ///< loads are
+  const FrameStep<Real>* frame = nullptr;  ///< of the step; null: the tank stands
+  NearRows<Real> near{};                   ///< without obstacles and loads none is known
 
   PBF_HD const Box<Real>& walls() const { return *this; }
 
@@ -24,15 +25,16 @@ struct Solids : Box<Real> {
     if (obstacles && bounds.has(x)) return surroundings_term<S>(*around, x);
     return Box<Real>::template term<S>(x);
   }
-  /// Where the way of particle i ends; what solids do to it is booked with `book`.
-  PBF_HD Vec3<Real> path_end(bool book, int i, Vec3<Real> from, Vec3<Real> to) const {
+  /// Where the way of particle i ends; what solids do to it is booked with `book`. `start`: it
+  /// begins with the step.
+  PBF_HD Vec3<Real> path_end(bool book, bool start, int i, Vec3<Real> from, Vec3<Real> to) const {
     const Vec3<Real> in = Box<Real>::path_end(from, to);
     const bool free = in.x == to.x && in.y == to.y && in.z == to.z;
     if ((free || !book) && !(obstacles && bounds.meets(from, to))) return in;
-    return surroundings_path_end(*around, book, i, from, to);
+    return surroundings_path_end(*around, book, start, i, from, to);
   }
   PBF_HD Vec3<Real> path_end_booked(int i, Vec3<Real> from, Vec3<Real> to) const {
-    return path_end(booked, i, from, to);
+    return path_end(booked, false, i, from, to);
   }
   /// Particle i, at x, was moved by factor * the gradient of term().
   template <Smoothing S>
@@ -47,7 +49,7 @@ struct Solids : Box<Real> {
   }
   /// The way of row i, while the lists hold, ended at x.
   PBF_HD void came_to(int i, Vec3<Real> x) const {
-    if (!near.has(i) && is_near(x)) near.add(i);
+    if (near.room && !near.has(i) && is_near(x)) near.add(i);
   }
   PBF_HD double penetration(const double (&x)[3]) const {
     double deepest = Box<Real>::penetration(x);

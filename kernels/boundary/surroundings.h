@@ -4,6 +4,7 @@
 
 #include "kernels/boundary/keep_out.h"
 #include "kernels/boundary/loads.h"
+#include "kernels/boundary/moving.h"
 #include "kernels/boundary/solid_term.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -39,16 +40,30 @@ template <class Real>
 struct Surroundings {
   Box<Real> walls;
   const PlacedSolid<Real>* solid = nullptr;
+  const Solid<Real>* before = nullptr;  ///< where each was at the start of the step; null: there
   int solids = 0;
   bool flat = false;  ///< two dimensions
   LoadBook<Real> loads{};
 };
 
+/// `start`: the way begins with the step, at which solids that move stood elsewhere.
 template <class Real>
-PBF_HD PathEnd<Real> keep_out(const Surroundings<Real>& s, int k, Vec3<Real> from, Vec3<Real> to) {
+PBF_HD PathEnd<Real> keep_out(const Surroundings<Real>& s, bool start, int k, Vec3<Real> from,
+                              Vec3<Real> to) {
   const PlacedSolid<Real>& placed = s.solid[k];
   if (!placed.bounds.meets(from, to)) return {to, false};
-  return s.flat ? keep_out<2>(placed.solid, from, to) : keep_out<3>(placed.solid, from, to);
+  const Solid<Real>& before = start && s.before ? s.before[k] : placed.solid;
+  return s.flat ? keep_out<2>(before, placed.solid, from, to)
+                : keep_out<3>(before, placed.solid, from, to);
+}
+
+/// Where solid k takes a place that moves with it.
+template <class Real>
+PBF_HD Vec3<Real> carried(const Surroundings<Real>& s, int k, Vec3<Real> from) {
+  const Solid<Real>& o = s.solid[k].solid;
+  const Vec3<Real> x = s.flat ? o.center + turned_back<2>(o, body_point<2>(s.before[k], from))
+                              : o.center + turned_back<3>(o, body_point<3>(s.before[k], from));
+  return s.walls.path_end(from, x);
 }
 
 /// Whether x is nearer to an obstacle than its bounds are.
@@ -102,9 +117,10 @@ PBF_HD_APART BoundaryTerm<Real> surroundings_term(const Surroundings<Real>& s, V
 }
 
 /// Where the way of particle i ends. `booked`: what walls and obstacles do to it becomes load.
+/// `start`: as of keep_out().
 template <class Real>
-PBF_HD_APART Vec3<Real> surroundings_path_end(const Surroundings<Real>& s, bool booked, int i,
-                                              Vec3<Real> from, Vec3<Real> to) {
+PBF_HD_APART Vec3<Real> surroundings_path_end(const Surroundings<Real>& s, bool booked, bool start,
+                                              int i, Vec3<Real> from, Vec3<Real> to) {
   const Vec3<Real> target = to;
   const auto move_by = [&](int wall, Vec3<Real> way) {
     if (booked) s.loads.add(wall, i, target, way);
@@ -118,18 +134,18 @@ PBF_HD_APART Vec3<Real> surroundings_path_end(const Surroundings<Real>& s, bool 
   };
   to = inside_walls(to);
   // What slides along one obstacle may come to another, or to a wall. Where there is no way out
-  // after some rounds the particle stays where it was.
+  // after some rounds the particle stays where it was, or goes with the solid that moves.
   constexpr int rounds = 3;
   for (int round = 0; round <= rounds; ++round) {
     bool moved = false;
     for (int k = 0; k < s.solids; ++k) {
-      const PathEnd<Real> end = keep_out(s, k, from, to);
+      const PathEnd<Real> end = keep_out(s, start, k, from, to);
       if (!end.hit) continue;
       const bool wedged = !within_rounding(end.x - to, to, s.solid[k].solid.center);
       const bool last = round == rounds && wedged;
-      const Vec3<Real> at = last ? from : end.x;
+      const Vec3<Real> at = !last ? end.x : start && s.before ? carried(s, k, from) : from;
       move_by(6 + k, at - to);
-      if (last) return from;
+      if (last) return at;
       to = inside_walls(at);
       moved = moved || wedged;
     }

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "lib/base/error.h"
+#include "lib/run/motion_files.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/load.h"
 #include "lib/scene/number.h"
@@ -20,7 +21,9 @@ Scene scene_with(const std::string& path, const std::vector<std::string>& overri
                  const std::vector<std::string>& more) {
   std::vector<std::string> all = overrides;
   all.insert(all.end(), more.begin(), more.end());
-  return load_scene(path, all).scene;
+  LoadedScene loaded = load_scene(path, all);
+  read_motions(loaded.scene, loaded.folder);
+  return loaded.scene;
 }
 
 /// The scene's field of a number key; of vectors the whole.

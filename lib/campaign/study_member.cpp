@@ -10,8 +10,10 @@
 #include "lib/campaign/exact_projection.h"
 #include "lib/exec/make_solver.h"
 #include "lib/io/run_layout.h"
+#include "lib/program/motion.h"
 #include "lib/program/plan.h"
 #include "lib/run/emit.h"
+#include "lib/run/motion_files.h"
 #include "lib/run/prestabilize.h"
 #include "lib/run/schedule.h"
 #include "lib/run/session.h"
@@ -26,9 +28,12 @@ double seconds_of(const Session& session, const Study& study) {
 }
 
 /// Adds a row to the columns; whether the run may go on.
-bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, MemberResult& out) {
+bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, WorkTrack& work,
+             MemberResult& out) {
   LogRow row;
   row.measures = solver.measure();
+  row.measures.work = work.until(row.measures);
+  if (has_motion(scene)) solver.loads(Interval::ends), work.take(row.measures);
   energy.follow(row.measures);
   row.iterations = scene.solver.iterations;
   row.dt = scene.time.step;
@@ -93,7 +98,8 @@ double MemberResult::seconds_spread() const {
 std::optional<MemberResult> run_member(const Study& study, const StudyMember& member,
                                        const std::function<bool()>& stop,
                                        const std::function<void(double)>& progress) {
-  const Scene& scene = member.scene;
+  Scene scene = member.scene;
+  read_motions(scene, study.scene_dir);
   const Schedule schedule = make_schedule(scene);
   if (!study.projection.empty() && !scene.obstacles.empty())
     throw Error(ExitCode::bad_input,
@@ -123,6 +129,7 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
     out.backend = info.backend, out.precision = info.precision, out.device = info.device;
     out.threads = info.threads;
     EnergyTrack energy;
+    WorkTrack work;
     const auto next = [&](std::int64_t u) {
       if (compared) return u + 1;
       const auto moment = moments.upper_bound(u);
@@ -143,7 +150,7 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
       booked += seconds;
       last = u;
       if (schedule.measures(u)) {
-        const bool good = measure(*solver, scene, energy, out);
+        const bool good = measure(*solver, scene, energy, work, out);
         if (u > 0) progress(double(u) / double(out.updates));
         if (!good) return Now::stop;
       }

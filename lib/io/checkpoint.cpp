@@ -76,6 +76,9 @@ void for_each_number(Saved& s, F&& f) {
   f("first_center_of_mass_y", s.first.center_of_mass[1]);
   f("first_center_of_mass_z", s.first.center_of_mass[2]);
   f("energy_largest", s.energy.largest, newer);
+  f("energy_work", s.energy.work, newer);
+  f("energy_power", s.energy.power, newer);
+  f("energy_time", s.energy.time, newer);
   f("way_squared", s.state.way_squared, newer);
   f("first_momentum_x", s.first.momentum[0], newer);
   f("first_momentum_y", s.first.momentum[1], newer);
@@ -137,11 +140,15 @@ void write_loads(hid_t file, const std::vector<Load>& loads) {
 }
 
 std::vector<Load> read_loads(hid_t file) {
-  const auto rows = h5::shape(h5::open_dataset(file, "loads")).at(0);
+  const auto shape = h5::shape(h5::open_dataset(file, "loads"));
+  const std::size_t rows = shape.at(0), columns = shape.at(1);  // older files have fewer
+  if (columns > kLoadNumbers) throw h5::Failure("loads of a later version");
   std::vector<double> numbers;
-  read_rows(file, "loads", std::int64_t(rows), kLoadNumbers, numbers);
+  read_rows(file, "loads", std::int64_t(rows), columns, numbers);
   std::vector<Load> loads(rows);
-  std::memcpy(static_cast<void*>(loads.data()), numbers.data(), numbers.size() * sizeof(double));
+  for (std::size_t k = 0; k < rows; ++k)
+    std::memcpy(static_cast<void*>(&loads[k]), numbers.data() + k * columns,
+                columns * sizeof(double));
   return loads;
 }
 

@@ -29,6 +29,7 @@ const std::vector<LogColumn>& log_columns() {
 std::vector<FurtherNumber> further_numbers(const LogRow& row) {
   std::vector<FurtherNumber> all;
   for (const StageTime& s : row.stages) all.push_back({"stage/" + s.name, "s", s.seconds});
+  if (row.measures.moved) all.push_back({"work", "J", row.measures.work});
   for (const WallLoad& l : row.measures.loads)
     for (const LoadNumber& n : load_numbers())
       all.push_back({"load/" + l.wall + "/" + n.name, n.unit, n.value(l)});

@@ -42,6 +42,8 @@ inline constexpr FieldInfo order{"order", Type::int32, 1, Rows::particles};
 inline constexpr FieldInfo bin_start{"bin_start", Type::int32, 1, Rows::bins};
 /// The neighbour lists: their memory is the executor's.
 inline constexpr FieldInfo lists{"lists", Type::int32, 0, Rows::particles};
+/// What moves by itself: its memory is that of the boundary.
+inline constexpr FieldInfo motion{"motion", Type::int32, 0, Rows::particles};
 }  // namespace field
 
 /// Rows of one of its arrays.

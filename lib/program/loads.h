@@ -8,7 +8,8 @@
 namespace pbf::inline program_module {
 
 inline bool has_loads(const Scene& scene) {
-  const auto wanted = [](const Obstacle& o) { return o.loads; };
+  // What moves does work, which is known from its load.
+  const auto wanted = [](const Obstacle& o) { return o.loads || o.motion; };
   return scene.domain.loads || std::any_of(scene.obstacles.begin(), scene.obstacles.end(), wanted);
 }
 

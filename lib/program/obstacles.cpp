@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/program/motion.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline program_module {
@@ -63,7 +64,7 @@ unsigned behind_walls(const Scene& s, const Matrix& rows, const Double3& center,
   return through;
 }
 
-Solid<double> solid_of(const Obstacle& o, const Scene& s) {
+Solid<double> solid_of(const Obstacle& o, const Scene& s, double time) {
   Solid<double> out;
   out.shape = o.shape;
   Matrix rows = kUnturned;
@@ -99,6 +100,12 @@ Solid<double> solid_of(const Obstacle& o, const Scene& s) {
       break;
     }
   }
+  if (o.motion) {
+    const Pose pose = pose_of(s, o, time);
+    center = pose.of(center);
+    for (Double3& axis : rows)
+      axis = {dot(pose.turn[0], axis), dot(pose.turn[1], axis), dot(pose.turn[2], axis)};
+  }
   if (s.plane()) center[1] = *s.plane();  // no y counts there
   out.through = behind_walls(s, rows, center, half, faces);
   const double h = s.h();
@@ -112,14 +119,14 @@ Solid<double> solid_of(const Obstacle& o, const Scene& s) {
 
 }  // namespace
 
-std::vector<Solid<double>> solids_of(const Scene& scene) {
+std::vector<Solid<double>> solids_of(const Scene& scene, double time) {
   std::vector<Solid<double>> all;
-  for (const Obstacle& o : scene.obstacles) all.push_back(solid_of(o, scene));
+  for (const Obstacle& o : scene.obstacles) all.push_back(solid_of(o, scene, time));
   return all;
 }
 
-std::vector<Solid<double>> solids_of(const Scene& scene, const Axes& axes) {
-  std::vector<Solid<double>> all = solids_of(scene);
+std::vector<Solid<double>> solids_of(const Scene& scene, const Axes& axes, double time) {
+  std::vector<Solid<double>> all = solids_of(scene, time);
   for (Solid<double>& s : all) {
     const Solid<double> along_scene = s;
     const double center[3] = {s.center.x, s.center.y, s.center.z};

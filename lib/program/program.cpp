@@ -15,9 +15,14 @@ ProgramStep step_of() {
 
 /// What features say of a scene.
 struct Builder {
-  Steps with_lists, in_iteration, behind, at_end;
+  Steps at_start, with_lists, in_iteration, behind, at_end;
   std::vector<LeftOut> without;
 
+  /// Before each substep.
+  template <class P>
+  void start() {
+    at_start.push_back(step_of<P>());
+  }
   template <class P>
   void lists() {
     with_lists.push_back(step_of<P>());
@@ -70,6 +75,7 @@ Steps joined(const Steps& steps) {
 /// One range of substeps that share lists.
 void add_substeps(Steps& to, const Builder& b, int iterations, int repeats, int substeps) {
   for (int s = 0; s < substeps; ++s) {
+    to.insert(to.end(), b.at_start.begin(), b.at_start.end());
     to.push_back(step_of<Predict>());
     if (s == 0) {
       to.insert(to.end(), {step_of<Sort>(), step_of<MakeLists>()});
@@ -88,7 +94,8 @@ void collect_fields(const Steps& steps, std::vector<const FieldInfo*>& to) {
     if (s.index < 0) continue;
     const PassInfo& pass = pass_infos()[std::size_t(s.index)];
     const auto add = [&](const Access& a) {
-      if (a.field != &field::lists && std::find(to.begin(), to.end(), a.field) == to.end())
+      if (a.field != &field::lists && a.field != &field::motion &&
+          std::find(to.begin(), to.end(), a.field) == to.end())
         to.push_back(a.field);
     };
     for (const Access& a : pass.reads) add(a);
@@ -133,11 +140,14 @@ const std::vector<PassInfo>& pass_infos() {
 Program make_program(const Scene& scene, const UpdateShape& shape, bool without_time) {
   Builder b;
   Features::add(scene, b);
-  if (without_time) b.behind.clear(), b.at_end.clear();
+  if (without_time) b.at_start.clear(), b.behind.clear(), b.at_end.clear();
   Program p;
   Steps middle;
   if (b.in_iteration.empty() && b.behind.empty()) {  // no pairs: particles only move
-    middle.assign(std::size_t(shape.substeps), step_of<Predict>());
+    for (int s = 0; s < shape.substeps; ++s) {
+      middle.insert(middle.end(), b.at_start.begin(), b.at_start.end());
+      middle.push_back(step_of<Predict>());
+    }
   } else {
     // The ranges are as equal as can be.
     for (int r = 0, from = 0; r < shape.lists_per_update; ++r) {
@@ -149,8 +159,10 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
   const Steps end = b.behind + b.at_end;
   p.update = middle + end;
   // An update begins with the passes up to its first lists, which may follow on the one before.
-  const bool pairs = p.update.size() > 2 && p.update[1].index == Passes::index_of<Sort>();
-  const auto begin = middle.begin() + (pairs ? 2 : 0);
+  const std::size_t order = b.at_start.size() + 1;  // where the sort is
+  const bool pairs =
+      p.update.size() > order + 1 && p.update[order].index == Passes::index_of<Sort>();
+  const auto begin = middle.begin() + (pairs ? std::ptrdiff_t(order + 1) : 0);
   const Steps head(middle.begin(), begin);
   p.first = joined(head);
   p.rest = joined(Steps(begin, middle.end()));

@@ -196,7 +196,8 @@ Renderer::Renderer(const View& view, int threads) : impl_(std::make_unique<Impl>
 Renderer::~Renderer() = default;
 
 Image Renderer::draw(const Snapshot& snapshot) {
-  const View& view = impl_->view;
+  View& view = impl_->view;
+  if (view.solids_at) view.solids = view.solids_at(snapshot.time);
   const Projection projection = projection_of(view, snapshot.time);
   collect(snapshot, view, projection, impl_->particles);
   Image image;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,7 +31,9 @@ struct View {
   std::array<double, 2> range{0, 1};  ///< of the colour bar, in the unit of the field
   std::array<int, 2> size{1280, 720};
   Camera camera;
-  std::vector<Solid<double>> solids{};        ///< obstacles: lengths in m, along the scene's axes
+  std::vector<Solid<double>> solids{};  ///< obstacles: lengths in m, along the scene's axes
+  /// Where they are at a time, s; empty: they stand.
+  std::function<std::vector<Solid<double>>(double)> solids_at{};
   std::array<std::array<bool, 2>, 3> open{};  ///< of each axis, min and max: no wall, solids go on
 };
 

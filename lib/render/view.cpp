@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/program/motion.h"
 #include "lib/program/obstacles.h"
 #include "lib/render/renderer.h"
 #include "lib/scene/vector3.h"
@@ -9,10 +10,10 @@
 namespace pbf::inline render_module {
 namespace {
 
-std::vector<Solid<double>> solids_in_metres(const Scene& scene) {
+std::vector<Solid<double>> solids_in_metres(const Scene& scene, double time) {
   const double h = scene.h();
   const auto [x, y, z] = scene.origin();
-  std::vector<Solid<double>> solids = solids_of(scene);
+  std::vector<Solid<double>> solids = solids_of(scene, time);
   for (Solid<double>& s : solids) {
     s.center = Vec3<double>{x, y, z} + h * s.center;
     s.half = h * s.half;
@@ -34,7 +35,9 @@ View view_of(const Scene& scene, std::int64_t particles) {
   view.color = render.color;
   view.size = render.size;
   view.camera = render.camera;
-  view.solids = solids_in_metres(scene);
+  view.solids = solids_in_metres(scene, 0);
+  if (has_moving_obstacles(scene))
+    view.solids_at = [scene](double time) { return solids_in_metres(scene, time); };
   for (int k = 0; k < 3; ++k)
     view.open[k] = {scene.domain.is_open(k, false), scene.domain.is_open(k, true)};
   if (render.range) {

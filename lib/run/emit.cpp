@@ -7,6 +7,7 @@
 #include "lib/base/error.h"
 #include "lib/io/particle_file.h"
 #include "lib/program/obstacles.h"
+#include "lib/run/motion_files.h"
 #include "lib/scene/number.h"
 #include "lib/scene/points.h"
 
@@ -162,6 +163,7 @@ std::vector<SceneFile> scene_files(const Scene& scene, const std::string& scene_
     SceneFile& file = files.emplace_back(SceneFile{body.path, ""});
     read_particle_file(resolved_path(body, scene_dir), &file.sha256);
   }
+  for (SceneFile& file : motion_files(scene, scene_dir)) files.push_back(std::move(file));
   return files;
 }
 
@@ -191,6 +193,7 @@ Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
     if (!free.all()) all.in_obstacles.push_back(drop_inside(free, first, all));
     hold_off_walls(scene, b, first, all);
   }
+  for (SceneFile& file : motion_files(scene, scene_dir)) all.files.push_back(std::move(file));
   return all;
 }
 

@@ -13,7 +13,8 @@ namespace pbf::inline run_module {
 /// Path of a file body's file.
 std::string resolved_path(const Body& body, const std::string& scene_dir);
 
-/// The files of the scene's bodies, in their order, as they are now. Throws as emit_particles().
+/// The files of the scene's bodies and motions, in their order, as they are now. Throws as
+/// emit_particles().
 std::vector<SceneFile> scene_files(const Scene& scene, const std::string& scene_dir);
 
 /// Number of particles the scene's bodies make, without making them (file bodies are opened).

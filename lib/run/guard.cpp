@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/program/motion.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/time_levels.h"
 
@@ -20,12 +21,19 @@ double longest_edge(const Scene& s) {
   return edge / s.h();
 }
 
+/// m/s, that prescribed motions may give the fluid.
+double motion_speed(const Scene& s) {
+  const double pull =
+      greatest_pull(s, 0, s.time.end) - std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
+  return 2 * fastest_obstacle(s, 0, s.time.end) + std::sqrt(2 * pull * longest_edge(s) * s.h());
+}
+
 /// m/s, of a move by h in a step of level 0.
 double h_per_step(const Scene& s) { return s.h() / s.time.step * s.solver.substeps; }
 
 }  // namespace
 
-double total_energy(const Diagnostics& m) { return m.kinetic_energy + m.potential_energy; }
+double total_energy(const Diagnostics& m) { return m.kinetic_energy + m.potential_energy - m.work; }
 
 double energy_scale(const Diagnostics& m, const Scene& s, double mass, std::int64_t particles) {
   const double all = mass * double(particles);
@@ -67,7 +75,8 @@ GuardLimits guard_limits(const Scene& s, const Plan& plan, const Diagnostics& fi
   slack += 0.5 * mass * rounded * rounded;
   const double at_rest = rest_neighbors(s);
   GuardLimits l;
-  l.speed = g.speed ? *g.speed : 10 * (first.speed_max + fall_speed(s) + per_step);
+  l.speed =
+      g.speed ? *g.speed : 10 * (first.speed_max + fall_speed(s) + motion_speed(s) + per_step);
   l.energy = total_energy(first) + (g.energy ? *g.energy * scale : kMayGain * scale + slack);
   l.neighbors =
       g.neighbors > 0 ? g.neighbors : std::max(4 * first.neighbors_max, std::int64_t(16 * at_rest));
@@ -142,7 +151,8 @@ GuardEvent Guard::locate(Alarm alarm, const Diagnostics& m, const StepOptions& o
   e.measure = m;
   const double h = scene_.h(), to_internal = 1 / (plan_.mass * h * h);
   const double energy = event_limit(m);
-  const StageLimits limits{limits_.speed / h, energy * to_internal, limits_.neighbors};
+  // A stage sums up what is there, with the work that motions have done.
+  const StageLimits limits{limits_.speed / h, (energy + m.work) * to_internal, limits_.neighbors};
   e.last_good = solver_.state(Which::kept);
   solver_.set_state(e.last_good);
   while (!e.stage && solver_.updates() < e.measure.update)
@@ -161,7 +171,7 @@ GuardEvent Guard::locate(Alarm alarm, const Diagnostics& m, const StepOptions& o
       break;
     case Alarm::energy:
       e.limit = energy;
-      e.value = e.stage ? e.stage->value / to_internal : total_energy(e.measure);
+      e.value = e.stage ? e.stage->value / to_internal - m.work : total_energy(e.measure);
       break;
     case Alarm::neighbors:
       e.limit = double(limits_.neighbors);

@@ -13,7 +13,8 @@ namespace pbf::inline run_module {
 /// Mean compression of a start that has come apart, 1.
 inline constexpr double kApart = 0.01;
 
-/// Kinetic and potential energy as the guard and the stability suite count it, J.
+/// Kinetic and potential energy, less the work of what moves by itself, as the guard and the
+/// stability suite count it, J.
 double total_energy(const Diagnostics& m);
 /// What growth is measured by, J: the kinetic energy relative to the centre of mass, which is the
 /// same for every observer in uniform motion, and the potential energy above the face of the domain
@@ -46,12 +47,12 @@ struct GuardLimits {
 };
 
 /// Limits from the scene's guard block and the first measure of the run. Where a key is `auto`:
-/// speed: 10 (fastest at the start + fall through the domain + h/dt): no flow from that start
-/// reaches it. energy: that of the start, + 0.1 energy_scale, + M (0.01 h/dt)^2/2, with gravity at
-/// most 0.1 M g h, + 64 times what rounding of the positions gives. neighbors: 4 times the most at
-/// the start, at least 16 times the rest_neighbors() at rest. dt is time.step/substeps whatever the
-/// level (time.adaptive): what stopped a run with the long step does not pass for good with a
-/// shorter one.
+/// speed: 10 (fastest at the start + fall through the domain + what motions give + h/dt): no flow
+/// from that start reaches it. energy: that of the start, + 0.1 energy_scale, + M (0.01 h/dt)^2/2,
+/// with gravity at most 0.1 M g h, + 64 times what rounding of the positions gives. neighbors: 4
+/// times the most at the start, at least 16 times the rest_neighbors() at rest. dt is
+/// time.step/substeps whatever the level (time.adaptive): what stopped a run with the long step
+/// does not pass for good with a shorter one.
 GuardLimits guard_limits(const Scene& scene, const Plan& plan, const Diagnostics& first);
 
 /// Why a run was stopped, SI units.

@@ -3,8 +3,10 @@
 #include <cmath>
 
 #include "lib/base/text.h"
+#include "lib/program/motion.h"
 #include "lib/program/time_levels.h"
 #include "lib/run/guard.h"
+#include "lib/run/motion_files.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -91,6 +93,12 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
   s.measure_every = 1;
   const std::int64_t updates = (e.measure.update - e.last_good.updates) << level;
   s.time.end = s.time.step * double(std::max<std::int64_t>(updates, 1) + 2);
+  if (has_motion(s)) {  // they go on, and tables may end with the run
+    const double done = double(e.last_good.updates) * scene_.time.step;
+    s.time.motion_begin += done;
+    s.time.end = std::max(std::min(s.time.end, scene_.time.end - done), s.time.step);
+    make_paths_absolute(s);
+  }
   // The same limits, though the run starts elsewhere.
   s.guard->speed = limits_.speed;
   s.guard->neighbors = limits_.neighbors;

@@ -7,6 +7,7 @@
 #include "lib/io/h5_signature.h"
 #include "lib/io/run_file.h"
 #include "lib/run/emit.h"
+#include "lib/run/motion_files.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -21,7 +22,8 @@ bool is_hdf5(const std::string& path) {
 
 namespace fs = std::filesystem;
 
-/// The folder from which all files of the scene can be reached.
+}  // namespace
+
 std::string folder_of_files(const Scene& scene, const std::string& run_file,
                             const std::string& scene_path) {
   const std::string then = fs::path(scene_path).parent_path().string();
@@ -30,6 +32,8 @@ std::string folder_of_files(const Scene& scene, const std::string& run_file,
     std::error_code error;
     for (const Body& b : scene.bodies)
       if (b.shape == Shape::file && !fs::exists(resolved_path(b, folder), error)) return b.path;
+    for (const std::string& path : motion_paths(scene))
+      if (!fs::exists(fs::path(folder) / path, error)) return path;
     return std::string();
   };
   const std::string file = missing(then);
@@ -37,16 +41,18 @@ std::string folder_of_files(const Scene& scene, const std::string& run_file,
   if (missing(beside).empty()) return beside;
   const auto name = [](const std::string& folder) { return folder.empty() ? "." : folder; };
   throw Error(ExitCode::bad_input,
-              run_file + ": its particle file " + file + " is neither in " + name(then) +
+              run_file + ": its file " + file + " is neither in " + name(then) +
                   ", the folder of its scene file, nor in " + name(beside) +
                   ", its own; put it into one of them, or name it with --set bodies.0.path=PATH "
                   "(0: the number of the body)");
 }
 
-}  // namespace
-
 LoadedScene load_scene_or_run(const std::string& path, const std::vector<std::string>& overrides) {
-  if (!is_hdf5(path)) return load_scene(path, overrides);
+  if (!is_hdf5(path)) {
+    LoadedScene loaded = load_scene(path, overrides);
+    read_motions(loaded.scene, loaded.folder);
+    return loaded;
+  }
   try_run_file(path);
   const RunInfo info = RunReader(path).info();
   if (!info.scene_sha256.empty() &&
@@ -61,6 +67,7 @@ LoadedScene load_scene_or_run(const std::string& path, const std::vector<std::st
   loaded.path = info.scene_path;
   loaded.text = info.scene_text;
   loaded.folder = folder_of_files(loaded.scene, path, info.scene_path);
+  read_motions(loaded.scene, loaded.folder);
   loaded.run_file = path;
   loaded.files = info.scene_files;
   loaded.files_known = !info.scene_sha256.empty();

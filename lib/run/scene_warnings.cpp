@@ -4,6 +4,7 @@
 
 #include "kernels/relative_motion.h"
 #include "lib/base/text.h"
+#include "lib/program/motion.h"
 #include "lib/run/overlap.h"
 #include "lib/run/warnings.h"
 
@@ -83,6 +84,16 @@ void add_speed(const Scene& s, std::vector<Warning>& list) {
                        "than %g h: fluid may pass through fluid; give time.step %.2g or less, or "
                        "time.adaptive",
                        first, second, way, kResolvedWay, s.time.step * kResolvedWay / way)});
+}
+
+void add_motion(const Scene& s, std::vector<Warning>& list) {
+  if (s.time.adaptive) return;  // it follows them
+  const double way = fastest_obstacle(s, 0, s.time.end) * longest_step(s) / s.h();
+  if (way <= kResolvedWay) return;
+  list.push_back({"motion", format("an obstacle moves by %.3g h in a step, more than %g h: what it "
+                                   "pushes may pass through fluid; give time.step %.2g or less, or "
+                                   "time.adaptive",
+                                   way, kResolvedWay, s.time.step * kResolvedWay / way)});
 }
 
 void add_overlap(const Scene& s, const std::string& dir, std::vector<Warning>& list) {
@@ -181,6 +192,7 @@ std::vector<Warning> scene_warnings(const Scene& scene, const std::string& scene
   std::vector<Warning> list;
   add_step(scene, particles, list);
   add_speed(scene, list);
+  add_motion(scene, list);
   add_overlap(scene, scene_dir, list);
   add_crowded(scene, particles, list);
   add_output(scene, list);

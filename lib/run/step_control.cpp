@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "lib/base/text.h"
+#include "lib/program/motion.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -37,7 +38,10 @@ AdaptiveStep::AdaptiveStep(const Scene& scene, const StepHistory& before)
 double AdaptiveStep::step(int level) const { return std::ldexp(scene_.time.step, -level); }
 
 std::optional<std::string> AdaptiveStep::follow(const Diagnostics& m) {
-  double acceleration = std::hypot(scene_.gravity[0], scene_.gravity[1], scene_.gravity[2]);
+  // What moves by itself is known until the next choice.
+  const double next = m.time + scene_.measure_every * scene_.time.step;
+  double acceleration = greatest_pull(scene_, m.time, next);
+  const double speed = std::max(m.speed_max, fastest_obstacle(scene_, m.time, next));
   if (h_.speed >= 0 && m.time > h_.time)
     acceleration = std::max(acceleration, std::fabs(m.speed_max - h_.speed) / (m.time - h_.time));
   h_.time = m.time;
@@ -45,7 +49,7 @@ std::optional<std::string> AdaptiveStep::follow(const Diagnostics& m) {
   if (h_.hold > 0) --h_.hold;
   if (h_.coarse >= 0) ++h_.coarse;
   const double before = step(level());
-  double longest = longest_step(scene_, m.speed_max, acceleration);
+  double longest = longest_step(scene_, speed, acceleration);
   // Neighbours that moved too far past each other: half the step, and again while they do.
   const bool unresolved = m.unresolved > h_.unresolved;
   if (unresolved) longest = std::min(longest, before / 2);
@@ -55,7 +59,7 @@ std::optional<std::string> AdaptiveStep::follow(const Diagnostics& m) {
   if (to == level()) return std::nullopt;
   const double h = scene_.h();
   return format("update %ld, %.6g s: ", m.update, m.time) + change(to, m.update, false) +
-         format(": v_max dt %.3g h, dt sqrt(a/h) %.3g before", m.speed_max * before / h,
+         format(": v_max dt %.3g h, dt sqrt(a/h) %.3g before", speed * before / h,
                 before * std::sqrt(acceleration / h)) +
          (unresolved ? "; neighbours moved too far past each other" : "");
 }

@@ -28,10 +28,11 @@ class AdaptiveStep {
   explicit AdaptiveStep(const Scene& scene, const StepHistory& before = {});
 
   /// The level of the updates after a measure that is due. The greatest acceleration is taken to be
-  /// |gravity| or, if more, the change of the fastest speed since the due measure before over the
-  /// time in between: it needs no array, and sees what speeds up the fastest particle. A coarser
-  /// step that proves too long within 8 due measures, here or by an alarm, was tried too early: the
-  /// next try waits 16 of them, then 32, and so on, so that M measures see some log2(M) of these.
+  /// |gravity|, with what the motion of the tank adds, or, if more, the change of the fastest speed
+  /// since the due measure before over the time in between: it needs no array, and sees what speeds
+  /// up the fastest particle. A coarser step that proves too long within 8 due measures, here or by
+  /// an alarm, was tried too early: the next try waits 16 of them, then 32, and so on, so that M
+  /// measures see some log2(M) of these.
   std::optional<std::string> follow(const Diagnostics& m);
 
   /// One level finer from update `back` on, after an alarm (its name) at measure m; nothing where

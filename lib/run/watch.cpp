@@ -21,7 +21,8 @@ Watch::Watch(const Scene& scene, const Plan& plan, Solver& solver, Take take,
 Diagnostics& Watch::go_on_from(const SavedRun& saved) {
   first_ = saved.first;
   first_.energy = saved.energy.first;
-  last_ = solver_.measure();
+  work_ = WorkTrack(saved.energy);
+  last_ = measured();
   begin(last_, saved.steps.value_or(StepHistory{}), saved.released);
   if (schedule_.measures(last_.update)) taken_ = last_.update;
   return last_;
@@ -42,7 +43,7 @@ Now Watch::at(Session& session) {
   if (schedule_.measures(session.update()))
     measure(true);
   else
-    look(solver_.measure());
+    look(measured());
   session.use(options());
   return event_ ? Now::stop : Now::go_on;
 }
@@ -66,12 +67,18 @@ Now Watch::choose(Session& session) {
 }
 
 bool Watch::state_is_good() {
-  if (guard_ && !goes_back() && taken_ != solver_.updates()) look(solver_.measure());
+  if (guard_ && !goes_back() && taken_ != solver_.updates()) look(measured());
   return !event_;
 }
 
-void Watch::measure(bool judged) {
+Diagnostics Watch::measured() {
   Diagnostics m = solver_.measure();
+  m.work = work_.until(m);
+  return m;
+}
+
+void Watch::measure(bool judged) {
+  Diagnostics m = measured();
   // Before a state is kept, so that going back does not bring them again. A row between two
   // measures, which a longer run does not have, ends no interval.
   const bool regular = m.update % schedule_.measure_every == 0;
@@ -80,6 +87,7 @@ void Watch::measure(bool judged) {
   if (first) first_ = m, begin(m, {}, {});
   const double dt = std::ldexp(scene_.time.step, -options().level);
   if (judged && !look(m)) return;
+  if (regular) work_.take(m);
   taken_ = m.update;
   last_ = m;
   take_(last_, dt);
@@ -160,21 +168,21 @@ void Watch::take(const std::string& change, int level_before) {
 std::string Watch::prestabilize(int levels) {
   constexpr int kMost = 64, kAtOnce = 4;
   constexpr double kHarmless = 1e-3;
-  Diagnostics m = solver_.measure();
+  Diagnostics m = measured();
   const double compression = m.compression_mean, energy = total_energy(m);
   const double target = std::ldexp(compression, -2 * levels);
   if (std::ldexp(compression, 2 * levels) <= kHarmless) return {};
   int steps = 0;
   for (; steps < kMost && m.compression_mean > target; steps += kAtOnce) {
     solver_.step(kAtOnce, {.without_time = 1.0});
-    m = solver_.measure();
+    m = measured();
   }
   const double lifted = total_energy(m) - energy;
   if (lifted > 0 && m.kinetic_energy > 0) {
     const double damping = std::sqrt(std::max(0.0, 1 - lifted / m.kinetic_energy));
     solver_.step(1, {.without_time = damping});
     ++steps;
-    m = solver_.measure();
+    m = measured();
   }
   if (guard_) guard_->keep(m);
   return format("; mean compression %.3g %%, %.3g %% after %d steps without time",

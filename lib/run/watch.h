@@ -62,6 +62,7 @@ class Watch : public Observer {
   std::int64_t next_choice(std::int64_t u) const;
   Now choose(Session& session);
   void begin(const Diagnostics& now, const StepHistory& before, std::optional<double> released);
+  Diagnostics measured();
   void measure(bool judged);
   bool look(const Diagnostics& m);
   bool judge(const Diagnostics& m);
@@ -82,6 +83,7 @@ class Watch : public Observer {
   std::optional<AdaptiveStep> step_;
   std::optional<GuardEvent> event_;
   Diagnostics first_, last_;
+  WorkTrack work_;
   std::int64_t taken_ = -1;  // update of the last measure that was taken
   bool begun_ = false;
 };

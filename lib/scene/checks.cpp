@@ -24,6 +24,7 @@ class Checker : public SceneRules {
     check_smoothing_ratio();
     if (good(s_.bodies)) check_bodies(domain);
     check_obstacles(p_, problems_);
+    check_motions(p_, problems_);
     check_time();
     check_solver();
     if (domain) check_rounding();

@@ -105,7 +105,7 @@ template <class Entry>
 Block list_block(const char* member, std::vector<Entry>& (*get)(const Object&), const char* help,
                  List list, auto... traits) {
   list.address = [get](const Object& o) { return &get(o); };
-  static const Entry standard{};
+  static Entry standard{};
   list.standard = object(standard);
   Block block{path_of(member) + "[]", help, [get](const Object& o) { return get(o).size(); },
               [get](const Object& o, std::size_t n) { get(o).assign(n, Entry{}); },

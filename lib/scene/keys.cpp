@@ -9,6 +9,7 @@ namespace pbf::inline scene_module {
 // keys_*.cpp
 KeyRows start_rows();
 KeyRows motion_rows();
+KeyRows moved_rows();
 KeyRows run_rows();
 
 namespace {
@@ -48,7 +49,27 @@ std::string Block::entry_path(std::size_t i) const {
   return list ? leaf() + "[" + std::to_string(i) + "]" : path;
 }
 
+const Block* Block::list_around() const {
+  return list || parent == nullptr ? (list ? this : nullptr) : parent->list_around();
+}
+
+std::vector<Holder> Block::holders(const Object& object) const {
+  std::vector<Holder> all;
+  const Block* around = list_around();
+  if (around == nullptr) {
+    if (is_present(object)) all.push_back({object, path});
+    return all;
+  }
+  for (std::size_t i = 0; i < around->size(object); ++i) {
+    const Object holder = around->entry(object, i);
+    if (this == around || size(holder) > 0)
+      all.push_back({holder, around->entry_path(i) + path.substr(around->path.size())});
+  }
+  return all;
+}
+
 bool Block::is_present(const Object& object) const {
+  if (!list && list_around() != nullptr) return false;
   return (parent == nullptr || parent->is_present(object)) && (list || size(object) > 0);
 }
 
@@ -75,11 +96,14 @@ KeyTable::KeyTable(const std::vector<KeyRows>& parts, const Object& defaults) {
     block.keys.push_back(&key);
     if (key.is_kind) block.kind = &key;
     key.block = &block;
-    key.standard = block.list ? block.list->standard : defaults;
+    key.standard = block.list_around() ? block.list_around()->list->standard : defaults;
     key.effect = std::min(key.effect, block.effect);
     if (block.exact != nullptr) key.exact = block.exact;
   }
   make_all_present(defaults);
+  for (const Block& block : blocks)
+    if (const Block* around = block.list_around(); around && around != &block)
+      block.resize(around->list->standard, 1);
 }
 
 const Key* KeyTable::find_key(const std::string& path) const {
@@ -106,26 +130,25 @@ bool KeyTable::is_required(const Block& block) const {
 
 void KeyTable::make_all_present(const Object& object) const {
   for (const Block& block : blocks)
-    if (!block.list) block.resize(object, 1);
+    if (block.list_around() == nullptr) block.resize(object, 1);
 }
 
 std::map<const void*, std::string> KeyTable::names(const Object& object) const {
   const auto address = [](const auto& field) -> const void* { return field; };
   std::map<const void*, std::string> names;
   for (const Block& block : blocks) {
-    if (!block.is_present(object)) continue;
     if (block.list) names[block.list->address(object)] = block.leaf();
-    for (std::size_t i = 0; i < block.size(object); ++i)
+    for (const Holder& holder : block.holders(object))
       for (const Key* key : block.keys)
-        names[std::visit(address, key->field(block.entry(object, i)))] =
-            join(block.entry_path(i), key->leaf());
+        names[std::visit(address, key->field(holder.object))] = join(holder.path, key->leaf());
   }
   return names;
 }
 
 const KeyTable& scene_table() {
   static Scene defaults;
-  static const KeyTable table({start_rows(), motion_rows(), run_rows()}, object(defaults));
+  static const KeyTable table({start_rows(), motion_rows(), moved_rows(), run_rows()},
+                              object(defaults));
   return table;
 }
 

@@ -57,6 +57,12 @@ enum class Effect {
 
 struct Block;
 
+/// A struct of a scene that has the keys of a block, and its path: "obstacles[1].motion".
+struct Holder {
+  Object object;
+  std::string path;
+};
+
 struct Key {
   std::string path;  ///< "fluid.spacing"; of a list's entries "bodies[].min"
   std::string help;  ///< one sentence or two, without unit, range and default
@@ -66,8 +72,8 @@ struct Key {
   std::vector<std::string> choices{};  ///< words allowed (ChoiceField), or elements of a list
   bool required = false;
   bool automatic = false;  ///< `auto` is allowed: an absent optional, or 0 of a plain number
-  bool is_kind = false;    ///< of a list: the word that decides which other keys an entry has
-  unsigned kinds = ~0u;    ///< of a list: bit 1 << index of every kind that has this key
+  bool is_kind = false;    ///< the word that decides which other keys a block or an entry has
+  unsigned kinds = ~0u;    ///< bit 1 << index of every kind that has this key
   std::string was{};       ///< its path in earlier versions; empty: the same
   /// What becomes of it where the step is 2^-level as long, for the same effect per time; null: it
   /// stays.
@@ -95,13 +101,14 @@ struct List {
   std::string example{};     ///< an entry, for messages
   std::string further{};     ///< one that the reference shows besides those it has; empty: none
   std::function<const void*(const Object&)> address{};  ///< of the member
-  Object standard{};                                    ///< an entry with all defaults
+  Object standard{};  ///< an entry with all defaults, and every block in it
 
   std::string least_text() const;  ///< "at least one", "at least 2"
 };
 
 /// A mapping in the scene file that is always there, that may be absent, or a list of them: n
-/// structs that have its keys, of which the first two are the object around them itself.
+/// structs that have its keys, of which the first two are the object around them itself. One in a
+/// list's entries ("obstacles[].motion") may be absent; its object is the entry.
 struct Block {
   std::string path;  ///< "solver", "render.camera"; "bodies[]" stands for one entry of the list
   std::string help;
@@ -117,11 +124,14 @@ struct Block {
   // From the table:
   const Block* parent = nullptr;  ///< of the top level null
   std::vector<const Key*> keys{};
-  const Key* kind = nullptr;  ///< decides which keys an entry of a list has; null: all of them
+  const Key* kind = nullptr;  ///< decides which keys it, or an entry of it, has; null: all
 
-  std::string leaf() const;                      ///< "camera", "bodies"
-  std::string entry_path(std::size_t i) const;   ///< "bodies[1]"; without a list the path
-  bool is_present(const Object& object) const;   ///< with those around it; lists are
+  std::string leaf() const;                     ///< "camera", "bodies"
+  std::string entry_path(std::size_t i) const;  ///< "bodies[1]"; without a list the path
+  const Block* list_around() const;             ///< the list that it is, or is in; null: none
+  /// With those around it; lists are, and what is in their entries is not: holders() has it.
+  bool is_present(const Object& object) const;
+  std::vector<Holder> holders(const Object& object) const;  ///< that are there
   unsigned kind_of(const Object& holder) const;  ///< its bit in Key::kinds; without kinds all
 };
 

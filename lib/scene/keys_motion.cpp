@@ -24,6 +24,9 @@ KeyRows motion_rows() {
        key(KEY(time.end), number("s", kSeconds),
            "Time simulated, rounded to whole updates; at least time.step.", required,
            effect(Effect::none)),
+       key(KEY(time.motion_begin), number("s", {-1e9, 1e9}),
+           "Time of the motions at the start, for a scene that goes on from a state of another "
+           "run."),
        key(KEY(time.adaptive->step_min), number("s", {0, 1e9, true}),
            "No step is shorter; at least time.step/1048576. auto: time.step/64.", automatic),
        key(KEY(time.adaptive->cfl), number("", {0, 1000, true}),

@@ -16,7 +16,7 @@ struct Particles {
   std::size_t put_on_margin = 0;            ///< that were nearer to a wall than solver.wall_margin
   double farthest_put = 0;                  ///< m, by how much at most
   std::vector<std::size_t> in_obstacles{};  ///< of each body, left out; empty: there are none
-  std::vector<SceneFile> files;  ///< that they were read from, in the order of the bodies
+  std::vector<SceneFile> files;  ///< that were read, in the order of the bodies, then of motions
   std::size_t size() const { return position.size(); }
 };
 

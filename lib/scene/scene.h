@@ -12,10 +12,9 @@
 
 #include "kernels/boundary/obstacle_shape.h"
 #include "lib/scene/backend.h"
+#include "lib/scene/motion.h"
 
 namespace pbf::inline scene_module {
-
-using Double3 = std::array<double, 3>;
 
 enum class Shape { block, sphere, random_box, file };
 enum class KernelMode { consistent, paper };         ///< density kernel and gradient kernel
@@ -52,8 +51,9 @@ struct Obstacle {
   double radius = 0;           ///< m, sphere, cylinder, capsule
   Double3 from{}, to{};        ///< m, cylinder, capsule: ends of the axis
   Double3 point{},
-      normal{0, 0, 1};  ///< m; plane: a point of its face, and the way out of the solid
-  bool loads = false;   ///< the force on it is summed and written down
+      normal{0, 0, 1};           ///< m; plane: a point of its face, and the way out of the solid
+  bool loads = false;            ///< the force on it is summed and written down
+  std::optional<Motion> motion;  ///< absent: it stands
   bool operator==(const Obstacle&) const = default;
 };
 
@@ -99,6 +99,7 @@ struct Time {
   double step = 0.002;                   ///< s, dt of one update
   double end = 1;                        ///< s, rounded to whole updates
   std::optional<AdaptiveTime> adaptive;  ///< absent: an update is one step
+  double motion_begin = 0;               ///< s, time of the motions at the start
   bool operator==(const Time&) const = default;
 };
 
@@ -194,6 +195,7 @@ struct Scene {
   std::vector<Body> bodies;
   std::vector<Obstacle> obstacles;
   Double3 gravity{0, 0, -9.81};  ///< m/s^2
+  std::optional<TankMotion> tank_motion;
   Time time;
   SolverSettings solver;
   std::optional<Tensile> tensile;

@@ -76,8 +76,16 @@ Json key_schema(const Key& key) {
 /// Object with the keys and blocks that stand directly in `block`. kind < 0: of no kind.
 Json object_schema(const KeyTable& table, const Block& block, int kind);
 
+/// Of each kind where there are kinds, or else of all.
+Json kinds_schema(const KeyTable& table, const Block& block) {
+  Json kinds = Json::array();
+  for (int k = 0; block.kind != nullptr && k < int(block.kind->choices.size()); ++k)
+    kinds.push_back(object_schema(table, block, k));
+  return kinds.empty() ? object_schema(table, block, -1) : Json{{"oneOf", kinds}};
+}
+
 Json block_schema(const KeyTable& table, const Block& block) {
-  const Json object = object_schema(table, block, -1);
+  const Json object = kinds_schema(table, block);
   if (!block.optional) return object;
   const Json words =
       table.has_required(block) ? Json{"off", false} : Json{"on", "off", true, false};
@@ -85,13 +93,10 @@ Json block_schema(const KeyTable& table, const Block& block) {
 }
 
 Json list_schema(const KeyTable& table, const Block& block) {
-  Json items = Json::array();
-  for (int k = 0; block.kind != nullptr && k < int(block.kind->choices.size()); ++k)
-    items.push_back(object_schema(table, block, k));
   return {{"description", block.help + "."},
           {"type", "array"},
           {"minItems", block.list->least},
-          {"items", items.empty() ? object_schema(table, block, -1) : Json{{"oneOf", items}}}};
+          {"items", kinds_schema(table, block)}};
 }
 
 Json object_schema(const KeyTable& table, const Block& block, int kind) {

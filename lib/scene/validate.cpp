@@ -92,7 +92,7 @@ class Validator {
     const std::string table = join(in.path, name.text);
     if (const Block* list = table_.find_block(table + "[]")) return read_list(*list, value);
     const Block* block = table_.find_block(table);
-    if (block != nullptr && !block->list) return read_child(*block, path, value);
+    if (block != nullptr && !block->list) return read_child(*block, path, value, holder);
     const Key* key = table_.find_key(table);
     if (key == nullptr) {
       if (const Key* now = table_.find_renamed(table))
@@ -118,21 +118,22 @@ class Validator {
       const std::string leaf = in.kind->leaf();
       return report(name.place(), path,
                     "belongs to " + leaf + " " + in.kind->kinds_text(key->kinds) + ", this " +
-                        in.list->entry_name + " is a " + in.kind->kinds_text(kind) +
-                        "; remove it or change the " + leaf);
+                        (in.list ? in.list->entry_name : in.leaf()) + " is a " +
+                        in.kind->kinds_text(kind) + "; remove it or change the " + leaf);
     }
     const std::string problem = read_field(*key, value, key->field(holder));
     if (!problem.empty()) report(value.place(), path, problem);
   }
 
-  void read_child(const Block& block, const std::string& path, const Node& value) {
+  void read_child(const Block& block, const std::string& path, const Node& value,
+                  const Object& holder) {
     if (value.kind == Node::Kind::map) {
-      block.resize(object_, 1);
-      return read_block(block, path, value, object_, ~0u);
+      block.resize(holder, 1);
+      return read_block(block, path, value, holder, read_kind(block, path, value, holder));
     }
     if (block.optional && (turns_on(value) || turns_off(value))) {
-      block.resize(object_, turns_on(value));
-      if (turns_on(value)) require(block, path, {}, ~0u);
+      block.resize(holder, turns_on(value));
+      if (turns_on(value)) require(block, path, {}, block.kind ? 0u : ~0u);
       return;
     }
     std::string what = "expected a block {" +
@@ -168,22 +169,22 @@ class Validator {
 
   /// As Block::kind_of, or 0 when the word is missing or wrong (reported with the other keys).
   /// Read before them, for it decides which they are.
-  unsigned read_kind(const Block& list, const std::string& shown, const Node& node,
+  unsigned read_kind(const Block& block, const std::string& shown, const Node& node,
                      const Object& entry) {
-    if (const Key* kind = list.kind) {
+    if (const Key* kind = block.kind) {
       const Node* word = const_cast<Node&>(node).find(kind->leaf());
       if (word == nullptr || !read_field(*kind, *word, kind->field(entry)).empty()) {
         out_.bad.insert(join(shown, kind->leaf()));
         return 0;
       }
     }
-    return list.kind_of(entry);
+    return block.kind_of(entry);
   }
 
   /// Whether `in` is on without being mentioned, in `around`: each of its required keys is missing.
   bool is_on_unseen(const Block& in, const Block& around,
                     const std::map<std::string, std::size_t>& seen) const {
-    if (in.parent == nullptr || in.list) return false;
+    if (in.parent == nullptr || in.list_around()) return false;  // absent where not mentioned
     const bool inside =
         in.parent == &around ? !seen.count(in.leaf()) : is_on_unseen(*in.parent, around, seen);
     return inside && in.size(object_) > 0;

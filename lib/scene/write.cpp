@@ -50,6 +50,7 @@ class Writer {
     for (const Key& key : table_.keys) {
       if (key.block != block_) enter(*key.block);
       if (block_->list || !block_->is_present(object_)) continue;
+      if (!(key.kinds & block_->kind_of(object_))) continue;
       const std::string indent = indent_of(*block_);
       if (comments_) out_ += comment(documentation(key), indent);
       out_ += indent + key.leaf() + ": " + value_text(key, object_) + "\n";
@@ -64,6 +65,7 @@ class Writer {
     if (comments_ && !first) out_ += "\n";
     if (entry.path.empty()) return;
     if (entry.list) return write_list(entry);
+    if (entry.list_around()) return;  // written with its entries
     const std::string leaf = entry.leaf();
     const std::string indent = indent_of(entry).substr(2);
     if (!entry.is_present(object_)) {  // children of an absent block say nothing
@@ -95,18 +97,32 @@ class Writer {
                       "");
       for (const Key* key : block.keys)
         out_ += comment(key->leaf() + ": " + documentation(*key), "");
+      for (const Block& child : table_.blocks)
+        if (child.parent == &block) {
+          out_ += comment(child.leaf() + ": " + child.help + " [optional]", "");
+          for (const Key* key : child.keys)
+            out_ += comment(child.leaf() + "." + key->leaf() + ": " + documentation(*key), "");
+        }
     }
     const std::size_t size = block.size(object_);
     out_ += block.leaf() + (size == 0 ? ": []\n" : ":\n");
     for (std::size_t i = 0; i < size; ++i) {
       const Object entry = block.entry(object_, i);
-      std::vector<std::string> values;
-      for (const Key* key : block.keys)
-        if (key->kinds & block.kind_of(entry))
-          values.push_back(key->leaf() + ": " + value_text(*key, entry));
-      out_ += "  - {" + joined(values, ", ") + "}\n";
+      std::string values = values_of(block, entry);
+      for (const Block& child : table_.blocks)
+        if (child.parent == &block && child.size(entry) > 0)
+          values += ", " + child.leaf() + ": {" + values_of(child, entry) + "}";
+      out_ += "  - {" + values + "}\n";
     }
     if (comments_ && !list.further.empty()) out_ += "  # - " + list.further + "\n";
+  }
+
+  static std::string values_of(const Block& block, const Object& holder) {
+    std::vector<std::string> values;
+    for (const Key* key : block.keys)
+      if (key->kinds & block.kind_of(holder))
+        values.push_back(key->leaf() + ": " + value_text(*key, holder));
+    return joined(values, ", ");
   }
 
   const KeyTable& table_;
@@ -126,6 +142,9 @@ Scene example_scene() {
       "time: {step: 0.002, end: 1}}",
       "reference", {});
   scene_table().make_all_present(object(s));
+  s.tank_motion->axis = {0, 1, 0};
+  s.tank_motion->amplitude = 2;
+  s.tank_motion->ramp = 0.5;
   return s;
 }
 

@@ -26,7 +26,7 @@ RestPool rest_pool(const Scene& scene, const Plan& plan) {
     if (s.gravity[i] != 0) axis = k, ++along;
   }
   RestPool pool;
-  if (along != 1 || !scene.obstacles.empty()) return pool;
+  if (along != 1 || !scene.obstacles.empty() || scene.tank_motion) return pool;
   const bool points_up = s.gravity[std::size_t(axis)] > 0;
   for (int k = 0; k < 3; ++k) {
     const bool wall = k != 1 || s.dimensions == 3;  // the slab's faces hold the fluid by themselves

@@ -20,20 +20,20 @@ namespace pbf::inline solver_module {
 struct Diagnostics {
   double time = 0;  ///< s
   std::int64_t update = 0;
-  double compression_mean = 0;       ///< 1
-  double compression_rms = 0;        ///< 1
-  double compression_p99 = 0;        ///< 1, 99 % of the particles are at or below it
-  double compression_max = 0;        ///< 1
-  double share_above_1 = 0;          ///< 1, of the particles compressed by more than 1 %
-  double share_above_10 = 0;         ///< 1, by more than 10 %
-  double height_kept = 0;            ///< 1, twice the height of the centre over the rest depth
-  double hydrostatic_deviation = 0;  ///< 1, of the weight above eight levels, RMS
-  double kinetic_energy = 0;         ///< J
-  double potential_energy = 0;       ///< J, -m g.x relative to the domain's lower corner
-  double energy = 0;                 ///< J, kinetic and potential above the box's lowest corner
-  double energy_drift = 0;           ///< 1, (E - E0)/E0; EnergyTrack
-  double energy_rise = 0;            ///< 1, largest rise over any earlier E, over E0; EnergyTrack
-  double momentum[3] = {0, 0, 0};    ///< kg m/s
+  double compression_mean = 0;           ///< 1
+  double compression_rms = 0;            ///< 1
+  double compression_p99 = 0;            ///< 1, 99 % of the particles are at or below it
+  double compression_max = 0;            ///< 1
+  double share_above_1 = 0;              ///< 1, of the particles compressed by more than 1 %
+  double share_above_10 = 0;             ///< 1, by more than 10 %
+  double height_kept = 0;                ///< 1, twice the height of the centre over the rest depth
+  double hydrostatic_deviation = 0;      ///< 1, of the weight above eight levels, RMS
+  double kinetic_energy = 0;             ///< J
+  double potential_energy = 0;           ///< J, -m g.x relative to the domain's lower corner
+  double energy = 0;                     ///< J, kinetic and potential above the box's lowest corner
+  double energy_drift = 0;               ///< 1, (E - W - E0)/E0, W the work; EnergyTrack
+  double energy_rise = 0;                ///< 1, largest rise over any earlier E - W, over E0
+  double momentum[3] = {0, 0, 0};        ///< kg m/s
   double center_of_mass[3] = {0, 0, 0};  ///< m
   double speed_max = 0;                  ///< m/s
   double front[3] = {0, 0, 0};           ///< m, largest coordinate along each axis
@@ -50,6 +50,10 @@ struct Diagnostics {
   /// neighbour (kernels/relative_motion.h): there fluid may pass through fluid.
   std::int64_t unresolved = 0;
   double relative_way_max = 0;  ///< h, the longest such way in a step; 0: there was none
+  bool moved = false;           ///< something moves by itself
+  double power = 0;             ///< W, of what the motion of the tank adds to gravity
+  double solid_work = 0;        ///< J, of moving obstacles since their loads were taken last
+  double work = 0;              ///< J, of both since the start; WorkTrack
   /// Since the row before; filled by who writes rows.
   std::vector<WallLoad> loads{};
 };
@@ -58,12 +62,34 @@ struct Diagnostics {
 struct EnergyHistory {
   bool started = false;
   double first = 0, lowest = 0, largest = 0, rise = 0;
+  double work = 0, power = 0, time = 0;  ///< of the last measure: WorkTrack; s
 };
 
-/// Follows the energy of one simulation from its first measure on. The walls do not move and do no
-/// work, so whatever rises was made by the method. A start without energy (E0 at most 1e-12 of the
-/// largest so far) is no scale; the largest so far is one then, and a rise of 1 says that all of it
-/// was made by the method. Never infinite.
+/// Follows the work of prescribed motions: that of obstacles, which each update books, and that of
+/// the tank, whose power is measured, straight between two measures.
+class WorkTrack {
+ public:
+  explicit WorkTrack(const EnergyHistory& before = {})
+      : work_(before.work), power_(before.power), time_(before.time) {}
+  /// J, at a measure since the last one that was taken.
+  double until(const Diagnostics& m) const {
+    return work_ + m.solid_work + 0.5 * (power_ + m.power) * (m.time - time_);
+  }
+  /// A measure with which the interval of the loads ends.
+  void take(const Diagnostics& m) {
+    work_ = until(m);
+    power_ = m.power;
+    time_ = m.time;
+  }
+
+ private:
+  double work_, power_, time_;
+};
+
+/// Follows the energy of one simulation from its first measure on, less the work of what moves by
+/// itself: so whatever rises was made by the method. A start without energy (E0 at most 1e-12 of
+/// the largest so far) is no scale; the largest so far is one then, and a rise of 1 says that all
+/// of it was made by the method. Never infinite.
 class EnergyTrack {
  public:
   explicit EnergyTrack(const EnergyHistory& before = {}) : h_(before) {
@@ -72,13 +98,17 @@ class EnergyTrack {
   }
   /// Fills m.energy_drift and m.energy_rise. To be called with every measure, in order.
   void follow(Diagnostics& m) {
-    if (!h_.started) h_.first = h_.lowest = h_.largest = m.energy;
+    const double own = m.energy - m.work;
+    if (!h_.started) h_.first = h_.lowest = h_.largest = own;
     h_.started = true;
     h_.largest = std::max(h_.largest, m.energy);
-    h_.rise = std::max(h_.rise, relative(m.energy - h_.lowest));
-    h_.lowest = std::min(h_.lowest, m.energy);
-    m.energy_drift = relative(m.energy - h_.first);
+    h_.rise = std::max(h_.rise, relative(own - h_.lowest));
+    h_.lowest = std::min(h_.lowest, own);
+    m.energy_drift = relative(own - h_.first);
     m.energy_rise = h_.rise;
+    h_.work = m.work;
+    h_.power = m.power;
+    h_.time = m.time;
   }
   const EnergyHistory& history() const { return h_; }
 

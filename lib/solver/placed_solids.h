@@ -93,10 +93,12 @@ Bounds<Real> bounds_of(const std::vector<PlacedSolid<Real>>& all) {
 }
 
 /// The half cells of the grid that something near solids can be in, in the order of their bins.
+/// swept: what others come near in the run.
 /// None where particles outside of the grid have cells in it, too: open faces.
 template <class Real>
 std::vector<int> half_cells_near_solids(const Scene& scene,
                                         const std::vector<Solid<double>>& solids,
+                                        const std::vector<Bounds<Real>>& swept,
                                         const Params<Real>& p, const Bounds<Real>& clear,
                                         bool booked) {
   std::vector<int> cells;
@@ -107,6 +109,9 @@ std::vector<int> half_cells_near_solids(const Scene& scene,
   const double half[3] = {edge / 4, flat ? 0 : edge / 2, edge / 2};
   const double reach = 1 / double(p.boundary.inv_range) + kNearRoom + rounding +
                        std::hypot(half[0], half[1], half[2]);
+  const auto cast = [](const Vec3<double>& v) {
+    return Vec3<Real>{Real(v.x), Real(v.y), Real(v.z)};
+  };
   const auto near = [&](const Vec3<double>& m) {
     const auto beyond = [&](double x, double h, double low, double high) {
       return x - h < low + rounding || x + h > high - rounding;
@@ -115,6 +120,11 @@ std::vector<int> half_cells_near_solids(const Scene& scene,
                    beyond(m.y, half[1], double(clear.low.y), double(clear.high.y)) ||
                    beyond(m.z, half[2], double(clear.low.z), double(clear.high.z))))
       return true;
+    for (const Bounds<Real>& b : swept)
+      if (b.meets(
+              cast(m - Vec3<double>{half[0] + rounding, half[1] + rounding, half[2] + rounding}),
+              cast(m + Vec3<double>{half[0] + rounding, half[1] + rounding, half[2] + rounding})))
+        return true;
     return std::any_of(solids.begin(), solids.end(), [&](const Solid<double>& s) {
       return (flat ? distance<2>(s, m) : distance<3>(s, m)) < reach;
     });

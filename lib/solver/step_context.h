@@ -15,6 +15,7 @@
 #include "lib/program/field.h"
 #include "lib/program/loads.h"
 #include "lib/scene/scene.h"
+#include "lib/solver/moving_parts.h"
 #include "lib/solver/placed_solids.h"
 #include "lib/solver/state_transfer.h"
 
@@ -94,6 +95,13 @@ struct StepContext {
   const Solids<Real>& solids() const { return solids_; }
   /// Where something can be near solids, by (layer, row, half cell); empty: anywhere.
   Buffer<int>& near_half_cells() { return near_half_cells_; }
+  MovingParts<Real, Exec>& moving() { return moving_; }
+  PlacedSolid<Real>* placed() { return placed_.data(); }
+  /// All solids stand there, until a step moves them.
+  void place(const std::vector<PlacedSolid<Real>>& all) {
+    exec.to_device(all.data(), all.size(), placed_.data());
+    moving_.stand(exec, all);
+  }
   /// One for each wall that has any.
   Load* loads() { return loads_.data(); }
   StateArrays<Real> state() {
@@ -102,7 +110,7 @@ struct StepContext {
 
   /// Positions came from elsewhere: until the lists are made all rows count as near solids.
   void forget_near() {
-    if (solids_.around) each(AllNearPass<Real>{solids_.near, rows_});
+    if (solids_.near.room) each(AllNearPass<Real>{solids_.near, rows_});
   }
 
   /// Which of the two arrays each field lies in, as bits: updates that were recorded hold for one
@@ -118,12 +126,12 @@ struct StepContext {
   /// moves: of a particle in the iterations of a substep, at most.
   void make(const std::vector<const FieldInfo*>& fields, std::vector<Vec4<Real>>& first_position,
             std::vector<Vec4<Real>>& first_velocity, std::vector<int>& first_id,
-            const std::vector<Solid<double>>& obstacles, int moves);
+            const Scene& in_its_axes, const Plan& plan, int moves);
 
   std::size_t bytes() const {
     std::size_t sum = 0;
     for (const Slot& s : slots_) sum += s.rows[0].bytes() + s.rows[1].bytes();
-    return sum + placed_.bytes() + around_.bytes() + near_half_cells_.bytes();
+    return sum + placed_.bytes() + around_.bytes() + near_half_cells_.bytes() + moving_.bytes();
   }
 
  private:
@@ -146,17 +154,18 @@ struct StepContext {
   Buffer<Surroundings<Real>> around_;
   Buffer<int> near_count_, near_half_cells_;
   Solids<Real> solids_;
+  MovingParts<Real, Exec> moving_;
 
   /// The boundary of scenes that have more than walls. Behind make(): it knows where sums are.
-  void make_solids(const std::vector<Solid<double>>& obstacles, int moves);
+  void make_solids(const Scene& in_its_axes, const Plan& plan, int moves);
 };
 
 template <class Real, class Exec>
 void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
                                    std::vector<Vec4<Real>>& first_position,
                                    std::vector<Vec4<Real>>& first_velocity,
-                                   std::vector<int>& first_id,
-                                   const std::vector<Solid<double>>& obstacles, int moves) {
+                                   std::vector<int>& first_id, const Scene& in_its_axes,
+                                   const Plan& plan, int moves) {
   const std::size_t n = first_position.size();
   rows_ = capacity_ = int(n);
   const RowCounts sizes{rows_,
@@ -196,7 +205,7 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
     const std::vector<LoadSums> nothing(unloaded.size() * kLoadParts);
     exec.to_device(nothing.data(), nothing.size(), data<LoadSums>(field::load_sums));
   }
-  make_solids(obstacles, moves);
+  make_solids(in_its_axes, plan, moves);
   forget_near();
   exec.to_device(first_position.data(), n, position());
   exec.to_device(first_velocity.data(), n, velocity());
@@ -207,22 +216,26 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
 }
 
 template <class Real, class Exec>
-void StepContext<Real, Exec>::make_solids(const std::vector<Solid<double>>& obstacles, int moves) {
-  if (!has_solids(scene)) return;
-  const std::vector<PlacedSolid<Real>> placed = placed_solids(obstacles, p.boundary);
-  placed_.resize(placed.size());
-  exec.to_device(placed.data(), placed.size(), placed_.data());
+void StepContext<Real, Exec>::make_solids(const Scene& in_its_axes, const Plan& plan, int moves) {
+  if (!has_solids(scene) && !has_motion(scene)) return;
+  placed_.resize(plan.solids.size());
+  moving_.make(exec, scene, plan.substeps);
+  place(placed_at(in_its_axes, plan, p.boundary, 0));
   Surroundings<Real> around;
   around.walls = p.boundary;
   around.solid = placed_.data();
-  around.solids = int(placed.size());
+  around.before = moving_.before();
+  around.solids = int(plan.solids.size());
   around.flat = p.dimensions == 2;
   if (has_loads(scene)) around.loads = load_book(*this);
   around_.resize(1);
   exec.to_device(&around, 1, around_.data());
   solids_.around = around_.data();
-  solids_.obstacles = !placed.empty();
-  solids_.bounds = bounds_of(placed);
+  solids_.frame = moving_.frame();
+  if (!has_solids(scene)) return;
+  const RunBounds<Real> run = bounds_of_run(in_its_axes, plan, p.boundary);
+  solids_.obstacles = !plan.solids.empty();
+  solids_.bounds = run.all;
   solids_.clear = clear_of(p.boundary);
   near_count_.resize(1);
   const double move = 0.8 * kNearRoom / moves;
@@ -231,7 +244,7 @@ void StepContext<Real, Exec>::make_solids(const std::vector<Solid<double>>& obst
   const std::vector<Real> behind(Exec::padding, solids_.near.far_room);
   exec.to_device(behind.data(), behind.size(), data<Real>(field::near_room) + rows_);
   const std::vector<int> cells =
-      half_cells_near_solids(scene, obstacles, p, solids_.clear, has_loads(scene));
+      half_cells_near_solids(scene, run.standing, run.moving, p, solids_.clear, has_loads(scene));
   near_half_cells_.resize(cells.size());
   exec.to_device(cells.data(), cells.size(), near_half_cells_.data());
 }

@@ -118,7 +118,10 @@ class StepSolver final : public Solver, public Inspection {
   Diagnostics measure() override {
     find_pairs();
     const MeasureConstants given = measure_constants(scene_, plan_);
-    return to_diagnostics(stepper_->measure(given), given, scene_, plan_, updates_, steps_);
+    Diagnostics m =
+        to_diagnostics(stepper_->measure(given), given, scene_, plan_, updates_, steps_);
+    measure_motion(m);
+    return m;
   }
 
   std::vector<WallLoad> loads(Interval interval) override {
@@ -136,6 +139,7 @@ class StepSolver final : public Solver, public Inspection {
     stepper_->set_state(s);
     updates_ = s.updates;
     steps_ = s.steps;
+    if (has_moving_obstacles(scene_)) stepper_->place(scene_, double(updates_) * scene_.time.step);
   }
   void keep() override {
     stepper_->save(kept_);
@@ -160,7 +164,12 @@ class StepSolver final : public Solver, public Inspection {
   StepTrace trace(const TraceOptions& options) override {
     use({0, options_.watched_speed, {}});
     StepTrace t;
-    until_lists_fit([&] { t = stepper_->trace(options); }, [] {});
+    until_lists_fit(
+        [&] {
+          set_motion(0, 1);
+          t = stepper_->trace(options);
+        },
+        [] {});
     count(1);
     return t;
   }
@@ -174,11 +183,18 @@ class StepSolver final : public Solver, public Inspection {
  private:
   /// So many steps, in pieces after which lists that outgrew their room are looked for.
   void advance(std::int64_t left) {
-    while (left > 0) {
-      int batch = int(std::min<std::int64_t>(left, batch_));
-      until_lists_fit([&] { exec_.repeat(batch, *stepper_); },
-                      [&] { batch = batch_ = std::min(batch, kFirstBatch); });
+    const bool moves = has_motion(scene_) && !options_.without_time;
+    const std::int64_t most = moves ? std::max(1, kMotionRows / plan_.substeps) : left;
+    for (std::int64_t done = 0; left > 0;) {
+      int batch = int(std::min({left, std::int64_t(batch_), most}));
+      until_lists_fit(
+          [&] {
+            if (moves) set_motion(done, batch);
+            exec_.repeat(batch, *stepper_);
+          },
+          [&] { batch = batch_ = std::min(batch, kFirstBatch); });
       left -= batch;
+      done += batch;
       batch_ = int(std::min<std::int64_t>(2 * std::int64_t(batch_), exec_.largest_batch(n_)));
     }
   }
@@ -195,6 +211,25 @@ class StepSolver final : public Solver, public Inspection {
     }
   }
 
+  /// Of so many steps, at the present level, behind `done` of them since the last counted update.
+  void set_motion(std::int64_t done, int steps) {
+    if (!has_motion(scene_)) return;
+    const int n = plan_.substeps;
+    const double dt = scene_.time.step / double(std::int64_t(n) << options_.level);
+    const std::int64_t first = ((updates_ << options_.level) + done) * n;
+    stepper_->set_motion(
+        motion_rows<Real>(scene_, plan_, stepper_->walls(), first, steps * n, n, dt));
+  }
+  void measure_motion(Diagnostics& m) {
+    m.moved = has_motion(scene_);
+    const double unit = plan_.mass * scene_.h() * scene_.h();
+    if (scene_.tank_motion)
+      m.power = unit * stepper_->power(frame_step(scene_, plan_.axes, m.time, scene_.time.step),
+                                       scene_.time.step);
+    if (has_moving_obstacles(scene_))
+      for (const Load& l : stepper_->loads(Interval::goes_on)) m.solid_work += unit * l.work;
+  }
+
   void use(const StepOptions& options) {
     if (options == options_) return;
     options_ = options;
@@ -208,6 +243,7 @@ class StepSolver final : public Solver, public Inspection {
         ? stepper_->use(scene, without_time(p, *options.without_time), without_time_)
         : stepper_->use(scene, p, plan_.program);
     exec_.forget_recorded();  // it holds the parameters
+    if (has_moving_obstacles(scene_)) stepper_->forget_near();
   }
   void count(int updates) {
     updates_ += updates;
@@ -220,6 +256,7 @@ class StepSolver final : public Solver, public Inspection {
     for (int s = 0; s < 1 << options_.level; ++s) {
       until_lists_fit(
           [&] {
+            set_motion(s, 1);
             event = stepper_->step_checked(updates_ + 1, limits, fault_ ? &*fault_ : nullptr);
           },
           [] {});

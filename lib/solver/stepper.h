@@ -7,6 +7,7 @@
 
 #include "kernels/measure.h"
 #include "kernels/pass_export.h"
+#include "kernels/pass_power.h"
 #include "lib/program/features.h"
 #include "lib/program/plan.h"
 #include "lib/solver/compression_percentile.h"
@@ -35,7 +36,7 @@ class Stepper {
     for (int k = 0; k < scene.solver.iterations; ++k)
       c_.factors.push_back(
           Real(plan.sor * (plan.sor_factors.empty() ? 1 : plan.sor_factors[std::size_t(k)])));
-    c_.make(plan.program.fields, position, velocity, id, plan.solids,
+    c_.make(plan.program.fields, position, velocity, id, scene, plan,
             std::max(scene.solver.iterations, 1) * (1 + plan.shape().repeats));
     find_pairs();
     sum_density();
@@ -82,6 +83,27 @@ class Stepper {
     program_ = &program;
   }
 
+  /// What moves does so in the steps to come.
+  void set_motion(const MotionRows<Real>& rows) { c_.moving().set(c_.exec, rows); }
+  /// Obstacles stand where they are at a time until a step moves them.
+  void place(const Scene& scene, double time) {
+    c_.place(placed_at(scene, plan_, c_.p.boundary, time));
+  }
+  /// Steps of another length may take obstacles farther than they are known to go.
+  void forget_near() { c_.forget_near(); }
+  const Box<Real>& walls() const { return c_.p.boundary; }
+  /// h^2/s^3, of the particles' velocities with what the motion of the tank adds to gravity.
+  double power(const FrameStep<double>& frame, double dt) {
+    const Vec3<Real>& g = c_.p.gravity;
+    return c_.exec
+        .reduce(size(), PowerPass<Real>{frame,
+                                        1 / dt,
+                                        {double(g.x), double(g.y), double(g.z)},
+                                        c_.position(),
+                                        c_.velocity()})
+        .x[0];
+  }
+
   /// What each wall got since this was called with Interval::ends.
   std::vector<Load> loads(Interval interval) {
     const StateArrays<Real> state = c_.state();
@@ -125,7 +147,7 @@ class Stepper {
     c_.exec.begin();
     c_.booked_as = "measure";
     for (const int pass : {Passes::index_of<Sort>(), Passes::index_of<MakeLists>()}) launch(pass);
-    if (c_.solids().around) launch(Passes::index_of<FindNear>());
+    if (c_.solids().near.room) launch(Passes::index_of<FindNear>());
     c_.booked_as = nullptr;
     return true;
   }
@@ -224,7 +246,8 @@ class Stepper {
     run(program_->update, [&](int index) {
       if (index == Passes::index_of<Predict>()) ++substep;
       const bool start = index <= Passes::index_of<MakeLists>();
-      seen(pass_infos()[std::size_t(index)], c_.iterating ? c_.iterations : start ? substep : 0);
+      const int next = substep + (index == Passes::index_of<MoveSolids>());
+      seen(pass_infos()[std::size_t(index)], c_.iterating ? c_.iterations : start ? next : 0);
     });
     moved();
   }

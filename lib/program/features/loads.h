@@ -40,8 +40,9 @@ struct SumLoads {
   }
   template <class C>
   static void launch(C& c) {
-    c.over(int(load_walls(c.scene)), LoadPass{load_sums(c), c.loads(), double(c.p.inv_dt),
-                                              double(c.p.update_dt), moment_unit(c.p.boundary)});
+    c.over(int(load_walls(c.scene)),
+           LoadPass{load_sums(c), c.loads(), double(c.p.inv_dt), double(c.p.update_dt),
+                    moment_unit(c.p.boundary), c.moving().velocity()});
   }
 };
 
@@ -49,7 +50,9 @@ struct Loads {
   using Passes = PassList<SumLoads>;
   template <class B>
   static void add(const Scene& s, B& b) {
-    if (!has_loads(s)) return b.left_out("loads on the walls", "domain.loads is false");
+    if (!has_loads(s))
+      return b.left_out("loads on the walls",
+                        "domain.loads is false, and no obstacle has loads or motion");
     b.template end<SumLoads>();
   }
 };

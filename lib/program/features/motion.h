@@ -4,9 +4,19 @@
 #include "kernels/pass_predict.h"
 #include "lib/program/as_types.h"
 #include "lib/program/features/solids.h"
+#include "lib/program/motion.h"
 #include "lib/program/pass.h"
 
 namespace pbf::inline PBF_VARIANT {
+
+/// Where what moves goes in the step to come; of scenes in which something does.
+struct MoveSolids {
+  static PassInfo info() { return {"motion", "predict", {}, {hidden({&field::motion})}}; }
+  template <class C>
+  static void launch(C& c) {
+    c.over(1, c.moving().pass(c.placed()));
+  }
+};
 
 /// x* and the velocity that goes with it, in place.
 struct Predict {
@@ -105,9 +115,14 @@ struct MakeLists {
 
 /// Where they stand in an update is the program's own matter (program.cpp).
 struct Motion {
-  using Passes = PassList<Predict, Sort, PredictSort, MakeLists>;
+  using Passes = PassList<MoveSolids, Predict, Sort, PredictSort, MakeLists>;
   template <class B>
-  static void add(const Scene&, B&) {}
+  static void add(const Scene& s, B& b) {
+    if (has_motion(s)) b.template start<MoveSolids>();
+    if (!s.obstacles.empty() && !has_moving_obstacles(s))
+      b.left_out("motion of obstacles", "no obstacle has motion");
+    if (!s.tank_motion) b.left_out("motion of the tank", "no key tank_motion");
+  }
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -20,6 +20,7 @@ Solids<typename C::Real> solids_of(C& c) {
   static_cast<Box<typename C::Real>&>(solids) = c.p.boundary;
   solids.booked = has_loads(c.scene) && c.p.dt > 0;
   solids.near.sums = c.other(field::velocity);
+  if (!(c.p.dt > 0)) solids.frame = nullptr;
   // A far row is farther from what it can meet than the range of the walls' density.
   const auto way = c.p.dt * c.p.boundary.inv_range;
   solids.near.per_speed = way * way * solids.near.far_room;
@@ -41,7 +42,7 @@ void each_then_near(C& c, Make&& make) {
   using Real = typename C::Real;
   if (!c.solids().around) return c.each(make(c.p.boundary));
   const Solids<Real> solids = solids_of(c);
-  if (!moves && !solids.obstacles) return c.each(make(c.p.boundary));
+  if (!solids.obstacles && !(moves && has_loads(c.scene))) return c.each(make(c.p.boundary));
   c.each(make(FarBox<Real>(solids)));
   const auto pass = make(solids);
   c.exec.for_listed(solids.near.count, c.rows(), NearPass<std::decay_t<decltype(pass)>>{pass});

@@ -65,9 +65,23 @@ Scene unlike_default() {
   capsule.shape = ObstacleShape::capsule;
   capsule.to = {-1e6, -1.0 / 3, 0.3};
   capsule.loads = true;
+  plane.motion = Motion{{}, MotionKind::velocity, {1.0 / 3, 0, -2}, {0, 1e3 / 7, 0}, "", {}};
+  box.motion.emplace();
+  box.motion->axis = Double3{0, -1.0 / 7, 0};
+  box.motion->pivot = Double3{0.1, 0.2, 1.0 / 3};
+  box.motion->amplitude = -30.0 / 7;
+  box.motion->period = 1.0 / 3;
+  box.motion->phase = 1.0 / 7;
+  box.motion->ramp = 1e-7;
+  ball.motion.emplace();
+  ball.motion->kind = MotionKind::file;
+  ball.motion->path = "odd name #2: {x}.csv";
   s.obstacles = {plane, box, ball, cylinder, capsule};
   s.gravity = {1.0 / 3, 0, 5e-300};
-  s.time = {1.0 / 60, 500.0 / 60, AdaptiveTime{1e-4, 0.3, 0.2}};
+  s.time = {1.0 / 60, 500.0 / 60, AdaptiveTime{1e-4, 0.3, 0.2}, -1.0 / 7};
+  s.tank_motion.emplace();
+  s.tank_motion->direction = Double3{-1.0 / 3, 0, 1e5};
+  s.tank_motion->amplitude = 1.0 / 7;
   s.solver.iterations = 7;
   s.solver.substeps = 3;
   s.solver.tolerance = 0.001;
@@ -103,7 +117,8 @@ Scene unlike_default() {
   return s;
 }
 
-bool of_list(const Key& key) { return key.block->path.ends_with("[]"); }
+/// Keys of which not every object has all.
+bool of_list(const Key& key) { return key.block->list_around() || key.block->kind; }
 
 /// Defaults alone, every optional block on.
 Scene scene_with_all_blocks() {
@@ -195,18 +210,16 @@ TEST_CASE("reference scene: documents every key, and optional keys stand at thei
 
 TEST_CASE("table of keys: every default lies in its own range") {
   const Scene defaults = scene_with_all_blocks();
-  const Body body_entry;
-  const Obstacle obstacle_entry;
   for (const Key& key : scene_table().keys) {
     if (key.required) continue;
     Scene scene = scene_with_all_blocks();
     Body body;
     Obstacle obstacle;
+    obstacle.motion.emplace();
     Node node;
-    const bool of_body = key.block->path == "bodies[]", of_scene = !of_list(key);
-    const std::string text = value_text(key, of_scene  ? object(defaults)
-                                             : of_body ? object(body_entry)
-                                                       : object(obstacle_entry));
+    const Block* list = key.block->list_around();
+    const bool of_body = list && list->path == "bodies[]", of_scene = !list;
+    const std::string text = value_text(key, of_scene ? object(defaults) : key.standard);
     if (text[0] == '[') continue;  // lists: read back as part of the reference scene
     node.kind = Node::Kind::scalar;
     node.text = text;
@@ -246,10 +259,11 @@ TEST_CASE("schema: balanced JSON that has every key and refuses the others") {
        (p = text.find("\"additionalProperties\": false", p)) != std::string::npos; ++p)
     ++closed;
   CHECK(objects == closed);
-  // One object for every shape of a body and of an obstacle.
-  CHECK(objects == scene_table().blocks.size() - 2 +
-                       scene_table().find_key("bodies[].shape")->choices.size() +
-                       scene_table().find_key("obstacles[].shape")->choices.size());
+  // One object for every shape of a body and of an obstacle, and each kind of its motion.
+  const auto kinds = [](const char* key) { return scene_table().find_key(key)->choices.size(); };
+  CHECK(objects == scene_table().blocks.size() - 4 + kinds("bodies[].shape") +
+                       kinds("obstacles[].shape") * (1 + kinds("obstacles[].motion.kind")) +
+                       kinds("tank_motion.kind"));
 }
 
 TEST_CASE("numbers: the text of a double reads back to the same double") {

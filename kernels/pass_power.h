@@ -1,0 +1,43 @@
+// What the motion of the tank does to the fluid per time.
+#pragma once
+
+#include "kernels/boundary/moving.h"
+#include "kernels/measure.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// Sums v . f over the particles, f (h/s^2) by how much the motion of the tank changes what they
+/// feel beside gravity, without Coriolis' force, which does no work. It stands where a measure has
+/// the sum of x.
+template <class Real>
+struct PowerPass {
+  FrameStep<double> frame;  ///< of a step of `dt`
+  double inv_dt;
+  Vec3<double> gravity;  ///< h/s^2, as the scene has it
+  const Vec4<Real>*position, *velocity;
+
+  PBF_HD MeasureCounts counts(int i) const {
+    MeasureCounts s;
+    const double p = power(i);
+    s.x_size[0] = p < 0 ? -p : p;
+    return s;
+  }
+  PBF_HD MeasureTerms terms(int i, const MeasureUnits& unit) const {
+    MeasureTerms s;
+    s.x[0] = fixed_term(power(i) * power_of_two(-unit.x[0]));
+    return s;
+  }
+
+ private:
+  PBF_HD double power(int i) const {
+    const Vec4<Real>&x = position[i], &v = velocity[i];
+    const Vec3<double> u{double(v.x), double(v.y), double(v.z)};
+    const Vec3<double> f =
+        inv_dt * frame.accelerated({double(x.x), double(x.y), double(x.z)}, Vec3<double>{}) -
+        gravity;
+    const double p = dot(u, f);
+    return is_finite(p) ? p : 0;
+  }
+};
+
+}  // namespace pbf::inline PBF_VARIANT

@@ -1,0 +1,258 @@
+#include "lib/program/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/base/error.h"
+#include "lib/scene/vector3.h"
+
+namespace pbf::inline program_module {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846, kRadians = kPi / 180;
+
+Double3 times(const Matrix3& m, const Double3& v) {
+  return {dot(m[0], v), dot(m[1], v), dot(m[2], v)};
+}
+Matrix3 product(const Matrix3& a, const Matrix3& b) {
+  Matrix3 c{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 3; ++k) c[i][j] += a[i][k] * b[k][j];
+  return c;
+}
+/// Turns by so many radians about an axis of any length but 0.
+Matrix3 turn_about(const Double3& axis, double angle) {
+  if (angle == 0) return kUnit3;
+  const Double3 u = unit(axis);
+  Matrix3 m;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Double3 column = turned(kUnit3[k], u, angle);
+    for (std::size_t i = 0; i < 3; ++i) m[i][k] = column[i];
+  }
+  return m;
+}
+
+/// amplitude * ramp * sine; before the motions' time 0 without ramp as after it, with one at rest.
+double swing(const Swing& s, double t) {
+  const double grown = t >= s.ramp ? 1 : t <= 0 ? 0 : 0.5 * (1 - std::cos(kPi * t / s.ramp));
+  return s.amplitude * grown * std::sin(2 * kPi * t / s.period + s.phase * kRadians);
+}
+
+void must_be_read(const MotionTable& table, const std::string& path) {
+  if (table.time.empty()) throw Error(ExitCode::internal, "the motion in " + path + " is not read");
+}
+
+/// Column c at a time: cubic between rows, by slopes of second order; beyond the table straight on.
+double cubic(const MotionTable& table, std::size_t c, double t) {
+  const std::vector<double>& at = table.time;
+  const std::size_t n = at.size();
+  if (n == 1) return table.values[0][c];
+  const auto y = [&](std::size_t k) { return table.values[k][c]; };
+  const auto rise = [&](std::size_t k) { return (y(k + 1) - y(k)) / (at[k + 1] - at[k]); };
+  const auto slope = [&](std::size_t k) {
+    if (k == 0) return rise(0);
+    if (k == n - 1) return rise(n - 2);
+    const double before = at[k] - at[k - 1], behind = at[k + 1] - at[k];
+    return (rise(k - 1) * behind + rise(k) * before) / (before + behind);
+  };
+  if (t <= at[0]) return y(0) + slope(0) * (t - at[0]);
+  if (t >= at[n - 1]) return y(n - 1) + slope(n - 1) * (t - at[n - 1]);
+  const auto k = std::size_t(std::upper_bound(at.begin(), at.end(), t) - at.begin()) - 1;
+  const double width = at[k + 1] - at[k], u = (t - at[k]) / width, w = 1 - u;
+  return w * w * (1 + 2 * u) * y(k) + u * u * (1 + 2 * w) * y(k + 1) +
+         width * u * w * (w * slope(k) - u * slope(k + 1));
+}
+/// The same straight between rows, and beyond them as at the ends.
+double straight(const MotionTable& table, std::size_t c, double t) {
+  const std::vector<double>& at = table.time;
+  const std::size_t n = at.size();
+  if (t <= at[0] || n == 1) return table.values[0][c];
+  if (t >= at[n - 1]) return table.values[n - 1][c];
+  const auto k = std::size_t(std::upper_bound(at.begin(), at.end(), t) - at.begin()) - 1;
+  const double u = (t - at[k]) / (at[k + 1] - at[k]);
+  return (1 - u) * table.values[k][c] + u * table.values[k + 1][c];
+}
+
+/// f(t) at some times of an interval, both ends included, close enough for a sine.
+template <class F>
+void for_times(const Scene& s, double from, double to, F&& f) {
+  double shortest = to - from;
+  const auto look = [&](const Swing& swing, bool swings, const MotionTable& table) {
+    if (swings) shortest = std::min(shortest, swing.period / 32);
+    if (!table.time.empty() && table.time.size() > 1)
+      shortest = std::min(shortest,
+                          (table.time.back() - table.time.front()) / double(table.time.size()) / 2);
+  };
+  for (const Obstacle& o : s.obstacles)
+    if (o.motion) look(*o.motion, o.motion->kind == MotionKind::sine, o.motion->table);
+  if (s.tank_motion)
+    look(*s.tank_motion, s.tank_motion->kind == TankMotionKind::sine, s.tank_motion->table);
+  const int n = shortest > 0 ? int(std::clamp((to - from) / shortest, 1.0, 4096.0)) : 1;
+  for (int k = 0; k <= n; ++k) f(from + (to - from) * k / n);
+}
+
+/// m: half the size of what is in the domain at most.
+double radius_of(const Scene& s, const Obstacle& o) {
+  const double all = length(s.domain.max - s.domain.min);
+  switch (o.shape) {
+    case ObstacleShape::plane:
+      return all;
+    case ObstacleShape::box:
+      return std::min(all, 0.5 * length(o.max - o.min));
+    case ObstacleShape::sphere:
+      return std::min(all, o.radius);
+    case ObstacleShape::cylinder:
+    case ObstacleShape::capsule:
+      return std::min(all, 0.5 * length(o.to - o.from) + o.radius);
+  }
+  return all;
+}
+
+}  // namespace
+
+Double3 Pose::of(const Double3& x) const { return pivot + times(turn, x - pivot) + shift; }
+
+bool has_moving_obstacles(const Scene& s) {
+  return std::any_of(s.obstacles.begin(), s.obstacles.end(),
+                     [](const Obstacle& o) { return o.motion.has_value(); });
+}
+
+Double3 middle_of(const Obstacle& o) {
+  switch (o.shape) {
+    case ObstacleShape::plane:
+      return o.point;
+    case ObstacleShape::box:
+      return 0.5 * (o.min + o.max);
+    case ObstacleShape::sphere:
+      return o.center;
+    case ObstacleShape::cylinder:
+    case ObstacleShape::capsule:
+      break;
+  }
+  return 0.5 * (o.from + o.to);
+}
+
+Pose pose_of(const Scene& s, const Obstacle& o, double time) {
+  Pose p;
+  if (!o.motion) return p;
+  const Motion& m = *o.motion;
+  const double t = s.time.motion_begin + time;
+  p.pivot = m.pivot.value_or(middle_of(o));
+  switch (m.kind) {
+    case MotionKind::sine:
+      if (m.direction)
+        p.shift = swing(m, t) * unit(*m.direction);
+      else
+        p.turn = turn_about(*m.axis, swing(m, t) * kRadians);
+      break;
+    case MotionKind::velocity:
+      p.shift = t * m.velocity;
+      if (const double rate = length(m.angular); rate > 0)
+        p.turn = turn_about(m.angular, t * rate * kRadians);
+      break;
+    case MotionKind::file: {
+      must_be_read(m.table, m.path);
+      for (std::size_t k = 0; k < 3; ++k) p.shift[k] = cubic(m.table, k, t);
+      if (m.table.columns < 6) break;
+      for (std::size_t k = 0; k < 3; ++k)
+        p.turn = product(turn_about(kUnit3[k], cubic(m.table, k + 3, t) * kRadians), p.turn);
+      break;
+    }
+  }
+  return p;
+}
+
+TankPose tank_pose(const Scene& s, double time) {
+  const TankMotion& m = *s.tank_motion;
+  const double t = s.time.motion_begin + time;
+  if (m.kind == TankMotionKind::sine)
+    return m.direction ? TankPose{0, swing(m, t) * unit(*m.direction)}
+                       : TankPose{swing(m, t) * kRadians, {}};
+  must_be_read(m.table, m.path);
+  return m.table.columns == 1 ? TankPose{cubic(m.table, 0, t) * kRadians, {}} : TankPose{};
+}
+
+FrameStep<double> frame_step(const Scene& s, const Axes& axes, double time, double dt) {
+  FrameStep<double> out;
+  Matrix3 turn{}, pull{};
+  Double3 push = dt * s.gravity, pivot = 0.5 * (s.domain.min + s.domain.max);
+  if (s.tank_motion) {
+    const TankMotion& m = *s.tank_motion;
+    const TankPose before = tank_pose(s, time - dt), now = tank_pose(s, time),
+                   behind = tank_pose(s, time + dt);
+    if (m.pivot) pivot = *m.pivot;
+    push = push - (1 / dt) * ((behind.shift - now.shift) - (now.shift - before.shift));
+    if (m.kind == TankMotionKind::file && m.table.columns == 3)
+      for (std::size_t k = 0; k < 3; ++k)
+        push[k] -= dt * straight(m.table, k, s.time.motion_begin + time);
+    if (m.axis) {
+      const Matrix3 one = turn_about(*m.axis, now.angle - behind.angle),
+                    two = turn_about(*m.axis, before.angle - behind.angle);
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) {
+          turn[i][j] = two[i][j] - kUnit3[i][j];
+          pull[i][j] = (2 * (one[i][j] - kUnit3[i][j]) - turn[i][j]) / dt;
+        }
+      push = times(turn_about(*m.axis, -behind.angle), push);
+    }
+  }
+  const double h = s.h();
+  const Double3 from = s.origin();
+  double at[3], by[3];
+  for (int k = 0; k < 3; ++k) {
+    const auto i = std::size_t(axes.of[k]);
+    at[k] = (pivot[i] - from[i]) / h;
+    by[k] = push[i] / h;
+    for (int l = 0; l < 3; ++l) {
+      const auto j = std::size_t(axes.of[l]);
+      out.turn[k][l] = turn[i][j];
+      out.pull[k][l] = pull[i][j];
+    }
+  }
+  if (s.plane()) at[1] = 0;  // no y counts there
+  out.pivot = {at[0], at[1], at[2]};
+  out.push = {by[0], by[1], by[2]};
+  return out;
+}
+
+double fastest_obstacle(const Scene& s, double from, double to) {
+  double fastest = 0;
+  if (!has_moving_obstacles(s)) return fastest;
+  const double dt = 1e-3 * s.time.step;
+  for_times(s, from, to, [&](double t) {
+    for (const Obstacle& o : s.obstacles) {
+      if (!o.motion) continue;
+      const Pose a = pose_of(s, o, t), b = pose_of(s, o, t + dt);
+      const Double3 middle = middle_of(o);
+      double turned = 0;  // of the ends of the axes of a unit frame; the turn is a part of it
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) turned += std::pow(b.turn[i][j] - a.turn[i][j], 2);
+      fastest = std::max(
+          fastest,
+          (length(b.of(middle) - a.of(middle)) + std::sqrt(turned / 2) * radius_of(s, o)) / dt);
+    }
+  });
+  return fastest;
+}
+
+double greatest_pull(const Scene& s, double from, double to) {
+  double most = length(s.gravity);
+  if (!s.tank_motion) return most;
+  const double h = s.h(), dt = s.time.step;
+  for_times(s, from, to, [&](double t) {
+    const FrameStep<double> f = frame_step(s, {}, t, dt);
+    for (int corner = 0; corner < 8; ++corner) {
+      const auto at = [&](int k) {
+        return corner >> k & 1 ? (s.domain.max[std::size_t(k)] - s.domain.min[std::size_t(k)]) / h
+                               : 0.0;
+      };
+      const Vec3<double> v =
+          f.accelerated({at(0), s.plane() ? 0.0 : at(1), at(2)}, {0.0, 0.0, 0.0});
+      most = std::max(most, h / dt * std::sqrt(dot(v, v)));
+    }
+  });
+  return most;
+}
+
+}  // namespace pbf::inline program_module

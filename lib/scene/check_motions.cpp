@@ -1,0 +1,73 @@
+// What holds of prescribed motions.
+#include "lib/scene/scene_rules.h"
+
+namespace pbf::inline scene_module {
+namespace {
+
+class MotionChecker : public SceneRules {
+ public:
+  using SceneRules::SceneRules;
+
+  void run() {
+    for (const Obstacle& o : s_.obstacles) {
+      if (!o.motion || !good(o.motion->kind)) continue;
+      const Motion& m = *o.motion;
+      if (m.kind == MotionKind::sine) check_swing(m, m.kind, true);
+      if (m.kind == MotionKind::velocity) {
+        must_lie_flat(m.velocity);
+        if (good(m.angular) && flat() && (m.angular[0] != 0 || m.angular[2] != 0))
+          add(m.angular, kAboutY);
+      }
+      if (m.kind == MotionKind::file) check_path(m.path);
+    }
+    if (!s_.tank_motion || !good(s_.tank_motion->kind)) return;
+    const TankMotion& m = *s_.tank_motion;
+    check_swing(m, m.kind, m.kind == TankMotionKind::sine);
+    if (m.kind == TankMotionKind::file) check_path(m.path);
+  }
+
+ private:
+  static constexpr const char* kAboutY =
+      "with dimensions: 2 nothing turns but about y; give [0, 1, 0] times a number";
+
+  void must_lie_flat(const Double3& v) {
+    if (good(v) && flat() && v[1] != 0)
+      add(v, "its y component is " + to_text(v[1]) +
+                 ", with dimensions: 2 nothing moves along y; give 0");
+  }
+  void check_path(const std::string& path) {
+    if (good(path) && path.empty()) add(path, "names no file; give that of a CSV table");
+  }
+  /// `swings`: needs a direction or an axis; else there may be an axis.
+  void check_swing(const Swing& m, const auto& kind, bool swings) {
+    if (!good(m.axis) || (swings && !good(m.direction))) return;
+    if (swings && bool(m.direction) == bool(m.axis)) {
+      const std::string path = name(kind);
+      add_at(path.substr(0, path.rfind('.')),
+             std::string("a sine needs ") +
+                 (m.axis ? "direction or axis, not both; remove one"
+                         : "direction (amplitude in m) or axis (degrees); give one"));
+      return;
+    }
+    const std::optional<Double3>& along = swings && m.direction ? m.direction : m.axis;
+    if (along && (*along)[0] == 0 && (*along)[1] == 0 && (*along)[2] == 0)
+      add(along, "has no direction; give one, [0, 1, 0] say");
+    if (swings && m.direction) must_lie_flat_if_there(m.direction);
+    if (m.axis && flat() && ((*m.axis)[0] != 0 || (*m.axis)[2] != 0)) add(m.axis, kAboutY);
+    if (m.pivot && good(m.pivot) && !m.axis)
+      add(m.pivot, "is the point about which something turns, and there is no axis; remove it");
+  }
+  void must_lie_flat_if_there(const std::optional<Double3>& v) {
+    if (flat() && (*v)[1] != 0)
+      add(v, "its y component is " + to_text((*v)[1]) +
+                 ", with dimensions: 2 nothing moves along y; give 0");
+  }
+};
+
+}  // namespace
+
+void check_motions(const PlacedScene& placed, Problems& problems) {
+  MotionChecker(placed, problems).run();
+}
+
+}  // namespace pbf::inline scene_module

@@ -1,0 +1,237 @@
+// What moves, in the memory of an executor: a table of the steps of a batch, and what of it is the
+// present step's.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "kernels/pass_move_solids.h"
+#include "lib/program/motion.h"
+#include "lib/program/obstacles.h"
+#include "lib/program/plan.h"
+#include "lib/solver/placed_solids.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// Steps that a table holds, unless one update has more of them.
+constexpr int kMotionRows = 256;
+
+template <class Real>
+struct MotionRows {
+  std::vector<FrameStep<Real>> frames;
+  std::vector<SolidStep<Real>> steps;
+};
+
+/// Of the points of a solid that goes from a to b in dt.
+inline SolidVelocity velocity_between(const Solid<double>& a, const Solid<double>& b, double dt) {
+  // The turn takes directions of the body from a to b; its axial part is sin(angle) times the axis.
+  double turn[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      turn[i][j] = 0;
+      for (int k = 0; k < 3; ++k) turn[i][j] += b.turn[k][i] * a.turn[k][j];
+    }
+  const double axial[3] = {0.5 * (turn[2][1] - turn[1][2]), 0.5 * (turn[0][2] - turn[2][0]),
+                           0.5 * (turn[1][0] - turn[0][1])};
+  const double sine = std::sqrt(axial[0] * axial[0] + axial[1] * axial[1] + axial[2] * axial[2]);
+  const double cosine = 0.5 * (turn[0][0] + turn[1][1] + turn[2][2] - 1);
+  const double scale = sine > 1e-12 ? std::atan2(sine, cosine) / sine / dt : 1 / dt;
+  const Vec3<double> spin = scale * Vec3<double>{axial[0], axial[1], axial[2]};
+  const Vec3<double> middle = 0.5 * (a.center + b.center);
+  const Vec3<double> go = (1 / dt) * (b.center - a.center) - cross(spin, middle);
+  return {{go.x, go.y, go.z}, {spin.x, spin.y, spin.z}};
+}
+
+template <class Real>
+Bounds<Real> around_both(const Bounds<Real>& a, const Bounds<Real>& b) {
+  return {{min2(a.low.x, b.low.x), min2(a.low.y, b.low.y), min2(a.low.z, b.low.z)},
+          {max2(a.high.x, b.high.x), max2(a.high.y, b.high.y), max2(a.high.z, b.high.z)}};
+}
+
+/// h: how far from its centre a body reaches where it is in the domain.
+template <class Real>
+double radius_of(const Solid<double>& o, const Box<Real>& walls) {
+  const double all =
+      std::hypot(double(walls.extent.x), double(walls.extent.y), double(walls.extent.z));
+  if (o.shape == ObstacleShape::plane || o.through != 0) return 2 * all;
+  if (o.shape == ObstacleShape::box) return std::hypot(o.half.x, o.half.y, o.half.z);
+  return o.half.x + o.half.z;
+}
+/// 2 sin of half the angle by which a body turns from a to b.
+inline double chord(const Solid<double>& a, const Solid<double>& b) {
+  double squares = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) squares += std::pow(b.turn[i][k] - a.turn[i][k], 2);
+  return std::sqrt(squares / 2);
+}
+/// h: how far a place of the body goes at most.
+template <class Real>
+double way_between(const Solid<double>& a, const Solid<double>& b, const Box<Real>& walls) {
+  const Vec3<double> d = b.center - a.center;
+  return std::sqrt(dot(d, d)) + chord(a, b) * radius_of(a, walls);
+}
+
+template <class Real>
+Bounds<Real> wider(const Bounds<Real>& b, double by) {
+  const Real more = Real(by);
+  const Vec3<Real> v{more, more, more};
+  return {b.low - v, b.high + v};
+}
+/// Where a solid stands that goes on to `next`: what may meet it on that way is near, too.
+template <class Real>
+PlacedSolid<Real> placed_before(const Solid<double>& now, const Solid<double>& next,
+                                const Box<Real>& walls) {
+  PlacedSolid<Real> out = placed(now, walls);
+  const double way = way_between(now, next, walls);
+  out.reach = out.reach + Real(way);
+  out.bounds = wider(out.bounds, way);
+  return out;
+}
+/// All solids at a time, s since the start, before a step.
+template <class Real>
+std::vector<PlacedSolid<Real>> placed_at(const Scene& scene, const Plan& plan,
+                                         const Box<Real>& walls, double time) {
+  if (!has_moving_obstacles(scene)) return placed_solids(plan.solids, walls);
+  const auto now = solids_of(scene, plan.axes, time);
+  const auto next = solids_of(scene, plan.axes, time + scene.time.step / plan.substeps);
+  std::vector<PlacedSolid<Real>> all;
+  for (std::size_t k = 0; k < now.size(); ++k) all.push_back(placed_before(now[k], next[k], walls));
+  return all;
+}
+
+/// The steps `first` to first + count - 1 since the start, of dt each. An update has so many steps.
+template <class Real>
+MotionRows<Real> motion_rows(const Scene& scene, const Plan& plan, const Box<Real>& walls,
+                             std::int64_t first, int count, int steps_per_update, double dt) {
+  MotionRows<Real> rows;
+  const auto real = [](const Vec3<double>& v) {
+    return Vec3<Real>{Real(v.x), Real(v.y), Real(v.z)};
+  };
+  const auto time = [&](std::int64_t step) { return double(step) * dt; };
+  if (scene.tank_motion)
+    for (int k = 0; k < count; ++k) {
+      const FrameStep<double> f = frame_step(scene, plan.axes, time(first + k), dt);
+      FrameStep<Real>& out = rows.frames.emplace_back();
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          out.turn[i][j] = Real(f.turn[i][j]), out.pull[i][j] = Real(f.pull[i][j]);
+      out.pivot = real(f.pivot);
+      out.push = real(f.push);
+    }
+  if (!has_moving_obstacles(scene)) return rows;
+  const auto at = [&](std::int64_t step) { return solids_of(scene, plan.axes, time(step)); };
+  std::vector<Solid<double>> from = at(first), to = at(first + 1), next, begin, end = from;
+  for (int k = 0; k < count; ++k, from = std::move(to), to = std::move(next)) {
+    if (k % steps_per_update == 0) begin = std::move(end), end = at(first + k + steps_per_update);
+    next = at(first + k + 2);
+    for (std::size_t s = 0; s < to.size(); ++s) {
+      if (!scene.obstacles[s].motion) continue;
+      SolidStep<Real> step;
+      step.solid = int(s);
+      step.now = placed_before(to[s], next[s], walls);
+      const PlacedSolid<Real> was = placed(from[s], walls);
+      step.before = was.solid;
+      // On the way places leave the straight line by less than 1 - cos of half the angle.
+      const double turn = chord(from[s], to[s]), bulge = turn * turn / 4;
+      step.now.bounds =
+          wider(around_both(step.now.bounds, was.bounds), bulge * radius_of(from[s], walls));
+      step.mean = velocity_between(begin[s], end[s], dt * steps_per_update);
+      rows.steps.push_back(step);
+    }
+  }
+  return rows;
+}
+
+/// What solids come near in the whole run.
+template <class Real>
+struct RunBounds {
+  Bounds<Real> all;
+  std::vector<Bounds<Real>> moving;     ///< of each that moves
+  std::vector<Solid<double>> standing;  ///< the others
+};
+
+template <class Real>
+RunBounds<Real> bounds_of_run(const Scene& scene, const Plan& plan, const Box<Real>& walls) {
+  RunBounds<Real> run;
+  std::vector<PlacedSolid<Real>> all = placed_at(scene, plan, walls, 0);
+  std::vector<std::size_t> moving;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    scene.obstacles[k].motion ? moving.push_back(k) : run.standing.push_back(plan.solids[k]);
+  if (!moving.empty()) {
+    constexpr int samples = 512;
+    // Between two samples, and in the step behind the last one, nothing goes farther than this.
+    const double fastest = fastest_obstacle(scene, 0, scene.time.end) / scene.h();
+    const double way = 1.1 * fastest * (scene.time.end / samples + scene.time.step);
+    for (int t = 1; t <= samples; ++t) {
+      const auto now = placed_at(scene, plan, walls, scene.time.end * t / samples);
+      for (const std::size_t k : moving) all[k].bounds = around_both(all[k].bounds, now[k].bounds);
+    }
+    for (const std::size_t k : moving) {
+      all[k].bounds = wider(all[k].bounds, way);
+      run.moving.push_back(all[k].bounds);
+    }
+  }
+  run.all = bounds_of(all);
+  return run;
+}
+
+template <class Real, class Exec>
+class MovingParts {
+ public:
+  template <class T>
+  using Buffer = typename Exec::template Buffer<T>;
+
+  void make(Exec& exec, const Scene& scene, int steps_per_update) {
+    if (!has_motion(scene)) return;
+    const auto rows = std::size_t(std::max(kMotionRows, steps_per_update));
+    row_.resize(1);
+    if (scene.tank_motion) frames_.resize(rows), frame_.resize(1);
+    for (const Obstacle& o : scene.obstacles) moving_ += o.motion.has_value();
+    if (moving_ == 0) return;
+    steps_.resize(rows * std::size_t(moving_));
+    before_.resize(scene.obstacles.size());
+    velocity_.resize(scene.obstacles.size());
+    const std::vector<SolidVelocity> at_rest(scene.obstacles.size());
+    exec.to_device(at_rest.data(), at_rest.size(), velocity_.data());
+  }
+  /// The table of the steps to come.
+  void set(Exec& exec, const MotionRows<Real>& rows) {
+    const int first = 0;
+    exec.to_device(&first, 1, row_.data());
+    exec.to_device(rows.frames.data(), rows.frames.size(), frames_.data());
+    exec.to_device(rows.steps.data(), rows.steps.size(), steps_.data());
+  }
+  /// All solids stand where they are.
+  void stand(Exec& exec, const std::vector<PlacedSolid<Real>>& placed) {
+    if (moving_ == 0) return;
+    std::vector<Solid<Real>> solids;
+    for (const PlacedSolid<Real>& s : placed) solids.push_back(s.solid);
+    exec.to_device(solids.data(), solids.size(), before_.data());
+  }
+  MoveSolidsPass<Real> pass(PlacedSolid<Real>* placed) {
+    return {row_.data(),    frame_.bytes() ? frames_.data() : nullptr,
+            steps_.data(),  moving_,
+            frame_.data(),  placed,
+            before_.data(), velocity_.data()};
+  }
+  // Null where there is none.
+  const FrameStep<Real>* frame() { return frame_.bytes() ? frame_.data() : nullptr; }
+  const Solid<Real>* before() { return moving_ ? before_.data() : nullptr; }
+  const SolidVelocity* velocity() { return moving_ ? velocity_.data() : nullptr; }
+
+  std::size_t bytes() const {
+    return row_.bytes() + frames_.bytes() + frame_.bytes() + steps_.bytes() + before_.bytes() +
+           velocity_.bytes();
+  }
+
+ private:
+  int moving_ = 0;
+  Buffer<int> row_;
+  Buffer<FrameStep<Real>> frames_, frame_;
+  Buffer<SolidStep<Real>> steps_;
+  Buffer<Solid<Real>> before_;
+  Buffer<SolidVelocity> velocity_;
+};
+
+}  // namespace pbf::inline PBF_VARIANT
