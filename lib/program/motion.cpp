@@ -35,7 +35,9 @@ Matrix3 turn_about(const Double3& axis, double angle) {
 
 /// amplitude * ramp * sine; before the motions' time 0 without ramp as after it, with one at rest.
 double swing(const Swing& s, double t) {
-  const double grown = t >= s.ramp ? 1 : t <= 0 ? 0 : 0.5 * (1 - std::cos(kPi * t / s.ramp));
+  const double grown = s.ramp <= 0 || t >= s.ramp ? 1
+                       : t <= 0                   ? 0
+                                                  : 0.5 * (1 - std::cos(kPi * t / s.ramp));
   return s.amplitude * grown * std::sin(2 * kPi * t / s.period + s.phase * kRadians);
 }
 
