@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernels/smoothing.h"
+#include "lib/program/loads.h"
 
 namespace pbf::inline program_module {
 namespace {
@@ -47,6 +48,7 @@ const char* why_no_levels(const Scene& s) {
   if (s.solver.iterations == 0) return "solver.iterations is 0";
   if (s.solver.levels == LevelsMode::off) return "solver.levels is off";
   if (!s.obstacles.empty()) return "the scene has obstacles";
+  if (has_pressure_gauges(s)) return "the scene has pressure gauges";
   if (s.solver.levels == LevelsMode::automatic && layers(s) < kDeep)
     return "solver.levels is auto, the fluid less than 64 layers deep";
   return nullptr;

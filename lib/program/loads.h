@@ -1,4 +1,4 @@
-// Which walls of a scene have their loads summed.
+// Which walls of a scene, and which gauges on them, have their loads summed.
 #pragma once
 
 #include <algorithm>
@@ -7,18 +7,31 @@
 
 namespace pbf::inline program_module {
 
+inline std::int64_t pressure_gauges(const Scene& scene) {
+  return std::count_if(scene.gauges.begin(), scene.gauges.end(),
+                       [](const Gauge& g) { return g.kind == GaugeKind::pressure; });
+}
+inline bool has_pressure_gauges(const Scene& scene) { return pressure_gauges(scene) > 0; }
+
+/// Also for the gauges that take their share of a surface's.
 inline bool has_loads(const Scene& scene) {
   // What moves does work, which is known from its load.
   const auto wanted = [](const Obstacle& o) { return o.loads || o.motion; };
-  return scene.domain.loads || std::any_of(scene.obstacles.begin(), scene.obstacles.end(), wanted);
+  return scene.domain.loads || has_pressure_gauges(scene) ||
+         std::any_of(scene.obstacles.begin(), scene.obstacles.end(), wanted);
 }
 
 /// There is more around the fluid than plain walls.
 inline bool has_solids(const Scene& scene) { return !scene.obstacles.empty() || has_loads(scene); }
 
-/// How many have sums: the walls, of which those of open faces stay 0, and all obstacles.
+/// The rows of sums before those of the gauges: the walls, of which those of open faces stay 0, and
+/// all obstacles.
+inline std::int64_t first_gauge_row(const Scene& scene) {
+  return std::int64_t(kFaceNames.size() + scene.obstacles.size());
+}
+/// How many have sums.
 inline std::int64_t load_walls(const Scene& scene) {
-  return has_loads(scene) ? std::int64_t(kFaceNames.size() + scene.obstacles.size()) : 0;
+  return has_loads(scene) ? first_gauge_row(scene) + pressure_gauges(scene) : 0;
 }
 
 }  // namespace pbf::inline program_module

@@ -25,6 +25,7 @@ class Checker : public SceneRules {
     if (good(s_.bodies)) check_bodies(domain);
     check_obstacles(p_, problems_);
     check_motions(p_, problems_);
+    check_gauges(p_, problems_);
     check_time();
     check_solver();
     if (domain) check_rounding();
@@ -78,6 +79,10 @@ class Checker : public SceneRules {
     const SolverSettings& v = s_.solver;
     if (good(v.levels) && v.levels == LevelsMode::on && !s_.obstacles.empty())
       add(v.levels, "the grids of the levels do not know obstacles; give off or auto");
+    else if (good(v.levels) && v.levels == LevelsMode::on &&
+             std::ranges::any_of(s_.gauges,
+                                 [](const Gauge& g) { return g.kind == GaugeKind::pressure; }))
+      add(v.levels, "pressure gauges do not see what the levels push; give off or auto");
     if (!good(v.tolerance, v.iterations, v.max_iterations) || v.tolerance == 0) return;
     if (v.iterations == 0)
       add(v.tolerance, "nothing can meet it with solver.iterations 0; give at least 1");
@@ -207,6 +212,11 @@ class Checker : public SceneRules {
         add_below(every, time.step, "; raise it to at least that");
     };
     if (s_.output) must_last_a_step(s_.output->every);
+    if (s_.output && s_.output->gauges_every && good(s_.output->gauges_every) &&
+        *s_.output->gauges_every < time.step * (1 - 1e-9))
+      add(s_.output->gauges_every, "is " + to_text(*s_.output->gauges_every) +
+                                       ", below time.step (" + to_text(time.step) +
+                                       " s); raise it to at least that");
     if (s_.render) must_last_a_step(s_.render->every);
   }
 

@@ -46,6 +46,10 @@ Key key(const char* member, Member& (*get)(const Object&), auto values, const ch
 inline auto number(const char* unit, Range range) {
   return [=](Key& row) { row.unit = std::string(unit), row.range = range; };
 }
+/// One number, or a list of up to so many, as the rest of the entry says.
+inline auto numbers(const char* unit, Range range, std::size_t most) {
+  return [=](Key& row) { number(unit, range)(row), row.most = most; };
+}
 /// The words of an enum in its order, or those that a list may hold.
 inline auto one_of(std::vector<std::string> words) {
   return [=](Key& row) { row.choices = words; };

@@ -34,10 +34,10 @@ struct ChoiceField {
 };
 
 /// Where a key's value lives in an Object.
-using Field =
-    std::variant<double*, std::optional<double>*, int*, std::int64_t*, std::uint64_t*, bool*,
-                 std::string*, std::vector<std::string>*, Double3*, std::optional<Double3>*,
-                 std::optional<std::array<double, 2>>*, std::array<int, 2>*, ChoiceField>;
+using Field = std::variant<double*, std::optional<double>*, int*, std::int64_t*, std::uint64_t*,
+                           bool*, std::string*, std::vector<std::string>*, std::vector<double>*,
+                           Double3*, std::optional<Double3>*, std::optional<std::array<double, 2>>*,
+                           std::array<int, 2>*, ChoiceField>;
 
 /// Allowed values of every number of a key.
 struct Range {
@@ -69,6 +69,7 @@ struct Key {
   std::function<Field(const Object&)> field;
   std::string unit{};  ///< "m"; empty: not a number, or dimensionless ("1" is written for those)
   Range range{};
+  std::size_t most = 0;                ///< numbers of a list that holds one or more
   std::vector<std::string> choices{};  ///< words allowed (ChoiceField), or elements of a list
   bool required = false;
   bool automatic = false;  ///< `auto` is allowed: an absent optional, or 0 of a plain number

@@ -38,6 +38,10 @@ KeyRows run_rows() {
            automatic),
        key(KEY(output->every), number("s", kSeconds),
            "Time between frames, rounded to whole updates; at least time.step."),
+       key(KEY(output->gauges_every), number("s", kSeconds),
+           "Time between two readings of the gauges, rounded to whole updates; at least time.step. "
+           "auto: with the measures.",
+           automatic),
        key(KEY(output->fields), one_of({"velocity", "density"}),
            "Fields besides position and id, as a list."),
        key(KEY(output->precision), one_of(floats), "Of floating-point fields in the file."),

@@ -57,6 +57,22 @@ struct Obstacle {
   bool operator==(const Obstacle&) const = default;
 };
 
+/// What is written down of one place while a run goes on.
+enum class GaugeKind { level, velocity, flow, pressure };
+
+/// A gauge. Which members count depends on `kind`; the loader refuses the others.
+struct Gauge {
+  std::string name;
+  GaugeKind kind = GaugeKind::level;
+  std::vector<double> at;    ///< m; level: where the line crosses the other axes; else a place
+  std::string on;            ///< pressure: an obstacle, or a wall of the domain
+  double radius = 0;         ///< m, pressure: of the disc
+  Double3 center{};          ///< m, flow: middle of the rectangle
+  Double3 normal{1, 0, 0};   ///< flow: the way that counts as positive
+  std::vector<double> size;  ///< m, flow: level edge and the other; in two dimensions one length
+  bool operator==(const Gauge&) const = default;
+};
+
 /// The faces of the domain in the order of WallBit's bits.
 inline constexpr std::array<const char*, 6> kFaceNames = {"x_min", "x_max", "y_min",
                                                           "y_max", "z_min", "z_max"};
@@ -155,7 +171,8 @@ struct GuardSettings {
 };
 
 struct Output {
-  double every = 0.02;  ///< s between frames, rounded to whole updates
+  double every = 0.02;                 ///< s between frames, rounded to whole updates
+  std::optional<double> gauges_every;  ///< s, the same of gauges; absent: with the measures
   std::vector<std::string> fields{"velocity", "density"};  ///< besides position and id
   Precision precision = Precision::single;                 ///< of floating-point fields on disk
   Compression compression = Compression::none;             ///< gzip: shuffle + deflate 1
@@ -194,6 +211,7 @@ struct Scene {
   Fluid fluid;
   std::vector<Body> bodies;
   std::vector<Obstacle> obstacles;
+  std::vector<Gauge> gauges;
   Double3 gravity{0, 0, -9.81};  ///< m/s^2
   std::optional<TankMotion> tank_motion;
   Time time;

@@ -61,5 +61,6 @@ class SceneRules {
 /// A part of check_scene().
 void check_obstacles(const PlacedScene& placed, Problems& problems);
 void check_motions(const PlacedScene& placed, Problems& problems);
+void check_gauges(const PlacedScene& placed, Problems& problems);
 
 }  // namespace pbf::inline scene_module

@@ -49,6 +49,11 @@ struct TypeSchema {
   Json operator()(const std::vector<std::string>*) const {
     return {{"type", "array"}, {"uniqueItems", true}, {"items", enumeration(key.choices)}};
   }
+  Json operator()(const std::vector<double>*) const {
+    Json list = list_schema(key, false, 1);
+    list["maxItems"] = key.most;
+    return list;
+  }
   Json operator()(const ChoiceField&) const { return enumeration(key.choices); }
 };
 

@@ -132,6 +132,17 @@ struct Reader {
   std::string operator()(std::vector<std::string>* field) const {
     return read_words(key, node, *field);
   }
+  std::string operator()(std::vector<double>* field) const {
+    const std::size_t n = node.items.size();
+    if (node.kind != Node::Kind::list || n < 1 || n > key.most)
+      return instead_of("a list of 1 to " + std::to_string(key.most) + " numbers", node);
+    std::vector<double> values(n);
+    for (std::size_t i = 0; i < n; ++i)
+      if (const std::string problem = read_one(key, node.items[i], values[i]); !problem.empty())
+        return "element " + std::to_string(i) + ": " + problem;
+    *field = values;
+    return "";
+  }
   std::string operator()(const ChoiceField& field) const {
     const int index = choice_of(key, node);
     if (index < 0) return not_among(key.choices, node);
@@ -159,6 +170,11 @@ struct ValueWriter {
   std::string operator()(const std::string* field) const { return yaml_text(*field); }
   std::string operator()(const std::vector<std::string>* field) const {
     return std::string("[").append(joined(*field, ", ")).append("]");
+  }
+  std::string operator()(const std::vector<double>* field) const {
+    std::string text = "[";
+    for (const double v : *field) text += (text.size() > 1 ? ", " : "") + plain(v);
+    return text + "]";
   }
   std::string operator()(const ChoiceField& field) const {
     return key.choices[static_cast<std::size_t>(field.get())];

@@ -23,6 +23,9 @@ struct Round {
   void operator()(std::array<double, N>* values) const {
     for (double& x : *values) (*this)(&x);
   }
+  void operator()(std::vector<double>* values) const {
+    for (double& x : *values) (*this)(&x);
+  }
   template <class T>
   void operator()(std::optional<T>* value) const {
     if (*value) (*this)(&**value);
