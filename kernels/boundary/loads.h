@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "kernels/boundary/moving.h"
+#include "kernels/boundary/patch.h"
 #include "kernels/vec3.h"
 
 namespace pbf {
@@ -12,9 +13,9 @@ namespace pbf {
 /// A wall's sum lies in so many parts, which different threads write.
 inline constexpr int kLoadParts = 64;
 
-/// What one wall got within an update. Displacements in units of 2^-36 h, with the sign of what the
-/// wall feels; moments about the domain's lower corner in the same units times a power of two above
-/// the longest edge of the box.
+/// What one wall got within an update, or a gauge on one: then way[0] alone, into the wall.
+/// Displacements in units of 2^-36 h, with the sign of what the wall feels; moments about the
+/// domain's lower corner in the same units times a power of two above the longest edge of the box.
 struct LoadSums {
   std::int64_t way[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
 };
@@ -43,8 +44,10 @@ PBF_HD void add_whole(std::int64_t* sum, std::int64_t term) {
 /// Where loads are booked.
 template <class Real>
 struct LoadBook {
-  LoadSums* sums = nullptr;  ///< kLoadParts for each wall; null: there are none
-  Real moment_scale = 1;     ///< 2^-e, 2^e above the longest edge of the box, h
+  LoadSums* sums = nullptr;      ///< kLoadParts for each wall; null: there are none
+  Real moment_scale = 1;         ///< 2^-e, 2^e above the longest edge of the box, h
+  const Patch* patch = nullptr;  ///< pressure gauges
+  int patches = 0;
 
   /// Wall `wall` has moved particle i, which is at x, by `way` (h).
   PBF_HD void add(int wall, int i, Vec3<Real> x, Vec3<Real> way) const {
@@ -58,6 +61,10 @@ struct LoadBook {
     add_units(&to.way[0], way.x), add_units(&to.moment[0], moment.x);
     add_units(&to.way[1], way.y), add_units(&to.moment[1], moment.y);
     add_units(&to.way[2], way.z), add_units(&to.moment[2], moment.z);
+    for (int k = 0; k < patches; ++k)
+      if (patch[k].wall == wall)
+        add_units(&sums[patch[k].row * kLoadParts + part].way[0],
+                  Real(-patch_way(patch[k], x, way)));
   }
 
  private:

@@ -139,17 +139,39 @@ void write_loads(hid_t file, const std::vector<Load>& loads) {
   write_rows(file, "loads", "1", H5T_IEEE_F64LE, kLoadNumbers, numbers);
 }
 
-std::vector<Load> read_loads(hid_t file) {
-  const auto shape = h5::shape(h5::open_dataset(file, "loads"));
-  const std::size_t rows = shape.at(0), columns = shape.at(1);  // older files have fewer
-  if (columns > kLoadNumbers) throw h5::Failure("loads of a later version");
+std::vector<double> read_numbers(hid_t file, const char* name, std::size_t components) {
+  const auto rows = h5::shape(h5::open_dataset(file, name)).at(0);
   std::vector<double> numbers;
-  read_rows(file, "loads", std::int64_t(rows), columns, numbers);
-  std::vector<Load> loads(rows);
-  for (std::size_t k = 0; k < rows; ++k)
+  read_rows(file, name, std::int64_t(rows), components, numbers);
+  return numbers;
+}
+
+std::vector<Load> read_loads(hid_t file) {
+  // Older files have fewer columns.
+  const std::size_t columns = h5::shape(h5::open_dataset(file, "loads")).at(1);
+  if (columns > kLoadNumbers) throw h5::Failure("loads of a later version");
+  const std::vector<double> numbers = read_numbers(file, "loads", columns);
+  std::vector<Load> loads(numbers.size() / columns);
+  for (std::size_t k = 0; k < loads.size(); ++k)
     std::memcpy(static_cast<void*>(&loads[k]), numbers.data() + k * columns,
                 columns * sizeof(double));
   return loads;
+}
+
+/// Counts are below 2^53, so doubles hold them.
+void write_flows(hid_t file, const std::vector<FlowCount>& flows) {
+  std::vector<double> numbers;
+  for (const FlowCount& f : flows)
+    numbers.insert(numbers.end(), {double(f.total), double(f.since), f.time});
+  write_rows(file, "flows", "1", H5T_IEEE_F64LE, 3, numbers);
+}
+
+std::vector<FlowCount> read_flows(hid_t file) {
+  const std::vector<double> numbers = read_numbers(file, "flows", 3);
+  std::vector<FlowCount> flows;
+  for (std::size_t k = 0; k < numbers.size(); k += 3)
+    flows.push_back({std::int64_t(numbers[k]), std::int64_t(numbers[k + 1]), numbers[k + 2]});
+  return flows;
 }
 
 void write_file(const std::string& path, const SavedRun& s) {
@@ -163,6 +185,7 @@ void write_file(const std::string& path, const SavedRun& s) {
     write_rows(file, "velocity", "h/s", real, 3, s.state.velocity);
     write_rows(file, "id", "1", H5T_STD_I32LE, 1, s.state.id);
     if (!s.state.loads.empty()) write_loads(file, s.state.loads);
+    if (!s.state.flows.empty()) write_flows(file, s.state.flows);
     h5::write_number(file, "format_version", kFormat);
     h5::write_text(file, "precision", word(s.state.precision));
     for_each_number(s, writing(file));
@@ -209,6 +232,7 @@ SavedRun read_file(const std::string& path) {
   read_rows(file, "velocity", s.particles, 3, s.state.velocity);
   read_rows(file, "id", s.particles, 1, s.state.id);
   if (h5::has_link(file, "loads")) s.state.loads = read_loads(file);
+  if (h5::has_link(file, "flows")) s.state.flows = read_flows(file);
   std::vector<bool> seen(s.state.id.size());
   for (const std::int32_t id : s.state.id) {
     if (id < 0 || id >= s.particles || seen[static_cast<std::size_t>(id)])

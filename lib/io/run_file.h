@@ -8,6 +8,7 @@
 
 #include "lib/scene/scene.h"
 #include "lib/solver/diagnostics.h"
+#include "lib/solver/gauge_readings.h"
 #include "lib/solver/snapshot.h"
 #include "lib/solver/solver.h"
 
@@ -45,6 +46,7 @@ struct RunInfo {
   double spacing = 0, smoothing_length = 0, rest_density = 0;
   std::int64_t particles = 0;
   std::int64_t first_update = 0;  ///< of this session
+  std::vector<GaugeData> gauges;  ///< is not read back
 };
 
 /// What is known when a run ends.
@@ -63,6 +65,18 @@ struct LogRow {
   std::vector<StageTime> stages;  ///< the same names in every row of a run
 };
 
+/// What the gauges read after an update: gauge_readings().
+struct GaugeRow {
+  std::int64_t update = 0;
+  double time = 0;  ///< s
+  std::vector<double> numbers;
+};
+
+/// Rows that stay in a file that is gone on with.
+struct KeptRows {
+  std::int64_t log = 0, gauges = 0;
+};
+
 /// Writes run.vtkhdf from a thread of its own; all HDF5 calls of the writer happen there.
 /// Errors of that thread (disk full) are thrown as Error(io) by the next call from outside.
 class RunWriter {
@@ -70,14 +84,15 @@ class RunWriter {
   /// Creates the file (fails if it exists). gzip: shuffle + deflate level 1.
   RunWriter(const std::string& path, const RunInfo& info, bool gzip);
   /// Goes on in a file that a stopped or killed run has left: the first `frames` frames and `rows`
-  /// rows of the log are kept, what lies behind them is dropped.
+  /// of the log and the gauges are kept, what lies behind them is dropped.
   RunWriter(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
-            std::int64_t rows);
+            const KeptRows& rows);
   ~RunWriter();
   /// Queues a frame; blocks while more than 2 wait. A frame is durable (on the disk, readable after
   /// kill -9 and after a power cut) once frames_written() counts it.
   void write(Snapshot&& snapshot);
   void log(const LogRow& row);
+  void gauges(const GaugeRow& row);
   std::int64_t frames_written() const;
   std::int64_t bytes_written() const;
   /// Waits until all that was queued, the log too, is on the disk.
@@ -112,6 +127,11 @@ class RunReader {
   /// One column of the log ("compression_mean", "stage/lambda", ...); empty when not there.
   std::vector<double> log_column(const std::string& name) const;
   std::vector<std::string> log_columns() const;
+  /// Data below /pbf/gauges ("time", "update", "H1", "peak/P1"); none where the run has no gauges.
+  std::vector<std::string> gauges() const;
+  /// Readings of one of them, vectors one behind the other; as many as all have. Empty when not
+  /// there.
+  std::vector<double> gauge(const std::string& name) const;
 
  private:
   struct Impl;

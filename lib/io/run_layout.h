@@ -16,6 +16,13 @@ inline constexpr int format_version = 1;
 /// Rows in a chunk of the tables of steps (/VTKHDF/Steps) and of the columns of the log.
 inline constexpr unsigned step_rows = 512, log_rows = 1024;
 
+/// Rows of the log and of gauges wait for so many, or so long (s).
+inline constexpr std::size_t waiting_rows = 256;
+inline constexpr double waiting_seconds = 5;
+
+/// Where readings of gauges lie below /pbf.
+inline constexpr const char* gauges = "gauges/";
+
 /// Rows in a chunk of the table of sessions, and bytes of its texts.
 inline constexpr unsigned session_rows = 16, session_text = 96;
 

@@ -36,6 +36,7 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
   pbf_ = h5::make_group(file_, "pbf");
   write_info(info);
   make_log(0, 0);
+  make_gauges(info.gauges, 0);
   make_sessions();
   begin_session(info);
   sync();
@@ -95,12 +96,14 @@ void RunOutput::flush() { bytes_ = h5::flush_reserved(file_); }
 
 void RunOutput::sync() {
   write_log();
+  write_gauges();
   flush();
   h5::sync(file_);
 }
 
 void RunOutput::close(const RunEnding& end) {
   write_log();
+  write_gauges();
   flush();
   end_session(end.reason.empty() ? end.status : end.reason, end.last_update);
   write_warnings(end.warnings);

@@ -23,12 +23,14 @@ class RunOutput {
   RunOutput(const std::string& path, const RunInfo& info, bool gzip);
   /// Goes on in a file that another RunOutput, ended or not, has left; see RunWriter.
   RunOutput(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
-            std::int64_t rows);
+            const KeptRows& rows);
   ~RunOutput();
   /// Appends a frame and commits it: from the return on a killed process leaves it readable.
   void write_frame(const Snapshot& snapshot);
   /// Keeps the row until the next commit: a frame, close, or enough rows or seconds gathered.
   void log(const LogRow& row);
+  /// The same with readings of the gauges.
+  void gauges(const GaugeRow& row);
   /// Writes what waits and waits until the disk has stored it.
   void sync();
   /// The same with the end of the session.
@@ -57,6 +59,8 @@ class RunOutput {
   void make_tables(hsize_t frames);
   void make_ids(hsize_t frames, hsize_t rows);
   void make_log(hsize_t frames, hsize_t rows);
+  void make_gauges(const std::vector<GaugeData>& data, hsize_t rows);
+  void write_gauges();
   void write_info(const RunInfo& info);
   void write_warnings(const std::vector<std::string>& warnings);
   void make_sessions();
@@ -87,6 +91,10 @@ class RunOutput {
   std::vector<std::int64_t> parts_;  // particles of each part; frames of the same number share it
   std::vector<double> last_times_ = std::vector<double>(run_layout::step_rows);  ///< s, last chunk
   h5::Column times_, part_offsets_, part_counts_, point_offsets_, cell_offsets_, id_starts_;
+  std::vector<GaugeData> gauge_data_;
+  std::vector<h5::Column> gauges_;  ///< time, update, then those of the data
+  std::vector<GaugeRow> waiting_gauges_;
+  Stopwatch since_gauges_;
   std::vector<LogRow> waiting_;
   Stopwatch since_log_;
   std::map<std::string, h5::Column> log_, further_, sessions_;

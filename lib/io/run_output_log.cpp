@@ -9,15 +9,13 @@ namespace {
 
 using run_layout::log_rows;
 
-constexpr std::size_t max_waiting_rows = 256;
-constexpr double max_waiting_seconds = 5;
-
 }  // namespace
 
 void RunOutput::log(const LogRow& row) {
   if (waiting_.empty()) since_log_.reset();
   waiting_.push_back(row);
-  if (waiting_.size() >= max_waiting_rows || since_log_.seconds() > max_waiting_seconds) {
+  if (waiting_.size() >= run_layout::waiting_rows ||
+      since_log_.seconds() > run_layout::waiting_seconds) {
     write_log();
     flush();
   }

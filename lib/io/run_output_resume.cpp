@@ -42,7 +42,7 @@ void put_text(h5::Column& column, hsize_t row, const std::string& text) {
 }  // namespace
 
 RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
-                     std::int64_t rows)
+                     const KeptRows& rows)
     : RunOutput(info, gzip) {
   opening_ = true;
   file_ = open_again(path);
@@ -50,8 +50,9 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, st
   steps_ = h5::open_group(vtk_, "Steps");
   pbf_ = h5::open_group(file_, "pbf");
   open_steps(frames);
-  make_log(static_cast<hsize_t>(frames), static_cast<hsize_t>(rows));
-  open_further(static_cast<hsize_t>(rows));
+  make_log(static_cast<hsize_t>(frames), static_cast<hsize_t>(rows.log));
+  open_further(static_cast<hsize_t>(rows.log));
+  make_gauges(info.gauges, static_cast<hsize_t>(rows.gauges));
   opening_ = false;
   sync();  // Values is never longer than NSteps
   set_steps(frames);

@@ -26,6 +26,8 @@ namespace {
 
 using h5::check;
 
+const std::string kGauges = std::string("pbf/gauges");
+
 FieldPlace describe(hid_t vtk, const std::string& name, const std::string& path, std::size_t n) {
   FieldPlace f{name, "", path, {}};
   const h5::Dataset d = h5::open_dataset(vtk, path);
@@ -163,6 +165,7 @@ void try_run_file(const std::string& path) {
     run.status();
     run.sessions();
     for (const std::string& name : run.log_columns()) run.log_column(name);
+    for (const std::string& name : run.gauges()) run.gauge(name);
     if (run.frames() > 0) {
       run.frame(0);
       run.frame(run.frames() - 1);
@@ -241,6 +244,34 @@ std::vector<RunSession> RunReader::sessions() const {
 std::vector<std::string> RunReader::log_columns() const {
   return impl_->with_file("cannot read the log", [](const h5::Reading& file) {
     return h5::datasets_below(h5::open_group(file, "pbf/log"), run_layout::log_groups);
+  });
+}
+
+std::vector<std::string> RunReader::gauges() const {
+  return impl_->with_file("cannot read the gauges", [](const h5::Reading& file) {
+    if (!h5::has_link(file, kGauges)) return std::vector<std::string>{};
+    return h5::datasets_below(h5::open_group(file, kGauges), 1);
+  });
+}
+
+std::vector<double> RunReader::gauge(const std::string& name) const {
+  const std::vector<std::string> all = gauges();
+  if (std::find(all.begin(), all.end(), name) == all.end()) return {};
+  return impl_->with_file("cannot read the gauges", [&](const h5::Reading& file) {
+    const h5::Group group = h5::open_group(file, kGauges);
+    hsize_t rows = std::numeric_limits<hsize_t>::max();
+    // A process killed while it wrote them may leave columns of different lengths.
+    for (const std::string& each : all)
+      rows = std::min(rows, h5::shape(h5::open_dataset(group, each)).at(0));
+    const h5::Dataset d = h5::open_dataset(group, name);
+    const auto shape = h5::shape(d);
+    if (shape.size() > 2) throw h5::Failure(name + " has a shape that this program does not write");
+    const hsize_t components = shape.size() == 2 ? shape[1] : 1;
+    std::vector<double> values(h5::claimed(d, {shape[0], components}, sizeof(double)));
+    if (!values.empty())
+      check(H5Dread(d, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    values.resize(std::min<std::size_t>(values.size(), rows * components));
+    return values;
   });
 }
 

@@ -41,6 +41,10 @@ struct RunWriter::Impl {
     push([this, row] { on_file("cannot write the log", [&] { out_->log(row); }); });
   }
 
+  void gauges(const GaugeRow& row) {
+    push([this, row] { on_file("cannot write the gauges", [&] { out_->gauges(row); }); });
+  }
+
   void sync() {
     push([this] { on_file("cannot write the log", [&] { out_->sync(); }); });
     worker_.wait();
@@ -96,13 +100,14 @@ RunWriter::RunWriter(const std::string& path, const RunInfo& info, bool gzip)
                                    [=] { return std::make_unique<RunOutput>(path, info, gzip); })) {
 }
 RunWriter::RunWriter(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
-                     std::int64_t rows)
+                     const KeptRows& rows)
     : impl_(std::make_unique<Impl>(path, "cannot go on in the file", [=] {
         return std::make_unique<RunOutput>(path, info, gzip, frames, rows);
       })) {}
 RunWriter::~RunWriter() = default;
 void RunWriter::write(Snapshot&& snapshot) { impl_->write(std::move(snapshot)); }
 void RunWriter::log(const LogRow& row) { impl_->log(row); }
+void RunWriter::gauges(const GaugeRow& row) { impl_->gauges(row); }
 std::int64_t RunWriter::frames_written() const { return impl_->frames_; }
 std::int64_t RunWriter::bytes_written() const { return impl_->bytes_; }
 void RunWriter::sync() { impl_->sync(); }

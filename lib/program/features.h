@@ -5,6 +5,7 @@
 #include "lib/program/features/confinement.h"
 #include "lib/program/features/constraint.h"
 #include "lib/program/features/correction.h"
+#include "lib/program/features/gauges.h"
 #include "lib/program/features/levels.h"
 #include "lib/program/features/loads.h"
 #include "lib/program/features/motion.h"
@@ -23,7 +24,7 @@ struct FeatureList {
 };
 
 using Features = FeatureList<Motion, NearSolids, Constraint, Levels, Correction, XsphViscosity,
-                             VorticityConfinement, Loads>;
+                             VorticityConfinement, Loads, Gauges>;
 using Passes = Features::Passes;
 
 }  // namespace pbf::inline PBF_VARIANT

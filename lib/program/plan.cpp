@@ -101,6 +101,18 @@ void plan_left_out(Plan& plan, const Scene& s) {
       "solver.reproducible is false");
 }
 
+/// Of their readings in run.vtkhdf: whole chunks.
+double gauge_bytes(const Scene& s, double updates) {
+  if (s.gauges.empty()) return 0;
+  double columns = 2;
+  for (const Gauge& g : s.gauges)
+    columns += g.kind == GaugeKind::velocity ? 3 : g.kind == GaugeKind::level ? 1 : 2;
+  const double every = s.output->gauges_every
+                           ? std::max(1.0, std::round(*s.output->gauges_every / s.time.step))
+                           : s.measure_every;
+  return std::ceil((updates / every + 1) / 1024) * 1024 * 8 * columns;
+}
+
 void plan_files(Plan& plan, const Scene& s) {
   const auto n = double(plan.particles);
   const auto add = [&](const char* name, double number, double bytes,
@@ -122,7 +134,7 @@ void plan_files(Plan& plan, const Scene& s) {
     const double rows = all / s.measure_every + 1;
     const double bytes =
         (frames * row + 12) * n / (s.output->compression == Compression::gzip ? 1.45 : 1) + 1.66e6 +
-        std::floor(rows / 1024) * 1024 * 8 * 45;
+        std::floor(rows / 1024) * 1024 * 8 * 45 + gauge_bytes(s, all);
     add("run.vtkhdf", 1, bytes, std::to_string(std::int64_t(frames)) + " frames");
   }
   if (s.render) {
@@ -166,6 +178,7 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   plan.program = make_program(s, plan.shape());
   plan_grid(plan, s);
   plan.solids = solids_of(s, plan.axes);
+  plan.gauges = plan_gauges(s, plan.axes, plan.solids, plan.mass);
   if (has_levels(s))
     plan.levels = plan_levels(in_internal_axes(s, plan.axes), plan.cell_edge, plan.vol);
   plan.memory = plan_memory(s, plan);

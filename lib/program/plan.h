@@ -8,6 +8,7 @@
 
 #include "kernels/axes.h"
 #include "lib/base/json.h"
+#include "lib/program/gauges.h"
 #include "lib/program/levels.h"
 #include "lib/program/memory.h"
 #include "lib/program/obstacles.h"
@@ -60,6 +61,7 @@ struct Plan {
   double mass = 0;  ///< kg, of one particle as reported
   LevelPlan levels;
   std::vector<Solid<double>> solids;  ///< of obstacles, in internal axes; lib/program/obstacles.h
+  GaugePlan gauges;
   Program program;
   MemoryPlan memory;
   std::vector<LeftOut> left_out;

@@ -154,16 +154,20 @@ class Finder {
     refuse_other(kRunFile, info.resolved_scene, info.scene_files);  // no files in older ones
     point_.keep_file = true;
     const std::int64_t u = point_.update();
-    point_.rows = point_.saved
-                      ? prefix(file->log_column("update"), u,
-                               [&](std::int64_t k) { return schedule_.update_of_measure(k); })
-                      : 0;
+    if (point_.saved) {
+      point_.rows.log = prefix(file->log_column("update"), u,
+                               [&](std::int64_t k) { return schedule_.update_of_measure(k); });
+      if (schedule_.gauge_every > 0)
+        point_.rows.gauges = prefix(file->gauge("update"), u,
+                                    [&](std::int64_t k) { return schedule_.update_of_gauges(k); });
+    }
     // Frames behind the checkpoint stay when the run to come writes the same.
     const bool same = exact(before) && exact(scene_) && info.commit == commit_;
     point_.frames = prefix(file->updates(), same ? schedule_.updates : u,
                            [&](std::int64_t k) { return schedule_.update_of_frame(k); });
-    if (point_.saved &&
-        (point_.frames < schedule_.frames_until(u) || point_.rows < schedule_.measures_until(u)))
+    if (point_.saved && (point_.frames < schedule_.frames_until(u) ||
+                         point_.rows.log < schedule_.measures_until(u) ||
+                         point_.rows.gauges < schedule_.gauges_until(u)))
       forget("run.vtkhdf ends before the checkpoint");
   }
   /// A log without one of today's columns cannot go on, and the results would be others.
@@ -182,7 +186,7 @@ class Finder {
     else if (!why.empty() && damaged_)
       point_.notes.push_back(why);
     point_.saved.reset();
-    point_.rows = 0;
+    point_.rows = {};
   }
 
   static constexpr const char* kOtherwise =

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lib/io/checkpoint.h"
+#include "lib/io/run_file.h"
 #include "lib/run/run_folder.h"
 #include "lib/scene/load.h"
 #include "lib/scene/scene.h"
@@ -20,7 +21,7 @@ struct ResumePoint {
   std::optional<SavedRun> saved;   ///< the state to go on from; absent: the start
   bool keep_file = false;          ///< go on in run.vtkhdf; else it is written anew
   std::int64_t frames = 0;         ///< of run.vtkhdf that stay: the run would write the same
-  std::int64_t rows = 0;           ///< of the log that stay
+  KeptRows rows;                   ///< of the log and of gauges, that stay
   std::vector<std::string> notes;  ///< what the user should know
   std::int64_t update() const { return saved ? saved->state.updates : 0; }
 };

@@ -39,6 +39,7 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   info.rest_density = scene.fluid.rest_density;
   info.particles = run.plan.particles;
   info.first_update = run.from.update();
+  info.gauges = gauge_data(scene);
   return info;
 }
 
@@ -81,6 +82,8 @@ void run_session(RunParts& run) {
   Watch watch(
       run.scene, run.plan, run.solver, [&](Diagnostics& m, double dt) { rows->take(m, dt); },
       [&](const std::string& line) { run.log.note(line); }, &run.clock);
+  if (run.schedule.gauge_every > 0 && run.writer)
+    watch.read_gauges([&](const GaugeRow& row) { run.writer->gauges(row); });
   Reporter reporter(run, watch);
   rows.emplace(run, reporter);
   Frames frames(run, reporter);

@@ -159,6 +159,11 @@ void add_output(const Scene& s, std::vector<Warning>& list) {
   if (double(s.measure_every) * s.time.step > run)
     add("measure_every", s.measure_every * s.time.step,
         "the guard looks at the start and the end alone");
+  if (!s.output && !s.gauges.empty())
+    text += (text.empty() ? "" : "; ") +
+            std::string(
+                "gauges are written to run.vtkhdf, and there is no key output: nothing is "
+                "kept of them; give output");
   if (!text.empty()) list.push_back({"output", text});
 }
 

@@ -17,6 +17,9 @@ Schedule make_schedule(const Scene& s) {
   out.updates = whole(s.time.end / s.time.step);
   out.measure_every = s.measure_every;
   if (s.output) out.frame_every = whole(s.output->every / s.time.step);
+  if (s.output && !s.gauges.empty())
+    out.gauge_every =
+        s.output->gauges_every ? whole(*s.output->gauges_every / s.time.step) : out.measure_every;
   if (s.render) {
     out.picture_every = s.output ? out.frame_every * whole(s.render->every / s.output->every)
                                  : whole(s.render->every / s.time.step);

@@ -20,29 +20,38 @@ struct Schedule {
   std::int64_t frame_every = 0;    ///< frames of run.vtkhdf
   std::int64_t picture_every = 0;  ///< a multiple of frame_every when there are frames
 
+  std::int64_t gauge_every = 0;  ///< readings of the gauges
+
   bool measures(std::int64_t u) const { return due(u, measure_every) || u == updates; }
   bool writes(std::int64_t u) const { return due(u, frame_every) || (frame_every && u == updates); }
   bool draws(std::int64_t u) const { return due(u, picture_every); }
-  /// Whether a longer run would measure, write or draw here as well.
+  bool reads_gauges(std::int64_t u) const {
+    return due(u, gauge_every) || (gauge_every && u == updates);
+  }
+  /// Whether a longer run would measure, write, draw or read here as well.
   bool has(std::int64_t u) const {
-    return due(u, measure_every) || due(u, frame_every) || due(u, picture_every);
+    return due(u, measure_every) || due(u, frame_every) || due(u, picture_every) ||
+           due(u, gauge_every);
   }
   /// Numbers of measures, frames and pictures up to update u, the one after which a run that goes
   /// on does no more of them for u.
   std::int64_t measures_until(std::int64_t u) const { return count(u, measure_every, true); }
   std::int64_t frames_until(std::int64_t u) const { return count(u, frame_every, true); }
   std::int64_t pictures_until(std::int64_t u) const { return count(u, picture_every, false); }
-  /// The update of the k-th measure and frame (from 0).
+  std::int64_t gauges_until(std::int64_t u) const { return count(u, gauge_every, true); }
+  /// The update of the k-th measure, frame and reading (from 0).
   std::int64_t update_of_measure(std::int64_t k) const { return at(k, measure_every); }
   std::int64_t update_of_frame(std::int64_t k) const { return at(k, frame_every); }
+  std::int64_t update_of_gauges(std::int64_t k) const { return at(k, gauge_every); }
   /// The first update after u (-1: the start is to come) at which there is a measure, a frame or
-  /// picture, or either; at most the last one.
+  /// picture, a reading, or any; at most the last one.
   std::int64_t next_measure(std::int64_t u) const { return next(u, measure_every); }
   std::int64_t next_output(std::int64_t u) const {
     return std::min(next(u, frame_every), next(u, picture_every));
   }
+  std::int64_t next_gauges(std::int64_t u) const { return next(u, gauge_every); }
   std::int64_t next_event(std::int64_t u) const {
-    return std::min(next_measure(u), next_output(u));
+    return std::min({next_measure(u), next_output(u), next_gauges(u)});
   }
 
  private:

@@ -36,14 +36,18 @@ void Watch::begin(const Diagnostics& now, const StepHistory& before,
 }
 
 std::int64_t Watch::next(std::int64_t u) const {
-  return goes_back() ? schedule_.next_event(u) : schedule_.next_measure(u);
+  const std::int64_t next = goes_back() ? schedule_.next_event(u) : schedule_.next_measure(u);
+  return take_gauges_ ? std::min(next, schedule_.next_gauges(u)) : next;
 }
 
 Now Watch::at(Session& session) {
+  const std::optional<GaugeRow> row = gauges();
+  bool stays = true;
   if (schedule_.measures(session.update()))
-    measure(true);
-  else
-    look(measured());
+    stays = measure(true);
+  else if (goes_back() || !row)
+    stays = look(measured());
+  if (row && stays) take_gauges_(*row);
   session.use(options());
   return event_ ? Now::stop : Now::go_on;
 }
@@ -71,13 +75,23 @@ bool Watch::state_is_good() {
   return !event_;
 }
 
+/// What they read where they are to be read, before a state is kept, as loads are.
+std::optional<GaugeRow> Watch::gauges() {
+  const std::int64_t u = solver_.updates();
+  if (!take_gauges_ || !schedule_.reads_gauges(u)) return std::nullopt;
+  const bool regular = u % schedule_.gauge_every == 0;
+  return GaugeRow{u, double(u) * scene_.time.step,
+                  solver_.gauges(regular ? Interval::ends : Interval::goes_on)};
+}
+
 Diagnostics Watch::measured() {
   Diagnostics m = solver_.measure();
   m.work = work_.until(m);
   return m;
 }
 
-void Watch::measure(bool judged) {
+/// Whether the measure stays: false where the session goes back.
+bool Watch::measure(bool judged) {
   Diagnostics m = measured();
   // Before a state is kept, so that going back does not bring them again. A row between two
   // measures, which a longer run does not have, ends no interval.
@@ -86,12 +100,13 @@ void Watch::measure(bool judged) {
   const bool first = !begun_;
   if (first) first_ = m, begin(m, {}, {});
   const double dt = std::ldexp(scene_.time.step, -options().level);
-  if (judged && !look(m)) return;
+  if (judged && !look(m)) return false;
   if (regular) work_.take(m);
   taken_ = m.update;
   last_ = m;
   take_(last_, dt);
   if (first) first_ = last_;
+  return true;
 }
 
 /// Whether the measure stays: false where the session goes back.

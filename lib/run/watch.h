@@ -8,6 +8,7 @@
 
 #include "lib/base/stage_clock.h"
 #include "lib/io/checkpoint.h"
+#include "lib/io/run_file.h"
 #include "lib/run/guard.h"
 #include "lib/run/schedule.h"
 #include "lib/run/session.h"
@@ -27,6 +28,8 @@ class Watch : public Observer {
       const Scene& scene, const Plan& plan, Solver& solver, Take take,
       std::function<void(const std::string&)> note = [](const std::string&) {},
       StageClock* clock = nullptr);
+  /// `take` gets every reading of the gauges but those that the session goes back from.
+  void read_gauges(std::function<void(const GaugeRow&)> take) { take_gauges_ = std::move(take); }
   /// Before the session: the solver has the state already. last() is its measure, to be completed.
   Diagnostics& go_on_from(const SavedRun& saved);
 
@@ -63,7 +66,8 @@ class Watch : public Observer {
   Now choose(Session& session);
   void begin(const Diagnostics& now, const StepHistory& before, std::optional<double> released);
   Diagnostics measured();
-  void measure(bool judged);
+  bool measure(bool judged);
+  std::optional<GaugeRow> gauges();
   bool look(const Diagnostics& m);
   bool judge(const Diagnostics& m);
   void take(const std::string& change, int level_before);
@@ -75,6 +79,7 @@ class Watch : public Observer {
   Solver& solver_;
   Take take_;
   std::function<void(const std::string&)> note_;
+  std::function<void(const GaugeRow&)> take_gauges_;
   StageClock* clock_;
   Schedule schedule_;
   Callback choosing_{[this](std::int64_t u) { return next_choice(u); },

@@ -14,7 +14,7 @@ KeyRows gauge_rows() {
                    .further = "{name: H1, kind: level, at: [0.5, 0.2]}"},
                   exact("all solvers of a comparison have the same gauges"))},
       {key(GAUGE(name), plain, "Name, in the run file.", required),
-       key(GAUGE(kind), one_of({"level", "velocity", "flow", "pressure"}),
+       key(GAUGE(kind), one_of({kGaugeKinds.begin(), kGaugeKinds.end()}),
            "What is read; decides which keys it has. level: the wetted length of a line along "
            "gravity's axis (m). velocity: that of the fluid within h (m/s), nan where there is "
            "none. flow: mass through a rectangle per time (kg/s), and all of it (kg). pressure: "

@@ -59,6 +59,7 @@ struct Obstacle {
 
 /// What is written down of one place while a run goes on.
 enum class GaugeKind { level, velocity, flow, pressure };
+inline constexpr std::array<const char*, 4> kGaugeKinds = {"level", "velocity", "flow", "pressure"};
 
 /// A gauge. Which members count depends on `kind`; the loader refuses the others.
 struct Gauge {

@@ -73,6 +73,9 @@ class Solver {
   virtual Diagnostics measure() = 0;
   /// Of the walls whose loads are summed, means since the start or since they were taken last.
   virtual std::vector<WallLoad> loads(Interval interval) = 0;
+  /// What the gauges read: gauge_readings() (lib/solver/gauge_readings.h). Means since the start or
+  /// since they were read last with Interval::ends.
+  virtual std::vector<double> gauges(Interval interval) = 0;
   /// set_state() of the state, in this or in another solver of the same scene and precision,
   /// continues to the last bit. Positions and velocities of a double are rounded where they go into
   /// a solver of float. Error(internal) when the number of particles differs or the ids are not

@@ -7,6 +7,7 @@
 
 #include "kernels/axes.h"
 #include "kernels/boundary/loads.h"
+#include "kernels/pass_flow.h"
 #include "kernels/step_counts.h"
 #include "kernels/vec3.h"
 #include "lib/solver/step_trace.h"
@@ -21,6 +22,8 @@ struct StateArrays {
   StepCounts* counts;  ///< one
   Load* load;
   int walls;  ///< that have a load
+  FlowCount* flow;
+  int flows;  ///< flow gauges
 };
 
 /// A copy in one pass: a guarded run of few particles makes one at every measure.
@@ -34,6 +37,7 @@ struct CopyStatePass {
     if (i != 0) return;
     *to.counts = *from.counts;
     for (int wall = 0; wall < from.walls; ++wall) to.load[wall] = from.load[wall];
+    for (int gate = 0; gate < from.flows; ++gate) to.flow[gate] = from.flow[gate];
   }
 };
 
@@ -80,6 +84,8 @@ SolverState download_state(Exec& exec, std::size_t n, const Axes& axes,
   s.way_squared = counts.way_squared;
   s.loads.resize(std::size_t(from.walls));
   exec.to_host(from.load, s.loads.size(), s.loads.data());
+  s.flows.resize(std::size_t(from.flows));
+  exec.to_host(from.flow, s.flows.size(), s.flows.data());
   return s;
 }
 
@@ -106,6 +112,9 @@ void upload_state(Exec& exec, const Axes& axes, const SolverState& s, const Stat
   std::vector<Load> loads(std::size_t(to.walls));
   if (s.loads.size() == loads.size()) loads = s.loads;
   exec.to_device(loads.data(), loads.size(), to.load);
+  std::vector<FlowCount> flows(std::size_t(to.flows));
+  if (s.flows.size() == flows.size()) flows = s.flows;
+  exec.to_device(flows.data(), flows.size(), to.flow);
 }
 
 }  // namespace pbf::inline PBF_VARIANT

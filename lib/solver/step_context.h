@@ -15,6 +15,7 @@
 #include "lib/program/field.h"
 #include "lib/program/loads.h"
 #include "lib/scene/scene.h"
+#include "lib/solver/gauge_arrays.h"
 #include "lib/solver/moving_parts.h"
 #include "lib/solver/placed_solids.h"
 #include "lib/solver/state_transfer.h"
@@ -44,6 +45,7 @@ struct StepContext {
   int iterations = 0;               ///< since the lists were made
   bool iterating = false;
   std::vector<Real> factors{};  ///< omega of each iteration
+  GaugeArrays<Exec> gauges{};   ///< to be made before make()
 
   // What passes use.
   int rows() const { return rows_; }  ///< in use
@@ -105,7 +107,14 @@ struct StepContext {
   /// One for each wall that has any.
   Load* loads() { return loads_.data(); }
   StateArrays<Real> state() {
-    return {position(), velocity(), ids(), counts(), loads(), int(loads_.size())};
+    return {position(),
+            velocity(),
+            ids(),
+            counts(),
+            loads(),
+            int(loads_.size()),
+            gauges.flow.data(),
+            int(gauges.flow.size())};
   }
 
   /// Positions came from elsewhere: until the lists are made all rows count as near solids.
@@ -258,11 +267,12 @@ struct SavedState {
   Buffer<int> id;
   Buffer<StepCounts> counts;
   Buffer<Load> loads;
+  Buffer<FlowCount> flows;
 
   bool empty() const { return counts.size() == 0; }
   StateArrays<Real> state() {
-    return {position.data(), velocity.data(), id.data(),
-            counts.data(),   loads.data(),    int(loads.size())};
+    return {position.data(), velocity.data(),   id.data(),    counts.data(),
+            loads.data(),    int(loads.size()), flows.data(), int(flows.size())};
   }
   std::size_t bytes() const { return position.bytes() + velocity.bytes() + id.bytes(); }
 
@@ -273,6 +283,7 @@ struct SavedState {
     id.resize(n);
     counts.resize(1);
     loads.resize(std::size_t(c.state().walls));
+    flows.resize(std::size_t(c.state().flows));
     c.each(CopyStatePass<Real>{c.state(), state()});
   }
   void restore(StepContext<Real, Exec>& c) { c.each(CopyStatePass<Real>{state(), c.state()}); }

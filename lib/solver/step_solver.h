@@ -12,6 +12,7 @@
 #include "lib/program/time_levels.h"
 #include "lib/solver/diagnostics.h"
 #include "lib/solver/executor.h"
+#include "lib/solver/gauge_readings.h"
 #include "lib/solver/params.h"
 #include "lib/solver/solver.h"
 #include "lib/solver/stepper.h"
@@ -128,6 +129,11 @@ class StepSolver final : public Solver, public Inspection {
     return wall_loads(stepper_->loads(interval), scene_, plan_);
   }
 
+  std::vector<double> gauges(Interval interval) override {
+    const GaugeSums sums = stepper_->gauges(scene_.time.step, interval);
+    return gauge_readings({sums.places, sums.flows, sums.patches}, scene_, plan_);
+  }
+
   SolverState state(Which which) override {
     if (which == Which::positions) return stepper_->positions();
     if (which == Which::now) return stepper_->state(updates_, steps_);
@@ -203,9 +209,11 @@ class StepSolver final : public Solver, public Inspection {
   template <class Work, class Again>
   void until_lists_fit(const Work& work, const Again& again) {
     if constexpr (Exec::lists_overflow) stepper_->save(saved_);
+    stepper_->begin_flow();
     work();
     while (exec_.grow_lists(n_)) {
       stepper_->restore(saved_);
+      stepper_->begin_flow();
       again();
       work();
     }

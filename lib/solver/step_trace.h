@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernels/boundary/loads.h"
+#include "kernels/pass_flow.h"
 #include "lib/scene/scene.h"
 
 namespace pbf::inline solver_module {
@@ -25,6 +26,7 @@ struct SolverState {
   double way_squared = 0;
   /// Of each wall that has any, along the internal axes; none: nothing was summed.
   std::vector<Load> loads{};
+  std::vector<FlowCount> flows{};  ///< of each flow gauge
 };
 
 /// One array that a pass left behind, along the scene's axes; row = particle id.

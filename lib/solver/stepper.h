@@ -36,6 +36,7 @@ class Stepper {
     for (int k = 0; k < scene.solver.iterations; ++k)
       c_.factors.push_back(
           Real(plan.sor * (plan.sor_factors.empty() ? 1 : plan.sor_factors[std::size_t(k)])));
+    c_.gauges.make(exec, plan.gauges);
     c_.make(plan.program.fields, position, velocity, id, scene, plan,
             std::max(scene.solver.iterations, 1) * (1 + plan.shape().repeats));
     find_pairs();
@@ -106,11 +107,35 @@ class Stepper {
 
   /// What each wall got since this was called with Interval::ends.
   std::vector<Load> loads(Interval interval) {
-    const StateArrays<Real> state = c_.state();
-    std::vector<Load> now(std::size_t(state.walls)), none(now.size());
-    c_.exec.to_host(state.load, now.size(), now.data());
-    if (interval == Interval::ends) c_.exec.to_device(none.data(), none.size(), state.load);
-    return now;
+    return loads(0, c_.state().walls - int(c_.gauges.patch.size()), interval);
+  }
+
+  /// Before steps, also before they are done again: what flow counts from. Steps without time do
+  /// not count.
+  void begin_flow() {
+    if (c_.gauges.gate.size() == 0) return;
+    if (!(c_.p.dt > 0)) sides_are_current_ = false;
+    if (sides_are_current_ || !(c_.p.dt > 0)) return;
+    take_sides(c_, false);
+    sides_are_current_ = true;
+  }
+
+  /// Of the present positions and velocities, and since this was called with Interval::ends.
+  GaugeSums gauges(double update_dt, Interval interval) {
+    c_.exec.begin();
+    GaugeSums sums;
+    sums.places = c_.gauges.at_places(c_, update_dt);
+    const int patches = int(c_.gauges.patch.size());
+    sums.patches = loads(c_.state().walls - patches, patches, interval);
+    sums.flows.resize(c_.gauges.flow.size());
+    c_.exec.to_host(c_.gauges.flow.data(), sums.flows.size(), sums.flows.data());
+    if (interval == Interval::ends) {
+      std::vector<FlowCount> next = sums.flows;
+      for (FlowCount& f : next) f.since = 0, f.time = 0;
+      c_.exec.to_device(next.data(), next.size(), c_.gauges.flow.data());
+    }
+    c_.exec.mark("measure");
+    return sums;
   }
 
   /// The rest of the state stays empty.
@@ -129,12 +154,14 @@ class Stepper {
   void set_state(const SolverState& s) {
     upload_state<Real>(c_.exec, plan_.axes, s, c_.state());
     c_.forget_near();
+    sides_are_current_ = false;
     moved();
   }
   void save(Saved& s) { s.save(c_); }
   void restore(Saved& s) {
     s.restore(c_);
     c_.forget_near();
+    sides_are_current_ = false;
     moved();
   }
 
@@ -205,6 +232,14 @@ class Stepper {
   std::size_t bytes() const { return c_.bytes() + c_.exec.bytes(); }
 
  private:
+  std::vector<Load> loads(int first, int count, Interval interval) {
+    if (count <= 0) return {};
+    std::vector<Load> now(std::size_t(count), Load{}), none(now.size());
+    Load* from = c_.loads() + first;
+    c_.exec.to_host(from, now.size(), now.data());
+    if (interval == Interval::ends) c_.exec.to_device(none.data(), none.size(), from);
+    return now;
+  }
   void launch(int pass) {
     Passes::launch(pass, c_);
     c_.exec.mark(c_.booked(pass_infos()[std::size_t(pass)].stage));
@@ -266,6 +301,7 @@ class Stepper {
   std::uint64_t residual_limit_;
   const Program* program_;
   bool density_is_current_ = false;
+  bool sides_are_current_ = false;  ///< those that flow counts from
 };
 
 }  // namespace pbf::inline PBF_VARIANT

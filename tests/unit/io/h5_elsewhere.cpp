@@ -179,7 +179,7 @@ TEST_CASE("a run file that takes in another file is refused, whatever the way an
       });
       // Nor written to: what is appended to such a run file would go into the other file.
       try {
-        RunWriter(path, sample_info(2), false, 1, 1).finish({"finished"});
+        RunWriter(path, sample_info(2), false, 1, {1, 0}).finish({"finished"});
       } catch (const Error&) {
       }
       CHECK(read_particle_file(other).position.at(1)[0] == 0.75);

@@ -80,7 +80,7 @@ TEST_CASE("a file goes on from whatever any single write to the disk has left",
       REQUIRE(kept >= sure);
     }
     INFO("state " << states << ", " << kept << " frames kept");
-    RunWriter writer(again, sample_info(40), gzip, kept, 2 * kept);
+    RunWriter writer(again, sample_info(40), gzip, kept, {2 * kept, 0});
     write(writer, kept, frames);
     writer.finish({"finished"});
     check_whole(again, frames);
@@ -104,7 +104,7 @@ TEST_CASE("frames and rows that a resumed run does again are dropped, and sessio
     RunInfo info = sample_info(40);
     info.first_update = 20;
     info.host = "node2";
-    RunWriter writer(path, info, false, 2, 4);
+    RunWriter writer(path, info, false, 2, {4, 0});
     CHECK(RunReader(path).frames() == 2);
     CHECK(RunReader(path).status() == "running");
     CHECK(RunReader(path).sessions().at(1).ended.empty());
@@ -122,6 +122,7 @@ TEST_CASE("frames and rows that a resumed run does again are dropped, and sessio
   CHECK(sessions[1].host == "node2");
   CHECK(sessions[1].device == "cpu float, a processor");
   CHECK(sessions[1].program == "0.1.0 (0123abc)");
-  CHECK_THROWS_AS(RunWriter(path, sample_info(40), false, 9, 4), Error);  // so many are not there
+  CHECK_THROWS_AS(RunWriter(path, sample_info(40), false, 9, {4, 0}),
+                  Error);  // so many are not there
   check_whole(path, 8);
 }

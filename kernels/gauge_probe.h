@@ -1,0 +1,76 @@
+// Sums over the particles around places: what level and velocity gauges read. Whole numbers, so
+// neither order nor threads change a sum. Every particle looks for itself: no cells are asked, so
+// that a reading needs no sort.
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/boundary/loads.h"
+
+namespace pbf {
+
+/// Places in a row along an axis, h, in the internal frame.
+struct Probe {
+  double from[3] = {0, 0, 0};  ///< the first
+  double step = 1;             ///< from one to the next
+  int axis = 2, count = 1;
+  int first = 0;        ///< its place's number among all probes'
+  bool moving = false;  ///< velocities are summed too
+};
+
+/// Of one place: the sum of (1 - q^2)^3, Poly6's shape, and of that times v dt, in units of 2^-32
+/// and 2^-32 h, dt that of an update.
+struct ProbeSums {
+  std::int64_t weight = 0, way[3] = {0, 0, 0};
+};
+
+}  // namespace pbf
+
+namespace pbf::inline PBF_VARIANT {
+
+template <class Real>
+struct ProbePass {
+  const Probe* probe;
+  int probes;
+  const Vec4<Real>*position, *velocity;
+  double update_dt;  ///< s
+  ProbeSums* sums;   ///< in/out
+
+  PBF_HD void operator()(int i) const {
+    const Vec4<Real> at = position[i];
+    for (int k = 0; k < probes; ++k) {
+      const Probe& p = probe[k];
+      const double d[3] = {double(at.x) - p.from[0], double(at.y) - p.from[1],
+                           double(at.z) - p.from[2]};
+      const double along = p.axis == 0 ? d[0] : p.axis == 1 ? d[1] : d[2];
+      const double a = p.axis == 0 ? d[1] : d[0], b = p.axis == 2 ? d[1] : d[2];
+      const double across = a * a + b * b;
+      // Also for what is no number.
+      if (!(across < 1) || !(along > -1) || !(along < p.step * (p.count - 1) + 1)) continue;
+      const double reach = square_root(1 - across);
+      const int low = int((along - reach) / p.step), high = int((along + reach) / p.step) + 1;
+      for (int n = max2(low, 0); n <= min2(high, p.count - 1); ++n) {
+        const double e = along - n * p.step, t = 1 - (across + e * e);
+        if (t > 0) add(p, p.first + n, i, t * t * t);
+      }
+    }
+  }
+
+ private:
+  PBF_HD void add(const Probe& p, int place, int i, double weight) const {
+    add_whole(&sums[place].weight, whole(weight));
+    if (!p.moving) return;
+    const Vec4<Real> v = velocity[i];
+    add_whole(&sums[place].way[0], whole(weight * bounded(update_dt * double(v.x))));
+    add_whole(&sums[place].way[1], whole(weight * bounded(update_dt * double(v.y))));
+    add_whole(&sums[place].way[2], whole(weight * bounded(update_dt * double(v.z))));
+  }
+  /// h in an update; what is faster, or no number, is for the guard to find.
+  PBF_HD static double bounded(double way) { return max2(min2(way, 4096.0), -4096.0); }
+  PBF_HD static std::int64_t whole(double x) {
+    const double u = x * 4294967296.0;
+    return std::int64_t(u + (u < 0 ? -0.5 : 0.5));
+  }
+};
+
+}  // namespace pbf::inline PBF_VARIANT

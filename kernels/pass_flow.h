@@ -1,0 +1,79 @@
+// Flow through rectangles: which particles have changed sides in an update.
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/boundary/loads.h"
+
+namespace pbf {
+
+/// A rectangle, h, in the internal frame; the axes of its edges have length 1.
+struct FlowGate {
+  double center[3] = {0, 0, 0}, normal[3] = {1, 0, 0};
+  double edge[2][3] = {{0, 1, 0}, {0, 0, 1}};
+  double half[2] = {0, 0};  ///< of the edges
+};
+
+/// Particles that went through, those along the normal less those against it.
+struct FlowCount {
+  std::int64_t total = 0;  ///< since the start
+  std::int64_t since = 0;  ///< since it was asked last
+  double time = 0;         ///< s, the same
+};
+
+}  // namespace pbf
+
+namespace pbf::inline PBF_VARIANT {
+
+/// Bits say on which side of each gate a particle is, in the order of ids. They follow from the
+/// positions alone, so they are no part of a state. With `count` what has changed since they were
+/// taken last counts, where the particle is within the rectangle now.
+template <class Real>
+struct FlowPass {
+  const FlowGate* gate;
+  int gates;
+  const Vec4<Real>* position;
+  const int* id;
+  int* sides;        ///< in/out, by id
+  FlowCount* count;  ///< null: the sides are taken for the first time
+  double update_dt;  ///< s
+
+  PBF_HD void operator()(int i) const {
+    const Vec3<Real> x = xyz(position[i]);
+    unsigned now = 0;
+    for (int k = 0; k < gates; ++k) now |= unsigned(beyond(gate[k], x)) << k;
+    unsigned before = now;
+    if (count) before = unsigned(sides[id[i]]);
+    sides[id[i]] = int(now);
+    if (!count) return;
+    if (i == 0)
+      for (int k = 0; k < gates; ++k) count[k].time += update_dt;
+    if (now == before) return;
+    for (int k = 0; k < gates; ++k) {
+      if (!((now ^ before) >> k & 1) || !within(gate[k], x)) continue;
+      const std::int64_t one = now >> k & 1 ? 1 : -1;
+      add_whole(&count[k].total, one);
+      add_whole(&count[k].since, one);
+    }
+  }
+
+ private:
+  /// The same bits wherever it is compiled in: the sides of one pass are compared with another's.
+  PBF_HD static bool beyond(const FlowGate& g, Vec3<Real> x) {
+    const double along = mul_add(
+        g.normal[0], double(x.x) - g.center[0],
+        mul_add(g.normal[1], double(x.y) - g.center[1], g.normal[2] * (double(x.z) - g.center[2])));
+    return along >= 0;
+  }
+  PBF_HD static bool within(const FlowGate& g, Vec3<Real> x) {
+    for (int e = 0; e < 2; ++e) {
+      const double a = g.edge[e][0] * (double(x.x) - g.center[0]) +
+                       g.edge[e][1] * (double(x.y) - g.center[1]) +
+                       g.edge[e][2] * (double(x.z) - g.center[2]);
+      if (!(a <= g.half[e] && a >= -g.half[e])) return false;
+    }
+    return true;
+  }
+};
+
+}  // namespace pbf::inline PBF_VARIANT

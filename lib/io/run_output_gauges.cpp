@@ -1,0 +1,66 @@
+// RunOutput: readings of gauges, one column per number or vector, written in batches as the log is.
+#include <algorithm>
+
+#include "lib/io/h5_output.h"
+#include "lib/io/h5_read.h"
+#include "lib/io/run_layout.h"
+#include "lib/io/run_output.h"
+
+namespace pbf::inline io_module {
+
+void RunOutput::make_gauges(const std::vector<GaugeData>& data, hsize_t rows) {
+  gauge_data_ = data;
+  if (data.empty()) return;
+  const auto make = [&](const std::string& path, hid_t type, const char* unit, int components) {
+    gauges_.push_back(column(pbf_, run_layout::gauges + path, type,
+                             {run_layout::log_rows, components > 1 ? components : 0, false, unit},
+                             rows));
+  };
+  make("time", H5T_IEEE_F64LE, "s", 1);
+  make("update", H5T_STD_I64LE, "1", 1);
+  for (const GaugeData& d : data) {
+    make(d.name, H5T_IEEE_F64LE, d.unit, d.components);
+    if (*d.further) make(std::string(d.further) + "/" + d.name, H5T_IEEE_F64LE, d.further_unit, 1);
+    if (opening_) continue;
+    const h5::Dataset dataset = h5::open_dataset(pbf_, run_layout::gauges + d.name);
+    h5::write_text(dataset, "kind", d.kind);
+    h5::write_text(dataset, "place", d.place);
+  }
+}
+
+void RunOutput::gauges(const GaugeRow& row) {
+  if (waiting_gauges_.empty()) since_gauges_.reset();
+  waiting_gauges_.push_back(row);
+  if (waiting_gauges_.size() >= run_layout::waiting_rows ||
+      since_gauges_.seconds() > run_layout::waiting_seconds) {
+    write_gauges();
+    flush();
+  }
+}
+
+void RunOutput::write_gauges() {
+  if (waiting_gauges_.empty()) return;
+  std::vector<double> numbers;
+  std::vector<std::int64_t> updates;
+  for (const GaugeRow& row : waiting_gauges_) {
+    numbers.push_back(row.time);
+    updates.push_back(row.update);
+  }
+  gauges_[0].append(numbers);
+  gauges_[1].append(updates);
+  std::size_t next = 2, first = 0;
+  const auto append = [&](std::size_t components) {
+    numbers.clear();
+    for (const GaugeRow& row : waiting_gauges_)
+      for (std::size_t k = 0; k < components; ++k) numbers.push_back(row.numbers.at(first + k));
+    gauges_[next++].append(numbers);
+    first += components;
+  };
+  for (const GaugeData& d : gauge_data_) {
+    append(std::size_t(d.components));
+    if (*d.further) append(1);
+  }
+  waiting_gauges_.clear();
+}
+
+}  // namespace pbf::inline io_module

@@ -1,0 +1,37 @@
+// What gauges read, in SI units, and the data of each of them in the run file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/program/plan.h"
+
+namespace pbf::inline solver_module {
+
+/// A gauge's data: one number or a vector per reading, and for some another number.
+struct GaugeData {
+  std::string name, kind, place;  ///< "P1", "pressure", "container at (0.82, 0.47, 0.02) m, ..."
+  const char* unit = "m";
+  int components = 1;
+  const char* further = "";  ///< "total" (flow), "peak" (pressure); empty: none
+  const char* further_unit = "";
+
+  int numbers() const { return components + (*further ? 1 : 0); }
+};
+
+/// In the order of the scene.
+std::vector<GaugeData> gauge_data(const Scene& scene);
+
+struct GaugeSumsOf {
+  const std::vector<ProbeSums>& places;
+  const std::vector<FlowCount>& flows;
+  const std::vector<Load>& patches;
+};
+
+/// The numbers of all gauges, one behind the other: GaugeData::numbers() of each. Level: m.
+/// Velocity: m/s along the scene's axes, nan where no particle is within h. Flow: kg/s, the mean
+/// since the last reading, and kg since the start. Pressure: Pa, the mean since the last reading
+/// and the largest mean of an update. Means without time are 0.
+std::vector<double> gauge_readings(const GaugeSumsOf& sums, const Scene& scene, const Plan& plan);
+
+}  // namespace pbf::inline solver_module
