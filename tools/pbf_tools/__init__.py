@@ -2,9 +2,9 @@
 
 from .errors import BadInput, FileError, MissingPackage, ToolError
 from .fields import Field, Frame
-from .run import Run, open
+from .run import Gauge, Run, open
 from .table import Table, read_csv
 
-__all__ = ["BadInput", "Field", "FileError", "Frame", "MissingPackage", "Run", "Table",
+__all__ = ["BadInput", "Field", "FileError", "Frame", "Gauge", "MissingPackage", "Run", "Table",
            "ToolError", "open", "read_csv"]
 __version__ = "0.1.0"

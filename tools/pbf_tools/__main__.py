@@ -15,6 +15,7 @@ COMMANDS = {
     "plot-time": "time per particle and update against the number of particles",
     "plot-stages": "share of every stage in the time of an update, stacked",
     "plot-energy": "energies of runs over time",
+    "plot-gauges": "readings of gauges over time against experiments",
     "plot-study": "error against run time, with the Pareto front",
     "plot-map": "which settings run stably, which degrade, which are stopped",
     "plot-front": "front of a dam break against experiments",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -16,6 +17,30 @@ from .fields import Field, Frames
 from .table import Table
 
 T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """Readings of a gauge: `value` has shape (readings,), of a velocity (readings, 3). Pressures
+    also have the `peak` of single updates, flows the `total` since the start (kg).
+
+    >>> gauge = Gauge("H", "level", "x = 0 m", "m", np.array([0.0, 1.0]), np.array([0.5, 0.25]))
+    >>> time, value = gauge
+    >>> value
+    array([0.5 , 0.25])
+    """
+
+    name: str
+    kind: str  # level, velocity, flow, pressure
+    place: str
+    unit: str
+    time: np.ndarray
+    value: np.ndarray
+    total: np.ndarray | None = None
+    peak: np.ndarray | None = None
+
+    def __iter__(self) -> Iterator[np.ndarray]:
+        return iter((self.time, self.value))
 
 
 class Run:
@@ -150,6 +175,17 @@ class Run:
         """
         return self._read(_log, "cannot read the log")
 
+    @property
+    def gauges(self) -> dict[str, Gauge]:
+        """The gauges of the run by name; empty where its scene has none.
+
+        `time, value = run.gauges["H2"]`.
+
+        >>> open("run.vtkhdf").gauges
+        {}
+        """
+        return self._read(_gauges, "cannot read the gauges")
+
     def _read(self, action: Callable[[h5py.File], T], what: str) -> T:
         return index.read(self.path, action, what)
 
@@ -169,6 +205,25 @@ def _log(file: h5py.File) -> Table:
     order = ["time"] + [name for name in data if name != "time"]
     return Table({name: data[name][:rows] for name in order if name in data},
                  {name: index._text(d.attrs.get("units", "1")) for name, d in data.items()})
+
+
+def _gauges(file: h5py.File) -> dict[str, Gauge]:
+    group = file.get("pbf/gauges")
+    if group is None:
+        return {}
+    more = {part: group[part] for part in ("total", "peak") if part in group}
+    data = {name: d for name, d in group.items()
+            if isinstance(d, h5py.Dataset) and name not in ("time", "update")}
+    every = [group["time"], *data.values(), *(d for g in more.values() for d in g.values())]
+    # A process killed while it wrote them may leave columns of different lengths.
+    rows = min(len(d) for d in every)
+    time = group["time"][:rows]
+    return {name: Gauge(name, index._text(d.attrs.get("kind", "")),
+                        index._text(d.attrs.get("place", "")),
+                        index._text(d.attrs.get("units", "1")), time, d[:rows],
+                        *(more[part][name][:rows] if name in more.get(part, ()) else None
+                          for part in ("total", "peak")))
+            for name, d in data.items()}
 
 
 def open(path: str | os.PathLike[str]) -> Run:  # noqa: A001, as in h5py and gzip

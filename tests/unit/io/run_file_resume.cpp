@@ -18,11 +18,24 @@ namespace {
 
 std::size_t count_of(std::int64_t frame) { return frame % 3 == 2 ? 30 : 40; }
 
-/// Writes frames first .. last-1 and two rows of the log for each.
+RunInfo info_with_gauges() {
+  RunInfo info = sample_info(40);
+  info.gauges = {{"H", "level", "x = 0.5 m", "m", 1, "", ""},
+                 {"U", "velocity", "(1, 2, 3) m", "m/s", 3, "", ""},
+                 {"Q", "flow", "(1, 2, 3) m", "kg/s", 1, "total", "kg"}};
+  return info;
+}
+GaugeRow gauge_row(std::int64_t k) {
+  const double x = double(k);
+  return {10 * k, 0.1 * x, {x, 1 + x, 2 + x, 3 + x, 4 + x, 5 + x}};
+}
+
+/// Writes frames first .. last-1, two rows of the log and a reading of the gauges for each.
 void write(RunWriter& writer, std::int64_t first, std::int64_t last) {
   for (std::int64_t k = first; k < last; ++k) {
     writer.log(sample_row(2 * k));
     writer.log(sample_row(2 * k + 1));
+    writer.gauges(gauge_row(k));
     writer.write(sample(k, count_of(k)));
   }
 }
@@ -37,6 +50,20 @@ void check_whole(const std::string& path, std::int64_t frames) {
   for (std::int64_t row = 0; row < 2 * frames; ++row)
     REQUIRE(reader.log_column("update").at(static_cast<std::size_t>(row)) ==
             sample_row(row).measures.update);
+  const auto n = static_cast<std::size_t>(frames);
+  CHECK(reader.gauges().size() == 6);
+  REQUIRE(reader.gauge("update").size() == n);
+  REQUIRE(reader.gauge("U").size() == 3 * n);
+  CHECK(reader.gauge("V").empty());
+  for (std::size_t k = 0; k < n; ++k) {
+    const GaugeRow row = gauge_row(std::int64_t(k));
+    REQUIRE(reader.gauge("time")[k] == row.time);
+    REQUIRE(reader.gauge("update")[k] == double(row.update));
+    REQUIRE(reader.gauge("H")[k] == row.numbers[0]);
+    for (std::size_t c = 0; c < 3; ++c) REQUIRE(reader.gauge("U")[3 * k + c] == row.numbers[1 + c]);
+    REQUIRE(reader.gauge("Q")[k] == row.numbers[4]);
+    REQUIRE(reader.gauge("total/Q")[k] == row.numbers[5]);
+  }
 }
 
 }  // namespace
@@ -51,7 +78,7 @@ TEST_CASE("a file goes on from whatever any single write to the disk has left",
   std::vector<DiskOperation> operations;
   {
     WatchedDisk disk(path);
-    RunWriter writer(path, sample_info(40), gzip);
+    RunWriter writer(path, info_with_gauges(), gzip);
     for (std::int64_t k = 0; k < frames; ++k) {
       write(writer, k, k + 1);
       while (writer.frames_written() <= k) std::this_thread::yield();
@@ -77,10 +104,11 @@ TEST_CASE("a file goes on from whatever any single write to the disk has left",
       const RunReader before(again);
       kept = std::min<std::int64_t>(before.frames(),
                                     std::int64_t(before.log_column("update").size()) / 2);
+      kept = std::min<std::int64_t>(kept, std::int64_t(before.gauge("update").size()));
       REQUIRE(kept >= sure);
     }
     INFO("state " << states << ", " << kept << " frames kept");
-    RunWriter writer(again, sample_info(40), gzip, kept, {2 * kept, 0});
+    RunWriter writer(again, info_with_gauges(), gzip, kept, {2 * kept, kept});
     write(writer, kept, frames);
     writer.finish({"finished"});
     check_whole(again, frames);
@@ -94,17 +122,17 @@ TEST_CASE("frames and rows that a resumed run does again are dropped, and sessio
   const TemporaryFolder folder;
   const std::string path = folder / "run.vtkhdf";
   {
-    RunWriter writer(path, sample_info(40), false);
+    RunWriter writer(path, info_with_gauges(), false);
     write(writer, 0, 5);
     writer.sync();
     CHECK(writer.frames_written() == 5);
     writer.finish({"stopped", "SIGTERM", 50});
   }
   {
-    RunInfo info = sample_info(40);
+    RunInfo info = info_with_gauges();
     info.first_update = 20;
     info.host = "node2";
-    RunWriter writer(path, info, false, 2, {4, 0});
+    RunWriter writer(path, info, false, 2, {4, 2});
     CHECK(RunReader(path).frames() == 2);
     CHECK(RunReader(path).status() == "running");
     CHECK(RunReader(path).sessions().at(1).ended.empty());
@@ -122,7 +150,8 @@ TEST_CASE("frames and rows that a resumed run does again are dropped, and sessio
   CHECK(sessions[1].host == "node2");
   CHECK(sessions[1].device == "cpu float, a processor");
   CHECK(sessions[1].program == "0.1.0 (0123abc)");
-  CHECK_THROWS_AS(RunWriter(path, sample_info(40), false, 9, {4, 0}),
-                  Error);  // so many are not there
+  // So many are not there.
+  CHECK_THROWS_AS(RunWriter(path, info_with_gauges(), false, 9, {4, 2}), Error);
+  CHECK_THROWS_AS(RunWriter(path, info_with_gauges(), false, 2, {4, 9}), Error);
   check_whole(path, 8);
 }

@@ -42,6 +42,7 @@ class CountingSolver : public Solver {
   }
   Diagnostics measure() override { return {}; }
   std::vector<WallLoad> loads(Interval) override { return {}; }
+  std::vector<double> gauges(Interval) override { return {}; }
   SolverInfo info() const override { return {}; }
 
  private:

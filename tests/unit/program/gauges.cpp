@@ -1,0 +1,116 @@
+// The plan of gauges: areas of discs on surfaces, rectangles, what is left out.
+#include <cmath>
+
+#include "lib/program/levels.h"
+#include "lib/program/plan.h"
+#include "lib/solver/gauge_readings.h"
+#include "tests/support/catch.h"
+#include "tests/support/scene_samples.h"
+
+namespace pbf {
+namespace {
+
+using scene_test::kMinimal;
+using scene_test::parse;
+
+constexpr double kSpacing = 0.1;
+
+Plan plan_of(const std::string& more, const std::vector<std::string>& set = {}) {
+  return make_plan(parse(kMinimal + more, set), 500);
+}
+double area(const std::string& on, const std::string& at, double radius,
+            const std::string& obstacles = "", const std::vector<std::string>& set = {}) {
+  const Plan p =
+      plan_of("obstacles: [" + obstacles + "]\ngauges: [{name: p, kind: pressure, on: " + on +
+                  ", at: " + at + ", radius: " + std::to_string(radius) + "}]\n",
+              set);
+  REQUIRE(p.gauges.areas.size() == 1);
+  return p.gauges.areas[0];
+}
+/// Of a disc whose share falls from 1 at r - d to 0 at r + d.
+double disc(double r) { return kPi * (r * r + kSpacing * kSpacing / 3); }
+
+}  // namespace
+
+TEST_CASE("gauges: the area of a disc is what of it lies on the surface, before it fluid") {
+  const std::string box = "{name: b, shape: box, min: [0.1, 0.1, 0], max: [0.9, 0.9, 0.3]}";
+  CHECK(area("x_min", "[0, 0.5, 0.5]", 0.2) == Approx(disc(0.2)).epsilon(2e-3));
+  CHECK(area("z_max", "[0.4, 0.5, 1]", 0.25) == Approx(disc(0.25)).epsilon(2e-3));
+  CHECK(area("x_min", "[0, 0, 0.5]", 0.2) == Approx(disc(0.2) / 2).epsilon(5e-3));  // in an edge
+  CHECK(area("x_min", "[0, 0, 0]", 0.2) == Approx(disc(0.2) / 4).epsilon(5e-3));
+  CHECK(area("x_min", "[0, 0.5, 0.5]", 5) == Approx(1).epsilon(5e-3));  // the whole wall
+  CHECK(area("b", "[0.5, 0.5, 0.3]", 0.2, box) == Approx(disc(0.2)).epsilon(2e-3));
+  CHECK(area("b", "[0.1, 0.5, 0.3]", 0.2, box) == Approx(disc(0.2) / 2).epsilon(2e-2));
+  CHECK(area("b", "[0.5, 0.5, 0.3]", 3, box) == Approx(0.64).epsilon(5e-3));
+  CHECK(area("z_min", "[0.05, 0.5, 0]", 5, box) == Approx(0.36).epsilon(1e-2));  // beside the box
+  const std::string ball = "{name: s, shape: sphere, center: [0.5, 0.5, 0.5], radius: 0.4}";
+  CHECK(area("s", "[0.5, 0.1, 0.5]", 0.2, ball) == Approx(disc(0.2)).epsilon(2e-3));
+  const std::string pile =
+      "{name: c, shape: cylinder, from: [0.5, 0.5, 0], to: [0.5, 0.5, 0.6], radius: 0.35}";
+  CHECK(area("c", "[0.15, 0.5, 0.3]", 0.2, pile) == Approx(disc(0.2)).epsilon(2e-3));
+  CHECK(area("c", "[0.15, 0.5, 0]", 0.2, pile) == Approx(disc(0.2) / 2).epsilon(5e-3));
+  CHECK(area("c", "[0.5, 0.5, 0.6]", 2, pile) == Approx(kPi * 0.35 * 0.35).epsilon(5e-3));
+  // In two dimensions a strip of the thickness.
+  const std::vector<std::string> flat = {"dimensions=2", "domain.max=[1, 0.1, 1]"};
+  CHECK(area("x_min", "[0, 0, 0.5]", 0.2, "", flat) == Approx(0.4 * 0.1).epsilon(2e-3));
+  CHECK(area("x_min", "[0, 0, 0]", 0.2, "", flat) == Approx(0.2 * 0.1).epsilon(5e-3));
+}
+
+TEST_CASE("gauges: the edges of a rectangle are level, then up") {
+  const auto gate = [](const std::string& normal, const std::vector<std::string>& set = {}) {
+    const Plan p =
+        plan_of("gauges: [{name: q, kind: flow, center: [0.5, 0.5, 0.5], normal: " + normal +
+                    ", size: [" + (set.empty() ? "0.4, " : "") + "0.2]}]\n",
+                set);
+    REQUIRE(p.gauges.gates.size() == 1);
+    return p.gauges.gates[0];
+  };
+  const FlowGate x = gate("[2, 0, 0]"), z = gate("[0, 0, -1]");
+  const Axes axes = plan_of("").axes;
+  const auto along = [&](const double(&v)[3], int a) { return v[axes.inside(a)]; };
+  CHECK(std::fabs(along(x.edge[0], 1)) == Approx(1));
+  CHECK(std::fabs(along(x.edge[1], 2)) == Approx(1));
+  CHECK(along(x.normal, 0) == Approx(1));
+  CHECK(x.half[0] == Approx(0.2 / 0.2).epsilon(1e-4));  // h is 0.2 m
+  CHECK(x.half[1] == Approx(0.1 / 0.2).epsilon(1e-4));
+  CHECK(std::fabs(along(z.edge[0], 0)) == Approx(1));
+  CHECK(std::fabs(along(z.edge[1], 1)) == Approx(1));
+  const FlowGate flat = gate("[0, 0, 1]", {"dimensions=2", "domain.max=[1, 0.1, 1]"});
+  CHECK(flat.half[0] == Approx(0.1 / 0.2).epsilon(1e-4));
+  CHECK(flat.half[1] > 1e6);
+}
+
+TEST_CASE("gauges: pressure keeps the levels off, and what a scene does without is named") {
+  const std::string gauge =
+      "gauges: [{name: p, kind: pressure, on: x_min, at: [0, 0.5, 0.5], radius: 0.2}]\n";
+  const Scene s = parse(kMinimal + gauge + "solver: {levels: auto}\n");
+  REQUIRE(why_no_levels(s));
+  CHECK(std::string(why_no_levels(s)) == "the scene has pressure gauges");
+  const auto left_out = [](const Plan& p, const std::string& what) {
+    for (const LeftOut& l : p.left_out)
+      if (l.what == what) return l.because;
+    return std::string();
+  };
+  CHECK(left_out(plan_of(""), "gauges") == "no key gauges");
+  CHECK(left_out(plan_of(gauge), "gauges").empty());
+  CHECK(left_out(plan_of(gauge), "loads on the walls").empty());
+  CHECK(plan_of("").gauges.places == 0);
+}
+
+TEST_CASE("gauges: the data of each says where it is and in which unit") {
+  const std::vector<GaugeData> all = gauge_data(parse(
+      kMinimal +
+      "gauges:\n"
+      "  - {name: H, kind: level, at: [0.5, 0.25]}\n"
+      "  - {name: Q, kind: flow, center: [0.5, 0.5, 0.1], normal: [1, 0, 0], size: [1, 0.2]}\n"
+      "  - {name: P, kind: pressure, on: x_max, at: [1, 0.5, 0.1], radius: 0.2}\n"));
+  REQUIRE(all.size() == 3);
+  CHECK(all[0].place == "x = 0.5 m, y = 0.25 m");
+  CHECK(all[1].place == "(0.5, 0.5, 0.1) m, normal (1, 0, 0), 1 x 0.2 m");
+  CHECK(all[2].place == "x_max at (1, 0.5, 0.1) m, radius 0.2 m");
+  CHECK(all[1].kind == "flow");
+  CHECK(all[1].numbers() == 2);
+  CHECK(std::string(all[2].further_unit) == "Pa");
+}
+
+}  // namespace pbf
