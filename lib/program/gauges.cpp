@@ -116,6 +116,19 @@ FlowGate flow_gate(const Gauge& g, const Scene& s, const Frame& frame) {
   return gate;
 }
 
+/// Where the round side of an obstacle is before its centre or axis, seen from x; also beyond the
+/// ends of a cylinder, where there is no surface.
+Double3 on_round_side(const Obstacle& o, const Double3& x, bool flat) {
+  Double3 foot = o.center;
+  if (o.shape != ObstacleShape::sphere) {
+    const Double3 axis = unit(o.to - o.from), middle = 0.5 * (o.from + o.to);
+    const double half = length(o.to - o.from) / 2, z = dot(x - middle, axis);
+    foot = middle + (o.shape == ObstacleShape::capsule ? std::clamp(z, -half, half) : z) * axis;
+  }
+  if (flat) foot[1] = x[1];
+  return foot + o.radius * unit(x - foot);
+}
+
 /// Of the disc's share the part where fluid can be before the surface.
 double wetted_area(const Patch& patch, int surface, const SurfacePlace& there, const Scene& s) {
   constexpr int kCells = 400;
@@ -126,6 +139,7 @@ double wetted_area(const Patch& patch, int surface, const SurfacePlace& there, c
                                                  : cross(n, {0, 1, 0}));
   const Double3 v = cross(n, u);
   const double tiny = 1e-6 * h;
+  const std::size_t obstacle = std::size_t(surface) - kFaceNames.size();  // of a round surface
   double sum = 0;
   const int rows = s.dimensions == 2 ? 1 : kCells;
   for (int j = 0; j < rows; ++j)
@@ -133,10 +147,12 @@ double wetted_area(const Patch& patch, int surface, const SurfacePlace& there, c
       const double a = (i + 0.5) * cell - reach, b = rows == 1 ? 0 : (j + 0.5) * cell - reach;
       const double share = patch_share(patch, (a * a + b * b) / (h * h));
       if (share == 0) continue;
-      const Double3 x = there.point + a * u + b * v;
+      Double3 x = there.point + a * u + b * v;
+      if (patch.bend > 0) x = on_round_side(s.obstacles[obstacle], x, s.dimensions == 2);
       const SurfacePlace near = nearest_place_on(surface, s, x);
-      if (patch.bend == 0 && std::fabs(near.distance) > tiny) continue;  // beyond the face
-      if (is_free(s, near.point, tiny)) sum += share;
+      if (std::fabs(near.distance) > tiny) continue;  // beyond the face
+      // What stands on a surface touches it.
+      if (is_free(s, x, tiny) && is_free(s, x + (1000 * tiny) * near.normal, tiny)) sum += share;
     }
   const double thick = s.domain.max[1] - s.domain.min[1];
   return sum * cell * (rows == 1 ? thick : cell);

@@ -119,8 +119,9 @@ class GaugeChecker : public SceneRules {
                            ": another obstacle or the end of the domain is before it; move it");
     if (*surface < faces || !good(g.radius)) return;
     const Obstacle& o = s_.obstacles[std::size_t(*surface - faces)];
-    const bool round = o.shape == ObstacleShape::sphere || o.shape == ObstacleShape::capsule ||
-                       o.shape == ObstacleShape::cylinder;
+    const bool end = o.shape == ObstacleShape::cylinder &&
+                     std::fabs(dot(unit(o.to - o.from), there.normal)) > 0.5;
+    const bool round = !end && o.shape != ObstacleShape::plane && o.shape != ObstacleShape::box;
     if (round && g.radius > o.radius - d)
       add(g.radius, "is " + to_text(g.radius) + ", more than the radius of " + g.on +
                         " less fluid.spacing (" + to_text(o.radius - d) + " m); lower it");

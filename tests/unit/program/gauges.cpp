@@ -38,18 +38,18 @@ TEST_CASE("gauges: the area of a disc is what of it lies on the surface, before 
   CHECK(area("z_max", "[0.4, 0.5, 1]", 0.25) == Approx(disc(0.25)).epsilon(2e-3));
   CHECK(area("x_min", "[0, 0, 0.5]", 0.2) == Approx(disc(0.2) / 2).epsilon(5e-3));  // in an edge
   CHECK(area("x_min", "[0, 0, 0]", 0.2) == Approx(disc(0.2) / 4).epsilon(5e-3));
-  CHECK(area("x_min", "[0, 0.5, 0.5]", 5) == Approx(1).epsilon(5e-3));  // the whole wall
+  CHECK(area("x_min", "[0, 0.5, 0.5]", 1) == Approx(1).epsilon(5e-3));  // the whole wall
   CHECK(area("b", "[0.5, 0.5, 0.3]", 0.2, box) == Approx(disc(0.2)).epsilon(2e-3));
   CHECK(area("b", "[0.1, 0.5, 0.3]", 0.2, box) == Approx(disc(0.2) / 2).epsilon(2e-2));
-  CHECK(area("b", "[0.5, 0.5, 0.3]", 3, box) == Approx(0.64).epsilon(5e-3));
-  CHECK(area("z_min", "[0.05, 0.5, 0]", 5, box) == Approx(0.36).epsilon(1e-2));  // beside the box
+  CHECK(area("b", "[0.5, 0.5, 0.3]", 0.7, box) == Approx(0.64).epsilon(5e-3));
+  CHECK(area("z_min", "[0.05, 0.5, 0]", 1.2, box) == Approx(0.36).epsilon(1e-2));  // beside the box
   const std::string ball = "{name: s, shape: sphere, center: [0.5, 0.5, 0.5], radius: 0.4}";
   CHECK(area("s", "[0.5, 0.1, 0.5]", 0.2, ball) == Approx(disc(0.2)).epsilon(2e-3));
   const std::string pile =
       "{name: c, shape: cylinder, from: [0.5, 0.5, 0], to: [0.5, 0.5, 0.6], radius: 0.35}";
   CHECK(area("c", "[0.15, 0.5, 0.3]", 0.2, pile) == Approx(disc(0.2)).epsilon(2e-3));
   CHECK(area("c", "[0.15, 0.5, 0]", 0.2, pile) == Approx(disc(0.2) / 2).epsilon(5e-3));
-  CHECK(area("c", "[0.5, 0.5, 0.6]", 2, pile) == Approx(kPi * 0.35 * 0.35).epsilon(5e-3));
+  CHECK(area("c", "[0.5, 0.5, 0.6]", 0.5, pile) == Approx(kPi * 0.35 * 0.35).epsilon(5e-3));
   // In two dimensions a strip of the thickness.
   const std::vector<std::string> flat = {"dimensions=2", "domain.max=[1, 0.1, 1]"};
   CHECK(area("x_min", "[0, 0, 0.5]", 0.2, "", flat) == Approx(0.4 * 0.1).epsilon(2e-3));

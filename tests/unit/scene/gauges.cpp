@@ -84,8 +84,8 @@ TEST_CASE("gauges: places have as many numbers as their kind needs, and lie in t
   CHECK(contains(level("[0.1, 1.5]"),
                  "gauges[0].at: y is 1.5, outside the domain (y from 0 to 1 m); move the gauge"));
   CHECK(contains(level("[]"), "gauges[0].at: expected a list of 1 to 3 numbers"));
-  CHECK(contains(level("0.5"), "gauges[0].at: expected a list of 1 to 3 numbers, got 0.5"));
-  CHECK(contains(level("[0.5, b]"), "element 1: expected a number, got b"));
+  CHECK(contains(level("0.5"), "gauges[0].at: expected a list of 1 to 3 numbers, got \"0.5\""));
+  CHECK(contains(level("[0.5, b]"), "element 1: expected a number, got \"b\""));
   CHECK(contains(gauge_error("{name: a, kind: velocity, at: [0.1, 0.1]}"),
                  "gauges[0].at: has 2 numbers, expected a place, [x, y, z]"));
   CHECK(contains(gauge_error("{name: a, kind: velocity, at: [0.1, 0.1, -0.1]}"),
@@ -101,7 +101,8 @@ TEST_CASE("gauges: rectangles without extent or direction are refused") {
                  "gauges[0].normal: has no direction; give the way that counts as positive"));
   CHECK(contains(flow("normal: [1, 0, 0], size: [1]"),
                  "gauges[0].size: has 1 number, expected two, the edges of a rectangle"));
-  CHECK(contains(flow("normal: [1, 0, 0], size: [1, 0]"), "gauges[0].size: element 1: 0 is out"));
+  CHECK(
+      contains(flow("normal: [1, 0, 0], size: [1, 0]"), "gauges[0].size: element 1: \"0\" is out"));
   CHECK(flow("normal: [1, 0, 0], size: [1]", kFlat) == "no error");
   CHECK(contains(flow("normal: [1, 0, 0], size: [1, 1]", kFlat),
                  "expected one, the length of a line in the x-z plane (dimensions: 2)"));
