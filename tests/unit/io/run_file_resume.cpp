@@ -152,6 +152,6 @@ TEST_CASE("frames and rows that a resumed run does again are dropped, and sessio
   CHECK(sessions[1].program == "0.1.0 (0123abc)");
   // So many are not there.
   CHECK_THROWS_AS(RunWriter(path, info_with_gauges(), false, 9, {4, 2}), Error);
-  CHECK_THROWS_AS(RunWriter(path, info_with_gauges(), false, 2, {4, 9}), Error);
+  CHECK_THROWS_AS(RunWriter(path, info_with_gauges(), false, 8, {16, 9}), Error);
   check_whole(path, 8);
 }

@@ -104,7 +104,7 @@ Scene unlike_default() {
   s.vorticity = Vorticity{2.5};
   s.measure_every = 17;
   s.guard = GuardSettings{1000.5, 0.25, 999};
-  s.output = Output{1.0 / 30, 0.0125, {"density"}, Precision::dbl, Compression::gzip};
+  s.output = Output{1.0 / 30, 0.0375, {"density"}, Precision::dbl, Compression::gzip};
   s.render = Render{0.5,
                     {640, 480},
                     ColorBy::density,
