@@ -2,7 +2,7 @@
 // 1-4.
 #pragma once
 
-#include "kernels/cell_index.h"
+#include "kernels/boundary/far_box.h"
 #include "kernels/step_counts.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -18,7 +18,7 @@ struct Moving {
 template <class Real, class Boundary>
 PBF_HD Vec3<Real> accelerated(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
                               const Boundary& boundary) {
-  if constexpr (Boundary::books) {
+  if constexpr (requires { boundary.frame; }) {
     if (boundary.frame) return boundary.frame->accelerated(x, p.damping * v);
   }
   return mul_add(p.damping, v, p.dt * p.gravity);
@@ -46,41 +46,20 @@ PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
   return predicted(x, accelerated(x, v, p, boundary), p,
                    [&](auto from, auto to) { return walls.path_end(from, to); });
 }
-/// Whether row i, in the order of the last sort, is predicted as if there were plain walls alone.
+/// Of particle i, with solids; what they do to it is booked.
 template <class Real, class Boundary>
-PBF_HD bool sees_plain_walls(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
-                             const Boundary& boundary) {
-  if constexpr (Boundary::books) {
-    if (!boundary.near.room) return true;
-    v = accelerated(x, v, p, boundary);
-    return boundary.near.may_go(i, dot(v, v));
-  }
-  return true;
-}
-/// Of particle `i`, with solids; what they do to it is booked with `book`.
-template <class Real, class Boundary>
-PBF_HD_APART Moving<Real> predict_at_solids(bool book, int i, Vec3<Real> x, Vec3<Real> v,
+PBF_HD_APART Moving<Real> predict_at_solids(int i, Vec3<Real> x, Vec3<Real> v,
                                             const Params<Real>& p, const Boundary& boundary) {
   return predicted(x, accelerated(x, v, p, boundary), p, [&](auto from, auto to) {
-    return boundary.path_end(book && boundary.booked, true, i, from, to);
+    return boundary.path_end(boundary.booked, true, i, from, to);
   });
-}
-/// What row i does, which becomes row `to`.
-template <class Real, class Boundary>
-PBF_HD Moving<Real> predict_row(bool book, int i, int to, Vec3<Real> x, Vec3<Real> v,
-                                const Params<Real>& p, const Boundary& boundary) {
-  if constexpr (Boundary::books) {
-    if (!sees_plain_walls(i, x, v, p, boundary))
-      return predict_at_solids(book, to, x, v, p, boundary);
-  }
-  return predict(x, v, p, boundary);
 }
 /// Of particle i, wherever it has come to since the last sort; booked.
 template <class Real, class Boundary>
 PBF_HD Moving<Real> predict_anywhere(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
                                      const Boundary& boundary) {
   if constexpr (Boundary::books)
-    return predict_at_solids(true, i, x, v, p, boundary);
+    return predict_at_solids(i, x, v, p, boundary);
   else
     return predict(x, v, p, boundary);
 }
@@ -97,21 +76,47 @@ PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
   velocity[i] = with_w(m.v, Real(0));
 }
 
+/// The bin of x* of row i, or -1 where NearPredictPass finds it.
+template <int D, class Real, class Boundary>
+PBF_HD int predicted_bin(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
+                         const Boundary& boundary) {
+  if constexpr (Boundary::far_only) {
+    const Vec3<Real> faster = accelerated(x, v, p, boundary);
+    if (!boundary.stays_far(i, dot(faster, faster))) return -1;
+  }
+  return bin_of<D>(predict(x, v, p, boundary).x, p);
+}
+
 /// The bin of x*. x* itself is computed once more where the particles are gathered, which is
 /// cheaper than writing and reading it.
 template <class Real, class Boundary, int D>
 struct PredictPass {
+  static constexpr bool leaves_rows = Boundary::far_only;  ///< to NearPredictPass
   Params<Real> p;
   Boundary boundary;
   const Vec4<Real>*position, *velocity;
   int* bin;  ///< out
   PBF_HD void operator()(int i) const {
-    if (!sees_plain_walls(i, xyz(position[i]), xyz(velocity[i]), p, boundary)) return at_solids(i);
-    bin[i] = bin_of<D>(predict(xyz(position[i]), xyz(velocity[i]), p, boundary).x, p);
+    bin[i] = predicted_bin<D>(i, xyz(position[i]), xyz(velocity[i]), p, boundary);
   }
-  PBF_HD_APART void at_solids(int i) const {
-    const Vec3<Real> x = xyz(position[i]), v = xyz(velocity[i]);
-    bin[i] = bin_of<D>(predict_row(false, i, i, x, v, p, boundary).x, p);
+};
+
+/// The near rows, in place: x* with the mark, the velocity that goes with it, and the bin.
+template <class Real, int D>
+struct NearPredictPass {
+  Params<Real> p;
+  Solids<Real> boundary;
+  Vec4<Real>*position, *velocity;  ///< in/out
+  int* bin;                        ///< out
+  StepCounts* counts;
+  PBF_HD int row(int k) const { return boundary.near.row[k]; }
+  PBF_HD void operator()(int k) const {
+    const int i = row(k);
+    const Moving<Real> m = predict_at_solids(i, xyz(position[i]), xyz(velocity[i]), p, boundary);
+    if (m.fast) count_one(&counts->fast);
+    position[i] = with_w(m.x, m.mark);
+    velocity[i] = with_w(m.v, Real(0));
+    bin[i] = bin_of<D>(m.x, p);
   }
 };
 
@@ -149,22 +154,22 @@ struct GatherPass {
   int* id_out;
   StepCounts* counts;
   PBF_HD void operator()(int from, int to) const {
-    if (moving && !sees_plain_walls(from, xyz(position[from]), xyz(velocity[from]), p, boundary))
-      return at_solids(from, to);
-    if constexpr (moving)
-      put(from, to, predict(xyz(position[from]), xyz(velocity[from]), p, boundary));
-    else
-      put(from, to, {xyz(position[from]), xyz(velocity[from]), false});
-  }
-  PBF_HD_APART void at_solids(int from, int to) const {
-    put(from, to,
-        predict_row(true, from, to, xyz(position[from]), xyz(velocity[from]), p, boundary));
-  }
-  PBF_HD void put(int from, int to, const Moving<Real>& m) const {
+    const Vec4<Real> at = position[from];
+    Moving<Real> m{xyz(at), xyz(velocity[from]), false};
+    if constexpr (moving) {
+      if (is_predicted(from))
+        m.mark = at.w;
+      else
+        m = predict(m.x, m.v, p, boundary);
+    }
     if (m.fast) count_one(&counts->fast);
     position_out[to] = with_w(m.x, m.mark);
     velocity_out[to] = with_w(m.v, Real(0));
     id_out[to] = id[from];
+  }
+  PBF_HD bool is_predicted(int from) const {
+    if constexpr (Boundary::far_only) return boundary.near.room && boundary.near.has(from);
+    return false;
   }
 };
 

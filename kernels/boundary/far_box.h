@@ -14,6 +14,7 @@ struct FarBox : Box<Real> {
   static constexpr bool far_only = true;
   Bounds<Real> bounds{}, clear{};  ///< as those of Solids
   bool obstacles = false, booked = false;
+  const FrameStep<Real>* frame = nullptr;
   NearRows<Real> near{};
 
   explicit FarBox(const Solids<Real>& s)
@@ -22,7 +23,16 @@ struct FarBox : Box<Real> {
         clear(s.clear),
         obstacles(s.obstacles),
         booked(s.booked),
+        frame(s.frame),
         near(s.near) {}
+
+  /// Whether row i, in the order of the last sort, starts the step with a speed at which it sees
+  /// nothing but plain walls; else it is near from now on.
+  PBF_HD bool stays_far(int i, Real speed_squared) const {
+    if (!near.room || near.may_go(i, speed_squared)) return true;
+    if (!near.has(i)) near.add(i);
+    return false;
+  }
 
   /// Whether a way may lead to a solid, or end near one.
   PBF_HD_RARE bool comes_near(Vec3<Real> from, Vec3<Real> to) const {

@@ -86,6 +86,7 @@ struct LoadPass {
   Load* load;                               ///< in/out
   double inv_dt, update_dt, moment_unit;    ///< 1/s of a substep, s, h
   const SolidVelocity* velocity = nullptr;  ///< of each obstacle; null: none moves
+  int obstacles = 0;
 
   PBF_HD void operator()(int wall) const {
     LoadSums all;
@@ -106,7 +107,7 @@ struct LoadPass {
       to.impulse[k] += impulse;
       to.moment[k] += moment;
       squares += impulse * impulse;
-      if (velocity && wall >= 6) {
+      if (velocity && wall >= 6 && wall < 6 + obstacles) {
         const SolidVelocity& v = velocity[wall - 6];
         to.work -= impulse * v.linear[k] + moment * v.angular[k];
       }

@@ -49,4 +49,12 @@ struct NearRows {
   }
 };
 
+/// A pass over as many items as *count says, which knows the row of each.
+template <class Pass>
+struct Listed {
+  const int* count;  ///< null: none
+  Pass pass;
+};
+struct NothingListed {};
+
 }  // namespace pbf::inline PBF_VARIANT

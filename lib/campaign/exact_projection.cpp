@@ -138,8 +138,9 @@ class Constraints {
       sorted[std::size_t(now)] = from[std::size_t(old)];
       order_[std::size_t(now)] = old;
     };
-    exec_.sort_by_bin("grid", BinPass<double, dimensions_of(S)>{p_, from.data(), bin.data()}, n_,
-                      bin_count(p_), row.data(), bin_order.data(), bin_start_.data(), gather);
+    exec_.sort_by_bin("grid", BinPass<double, dimensions_of(S)>{p_, from.data(), bin.data()},
+                      NothingListed{}, n_, bin_count(p_), row.data(), bin_order.data(),
+                      bin_start_.data(), gather);
     const Vector before = start_;
     for (Eigen::Index k = 0; k < n_; ++k)
       start_.segment<3>(3 * k) = before.segment<3>(3 * order_[std::size_t(k)]);

@@ -105,6 +105,10 @@ class GaugeChecker : public SceneRules {
         return add(g.on, g.on + " is open, without a wall (domain.open); give another");
     } else if (!good_obstacle(s_.obstacles[std::size_t(*surface - faces)])) {
       return;
+    } else if (s_.obstacles[std::size_t(*surface - faces)].motion) {
+      return add(g.on, g.on +
+                           " moves, and a pressure gauge stays where it is; give it loads "
+                           "instead (obstacles[].loads), or put the gauge on what stands");
     }
     if (!good(g.at) || !is_place(g.at) || !inside(g.at, place(g.at)) || !sizes) return;
     const SurfacePlace there = nearest_place_on(*surface, s_, place(g.at));

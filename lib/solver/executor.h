@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/boundary/near_rows.h"
 #include "kernels/measure.h"
 #include "kernels/params.h"
 #include "lib/solver/solver.h"
@@ -87,7 +88,8 @@ concept Executor = requires(E e, const E c, int* ints, unsigned long long* count
   // body() while the sum of a pass is above a limit.
   e.repeat_while("stage", 1, 1, archetype::Residual{}, std::uint64_t(0), count, archetype::Body{});
   // Order by bin, then id; lists of the pairs closer than h.
-  e.sort_by_bin("stage", archetype::Sorted{ints}, 1, 1, ints, ints, ints, archetype::Gather{});
+  e.sort_by_bin("stage", archetype::Sorted{ints}, NothingListed{}, 1, 1, ints, ints, ints,
+                archetype::Gather{});
   { e.build_lists(1, 1, rows, ints, p) } -> std::same_as<typename E::Lists>;
   // Repeats updates, recorded ones where it can; forget_recorded() when their parameters changed.
   e.repeat(1, updates);

@@ -137,14 +137,17 @@ class CpuExec {
     return in_bins_;
   }
 
-  /// first(i) for every particle, which writes first.bin[i]; a counting sort by bin, within a bin
-  /// by id (start[b] = first place of bin b, start[bins] = n); gather(from, to) for every particle.
-  /// So the order of rows follows from the positions alone, not from the rows before. Marks `stage`
-  /// after `first`.
-  template <class First, class Gather>
-  void sort_by_bin(const char* stage, const First& first, int n, int bins, const int* id,
-                   int* order, int* start, const Gather& gather) {
+  /// first(i) for every particle, which writes first.bin[i], or leaves it to `listed`; a counting
+  /// sort by bin, within a bin by id (start[b] = first place of bin b, start[bins] = n);
+  /// gather(from, to) for every particle. So the order of rows follows from the positions alone,
+  /// not from the rows before. Marks `stage` after `first`.
+  template <class First, class Listed, class Gather>
+  void sort_by_bin(const char* stage, const First& first, const Listed& listed, int n, int bins,
+                   const int* id, int* order, int* start, const Gather& gather) {
     for_each(n, first);
+    if constexpr (requires { listed.pass; }) {
+      if (listed.count) for_listed(listed.count, n, listed.pass);
+    }
     mark(stage);
     sort(first.bin, id, n, bins, order, start);
     for_each(n, [&](int k) { gather(order[k], k); });

@@ -173,9 +173,10 @@ class CudaExec {
   }
 
   /// See CpuExec; `order` is memory for the arrivals.
-  template <class First, class Gather>
-  void sort_by_bin(const char* stage, const First& first, int n, int bins, const int* id,
-                   int* order, int* start, const Gather& gather) {
+  template <class First, class Listed, class Gather>
+  void sort_by_bin(const char* stage, const First& first, const Listed& listed, int n, int bins,
+                   const int* id, int* order, int* start, const Gather& gather) {
+    constexpr bool leaves_rows = requires { listed.pass; };
     slot_.resize(std::size_t(n));
     const OrderPass<Gather> in_order{first.bin, id, start, slot_.data(), gather};
     if (n <= kSortParticles && bins <= kSortBins) {
@@ -184,8 +185,11 @@ class CudaExec {
                kSortThreads, std::size_t(bins) * sizeof(int), before, n, bins, order, slot_.data(),
                start, list_state_.data(), in_order);
       };
-      if constexpr (requires { typename First::Sum; }) {
+      if constexpr (leaves_rows || requires { typename First::Sum; }) {
         for_each(n, first);
+        if constexpr (leaves_rows) {
+          if (listed.count) for_listed(listed.count, n, listed.pass);
+        }
         mark(stage);
         sort(NothingFirst{});
       } else {
@@ -198,6 +202,11 @@ class CudaExec {
       PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), stream_));
     }
     for_each(n, CountPass<First>{first, counts_.data(), order});
+    if constexpr (leaves_rows) {
+      using Near = std::decay_t<decltype(listed.pass)>;
+      if (listed.count)
+        for_listed(listed.count, n, CountPass<Near>{listed.pass, counts_.data(), order});
+    }
     mark(stage);
     scan(bins + 1, start);
     for_each(n, PlacePass{first.bin, start, order, slot_.data(), counts_.data(), list_state_.data(),

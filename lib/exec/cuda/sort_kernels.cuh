@@ -17,7 +17,10 @@ struct CountPass : First {
       sum_over_neighbors(*this, i);
     } else {
       First::operator()(i);
-      arrive(i);
+      if constexpr (requires { First::row(0); })
+        arrive(First::row(i));
+      else
+        arrive(i);
     }
   }
   template <class Own, class Sum>
@@ -25,7 +28,13 @@ struct CountPass : First {
     First::finish(i, own, sum);
     arrive(i);
   }
-  __device__ void arrive(int i) const { arrival[i] = atomicAdd(&count[First::bin[i]], 1); }
+  __device__ void arrive(int i) const {
+    const int bin = First::bin[i];
+    if constexpr (requires { requires First::leaves_rows; }) {
+      if (bin < 0) return;
+    }
+    arrival[i] = atomicAdd(&count[bin], 1);
+  }
 };
 /// Also clears the counters for the next sort, and the use of the lists' overflows.
 struct PlacePass {

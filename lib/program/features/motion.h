@@ -48,25 +48,45 @@ inline PassInfo sort_info(const char* name) {
   return {name, "grid", std::move(reads), std::move(writes)};
 }
 
-/// Runs `first`, the pass that gives every particle its bin, then puts the particles in the order
-/// of bins; with `moving`, as predicted.
-template <bool moving, class C, class First>
-void sort_rows(C& c, const char* stage, const First& first) {
-  const auto sort = [&](const auto& boundary) {
-    c.exec.sort_by_bin(
-        c.booked(stage), first, c.rows(), bin_count(c.p), c.ids(), c.sort_order(),
-        c.template data<int>(field::bin_start),
-        GatherPass<typename C::Real, std::decay_t<decltype(boundary)>, moving>{
-            c.p, boundary, c.position(), c.velocity(), c.ids(), c.other(field::position),
-            c.other(field::velocity), c.template other_data<int>(field::id), c.counts()});
-  };
-  if constexpr (moving)
-    with_boundary(c, sort);
-  else
-    sort(c.p.boundary);
+/// Runs `first`, the pass that gives every particle its bin, and `listed`, which gives it to those
+/// that the first leaves out; then puts the particles in the order of bins.
+template <class C, class First, class Gather, class Listed>
+void sort_rows(C& c, const char* stage, const First& first, const Gather& gather,
+               const Listed& listed) {
+  c.exec.sort_by_bin(c.booked(stage), first, listed, c.rows(), bin_count(c.p), c.ids(),
+                     c.sort_order(), c.template data<int>(field::bin_start), gather);
   c.flip(field::position);
   c.flip(field::velocity);
   c.flip(field::id);
+}
+template <bool moving, class C, class Boundary>
+auto gather_pass(C& c, const Boundary& boundary) {
+  return GatherPass<typename C::Real, Boundary, moving>{c.p,
+                                                        boundary,
+                                                        c.position(),
+                                                        c.velocity(),
+                                                        c.ids(),
+                                                        c.other(field::position),
+                                                        c.other(field::velocity),
+                                                        c.template other_data<int>(field::id),
+                                                        c.counts()};
+}
+/// With particles as predicted from c.position() and c.velocity().
+template <class C, class First>
+void sort_predicted(C& c, const char* stage, const First& first) {
+  using Real = typename C::Real;
+  const auto gather = gather_pass<true>(c, first.boundary);
+  if constexpr (First::leaves_rows)
+    with_dimensions(c.p.dimensions, [&](auto d) {
+      const Solids<Real> solids = solids_of(c);
+      sort_rows(c, stage, first, gather,
+                Listed<NearPredictPass<Real, decltype(d)::value>>{
+                    solids.near.room ? solids.near.count : nullptr,
+                    {c.p, solids, c.position(), c.velocity(), c.template data<int>(field::bin),
+                     c.counts()}});
+    });
+  else
+    sort_rows(c, stage, first, gather, NothingListed{});
 }
 
 /// The positions as they are.
@@ -75,9 +95,10 @@ struct Sort {
   template <class C>
   static void launch(C& c) {
     with_dimensions(c.p.dimensions, [&](auto d) {
-      sort_rows<false>(c, "predict",
-                       BinPass<typename C::Real, decltype(d)::value>{
-                           c.p, c.position(), c.template data<int>(field::bin)});
+      sort_rows(c, "predict",
+                BinPass<typename C::Real, decltype(d)::value>{c.p, c.position(),
+                                                              c.template data<int>(field::bin)},
+                gather_pass<false>(c, c.p.boundary), NothingListed{});
     });
   }
 };
@@ -90,8 +111,8 @@ struct PredictSort {
   template <class C>
   static void launch(C& c) {
     with_dimensions(c.p.dimensions, [&](auto d) {
-      with_boundary(c, [&](const auto& boundary) {
-        sort_rows<true>(
+      with_far_boundary(c, [&](const auto& boundary) {
+        sort_predicted(
             c, "predict",
             PredictPass<typename C::Real, std::decay_t<decltype(boundary)>, decltype(d)::value>{
                 c.p, boundary, c.position(), c.velocity(), c.template data<int>(field::bin)});

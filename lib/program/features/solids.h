@@ -34,6 +34,13 @@ void with_boundary(C& c, F&& f) {
   c.solids().around ? f(solids_of(c)) : f(c.p.boundary);
 }
 
+/// The same for passes that leave what is near solids to another launch.
+template <class C, class F>
+void with_far_boundary(C& c, F&& f) {
+  using Real = typename C::Real;
+  c.solids().around ? f(FarBox<Real>(solids_of(c))) : f(c.p.boundary);
+}
+
 /// Launches make(boundary), a pass over neighbours: once for all particles, and where there is more
 /// than plain walls once more for those near it. moves: the pass moves particles, so that loads are
 /// booked in it.

@@ -12,7 +12,7 @@ template <class C, class Use>
 void with_xsph(C& c, int* bin, const Use& use) {
   c.flip(field::velocity);
   c.with_smoothing([&](auto s) {
-    with_boundary(c, [&](const auto& boundary) {
+    with_far_boundary(c, [&](const auto& boundary) {
       use(XsphPass<typename C::Real, typename C::Lists, decltype(s)::value,
                    std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists, c.position(),
                                                      c.other(field::velocity), c.velocity(), bin});
@@ -43,7 +43,7 @@ struct XsphPredictSort {
   template <class C>
   static void launch(C& c) {
     with_xsph(c, c.template data<int>(field::bin),
-              [&](const auto& pass) { sort_rows<true>(c, "xsph", pass); });
+              [&](const auto& pass) { sort_predicted(c, "xsph", pass); });
   }
 };
 
