@@ -24,6 +24,14 @@ inline bool has_loads(const Scene& scene) {
 /// There is more around the fluid than plain walls.
 inline bool has_solids(const Scene& scene) { return !scene.obstacles.empty() || has_loads(scene); }
 
+/// As LoadBook::summed. What moves does work, which is known from its load.
+inline std::uint64_t summed_walls(const Scene& scene) {
+  std::uint64_t bits = scene.domain.loads ? 63 : 0;
+  for (std::size_t k = 0; k < scene.obstacles.size() && k + kFaceNames.size() < 64; ++k)
+    if (scene.obstacles[k].loads || scene.obstacles[k].motion) bits |= std::uint64_t(1) << (k + kFaceNames.size());
+  return bits;
+}
+
 /// The rows of sums before those of the gauges: the walls, of which those of open faces stay 0, and
 /// all obstacles.
 inline std::int64_t first_gauge_row(const Scene& scene) {

@@ -32,7 +32,7 @@ LoadSums* load_sums(C& c) {
 template <class C>
 LoadBook<typename C::Real> load_book(C& c) {
   return {load_sums(c), typename C::Real(1 / moment_unit(c.p.boundary)), c.gauges.patch.data(),
-          int(c.gauges.patch.size())};
+          int(c.gauges.patch.size()), summed_walls(c.scene)};
 }
 
 struct SumLoads {
