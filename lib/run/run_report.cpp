@@ -108,6 +108,10 @@ std::string run_summary(const RunParts& run, const Watch& watch,
       100 * last.compression_max, 100 * run.compression_max, 100 * last.share_above_1,
       100 * last.share_above_10, last.energy, last.kinetic_energy, first.energy,
       100 * last.energy_drift, 100 * last.energy_rise, bytes_text(double(peak_memory())).c_str());
+  if (last.moved)
+    out += format(
+        "work                %.6g J of what moves by itself; drift and rise are without it\n",
+        last.work);
   out += pool_line(last);
   if (last.non_finite > 0)
     out += format("not finite          %ld particles at the end, left out of the figures above\n",
