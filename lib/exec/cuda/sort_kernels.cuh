@@ -17,10 +17,7 @@ struct CountPass : First {
       sum_over_neighbors(*this, i);
     } else {
       First::operator()(i);
-      if constexpr (requires { First::row(0); })
-        arrive(First::row(i));
-      else
-        arrive(i);
+      arrive(row_of(static_cast<const First&>(*this), i, 0));
     }
   }
   template <class Own, class Sum>
@@ -28,11 +25,18 @@ struct CountPass : First {
     First::finish(i, own, sum);
     arrive(i);
   }
+  /// Of a pass over listed rows.
+  template <class Pass>
+  __device__ static auto row_of(const Pass& pass, int k, int) -> decltype(pass.row(k)) {
+    return pass.row(k);
+  }
+  template <class Pass>
+  __device__ static int row_of(const Pass&, int i, long) {
+    return i;
+  }
   __device__ void arrive(int i) const {
     const int bin = First::bin[i];
-    if constexpr (requires { requires First::leaves_rows; }) {
-      if (bin < 0) return;
-    }
+    if (bin < 0) return;  // left to a pass over listed rows
     arrival[i] = atomicAdd(&count[bin], 1);
   }
 };
