@@ -40,23 +40,29 @@ struct ProbePass {
     const Vec4<Real> at = position[i];
     for (int k = 0; k < probes; ++k) {
       const Probe& p = probe[k];
-      const double d[3] = {double(at.x) - p.from[0], double(at.y) - p.from[1],
-                           double(at.z) - p.from[2]};
-      const double along = p.axis == 0 ? d[0] : p.axis == 1 ? d[1] : d[2];
-      const double a = p.axis == 0 ? d[1] : d[0], b = p.axis == 2 ? d[1] : d[2];
-      const double across = a * a + b * b;
-      // Also for what is no number.
-      if (!(across < 1) || !(along > -1) || !(along < p.step * (p.count - 1) + 1)) continue;
-      const double reach = square_root(1 - across);
-      const int low = int((along - reach) / p.step), high = int((along + reach) / p.step) + 1;
-      for (int n = max2(low, 0); n <= min2(high, p.count - 1); ++n) {
-        const double e = along - n * p.step, t = 1 - (across + e * e);
-        if (t > 0) add(p, p.first + n, i, t * t * t);
-      }
+      // Most are beyond reach along the first axis that they are asked about.
+      const double a = p.axis == 0 ? double(at.y) - p.from[1] : double(at.x) - p.from[0];
+      if (a < 1 && a > -1) around(p, i, at, a);
     }
   }
 
  private:
+  /// a: h, from the row of places along the first axis across it.
+  PBF_HD void around(const Probe& p, int i, const Vec4<Real>& at, double a) const {
+    const double b = p.axis == 2 ? double(at.y) - p.from[1] : double(at.z) - p.from[2];
+    const double along = p.axis == 0   ? double(at.x) - p.from[0]
+                         : p.axis == 1 ? double(at.y) - p.from[1]
+                                       : double(at.z) - p.from[2];
+    const double across = a * a + b * b;
+    // Also for what is no number.
+    if (!(across < 1) || !(along > -1) || !(along < p.step * (p.count - 1) + 1)) return;
+    const double reach = square_root(1 - across);
+    const int low = int((along - reach) / p.step), high = int((along + reach) / p.step) + 1;
+    for (int n = max2(low, 0); n <= min2(high, p.count - 1); ++n) {
+      const double e = along - n * p.step, t = 1 - (across + e * e);
+      if (t > 0) add(p, p.first + n, i, t * t * t);
+    }
+  }
   PBF_HD void add(const Probe& p, int place, int i, double weight) const {
     add_whole(&sums[place].weight, whole(weight));
     if (!p.moving) return;

@@ -9,9 +9,10 @@ namespace pbf {
 
 /// A rectangle, h, in the internal frame; the axes of its edges have length 1.
 struct FlowGate {
-  double center[3] = {0, 0, 0}, normal[3] = {1, 0, 0};
+  double normal[3] = {1, 0, 0};
   double edge[2][3] = {{0, 1, 0}, {0, 0, 1}};
-  double half[2] = {0, 0};  ///< of the edges
+  double middle[3] = {0, 0, 0};  ///< where it is along the normal and the edges
+  double half[2] = {0, 0};       ///< of the edges
 };
 
 /// Particles that went through, those along the normal less those against it.
@@ -60,16 +61,15 @@ struct FlowPass {
  private:
   /// The same bits wherever it is compiled in: the sides of one pass are compared with another's.
   PBF_HD static bool beyond(const FlowGate& g, Vec3<Real> x) {
-    const double along = mul_add(
-        g.normal[0], double(x.x) - g.center[0],
-        mul_add(g.normal[1], double(x.y) - g.center[1], g.normal[2] * (double(x.z) - g.center[2])));
+    const double along =
+        mul_add(g.normal[0], double(x.x),
+                mul_add(g.normal[1], double(x.y), mul_add(g.normal[2], double(x.z), -g.middle[0])));
     return along >= 0;
   }
   PBF_HD static bool within(const FlowGate& g, Vec3<Real> x) {
     for (int e = 0; e < 2; ++e) {
-      const double a = g.edge[e][0] * (double(x.x) - g.center[0]) +
-                       g.edge[e][1] * (double(x.y) - g.center[1]) +
-                       g.edge[e][2] * (double(x.z) - g.center[2]);
+      const double a = g.edge[e][0] * double(x.x) + g.edge[e][1] * double(x.y) +
+                       g.edge[e][2] * double(x.z) - g.middle[1 + e];
       if (!(a <= g.half[e] && a >= -g.half[e])) return false;
     }
     return true;

@@ -105,10 +105,16 @@ FlowGate flow_gate(const Gauge& g, const Scene& s, const Frame& frame) {
   const Double3 first = s.dimensions == 2 ? Double3{-n[2], 0, n[0]}
                         : level > 1e-9    ? unit({-n[1], n[0], 0})
                                           : Double3{1, 0, 0};
-  frame.place(g.center, gate.center);
   frame.direction(n, gate.normal);
   frame.direction(first, gate.edge[0]);
   frame.direction(cross(n, first), gate.edge[1]);
+  double center[3];
+  frame.place(g.center, center);
+  const auto along = [&](const double(&v)[3]) {
+    return v[0] * center[0] + v[1] * center[1] + v[2] * center[2];
+  };
+  gate.middle[0] = along(gate.normal);
+  gate.middle[1] = along(gate.edge[0]), gate.middle[2] = along(gate.edge[1]);
   for (std::size_t e = 0; e < 2; ++e) {
     const double edge = e < g.size.size() ? g.size[e] / s.h() : 1e9;
     gate.half[e] = edge / 2 + 1e-5 * (1 + edge);  // particles on a wall, rounded
