@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/program/obstacle_poses.h"
 #include "lib/scene/scene.h"
 #include "lib/solver/diagnostics.h"
 #include "lib/solver/gauge_readings.h"
@@ -61,8 +62,9 @@ struct RunEnding {
 struct LogRow {
   Diagnostics measures;
   int iterations = 0;
-  double dt = 0;                  ///< s, of the steps of the update that the measure follows
-  std::vector<StageTime> stages;  ///< the same names in every row of a run
+  double dt = 0;                      ///< s, of the steps of the update that the measure follows
+  std::vector<StageTime> stages;      ///< the same names in every row of a run
+  std::vector<ObstaclePose> poses{};  ///< of what moves; the same
 };
 
 /// What the gauges read after an update: gauge_readings().

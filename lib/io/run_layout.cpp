@@ -29,6 +29,14 @@ const std::vector<LogColumn>& log_columns() {
 std::vector<FurtherNumber> further_numbers(const LogRow& row) {
   std::vector<FurtherNumber> all;
   for (const StageTime& s : row.stages) all.push_back({"stage/" + s.name, "s", s.seconds});
+  for (const ObstaclePose& p : row.poses) {
+    const std::string name = "pose/" + p.name + "/";
+    for (std::size_t k = 0; k < 3; ++k)
+      all.push_back({name + std::string(1, "xyz"[k]), "m", p.middle[k]});
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t l = 0; l < 3; ++l)
+        all.push_back({name + "turn_" + "xyz"[k] + "xyz"[l], "1", p.turn[k][l]});
+  }
   if (row.measures.moved) all.push_back({"work", "J", row.measures.work});
   for (const WallLoad& l : row.measures.loads)
     for (const LoadNumber& n : load_numbers())

@@ -35,7 +35,7 @@ void Rows::take(Diagnostics& m, double dt) {
   const auto& writer = run_.writer;
   run_.clock.begin();
   if (writer) {
-    writer->log({m, run_.scene.solver.iterations, dt, since});
+    writer->log({m, run_.scene.solver.iterations, dt, since, obstacle_poses(run_.scene, m.time)});
     run_.clock.mark("write");
   }
   if (!run_.json) return;

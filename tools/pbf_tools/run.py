@@ -166,8 +166,8 @@ class Run:
 
     @property
     def log(self) -> Table:
-        """Measures, seconds per stage ("stage/lambda") and loads on walls ("load/z_min/force_z"),
-        one row per measure; with units.
+        """Measures, seconds per stage ("stage/lambda"), loads on walls ("load/z_min/force_z") and
+        poses ("pose/blade/x", "pose/blade/turn_xy"), one row per measure; with units.
 
         >>> log = open("run.vtkhdf").log
         >>> log["time"][:2], log.units["kinetic_energy"], "stage/lambda" in log
@@ -185,6 +185,31 @@ class Run:
         {}
         """
         return self._read(_gauges, "cannot read the gauges")
+
+    def obstacle_pose(self, name: str, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Where a moving obstacle is at a time, s: its turn (3, 3) and the place of its middle (3,),
+        m. A point at p from the middle that the scene gives it is at middle + turn @ p. From the
+        rows of the log (`measure_every`), between them straight.
+
+        >>> turn, middle = open("run.vtkhdf").obstacle_pose("blade", 0.5)
+        """
+        log = self.log
+        if f"pose/{name}/x" not in log:
+            moving = sorted({key.split("/")[1] for key in log if key.startswith("pose/")})
+            raise BadInput(f"{self.path}: no obstacle {name} that moves; "
+                           + ("there are " + ", ".join(moving) if moving else "none does"))
+        times = log["time"]
+        if not times[0] <= time <= times[-1] * (1 + 1e-9):
+            raise BadInput(f"{self.path}: {time} s is not in the log, which has {times[0]} to "
+                           f"{times[-1]} s")
+
+        def at(column: str) -> float:
+            return float(np.interp(time, times, log[f"pose/{name}/{column}"]))
+
+        middle = np.array([at(k) for k in "xyz"])
+        turn = np.array([[at(f"turn_{k}{j}") for j in "xyz"] for k in "xyz"])
+        u, _, vt = np.linalg.svd(turn)  # the nearest rotation: between rows it is not quite one
+        return u @ vt, middle
 
     def _read(self, action: Callable[[h5py.File], T], what: str) -> T:
         return index.read(self.path, action, what)
