@@ -23,10 +23,11 @@ struct LoadSums {
 /// What one wall got since it was asked last, per mass of a particle, in the internal frame.
 struct Load {
   double impulse[3] = {0, 0, 0};  ///< h/s
-  double moment[3] = {0, 0, 0};   ///< h^2/s, about the domain's lower corner
-  double peak = 0;                ///< h/s^2, largest mean force of one update
-  double time = 0;                ///< s
-  double work = 0;                ///< h^2/s^2, that an obstacle that moves has done
+  /// h^2/s, about the domain's lower corner; of an obstacle that moves, about its middle.
+  double moment[3] = {0, 0, 0};
+  double peak = 0;  ///< h/s^2, largest mean force of one update
+  double time = 0;  ///< s
+  double work = 0;  ///< h^2/s^2, that an obstacle that moves has done
 };
 
 }  // namespace pbf
@@ -104,17 +105,23 @@ struct LoadPass {
     }
     Load& to = load[wall];
     const double unit = inv_dt / double(std::int64_t(1) << 36);
-    double squares = 0;
+    double squares = 0, impulse[3], moment[3];
     for (int k = 0; k < 3; ++k) {
-      const double impulse = unit * double(all.way[k]);
-      const double moment = unit * moment_unit * double(all.moment[k]);
-      to.impulse[k] += impulse;
-      to.moment[k] += moment;
-      squares += impulse * impulse;
-      if (velocity && wall >= 6 && wall < 6 + obstacles) {
-        const SolidVelocity& v = velocity[wall - 6];
-        to.work -= impulse * v.linear[k] + moment * v.angular[k];
+      impulse[k] = unit * double(all.way[k]);
+      moment[k] = unit * moment_unit * double(all.moment[k]);
+    }
+    if (velocity && wall >= 6 && wall < 6 + obstacles && velocity[wall - 6].moves) {
+      const SolidVelocity& v = velocity[wall - 6];
+      for (int k = 0; k < 3; ++k) to.work -= impulse[k] * v.linear[k] + moment[k] * v.angular[k];
+      for (int k = 0; k < 3; ++k) {
+        const int b = (k + 1) % 3, c = (k + 2) % 3;
+        moment[k] -= v.middle[b] * impulse[c] - v.middle[c] * impulse[b];
       }
+    }
+    for (int k = 0; k < 3; ++k) {
+      to.impulse[k] += impulse[k];
+      to.moment[k] += moment[k];
+      squares += impulse[k] * impulse[k];
     }
     to.peak = max2(to.peak, square_root(squares) / update_dt);
     to.time += update_dt;

@@ -33,10 +33,13 @@ struct FrameStep {
   }
 };
 
-/// How the points of a solid move: linear + angular x x, x from the domain's lower corner.
+/// How the points of a solid move in an update: linear + angular x x, x from the domain's lower
+/// corner.
 struct SolidVelocity {
+  bool moves = false;             ///< else all is 0
   double linear[3] = {0, 0, 0};   ///< h/s
   double angular[3] = {0, 0, 0};  ///< 1/s
+  double middle[3] = {0, 0, 0};   ///< h: where it is in the middle of the update
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -40,7 +40,7 @@ inline SolidVelocity velocity_between(const Solid<double>& a, const Solid<double
   const Vec3<double> spin = scale * Vec3<double>{axial[0], axial[1], axial[2]};
   const Vec3<double> middle = 0.5 * (a.center + b.center);
   const Vec3<double> go = (1 / dt) * (b.center - a.center) - cross(spin, middle);
-  return {{go.x, go.y, go.z}, {spin.x, spin.y, spin.z}};
+  return {true, {go.x, go.y, go.z}, {spin.x, spin.y, spin.z}, {middle.x, middle.y, middle.z}};
 }
 
 template <class Real>

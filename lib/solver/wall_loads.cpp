@@ -49,7 +49,8 @@ std::vector<WallLoad> wall_loads(const std::vector<Load>& loads, const Scene& sc
   }
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
     if (!scene.obstacles[k].loads) continue;
-    const auto& center = plan.solids[k].center;
+    // Of what moves the moment is about its middle already.
+    const Vec3<double> center = scene.obstacles[k].motion ? Vec3<double>{} : plan.solids[k].center;
     add(scene.obstacles[k].name, loads[kFaceNames.size() + k], {center.x, center.y, center.z});
   }
   return out;

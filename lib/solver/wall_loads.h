@@ -15,7 +15,7 @@ namespace pbf::inline solver_module {
 struct WallLoad {
   std::string wall;              ///< "z_min", or the name of an obstacle
   double force[3] = {0, 0, 0};   ///< N, mean
-  double torque[3] = {0, 0, 0};  ///< N m, mean, about the middle of it
+  double torque[3] = {0, 0, 0};  ///< N m, mean, about the middle of it, where that is
   double peak = 0;               ///< N, largest mean force of an update
 };
 

@@ -93,6 +93,24 @@ TEST_CASE("a wall that comes takes a particle along at its speed") {
         Approx(c.scene.obstacles[0].max[0] + 0.4 * 0.002 * 150).margin(exact));
 }
 
+TEST_CASE("the torque on an obstacle that moves is about where its middle is then") {
+  Case c = jittered_block(1, 1, 1, 0, 0);
+  c.scene.gravity = {};
+  for (std::size_t k = 0; k < 3; ++k) c.scene.domain.max[k] = c.scene.domain.min[k] + 0.8;
+  Placing put(c.scene);
+  c.particles.position[0] = put.at({10, 10.5, 11});
+  put.box({6, 6, 6}, {8, 14, 14}).motion = going({0.4, 0, 0.2});
+  c.scene.solver.boundary = pbf::BoundaryMode::clamp;
+  c = here(c);
+  auto solver = make(c);
+  solver->step(150);
+  const pbf::WallLoad l = solver->loads(pbf::Interval::goes_on)[0];
+  const double h = c.scene.h(), when = 2 * h / 0.4;
+  CHECK(l.force[0] < 0);
+  CHECK(l.torque[1] / l.force[0] == Approx(h - 0.2 * when).margin(1e-3));
+  CHECK(l.torque[2] / l.force[0] == Approx(-0.5 * h).margin(1e-3));
+}
+
 TEST_CASE("a plate of 0.25 h that goes by 3 h a step takes all that is in its way along") {
   const bool flat = GENERATE(false, true);
   Case c = flat ? flat_block(6, 6, 0.2, 0) : jittered_block(5, 5, 5, 0.2, 0);

@@ -246,6 +246,30 @@ def test_a_file_without_frames_has_none(samples, tmp_path):
         run["position"]
 
 
+def test_poses_of_obstacles_that_move_come_from_the_log(pbf, tmp_path):
+    (tmp_path / "s.yaml").write_text(
+        "name: s\ndomain: {min: [0, 0, 0], max: [1, 0.5, 1]}\nfluid: {spacing: 0.05}\n"
+        "bodies: [{shape: block, min: [0, 0, 0], max: [0.2, 0.5, 0.2]}]\n"
+        "obstacles:\n"
+        "  - {name: blade, shape: box, min: [0.5, 0.2, 0.4], max: [0.9, 0.3, 0.5],\n"
+        "     motion: {kind: velocity, velocity: [0, 0, 0.5], angular: [0, 0, 90]}}\n"
+        "  - {name: ball, shape: sphere, center: [0.8, 0.2, 0.8], radius: 0.1}\n"
+        "time: {step: 0.01, end: 0.4}\noutput: {every: 0.1}\n")
+    subprocess.run([pbf, "run", tmp_path / "s.yaml", "--quiet", "--out", tmp_path / "run"],
+                   check=True, capture_output=True)
+    run = pbf_tools.open(tmp_path / "run/run.vtkhdf")
+    for t, exact in [(0.1, 1e-12), (0.25, 1e-3), (0.4, 1e-12)]:
+        turn, middle = run.obstacle_pose("blade", t)
+        c, s = np.cos(t * np.pi / 2), np.sin(t * np.pi / 2)
+        assert np.allclose(turn, [[c, -s, 0], [s, c, 0], [0, 0, 1]], rtol=0, atol=exact)
+        assert np.allclose(turn @ turn.T, np.eye(3), rtol=0, atol=1e-12)
+        assert np.allclose(middle, [0.7, 0.25, 0.45 + 0.5 * t], rtol=0, atol=1e-12)
+    with pytest.raises(pbf_tools.BadInput, match="no obstacle ball that moves; there are blade"):
+        run.obstacle_pose("ball", 0)
+    with pytest.raises(pbf_tools.BadInput, match="is not in the log"):
+        run.obstacle_pose("blade", 0.5)
+
+
 def test_a_run_is_read_while_it_is_written_and_after_it_was_killed(pbf, tmp_path):
     process = subprocess.Popen(
         [pbf, "run", ROOT / "configs/minimal.yaml", "--set", "output={every: 0.002}", "--set",
