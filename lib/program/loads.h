@@ -28,7 +28,8 @@ inline bool has_solids(const Scene& scene) { return !scene.obstacles.empty() || 
 inline std::uint64_t summed_walls(const Scene& scene) {
   std::uint64_t bits = scene.domain.loads ? 63 : 0;
   for (std::size_t k = 0; k < scene.obstacles.size() && k + kFaceNames.size() < 64; ++k)
-    if (scene.obstacles[k].loads || scene.obstacles[k].motion) bits |= std::uint64_t(1) << (k + kFaceNames.size());
+    if (scene.obstacles[k].loads || scene.obstacles[k].motion)
+      bits |= std::uint64_t(1) << (k + kFaceNames.size());
   return bits;
 }
 

@@ -259,8 +259,8 @@ TEST_CASE("schema: balanced JSON that has every key and refuses the others") {
        (p = text.find("\"additionalProperties\": false", p)) != std::string::npos; ++p)
     ++closed;
   CHECK(objects == closed);
-  // One object for every shape of a body and of an obstacle, each kind of its motion, and every kind
-  // of a gauge.
+  // One object for every shape of a body and of an obstacle, each kind of its motion, and every
+  // kind of a gauge.
   const auto kinds = [](const char* key) { return scene_table().find_key(key)->choices.size(); };
   CHECK(objects == scene_table().blocks.size() - 5 + kinds("bodies[].shape") +
                        kinds("obstacles[].shape") * (1 + kinds("obstacles[].motion.kind")) +
