@@ -20,7 +20,7 @@ std::string motion_error(const std::string& motion, const std::vector<std::strin
 std::string tank_error(const std::string& motion, const std::vector<std::string>& set = {}) {
   return parse_error(kMinimal + "tank_motion: " + motion + "\n", set);
 }
-const std::vector<std::string> kFlat{"dimensions=2", "domain.max=[1, 0.1, 1]"};
+const std::vector<std::string> kFlatTank{"dimensions=2", "domain.max=[1, 0.1, 1]"};
 
 /// What reading the file of the tank's motion says.
 std::string file_error(const std::string& text, const std::string& tank = "",
@@ -93,15 +93,16 @@ TEST_CASE("motions: what is missing, misplaced or contradicts is named with its 
 }
 
 TEST_CASE("motions in two dimensions stay in the plane") {
-  CHECK(contains(tank_error("{kind: sine, axis: [1, 0, 0], amplitude: 1, period: 2}", kFlat),
+  CHECK(contains(tank_error("{kind: sine, axis: [1, 0, 0], amplitude: 1, period: 2}", kFlatTank),
                  "tank_motion.axis: with dimensions: 2 nothing turns but about y"));
-  CHECK(contains(motion_error("{kind: velocity, velocity: [0, 1, 0]}", kFlat),
+  CHECK(contains(motion_error("{kind: velocity, velocity: [0, 1, 0]}", kFlatTank),
                  "obstacles[0].motion.velocity: its y component is 1"));
-  CHECK(contains(motion_error("{kind: velocity, angular: [0, 1, 2]}", kFlat),
+  CHECK(contains(motion_error("{kind: velocity, angular: [0, 1, 2]}", kFlatTank),
                  "obstacles[0].motion.angular: with dimensions: 2 nothing turns but about y"));
-  CHECK(contains(motion_error("{kind: sine, direction: [0, 1, 1], amplitude: 1, period: 2}", kFlat),
-                 "obstacles[0].motion.direction: its y component is 1"));
-  CHECK(contains(file_error("t,ax,ay,az\n0,0,1,0\n2,0,0,0\n", "", kFlat),
+  CHECK(contains(
+      motion_error("{kind: sine, direction: [0, 1, 1], amplitude: 1, period: 2}", kFlatTank),
+      "obstacles[0].motion.direction: its y component is 1"));
+  CHECK(contains(file_error("t,ax,ay,az\n0,0,1,0\n2,0,0,0\n", "", kFlatTank),
                  "tank_motion.path: m.csv:2: ay is 1, with dimensions: 2 it must be 0"));
 }
 
