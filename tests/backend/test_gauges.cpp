@@ -61,7 +61,7 @@ Case tank(const pbf::Double3& size, double depth, std::size_t up = 2, bool flat 
 }
 
 /// A block that falls beside a box and splashes through two rectangles.
-Case splash(bool flat) {
+Case splash_among_gauges(bool flat) {
   Case c = flat ? flat_block(14, 30, 0.1, 0.3, 1, 1) : jittered_block(9, 6, 12, 0.1, 0.3, 1, 1);
   pbf::Scene& s = c.scene;
   s.domain.max[0] = s.domain.min[0] + (flat ? 0.6 : 0.4);
@@ -191,7 +191,7 @@ TEST_CASE("a velocity gauge is the mean of the particles within h, and nan where
 }
 
 TEST_CASE("flow through a rectangle across the channel balances the particles on both sides") {
-  Case c = splash(GENERATE(false, true));
+  Case c = splash_among_gauges(GENERATE(false, true));
   SECTION("an update is a step") {}
   SECTION("substeps") { c.scene.solver.substeps = 2; }
   const int level = GENERATE(0, 1);
@@ -297,7 +297,7 @@ TEST_CASE("pressure gauges of a tank at rest read what hydrostatics says, also i
 }
 
 TEST_CASE("a disc larger than its surface reads the surface's whole load over its area") {
-  Case c = splash(false);
+  Case c = splash_among_gauges(false);
   pbf::Scene& s = c.scene;
   s.gauges.clear();
   s.domain.loads = true;
@@ -327,7 +327,7 @@ TEST_CASE("a disc larger than its surface reads the surface's whole load over it
 }
 
 TEST_CASE("gauges do not depend on threads, pass-by-pass updates, or being handed over") {
-  Case c = splash(GENERATE(false, true));
+  Case c = splash_among_gauges(GENERATE(false, true));
   auto a = make(c);
   a->step(20);
   a->gauges(pbf::Interval::ends);
@@ -407,7 +407,7 @@ TEST_CASE("steps without time move particles through a rectangle without a count
 }
 
 TEST_CASE("gauges leave the particles' bits alone") {
-  Case c = splash(false);
+  Case c = splash_among_gauges(false);
   auto with = make(c);
   for (int k = 0; k < 4; ++k) with->step(10), with->gauges(pbf::Interval::ends);
   const pbf::SolverState there = with->state();

@@ -11,7 +11,7 @@ using namespace pbf::test;
 
 namespace {
 
-void write_scene(const Scratch& folder) {
+void write_moving_scene(const Scratch& folder) {
   folder.write("heave.csv", "t,ax,ay,az\n0,0,0,0\n0.2,1,0,0\n2,-1,0,0\n");
   folder.write("gate.csv",
                "t,x,y,z,rx,ry,rz\n0,0,0,0,0,0,0\n0.5,0,0,0.1,0,20,0\n2,0,0,0.2,0,0,0\n");
@@ -37,7 +37,7 @@ void write_scene(const Scratch& folder) {
 
 TEST_CASE("what moves: poses and work are columns of the log, the plan says what stands") {
   const Scratch folder;
-  write_scene(folder);
+  write_moving_scene(folder);
   REQUIRE(run_scene(folder, "a", {"--set", "time.end=0.4"}).code == 0);
   const pbf::RunReader reader((folder / "a/run.vtkhdf").string());
   const auto time = reader.log_column("time"), x = reader.log_column("pose/paddle/x"),
@@ -56,7 +56,7 @@ TEST_CASE("what moves: poses and work are columns of the log, the plan says what
 
 TEST_CASE("what moves: stopped and resumed, also with adaptive steps, the same bytes") {
   const Scratch folder;
-  write_scene(folder);
+  write_moving_scene(folder);
   std::vector<std::string> set{"--set", "solver.iterations=8"};
   if (GENERATE(false, true)) set.insert(set.end(), {"--set", "time.adaptive=on"});
   REQUIRE(run_scene(folder, "a", set).code == 0);
@@ -79,7 +79,7 @@ TEST_CASE("what moves: stopped and resumed, also with adaptive steps, the same b
 
 TEST_CASE("what moves: a run is not resumed with another table, and a short one is refused") {
   const Scratch folder;
-  write_scene(folder);
+  write_moving_scene(folder);
   REQUIRE(run_scene(folder, "a", {"--max-walltime", "0.02"}).code == 75);
   folder.write("heave.csv", "t,ax,ay,az\n0,0,0,0\n2,-1,0,0\n");
   const auto again = run_scene(folder, "a", {"--resume"});
