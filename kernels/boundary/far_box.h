@@ -13,7 +13,7 @@ template <class Real>
 struct FarBox : Box<Real> {
   static constexpr bool far_only = true;
   Bounds<Real> bounds{}, clear{};  ///< as those of Solids
-  bool obstacles = false, booked = false;
+  bool obstacles = false, loaded = false;
   const FrameStep<Real>* frame = nullptr;
   NearRows<Real> near{};
 
@@ -22,7 +22,7 @@ struct FarBox : Box<Real> {
         bounds(s.bounds),
         clear(s.clear),
         obstacles(s.obstacles),
-        booked(s.booked),
+        loaded(s.loaded),
         frame(s.frame),
         near(s.near) {}
 
@@ -36,7 +36,7 @@ struct FarBox : Box<Real> {
 
   /// Whether a way may lead to a solid, or end near one.
   PBF_HD_RARE bool comes_near(Vec3<Real> from, Vec3<Real> to) const {
-    return (booked && !clear.has(to)) || (obstacles && bounds.meets(from, to));
+    return (loaded && !clear.has(to)) || (obstacles && bounds.meets(from, to));
   }
   /// Whether row i, which is far, may be near after a move in an iteration.
   PBF_HD bool leaves(int i, Vec3<Real> from, Vec3<Real> move) const {

@@ -14,7 +14,8 @@ struct Solids : Box<Real> {
   Bounds<Real> bounds{};                   ///< of all obstacles
   Bounds<Real> clear{};                    ///< far from every wall
   bool obstacles = false;                  ///< there are any
-  bool booked = false;                     ///< loads are
+  bool loaded = false;                     ///< loads on walls are asked for
+  bool booked = false;                     ///< and booked: in steps with time
   const FrameStep<Real>* frame = nullptr;  ///< of the step; null: the tank stands
   NearRows<Real> near{};                   ///< without obstacles and loads none is known
 
@@ -45,7 +46,7 @@ struct Solids : Box<Real> {
   }
   /// Whether a particle at x has to do with an obstacle, or with a wall where that has a load.
   PBF_HD bool is_near(Vec3<Real> x) const {
-    return (booked && !clear.has(x)) || (obstacles && bounds.has(x) && near_obstacle(*around, x));
+    return (loaded && !clear.has(x)) || (obstacles && bounds.has(x) && near_obstacle(*around, x));
   }
   /// The way of row i, while the lists hold, ended at x.
   PBF_HD void came_to(int i, Vec3<Real> x) const {

@@ -113,7 +113,7 @@ TEST_CASE("a finished run with gauges goes on to a later end as if it had not st
   CHECK(run_difference(folder / "a/run.vtkhdf", folder / "b/run.vtkhdf") == "");
 }
 
-TEST_CASE("a changed gauge is refused by --resume; without output there is a warning") {
+TEST_CASE("a changed gauge is refused by --resume, and without output there is a warning") {
   const Scratch folder;
   write_gauge_scene(folder);
   REQUIRE(run_scene(folder, "b", {"--max-walltime", "0.02"}).code == 75);

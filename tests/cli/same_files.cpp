@@ -104,7 +104,7 @@ TEST_CASE("a moved run file finds its particle files beside it, or says where it
   check_done(r.run({"away/run.vtkhdf", "--out", "b"}));
   fs::remove(r.folder / "away/p.csv");
   check_refused(r.run({"away/run.vtkhdf", "--out", "c"}),
-                {"away/run.vtkhdf: its particle file p.csv is neither in s, ", " nor in away, ",
+                {"away/run.vtkhdf: its file p.csv is neither in s, ", " nor in away, ",
                  "--set bodies.0.path="});
 }
 

@@ -191,7 +191,7 @@ class Run:
         m. A point at p from the middle that the scene gives it is at middle + turn @ p. From the
         rows of the log (`measure_every`), between them straight.
 
-        >>> turn, middle = open("run.vtkhdf").obstacle_pose("blade", 0.5)
+            turn, middle = run.obstacle_pose("blade", 0.5)
         """
         log = self.log
         if f"pose/{name}/x" not in log:

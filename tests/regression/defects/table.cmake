@@ -69,7 +69,7 @@ seeded_defect(s_corr_sign delta kernels/pass_delta.h [[w -= p.tensile_k]] [[w +=
 seeded_defect(frozen_particle delta kernels/pass_delta.h
   [[with_w(inside, Real(1) / density[i])]] [[with_w(i == 7 ? x : inside, Real(1) / density[i])]])
 seeded_defect(wall_clamp_dropped delta kernels/pass_delta.h
-  [[inside = boundary.path_end(x, target);]] [[inside = target;]])
+  [[      inside = boundary.path_end(x, target);]] [[      inside = target;]])
 seeded_defect(velocity_not_updated delta kernels/pass_delta.h
   [[xyz(velocity[i]) + p.inv_dt * (free + (inside - target))]] [[xyz(velocity[i])]])
 seeded_defect(neighbours_lambda_missing delta kernels/pass_delta.h
@@ -122,7 +122,7 @@ seeded_defect(level_momentum_missing levels kernels/pass_level_cells.h
 seeded_defect(level_momentum_at_walls levels kernels/pass_level_cells.h
   [[found >> 2 * k & 3 ? 1]] [[found > 64 ? 1]] levels)
 seeded_defect(level_displacement_sign delta kernels/pass_delta.h
-  [[free = free + coarse(i);]] [[free = free - coarse(i);]] levels)
+  [[free + coarse(i);]] [[free - coarse(i);]] levels)
 
 # xsph, vorticity
 seeded_defect(xsph_without_density xsph kernels/pass_xsph.h [[(shape * (a.w + b.x.w))]] [[(shape + shape)]])
