@@ -19,8 +19,6 @@ struct Solids : Box<Real> {
   const FrameStep<Real>* frame = nullptr;  ///< of the step; null: the tank stands
   NearRows<Real> near{};                   ///< without obstacles and loads none is known
 
-  PBF_HD const Box<Real>& walls() const { return *this; }
-
   template <Smoothing S>
   PBF_HD BoundaryTerm<Real> term(Vec3<Real> x) const {
     if (obstacles && bounds.has(x)) return surroundings_term<S>(*around, x);

@@ -9,9 +9,6 @@
 namespace pbf::inline program_module {
 namespace {
 
-using Matrix = std::array<Double3, 3>;
-constexpr Matrix kUnturned{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-
 /// As unit(), of any size: scaled first, so that no square overflows.
 Double3 direction(const Double3& v) {
   const double most = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
@@ -20,8 +17,8 @@ Double3 direction(const Double3& v) {
 }
 
 /// Rows: the axes of a body that was turned about `axis`.
-Matrix axes_turned(const Double3& axis, double degrees) {
-  if (degrees == 0) return kUnturned;
+Matrix3 axes_turned(const Double3& axis, double degrees) {
+  if (degrees == 0) return kUnit3;
   const Double3 u = direction(axis);
   const double quarter = degrees / 90;
   // Quarters exactly, so that faces at right angles stay so.
@@ -30,23 +27,23 @@ Matrix axes_turned(const Double3& axis, double degrees) {
   const double angle = degrees * 3.14159265358979323846 / 180;
   const double c = whole ? (turns % 2 ? 0 : 1 - turns) : std::cos(angle);
   const double s = whole ? (turns % 2 ? 2 - turns : 0) : std::sin(angle);
-  Matrix rows;
-  for (std::size_t k = 0; k < 3; ++k) rows[k] = turned(kUnturned[k], u, c, s);
+  Matrix3 rows;
+  for (std::size_t k = 0; k < 3; ++k) rows[k] = turned(kUnit3[k], u, c, s);
   return rows;
 }
 
 /// Rows: a right-handed frame with `axis` as its last one, and along a coordinate where that is.
-Matrix frame_along(const Double3& axis) {
+Matrix3 frame_along(const Double3& axis) {
   const Double3 z = direction(axis);
   std::size_t least = 0;
   for (std::size_t k = 1; k < 3; ++k)
     if (std::fabs(z[k]) < std::fabs(z[least])) least = k;
-  const Double3 y = direction(cross(z, kUnturned[least]));
+  const Double3 y = direction(cross(z, kUnit3[least]));
   return {cross(y, z), y, z};
 }
 
 /// Where faces of the body, at right angles to its axes, lie on walls or behind them.
-unsigned behind_walls(const Scene& s, const Matrix& rows, const Double3& center,
+unsigned behind_walls(const Scene& s, const Matrix3& rows, const Double3& center,
                       const Double3& half, unsigned faces) {
   unsigned through = 0;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -67,7 +64,7 @@ unsigned behind_walls(const Scene& s, const Matrix& rows, const Double3& center,
 Solid<double> solid_of(const Obstacle& o, const Scene& s, double time) {
   Solid<double> out;
   out.shape = o.shape;
-  Matrix rows = kUnturned;
+  Matrix3 rows = kUnit3;
   Double3 center{}, half{};
   unsigned faces = 0;
   switch (o.shape) {

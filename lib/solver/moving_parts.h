@@ -43,12 +43,6 @@ inline SolidVelocity velocity_between(const Solid<double>& a, const Solid<double
   return {true, {go.x, go.y, go.z}, {spin.x, spin.y, spin.z}, {middle.x, middle.y, middle.z}};
 }
 
-template <class Real>
-Bounds<Real> around_both(const Bounds<Real>& a, const Bounds<Real>& b) {
-  return {{min2(a.low.x, b.low.x), min2(a.low.y, b.low.y), min2(a.low.z, b.low.z)},
-          {max2(a.high.x, b.high.x), max2(a.high.y, b.high.y), max2(a.high.z, b.high.z)}};
-}
-
 /// h: how far from its centre a body reaches where it is in the domain.
 template <class Real>
 double radius_of(const Solid<double>& o, const Box<Real>& walls) {

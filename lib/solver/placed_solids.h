@@ -79,16 +79,17 @@ Bounds<Real> clear_of(const Box<Real>& walls) {
           {high(x_max, walls.extent.x), high(y_max, walls.extent.y), high(z_max, walls.extent.z)}};
 }
 
+template <class Real>
+Bounds<Real> around_both(const Bounds<Real>& a, const Bounds<Real>& b) {
+  return {{min2(a.low.x, b.low.x), min2(a.low.y, b.low.y), min2(a.low.z, b.low.z)},
+          {max2(a.high.x, b.high.x), max2(a.high.y, b.high.y), max2(a.high.z, b.high.z)}};
+}
 /// Around all of them.
 template <class Real>
 Bounds<Real> bounds_of(const std::vector<PlacedSolid<Real>>& all) {
   Bounds<Real> out;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const Bounds<Real>& b = all[k].bounds;
-    if (k == 0) out = b;
-    out.low = {min2(out.low.x, b.low.x), min2(out.low.y, b.low.y), min2(out.low.z, b.low.z)};
-    out.high = {max2(out.high.x, b.high.x), max2(out.high.y, b.high.y), max2(out.high.z, b.high.z)};
-  }
+  for (std::size_t k = 0; k < all.size(); ++k)
+    out = k == 0 ? all[k].bounds : around_both(out, all[k].bounds);
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include "lib/run/watch.h"
 #include "tests/support/backend.h"
 #include "tests/support/catch.h"
+#include "tests/support/quaternion.h"
 
 using namespace oracle_test;
 using backend_test::here;
@@ -32,18 +33,6 @@ pbf::TankMotion by_table(int columns, std::vector<double> time,
   m.path = "table.csv";
   m.table = {"table.csv", columns, std::move(time), std::move(values)};
   return m;
-}
-
-/// v turned about a unit axis, by quaternions.
-Double3 turned(const Double3& u, double angle, const Double3& v) {
-  const double w = std::cos(angle / 2), s = std::sin(angle / 2);
-  const Double3 q{s * u[0], s * u[1], s * u[2]};
-  const auto cross = [](const Double3& a, const Double3& b) {
-    return Double3{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  };
-  const Double3 t = cross(q, v), tt = cross(q, t);
-  return {v[0] + 2 * (w * t[0] + tt[0]), v[1] + 2 * (w * t[1] + tt[1]),
-          v[2] + 2 * (w * t[2] + tt[2])};
 }
 
 /// Particles far apart in a box without walls.
@@ -141,10 +130,11 @@ TEST_CASE("a free particle goes straight in the frame at rest while the tank tur
       r[a] = c.particles.position[i][a] - p[a];
       back[a] = r[a] - dt * c.particles.velocity[i][a];
     }
-    const Double3 now = turned(axis, angle(0), r), before = turned(axis, angle(-1), back);
+    const Double3 now = pbf::test::by_quaternion(axis, angle(0), r),
+                  before = pbf::test::by_quaternion(axis, angle(-1), back);
     for (std::size_t a = 0; a < 3; ++a)
       want[a] = now[a] + n * (now[a] - before[a]) + s.gravity[a] * dt * dt * n * (n + 1) / 2;
-    want = turned(axis, -angle(n), want);
+    want = pbf::test::by_quaternion(axis, -angle(n), want);
     for (std::size_t a = 0; a < 3; ++a)
       worst = std::max(worst, std::fabs(x[3 * i + a] - p[a] - want[a]));
   }

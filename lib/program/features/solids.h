@@ -50,7 +50,7 @@ void each_then_near(C& c, Make&& make) {
   using Real = typename C::Real;
   if (!c.solids().around) return c.each(make(c.p.boundary));
   const Solids<Real> solids = solids_of(c);
-  if (!solids.obstacles && !(moves && has_loads(c.scene))) return c.each(make(c.p.boundary));
+  if (!solids.obstacles && !(moves && solids.loaded)) return c.each(make(c.p.boundary));
   c.each(make(FarBox<Real>(solids)));
   const auto pass = make(solids);
   c.exec.for_listed(solids.near.count, c.rows(), NearPass<std::decay_t<decltype(pass)>>{pass});

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/support/catch.h"
+#include "tests/support/quaternion.h"
 #include "tests/support/scene_samples.h"
 
 namespace pbf::scene_test {
@@ -24,18 +25,6 @@ Obstacle box(const Double3& min, const Double3& max, const Double3& axis = {0, 0
   return o;
 }
 
-/// A vector turned about a unit axis, by the sandwich product of quaternions.
-Double3 by_quaternion(const Double3& u, double degrees, const Double3& v) {
-  const double half = degrees * std::acos(-1.0) / 360, w = std::cos(half), s = std::sin(half);
-  const Double3 q{s * u[0], s * u[1], s * u[2]};
-  const auto cross = [](const Double3& a, const Double3& b) {
-    return Double3{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  };
-  const Double3 t = cross(q, v), tt = cross(q, t);
-  return {v[0] + 2 * (w * t[0] + tt[0]), v[1] + 2 * (w * t[1] + tt[1]),
-          v[2] + 2 * (w * t[2] + tt[2])};
-}
-
 }  // namespace
 
 TEST_CASE("solids: a box's axes are turned by the right-hand rule about any axis") {
@@ -48,8 +37,8 @@ TEST_CASE("solids: a box's axes are turned by the right-hand rule about any axis
       for (std::size_t k = 0; k < 3; ++k) {
         Double3 e{};
         e[k] = 1;
-        const Double3 to =
-            by_quaternion({axis[0] / size, axis[1] / size, axis[2] / size}, degrees, e);
+        const Double3 to = pbf::test::by_quaternion(
+            {axis[0] / size, axis[1] / size, axis[2] / size}, degrees * std::acos(-1.0) / 180, e);
         for (std::size_t i = 0; i < 3; ++i) CHECK(all[0].turn[k][i] == Approx(to[i]).margin(1e-14));
       }
       CHECK(all[0].center.x == Approx(0.5 / 0.2));  // from the domain's corner, h
