@@ -6,6 +6,7 @@
 // of the terms, whole numbers or bits, so that it does not matter who adds what.
 #pragma once
 
+#include "kernels/boundary/surroundings.h"
 #include "kernels/cell_index.h"
 #include "kernels/levels.h"
 
@@ -30,11 +31,13 @@ struct LevelHomePass : LevelBrickPass<D> {
   using LevelBrickPass<D>::grid;
   Params<Real> p;
   const int* bin_start;
-  const Vec4<Real>* position;  ///< null where no face is open; those beyond are in no cell
-  int* run_start;              ///< out, LevelCells::runs
-  int* home;                   ///< out; -1: in no cell
-  int* count;                  ///< out, of each cell
-  std::int64_t* full;          ///< out: the same in kCountUnit, -1 where it is not half full
+  const Vec4<Real>* position;        ///< null where no face is open; those beyond are in no cell
+  const Surroundings<Real>* around;  ///< with the obstacles; null: there are none
+  int* run_start;                    ///< out, LevelCells::runs
+  int* home;                         ///< out; -1: in no cell
+  int* count;                        ///< out, of each cell
+  /// Out: the same in kCountUnit, -1 where it is not half full, or an obstacle may reach into it.
+  std::int64_t* full;
 
   using Part = int;
   PBF_HD Part part(GridPlace cell, int lane, int of) const {
@@ -61,10 +64,28 @@ struct LevelHomePass : LevelBrickPass<D> {
   PBF_HD std::int64_t finish(GridPlace cell, Part inside) const {
     const int c = grid.at(cell);
     count[c] = inside;
-    return full[c] = inside < grid.half(cell) ? -1 : std::int64_t(inside) << 20;
+    const bool off = inside < grid.half(cell) || (around && obstacle_reaches(cell));
+    return full[c] = off ? -1 : std::int64_t(inside) << 20;
   }
   PBF_HD void finish_corner(GridPlace brick, int which, const LevelPart& sum) const {
     this->at(brick, which) = sum.bits < 0 ? -1 : sum.number;
+  }
+
+ private:
+  /// Into the sphere around the cell.
+  PBF_HD bool obstacle_reaches(GridPlace cell) const {
+    Real middle[3] = {}, squares = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (D == 2 && k == 1) continue;
+      const Real half = Real(grid.length(k, cell[k]) / 2);
+      middle[k] = Real(cell[k] * grid.edge) + half;
+      squares += half * half;
+    }
+    const Real radius = square_root(squares);
+    for (int k = 0; k < around->solids; ++k)
+      if (distance<D>(around->solid[k].solid, {middle[0], middle[1], middle[2]}) < radius)
+        return true;
+    return false;
   }
 };
 

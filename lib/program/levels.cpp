@@ -47,7 +47,6 @@ double lattice_gamma(double ratio, double vol, int dimensions) {
 const char* why_no_levels(const Scene& s) {
   if (s.solver.iterations == 0) return "solver.iterations is 0";
   if (s.solver.levels == LevelsMode::off) return "solver.levels is off";
-  if (!s.obstacles.empty()) return "the scene has obstacles";
   if (has_pressure_gauges(s)) return "the scene has pressure gauges";
   if (s.solver.levels == LevelsMode::automatic && layers(s) < kDeep)
     return "solver.levels is auto, the fluid less than 64 layers deep";

@@ -77,11 +77,9 @@ class Checker : public SceneRules {
 
   void check_solver() {
     const SolverSettings& v = s_.solver;
-    if (good(v.levels) && v.levels == LevelsMode::on && !s_.obstacles.empty())
-      add(v.levels, "the grids of the levels do not know obstacles; give off or auto");
-    else if (good(v.levels) && v.levels == LevelsMode::on &&
-             std::ranges::any_of(s_.gauges,
-                                 [](const Gauge& g) { return g.kind == GaugeKind::pressure; }))
+    if (good(v.levels) && v.levels == LevelsMode::on &&
+        std::ranges::any_of(s_.gauges,
+                            [](const Gauge& g) { return g.kind == GaugeKind::pressure; }))
       add(v.levels, "pressure gauges do not see what the levels push; give off or auto");
     if (!good(v.tolerance, v.iterations, v.max_iterations) || v.tolerance == 0) return;
     if (v.iterations == 0)

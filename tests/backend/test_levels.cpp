@@ -1,6 +1,6 @@
 // Levels (solver.levels) against brute force over all nodes, on every backend and precision.
-#include "tests/support/backend.h"
 #include "tests/support/catch.h"
+#include "tests/support/obstacles.h"
 
 using namespace oracle_test;
 using backend_test::here;
@@ -42,6 +42,7 @@ double reach_of_levels(Case c) {
 oracle::LevelNodes check_against_oracle(const Case& c) {
   const Difference d = against_oracle(c);
   REQUIRE(d.nodes.closest > 0.01);  // no rounding decides which nodes are on
+  REQUIRE(d.nodes.touch > 1e-3);
   CHECK(d.position < (is_double() ? 1e-8 : 2e-5));
   CHECK(d.velocity < (is_double() ? 2e-8 : 4e-5));
   return d.nodes;
@@ -118,6 +119,21 @@ TEST_CASE("nodes beside air and open faces are off, as in the brute-force oracle
     CHECK(check_against_oracle(c).on == 0);
     CHECK(reach_of_levels(c) == 0);
   }
+}
+
+TEST_CASE("nodes whose hats an obstacle reaches are off, as in the brute-force oracle") {
+  Case c = GENERATE(false, true) ? flat_column() : column();
+  obstacle_test::Placing put(c.scene);
+  SECTION("a turned box") { put.box({1, 0.5, 9.1}, {2, 1.5, 10.4}, {0, 1, 0}, 30); }
+  SECTION("a plate of 0.2 h") { put.box({-1, -1, 8.3}, {9, 9, 8.5}); }
+  SECTION("a ball") { put.sphere({1.2, 1.1, 4.9}, 1); }
+  SECTION("the floor, a plane") { put.plane({0, 0, 0.55}, {0.1, 0, 1}); }
+  c = obstacle_test::without_inner(c, 1e-3);
+  const auto nodes = check_against_oracle(c);
+  CHECK(nodes.reached > 0);
+  CHECK(nodes.on > 0);
+  CHECK(nodes.off > 0);
+  CHECK(reach_of_levels(c) > 1e-3);
 }
 
 TEST_CASE("levels move fluid that no wall holds as the brute-force oracle does") {

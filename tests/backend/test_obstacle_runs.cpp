@@ -45,6 +45,29 @@ Case in_domain(Case c, const pbf::Double3& size, const pbf::Double3& corner) {
   return here(c);
 }
 
+/// 100 updates, whose loads must be the weight less the change of momentum.
+void check_balance(const Case& c) {
+  auto solver = make(c);
+  const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
+  const double mass = plan.mass * double(plan.particles), time = 100 * c.scene.time.step;
+  const pbf::Diagnostics before = solver->measure();
+  solver->step(100);
+  const pbf::Diagnostics after = solver->measure();
+  double sum[3] = {0, 0, 0}, weight = 0;
+  for (const pbf::WallLoad& l : solver->loads(pbf::Interval::goes_on)) {
+    for (int k = 0; k < 3; ++k) sum[k] += l.force[k];
+    CAPTURE(l.wall);
+    if (l.wall[0] == 'o') CHECK(l.peak > 0.01 * mass);
+    for (const double t : l.torque) CHECK(std::fabs(t) <= 0.5 * l.peak);  // m
+  }
+  for (const double g : c.scene.gravity) weight += mass * mass * g * g;
+  double error = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    error = std::max(error, std::fabs(sum[k] - mass * c.scene.gravity[k] +
+                                      (after.momentum[k] - before.momentum[k]) / time));
+  CHECK(error / std::sqrt(weight) < (is_double() ? 1e-9 : 2e-4));
+}
+
 /// Advances in parts and holds every particle to be outside of obstacles after each.
 void run_outside(const Case& c, pbf::Solver& s, int updates, int parts, int level = 0) {
   double most = -1e9;
@@ -76,25 +99,32 @@ TEST_CASE("loads on walls and obstacles are the weight less the change of moment
     c.scene.viscosity = pbf::Viscosity{0.1};
     c.scene.solver.method = pbf::SolverMethod::chebyshev;
   }
-  auto solver = make(c);
-  const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
-  const double mass = plan.mass * double(plan.particles), time = 100 * c.scene.time.step;
-  const pbf::Diagnostics before = solver->measure();
-  solver->step(100);
-  const pbf::Diagnostics after = solver->measure();
-  double sum[3] = {0, 0, 0}, weight = 0;
-  for (const pbf::WallLoad& l : solver->loads(pbf::Interval::goes_on)) {
-    for (int k = 0; k < 3; ++k) sum[k] += l.force[k];
-    CAPTURE(l.wall);
-    if (l.wall[0] == 'o') CHECK(l.peak > 0.01 * mass);
-    for (const double t : l.torque) CHECK(std::fabs(t) <= 0.5 * l.peak);  // m
-  }
-  for (const double g : c.scene.gravity) weight += mass * mass * g * g;
-  double error = 0;
+  check_balance(c);
+}
+
+TEST_CASE("with levels too loads are the weight less the change of momentum") {
+  const bool flat = GENERATE(false, true);
+  Case c = flat ? flat_block(22, 40, 0.1, 0.3) : jittered_block(12, 10, 26, 0.1, 0.3);
   for (std::size_t k = 0; k < 3; ++k)
-    error = std::max(error, std::fabs(sum[k] - mass * c.scene.gravity[k] +
-                                      (after.momentum[k] - before.momentum[k]) / time));
-  CHECK(error / std::sqrt(weight) < (is_double() ? 1e-9 : 2e-4));
+    if (!flat || k != 1) c.scene.domain.max[k] = c.scene.domain.min[k] + (k == 2 ? 1.2 : 0.47);
+  if (!flat) c.scene.domain.max[0] = c.scene.domain.min[0] + 0.25;
+  if (!flat) c.scene.domain.max[1] = c.scene.domain.min[1] + 0.21;
+  c.scene.gravity = {1.1, flat ? 0 : -0.6, -9.81};
+  c.scene.time.step = 0.002;
+  c.scene.domain.loads = true;
+  c.scene.solver.iterations = 2;
+  c.scene.solver.levels = pbf::LevelsMode::on;
+  Placing(c.scene).box({1, 1, 1}, {2.6, 2.4, 2.2}, {0, 1, 0}, 20);
+  c = without_inner(here(c), 0.2);
+  check_balance(c);
+  const auto energy = [&] {
+    auto solver = make(c);
+    solver->step(100);
+    return solver->measure().kinetic_energy;
+  };
+  const double with = energy();
+  c.scene.solver.levels = pbf::LevelsMode::off;
+  CHECK(std::fabs(energy() - with) > 0.01 * with);  // they do act
 }
 
 TEST_CASE("a submerged cube of 8 spacings is lifted by what it displaces, and not pushed aside") {

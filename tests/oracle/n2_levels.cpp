@@ -59,6 +59,45 @@ Real full_cell(const std::array<Axis, 3>& axes, const Node& cell, const Settings
   return full;
 }
 
+/// m, of a place from an obstacle; 0 in it.
+Real away(const Solid& o, const V& x, int dimensions) {
+  V p{};
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (dimensions == 3 || k != 1) p[a] += o.axes[a][k] * (x[k] - o.center[k]);
+  const auto beyond = [](Real r, Real half) { return std::max<Real>(std::fabs(r) - half, 0); };
+  switch (o.shape) {
+    case Solid::Shape::plane:
+      return std::max<Real>(p[2], 0);
+    case Solid::Shape::box:
+      return std::hypot(beyond(p[0], o.half[0]), beyond(p[1], o.half[1]), beyond(p[2], o.half[2]));
+    case Solid::Shape::sphere:
+      return beyond(std::hypot(p[0], p[1], p[2]), o.half[0]);
+    case Solid::Shape::cylinder:
+      return std::hypot(beyond(std::hypot(p[0], p[1]), o.half[0]), beyond(p[2], o.half[2]));
+    case Solid::Shape::capsule:
+      return beyond(std::hypot(p[0], p[1], beyond(p[2], o.half[2])), o.half[0]);
+  }
+  return 0;
+}
+/// Whether an obstacle may reach into the cell: into the sphere around it.
+bool reached(const std::array<Axis, 3>& axes, const Node& cell, const Settings& c,
+             LevelNodes& found) {
+  V middle = c.low;
+  Real squares = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (axes[k].intervals[0] == 0) continue;
+    const Real half = axes[k].length(cell[k]) / 2;
+    middle[k] += cell[k] * axes[k].edge + half;
+    squares += half * half;
+  }
+  Real nearest = 1e30L;
+  for (const Solid& o : c.solids) nearest = std::min(nearest, away(o, middle, c.dimensions));
+  found.touch = std::min(found.touch, std::fabs(nearest - std::sqrt(squares)) / c.h);
+  found.reached += nearest < std::sqrt(squares);
+  return nearest < std::sqrt(squares);
+}
+
 template <class F>
 void for_each_node(const std::array<Axis, 3>& axes, int level, F&& f) {
   for (int z = 0; z < axes[2].nodes(level); ++z)
@@ -112,13 +151,14 @@ std::vector<Sums> finest(const std::array<Axis, 3>& axes, const std::vector<Node
         }
         const Real full = full_cell(axes, cell, c);
         found.closest = std::min(found.closest, std::fabs(s.particles - full / 2));
+        const bool good = s.particles >= full / 2 && !reached(axes, cell, c, found);
         for_each_node(axes, 0, [&](const Node& n) {
           for (int k = 0; k < 3; ++k)
             if (!touches(k, n[std::size_t(k)], cell[std::size_t(k)])) return;
           Sums& node = nodes[place(axes, 0, n)];
           node.excess += s.excess;
           node.particles += s.particles;
-          node.on = node.on && s.particles >= full / 2;
+          node.on = node.on && good;
         });
       }
   for_each_node(axes, 0, [&](const Node& n) {

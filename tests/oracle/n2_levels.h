@@ -10,6 +10,8 @@ struct LevelNodes {
   int levels = 0, on = 0, off = 0;
   int free = 0;          ///< particles and axes, moved without a wall that holds the fluid
   Real closest = 1e30L;  ///< particles, least distance of a cell from being just half full
+  int reached = 0;       ///< cells that are half full, but an obstacle may reach into
+  Real touch = 1e30L;    ///< h, least distance of an obstacle from just reaching such a cell
 };
 
 /// m, of each particle. in_cell: where the particles were when the lists were made; ratio: their

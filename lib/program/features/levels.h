@@ -88,6 +88,7 @@ struct LevelCellsAndNodes {
                                   c.p,
                                   c.template data<int>(field::bin_start),
                                   c.scene.domain.open.empty() ? nullptr : c.position(),
+                                  c.scene.obstacles.empty() ? nullptr : c.solids().around,
                                   c.template data<int>(field::run_start),
                                   c.template data<int>(field::level_home),
                                   count,

@@ -94,6 +94,8 @@ TEST_CASE(
 TEST_CASE("levels auto: on from 64 layers of fluid along gravity on, of all bodies together") {
   CHECK(has_levels(tank("auto")));
   CHECK_FALSE(has_levels(tank("auto", {"fluid.spacing=0.0201"})));
+  CHECK(has_levels(tank("auto", {"obstacles=[{name: a, shape: sphere, center: [0.2, 0.2, 0.2], "
+                                 "radius: 0.1}]"})));
   CHECK_FALSE(has_levels(tank("auto", {"gravity=[9.81, 0, 0]"})));
   CHECK_FALSE(has_levels(tank("auto", {"gravity=[0, 0, 0]"})));
   CHECK(has_levels(tank("auto", {"gravity=[1, 0, -9.81]"})));

@@ -85,7 +85,7 @@ TEST_CASE("obstacles: shapes without extent, direction or curvature are refused"
   }
 }
 
-TEST_CASE("obstacles: what two dimensions and levels do not know is refused with the remedy") {
+TEST_CASE("obstacles: what two dimensions do not know is refused with the remedy") {
   CHECK(flat_error(kBox) == "no error");
   CHECK(contains(flat_error("{name: a, shape: plane, point: [0, 0, 0], normal: [1, 1, 0]}"),
                  "obstacles[0].normal: has a y component, with dimensions: 2"));
@@ -103,9 +103,6 @@ TEST_CASE("obstacles: what two dimensions and levels do not know is refused with
     CHECK(contains(flat_error(tube("cylinder", "[0, 0, 0]", to)),
                    "obstacles[0].to: with dimensions: 2 a cylinder stands on the x-z plane"));
   CHECK(flat_error(tube("cylinder", "[0, 0, 0]", "[0, 1, 0]")) == "no error");
-  CHECK(contains(obstacle_error(kBox, {"solver.levels=on"}),
-                 "solver.levels: the grids of the levels do not know obstacles; give off or auto"));
-  CHECK(obstacle_error(kBox, {"solver.levels=auto"}) == "no error");
 }
 
 TEST_CASE("obstacles: keys of other shapes, missing and unknown ones are refused by name") {
