@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "kernels/smoothing.h"
-#include "lib/program/loads.h"
+#include "lib/scene/surface.h"
 
 namespace pbf::inline program_module {
 namespace {
@@ -47,7 +47,7 @@ double lattice_gamma(double ratio, double vol, int dimensions) {
 const char* why_no_levels(const Scene& s) {
   if (s.solver.iterations == 0) return "solver.iterations is 0";
   if (s.solver.levels == LevelsMode::off) return "solver.levels is off";
-  if (has_pressure_gauges(s)) return "the scene has pressure gauges";
+  if (has_pressure_on_wall(s)) return "the scene has a pressure gauge on a wall";
   if (s.solver.levels == LevelsMode::automatic && layers(s) < kDeep)
     return "solver.levels is auto, the fluid less than 64 layers deep";
   return nullptr;

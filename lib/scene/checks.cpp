@@ -8,6 +8,7 @@
 #include "lib/scene/lattice.h"
 #include "lib/scene/rounding.h"
 #include "lib/scene/scene_rules.h"
+#include "lib/scene/surface.h"
 
 namespace pbf::inline scene_module {
 namespace {
@@ -77,10 +78,10 @@ class Checker : public SceneRules {
 
   void check_solver() {
     const SolverSettings& v = s_.solver;
-    if (good(v.levels) && v.levels == LevelsMode::on &&
-        std::ranges::any_of(s_.gauges,
-                            [](const Gauge& g) { return g.kind == GaugeKind::pressure; }))
-      add(v.levels, "pressure gauges do not see what the levels push; give off or auto");
+    if (good(v.levels) && v.levels == LevelsMode::on && has_pressure_on_wall(s_))
+      add(v.levels,
+          "pressure gauges on walls do not see what the levels push; give off or auto, or put them "
+          "on obstacles");
     if (!good(v.tolerance, v.iterations, v.max_iterations) || v.tolerance == 0) return;
     if (v.iterations == 0)
       add(v.tolerance, "nothing can meet it with solver.iterations 0; give at least 1");

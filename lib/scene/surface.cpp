@@ -119,6 +119,13 @@ std::optional<int> surface_named(const Scene& scene, const std::string& name) {
   return std::nullopt;
 }
 
+bool has_pressure_on_wall(const Scene& scene) {
+  return std::any_of(scene.gauges.begin(), scene.gauges.end(), [](const Gauge& g) {
+    return g.kind == GaugeKind::pressure &&
+           std::find(kFaceNames.begin(), kFaceNames.end(), g.on) != kFaceNames.end();
+  });
+}
+
 SurfacePlace nearest_place_on(int surface, const Scene& scene, const Double3& at) {
   const int faces = int(kFaceNames.size());
   if (surface < faces) return nearest_place(surface, scene, at);

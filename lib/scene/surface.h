@@ -21,6 +21,8 @@ SurfacePlace nearest_place(int face, const Scene& scene, Double3 at);
 
 /// What a name stands for: face 0 to 5, or 6 and the number of the obstacle; nothing for others.
 std::optional<int> surface_named(const Scene& scene, const std::string& name);
+/// Whether the scene has a pressure gauge on a wall of the domain.
+bool has_pressure_on_wall(const Scene& scene);
 SurfacePlace nearest_place_on(int surface, const Scene& scene, const Double3& at);
 
 /// Whether fluid may be at a place: in the domain, to `slack` (m), and in no obstacle.

@@ -146,13 +146,16 @@ TEST_CASE("gauges: keys of other kinds, missing and unknown ones are refused by 
                  "output.gauges_every: is 0.001, below time.step (0.01 s)"));
 }
 
-TEST_CASE("gauges: levels do not know pressure gauges") {
+TEST_CASE("gauges: levels do not know pressure gauges on walls, on obstacles they do") {
   const std::string text =
       kMinimal + "gauges: [" + pressure("x_min", "[0, 0.5, 0.3]") + "]\nsolver: {levels: on}\n";
-  CHECK(
-      contains(parse_error(text),
-               "solver.levels: pressure gauges do not see what the levels push; give off or auto"));
+  CHECK(contains(parse_error(text),
+                 "solver.levels: pressure gauges on walls do not see what the levels push; give "
+                 "off or auto, or put them on obstacles"));
   CHECK(parse_error(text, {"solver.levels=auto"}) == "no error");
+  CHECK(parse_error(text, {"obstacles=[{name: a, shape: box, min: [0, 0.3, 0], max: [0.4, 0.7, "
+                           "1]}]",
+                           "gauges.0.on=a", "gauges.0.at=[0.4, 0.5, 0.5]"}) == "no error");
 }
 
 TEST_CASE("surfaces: the nearest place is on the surface, along the normal, as far as it is said") {
