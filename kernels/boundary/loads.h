@@ -52,6 +52,9 @@ struct LoadBook {
   /// Bit of each wall whose own sums are wanted; those beyond the last bit have them.
   std::uint64_t summed = ~std::uint64_t(0);
 
+  /// Whether those of the domain's walls are wanted, by themselves or by gauges.
+  PBF_HD bool of_walls() const { return (summed & 63) != 0 || patches > 0; }
+
   /// Wall `wall` has moved particle i, which is at x, by `way` (h).
   PBF_HD void add(int wall, int i, Vec3<Real> x, Vec3<Real> way) const {
 #if defined(__CUDA_ARCH__)

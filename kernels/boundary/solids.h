@@ -39,7 +39,7 @@ struct Solids : Box<Real> {
   template <Smoothing S>
   PBF_HD void book_push(int i, Vec3<Real> x, Real factor) const {
     if (!booked || factor == Real(0)) return;
-    if (this->near_wall(x) || (obstacles && bounds.has(x)))
+    if ((loaded && this->near_wall(x)) || (obstacles && bounds.has(x)))
       pbf::book_push<S>(*around, i, x, factor);
   }
   /// Whether a particle at x has to do with an obstacle, or with a wall where that has a load.

@@ -159,7 +159,7 @@ template <Smoothing S, class Real>
 PBF_HD_APART void book_push(const Surroundings<Real>& s, int i, Vec3<Real> x, Real factor) {
   Real of_wall[6], share(0);
   if (!s.walls.adds_density) return;
-  const bool at_wall = s.walls.template slopes<S>(x, of_wall);
+  const bool at_wall = s.loads.of_walls() && s.walls.template slopes<S>(x, of_wall);
   for_solids_at<S>(s, x, [&](int, const SolidTerm<Real>& one) { share += one.share; });
   if (share > Real(0) && share < Real(1)) {
     const Real left = s.walls.scale - s.walls.template term<S>(x).density;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "lib/scene/scene.h"
+#include "lib/scene/surface.h"
 
 namespace pbf::inline program_module {
 
@@ -19,6 +19,11 @@ inline bool has_loads(const Scene& scene) {
   const auto wanted = [](const Obstacle& o) { return o.loads || o.motion; };
   return scene.domain.loads || has_pressure_gauges(scene) ||
          std::any_of(scene.obstacles.begin(), scene.obstacles.end(), wanted);
+}
+
+/// Those of walls are asked for, too: whoever comes to a wall has to be booked.
+inline bool has_wall_loads(const Scene& scene) {
+  return scene.domain.loads || has_pressure_on_wall(scene);
 }
 
 /// There is more around the fluid than plain walls.

@@ -252,8 +252,8 @@ void StepContext<Real, Exec>::make_solids(const Scene& in_its_axes, const Plan& 
                   nullptr, Real(move * move)};
   const std::vector<Real> behind(Exec::padding, solids_.near.far_room);
   exec.to_device(behind.data(), behind.size(), data<Real>(field::near_room) + rows_);
-  const std::vector<int> cells =
-      half_cells_near_solids(scene, run.standing, run.moving, p, solids_.clear, has_loads(scene));
+  const std::vector<int> cells = half_cells_near_solids(scene, run.standing, run.moving, p,
+                                                        solids_.clear, has_wall_loads(scene));
   near_half_cells_.resize(cells.size());
   exec.to_device(cells.data(), cells.size(), near_half_cells_.data());
 }

@@ -180,7 +180,7 @@ struct Levels {
     if (const char* why = why_no_levels(s)) return b.left_out("levels: grids coarser than h", why);
     b.template lists<LevelCellsAndNodes>();
     b.template iteration<LevelMultipliers>();
-    if (has_loads(s)) b.template iteration<BookLevels>();
+    if (has_wall_loads(s)) b.template iteration<BookLevels>();
   }
 };
 

@@ -18,8 +18,8 @@ template <class C>
 Solids<typename C::Real> solids_of(C& c) {
   Solids<typename C::Real> solids = c.solids();
   static_cast<Box<typename C::Real>&>(solids) = c.p.boundary;
-  solids.loaded = has_loads(c.scene);
-  solids.booked = solids.loaded && c.p.dt > 0;
+  solids.loaded = has_wall_loads(c.scene);
+  solids.booked = has_loads(c.scene) && c.p.dt > 0;
   solids.near.sums = c.other(field::velocity);
   if (!(c.p.dt > 0)) solids.frame = nullptr;
   // A far row is farther from what it can meet than the range of the walls' density.
