@@ -21,11 +21,15 @@ struct Criteria {
   std::optional<double> compression_max;   ///< largest in the settled part
   std::optional<double> nearest;           ///< least distance of two particles at the end, spacings
   std::optional<double> still;  ///< kinetic energy at the end, share of energy_scale() at the start
-  std::optional<double> height;    ///< loss of the centre of mass's height along gravity, share
-  std::optional<double> momentum;  ///< drift, share of what the particles' momenta add up to
+  std::optional<double> height;       ///< loss of the centre of mass's height along gravity, share
+  std::optional<double> momentum;     ///< drift, share of what the particles' momenta add up to
+  std::optional<double> penetration;  ///< h, deepest in a wall or an obstacle at any measure
+  std::optional<double> through;      ///< net through any flow gauge at any measure, particles
+  std::optional<double> loads;  ///< balance of all loads, share of the weight: load_imbalance()
   std::string like;  ///< name of a case whose centre of mass at the end, in h, this one shares
   std::optional<int> error;  ///< exit code of the error that must end it before the first update
   std::string says;          ///< what that error's text must contain
+  std::string warns;         ///< what a warning of the scene must contain
   std::string guard;  ///< "": must not stop; an alarm's name: must stop it; "allowed": either
 };
 
@@ -94,8 +98,11 @@ void judge_likeness(const std::vector<StabilityCase>& cases, std::vector<Stabili
 /// What a run went through, of what the criteria ask for.
 struct Course : Figures {
   Diagnostics first, last;
-  double scale = 0;     ///< J, energy_scale() at the start
-  double released = 0;  ///< released_energy(), share of scale
+  double scale = 0;        ///< J, energy_scale() at the start
+  double released = 0;     ///< released_energy(), share of scale
+  double penetration = 0;  ///< m, deepest in a wall or an obstacle at any measure
+  double through = 0;      ///< kg, largest total of a flow gauge at any measure
+  double impulse[3]{};     ///< N s, of all loads since the start
   std::optional<GuardEvent> event;
   std::string guard_text;
   std::optional<StepHistory> steps;  ///< with time.adaptive; its `updates` up to the end

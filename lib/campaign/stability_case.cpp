@@ -6,6 +6,8 @@
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
 #include "lib/campaign/stability.h"
+#include "lib/run/motion_files.h"
+#include "lib/run/warnings.h"
 #include "lib/scene/load.h"
 #include "lib/scene/overrides.h"
 
@@ -21,6 +23,10 @@ Scene scene_of(const StabilityCase& c, const StabilityOptions& o) {
   for (const std::string& argument : o.overrides) apply_override(root, argument, problems);
   Scene s = scene_of_tree(root, problems);
   problems.raise();
+  if (c.must.loads) {
+    s.domain.loads = true;
+    for (Obstacle& obstacle : s.obstacles) obstacle.loads = true;
+  }
   prepare(s, o);
   return s;
 }
@@ -41,6 +47,10 @@ std::string must_text(const Criteria& m) {
   if (m.still) add(", Ekin<=", *m.still);
   if (m.height) add(", height>=-", *m.height);
   if (m.momentum) add(", momentum<=", *m.momentum);
+  if (m.penetration) add(", in solids<=", *m.penetration);
+  if (m.through) add(", through<=", *m.through);
+  if (m.loads) add(", loads<=", *m.loads);
+  if (!m.warns.empty()) out += ", warns: " + m.warns;
   if (!m.like.empty()) out += ", like " + m.like;
   if (m.guard == "allowed") out += "; or guard";
   return out;
@@ -61,6 +71,25 @@ double momentum_drift(const Course& c, double mass) {
   return all > 0 ? std::sqrt(drift) / all : 0;
 }
 
+/// |sum of loads - (M g - dP/dt)| over M |g|, means over the run: what a fluid that only walls and
+/// obstacles push must have. Not so with tank_motion, damping, a speed limit or confinement.
+double load_imbalance(const Course& c, const Scene& s, double mass) {
+  double off = 0, weight = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double change = (c.last.momentum[a] - c.first.momentum[a]) / c.last.time;
+    off += std::pow(c.impulse[a] / c.last.time - mass * s.gravity[a] + change, 2);
+    weight += std::pow(mass * s.gravity[a], 2);
+  }
+  return std::sqrt(off / weight);
+}
+
+bool scene_warns(const Scene& s, const std::string& dir, std::int64_t particles,
+                 const std::string& words) {
+  return std::ranges::any_of(scene_warnings(s, dir, particles), [&](const Warning& w) {
+    return w.text.find(words) != std::string::npos;
+  });
+}
+
 void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s) {
   const auto at_most = [&](const char* name, double value, double limit) {
     row.checks.push_back({name, value, limit, value <= limit});
@@ -73,10 +102,12 @@ void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s
   if (m.nearest) row.checks.push_back({"near", row.nearest, *m.nearest, row.nearest >= *m.nearest});
   if (m.still) at_most("Ekin", c.last.kinetic_energy / c.scale, *m.still);
   if (m.height) at_most("height lost", height_lost(c, s), *m.height);
-  if (m.momentum) {
-    const double mass = make_plan(s, c.particles).mass * double(c.particles);
-    at_most("momentum", momentum_drift(c, mass), *m.momentum);
-  }
+  const Plan plan = make_plan(s, c.particles);
+  const double mass = plan.mass * double(c.particles);
+  if (m.momentum) at_most("momentum", momentum_drift(c, mass), *m.momentum);
+  if (m.penetration) at_most("in solids", c.penetration / s.h(), *m.penetration);
+  if (m.through) at_most("through", c.through / plan.mass, *m.through);
+  if (m.loads) at_most("loads", load_imbalance(c, s, mass), *m.loads);
   for (const StabilityCheck& check : row.checks) {
     const bool least = check.name == std::string("near");
     if (check.limit > 0 && (least || check.value > 0)) {
@@ -94,8 +125,9 @@ void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s
 }
 
 void run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
-  const Scene s = scene_of(c, o);
+  Scene s = scene_of(c, o);
   const std::string dir = std::filesystem::path(c.scene).parent_path().string();
+  read_motions(s, dir);
   row.dt_hat =
       s.time.step * std::sqrt(std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]) / s.h());
   const Course course = run_course(s, dir, [&](Solver& solver) {
@@ -116,6 +148,9 @@ void run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
   }
   row.good = !must_stop && !c.must.error;
   judge(row, c.must, course, s);
+  if (c.must.warns.empty() || scene_warns(s, dir, row.particles, c.must.warns)) return;
+  row.happened += ", no such warning (!)";
+  row.good = false;
 }
 
 }  // namespace

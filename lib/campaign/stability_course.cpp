@@ -6,8 +6,25 @@
 #include "lib/campaign/stability.h"
 #include "lib/run/emit.h"
 #include "lib/run/prestabilize.h"
+#include "lib/solver/gauge_readings.h"
 
 namespace pbf::inline campaign_module {
+namespace {
+
+/// kg, the largest of what has gone through the flow gauges since the start.
+double most_through(const Scene& scene, Solver& solver) {
+  if (scene.gauges.empty()) return 0;
+  const std::vector<double> readings = solver.gauges(Interval::goes_on);
+  double most = 0;
+  std::size_t at = 0;
+  for (const GaugeData& g : gauge_data(scene)) {
+    at += std::size_t(g.numbers());
+    if (g.further == std::string("total")) most = std::max(most, std::fabs(readings.at(at - 1)));
+  }
+  return most;
+}
+
+}  // namespace
 
 Course run_course(const Scene& scene, const std::string& dir,
                   const std::function<void(Solver&)>& done) {
@@ -16,6 +33,7 @@ Course run_course(const Scene& scene, const std::string& dir,
   const Plan plan = make_plan(scene, c.particles);
   const auto solver = start_solver(scene, plan, emit_particles(scene, dir));
   std::vector<std::pair<double, double>> compression;
+  double loads_since = 0;  // s
   Watch watch(scene, plan, *solver, [&](const Diagnostics& m, double) {
     if (compression.empty()) {
       c.first = m;
@@ -26,6 +44,11 @@ Course run_course(const Scene& scene, const std::string& dir,
     // Without gravity and at rest there is no scale: any rise counts in full.
     c.energy_rise = std::max(c.energy_rise, c.scale > 0 ? rise / c.scale : rise);
     c.speed_max = std::max(c.speed_max, m.speed_max);
+    c.penetration = std::max(c.penetration, m.penetration);
+    c.through = std::max(c.through, most_through(scene, *solver));
+    for (const WallLoad& load : m.loads)
+      for (int a = 0; a < 3; ++a) c.impulse[a] += load.force[a] * (m.time - loads_since);
+    loads_since = m.time;
     compression.push_back({m.compression_mean, m.compression_max});
   });
   Session(*solver, {&watch, &watch.choosing()}).run(make_schedule(scene).updates);

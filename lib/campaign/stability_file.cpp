@@ -78,9 +78,13 @@ class SuiteReader : StrictReader {
                                              {"still", number(m.still)},
                                              {"height", number(m.height)},
                                              {"momentum", number(m.momentum)},
+                                             {"penetration", number(m.penetration)},
+                                             {"through", number(m.through)},
+                                             {"loads", number(m.loads)},
                                              {"like", word(m.like)},
                                              {"error", exit_code(m.error)},
                                              {"says", word(m.says)},
+                                             {"warns", word(m.warns)},
                                              {"guard", word(m.guard)}});
                                  }}});
     for (const char* key : {"name", "group", "scene", "must"})

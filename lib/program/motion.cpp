@@ -46,6 +46,9 @@ void must_be_read(const MotionTable& table, const std::string& path) {
 }
 
 /// Column c at a time: cubic between rows, by slopes of second order; beyond the table straight on.
+/// A slope takes the longer of the two ways beside its row no farther than 1.5 times what the
+/// larger of the two rises is, which no smooth motion does. So a jump between two rows close
+/// together, with long ones around, swings beyond the table by less than a quarter of itself.
 double cubic(const MotionTable& table, std::size_t c, double t) {
   const std::vector<double>& at = table.time;
   const std::size_t n = at.size();
@@ -56,7 +59,9 @@ double cubic(const MotionTable& table, std::size_t c, double t) {
     if (k == 0) return rise(0);
     if (k == n - 1) return rise(n - 2);
     const double before = at[k] - at[k - 1], behind = at[k + 1] - at[k];
-    return (rise(k - 1) * behind + rise(k) * before) / (before + behind);
+    const double rises = std::max(std::fabs(y(k) - y(k - 1)), std::fabs(y(k + 1) - y(k)));
+    const double most = 1.5 * rises / std::max(before, behind);
+    return std::clamp((rise(k - 1) * behind + rise(k) * before) / (before + behind), -most, most);
   };
   if (t <= at[0]) return y(0) + slope(0) * (t - at[0]);
   if (t >= at[n - 1]) return y(n - 1) + slope(n - 1) * (t - at[n - 1]);
@@ -76,7 +81,7 @@ double straight(const MotionTable& table, std::size_t c, double t) {
   return (1 - u) * table.values[k][c] + u * table.values[k + 1][c];
 }
 
-/// f(t) at some times of an interval, both ends included, close enough for a sine.
+/// f(t) at some times of an interval, both ends included, close enough for a sine and for tables.
 template <class F>
 void for_times(const Scene& s, double from, double to, F&& f) {
   double shortest = to - from;
@@ -92,6 +97,19 @@ void for_times(const Scene& s, double from, double to, F&& f) {
     look(*s.tank_motion, s.tank_motion->kind == TankMotionKind::sine, s.tank_motion->table);
   const int n = shortest > 0 ? int(std::clamp((to - from) / shortest, 1.0, 4096.0)) : 1;
   for (int k = 0; k <= n; ++k) f(from + (to - from) * k / n);
+  // Rows may lie closer together than these times, where something jumps.
+  const auto rows = [&](const MotionTable& table) {
+    const std::vector<double>& at = table.time;
+    const double begin = s.time.motion_begin;
+    for (auto row = std::lower_bound(at.begin(), at.end(), begin + from);
+         row != at.end() && *row <= begin + to; ++row) {
+      f(*row - begin);
+      if (row != at.begin()) f(0.5 * (row[-1] + *row) - begin);
+    }
+  };
+  for (const Obstacle& o : s.obstacles)
+    if (o.motion) rows(o.motion->table);
+  if (s.tank_motion) rows(s.tank_motion->table);
 }
 
 /// m: half the size of what is in the domain at most.

@@ -9,7 +9,8 @@ namespace pbf::inline run_module {
 namespace {
 
 /// Splashes of a few particles are in any lively flow.
-constexpr double kMuch = 1e-3;  // of particles times steps
+constexpr double kMuch = 1e-3;     // of particles times steps
+constexpr double kInSolid = 0.01;  // h, far beyond rounding
 
 std::string passed_through_text(const Scene& s, const Diagnostics& m, double share) {
   // With time.adaptive the longest way may be that of a step much shorter than time.step.
@@ -123,6 +124,11 @@ std::vector<Warning> Reporter::found(bool end) const {
       (double(run_.plan.particles) * double(run_.schedule.updates) * run_.scene.solver.substeps);
   if (m.unresolved > 0 && (share >= kMuch || m.relative_way_max >= 1))
     list.push_back({"passed_through", passed_through_text(run_.scene, m, share)});
+  if (m.penetration > kInSolid * run_.scene.h())
+    list.push_back({"closed_in", format("%s leaves fluid no way out: a particle is %.2g m behind "
+                                        "its surface; move it elsewhere or more slowly",
+                                        run_.scene.obstacles.empty() ? "a wall" : "an obstacle",
+                                        m.penetration)});
   if (left_ > 0)
     list.push_back({"left", format("%ld of %ld particles (%.2g %%) have left the domain through "
                                    "an open face (%s), the farthest %.3g m beyond it; they are "

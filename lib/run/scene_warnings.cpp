@@ -5,6 +5,7 @@
 #include "kernels/relative_motion.h"
 #include "lib/base/text.h"
 #include "lib/program/motion.h"
+#include "lib/program/obstacles.h"
 #include "lib/run/overlap.h"
 #include "lib/run/warnings.h"
 
@@ -94,6 +95,43 @@ void add_motion(const Scene& s, std::vector<Warning>& list) {
                                    "pushes may pass through fluid; give time.step %.2g or less, or "
                                    "time.adaptive",
                                    way, kResolvedWay, s.time.step * kResolvedWay / way)});
+}
+
+/// Whether it lies beyond a face of the domain, by more than walls and obstacles reach.
+bool out_of_reach(const Scene& s, const Solid<double>& o) {
+  double size[3];
+  for (std::size_t k = 0; k < 3; ++k) size[k] = (s.domain.max[k] - s.domain.min[k]) / s.h();
+  if (o.shape == ObstacleShape::plane) {
+    for (int corner = 0; corner < 8; ++corner)
+      if (distance<3>(o, {corner & 1 ? size[0] : 0, corner & 2 ? size[1] : 0,
+                          corner & 4 ? size[2] : 0}) < 1)
+        return false;
+    return true;
+  }
+  const double center[3] = {o.center.x, o.center.y, o.center.z};
+  const double half[3] = {o.half.x, o.half.y, o.half.z};
+  for (int k = 0; k < 3; ++k) {
+    if (s.plane() && k == 1) continue;
+    double reach = 1;
+    if (o.shape == ObstacleShape::box)
+      for (int axis = 0; axis < 3; ++axis) reach += std::fabs(o.turn[axis][k]) * half[axis];
+    else
+      reach += o.half.x + std::fabs(o.turn[2][k]) * o.half.z;
+    if (center[k] + reach < 0 || center[k] - reach > size[k]) return true;
+  }
+  return false;
+}
+
+void add_obstacles(const Scene& s, std::vector<Warning>& list) {
+  if (!closed_box(s)) return;  // fluid goes on beyond
+  const std::vector<Solid<double>> solids = solids_of(s);
+  for (std::size_t k = 0; k < solids.size(); ++k)
+    if (!s.obstacles[k].motion && out_of_reach(s, solids[k])) {
+      list.push_back({"obstacles", format("obstacles[%zu] (%s) lies outside the domain: no fluid "
+                                          "will meet it; move it or remove it",
+                                          k, s.obstacles[k].name.c_str())});
+      return;
+    }
 }
 
 void add_overlap(const Scene& s, const std::string& dir, std::vector<Warning>& list) {
@@ -198,6 +236,7 @@ std::vector<Warning> scene_warnings(const Scene& scene, const std::string& scene
   add_step(scene, particles, list);
   add_speed(scene, list);
   add_motion(scene, list);
+  add_obstacles(scene, list);
   add_overlap(scene, scene_dir, list);
   add_crowded(scene, particles, list);
   add_output(scene, list);

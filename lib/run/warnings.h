@@ -9,8 +9,8 @@
 
 namespace pbf::inline run_module {
 
-/// `kind`: step, speed, overlap, crowded, output (of a scene); compressed, passed_through, left (of
-/// a run). At most one of each kind in a list.
+/// `kind`: step, speed, motion, obstacles, overlap, crowded, output (of a scene); compressed,
+/// passed_through, closed_in, left (of a run). At most one of each kind in a list.
 struct Warning {
   std::string kind, text;
 };

@@ -1,4 +1,9 @@
 // What holds of obstacles.
+#include <algorithm>
+#include <cmath>
+
+#include "lib/base/text.h"
+#include "lib/scene/rounding.h"
 #include "lib/scene/scene_rules.h"
 
 namespace pbf::inline scene_module {
@@ -31,6 +36,22 @@ class ObstacleChecker : public SceneRules {
   static bool is_face(const std::string& name) {
     return std::find(kFaceNames.begin(), kFaceNames.end(), name) != kFaceNames.end();
   }
+  /// Rounding puts particles on the other side of what is thinner.
+  void check_thickness(const Double3& end, double thick) {
+    if (!good(s_.domain.min, s_.domain.max, s_.dimensions, s_.precision, s_.fluid.spacing,
+              s_.fluid.smoothing_ratio))
+      return;
+    for (std::size_t a = 0; a < 3; ++a)
+      if (!(s_.domain.max[a] > s_.domain.min[a])) return;
+    const double apart = position_spacing(s_) * s_.h(), least = kThinnestSolid * apart;
+    if (thick >= least) return;
+    const bool single = s_.precision == Precision::single;
+    add(end, "makes a plate " + format("%.3g", thick) + " m thick, and positions in " +
+                 word(s_.precision) + " are " + format("%.3g", apart) +
+                 " m apart at the far end of the domain: fluid would pass through it; give at "
+                 "least " +
+                 format("%.2g", 1.05 * least) + " m" + (single ? ", or precision: double" : ""));
+  }
   void check_obstacle(const Obstacle& o) {
     const auto squared = [](const Double3& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
     const bool tube = o.shape == ObstacleShape::cylinder || o.shape == ObstacleShape::capsule;
@@ -44,7 +65,11 @@ class ObstacleChecker : public SceneRules {
               "0 for y");
         break;
       case ObstacleShape::box:
-        if (good(o.min, o.max)) above(o.min, o.max);
+        if (good(o.min, o.max) && above(o.min, o.max)) {
+          const Double3 edge{o.max[0] - o.min[0], o.max[1] - o.min[1], o.max[2] - o.min[2]};
+          check_thickness(
+              o.max, flat() ? std::min(edge[0], edge[2]) : std::min({edge[0], edge[1], edge[2]}));
+        }
         if (good(o.turn_axis) && squared(o.turn_axis) == 0)
           add(o.turn_axis, "has no direction; give one, [0, 1, 0] say");
         else if (good(o.turn_axis, o.turn_angle) && flat() && o.turn_angle != 0 &&
@@ -52,6 +77,10 @@ class ObstacleChecker : public SceneRules {
           add(o.turn_axis, "with dimensions: 2 a box can only be turned about y; give [0, 1, 0]");
         break;
       case ObstacleShape::cylinder:
+        if (good(o.from, o.to) && o.from != o.to && !flat())
+          check_thickness(
+              o.to, std::hypot(o.to[0] - o.from[0], o.to[1] - o.from[1], o.to[2] - o.from[2]));
+        break;
       case ObstacleShape::capsule:
       case ObstacleShape::sphere:
         break;

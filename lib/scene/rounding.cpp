@@ -9,13 +9,25 @@ namespace {
 /// Distance of neighbouring numbers as large as x, with so many digits after the first.
 double number_spacing(double x, int digits) { return std::ldexp(1.0, std::ilogb(x) - digits); }
 
+int digits_of(const Scene& s) { return s.precision == Precision::dbl ? 52 : 23; }
+
 }  // namespace
 
+double position_spacing(const Scene& s) {
+  double spacing = 0;
+  for (std::size_t a = 0; a < 3; ++a)
+    if (s.dimensions == 3 || a != 1)
+      spacing = std::max(spacing,
+                         number_spacing((s.domain.max[a] - s.domain.min[a]) / s.h(), digits_of(s)));
+  return spacing;
+}
+
 Rounding rounding_of(const Scene& s) {
-  const int digits = s.precision == Precision::dbl ? 52 : 23;
+  const int digits = digits_of(s);
   const double h = s.h(), dt = s.time.step / s.solver.substeps;
   const bool falls = s.gravity != Double3{};
   Rounding worst;
+  worst.spacing = position_spacing(s);
   const auto take = [&](double distance, double lost, double slow) {
     worst.slow = std::max(worst.slow, slow);
     lost = std::min(lost, distance);
@@ -28,7 +40,6 @@ Rounding rounding_of(const Scene& s) {
     const double extent = (s.domain.max[a] - s.domain.min[a]) / h;
     const double spacing = number_spacing(extent, digits);
     if (s.dimensions == 2 && a == 1) continue;
-    worst.spacing = std::max(worst.spacing, spacing);
     const double g = std::fabs(s.gravity[a]) / h;
     if (g > 0) {
       const double time = std::min(s.time.end, std::sqrt(2 * extent / g));

@@ -23,9 +23,14 @@ struct Rounding {
 /// come where particles move by a good part of h in one.
 Rounding rounding_of(const Scene& scene);
 
+/// h, of the numbers that positions are at the far corner of the box: Rounding::spacing.
+double position_spacing(const Scene& scene);
+
 // What is too much (kernels/README.md, "Precision").
 constexpr double kLargestSpacing = 1.0 / 128;  ///< h: 0.13 % of density
 constexpr double kLargestLoss = 0.01;          ///< of the distance, and of the velocity
 constexpr double kLeastLoss = 0.001;           ///< h: nobody sees less
+/// Spacings of numbers: fluid passes through plates of 0.1 and less, turned or not.
+constexpr double kThinnestSolid = 8;
 
 }  // namespace pbf::inline scene_module

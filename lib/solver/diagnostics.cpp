@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "lib/base/text.h"
+#include "lib/scene/vector3.h"
 #include "lib/solver/params.h"
 
 namespace pbf::inline solver_module {
@@ -76,7 +77,9 @@ Diagnostics to_diagnostics(const MeasureSums& s, const MeasureConstants& given, 
   m.compression_max = s.compression_max;
   m.share_above_1 = double(s.above_1) / n;
   m.share_above_10 = double(s.above_10) / n;
-  m.penetration = h * s.penetration;
+  // A solid that fills the box has no face left in it.
+  const Double3 box = scene.domain.max - scene.domain.min;
+  m.penetration = std::min(h * s.penetration, std::hypot(box[0], box[1], box[2]));
   m.kinetic_energy = 0.5 * mass * h * h * s.speed_squared;
   for (int k = 0; k < 3; ++k) {
     const auto axis = std::size_t(plan.axes.of[k]);

@@ -150,6 +150,56 @@ TEST_CASE("a submerged cube of 8 spacings is lifted by what it displaces, and no
   for (const double t : load[0].torque) CHECK(std::fabs(t) < 0.01 * lift * edge);
 }
 
+TEST_CASE("a partition between two depths of water carries the difference of their thrusts") {
+  // 0.4 m and 0.2 m, each 0.2 m long, d = 20 mm, 4 layers wide; the partition is one spacing thick.
+  Case c = jittered_block(21, 4, 20, 0, 0);
+  pbf::Scene& s = c.scene;
+  const double d = s.fluid.spacing, x0 = s.domain.min[0], z0 = s.domain.min[2], width = 4 * d;
+  s.domain.max[0] = x0 + 21 * d, s.domain.max[2] = z0 + 0.5;
+  Placing(s).box({5, -9, -9}, {5.5, 9, 99});  // from 0.2 to 0.22 m
+  c = without_inner(here(c));
+  pbf::Particles water;
+  for (const pbf::Double3& x : c.particles.position)
+    if (x[0] < x0 + 0.2 || x[2] < z0 + 0.2) water.position.push_back(x);
+  water.velocity.resize(water.position.size());
+  c.particles = water;
+  REQUIRE(c.particles.size() == 10 * 4 * (20 + 10));
+  auto solver = make(c);
+  solver->step(500);
+  solver->loads(pbf::Interval::ends);
+  solver->step(500);
+  const pbf::WallLoad load = solver->loads(pbf::Interval::ends).at(0);
+  const double thrust = 1000 * 9.81 * (0.4 * 0.4 - 0.2 * 0.2) / 2 * width;
+  CAPTURE(load.force[0] / thrust, load.force[1] / thrust, load.force[2] / thrust);
+  CHECK(load.force[0] == Approx(thrust).epsilon(0.01));
+  CHECK(std::fabs(load.force[1]) < 0.003 * thrust);
+  CHECK(std::fabs(load.force[2]) < 0.003 * thrust);
+}
+
+TEST_CASE("a box that stands on the floor is pressed down by what is above it, and not aside") {
+  // 12 x 12 spacings wide and 8 high in water 16 deep: nothing is below it, so it is not lifted.
+  Case c = jittered_block(22, 22, 16, 0, 0);
+  pbf::Scene& s = c.scene;
+  s.fluid.spacing = 0.025;
+  for (pbf::Double3& x : c.particles.position)
+    for (std::size_t k = 0; k < 3; ++k) x[k] = s.domain.min[k] + 1.25 * (x[k] - s.domain.min[k]);
+  const double d = s.fluid.spacing;
+  for (std::size_t k = 0; k < 3; ++k) s.domain.max[k] = s.domain.min[k] + 22 * d;
+  Placing(s).box({2.5, 2.5, -2}, {8.5, 8.5, 4});
+  c = without_inner(here(c));
+  REQUIRE(c.particles.size() == 22 * 22 * 16 - 12 * 12 * 8);
+  auto solver = make(c);
+  solver->step(300);
+  solver->loads(pbf::Interval::ends);
+  solver->step(500);
+  const pbf::WallLoad load = solver->loads(pbf::Interval::ends).at(0);
+  const double weight = 1000 * 9.81 * (12 * d) * (12 * d) * (8 * d);
+  CAPTURE(load.force[0] / weight, load.force[1] / weight, load.force[2] / weight);
+  CHECK(-load.force[2] == Approx(weight).epsilon(0.01));
+  CHECK(std::fabs(load.force[0]) < 0.005 * weight);
+  CHECK(std::fabs(load.force[1]) < 0.005 * weight);
+}
+
 TEST_CASE("a plate of 0.25 h holds fluid on its side for 2000 updates") {
   const bool turned = GENERATE(false, true);
   Case c = in_domain(jittered_block(5, 5, 7, 0.1, 0.3), {5, 2.5, 5}, {0, 0, 0});

@@ -169,3 +169,27 @@ TEST_CASE("summary.csv counts the warnings of each run, and --strict makes them 
   CHECK(has(pbf::test::pbf({"batch", "s.yaml", "--strict", "--slurm"}, folder.path()).out,
             " --strict"));
 }
+
+TEST_CASE("fluid that an obstacle has closed in is told, while the run goes on and at its end") {
+  const Scratch folder;
+  folder.write("s.yaml",
+               "name: press\n"
+               "domain: {min: [0, 0, 0], max: [0.4, 0.4, 1]}\n"
+               "fluid: {spacing: 0.05}\n"
+               "bodies: [{shape: block, min: [0, 0, 0], max: [0.4, 0.4, 0.4]}]\n"
+               "obstacles: [{name: press, shape: box, min: [-2, -1, 1], max: [2, 1, 4],\n"
+               "             motion: {kind: velocity, velocity: [0, 0, -1]}}]\n"
+               "time: {step: 0.004, end: 1.1}\n"
+               "output: {every: 0.1}\n");
+  const Outcome o = run(folder, {"s.yaml", "--out", "a", "--quiet"});
+  CHECK(o.code == 0);
+  std::vector<std::string> told;
+  for (const std::string& w : warnings_in(o.err))
+    if (has(w, "an obstacle leaves fluid no way out")) told.push_back(w);
+  REQUIRE_FALSE(told.empty());
+  CHECK(has(told.back(), ": a particle is 1.1 m behind its surface"));  // the diagonal of the box
+  const auto all = kept(folder / "a/run.vtkhdf");
+  CHECK(std::count(all.begin(), all.end(), told.back()) == 1);
+  const Outcome early = run(folder, {"s.yaml", "--out", "b", "--quiet", "--set", "time.end=0.3"});
+  CHECK_FALSE(has(early.err, "no way out"));
+}

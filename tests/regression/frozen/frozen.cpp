@@ -18,6 +18,7 @@
 #include "lib/base/stage_clock.h"
 #include "lib/campaign/stability.h"
 #include "lib/campaign/study.h"
+#include "lib/run/motion_files.h"
 #include "lib/scene/load.h"
 #include "tests/regression/frozen/hash.h"
 #ifdef PBF_HAS_CUDA
@@ -32,12 +33,13 @@ namespace fs = std::filesystem;
 const fs::path kRoot = PBF_SOURCE_DIR;
 const fs::path kHashes = kRoot / "tests/regression/frozen/hashes.csv";
 constexpr int kUpdates = 200;
-constexpr const char* kHead = "case,precision,particles,updates,position,velocity";
+constexpr const char* kHead = "case,precision,particles,updates,position,velocity,readings";
 
 struct Case {
   std::string name;
   fs::path file;
   std::vector<std::string> set;
+  bool readings = false;
 };
 
 std::vector<Case> read_cases() {
@@ -49,7 +51,11 @@ std::vector<Case> read_cases() {
     std::string file;
     if (!(words >> c.name) || c.name[0] == '#' || !(words >> file)) continue;
     c.file = kRoot / file;
-    for (std::string word; words >> word;) c.set.push_back(word);
+    for (std::string word; words >> word;)
+      if (word == "readings")
+        c.readings = true;
+      else
+        c.set.push_back(word);
     cases.push_back(c);
   }
   return cases;
@@ -78,16 +84,29 @@ std::string field_hash(const Snapshot& snapshot, const std::string& name) {
   return "none";
 }
 
-/// "particles,updates,position,velocity", what follows case and precision in a row. Fewer updates
-/// than 200 where the guard ends the run.
-std::string result_of(const Scene& s, const std::string& dir) {
+/// Of all loads at the last measure and what the gauges read since the start, to the last bit.
+std::string readings_hash(const std::vector<WallLoad>& loads, const std::vector<double>& gauges) {
+  test::Hash hash;
+  const auto add = [&](double v) { hash.add({reinterpret_cast<const char*>(&v), sizeof v}); };
+  for (const WallLoad& load : loads)
+    for (const LoadNumber& n : load_numbers()) add(n.value(load));
+  for (const double v : gauges) add(v);
+  return hash.text();
+}
+
+/// "particles,updates,position,velocity", what follows case and precision in a row, and
+/// ",readings" where they are wanted. Fewer updates than 200 where the guard ends the run.
+std::string result_of(const Scene& s, const std::string& dir, bool readings) {
   std::string row;
-  run_course(s, dir, [&](Solver& solver) {
+  std::vector<double> gauges;
+  const Course course = run_course(s, dir, [&](Solver& solver) {
+    gauges = solver.gauges(Interval::goes_on);
     const Snapshot snapshot =
         solver.download({"velocity"}, ScalarType::f64).get();  // in order of ids
     row = std::to_string(snapshot.count) + "," + std::to_string(solver.updates()) + "," +
           field_hash(snapshot, "position") + "," + field_hash(snapshot, "velocity");
   });
+  if (readings) row.append(",").append(readings_hash(course.last.loads, gauges));
   return row;
 }
 
@@ -119,11 +138,13 @@ struct Found {
 Found run_case(const Case& c, Precision precision, Backend backend) try {
   Scene s = scene_of(c, precision, backend);
   const std::string dir = c.file.parent_path().string();
+  read_motions(s, dir);
   s.threads = 1;
-  Found found{result_of(s, dir), {}, 0};
+  Found found{result_of(s, dir, c.readings), {}, 0};
   if (about(backend).on_device || std::stoi(found.row) <= 1024) return found;
   s.threads = 2;
-  if (result_of(s, dir) != found.row) found.note = "two threads give other bits than one";
+  if (result_of(s, dir, c.readings) != found.row)
+    found.note = "two threads give other bits than one";
   return found;
 } catch (const std::exception& e) {
   return {"", e.what(), 0};
@@ -185,7 +206,8 @@ int main_of(bool write, Backend backend, bool times) {
     std::printf("%s is written anew\n", kHashes.c_str());
   } else if (wrong > 0 && !write) {
     std::printf(
-        "(particles,updates,position,velocity.) Bits changed. Where that is meant, renew them:\n"
+        "(particles,updates,position,velocity,readings.) Bits changed. Where that is meant, renew "
+        "them:\n"
         "  tests/regression/frozen_hashes BUILD_FOLDER --write\n"
         "and say in the commit which cases changed and why.\n");
   }

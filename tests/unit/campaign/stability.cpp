@@ -92,6 +92,56 @@ TEST_CASE(
   CHECK_FALSE(run_one("speed: 100", fast).good);
 }
 
+TEST_CASE("stability case: how deep in obstacles, what goes through, and what loads add up to") {
+  const std::string box = "{name: a, shape: box, min: [0.4, -1, -1], max: [0.6, 2, 2]}";
+  const std::string set = "time.end: 0.1, obstacles: [" + box + "]";
+  const StabilityRow good = run_one("penetration: 0.0001, loads: 0.0001", set);
+  CHECK(good.good);
+  REQUIRE(good.checks.size() == 4);
+  CHECK(good.checks[3].name == "loads");
+  CHECK(good.checks[3].value > 0);  // they were booked, and rounding is left
+  // 300 particles are below a level rectangle, and gravity points up.
+  const std::string flow =
+      "time.end: 0.3, gravity: [0, 0, 10], gauges: [{name: Q, kind: flow, center: [0.5, 0.5, 0.3], "
+      "normal: [0, 0, 1], size: [1, 1]}]";
+  const StabilityRow through = run_one("through: 0", flow);
+  CHECK_FALSE(through.good);
+  CHECK(through.checks.back().value > 50);
+  CHECK(run_one("through: 300", flow).good);
+  // A solid that comes to fill the box: nowhere to go, and no deeper than the box is wide.
+  const std::string press =
+      "time.end: 1, guard: off, obstacles: [{name: a, shape: box, min: [-1, -1, 1], "
+      "max: [2, 2, 4], motion: {kind: velocity, velocity: [0, 0, -1.5]}}]";
+  const StabilityRow pressed = run_one("penetration: 0.0001", press);
+  CHECK_FALSE(pressed.good);
+  CHECK(pressed.checks.back().value > 1);
+  CHECK(pressed.checks.back().value < 9);  // h: the diagonal of the box is 8.7
+}
+
+TEST_CASE("stability case: a warning of the scene counts where it must come") {
+  const std::string far =
+      "time.end: 0.1, obstacles: [{name: far, shape: sphere, center: [5, 5, 5], "
+      "radius: 0.1}]";
+  CHECK(run_one("warns: (far) lies outside the domain", far).good);
+  CHECK_FALSE(run_one("warns: (near) lies outside the domain", far).good);
+}
+
+TEST_CASE("stability case: files of motions lie beside the scene") {
+  const Folder folder;
+  folder.write("s.yaml", kMinimal);
+  folder.write("m.csv", "t,x,y,z\n0,0,0,0\n2,0.1,0,0\n");
+  const auto cases = read_stability_suite(folder.write(
+      "suite.yaml",
+      "cases:\n  - {name: a, group: g, scene: s.yaml, must: {speed: 100}, set: {time.end: 0.1, "
+      "obstacles: [{name: a, shape: sphere, center: [0.5, 0.5, 0.9], radius: 0.2, motion: {kind: "
+      "file, path: m.csv}}]}}\n"));
+  StabilityOptions o;
+  o.threads = 1;
+  const StabilityRow row = run_stability_case(cases.at(0), o);
+  CAPTURE(row.happened);
+  CHECK(row.good);
+}
+
 TEST_CASE("stability case: likeness compares centres of mass in h") {
   StabilityCase a, b;
   a.name = std::string("a");

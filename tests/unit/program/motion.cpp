@@ -122,4 +122,26 @@ TEST_CASE("a tank's step: gravity where it stands, turned with it, and what a tu
   CHECK(greatest_pull(s, 0, 1) > 9.81);
 }
 
+TEST_CASE(
+    "poses: a jump between two rows close together swings beyond the table by less than a "
+    "quarter") {
+  Scene s = with_motion("{kind: file, path: t.csv}");
+  // At rest for 0.1 s, then 0.4 m in 0.8 ms, at rest for 0.1 s.
+  s.obstacles[0].motion->table =
+      table(3, {0, 0.1, 0.1004, 0.1008, 0.2, 10}, {{}, {}, {0.2}, {0.4}, {0.4}, {0.4}});
+  s.time.end = 1;
+  double low = 0, high = 0;
+  for (double t = 0; t < 1; t += 1e-5) {
+    const double x = place(s, {}, t)[0];
+    low = std::min(low, x), high = std::max(high, x);
+  }
+  CHECK(low > -0.05);
+  CHECK(high < 0.45);
+  CHECK(place(s, {}, 0.1004)[0] == Approx(0.2));
+  // And it is seen, wherever the times are that are looked at.
+  CHECK(fastest_obstacle(s, 0, 1) > 400);
+  CHECK(fastest_obstacle(s, 0.05, 0.15) > 400);
+  CHECK(fastest_obstacle(s, 0.25, 1) < 2);
+}
+
 }  // namespace pbf::scene_test

@@ -42,6 +42,13 @@ bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+Obstacle obstacle(ObstacleShape shape) {
+  Obstacle o;
+  o.name = "far";
+  o.shape = shape;
+  return o;
+}
+
 /// All pairs of two bodies closer than half a spacing, by brute force.
 std::int64_t all_close_pairs(const Scene& s) {
   const Particles p = emit_particles(s, ".");
@@ -255,4 +262,47 @@ TEST_CASE("intervals beyond the end of a run are named, each of them") {
   const std::string text = text_of("output", s);
   CHECK(holds(text, "render.every 3 s"));
   CHECK(holds(text, "measure_every"));
+}
+
+TEST_CASE(
+    "an obstacle that stands where no fluid will meet it is told, one that reaches in or moves is "
+    "not") {
+  // h is 0.1 m, the box 0.4 x 0.4 x 1.2 m.
+  const auto told = [](const Obstacle& o, const std::vector<std::string>& open = {}) {
+    Scene s = pool();
+    s.obstacles = {o};
+    s.domain.open = open;
+    return text_of("obstacles", s);
+  };
+  Obstacle box = obstacle(ObstacleShape::box);
+  box.min = {0.49, 0, 0}, box.max = {2, 0.4, 0.4};
+  CHECK(told(box).empty());  // within h
+  box.min[0] = 0.51;
+  CHECK(told(box) ==
+        "obstacles[0] (far) lies outside the domain: no fluid will meet it; move it or remove it");
+  CHECK(told(box, {"x_max"}).empty());
+  box.turn_angle = 20;
+  box.turn_axis = {0, 1, 0};
+  CHECK(told(box).empty());  // its corner comes within h
+  box.turn_angle = 0;
+  box.motion = Motion{};
+  box.motion->kind = MotionKind::velocity;
+  CHECK(told(box).empty());
+  Obstacle ball = obstacle(ObstacleShape::sphere);
+  ball.center = {0.2, -0.4, 0.2}, ball.radius = 0.31;
+  CHECK(told(ball).empty());
+  ball.radius = 0.29;
+  CHECK_FALSE(told(ball).empty());
+  Obstacle plane = obstacle(ObstacleShape::plane);
+  plane.point = {0, 0, -0.11}, plane.normal = {0, 0, 1};
+  CHECK_FALSE(told(plane).empty());
+  plane.normal = {0, 0.01, 1};  // rises to the far corner, stays below the floor
+  CHECK_FALSE(told(plane).empty());
+  plane.normal = {0, -0.1, 1};
+  CHECK(told(plane).empty());
+  Obstacle pipe = obstacle(ObstacleShape::capsule);
+  pipe.from = {0.2, 0.2, 1.7}, pipe.to = {0.2, 0.2, 2.5}, pipe.radius = 0.3;
+  CHECK_FALSE(told(pipe).empty());
+  pipe.from[2] = 1.55;
+  CHECK(told(pipe).empty());
 }

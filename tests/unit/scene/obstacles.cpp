@@ -1,4 +1,8 @@
 // What a scene may say of obstacles, and every error about them with its remedy.
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
 #include "tests/support/catch.h"
 #include "tests/support/scene_samples.h"
 
@@ -43,6 +47,28 @@ TEST_CASE("obstacles: every shape with its keys is read, what is not given has i
   CHECK(s.obstacles[2].radius == 0.01);  // balls may be as small as they like
   CHECK(s.obstacles[3].to == Double3{1, 1, 2});
   CHECK(parse(kMinimal).obstacles.empty());
+}
+
+TEST_CASE("obstacles: a plate so thin that rounding puts fluid on its other side is refused") {
+  // The box is 5 h long: positions are 2^-21 h apart in float, 2^-50 h in double; h is 0.2 m.
+  const auto plate = [](double thick, const std::string& precision) {
+    std::ostringstream text;
+    text << std::setprecision(17) << "{name: a, shape: box, min: [-1, 0, 0], max: [2, 1, " << thick
+         << "]}";
+    return obstacle_error(text.str(), {"precision=" + precision});
+  };
+  const double least = 8 * 0.2 * std::ldexp(1, -21);
+  CHECK(plate(1.001 * least, "float") == "no error");
+  CHECK(contains(plate(0.999 * least, "float"),
+                 "obstacles[0].max: makes a plate 7.62e-07 m thick, and positions in float are "
+                 "9.54e-08 m apart at the far end of the domain: fluid would pass through it; give "
+                 "at least 8e-07 m, or precision: double"));
+  CHECK(plate(0.999 * least, "double") == "no error");
+  CHECK(contains(plate(1e-16, "double"), "in double are 1.78e-16 m apart"));
+  CHECK(contains(obstacle_error(tube("cylinder", "[0.5, 0.5, 0]", "[0.5, 0.5, 1.0e-9]")),
+                 "obstacles[0].to: makes a plate 1e-09 m thick"));
+  CHECK(flat_error("{name: a, shape: box, min: [0.2, 0, 0], max: [0.5, 1.0e-9, 0.3]}") ==
+        "no error");  // there y does not count
 }
 
 TEST_CASE("obstacles: names that cannot name columns of the log are refused") {
