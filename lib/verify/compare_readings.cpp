@@ -10,10 +10,12 @@ namespace pbf::inline verify_module {
 namespace {
 
 /// N: a unit of displacement for every time that each particle may be booked on one wall in an
-/// update: where the prediction ends, and in each iteration where walls push and where they stop.
+/// update: where the prediction ends, and in each iteration where walls push, where they stop and
+/// where levels push.
 double force_grain(const Scene& s, const Plan& plan) {
   const double dt = s.time.step / plan.substeps;
-  const double bookings = double(plan.particles) * (1 + 2 * s.solver.iterations);
+  const double bookings =
+      double(plan.particles) * (1 + 3 * s.solver.iterations * (1 + plan.repeats));
   return plan.mass * s.h() / (dt * dt) * bookings / double(kLoadUnits);
 }
 
