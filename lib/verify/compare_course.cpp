@@ -30,7 +30,7 @@ class Samples {
             ? std::string("0: both sides promise the same bits")
             : format(
                   "%g x the largest change so far over the %zu randomly rounded references (what "
-                  "chaos alone makes), + (4 + updates) u |value| (of a momentum: of the mean "
+                  "chaos alone makes), + (4 + steps) u |value| (of a momentum: of the mean "
                   "speed; of a force: of the peak) or two particles; of loads and gauges what "
                   "their whole numbers leave open",
                   kSpreadFactor, c.members.size());
@@ -41,8 +41,8 @@ class Samples {
   void take(std::int64_t update) {
     update_ = update;
     // Random roundings average out over the particles; real ones may all go the same way, as where
-    // a slow particle's step is less than the last place of its position.
-    const double roundings = 4 + double(update);
+    // a slow particle's step is less than the last place of its position: in every substep.
+    const double roundings = 4 + double(update * c_.plan->substeps);
     const FrameStatistics a = of(*c_.a), b = of(*c_.b);
     FrameStatistics r;
     std::vector<FrameStatistics> members;
