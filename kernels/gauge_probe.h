@@ -18,8 +18,11 @@ struct Probe {
   bool moving = false;  ///< velocities are summed too
 };
 
-/// Of one place: the sum of (1 - q^2)^3, Poly6's shape, and of that times v dt, in units of 2^-32
-/// and 2^-32 h, dt that of an update.
+/// Of 1, or of h, in ProbeSums.
+inline constexpr std::int64_t kProbeUnits = std::int64_t(1) << 32;
+
+/// Of one place: the sum of (1 - q^2)^3, Poly6's shape, and of that times v dt, in units of
+/// 1/kProbeUnits and h/kProbeUnits, dt that of an update.
 struct ProbeSums {
   std::int64_t weight = 0, way[3] = {0, 0, 0};
 };
@@ -74,7 +77,7 @@ struct ProbePass {
   /// h in an update; what is faster, or no number, is for the guard to find.
   PBF_HD static double bounded(double way) { return max2(min2(way, 4096.0), -4096.0); }
   PBF_HD static std::int64_t whole(double x) {
-    const double u = x * 4294967296.0;
+    const double u = x * double(kProbeUnits);
     return std::int64_t(u + (u < 0 ? -0.5 : 0.5));
   }
 };

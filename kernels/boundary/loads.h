@@ -13,8 +13,11 @@ namespace pbf {
 /// A wall's sum lies in so many parts, which different threads write.
 inline constexpr int kLoadParts = 64;
 
+/// Displacements are booked in so many parts of h.
+inline constexpr std::int64_t kLoadUnits = std::int64_t(1) << 36;
+
 /// What one wall got within an update, or a gauge on one: then way[0] alone, into the wall.
-/// Displacements in units of 2^-36 h, with the sign of what the wall feels; moments about the
+/// Displacements in units of h/kLoadUnits, with the sign of what the wall feels; moments about the
 /// domain's lower corner in the same units times a power of two above the longest edge of the box.
 struct LoadSums {
   std::int64_t way[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
@@ -83,7 +86,7 @@ struct LoadBook {
   /// Beyond 2^10 h, and what is no number, is for the guard to find.
   PBF_HD static std::int64_t units(Real x) {
     constexpr Real most(std::int64_t(1) << 46);
-    const Real u = max2(min2(x * Real(std::int64_t(1) << 36), most), -most);
+    const Real u = max2(min2(x * Real(kLoadUnits), most), -most);
     return std::int64_t(u + (u < Real(0) ? Real(-0.5) : Real(0.5)));
   }
 };
@@ -107,7 +110,7 @@ struct LoadPass {
       one = {};
     }
     Load& to = load[wall];
-    const double unit = inv_dt / double(std::int64_t(1) << 36);
+    const double unit = inv_dt / double(kLoadUnits);
     double squares = 0, impulse[3], moment[3];
     for (int k = 0; k < 3; ++k) {
       impulse[k] = unit * double(all.way[k]);

@@ -201,7 +201,7 @@ GaugePlan plan_gauges(const Scene& s, const Axes& axes, const std::vector<Solid<
   const bool flat = s.dimensions == 2;
   const double h = s.h(), third = flat ? s.domain.max[1] - s.domain.min[1] : h;
   plan.weight = mass / (s.fluid.rest_density * h * h * third) *
-                (flat ? Poly6<double, 2>::norm : Poly6<double>::norm) / 4294967296.0;
+                (flat ? Poly6<double, 2>::norm : Poly6<double>::norm) / double(kProbeUnits);
   for (const Gauge& g : s.gauges) {
     const Double3 at = g.at.size() == 3 ? Double3{g.at[0], g.at[1], g.at[2]} : Double3{};
     if (g.kind == GaugeKind::level || g.kind == GaugeKind::velocity) {

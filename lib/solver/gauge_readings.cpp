@@ -10,8 +10,6 @@
 namespace pbf::inline solver_module {
 namespace {
 
-constexpr double kUnit = 1 / 4294967296.0;  ///< of ProbeSums
-
 std::string text(const Double3& x) { return format("(%.6g, %.6g, %.6g)", x[0], x[1], x[2]); }
 
 std::string place_of(const Gauge& g, const Scene& s) {
@@ -98,7 +96,7 @@ std::vector<double> gauge_readings(const GaugeSumsOf& sums, const Scene& scene, 
         const ProbeSums& s = sums.places[std::size_t(g.probes[probe++].first)];
         Double3 v;
         v.fill(std::numeric_limits<double>::quiet_NaN());
-        for (std::size_t k = 0; k < 3 && double(s.weight) * kUnit > 1e-6; ++k)
+        for (std::size_t k = 0; k < 3 && double(s.weight) / double(kProbeUnits) > 1e-6; ++k)
           v[std::size_t(plan.axes.of[k])] =
               h / scene.time.step * double(s.way[k]) / double(s.weight);
         out.insert(out.end(), v.begin(), v.end());

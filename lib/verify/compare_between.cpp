@@ -50,6 +50,30 @@ Scene rounded(const Scene& scene, double u, std::uint64_t seed) {
   return s;
 }
 
+/// What a frozen step starts from: nothing summed for loads and gauges, and what the side of lower
+/// precision can hold.
+SolverState start_from(Solver& a, const Comparison& c) {
+  c.take(a, 1);
+  SolverState s = a.state();
+  if (c.u == about(Precision::single).roundoff) round_to_float(s);
+  return s;
+}
+
+/// Scenes that differ on purpose may have different loads and gauges.
+void note_one_sided(const Comparison& c, CompareResult& result) {
+  const std::vector<Reading> a = c.take(*c.a, 1), b = c.take(*c.b, 1);
+  std::vector<std::string> found;
+  for (const Reading& r : a)
+    if (!find_reading(b, r.what)) found.push_back(r.what + " of A");
+  for (const Reading& r : b)
+    if (!find_reading(a, r.what)) found.push_back(r.what + " of B");
+  if (!found.empty())
+    result.notes.push_back(
+        format("%zu loads and readings of gauges are on one side only and not compared, the first "
+               "is %s",
+               found.size(), found[0].c_str()));
+}
+
 }  // namespace
 
 SolverState rounded(const SolverState& s, double u, std::uint64_t seed) {
@@ -78,8 +102,9 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   plain.solver.fused = false;  // a stored density can be rounded; its bits are the same
   const std::unique_ptr<Solver> reference = make(plain, particles, false);
   const Plan plan = make_plan(on_a, std::int64_t(particles.size()));
+  const Plan plan_b = make_plan(on_b, std::int64_t(particles.size()));
 
-  Comparison c{&settings, &plan, &on_a, a.get(), b.get(), reference.get()};
+  Comparison c{&settings, &plan, &on_a, &plan_b, &on_b, a.get(), b.get(), reference.get()};
   c.u = std::max(about(settings.a.precision).roundoff, about(settings.b.precision).roundoff);
   c.sides = settings.a.precision == settings.b.precision ? 2 : 1;
   const bool promised = settings.a.backend == settings.b.backend ||
@@ -99,13 +124,13 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
              scene_a.name.c_str(), particles.size(), settings.warmup, result.a.c_str()));
   if (scene_a.time.adaptive || scene_b.time.adaptive)
     result.notes.push_back("time.adaptive is left out: every update is one step");
+  note_one_sided(c, result);
   // The others take over A's state.
   const std::string relieved = prestabilized_text(prestabilize(*a, on_a, plan));
   if (!relieved.empty()) result.notes.push_back(relieved);
   if (progress) progress(format("%d updates of warm-up on %s", settings.warmup, result.a.c_str()));
   advance(*a, settings.warmup);
-  SolverState start = a->state();
-  if (c.u == about(Precision::single).roundoff) round_to_float(start);
+  const SolverState start = start_from(*a, c);
   result.parts.push_back(compare_stages(c, start, result));
   if (progress) progress("frozen step: " + result.parts[0].finding);
   std::int64_t failure = -1;
@@ -116,8 +141,7 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
     if (!result.stage.empty() || failure < 1) break;
     a->set_state(start);
     advance(*a, after);
-    SolverState later = a->state();
-    if (c.u == about(Precision::single).roundoff) round_to_float(later);
+    const SolverState later = start_from(*a, c);
     ComparePart part = compare_stages(c, later, result);
     part.name = format("frozen step at update %lld", static_cast<long long>(later.updates));
     result.parts.push_back(std::move(part));

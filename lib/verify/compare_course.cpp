@@ -30,8 +30,9 @@ class Samples {
             ? std::string("0: both sides promise the same bits")
             : format(
                   "%g x the largest change so far over the %zu randomly rounded references (what "
-                  "chaos alone makes), + (4 + updates) u |value| (of a momentum: of the mean "
-                  "speed) or two particles",
+                  "chaos alone makes), + (4 + steps) u |value| (of a momentum: of the mean "
+                  "speed; of a force: of the peak) or two particles; of loads and gauges what "
+                  "their whole numbers leave open",
                   kSpreadFactor, c.members.size());
   }
   std::int64_t first_failure = -1;  ///< update of the first sample outside a tolerance
@@ -40,8 +41,8 @@ class Samples {
   void take(std::int64_t update) {
     update_ = update;
     // Random roundings average out over the particles; real ones may all go the same way, as where
-    // a slow particle's step is less than the last place of its position.
-    const double roundings = 4 + double(update);
+    // a slow particle's step is less than the last place of its position: in every substep.
+    const double roundings = 4 + double(update * c_.plan->substeps);
     const FrameStatistics a = of(*c_.a), b = of(*c_.b);
     FrameStatistics r;
     std::vector<FrameStatistics> members;
@@ -68,6 +69,7 @@ class Samples {
       take("distribution of " + a.distributions[k].name, "KS distance",
            ks_distance(a.distributions[k].values, b.distributions[k].values), 0, spread, 2 * one);
     }
+    take_loads_and_gauges(roundings);
   }
 
   ComparePart part() const {
@@ -88,6 +90,23 @@ class Samples {
     return frame_statistics(s.download({"velocity", "density"}, ScalarType::f64).get(),
                             c_.scene->domain.min, c_.scene->gravity, c_.scene->fluid.rest_density);
   }
+  /// Of the interval since the last sample.
+  void take_loads_and_gauges(double roundings) {
+    const int updates = int(update_ - last_);
+    last_ = update_;
+    const std::vector<Reading> a = c_.take(*c_.a, updates), b = c_.take(*c_.b, updates);
+    std::vector<double> spread;
+    if (!c_.same_bits) {
+      const std::vector<Reading> r = c_.take(*c_.reference, updates);
+      for (const auto& m : c_.members) raise_to_distance(spread, c_.take(*m, updates), r);
+    }
+    for (std::size_t k = 0; k < a.size(); ++k)
+      if (const Reading* y = find_reading(b, a[k].what)) {
+        const double scale = scale_of(a[k], *y);
+        take(a[k].what, a[k].unit, apart(a[k].value, y->value), scale, c_.same_bits ? 0 : spread[k],
+             roundings * c_.u * scale + a[k].grain);
+      }
+  }
   void take(const std::string& what, const std::string& unit, double error, double scale,
             double spread, double floor) {
     double& widest = spread_[what];
@@ -98,7 +117,7 @@ class Samples {
   }
 
   const Comparison& c_;
-  std::int64_t update_ = 0;
+  std::int64_t update_ = 0, last_ = 0;
   ComparePart part_;
   std::map<std::string, double> spread_;  ///< largest change over the ensemble so far
 };

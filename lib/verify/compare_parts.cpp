@@ -16,6 +16,20 @@ double apart(double a, double b) {
   return std::isnan(d) ? HUGE_VAL : d;
 }
 
+void raise_to_distance(std::vector<double>& to, const std::vector<Reading>& x,
+                       const std::vector<Reading>& from) {
+  to.resize(x.size(), 0);
+  for (std::size_t k = 0; k < x.size(); ++k)
+    to[k] = std::max(to[k], apart(x[k].value, from[k].value));
+}
+
+double scale_of(const Reading& a, const Reading& b) {
+  double scale = 0;
+  for (const double x : {std::fabs(a.value), std::fabs(b.value), a.scale, b.scale})
+    if (std::isfinite(x)) scale = std::max(scale, x);
+  return scale;
+}
+
 Distance distance(const std::vector<double>& x, const std::vector<double>& y,
                   double (*difference)(double, double)) {
   Distance d;

@@ -4,6 +4,7 @@
 #include "lib/program/plan.h"
 #include "lib/scene/keys.h"
 #include "lib/verify/compare.h"
+#include "lib/verify/compare_readings.h"
 
 namespace pbf::inline verify_module {
 
@@ -21,6 +22,8 @@ struct Comparison {
   const CompareSettings* settings;
   const Plan* plan;    ///< of A's scene
   const Scene* scene;  ///< A's
+  const Plan* plan_b;
+  const Scene* scene_b;
   Solver *a, *b;
   Solver* reference;  ///< A's scene on cpu in double, without fused density
   std::vector<std::unique_ptr<Solver>> members{};  ///< like the reference
@@ -28,6 +31,12 @@ struct Comparison {
   double sides = 1;                                ///< how many of the two round to it
   bool same_bits = false;  ///< both sides promise the same bits: every tolerance is 0
   std::function<void(const std::string&)> progress{};
+
+  /// Loads and gauges of the last `updates` updates, by the plan of A or of B.
+  std::vector<Reading> take(Solver& of, int updates) const {
+    return &of == b ? take_readings(of, *scene_b, *plan_b, updates)
+                    : take_readings(of, *scene, *plan, updates);
+  }
 };
 
 /// One update from `start` on both sides, stage by stage. Sets result.stage.
@@ -47,6 +56,13 @@ void round_at_random(const KeyTable& table, const Object& object, double u, std:
 
 /// |a - b|; 0 where neither is a number, infinite where one alone is not.
 double apart(double a, double b);
+
+/// Raises each number to how far `x` is from `from`: the same readings of two solvers of one scene.
+void raise_to_distance(std::vector<double>& to, const std::vector<Reading>& x,
+                       const std::vector<Reading>& from);
+
+/// What rounding is relative to in a and b.
+double scale_of(const Reading& a, const Reading& b);
 
 struct Distance {
   double rms = 0, worst = 0;  ///< m

@@ -39,26 +39,36 @@ bool same_kind(const TraceArray& x, const TraceArray& y) {
 }
 
 /// Terms of the sums of a stage: rounding within them is not in the ensemble.
-double terms_of(const TraceArray& t, const StepTrace& trace) {
-  if (t.stage == "predict" || t.stage == "grid" || t.quantity == "position") return 4;
+double most_terms(const StepTrace& trace) {
   std::int64_t most = 0;
   for (std::size_t i = 0; i + 1 < trace.neighbor_begin.size(); ++i)
     most = std::max(most, trace.neighbor_begin[i + 1] - trace.neighbor_begin[i]);
   return 4 + double(most);
 }
+double terms_of(const TraceArray& t, const StepTrace& trace) {
+  if (t.stage == "predict" || t.stage == "grid" || t.quantity == "position") return 4;
+  return most_terms(trace);
+}
 
-/// Largest change of every array over the ensemble, each stage alone from the values of `a`.
-std::vector<double> noise_floor(const Comparison& c, const SolverState& start, const StepTrace& a,
-                                StepTrace& reference) {
+/// Of every array, and of every reading behind the step.
+struct Noise {
+  std::vector<double> arrays, readings;
+};
+
+/// Largest change of each over the ensemble, each stage alone from the values of `a`.
+Noise noise_floor(const Comparison& c, const SolverState& start, const StepTrace& a,
+                  StepTrace& reference) {
   c.reference->set_state(start);
   reference = c.reference->inspection()->trace({0, 1, &a});
-  std::vector<double> noise(reference.arrays.size(), 0);
+  const std::vector<Reading> readings = c.take(*c.reference, 1);
+  Noise noise{std::vector<double>(reference.arrays.size(), 0), {}};
   for (std::size_t m = 0; m < c.members.size(); ++m) {
     c.members[m]->set_state(rounded(start, c.u, c.settings->seed + m));
     const StepTrace t = c.members[m]->inspection()->trace({c.u, c.settings->seed + m, &a});
-    for (std::size_t k = 0; k < noise.size(); ++k)
-      noise[k] =
-          std::max(noise[k], difference(reference.arrays[k].values, t.arrays[k].values).worst);
+    for (std::size_t k = 0; k < noise.arrays.size(); ++k)
+      noise.arrays[k] = std::max(noise.arrays[k],
+                                 difference(reference.arrays[k].values, t.arrays[k].values).worst);
+    raise_to_distance(noise.readings, c.take(*c.members[m], 1), readings);
   }
   return noise;
 }
@@ -144,8 +154,9 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
   c.b->set_state(start);
   const StepTrace a = c.a->inspection()->trace();
   StepTrace b = c.b->inspection()->trace({0, 1, &a});
+  const std::vector<Reading> read_a = c.take(*c.a, 1), read_b = c.take(*c.b, 1);
   StepTrace reference;
-  std::vector<double> noise;
+  Noise noise;
   if (!c.same_bits) {
     noise = noise_floor(c, start, a, reference);
     take_out_inherited(c, start, a, reference, b);
@@ -156,7 +167,8 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
           : format(
                 "%g x the largest change over %zu references in double, whose constants, start "
                 "and every stored value are rounded at random to u = %.3g, + (terms of the stage's "
-                "sums) u max|value|%s",
+                "sums) u max|value|%s; of loads and gauges besides what their whole numbers leave "
+                "open",
                 kNoiseFactor, c.members.size(), c.u,
                 c.sides > 1 ? "; twice that, since both sides round" : "");
   result.stage.clear();
@@ -191,8 +203,9 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
     }
     const Size s = difference(x.values, y.values);
     const double tolerance =
-        c.same_bits ? 0
-                    : c.sides * (kNoiseFactor * noise[k] + terms_of(x, reference) * c.u * s.scale);
+        c.same_bits
+            ? 0
+            : c.sides * (kNoiseFactor * noise.arrays[k] + terms_of(x, reference) * c.u * s.scale);
     if (x.quantity == "position" && !lists_done) position_tolerance = tolerance;
     add(name_of(x), x.unit, s, tolerance, x.stage);
   }
@@ -206,6 +219,19 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
                  Verdict::differs};
     part.rows.push_back(r);
     if (result.stage.empty()) result.stage = t.iteration > 0 ? "iterations" : t.stage;
+  }
+  // What loads and gauges sum follows from the values of A too.
+  for (std::size_t i = 0; i < read_a.size(); ++i) {
+    const Reading& x = read_a[i];
+    const Reading* y = find_reading(read_b, x.what);
+    if (!y) continue;
+    const double error = apart(x.value, y->value), scale = scale_of(x, *y);
+    const double rounding =
+        c.same_bits
+            ? 0
+            : c.sides * (kNoiseFactor * noise.readings[i] + most_terms(reference) * c.u * scale) +
+                  x.grain;
+    add(x.what, x.unit, {error, error, scale}, rounding, x.stage);
   }
   part.verdict = result.stage.empty() ? Verdict::same : Verdict::differs;
   part.finding = result.stage.empty()

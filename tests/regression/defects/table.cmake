@@ -136,6 +136,62 @@ seeded_defect(vorticity_at_surface vorticity kernels/pass_vorticity.h
 seeded_defect(vorticity_unbounded vorticity kernels/pass_vorticity.h
   [[min2(p.vorticity, Real(2) * square_root(s.approach))]] [[p.vorticity]])
 
+# obstacles, loads and gauges, in the scene solids.yaml; the motion of the tank in tank.yaml
+seeded_defect(solid_slab_sign density kernels/boundary/solid_share.h
+  [[return {near.density - far.density,]] [[return {near.density + far.density,]] solids)
+seeded_defect(solid_slab_slope_sign lambda kernels/boundary/solid_share.h
+  [[up ? slope : -slope};]] [[up ? -slope : slope};]] solids)
+seeded_defect(solid_bend_missing density kernels/boundary/solid_share.h
+  [[k = flat ? bend : Real(0.5) + Real(0.5) * bend,]] [[k = flat ? bend : Real(0.5) * bend,]] solids)
+seeded_defect(solid_ball_slope_sign lambda kernels/boundary/solid_term.h
+  [[{g.density, (g.slope * inv_c) * d}]] [[{g.density, (-g.slope * inv_c) * d}]] solids)
+seeded_defect(solid_gradient_not_turned lambda kernels/boundary/solid_term.h
+  [[inv_range * turned_back<D>(o, w.gradient);]] [[inv_range * w.gradient;]] solids)
+seeded_defect(solid_beside_wall_added density kernels/boundary/surroundings.h
+  [[w.density = s.walls.scale - left * free;]]
+  [[w.density = w.density + s.walls.scale * o.share;]] solids)
+seeded_defect(solid_turn_transposed predict lib/solver/placed_solids.h
+  [[out.solid.turn[axis][k] = Real(s.turn[axis][k]);]]
+  [[out.solid.turn[axis][k] = Real(s.turn[k][axis]);]] solids)
+seeded_defect(solid_reach_zero density lib/solver/placed_solids.h
+  [[out.reach = Real(range);]] [[out.reach = Real(0);]] solids)
+seeded_defect(solid_velocity_missing predict kernels/boundary/surroundings.h
+  [[start && s.before ? s.before[k] : placed.solid;]] [[placed.solid;]] solids)
+seeded_defect(solid_pose_of_next_step predict lib/solver/step_solver.h
+  [[first = ((updates_ << options_.level) + done) * n;]]
+  [[first = ((updates_ << options_.level) + done) * n + 1;]] solids)
+seeded_defect(load_of_clamp_missing loads kernels/boundary/surroundings.h
+  [[      move_by(6 + k, at - to);]] [[]] solids)
+seeded_defect(load_of_walls_share loads kernels/boundary/surroundings.h
+  [[s.loads.add(6 + k, i, x, (factor * left) * one.gradient);]]
+  [[s.loads.add(6 + k, i, x, factor * one.gradient);]] solids)
+seeded_defect(load_of_far_rows loads lib/solver/placed_solids.h
+  [[reach = Real(1) / walls.inv_range + walls.margin + Real(kNearRoom),]]
+  [[reach = Real(0.5) / walls.inv_range + walls.margin,]] solids)
+seeded_defect(load_moment_sign loads kernels/boundary/loads.h
+  [[cross(x, way);]] [[cross(way, x);]] solids)
+seeded_defect(load_moment_of_moving loads kernels/boundary/loads.h
+  [[v.middle[b] * impulse[c] - v.middle[c] * impulse[b];]] [[v.middle[b] * impulse[c];]] solids)
+seeded_defect(load_part_left_out loads kernels/boundary/loads.h
+  [[for (int part = 0; part < kLoadParts;]] [[for (int part = 1; part < kLoadParts;]] solids)
+seeded_defect(patch_too_small gauges kernels/boundary/patch.h
+  [[most = p.radius + p.soft;]] [[most = p.radius;]] solids)
+seeded_defect(flow_one_way gauges kernels/pass_flow.h
+  [[now >> k & 1 ? 1 : -1;]] [[now >> k & 1 ? 1 : 0;]] solids)
+seeded_defect(flow_beside_gate gauges kernels/pass_flow.h
+  [[|| !within(gate[k], x)) continue;]] [[) continue;]] solids)
+seeded_defect(level_gauge_weight gauges kernels/gauge_probe.h
+  [[add(p, p.first + n, i, t * t * t);]] [[add(p, p.first + n, i, t * t);]] solids)
+seeded_defect(velocity_gauge_axis gauges kernels/gauge_probe.h
+  [[bounded(update_dt * double(v.z))]] [[bounded(update_dt * double(v.y))]] solids)
+seeded_defect(tank_coriolis_sign predict lib/solver/moving_parts.h
+  [[out.turn[i][j] = Real(f.turn[i][j])]] [[out.turn[i][j] = Real(-f.turn[i][j])]] tank)
+seeded_defect(tank_euler_missing predict lib/solver/moving_parts.h
+  [[out.pull[i][j] = Real(f.pull[i][j]);]]
+  [[out.pull[i][j] = Real((f.pull[i][j] + f.pull[j][i]) / 2);]] tank)
+seeded_defect(tank_pivot_missing predict lib/solver/moving_parts.h
+  [[out.pivot = real(f.pivot);]] [[out.pivot = {};]] tank)
+
 # Other arithmetic, as another backend may have it.
 seeded_defect(clean_reverse_sums none kernels/lanes.h
   [[pass.lists.group(i);
