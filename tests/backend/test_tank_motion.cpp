@@ -172,8 +172,14 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("under a constant acceleration the level is tilted by it") {
+TEST_CASE("under a constant acceleration the level is tilted by it, with levels too") {
+  const bool levels = GENERATE(false, true);
   Case c = flat_block(40, 16, 0.05, 0);
+  if (levels) {
+    c.scene.solver.levels = pbf::LevelsMode::on;
+    c.scene.solver.substeps = 4;
+    c.scene.solver.iterations = 1;
+  }
   c.scene.domain.max[0] = c.scene.domain.min[0] + 0.8;
   c.scene.domain.max[2] = c.scene.domain.min[2] + 0.8;
   c.scene.tank_motion = by_table(3, {0, 10}, {{2, 0, 0}, {2, 0, 0}});
