@@ -20,7 +20,7 @@
 #include "lib/run/emit.h"
 #include "lib/run/load_run.h"
 #include "lib/run/resume.h"
-#include "lib/run/schedule.h"
+#include "lib/program/schedule.h"
 #include "lib/run/signals.h"
 
 namespace pbf::inline app_module {

@@ -138,6 +138,7 @@ int simulate(RunParts& parts, const std::string& start_note, const std::string& 
   for (const Warning& w : parts.of_scene) log.warning(w.text);
   for (const std::string& note : from.notes) log.note("pbf: " + note);
   if (!from.saved && !start_note.empty()) log.note("pbf: " + start_note);
+  for (const std::string& note : rounded_times(parts.scene)) log.note("pbf: " + note);
   if (from.saved) {
     parts.solver.set_state(from.saved->state);
     log.note(format("pbf: goes on from the checkpoint of update %ld", from.update()));

@@ -15,7 +15,7 @@
 #include "lib/run/emit.h"
 #include "lib/run/motion_files.h"
 #include "lib/run/prestabilize.h"
-#include "lib/run/schedule.h"
+#include "lib/program/schedule.h"
 #include "lib/run/session.h"
 #include "lib/run/start_neighbors.h"
 

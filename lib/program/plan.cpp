@@ -8,6 +8,7 @@
 #include "lib/base/error.h"
 #include "lib/program/axes.h"
 #include "lib/program/calibrate.h"
+#include "lib/program/schedule.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/time_levels.h"
 #include "lib/scene/load.h"
@@ -102,15 +103,11 @@ void plan_left_out(Plan& plan, const Scene& s) {
 }
 
 /// Of their readings in run.vtkhdf: whole chunks.
-double gauge_bytes(const Scene& s, double updates) {
-  if (s.gauges.empty()) return 0;
+double gauge_bytes(const Scene& s, std::int64_t readings) {
   double columns = 2;
   for (const Gauge& g : s.gauges)
     columns += g.kind == GaugeKind::velocity ? 3 : g.kind == GaugeKind::level ? 1 : 2;
-  const double every = s.output->gauges_every
-                           ? std::max(1.0, std::round(*s.output->gauges_every / s.time.step))
-                           : s.measure_every;
-  return std::ceil((updates / every + 1) / 1024) * 1024 * 8 * columns;
+  return std::ceil(double(readings) / 1024) * 1024 * 8 * columns;
 }
 
 void plan_files(Plan& plan, const Scene& s) {
@@ -122,23 +119,23 @@ void plan_files(Plan& plan, const Scene& s) {
   add("scene.resolved.yaml", 1, double(resolved_yaml(s).size()));
   add("log.txt", 1, 2500);
   add("DONE", 1, 30);
-  const double all = std::max(1.0, std::round(s.time.end / s.time.step));
+  const Schedule schedule = make_schedule(s);
+  const std::int64_t all = schedule.updates;
   if (s.output) {
     const double scalar = about(s.output->precision).bytes;
     double row = 3 * scalar;  // position
     for (const auto& f : s.output->fields) row += (f == "velocity" ? 3 : 1) * scalar;
-    const double updates = std::max(1.0, std::round(s.output->every / s.time.step));
-    const double frames = std::floor(all / updates) + 1 + (std::fmod(all, updates) != 0 ? 1 : 0);
+    const double frames = double(schedule.frames_until(all));
     // Ids and the numbers of the vertices once; 1.66 MB of tables and the first 1024 rows of the
     // log, measured; 45 columns of the log. gzip: 1.45 times smaller, measured.
-    const double rows = all / s.measure_every + 1;
+    const auto rows = double(schedule.measures_until(all));
     const double bytes =
         (frames * row + 12) * n / (s.output->compression == Compression::gzip ? 1.45 : 1) + 1.66e6 +
-        std::floor(rows / 1024) * 1024 * 8 * 45 + gauge_bytes(s, all);
+        std::floor(rows / 1024) * 1024 * 8 * 45 + gauge_bytes(s, schedule.gauges_until(all));
     add("run.vtkhdf", 1, bytes, std::to_string(std::int64_t(frames)) + " frames");
   }
   if (s.render) {
-    const double pictures = std::floor(s.time.end / s.render->every + 1e-9) + 1;
+    const auto pictures = double(schedule.pictures_until(all));
     const double pixels = double(s.render->size[0]) * s.render->size[1];
     add("frames/frame_*.png", pictures, pictures * 0.32 * pixels, "0.32 bytes a pixel");
   }

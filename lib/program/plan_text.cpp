@@ -5,6 +5,7 @@
 #include "lib/base/text.h"
 #include "lib/program/axes.h"
 #include "lib/program/plan.h"
+#include "lib/program/schedule.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/threads.h"
 
@@ -113,6 +114,7 @@ std::string plan_text(const Plan& plan, const Scene& s) {
     out += format("  %-22s %6lld x %9.3f MB", f.name.c_str(), static_cast<long long>(f.number),
                   double(f.bytes) / double(f.number) / 1e6) +
            (f.note.empty() ? "\n" : "  (" + f.note + ")\n");
+  for (const std::string& note : rounded_times(s)) out += "  " + note + "\n";
   out += "left out\n";
   for (const auto& l : plan.left_out) out += "  " + l.what + ": " + l.because + "\n";
   return out;

@@ -37,6 +37,7 @@ void Frames::start(std::int64_t u, bool last) {
   copy_ = run_.solver.download(fields_, wide ? ScalarType::f64 : ScalarType::f32);
   write_ = write;
   draw_ = draw;
+  picture_ = run_.schedule.picture_number(u);
 }
 
 void Frames::hand_over() {
@@ -46,7 +47,8 @@ void Frames::hand_over() {
   reporter_.look_outside(snapshot);
 #ifdef PBF_HAS_RENDER
   if (draw_) {
-    run_.pictures->draw(snapshot, run_.pictures_drawn++);
+    run_.pictures->draw(snapshot, picture_);
+    ++run_.pictures_drawn;
     run_.clock.mark("render");
   }
 #endif

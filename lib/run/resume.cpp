@@ -11,7 +11,7 @@
 #include "lib/base/text.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
-#include "lib/run/schedule.h"
+#include "lib/program/schedule.h"
 #include "lib/scene/difference.h"
 #include "lib/scene/load.h"
 

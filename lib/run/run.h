@@ -135,6 +135,7 @@ class Frames : public Observer {
   std::int64_t last_ = -1;           // update of the last one
   std::future<Snapshot> copy_;
   bool write_ = false, draw_ = false;  // what is under way
+  std::int64_t picture_ = 0;           // its number, as in the name
 };
 
 /// Makes a run safe, and stops it on signals, at the wall-time limit and, a strict one, for a

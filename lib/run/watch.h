@@ -10,7 +10,7 @@
 #include "lib/io/checkpoint.h"
 #include "lib/io/run_file.h"
 #include "lib/run/guard.h"
-#include "lib/run/schedule.h"
+#include "lib/program/schedule.h"
 #include "lib/run/session.h"
 #include "lib/run/step_control.h"
 

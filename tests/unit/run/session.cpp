@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "lib/run/schedule.h"
+#include "lib/program/schedule.h"
 #include "tests/support/catch.h"
 
 using namespace pbf;

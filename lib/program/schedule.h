@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline run_module {
+namespace pbf::inline program_module {
 
 /// The first multiple of `every` after u (-1: the start is to come).
 inline std::int64_t next_multiple(std::int64_t u, std::int64_t every) {
@@ -39,6 +41,11 @@ struct Schedule {
   std::int64_t frames_until(std::int64_t u) const { return count(u, frame_every, true); }
   std::int64_t pictures_until(std::int64_t u) const { return count(u, picture_every, false); }
   std::int64_t gauges_until(std::int64_t u) const { return count(u, gauge_every, true); }
+  /// In the name of the picture of update u: the frame of run.vtkhdf, or the picture where no
+  /// frames are written.
+  std::int64_t picture_number(std::int64_t u) const {
+    return u / (frame_every > 0 ? frame_every : picture_every);
+  }
   /// The update of the k-th measure, frame and reading (from 0).
   std::int64_t update_of_measure(std::int64_t k) const { return at(k, measure_every); }
   std::int64_t update_of_frame(std::int64_t k) const { return at(k, frame_every); }
@@ -68,7 +75,11 @@ struct Schedule {
   static bool due(std::int64_t u, std::int64_t every) { return every > 0 && u % every == 0; }
 };
 
-/// Rounds the scene's times to whole updates, at least 1.
+/// Rounds the scene's times to whole updates, at least 1; those of pictures to whole frames where
+/// frames are written.
 Schedule make_schedule(const Scene& scene);
 
-}  // namespace pbf::inline run_module
+/// A sentence for each time of the scene that this has changed.
+std::vector<std::string> rounded_times(const Scene& scene);
+
+}  // namespace pbf::inline program_module
