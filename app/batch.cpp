@@ -17,10 +17,10 @@
 #include "lib/campaign/batch_jobs.h"
 #include "lib/campaign/batch_list.h"
 #include "lib/campaign/batch_summary.h"
+#include "lib/program/schedule.h"
 #include "lib/run/emit.h"
 #include "lib/run/load_run.h"
 #include "lib/run/resume.h"
-#include "lib/program/schedule.h"
 #include "lib/run/signals.h"
 
 namespace pbf::inline app_module {

@@ -13,6 +13,15 @@ struct ConfigOptions {
 };
 
 int command_config(const ConfigOptions& options) {
+  if (!options.schema && !options.example) {
+    Log(false).result(
+        "A scene is a YAML file; pbf config prints all that one may hold, at once:\n"
+        "  pbf config --example   the reference scene: every key with unit, range, default, "
+        "meaning\n"
+        "  pbf config --schema    a JSON Schema, with which editors complete and check scenes\n"
+        "The smallest scene that runs is configs/minimal.yaml.");
+    return 0;
+  }
   std::string text = options.schema ? json_schema() : reference_yaml();
   if (!text.empty() && text.back() == '\n') text.pop_back();  // result() ends the line
   Log(false).result(text);
@@ -27,7 +36,7 @@ void add_config(CLI::App& app, int& code) {
   CLI::Option_group* one = c->add_option_group("what");
   one->add_flag("--example", o.example, "The reference scene: every key, default, unit, meaning");
   one->add_flag("--schema", o.schema, "JSON Schema of a scene file, for editors");
-  one->require_option(1);
+  one->require_option(0, 1);
 }
 
 }  // namespace pbf::inline app_module

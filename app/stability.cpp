@@ -10,6 +10,7 @@
 #include "lib/base/error.h"
 #include "lib/base/log.h"
 #include "lib/base/machine.h"
+#include "lib/base/shipped_file.h"
 #include "lib/base/text.h"
 #include "lib/campaign/stability.h"
 #include "lib/campaign/stability_map.h"
@@ -20,7 +21,7 @@ namespace {
 
 struct StabilityCommandOptions {
   std::vector<std::string> cases;  ///< names or groups, empty: all; of a map: the scene's path
-  std::string suite = "configs/stability.yaml";
+  std::string suite;               ///< empty: the one that comes with the program
   std::string backend = "cpu", precision = "float";
   bool reduced = false, quiet = false;
   int jobs = 0;  ///< cases at once; 0: as many as there are threads, 1 on a device
@@ -76,7 +77,8 @@ std::vector<Row> in_parallel(std::size_t n, int jobs, Log& log, const char* what
 }
 
 std::vector<StabilityCase> chosen(const StabilityCommandOptions& o) {
-  std::vector<StabilityCase> all = read_stability_suite(o.suite), out;
+  const std::string suite = o.suite.empty() ? shipped_file("configs/stability.yaml") : o.suite;
+  std::vector<StabilityCase> all = read_stability_suite(suite), out;
   if (o.cases.empty()) return all;
   const auto add = [&](const StabilityCase& c) {
     if (std::ranges::count(out, c.name, &StabilityCase::name) == 0) out.push_back(c);
@@ -95,7 +97,7 @@ std::vector<StabilityCase> chosen(const StabilityCommandOptions& o) {
       std::string names;
       for (const StabilityCase& c : all) names += " " + c.name;
       throw Error(ExitCode::bad_input,
-                  "no case or group " + name + " in " + o.suite + "; the cases are" + names);
+                  "no case or group " + name + " in " + suite + "; the cases are" + names);
     }
   }
   return out;
@@ -188,7 +190,7 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
     throw Error(ExitCode::bad_input,
                 "--map takes one scene file, not " + std::to_string(o.cases.size()));
   StabilityMap map = o.settings;
-  map.scene = o.cases.empty() ? "configs/stiff/pool.yaml" : o.cases[0];
+  map.scene = o.cases.empty() ? shipped_file("configs/stiff/pool.yaml") : o.cases[0];
   map.run = run;
   const std::size_t comma = o.map.find(',');
   if (comma == std::string::npos || o.map.find(',', comma + 1) != std::string::npos)
@@ -234,7 +236,8 @@ void add_stability(CLI::App& app, int& code) {
   c->add_option("CASE", o.cases,
                 "Cases or groups of the suite, all when none is given; with --map "
                 "the scene file (configs/stiff/pool.yaml)");
-  c->add_option("--suite", o.suite, "Suite file (configs/stability.yaml)");
+  c->add_option("--suite", o.suite,
+                "Suite file; configs/stability.yaml that comes with the program when not given");
   c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember(words_of<Backend>()));
   c->add_option("--precision", o.precision, "Of the computation")
       ->check(CLI::IsMember(words_of<Precision>()));
