@@ -9,20 +9,23 @@ namespace pbf::inline app_module {
 namespace {
 
 struct ConfigOptions {
-  bool schema = false, example = false;
+  bool schema = false, example = false, markdown = false;
 };
 
 int command_config(const ConfigOptions& options) {
-  if (!options.schema && !options.example) {
+  if (!options.schema && !options.example && !options.markdown) {
     Log(false).result(
         "A scene is a YAML file; pbf config prints all that one may hold, at once:\n"
         "  pbf config --example   the reference scene: every key with unit, range, default, "
         "meaning\n"
+        "  pbf config --markdown  the same as a page of tables\n"
         "  pbf config --schema    a JSON Schema, with which editors complete and check scenes\n"
         "The smallest scene that runs is configs/minimal.yaml.");
     return 0;
   }
-  std::string text = options.schema ? json_schema() : reference_yaml();
+  std::string text = options.schema     ? json_schema()
+                     : options.markdown ? reference_markdown()
+                                        : reference_yaml();
   if (!text.empty() && text.back() == '\n') text.pop_back();  // result() ends the line
   Log(false).result(text);
   return 0;
@@ -35,6 +38,7 @@ void add_config(CLI::App& app, int& code) {
                                   "Example:\n  pbf config --example > my_scene.yaml");
   CLI::Option_group* one = c->add_option_group("what");
   one->add_flag("--example", o.example, "The reference scene: every key, default, unit, meaning");
+  one->add_flag("--markdown", o.markdown, "The same as a page with a table for each block");
   one->add_flag("--schema", o.schema, "JSON Schema of a scene file, for editors");
   one->require_option(0, 1);
 }

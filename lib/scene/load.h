@@ -50,6 +50,9 @@ std::string resolved_yaml(const Scene& scene);
 /// The documented reference scene (every key, default, unit, meaning), from the table of keys.
 std::string reference_yaml();
 
+/// The same as a page, a table for each block: configs/keys.md.
+std::string reference_markdown();
+
 /// JSON Schema (draft 2020-12) of a scene file, from the table of keys.
 std::string json_schema();
 

@@ -191,6 +191,15 @@ TEST_CASE("reference scene: the committed file is what the code writes") {
   CHECK(read_file(PBF_SOURCE_DIR "/configs/reference.yaml") == reference_yaml());
 }
 
+TEST_CASE("page of keys: the committed file is what the code writes, and has every key") {
+  const std::string page = reference_markdown();
+  CHECK(read_file(PBF_SOURCE_DIR "/configs/keys.md") == page);
+  for (const Key& key : scene_table().keys) {
+    CAPTURE(key.path);
+    CHECK(contains(page, "\n| `" + key.leaf() + "` | "));
+  }
+}
+
 TEST_CASE("reference scene: documents every key, and optional keys stand at their defaults") {
   const std::string text = reference_yaml();
   const Scene s = parse(text), defaults = scene_with_all_blocks();
