@@ -75,7 +75,7 @@ void add_render(CLI::App& app, int& code) {
   c->add_option("--size", o.size, "WIDTHxHEIGHT in pixels");
   c->add_option("--camera", o.camera, "position=x,y,z;target=x,y,z;fov=degrees;orbit=degrees/s");
   c->add_option("--color", o.color, "What colours the particles")
-      ->check(CLI::IsMember({"speed", "density", "id"}));
+      ->check(CLI::IsMember(words_of<ColorBy>()));
   c->add_option("--range", o.range, "LOW,HIGH of the colour bar, in the unit of the field");
   c->add_option("--out", o.out, "Folder of the pictures; render/ beside the run file");
 }

@@ -103,9 +103,7 @@ void apply_render_options(const RenderOptions& o, Scene& scene) {
     render.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
   }
   if (!o.color.empty()) {
-    const ColorBy color = o.color == "speed"     ? ColorBy::speed
-                          : o.color == "density" ? ColorBy::density
-                                                 : ColorBy::id;
+    const ColorBy color = *named<ColorBy>(o.color);
     if (color != render.color) render.range.reset();
     render.color = color;
   }

@@ -22,8 +22,7 @@ bool has_field(const Scene& s, const char* name) {
     const auto& f = s.output->fields;
     if (std::find(f.begin(), f.end(), name) != f.end()) return true;
   }
-  if (!s.render || s.render->color == ColorBy::id) return false;
-  return std::string(name) == (s.render->color == ColorBy::speed ? "velocity" : "density");
+  return s.render && std::string(name) == about(s.render->color).field;
 }
 
 /// Scalars of one particle that a download brings, the id apart.
@@ -114,9 +113,7 @@ void add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   if (s.output && s.output->compression == Compression::gzip)
     add("chunk before and after compression", real, 3, 2 * std::min<std::int64_t>(n, 1 << 22));
   if (!s.render) return;
-  const int colored = s.render->color == ColorBy::speed     ? 6
-                      : s.render->color == ColorBy::density ? 4
-                                                            : 3;
+  const int colored = 3 + about(s.render->color).components;
   add("pictures waiting", real, colored, frames * n);
   add("vertices, and the driver's copy", "byte", 16, 2 * n);
   const std::int64_t pixels = std::int64_t(s.render->size[0]) * s.render->size[1];

@@ -16,19 +16,26 @@ constexpr std::array<Rgb, 33> kViridis{
      {93, 201, 99},  {110, 206, 88}, {130, 211, 76}, {150, 216, 63}, {171, 220, 50}, {192, 223, 36},
      {213, 226, 26}, {234, 229, 26}, {253, 231, 37}}};
 
-}  // namespace
+constexpr std::array<Rgb, 5> kBlueToRed{
+    {{30, 70, 160}, {110, 160, 215}, {240, 240, 238}, {225, 125, 95}, {165, 25, 35}}};
 
-Rgb viridis(double t) {
+template <std::size_t n>
+Rgb between(const std::array<Rgb, n>& map, double t) {
   if (std::isnan(t)) return kNoValue;
-  const double place = std::clamp(t, 0.0, 1.0) * (kViridis.size() - 1);
-  const auto i = std::min(static_cast<std::size_t>(place), kViridis.size() - 2);
+  const double place = std::clamp(t, 0.0, 1.0) * (n - 1);
+  const auto i = std::min(static_cast<std::size_t>(place), n - 2);
   Rgb color;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double a = kViridis[i][k], b = kViridis[i + 1][k];
+    const double a = map[i][k], b = map[i + 1][k];
     color[k] =
         static_cast<std::uint8_t>(std::lround(a + (b - a) * (place - static_cast<double>(i))));
   }
   return color;
 }
+
+}  // namespace
+
+Rgb viridis(double t) { return between(kViridis, t); }
+Rgb blue_to_red(double t) { return between(kBlueToRed, t); }
 
 }  // namespace pbf::inline render_module

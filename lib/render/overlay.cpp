@@ -73,13 +73,13 @@ BarPlace bar_place(int width, int height, const std::vector<Tick>& ticks) {
 }
 
 void draw_overlay(Image& image, const std::string& title, const std::string& unit,
-                  std::array<double, 2> range, double time) {
+                  std::array<double, 2> range, double time, ColorMap map) {
   const auto ticks = ticks_of(range);
   const BarPlace bar = bar_place(image.width, image.height, ticks);
   const double line = std::max(1.0, std::round(0.75 * bar.dot));
   fill(image, bar.x0 - line, bar.y0 - line, bar.x1 + line, bar.y1 + line, [](int) { return kInk; });
   fill(image, bar.x0, bar.y0, bar.x1, bar.y1,
-       [&](int y) { return viridis((bar.y1 - y - 0.5) / (bar.y1 - bar.y0)); });
+       [&](int y) { return map((bar.y1 - y - 0.5) / (bar.y1 - bar.y0)); });
   for (const auto& tick : ticks) {
     const double share = (tick.value - range[0]) / (range[1] - range[0]);
     const double y = bar.y1 - share * (bar.y1 - bar.y0);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/render/colormap.h"
 #include "lib/render/renderer.h"
 
 namespace pbf::inline render_module {
@@ -27,8 +28,8 @@ struct BarPlace {
 };
 BarPlace bar_place(int width, int height, const std::vector<Tick>& ticks);
 
-/// Draws all of it. `title` and `unit` stand above the bar ("" for no unit).
+/// Draws all of it. `title` and `unit` stand above the bar ("" for no unit); `map` colours it.
 void draw_overlay(Image& image, const std::string& title, const std::string& unit,
-                  std::array<double, 2> range, double time);
+                  std::array<double, 2> range, double time, ColorMap map = viridis);
 
 }  // namespace pbf::inline render_module

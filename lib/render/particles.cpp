@@ -49,30 +49,25 @@ void check_field(const Snapshot& snapshot, const std::string& name, int componen
 
 }  // namespace
 
-const ColorSource& source_of(ColorBy color) {
-  static const ColorSource speed{"speed", "velocity", 3}, density{"density", "density", 1},
-      id{"id", "", 0};
-  return color == ColorBy::speed ? speed : color == ColorBy::density ? density : id;
-}
-
 void check_fields(const Snapshot& snapshot, ColorBy color) {
   check_field(snapshot, "position", 3, "a picture");
-  const ColorSource& source = source_of(color);
+  const ColoringInfo& source = about(color);
   if (source.components > 0)
     check_field(snapshot, source.field, source.components,
-                std::string("a picture coloured by ") + source.title);
+                std::string("a picture coloured by ") + source.word);
 }
 
 void collect(const Snapshot& snapshot, const View& view, const Projection& projection,
              ParticleVertices& out) {
   check_fields(snapshot, view.color);
   const FieldArray& position = *snapshot.find("position");
-  const ColorSource& source = source_of(view.color);
+  const ColoringInfo& source = about(view.color);
   const FieldArray* field = snapshot.find(source.field);
   out = {std::move(out.list)};
   out.list.clear();
   out.list.reserve(snapshot.count);
 
+  const auto color = color_map(view.color);
   const double r = view.radius, low = view.range[0], span = view.range[1] - view.range[0];
   const double tan_y = projection.tan_half;
   const double tan_x = tan_y * projection.size[0] / projection.size[1];
@@ -92,8 +87,9 @@ void collect(const Snapshot& snapshot, const View& view, const Projection& proje
     double shown = static_cast<double>(i);
     if (source.components == 3) shown = length(vector(*field, i));
     if (source.components == 1) shown = value(*field, i);
+    if (view.color == ColorBy::compression) shown = std::max(shown / view.rest_density - 1, 0.0);
     out.list.push_back({static_cast<float>(v[0]), static_cast<float>(v[1]),
-                        static_cast<float>(v[2]), viridis((shown - low) / span)});
+                        static_cast<float>(v[2]), color((shown - low) / span)});
     out.nearest = std::min(out.nearest, v[2] - r);
     out.farthest = std::max(out.farthest, v[2] + r);
   }

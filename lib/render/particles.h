@@ -21,13 +21,6 @@ struct ParticleVertices {
   double nearest = 1e300, farthest = 0;  ///< depth of the surfaces, m
 };
 
-/// What gives the colour.
-struct ColorSource {
-  const char *title, *field;  ///< of the colour bar; "": the row number
-  int components;             ///< of the field: the length of 3, 0 without a field
-};
-const ColorSource& source_of(ColorBy color);
-
 /// The particles in front of the eye and inside the picture, coloured. Particles with a position
 /// that is not finite are left out. Throws Error(bad_input) when a field is missing or misshapen.
 void collect(const Snapshot& snapshot, const View& view, const Projection& projection,

@@ -25,8 +25,7 @@ Snapshot needed_part(const Snapshot& snapshot, ColorBy color) {
   check_fields(snapshot, color);
   Snapshot part{snapshot.update, snapshot.time, snapshot.count, {}};
   for (const auto& field : snapshot.fields)
-    if (field.name == "position" || field.name == source_of(color).field)
-      part.fields.push_back(field);
+    if (field.name == "position" || field.name == about(color).field) part.fields.push_back(field);
   return part;
 }
 

@@ -206,10 +206,11 @@ Image Renderer::draw(const Snapshot& snapshot) {
     impl_->draw_scene(projection);
     image = impl_->read_back();
   }
-  const ColorSource& source = source_of(view.color);
+  const ColoringInfo& source = about(view.color);
   const FieldArray* field = snapshot.find(source.field);
-  draw_overlay(image, source.title, field && field->unit != "1" ? field->unit : "", view.range,
-               snapshot.time);
+  const bool relative = view.color == ColorBy::compression || !field || field->unit == "1";
+  draw_overlay(image, source.word, relative ? "" : field->unit, view.range, snapshot.time,
+               color_map(view.color));
   return image;
 }
 

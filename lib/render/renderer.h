@@ -28,6 +28,7 @@ struct View {
   Double3 up{0, 0, 1};                 ///< against gravity
   double radius = 0.01;                ///< m, drawn radius of a particle
   ColorBy color = ColorBy::speed;
+  double rest_density = 1000;         ///< kg/m^3
   std::array<double, 2> range{0, 1};  ///< of the colour bar, in the unit of the field
   std::array<int, 2> size{1280, 720};
   Camera camera;

@@ -33,6 +33,7 @@ View view_of(const Scene& scene, std::int64_t particles) {
   if (g > 0) view.up = (-1 / g) * scene.gravity;
   view.radius = render.radius > 0 ? render.radius : 0.5 * scene.fluid.spacing;
   view.color = render.color;
+  view.rest_density = scene.fluid.rest_density;
   view.size = render.size;
   view.camera = render.camera;
   view.solids = solids_in_metres(scene, 0);
@@ -44,6 +45,8 @@ View view_of(const Scene& scene, std::int64_t particles) {
     view.range = *render.range;
   } else if (render.color == ColorBy::density) {
     view.range = {0.9 * scene.fluid.rest_density, 1.1 * scene.fluid.rest_density};
+  } else if (render.color == ColorBy::compression) {
+    view.range = {0, 0.01};
   } else if (render.color == ColorBy::id) {
     view.range = {0.0, static_cast<double>(std::max<std::int64_t>(particles - 1, 1))};
   } else {

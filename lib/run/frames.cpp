@@ -8,8 +8,8 @@ namespace pbf::inline run_module {
 Frames::Frames(RunParts& run, Reporter& reporter) : run_(run), reporter_(reporter) {
   const Scene& scene = run.scene;
   if (scene.output) fields_ = scene.output->fields;
-  if (scene.render && scene.render->color != ColorBy::id) {
-    const char* needed = scene.render->color == ColorBy::speed ? "velocity" : "density";
+  if (const std::string needed = scene.render ? about(scene.render->color).field : "";
+      !needed.empty()) {
     if (std::find(fields_.begin(), fields_.end(), needed) == fields_.end())
       fields_.push_back(needed), extra_ = needed;
   }

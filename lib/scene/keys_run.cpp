@@ -52,7 +52,9 @@ KeyRows run_rows() {
        key(KEY(render->every), number("s", kSeconds),
            "Time between pictures, rounded to whole frames of `output`; not below output.every."),
        key(KEY(render->size), number("px", {16, 16384}), "Width and height of a picture."),
-       key(KEY(render->color), one_of({"speed", "density", "id"}), "What colours the particles."),
+       key(KEY(render->color), one_of(words_of<ColorBy>()),
+           "What colours the particles. density: blue below rest_density, red above; compression: "
+           "the density's excess over rest_density, relative."),
        key(KEY(render->range), number("", {-1e30, 1e30}),
            "Ends of the colour bar, [low, high], in the unit of the field.", automatic),
        key(KEY(render->radius), number("m", {0, 1e9, true}),

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "kernels/boundary/obstacle_shape.h"
-#include "lib/scene/backend.h"
+#include "lib/scene/coloring.h"
 #include "lib/scene/motion.h"
 
 namespace pbf::inline scene_module {
@@ -24,7 +24,6 @@ enum class SolverMethod { jacobi, chebyshev };  ///< omega of an iteration: cons
 /// Corrections over grids coarser than h (kernels/README.md, "Levels"); automatic: in deep fluid.
 enum class LevelsMode { off, automatic, on };
 enum class Compression { none, gzip };
-enum class ColorBy { speed, density, id };
 
 /// A body of fluid. Which members count depends on `shape`; the loader refuses the others.
 struct Body {

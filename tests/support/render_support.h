@@ -53,21 +53,22 @@ pbf::Snapshot snapshot(const std::vector<pbf::Double3>& positions,
   std::vector<T> flat, density;
   for (const auto& p : positions)
     for (double x : p) flat.push_back(static_cast<T>(x));
-  for (double v : values) density.push_back(static_cast<T>(v));
+  for (double v : values) density.push_back(static_cast<T>(1 + v));
   pbf::Snapshot s;
   s.count = positions.size();
   s.fields = {field("position", "m", 3, flat), field("density", "kg/m^3", 1, density)};
   return s;
 }
 
-/// 200 x 200 pixels, coloured by density in 0..1, seen along +y from 4 m before the origin, z up,
-/// in the middle of a box of 100 m whose edges and floor stay colourless.
+/// 200 x 200 pixels, coloured by compression in 0..1, seen along +y from 4 m before the origin, z
+/// up, in the middle of a box of 100 m whose edges and floor stay colourless.
 inline pbf::View front_view() {
   pbf::View view;
   view.domain_min = {-50, -50, -50};
   view.domain_max = {50, 50, 50};
   view.radius = 0.5;
-  view.color = pbf::ColorBy::density;
+  view.color = pbf::ColorBy::compression;
+  view.rest_density = 1;
   view.size = {200, 200};
   view.camera.position = pbf::Double3{0, -4, 0};
   view.camera.target = pbf::Double3{0, 0, 0};

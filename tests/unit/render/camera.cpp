@@ -150,6 +150,8 @@ TEST_CASE("the view of a scene has a colour range that holds for the whole run",
   CHECK(view_of(scene, 10).range == std::array{900.0, 1100.0});
   CHECK(view_of(scene, 10).radius == 0.3);
   CHECK(view_of(scene, 10).size == std::array{64, 48});
+  scene.render->color = ColorBy::compression;
+  CHECK(view_of(scene, 10).range == std::array{0.0, 0.01});
   scene.render->color = ColorBy::id;
   CHECK(view_of(scene, 10).range == std::array{0.0, 9.0});
   CHECK(view_of(scene, 1).range == std::array{0.0, 1.0});

@@ -103,6 +103,34 @@ TEST_CASE("speed colours by the length of the velocity, id by the row", "[render
   CHECK(hue_distance(hue(id), hue(viridis(0.75))) < 4);
 }
 
+TEST_CASE("density is blue below rest density, red above, white between", "[render]") {
+  PBF_NEEDS_GL();
+  View view = front_view();
+  view.color = ColorBy::density;
+  view.range = {900, 1100};
+  const auto seen = [&](double density) {
+    return pixel(Renderer(view).draw(snapshot({{0, 0, 0}}, {density - 1})), 100, 100);
+  };
+  const Rgb below = seen(900), rest = seen(1000), above = seen(1100);
+  CHECK(below[2] > below[0] + 60);
+  CHECK(above[0] > above[2] + 60);
+  CHECK(chroma(rest) < 10);
+  CHECK(seen(1300) == above);
+  CHECK(hue_distance(hue(seen(std::nan(""))), hue(kNoValue)) < 4);
+}
+
+TEST_CASE("compression counts from rest density on, and what is expanded has none", "[render]") {
+  PBF_NEEDS_GL();
+  View view = front_view();
+  view.rest_density = 1000;
+  view.range = {0, 0.1};
+  const auto seen = [&](double density) {
+    return pixel(Renderer(view).draw(snapshot({{0, 0, 0}}, {density - 1})), 100, 100);
+  };
+  CHECK(hue_distance(hue(seen(1050)), hue(viridis(0.5))) < 4);
+  CHECK(seen(700) == seen(1000));
+}
+
 TEST_CASE("the corners and edges of the box are where perspective puts them", "[render]") {
   PBF_NEEDS_GL();
   View view = front_view();

@@ -1,0 +1,25 @@
+// What colours the particles of a picture. This table is the only list: keys, options, memory,
+// downloads and pictures read it.
+#pragma once
+
+#include "lib/scene/backend.h"
+
+namespace pbf::inline scene_module {
+
+enum class ColorBy { speed, density, compression, id };
+
+struct ColoringInfo {
+  const char* word;   ///< in scenes and options, and over the colour bar
+  const char* field;  ///< of a snapshot that it reads; "": the row number
+  int components;     ///< of the field: the length of 3, 0 without a field
+};
+/// In the order of the enum.
+inline constexpr ColoringInfo kColorings[] = {{"speed", "velocity", 3},
+                                              {"density", "density", 1},
+                                              {"compression", "density", 1},
+                                              {"id", "", 0}};
+
+constexpr const ColoringInfo& about(ColorBy c) { return kColorings[static_cast<int>(c)]; }
+constexpr const auto& table_of(ColorBy) { return kColorings; }
+
+}  // namespace pbf::inline scene_module
