@@ -2,7 +2,7 @@
 
 from .errors import BadInput, FileError, MissingPackage, ToolError
 from .fields import Field, Frame
-from .run import Gauge, Run, open
+from .run_file import Gauge, Run, open
 from .table import Table, read_csv
 
 __all__ = ["BadInput", "Field", "FileError", "Frame", "Gauge", "MissingPackage", "Run", "Table",
