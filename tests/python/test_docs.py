@@ -17,7 +17,7 @@ import pbf_tools
 from pbf_tools.__main__ import COMMANDS
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT / "tools"), "PYTHONDONTWRITEBYTECODE": "1",
-               "PYTHON": sys.executable}
+               "PYTHON": sys.executable, "PBF": os.path.abspath(os.environ["PBF_BINARY"])}
 FOLDERS = (".github", "app", "configs", "kernels", "lib", "tests", "tools")
 PAGES = [ROOT / "README.md", *(p for f in FOLDERS for p in sorted((ROOT / f).rglob("*.md")))]
 

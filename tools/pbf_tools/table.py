@@ -129,9 +129,12 @@ class Table(dict):
         return frame
 
 
-def write_text(path: str | Path, text: str) -> None:
-    """Writes a text file; FileError with the system's reason when that fails."""
+def write_text(path: str | Path, text: str, parents: bool = False) -> None:
+    """Writes a text file, and the folders that lead to it with `parents`; FileError with the
+    system's reason when that fails."""
     try:
+        if parents:
+            Path(path).parent.mkdir(parents=True, exist_ok=True)
         Path(path).write_text(text, encoding="utf-8")
     except OSError as problem:
         raise FileError(f"{path}: cannot write the file: {problem.strerror}") from None
