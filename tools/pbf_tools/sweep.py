@@ -108,8 +108,7 @@ def _input(scenes: Any, folder: Path, program: str, overrides: Mapping[str, Any]
     if not isinstance(scenes, Sequence) or not scenes:
         raise BadInput("batch: expected a scene (a path or a dict), or a list of some")
     beside = folder.with_name(folder.name + ".scenes")
-    lacking = [lacks_output(scene) for scene in scenes]
-    lines, names = [], set()
+    paths, names = [], set()
     for k, scene in enumerate(scenes):
         if isinstance(scene, Mapping):
             name = re.sub(r"[^\w.-]", "_", str(scene.get("name") or f"scene_{k}"))
@@ -121,6 +120,9 @@ def _input(scenes: Any, folder: Path, program: str, overrides: Mapping[str, Any]
         if re.search(r"[\s#]", str(path)):
             raise BadInput(f"{path}: a list of scenes cannot hold a path with blanks or #; rename "
                            "it, or give another out")
-        lines.append(f"{path}{' output={}' if lacking[k] and not all(lacking) else ''}\n")
+        paths.append(path)
+    lacking = [lacks_output(scene) for scene in scenes]
+    lines = [f"{path}{' output={}' if lacks and not all(lacking) else ''}\n"
+             for path, lacks in zip(paths, lacking)]
     write_text(beside / "list.txt", "".join(lines), parents=True)
     return [str(beside / "list.txt"), *(OUTPUT if all(lacking) else ())]

@@ -141,7 +141,8 @@ def write_text(path: str | Path, text: str, parents: bool = False) -> None:
 
 
 def read_csv(path: str | Path) -> Table:
-    """A CSV file with a header; lines that start with # are comments.
+    """A CSV file with a header; lines that start with # are comments, of which "# units: time=s,
+    speed=m/s" gives units.
 
     A column of numbers becomes float64 with nan for empty cells, any other one of strings.
     FileError when the file cannot be read, BadInput naming the line when it is not a table.
@@ -160,7 +161,14 @@ def read_csv(path: str | Path) -> Table:
     for (line, _), row in zip(numbered[1:], rows[1:]):
         if len(row) != len(header):
             raise BadInput(f"{path}:{line}: {len(row)} values for {len(header)} columns")
-    return Table({name: _column([row[c] for row in rows[1:]]) for c, name in enumerate(header)})
+    return Table({name: _column([row[c] for row in rows[1:]]) for c, name in enumerate(header)},
+                 _units(lines))
+
+
+def _units(lines: list[str]) -> dict[str, str]:
+    mark = "# units: "
+    return {name: unit for line in lines if line.startswith(mark)
+            for name, _, unit in (part.rpartition("=") for part in line[len(mark):].split(", "))}
 
 
 def read_csvs(paths: list[str]) -> Table:
@@ -177,7 +185,7 @@ def read_csvs(paths: list[str]) -> Table:
             else:
                 parts.append(np.full(len(t), "" if text else np.nan))
         columns[name] = np.concatenate(parts)
-    return Table(columns)
+    return Table(columns, {n: u for table in tables for n, u in table.units.items()})
 
 
 def need(table: Table, names: list[str], what: str) -> None:
