@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 
+#include "app/batch_slurm.h"
 #include "app/commands.h"
 #include "app/options.h"
 #include "app/shell_quote.h"
@@ -14,6 +15,7 @@
 #include "lib/base/own_file.h"
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
+#include "lib/campaign/batch_check.h"
 #include "lib/campaign/batch_jobs.h"
 #include "lib/campaign/batch_list.h"
 #include "lib/campaign/batch_summary.h"
@@ -33,6 +35,7 @@ struct BatchOptions {
   int jobs = 1, threads = 0;                 ///< at a time; CPU threads of each, 0: all / jobs
   std::int64_t only = -1;                    ///< this run alone, from 0
   double max_walltime = 0;                   ///< s, 0: none
+  std::string time = "1:00:00";              ///< of a task of the Slurm script
   bool list = false, slurm = false, collect = false, quiet = false;
   bool strict = false;  ///< of every run
 };
@@ -41,14 +44,15 @@ const char* const kBatchHelp =
     "Every run is `pbf run --resume` in a folder of its own: what is finished (DONE is there, and\n"
     "run.vtkhdf is whole, of this scene, up to its end; --collect looks too) is left alone,\n"
     "what was stopped or killed goes on, so the same command can be given again until all is\n"
-    "done. OUT/summary.csv has a row per run: why it ended, its last measures. SIGTERM, SIGINT\n"
-    "and --max-walltime save all runs.\n"
+    "done. OUT/summary.csv has a row per run: its settings, why it ended, its last measures.\n"
+    "Every run is read and planned before the first one starts. SIGTERM, SIGINT and\n"
+    "--max-walltime save all runs.\n"
     "Exit code 0 when all are finished, 75 when some are to go on, 6 when some failed.\n"
     "Examples:\n"
     "  pbf batch configs/dam_break.yaml --grid solver.iterations=2,4,8 \\\n"
-    "      --grid time.step=0.002,0.001 --jobs 2\n"
+    "      --grid time.step=0.001:0.002:3 --jobs 2\n"
     "  pbf batch scenes/ --out out/scenes --set checkpoint.every=60\n"
-    "  pbf batch scenes/ --out out/scenes --slurm > job.sh; sbatch job.sh";
+    "  pbf batch scenes/ --out out/scenes --slurm --time 4:00:00 > job.sh; bash job.sh";
 
 namespace fs = std::filesystem;
 
@@ -63,34 +67,18 @@ std::string command_text(const BatchOptions& o, const std::string& out) {
   return text;
 }
 
-/// sbatch sends TERM two minutes before the time is up, so that runs save and exit 75; such tasks
-/// go back into the queue.
-std::string slurm_script(const BatchOptions& o, const std::string& out, std::size_t count) {
-  const std::string command = command_text(o, out);
-  return format(
-             "#!/bin/bash\n"
-             "#SBATCH --job-name=pbf\n"
-             "#SBATCH --array=0-%zu\n"
-             "#SBATCH --cpus-per-task=4\n"
-             "#SBATCH --time=01:00:00\n"
-             "#SBATCH --signal=TERM@120\n"
-             "#SBATCH --requeue\n"
-             "#SBATCH --open-mode=append\n",
-             count - 1) +
-         "# Adapt the lines above (--partition, --gres=gpu:1 for --set backend=cuda), then: sbatch "
-         "FILE\n"
-         "# A task whose time is up saves its run and goes back into the queue.\n"
-         "# When all is done, the summary: " +
-         command +
-         " --collect\n"
-         "srun " +
-         command +
-         " --only \"$SLURM_ARRAY_TASK_ID\" --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n"
-         "code=$?\n"
-         "if [ \"$code\" -eq 75 ]; then\n"
-         "  scontrol requeue \"${SLURM_ARRAY_JOB_ID}_${SLURM_ARRAY_TASK_ID}\"\n"
-         "fi\n"
-         "exit \"$code\"\n";
+std::string script(const BatchOptions& o, const std::string& out,
+                   const std::vector<BatchMember>& members) {
+  SlurmWishes wishes;
+  wishes.command = command_text(o, out);
+  wishes.runs = members.size();
+  if (o.threads > 0) wishes.threads = o.threads;
+  wishes.time = o.time;
+  slurm_seconds(o.time);  // before the runs are looked at
+  std::vector<std::string> overrides = o.overrides;
+  overrides.push_back("threads=" + std::to_string(wishes.threads));
+  wishes.needs = check_members(members, overrides, false);
+  return slurm_script(wishes);
 }
 
 std::string list_text(const std::vector<BatchMember>& members) {
@@ -211,8 +199,12 @@ int command_batch(const BatchOptions& o) {
   const std::string stem = (input.has_filename() ? input : input.parent_path()).stem().string();
   const std::string out = o.out.empty() ? "out/batch_" + stem : o.out;
   Log log(o.quiet);
-  if (o.list || o.slurm) {
-    log.result(o.list ? list_text(members) : slurm_script(o, out, members.size()));
+  if (o.list) {
+    log.result(list_text(members));
+    return 0;
+  }
+  if (o.slurm) {
+    log.result(script(o, out, members));
     return 0;
   }
   if (o.only >= std::int64_t(members.size()))
@@ -225,6 +217,7 @@ int command_batch(const BatchOptions& o) {
   check_output("--out", out + "/summary.csv");
   watch_signals();
   const bool one = o.only >= 0;  // a task of an array: no summary, others write beside it
+  if (!one && !o.collect) check_members(members, o.overrides, true);
   if (one) members = {members[static_cast<std::size_t>(o.only)]};
   Batch batch(o, members, out, log);
   o.collect ? batch.collect() : batch.run();
@@ -242,8 +235,10 @@ void add_batch(CLI::App& app, int& code) {
                 "KEY.PATH=VALUE where wanted")
       ->required();
   c->add_option("--out", o.out, "Folder of the run folders; out/batch_<name> when not given");
-  add_repeatable(c, "--grid", o.grid,
-                 "KEY=V1,V2,...: a run for every value; repeatable, then for every combination");
+  add_repeatable(
+      c, "--grid", o.grid,
+      "KEY=V1,V2,... or KEY=FIRST:LAST:COUNT: a run for every value; repeatable, then for "
+      "every combination");
   add_overrides(c, o.overrides);
   c->add_option("--jobs", o.jobs, "Runs at a time")->transform(whole_number(1, 4096));
   c->add_option("--threads", o.threads, "CPU threads of a run; all, shared among --jobs")
@@ -256,7 +251,10 @@ void add_batch(CLI::App& app, int& code) {
       ->excludes(only);
   c->add_flag("--strict", o.strict, "A warning ends its run with exit 6");
   c->add_flag("--list", o.list, "Print the runs and do nothing");
-  c->add_flag("--slurm", o.slurm, "Print a Slurm array script and do nothing");
+  CLI::Option* slurm = c->add_flag("--slurm", o.slurm, "Print a Slurm array script and do nothing");
+  c->add_option("--time", o.time,
+                "Of a task of the Slurm script, e.g. 30, 4:00:00 or 1-12; 1:00:00")
+      ->needs(slurm);
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
 }
 

@@ -21,15 +21,16 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostRuns = 100000;
 
+bool is_run_file(const fs::path& p) { return p.extension() == ".vtkhdf" || p.extension() == ".h5"; }
 bool is_scene(const fs::path& p) {
-  return p.extension() == ".yaml" || p.extension() == ".yml" || p.extension() == ".h5";
+  return p.extension() == ".yaml" || p.extension() == ".yml" || is_run_file(p);
 }
 
 std::vector<BatchMember> of_folder(const std::string& path) {
   std::vector<BatchMember> all;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(path, error))
-    if (is_scene(entry.path()) && entry.path().extension() != ".h5")
+    if (is_scene(entry.path()) && !is_run_file(entry.path()))
       all.push_back({"", entry.path().string(), {}});
   if (error) bad_input(path, "cannot be read: " + error.message());
   if (all.empty()) bad_input(path, "holds no scene (*.yaml)");
@@ -61,7 +62,7 @@ std::vector<BatchMember> of_list(const std::string& path) {
     }
     if (m.scene.empty()) continue;
     if (!is_scene(m.scene))
-      bad_input(where, m.scene + " is no scene (*.yaml) and no run file (*.h5)");
+      bad_input(where, m.scene + " is no scene (*.yaml) and no run file (*.vtkhdf)");
     all.push_back(m);
     if (all.size() > kMostRuns) bad_input(path, "has more than 100000 lines");
   }
@@ -105,10 +106,14 @@ void name_all(std::vector<BatchMember>& all) {
 GridAxis parse_axis(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-    bad_input("--grid " + text, "expected KEY=V1,V2,..., e.g. --grid solver.iterations=2,4,8");
-  const std::vector<std::string> values = listed_values(text.substr(equals + 1));
-  for (const std::string& v : values)
+    bad_input(
+        "--grid " + text,
+        "expected KEY=V1,V2,... or KEY=FIRST:LAST:COUNT, e.g. --grid solver.iterations=2,4,8");
+  std::vector<std::string> values;
+  for (const std::string& v : listed_values(text.substr(equals + 1))) {
     if (v.empty()) bad_input("--grid " + text, "has an empty value");
+    for (const std::string& value : range_values("--grid " + text, v)) values.push_back(value);
+  }
   return grid_axis(text.substr(0, equals), values);
 }
 

@@ -14,12 +14,12 @@ struct BatchMember {
   std::vector<std::string> overrides;  ///< key.path=value: of the list, then of the grid
 };
 
-/// Of `--grid key=v1,v2`. Throws Error(bad_input) for what is no KEY=V1,V2,...
+/// Of `--grid key=v1,v2` and key=first:last:count. Throws Error(bad_input) for anything else.
 GridAxis parse_axis(const std::string& text);
 
 /// `input`: a folder (its *.yaml and *.yml, in order of names), a scene (*.yaml, *.yml, or a run
-/// file *.h5), or a list: a text file with a scene on each line, relative to the list, followed by
-/// key.path=value where wanted; # begins a comment. The last axis runs fastest. Throws
+/// file *.vtkhdf), or a list: a text file with a scene on each line, relative to the list, followed
+/// by key.path=value where wanted; # begins a comment. The last axis runs fastest. Throws
 /// Error(bad_input) naming file and line.
 std::vector<BatchMember> batch_members(const std::string& input, std::vector<GridAxis> axes);
 

@@ -1,11 +1,17 @@
 #include "lib/campaign/batch_summary.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <regex>
+#include <set>
 
 #include "lib/base/error.h"
+#include "lib/base/plain_text.h"
 #include "lib/base/text.h"
 #include "lib/io/run_file.h"
 #include "lib/io/table.h"
+#include "lib/scene/keys.h"
+#include "lib/scene/number.h"
 #include "lib/solver/diagnostics.h"
 
 namespace pbf::inline campaign_module {
@@ -17,6 +23,44 @@ std::vector<std::string> last_values() {
   for (const Diagnostic& d : diagnostics())
     if (d.summary) names.push_back(d.name);
   return names;
+}
+
+std::map<std::string, std::string> units_of_results() {
+  std::map<std::string, std::string> units{{"time", "s"}, {"seconds", "s"}};
+  for (const Diagnostic& d : diagnostics()) units[d.name] = d.unit;
+  return units;
+}
+
+/// Keys that the list and the grid set, in the order in which they come.
+std::vector<std::string> set_keys(const std::vector<BatchMember>& members) {
+  std::vector<std::string> keys;
+  std::set<std::string> seen;
+  for (const BatchMember& m : members)
+    for (const std::string& o : m.overrides)
+      if (const std::string key = o.substr(0, o.find('=')); seen.insert(key).second)
+        keys.push_back(key);
+  return keys;
+}
+
+/// The last one given counts, as for --set.
+Cell value_of(const BatchMember& m, const std::string& key) {
+  Cell value;
+  for (const std::string& o : m.overrides)
+    if (o.compare(0, key.size() + 1, key + "=") == 0) {
+      const std::string text = o.substr(key.size() + 1);
+      double number = 0;
+      value = read_number(text, number) == NumberError::none ? Cell{number} : Cell{text};
+    }
+  return value;
+}
+
+/// "bodies[0].velocity" and "bodies.0.velocity" are of bodies[].velocity, "gravity[2]" of gravity.
+std::string unit_of_key(const std::string& key) {
+  static const std::regex index(R"((\.|\[)\d+\]?)"), last(R"(\[\]$)");
+  std::string path = std::regex_replace(key, index, "[]");
+  const Key* found = scene_table().find_key(path);
+  if (!found) found = scene_table().find_key(std::regex_replace(path, last, ""));
+  return found ? unit_text(*found) : "";
 }
 
 /// Of a run's file: the last measures, the numbers of frames and warnings, seconds; empty cells
@@ -62,23 +106,34 @@ std::string exit_reason(int code) {
 
 std::string batch_summary(const std::vector<BatchMember>& members,
                           const std::map<std::string, JobEnd>& ends, const std::string& out) {
+  const std::vector<std::string> keys = set_keys(members);
   std::vector<std::string> columns{"name", "scene", "settings", "exit_code", "reason", "message"};
   const std::vector<std::string> names = last_values();
   columns.insert(columns.end(), names.begin(), names.end());
   columns.insert(columns.end(), {"frames", "warnings", "seconds"});
+  std::map<std::string, std::string> units = units_of_results();
+  std::vector<std::string> of_keys;
+  for (const std::string& key : keys) {
+    const bool taken = std::find(columns.begin(), columns.end(), key) != columns.end();
+    of_keys.push_back((taken ? "set." : "") + key);
+    units[of_keys.back()] = unit_of_key(key);
+  }
+  columns.insert(columns.begin() + 3, of_keys.begin(), of_keys.end());
   Table table(columns);
   for (const BatchMember& m : members) {
     const JobEnd end = ends.contains(m.name) ? ends.at(m.name) : JobEnd{-1, ""};
-    std::vector<Cell> row{m.name,
-                          m.scene,
-                          joined(m.overrides, " "),
-                          end.code < 0 ? Cell{} : Cell{std::int64_t{end.code}},
-                          exit_reason(end.code),
-                          end.message};
+    std::vector<Cell> row{m.name, m.scene, joined(m.overrides, " ")};
+    for (const std::string& key : keys) row.push_back(value_of(m, key));
+    row.insert(row.end(), {end.code < 0 ? Cell{} : Cell{std::int64_t{end.code}},
+                           exit_reason(end.code), end.message});
     add_results(out + "/" + m.name + "/" + kRunFile, row);
     table.add(row);
   }
-  return table.csv();
+  std::vector<std::string> with_unit;
+  for (const std::string& c : columns)
+    if (const std::string& unit = units[c]; !unit.empty() && unit != "1")
+      with_unit.push_back(c + "=" + unit);
+  return "# units: " + escaped(joined(with_unit, ", ")) + "\n" + table.csv();
 }
 
 }  // namespace pbf::inline campaign_module

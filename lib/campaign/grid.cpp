@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "lib/base/error.h"
+#include "lib/base/text.h"
 #include "lib/scene/number.h"
 
 namespace pbf::inline campaign_module {
@@ -73,6 +74,28 @@ std::vector<std::string> listed_values(const std::string& text) {
       continue;
     }
     values.back() += c;
+  }
+  return values;
+}
+
+std::vector<std::string> range_values(const std::string& where, const std::string& text) {
+  double first = 0, last = 0;
+  const std::size_t one = text.find(':');
+  if (one == std::string::npos || read_number(text.substr(0, one), first) != NumberError::none)
+    return {text};
+  const std::size_t two = text.find(':', one + 1);
+  std::int64_t count = 0;
+  if (two == std::string::npos ||
+      read_number(text.substr(one + 1, two - one - 1), last) != NumberError::none ||
+      read_number(text.substr(two + 1), count) != NumberError::none || count < 2 || count > 1000 ||
+      first == last)
+    bad_input(where, "\"" + text +
+                         "\" is no range FIRST:LAST:COUNT of two different numbers and 2 to 1000 "
+                         "values, e.g. 0.02:0.04:5");
+  std::vector<std::string> values;
+  for (std::int64_t k = 0; k < count; ++k) {
+    const double part = double(k) / double(count - 1);
+    values.push_back(format("%.15g", first * (1 - part) + last * part));
   }
   return values;
 }

@@ -51,6 +51,11 @@ std::vector<GridMember> grid_members(const std::vector<GridAxis>& axes, std::siz
 /// Values of "a,b,c": commas inside [], {} and quotes do not separate.
 std::vector<std::string> listed_values(const std::string& text);
 
+/// Of one value as it was written: FIRST:LAST:COUNT becomes its numbers in equal steps, both ends
+/// included, with at most 15 digits; anything else stays. Throws Error(bad_input), "WHERE: ...",
+/// for what begins like a range and is none.
+std::vector<std::string> range_values(const std::string& where, const std::string& text);
+
 /// Numbers of "a,b,c" or LOW:HIGH:COUNT (in equal ratios), rounded or required to be whole where
 /// `whole`. Throws Error(bad_input), "values of KEY: ...".
 std::vector<double> numbers_listed(const std::string& key, const std::string& text, bool whole);

@@ -78,19 +78,73 @@ TEST_CASE("a batch over a folder tells which runs failed and why, and finishes t
   const Scratch folder;
   fs::create_directory(folder / "scenes");
   folder.write("scenes/good.yaml", tiny_scene());
-  folder.write("scenes/bad.yaml", tiny_scene("solver: {iteratons: 3}\n"));
+  folder.write("scenes/bad.yaml", tiny_scene("measure_every: 30\n"));  // warns: strict fails
   folder.write("scenes/cuda.yaml", tiny_scene("backend: cuda\n"));
   folder.write("scenes/notes.txt", "not a scene");
-  const Outcome o = pbf::test::pbf({"batch", "scenes"}, folder.path());
+  const Outcome o = pbf::test::pbf({"batch", "scenes", "--strict"}, folder.path());
   CAPTURE(o.err);
   CHECK(o.code == 6);
   CHECK(has(o.out, "3 runs: 1 finished, 2 failed"));
   const std::string table = read_text(folder / "out/batch_scenes/summary.csv");
   CHECK(has(table, "good,scenes/good.yaml,,0,finished,,"));
-  CHECK(has(table, "bad,scenes/bad.yaml,,2,bad input,"));
-  CHECK(has(table, "did you mean solver.iterations?"));
+  CHECK(has(table, "bad,scenes/bad.yaml,,6,warned,"));
   CHECK(has(table, "cuda,scenes/cuda.yaml,,4,unavailable,"));
   CHECK(fs::exists(folder / "out/batch_scenes/good/DONE"));
+}
+
+TEST_CASE("every run of a batch is looked at before the first one starts") {
+  const Scratch folder;
+  fs::create_directory(folder / "scenes");
+  folder.write("scenes/a.yaml", tiny_scene());
+  folder.write("scenes/bad.yaml", tiny_scene("solver: {iteratons: 3}\n"));
+  folder.write("scenes/lost.yaml", tiny_scene());
+  const Outcome o = pbf::test::pbf({"batch", "scenes"}, folder.path());
+  CHECK(o.code == 2);
+  CHECK(has(o.err, "1 of 3 runs cannot start, and none was started:\n  bad: scenes/bad.yaml:"));
+  CHECK(has(o.err, "did you mean solver.iterations?"));
+  CHECK_FALSE(fs::exists(folder / "out/batch_scenes/a"));
+  CHECK_FALSE(fs::exists(folder / "out/batch_scenes/summary.csv"));
+  // Of a value in the middle of a grid, and of what only the count of particles finds.
+  const Outcome grid = pbf::test::pbf(
+      {"batch", "scenes/a.yaml", "--grid", "solver.iterations=1:3:5", "--out", "o"}, folder.path());
+  CHECK(grid.code == 2);
+  CHECK(has(grid.err, "2 of 5 runs cannot start"));
+  CHECK(has(grid.err, "a_iterations=1.5: --set solver.iterations=1.5"));
+  const Outcome huge = pbf::test::pbf(
+      {"batch", "scenes/a.yaml", "--grid", "fluid.spacing=0.1,1e-9", "--out", "o"}, folder.path());
+  CHECK(huge.code != 0);
+  CHECK(has(huge.err, "1 of 2 runs cannot start"));
+  std::string many = "--grid=solver.iterations=0.5";
+  for (int k = 1; k < 13; ++k) many += "," + std::to_string(k) + ".5";
+  CHECK(has(pbf::test::pbf({"batch", "scenes/a.yaml", many}, folder.path()).err,
+            "13 of 13 runs cannot start") == true);
+  CHECK(has(pbf::test::pbf({"batch", "scenes/a.yaml", many}, folder.path()).err, "and 3 more"));
+  CHECK_FALSE(fs::exists(folder / "o/a_iterations=1"));
+}
+
+TEST_CASE("a summary has a column with its unit for every key that the grid or the list sets") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  folder.write("list.txt", "tiny.yaml time.end=0.05\ntiny.yaml bodies.0.velocity=[0,0,1] name=x\n");
+  const Outcome o = pbf::test::pbf({"batch", "list.txt", "--out", "o", "--grid",
+                                    "time.step=0.002:0.003:3", "--set", "measure_every=5"},
+                                   folder.path());
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  std::istringstream lines(read_text(folder / "o/summary.csv"));
+  std::string units, head, row;
+  std::getline(lines, units), std::getline(lines, head);
+  CHECK(has(units, "# units: time.end=s, time.step=s, bodies.0.velocity=m/s, time=s, "));
+  CHECK(has(units, "kinetic_energy=J"));
+  CHECK(has(units, ", seconds=s"));
+  CHECK_FALSE(has(units, "compression_mean"));
+  CHECK(head.rfind("name,scene,settings,time.end,time.step,bodies.0.velocity,set.name,exit_code,",
+                   0) == 0);
+  std::vector<std::string> rows;
+  while (std::getline(lines, row)) rows.push_back(row);
+  REQUIRE(rows.size() == 6);
+  CHECK(has(rows[1], ",time.end=0.05 time.step=0.0025,0.05,0.0025,,,0,finished"));
+  CHECK(has(rows[5], ",,0.003,\"[0,0,1]\",x,0,finished"));
 }
 
 TEST_CASE("a batch of a list takes the settings of its lines, and wrong lists are told by line") {
@@ -111,6 +165,10 @@ TEST_CASE("a batch of a list takes the settings of its lines, and wrong lists ar
       {{"none.txt"}, "none.txt: cannot be opened"},
       {{"tiny.yaml", "--grid", "solver.iterations"}, "expected KEY=V1,V2"},
       {{"tiny.yaml", "--grid", "solver.iterations=1,,2"}, "empty value"},
+      {{"tiny.yaml", "--grid", "fluid.spacing=0.02:0.04"}, "is no range FIRST:LAST:COUNT"},
+      {{"tiny.yaml", "--grid", "fluid.spacing=0.02:0.04:x"}, "is no range FIRST:LAST:COUNT"},
+      {{"tiny.yaml", "--grid", "fluid.spacing=0.02:0.04:1"}, "is no range FIRST:LAST:COUNT"},
+      {{"tiny.yaml", "--time", "30"}, "--time requires --slurm"},
       {{"tiny.yaml", "--only", "1"}, "--only 1"},
       {{"bad.txt"}, "bad.txt:2: \"iterations\" is not key.path=value"}};
   folder.write("bad.txt", "tiny.yaml\ntiny.yaml iterations 3\n");

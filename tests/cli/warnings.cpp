@@ -152,8 +152,9 @@ TEST_CASE("summary.csv counts the warnings of each run, and --strict makes them 
   const Args base{"batch", "s.yaml", "--grid", "time.step=0.002,0.04", "--set", "time.end=0.4"};
   REQUIRE(pbf::test::pbf(base, folder.path()).code == 0);
   std::istringstream lines(read_text(folder / "out/batch_s/summary.csv"));
-  std::string head, sound, bad;
-  std::getline(lines, head), std::getline(lines, sound), std::getline(lines, bad);
+  std::string units, head, sound, bad;
+  std::getline(lines, units), std::getline(lines, head), std::getline(lines, sound),
+      std::getline(lines, bad);
   REQUIRE(head.ends_with(",frames,warnings,seconds"));
   const auto warnings = [](std::string row) {
     row.resize(row.rfind(','));

@@ -17,7 +17,7 @@ import pbf_tools
 from pbf_tools.__main__ import COMMANDS
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT / "tools"), "PYTHONDONTWRITEBYTECODE": "1",
-               "PYTHON": sys.executable}
+               "PYTHON": sys.executable, "PBF": os.path.abspath(os.environ["PBF_BINARY"])}
 FOLDERS = (".github", "app", "configs", "kernels", "lib", "tests", "tools")
 PAGES = [ROOT / "README.md", *(p for f in FOLDERS for p in sorted((ROOT / f).rglob("*.md")))]
 
@@ -59,6 +59,22 @@ def demo(minimal, tmp_path):
 def test_the_example_script_runs(demo):
     out = run_python([ROOT / "tools/example.py"], demo)
     assert "4000 particles" in out and "energy: 62.78 J at the start" in out
+
+
+def test_the_tutorial_runs_and_draws_its_figure(tmp_path):
+    environment = {**ENVIRONMENT, "TUTORIAL_SPACING": "0.05", "TUTORIAL_OUT": "t",
+                   "MPLBACKEND": "Agg"}
+    script = ROOT / "tools/tutorial.py"
+    done = subprocess.run([sys.executable, script], cwd=tmp_path, env=environment, text=True,
+                          capture_output=True)
+    assert done.returncode == 0, done.stderr
+    assert "12 runs" in done.stdout and re.search(r"least error below .* iterations", done.stdout)
+    picture = imread(tmp_path / "t/error_against_time.png")
+    assert picture.shape[1] > 600 and picture[..., :3].std() > 0.02  # not blank
+    assert script.read_text().count("# %%") >= 5
+    run_again = subprocess.run([sys.executable, script], cwd=tmp_path, env=environment, text=True,
+                               capture_output=True)  # goes on, as a cell that is run again
+    assert run_again.returncode == 0, run_again.stderr
 
 
 def test_the_pages_python_examples_run(demo):

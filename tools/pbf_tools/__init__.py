@@ -1,10 +1,15 @@
-"""Reads, plots and compares the run files of pbf. Start with `pbf_tools.open("run.vtkhdf")`."""
+"""Runs scenes of pbf, and reads, plots and compares its run files. Start with
+`pbf_tools.open("run.vtkhdf")` or `pbf_tools.run("scene.yaml")`."""
 
-from .errors import BadInput, FileError, MissingPackage, ToolError
+from .errors import (BadInput, Diverged, FileError, MissingPackage, PbfError, PbfWarning, Stopped,
+                     ToolError)
 from .fields import Field, Frame
-from .run import Gauge, Run, open
+from .run_file import Gauge, Run, open
+from .simulate import plan, run
+from .sweep import Batch, batch
 from .table import Table, read_csv
 
-__all__ = ["BadInput", "Field", "FileError", "Frame", "Gauge", "MissingPackage", "Run", "Table",
-           "ToolError", "open", "read_csv"]
+__all__ = ["BadInput", "Batch", "Diverged", "Field", "FileError", "Frame", "Gauge",
+           "MissingPackage", "PbfError", "PbfWarning", "Run", "Stopped", "Table", "ToolError",
+           "batch", "open", "plan", "read_csv", "run"]
 __version__ = "0.1.0"

@@ -13,7 +13,7 @@ import numpy as np
 
 from . import style
 from .errors import BadInput
-from .run import Run
+from .run_file import Run
 from .table import Table, write_text
 
 EXAMPLE = """examples:

@@ -14,7 +14,7 @@ from .errors import BadInput, MissingPackage
 if TYPE_CHECKING:
     import pyvista
 
-    from .run import Run
+    from .run_file import Run
 
 
 class Field:

@@ -150,6 +150,8 @@ def _info(pbf: h5py.Group) -> tuple[dict[str, Any], dict[str, str]]:
     info: dict[str, Any] = {}
     units: dict[str, str] = {}
     for key, value in pbf.attrs.items():
+        if key == "plan":  # a page of text, with a name of its own: Run.plan
+            continue
         if isinstance(value, np.ndarray):
             info[key] = [_text(v) for v in value]
         elif isinstance(value, np.generic):

@@ -14,7 +14,7 @@ import numpy as np
 
 from . import style
 from .errors import BadInput
-from .run import Run
+from .run_file import Run
 from .table import Table, need, read_csv
 
 EXAMPLE = """examples:

@@ -19,7 +19,7 @@ import numpy as np
 from . import style
 from .errors import BadInput
 from .front_data import REFERENCES
-from .run import Run
+from .run_file import Run
 from .table import Table, need, read_csv
 
 EXAMPLE = """examples:

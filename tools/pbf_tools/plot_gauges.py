@@ -14,7 +14,7 @@ import numpy as np
 
 from . import style
 from .errors import BadInput
-from .run import Gauge, Run
+from .run_file import Gauge, Run
 from .table import Table, need, read_csv
 
 EXAMPLE = """examples:

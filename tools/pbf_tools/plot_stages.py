@@ -12,7 +12,7 @@ import numpy as np
 
 from . import bench, style
 from .errors import BadInput
-from .run import Run
+from .run_file import Run
 from .table import Table
 
 EXAMPLE = """examples:

@@ -13,7 +13,7 @@ import numpy as np
 
 from . import frame_range
 from .errors import BadInput, FileError, MissingPackage
-from .run import Run
+from .run_file import Run
 
 EXAMPLE = """example:
   python -m pbf_tools surface out/dam_break/run.vtkhdf --frames 0:-1:5 --out surface"""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, MutableMapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,39 +16,73 @@ if TYPE_CHECKING:
     import pandas
 
 
-class Table(Mapping):
+class Table(dict):
     """Columns of equal length, by name: arrays of shape (rows,) or (rows, components).
+
+    A dict of its columns, so `name in table`, `table.items()` and `pandas.DataFrame(table)` do what
+    they do with a dict. Only `len` counts rows, as that of a DataFrame does. A column may be added;
+    BadInput when its length is another.
 
     >>> table = Table({"time": np.array([0.0, 0.1]), "speed": np.array([0.0, 0.98])},
     ...               {"time": "s", "speed": "m/s"})
+    >>> table
+    <Table of 2 rows: time (s), speed (m/s)>
     >>> len(table), list(table), table.units["speed"]
     (2, ['time', 'speed'], 'm/s')
+    >>> table["way"] = table["speed"] * 0.1
     >>> print(table.csv(), end="")
-    time,speed
-    0.0,0.0
-    0.1,0.98
+    time,speed,way
+    0.0,0.0,0.0
+    0.1,0.98,0.098
     """
 
-    def __init__(self, columns: Mapping[str, np.ndarray], units: Mapping[str, str] | None = None):
-        self.columns = {name: np.asarray(values) for name, values in columns.items()}
+    def __init__(self, columns: Mapping[str, Any] | None = None,
+                 units: Mapping[str, str] | None = None):
+        super().__init__()
         self.units = dict(units or {})
-        if len({len(values) for values in self.columns.values()}) > 1:
-            raise BadInput("a table's columns must have one length")
+        self.update(columns or {})
 
-    def __getitem__(self, name: str) -> np.ndarray:
-        if name not in self.columns:
-            raise KeyError(f"no column {name}; there are {', '.join(self.columns)}")
-        return self.columns[name]
+    def __setitem__(self, name: str, values: Any) -> None:
+        values = np.asarray(values)
+        rows = next((len(v) for key, v in self.items() if key != name), None)
+        if values.ndim == 0 or rows not in (None, len(values)):
+            raise BadInput(f"column {name}: a table's columns must have one length" +
+                           (f", here {rows}" if rows is not None else ""))
+        super().__setitem__(name, values)
 
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.columns)
+    # Those of dict would store what __setitem__ has not seen.
+    update = MutableMapping.update
+    setdefault = MutableMapping.setdefault
+
+    def __ior__(self, other: Mapping[str, Any]) -> Table:
+        self.update(other)
+        return self
+
+    def __missing__(self, name: str) -> np.ndarray:
+        raise KeyError(f"no column {name}; there are {', '.join(self)}")
 
     def __len__(self) -> int:
         """Number of rows."""
-        return len(next(iter(self.columns.values()))) if self.columns else 0
+        return len(next(iter(self.values()), ()))
 
     def __repr__(self) -> str:
-        return f"<Table of {len(self)} rows: {', '.join(self.columns)}>"
+        return f"<Table of {len(self)} rows: {', '.join(map(self._with_unit, self))}>"
+
+    def __reduce__(self) -> tuple:
+        return type(self), (self.columns, self.units)
+
+    @property
+    def columns(self) -> dict[str, np.ndarray]:
+        """The columns as a plain dict."""
+        return {name: self[name] for name in self}
+
+    def copy(self) -> Table:
+        """Another table of the same arrays."""
+        return Table(self.columns, self.units)
+
+    def _with_unit(self, name: str) -> str:
+        unit = self.units.get(name, "1")
+        return name + ("" if unit == "1" else f" ({unit})")
 
     def where(self, rows: np.ndarray) -> Table:
         """The rows of a mask, or of an array of row numbers."""
@@ -56,8 +90,8 @@ class Table(Mapping):
 
     def label(self, name: str) -> str:
         """Name and unit for an axis: "front x (m)"."""
-        unit = self.units.get(name, "1")
-        return name.replace("_", " ") + ("" if unit == "1" else f" ({unit})")
+        unit = self._with_unit(name)[len(name):]
+        return name.replace("_", " ") + unit
 
     def flat(self) -> Table:
         """One column per component: position becomes position_x, position_y, position_z."""
@@ -95,16 +129,20 @@ class Table(Mapping):
         return frame
 
 
-def write_text(path: str | Path, text: str) -> None:
-    """Writes a text file; FileError with the system's reason when that fails."""
+def write_text(path: str | Path, text: str, parents: bool = False) -> None:
+    """Writes a text file, and the folders that lead to it with `parents`; FileError with the
+    system's reason when that fails."""
     try:
+        if parents:
+            Path(path).parent.mkdir(parents=True, exist_ok=True)
         Path(path).write_text(text, encoding="utf-8")
     except OSError as problem:
         raise FileError(f"{path}: cannot write the file: {problem.strerror}") from None
 
 
 def read_csv(path: str | Path) -> Table:
-    """A CSV file with a header; lines that start with # are comments.
+    """A CSV file with a header; lines that start with # are comments, of which "# units: time=s,
+    speed=m/s" gives units.
 
     A column of numbers becomes float64 with nan for empty cells, any other one of strings.
     FileError when the file cannot be read, BadInput naming the line when it is not a table.
@@ -123,7 +161,14 @@ def read_csv(path: str | Path) -> Table:
     for (line, _), row in zip(numbered[1:], rows[1:]):
         if len(row) != len(header):
             raise BadInput(f"{path}:{line}: {len(row)} values for {len(header)} columns")
-    return Table({name: _column([row[c] for row in rows[1:]]) for c, name in enumerate(header)})
+    return Table({name: _column([row[c] for row in rows[1:]]) for c, name in enumerate(header)},
+                 _units(lines))
+
+
+def _units(lines: list[str]) -> dict[str, str]:
+    mark = "# units: "
+    return {name: unit for line in lines if line.startswith(mark)
+            for name, _, unit in (part.rpartition("=") for part in line[len(mark):].split(", "))}
 
 
 def read_csvs(paths: list[str]) -> Table:
@@ -140,7 +185,7 @@ def read_csvs(paths: list[str]) -> Table:
             else:
                 parts.append(np.full(len(t), "" if text else np.nan))
         columns[name] = np.concatenate(parts)
-    return Table(columns)
+    return Table(columns, {n: u for table in tables for n, u in table.units.items()})
 
 
 def need(table: Table, names: list[str], what: str) -> None:

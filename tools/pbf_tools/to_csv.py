@@ -13,7 +13,7 @@ import numpy as np
 from . import frame_range
 from .errors import BadInput
 from .fields import Frame
-from .run import Run
+from .run_file import Run
 from .table import Table, write_text
 
 EXAMPLE = """examples:

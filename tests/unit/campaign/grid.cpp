@@ -87,3 +87,19 @@ TEST_CASE("grid: numbers as a list or a range in equal ratios") {
     CHECK(error_of("k", text) == "values of k: " + std::string(text) +
                                      " is no range with 0 < LOW < HIGH and 2 to 1000 values");
 }
+
+TEST_CASE("grid: a range goes from its first to its last value in equal steps") {
+  CHECK(range_values("w", "0.02:0.04:5") == Texts{"0.02", "0.025", "0.03", "0.035", "0.04"});
+  CHECK(range_values("w", "8:2:4") == Texts{"8", "6", "4", "2"});
+  CHECK(range_values("w", "-1:1:3") == Texts{"-1", "0", "1"});
+  CHECK(range_values("w", "0:0.3:4") == Texts{"0", "0.1", "0.2", "0.3"});
+  // What does not begin like one is a value.
+  for (const char* text : {"4", "jet", "a:b:c", "{x: 1}", "[0, 0, 1]", "C:/p.csv", ""})
+    CHECK(range_values("w", text) == Texts{text});
+  for (const char* text : {"1:2", "1:2:", "1:2:x", "1:2:1", "1:2:1001", "1:2:2.5", "1:1:3", "1::3",
+                           "1:2:3:4", "1:nan:3"}) {
+    CAPTURE(text);
+    CHECK_THROWS_WITH(range_values("w", text),
+                      Catch::Matchers::StartsWith("w: \"" + std::string(text)));
+  }
+}

@@ -95,6 +95,13 @@ class Run:
         return str(self.info["resolved_scene"])
 
     @property
+    def plan(self) -> str:
+        """What `pbf plan` said of the scene when the run began: passes, arrays, memory, files, what
+        is left out; empty for a file without it."""
+        return self._read(lambda file: index._text(file["pbf"].attrs.get("plan", "")),
+                          "cannot read the plan")
+
+    @property
     def name(self) -> str:
         """Name of the scene: the scene file's without its ending."""
         return Path(str(self.info["scene_path"])).stem

@@ -1,0 +1,81 @@
+#include "app/batch_slurm.h"
+
+#include <algorithm>
+#include <regex>
+
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+
+namespace pbf::inline app_module {
+namespace {
+
+constexpr long kLead = 120;  // s before the end in which a run saves
+
+/// MiB to ask for: the forecast, a quarter more, and what the batch itself takes.
+long memory(const BatchNeeds& needs) {
+  return long(1.25 * double(needs.host_bytes) / (1024 * 1024)) + 64;
+}
+
+}  // namespace
+
+long slurm_seconds(const std::string& text) {
+  static const std::regex forms(R"((\d{1,5})(:(\d{1,2})(:(\d{1,2}))?)?)"),
+      days(R"((\d{1,4})-(\d{1,2})(:(\d{1,2})(:(\d{1,2}))?)?)");
+  std::smatch m;
+  const auto part = [&m](int k) { return m[k].matched ? std::stol(m[k].str()) : 0; };
+  long seconds = 0;
+  if (std::regex_match(text, m, days))
+    seconds = ((part(1) * 24 + part(2)) * 60 + part(4)) * 60 + part(6);
+  else if (std::regex_match(text, m, forms))
+    seconds = m[5].matched ? (part(1) * 60 + part(3)) * 60 + part(5) : part(1) * 60 + part(3);
+  if (seconds < 60)
+    throw Error(ExitCode::bad_input,
+                "--time " + text +
+                    ": expected a minute or more as Slurm writes it: minutes, M:S, H:M:S, D-H, "
+                    "D-H:M or D-H:M:S");
+  return seconds;
+}
+
+std::string slurm_script(const SlurmWishes& w) {
+  const long lead = std::min(kLead, slurm_seconds(w.time) / 2);
+  return format(
+             "#!/bin/bash\n"
+             "#SBATCH --job-name=pbf\n"
+             "#SBATCH --array=0-%zu\n"
+             "#SBATCH --cpus-per-task=%d\n"
+             "#SBATCH --mem=%ldM\n"
+             "#SBATCH --time=%s\n"
+             "%s"
+             "#SBATCH --signal=TERM@%ld\n"
+             "#SBATCH --requeue\n"
+             "#SBATCH --open-mode=append\n",
+             w.runs - 1, w.threads, memory(w.needs), w.time.c_str(),
+             w.needs.device ? "#SBATCH --gres=gpu:1\n" : "", lead) +
+         "# Add what your cluster needs (--partition, --account), then: bash FILE\n"
+         "# It submits the array, and a job that writes the summary when all tasks have ended.\n"
+         "# A task whose time is up saves its run and goes back into the queue.\n"
+         "if [ \"${1-}\" = collect ]; then\n"
+         "  exec " +
+         w.command +
+         " --collect\n"
+         "fi\n"
+         "if [ -z \"${SLURM_ARRAY_TASK_ID-}\" ]; then\n"
+         "  array=$(sbatch --parsable \"$0\") || exit\n"
+         "  echo \"array $array\"\n"
+         "  exec sbatch --dependency=afterany:\"${array%%;*}\" --job-name=pbf-collect --array=0 "
+         "\\\n"
+         "    --cpus-per-task=1 --time=10" +
+         (w.needs.device ? " --gres=none" : "") +
+         " \"$0\" collect\n"
+         "fi\n"
+         "srun " +
+         w.command +
+         " --only \"$SLURM_ARRAY_TASK_ID\" --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n"
+         "code=$?\n"
+         "if [ \"$code\" -eq 75 ]; then\n"
+         "  scontrol requeue \"${SLURM_ARRAY_JOB_ID}_${SLURM_ARRAY_TASK_ID}\"\n"
+         "fi\n"
+         "exit \"$code\"\n";
+}
+
+}  // namespace pbf::inline app_module

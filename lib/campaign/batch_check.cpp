@@ -1,0 +1,52 @@
+#include "lib/campaign/batch_check.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+#include "lib/exec/make_solver.h"
+#include "lib/program/plan.h"
+#include "lib/run/emit.h"
+#include "lib/run/load_run.h"
+#include "lib/run/start_neighbors.h"
+
+namespace pbf::inline campaign_module {
+namespace {
+
+constexpr std::size_t kMostTold = 10;
+
+void add_needs(const BatchMember& m, std::vector<std::string> overrides, bool here,
+               BatchNeeds& needs) {
+  overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
+  const LoadedScene loaded = load_scene_or_run(m.scene, overrides);
+  const std::int64_t n = count_particles(loaded.scene, loaded.folder);
+  Plan plan = make_plan(loaded.scene, n);
+  if (here) return refuse_if_too_large(loaded.scene, plan);
+  plan = make_plan(loaded.scene, n, start_neighbors(loaded.scene, loaded.folder, n));
+  needs.host_bytes = std::max(needs.host_bytes, plan_memory(loaded.scene, plan).host_peak());
+  needs.device |= about(loaded.scene.backend).on_device;
+}
+
+}  // namespace
+
+BatchNeeds check_members(const std::vector<BatchMember>& members,
+                         const std::vector<std::string>& overrides, bool here) {
+  BatchNeeds needs;
+  std::optional<ExitCode> code;
+  std::size_t bad = 0;
+  std::string text;
+  for (const BatchMember& m : members) try {
+      add_needs(m, overrides, here, needs);
+    } catch (const Error& e) {
+      if (!code) code = e.code();
+      if (++bad <= kMostTold) text += "\n  " + m.name + ": " + e.what();
+    }
+  if (!code) return needs;
+  if (bad > kMostTold) text += format("\n  and %zu more", bad - kMostTold);
+  throw Error(*code, format("batch: %zu of %zu runs cannot start, and none was started:", bad,
+                            members.size()) +
+                         text);
+}
+
+}  // namespace pbf::inline campaign_module

@@ -1,0 +1,93 @@
+"""Scenes and settings of Python as the program takes them: a file of JSON, which is YAML, and the
+words of --set."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .errors import BadInput
+from .table import write_text
+
+Scene = Mapping[str, Any] | str | os.PathLike[str]
+MARK = "# Written by pbf_tools from a dict; JSON is YAML.\n"
+
+
+def plain(value: Any, where: str) -> Any:
+    """The same of dict, list, str, bool, int, float and None alone; BadInput for anything else."""
+    if isinstance(value, Mapping):
+        return {str(key): plain(item, f"{where}.{key}") for key, item in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist(), where)
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if value is None or isinstance(value, str | bool | int | float):
+        return value
+    if isinstance(value, Sequence):
+        return [plain(item, f"{where}[{k}]") for k, item in enumerate(value)]
+    raise BadInput(f"{where}: a {type(value).__name__} is no value of a scene; there are numbers, "
+                   "texts, True and False, lists, dicts and None (off)")
+
+
+def text(value: Any, where: str) -> str:
+    """A value on one line, as --set and --grid take it.
+
+    >>> text(0.5, "a"), text(True, "a"), text(None, "a"), text("jet", "a"), text([0, 0, -9.81], "a")
+    ('0.5', 'true', 'off', 'jet', '[0, 0, -9.81]')
+    """
+    value = plain(value, where)
+    if value is None:
+        return "off"
+    if isinstance(value, str) and re.fullmatch(r"[\w./+-]+", value):
+        return value  # words, as off, that quotes would make a text
+    return json.dumps(value, ensure_ascii=False)
+
+
+def settings(overrides: Mapping[str, Any], path: str = "") -> dict[str, Any]:
+    """Keys of the scene and their values: `solver__iterations`, "solver.iterations" and a dict say
+    the same, and a dict changes only the keys in it.
+
+    >>> settings({"solver__iterations": 8, "time": {"end": 1}, "bodies[0].velocity": [1, 0, 0]})
+    {'solver.iterations': 8, 'time.end': 1, 'bodies[0].velocity': [1, 0, 0]}
+    """
+    flat: dict[str, Any] = {}
+    for key, value in overrides.items():
+        name = path + key.replace("__", ".")
+        flat.update(settings(value, name + ".") if isinstance(value, Mapping) and value
+                    else {name: value})
+    return flat
+
+
+def set_words(overrides: Mapping[str, Any]) -> list[str]:
+    """--set KEY=VALUE for every override."""
+    return [word for key, value in settings(overrides).items()
+            for word in ("--set", f"{key}={text(value, key)}")]
+
+
+def _whole_paths(value: Any, folder: str) -> Any:
+    """With every `path` (particles, motions) made absolute: the file is not where the script is."""
+    if isinstance(value, list):
+        return [_whole_paths(item, folder) for item in value]
+    if not isinstance(value, dict):
+        return value
+    return {key: os.path.join(folder, item) if key == "path" and isinstance(item, str)
+            else _whole_paths(item, folder) for key, item in value.items()}
+
+
+def write_scene(scene: Mapping[str, Any], path: Path) -> Path:
+    """Writes a dict as a scene file; relative `path`s in it are meant from the working folder.
+
+    BadInput when a file is there that this function has not written.
+    """
+    content = _whole_paths(plain(scene, "scene"), os.getcwd())
+    if path.is_dir() or path.exists() and not path.read_bytes().startswith(MARK.encode()):
+        raise BadInput(f"{path}: the scene would be written here, but another file is there; give "
+                       "another out, or move it")
+    write_text(path, MARK + json.dumps(content, indent=1, ensure_ascii=False) + "\n", parents=True)
+    return path

@@ -1,0 +1,96 @@
+"""Running scenes: `run` and `plan`, over the program."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from . import program as pbf
+from .errors import BadInput, FileError, PbfError
+from .run_file import Run
+from .scene_text import Scene, set_words, write_scene
+
+RUN_FILE = "run.vtkhdf"
+
+
+def plan(scene: Scene, *, program: str | os.PathLike[str] | None = None,
+         **overrides: Any) -> dict[str, Any]:
+    """What `pbf plan --json` says of a scene: particles, passes, memory (bytes), files, time per
+    update (ms, None before `pbf bench --calibrate`), warnings. Runs nothing.
+
+        plan("configs/dam_break.yaml", fluid__spacing=0.008)["particles"]
+
+    PbfError with the program's message for a scene that cannot be.
+    """
+    found = pbf.find(program)
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.fspath(write_scene(scene, Path(folder) / "scene.yaml")
+                         if isinstance(scene, Mapping) else scene)
+        try:
+            return pbf.answer(found, ["plan", path, "--json", *set_words(overrides)])
+        except PbfError as problem:  # whose file is gone
+            problem.args = (str(problem).replace(f"{folder}/", ""),)
+            raise
+
+
+def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool = False,
+        overwrite: bool = False, strict: bool = False, max_walltime: float | None = None,
+        progress: bool | None = None, program: str | os.PathLike[str] | None = None,
+        **overrides: Any) -> Run:
+    """Simulates a scene, a file or a dict of the same keys, into the folder `out` (out/NAME when
+    not given) and opens its run file. A dict is written to OUT.yaml, which `pbf run` takes too.
+
+    Overrides are keys of the scene, as those of --set: `solver__iterations=8`,
+    `time={"end": 1}`, `**{"bodies[0].velocity": [1, 0, 0]}`; None is off. A scene without
+    `output` gets `output: {}`, for a Run is read from its file.
+
+    resume, overwrite, strict, max_walltime (s): the options of `pbf run`. progress: a line that is
+    overwritten; by default in a terminal and in a notebook. program: see `program.find`.
+
+    PbfError with the program's message and exit code when it fails; Diverged when the guard stopped
+    it, Stopped at max_walltime, both with the Run up to there in `.run`. An interrupt (Ctrl-C)
+    saves the run before KeyboardInterrupt is raised, and `resume=True` goes on. Warnings of the
+    program are PbfWarning.
+    """
+    found = pbf.find(program)
+    forecast = plan(scene, program=found, **overrides)
+    folder = Path(out) if out is not None else Path("out") / forecast["scene"]
+    if isinstance(scene, Mapping):
+        if folder.exists() and not (resume or overwrite):  # before its scene is replaced
+            raise BadInput(f"{folder}: the output folder exists; overwrite=True replaces the run in "
+                           "it, resume=True goes on with it, or give another out")
+        scene = write_scene(scene, folder.with_name(folder.name + ".yaml"))
+    words = ["run", os.fspath(scene), "--out", str(folder), *set_words(overrides)]
+    if not writes_a_run_file(forecast):
+        words += ["--set", "output={}"]
+    words += [word for word, given in (("--resume", resume), ("--overwrite", overwrite),
+                                       ("--strict", strict)) if given]
+    if max_walltime is not None:
+        words += ["--max-walltime", str(max_walltime)]
+    before = _stamp(folder / RUN_FILE)
+    code, message = pbf.call(found, words, progress)
+    if code == 0:
+        return Run(folder / RUN_FILE)
+    # A file that has not changed is another run's: this one did not begin.
+    begun = _stamp(folder / RUN_FILE) != before
+    raise pbf.error(code, message, opened(folder) if begun else None)
+
+
+def writes_a_run_file(forecast: dict[str, Any]) -> bool:
+    """Whether the scene of a plan asks for output."""
+    return any(file["name"] == RUN_FILE for file in forecast["files"])
+
+
+def opened(folder: Path) -> Run | None:
+    """The run of a folder; None where it has no run file that can be read."""
+    try:
+        return Run(folder / RUN_FILE)
+    except FileError:
+        return None
+
+
+def _stamp(path: Path) -> tuple[int, int] | None:
+    return (path.stat().st_ino, path.stat().st_mtime_ns) if path.exists() else None
