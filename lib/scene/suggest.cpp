@@ -114,7 +114,7 @@ Suggestion suggest_key(const KeyTable& table, const std::string& path) {
     known = preferred(known, in);
     if (known.empty() && !s.keys.empty()) continue;
     of_synonym = {known, s.note};
-    if (!known.empty() && block_of(known[0]) == in) return of_synonym;
+    if (known.empty() || block_of(known[0]) == in) return of_synonym;
   }
   if (const std::string sibling = nearest_word(wrong, siblings); !sibling.empty())
     return {{join(in, sibling)}, ""};
