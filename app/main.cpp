@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "app/commands.h"
+#include "app/explain.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
 #include "lib/base/plain_text.h"
@@ -27,19 +28,6 @@ const char* const kExitCodes =
     "  75  stopped early by a signal or the wall-time limit, after saving\n\n"
     "Example: pbf run configs/dam_break.yaml --out out/dam_break";
 
-/// CLI11's message, the unknown command by its name, and where to read on.
-std::string explain(const CLI::App& app, const CLI::ParseError& e, int argc, char** argv) {
-  const auto chosen = app.get_subcommands();
-  if (!chosen.empty())
-    return std::string(e.what()) + "\nSee pbf " + chosen[0]->get_name() + " --help";
-  std::string message = e.what();
-  if (argc > 1 && argv[1][0] != '-') message = std::string(argv[1]) + ": unknown command";
-  message += "; the commands are";
-  for (const CLI::App* c : app.get_subcommands([](const CLI::App*) { return true; }))
-    message += " " + c->get_name();
-  return message + "\nSee pbf --help";
-}
-
 int run_main(int argc, char** argv) {
   CLI::App app("pbf: Position Based Fluids, from a scene file to HDF5 and pictures.", "pbf");
   app.set_version_flag("--version", "pbf " + build_info().version);
@@ -58,7 +46,7 @@ int run_main(int argc, char** argv) {
       std::fputs(text.str().c_str(), stdout);
       return 0;
     }
-    throw Error(ExitCode::bad_input, explain(app, e, argc, argv));
+    throw Error(ExitCode::bad_input, explain(app, e));
   }
   return code;
 }

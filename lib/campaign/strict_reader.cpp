@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "lib/base/text.h"
-#include "lib/scene/value.h"
+#include "lib/scene/suggest.h"
 
 namespace pbf::inline campaign_module {
 using Kind = Node::Kind;

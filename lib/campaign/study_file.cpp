@@ -7,7 +7,7 @@
 #include "lib/campaign/study_reader.h"
 #include "lib/scene/load.h"
 #include "lib/scene/number.h"
-#include "lib/scene/value.h"
+#include "lib/scene/suggest.h"
 
 namespace pbf::inline campaign_module {
 namespace fs = std::filesystem;

@@ -4,8 +4,8 @@
 
 #include "lib/base/text.h"
 #include "lib/scene/scene_rules.h"
+#include "lib/scene/suggest.h"
 #include "lib/scene/surface.h"
-#include "lib/scene/value.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline scene_module {

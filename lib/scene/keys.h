@@ -161,9 +161,6 @@ struct KeyTable : KeyRows {
   void make_all_present(const Object& object) const;
   /// Paths of all members that the object has by their addresses, and those of its lists.
   std::map<const void*, std::string> names(const Object& object) const;
-  /// Nearest path of the table to a misspelt one ("bodies[].min" of a list's keys), or empty when
-  /// nothing is near.
-  std::string nearest_path(const std::string& path) const;
 };
 
 /// That of a Scene.

@@ -8,6 +8,7 @@
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
 #include "lib/base/plain_text.h"
+#include "lib/scene/file_kind.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/overrides.h"
 #include "lib/scene/validate.h"
@@ -51,8 +52,12 @@ std::string read_text_file(const std::string& path, const std::string& what) {
 
 Node tree_of(const std::string& text, const std::string& origin, const std::string& what) {
   check_text(text, origin, what);
+  if (const std::string other = other_text(text, origin, what); !other.empty())
+    bad_input(origin, other);
   try {
     Node root = parse_yaml(text, origin, true);
+    if (const std::string other = other_file(root, origin, what); !other.empty())
+      bad_input(origin, other);
     if (root.kind != Node::Kind::null) return root;
   } catch (const YamlError& e) {
     bad_input(e.place, e.what);

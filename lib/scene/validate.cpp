@@ -2,8 +2,12 @@
 
 #include <algorithm>
 
+#include "lib/base/text.h"
 #include "lib/scene/keys.h"
+#include "lib/scene/number.h"
+#include "lib/scene/suggest.h"
 #include "lib/scene/value.h"
+#include "lib/scene/writing.h"
 
 namespace pbf::inline scene_module {
 namespace {
@@ -41,7 +45,8 @@ class Validator {
       read_block(*table_.find_block(""), "", root, object_, ~0u);
     else
       report(root.place(), "",
-             "expected a scene: keys such as " + examples() + "; got " + root.shown());
+             "expected a scene: keys such as " + examples() + "; got " + root.shown() +
+                 (root.kind == Node::Kind::scalar ? missing_space(root.text) : ""));
     return std::move(out_);
   }
 
@@ -98,10 +103,8 @@ class Validator {
       if (const Key* now = table_.find_renamed(table))
         return report(name.place(), path, "is called " + now->path + " now; rename it");
       std::string what = "unknown key";
-      std::string near = problems_.full() ? "" : table_.nearest_path(table);
-      if (near.rfind(in.path + ".", 0) == 0)  // say which entry of a list, as the path does
-        near = path.substr(0, path.size() - name.text.size() - 1) + near.substr(in.path.size());
-      if (!near.empty()) what += ", did you mean " + near + "?";
+      if (!problems_.full()) what += slip(name, value);
+      if (!problems_.full() && what == "unknown key") what += suggestion(in, path, name);
       // The name may be anything: no line breaks in a message, no page of text.
       std::string clean = name.shown();
       clean = clean.substr(1, clean.size() - 2);
@@ -125,6 +128,26 @@ class Validator {
     if (!problem.empty()) report(value.place(), path, problem);
   }
 
+  /// What makes a key of something else, in braces: {cfm: 1,5} and {step:0.002}.
+  static std::string slip(const Node& name, const Node& value) {
+    if (value.kind != Node::Kind::null) return "";
+    if (!name.text.empty() && name.text.find_first_not_of("0123456789") == std::string::npos)
+      return "; decimals take a point, a comma begins the next key";
+    return missing_space(name.text);
+  }
+
+  /// ", did you mean bodies[1].max?", and what else is to be said; empty: nothing is near.
+  std::string suggestion(const Block& in, const std::string& path, const Node& name) const {
+    Suggestion found = suggest_key(table_, join(in.path, name.text));
+    for (std::string& key : found.keys)
+      if (!in.path.empty() && key.rfind(in.path + ".", 0) == 0)  // which entry of a list
+        key = path.substr(0, path.size() - name.text.size() - 1) + key.substr(in.path.size());
+    std::string text;
+    if (!found.keys.empty()) text = ", did you mean " + joined(found.keys, " or ") + "?";
+    if (!found.note.empty()) text += (text.empty() ? "; " : " ") + found.note;
+    return text;
+  }
+
   void read_child(const Block& block, const std::string& path, const Node& value,
                   const Object& holder) {
     if (value.kind == Node::Kind::map) {
@@ -139,10 +162,28 @@ class Validator {
     std::string what = "expected a block {" +
                        (block.keys.empty() ? "" : block.keys[0]->leaf() + ": ") + "...}, got " +
                        value.shown();
+    if (value.kind == Node::Kind::scalar) what += missing_space(value.text);
+    if (const std::string scalar = in_block(block, value); !scalar.empty())
+      what += "; write " + scalar;
     if (block.optional)
       what += table_.has_required(block) ? "; write off for off"
                                          : "; write {} or on for on with the defaults, off for off";
+    if (value.kind == Node::Kind::null && value.line >= 0)
+      what += "; its keys stand below it, indented by two spaces";
     report(value.place(), path, what);
+  }
+
+  /// "viscosity: {xsph: 0.1} (Factor c; ...)" for a number in the place of a block that can be on
+  /// and has its strength as its first key; else empty.
+  static std::string in_block(const Block& block, const Node& value) {
+    double number = 0;
+    if (!block.optional || block.keys.empty() || value.kind != Node::Kind::scalar || value.quoted ||
+        read_number(value.text, number) != NumberError::none)
+      return "";
+    const Key& first = *block.keys[0];
+    if (!is_numeric(first.field(first.standard)) || !in_range(first, number)) return "";
+    return block.leaf() + ": {" + first.leaf() + ": " + value.text + "} (" +
+           first.help.substr(0, first.help.find_last_not_of('.') + 1) + ")";
   }
 
   void read_list(const Block& block, const Node& value) {

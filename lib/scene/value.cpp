@@ -5,6 +5,8 @@
 
 #include "lib/base/text.h"
 #include "lib/scene/number.h"
+#include "lib/scene/suggest.h"
+#include "lib/scene/writing.h"
 
 namespace pbf::inline scene_module {
 namespace {
@@ -14,10 +16,7 @@ std::string instead_of(const std::string& wanted, const Node& node) {
 }
 
 std::string check_range(const Key& key, double v, const Node& node) {
-  const Range& r = key.range;
-  const bool below = r.above_min ? v <= r.min : v < r.min;
-  const bool above = r.below_max ? v >= r.max : v > r.max;
-  if (!below && !above) return "";
+  if (in_range(key, v)) return "";
   const std::string unit = key.unit.empty() ? "" : " " + key.unit;
   return node.shown() + " is out of range, allowed: " + range_text(key) + unit;
 }
@@ -32,7 +31,8 @@ std::string read_one(const Key& key, const Node& node, T& out) {
   if (node.quoted) return instead_of(wanted, node) + " in quotes; remove them";
   std::conditional_t<whole, std::int64_t, double> v{};
   const NumberError error = read_number(node.text, v);
-  if (error == NumberError::not_a_number) return instead_of(wanted, node);
+  if (error == NumberError::not_a_number)
+    return instead_of(wanted, node) + number_remedy(node.text, key.unit);
   if (error != NumberError::none)
     return node.shown() + " " + describe(error) + ", expected " + wanted;
   const std::string problem = check_range(key, static_cast<double>(v), node);
@@ -46,7 +46,8 @@ std::string read_numbers(const Key& key, const Node& node, std::array<T, N>& out
   static const char* const kShape = N == 3 ? "[x, y, z]" : "[a, b]";
   if (node.kind != Node::Kind::list || node.items.size() != N)
     return instead_of(std::to_string(N) + " numbers " + kShape + (key.automatic ? " or auto" : ""),
-                      node);
+                      node) +
+           (node.items.size() > N ? "; commas part the numbers, decimals take a point" : "");
   std::array<T, N> values{};
   Key element = key;
   element.automatic = false;
@@ -61,7 +62,7 @@ std::string read_numbers(const Key& key, const Node& node, std::array<T, N>& out
 std::string not_among(const std::vector<std::string>& choices, const Node& node) {
   std::string text = node.shown() + " is not one of " + joined(choices, ", ");
   const std::string near =
-      node.kind == Node::Kind::scalar ? nearest_word(node.text, choices) : std::string();
+      node.kind == Node::Kind::scalar ? nearest_choice(node.text, choices) : std::string();
   return near.empty() ? text : text + "; did you mean " + near + "?";
 }
 
@@ -120,7 +121,11 @@ struct Reader {
     return read_one(key, node, *field);
   }
   std::string operator()(bool* field) const {
-    if (node.quoted || !node.is_word({"true", "false"})) return instead_of("true or false", node);
+    if (node.quoted || !node.is_word({"true", "false"})) {
+      const std::string what = instead_of("true or false", node);
+      if (node.is_word({"yes", "on", "True", "1"})) return what + "; write true";
+      return node.is_word({"no", "off", "False", "0"}) ? what + "; write false" : what;
+    }
     *field = node.text == "true";
     return "";
   }
@@ -193,6 +198,13 @@ struct ValueWriter {
 };
 
 }  // namespace
+
+bool in_range(const Key& key, double v) {
+  const Range& r = key.range;
+  const bool below = r.above_min ? v <= r.min : v < r.min;
+  const bool above = r.below_max ? v >= r.max : v > r.max;
+  return !below && !above;
+}
 
 bool may_be_empty(const Key& key) {
   return !key.required && std::get<std::string*>(key.field(key.standard))->empty();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "lib/scene/keys.h"
 #include "lib/scene/yaml_tree.h"
@@ -11,6 +10,9 @@ namespace pbf::inline scene_module {
 
 /// Whether the field is a number or a group of numbers.
 bool is_numeric(const Field& field);
+
+/// Whether the key may have this number.
+bool in_range(const Key& key, double v);
 
 /// Whether "" is a value of the key, which holds text: "" is its default, and none is required.
 bool may_be_empty(const Key& key);
@@ -24,8 +26,5 @@ std::string format_field(const Key& key, const Field& field);
 
 /// Text as a YAML scalar that reads back as this text: bare where that is safe, else in quotes.
 std::string yaml_text(const std::string& text);
-
-/// Nearest of `words`, or empty when nothing is near.
-std::string nearest_word(const std::string& word, const std::vector<std::string>& words);
 
 }  // namespace pbf::inline scene_module

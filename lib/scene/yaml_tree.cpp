@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "lib/base/plain_text.h"
+#include "lib/scene/writing.h"
 
 namespace pbf::inline scene_module {
 namespace {
@@ -158,7 +159,7 @@ Node parse_yaml(const std::string& text, const std::string& origin, bool lines) 
     throw YamlError{place_of(origin, lines, e.mark.line, e.mark.column), e.what};
   } catch (const YAML::Exception& e) {
     throw YamlError{place_of(origin, lines, e.mark.line, e.mark.column),
-                    "not valid YAML: " + e.msg};
+                    "not valid YAML: " + e.msg + (lines ? layout_remedy(text, e.mark.line) : "")};
   }
   return builder.take();
 }

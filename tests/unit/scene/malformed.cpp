@@ -3,6 +3,7 @@
 #include <random>
 
 #include "lib/scene/keys.h"
+#include "lib/scene/suggest.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_samples.h"
 
@@ -55,11 +56,12 @@ const std::vector<Case> kAppended{
     {"solver: {iterations: [4]}\n", "expected a whole number, got a list of 1"},
     {"solver: {iterations: 0x10}\n", "expected a whole number, got \"0x10\""},
     {"solver: {iterations: 0o17}\n", "expected a whole number, got \"0o17\""},
-    {"solver: {iterations: 1_000}\n", "expected a whole number"},
+    {"solver: {iterations: 1_000}\n", "got \"1_000\"; write it in one piece: 1000"},
     {"solver: {iterations: 1e30}\n", "too large"},
     {"solver: {iterations: 99999999999999999999}\n", "too large"},
     {"solver: {iterations:}\n", "has no value"},
-    {"solver: {cfm: 1,5}\n", "unknown key"},
+    {"solver: {cfm: 1,5}\n",
+     "solver.5: unknown key; decimals take a point, a comma begins the next key"},
     {"solver: {fused: yes}\n", "solver.fused: expected true or false, got \"yes\""},
     {"solver: {fused: 1}\n", "expected true or false"},
     {"solver: 4\n", "solver: expected a block {iterations: ...}, got \"4\""},
@@ -78,8 +80,9 @@ const std::vector<Case> kAppended{
     {"output: {fields: [density, density]}\n", "is listed twice"},
     {"render: {range: [1]}\n", "expected 2 numbers [a, b] or auto"},
     // choices
-    {"backend: gpu\n", "backend: \"gpu\" is not one of cpu, cuda"},
-    {"precision: single\n", "precision: \"single\" is not one of float, double"},
+    {"backend: gpu\n", "backend: \"gpu\" is not one of cpu, cuda; did you mean cuda?"},
+    {"precision: single\n",
+     "precision: \"single\" is not one of float, double; did you mean float?"},
     {"solver: {kernels: papr}\n", "did you mean paper?"},
     {"solver: {boundary: [clamp]}\n", "is not one of density, clamp"},
     // not finite, denormal, out of range
@@ -286,7 +289,7 @@ TEST_CASE("scene: every key of the table can be misspelt and is found again") {
     std::string wrong = key.path;
     std::swap(wrong[wrong.size() - 1], wrong[wrong.size() - 2]);
     CAPTURE(wrong);
-    CHECK(scene_table().nearest_path(wrong) == key.path);
+    CHECK(suggest_key(scene_table(), wrong).keys == std::vector<std::string>{key.path});
   }
 }
 

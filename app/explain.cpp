@@ -1,0 +1,79 @@
+#include "app/explain.h"
+
+#include <vector>
+
+#include "lib/scene/suggest.h"
+
+namespace pbf::inline app_module {
+namespace {
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+bool is_scene(const std::string& argument) {
+  return ends_with(argument, ".yaml") || ends_with(argument, ".yml");
+}
+
+std::vector<std::string> names(const std::vector<const CLI::App*>& commands) {
+  std::vector<std::string> all;
+  for (const CLI::App* c : commands) all.push_back(c->get_name());
+  return all;
+}
+
+/// "; did you mean --threads?" for "--thread=4".
+std::string nearest_option(const CLI::App& command, const std::string& written) {
+  const std::size_t begin = written.find_first_not_of('-');
+  if (begin == std::string::npos) return "";
+  const std::string word = written.substr(begin, written.find('=') - begin);
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back(name);
+  const std::string near = nearest_choice(word, known);
+  return near.empty() ? "" : "; did you mean --" + near + "?";
+}
+
+/// Of the first argument that the command does not take; empty: nothing but what CLI11 says.
+std::string of_extra(const CLI::App& command, const std::string& extra) {
+  const std::string pbf = "pbf " + command.get_name();
+  if (extra.size() > 1 && extra[0] == '-')
+    return extra + ": " + pbf + " has no such option" + nearest_option(command, extra);
+  const std::size_t equals = extra.find('=');
+  if (equals != std::string::npos && equals > 0 && command.get_option_no_throw("--set") != nullptr)
+    return extra + ": not expected here; did you mean --set " + extra + "?";
+  if (is_scene(extra))
+    return extra + ": " + pbf +
+           " takes one file; pbf batch runs many: all scenes of a folder, or a "
+           "text file that names one per line";
+  return "";
+}
+
+}  // namespace
+
+std::string explain(const CLI::App& app, const CLI::ParseError& e) {
+  const auto chosen = app.get_subcommands();
+  std::vector<std::string> extras = app.remaining(true);
+  // One that comes where all places are taken is in the message alone.
+  const std::string what = e.what(), before = "not expected: ";
+  if (const std::size_t at = what.find(before); extras.empty() && at != std::string::npos)
+    extras.push_back(what.substr(at + before.size()));
+  if (!chosen.empty()) {
+    std::string message;
+    if (dynamic_cast<const CLI::ExtrasError*>(&e) && !extras.empty())
+      message = of_extra(*chosen[0], extras[0]);
+    if (message.empty()) message = what;
+    return message + "\nSee pbf " + chosen[0]->get_name() + " --help";
+  }
+  const auto commands = names(app.get_subcommands([](const CLI::App*) { return true; }));
+  std::string message = what, meant;
+  if (!extras.empty() && extras[0][0] != '-') {
+    message = extras[0] + ": unknown command";
+    meant = is_scene(extras[0]) ? "run " + extras[0] : nearest_word(extras[0], commands);
+    if (!meant.empty()) message += ", did you mean pbf " + meant + "?";
+  }
+  message += "; the commands are";
+  for (const std::string& c : commands) message += " " + c;
+  return message + "\nSee pbf --help";
+}
+
+}  // namespace pbf::inline app_module

@@ -1,0 +1,68 @@
+#include "lib/scene/file_kind.h"
+
+#include <algorithm>
+#include <sstream>
+#include <vector>
+
+namespace pbf::inline scene_module {
+namespace {
+
+struct FileKind {
+  const char *name, *command;
+  std::vector<const char*> keys;  ///< of the top level that only it has; one tells it
+};
+
+const std::vector<FileKind>& kinds() {
+  static const std::vector<FileKind> kKinds{
+      {"scene", "pbf run", {"domain", "fluid", "bodies"}},
+      {"study", "pbf study", {"scene"}},
+      {"stability suite", "pbf stability --suite", {"cases"}}};
+  return kKinds;
+}
+
+std::string taken_by(const std::string& what, const std::string& wanted, const std::string& command,
+                     const std::string& path) {
+  return "is a " + what + ", expected a " + wanted + "; " + command + " " + path + " takes it";
+}
+
+bool is_run(const std::string& line) {
+  std::istringstream words(line);
+  std::string scene, setting;
+  words >> scene;
+  const std::size_t dot = scene.rfind('.');
+  const std::string end = dot == std::string::npos ? "" : scene.substr(dot);
+  if (end != ".yaml" && end != ".yml" && end != ".h5" && end != ".vtkhdf") return false;
+  while (words >> setting)
+    if (setting.find('=') == std::string::npos) return false;
+  return true;
+}
+
+}  // namespace
+
+std::string other_text(const std::string& text, const std::string& path,
+                       const std::string& wanted) {
+  std::istringstream lines(text);
+  bool any = false;
+  for (std::string line; std::getline(lines, line);) {
+    line = line.substr(0, line.find('#'));
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    if (!is_run(line)) return "";
+    any = true;
+  }
+  return any ? taken_by("list of runs", wanted, "pbf batch", path) : "";
+}
+
+std::string other_file(Node& root, const std::string& path, const std::string& wanted) {
+  const auto has = [&](const FileKind& kind) {
+    return std::ranges::any_of(kind.keys,
+                               [&](const char* key) { return root.find(key) != nullptr; });
+  };
+  const auto named = [&](const FileKind& kind) { return kind.name == wanted; };
+  const auto own = std::ranges::find_if(kinds(), named);
+  if (own == kinds().end() || has(*own)) return "";
+  for (const FileKind& kind : kinds())
+    if (has(kind)) return taken_by(kind.name, wanted, kind.command, path);
+  return "";
+}
+
+}  // namespace pbf::inline scene_module

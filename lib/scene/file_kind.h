@@ -1,0 +1,17 @@
+// The files that commands read, told apart by what is in them.
+#pragma once
+
+#include <string>
+
+#include "lib/scene/yaml_tree.h"
+
+namespace pbf::inline scene_module {
+
+/// What is said of a file in the place of a `wanted` ("scene", "study", "stability suite"), by its
+/// text before it is read as YAML: "is a list of runs, expected a scene; pbf batch FILE takes it".
+/// Empty: it may be one.
+std::string other_text(const std::string& text, const std::string& path, const std::string& wanted);
+/// The same by its keys.
+std::string other_file(Node& root, const std::string& path, const std::string& wanted);
+
+}  // namespace pbf::inline scene_module

@@ -1,0 +1,130 @@
+#include "lib/scene/suggest.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "lib/scene/keys.h"
+#include "lib/scene/synonyms.h"
+
+namespace pbf::inline scene_module {
+namespace {
+
+/// Without what people and programs vary: "Time-Step", "timeStep" and "time_step" are "timestep".
+std::string bare(const std::string& word) {
+  std::string out;
+  for (const char c : word)
+    if (c != '_' && c != '-' && c != ' ')
+      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+/// Edit distance with transpositions of neighbours (optimal string alignment).
+std::size_t distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    before.swap(last);
+    last.swap(row);
+  }
+  return last[b.size()];
+}
+
+/// Mistakes that a word of so many letters may have and still be known.
+std::size_t allowed(std::size_t letters) {
+  return letters < 3 ? 0 : letters < 6 ? 1 : letters < 9 ? 2 : 3;
+}
+
+/// Of a short word every letter counts: whoever writes "gpu" or "wind" means no "cpu" and no
+/// "kind". Letters in the wrong order, too many or too few are slips; another one at an end is
+/// another word.
+bool is_near(const std::string& a, const std::string& b, std::size_t mistakes) {
+  const std::size_t letters = std::max(a.size(), b.size());
+  if (mistakes == 0) return true;
+  if (mistakes > allowed(letters)) return false;
+  const bool same_letters = std::is_permutation(a.begin(), a.end(), b.begin(), b.end());
+  if (letters < 5 && a[0] != b[0] && !same_letters) return false;
+  return letters > 3 || a.size() != b.size() || same_letters || a.back() == b.back();
+}
+
+std::string leaf_of(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+std::string block_of(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  return dot == std::string::npos ? "" : path.substr(0, dot);
+}
+
+/// Those of `paths` in the block; if there are none, all, unless they are too many to be a hint.
+std::vector<std::string> preferred(const std::vector<std::string>& paths,
+                                   const std::string& block) {
+  constexpr std::size_t kMost = 3;
+  std::vector<std::string> own;
+  for (const std::string& path : paths)
+    if (block_of(path) == block) own.push_back(path);
+  if (!own.empty()) return own;
+  return paths.size() <= kMost ? paths : std::vector<std::string>{};
+}
+
+}  // namespace
+
+std::string nearest_word(const std::string& word, const std::vector<std::string>& words) {
+  std::string best;
+  if (word.size() > 100) return best;
+  const std::string wrong = bare(word);
+  std::size_t least = allowed(wrong.size()) + 1;  // an exact one counts of any length
+  for (const std::string& candidate : words) {
+    const std::string right = bare(candidate);
+    const std::size_t d = distance(wrong, right);
+    if (d < least && is_near(wrong, right, d)) {
+      least = d;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string nearest_choice(const std::string& word, const std::vector<std::string>& choices) {
+  for (const WordSynonym& s : word_synonyms())
+    if (bare(word) == s.written && std::ranges::count(choices, s.meant)) return s.meant;
+  return nearest_word(word, choices);
+}
+
+Suggestion suggest_key(const KeyTable& table, const std::string& path) {
+  std::vector<std::string> paths, siblings, leaves;
+  for (const Block& block : table.blocks)
+    if (block.parent != nullptr) paths.push_back(join(block.parent->path, block.leaf()));
+  for (const Key& key : table.keys) paths.push_back(key.path);
+  // First among the block's own keys: `solver.step` is near solver.sor, not time.step.
+  const std::string in = block_of(path), wrong = leaf_of(path);
+  for (const std::string& p : paths) {
+    if (block_of(p) == in) siblings.push_back(leaf_of(p));
+    leaves.push_back(leaf_of(p));
+  }
+  Suggestion of_synonym;
+  for (const KeySynonym& s : key_synonyms()) {
+    if (!std::ranges::count(s.written, bare(wrong))) continue;
+    std::vector<std::string> known;
+    for (const char* key : s.keys)
+      if (std::ranges::count(paths, key)) known.push_back(key);
+    if (known.empty() && !s.keys.empty()) continue;  // of another table
+    known = preferred(known, in);
+    if (known.empty() && !s.keys.empty()) continue;
+    of_synonym = {known, s.note};
+    if (known.empty() || block_of(known[0]) == in) return of_synonym;
+  }
+  if (const std::string sibling = nearest_word(wrong, siblings); !sibling.empty())
+    return {{join(in, sibling)}, ""};
+  // Then what another program calls so, and a key of this name or nearly so that lives elsewhere.
+  if (!of_synonym.keys.empty() || !of_synonym.note.empty()) return of_synonym;
+  std::vector<std::string> elsewhere;
+  const std::string leaf = nearest_word(wrong, leaves);
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    if (!leaf.empty() && leaves[i] == leaf) elsewhere.push_back(paths[i]);
+  return {preferred(elsewhere, in), ""};
+}
+
+}  // namespace pbf::inline scene_module

@@ -1,0 +1,21 @@
+// Mistakes of writing that YAML reads as something else: units, commas, missing spaces, wrong
+// indentation. Each function gives a phrase with the remedy, to stand behind what is wrong, or
+// nothing.
+#pragma once
+
+#include <string>
+
+namespace pbf::inline scene_module {
+
+/// For `text` in the place of a number in `unit` (empty: none): "; leave the unit out, the key is
+/// in s: write 0.002".
+std::string number_remedy(const std::string& text, const std::string& unit);
+
+/// For "step:0.002", which is a text to YAML and no key: "; a space is missing behind step:".
+std::string missing_space(const std::string& text);
+
+/// For a file that is not valid YAML from this line on (counted from 0): what its lines up to there
+/// show.
+std::string layout_remedy(const std::string& text, int line);
+
+}  // namespace pbf::inline scene_module

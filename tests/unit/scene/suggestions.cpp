@@ -1,0 +1,140 @@
+// What is suggested for keys and words that are not known: the right one, or nothing.
+#include "lib/scene/suggest.h"
+
+#include <algorithm>
+
+#include "lib/scene/keys.h"
+#include "lib/scene/synonyms.h"
+#include "tests/support/catch.h"
+#include "tests/support/scene_samples.h"
+
+namespace pbf::scene_test {
+namespace {
+
+struct Case {
+  std::string text, message;
+};
+
+/// What stands behind "unknown key" for a key of the table's path.
+std::string suggested(const std::string& path) {
+  const Suggestion s = suggest_key(scene_table(), path);
+  std::string text;
+  for (const std::string& key : s.keys) text += (text.empty() ? "" : " or ") + key;
+  return s.keys.empty() ? s.note : text;
+}
+
+}  // namespace
+
+TEST_CASE("suggestions: what other programs call a key") {
+  const std::vector<Case> cases{
+      {"dt", "time.step"},
+      {"time.dt", "time.step"},
+      {"timeStep", "time.step"},
+      {"solver.time_step", "time.step"},
+      {"time.duration", "time.end"},
+      {"end_time", "time.end"},
+      {"dx", "fluid.spacing"},
+      {"particle_radius", "fluid.spacing"},
+      {"fluid.particleRadius", "fluid.spacing"},
+      {"fluid.density", "fluid.rest_density"},
+      {"fluid.h", "fluid.smoothing_ratio"},
+      {"fluid.viscosity", "viscosity"},
+      {"viscosity.mu", "viscosity.xsph"},
+      {"viscosity.strength", "viscosity.xsph"},
+      {"num_threads", "threads"},
+      {"device", "backend"},
+      {"bodies[].type", "bodies[].shape"},
+      {"obstacles[].type", "obstacles[].shape"},
+      {"obstacles[].motion.omega", "obstacles[].motion.angular"},
+      {"solver.omega", "solver.sor"},
+      {"output.interval", "output.every"},
+      {"every", "output.every or checkpoint.every or render.every"},
+      {"iterations", "solver.iterations"},
+      {"iteratons", "solver.iterations"},
+      {"camera", "render.camera"},
+      {"Gravity", "gravity"},
+      {"colour", "render.color"},
+      {"output_dir",
+       "the folder of a run is given on the command line: pbf run SCENE --out FOLDER"},
+      {"output.folder",
+       "the folder of a run is given on the command line: pbf run SCENE --out FOLDER"},
+  };
+  for (const Case& c : cases) {
+    CAPTURE(c.text);
+    CHECK(suggested(c.text) == c.message);
+  }
+}
+
+TEST_CASE("suggestions: nothing where nothing is near") {
+  for (const char* path :
+       {"qqqqqqqqqqqq", "gui", "mpi", "x", "", "foo", "solver.abc", "temperature",
+        "solver.preconditioner", "fluid.name_of_it", "cfl_number", "log", "tes", "wind"})
+    CHECK(suggested(path) == "");
+}
+
+TEST_CASE("suggestions: words") {
+  using Words = std::vector<std::string>;
+  CHECK(nearest_choice("gpu", Words{"cpu", "cuda"}) == "cuda");
+  CHECK(nearest_choice("GPU", Words{"cpu", "cuda"}) == "cuda");
+  CHECK(nearest_choice("CUDA", Words{"cpu", "cuda"}) == "cuda");
+  CHECK(nearest_choice("cup", Words{"cpu", "cuda"}) == "cpu");
+  CHECK(nearest_choice("opencl", Words{"cpu", "cuda"}) == "");
+  CHECK(nearest_choice("hip", Words{"cpu", "cuda"}) == "");
+  CHECK(nearest_choice("npu", Words{"cpu", "cuda"}) == "");
+  CHECK(nearest_choice("single", Words{"float", "double"}) == "float");
+  CHECK(nearest_choice("fp64", Words{"float", "double"}) == "double");
+  CHECK(nearest_choice("half", Words{"float", "double"}) == "");
+  CHECK(nearest_choice("box", Words{"block", "sphere", "random_box", "file"}) == "block");
+  CHECK(nearest_choice("block", Words{"plane", "box", "sphere"}) == "box");
+  CHECK(nearest_choice("cone", Words{"plane", "box", "sphere"}) == "");
+  CHECK(nearest_word("", Words{"cpu", "cuda"}) == "");
+  CHECK(nearest_word(std::string(5000, 'c'), Words{"cpu", "cuda"}) == "");
+}
+
+TEST_CASE("suggestions: every synonym leads to keys of the scene, and is none of its block's") {
+  for (const KeySynonym& s : key_synonyms()) {
+    CHECK((!s.keys.empty() || !s.note.empty()));
+    for (const char* path : s.keys) {
+      CAPTURE(path);
+      const Key* key = scene_table().find_key(path);
+      const Block* block = scene_table().find_block(path);
+      if (block == nullptr) block = scene_table().find_block(std::string(path) + "[]");
+      CHECK((key != nullptr || block != nullptr));
+      for (const std::string& word : s.written) {
+        CAPTURE(word);
+        CHECK(word.find_first_of("_- ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string::npos);
+        const std::string in = key ? key->block->path : block->parent->path;
+        CHECK(scene_table().find_key(join(in, word)) == nullptr);
+      }
+    }
+  }
+}
+
+TEST_CASE("suggestions: in messages, with the entry of the list") {
+  const std::string body = "shape: block, min: [0, 0, 0], max: [1, 1, 0.5]";
+  const std::vector<Case> cases{
+      {"dt: 0.01\n", "6:1: dt: unknown key, did you mean time.step?"},
+      {"particle_radius: 0.01\n",
+       "unknown key, did you mean fluid.spacing? It is the distance of neighbouring particles, a "
+       "particle's diameter"},
+      {"output: {dir: out}\n", "output.dir: unknown key"},
+      {"out: here\n", "out: unknown key; the folder of a run is given on the command line"},
+      {"viscosity: 0.1\n",
+       "viscosity: expected a block {xsph: ...}, got \"0.1\"; write viscosity: {xsph: 0.1} (Factor "
+       "c; stable up to 1); write {} or on"},
+      {"viscosity: 100\n", "got \"100\"; write {} or on"},  // out of its range
+      {"output: 0.02\n", "write output: {every: 0.02}"},
+      {"output: out/here\n", "expected a block {every: ...}, got \"out/here\"; write {} or on"},
+      {"solver: {fused: yes}\n", "expected true or false, got \"yes\"; write true"},
+      {"solver: {levels: true}\n", "\"true\" is not one of off, auto, on; did you mean on?"},
+      {"domain.open: [top]\n", "did you mean z_max?"},
+  };
+  for (const Case& c : cases) {
+    CAPTURE(c.text, parse_error(kMinimal + c.text));
+    CHECK(contains(parse_error(kMinimal + c.text), c.message));
+  }
+  CHECK(contains(parse_error(with_bodies("[{" + body + "}, {" + body + ", vel: [1, 0, 0]}]")),
+                 "bodies[1].vel: unknown key, did you mean bodies[1].velocity?"));
+}
+
+}  // namespace pbf::scene_test
