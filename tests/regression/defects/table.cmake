@@ -88,7 +88,7 @@ seeded_defect(level_cell_of_next levels kernels/pass_level_cells.h
 seeded_defect(level_last_row_left_out levels kernels/pass_level_cells.h
   [[(cell[axis] + 1 < grid.cells[axis] ? 2 : 3);]] [[2;]] levels)
 seeded_defect(level_node_beside_air levels kernels/pass_level_cells.h
-  [[inside < grid.half(cell) ? -1]] [[inside == 0 ? -1]] levels)
+  [[inside < grid.half(cell) ||]] [[inside == 0 ||]] levels)
 seeded_defect(level_open_face_opposite levels kernels/pass_level_cells.h
   [[~(closed >> 2 * k)]] [[~((closed >> 2 * k & 1) * 3)]] levels)
 seeded_defect(level_coarser_node_on levels kernels/pass_level_cells.h
