@@ -8,9 +8,13 @@
 #include "lib/program/obstacles.h"
 #include "lib/run/overlap.h"
 #include "lib/run/warnings.h"
+#include "lib/scene/auto_step.h"
 
 namespace pbf::inline run_module {
 namespace {
+
+/// Steps by so many times the rule of time.step: auto are warned of.
+constexpr double kFarAbove = 10;
 
 double length(const Double3& v) { return std::hypot(v[0], v[1], v[2]); }
 
@@ -32,9 +36,20 @@ double volume(const Scene& s, double particles) {
   return particles * s.particle_mass() / s.fluid.rest_density;
 }
 
+/// Fluid that does not lie deep, or does not rest, is not told by its compression at rest.
+void add_coarse_step(const Scene& s, std::vector<Warning>& list) {
+  const double safe = step_rule(s).gravity, times = longest_step(s) / safe;
+  if (s.time.adaptive || !(times > kFarAbove)) return;
+  list.push_back(
+      {"step", format("time.step %g makes steps %.2g times 0.03 sqrt(h/g) (%.2g s), which "
+                      "is safe: fluid falls far in a step before it meets anything; give "
+                      "%.2g or less, or auto",
+                      s.time.step, times, safe, s.time.step * kFarAbove / times)});
+}
+
 void add_step(const Scene& s, std::int64_t particles, std::vector<Warning>& list) {
   const double c = compression_at_rest(s, particles);
-  if (c <= kNoLiquid) return;
+  if (c <= kNoLiquid) return add_coarse_step(s, list);
   const double times = std::sqrt(c / kNoLiquid);
   const bool by_force = adaptive_step(s) < s.time.step;
   const double value = by_force ? s.time.adaptive->force : s.time.step;
