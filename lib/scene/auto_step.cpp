@@ -4,7 +4,21 @@
 #include <cmath>
 #include <limits>
 
+#include "lib/base/text.h"
+#include "lib/scene/number.h"
+
 namespace pbf::inline scene_module {
+namespace {
+
+/// Cut off after two digits: 0.00428 is 0.0042.
+double two_digits(double x) {
+  const std::string text = format("%.15e", x);
+  double cut = x;
+  read_number(text.substr(0, 3) + text.substr(text.find('e')), cut);
+  return cut;
+}
+
+}  // namespace
 
 StepRule step_rule(const Scene& s) {
   constexpr double never = std::numeric_limits<double>::infinity();
@@ -19,9 +33,9 @@ StepRule step_rule(const Scene& s) {
 double auto_step(const Scene& s) {
   const double longest = step_rule(s).longest();
   if (!std::isfinite(longest)) return 0;
-  const double every = s.output ? std::min(s.output->every, s.time.end) : s.time.end;
+  if (!s.output) return two_digits(longest);
   // A whole number but for rounding is one.
-  return every / std::ceil(every / longest * (1 - 1e-9));
+  return s.output->every / std::ceil(s.output->every / longest * (1 - 1e-9));
 }
 
 }  // namespace pbf::inline scene_module

@@ -23,8 +23,9 @@ inline constexpr double kSafeWay = 0.2;
 
 StepRule step_rule(const Scene& scene);
 
-/// s: the longest by the rule of which a frame (output.every) or, without frames, the run
-/// (time.end) is a whole number. 0: nothing moves the fluid, and there is no rule.
+/// s: the longest by the rule of which output.every is a whole number; without output with two
+/// digits. A run may be made longer with --resume: time.end has no say. 0: nothing moves the fluid,
+/// and there is no rule.
 double auto_step(const Scene& scene);
 
 }  // namespace pbf::inline scene_module
