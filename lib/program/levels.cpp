@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernels/smoothing.h"
+#include "lib/scene/body_box.h"
 #include "lib/scene/surface.h"
 
 namespace pbf::inline program_module {
@@ -19,9 +20,9 @@ double layers(const Scene& s) {
     double low = s.domain.max[k], high = s.domain.min[k];
     for (const Body& b : s.bodies) {
       if (b.shape == Shape::file) continue;
-      const bool ball = b.shape == Shape::sphere;
-      low = std::min(low, ball ? b.center[k] - b.radius : b.min[k]);
-      high = std::max(high, ball ? b.center[k] + b.radius : b.max[k]);
+      const BodyBox box = body_box(b);
+      low = std::min(low, box.low[k]);
+      high = std::max(high, box.high[k]);
     }
     deepest = std::max(deepest, (high - low) / s.fluid.spacing);
   }

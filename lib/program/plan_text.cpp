@@ -1,4 +1,5 @@
 // The plan as text and as JSON.
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "lib/base/json.h"
@@ -63,6 +64,13 @@ Json memory_json(const Plan& plan, const Scene& scene) {
   return out;
 }
 
+/// ", dt sqrt(g/h) = 0.029"; empty without gravity.
+std::string relative_step_text(const Scene& s) {
+  const double g = std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
+  return g > 0 ? format(", dt sqrt(g/h) = %.3g", s.time.step * std::sqrt(g / s.h()))
+               : std::string();
+}
+
 }  // namespace
 
 std::string plan_text(const Plan& plan, const Scene& s) {
@@ -72,6 +80,7 @@ std::string plan_text(const Plan& plan, const Scene& s) {
   out += format(
       "grid %d (half) x %d x %d cells of edge %g h; internal axes x, y, z: %s of the scene\n",
       plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge, axes_text(plan.axes).c_str());
+  out += format("step %.6g s%s\n", s.time.step, relative_step_text(s).c_str());
   if (!about(s.backend).on_device) out += threads_text(s, plan.particles) + "\n";
   if (const StartCrowd crowd = start_crowd(s, plan); crowd.neighbors > 0)
     out += format("start: about %.0f neighbours of a particle, at rest %.0f%s\n", crowd.neighbors,

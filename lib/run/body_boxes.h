@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "lib/scene/scene.h"
+#include "lib/scene/body_box.h"
 
 namespace pbf::inline run_module {
 
@@ -27,12 +27,10 @@ struct Box {
   }
 };
 
-/// Around a block, sphere or random box.
+/// As body_box().
 inline Box box_of(const Body& b) {
-  if (b.shape != Shape::sphere) return {b.min, b.max};
-  Box box{b.center, b.center};
-  for (int a = 0; a < 3; ++a) box.low[a] -= b.radius, box.high[a] += b.radius;
-  return box;
+  const BodyBox box = body_box(b);
+  return {box.low, box.high};
 }
 
 /// f(i, j) for every pair of boxes that are near(), each once, until it returns true; whether it

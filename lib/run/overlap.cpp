@@ -8,6 +8,7 @@
 
 #include "lib/run/body_boxes.h"
 #include "lib/run/start_points.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -18,6 +19,12 @@ constexpr std::int64_t kMostDistances = 200000000;
 /// other.
 bool inside(const Body& b, const Double3& x, double d) {
   if (b.shape == Shape::file) return false;
+  if (b.shape == Shape::cylinder) {
+    const Double3 axis = unit(b.to - b.from), off = x - b.from;
+    const double along = dot(off, axis), across2 = dot(off, off) - along * along;
+    return along > 1e-6 * d && along < length(b.to - b.from) - 1e-6 * d &&
+           across2 < b.radius * b.radius * (1 - 1e-6);
+  }
   if (b.shape != Shape::sphere) return Box{b.min, b.max}.holds(x, -1e-6 * d);
   double r2 = 0;
   for (int a = 0; a < 3; ++a) r2 += (x[a] - b.center[a]) * (x[a] - b.center[a]);

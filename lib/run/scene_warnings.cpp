@@ -8,9 +8,13 @@
 #include "lib/program/obstacles.h"
 #include "lib/run/overlap.h"
 #include "lib/run/warnings.h"
+#include "lib/scene/auto_step.h"
 
 namespace pbf::inline run_module {
 namespace {
+
+/// Steps by so many times the rule of time.step: auto are warned of.
+constexpr double kFarAbove = 10;
 
 double length(const Double3& v) { return std::hypot(v[0], v[1], v[2]); }
 
@@ -25,6 +29,11 @@ double longest_step(const Scene& s) {
   return std::min(s.time.step, adaptive_step(s)) / s.solver.substeps;
 }
 
+int most_iterations(const Scene& s) {
+  return s.solver.tolerance > 0 ? std::max(s.solver.iterations, s.solver.max_iterations)
+                                : s.solver.iterations;
+}
+
 bool closed_box(const Scene& s) { return s.domain.open.empty(); }
 
 /// m^3
@@ -32,9 +41,21 @@ double volume(const Scene& s, double particles) {
   return particles * s.particle_mass() / s.fluid.rest_density;
 }
 
+/// For fluid in a box that is too shallow for its compression at rest to tell.
+void add_coarse_step(const Scene& s, std::vector<Warning>& list) {
+  // The compression goes as dt^2 over the iterations, of which the rule takes the default number.
+  const double far = kFarAbove * std::sqrt(std::max(1.0, most_iterations(s) / 4.0));
+  const double safe = step_rule(s).gravity, times = longest_step(s) / safe;
+  if (s.time.adaptive || !(times > far)) return;
+  list.push_back({"step", format("time.step %g makes steps of %.2g times 0.03 sqrt(h/g) (%.2g s), "
+                                 "which is safe: what falls moves far before it is stopped; give "
+                                 "%.2g or less, or auto",
+                                 s.time.step, times, safe, s.time.step * far / times)});
+}
+
 void add_step(const Scene& s, std::int64_t particles, std::vector<Warning>& list) {
   const double c = compression_at_rest(s, particles);
-  if (c <= kNoLiquid) return;
+  if (c <= kNoLiquid) return c > 0 ? add_coarse_step(s, list) : void();
   const double times = std::sqrt(c / kNoLiquid);
   const bool by_force = adaptive_step(s) < s.time.step;
   const double value = by_force ? s.time.adaptive->force : s.time.step;
@@ -209,9 +230,7 @@ void add_output(const Scene& s, std::vector<Warning>& list) {
 
 double compression_at_rest(const Scene& s, std::int64_t particles) {
   const double g = length(s.gravity), h = s.h();
-  const int iterations = s.solver.tolerance > 0
-                             ? std::max(s.solver.iterations, s.solver.max_iterations)
-                             : s.solver.iterations;
+  const int iterations = most_iterations(s);
   if (g == 0 || iterations == 0) return 0;
   int down = 0;  // the axis along which the fluid lies on a wall
   for (int a = 1; a < 3; ++a)

@@ -5,6 +5,7 @@
 
 #include "lib/base/plain_text.h"
 #include "lib/base/text.h"
+#include "lib/scene/body_box.h"
 #include "lib/scene/lattice.h"
 #include "lib/scene/rounding.h"
 #include "lib/scene/scene_rules.h"
@@ -140,7 +141,7 @@ class Checker : public SceneRules {
       if (!good(s_.fluid.spacing, body.count)) continue;
       const double n = lattice_count(body, s_.fluid.spacing, plane());
       if (n < 1)
-        add_at(key, "makes no particle: the block is thinner than fluid.spacing (" +
+        add_at(key, "makes no particle: it is thinner than fluid.spacing (" +
                         to_text(s_.fluid.spacing) + " m); enlarge it or lower fluid.spacing");
       sum += n;
     }
@@ -151,20 +152,27 @@ class Checker : public SceneRules {
     return good(s_.domain.min, s_.domain.max, s_.dimensions) ? s_.plane() : std::nullopt;
   }
 
-  /// Box or sphere well formed and inside the domain; with a plane, cut by it.
+  bool check_axis(const Body& body) {
+    if (!good(body.from, body.to, body.radius)) return false;
+    if (body.from == body.to)
+      add(body.to, "is where the axis begins (" + name(body.from) + "); give the other end");
+    else if (flat() && (body.from[0] != body.to[0] || body.from[2] != body.to[2]))
+      add(body.to,
+          "with dimensions: 2 a cylinder stands on the x-z plane, which makes a disc of it; give "
+          "both ends the same x and z, or a block");
+    else
+      return true;
+    return false;
+  }
+
+  /// Box, sphere or cylinder well formed and inside the domain; with a plane, cut by it.
   bool check_place(const Body& body, const std::string& key, bool domain) {
-    Double3 low = body.min, high = body.max;
     if (!good(body.shape)) return false;
-    const bool sphere = body.shape == Shape::sphere;
-    if (sphere) {
-      if (!good(body.center, body.radius)) return false;
-      for (int a = 0; a < 3; ++a) {
-        low[a] = body.center[a] - body.radius;
-        high[a] = body.center[a] + body.radius;
-      }
-    } else if (!good(body.min, body.max) || !above(body.min, body.max)) {
-      return false;
-    }
+    const bool round = body.shape == Shape::sphere || body.shape == Shape::cylinder;
+    if (body.shape == Shape::sphere && !good(body.center, body.radius)) return false;
+    if (body.shape == Shape::cylinder && !check_axis(body)) return false;
+    if (!round && (!good(body.min, body.max) || !above(body.min, body.max))) return false;
+    const auto [low, high] = body_box(body);
     bool inside = true;
     const std::optional<double> y = domain ? plane() : std::nullopt;
     if (y && !(low[1] <= *y && *y <= high[1])) {
@@ -178,7 +186,7 @@ class Checker : public SceneRules {
       const bool below = low[a] < min - slack;
       if (!below && high[a] <= max + slack) continue;
       inside = false;
-      add_at(sphere ? key : name(below ? body.min : body.max),
+      add_at(round ? key : name(below ? body.min : body.max),
              std::string("reaches ") + kAxes[a] + " = " + to_text(below ? low[a] : high[a]) +
                  ", outside the domain (" + kAxes[a] + " from " + to_text(min) + " to " +
                  to_text(max) + " m); move the body or enlarge the domain");

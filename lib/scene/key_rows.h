@@ -63,6 +63,15 @@ inline void is_kind(Key& row) { row.is_kind = true; }
 auto of(auto... kinds) {
   return [=](Key& row) { row.kinds = ((1u << static_cast<unsigned>(kinds)) | ...); };
 }
+/// `y` of two numbers with dimensions: 2.
+inline auto flat(FlatY y) {
+  return [=](Key& row) { row.flat = y; };
+}
+/// A corner of a box: beside `min` and `max` there are `center` and `size`.
+inline void by_center(Key& row) { row.by_center = true; }
+inline auto form(const KeyTable& (*table)()) {
+  return [=](Key& row) { row.form = table; };
+}
 inline auto renamed(const char* was) {
   return [=](Key& row) { row.was = std::string(was); };
 }

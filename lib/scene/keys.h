@@ -56,6 +56,18 @@ enum class Effect {
 };
 
 struct Block;
+struct KeyTable;
+
+/// With `dimensions: 2` a vector may be given by x and z; what its y is then.
+enum class FlatY {
+  none,    ///< it needs three numbers
+  bottom,  ///< that of the domain: 0 ...
+  top,     ///< ... and a spacing above
+  low,     ///< the domain's lower y
+  high,    ///< the domain's upper y
+  middle,  ///< the plane
+  zero,
+};
 
 /// A struct of a scene that has the keys of a block, and its path: "obstacles[1].motion".
 struct Holder {
@@ -75,7 +87,11 @@ struct Key {
   bool automatic = false;  ///< `auto` is allowed: an absent optional, or 0 of a plain number
   bool is_kind = false;    ///< the word that decides which other keys a block or an entry has
   unsigned kinds = ~0u;    ///< bit 1 << index of every kind that has this key
-  std::string was{};       ///< its path in earlier versions; empty: the same
+  FlatY flat = FlatY::none;
+  bool by_center = false;  ///< a corner of a box that center and size may give as well
+  /// The table of a mapping in whose place it may be given, or of one number; null: none.
+  const KeyTable& (*form)() = nullptr;
+  std::string was{};  ///< its path in earlier versions; empty: the same
   /// What becomes of it where the step is 2^-level as long, for the same effect per time; null: it
   /// stays.
   double (*at_level)(double value, int level) = nullptr;

@@ -23,7 +23,8 @@ KeyRows gauge_rows() {
        key(GAUGE(at), numbers("m", kCoordinate, 3),
            "Of a level where the line is along the other axes, [x, y], in two dimensions [x]; else "
            "the place, [x, y, z].",
-           required, of(GaugeKind::level, GaugeKind::velocity, GaugeKind::pressure)),
+           required, of(GaugeKind::level, GaugeKind::velocity, GaugeKind::pressure),
+           flat(FlatY::middle)),
        key(GAUGE(on), plain, "The obstacle, or the wall of the domain (x_min), that `at` lies on.",
            required, of(GaugeKind::pressure)),
        key(GAUGE(radius), number("m", kLength),
@@ -31,10 +32,10 @@ KeyRows gauge_rows() {
            "two dimensions half the length of a strip.",
            required, of(GaugeKind::pressure)),
        key(GAUGE(center), number("m", kCoordinate), "Middle of the rectangle.", required,
-           of(GaugeKind::flow)),
+           of(GaugeKind::flow), flat(FlatY::middle)),
        key(GAUGE(normal), number("", {-1e6, 1e6}),
            "At right angles to the rectangle; flow this way counts as positive.", required,
-           of(GaugeKind::flow)),
+           of(GaugeKind::flow), flat(FlatY::zero)),
        key(GAUGE(size), numbers("m", {1e-9, 1e12}, 2),
            "Its edges: the level one (along x where the normal is along z), then the other. In two "
            "dimensions the length of a line, [size].",

@@ -1,5 +1,6 @@
 // Keys of what moves the particles: gravity, time, solver, forces.
 #include "lib/scene/key_rows.h"
+#include "lib/scene/shorthand.h"
 
 namespace pbf::inline scene_module {
 
@@ -18,9 +19,16 @@ KeyRows motion_rows() {
        optional_block(KEY(tensile), "Artificial pressure against clusters (s_corr)."),
        optional_block(KEY(viscosity), "XSPH viscosity."),
        optional_block(KEY(vorticity), "Vorticity confinement.")},
-      {key(KEY(gravity), number("m/s^2", kRate), "Acceleration of gravity, [x, y, z]."),
+      {key(KEY(gravity), number("m/s^2", kRate),
+           "Acceleration of gravity, [x, y, z]. One number is its magnitude, straight down; "
+           "{magnitude: 9.81, tilt: 5, toward: x_max} is tilted by so many degrees toward that "
+           "face.",
+           flat(FlatY::zero), form(gravity_table)),
        key(KEY(time.step), number("s", kSeconds),
-           "Time of one update, dt. About 0.03 sqrt(h/g) is safe.", required, scaled(linear)),
+           "Time of one update, dt. About 0.03 sqrt(h/g) is safe. auto: the longest up to that, "
+           "and up to 0.2 h of way of the fastest body, of which output.every is a whole number; "
+           "the number chosen stands in the resolved scene.",
+           required, automatic, scaled(linear)),
        key(KEY(time.end), number("s", kSeconds),
            "Time simulated, rounded to whole updates; at least time.step.", required,
            effect(Effect::none)),

@@ -22,7 +22,7 @@ KeyRows moved_rows() {
            "sine: to and fro. velocity: on and on. file: a table of poses.", required, is_kind),
        key(OBSTACLE(motion->direction), number("", {-1e6, 1e6}),
            "It goes along this direction; auto: it turns about an axis.", automatic,
-           of(MotionKind::sine)),
+           of(MotionKind::sine), flat(FlatY::zero)),
        key(OBSTACLE(motion->axis), number("", {-1e6, 1e6}),
            "It turns about this axis, by the right-hand rule; auto: it goes along a direction.",
            automatic, of(MotionKind::sine)),
@@ -33,7 +33,7 @@ KeyRows moved_rows() {
        key(OBSTACLE(motion->phase), number("degrees", kDegrees), kPhase, of(MotionKind::sine)),
        key(OBSTACLE(motion->ramp), number("s", {0, 1e9}), kRamp, of(MotionKind::sine)),
        key(OBSTACLE(motion->velocity), number("m/s", kRate), "Velocity of the pivot.",
-           of(MotionKind::velocity)),
+           of(MotionKind::velocity), flat(FlatY::zero)),
        key(OBSTACLE(motion->angular), number("degrees/s", kDegrees),
            "It turns about this vector, by the right-hand rule, at the rate of its length.",
            of(MotionKind::velocity)),
@@ -43,12 +43,12 @@ KeyRows moved_rows() {
            required, of(MotionKind::file)),
        key(OBSTACLE(motion->pivot), number("m", kCoordinate),
            "The point about which it turns, before it moves; auto: the middle of the obstacle.",
-           automatic),
+           automatic, flat(FlatY::middle)),
        key(KEY(tank_motion->kind), one_of({"sine", "file"}), "sine: to and fro. file: a table.",
            required, is_kind),
        key(KEY(tank_motion->direction), number("", {-1e6, 1e6}),
            "The tank goes along this direction; auto: it turns about an axis.", automatic,
-           of(TankMotionKind::sine)),
+           of(TankMotionKind::sine), flat(FlatY::zero)),
        key(KEY(tank_motion->axis), number("", {-1e6, 1e6}),
            "The tank turns about this axis, by the right-hand rule; auto: it does not.", automatic),
        key(KEY(tank_motion->amplitude), number("m or degrees", {-1e9, 1e9}),
@@ -63,7 +63,8 @@ KeyRows moved_rows() {
            "rows linear).",
            required, of(TankMotionKind::file)),
        key(KEY(tank_motion->pivot), number("m", kCoordinate),
-           "The point about which the tank turns; auto: the middle of the domain.", automatic)}};
+           "The point about which the tank turns; auto: the middle of the domain.", automatic,
+           flat(FlatY::middle))}};
 }
 
 }  // namespace pbf::inline scene_module

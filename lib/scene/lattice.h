@@ -1,4 +1,5 @@
-// The lattices of block and sphere bodies: which points they hold, and how many. Header only.
+// The lattices of block, sphere and cylinder bodies: which points they hold, and how many. Header
+// only.
 #pragma once
 
 #include <array>
@@ -31,6 +32,20 @@ inline double sphere_limit(const Body& body, double d, std::optional<double> pla
   return r * r * (1 + 1e-9) - off * off;
 }
 
+/// Squared radius of a cylinder's discs in units of d, as sphere_limit().
+inline double disc_limit(const Body& body, double d) {
+  const double r = body.radius / d;
+  return r * r * (1 + 1e-9);
+}
+
+/// Whole discs of a cylinder, a spacing apart, the first half a spacing from `from`; with a plane
+/// one. A double, for it may be beyond any integer.
+inline double disc_count(const Body& body, double d, std::optional<double> plane) {
+  const double length =
+      std::hypot(body.to[0] - body.from[0], body.to[1] - body.from[1], body.to[2] - body.from[2]);
+  return plane ? 1 : std::floor(length / d + 1e-6);
+}
+
 /// Largest k >= 0 with k^2 <= rest, or -1 when rest < 0.
 inline std::int64_t half_width(double rest) {
   if (rest < 0) return -1;
@@ -41,19 +56,22 @@ inline std::int64_t half_width(double rest) {
 }
 
 /// Number of particles of a body that is not read from a file; exact up to 2^53 for blocks and, for
-/// spheres, up to kMaxParticles (beyond it the volume's estimate). Makes nothing.
+/// spheres and cylinders, up to kMaxParticles (beyond it the volume's estimate). Makes nothing.
 inline double lattice_count(const Body& body, double d, std::optional<double> plane) {
   if (body.shape == Shape::random_box) return static_cast<double>(body.count);
   if (body.shape == Shape::block) {
     const auto n = block_cells(body, d, plane);
     return std::fmax(n[0], 0) * std::fmax(n[1], 0) * std::fmax(n[2], 0);
   }
-  const double limit = sphere_limit(body, d, plane);
+  // A cylinder is a number of discs, each what a plane cuts out of a sphere.
+  const bool discs = body.shape == Shape::cylinder, thin = plane || discs;
+  const double limit = discs ? disc_limit(body, d) : sphere_limit(body, d, plane);
+  const double times = discs ? disc_count(body, d, plane) : 1;
   if (limit < 0) return 0;
   const double volume =
-      plane ? 3.14159265358979324 * limit : 4.18879020478639098 * limit * std::sqrt(limit);
-  if (volume > 2 * kMaxParticles) return volume;
-  const std::int64_t n = half_width(limit), ny = plane ? 0 : n;
+      thin ? 3.14159265358979324 * limit : 4.18879020478639098 * limit * std::sqrt(limit);
+  if (volume * times > 2 * kMaxParticles) return volume * times;
+  const std::int64_t n = half_width(limit), ny = thin ? 0 : n;
   double sum = 0;
   for (std::int64_t k = -n; k <= n; ++k)
     for (std::int64_t j = -ny; j <= ny; ++j)
@@ -61,7 +79,7 @@ inline double lattice_count(const Body& body, double d, std::optional<double> pl
               half_width(limit - static_cast<double>(k * k) - static_cast<double>(j * j));
           w >= 0)
         sum += static_cast<double>(2 * w + 1);
-  return sum;
+  return sum * times;
 }
 
 }  // namespace pbf::inline scene_module

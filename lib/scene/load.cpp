@@ -8,9 +8,11 @@
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
 #include "lib/base/plain_text.h"
+#include "lib/scene/auto_step.h"
 #include "lib/scene/file_kind.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/overrides.h"
+#include "lib/scene/shorthand.h"
 #include "lib/scene/validate.h"
 #include "lib/scene/yaml_tree.h"
 
@@ -87,6 +89,20 @@ LoadedScene load(const std::string& path, const std::vector<std::string>& overri
   return loaded;
 }
 
+/// time.step: auto.
+void choose_step(PlacedScene& placed, Problems& problems) {
+  double& step = placed.scene.time.step;
+  if (placed.bad.empty()) {
+    step = auto_step(placed.scene);
+    if (step > 0) return;
+    problems.add(placed.place("time.step"), "time.step",
+                 "auto goes by gravity and the velocities of bodies, and there is neither; give a "
+                 "number");
+  }
+  placed.bad.insert("time.step");
+  step = Time{}.step;
+}
+
 }  // namespace
 
 Node load_tree(const std::string& path, const std::string& what) {
@@ -95,7 +111,10 @@ Node load_tree(const std::string& path, const std::string& what) {
 
 Scene scene_of_tree(const Node& root, Problems& problems) {
   PlacedScene placed;
-  static_cast<Places&>(placed) = read_tree(scene_table(), root, object(placed.scene), problems);
+  Node tree = root;
+  if (!write_out(tree, problems)) return placed.scene;
+  static_cast<Places&>(placed) = read_tree(scene_table(), tree, object(placed.scene), problems);
+  if (placed.scene.time.step == 0) choose_step(placed, problems);
   check_scene(placed, problems);
   return placed.scene;
 }

@@ -3,16 +3,33 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
 #include "lib/scene/lattice.h"
 #include "lib/scene/random.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline scene_module {
 
-/// put(point in m) for every particle of a block, sphere or random box. d: spacing of the lattice;
-/// plane: of Scene::plane(), along y what lies off it is left as it is.
+/// Of a cylinder: two directions across its axis, and along it. Those of the scene where the axis
+/// is one of them, so that its lattice is that of blocks.
+inline std::array<Double3, 3> cylinder_frame(const Body& body) {
+  const Double3 axis = unit(body.to - body.from);
+  // Across from the direction of the scene that is least along the axis.
+  std::size_t least = 0;
+  for (std::size_t a = 1; a < 3; ++a)
+    if (std::fabs(axis[a]) < std::fabs(axis[least])) least = a;
+  Double3 other{};
+  other[least] = 1;
+  const Double3 first = unit(other - dot(other, axis) * axis);
+  return {first, cross(axis, first), axis};
+}
+
+/// put(point in m) for every particle of a block, sphere, cylinder or random box. d: spacing of the
+/// lattice; plane: of Scene::plane(), along y what lies off it is left as it is.
 template <class Put>
 void for_each_point(const Body& body, double d, std::optional<double> plane, Put&& put) {
   if (body.shape == Shape::block) {
@@ -37,6 +54,20 @@ void for_each_point(const Body& body, double d, std::optional<double> plane, Put
           put(Double3{body.center[0] + static_cast<double>(i) * d,
                       body.center[1] + static_cast<double>(j) * d,
                       body.center[2] + static_cast<double>(k) * d});
+      }
+  }
+  if (body.shape == Shape::cylinder) {
+    const auto frame = cylinder_frame(body);
+    const double limit = disc_limit(body, d);
+    const std::int64_t n = half_width(limit);
+    const auto discs = static_cast<std::int64_t>(disc_count(body, d, plane));
+    for (std::int64_t k = 0; k < discs; ++k)
+      for (std::int64_t j = -n; j <= n; ++j) {
+        const auto w = half_width(limit - static_cast<double>(j * j));
+        for (std::int64_t i = -w; i <= w; ++i)
+          put(body.from + (static_cast<double>(i) * d) * frame[0] +
+              (static_cast<double>(j) * d) * frame[1] +
+              ((static_cast<double>(k) + 0.5) * d) * frame[2]);
       }
   }
   if (body.shape == Shape::random_box) {

@@ -16,7 +16,7 @@
 
 namespace pbf::inline scene_module {
 
-enum class Shape { block, sphere, random_box, file };
+enum class Shape { block, sphere, random_box, file, cylinder };
 enum class KernelMode { consistent, paper };         ///< density kernel and gradient kernel
 enum class ConstraintMode { one_sided, two_sided };  ///< C = max(rho/rho0 - 1, 0) or rho/rho0 - 1
 enum class BoundaryMode { density, clamp };          ///< walls with a density contribution, or bare
@@ -30,7 +30,8 @@ struct Body {
   Shape shape = Shape::block;
   Double3 min{}, max{};    ///< m, block (lattice of the spacing) and random_box
   Double3 center{};        ///< m, sphere (lattice points inside)
-  double radius = 0;       ///< m, sphere
+  double radius = 0;       ///< m, sphere, cylinder
+  Double3 from{}, to{};    ///< m, cylinder: ends of the axis, along which the lattice lies
   std::int64_t count = 0;  ///< random_box: number of particles, uniform in the box
   std::uint64_t seed = 1;  ///< random_box: seed of the generator
   std::string path;        ///< file: CSV (header x,y,z[,vx,vy,vz]) or HDF5 (position[,velocity]);
@@ -112,7 +113,7 @@ struct AdaptiveTime {
 };
 
 struct Time {
-  double step = 0.002;                   ///< s, dt of one update
+  double step = 0.002;                   ///< s, dt of one update; never auto once it is loaded
   double end = 1;                        ///< s, rounded to whole updates
   std::optional<AdaptiveTime> adaptive;  ///< absent: an update is one step
   double motion_begin = 0;               ///< s, time of the motions at the start

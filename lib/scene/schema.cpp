@@ -24,8 +24,11 @@ Json number_schema(const Key& key, bool whole) {
 }
 
 Json list_schema(const Key& key, bool whole, int n) {
-  return {
-      {"type", "array"}, {"items", number_schema(key, whole)}, {"minItems", n}, {"maxItems", n}};
+  const int least = key.flat == FlatY::none || n < 3 ? n : 2;
+  return {{"type", "array"},
+          {"items", number_schema(key, whole)},
+          {"minItems", least},
+          {"maxItems", n}};
 }
 
 struct TypeSchema {
@@ -65,12 +68,16 @@ Json default_value(const Key& key, const Field& field) {
   return word ? Json(text) : Json::parse(text);  // the YAML of numbers is JSON
 }
 
+Json form_schema(const Key& key);
+
 Json key_schema(const Key& key) {
   const Field field = key.field(key.standard);
   const Json type = std::visit(TypeSchema{key}, field);
   const std::string unit = unit_text(key);
   Json out{{"description", key.help + (unit.empty() ? "" : " Unit: " + unit + ".")}};
-  if (key.automatic)
+  if (key.form != nullptr)
+    out["anyOf"] = {type, {{"type", "number"}, {"minimum", 0}}, form_schema(key)};
+  else if (key.automatic)
     out["anyOf"] = {{{"const", "auto"}}, type};
   else
     out.update(type);
@@ -80,6 +87,12 @@ Json key_schema(const Key& key) {
 
 /// Object with the keys and blocks that stand directly in `block`. kind < 0: of no kind.
 Json object_schema(const KeyTable& table, const Block& block, int kind);
+
+/// Of the mapping that may stand in a key's place.
+Json form_schema(const Key& key) {
+  const KeyTable& table = key.form();
+  return object_schema(table, *table.find_block(key.leaf()), -1);
+}
 
 /// Of each kind where there are kinds, or else of all.
 Json kinds_schema(const KeyTable& table, const Block& block) {
@@ -105,13 +118,20 @@ Json list_schema(const KeyTable& table, const Block& block) {
 }
 
 Json object_schema(const KeyTable& table, const Block& block, int kind) {
-  Json properties = Json::object(), required = Json::array();
+  Json properties = Json::object(), required = Json::array(), corners = Json::array();
   for (const Key* key : block.keys) {
     if (kind >= 0 && !(key->kinds & (1u << kind))) continue;
     properties[key->leaf()] = key->is_kind
                                   ? Json{{"const", key->choices[static_cast<std::size_t>(kind)]}}
                                   : key_schema(*key);
-    if (key->required) required.push_back(key->leaf());
+    if (key->required) (key->by_center ? corners : required).push_back(key->leaf());
+    if (!key->by_center) continue;
+    Key middle = *key, edges = *key;
+    middle.help = "Middle of the box, in place of min and max.";
+    edges.help = "Edges of the box, with center.";
+    edges.range = {0, 1e12, true};
+    properties["center"] = key_schema(middle);
+    properties["size"] = key_schema(edges);
   }
   for (const bool lists : {false, true})
     for (const Block& child : table.blocks) {
@@ -122,6 +142,8 @@ Json object_schema(const KeyTable& table, const Block& block, int kind) {
   Json out{{"type", "object"}, {"additionalProperties", false}};
   if (block.parent != nullptr && !block.list) out["description"] = block.help;
   if (!required.empty()) out["required"] = required;
+  if (!corners.empty())
+    out["oneOf"] = {{{"required", corners}}, {{"required", {"center", "size"}}}};
   out["properties"] = properties;
   return out;
 }

@@ -112,6 +112,7 @@ Suggestion suggest_key(const KeyTable& table, const std::string& path) {
       if (std::ranges::count(paths, key)) known.push_back(key);
     if (known.empty() && !s.keys.empty()) continue;  // of another table
     known = preferred(known, in);
+    if (!s.anywhere && !known.empty() && block_of(known[0]) != in) continue;
     if (known.empty() && !s.keys.empty()) continue;
     of_synonym = {known, s.note};
     if (known.empty() || block_of(known[0]) == in) return of_synonym;

@@ -11,6 +11,7 @@ struct KeySynonym {
   std::vector<std::string> written;
   std::vector<const char*> keys;  ///< paths of the table; those in the block at hand come first
   std::string note{};             ///< behind the question, or alone without keys
+  bool anywhere = true;           ///< false: so common a word means these in their blocks only
 };
 
 struct WordSynonym {

@@ -175,9 +175,10 @@ class Validator {
 
   /// "viscosity: {xsph: 0.1} (Factor c; ...)" for a number in the place of a block that can be on
   /// and has its strength as its first key; else empty.
-  static std::string in_block(const Block& block, const Node& value) {
+  std::string in_block(const Block& block, const Node& value) const {
     double number = 0;
-    if (!block.optional || block.keys.empty() || value.kind != Node::Kind::scalar || value.quoted ||
+    if (!block.optional || table_.has_required(block) || block.keys.empty() ||
+        value.kind != Node::Kind::scalar || value.quoted ||
         read_number(value.text, number) != NumberError::none)
       return "";
     const Key& first = *block.keys[0];

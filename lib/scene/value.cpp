@@ -47,6 +47,9 @@ std::string read_numbers(const Key& key, const Node& node, std::array<T, N>& out
   if (node.kind != Node::Kind::list || node.items.size() != N)
     return instead_of(std::to_string(N) + " numbers " + kShape + (key.automatic ? " or auto" : ""),
                       node) +
+           (N == 3 && node.items.size() == 2 && key.flat != FlatY::none
+                ? "; two, [x, z], do with dimensions: 2"
+                : "") +
            (node.items.size() > N ? "; commas part the numbers, decimals take a point" : "");
   std::array<T, N> values{};
   Key element = key;

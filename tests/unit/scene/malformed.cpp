@@ -67,10 +67,10 @@ const std::vector<Case> kAppended{
     {"solver: 4\n", "solver: expected a block {iterations: ...}, got \"4\""},
     {"solver: [4]\n", "expected a block {iterations: ...}, got a list of 1"},
     {"solver: off\n", "solver: expected a block"},
-    {"gravity: -9.81\n", "gravity: expected 3 numbers [x, y, z], got \"-9.81\""},
+    {"gravity: -9.81\n", "6:10: gravity: is -9.81, and one number is its magnitude"},
     {"gravity: [0, -9.81]\n", "gravity: expected 3 numbers [x, y, z], got a list of 2"},
     {"gravity: [0, 0, down]\n", "gravity: element 2: expected a number, got \"down\""},
-    {"gravity: {x: 0}\n", "expected 3 numbers [x, y, z], got a block"},
+    {"gravity: {x: 0}\n", "6:11: gravity.x: unknown key"},
     {"name: [a]\n", "name: expected text"},
     {"name: \"\"\n", "name: is empty"},
     {"name: \"a\\nb\"\n", "holds a line break or a tab, expected one line"},
@@ -141,7 +141,7 @@ const std::vector<Case> kBodies{
     {"[{shape: random_box, min: [0, 0, 0], max: [1, 1, 1]}]", "bodies[0].count: missing"},
     {"[{shape: file}]", "bodies[0].path: missing"},
     {"[{shape: block, min: [0, 0, 0], max: [1, 1, 1], radius: 1}]",
-     "bodies[0].radius: belongs to shape sphere, this body is a block"},
+     "bodies[0].radius: belongs to shape sphere, cylinder, this body is a block"},
     {"[{shape: block, min: [0, 0, 0], max: [1, 1, 1], velocty: [0, 0, 0]}]",
      "bodies[0].velocty: unknown key, did you mean bodies[0].velocity?"},
     {"[{shape: block, min: [0, 0, 0], max: [1, 0, 1]}]",
@@ -222,7 +222,7 @@ TEST_CASE("scene: a shortest step above time.step, or a millionth of it, is refu
 
 TEST_CASE("scene: all problems of a file are reported at once, one per line") {
   const std::string error = parse_error(
-      kMinimal + "solver: {iteratons: 4, kernels: x}\ngravity: 1\nthreads: -1\n", {"name="});
+      kMinimal + "solver: {iteratons: 4, kernels: x}\ngravity: [1]\nthreads: -1\n", {"name="});
   CHECK(std::count(error.begin(), error.end(), '\n') == 4);
   for (const char* part :
        {"solver.iteratons", "solver.kernels", "gravity", "threads", "--set name="})

@@ -63,7 +63,7 @@ TEST_CASE("option --set: what is wrong is reported with the argument as its plac
       {"bodies.1.count=4", "bodies is a list of 1, \"1\" is no index of it"},
       {"bodies.x.count=4", "\"x\" is no index of it"},
       {"bodies.-1.count=4", "\"-1\" is no index of it"},
-      {"bodies[0].radius=4", "belongs to shape sphere, this body is a block"},
+      {"bodies[0].radius=4", "belongs to shape sphere, cylinder, this body is a block"},
       {"time.step.x=4", "time.step is no block, it has no key \"x\""},
       {"gravity.0=[", "not valid YAML"},
       {"gravity.7=1", "gravity is a list of 3"},

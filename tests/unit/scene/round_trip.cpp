@@ -35,7 +35,12 @@ Scene unlike_default() {
   Body file;
   file.shape = Shape::file;
   file.path = "odd name #1: [x].csv";
-  s.bodies = {block, sphere, random, file};
+  Body drum;
+  drum.shape = Shape::cylinder;
+  drum.from = {0, -1.0 / 3, 1};
+  drum.to = {0, 1.0 / 7, 1};
+  drum.radius = 0.1;
+  s.bodies = {block, sphere, random, file, drum};
   s.domain.loads = true;
   Obstacle plane;
   plane.name = "odd name #1: [a], \"b\"";
@@ -269,11 +274,11 @@ TEST_CASE("schema: balanced JSON that has every key and refuses the others") {
     ++closed;
   CHECK(objects == closed);
   // One object for every shape of a body and of an obstacle, each kind of its motion, and every
-  // kind of a gauge.
+  // kind of a gauge; and what gravity may be.
   const auto kinds = [](const char* key) { return scene_table().find_key(key)->choices.size(); };
   CHECK(objects == scene_table().blocks.size() - 5 + kinds("bodies[].shape") +
                        kinds("obstacles[].shape") * (1 + kinds("obstacles[].motion.kind")) +
-                       kinds("tank_motion.kind") + kinds("gauges[].kind"));
+                       kinds("tank_motion.kind") + kinds("gauges[].kind") + 1);
 }
 
 TEST_CASE("numbers: the text of a double reads back to the same double") {

@@ -1,0 +1,41 @@
+#include "lib/scene/auto_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lib/base/text.h"
+#include "lib/scene/number.h"
+
+namespace pbf::inline scene_module {
+namespace {
+
+/// Cut off after two digits: 0.00428 is 0.0042.
+double two_digits(double x) {
+  const std::string text = format("%.15e", x);
+  double cut = x;
+  read_number(text.substr(0, 3) + text.substr(text.find('e')), cut);
+  return cut;
+}
+
+}  // namespace
+
+StepRule step_rule(const Scene& s) {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  const auto length = [](const Double3& v) { return std::hypot(v[0], v[1], v[2]); };
+  double fastest = 0;
+  for (const Body& b : s.bodies) fastest = std::max(fastest, length(b.velocity));
+  const double g = length(s.gravity);
+  return {g > 0 ? kSafeStep * std::sqrt(s.h() / g) : never,
+          fastest > 0 ? kSafeWay * s.h() / fastest : never};
+}
+
+double auto_step(const Scene& s) {
+  const double longest = step_rule(s).longest();
+  if (!std::isfinite(longest)) return 0;
+  if (!s.output) return two_digits(longest);
+  // A whole number but for rounding is one.
+  return s.output->every / std::ceil(s.output->every / longest * (1 - 1e-9));
+}
+
+}  // namespace pbf::inline scene_module

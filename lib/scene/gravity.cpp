@@ -1,0 +1,90 @@
+// Gravity by its magnitude: a number is straight down, a mapping may tilt it.
+#include <cmath>
+
+#include "lib/scene/key_rows.h"
+#include "lib/scene/number.h"
+#include "lib/scene/shorthand.h"
+#include "lib/scene/validate.h"
+#include "lib/scene/value.h"
+
+namespace pbf::inline scene_module {
+namespace {
+
+enum class Side { x_min, x_max, y_min, y_max };
+
+struct Tilted {
+  double magnitude = 9.81;  ///< m/s^2
+  double tilt = 0;          ///< degrees
+  Side toward = Side::x_max;
+};
+
+/// As it stands in a scene, so that messages have its paths.
+struct Form {
+  Tilted gravity;
+};
+
+#define KEY(member) MEMBER(Form, member)
+
+KeyRows rows() {
+  return {{{"", "A scene."}, {"gravity", "Gravity by its magnitude."}},
+          {key(KEY(gravity.magnitude), number("m/s^2", {0, 1e12}), "Its magnitude."),
+           key(KEY(gravity.tilt), number("degrees", {0, 180}),
+               "The angle between it and straight down, -z."),
+           key(KEY(gravity.toward), one_of({"x_min", "x_max", "y_min", "y_max"}),
+               "The face of the domain to which it is tilted.")}};
+}
+
+Double3 vector_of(const Tilted& g) {
+  if (g.tilt == 0) return {0, 0, 0 - g.magnitude};
+  const double angle = g.tilt * (3.14159265358979323846 / 180);
+  const int axis = static_cast<int>(g.toward) / 2;
+  const bool high = static_cast<int>(g.toward) % 2 == 1;
+  Double3 out{};
+  out[std::size_t(axis)] = (high ? 1 : -1) * g.magnitude * std::sin(angle);
+  // Of a right angle nothing is left: the cosine of the nearest double is not 0.
+  out[2] = g.tilt == 90 ? 0 : 0 - g.magnitude * std::cos(angle);
+  return out;
+}
+
+}  // namespace
+
+const KeyTable& gravity_table() {
+  static Form defaults;
+  static const KeyTable table({rows()}, object(defaults));
+  return table;
+}
+
+bool write_out_gravity(Node& root, Problems& problems) {
+  Node* node = root.find("gravity");
+  if (node == nullptr) return true;
+  Form form;
+  if (node->kind == Node::Kind::scalar && !node->quoted) {
+    double g = 0;
+    if (read_number(node->text, g) != NumberError::none) return true;  // its reader says more
+    if (g < 0) {
+      problems.add(node->place(), "gravity",
+                   "is " + node->text + ", and one number is its magnitude, straight down; write " +
+                       to_text(-g) + ", or the vector [0, 0, " + to_text(g) + "]");
+      return false;
+    }
+    form.gravity.magnitude = g;
+    if (!in_range(*gravity_table().find_key("gravity.magnitude"), g)) return true;
+  } else if (node->kind == Node::Kind::map) {
+    Node tree{Node::Kind::map, "", false, {}, {}, node->origin, node->line, node->column};
+    tree.keys.push_back(
+        {Node::Kind::scalar, "gravity", false, {}, {}, node->origin, node->line, node->column});
+    tree.items.push_back(*node);
+    Problems own;
+    if (!read_tree(gravity_table(), tree, object(form), own).bad.empty()) {
+      read_tree(gravity_table(), tree, object(form), problems);
+      return false;
+    }
+  } else {
+    return true;
+  }
+  const Double3 g = vector_of(form.gravity);
+  *node = list_node(*node, {g[0], g[1], g[2]});
+  return true;
+}
+
+}  // namespace pbf::inline scene_module

@@ -1,0 +1,186 @@
+#include "lib/scene/shorthand.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "lib/scene/number.h"
+#include "lib/scene/value.h"
+
+namespace pbf::inline scene_module {
+namespace {
+
+Node scalar_node(const Node& like, double value) {
+  return {Node::Kind::scalar, to_text(value), false, {}, {}, like.origin, like.line, like.column};
+}
+
+/// f(value, around) for every value that stands at the key's path, `around` the mapping it is in.
+using Visit = std::function<void(Node&, Node&)>;
+void visit(Node& at, const std::string& path, const Visit& f) {
+  if (at.kind != Node::Kind::map) return;
+  if (Node* value = at.find(path)) f(*value, at);  // also of a path in one word
+  const std::size_t dot = path.find('.');
+  if (dot == path.npos) return;
+  const std::string first = path.substr(0, dot), rest = path.substr(dot + 1);
+  const std::size_t bracket = first.find('[');
+  Node* child = at.find(first.substr(0, bracket));
+  if (child == nullptr) return;
+  if (bracket == first.npos) return visit(*child, rest, f);
+  if (child->kind == Node::Kind::list)
+    for (Node& item : child->items) visit(item, rest, f);
+}
+
+double number_at(Node& root, const std::string& path, double otherwise) {
+  double found = otherwise;
+  visit(root, path, [&](Node& value, Node&) {
+    double v = 0;
+    if (value.kind == Node::Kind::scalar && read_number(value.text, v) == NumberError::none)
+      found = v;
+  });
+  return found;
+}
+
+void erase(Node& map, const std::string& key) {
+  for (std::size_t i = 0; i < map.keys.size(); ++i)
+    if (map.keys[i].text == key) {
+      map.keys.erase(map.keys.begin() + std::ptrdiff_t(i));
+      map.items.erase(map.items.begin() + std::ptrdiff_t(i));
+      return;
+    }
+}
+
+void append(Node& map, const std::string& key, const Node& like, const Node& value) {
+  map.keys.push_back({Node::Kind::scalar, key, false, {}, {}, like.origin, like.line, like.column});
+  map.items.push_back(value);
+}
+
+/// Whether the entry is of a kind that has this key.
+bool has_key(Node& entry, const Key& key) {
+  const Key* kind = key.block->kind;
+  if (kind == nullptr) return true;
+  const Node* word = entry.find(kind->leaf());
+  if (word == nullptr) return false;
+  const auto it = std::ranges::find(kind->choices, word->text);
+  return it != kind->choices.end() && (key.kinds & (1u << (it - kind->choices.begin())));
+}
+
+/// Numbers of one of the two lists, two or three; empty, with what is wrong in `problems`.
+std::vector<double> numbers(const Key& like, const Node& node, const std::string& path, bool flat,
+                            bool lengths, Problems& problems) {
+  Key key = like;
+  key.most = 3;
+  if (lengths) key.range = {1e-9, 1e12};
+  std::vector<double> values;
+  std::string problem = read_field(key, node, &values);
+  if (problem.empty() && values.size() != 3 && !(flat && values.size() == 2))
+    problem = "expected 3 numbers [x, y, z]" + std::string(flat ? ", or [x, z]" : "") + ", got " +
+              node.shown();
+  if (problem.empty()) return values;
+  problems.add(node.place(), path, problem);
+  return {};
+}
+
+/// One box: center and size, where they are given, become min and max.
+bool write_out_box(const Key& min, Node& entry, const std::string& path, bool flat,
+                   Problems& problems) {
+  Node *center = entry.find("center"), *size = entry.find("size");
+  if (center == nullptr && size == nullptr) return true;
+  for (const char* corner : {"min", "max"})
+    if (entry.find(corner) != nullptr) {
+      const char* given = size ? "size" : "center";
+      problems.add(
+          entry.find(given)->place(), path + "." + given,
+          std::string("is given beside ") + corner + "; give center and size, or min and max");
+      return false;
+    }
+  if (center == nullptr || size == nullptr) {
+    const std::string missing = size ? "center" : "size";
+    problems.add(entry.place(), path + "." + missing,
+                 "missing; a box is given by center and size, or by min and max, in m");
+    return false;
+  }
+  const std::vector<double> c = numbers(min, *center, path + ".center", flat, false, problems);
+  const std::vector<double> s = numbers(min, *size, path + ".size", flat, true, problems);
+  if (c.empty() || s.empty()) return false;
+  if (c.size() != s.size()) {
+    problems.add(size->place(), path + ".size",
+                 "has " + std::to_string(s.size()) + " numbers, and center " +
+                     std::to_string(c.size()) + "; give both two, or both three");
+    return false;
+  }
+  std::vector<double> low(c), high(c);
+  for (std::size_t a = 0; a < c.size(); ++a) low[a] -= 0.5 * s[a], high[a] += 0.5 * s[a];
+  const Node at_center = *center, at_size = *size;
+  erase(entry, "center");
+  erase(entry, "size");
+  append(entry, "min", at_center, list_node(at_center, low));
+  append(entry, "max", at_size, list_node(at_size, high));
+  return true;
+}
+
+}  // namespace
+
+bool is_flat(Node& root) { return number_at(root, "dimensions", 3) == 2; }
+
+Node list_node(const Node& like, const std::vector<double>& numbers) {
+  Node list{Node::Kind::list, "", false, {}, {}, like.origin, like.line, like.column};
+  for (const double v : numbers) list.items.push_back(scalar_node(like, v));
+  return list;
+}
+
+bool write_out_boxes(const KeyTable& table, Node& root, Problems& problems) {
+  const bool flat = is_flat(root);
+  bool fine = true;
+  for (const Key& key : table.keys) {
+    if (!key.by_center || key.leaf() != "min") continue;
+    const Block& list = *key.block;
+    Node* entries = root.find(list.leaf());
+    if (entries == nullptr || entries->kind != Node::Kind::list) continue;
+    for (std::size_t i = 0; i < entries->items.size(); ++i)
+      if (Node& entry = entries->items[i]; entry.kind == Node::Kind::map && has_key(entry, key))
+        fine = write_out_box(key, entry, list.entry_path(i), flat, problems) && fine;
+  }
+  return fine;
+}
+
+void write_out_plane(const KeyTable& table, Node& root) {
+  if (!is_flat(root)) return;
+  const double thickness = number_at(root, "fluid.spacing", 1);
+  double low = 0, high = thickness;
+  // In the order of the table: the domain comes first.
+  for (const Key& key : table.keys) {
+    if (key.flat == FlatY::none) continue;
+    visit(root, key.path, [&](Node& value, Node& entry) {
+      if (value.kind != Node::Kind::list || !has_key(entry, key)) return;
+      FlatY rule = key.flat;
+      // The axis of a cylinder stands on the plane, that of a capsule lies in it.
+      const Node* shape = entry.find("shape");
+      if ((rule == FlatY::low || rule == FlatY::high) && shape && shape->text == "capsule")
+        rule = FlatY::middle;
+      // Of a list with fewer numbers than a place: what a level gauge has.
+      const bool level = key.most > 0 && entry.find("kind") && entry.find("kind")->text == "level";
+      if (value.items.size() == 2 && !level) {
+        const double y = rule == FlatY::zero                           ? 0
+                         : rule == FlatY::low || rule == FlatY::bottom ? low
+                         : rule == FlatY::high || rule == FlatY::top   ? high
+                                                                       : 0.5 * (low + high);
+        value.items.insert(value.items.begin() + 1, scalar_node(value.items[0], y));
+      }
+      double given = 0;
+      if (value.items.size() != 3 || value.items[1].kind != Node::Kind::scalar ||
+          read_number(value.items[1].text, given) != NumberError::none)
+        return;
+      if (rule == FlatY::bottom) low = given, high = given + thickness;
+      if (rule == FlatY::top) high = given;
+    });
+  }
+}
+
+bool write_out(Node& root, Problems& problems) {
+  if (root.kind != Node::Kind::map) return true;
+  const bool gravity = write_out_gravity(root, problems);
+  const bool boxes = write_out_boxes(scene_table(), root, problems);
+  write_out_plane(scene_table(), root);
+  return gravity && boxes;
+}
+
+}  // namespace pbf::inline scene_module
