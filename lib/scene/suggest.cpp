@@ -123,8 +123,11 @@ Suggestion suggest_key(const KeyTable& table, const std::string& path) {
   if (!of_synonym.keys.empty() || !of_synonym.note.empty()) return of_synonym;
   std::vector<std::string> elsewhere;
   const std::string leaf = nearest_word(wrong, leaves);
+  // Who writes an entry of a list means what it may have, no key of the scene around it.
+  const std::string list = in.substr(0, in.find("[]") == in.npos ? 0 : in.find("[]") + 2);
   for (std::size_t i = 0; i < paths.size(); ++i)
-    if (!leaf.empty() && leaves[i] == leaf) elsewhere.push_back(paths[i]);
+    if (!leaf.empty() && leaves[i] == leaf && paths[i].rfind(list, 0) == 0)
+      elsewhere.push_back(paths[i]);
   return {preferred(elsewhere, in), ""};
 }
 

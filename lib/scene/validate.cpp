@@ -102,6 +102,8 @@ class Validator {
     if (key == nullptr) {
       if (const Key* now = table_.find_renamed(table))
         return report(name.place(), path, "is called " + now->path + " now; rename it");
+      // The box of an entry whose kind is not known: what is wrong is said of the kind.
+      if (kind == 0 && name.text == "size" && std::ranges::any_of(in.keys, &Key::by_center)) return;
       std::string what = "unknown key";
       if (!problems_.full()) what += slip(name, value);
       if (!problems_.full() && what == "unknown key") what += suggestion(in, path, name);

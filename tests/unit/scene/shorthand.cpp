@@ -119,6 +119,9 @@ TEST_CASE("boxes: what is wrong with center and size") {
                  "size: has 2 numbers, and center 3; give both two, or both three"));
   CHECK(contains(parse_error(with_bodies("[{shape: sphere, center: [0.5, 0.5, 0.5], size: 1}]")),
                  "bodies[0].size: unknown key"));
+  CHECK_FALSE(
+      contains(parse_error(with_bodies("[{shape: box, center: [0.5, 0.5, 0.5], size: [1, 1, 1]}]")),
+               "size"));
   CHECK(contains(parse_error(kMinimal + without_size("box", "center: [1, 1, 1]")),
                  "obstacles[0].size: missing"));
 }

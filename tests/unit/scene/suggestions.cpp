@@ -67,8 +67,9 @@ TEST_CASE("suggestions: what other programs call a key") {
 
 TEST_CASE("suggestions: nothing where nothing is near") {
   for (const char* path :
-       {"qqqqqqqqqqqq", "gui", "mpi", "x", "", "foo", "solver.abc", "temperature",
-        "solver.preconditioner", "fluid.name_of_it", "cfl_number", "log", "tes", "wind"})
+       {"qqqqqqqqqqqq", "gui", "mpi", "x", "", "foo", "solver.abc", "bodies[].size",
+        "bodies[].colour", "temperature", "solver.preconditioner", "fluid.name_of_it", "cfl_number",
+        "log", "tes", "wind"})
     CHECK(suggested(path) == "");
 }
 
