@@ -1,6 +1,7 @@
 #include "lib/run/run_report.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "kernels/relative_motion.h"
@@ -143,21 +144,32 @@ std::string run_summary(const RunParts& run, const Watch& watch,
   return out;
 }
 
+namespace {
+
+/// With nine digits, which tell any two floats apart.
+double short_number(double value) { return std::strtod(format("%.9g", value).c_str(), nullptr); }
+
+}  // namespace
+
 std::string measure_json(const Diagnostics& m, double wall, std::int64_t frames,
                          const std::vector<StageTime>& stages) {
-  Json out{{"update", m.update}, {"time", m.time}, {"wall", wall}, {"frames", frames}};
+  Json out{{"update", m.update},
+           {"time", short_number(m.time)},
+           {"wall", short_number(wall)},
+           {"frames", frames}};
   for (const Diagnostic& d : diagnostics()) {
     const std::string name = d.name;
-    const Json value = d.number ? Json(d.number(m)) : Json(d.integer(m));
+    const Json value = d.number ? Json(short_number(d.number(m))) : Json(d.integer(m));
     if (name.ends_with("_x") || name.ends_with("_y") || name.ends_with("_z"))
       out[name.substr(0, name.size() - 2)].push_back(value);  // the vector's next component
     else
       out[name] = value;
   }
   for (const WallLoad& l : m.loads)
-    for (const LoadNumber& n : load_numbers()) out["loads"][l.wall][n.name] = n.value(l);
+    for (const LoadNumber& n : load_numbers())
+      out["loads"][l.wall][n.name] = short_number(n.value(l));
   Json& times = out["stages"] = Json::object();
-  for (const StageTime& s : stages) times[s.name] = s.seconds;
+  for (const StageTime& s : stages) times[s.name] = short_number(s.seconds);
   return json_text(out);
 }
 

@@ -140,14 +140,16 @@ def plan_count(pbf, scene):
 
 @pytest.mark.parametrize("arguments", [
     ("blob", "--count", 5000), ("stream", "--count", 131072), ("block",), ("block", "--count", 1),
+    ("block", "--count", 5000), ("block", "--count", 16383), ("stream", "--count", 7),
     ("block", "--size", "0.3,0.3,0.3", "--box", "1,1,1", "--count", 777)], ids=str)
 def test_the_program_takes_a_made_scene_and_counts_the_same(tools, pbf, tmp_path, arguments):
     scene = tmp_path / "s.yaml"
     code, out, _ = tools("make-scene", *arguments, "-o", scene)
     count = int(re.search(r": (\d+) particles", out)[1])
     wanted = arguments[arguments.index("--count") + 1] if "--count" in arguments else 16384
-    assert code == 0 and plan_count(pbf, scene) == count
-    assert abs(count - wanted) <= max(1, 0.15 * wanted)
+    assert code == 0 and plan_count(pbf, scene) == count == wanted
+    warned = subprocess.run([pbf, "plan", scene], capture_output=True, text=True).stdout
+    assert "warnings" not in warned  # no particle too near to one of another body
 
 
 def test_a_picture_becomes_fluid_where_it_is_dark(tools, pbf, tmp_path):

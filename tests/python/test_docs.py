@@ -41,6 +41,20 @@ def test_every_command_explains_itself_with_an_example(tools):
     assert code == 0 and "Example:" in out and all(c in out for c in COMMANDS)
 
 
+def test_every_option_of_the_program_that_the_commands_name_is_there(tools, pbf):
+    said = 0
+    for command in COMMANDS:
+        text = re.sub(r"\s+", " ", tools(command, "--help")[1])
+        for name, words in re.findall(r"(?<!-m )\bpbf (bench|study|stability|run|compare|render|plan)"
+                                      r"((?: +(?:--[a-z-]+|[\w/.,:]+))*)", text):
+            shown = subprocess.run([pbf, name, "--help"], capture_output=True, text=True).stdout
+            for option in re.findall(r"--[a-z-]+", words):
+                said += 1
+                assert re.search(rf"^ +(-\w,)?{option}\b", shown, re.MULTILINE), \
+                    f"{command} names pbf {name} {option}"
+    assert said > 3
+
+
 def run_python(arguments, folder):
     done = subprocess.run([sys.executable, *arguments], cwd=folder, env=ENVIRONMENT,
                           capture_output=True, text=True)

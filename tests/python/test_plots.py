@@ -7,6 +7,7 @@ import subprocess
 import numpy as np
 import pytest
 from conftest import ROOT
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.image import imread
 
 import pbf_tools
@@ -53,6 +54,21 @@ def test_time_per_particle_takes_cpu_time_of_one_thread_and_wall_time_of_more(to
     assert len(out.splitlines()) == 2
     code, _, err = tools("plot-time", tmp_path / "cpu.csv", "--setup", "cpu:7")
     assert code == 2 and "no rows for cpu, 7 threads" in err
+
+
+def test_titles_are_not_cut_at_the_edges(tools, minimal, tmp_path, monkeypatch):
+    figures, save = [], style.save
+    monkeypatch.setattr(style, "save", lambda fig, args: (figures.append(fig), save(fig, args)))
+    long = "A title of many words that nobody would give to so small a picture, but for a test " * 2
+    for words in ((), ("--title", long), ("--grouped",)):
+        assert tools("plot-stages", minimal, *words, "-o", tmp_path / "a.png")[0] == 0
+    assert tools("plot-stages", SEED, "--title", long, "-o", tmp_path / "a.png")[0] == 0
+    for fig in figures:
+        FigureCanvasAgg(fig).draw()
+        text = fig.get_suptitle()
+        box = fig._suptitle.get_window_extent()
+        assert box.x0 >= 0 and box.x1 <= fig.bbox.x1 and box.y1 <= fig.bbox.y1, text
+    assert figures[1].get_suptitle().replace("\n", " ") == long.strip()
 
 
 def test_stages_sum_to_the_whole_update_and_groups_lose_nothing(tools, tmp_path):

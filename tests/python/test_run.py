@@ -62,6 +62,13 @@ def test_a_scene_file_is_run_as_it_stands(minimal):
     assert error.value.exit_code == 2 and error.value.run is None
 
 
+def test_a_run_file_is_run_again(minimal):
+    run = pbf_tools.run(minimal, "again", time__end=0.02)
+    assert np.array_equal(run["position"][1], pbf_tools.open(minimal)["position"][1])
+    with pytest.raises(pbf_tools.BadInput, match="give out="):
+        pbf_tools.run(minimal)
+
+
 def test_particle_files_of_a_dict_are_those_of_the_working_folder(scene, tmp_path):
     (tmp_path / "p.csv").write_text("x,y,z\n0.1,0.1,0.1\n0.2,0.1,0.1\n")
     scene["bodies"] = [{"shape": "file", "path": "p.csv"}]

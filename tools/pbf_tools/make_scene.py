@@ -40,8 +40,8 @@ def numbers(text: str) -> list[float]:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("shape", choices=SHAPES)
     parser.add_argument("-o", "--out", required=True, metavar="SCENE", help="scene file to write")
-    parser.add_argument("--count", type=int, metavar="N", help="particles, as near as a lattice "
-                        "comes (blob, stream, block; default 16384)")
+    parser.add_argument("--count", type=int, metavar="N", help="particles (blob, stream, "
+                        "block; default 16384); the topmost layer may be a part of one")
     parser.add_argument("--size", type=numbers, default=[0.4, 0.4, 0.8], metavar="X,Y,Z",
                         help="of the block, m (default 0.4,0.4,0.8)")
     parser.add_argument("--box", type=numbers, metavar="X,Y,Z",
@@ -102,7 +102,7 @@ REFERENCE_FLUID = {"blob": ([-1.0, 1.0, -0.5], [0.0, 4.0, 0.5]),
 
 
 def _block(args: argparse.Namespace, name: str, count: int) -> tuple[str, int]:
-    """A lattice of particles in a box-shaped body."""
+    """A lattice of particles in a box-shaped body, and what is left over on top of it."""
     if args.shape == "block":
         box, low, high = args.box or [1.6, 0.4, 1.0], [0.0, 0.0, 0.0], args.size
         if any(s > b for s, b in zip(args.size, box)):
@@ -111,28 +111,53 @@ def _block(args: argparse.Namespace, name: str, count: int) -> tuple[str, int]:
     else:
         low, high = REFERENCE_FLUID[args.shape]
         domain, gravity = REFERENCE_BOX, "[0, -9.81, 0]"
-    spacing, count = lattice_spacing(np.subtract(high, low), count)
-    corners = [", ".join(f"{v:.9g}" for v in corner) for corner in (low, high)]
-    body = f"{{shape: block, min: [{corners[0]}], max: [{corners[1]}]}}"
-    return scene_text(name, domain, spacing, body, gravity, args.end), count
+    up = 2 if args.shape == "block" else 1
+    spacing, parts = lattice(np.subtract(high, low), count, up)
+    bodies = []
+    for first, last in parts:
+        corners = [", ".join(f"{v:.12g}" for v in np.array(low) + spacing * np.array(cells))
+                   for cells in (first, last)]
+        bodies.append(f"{{shape: block, min: [{corners[0]}], max: [{corners[1]}]}}")
+    return scene_text(name, domain, spacing, "\n  - ".join(bodies), gravity, args.end), count
 
 
-def lattice_spacing(size: np.ndarray, count: int) -> tuple[float, int]:
-    """The spacing (m) whose lattice in a block of this size (3,), m, holds nearest to `count`
-    particles, and how many it holds. It fills the block exactly along one axis.
+Part = tuple[list[int], list[int]]  # first cell, and the one behind the last, along x, y, z
 
-    >>> lattice_spacing(np.array([0.4, 0.4, 0.8]), 2000)
-    (0.04, 2000)
+
+def lattice(size: np.ndarray, count: int, up: int) -> tuple[float, list[Part]]:
+    """The largest spacing (m) whose lattice in a block of this size (3,), m, has room for `count`
+    particles, and the boxes of cells that hold them: whole layers along axis `up`, whole rows of
+    one more, and the rest of a row. The lattice fills the block exactly along one axis.
+
+    >>> lattice(np.array([0.4, 0.4, 0.8]), 2000, 2)
+    (0.04, [([0, 0, 0], [10, 10, 20])])
+    >>> lattice(np.array([0.4, 0.4, 0.8]), 1995, 2)[1]
+    [([0, 0, 0], [10, 10, 19]), ([0, 0, 19], [10, 9, 20]), ([0, 9, 19], [5, 10, 20])]
     """
     near = float(np.prod(size) / count) ** (1 / 3)
 
-    def cells(d: float) -> int:  # whole ones, as lib/scene/lattice.h counts them
-        return int(np.prod(np.floor(size / d + 1e-6)))
+    def cells(d: float) -> np.ndarray:  # whole ones, as lib/scene/lattice.h counts them
+        return np.floor(size / d + 1e-6).astype(int)
 
-    choices = {round(float(s) / k, 12) for s in size
-               for k in range(max(1, int(0.7 * s / near)), int(1.4 * s / near) + 2)}
-    best = min((d for d in choices if cells(d) > 0), key=lambda d: (abs(cells(d) - count), d))
-    return best, cells(best)
+    spacing = max(d for d in (round(float(s) / k, 12) for s in size
+                              for k in range(1, int(2 * s / near) + 3))
+                  if np.prod(cells(d)) >= count)
+    along, across = (a for a in range(3) if a != up)
+    n = cells(spacing)
+    layers, rest = divmod(count, int(n[along] * n[across]))
+    rows, few = divmod(rest, int(n[along]))
+
+    def part(row: tuple[int, int], length: int, layer: tuple[int, int]) -> Part:
+        box: Part = ([0, 0, 0], [0, 0, 0])
+        for corner in (0, 1):
+            box[corner][across], box[corner][up] = row[corner], layer[corner]
+        box[1][along] = length
+        return box
+
+    whole = part((0, int(n[across])), int(n[along]), (0, layers))
+    top = part((0, rows), int(n[along]), (layers, layers + 1))
+    last = part((rows, rows + 1), few, (layers, layers + 1))
+    return spacing, [p for p, there in ((whole, layers), (top, rows), (last, few)) if there]
 
 
 def _filled(args: argparse.Namespace, out: Path) -> tuple[str, int]:

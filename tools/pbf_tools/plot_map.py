@@ -61,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
     handles = [panels[0, 0].scatter([], [], marker=sign, s=60, color=color, edgecolor="black",
                                     linewidth=0.6) for color, sign in CLASSES.values()]
     style.side_legend(panels[0, -1], handles, list(CLASSES))
-    fig.suptitle(args.title or _title(table, args.value), fontweight="bold")
+    style.figure_title(fig, args.title or _title(table, args.value))
     style.save(fig, args)
     for name in CLASSES:
         print(f"{name:9} {np.count_nonzero(table[verdict] == name):5d} of {len(table)} runs")

@@ -140,5 +140,5 @@ def _finish(fig, axes, handles: dict[str, object], args: argparse.Namespace, tex
     names = {"lambda": "lambda (with density)"} if "density" not in handles else {}
     order = list(reversed(handles))  # as they are stacked
     style.side_legend(axes, [handles[n] for n in order], [names.get(n, n) for n in order])
-    fig.suptitle(args.title or text, fontweight="bold")
+    style.figure_title(fig, args.title or text)
     style.save(fig, args)

@@ -25,7 +25,7 @@ PANEL = " panel"  # a column that no table has: which panel, counted from 0, sho
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("csv", nargs="+", metavar="CSV", help="tables written by pbf study --csv")
+    parser.add_argument("csv", nargs="+", metavar="CSV", help="tables that pbf study has written, OUT/study.csv")
     parser.add_argument("--x", default="seconds_median", metavar="COLUMN",
                         help="run time, s (default %(default)s)")
     parser.add_argument("--x-spread", default="seconds_spread", metavar="COLUMN",
@@ -104,7 +104,7 @@ def run(args: argparse.Namespace) -> int:
                     _detail(whole.where(own)))
     style.side_legend(grid[0][-1])
     if args.panels and args.title:
-        fig.suptitle(args.title)
+        style.figure_title(fig, args.title)
     style.save(fig, args)
     print("\n".join(lines))
     return 0

@@ -40,8 +40,8 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
         overwrite: bool = False, strict: bool = False, max_walltime: float | None = None,
         progress: bool | None = None, program: str | os.PathLike[str] | None = None,
         **overrides: Any) -> Run:
-    """Simulates a scene, a file or a dict of the same keys, into the folder `out` (out/NAME when
-    not given) and opens its run file. A dict is written to OUT.yaml, which `pbf run` takes too.
+    """Simulates a scene, a file, a dict of the same keys or a run file to repeat, into the folder
+    `out` (out/NAME when not given) and opens its run file. A dict is written to OUT.yaml, which `pbf run` takes too.
 
     Overrides are keys of the scene, as those of --set: `solver__iterations=8`,
     `time={"end": 1}`, `**{"bodies[0].velocity": [1, 0, 0]}`; None is off. A scene without
@@ -56,7 +56,12 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
     program are PbfWarning.
     """
     found = pbf.find(program)
-    forecast = plan(scene, program=found, **overrides)
+    if not isinstance(scene, Mapping) and Path(scene).suffix in (".vtkhdf", ".h5"):
+        if out is None:
+            raise BadInput(f"{scene}: give out=, the folder in which this run is repeated")
+        forecast = None  # a run file holds a scene that has been planned, with output
+    else:
+        forecast = plan(scene, program=found, **overrides)
     folder = Path(out) if out is not None else Path("out") / forecast["scene"]
     if isinstance(scene, Mapping):
         if folder.exists() and not (resume or overwrite):  # before its scene is replaced
@@ -64,7 +69,7 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
                            "it, resume=True goes on with it, or give another out")
         scene = write_scene(scene, folder.with_name(folder.name + ".yaml"))
     words = ["run", os.fspath(scene), "--out", str(folder), *set_words(overrides)]
-    if not writes_a_run_file(forecast):
+    if forecast and not writes_a_run_file(forecast):
         words += ["--set", "output={}"]
     words += [word for word, given in (("--resume", resume), ("--overwrite", overwrite),
                                        ("--strict", strict)) if given]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING
 
 import matplotlib
@@ -60,6 +61,13 @@ def title(axes: Axes, text: str, detail: str = "") -> None:
     if detail:
         axes.text(0, 1.015, detail, transform=axes.transAxes, fontsize=8, color="#444444",
                   va="bottom")
+
+
+def figure_title(fig: Figure, text: str) -> None:
+    """In bold above all panels, in as many lines as the width asks for."""
+    across = int(fig.get_figwidth() * 11)  # characters that fit, in bold
+    lines = [part for line in text.split("\n") for part in textwrap.wrap(line, across) or [""]]
+    fig.suptitle("\n".join(lines), fontweight="bold")
 
 
 def side_legend(axes: Axes, *handles_and_labels, **more) -> None:

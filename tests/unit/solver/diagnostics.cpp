@@ -2,6 +2,7 @@
 #include "lib/solver/diagnostics.h"
 
 #include <fstream>
+#include <limits>
 #include <regex>
 #include <set>
 
@@ -42,6 +43,20 @@ TEST_CASE("the page of diagnostics has every row of the table, and no other") {
   std::set<std::string> table;
   for (const Diagnostic& d : diagnostics()) CHECK(table.insert(d.name).second);
   CHECK(on_the_page() == table);
+}
+
+TEST_CASE("numbers of a line of JSON have nine digits, whatever came out of sums") {
+  Diagnostics m;
+  m.time = 0.1 + 0.2;
+  m.kinetic_energy = 1.0 / 3;
+  m.speed_max = std::numeric_limits<double>::quiet_NaN();
+  const std::string json = measure_json(m, 2.0 / 3e5, 2, {{"lambda", 0.1 * 3, 1}});
+  for (const char* part :
+       {"\"time\":0.3,", "\"kinetic_energy\":0.333333333,", "\"speed_max\":null,",
+        "\"wall\":6.66666667e-06,", "\"stages\":{\"lambda\":0.3}"}) {
+    CAPTURE(part, json);
+    CHECK(json.find(part) != std::string::npos);
+  }
 }
 
 TEST_CASE("every diagnostic is a column of the log and a member of each line of JSON") {
