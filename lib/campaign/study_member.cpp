@@ -12,10 +12,10 @@
 #include "lib/io/run_layout.h"
 #include "lib/program/motion.h"
 #include "lib/program/plan.h"
+#include "lib/program/schedule.h"
 #include "lib/run/emit.h"
 #include "lib/run/motion_files.h"
 #include "lib/run/prestabilize.h"
-#include "lib/program/schedule.h"
 #include "lib/run/session.h"
 #include "lib/run/start_neighbors.h"
 

@@ -9,8 +9,8 @@
 #include "lib/base/stage_clock.h"
 #include "lib/io/checkpoint.h"
 #include "lib/io/run_file.h"
-#include "lib/run/guard.h"
 #include "lib/program/schedule.h"
+#include "lib/run/guard.h"
 #include "lib/run/session.h"
 #include "lib/run/step_control.h"
 

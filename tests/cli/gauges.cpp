@@ -128,7 +128,7 @@ TEST_CASE("pbf plan says which gauges a scene does without, and why its levels a
                                     "--set", "solver.levels=auto"},
                                    folder.path());
   REQUIRE(o.code == 0);
-  CHECK(has(o.out, "the scene has pressure gauges"));
+  CHECK(has(o.out, "the scene has a pressure gauge on a wall"));
   const Outcome without = pbf::test::pbf({"plan", "s.yaml", "--set", "gauges=[]"}, folder.path());
   CHECK(has(without.out, "no key gauges"));
   const Outcome off =

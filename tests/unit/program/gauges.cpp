@@ -80,7 +80,8 @@ TEST_CASE("gauges: the edges of a rectangle are level, then up") {
   CHECK(flat.half[1] > 1e6);
 }
 
-TEST_CASE("gauges: pressure on a wall keeps the levels off, and what a scene does without is named") {
+TEST_CASE(
+    "gauges: pressure on a wall keeps the levels off, and what a scene does without is named") {
   const std::string gauge =
       "gauges: [{name: p, kind: pressure, on: x_min, at: [0, 0.5, 0.5], radius: 0.2}]\n";
   const Scene s = parse(kMinimal + gauge + "solver: {levels: auto}\n");

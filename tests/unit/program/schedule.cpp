@@ -30,8 +30,7 @@ TEST_CASE("schedule: the plan forecasts as many pictures as the run draws, at an
   const std::string pictures = GENERATE("0.02", "0.05", "0.07", "0.3", "3");
   const bool written = GENERATE(false, true);
   std::vector<std::string> keys{"render.every=" + pictures};
-  if (written && std::stod(frames) <= std::stod(pictures))
-    keys.push_back("output.every=" + frames);
+  if (written && std::stod(frames) <= std::stod(pictures)) keys.push_back("output.every=" + frames);
   const Scene s = scene(keys);
   const Schedule schedule = make_schedule(s);
   std::int64_t drawn = 0;
