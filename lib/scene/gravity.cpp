@@ -23,14 +23,14 @@ struct Form {
   Tilted gravity;
 };
 
-#define KEY(member) MEMBER(Form, member)
+#define FORM_KEY(member) MEMBER(Form, member)
 
 KeyRows rows() {
   return {{{"", "A scene."}, {"gravity", "Gravity by its magnitude."}},
-          {key(KEY(gravity.magnitude), number("m/s^2", {0, 1e12}), "Its magnitude."),
-           key(KEY(gravity.tilt), number("degrees", {0, 180}),
+          {key(FORM_KEY(gravity.magnitude), number("m/s^2", {0, 1e12}), "Its magnitude."),
+           key(FORM_KEY(gravity.tilt), number("degrees", {0, 180}),
                "The angle between it and straight down, -z."),
-           key(KEY(gravity.toward), one_of({"x_min", "x_max", "y_min", "y_max"}),
+           key(FORM_KEY(gravity.toward), one_of({"x_min", "x_max", "y_min", "y_max"}),
                "The face of the domain to which it is tilted.")}};
 }
 
