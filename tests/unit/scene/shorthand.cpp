@@ -10,11 +10,11 @@
 namespace pbf::scene_test {
 namespace {
 
-const std::string kFlat =
+const std::string kFlatText =
     "dimensions: 2\ndomain: {min: [0, 0], max: [2, 1]}\nfluid: {spacing: 0.05}\n"
     "bodies:\n  - {shape: block, min: [0, 0], max: [0.5, 0.5]}\ntime: {step: 0.002, end: 1}\n";
 
-struct Case {
+struct ShortForm {
   std::string text, message;
 };
 
@@ -26,7 +26,7 @@ std::string without_size(const std::string& name, const std::string& rest) {
 
 TEST_CASE("two dimensions: two numbers for vectors, and one spacing of thickness") {
   const Scene s =
-      parse(kFlat + "gravity: [0, -9.81]\n" +
+      parse(kFlatText + "gravity: [0, -9.81]\n" +
             "obstacles:\n"
             "  - {name: a, shape: box, min: [1, 0], max: [1.2, 0.3], motion: {kind: "
             "velocity, velocity: [0.1, 0]}}\n"
@@ -58,25 +58,27 @@ TEST_CASE("two dimensions: two numbers for vectors, and one spacing of thickness
 }
 
 TEST_CASE("two dimensions: what has three numbers keeps them, and the rest follows it") {
-  Scene s = parse(kFlat, {"domain.min=[0, -0.1, 0]"});
+  Scene s = parse(kFlatText, {"domain.min=[0, -0.1, 0]"});
   CHECK(s.domain.max == Double3{2, -0.1 + 0.05, 1});
   CHECK(s.bodies[0].min == Double3{0, -0.1, 0});
-  s = parse(kFlat, {"domain.max=[2, 0.08, 1]", "bodies[0].velocity=[1, 2]"});
+  s = parse(kFlatText, {"domain.max=[2, 0.08, 1]", "bodies[0].velocity=[1, 2]"});
   CHECK(s.domain.min[1] == 0);
   CHECK(s.bodies[0].max[1] == 0.08);
   CHECK(s.bodies[0].velocity == Double3{1, 0, 2});
-  CHECK(parse(kFlat, {"fluid.spacing=0.02"}).domain.max[1] == 0.02);
+  CHECK(parse(kFlatText, {"fluid.spacing=0.02"}).domain.max[1] == 0.02);
 }
 
 TEST_CASE("two dimensions: two numbers are refused elsewhere") {
-  CHECK(contains(parse_error(kFlat, {"dimensions=3"}),
+  CHECK(contains(parse_error(kFlatText, {"dimensions=3"}),
                  "domain.min: expected 3 numbers [x, y, z], got a list of 2; two, [x, z], do with "
                  "dimensions: 2"));
-  CHECK(contains(parse_error(kFlat, {"domain.max=[2]"}), "expected 3 numbers"));
-  CHECK(contains(parse_error(kFlat, {"bodies[0].max=[2, wide]"}), "element 2: expected a number"));
-  CHECK(contains(parse_error(kFlat + "render: {camera: {target: [1, 1]}}\n"),
+  CHECK(contains(parse_error(kFlatText, {"domain.max=[2]"}), "expected 3 numbers"));
+  CHECK(contains(parse_error(kFlatText, {"bodies[0].max=[2, wide]"}),
+                 "element 2: expected a number"));
+  CHECK(contains(parse_error(kFlatText + "render: {camera: {target: [1, 1]}}\n"),
                  "render.camera.target: expected 3 numbers [x, y, z] or auto, got a list of 2"));
-  CHECK(contains(parse_error(kFlat, {"fluid.spacing=wide"}), "fluid.spacing: expected a number"));
+  CHECK(
+      contains(parse_error(kFlatText, {"fluid.spacing=wide"}), "fluid.spacing: expected a number"));
   CHECK(contains(parse_error("dimensions: 2\ndomain: 5\nbodies: {}\nfluid: [1, 2]\n"), "domain"));
 }
 
@@ -90,13 +92,14 @@ TEST_CASE("boxes: by center and size") {
   CHECK(s.bodies[1].min == Double3{0.25, 0.25, 0.625});
   CHECK(s.obstacles[0].max == Double3{0.6, 0.7, 1});
   CHECK_FALSE(contains(resolved_yaml(s), "size: [1"));
-  const Scene flat = parse(kFlat, {"bodies=[{shape: block, center: [0.5, 0.25], size: [1, 0.5]}]"});
+  const Scene flat =
+      parse(kFlatText, {"bodies=[{shape: block, center: [0.5, 0.25], size: [1, 0.5]}]"});
   CHECK(flat.bodies[0].max == Double3{1, 0.05, 0.5});
 }
 
 TEST_CASE("boxes: what is wrong with center and size") {
   const std::string at = "bodies[0].";
-  const std::vector<Case> cases{
+  const std::vector<ShortForm> cases{
       {"center: [0, 0, 0], size: [1, 1, 1], min: [0, 0, 0]",
        "3:50: bodies[0].size: is given beside min; give center and size, or min and max"},
       {"center: [0, 0, 0], max: [1, 1, 1]", "bodies[0].center: is given beside max"},
@@ -110,13 +113,14 @@ TEST_CASE("boxes: what is wrong with center and size") {
       {"center: [0.5, 0.5, 1], size: [1, 1, 1]",
        "bodies[0].max: reaches z = 1.5, outside the domain"},
   };
-  for (const Case& c : cases) {
+  for (const ShortForm& c : cases) {
     const std::string error = parse_error(with_bodies("[{shape: block, " + c.text + "}]"));
     CAPTURE(c.text, error);
     CHECK(contains(error, c.message));
   }
-  CHECK(contains(parse_error(kFlat, {"bodies=[{shape: block, center: [0, 0, 0], size: [1, 1]}]"}),
-                 "size: has 2 numbers, and center 3; give both two, or both three"));
+  CHECK(
+      contains(parse_error(kFlatText, {"bodies=[{shape: block, center: [0, 0, 0], size: [1, 1]}]"}),
+               "size: has 2 numbers, and center 3; give both two, or both three"));
   CHECK(contains(parse_error(with_bodies("[{shape: sphere, center: [0.5, 0.5, 0.5], size: 1}]")),
                  "bodies[0].size: unknown key"));
   CHECK_FALSE(
@@ -145,7 +149,7 @@ TEST_CASE("gravity: by its magnitude, and tilted") {
 }
 
 TEST_CASE("gravity: what is wrong with its magnitude") {
-  const std::vector<Case> cases{
+  const std::vector<ShortForm> cases{
       {"-9.81",
        "6:10: gravity: is -9.81, and one number is its magnitude, straight down; write "
        "9.81, or the vector [0, 0, -9.81]"},
@@ -157,12 +161,12 @@ TEST_CASE("gravity: what is wrong with its magnitude") {
       {"{toward: z_min}", "gravity.toward: \"z_min\" is not one of x_min, x_max, y_min, y_max"},
       {"{x: 0}", "gravity.x: unknown key"},
   };
-  for (const Case& c : cases) {
+  for (const ShortForm& c : cases) {
     const std::string error = parse_error(kMinimal + "gravity: " + c.text + "\n");
     CAPTURE(c.text, error);
     CHECK(contains(error, c.message));
   }
-  CHECK(contains(parse_error(kFlat + "gravity: {tilt: 5, toward: y_max}\n"),
+  CHECK(contains(parse_error(kFlatText + "gravity: {tilt: 5, toward: y_max}\n"),
                  "with dimensions: 2 nothing moves along y"));
 }
 
