@@ -11,7 +11,7 @@
 namespace pbf::scene_test {
 namespace {
 
-struct Case {
+struct Suggested {
   std::string text, message;
 };
 
@@ -26,7 +26,7 @@ std::string suggested(const std::string& path) {
 }  // namespace
 
 TEST_CASE("suggestions: what other programs call a key") {
-  const std::vector<Case> cases{
+  const std::vector<Suggested> cases{
       {"dt", "time.step"},
       {"time.dt", "time.step"},
       {"timeStep", "time.step"},
@@ -59,7 +59,7 @@ TEST_CASE("suggestions: what other programs call a key") {
       {"output.folder",
        "the folder of a run is given on the command line: pbf run SCENE --out FOLDER"},
   };
-  for (const Case& c : cases) {
+  for (const Suggested& c : cases) {
     CAPTURE(c.text);
     CHECK(suggested(c.text) == c.message);
   }
@@ -113,7 +113,7 @@ TEST_CASE("suggestions: every synonym leads to keys of the scene, and is none of
 
 TEST_CASE("suggestions: in messages, with the entry of the list") {
   const std::string body = "shape: block, min: [0, 0, 0], max: [1, 1, 0.5]";
-  const std::vector<Case> cases{
+  const std::vector<Suggested> cases{
       {"dt: 0.01\n", "6:1: dt: unknown key, did you mean time.step?"},
       {"particle_radius: 0.01\n",
        "unknown key, did you mean fluid.spacing? It is the distance of neighbouring particles, a "
@@ -130,7 +130,7 @@ TEST_CASE("suggestions: in messages, with the entry of the list") {
       {"solver: {levels: true}\n", "\"true\" is not one of off, auto, on; did you mean on?"},
       {"domain.open: [top]\n", "did you mean z_max?"},
   };
-  for (const Case& c : cases) {
+  for (const Suggested& c : cases) {
     CAPTURE(c.text, parse_error(kMinimal + c.text));
     CHECK(contains(parse_error(kMinimal + c.text), c.message));
   }

@@ -8,11 +8,11 @@
 namespace pbf::scene_test {
 namespace {
 
-struct Case {
+struct Slip {
   std::string text, message;
 };
 
-std::string file_error(const std::string& text, const std::string& wanted) {
+std::string refused_file(const std::string& text, const std::string& wanted) {
   const Folder folder;
   const std::string path = folder.write("given", text);
   const std::string error = error_of([&] { load_tree(path, wanted); });
@@ -24,7 +24,7 @@ std::string file_error(const std::string& text, const std::string& wanted) {
 
 TEST_CASE("writing: a number with a unit, a comma, separators, a formula") {
   const std::string s = "; write the number without a unit, the key is in s";
-  const std::vector<std::pair<Case, std::string>> cases{
+  const std::vector<std::pair<Slip, std::string>> cases{
       {{"2 ms", s + ": 0.002"}, "s"},
       {{"2ms", s + ": 0.002"}, "s"},
       {{"1e-3s", s + ": 0.001"}, "s"},
@@ -60,7 +60,7 @@ TEST_CASE("writing: a number with a unit, a comma, separators, a formula") {
 }
 
 TEST_CASE("writing: slips in a scene") {
-  const std::vector<Case> cases{
+  const std::vector<Slip> cases{
       {"output: {every: 20 ms}\n",
        "scene.yaml:6:17: output.every: expected a number, got \"20 ms\"; write the number without "
        "a unit, the key is in s: 0.02"},
@@ -83,7 +83,7 @@ TEST_CASE("writing: slips in a scene") {
       {"solver:\n    iterations: 4\n  sor: 1\n", "line 8 is indented like no line above it"},
       {" name: x\n", "line 6 is indented deeper than the line before it"},
   };
-  for (const Case& c : cases) {
+  for (const Slip& c : cases) {
     CAPTURE(c.text, parse_error(kMinimal + c.text));
     CHECK(contains(parse_error(kMinimal + c.text), c.message));
   }
@@ -108,19 +108,19 @@ TEST_CASE("writing: nothing is said of what is written well") {
 TEST_CASE("writing: a file that another command takes") {
   const std::string study = "scene: a.yaml\ngrid: [{time.step: [1, 2]}]\n";
   const std::string suite = "cases:\n  - {name: a}\n", list = "a.yaml\n# b\nb.yaml time.step=2\n";
-  CHECK(contains(file_error(study, "scene"), "is a study, expected a scene; pbf study "));
-  CHECK(contains(file_error(suite, "scene"),
+  CHECK(contains(refused_file(study, "scene"), "is a study, expected a scene; pbf study "));
+  CHECK(contains(refused_file(suite, "scene"),
                  "is a stability suite, expected a scene; pbf stability --suite "));
-  CHECK(contains(file_error(list, "scene"), "is a list of runs, expected a scene; pbf batch "));
-  CHECK(contains(file_error(list, "study"), "is a list of runs, expected a study; pbf batch "));
-  CHECK(contains(file_error(kMinimal, "study"), "is a scene, expected a study; pbf run "));
-  CHECK(contains(file_error(kMinimal, "stability suite"),
+  CHECK(contains(refused_file(list, "scene"), "is a list of runs, expected a scene; pbf batch "));
+  CHECK(contains(refused_file(list, "study"), "is a list of runs, expected a study; pbf batch "));
+  CHECK(contains(refused_file(kMinimal, "study"), "is a scene, expected a study; pbf run "));
+  CHECK(contains(refused_file(kMinimal, "stability suite"),
                  "is a scene, expected a stability suite; pbf run "));
-  CHECK(contains(file_error(suite, "study"), "is a stability suite, expected a study"));
-  CHECK(file_error(kMinimal, "scene") == "no error");
-  CHECK(file_error(study, "study") == "no error");
-  CHECK(file_error(suite, "stability suite") == "no error");
-  CHECK(file_error("scen: a.yaml\n", "study") == "no error");  // its reader says more
+  CHECK(contains(refused_file(suite, "study"), "is a stability suite, expected a study"));
+  CHECK(refused_file(kMinimal, "scene") == "no error");
+  CHECK(refused_file(study, "study") == "no error");
+  CHECK(refused_file(suite, "stability suite") == "no error");
+  CHECK(refused_file("scen: a.yaml\n", "study") == "no error");  // its reader says more
   CHECK(other_text("", "x", "scene") == "");
   CHECK(other_text("a.yaml\nb: 1\n", "x", "scene") == "");
   CHECK(other_text("a.yaml twice\n", "x", "scene") == "");
