@@ -46,7 +46,7 @@ Case in_domain(Case c, const pbf::Double3& size, const pbf::Double3& corner) {
 }
 
 /// 100 updates, whose loads must be the weight less the change of momentum.
-void check_balance(const Case& c) {
+void check_all_loads(const Case& c) {
   auto solver = make(c);
   const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
   const double mass = plan.mass * double(plan.particles), time = 100 * c.scene.time.step;
@@ -99,7 +99,7 @@ TEST_CASE("loads on walls and obstacles are the weight less the change of moment
     c.scene.viscosity = pbf::Viscosity{0.1};
     c.scene.solver.method = pbf::SolverMethod::chebyshev;
   }
-  check_balance(c);
+  check_all_loads(c);
 }
 
 TEST_CASE("with levels too loads are the weight less the change of momentum") {
@@ -116,7 +116,7 @@ TEST_CASE("with levels too loads are the weight less the change of momentum") {
   c.scene.solver.levels = pbf::LevelsMode::on;
   Placing(c.scene).box({1, 1, 1}, {2.6, 2.4, 2.2}, {0, 1, 0}, 20);
   c = without_inner(here(c), 0.2);
-  check_balance(c);
+  check_all_loads(c);
   const auto energy = [&] {
     auto solver = make(c);
     solver->step(100);
