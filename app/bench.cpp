@@ -92,15 +92,17 @@ std::string line(const BenchRow& r) {
   return out;
 }
 
-/// What is to come, for it may take minutes.
+/// What is to come where it takes more than some seconds; else empty.
 std::string forecast(const BenchOptions& o, std::size_t cases) {
   const BenchSettings& b = o.settings;
   const int updates = b.updates * b.repeats * (b.warmup > 0 ? 2 : 1) + b.warmup;
   const auto most = *std::max_element(o.particles.begin(), o.particles.end());
+  const double seconds = double(most) * updates / 2e6;
+  if (seconds < 3) return "";
   return format(
       "pbf: %zu case%s of %d updates; the largest, %ld particles, takes about %.2g s at 2 million "
       "particles and updates a second (one CPU thread; GPUs are hundreds of times as fast)",
-      cases, cases == 1 ? "" : "s", updates, most, double(most) * updates / 2e6);
+      cases, cases == 1 ? "" : "s", updates, most, seconds);
 }
 
 int command_bench(const BenchOptions& o) {
@@ -130,7 +132,8 @@ int command_bench(const BenchOptions& o) {
       grid_members({grid_axis("n", o.particles), grid_axis("backend", o.backends),
                     grid_axis("precision", o.precisions), grid_axis("threads", o.threads)},
                    1000000, "bench");
-  log.note(forecast(o, scenes.size() * grid.size()));
+  if (const std::string text = forecast(o, scenes.size() * grid.size()); !text.empty())
+    log.note(text);
   for (const LoadedScene& base : scenes)
     for (const GridMember& m : grid) {
       const Backend backend = *named<Backend>(o.backends[m.at[1]]);

@@ -94,7 +94,6 @@ std::vector<Case> cases() {
       {"plan of nothing", {"plan", "none.yaml"}, 2, {"none.yaml"}},
       {"render of no file", {"render", "none.h5"}, 5, {"none.h5"}},
       {"render of a scene", {"render", "tiny.yaml"}, 5, {"tiny.yaml"}},
-      {"config of nothing", {"config"}, 2, {"--example", "--schema"}},
   };
 }
 

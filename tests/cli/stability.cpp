@@ -35,7 +35,7 @@ TEST_CASE("stability: a table and a CSV with a verdict per case, exit 6 when one
       pbf::test::pbf({"stability", "three", "--suite", "suite.yaml"}, folder.path());
   CHECK(none.code == 2);
   CHECK(has(none.err, "no case or group three"));
-  CHECK(pbf::test::pbf({"stability"}, folder.path()).code == 2);  // no suite here
+  CHECK(pbf::test::pbf({"stability", "--suite", "none.yaml"}, folder.path()).code == 2);
 }
 
 TEST_CASE("stability: a map is a CSV with a class per run") {

@@ -7,7 +7,7 @@ using namespace pbf;
 
 namespace {
 
-Scene scene(const char* name, std::vector<std::string> overrides = {}) {
+Scene defect_scene(const char* name, std::vector<std::string> overrides = {}) {
   overrides.push_back("threads=1");
   return load_scene(std::string(PBF_SOURCE_DIR) + "/tests/regression/defects/" + name + ".yaml",
                     overrides)
@@ -35,7 +35,7 @@ const CompareRow& row(const ComparePart& p, const std::string& what) {
 
 TEST_CASE("loads and gauges are compared in the frozen step and behind it, float within tolerance",
           "[compare]") {
-  const Scene s = scene("solids");
+  const Scene s = defect_scene("solids");
   const CompareResult r = compare(s, s, "cpu:float");
   CHECK(r.same());
   CHECK(r.notes.size() == 2);  // the scene and its start
@@ -60,7 +60,7 @@ TEST_CASE("loads and gauges are compared in the frozen step and behind it, float
 
 TEST_CASE("sides that promise the same bits have the same loads and readings", "[compare]") {
   const char* name = GENERATE("solids", "tank");
-  const Scene s = scene(name);
+  const Scene s = defect_scene(name);
   const CompareResult r = compare(s, s, "cpu:double@2");
   CHECK(r.same());
   for (const std::size_t part : {0, 2})
@@ -83,14 +83,14 @@ TEST_CASE("what moves no particle but changes a load or a reading is found there
       {"tank", "obstacles.0.max=[0.2402,0.24,0.06]", "density"}};
   const auto [name, key, stage] = cases[std::size_t(GENERATE(range(0, 8)))];
   CAPTURE(key);
-  const CompareResult r = compare(scene(name), scene(name, {key}), "cpu:float", 1);
+  const CompareResult r = compare(defect_scene(name), defect_scene(name, {key}), "cpu:float", 1);
   CHECK_FALSE(r.same());
   CHECK(r.stage == stage);
 }
 
 TEST_CASE("loads that only one side has are named and not compared", "[compare]") {
-  const CompareResult r =
-      compare(scene("solids"), scene("solids", {"domain.loads=false"}), "cpu:double", 1);
+  const CompareResult r = compare(defect_scene("solids"),
+                                  defect_scene("solids", {"domain.loads=false"}), "cpu:double", 1);
   CHECK(r.same());
   CHECK(r.notes.at(1) ==
         "42 loads and readings of gauges are on one side only and not compared, the first is "
