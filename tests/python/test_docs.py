@@ -63,16 +63,17 @@ def run_python(arguments, folder):
 
 
 @pytest.fixture
-def demo(minimal, tmp_path):
-    """A folder with out/dam_break/run.vtkhdf, as after tools/demo."""
-    (tmp_path / "out/dam_break").mkdir(parents=True)
-    shutil.copy(minimal, tmp_path / "out/dam_break/run.vtkhdf")
+def demo(pbf, tmp_path):
+    """A folder with out/demo/run.vtkhdf, as after tools/demo, but coarser and without pictures."""
+    subprocess.run([pbf, "run", ROOT / "configs/demo.yaml", "--set", "fluid.spacing=0.025",
+                    "--set", "render=off", "--set", "time.end=0.6",
+                    "--quiet", "--out", tmp_path / "out/demo"], check=True, capture_output=True)
     return tmp_path
 
 
 def test_the_example_script_runs(demo):
     out = run_python([ROOT / "tools/example.py"], demo)
-    assert "4000 particles" in out and "energy: 62.78 J at the start" in out
+    assert "6144 particles" in out and re.search(r"energy: \d+\.?\d* J at the start", out)
 
 
 def test_the_tutorial_runs_and_draws_its_figure(tmp_path):
@@ -154,10 +155,62 @@ def test_the_front_page_leads_to_every_other_and_is_short():
     assert not {p.resolve() for p in PAGES} - linked
 
 
-def test_the_scene_of_the_front_page_is_the_minimal_one():
+def test_the_scene_of_the_front_page_is_the_demo():
     shown = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
-    lines = (ROOT / "configs/minimal.yaml").read_text().splitlines(keepends=True)
+    lines = (ROOT / "configs/demo.yaml").read_text().splitlines(keepends=True)
     assert shown == ["".join(line for line in lines if not line.startswith("#"))]
+
+
+def yaml_blocks(page):
+    return re.findall(r"```yaml\n(.*?)```", page.read_text(), re.DOTALL)
+
+
+def test_every_whole_scene_of_the_pages_can_be_planned(tmp_path):
+    planned = 0
+    for page in PAGES:
+        for block in yaml_blocks(page):
+            if re.search("^domain:", block, re.MULTILINE) and re.search("^time:", block, re.MULTILINE):
+                (tmp_path / "scene.yaml").write_text(block)
+                done = subprocess.run([ENVIRONMENT["PBF"], "plan", tmp_path / "scene.yaml"],
+                                      capture_output=True, text=True)
+                assert done.returncode == 0 and not done.stderr, (page, block, done.stderr)
+                planned += 1
+    assert planned >= 3
+
+
+def test_fragments_of_scenes_on_the_pages_fit_into_a_scene(tmp_path):
+    """Blocks with bodies, obstacles or motion, laid over a tank that has room for them."""
+    tank = {"domain": "{min: [0, 0, 0], max: [3.5, 1, 1]}", "fluid": "{spacing: 0.05}",
+            "bodies": "[{shape: block, min: [0, 0, 0], max: [1, 1, 0.3]}]",
+            "time": "{step: 0.002, end: 1}", "gravity": "9.81"}
+    (tmp_path / "gate.csv").write_text("t,x,y,z\n0,0,0,0\n1,0,0,1\n")
+    tried = 0
+    for block in yaml_blocks(ROOT / "configs/README.md"):
+        keys = set(re.findall(r"^(\w+):", block, re.MULTILINE))
+        if not keys & {"bodies", "obstacles"} or "time" in keys or not keys:
+            continue
+        rest = "".join(f"{key}: {value}\n" for key, value in tank.items() if key not in keys)
+        (tmp_path / "scene.yaml").write_text(block + rest)
+        done = subprocess.run([ENVIRONMENT["PBF"], "plan", tmp_path / "scene.yaml"],
+                              capture_output=True, text=True)
+        assert done.returncode == 0, (block, done.stderr)
+        tried += 1
+    assert tried >= 3
+
+
+def test_the_study_and_the_suite_of_the_pages_are_read(tmp_path):
+    blocks = yaml_blocks(ROOT / "configs/README.md")
+    study = next(b for b in blocks if "\ngrid:" in b)
+    suite = next(b for b in blocks if b.startswith("cases:"))
+    shutil.copytree(ROOT / "configs", tmp_path / "configs")
+    (tmp_path / "configs/study/mine.yaml").write_text(study)
+    (tmp_path / "configs/mine.yaml").write_text(suite)
+    done = subprocess.run([ENVIRONMENT["PBF"], "study", tmp_path / "configs/study/mine.yaml", "--list"],
+                          capture_output=True, text=True)
+    assert done.returncode == 0 and done.stdout.count("Jacobi") == 30, done.stderr
+    done = subprocess.run([ENVIRONMENT["PBF"], "stability", "--suite", tmp_path / "configs/mine.yaml",
+                           "--reduced"], capture_output=True, text=True)
+    assert done.returncode == 0 and "overfull_box" in done.stdout, done.stdout + done.stderr
 
 
 def test_the_table_of_commands_has_every_command_of_the_program():
@@ -178,7 +231,7 @@ def test_the_commands_of_the_front_page_run_one_after_the_other(tmp_path):
     (tmp_path / "build/pbf").symlink_to(os.environ["PBF_BINARY"])
     lines = [line for line in (ROOT / "README.md").read_text().splitlines()
              if line.startswith(("build/pbf ", "cp "))]
-    assert len(lines) == 4
+    assert len(lines) == 5
     for line in lines:
         done = subprocess.run(line, shell=True, cwd=tmp_path, capture_output=True, text=True)
         if done.returncode == 4 and ("OpenGL" in done.stderr or "no pictures" in done.stderr):

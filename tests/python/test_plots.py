@@ -95,6 +95,22 @@ def test_plots_of_a_run_file_are_drawn(tools, minimal, tmp_path):
     assert code == 0 and drawn(tmp_path / "c.png") and "1 at most" in out
 
 
+def test_any_column_of_the_log_is_drawn_and_its_extremes_are_printed(tools, minimal, tmp_path):
+    code, out, _ = tools("plot-log", minimal)
+    assert code == 0 and re.search(r"^front_x +m$", out, re.MULTILINE)
+    log = pbf_tools.open(minimal).log
+    code, out, _ = tools("plot-log", minimal, "front_x", "compression_*", "-o", tmp_path / "a.png")
+    assert code == 0 and drawn(tmp_path / "a.png")
+    lines = out.splitlines()
+    assert lines[0] == (f"front_x, run: {log['front_x'].min():.6g} to {log['front_x'].max():.6g} m, "
+                        f"at the end {log['front_x'][-1]:.6g}")
+    assert [line.split(",")[0] for line in lines[1:5]] == [
+        n for n in log if n.startswith("compression_")]
+    tools("to-csv", minimal, "--log", "-o", tmp_path / "log.csv")
+    assert tools("plot-log", minimal, tmp_path / "log.csv", "front_x", "-o",
+                 tmp_path / "b.png")[1].splitlines()[1].split(":")[1] == lines[0].split(":")[1]
+
+
 def test_the_pareto_front_is_that_of_brute_force():
     random = np.random.default_rng(3)
     for _ in range(30):
@@ -248,6 +264,9 @@ def test_the_front_of_a_run_starts_at_one_and_ends_before_the_wall(tools, pbf, t
     (("plot-speedup", SEED, "-o", "a.png", "--dpi", "1e9"), 2, "--dpi"),
     (("plot-stages", SEED, "--state", "late"), 2, "no rows of state late"),
     (("plot-energy", SEED), 2, "no column time"),
+    (("plot-log", SEED, "frame"), 2, "no column time"),
+    (("plot-log", "front_x"), 2, "front_x: no such run file or table"),
+    (("plot-log", "none.vtkhdf", "front_x"), 5, "none.vtkhdf: cannot read the run file"),
     (("plot-front", SEED), 2, "--width"),
     (("plot-nothing",), 2, "invalid choice"),
     (("plot-energy", ROOT / "README.md"), 5, "not an HDF5 file")], ids=str)

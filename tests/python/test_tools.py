@@ -14,7 +14,7 @@ case "$1" in
     for i in 1 2 3; do echo "[$i/3] Building CXX object $i"; done
     [ -z "$BREAK" ] || { echo "FAILED: it is broken"; exit 1; }
     mkdir -p build
-    printf '%s\\n' '#!/bin/sh' 'echo "pbf $*" >>calls; mkdir -p out/dam_break mine' >build/pbf
+    printf '%s\\n' '#!/bin/sh' 'echo "pbf $*" >>calls; mkdir -p out/demo mine' >build/pbf
     chmod +x build/pbf ;;
   *)
     touch build/CMakeCache.txt
@@ -104,14 +104,14 @@ def test_the_demo_builds_the_program_alone_passes_options_on_and_says_what_is_ne
     assert "-DPBF_TESTS=OFF" in calls[0] and "-DCMAKE_BUILD_TYPE=Release" in calls[0]
     assert calls[1:] == [
         "cmake --build build --target pbf",
-        "pbf run configs/dam_break.yaml --out out/dam_break --overwrite --threads 2"]
-    for part in (f"{tree.folder}/build/pbf", f"{tree.folder}/out/dam_break", "frames/", "run.vtkhdf",
-                 "build/pbf render out/dam_break/run.vtkhdf", "cp configs/dam_break.yaml", "tools/test",
+        "pbf run configs/demo.yaml --out out/demo --overwrite --threads 2"]
+    for part in ("build/pbf --help", f"{tree.folder}/out/demo", "frames/", "run.vtkhdf",
+                 "build/pbf render out/demo/run.vtkhdf", "cp configs/demo.yaml", "tools/test",
                  "README.md"):
         assert part in text, part
     _, text, calls = tree("tools/demo", "--", "--out", "mine")
     assert calls[0].count("TESTS") == 0  # a build folder that is there stays as it is
-    assert calls[2] == "pbf run configs/dam_break.yaml --overwrite --out mine"
+    assert calls[2] == "pbf run configs/demo.yaml --overwrite --out mine"
     assert f"{tree.folder}/mine" in text and "render mine/run.vtkhdf" in text
 
 

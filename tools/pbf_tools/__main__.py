@@ -14,6 +14,7 @@ COMMANDS = {
     "plot-speedup": "speed-up of one backend over another against the number of particles",
     "plot-time": "time per particle and update against the number of particles",
     "plot-stages": "share of every stage in the time of an update, stacked",
+    "plot-log": "any columns of the log over time: loads, compression, front",
     "plot-energy": "energies of runs over time",
     "plot-gauges": "readings of gauges over time against experiments",
     "plot-study": "error against run time, with the Pareto front",
@@ -38,7 +39,7 @@ def parser() -> argparse.ArgumentParser:
         description="Plots, compares and converts what pbf writes.",
         epilog="Exit codes: 0 done, 1 internal error, 2 bad command line or table, 4 package not\n"
                "installed, 5 file cannot be read or written, 6 difference found (compare).\n\n"
-               "Example: python -m pbf_tools plot-energy out/dam_break/run.vtkhdf -o energy.png")
+               "Example: python -m pbf_tools plot-energy out/demo/run.vtkhdf -o energy.png")
     commands = top.add_subparsers(metavar="COMMAND", required=True)
     for name, summary in COMMANDS.items():
         module = importlib.import_module("." + name.replace("-", "_"), __package__)

@@ -18,7 +18,7 @@ from .run_file import Run
 from .table import Table, need, read_csv
 
 EXAMPLE = """examples:
-  python -m pbf_tools plot-energy out/dam_break/run.vtkhdf -o energy.png
+  python -m pbf_tools plot-energy out/demo/run.vtkhdf -o energy.png
   python -m pbf_tools plot-energy out/float/run.vtkhdf out/double/run.vtkhdf -o energies.png"""
 COLUMNS = ["time", "kinetic_energy", "potential_energy"]
 

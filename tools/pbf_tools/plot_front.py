@@ -23,7 +23,7 @@ from .run_file import Run
 from .table import Table, need, read_csv
 
 EXAMPLE = """examples:
-  python -m pbf_tools plot-front out/dam_break/run.vtkhdf -o front.png
+  python -m pbf_tools plot-front out/demo/run.vtkhdf -o front.png
   python -m pbf_tools plot-front out/coarse/run.vtkhdf out/fine/run.vtkhdf --reference martin-moyce
   python -m pbf_tools plot-front front.csv --width 0.4 --height 0.8   (columns time, front_x)"""
 

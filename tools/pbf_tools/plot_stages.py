@@ -17,7 +17,7 @@ from .table import Table
 
 EXAMPLE = """examples:
   python -m pbf_tools plot-stages tests/regression/bench/reference_speedup_nvidia_h200.csv -o stages.png
-  python -m pbf_tools plot-stages out/dam_break/run.vtkhdf --grouped"""
+  python -m pbf_tools plot-stages out/demo/run.vtkhdf --grouped"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -16,7 +16,7 @@ from .errors import BadInput, FileError, MissingPackage
 from .run_file import Run
 
 EXAMPLE = """example:
-  python -m pbf_tools surface out/dam_break/run.vtkhdf --frames 0:-1:5 --out surface"""
+  python -m pbf_tools surface out/demo/run.vtkhdf --frames 0:-1:5 --out surface"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -17,12 +17,12 @@ from .run_file import Run
 from .table import Table, write_text
 
 EXAMPLE = """examples:
-  python -m pbf_tools to-csv out/dam_break/run.vtkhdf --log -o log.csv
-  python -m pbf_tools to-csv out/dam_break/run.vtkhdf --frames -1 -o last.csv
-  python -m pbf_tools to-csv out/dam_break/run.vtkhdf --frames -1 --particles -o start.csv
+  python -m pbf_tools to-csv out/demo/run.vtkhdf --log -o log.csv
+  python -m pbf_tools to-csv out/demo/run.vtkhdf --frames -1 -o last.csv
+  python -m pbf_tools to-csv out/demo/run.vtkhdf --frames -1 --particles -o start.csv
       (x,y,z,vx,vy,vz: a body of shape `file` in another scene starts from there; with
        solver.prestabilize: false its compression stays as it is)
-  python -m pbf_tools to-csv out/dam_break/run.vtkhdf --frames all --xyz -o run.xyz"""
+  python -m pbf_tools to-csv out/demo/run.vtkhdf --frames all --xyz -o run.xyz"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -14,8 +14,8 @@ from pathlib import Path
 from .errors import BadInput, FileError, MissingPackage
 
 EXAMPLE = """examples:
-  python -m pbf_tools video out/dam_break                       (dam_break.mp4, .gif without ffmpeg)
-  python -m pbf_tools video out/dam_break/frames --fps 25 --width 640 -o dam_break.gif"""
+  python -m pbf_tools video out/demo                       (demo.mp4, .gif without ffmpeg)
+  python -m pbf_tools video out/demo/frames --fps 25 --width 640 -o demo.gif"""
 FILMS, ANIMATIONS = (".mp4", ".webm", ".mkv"), (".gif", ".png")
 
 
