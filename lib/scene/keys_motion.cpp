@@ -9,12 +9,11 @@ namespace pbf::inline scene_module {
 KeyRows motion_rows() {
   return {
       {{"time", "Step and end of the simulation."},
-       optional_block(
-           KEY(time.adaptive),
-           "Updates of 2^k steps of time.step/2^k, k chosen at every measure so that the "
-           "flow keeps the limits below, or finer: where the guard would stop the run, it "
-           "goes back to the last good state and goes on with half the step.",
-           exact("a comparison makes an update one step")),
+       optional_block(KEY(time.adaptive),
+                      "Divides an update into 2^k equal steps. Every measurement chooses k so that "
+                      "the limits below hold. Where the guard would stop the run, the run goes "
+                      "back to the last good state and continues with half the step.",
+                      exact("a comparison makes an update one step")),
        {"solver", "The constraint solver."},
        optional_block(KEY(tensile), "Artificial pressure against clusters (s_corr)."),
        optional_block(KEY(viscosity), "XSPH viscosity."),
@@ -33,33 +32,33 @@ KeyRows motion_rows() {
            "Time simulated, rounded to whole updates; at least time.step.", required,
            effect(Effect::none)),
        key(KEY(time.motion_begin), number("s", {-1e9, 1e9}),
-           "Time of the motions at the start, for a scene that goes on from a state of another "
-           "run."),
+           "Time at which the prescribed motions start, for a scene that continues from a state of "
+           "another run."),
        key(KEY(time.adaptive->step_min), number("s", {0, 1e9, true}),
-           "No step is shorter; at least time.step/1048576. auto: time.step/64.", automatic),
+           "Shortest step allowed; at least time.step/1048576. auto: time.step/64.", automatic),
        key(KEY(time.adaptive->cfl), number("", {0, 1000, true}),
-           "The fastest particle moves by at most so many h in a step."),
+           "Largest distance, in h, that the fastest particle may move in a step."),
        key(KEY(time.adaptive->force), number("", {0, 1000, true}),
-           "A step is at most so many sqrt(h/a), a the acceleration of gravity or, if that is "
-           "more, the change of the fastest speed between two measures over their time."),
+           "Longest step, in units of sqrt(h/a). a is the acceleration of gravity, or the rate at "
+           "which the largest speed has changed between two measurements, whichever is larger."),
        key(KEY(solver.iterations), number("", {0, 100000}),
-           "Iterations over the constraints per substep; with a tolerance, at least."),
+           "Solver iterations per substep; with a tolerance, the least number of them."),
        key(KEY(solver.tolerance), number("", {0, 1}),
-           "The iterations are repeated while the mean compression that the last one found, before "
-           "it moved the particles, is above this. 0: they are not.",
+           "Mean compression above which the iterations are repeated, as found by the last one "
+           "before it moved the particles. 0: a fixed number of iterations.",
            exact("a threshold, which enters no sum")),
        key(KEY(solver.max_iterations), number("", {1, 100000}),
-           "Iterations per substep at most, a multiple of solver.iterations, where there is a "
-           "tolerance."),
+           "Largest number of iterations per substep with a tolerance; a multiple of "
+           "solver.iterations."),
        key(KEY(solver.substeps), number("", {1, 1000}),
-           "Time steps of time.step/substeps that share one update's sort and neighbour lists, "
-           "as long as little moves meanwhile (pbf plan says how many lists an update makes); "
-           "viscosity and vorticity act once per update."),
+           "Divides an update into this many time steps, which share the sort and the neighbour "
+           "lists as long as little moves (pbf plan says how many lists an update makes). "
+           "Viscosity and vorticity act once per update."),
        key(KEY(solver.levels), one_of({"off", "auto", "on"}),
-           "Corrections over a hierarchy of grids coarser than h, in every iteration: the "
-           "compression of deep fluid then does not grow with its depth. In flows use one "
-           "iteration per substep: more of them raise the energy. auto: from 64 layers of fluid "
-           "on."),
+           "Corrects the density on a hierarchy of grids coarser than h in every iteration, so "
+           "that the compression does not grow with the depth of the fluid. In flows use one "
+           "iteration per substep: more of them raise the energy. auto: on from 64 layers of "
+           "particles."),
        key(KEY(solver.method), one_of({"jacobi", "chebyshev"}),
            "jacobi: every iteration with omega = sor. chebyshev: omega follows Chebyshev's steps "
            "for "
@@ -86,33 +85,35 @@ KeyRows motion_rows() {
            "density: walls count in the density like fluid behind them. clamp: particles are "
            "only put back into the box."),
        key(KEY(solver.wall_margin), number("m", {0, 1e9}),
-           "Distance to a wall at which particles are clamped. What is nearer at the start is "
-           "put there; by more than half of fluid.spacing it is refused."),
+           "Particles are kept at least this far from a wall. Particles that start closer are "
+           "moved; if that takes more than half of fluid.spacing, the scene is refused."),
        key(KEY(solver.velocity_damping), number("", {0, 1}),
            "Factor on every velocity, once per update. 1: no damping.", scaled(root), off_at(1)),
        key(KEY(solver.speed_limit), number("h per update", {0, 1e6}),
-           "Particles that would move farther than this in time.step, however many steps that is "
-           "(time.adaptive), are slowed down to it; how often is counted and reported. 0: no "
+           "Particles that would move farther than this in time.step (however many steps "
+           "time.adaptive makes of it) are slowed down. The run counts and reports them. 0: no "
            "limit.",
            scaled(linear), exact("a bound, which all but a few particles keep")),
        key(KEY(solver.prestabilize), plain,
-           "Steps without time before the first update, while the compression of the start "
-           "(blocks in corners, bodies that overlap) would add to the energy: they move "
-           "particles and leave velocities alone. false: the start as it is given, as for a file "
-           "that continues a run."),
-       key(KEY(solver.fused), plain, "Density and lambda in one loop over the neighbours."),
+           "Removes the compression of the initial state (blocks in corners, bodies that overlap) "
+           "before the first update, by steps that move particles and leave velocities alone. "
+           "false: start as given, for a file that continues another run."),
+       key(KEY(solver.fused), plain,
+           "Computes density and lambda in one loop over the neighbours. false: in two, for timing "
+           "them apart."),
        key(KEY(solver.reproducible), plain,
-           "The GPU gives the CPU's results bit for bit, more slowly. The CPU always does.",
+           "Makes the GPU give the same bits as the CPU, more slowly. The CPU always gives these "
+           "bits.",
            effect(Effect::none)),
        key(KEY(tensile->k), number("h^2", {0, 1000}), "Strength; 1.0e-03 to 1.0e-02 is useful.",
            scaled(quadratic)),
        key(KEY(tensile->delta_q), number("h", {0, 1, true, true}),
-           "Distance at which the artificial pressure has its strength."),
+           "Distance, in h, at which the artificial pressure equals k."),
        key(KEY(tensile->n), number("", {1, 16}), "Exponent."),
        key(KEY(viscosity->xsph), number("", {0, 10}), "Factor c; stable up to 1.", scaled(linear)),
        key(KEY(vorticity->epsilon), number("1/s", {0, 1000}),
-           "Strength; acts up to twice the rate at which neighbours approach, so that it adds no "
-           "more than the flow loses.")}};
+           "Strength. The force is limited to twice the rate at which neighbours approach, so that "
+           "it adds no more energy than the flow loses.")}};
 }
 
 }  // namespace pbf::inline scene_module

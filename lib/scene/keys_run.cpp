@@ -11,26 +11,26 @@ KeyRows run_rows() {
   const std::vector<std::string> floats = words_of<Precision>();
   return {
       {optional_block(KEY(guard),
-                      "Stops a run at a measure that makes no sense, and names the culprit.",
+                      "Stops a run whose measurements are not physical, and names the cause.",
                       on_by_default, effect(Effect::adaptive)),
        optional_block(KEY(output), "Frames in run.vtkhdf.", exact(kNoPhysics)),
        optional_block(KEY(checkpoint),
-                      "The whole state, now and then and at the end. A run that a signal or the "
-                      "wall-time limit stops saves it also without this block.",
+                      "Checkpoints: the complete state, for --resume. A run that is stopped by a "
+                      "signal or the wall-time limit saves one even without this block.",
                       effect(Effect::none)),
        optional_block(KEY(render), "Pictures, drawn while the simulation runs.", exact(kNoPhysics)),
        {"render.camera", "The camera of the pictures."}},
       {key(KEY(measure_every), number("", {1, 2147483647}),
-           "Updates between two measures (density error, energy, momentum, ...)."),
+           "Updates between two measurements (density error, energy, momentum, ...)."),
        key(KEY(guard->speed), number("m/s", {0, 1e30, true}),
            "Fastest speed allowed, in any update. auto: 10 times the sum of the fastest speed at "
            "the start, that of a fall through the domain, and h per update. With "
            "solver.speed_limit, only speeds at a measure count.",
            automatic),
        key(KEY(guard->energy), number("", {0, 1e30, true}),
-           "Growth of kinetic plus potential energy allowed, as a share of what it was at the "
-           "start above the floor and the motion of the whole. auto: 0.1, and more while a "
-           "compressed start comes apart.",
+           "Growth of kinetic plus potential energy allowed, relative to the energy at the start "
+           "above the floor and in motion about the centre of mass. auto: 0.1, and more while a "
+           "compressed start expands.",
            automatic),
        key(KEY(guard->neighbors), number("", {0, 2147483647, true}),
            "Neighbours of one particle allowed. auto: 4 times the most at the start, at least 16 "
@@ -44,11 +44,13 @@ KeyRows run_rows() {
            automatic),
        key(KEY(output->fields), one_of({"velocity", "density"}),
            "Fields besides position and id, as a list."),
-       key(KEY(output->precision), one_of(floats), "Of floating-point fields in the file."),
+       key(KEY(output->precision), one_of(floats),
+           "Precision of the floating-point fields in the file."),
        key(KEY(output->compression), one_of({"none", "gzip"}),
            "gzip: files about 1.45 times smaller, written more slowly."),
        key(KEY(checkpoint->every), number("s", {1e-3, 1e9}),
-           "Wall time between checkpoints, from which --resume goes on after a crash."),
+           "Wall time between two checkpoints. After a crash --resume continues from the last "
+           "one."),
        key(KEY(render->every), number("s", kSeconds),
            "Time between pictures, rounded to whole frames of `output`; not below output.every."),
        key(KEY(render->size), number("px", {16, 16384}), "Width and height of a picture."),
@@ -70,7 +72,7 @@ KeyRows run_rows() {
            "Turn about the vertical axis per second of simulated time."),
        key(KEY(backend), one_of(words_of<Backend>()), "Where the simulation runs.",
            effect(Effect::none)),
-       key(KEY(precision), one_of(floats), "Of the computation."),
+       key(KEY(precision), one_of(floats), "Precision of the computation."),
        key(KEY(threads), number("", {1, 4096}),
            "CPU threads. auto: one below 4096 particles, else one for every 1024, at most all "
            "that the process may use.",
