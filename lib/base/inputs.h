@@ -1,4 +1,4 @@
-// The files that a command has read, so that none of its outputs takes the place of one.
+// The files that a command has read. No output of the command may replace one of them.
 #pragma once
 
 #include <string>

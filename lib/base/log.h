@@ -1,4 +1,4 @@
-// Text for people: to the terminal and, the same, to the run's log file.
+// Messages for people, written to the terminal and to the log file of the run.
 #pragma once
 
 #include <cstdint>

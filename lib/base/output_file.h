@@ -1,4 +1,4 @@
-// Files that are written: which are replaced as a whole, which are written straight, which are
+// Output files: decides which are replaced as a whole, which are written directly and which are
 // refused.
 #pragma once
 

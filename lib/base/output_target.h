@@ -1,4 +1,4 @@
-// Where a path that the user gave for an output leads.
+// Finds the target of an output path that the user gave.
 #pragma once
 
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-// Files that the program names itself, in a folder of results: never links, FIFOs or devices.
+// Files in a folder of results that the program names itself: never links, FIFOs or devices.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What text from outside may hold, and how messages show it. The one place for both.
+// Defines which text is accepted from outside, and how messages show other text.
 #pragma once
 
 #include <optional>

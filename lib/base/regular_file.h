@@ -1,4 +1,4 @@
-// Files that must be regular ones: a pipe waits for its writer, a device may never end.
+// Opens files that must be regular: a pipe would wait for its writer, a device may never end.
 #pragma once
 
 #include <sys/types.h>

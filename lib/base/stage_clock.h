@@ -1,4 +1,4 @@
-// The only timer of the program: a stopwatch, and seconds booked by stage name.
+// The only timer of the program: a stopwatch, and times in seconds booked by stage name.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Threads, and what to say where the system gives no more of them.
+// Starts threads, with a clear error when the system refuses more.
 #pragma once
 
 #include <system_error>

@@ -1,4 +1,4 @@
-// What this build is: version, commit, compiler, features, libraries.
+// Describes this build: version, commit, compiler, features, libraries.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Child processes of `pbf batch`, some of them at a time.
+// Child processes of `pbf batch`, with a limit on how many run at the same time.
 #pragma once
 
 #include <cstddef>

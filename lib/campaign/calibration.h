@@ -1,5 +1,5 @@
-// What a pass takes on this machine, kept in a file by `pbf bench --calibrate`, from which
-// `pbf plan` estimates the time of an update without running anything.
+// The run time of each pass on this machine. `pbf bench --calibrate` stores it in a file, and
+// `pbf plan` uses it to estimate the time of an update without running anything.
 #pragma once
 
 #include <cstdint>

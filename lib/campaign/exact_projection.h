@@ -1,5 +1,5 @@
-// What one update would give with its constraints solved exactly, and how far a solver is from it.
-// lib/solver/DIAGNOSTICS.md says what is compared with what.
+// The exact solution of the constraints of one update, and the distance of a solver's result from
+// it. lib/solver/DIAGNOSTICS.md defines both.
 #pragma once
 
 #include <vector>

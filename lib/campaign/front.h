@@ -1,4 +1,4 @@
-// The front of a dam break in the form that experiments are published in.
+// The front of a dam break in the dimensionless form of published experiments.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Axes of values and every combination of them: the grid of a batch, a study, a map of stability
-// and a benchmark.
+// Axes of values and all their combinations: the grid of a batch, a study, a stability map and a
+// benchmark.
 #pragma once
 
 #include <cstddef>

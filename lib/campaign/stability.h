@@ -1,4 +1,4 @@
-// The stability suite: stiff and extreme scenes, each with what must happen, run and judged.
+// The stability suite: stiff and extreme scenes, each with a required result, run and checked.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A stability map: a scene run over a grid of two of its keys, every run put into a class.
+// A stability map: runs a scene over a grid of two of its keys and classifies every run.
 #pragma once
 
 #include <string>

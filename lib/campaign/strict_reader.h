@@ -1,4 +1,4 @@
-// What study files and suite files share: blocks of known keys, texts, settings of a scene.
+// Shared code of the readers of study and suite files: blocks of known keys, texts, scene settings.
 #pragma once
 
 #include <functional>

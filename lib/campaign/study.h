@@ -1,4 +1,4 @@
-// A study: many runs of one scene with some keys varied, their errors and their run times.
+// A study: many runs of one scene with different values of some keys, their errors and run times.
 #pragma once
 
 #include <optional>

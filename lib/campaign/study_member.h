@@ -1,4 +1,4 @@
-// One run of a study: simulate, time, remember on disk.
+// One run of a study: simulates, measures the time, stores the result.
 #pragma once
 
 #include <functional>

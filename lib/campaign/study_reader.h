@@ -1,4 +1,4 @@
-// What reads a study file: study_file.cpp its keys, study_grid.cpp the runs they make.
+// The reader of study files: study_file.cpp reads the keys, study_grid.cpp makes the runs.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// A solver on the backend that a scene asks for.
+// Creates a solver for the backend of a scene.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// checkpoint.h5: the whole state of a run in working precision, from which it goes on to the last
-// bit. The one before is kept beside it as checkpoint_prev.h5.
+// checkpoint.h5: the whole state of a run in working precision, so that a resumed run gives the
+// same bits. The previous checkpoint is kept as checkpoint_prev.h5.
 #pragma once
 
 #include <optional>

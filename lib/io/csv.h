@@ -1,4 +1,4 @@
-// Reading CSV files: lines, cells, and small tables as a whole. Writing: table.h.
+// Reads CSV files: lines, cells, and small tables. table.h writes them.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// HDF5's C API with owning handles, one process-wide lock and errors as exceptions.
+// HDF5's C API with owning handles, one lock for the process, and errors as exceptions.
 #pragma once
 
 #include <hdf5.h>

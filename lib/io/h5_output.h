@@ -1,4 +1,4 @@
-// Writing HDF5 files that a crash or a full disk cannot spoil. To be used under an h5::Lock.
+// Writes HDF5 files that survive a crash and a full disk. Callers must hold an h5::Lock.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// HDF5 files that may come from elsewhere, open for reading.
+// Opens HDF5 files of unknown origin for reading.
 #pragma once
 
 #include <string>

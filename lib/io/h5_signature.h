@@ -1,4 +1,4 @@
-// Whether a file is HDF5, from its first bytes.
+// Tells from the first bytes whether a file is HDF5.
 #pragma once
 
 #include <istream>

@@ -1,6 +1,6 @@
-// HDF5 files from elsewhere. On some damaged bytes HDF5 1.10.8 goes on for ever, asks for memory
-// without measure, or reads beyond a chunk that is shorter than the dataset says (fuzzing found it
-// in H5Dread); most of that ends in its own errors, some in a crash.
+// Tries HDF5 files of unknown origin first. On some damaged files HDF5 1.10.8 loops for ever,
+// requests huge amounts of memory, or reads beyond a chunk that is shorter than the dataset says
+// (fuzzing found it in H5Dread). Most of these cases end in an error of HDF5, some in a crash.
 #pragma once
 
 #include <functional>

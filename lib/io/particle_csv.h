@@ -1,4 +1,4 @@
-// Particles from text: x,y,z or x,y,z,vx,vy,vz, one particle per line.
+// Reads particles from text: x,y,z or x,y,z,vx,vy,vz, one particle per line.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Particles from files: the bodies of shape `file`.
+// Reads particles from files, for bodies of shape `file`.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Particle files: what bodies of shape `file` read.
+// Writes particle files, which bodies of shape `file` can read.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What the writer and the reader of run.vtkhdf agree on: names, versions, the columns of the log.
+// Definitions shared by writer and reader of run.vtkhdf: names, versions, the columns of the log.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The file behind RunWriter: every HDF5 call that writes run.vtkhdf.
+// The implementation of RunWriter: all HDF5 calls that write run.vtkhdf.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Tables of results: as CSV and JSON with numbers exact to the last bit, and aligned for people.
+// Tables of results: CSV and JSON with exact numbers, and aligned text for people.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Choices of a scene as types.
+// Converts choices of a scene to template arguments.
 #pragma once
 
 #include <type_traits>

@@ -1,4 +1,4 @@
-// The weight of one particle, from the state of rest.
+// The weight of one particle, computed from the rest lattice.
 #pragma once
 
 #include "lib/scene/scene.h"

@@ -1,5 +1,5 @@
 // All features, in the order of their passes in an update. This is the only list: every executor
-// instantiates the passes of these, and a program is built of them.
+// instantiates its passes, and programs are made from it.
 #pragma once
 
 #include "lib/program/features/confinement.h"

@@ -1,5 +1,5 @@
-// Arrays of a step, by name. The program lists those that its passes read or write; whoever
-// allocates, counts, prints or saves arrays goes through that list.
+// Arrays of a step, by name. A program lists the arrays that its passes read or write. All code
+// that allocates, counts, prints or saves arrays uses that list.
 #pragma once
 
 #include <cstdint>

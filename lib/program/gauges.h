@@ -1,4 +1,4 @@
-// The gauges of a scene as the kernels see them.
+// The gauges of a scene in the form that the kernels use.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// What decides the size of arrays on the device; no CUDA header is needed to include this.
+// Constants for the sizes of arrays on the device; this header needs no CUDA header.
 #pragma once
 
 #include <algorithm>

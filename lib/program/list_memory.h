@@ -1,4 +1,4 @@
-// The part of the memory plan that the neighbour lists of the executors take.
+// The memory of the executors' neighbour lists, as a part of the memory plan.
 #pragma once
 
 #include <cstdint>

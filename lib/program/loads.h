@@ -1,4 +1,4 @@
-// Which walls of a scene, and which gauges on them, have their loads summed.
+// Selects the walls, and the gauges on them, whose loads are summed.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// Every array of a run and its peak memory, computed from the scene before anything is allocated:
-// the one count that `pbf plan` prints, that decides whether a run is refused, and that the tests
-// hold the solvers' own count to.
+// Every array of a run and its peak memory, computed from the scene before anything is allocated.
+// `pbf plan` prints it, a run that does not fit is refused by it, and tests compare it with the
+// solvers' own count.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Prescribed motions as functions of time: where obstacles are, and what the motion of the tank
-// does to its fluid. Nothing here remembers anything: a run that goes on or back needs no state.
+// Prescribed motions as functions of time: positions of obstacles, and the effect of the tank's
+// motion on its fluid. Nothing is stored, so a run can continue or go back without extra state.
 #pragma once
 
 #include <array>

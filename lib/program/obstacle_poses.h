@@ -1,4 +1,4 @@
-// Where the obstacles that move are, for who reads a run.
+// Positions and rotations of moving obstacles, for readers of a run.
 #pragma once
 
 #include <string>

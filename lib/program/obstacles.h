@@ -1,4 +1,4 @@
-// The obstacles of a scene as the kernels see them.
+// The obstacles of a scene in the form that the kernels use.
 #pragma once
 
 #include <vector>

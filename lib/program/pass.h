@@ -1,7 +1,7 @@
-// What a pass says of itself, and lists of passes as types. A pass is a struct with
+// The description of a pass, and lists of passes as types. A pass is a struct with
 //   static PassInfo info();
 //   template <class C> static void launch(C& c);   // c: lib/solver/step_context.h
-// and, where it does the work of two that follow each other, `using Fuses = Pair<First, Second>`.
+// A pass that fuses two successive passes also has `using Fuses = Pair<First, Second>`.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // What a scene needs, computed before anything is allocated: program, arrays, grid, files, and what
-// was left out. A pure function of the scene; everything downstream obeys it.
+// is left out. It depends only on the scene; all later code follows it.
 #pragma once
 
 #include <cstdint>

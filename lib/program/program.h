@@ -1,4 +1,4 @@
-// What an update consists of: the one list that is executed, printed, counted and observed.
+// The passes of an update: one list that is executed, printed, counted and traced.
 #pragma once
 
 #include <string>

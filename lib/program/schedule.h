@@ -1,4 +1,4 @@
-// When a run measures, writes and draws, in whole updates.
+// The updates after which a run measures, writes and draws.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// How many threads a CPU solver runs on. How they wait is set in the source file, before main().
+// The number of threads of a CPU solver. The source file sets, before main(), how threads wait.
 #pragma once
 
 #include <cstdint>

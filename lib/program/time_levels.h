@@ -1,5 +1,5 @@
-// An update at level k is 2^k steps of time.step/2^k, sort, lists, iterations and all; level 0 is
-// an update without time.adaptive. All that is scheduled stays in whole updates.
+// An update at level k consists of 2^k complete steps of time.step/2^k (sort, lists, iterations).
+// Level 0 is an update without time.adaptive. Schedules always count whole updates.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Which of many boxes around bodies come near to each other. Header only.
+// Finds pairs of bodies whose bounding boxes are close to each other. Header only.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Bodies of a scene -> particles.
+// Creates the particles of a scene's bodies.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The guard: decides from a measure whether a run still makes sense, and finds out which update,
-// stage and particle spoilt it.
+// The guard: decides from a measurement whether a run is still valid, and finds the update, stage
+// and particle that caused a fault.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What `pbf run` is given: a scene file, or a run file whose scene is to run again.
+// Loads the input of `pbf run`: a scene file, or a run file whose scene is run again.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// The files of prescribed motions.
+// Reads the files of prescribed motions.
 #pragma once
 
 #include <string>

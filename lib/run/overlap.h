@@ -1,4 +1,4 @@
-// Bodies of a start that take the same place.
+// Finds bodies that overlap at the start.
 #pragma once
 
 #include <cstddef>

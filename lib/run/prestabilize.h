@@ -1,4 +1,4 @@
-// The start of a run, relieved of its compression before the first update.
+// Removes the compression of the initial state before the first update.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// What --resume finds in a run folder, and where the run goes on.
+// Examines a run folder for --resume and finds the point at which the run continues.
 #pragma once
 
 #include <cstdint>

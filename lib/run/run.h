@@ -1,4 +1,4 @@
-// One run: a session with everything that a run folder holds.
+// One run: a session and everything that its run folder contains.
 #pragma once
 
 #include <cstdio>

@@ -1,5 +1,5 @@
-// The folder of one run: run.vtkhdf, checkpoints, scene.resolved.yaml, log.txt, frames/, DONE
-// written last. Whoever writes there holds the lock .lock.
+// The folder of one run: run.vtkhdf, checkpoints, scene.resolved.yaml, log.txt, frames/, and DONE,
+// which is written last. A process that writes there holds the lock .lock.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What a run says about itself: one JSON line per measure.
+// The report of a run: one JSON line per measurement.
 #pragma once
 
 #include <cstdint>

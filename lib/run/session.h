@@ -1,4 +1,4 @@
-// The only loop over the updates of a simulation. What happens between them is the observers'.
+// The only loop over the updates of a simulation. Observers do all work between updates.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Asking a run to stop (SIGTERM, SIGINT) or to save its state (SIGUSR1, as Slurm's --signal sends
-// it) sets a flag.
+// Signals set a flag that asks a run to stop (SIGTERM, SIGINT) or to save its state (SIGUSR1, as
+// sent by Slurm's --signal).
 #pragma once
 
 #include <csignal>

@@ -1,4 +1,4 @@
-// How crowded a start is, before its particles are made.
+// Estimates how crowded an initial state is, before its particles are created.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Every place of a scene's start, one by one, without keeping them. Header only.
+// Visits every initial position of a scene without storing them. Header only.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The choice of the time step that follows the flow (time.adaptive).
+// Selects the time step from the flow (time.adaptive).
 #pragma once
 
 #include <cstdint>

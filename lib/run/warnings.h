@@ -1,4 +1,4 @@
-// What is likely to be nonsense, though it is no error: told before a run, during it, at its end.
+// Warnings about input or results that are valid but probably not intended.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The measures of a session, and what follows from them: whether it goes on (guard), and with which
-// step (time.adaptive).
+// The measurements of a session, and the decisions that follow from them: whether the run continues
+// (guard), and with which time step (time.adaptive).
 #pragma once
 
 #include <functional>

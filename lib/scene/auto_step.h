@@ -1,4 +1,4 @@
-// The step of `time.step: auto`.
+// Computes the time step for `time.step: auto`.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// The box around a body that is made of a shape. Header only.
+// The bounding box of a body that is given by a shape. Header only.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The files that commands read, told apart by what is in them.
+// Recognises the kind of an input file from its contents.
 #pragma once
 
 #include <string>

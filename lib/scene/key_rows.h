@@ -1,4 +1,4 @@
-// How the rows of a table of keys are written. Included by the rows alone.
+// Functions that write the rows of a table of keys. Only the files with rows include this header.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// The table of keys of a scene file. One table drives validation, --set, the reference scene, the
-// resolved scene, the JSON Schema, what --resume takes and what a shorter step changes.
+// The table of keys of a scene file. Validation, --set, the reference scene, the resolved scene,
+// the JSON Schema, --resume and shorter time steps all use this one table.
 #pragma once
 
 #include <any>

@@ -1,4 +1,4 @@
-// The lattices of block, sphere and cylinder bodies: which points they hold, and how many. Header
+// The lattices of block, sphere and cylinder bodies: their points and the number of these. Header
 // only.
 #pragma once
 

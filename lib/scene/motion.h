@@ -1,4 +1,4 @@
-// Prescribed motions as plain data. What they mean at a time: lib/program/motion.h.
+// Prescribed motions as plain data. lib/program/motion.h evaluates them.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Numbers as text, both ways, without locale: what scene files and messages show.
+// Converts numbers to text and back without locale, for scene files and messages.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// `--set key.path=value` put into the tree of a scene file, before anything is checked.
+// Puts `--set key.path=value` into the tree of a scene file, before the tree is checked.
 #pragma once
 
 #include <string>

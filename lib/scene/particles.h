@@ -1,4 +1,4 @@
-// Particles of a start on the host.
+// The initial particles on the host.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// The places of a body's particles, one by one in the order of their ids, before any check of them.
-// Header only. Bodies of files are read by particle_file.h.
+// Visits the positions of a body's particles in the order of their ids, before any check of them.
+// Header only. particle_file.h reads the bodies of files.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// All that is wrong with a scene, gathered so that one try shows everything.
+// Collects all problems of a scene, so that one attempt shows everything.
 #pragma once
 
 #include <string>

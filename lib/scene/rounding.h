@@ -1,4 +1,4 @@
-// What rounding does to the motion in a scene, by its precision, box and step alone.
+// Estimates the effect of rounding on the motion in a scene from its precision, box and time step.
 #pragma once
 
 #include "lib/scene/scene.h"

@@ -1,6 +1,6 @@
-// What a run reports about its state, scalars over all particles, and the table of them. The log of
-// the run file, the lines of --log-json, a study's measures, a batch's summary and the help are
-// printed from it; formulas: DIAGNOSTICS.md.
+// The diagnostics of a run (scalars over all particles) and their table. The log of the run file,
+// the lines of --log-json, the measures of a study, the summary of a batch and the help are printed
+// from the table. Formulas: DIAGNOSTICS.md.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// What a backend supplies to the step. A step is a list of passes (lib/program); an executor says
-// how a pass is launched, particles are sorted, lists made, sums reduced, updates repeated and
-// results copied, and nothing else: no physics stands in it.
+// What a backend supplies to the step. A step is a list of passes (lib/program). An executor
+// defines how a pass is launched, particles are sorted, lists made, sums reduced, updates repeated
+// and results copied. It contains no physics.
 #pragma once
 
 #include <concepts>

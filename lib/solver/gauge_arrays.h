@@ -1,4 +1,4 @@
-// What the gauges of a scene have where the particles are.
+// The arrays of a scene's gauges, in the memory of the particles.
 #pragma once
 
 #include <vector>

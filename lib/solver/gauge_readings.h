@@ -1,4 +1,4 @@
-// What gauges read, in SI units, and the data of each of them in the run file.
+// Gauge readings in SI units, and their data in the run file.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// What moves, in the memory of an executor: a table of the steps of a batch, and what of it is the
-// present step's.
+// Moving bodies in the memory of an executor: a table of the steps of a batch, and its row for the
+// present step.
 #pragma once
 
 #include <algorithm>

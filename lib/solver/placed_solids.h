@@ -1,4 +1,4 @@
-// Obstacles with the boxes around them that tell passes which particles they do not concern.
+// Obstacles with bounding boxes, which tell a pass the particles that they cannot affect.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Particle data on the host, as it goes to files and pictures: id order, SI units.
+// Particle data on the host for files and pictures: in the order of ids, SI units.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The interface between the program and a backend: called per step, never per particle.
+// The interface between the program and a backend: called once per step, never per particle.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Looks, on the host, at what each stage of one update left behind. Slow: the whole state is copied
-// after every stage; for the few updates that the guard repeats, and for faults put in by tests.
+// Checks the results of every stage of one update on the host. Slow, because it copies the whole
+// state after each stage; for updates that the guard repeats, and for tests with injected faults.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// What the guard looks for stage by stage, and what it finds: in h from the domain's lower corner
-// and h/s along the scene's axes, sums per particle's mass.
+// The faults that the guard looks for in each stage, and what it finds. Lengths are in h from the
+// domain's lower corner, velocities in h/s along the scene's axes, sums per particle mass.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A state between the arrays of a step and the host.
+// Copies a state between the arrays of a step and the host.
 #pragma once
 
 #include <algorithm>

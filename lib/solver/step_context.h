@@ -1,4 +1,4 @@
-// What a pass is launched with: the arrays of the step by name, its parameters, the executor.
+// The context of a launch: the arrays of the step by name, its parameters, the executor.
 #pragma once
 
 #include <algorithm>

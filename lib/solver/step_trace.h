@@ -1,5 +1,5 @@
-// A state that can be handed from one solver to another, and what every pass of one update left
-// behind: the material of `pbf compare` and of its tests.
+// A state that can be passed from one solver to another, and the results of every pass of one
+// update. `pbf compare` and its tests use them.
 #pragma once
 
 #include <cstdint>

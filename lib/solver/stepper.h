@@ -1,4 +1,4 @@
-// Executes programs: updates at speed, updates pass by pass, and what is summed over a state.
+// Executes programs: updates at full speed, updates pass by pass, and sums over a state.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Copies to the host what the passes of one update leave behind; rounds it at random or replaces it
-// where asked to.
+// Copies the results of the passes of one update to the host; on request it rounds them at random
+// or replaces them.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Loads on walls in SI units, and the table of their numbers: the columns of the log are made
-// from it.
+// Loads on walls in SI units, and the table of their numbers, from which the columns of the log are
+// made.
 #pragma once
 
 #include <string>

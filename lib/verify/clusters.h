@@ -1,4 +1,4 @@
-// Particles that move together are no independent samples: how many there are in effect.
+// Particles that move together are not independent samples: estimates the effective number.
 #pragma once
 
 #include <vector>

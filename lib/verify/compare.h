@@ -1,5 +1,5 @@
-// Is a difference between two runs rounding, chaos or a defect? Everything here knows arrays and
-// their tolerances, nothing of the physics.
+// Decides whether two runs differ by rounding, by chaos or by a defect. This code knows only arrays
+// and tolerances, no physics.
 #pragma once
 
 #include <cstdint>

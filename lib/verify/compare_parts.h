@@ -1,4 +1,4 @@
-// The three parts of a comparison of two solvers, and what they share.
+// The three parts of a comparison of two solvers, and the code that they share.
 #pragma once
 
 #include "lib/program/plan.h"

@@ -1,4 +1,4 @@
-// Loads on walls and obstacles, and what gauges read, as numbers to compare.
+// Loads on walls and obstacles, and gauge readings, as numbers to compare.
 #pragma once
 
 #include <string>

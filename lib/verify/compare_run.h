@@ -1,4 +1,4 @@
-// A comparison of two run files: the files, which frames belong together, and the parts.
+// Compares two run files: the files, the matching frames, and the parts.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Particles as samples: numbers that chaos leaves alone, and the distance of two distributions.
+// Particles as samples: quantities that chaos does not change, and distances of distributions.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Who of many candidates is near a particle, without a branch per candidate: the test for several
-// at once, then the hits moved together in their order.
+// Finds the candidates near a particle without a branch per candidate: it tests several at once,
+// then moves the hits together in their order.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Makes the neighbour lists of one chunk of particles: what one thread needs for it.
+// Makes the neighbour lists of one chunk of particles, with the working memory of one thread.
 #pragma once
 
 #include <algorithm>

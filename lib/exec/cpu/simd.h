@@ -1,5 +1,5 @@
-// Which vector instructions the CPU backend uses: chosen when a solver is made, from what the
-// processor has, so that one program runs everywhere. The results are the same bits with each.
+// Selects the vector instructions of the CPU backend when a solver is created, from those of the
+// processor, so that one program runs everywhere. All give the same bits.
 #pragma once
 
 #include <cstddef>

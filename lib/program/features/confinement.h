@@ -1,5 +1,5 @@
-// Vorticity confinement, behind the last substep of an update: the curl in an array of its own,
-// then what it puts back.
+// Vorticity confinement, after the last substep of an update: one pass computes the curl in its own
+// array, another applies the confinement.
 #pragma once
 
 #include "kernels/pass_vorticity.h"

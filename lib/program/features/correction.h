@@ -1,5 +1,5 @@
-// The position correction of one iteration, with the artificial pressure and the displacement of
-// the levels in its loop.
+// The position correction of one iteration, including the artificial pressure and the displacement
+// by the levels.
 #pragma once
 
 #include "kernels/pass_delta.h"

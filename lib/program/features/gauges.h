@@ -1,5 +1,5 @@
-// Gauges: flow is counted at the end of each update. Pressure is part of the loads; level and
-// velocity are read where they are asked for (lib/solver/gauge_arrays.h).
+// Gauges: flow is counted at the end of each update. Pressure is computed with the loads; level and
+// velocity are computed only when they are read (lib/solver/gauge_arrays.h).
 #pragma once
 
 #include <algorithm>

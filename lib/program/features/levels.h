@@ -1,5 +1,5 @@
-// Levels: between lambda and delta, from the densities of lambda, the multipliers of a hierarchy of
-// grids. Delta moves the particles by their gradient.
+// Levels: between lambda and delta, computes the multipliers of a hierarchy of grids from the
+// densities of lambda. Delta moves the particles along their gradient.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Loads: what the fluid does to walls and obstacles. The passes that move particles book it
-// (kernels/boundary/loads.h); one at the end of an update sums it up.
+// Loads: the forces of the fluid on walls and obstacles. Passes that move particles book them
+// (kernels/boundary/loads.h); a pass at the end of an update adds them up.
 #pragma once
 
 #include <algorithm>

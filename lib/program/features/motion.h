@@ -1,4 +1,4 @@
-// Prediction, order and lists: what every update with pairs begins with.
+// Prediction, sort and lists: the start of every update with pairs.
 #pragma once
 
 #include "kernels/pass_predict.h"

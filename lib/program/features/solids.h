@@ -1,4 +1,4 @@
-// Obstacles, and walls with loads: a boundary of their own, and a second launch of the passes over
+// Obstacles, and walls with loads: their own boundary, and a second launch of the passes over
 // neighbours for the few particles near them.
 #pragma once
 

@@ -1,4 +1,4 @@
-// XSPH viscosity, behind the last substep of an update.
+// XSPH viscosity, after the last substep of an update.
 #pragma once
 
 #include "kernels/pass_xsph.h"

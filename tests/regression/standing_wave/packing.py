@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""What the density sum sees of the arrangement of particles: volume and stiffness of packings.
+"""Computes how the density sum depends on the packing of particles: volume and stiffness.
 
-For every packing, scaled to density 1 under the program's calibration: its volume per particle over
-that of the rest lattice, its stiffness against compression chi = -d rho/d ln V, and the factor
-1 + b/chi on the square of a standing wave's frequency, where rho grows by b e^2 under the pure
-shear diag(e, -e) at constant volume (mean, least and most over directions, 40 random ones in three
-dimensions). README.md says why.
+Every packing is scaled to density 1 with the program's calibration. The columns are its volume per
+particle over that of the rest lattice, its stiffness chi = -d rho/d ln V, and the factor 1 + b/chi
+on the square of a standing wave's frequency. b is the increase of rho by b e^2 under the pure shear
+diag(e, -e) at constant volume (mean, minimum and maximum over directions; 40 random ones in three
+dimensions). README.md explains the theory.
 
     tests/regression/standing_wave/packing.py > packing.csv
 """
