@@ -1,8 +1,8 @@
-"""Differences of two run files: per-particle distances in every common frame, measures over time.
+"""Differences of two run files: particle distances in every common frame, and measures over time.
 
-Frames belong together when their times agree to a thousandth of the step between frames; particles
-by their ids. Distances are in smoothing lengths h of the first run. Two runs of chaotic flow drift
-apart particle by particle even when both are right: judge long runs by the measures.
+Two frames match when their times agree to a thousandth of the interval between frames; particles
+match by id. Distances are in smoothing lengths h of the first run. In chaotic flow, single particles
+of two correct runs move apart, so judge long runs by the measures.
 """
 
 from __future__ import annotations

@@ -1,12 +1,12 @@
-"""Writes a scene: one of the usual set-ups for a number of particles, or an image or a mesh filled
+"""Writes a scene: a standard set-up with a given number of particles, or an image or a mesh filled
 with particles.
 
-blob and stream have the geometry of the scenes of the reference implementation (y up, box 2 x 8 x 2 m), filled at rest density
-with any number of particles; configs/reference_implementation/ has them in the reference implementation's own formulation, over-full and at
-random. block is a dam break.
-image turns the dark pixels of a picture into fluid, the picture standing upright in x and z; mesh
-fills a closed surface (.stl, .ply, .obj, .vtp; needs PyVista). The last two write the particles
-beside the scene, as NAME_particles.h5.
+block is a dam break. blob and stream have the geometry of the scenes of the reference
+implementation (y up, box 2 x 8 x 2 m), filled at rest density. configs/reference_implementation/
+has those scenes in their own formulation, with too many particles at random positions.
+image turns the dark pixels of a picture into fluid; the picture stands upright in x and z. mesh
+fills a closed surface (.stl, .ply, .obj, .vtp; needs PyVista). Both write the particles to
+NAME_particles.h5 beside the scene.
 """
 
 from __future__ import annotations
@@ -41,22 +41,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("shape", choices=SHAPES)
     parser.add_argument("-o", "--out", required=True, metavar="SCENE", help="scene file to write")
     parser.add_argument("--count", type=int, metavar="N", help="particles (blob, stream, "
-                        "block; default 16384); the topmost layer may be a part of one")
+                        "block; default 16384); the top layer may be incomplete")
     parser.add_argument("--size", type=numbers, default=[0.4, 0.4, 0.8], metavar="X,Y,Z",
-                        help="of the block, m (default 0.4,0.4,0.8)")
+                        help="size of the block, m (default 0.4,0.4,0.8)")
     parser.add_argument("--box", type=numbers, metavar="X,Y,Z",
                         help="domain, m (block: default 1.6,0.4,1; image, mesh: default twice the "
                              "fluid along x and y, 1.5 times along z)")
     parser.add_argument("--file", metavar="FILE", help="picture or mesh")
-    parser.add_argument("--width", type=float, metavar="M", help="of picture or mesh along x")
+    parser.add_argument("--width", type=float, metavar="M",
+                        help="width of the picture or mesh along x, m")
     parser.add_argument("--depth", type=float, metavar="M",
-                        help="of the fluid behind a picture, along y (default: --width / 4)")
+                        help="depth of the fluid behind a picture, along y, m (default: "
+                             "--width / 4)")
     parser.add_argument("--threshold", type=float, default=0.5, metavar="B",
                         help="pixels darker than this are fluid, 0..1 (default 0.5)")
     parser.add_argument("--invert", action="store_true", help="bright pixels are fluid")
-    parser.add_argument("--spacing", type=float, metavar="M", help="of the particles (image, mesh)")
+    parser.add_argument("--spacing", type=float, metavar="M",
+                        help="particle spacing, m (image, mesh)")
     parser.add_argument("--end", type=float, default=2, metavar="S",
-                        help="time simulated (default 2 s)")
+                        help="simulated time, s (default 2)")
 
 
 def scene_text(name: str, box: tuple[list[float], list[float]], spacing: float, body: str,

@@ -1,9 +1,9 @@
-"""Readings of the gauges of a run over time, with measured ones laid over.
+"""Gauge readings of a run over time, together with measured ones.
 
-One panel per gauge: levels, velocities (x, y, z), flows, pressures with their peaks. An experiment
-is a CSV table with a column of time; beside the RMS deviation from it stand the correlation and
-how many points both cover. Columns that are named as a gauge ("H2", "H2_m") belong to it; --column
-says so for others.
+There is one panel per gauge: levels, velocities (x, y, z), flows, pressures with their peaks. An
+experiment is a CSV table with a time column. The panel shows the RMS deviation, the correlation and
+the number of points compared. A column named like a gauge ("H2", "H2_m") belongs to it; --column
+assigns other columns.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ EXAMPLE = """examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run_file", metavar="RUN", help="run file with gauges")
     parser.add_argument("--gauge", action="append", metavar="NAME",
-                        help="draw this one (repeatable; default: all)")
+                        help="gauge to draw (repeatable; default: all)")
     parser.add_argument("--experiment", action="append", default=[], metavar="FILE",
                         help="CSV table of measured values (repeatable)")
     parser.add_argument("--column", action="append", default=[], metavar="[GAUGE=]NAME",
                         help="column of a table that belongs to a gauge (repeatable; with one "
                              "gauge drawn its name may be left out)")
     parser.add_argument("--time-column", metavar="NAME",
-                        help="of the tables (default: the first that is named t, time ..., else "
+                        help="time column of the tables (default: the first named t, time ..., else "
                              "the first)")
     parser.add_argument("--scale", type=float, default=1, metavar="F",
                         help="multiply measured values, 1000 for kPa (default 1)")
     parser.add_argument("--shift", type=float, default=0, metavar="S",
                         help="add this to the measured times (s; default 0)")
     parser.add_argument("--peaks", action="store_true",
-                        help="draw the largest values of single updates, too (pressures)")
+                        help="also draw the largest values of single updates (pressures)")
     style.add_output(parser, "gauges.png")
 
 

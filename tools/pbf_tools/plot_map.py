@@ -1,8 +1,8 @@
-"""Stability map: which pairs of settings run stably, which degrade, which the guard stops.
+"""Stability map: which pairs of settings are stable, which degrade, which the guard stops.
 
-A cell per run, told apart by colour and by sign; the number in a cell is the mean compression in
-percent. A panel per number of iterations. Where the step's dimensionless group dt sqrt(g/h) is a
-function of x, it stands below the values of x.
+Each cell is a run; colour and symbol show its class, and the number is the mean compression in
+percent. There is a panel for each number of iterations. If the dimensionless step dt sqrt(g/h)
+depends only on x, it is shown below the values of x.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     for name, default, text in (("x", "x", "setting along x"), ("y", "y", "setting along y"),
                                 ("x-name", "x_key", "name of the setting along x"),
                                 ("y-name", "y_key", "name of the setting along y"),
-                                ("class", "class", "stable, degraded or stopped"),
-                                ("panels", "iterations", "what tells the panels apart"),
-                                ("value", "compression_mean", "number in the cells"),
-                                ("dt-hat", "dt_hat", "dt sqrt(g/h)")):
+                                ("class", "class", "class: stable, degraded or stopped"),
+                                ("panels", "iterations", "value that differs between panels"),
+                                ("value", "compression_mean", "number shown in the cells"),
+                                ("dt-hat", "dt_hat", "dimensionless step dt sqrt(g/h)")):
         parser.add_argument(f"--{name}", default=default, metavar="COLUMN",
-                            help=f"column of: {text} (default %(default)s)")
+                            help=f"column with the {text} (default %(default)s)")
     style.add_output(parser, "map.png")
 
 

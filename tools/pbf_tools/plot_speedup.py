@@ -1,6 +1,6 @@
-"""Speed-up of one backend over another against the number of particles, a curve per scene.
+"""Speed-up of one backend over another against the number of particles, one curve per scene.
 
-Bars show the spread where the benchmark was repeated: least time against greatest.
+If the benchmark was repeated, bars show the spread from the shortest to the longest time.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ EXAMPLE = """example (the scenes of the reference implementation, one CPU thread
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     bench.add_arguments(parser)
     parser.add_argument("--base", default="cpu:1", metavar="SETUP",
-                        help="what 1 is: backend[:threads][:precision] (default %(default)s)")
+                        help="reference (speed-up 1): backend[:threads][:precision] (default %(default)s)")
     parser.add_argument("--target", default="cuda", metavar="SETUP",
-                        help="what is compared with it (default %(default)s)")
+                        help="backend to compare with it (default %(default)s)")
     style.add_output(parser, "speedup.png")
 
 

@@ -1,9 +1,9 @@
-"""Error against run time over the settings of a study, on logarithmic axes.
+"""Error against run time for the settings of a study, on logarithmic axes.
 
-One curve per series (method, backend, precision) through its best settings, the other settings as
-faint points; the settings that no other beats in both time and error, the Pareto front, are joined
-by a thick grey line. Bars show the spread of the repeats. With --panels, tables of different names
-are drawn beside each other, on the same scale of errors.
+Each series (method, backend, precision) has one curve through its best settings; its other settings
+are faint points. A thick grey line joins the Pareto front, the settings that no other beats in both
+time and error. Bars show the spread of the repeats. With --panels, tables with different names are
+drawn side by side, on the same scale of errors.
 """
 
 from __future__ import annotations
@@ -25,23 +25,24 @@ PANEL = " panel"  # a column that no table has: which panel, counted from 0, sho
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("csv", nargs="+", metavar="CSV", help="tables that pbf study has written, OUT/study.csv")
+    parser.add_argument("csv", nargs="+", metavar="CSV",
+                        help="tables written by pbf study, OUT/study.csv")
     parser.add_argument("--x", default="seconds_median", metavar="COLUMN",
                         help="run time, s (default %(default)s)")
     parser.add_argument("--x-spread", default="seconds_spread", metavar="COLUMN",
-                        help="greatest less least time of the repeats, s: the length of the bar "
-                             "about the median (default %(default)s; no bar when not there)")
+                        help="longest minus shortest time of the repeats, s: the length of the bar "
+                             "at the median (default %(default)s; no bar without this column)")
     parser.add_argument("--y", default="compression_mean", metavar="COLUMN",
                         help="error (default %(default)s)")
     parser.add_argument("--series", default="variant,method,backend,precision", metavar="COLUMNS",
-                        help="columns that tell the curves apart (default %(default)s)")
+                        help="columns that distinguish the curves (default %(default)s)")
     parser.add_argument("--pareto", default="pareto", metavar="COLUMN",
                         help="1 where a setting is on the front (default %(default)s); computed "
-                             "from --x and --y when not there, or with --pareto compute")
+                             "from --x and --y without this column or with --pareto compute")
     parser.add_argument("--percent", action=argparse.BooleanOptionalAction, default=None,
                         help="draw the error in percent (default: for compression columns)")
     parser.add_argument("--panels", nargs="+", metavar="NAME", default=[],
-                        help="a name for each CSV: those of one name are drawn in one panel")
+                        help="a name for each CSV; tables with the same name share a panel")
     parser.add_argument("--goal", nargs="+", metavar="TIME:ERROR", type=_goal, default=[],
                         help="mark this time and error with a star; one for each panel, error in "
                              "the unit of the axis")

@@ -1,8 +1,8 @@
-"""Time per particle and update against the number of particles, a curve per way of running.
+"""Time per particle and update against the number of particles, one curve per configuration.
 
-A curve that is flat scales with the particles. The ways differ by backend, threads, precision and,
-on a CPU, the vector instructions. On a CPU with one thread it is CPU time where the table has it,
-else wall time; bars go from the least to the greatest of the repeats.
+A flat curve means that the time grows in proportion to the particles. Each combination of backend,
+threads, precision and (on a CPU) vector instructions has one curve. With one CPU thread it shows CPU
+time if the table has it, otherwise wall time. Bars show the spread of the repeats.
 """
 
 from __future__ import annotations

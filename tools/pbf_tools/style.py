@@ -113,9 +113,10 @@ def plain_log(axis) -> None:
 
 def add_output(parser: argparse.ArgumentParser, default: str) -> None:
     """The options that every plot has."""
+    shown = " (default %(default)s)" if default else " (default: none)"
     parser.add_argument("-o", "--out", default=default, metavar="FILE",
-                        help="picture to write; .png, .svg or .pdf (default %(default)s)")
-    parser.add_argument("--title", help="title instead of the one made from the data")
+                        help="picture to write; .png, .svg or .pdf" + shown)
+    parser.add_argument("--title", help="title instead of the automatic one")
     parser.add_argument("--dpi", type=float, default=150, help="dots per inch of a .png")
 
 
