@@ -55,6 +55,7 @@ void add_box_edges(const View& view, const Projection& projection, double width,
   for (unsigned axis = 0; axis < 3; ++axis)
     for (unsigned from = 0; from < 8; ++from) {
       if (from >> axis & 1) continue;
+      if (view.flat && (axis == 1 || from >> 1 & 1)) continue;  // the nearer face alone
       add_line(projection.to_view(corner_of(view, from)),
                projection.to_view(corner_of(view, from | 1u << axis)), kEdge, projection, width,
                near_depth, out);

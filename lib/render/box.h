@@ -24,7 +24,7 @@ void add_line(Double3 a, Double3 b, std::array<std::uint8_t, 4> color, const Pro
               double width, double near_depth, std::vector<FlatVertex>& out,
               double nearer = kNearer);
 
-/// Appends the 12 edges of the box as lines.
+/// Appends the 12 edges of the box as lines, in two dimensions those of the face before the plane.
 void add_box_edges(const View& view, const Projection& projection, double width, double near_depth,
                    std::vector<FlatVertex>& out);
 

@@ -41,17 +41,6 @@ Double3 default_direction(const View& view, const Double3& up) {
   return std::cos(kElevation) * front + std::sin(kElevation) * up;
 }
 
-using Corners = std::array<Double3, 8>;
-
-Corners frame_of(const View& view) {
-  View framed;
-  framed.domain_min = view.frame ? (*view.frame)[0] : view.domain_min;
-  framed.domain_max = view.frame ? (*view.frame)[1] : view.domain_max;
-  Corners out;
-  for (unsigned bits = 0; bits < 8; ++bits) out[bits] = corner_of(framed, bits);
-  return out;
-}
-
 /// What a box covers of the picture plane at unit depth, for a camera that looks at `target` from
 /// `distance` with the given axes: the least and largest x, then y.
 struct Extent {
@@ -109,6 +98,15 @@ Double3 corner_of(const View& view, unsigned bits) {
   Double3 p{};
   for (unsigned k = 0; k < 3; ++k) p[k] = (bits >> k & 1 ? view.domain_max : view.domain_min)[k];
   return p;
+}
+
+Corners frame_of(const View& view) {
+  View framed;
+  framed.domain_min = view.frame ? (*view.frame)[0] : view.domain_min;
+  framed.domain_max = view.frame ? (*view.frame)[1] : view.domain_max;
+  Corners out;
+  for (unsigned bits = 0; bits < 8; ++bits) out[bits] = corner_of(framed, bits);
+  return out;
 }
 
 Double3 Projection::to_view(const Double3& p) const {

@@ -30,6 +30,10 @@ std::size_t vertical_axis(const Double3& up);
 /// A corner of the domain; bit k of `bits`: whether it lies at the upper end of axis k.
 Double3 corner_of(const View& view, unsigned bits);
 
+/// Those of the part that the default camera shows, in the order of their bits.
+using Corners = std::array<Double3, 8>;
+Corners frame_of(const View& view);
+
 /// Camera of `view` at `time` (s): the orbit turns it about `up` through the target. The default
 /// stands outside the longest horizontal side, a little above and beside, as near as it sees the
 /// whole frame beside the labels (at every time, when it orbits), and looks at its middle; that of

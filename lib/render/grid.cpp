@@ -29,7 +29,8 @@ struct Edge {
   unsigned axis, corner;
 };
 
-/// Those of the floor that are nearer to the eye; in two dimensions the lower and the left one.
+/// Those of the floor that are nearer to the eye; in two dimensions the lower and the left one. Not
+/// at an open face, out of which fluid runs over them.
 std::vector<Edge> edges_of(const View& view, const Projection& projection) {
   const auto vertical = static_cast<unsigned>(vertical_axis(view.up));
   const unsigned down = static_cast<unsigned>(view.up[vertical] < 0) << vertical;
@@ -51,15 +52,15 @@ std::vector<Edge> edges_of(const View& view, const Projection& projection) {
       const auto a = projection.to_pixel(middle(low)), b = projection.to_pixel(middle(high));
       take_high = axis == vertical ? b[0] < a[0] : b[1] > a[1];
     }
-    edges.push_back({axis, take_high ? high : low});
+    if (!view.open[other][take_high]) edges.push_back({axis, take_high ? high : low});
   }
   return edges;
 }
 
 /// Sizes of what labels and lines measure: the floor, or the framed part of the plane.
 double longest_side(const View& view) {
-  const Double3 low = view.frame ? (*view.frame)[0] : view.domain_min;
-  const Double3 high = view.frame ? (*view.frame)[1] : view.domain_max;
+  const Corners frame = frame_of(view);
+  const Double3 &low = frame[0], &high = frame[7];
   const std::size_t without = view.flat ? 1 : vertical_axis(view.up);
   double longest = 0;
   for (std::size_t k = 0; k < 3; ++k)
@@ -109,7 +110,7 @@ void add_floor_grid(const View& view, const Projection& projection, double width
 
 std::vector<EdgeLabels> length_labels(const View& view, const Projection& projection) {
   if (!view.flat && !sees_floor(view, projection)) return {};
-  const double longest = longest_side(view), step = grid_step(longest);
+  const double longest = longest_side(view);
   const LengthUnit unit = unit_for(longest);
   const Double3 box = view.domain_max - view.domain_min;
   std::vector<EdgeLabels> out;
@@ -117,15 +118,17 @@ std::vector<EdgeLabels> length_labels(const View& view, const Projection& projec
     const double low = view.domain_min[axis], high = view.domain_max[axis];
     const unsigned other =
         3 - axis - (view.flat ? 1 : static_cast<unsigned>(vertical_axis(view.up)));
-    const auto label = [&](double at, double digits_of, bool last) {
+    double step = grid_step(longest);
+    if (multiples(low, high, step).size() < 2) step = grid_step(high - low);
+    const auto label = [&](double at, bool last) {
       LengthLabel l;
       Double3 x = corner_of(view, corner);
       x[axis] = at;
       Double3 beyond = x;
       beyond[other] += (corner >> other & 1 ? 1e-3 : -1e-3) * length(box);
       const int decimals =
-          std::max(0, static_cast<int>(-std::floor(std::log10(digits_of / unit.metres) + 1e-9)));
-      l.text = format("%.*f", std::min(decimals, 12), at / unit.metres);
+          std::max(0, static_cast<int>(-std::floor(std::log10(step / unit.metres) + 1e-9)));
+      l.text = at == 0 ? "0" : format("%.*f", std::min(decimals, 12), at / unit.metres);
       if (last) l.text = format("%c = %s %s", "xyz"[axis], l.text.c_str(), unit.word);
       if (projection.to_view(x)[2] <= 1e-6 * length(box)) return LengthLabel{};
       l.place = projection.to_pixel(x);
@@ -137,20 +140,19 @@ std::vector<EdgeLabels> length_labels(const View& view, const Projection& projec
       return l;
     };
     EdgeLabels edge;
-    const auto add = [&](const std::vector<double>& places, double digits_of) {
+    const auto add = [&](const std::vector<double>& places) {
       std::vector<LengthLabel> labels;
       for (const double at : places) {
-        LengthLabel l = label(at, digits_of, at == places.back());
+        LengthLabel l = label(at, at == places.back());
         if (!l.text.empty()) labels.push_back(std::move(l));
       }
       edge.of.push_back(std::move(labels));
     };
     int factor = 1;
     for (int k = 0; multiples(low, high, factor * step).size() >= 2; ++k) {
-      add(multiples(low, high, factor * step), step);
+      add(multiples(low, high, factor * step));
       factor = k % 3 == 1 ? factor / 2 * 5 : 2 * factor;  // 1, 2, 5, 10, 20, 50 ...
     }
-    if (edge.of.empty()) add({low, high}, grid_step(high - low));  // shorter than a step
     out.push_back(std::move(edge));
   }
   return out;

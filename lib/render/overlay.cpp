@@ -31,9 +31,10 @@ void fill(Image& image, double x0, double y0, double x1, double y1, F color) {
   }
 }
 
-struct Box {
+/// Pixels.
+struct TextBox {
   double x0, y0, x1, y1;
-  bool meets(const Box& b) const { return x0 < b.x1 && b.x0 < x1 && y0 < b.y1 && b.y0 < y1; }
+  bool meets(const TextBox& b) const { return x0 < b.x1 && b.x0 < x1 && y0 < b.y1 && b.y0 < y1; }
 };
 
 /// Texts of one size on a picture, none over another.
@@ -41,19 +42,20 @@ class Texts {
  public:
   Texts(Image& image, double size) : image_(image), size_(size) {}
 
-  void keep_free(const Box& box) { taken_.push_back(box); }
+  void keep_free(const TextBox& box) { taken_.push_back(box); }
   /// The room of a text whose capitals' top left corner is at (x, y).
-  Box box_of(const std::string& text, double x, double y) const {
+  TextBox box_of(const std::string& text, double x, double y) const {
     return {x, y - 0.28 * size_, x + text_width(text, size_),
             y + (kCapitalHeight + kDescent) * size_};
   }
-  bool fits(const Box& box) const {
+  bool fits(const TextBox& box) const {
     return box.x0 >= 0 && box.y0 >= 0 && box.x1 <= image_.width && box.y1 <= image_.height &&
-           std::none_of(taken_.begin(), taken_.end(), [&](const Box& b) { return b.meets(box); });
+           std::none_of(taken_.begin(), taken_.end(),
+                        [&](const TextBox& b) { return b.meets(box); });
   }
   /// Draws it where it fits.
   void put(const std::string& text, double x, double y, Rgb color) {
-    const Box box = box_of(text, x, y);
+    const TextBox box = box_of(text, x, y);
     if (text.empty() || !fits(box)) return;
     taken_.push_back(box);
     // Also on fluid it is read.
@@ -66,7 +68,7 @@ class Texts {
  private:
   Image& image_;
   double size_;
-  std::vector<Box> taken_;
+  std::vector<TextBox> taken_;
 };
 
 /// m/s, kg/m^3 -> kg/m³
@@ -97,41 +99,101 @@ void draw_bar(Image& image, Texts& texts, const View& view, const std::string& u
   const double end = image.width - 0.8 * size;
   const double wide = std::max(text_width(title, size), text_width(unit, size));
   const double left = std::min(bar.x0, end - wide);
-  const double low = bar.y0 - (kCapitalHeight + 0.6) * size;
+  const double low = bar.y0 - 1.7 * size;  // the highest number stands half above the bar
   texts.put(unit, left, low, kInk);
   texts.put(title, left, unit.empty() ? low : low - kLine * size, kInk);
 }
 
-/// Where a label's text begins: beside the place, out of the box.
-std::array<double, 2> start_of(const LengthLabel& label, double size) {
+/// Corners of the frame in the picture, in the order of a convex outline; empty where it cannot be
+/// told, for one is behind the eye.
+using Outline = std::vector<std::array<double, 2>>;
+
+Outline outline_of(const View& view, const Projection& projection) {
+  Outline corners;
+  for (const Double3& corner : frame_of(view)) {
+    if (projection.to_view(corner)[2] <= 0) return {};
+    corners.push_back(projection.to_pixel(corner));
+  }
+  std::sort(corners.begin(), corners.end());
+  Outline hull;  // Andrew's monotone chain
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::size_t start = hull.size();
+    for (const auto& p : corners) {
+      while (hull.size() >= start + 2) {
+        const auto &a = hull[hull.size() - 2], &b = hull.back();
+        if ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) > 0) break;
+        hull.pop_back();
+      }
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    std::reverse(corners.begin(), corners.end());
+  }
+  return hull;
+}
+
+/// Whether a line along one of the outline's sides has the box behind it; its axes count too.
+bool is_beside(const TextBox& box, const Outline& outline) {
+  double x0 = 1e300, x1 = -1e300, y0 = 1e300, y1 = -1e300;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const auto &a = outline[i], &b = outline[(i + 1) % outline.size()];
+    x0 = std::min(x0, a[0]), x1 = std::max(x1, a[0]);
+    y0 = std::min(y0, a[1]), y1 = std::max(y1, a[1]);
+    bool beyond = true;
+    for (const double x : {box.x0, box.x1})
+      for (const double y : {box.y0, box.y1})
+        beyond = beyond && (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]) <= 0;
+    if (beyond) return true;
+  }
+  return box.x1 <= x0 || box.x0 >= x1 || box.y1 <= y0 || box.y0 >= y1;
+}
+
+/// Where a label's text begins: beside the place, out of the box, and beside the frame where a
+/// short way leads there.
+std::array<double, 2> start_of(const LengthLabel& label, const Outline& outline, double size) {
   const double wide = 0.5 * text_width(label.text, size), high = 0.5 * kCapitalHeight * size;
-  const double off = 0.5 * size + std::abs(label.away[0]) * wide + std::abs(label.away[1]) * high;
-  return {label.place[0] + off * label.away[0] - wide, label.place[1] + off * label.away[1] - high};
+  const double near = 0.5 * size + std::abs(label.away[0]) * wide + std::abs(label.away[1]) * high;
+  const auto start = [&](double off) {
+    return std::array{label.place[0] + off * label.away[0] - wide,
+                      label.place[1] + off * label.away[1] - high};
+  };
+  for (int k = 0; k < 16; ++k) {
+    const auto [x, y] = start(near + 0.25 * k * size);
+    const TextBox box{x - 0.4 * size, y, x + 2 * wide + 0.4 * size, y + 2 * high};
+    if (is_beside(box, outline)) return {x, y};
+  }
+  return start(near);
 }
 
 void draw_lengths(Image& image, Texts& texts, const View& view, const Projection& projection) {
   const double size = text_size(view.size);
+  const Outline outline = outline_of(view, projection);
   for (const EdgeLabels& edge : length_labels(view, projection)) {
     // As many as keep a distance from each other.
     const auto* chosen = edge.of.empty() ? nullptr : &edge.of.back();
     for (const auto& labels : edge.of) {
       bool apart = true;
-      std::vector<Box> boxes;
+      std::vector<TextBox> boxes;
       for (const LengthLabel& l : labels) {
-        const auto [x, y] = start_of(l, size);
-        Box box = texts.box_of(l.text, x, y);
+        const auto [x, y] = start_of(l, outline, size);
+        TextBox box = texts.box_of(l.text, x, y);
         box.x0 -= 0.5 * size, box.x1 += 0.5 * size;
-        for (const Box& other : boxes) apart = apart && !box.meets(other);
+        for (const TextBox& other : boxes) apart = apart && !box.meets(other);
         boxes.push_back(box);
       }
       if (!apart) continue;
       chosen = &labels;
       break;
     }
-    if (!chosen) continue;
+    const auto fitting = [&](const LengthLabel& l) {
+      const auto [x, y] = start_of(l, outline, size);
+      return texts.fits(texts.box_of(l.text, x, y));
+    };
+    // One number alone measures nothing.
+    if (!chosen || std::count_if(chosen->begin(), chosen->end(), fitting) < 2) continue;
     for (const LengthLabel& l : *chosen) {
-      const auto [x, y] = start_of(l, size);
-      if (view.flat && texts.fits(texts.box_of(l.text, x, y))) {
+      const auto [x, y] = start_of(l, outline, size);
+      if (view.flat && fitting(l)) {
         const double line = std::max(1.0, std::round(0.07 * size));
         const double to_x = l.place[0] + 0.3 * size * l.away[0],
                      to_y = l.place[1] + 0.3 * size * l.away[1];
@@ -139,7 +201,7 @@ void draw_lengths(Image& image, Texts& texts, const View& view, const Projection
              std::min(l.place[1], to_y) - 0.5 * line, std::max(l.place[0], to_x) + 0.5 * line,
              std::max(l.place[1], to_y) + 0.5 * line, [](int) { return kFaintInk; });
       }
-      texts.put(l.text, x, y, kFaintInk);
+      texts.put(l.text, x, y, kInk);
     }
   }
 }
@@ -196,16 +258,17 @@ BarPlace bar_place(std::array<int, 2> picture, const std::vector<Tick>& ticks) {
   double label = 0;
   for (const auto& tick : ticks) label = std::max(label, text_width(tick.label, size));
   const double x1 = picture[0] - 1.3 * size - label;
-  const double above = 0.8 * size + 4 * kLine * size;  // name, time, title and unit
-  return {std::round(x1 - size), std::round(std::max(0.25 * picture[1], above + 0.6 * size)),
-          std::round(x1), std::round(0.82 * picture[1])};
+  const double above = (0.8 + 4 * kLine + 1.1) * size;  // name, time, title and unit
+  return {std::round(x1 - size), std::round(std::max(0.25 * picture[1], above)), std::round(x1),
+          std::round(0.82 * picture[1])};
 }
 
 Room room_of(const View& view) {
   const double size = text_size(view.size), width = view.size[0], height = view.size[1];
   const BarPlace bar = bar_place(view.size, ticks_of(view.range));
   const double column = std::max(width - bar.x0, text_width(about(view.color).word, size));
-  Room room{3.2 * size / width, (column + 3.2 * size) / width, (1.6 + 2 * kLine) * size / height,
+  const double beside = view.flat ? 5.8 : 3.2;  // there the numbers of an axis
+  Room room{beside * size / width, (column + 4.2 * size) / width, (1.6 + 2 * kLine) * size / height,
             2.6 * size / height};
   // In a picture of a few letters' size the fluid comes first.
   const double across = std::min(1.0, 0.5 / (room.left + room.right));

@@ -13,7 +13,8 @@ namespace pbf::inline render_module {
 namespace {
 
 constexpr double kUneven = 1.6;      // speeds over that of energy spread evenly
-constexpr double kPast = 1.5;        // of flow past a sphere, over the sphere's
+constexpr double kPast = 1.25;       // of flow past a solid, over the solid's
+constexpr double kArriving = 0.8;    // of what falls, over the speed at which it arrives
 constexpr double kThrown = 2;        // of what an obstacle throws up, over the obstacle's
 constexpr double kSplash = 12;       // heights, over that of energy spread evenly
 constexpr double kJet = 1.25;        // of a crater's jet, over the fall that made it
@@ -97,7 +98,7 @@ Reach reach_of(const Scene& scene, const Double3& up, std::int64_t particles) {
   const double tank = 2 * greatest_sway(scene, 0, scene.time.end) *
                       std::max({box[0], scene.plane() ? 0.0 : box[1], box[2]});
   Reach out;
-  out.speed = std::max(std::hypot(std::max(kUneven * std::sqrt(2 * spread), fastest),
+  out.speed = std::max(std::hypot(std::max(kUneven * std::sqrt(2 * spread), kArriving * fastest),
                                   kPast * obstacle, std::sqrt(tank)),
                        std::sqrt(2 * g * kCalm * scene.fluid.spacing));
   if (!(out.speed > 0) || !std::isfinite(out.speed)) out.speed = 1;

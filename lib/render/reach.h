@@ -19,11 +19,11 @@ struct Reach {
 /// From the energy per mass e that the start has above the same volume at rest on the floor (walls
 /// closed, obstacles as at the start), which is all kinetic at a speed of sqrt(2 e):
 ///   speed: 1.6 sqrt(2 e), for energy is not spread evenly (1.4 to 1.7 in dam breaks measured), or
-///   that at which one of the bodies arrives, where that is more; together (squared) with 1.5 times
-///   the speed of the fastest place of a moving obstacle, which is that of potential flow past a
-///   sphere, and with sqrt(2 a L) for a tank in which the pull differs from gravity by a along the
-///   longest side L; at least sqrt(2 g d/20), a fall by a twentieth of the spacing, as particles of
-///   a calm pool have (0.6 to 0.9 of it measured).
+///   0.8 of that at which one of the bodies arrives, where that is more, for it is soon slower;
+///   together (squared) with 1.25 times the speed of the fastest place of a moving obstacle (0.8 to
+///   1.3 measured), and with sqrt(2 a L) for a tank in which the pull differs from gravity by a
+///   along the longest side L (0.7 measured); at least sqrt(2 g d/20), a fall by a twentieth of the
+///   spacing, as particles of a calm pool have (0.6 to 0.9 of it measured).
 ///   height: the highest of the start, with the speed of each body upwards; of the surface at rest
 ///   and twelve times e/g, for a part of the fluid may take the energy of the rest; of that surface
 ///   and 1.25 times the height from which a body falls; and of the solids, at all times.
