@@ -96,7 +96,9 @@ void add_floor_grid(const View& view, const Projection& projection, double width
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (axis == vertical) continue;
     const std::size_t other = 3 - axis - vertical;
-    for (const double at : multiples(view.domain_min[axis], view.domain_max[axis], step)) {
+    const double low = view.domain_min[axis], high = view.domain_max[axis];
+    for (const double at : multiples(low, high, step)) {
+      if (at < low + 0.01 * step || at > high - 0.01 * step) continue;  // the box has an edge there
       Double3 a = view.domain_min, b = view.domain_max;
       a[axis] = b[axis] = at;
       a[vertical] = b[vertical] =

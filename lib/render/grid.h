@@ -19,7 +19,8 @@ double grid_step(double longest);
 /// at most 1000.
 std::vector<double> multiples(double low, double high, double step);
 
-/// Appends the lines on the floor, where the eye sees one: at multiples of the grid's step.
+/// Appends the lines on the floor, where the eye sees one: at multiples of the grid's step
+/// between the edges.
 void add_floor_grid(const View& view, const Projection& projection, double width, double near_depth,
                     std::vector<FlatVertex>& out);
 

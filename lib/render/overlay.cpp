@@ -11,7 +11,8 @@ namespace pbf::inline render_module {
 namespace {
 
 constexpr Rgb kInk{42, 48, 58}, kFaintInk{92, 102, 116}, kHalo{246, 248, 250};
-constexpr double kLine = 1.4;  // from one line of text to the next, in sizes of the text
+constexpr double kLine = 1.4;    // from one line of text to the next, in sizes of the text
+constexpr double kLeastBar = 4;  // height of a colour bar, in sizes of the text
 
 std::string number(const char* pattern, int digits, double value) {
   return format(pattern, digits, value == 0 ? 0.0 : value);  // no "-0"
@@ -82,6 +83,7 @@ void draw_bar(Image& image, Texts& texts, const View& view, const std::string& u
   const auto ticks = ticks_of(view.range);
   const double size = text_size(view.size);
   const BarPlace bar = bar_place(view.size, ticks);
+  if (bar.y1 - bar.y0 < kLeastBar * size) return;  // no room
   const ColorMap map = color_map(view.color);
   const double line = std::max(1.0, std::round(0.07 * size));
   fill(image, bar.x0 - line, bar.y0 - line, bar.x1 + line, bar.y1 + line, [](int) { return kInk; });
@@ -258,9 +260,11 @@ BarPlace bar_place(std::array<int, 2> picture, const std::vector<Tick>& ticks) {
   double label = 0;
   for (const auto& tick : ticks) label = std::max(label, text_width(tick.label, size));
   const double x1 = picture[0] - 1.3 * size - label;
-  const double above = (0.8 + 4 * kLine + 1.1) * size;  // name, time, title and unit
+  const double low = 0.82 * picture[1];
+  double above = (0.8 + 4 * kLine + 1.1) * size;  // name, time, title and unit
+  if (low - above < kLeastBar * size) above = (0.8 + 2 * kLine + 0.6) * size;  // name and time
   return {std::round(x1 - size), std::round(std::max(0.25 * picture[1], above)), std::round(x1),
-          std::round(0.82 * picture[1])};
+          std::round(low)};
 }
 
 Room room_of(const View& view) {

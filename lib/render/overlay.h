@@ -45,7 +45,8 @@ struct BarPlace {
 BarPlace bar_place(std::array<int, 2> picture, const std::vector<Tick>& ticks);
 
 /// Draws all of it. `unit` of the colour bar, "" for none; "^2" and "^3" are raised. A text that
-/// does not fit the picture, or would overlap another one, is left out; a long name is cut.
+/// does not fit the picture, or would overlap another one, is left out, and so is the bar of a tiny
+/// picture; a long name is cut.
 void draw_overlay(Image& image, const View& view, const Projection& projection,
                   const std::string& unit, std::int64_t particles, double time);
 

