@@ -14,6 +14,7 @@
 #include "lib/run/motion_files.h"
 #include "lib/scene/load.h"
 #ifdef PBF_HAS_RENDER
+#include "lib/render/quantile_range.h"
 #include "lib/render/renderer.h"
 #endif
 
@@ -31,6 +32,25 @@ int command_render(const RenderOptions&) {
   throw Error(ExitCode::unavailable, "this build draws no pictures; build with -DPBF_RENDER=ON");
 }
 #else
+/// The 1 % and the 99 % quantile of the frames.
+void take_quantiles(View& view, const RunReader& reader, const std::vector<std::int64_t>& frames,
+                    std::int64_t particles, Log& log) {
+  QuantileRange values(view, particles * static_cast<std::int64_t>(frames.size()));
+  for (const std::int64_t k : frames) values.add(reader.frame(k));
+  const std::array<double, 2> range = values.between(0.01, 0.99);
+  const std::string taken = values.stride() == 1 ? ""
+                                                 : format(", of every %ldth particle",
+                                                          static_cast<long>(values.stride()));
+  if (range[0] < range[1]) {
+    view.range = range;
+    log.note(format("range %.9g,%.9g: the 1 %% and 99 %% quantiles of %zu frame%s%s", range[0],
+                    range[1], frames.size(), frames.size() == 1 ? "" : "s", taken.c_str()));
+  } else {
+    log.note(format("range %.9g,%.9g, the scene's own: all values of the frames chosen are %.9g%s",
+                    view.range[0], view.range[1], range[0], taken.c_str()));
+  }
+}
+
 int command_render(const RenderOptions& options) {
   try_run_file(options.run);
   const RunReader reader(options.run);
@@ -49,7 +69,8 @@ int command_render(const RenderOptions& options) {
     throw Error(ExitCode::io, folder.string() + ": cannot be made: " + error.message() +
                                   "; choose another folder with --out");
   Log log(false);
-  const View view = view_of(scene, info.particles);
+  View view = view_of(scene, info.particles);
+  if (by_quantile(options)) take_quantiles(view, reader, frames, info.particles, log);
   Renderer renderer(view);
   log.note(format("%zu picture%s of %dx%d with %s", frames.size(), frames.size() == 1 ? "" : "s",
                   view.size[0], view.size[1], renderer.backend().c_str()));
@@ -76,7 +97,10 @@ void add_render(CLI::App& app, int& code) {
   c->add_option("--camera", o.camera, "position=x,y,z;target=x,y,z;fov=degrees;orbit=degrees/s");
   c->add_option("--color", o.color, "What colours the particles")
       ->check(CLI::IsMember(words_of<ColorBy>()));
-  c->add_option("--range", o.range, "LOW,HIGH of the colour bar, in the unit of the field");
+  c->add_option(
+      "--range", o.range,
+      "LOW,HIGH of the colour bar, in the unit of the field; or quantile: from 1 % to 99 % of "
+      "the particles of all --frames lie in it");
   c->add_option("--out", o.out, "Folder of the pictures; render/ beside the run file");
 }
 

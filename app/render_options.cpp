@@ -91,6 +91,8 @@ std::vector<std::int64_t> select_frames(const std::string& text, std::int64_t fr
   return out;
 }
 
+bool by_quantile(const RenderOptions& options) { return options.range == "quantile"; }
+
 void apply_render_options(const RenderOptions& o, Scene& scene) {
   if (!scene.render) scene.render.emplace();
   Render& render = *scene.render;
@@ -107,10 +109,13 @@ void apply_render_options(const RenderOptions& o, Scene& scene) {
     if (color != render.color) render.range.reset();
     render.color = color;
   }
-  if (!o.range.empty()) {
+  if (by_quantile(o)) {
+    render.range.reset();
+  } else if (!o.range.empty()) {
     double range[2];
     if (!read_numbers(o.range, ',', 2, range) || range[0] >= range[1])
-      bad("--range", o.range, "LOW,HIGH with LOW below HIGH, in the unit of the field");
+      bad("--range", o.range,
+          "LOW,HIGH with LOW below HIGH, in the unit of the field, or quantile");
     render.range = {{range[0], range[1]}};
   }
   if (!o.camera.empty()) read_camera(o.camera, render.camera);

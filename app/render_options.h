@@ -23,6 +23,9 @@ struct RenderOptions {
 /// the ends. Refuses what selects nothing of `frames` frames.
 std::vector<std::int64_t> select_frames(const std::string& text, std::int64_t frames);
 
+/// Whether the range follows from the frames.
+bool by_quantile(const RenderOptions& options);
+
 /// Replaces what --size, --camera, --color and --range say in the scene's render settings. A new
 /// colour without a range gets that field's own range.
 void apply_render_options(const RenderOptions& options, Scene& scene);

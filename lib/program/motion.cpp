@@ -275,4 +275,18 @@ double greatest_pull(const Scene& s, double from, double to) {
   return most;
 }
 
+double greatest_sway(const Scene& s, double from, double to) {
+  double most = 0;
+  if (!s.tank_motion) return most;
+  const double h = s.h(), dt = s.time.step;
+  const Double3 middle = (0.5 / h) * (s.domain.max - s.domain.min), g = (dt / h) * s.gravity;
+  for_times(s, from, to, [&](double t) {
+    const FrameStep<double> f = frame_step(s, {}, t, dt);
+    const Vec3<double> v =
+        f.accelerated({middle[0], s.plane() ? 0.0 : middle[1], middle[2]}, {0.0, 0.0, 0.0});
+    most = std::max(most, h / dt * length(Double3{v.x, v.y, v.z} - g));
+  });
+  return most;
+}
+
 }  // namespace pbf::inline program_module

@@ -51,5 +51,7 @@ FrameStep<double> frame_step(const Scene& scene, const Axes& axes, double time, 
 double fastest_obstacle(const Scene& scene, double from, double to);
 /// m/s^2: what a particle at rest feels at most, gravity included, between two times.
 double greatest_pull(const Scene& scene, double from, double to);
+/// m/s^2: by how much that differs from gravity at most, in the middle of the domain.
+double greatest_sway(const Scene& scene, double from, double to);
 
 }  // namespace pbf::inline program_module

@@ -9,10 +9,8 @@
 namespace pbf::inline render_module {
 namespace {
 
-constexpr std::array<std::uint8_t, 4> kEdge{92, 102, 116, 0}, kFloor{218, 224, 230, 150};
+constexpr std::array<std::uint8_t, 4> kEdge{92, 102, 116, 0}, kFloor{218, 224, 230, 0};
 
-// Lines are drawn on the same lines of sight, nearer by this factor: they win over surfaces.
-constexpr double kNearer = 0.999;
 // The floor is farther by this one: obstacles that lie on it win.
 constexpr double kFarther = 1.0003;
 
@@ -31,7 +29,7 @@ void add_quad(const std::array<FlatVertex, 4>& q, std::vector<FlatVertex>& out) 
 }  // namespace
 
 void add_line(Double3 a, Double3 b, std::array<std::uint8_t, 4> color, const Projection& projection,
-              double width, double near_depth, std::vector<FlatVertex>& out) {
+              double width, double near_depth, std::vector<FlatVertex>& out, double nearer) {
   if (a[2] > b[2]) std::swap(a, b);
   if (b[2] <= near_depth) return;
   if (a[2] < near_depth) a = a + (near_depth - a[2]) / (b[2] - a[2]) * (b - a);
@@ -47,7 +45,7 @@ void add_line(Double3 a, Double3 b, std::array<std::uint8_t, 4> color, const Pro
     const double s = half * p[2];
     const Double3 place{p[0] + s * (along * dx - aside * dy), p[1] + s * (along * dy + aside * dx),
                         p[2]};
-    return vertex(kNearer * place, color);
+    return vertex(nearer * place, color);
   };
   add_quad({moved(a, -1, -1), moved(a, -1, 1), moved(b, 1, -1), moved(b, 1, 1)}, out);
 }
@@ -57,27 +55,34 @@ void add_box_edges(const View& view, const Projection& projection, double width,
   for (unsigned axis = 0; axis < 3; ++axis)
     for (unsigned from = 0; from < 8; ++from) {
       if (from >> axis & 1) continue;
+      if (view.flat && (axis == 1 || from >> 1 & 1)) continue;  // the nearer face alone
       add_line(projection.to_view(corner_of(view, from)),
                projection.to_view(corner_of(view, from | 1u << axis)), kEdge, projection, width,
                near_depth, out);
     }
 }
 
+bool floor_is_open(const View& view) {
+  const std::size_t k = vertical_axis(view.up);
+  return view.open[k][view.up[k] < 0];
+}
+
+bool sees_floor(const View& view, const Projection& projection) {
+  const std::size_t k = vertical_axis(view.up);
+  if (view.flat || floor_is_open(view)) return false;
+  return view.up[k] > 0 ? projection.eye[k] > view.domain_min[k]
+                        : projection.eye[k] < view.domain_max[k];
+}
+
 void add_floor(const View& view, const Projection& projection, std::vector<FlatVertex>& out) {
-  unsigned vertical = 0;
-  for (unsigned k = 1; k < 3; ++k)
-    if (std::abs(view.up[k]) > std::abs(view.up[vertical])) vertical = k;
-  const bool upward = view.up[vertical] > 0;
-  const double level = (upward ? view.domain_min : view.domain_max)[vertical];
-  if ((projection.eye[vertical] - level) * (upward ? 1 : -1) <= 0) return;
+  if (!sees_floor(view, projection)) return;
+  const auto vertical = static_cast<unsigned>(vertical_axis(view.up));
   const unsigned u = (vertical + 1) % 3, w = (vertical + 2) % 3;
-  const Double3 box = view.domain_max - view.domain_min;
-  const double cell = std::max(box[u], box[w]) / 10;
   std::array<FlatVertex, 4> quad;
   for (unsigned i = 0; i < 4; ++i) {
-    const unsigned bits = (i & 1) << u | (i >> 1) << w | static_cast<unsigned>(!upward) << vertical;
-    quad[i] = vertex(kFarther * projection.to_view(corner_of(view, bits)), kFloor,
-                     (i & 1) * box[u] / cell, (i >> 1) * box[w] / cell);
+    const unsigned bits =
+        (i & 1) << u | (i >> 1) << w | static_cast<unsigned>(view.up[vertical] < 0) << vertical;
+    quad[i] = vertex(kFarther * projection.to_view(corner_of(view, bits)), kFloor);
   }
   add_quad(quad, out);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lib/base/error.h"
+#include "lib/render/overlay.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline render_module {
@@ -13,8 +14,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kElevation = 20 * kDegree, kBeside = 24 * kDegree;  // of the default view
-constexpr double kMargin = 0.92;    // share of the free part of the picture that the box may fill
-constexpr double kBarShare = 0.12;  // share of the width kept for the colour bar
 
 /// Right, up and forward of an eye that looks along `forward` (not unit).
 void set_axes(Projection& p, const Double3& forward, const Double3& up) {
@@ -32,12 +31,8 @@ void set_axes(Projection& p, const Double3& forward, const Double3& up) {
 Double3 default_direction(const View& view, const Double3& up) {
   if (view.flat) return {0, -1, 0};
   const Double3 box = view.domain_max - view.domain_min;
-  // The axis nearest to `up` is the vertical one; the longest of the others lies across the
-  // picture.
-  const std::size_t vertical = static_cast<std::size_t>(
-      std::max_element(up.begin(), up.end(),
-                       [](double a, double b) { return std::abs(a) < std::abs(b); }) -
-      up.begin());
+  // The longest of the horizontal axes lies across the picture.
+  const std::size_t vertical = vertical_axis(up);
   const std::size_t a = vertical == 0 ? 1 : 0, b = vertical == 2 ? 1 : 2;
   Double3 across{};
   across[box[b] > box[a] ? b : a] = 1;
@@ -46,13 +41,13 @@ Double3 default_direction(const View& view, const Double3& up) {
   return std::cos(kElevation) * front + std::sin(kElevation) * up;
 }
 
-/// What the box covers of the picture plane at unit depth, for a camera that looks at `target` from
+/// What a box covers of the picture plane at unit depth, for a camera that looks at `target` from
 /// `distance` with the given axes: the least and largest x, then y.
 struct Extent {
   double x0 = 1e300, x1 = -1e300, y0 = 1e300, y1 = -1e300;
-  void add(const Projection& axes, const View& view, const Double3& target, double distance) {
-    for (unsigned corner = 0; corner < 8; ++corner) {
-      const Double3 q = corner_of(view, corner) - target;
+  void add(const Projection& axes, const Corners& box, const Double3& target, double distance) {
+    for (const Double3& corner : box) {
+      const Double3 q = corner - target;
       const double depth = distance + dot(q, axes.forward);
       if (depth <= 0) x1 = y1 = 1e300, x0 = y0 = -1e300;  // behind the eye: far too near
       x0 = std::min(x0, dot(q, axes.right) / depth);
@@ -63,37 +58,55 @@ struct Extent {
   }
 };
 
-/// Least distance from the target at which the box fits the free part of the picture for every one
-/// of the axes; sets the shift that centres it there.
+/// Least distance from the target at which the frame fits the free part of the picture for every
+/// one of the axes; sets the shift that centres it there.
 double fit(Projection& p, const std::vector<Projection>& axes, const View& view,
            const Double3& target) {
   const double aspect = static_cast<double>(p.size[0]) / p.size[1];
   const double half_x = p.tan_half * aspect, half_y = p.tan_half;
+  const Corners frame = frame_of(view);
+  const Room room = room_of(view);
   const auto extent = [&](double distance) {
     Extent e;
-    for (const auto& a : axes) e.add(a, view, target, distance);
+    for (const auto& a : axes) e.add(a, frame, target, distance);
     return e;
   };
-  const Double3 box = view.domain_max - view.domain_min;
-  double low = 0, high = length(box);
+  double low = 0, high = length(frame[7] - frame[0]);
   const auto fits = [&](double distance) {
     const Extent e = extent(distance);
-    return e.x1 - e.x0 <= 2 * kMargin * (1 - kBarShare) * half_x &&
-           e.y1 - e.y0 <= 2 * kMargin * half_y;
+    return e.x1 - e.x0 <= 2 * half_x * (1 - room.left - room.right) &&
+           e.y1 - e.y0 <= 2 * half_y * (1 - room.top - room.bottom);
   };
   while (!fits(high)) low = high, high *= 2;  // ends: the extent falls with the distance
   for (int i = 0; i < 40; ++i) (fits(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
   const Extent e = extent(high);
-  p.shift = {kBarShare + 0.5 * (e.x0 + e.x1) / half_x, 0.5 * (e.y0 + e.y1) / half_y};
+  p.shift = {room.right - room.left + 0.5 * (e.x0 + e.x1) / half_x,
+             room.top - room.bottom + 0.5 * (e.y0 + e.y1) / half_y};
   return high;
 }
 
 }  // namespace
 
+std::size_t vertical_axis(const Double3& up) {
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (std::abs(up[k]) > std::abs(up[axis])) axis = k;
+  return axis;
+}
+
 Double3 corner_of(const View& view, unsigned bits) {
   Double3 p{};
   for (unsigned k = 0; k < 3; ++k) p[k] = (bits >> k & 1 ? view.domain_max : view.domain_min)[k];
   return p;
+}
+
+Corners frame_of(const View& view) {
+  View framed;
+  framed.domain_min = view.frame ? (*view.frame)[0] : view.domain_min;
+  framed.domain_max = view.frame ? (*view.frame)[1] : view.domain_max;
+  Corners out;
+  for (unsigned bits = 0; bits < 8; ++bits) out[bits] = corner_of(framed, bits);
+  return out;
 }
 
 Double3 Projection::to_view(const Double3& p) const {
@@ -121,7 +134,10 @@ Projection projection_of(const View& view, double time) {
   p.size = view.size;
   p.tan_half = std::tan(view.camera.fov * kDegree / 2);
   const Double3 up = unit(view.up);
-  const Double3 target = view.camera.target.value_or(0.5 * (view.domain_min + view.domain_max));
+  const Double3 middle = 0.5 * (view.domain_min + view.domain_max);
+  const Double3 seen =
+      view.frame && !view.camera.position ? 0.5 * ((*view.frame)[0] + (*view.frame)[1]) : middle;
+  const Double3 target = view.camera.target.value_or(seen);
   const double angle = view.camera.orbit * kDegree * time;
   Double3 arm{};  // from the target to the eye, before it orbits
   if (view.camera.position) {

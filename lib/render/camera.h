@@ -15,8 +15,8 @@ struct Projection {
   double tan_half = 1;               ///< tangent of half the vertical field of view
   std::array<int, 2> size{1, 1};     ///< pixels
   std::array<double, 2> shift{};     ///< of the picture to the left and down, in half widths and
-                                     ///< half heights: the default view centres the box beside
-                                     ///< the colour bar
+                                     ///< half heights: the default view centres what it shows
+                                     ///< between labels and colour bar
 
   Double3 to_view(const Double3& p) const;                 ///< computed in double, eye first
   std::array<double, 2> to_pixel(const Double3& p) const;  ///< of a point in front of the eye
@@ -24,14 +24,23 @@ struct Projection {
   double pixel() const { return 2 * tan_half / size[1]; }
 };
 
+/// The axis of the domain that is nearest to `up`.
+std::size_t vertical_axis(const Double3& up);
+
 /// A corner of the domain; bit k of `bits`: whether it lies at the upper end of axis k.
 Double3 corner_of(const View& view, unsigned bits);
 
+/// Those of the part that the default camera shows, in the order of their bits.
+using Corners = std::array<Double3, 8>;
+Corners frame_of(const View& view);
+
 /// Camera of `view` at `time` (s): the orbit turns it about `up` through the target. The default
 /// stands outside the longest horizontal side, a little above and beside, as near as it sees the
-/// whole box (at every time, when it orbits); that of a scene in two dimensions in front of its
-/// plane, x to the right. Throws Error(bad_input) for an empty box or a camera that cannot look:
-/// fov outside 1..170 degrees, position on the target.
+/// whole frame beside the labels (at every time, when it orbits), and looks at its middle; that of
+/// a scene in two dimensions stands in front of its plane, x to the right. One whose position or
+/// target alone is given looks at the middle of the domain, or from where it sees the frame. Throws
+/// Error(bad_input) for an empty box or a camera that cannot look: fov outside 1..170 degrees,
+/// position on the target.
 Projection projection_of(const View& view, double time);
 
 }  // namespace pbf::inline render_module

@@ -1,196 +1,129 @@
 #include "lib/render/font.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <vector>
+
+#include "lib/base/error.h"
+#include "lib/render/font_data.h"
+
+#define STBTT_STATIC
+#define STB_TRUETYPE_IMPLEMENTATION
+#include <stb/stb_truetype.h>
 
 namespace pbf::inline render_module {
 namespace {
 
-constexpr int kColumns = 5, kRows = 9;  // 7 rows of capitals and 2 below the line
+constexpr char32_t kMissing = 0xfffd, kEllipsis = 0x2026;
 
-struct Glyph {
-  char code;
-  std::array<std::uint8_t, kRows> rows;  // top first; bit 4 is the left column
-};
-
-constexpr Glyph kGlyphs[] = {
-    {' ', {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}},
-    {'%', {0x11, 0x01, 0x02, 0x04, 0x08, 0x10, 0x11, 0x00, 0x00}},
-    {'(', {0x02, 0x04, 0x04, 0x04, 0x04, 0x04, 0x02, 0x00, 0x00}},
-    {')', {0x08, 0x04, 0x04, 0x04, 0x04, 0x04, 0x08, 0x00, 0x00}},
-    {'*', {0x00, 0x15, 0x0e, 0x1f, 0x0e, 0x15, 0x00, 0x00, 0x00}},
-    {'+', {0x00, 0x04, 0x04, 0x1f, 0x04, 0x04, 0x00, 0x00, 0x00}},
-    {',', {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x04, 0x08, 0x00}},
-    {'-', {0x00, 0x00, 0x00, 0x0e, 0x00, 0x00, 0x00, 0x00, 0x00}},
-    {'.', {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x04, 0x00, 0x00}},
-    {'/', {0x01, 0x01, 0x02, 0x04, 0x08, 0x10, 0x10, 0x00, 0x00}},
-    {'0', {0x0e, 0x11, 0x11, 0x11, 0x11, 0x11, 0x0e, 0x00, 0x00}},
-    {'1', {0x04, 0x0c, 0x14, 0x04, 0x04, 0x04, 0x1f, 0x00, 0x00}},
-    {'2', {0x0e, 0x11, 0x01, 0x02, 0x04, 0x08, 0x1f, 0x00, 0x00}},
-    {'3', {0x0e, 0x11, 0x01, 0x06, 0x01, 0x11, 0x0e, 0x00, 0x00}},
-    {'4', {0x02, 0x06, 0x0a, 0x12, 0x1f, 0x02, 0x02, 0x00, 0x00}},
-    {'5', {0x1f, 0x10, 0x1e, 0x01, 0x01, 0x11, 0x0e, 0x00, 0x00}},
-    {'6', {0x06, 0x08, 0x10, 0x1e, 0x11, 0x11, 0x0e, 0x00, 0x00}},
-    {'7', {0x1f, 0x01, 0x02, 0x02, 0x04, 0x04, 0x04, 0x00, 0x00}},
-    {'8', {0x0e, 0x11, 0x11, 0x0e, 0x11, 0x11, 0x0e, 0x00, 0x00}},
-    {'9', {0x0e, 0x11, 0x11, 0x0f, 0x01, 0x02, 0x0c, 0x00, 0x00}},
-    {':', {0x00, 0x00, 0x04, 0x00, 0x00, 0x04, 0x00, 0x00, 0x00}},
-    {'=', {0x00, 0x00, 0x1f, 0x00, 0x1f, 0x00, 0x00, 0x00, 0x00}},
-    {'?', {0x0e, 0x11, 0x01, 0x02, 0x04, 0x00, 0x04, 0x00, 0x00}},
-    {'A', {0x0e, 0x11, 0x11, 0x1f, 0x11, 0x11, 0x11, 0x00, 0x00}},
-    {'B', {0x1e, 0x11, 0x11, 0x1e, 0x11, 0x11, 0x1e, 0x00, 0x00}},
-    {'C', {0x0e, 0x11, 0x10, 0x10, 0x10, 0x11, 0x0e, 0x00, 0x00}},
-    {'D', {0x1e, 0x11, 0x11, 0x11, 0x11, 0x11, 0x1e, 0x00, 0x00}},
-    {'E', {0x1f, 0x10, 0x10, 0x1e, 0x10, 0x10, 0x1f, 0x00, 0x00}},
-    {'F', {0x1f, 0x10, 0x10, 0x1e, 0x10, 0x10, 0x10, 0x00, 0x00}},
-    {'G', {0x0e, 0x11, 0x10, 0x13, 0x11, 0x11, 0x0e, 0x00, 0x00}},
-    {'H', {0x11, 0x11, 0x11, 0x1f, 0x11, 0x11, 0x11, 0x00, 0x00}},
-    {'I', {0x0e, 0x04, 0x04, 0x04, 0x04, 0x04, 0x0e, 0x00, 0x00}},
-    {'J', {0x07, 0x02, 0x02, 0x02, 0x02, 0x12, 0x0c, 0x00, 0x00}},
-    {'K', {0x11, 0x12, 0x14, 0x18, 0x14, 0x12, 0x11, 0x00, 0x00}},
-    {'L', {0x10, 0x10, 0x10, 0x10, 0x10, 0x10, 0x1f, 0x00, 0x00}},
-    {'M', {0x11, 0x1b, 0x15, 0x15, 0x11, 0x11, 0x11, 0x00, 0x00}},
-    {'N', {0x11, 0x19, 0x19, 0x15, 0x13, 0x13, 0x11, 0x00, 0x00}},
-    {'O', {0x0e, 0x11, 0x11, 0x11, 0x11, 0x11, 0x0e, 0x00, 0x00}},
-    {'P', {0x1e, 0x11, 0x11, 0x1e, 0x10, 0x10, 0x10, 0x00, 0x00}},
-    {'Q', {0x0e, 0x11, 0x11, 0x11, 0x15, 0x12, 0x0d, 0x00, 0x00}},
-    {'R', {0x1e, 0x11, 0x11, 0x1e, 0x14, 0x12, 0x11, 0x00, 0x00}},
-    {'S', {0x0e, 0x11, 0x10, 0x0e, 0x01, 0x11, 0x0e, 0x00, 0x00}},
-    {'T', {0x1f, 0x04, 0x04, 0x04, 0x04, 0x04, 0x04, 0x00, 0x00}},
-    {'U', {0x11, 0x11, 0x11, 0x11, 0x11, 0x11, 0x0e, 0x00, 0x00}},
-    {'V', {0x11, 0x11, 0x11, 0x0a, 0x0a, 0x04, 0x04, 0x00, 0x00}},
-    {'W', {0x11, 0x11, 0x11, 0x15, 0x15, 0x1b, 0x11, 0x00, 0x00}},
-    {'X', {0x11, 0x11, 0x0a, 0x04, 0x0a, 0x11, 0x11, 0x00, 0x00}},
-    {'Y', {0x11, 0x11, 0x0a, 0x04, 0x04, 0x04, 0x04, 0x00, 0x00}},
-    {'Z', {0x1f, 0x01, 0x02, 0x04, 0x08, 0x10, 0x1f, 0x00, 0x00}},
-    {'^', {0x04, 0x0a, 0x11, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}},
-    {'_', {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x1f, 0x00, 0x00}},
-    {'a', {0x00, 0x00, 0x0e, 0x01, 0x0f, 0x11, 0x0f, 0x00, 0x00}},
-    {'b', {0x10, 0x10, 0x1e, 0x11, 0x11, 0x11, 0x1e, 0x00, 0x00}},
-    {'c', {0x00, 0x00, 0x0e, 0x10, 0x10, 0x10, 0x0e, 0x00, 0x00}},
-    {'d', {0x01, 0x01, 0x0f, 0x11, 0x11, 0x11, 0x0f, 0x00, 0x00}},
-    {'e', {0x00, 0x00, 0x0e, 0x11, 0x1f, 0x10, 0x0e, 0x00, 0x00}},
-    {'f', {0x06, 0x08, 0x1e, 0x08, 0x08, 0x08, 0x08, 0x00, 0x00}},
-    {'g', {0x00, 0x00, 0x0f, 0x11, 0x11, 0x11, 0x0f, 0x01, 0x0e}},
-    {'h', {0x10, 0x10, 0x1e, 0x11, 0x11, 0x11, 0x11, 0x00, 0x00}},
-    {'i', {0x04, 0x00, 0x0c, 0x04, 0x04, 0x04, 0x0e, 0x00, 0x00}},
-    {'j', {0x02, 0x00, 0x06, 0x02, 0x02, 0x02, 0x02, 0x02, 0x0c}},
-    {'k', {0x10, 0x10, 0x12, 0x14, 0x18, 0x14, 0x12, 0x00, 0x00}},
-    {'l', {0x0c, 0x04, 0x04, 0x04, 0x04, 0x04, 0x0e, 0x00, 0x00}},
-    {'m', {0x00, 0x00, 0x1a, 0x15, 0x15, 0x15, 0x15, 0x00, 0x00}},
-    {'n', {0x00, 0x00, 0x1e, 0x11, 0x11, 0x11, 0x11, 0x00, 0x00}},
-    {'o', {0x00, 0x00, 0x0e, 0x11, 0x11, 0x11, 0x0e, 0x00, 0x00}},
-    {'p', {0x00, 0x00, 0x1e, 0x11, 0x11, 0x11, 0x1e, 0x10, 0x10}},
-    {'q', {0x00, 0x00, 0x0f, 0x11, 0x11, 0x11, 0x0f, 0x01, 0x01}},
-    {'r', {0x00, 0x00, 0x16, 0x19, 0x10, 0x10, 0x10, 0x00, 0x00}},
-    {'s', {0x00, 0x00, 0x0f, 0x10, 0x0e, 0x01, 0x1e, 0x00, 0x00}},
-    {'t', {0x08, 0x08, 0x1e, 0x08, 0x08, 0x08, 0x06, 0x00, 0x00}},
-    {'u', {0x00, 0x00, 0x11, 0x11, 0x11, 0x11, 0x0f, 0x00, 0x00}},
-    {'v', {0x00, 0x00, 0x11, 0x11, 0x0a, 0x0a, 0x04, 0x00, 0x00}},
-    {'w', {0x00, 0x00, 0x11, 0x15, 0x15, 0x15, 0x0a, 0x00, 0x00}},
-    {'x', {0x00, 0x00, 0x11, 0x0a, 0x04, 0x0a, 0x11, 0x00, 0x00}},
-    {'y', {0x00, 0x00, 0x11, 0x11, 0x11, 0x11, 0x0f, 0x01, 0x0e}},
-    {'z', {0x00, 0x00, 0x1f, 0x02, 0x04, 0x08, 0x1f, 0x00, 0x00}},
-};
-
-const Glyph& glyph_of(char c) {
-  const auto* found = std::find_if(std::begin(kGlyphs), std::end(kGlyphs),
-                                   [c](const Glyph& g) { return g.code == c; });
-  return found != std::end(kGlyphs) ? *found : glyph_of('?');
-}
-
-bool lit(const Glyph& g, int column, int row) {
-  return column >= 0 && column < kColumns && row < kRows &&
-         (g.rows[static_cast<std::size_t>(row)] >> (kColumns - 1 - column) & 1);
-}
-
-struct Stroke {
-  double x0, y0, x1, y1;  // in dots
-};
-
-/// Strokes between neighbouring dots; a diagonal only where no corner joins the two.
-std::vector<Stroke> strokes_of(const Glyph& g) {
-  std::vector<Stroke> strokes;
-  const auto add = [&](int x0, int y0, int x1, int y1) {
-    strokes.push_back({x0 + 0.5, y0 + 0.5, x1 + 0.5, y1 + 0.5});
-  };
-  for (int y = 0; y < kRows; ++y)
-    for (int x = 0; x < kColumns; ++x) {
-      if (!lit(g, x, y)) continue;
-      add(x, y, x, y);
-      const bool east = lit(g, x + 1, y), south = lit(g, x, y + 1), west = lit(g, x - 1, y);
-      if (east) add(x, y, x + 1, y);
-      if (south) add(x, y, x, y + 1);
-      if (!east && !south && lit(g, x + 1, y + 1)) add(x, y, x + 1, y + 1);
-      if (!west && !south && lit(g, x - 1, y + 1)) add(x, y, x - 1, y + 1);
-    }
-  return strokes;
-}
-
-double distance_to(const Stroke& s, double x, double y) {
-  const double ax = s.x1 - s.x0, ay = s.y1 - s.y0, square = ax * ax + ay * ay;
-  const double along =
-      square > 0 ? std::clamp(((x - s.x0) * ax + (y - s.y0) * ay) / square, 0.0, 1.0) : 0;
-  return std::hypot(x - s.x0 - along * ax, y - s.y0 - along * ay);
-}
-
-void draw_glyph(Image& image, const Glyph& g, double left, double top, double dot, Rgb color) {
-  const auto strokes = strokes_of(g);
-  const double half = std::max(0.42 * dot, 0.5);  // of the stroke's thickness, in pixels
-  const int x_end = std::min(image.width, static_cast<int>(left + (kColumns + 1) * dot) + 1);
-  const int y_end = std::min(image.height, static_cast<int>(top + (kRows + 1) * dot) + 1);
-  for (int y = std::max(0, static_cast<int>(top - dot)); y < y_end; ++y)
-    for (int x = std::max(0, static_cast<int>(left - dot)); x < x_end; ++x) {
-      double nearest = 1e9;
-      for (const auto& s : strokes)
-        nearest = std::min(nearest, distance_to(s, (x + 0.5 - left) / dot, (y + 0.5 - top) / dot));
-      const double cover = std::clamp(half - nearest * dot + 0.5, 0.0, 1.0);
-      auto* pixel = &image.rgb[3 * (static_cast<std::size_t>(y) * image.width + x)];
-      for (std::size_t k = 0; k < 3; ++k)
-        pixel[k] = static_cast<std::uint8_t>(std::lround(pixel[k] + cover * (color[k] - pixel[k])));
-    }
-}
-
-/// Calls f(glyph, x, y, dot) for every character; returns the place after the last one.
-template <class F>
-double lay_out(const std::string& text, double x, double y, double dot, F f) {
-  bool raised = false;
-  for (char c : text) {
-    if (c == '^') {
-      raised = true;
-      continue;
-    }
-    const Glyph& g = glyph_of(c);
-    const double size = raised ? 0.7 * dot : dot;
-    std::uint8_t ink = 0;
-    for (auto row : g.rows) ink = static_cast<std::uint8_t>(ink | row);
-    int first = 0, last = kColumns - 1;
-    if (ink == 0) {
-      last = 2;                       // a space
-    } else if (c < '0' || c > '9') {  // digits keep one width, so that numbers line up
-      while (!(ink >> (kColumns - 1 - first) & 1)) ++first;
-      while (!(ink >> (kColumns - 1 - last) & 1)) --last;
-    }
-    f(g, x - first * size, raised ? y - 2 * dot : y, size);
-    x += (last - first + 2) * size;
-    raised = false;
+struct Face {
+  stbtt_fontinfo info{};
+  Face() {
+    if (!stbtt_InitFont(&info, kFontData, 0))
+      throw Error(ExitCode::internal, "the embedded font cannot be read");
   }
-  return x;
+};
+const stbtt_fontinfo& face() {
+  static const Face one;
+  return one.info;
+}
+
+bool has_glyph(char32_t c) {
+  const bool latin_1 = (c >= 0x20 && c < 0x7f) || (c >= 0xa0 && c < 0x100);
+  return latin_1 || c == kEllipsis || c == kMissing;
+}
+
+/// Reads the character at text[i] and goes behind it; kMissing for a byte that begins none.
+char32_t next_character(const std::string& text, std::size_t& i) {
+  const auto byte = [&](std::size_t k) {
+    return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u;
+  };
+  const unsigned first = byte(i);
+  const std::size_t more = first >= 0xf0 && first < 0xf8   ? 3
+                           : first >= 0xe0 && first < 0xf0 ? 2
+                           : first >= 0xc0 && first < 0xe0 ? 1
+                                                           : 0;
+  char32_t c = more == 0 ? first : first & (0x3fu >> more);
+  for (std::size_t k = 1; k <= more; ++k) {
+    if ((byte(i + k) & 0xc0) != 0x80) return ++i, kMissing;
+    c = c << 6 | (byte(i + k) & 0x3f);
+  }
+  i += more + 1;
+  const char32_t least[] = {0, 0x80, 0x800, 0x10000};
+  return c < least[more] || (more == 0 && first >= 0x80) ? kMissing : c;  // longer than it must be
+}
+
+float scale_of(double size) {
+  return stbtt_ScaleForMappingEmToPixels(&face(), static_cast<float>(size));
+}
+
+double advance(char32_t c, double size) {
+  int width = 0, bearing = 0;
+  stbtt_GetCodepointHMetrics(&face(), static_cast<int>(c), &width, &bearing);
+  return static_cast<double>(scale_of(size)) * width;
+}
+
+void draw_glyph(Image& image, char32_t c, double x, double line, double size, Rgb color) {
+  const float scale = scale_of(size);
+  const double left = std::floor(x), top = std::floor(line);
+  const auto shift_x = static_cast<float>(x - left), shift_y = static_cast<float>(line - top);
+  const int glyph = stbtt_FindGlyphIndex(&face(), static_cast<int>(c));
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  stbtt_GetGlyphBitmapBoxSubpixel(&face(), glyph, scale, scale, shift_x, shift_y, &x0, &y0, &x1,
+                                  &y1);
+  const int width = x1 - x0, height = y1 - y0;
+  // Also where the place is too far away for an int.
+  if (width <= 0 || height <= 0 || !(left + x1 > 0 && left + x0 < image.width) ||
+      !(top + y1 > 0 && top + y0 < image.height))
+    return;
+  std::vector<std::uint8_t> cover(static_cast<std::size_t>(width) * height);
+  stbtt_MakeGlyphBitmapSubpixel(&face(), cover.data(), width, height, width, scale, scale, shift_x,
+                                shift_y, glyph);
+  const int from_x = static_cast<int>(left) + x0, from_y = static_cast<int>(top) + y0;
+  for (int j = std::max(0, -from_y); j < height && from_y + j < image.height; ++j)
+    for (int i = std::max(0, -from_x); i < width && from_x + i < image.width; ++i) {
+      const int share = cover[static_cast<std::size_t>(j) * width + i];
+      auto* at = &image.rgb[3 * (static_cast<std::size_t>(from_y + j) * image.width + from_x + i)];
+      for (std::size_t k = 0; k < 3; ++k)
+        at[k] = static_cast<std::uint8_t>((at[k] * (255 - share) + color[k] * share + 127) / 255);
+    }
 }
 
 }  // namespace
 
-void draw_text(Image& image, const std::string& text, double x, double y, double dot, Rgb color) {
-  lay_out(text, x, y, dot, [&](const Glyph& g, double left, double top, double size) {
-    draw_glyph(image, g, left, top, size, color);
-  });
+std::vector<char32_t> drawn_characters(const std::string& text) {
+  std::vector<char32_t> out;
+  for (std::size_t i = 0; i < text.size();) {
+    const char32_t c = next_character(text, i);
+    out.push_back(has_glyph(c) ? c : kMissing);
+  }
+  return out;
 }
 
-double text_width(const std::string& text, double dot) {
-  return lay_out(text, 0, 0, dot, [](const Glyph&, double, double, double) {}) - dot;
+void draw_text(Image& image, const std::string& text, double x, double y, double size, Rgb color) {
+  for (const char32_t c : drawn_characters(text)) {
+    draw_glyph(image, c, x, y + kCapitalHeight * size, size, color);
+    x += advance(c, size);
+  }
+}
+
+double text_width(const std::string& text, double size) {
+  double width = 0;
+  for (const char32_t c : drawn_characters(text)) width += advance(c, size);
+  return width;
+}
+
+std::string shortened(const std::string& text, double width, double size) {
+  if (text_width(text, size) <= width) return text;
+  double used = advance(kEllipsis, size);
+  if (used > width) return "";
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < text.size(); end = i) {
+    const char32_t c = next_character(text, i);
+    used += advance(has_glyph(c) ? c : kMissing, size);
+    if (used > width) break;
+  }
+  return text.substr(0, end) + "\u2026";
 }
 
 }  // namespace pbf::inline render_module

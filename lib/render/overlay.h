@@ -1,10 +1,13 @@
-// What is written onto a picture: the colour bar with its unit and numbers, and the time.
+// What is written onto a picture: the scene's name, time and number of particles, the colour bar
+// with its unit and numbers, and lengths.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "lib/render/camera.h"
 #include "lib/render/colormap.h"
 #include "lib/render/renderer.h"
 
@@ -22,14 +25,29 @@ std::vector<Tick> ticks_of(std::array<double, 2> range);
 /// "t = 0.52 s": two decimals, more where the time has them, powers of ten below a millisecond.
 std::string time_text(double seconds);
 
+/// "1 particle", "31 250 particles".
+std::string particles_text(std::int64_t count);
+
+/// Size of the text in a picture, pixels per em: a 38th of its height, less in a narrow picture, at
+/// least 11.
+double text_size(std::array<int, 2> picture);
+
+/// Shares of the picture's width and height that the default camera leaves to the labels.
+struct Room {
+  double left, right, top, bottom;
+};
+Room room_of(const View& view);
+
 /// Where the colour bar lies, in pixels.
 struct BarPlace {
-  double x0, y0, x1, y1, dot;  ///< dot: size of the font's dots
+  double x0, y0, x1, y1;
 };
-BarPlace bar_place(int width, int height, const std::vector<Tick>& ticks);
+BarPlace bar_place(std::array<int, 2> picture, const std::vector<Tick>& ticks);
 
-/// Draws all of it. `title` and `unit` stand above the bar ("" for no unit); `map` colours it.
-void draw_overlay(Image& image, const std::string& title, const std::string& unit,
-                  std::array<double, 2> range, double time, ColorMap map = viridis);
+/// Draws all of it. `unit` of the colour bar, "" for none; "^2" and "^3" are raised. A text that
+/// does not fit the picture, or would overlap another one, is left out, and so is the bar of a tiny
+/// picture; a long name is cut.
+void draw_overlay(Image& image, const View& view, const Projection& projection,
+                  const std::string& unit, std::int64_t particles, double time);
 
 }  // namespace pbf::inline render_module

@@ -57,6 +57,15 @@ void check_fields(const Snapshot& snapshot, ColorBy color) {
                 std::string("a picture coloured by ") + source.word);
 }
 
+double shown_value(const FieldArray* field, const View& view, std::size_t i) {
+  const int components = about(view.color).components;
+  if (components == 3) return length(vector(*field, i));
+  if (components == 0) return static_cast<double>(i);
+  const double density = value(*field, i);
+  if (view.color != ColorBy::compression) return density;
+  return std::max(density / view.rest_density - 1, 0.0);
+}
+
 void collect(const Snapshot& snapshot, const View& view, const Projection& projection,
              ParticleVertices& out) {
   check_fields(snapshot, view.color);
@@ -84,10 +93,7 @@ void collect(const Snapshot& snapshot, const View& view, const Projection& proje
           v[0] < right * v[2] + reach_right && v[1] > bottom * v[2] - reach_bottom &&
           v[1] < top * v[2] + reach_top && v[2] < 1e30))
       continue;
-    double shown = static_cast<double>(i);
-    if (source.components == 3) shown = length(vector(*field, i));
-    if (source.components == 1) shown = value(*field, i);
-    if (view.color == ColorBy::compression) shown = std::max(shown / view.rest_density - 1, 0.0);
+    const double shown = shown_value(field, view, i);
     out.list.push_back({static_cast<float>(v[0]), static_cast<float>(v[1]),
                         static_cast<float>(v[2]), color((shown - low) / span)});
     out.nearest = std::min(out.nearest, v[2] - r);

@@ -10,6 +10,7 @@
 #include "lib/render/camera.h"
 #include "lib/render/gl_context.h"
 #include "lib/render/gl_objects.h"
+#include "lib/render/grid.h"
 #include "lib/render/overlay.h"
 #include "lib/render/particles.h"
 #include "lib/render/shaders.h"
@@ -133,6 +134,7 @@ void Renderer::Impl::draw_scene(const Projection& projection) {
   const double line = std::max(1.0, view.size[1] / 720.0);  // pixels
   triangles = solids.triangles;
   add_floor(view, projection, triangles);
+  add_floor_grid(view, projection, line, near, triangles);
   for (const auto& [from, to] : solids.creases)
     add_line(from, to, kCrease, projection, 1.2 * line, near, triangles);
   add_box_edges(view, projection, 1.6 * line, near, triangles);
@@ -209,8 +211,8 @@ Image Renderer::draw(const Snapshot& snapshot) {
   const ColoringInfo& source = about(view.color);
   const FieldArray* field = snapshot.find(source.field);
   const bool relative = view.color == ColorBy::compression || !field || field->unit == "1";
-  draw_overlay(image, source.word, relative ? "" : field->unit, view.range, snapshot.time,
-               color_map(view.color));
+  draw_overlay(image, view, projection, relative ? "" : field->unit,
+               static_cast<std::int64_t>(snapshot.count), snapshot.time);
   return image;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,10 +24,13 @@ struct Image {
 
 /// What a picture needs to know beside the particles.
 struct View {
+  std::string name;                    ///< of the scene, UTF-8
   Double3 domain_min{}, domain_max{};  ///< m, drawn as 12 lines
-  bool flat = false;                   ///< a scene in two dimensions: seen along y by default
-  Double3 up{0, 0, 1};                 ///< against gravity
-  double radius = 0.01;                ///< m, drawn radius of a particle
+  /// m, corners of the part of it that the default camera shows whole; absent: all of it.
+  std::optional<std::array<Double3, 2>> frame{};
+  bool flat = false;     ///< a scene in two dimensions: seen along y by default
+  Double3 up{0, 0, 1};   ///< against gravity
+  double radius = 0.01;  ///< m, drawn radius of a particle
   ColorBy color = ColorBy::speed;
   double rest_density = 1000;         ///< kg/m^3
   std::array<double, 2> range{0, 1};  ///< of the colour bar, in the unit of the field
@@ -38,11 +42,12 @@ struct View {
   std::array<std::array<bool, 2>, 3> open{};  ///< of each axis, min and max: no wall, solids go on
 };
 
-/// View of a scene: default camera, radius d/2, and a colour range that holds for the whole run
-/// (speed: 0..sqrt(2 g H) of the box; density: 0.9..1.1 rho0; id: 0..n-1).
+/// View of a scene: default camera, radius d/2, a frame and a colour range that hold for the whole
+/// run (lib/render/reach.h; density: 0.9..1.1 rho0; compression: 0..1 %; id: 0..n-1).
 View view_of(const Scene& scene, std::int64_t particles);
 
-/// Draws lit spheres (impostors), obstacles, the box, a colour bar with unit, and the time.
+/// Draws lit spheres (impostors), obstacles, the box with lengths along its floor, a colour bar
+/// with unit, and the scene's name, time and number of particles.
 class Renderer {
  public:
   /// Opens OSMesa, else EGL surfaceless, else an EGL device; the environment variable PBF_GL

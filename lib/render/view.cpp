@@ -3,22 +3,29 @@
 #include <cmath>
 
 #include "lib/program/motion.h"
-#include "lib/program/obstacles.h"
+#include "lib/render/box.h"
+#include "lib/render/camera.h"
+#include "lib/render/reach.h"
 #include "lib/render/renderer.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline render_module {
 namespace {
 
-std::vector<Solid<double>> solids_in_metres(const Scene& scene, double time) {
-  const double h = scene.h();
-  const auto [x, y, z] = scene.origin();
-  std::vector<Solid<double>> solids = solids_of(scene, time);
-  for (Solid<double>& s : solids) {
-    s.center = Vec3<double>{x, y, z} + h * s.center;
-    s.half = h * s.half;
-  }
-  return solids;
+/// Cuts the frame at a height along `up`: below it lies no more of the box than is kept.
+void cut_frame(View& view, double height) {
+  const std::size_t k = vertical_axis(view.up);
+  double rest = 0;  // least height that the other axes add
+  for (std::size_t a = 0; a < 3; ++a)
+    if (a != k) rest += std::min(view.up[a] * view.domain_min[a], view.up[a] * view.domain_max[a]);
+  const double at = (height - rest) / view.up[k];
+  const double least = 0.02 * (view.domain_max[k] - view.domain_min[k]);
+  view.frame = {view.domain_min, view.domain_max};
+  auto& [low, high] = *view.frame;
+  if (view.up[k] > 0)
+    high[k] = std::clamp(at, low[k] + least, high[k]);
+  else
+    low[k] = std::clamp(at, low[k], high[k] - least);
 }
 
 }  // namespace
@@ -28,6 +35,7 @@ View view_of(const Scene& scene, std::int64_t particles) {
   View view;
   view.domain_min = scene.domain.min;
   view.domain_max = scene.domain.max;
+  view.name = scene.name;
   view.flat = scene.dimensions == 2;
   const double g = length(scene.gravity);
   if (g > 0) view.up = (-1 / g) * scene.gravity;
@@ -41,6 +49,9 @@ View view_of(const Scene& scene, std::int64_t particles) {
     view.solids_at = [scene](double time) { return solids_in_metres(scene, time); };
   for (int k = 0; k < 3; ++k)
     view.open[k] = {scene.domain.is_open(k, false), scene.domain.is_open(k, true)};
+  const Reach reach = reach_of(scene, view.up, particles);
+  // What falls through an open floor is seen on its whole way.
+  if (g > 0 && !floor_is_open(view)) cut_frame(view, reach.height + 2 * view.radius);
   if (render.range) {
     view.range = *render.range;
   } else if (render.color == ColorBy::density) {
@@ -50,13 +61,7 @@ View view_of(const Scene& scene, std::int64_t particles) {
   } else if (render.color == ColorBy::id) {
     view.range = {0.0, static_cast<double>(std::max<std::int64_t>(particles - 1, 1))};
   } else {
-    // Free fall through the whole box, on top of the fastest body's own speed.
-    double fall = 0, start = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      fall += std::abs(view.up[k]) * (scene.domain.max[k] - scene.domain.min[k]);
-    for (const auto& body : scene.bodies) start = std::max(start, length(body.velocity));
-    const double fastest = std::sqrt(start * start + 2 * g * fall);
-    view.range = {0.0, fastest > 0 ? fastest : 1.0};
+    view.range = {0.0, reach.speed};
   }
   return view;
 }

@@ -58,15 +58,23 @@ KeyRows run_rows() {
            "What colours the particles. density: blue below rest_density, red above; compression: "
            "the density's excess over rest_density, relative."),
        key(KEY(render->range), number("", {-1e30, 1e30}),
-           "Ends of the colour bar, [low, high], in the unit of the field.", automatic),
+           "Ends of the colour bar, [low, high], in the unit of the field. auto: of the speed from "
+           "0 to "
+           "what the energy of the start, moving obstacles and the tank let expect; of the density "
+           "10 % about rest_density; of the compression from 0 to 1 %.",
+           automatic),
        key(KEY(render->radius), number("m", {0, 1e9, true}),
            "Drawn radius of a particle. auto: half the spacing.", automatic),
        key(KEY(render->camera.position), number("m", kCoordinate),
-           "Where the camera is. auto: outside the longest side; in two dimensions in front of "
-           "the plane.",
+           "Where the camera is. auto: outside the longest side, where it sees the floor and the "
+           "height that the fluid and the obstacles may reach; in two dimensions in front of the "
+           "plane.",
            automatic),
        key(KEY(render->camera.target), number("m", kCoordinate),
-           "What the camera looks at. auto: the centre of the domain.", automatic),
+           "What the camera looks at. auto: with position: auto the middle of what it sees, else "
+           "the "
+           "centre of the domain.",
+           automatic),
        key(KEY(render->camera.fov), number("deg", {1, 170}), "Vertical field of view."),
        key(KEY(render->camera.orbit), number("deg/s", {-36000, 36000}),
            "Turn about the vertical axis per second of simulated time."),

@@ -1,5 +1,7 @@
 // The camera and the view of a scene; no OpenGL needed.
 #include "lib/render/camera.h"
+
+#include "lib/render/overlay.h"
 #include "tests/support/render_support.h"
 
 using namespace pbf;
@@ -42,14 +44,16 @@ TEST_CASE("the default camera sees the whole box beside the colour bar at any sh
               x_range[0] = std::min(x_range[0], x), x_range[1] = std::max(x_range[1], x);
               y_range[0] = std::min(y_range[0], y), y_range[1] = std::max(y_range[1], y);
             }
-            CHECK(x_range[0] > 0);
-            CHECK(x_range[1] < 0.88 * pixels[0]);
-            CHECK(y_range[0] > 0);
-            CHECK(y_range[1] < pixels[1]);
+            const Room room = room_of(view);
+            CHECK(x_range[0] > room.left * pixels[0] - 1);
+            CHECK(x_range[1] < (1 - room.right) * pixels[0] + 1);
+            CHECK(y_range[0] > room.top * pixels[1] - 1);
+            CHECK(y_range[1] < (1 - room.bottom) * pixels[1] + 1);
             if (orbit == 0) {  // and no smaller than it must be
-              const double fill = std::max((x_range[1] - x_range[0]) / (0.88 * pixels[0]),
-                                           (y_range[1] - y_range[0]) / pixels[1]);
-              CHECK(fill == Approx(0.92).margin(0.01));
+              const double fill =
+                  std::max((x_range[1] - x_range[0]) / ((1 - room.left - room.right) * pixels[0]),
+                           (y_range[1] - y_range[0]) / ((1 - room.top - room.bottom) * pixels[1]));
+              CHECK(fill == Approx(1).margin(0.01));
             }
           }
         }
@@ -127,21 +131,14 @@ TEST_CASE("a camera that cannot look is refused by name", "[render]") {
   CHECK(code == 2);
 }
 
-TEST_CASE("the view of a scene has a colour range that holds for the whole run", "[render]") {
+TEST_CASE("the view of a scene has what the scene says, and a range for every colouring",
+          "[render]") {
   Scene scene;
   scene.domain.max = {2, 1, 0.5};
   scene.gravity = {0, 0, -8};
   scene.fluid.spacing = 0.04;
-  CHECK(view_of(scene, 10).range == std::array{0.0, std::sqrt(2 * 8 * 0.5)});
   CHECK(view_of(scene, 10).radius == 0.02);
   CHECK(view_of(scene, 10).up == Double3{0, 0, 1});
-  scene.bodies.resize(1);
-  scene.bodies[0].velocity = {0, 3, 0};
-  CHECK(view_of(scene, 10).range[1] == Approx(std::sqrt(9 + 8.0)));
-  scene.gravity = {0, 0, 0};
-  CHECK(view_of(scene, 10).range[1] == Approx(3));
-  scene.bodies.clear();
-  CHECK(view_of(scene, 10).range == std::array{0.0, 1.0});
 
   scene.render = Render{};
   scene.render->radius = 0.3;
@@ -157,4 +154,27 @@ TEST_CASE("the view of a scene has a colour range that holds for the whole run",
   CHECK(view_of(scene, 1).range == std::array{0.0, 1.0});
   scene.render->range = {2.0, 5.0};
   CHECK(view_of(scene, 10).range == std::array{2.0, 5.0});
+}
+
+TEST_CASE("a frame lower than the box brings the default camera nearer, a given one stays",
+          "[render]") {
+  View view = box_view({1, 1, 8}, {0, 0, 1});
+  const Projection whole = projection_of(view, 0);
+  view.frame = {view.domain_min, {view.domain_max[0], view.domain_max[1], view.domain_min[2] + 1}};
+  const Projection framed = projection_of(view, 0);
+  const auto away = [&](const Projection& p) { return p.to_view(corner(view, 0))[2]; };
+  CHECK(away(framed) < 0.5 * away(whole));
+  for (const Double3& x : frame_of(view)) {
+    const auto [px, py] = framed.to_pixel(x);
+    CHECK(px > 0);
+    CHECK(px < view.size[0]);
+    CHECK(py > 0);
+    CHECK(py < view.size[1]);
+  }
+  view.camera.position = Double3{10, -9, 8};
+  const Projection given = projection_of(view, 0);
+  view.frame.reset();
+  CHECK(given.eye == projection_of(view, 0).eye);
+  CHECK(given.forward == projection_of(view, 0).forward);
+  CHECK(given.shift == projection_of(view, 0).shift);
 }

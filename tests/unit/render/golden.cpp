@@ -61,7 +61,10 @@ void check_kept(const View& view, const std::string& name) {
 
 Scene tank() {
   Scene scene;
+  scene.name = "Säule";
   scene.domain.max = {2, 1, 1};
+  scene.bodies.resize(1);
+  scene.bodies[0].max = {0.7, 1, 0.7};
   scene.render = Render{};
   scene.render->radius = 0.03;
   scene.render->range = {0, 4};

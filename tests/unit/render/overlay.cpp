@@ -33,6 +33,15 @@ std::vector<std::string> labels(double low, double high) {
 
 using Labels = std::vector<std::string>;
 
+View bar_view(std::array<int, 2> size) {
+  View view;
+  view.name = "dam_break";
+  view.domain_max = {1.6, 0.4, 1};
+  view.range = {0, 4.43};
+  view.size = size;
+  return view;
+}
+
 }  // namespace
 
 TEST_CASE("ticks are round numbers with the digits that they need", "[render]") {
@@ -65,10 +74,19 @@ TEST_CASE("the time has two decimals, or as many as it needs", "[render]") {
   CHECK(time_text(2.5e-5) == "t = 2.50e-05 s");
 }
 
+TEST_CASE("the number of particles is written in groups of three", "[render]") {
+  CHECK(particles_text(0) == "0 particles");
+  CHECK(particles_text(1) == "1 particle");
+  CHECK(particles_text(999) == "999 particles");
+  CHECK(particles_text(31250) == "31 250 particles");
+  CHECK(particles_text(123456789) == "123 456 789 particles");
+}
+
 TEST_CASE("the colour bar runs from the low to the high end of viridis", "[render]") {
+  const View view = bar_view({640, 360});
   Image image = white(640, 360);
-  draw_overlay(image, "speed", "m/s", {0, 4.43}, 0.52);
-  const BarPlace bar = bar_place(640, 360, ticks_of({0, 4.43}));
+  draw_overlay(image, view, projection_of(view, 0), "m/s", 1000, 0.52);
+  const BarPlace bar = bar_place(view.size, ticks_of(view.range));
   const int middle = static_cast<int>(0.5 * (bar.x0 + bar.x1));
   const double span = bar.y1 - bar.y0;
   for (double t : {0.02, 0.25, 0.5, 0.75, 0.98}) {
@@ -77,47 +95,99 @@ TEST_CASE("the colour bar runs from the low to the high end of viridis", "[rende
   }
 }
 
-TEST_CASE("every tick has a label beside it, and title, unit and time are written", "[render]") {
-  Image image = white(640, 360);
-  const auto ticks = ticks_of({0, 4.43});
-  draw_overlay(image, "speed", "m/s", {0, 4.43}, 0.52);
-  const BarPlace bar = bar_place(640, 360, ticks);
-  const double text = bar.x1 + 5 * bar.dot;
-  for (const auto& tick : ticks) {
-    const double y = bar.y1 - tick.value / 4.43 * (bar.y1 - bar.y0);
-    INFO("label " << tick.label);
-    CHECK(ink(image, text, y - 5 * bar.dot, 640, y + 5 * bar.dot) > 4);
-    CHECK(ink(image, text, y + 6 * bar.dot, 640, y + 10 * bar.dot) == 0);
-  }
-  CHECK(ink(image, 500, bar.y0 - 28 * bar.dot, 640, bar.y0 - 16 * bar.dot) > 30);
-  CHECK(ink(image, 500, bar.y0 - 15 * bar.dot, 640, bar.y0 - 5 * bar.dot) > 15);
-  CHECK(ink(image, 0, 0, 200, 40) > 30);
-}
-
-TEST_CASE("characters differ from each other and stay inside their width", "[render]") {
-  std::vector<std::vector<std::uint8_t>> seen;
-  // The letter O is left out: it is the figure 0.
-  const std::string all =
-      "0123456789ABCDEFGHIJKLMNPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz.,-+=()/:%*_?";
-  for (char c : all) {
-    Image image = white(40, 40);
-    draw_text(image, std::string(1, c), 10, 10, 2, {0, 0, 0});
-    INFO("character " << c);
-    CHECK(ink(image, 0, 0, 40, 40) > 0);
-    CHECK(ink(image, 0, 0, 9, 40) == 0);
-    CHECK(ink(image, 11 + text_width(std::string(1, c), 2), 0, 40, 40) == 0);
-    CHECK(std::find(seen.begin(), seen.end(), image.rgb) == seen.end());
-    seen.push_back(image.rgb);
+TEST_CASE("every tick has its number beside it; title, unit, name and time are there", "[render]") {
+  for (const std::array<int, 2>& size :
+       {std::array{320, 240}, {640, 360}, {1280, 720}, {3840, 2160}}) {
+    const View view = bar_view(size);
+    const auto ticks = ticks_of(view.range);
+    Image image = white(size[0], size[1]);
+    draw_overlay(image, view, projection_of(view, 0), "m/s", 1000, 0.52);
+    const BarPlace bar = bar_place(size, ticks);
+    const double em = text_size(size), text = bar.x1 + 0.5 * em;
+    INFO("picture " << size[0] << " x " << size[1]);
+    for (const auto& tick : ticks) {
+      const double y = bar.y1 - tick.value / 4.43 * (bar.y1 - bar.y0);
+      INFO("label " << tick.label);
+      CHECK(ink(image, text, y - 0.5 * em, size[0], y + 0.5 * em) > 0.05 * em * em);
+      CHECK(ink(image, text, y + 0.6 * em, size[0], y + 0.9 * em) == 0);
+    }
+    const double column = std::min(bar.x0, size[0] - 0.8 * em - text_width("speed", em)) - 1;
+    // From the top: name, time, a gap, title, unit, a gap, the bar.
+    CHECK(ink(image, column, bar.y0 - 3.3 * em, size[0], bar.y0 - 2.2 * em) > 0.3 * em * em);
+    CHECK(ink(image, column, bar.y0 - 1.9 * em, size[0], bar.y0 - 0.9 * em) > 0.2 * em * em);
+    CHECK(ink(image, 0, 0, size[0] / 2.0, 2 * em) > 0.4 * em * em);
+    CHECK(ink(image, 0, 2.1 * em, size[0] / 2.0, 3.4 * em) > 0.4 * em * em);
+    CHECK(em >= 11);
+    CHECK(em >= 0.02 * std::min(size[1], size[0] / 2));
   }
 }
 
-TEST_CASE("a power is raised and text is clipped to the picture", "[render]") {
-  Image image = white(60, 30);
-  draw_text(image, "^3", 5, 10, 2, {0, 0, 0});
-  CHECK(ink(image, 0, 0, 60, 10) > 0);
-  CHECK(ink(image, 0, 18, 60, 30) == 0);
-  Image small = white(8, 8);
-  draw_text(small, "wider than the picture", -20, -3, 2, {0, 0, 0});
-  draw_overlay(small, "density", "kg/m^3", {900, 1100}, 1);
-  CHECK(small.rgb.size() == 3u * 8 * 8);
+TEST_CASE("no text is cut by the edge of the picture, whatever its size and contents", "[render]") {
+  for (const std::array<int, 2>& size : {std::array{16, 16},
+                                         {64, 48},
+                                         {100, 400},
+                                         {320, 240},
+                                         {400, 120},
+                                         {1280, 720},
+                                         {1279, 333},
+                                         {3840, 2160}})
+    for (const char* name : {"dam_break",
+                             "ein Name, der länger ist als jedes Bild der Welt und "
+                             "noch länger, Ω und 水 und @ und ÿ inbegriffen",
+                             ""})
+      for (const double top : {1e-9, 0.14, 4.43, 12345678.0})
+        for (const Double3& eye : {Double3{0, 0, 0}, Double3{2, -3, 2}, Double3{1, 0.5, 0.4}}) {
+          View view = bar_view(size);
+          view.name = name;
+          view.range = {0.123 * top, top};
+          if (eye[0] > 0) view.camera.position = eye;
+          view.camera.target = Double3{0.8, 0.1, 0};
+          Image image = white(size[0], size[1]);
+          draw_overlay(image, view, projection_of(view, 0), "kg/m^3", 2147483647, 1234.5678);
+          INFO(size[0] << " x " << size[1] << " " << name << " " << top << " " << eye[0]);
+          int at_edge = 0;
+          const BarPlace bar = bar_place(size, ticks_of(view.range));
+          for (int x = 0; x < size[0]; ++x)
+            for (int y = 0; y < size[1]; ++y) {
+              if (x > 0 && y > 0 && x < size[0] - 1 && y < size[1] - 1) {
+                y = std::max(y, size[1] - 2);  // the rim alone
+                continue;
+              }
+              const bool in_bar =
+                  x >= bar.x0 - 3 && x <= bar.x1 + 12 && y >= bar.y0 - 3 && y <= bar.y1 + 3;
+              at_edge += !in_bar && pixel(image, x, y)[1] < 200;
+            }
+          CHECK(at_edge == 0);
+        }
+}
+
+TEST_CASE("a power is raised and a name stands as it is, in UTF-8", "[render]") {
+  const auto drawn = [](const std::string& name, const std::string& unit) {
+    View view = bar_view({640, 360});
+    view.name = name;
+    Image image = white(640, 360);
+    draw_overlay(image, view, projection_of(view, 0), unit, 10, 1);
+    return image.rgb;
+  };
+  CHECK(drawn("a", "kg/m^3") == drawn("a", "kg/m³"));
+  CHECK(drawn("a", "kg/m^3") != drawn("a", "kg/m3"));
+  CHECK(drawn("ä", "") != drawn("a", ""));
+  CHECK(drawn("a^3", "") != drawn("a³", ""));
+}
+
+TEST_CASE("the default camera keeps its frame clear of labels and colour bar", "[render]") {
+  for (const std::array<int, 2>& size : {std::array{320, 240}, {1280, 720}, {3840, 2160}})
+    for (const bool flat : {false, true}) {
+      View view = bar_view(size);
+      view.flat = flat;
+      if (flat) view.domain_max[1] = 0.01;
+      const Projection p = projection_of(view, 0);
+      const BarPlace bar = bar_place(size, ticks_of(view.range));
+      for (const Double3& corner : frame_of(view)) {
+        const auto [x, y] = p.to_pixel(corner);
+        CHECK(x < bar.x0);
+        CHECK(y > 3.4 * text_size(size));  // under name and time
+        CHECK(y < size[1] - text_size(size));
+      }
+    }
 }

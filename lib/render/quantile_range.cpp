@@ -1,0 +1,54 @@
+#include "lib/render/quantile_range.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "lib/base/error.h"
+#include "lib/render/particles.h"
+
+namespace pbf::inline render_module {
+namespace {
+
+constexpr std::int64_t kMostValues = 1 << 24;
+
+/// Rearranges the values, of which there is at least one.
+double quantile_of(std::vector<double>& values, double share) {
+  const double place = share * static_cast<double>(values.size() - 1);
+  const auto below = values.begin() + static_cast<std::ptrdiff_t>(place);
+  std::nth_element(values.begin(), below, values.end());
+  if (below + 1 == values.end()) return *below;
+  const double next = *std::min_element(below + 1, values.end());
+  return *below + (place - std::floor(place)) * (next - *below);
+}
+
+}  // namespace
+
+QuantileRange::QuantileRange(const View& view, std::int64_t total)
+    : view_(view), stride_((std::max<std::int64_t>(total, 1) + kMostValues - 1) / kMostValues) {}
+
+void QuantileRange::add(const Snapshot& snapshot) {
+  check_fields(snapshot, view_.color);
+  const FieldArray* field = snapshot.find(about(view_.color).field);
+  for (std::size_t i = 0; i < snapshot.count; ++i) {
+    if (seen_++ % stride_ != 0) continue;
+    if (const double value = shown_value(field, view_, i); std::isfinite(value))
+      values_.push_back(value);
+  }
+}
+
+std::array<double, 2> QuantileRange::between(double low, double high) {
+  if (values_.empty())
+    throw Error(ExitCode::bad_input, "--range quantile: no particle of the frames chosen has a " +
+                                         std::string(about(view_.color).word) +
+                                         "; choose other --frames, or give --range LOW,HIGH");
+  std::array<double, 2> range{quantile_of(values_, low), quantile_of(values_, high)};
+  if (view_.color == ColorBy::density) {
+    const double rest = view_.rest_density;
+    const double off = std::max(std::abs(range[0] - rest), std::abs(range[1] - rest));
+    range = {rest - off, rest + off};
+  }
+  return range;
+}
+
+}  // namespace pbf::inline render_module
