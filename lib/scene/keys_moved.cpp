@@ -40,7 +40,7 @@ KeyRows moved_rows() {
        key(OBSTACLE(motion->path), plain,
            "CSV file, relative to the scene file, with the header t,x,y,z or t,x,y,z,rx,ry,rz: s, "
            "the way of the pivot in m, and degrees about x, then y, then z. Between rows cubic.",
-           required, of(MotionKind::file)),
+           required, of(MotionKind::file), names_file),
        key(OBSTACLE(motion->pivot), number("m", kCoordinate),
            "The point about which it turns, before it moves; auto: the middle of the obstacle.",
            automatic, flat(FlatY::middle)),
@@ -61,7 +61,7 @@ KeyRows moved_rows() {
            "CSV file, relative to the scene file, with the header t,angle (s, degrees about the "
            "axis; between rows cubic) or t,ax,ay,az (m/s^2, the acceleration of the tank; between "
            "rows linear).",
-           required, of(TankMotionKind::file)),
+           required, of(TankMotionKind::file), names_file),
        key(KEY(tank_motion->pivot), number("m", kCoordinate),
            "The point about which the tank turns; auto: the middle of the domain.", automatic,
            flat(FlatY::middle))}};
