@@ -32,10 +32,11 @@ struct BatchOptions {
   std::string input;                         ///< folder, scene or list
   std::string out;                           ///< folder of the runs; empty: out/batch_<name>
   std::vector<std::string> grid, overrides;  ///< key=v1,v2; key.path=value
-  int jobs = 1, threads = 0;                 ///< at a time; CPU threads of each, 0: all / jobs
-  std::int64_t only = -1;                    ///< this run alone, from 0
-  double max_walltime = 0;                   ///< s, 0: none
-  std::string time = "1:00:00";              ///< of a task of the Slurm script
+  std::string base_folder;
+  int jobs = 1, threads = 0;     ///< at a time; CPU threads of each, 0: all / jobs
+  std::int64_t only = -1;        ///< this run alone, from 0
+  double max_walltime = 0;       ///< s, 0: none
+  std::string time = "1:00:00";  ///< of a task of the Slurm script
   bool list = false, slurm = false, collect = false, quiet = false;
   bool strict = false;  ///< of every run
 };
@@ -63,6 +64,8 @@ std::string command_text(const BatchOptions& o, const std::string& out) {
                      shell_quoted(fs::absolute(out).string());
   for (const std::string& g : o.grid) text += " --grid " + shell_quoted(g);
   for (const std::string& s : o.overrides) text += " --set " + shell_quoted(s);
+  if (!o.base_folder.empty())
+    text += " --base-folder " + shell_quoted(fs::absolute(o.base_folder).string());
   if (o.strict) text += " --strict";
   return text;
 }
@@ -77,7 +80,7 @@ std::string script(const BatchOptions& o, const std::string& out,
   slurm_seconds(o.time);  // before the runs are looked at
   std::vector<std::string> overrides = o.overrides;
   overrides.push_back("threads=" + std::to_string(wishes.threads));
-  wishes.needs = check_members(members, overrides, false);
+  wishes.needs = check_members(members, overrides, o.base_folder, false);
   return slurm_script(wishes);
 }
 
@@ -137,7 +140,7 @@ class Batch {
     std::vector<std::string> overrides = o_.overrides;
     overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
     try {
-      const LoadedScene loaded = load_scene_or_run(m.scene, overrides);
+      const LoadedScene loaded = load_scene_or_run(m.scene, overrides, o_.base_folder);
       const LoadedScene record = load_stored_scene(folder + "/scene.resolved.yaml");
       const std::string other =
           difference_of_record(record, loaded.scene, scene_files(loaded.scene, loaded.folder));
@@ -166,6 +169,7 @@ class Batch {
                                   "--quiet", "--resume"};
     for (const std::string& s : o_.overrides) args.insert(args.end(), {"--set", s});
     for (const std::string& s : m.overrides) args.insert(args.end(), {"--set", s});
+    if (!o_.base_folder.empty()) args.insert(args.end(), {"--base-folder", o_.base_folder});
     if (o_.strict) args.push_back("--strict");
     if (threads_ > 0) args.insert(args.end(), {"--threads", std::to_string(threads_)});
     if (o_.max_walltime > 0)
@@ -217,7 +221,7 @@ int command_batch(const BatchOptions& o) {
   check_output("--out", out + "/summary.csv");
   watch_signals();
   const bool one = o.only >= 0;  // a task of an array: no summary, others write beside it
-  if (!one && !o.collect) check_members(members, o.overrides, true);
+  if (!one && !o.collect) check_members(members, o.overrides, o.base_folder, true);
   if (one) members = {members[static_cast<std::size_t>(o.only)]};
   Batch batch(o, members, out, log);
   o.collect ? batch.collect() : batch.run();
@@ -240,6 +244,7 @@ void add_batch(CLI::App& app, int& code) {
       "KEY=V1,V2,... or KEY=FIRST:LAST:COUNT: a run for every value; repeatable, then for "
       "every combination");
   add_overrides(c, o.overrides);
+  add_base_folder(c, o.base_folder);
   c->add_option("--jobs", o.jobs, "Runs at a time")->transform(whole_number(1, 4096));
   c->add_option("--threads", o.threads, "CPU threads of a run; all, shared among --jobs")
       ->transform(whole_number(1, 4096));

@@ -13,8 +13,7 @@
 #include "lib/campaign/calibration.h"
 #include "lib/campaign/grid.h"
 #include "lib/io/table.h"
-#include "lib/run/motion_files.h"
-#include "lib/scene/load.h"
+#include "lib/run/load_run.h"
 
 namespace pbf::inline app_module {
 namespace {
@@ -25,6 +24,7 @@ struct BenchOptions {
   std::vector<std::string> backends{"cpu"}, precisions{"float"};
   std::vector<int> threads{0};  ///< 0: as a run would choose
   std::vector<std::string> overrides;
+  std::string base_folder;
   BenchSettings settings;
   std::string csv, json;   ///< paths, empty: none
   bool calibrate = false;  ///< store the costs of the stages for `pbf plan`
@@ -110,8 +110,7 @@ int command_bench(const BenchOptions& o) {
   TableOf<BenchRow> table(columns());
   std::vector<LoadedScene> scenes;
   for (const std::string& path : o.scenes) {
-    scenes.push_back(load_scene(path, o.overrides));
-    read_motions(scenes.back().scene, scenes.back().folder);
+    scenes.push_back(load_scene_or_run(path, o.overrides, o.base_folder));
   }
   if (o.scenes.empty())
     scenes.emplace_back().scene = parse_scene(
@@ -165,8 +164,9 @@ void add_bench(CLI::App& app, int& code) {
   const auto [c, o] = add_command(
       app, code, command_bench, "bench",
       "Time per update and per stage over sizes, backends, precisions and threads", kBenchHelp);
-  CLI::Option* scenes =
-      c->add_option("SCENE", o.scenes, "Scene files; a built-in dam break when none is given");
+  CLI::Option* scenes = c->add_option(
+      "SCENE", o.scenes,
+      "Scene files, or run files for their scenes; a built-in dam break when none is given");
   c->add_flag("--calibrate", o.calibrate,
               "Time every pass of the built-in scene and store it, for the times of pbf plan, in "
               "$PBF_CALIBRATION, else ~/.local/share/pbf/calibration.csv")
@@ -185,6 +185,7 @@ void add_bench(CLI::App& app, int& code) {
       ->delimiter(',')
       ->transform(whole_number(1, 4096));
   add_overrides(c, o.overrides);
+  add_base_folder(c, o.base_folder);
   c->add_option("--warmup", o.settings.warmup, "Updates before the state counts as late")
       ->transform(whole_number(0));
   c->add_option("--updates", o.settings.updates, "Updates of one repeat")

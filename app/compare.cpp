@@ -7,8 +7,8 @@
 #include "lib/base/inputs.h"
 #include "lib/base/log.h"
 #include "lib/base/output_file.h"
-#include "lib/run/motion_files.h"
-#include "lib/scene/load.h"
+#include "lib/base/stage_clock.h"
+#include "lib/run/load_run.h"
 
 namespace pbf::inline app_module {
 namespace {
@@ -19,6 +19,8 @@ struct CompareOptions {
   std::vector<std::string> overrides, overrides_b;  ///< of both sides, of B alone
   CompareSettings settings;
   std::string report;  ///< path, .html or .json; empty: none
+  std::string junit;   ///< path; empty: none
+  std::string base_folder;
   bool quiet = false;
 };
 
@@ -45,6 +47,14 @@ void check_report(const std::string& path) {
               "--report " + path + ": the name must end in .html (with diagrams) or .json");
 }
 
+/// After the inputs are known.
+void check_reports(const CompareOptions& o) {
+  check_output("--report", o.report);
+  check_output("--junit", o.junit);
+  if (!o.report.empty() && !o.junit.empty() && same_output(o.report, o.junit))
+    throw Error(ExitCode::bad_input, "--report and --junit name one file: " + o.report);
+}
+
 void write_report(const std::string& path, const CompareResult& result) {
   if (path.empty()) return;
   write_text_file(path, path.ends_with(".json") ? compare_json(result) : compare_html(result));
@@ -60,13 +70,11 @@ CompareResult between(const CompareOptions& o, Log& log) {
   CompareSettings s = o.settings;
   s.a = parse_side(o.between[0]);
   s.b = parse_side(o.between[1]);
-  LoadedScene a = load_scene(o.inputs[0], o.overrides);
-  read_motions(a.scene, a.folder);
+  const LoadedScene a = load_scene_or_run(o.inputs[0], o.overrides, o.base_folder);
   std::vector<std::string> more = o.overrides;
   more.insert(more.end(), o.overrides_b.begin(), o.overrides_b.end());
-  LoadedScene b = load_scene(o.inputs[0], more);
-  read_motions(b.scene, b.folder);
-  check_output("--report", o.report);
+  const LoadedScene b = load_scene_or_run(o.inputs[0], more, o.base_folder);
+  check_reports(o);
   CompareResult result = compare_between(a.scene, b.scene, a.folder, s,
                                          [&](const std::string& line) { log.note(line); });
   for (const std::string& key : o.overrides_b) result.notes.push_back("on B alone: " + key);
@@ -81,16 +89,18 @@ CompareResult files(const CompareOptions& o) {
     throw Error(ExitCode::bad_input, "two run files are needed, or one scene with --between A,B; " +
                                          std::to_string(o.inputs.size()) + " given");
   for (const std::string& path : o.inputs) note_input(path);
-  check_output("--report", o.report);
+  check_reports(o);
   return compare_files(o.inputs[0], o.inputs[1]);
 }
 
 int command_compare(const CompareOptions& o) {
   check_report(o.report);
   Log log(o.quiet);
+  const Stopwatch watch;
   const CompareResult result = o.between.empty() ? files(o) : between(o, log);
   log.result(compare_text(result));
   write_report(o.report, result);
+  if (!o.junit.empty()) write_text_file(o.junit, compare_junit(result, watch.seconds()));
   return static_cast<int>(result.same() ? ExitCode::done : ExitCode::difference);
 }
 
@@ -100,12 +110,16 @@ void add_compare(CLI::App& app, int& code) {
   const auto [c, o] = add_command(
       app, code, command_compare, "compare",
       "Whether two runs, or one scene on two backends, differ by more than rounding", kCompareHelp);
-  c->add_option("INPUT", o.inputs, "Two run files (run.vtkhdf), or one scene file with --between")
+  c->add_option(
+       "INPUT", o.inputs,
+       "Two run files (run.vtkhdf), or with --between one scene file, or a run file for its "
+       "scene")
       ->required();
   c->add_option("--between", o.between,
                 "A,B: two sides BACKEND:PRECISION or BACKEND:PRECISION@THREADS")
       ->delimiter(',');
   add_overrides(c, o.overrides);
+  add_base_folder(c, o.base_folder);
   add_repeatable(c, "--set-b", o.overrides_b, "The same for B alone, to see what a key changes");
   c->add_option("--warmup", o.settings.warmup, "Updates on A before the frozen step")
       ->transform(whole_number(0, 1000000000));
@@ -118,6 +132,7 @@ void add_compare(CLI::App& app, int& code) {
       ->transform(whole_number(0, std::numeric_limits<std::int64_t>::max()));
   c->add_option("--report", o.report,
                 "Write the result to this file: .html, with diagrams, or .json");
+  c->add_option("--junit", o.junit, "Write the verdicts to this file, as JUnit XML for CI systems");
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
 }
 

@@ -37,6 +37,16 @@ inline void add_overrides(CLI::App* command, std::vector<std::string>& overrides
                  "Replace one key of the scene, KEY.PATH=VALUE; repeatable");
 }
 
+/// Where bases of scenes may lie, besides the tree of the scene's own folder.
+inline void add_base_folder(CLI::App* command, std::string& folder) {
+  command
+      ->add_option(
+          "--base-folder", folder,
+          "Bases of a scene (base: other.yaml) may lie in the tree of this folder too, not "
+          "only in that of the scene's own")
+      ->check(CLI::ExistingDirectory);
+}
+
 /// The measures of a run, a line each, for help.
 std::string diagnostics_text();
 

@@ -13,10 +13,9 @@
 #include "lib/campaign/calibration.h"
 #include "lib/program/threads.h"
 #include "lib/run/emit.h"
-#include "lib/run/motion_files.h"
+#include "lib/run/load_run.h"
 #include "lib/run/start_neighbors.h"
 #include "lib/run/warnings.h"
-#include "lib/scene/load.h"
 
 namespace pbf::inline app_module {
 namespace {
@@ -24,6 +23,7 @@ namespace {
 struct PlanOptions {
   std::string scene;
   std::vector<std::string> overrides;
+  std::string base_folder;
   bool resolved = false, json = false;
 };
 
@@ -60,8 +60,8 @@ std::string json(const Plan& plan, const Scene& scene, const std::optional<TimeE
 }
 
 int command_plan(const PlanOptions& options) {
-  LoadedScene loaded = load_scene(options.scene, options.overrides);
-  read_motions(loaded.scene, loaded.folder);
+  const LoadedScene loaded =
+      load_scene_or_run(options.scene, options.overrides, options.base_folder);
   Log log(false);
   const std::string& dir = loaded.folder;
   // Counted for --resolved too: a scene that cannot run is an error in every form of the answer.
@@ -86,8 +86,9 @@ void add_plan(CLI::App& app, int& code) {
   const auto [c, o] = add_command(
       app, code, command_plan, "plan",
       "Passes, arrays, memory and files of a scene, and what is left out; runs nothing", kPlanHelp);
-  c->add_option("SCENE", o.scene, "Scene file (YAML)")->required();
+  c->add_option("SCENE", o.scene, "Scene file (YAML), or a run file for its scene")->required();
   add_overrides(c, o.overrides);
+  add_base_folder(c, o.base_folder);
   CLI::Option* resolved =
       c->add_flag("--resolved", o.resolved, "Print the scene with every default filled in");
   c->add_flag("--json", o.json, "Print the plan as one JSON object")->excludes(resolved);

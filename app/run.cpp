@@ -32,6 +32,7 @@ struct RunOptions {
   std::string backend, precision;      ///< empty: as the scene says
   int threads = 0;                     ///< 0: as the scene says
   std::vector<std::string> overrides;  ///< key.path=value
+  std::string base_folder;
   bool overwrite = false, resume = false, quiet = false;
   bool strict = false;      ///< warnings are errors
   std::string log_json;     ///< path, empty: none
@@ -168,7 +169,8 @@ int command_run(const RunOptions& options) {
   watch_signals();
   const Stopwatch wall;
   StageClock clock;
-  LoadedScene loaded = load_scene_or_run(options.scene, all_overrides(options));
+  LoadedScene loaded =
+      load_scene_or_run(options.scene, all_overrides(options), options.base_folder);
   const Scene& scene = loaded.scene;
 #ifndef PBF_HAS_RENDER
   if (scene.render)
@@ -242,6 +244,7 @@ void add_run(CLI::App& app, int& code) {
       ->check(CLI::IsMember(words_of<Precision>()));
   c->add_option("--threads", o.threads, "CPU threads")->transform(whole_number(1, 4096));
   add_overrides(c, o.overrides);
+  add_base_folder(c, o.base_folder);
   CLI::Option* overwrite =
       c->add_flag("--overwrite", o.overwrite, "Replace the run in an existing folder");
   c->add_flag(

@@ -8,12 +8,14 @@
 #include "app/commands.h"
 #include "app/options.h"
 #include "lib/base/error.h"
+#include "lib/base/inputs.h"
 #include "lib/base/log.h"
 #include "lib/base/machine.h"
 #include "lib/base/shipped_file.h"
 #include "lib/base/text.h"
 #include "lib/campaign/stability.h"
 #include "lib/campaign/stability_map.h"
+#include "lib/io/junit.h"
 #include "lib/io/table.h"
 
 namespace pbf::inline app_module {
@@ -26,9 +28,10 @@ struct StabilityCommandOptions {
   bool reduced = false, quiet = false;
   int jobs = 0;  ///< cases at once; 0: as many as there are threads, 1 on a device
   std::vector<std::string> overrides;
-  std::string csv;        ///< path, empty: none
-  std::string map, x, y;  ///< X_KEY,Y_KEY and their values; empty: no map
-  StabilityMap settings;  ///< of the map: iterations and limit
+  std::string base_folder;
+  std::string csv, junit;  ///< paths, empty: none
+  std::string map, x, y;   ///< X_KEY,Y_KEY and their values; empty: no map
+  StabilityMap settings;   ///< of the map: iterations and limit
 };
 
 const char* const kStabilityHelp =
@@ -161,10 +164,28 @@ Table table_of(const std::vector<MapCell>& cells, const StabilityMap& map,
                           cells);
 }
 
+std::string junit_of(const std::vector<StabilityRow>& rows, const StabilityCommandOptions& o,
+                     double seconds) {
+  JunitSuite suite{"pbf stability",
+                   {{"backend", o.backend},
+                    {"precision", o.precision},
+                    {"size", o.reduced ? "reduced" : "full"}},
+                   {},
+                   seconds};
+  for (const StabilityRow& r : rows)
+    suite.cases.push_back({r.group, r.name, r.seconds, r.good ? "" : cut(r.happened, 150),
+                           "must " + r.must + "\ndid " + r.happened});
+  return junit_xml(suite);
+}
+
 int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int jobs) {
   Log log(o.quiet);
   const std::vector<StabilityCase> cases = chosen(o);
+  for (const StabilityCase& c : cases) note_input(c.scene);  // told before the work, not after it
   check_output("--csv", o.csv);
+  check_output("--junit", o.junit);
+  if (!o.csv.empty() && !o.junit.empty() && same_output(o.csv, o.junit))
+    throw Error(ExitCode::bad_input, "--csv and --junit name one file: " + o.csv);
   const Stopwatch watch;
   auto rows = in_parallel<StabilityRow>(
       cases.size(), jobs, log, "cases",
@@ -182,6 +203,7 @@ int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int
   log.result(format("%zu cases on %s %s%s: %ld failed, %.1f s", rows.size(), o.backend.c_str(),
                     o.precision.c_str(), o.reduced ? ", reduced" : "", failed, watch.seconds()));
   if (!o.csv.empty()) write_text_file(o.csv, table_of(rows, o).csv());
+  if (!o.junit.empty()) write_text_file(o.junit, junit_of(rows, o, watch.seconds()));
   return static_cast<int>(failed == 0 ? ExitCode::done : ExitCode::difference);
 }
 
@@ -197,8 +219,8 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
     throw Error(ExitCode::bad_input, "--map " + o.map + ": expected two keys, time.step,gravity");
   map.x_key = o.map.substr(0, comma);
   map.y_key = o.map.substr(comma + 1);
-  map.x = map_values(map.scene, run.overrides, map.x_key, o.x);
-  map.y = map_values(map.scene, run.overrides, map.y_key, o.y);
+  map.x = map_values(map.scene, run, map.x_key, o.x);
+  map.y = map_values(map.scene, run, map.y_key, o.y);
   check_output("--csv", o.csv);
   Log log(o.quiet);
   const std::vector<MapCell> grid = map_cells(map);
@@ -223,6 +245,7 @@ int command_stability(const StabilityCommandOptions& o) {
   run.reduced = o.reduced;
   run.threads = std::max(1, usable_threads() / jobs);
   run.overrides = o.overrides;
+  run.base_folder = o.base_folder;
   return o.map.empty() ? run_suite(o, run, jobs) : run_map(o, run, jobs);
 }
 
@@ -245,10 +268,14 @@ void add_stability(CLI::App& app, int& code) {
   c->add_option("--jobs", o.jobs, "Cases at once; all CPU threads when not given, 1 on cuda")
       ->transform(whole_number(1, 4096));
   add_overrides(c, o.overrides);
+  add_base_folder(c, o.base_folder);
   c->add_option("--csv", o.csv, "Write the table to this file");
+  CLI::Option* junit = c->add_option(
+      "--junit", o.junit, "Write the verdicts to this file, as JUnit XML for CI systems");
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
   CLI::Option* map = c->add_option(
       "--map", o.map, "X_KEY,Y_KEY: run a scene over a grid of two of its keys instead");
+  junit->excludes(map);
   for (const auto& [name, values] : {std::pair{"--x", &o.x}, {"--y", &o.y}})
     c->add_option(name, *values,
                   "Values along this axis of the map: a,b,c or LOW:HIGH:COUNT in equal ratios; the "

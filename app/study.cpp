@@ -19,7 +19,8 @@ struct StudyOptions {
   std::string study;                   ///< path of the study file
   std::string out;                     ///< folder; empty: out/study_<name>
   std::vector<std::string> overrides;  ///< key.path=value, for every run
-  int repeats = 0;                     ///< 0: as the study says
+  std::string base_folder;
+  int repeats = 0;  ///< 0: as the study says
   bool list = false, quiet = false;
 };
 
@@ -123,7 +124,7 @@ std::string list_text(const Study& study) {
 }
 
 int command_study(const StudyOptions& o) {
-  Study study = load_study(o.study, o.overrides);
+  Study study = load_study(o.study, o.overrides, o.base_folder);
   if (o.repeats > 0) study.repeats = o.repeats;
   Log log(o.quiet);
   if (o.list) {
@@ -195,6 +196,7 @@ void add_study(CLI::App& app, int& code) {
   add_repeatable(c, "--set", o.overrides,
                  "Replace one key of the scene in every run, KEY.PATH=VALUE; the study's variants "
                  "and grid come after it");
+  add_base_folder(c, o.base_folder);
   c->add_option("--repeats", o.repeats, "Repeats of the timing; as the study says when not given")
       ->transform(whole_number(1, 1000));
   c->add_flag("--list", o.list, "Print the runs and do nothing");

@@ -16,10 +16,10 @@ namespace {
 
 constexpr std::size_t kMostTold = 10;
 
-void add_needs(const BatchMember& m, std::vector<std::string> overrides, bool here,
-               BatchNeeds& needs) {
+void add_needs(const BatchMember& m, std::vector<std::string> overrides,
+               const std::string& base_folder, bool here, BatchNeeds& needs) {
   overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
-  const LoadedScene loaded = load_scene_or_run(m.scene, overrides);
+  const LoadedScene loaded = load_scene_or_run(m.scene, overrides, base_folder);
   const std::int64_t n = count_particles(loaded.scene, loaded.folder);
   Plan plan = make_plan(loaded.scene, n);
   if (here) return refuse_if_too_large(loaded.scene, plan);
@@ -31,13 +31,14 @@ void add_needs(const BatchMember& m, std::vector<std::string> overrides, bool he
 }  // namespace
 
 BatchNeeds check_members(const std::vector<BatchMember>& members,
-                         const std::vector<std::string>& overrides, bool here) {
+                         const std::vector<std::string>& overrides, const std::string& base_folder,
+                         bool here) {
   BatchNeeds needs;
   std::optional<ExitCode> code;
   std::size_t bad = 0;
   std::string text;
   for (const BatchMember& m : members) try {
-      add_needs(m, overrides, here, needs);
+      add_needs(m, overrides, base_folder, here, needs);
     } catch (const Error& e) {
       if (!code) code = e.code();
       if (++bad <= kMostTold) text += "\n  " + m.name + ": " + e.what();

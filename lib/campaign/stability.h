@@ -80,6 +80,7 @@ struct StabilityOptions {
   Precision precision = Precision::single;
   int threads = 0;                     ///< of one case; 0: all
   std::vector<std::string> overrides;  ///< --set, after the case's own
+  std::string base_folder;             ///< as in load_scene()
 };
 
 /// Without output, and where and with what the options say.

@@ -14,15 +14,17 @@
 namespace pbf::inline campaign_module {
 namespace {
 
-Scene scene_of(const StabilityCase& c, const StabilityOptions& o) {
-  Node root = load_tree(c.scene, "scene");
+Scene scene_of(const StabilityCase& c, const StabilityOptions& o, const std::string& dir) {
+  Node root = load_scene_tree(c.scene, o.base_folder);
   Problems problems;
   for (const auto& [path, value] : c.set) set_value(root, path, value, problems);
   if (o.reduced)
     for (const auto& [path, value] : c.small) set_value(root, path, value, problems);
   for (const std::string& argument : o.overrides) apply_override(root, argument, problems);
-  Scene s = scene_of_tree(root, problems);
+  bool auto_step = false;
+  Scene s = scene_of_tree(root, problems, &auto_step);
   problems.raise();
+  read_motions(s, dir, auto_step);
   if (c.must.loads) {
     s.domain.loads = true;
     for (Obstacle& obstacle : s.obstacles) obstacle.loads = true;
@@ -125,9 +127,8 @@ void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s
 }
 
 void run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
-  Scene s = scene_of(c, o);
   const std::string dir = std::filesystem::path(c.scene).parent_path().string();
-  read_motions(s, dir);
+  const Scene s = scene_of(c, o, dir);
   row.dt_hat =
       s.time.step * std::sqrt(std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]) / s.h());
   const Course course = run_course(s, dir, [&](Solver& solver) {

@@ -17,12 +17,12 @@ constexpr std::size_t kMostCells = 10000000;
 
 double length(const Double3& v) { return std::hypot(v[0], v[1], v[2]); }
 
-Scene scene_with(const std::string& path, const std::vector<std::string>& overrides,
+Scene scene_with(const std::string& path, const StabilityOptions& run,
                  const std::vector<std::string>& more) {
-  std::vector<std::string> all = overrides;
+  std::vector<std::string> all = run.overrides;
   all.insert(all.end(), more.begin(), more.end());
-  LoadedScene loaded = load_scene(path, all);
-  read_motions(loaded.scene, loaded.folder);
+  LoadedScene loaded = load_scene(path, all, run.base_folder);
+  read_motions(loaded.scene, loaded.folder, loaded.auto_step);
   return loaded.scene;
 }
 
@@ -65,9 +65,9 @@ GridAxis axis_of(Scene& s, const std::string& key, const std::vector<double>& va
 
 }  // namespace
 
-std::vector<double> map_values(const std::string& path, const std::vector<std::string>& overrides,
+std::vector<double> map_values(const std::string& path, const StabilityOptions& run,
                                const std::string& key, const std::string& text) {
-  Scene s = scene_with(path, overrides, {});
+  Scene s = scene_with(path, run, {});
   const bool whole = std::holds_alternative<int*>(field_of(s, key));
   if (!text.empty()) return numbers_listed(key, text, whole);
   const double own = value_of(s, key);
@@ -80,7 +80,7 @@ std::vector<double> map_values(const std::string& path, const std::vector<std::s
 }
 
 std::vector<MapCell> map_cells(const StabilityMap& m) {
-  Scene base = scene_with(m.scene, m.run.overrides, {});
+  Scene base = scene_with(m.scene, m.run, {});
   std::vector<MapCell> cells;
   for (const GridMember& member :
        grid_members({grid_axis("solver.iterations", m.iterations), axis_of(base, m.y_key, m.y),
@@ -96,8 +96,8 @@ std::vector<MapCell> map_cells(const StabilityMap& m) {
 }
 
 MapCell run_map_cell(const StabilityMap& m, MapCell c) {
-  const Scene base = scene_with(m.scene, m.run.overrides, {});
-  Scene s = scene_with(m.scene, m.run.overrides, c.settings);
+  const Scene base = scene_with(m.scene, m.run, {});
+  Scene s = scene_with(m.scene, m.run, c.settings);
   const double g0 = length(base.gravity), g = length(s.gravity);
   if (g0 > 0 && g > 0) s.time.end *= std::sqrt(g0 / base.h() / (g / s.h()));
   s.time.end = std::max(s.time.end, s.time.step);

@@ -41,7 +41,8 @@ struct Study {
 /// Reads a study file (`pbf study --help` has the keys). `overrides` as on the command line of a
 /// run: they apply to every member, before its variant and grid. Throws Error(bad_input) with one
 /// line per problem, "study.yaml:7:5: key: what"; scenes of members are checked too.
-Study load_study(const std::string& path, const std::vector<std::string>& overrides);
+Study load_study(const std::string& path, const std::vector<std::string>& overrides,
+                 const std::string& base_folder = {});
 
 /// The measures of this study's table that can be set against time: `error` is one of them.
 std::vector<std::string> study_error_measures(const Study& study);

@@ -64,7 +64,7 @@ void StudyReader::front(const Node& n) {
   study_.front = front;
 }
 
-Study StudyReader::read(const std::vector<std::string>& overrides) {
+Study StudyReader::read(const std::vector<std::string>& overrides, const std::string& base_folder) {
   study_.path = path_;
   study_.name = fs::path(path_).stem().string();
   bool has_scene = false;
@@ -109,7 +109,7 @@ Study StudyReader::read(const std::vector<std::string>& overrides) {
     problems_.add(path_, "scene", "is missing: the scene to vary, a path from this file's folder");
   problems_.raise();
   study_.scene_dir = fs::path(scene_path_).parent_path().string();
-  make_members(load_tree(scene_path_, "scene"), overrides);
+  make_members(load_scene_tree(scene_path_, base_folder), overrides);
   const auto known = study_error_measures(study_);
   if (std::find(known.begin(), known.end(), study_.error) == known.end()) {
     const std::string near = nearest_word(study_.error, known);
@@ -127,8 +127,9 @@ Study StudyReader::read(const std::vector<std::string>& overrides) {
   return study_;
 }
 
-Study load_study(const std::string& path, const std::vector<std::string>& overrides) {
-  return StudyReader(load_tree(path, "study"), path).read(overrides);
+Study load_study(const std::string& path, const std::vector<std::string>& overrides,
+                 const std::string& base_folder) {
+  return StudyReader(load_tree(path, "study"), path).read(overrides, base_folder);
 }
 
 }  // namespace pbf::inline campaign_module

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "lib/campaign/study_reader.h"
+#include "lib/run/motion_files.h"
 #include "lib/scene/load.h"
 #include "lib/scene/overrides.h"
 
@@ -87,7 +88,10 @@ void StudyReader::variants(const Node& n) {
 StudyMember StudyReader::member(Node scene, const Settings& more) {
   for (const auto& [key, value] : more) set_value(scene, key, value, problems_);
   StudyMember m;
-  m.scene = scene_of_tree(scene, problems_);
+  const bool fine = problems_.empty();
+  bool auto_step = false;
+  m.scene = scene_of_tree(scene, problems_, &auto_step);
+  if (auto_step && fine && problems_.empty()) read_motions(m.scene, study_.scene_dir, true);
   if (m.scene.time.adaptive)
     problems_.add(path_, "time.adaptive",
                   "a study compares steps that stay as they are; add time.adaptive: off to `set`");

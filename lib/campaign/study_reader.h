@@ -14,7 +14,7 @@ namespace pbf::inline campaign_module {
 class StudyReader : StrictReader {
  public:
   StudyReader(Node root, const std::string& path) : StrictReader(path), root_(std::move(root)) {}
-  Study read(const std::vector<std::string>& overrides);
+  Study read(const std::vector<std::string>& overrides, const std::string& base_folder);
 
  private:
   template <class T>

@@ -42,6 +42,7 @@ struct RunInfo {
   std::string plan;           ///< text of the plan
   std::string scene_sha256;   ///< scene_digest(), lib/scene/scene_files.h; empty in older files
   std::string scene_files;    ///< files_text() of the files that the scene names; the same
+  std::string scene_bases;    ///< files_text() of those that its file builds on; the same
   SolverInfo solver;
   Double3 domain_min{}, domain_max{};
   double spacing = 0, smoothing_length = 0, rest_density = 0;

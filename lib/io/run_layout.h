@@ -110,6 +110,7 @@ template <class Info, class F>
 void for_each_newer_text(Info& info, F&& f) {
   f("scene_sha256", info.scene_sha256);
   f("scene_files", info.scene_files);
+  f("scene_bases", info.scene_bases);
 }
 
 }  // namespace pbf::inline io_module::run_layout

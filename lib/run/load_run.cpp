@@ -47,10 +47,11 @@ std::string folder_of_files(const Scene& scene, const std::string& run_file,
                   "(0: the number of the body)");
 }
 
-LoadedScene load_scene_or_run(const std::string& path, const std::vector<std::string>& overrides) {
+LoadedScene load_scene_or_run(const std::string& path, const std::vector<std::string>& overrides,
+                              const std::string& base_folder) {
   if (!is_hdf5(path)) {
-    LoadedScene loaded = load_scene(path, overrides);
-    read_motions(loaded.scene, loaded.folder);
+    LoadedScene loaded = load_scene(path, overrides, base_folder);
+    read_motions(loaded.scene, loaded.folder, loaded.auto_step);
     return loaded;
   }
   try_run_file(path);
@@ -66,6 +67,7 @@ LoadedScene load_scene_or_run(const std::string& path, const std::vector<std::st
   loaded.scene = parse_stored_scene(info.resolved_scene, path + ": its scene", overrides);
   loaded.path = info.scene_path;
   loaded.text = info.scene_text;
+  loaded.bases = info.scene_bases;
   loaded.folder = folder_of_files(loaded.scene, path, info.scene_path);
   read_motions(loaded.scene, loaded.folder);
   loaded.run_file = path;

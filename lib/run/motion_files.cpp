@@ -7,6 +7,7 @@
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 #include "lib/io/csv.h"
+#include "lib/run/motion_step.h"
 #include "lib/scene/number.h"
 
 namespace pbf::inline run_module {
@@ -97,7 +98,7 @@ class Reader {
 
 }  // namespace
 
-void read_motions(Scene& scene, const std::string& dir) {
+void read_motions(Scene& scene, const std::string& dir, bool auto_step) {
   for_each_file(scene, [&](auto& m, const std::string& key) {
     Reader reader(scene, key, file_of(m.path, dir));
     if constexpr (std::is_same_v<std::decay_t<decltype(m)>, Motion>) {
@@ -110,6 +111,7 @@ void read_motions(Scene& scene, const std::string& dir) {
                                          : "holds angles; give tank_motion.axis");
     }
   });
+  if (auto_step) choose_step_of_motions(scene);
 }
 
 std::vector<std::string> motion_paths(const Scene& scene) {

@@ -21,6 +21,7 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   info.scene_text = loaded.text;
   info.resolved_scene = resolved_yaml(scene);
   info.scene_files = loaded.files;
+  info.scene_bases = loaded.bases;
   info.scene_sha256 = scene_digest(info.resolved_scene, info.scene_files);
   info.overrides = loaded.overrides;
   for (const Warning& w : run.of_scene) info.warnings.push_back(w.text);

@@ -30,12 +30,13 @@ StepRule step_rule(const Scene& s) {
           fastest > 0 ? kSafeWay * s.h() / fastest : never};
 }
 
-double auto_step(const Scene& s) {
-  const double longest = step_rule(s).longest();
+double fitted_step(const Scene& s, double longest) {
   if (!std::isfinite(longest)) return 0;
   if (!s.output) return two_digits(longest);
   // A whole number but for rounding is one.
   return s.output->every / std::ceil(s.output->every / longest * (1 - 1e-9));
 }
+
+double auto_step(const Scene& s) { return fitted_step(s, step_rule(s).longest()); }
 
 }  // namespace pbf::inline scene_module

@@ -23,9 +23,12 @@ inline constexpr double kSafeWay = 0.2;
 
 StepRule step_rule(const Scene& scene);
 
-/// s: the longest by the rule of which output.every is a whole number; without output with two
-/// digits. A run may be made longer with --resume: time.end has no say. 0: nothing moves the fluid,
-/// and there is no rule.
+/// s: the longest up to `longest` of which output.every is a whole number; without output with two
+/// digits. A run may be made longer with --resume: time.end has no say. 0: `longest` is infinite.
+double fitted_step(const Scene& scene, double longest);
+
+/// s, by gravity and the velocities of bodies. What motions ask for is not known before their
+/// tables are read: choose_step_of_motions() (lib/run/motion_step.h). 0: nothing moves the fluid.
 double auto_step(const Scene& scene);
 
 }  // namespace pbf::inline scene_module

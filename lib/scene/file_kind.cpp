@@ -4,6 +4,8 @@
 #include <sstream>
 #include <vector>
 
+#include "lib/scene/base_scene.h"
+
 namespace pbf::inline scene_module {
 namespace {
 
@@ -14,7 +16,7 @@ struct FileKind {
 
 const std::vector<FileKind>& kinds() {
   static const std::vector<FileKind> kKinds{
-      {"scene", "pbf run", {"domain", "fluid", "bodies"}},
+      {"scene", "pbf run", {"domain", "fluid", "bodies", kBaseKey}},
       {"study", "pbf study", {"scene"}},
       {"stability suite", "pbf stability --suite", {"cases"}}};
   return kKinds;

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "lib/base/text.h"
+#include "lib/scene/base_scene.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/load.h"
 
@@ -56,6 +57,8 @@ std::string reference_markdown() {
     out += "\n## " + heading(block) + "\n";
     if (!block.help.empty()) out += block.help + (block.help.back() == '.' ? "\n\n" : ".\n\n");
     out += "| key | unit | values | default | meaning |\n|---|---|---|---|---|\n";
+    if (block.path.empty())
+      out += format("| `%s` |  |  |  | %s |\n", kBaseKey, cell(kBaseHelp).c_str());
     for (const Key* key : block.keys) out += row(*key);
   }
   return out;

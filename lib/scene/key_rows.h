@@ -69,6 +69,8 @@ inline auto flat(FlatY y) {
 }
 /// A corner of a box: beside `min` and `max` there are `center` and `size`.
 inline void by_center(Key& row) { row.by_center = true; }
+/// The path of a file, relative to the scene file.
+inline void names_file(Key& row) { row.names_file = true; }
 inline auto form(const KeyTable& (*table)()) {
   return [=](Key& row) { row.form = table; };
 }

@@ -88,7 +88,8 @@ struct Key {
   bool is_kind = false;    ///< the word that decides which other keys a block or an entry has
   unsigned kinds = ~0u;    ///< bit 1 << index of every kind that has this key
   FlatY flat = FlatY::none;
-  bool by_center = false;  ///< a corner of a box that center and size may give as well
+  bool by_center = false;   ///< a corner of a box that center and size may give as well
+  bool names_file = false;  ///< a path, from the folder of the scene file
   /// The table of a mapping in whose place it may be given, or of one number; null: none.
   const KeyTable& (*form)() = nullptr;
   std::string was{};  ///< its path in earlier versions; empty: the same
@@ -186,6 +187,8 @@ const KeyTable& scene_table();
 std::string unit_text(const Key& key);
 /// "> 0 .. 1.0e+09", "consistent | paper"; empty when anything goes.
 std::string range_text(const Key& key);
+/// An end of the key's range, in plain digits where the key is a whole number.
+std::string bound_text(const Key& key, double bound);
 /// YAML text of the key's value in the object that holds it.
 std::string value_text(const Key& key, const Object& holder);
 /// "fluid", "spacing" -> "fluid.spacing"; of the top level the leaf.

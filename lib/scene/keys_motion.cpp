@@ -25,8 +25,10 @@ KeyRows motion_rows() {
            flat(FlatY::zero), form(gravity_table)),
        key(KEY(time.step), number("s", kSeconds),
            "Time of one update, dt. About 0.03 sqrt(h/g) is safe. auto: the longest up to that, "
-           "and up to 0.2 h of way of the fastest body, of which output.every is a whole number; "
-           "the number chosen stands in the resolved scene.",
+           "and up to 0.2 h of way of the fastest body or obstacle, of which output.every is a "
+           "whole "
+           "number; in a tank that moves, g is the most that the fluid feels at rest. The number "
+           "chosen stands in the resolved scene.",
            required, automatic, scaled(linear)),
        key(KEY(time.end), number("s", kSeconds),
            "Time simulated, rounded to whole updates; at least time.step.", required,

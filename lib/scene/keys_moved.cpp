@@ -48,7 +48,7 @@ KeyRows moved_rows() {
            "CSV file, relative to the scene file, with the header t,x,y,z or t,x,y,z,rx,ry,rz: "
            "time in s, displacement of the pivot in m, rotations about x, then y, then z in "
            "degrees. Cubic between rows.",
-           required, of(MotionKind::file)),
+           required, of(MotionKind::file), names_file),
        key(OBSTACLE(motion->pivot), number("m", kCoordinate),
            "The point about which it rotates, before it moves; auto: the middle of the obstacle.",
            automatic, flat(FlatY::middle)),
@@ -70,7 +70,7 @@ KeyRows moved_rows() {
            "CSV file, relative to the scene file, with the header t,angle (s, degrees about the "
            "axis; cubic between rows) or t,ax,ay,az (m/s^2, acceleration of the tank; linear "
            "between rows).",
-           required, of(TankMotionKind::file)),
+           required, of(TankMotionKind::file), names_file),
        key(KEY(tank_motion->pivot), number("m", kCoordinate),
            "The point about which the tank rotates; auto: the middle of the domain.", automatic,
            flat(FlatY::middle))}};

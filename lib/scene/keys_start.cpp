@@ -87,7 +87,7 @@ KeyRows start_rows() {
            "Particle file, relative to the scene file: CSV with the header x,y,z or "
            "x,y,z,vx,vy,vz, or HDF5 with datasets position (N, 3) and, if wanted, velocity (N, "
            "3).",
-           required, of(Shape::file)),
+           required, of(Shape::file), names_file),
        key(BODY(velocity), number("m/s", kRate),
            "Initial velocity, added to every particle of the body.", flat(FlatY::zero)),
        key(OBSTACLE(name), plain, "Name, in the columns of the log.", required),

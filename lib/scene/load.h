@@ -15,19 +15,23 @@ struct LoadedScene {
   Scene scene;
   std::string path;                    ///< of the scene file
   std::string text;                    ///< the file as it stands
+  std::string bases;                   ///< files_text() of the files that it builds on
   std::vector<std::string> overrides;  ///< the --set arguments
   std::string folder;                  ///< of the files that it names
   std::string run_file;                ///< that the scene was taken from; empty: none
   std::string files;                   ///< files_text() of what was, or (run file) has been, read
   bool files_known = false;            ///< whether the run file has `files`
+  bool auto_step = false;              ///< time.step: auto, chosen without motions so far
 };
 
-/// Reads `path`, applies `--set key.path=value` overrides, validates everything.
-/// Throws Error(bad_input) with one line per problem: "file:line:column: key: what, remedy";
-/// Error(bad_input) too when the file is missing, a directory, empty or not text.
-LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides);
+/// Reads `path` and the files that it builds on (lib/scene/base_scene.h), which lie in its folder's
+/// tree or in that of `base_folder` (empty: no other), applies `--set key.path=value` overrides,
+/// validates everything. Throws Error(bad_input) with one line per problem: "file:line:column: key:
+/// what, remedy"; Error(bad_input) too when the file is missing, a directory, empty or not text.
+LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides,
+                       const std::string& base_folder = {});
 
-/// The same from text; `origin` stands for the file name in messages.
+/// The same from text, which builds on no file; `origin` stands for the file name in messages.
 Scene parse_scene(const std::string& text, const std::string& origin,
                   const std::vector<std::string>& overrides);
 
@@ -37,11 +41,14 @@ Scene parse_stored_scene(const std::string& text, const std::string& origin,
                          const std::vector<std::string>& overrides);
 LoadedScene load_stored_scene(const std::string& path);
 
-/// The two halves of load_scene, for those who change values in between: the tree of a YAML file
-/// (`what` it should be, for messages: "scene"), and the scene of a tree, with what is wrong added
-/// to `problems` (the scene is of no use then).
+/// The tree of a YAML file; `what` it should be, for messages: "study".
 Node load_tree(const std::string& path, const std::string& what);
-Scene scene_of_tree(const Node& root, Problems& problems);
+
+/// The two halves of load_scene, for those who change values in between: the tree of a scene file
+/// laid over its bases, and the scene of a tree, with what is wrong added to `problems` (the scene
+/// is of no use then). `automatic`: whether time.step was left to be chosen.
+Node load_scene_tree(const std::string& path, const std::string& base_folder = {});
+Scene scene_of_tree(const Node& root, Problems& problems, bool* automatic = nullptr);
 
 /// YAML of the whole scene, defaults filled in, which parse_scene reads back to an equal scene.
 /// Numbers keep all their digits (17).

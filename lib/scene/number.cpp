@@ -66,7 +66,7 @@ NumberError read_number(const std::string& text, std::int64_t& value) {
   }
   if (error != NumberError::none) return error;
   if (real != std::floor(real)) return NumberError::not_whole;
-  if (std::fabs(real) > 0x1p53) return NumberError::too_large;
+  if (std::fabs(real) > 0x1p53) return NumberError::inexact;
   value = static_cast<std::int64_t>(real);
   return NumberError::none;
 }
@@ -77,7 +77,9 @@ std::string describe(NumberError error) {
                                        "is not finite",
                                        "is too large to be represented",
                                        "is too small to be represented; write 0",
-                                       "is not a whole number"};
+                                       "is not a whole number",
+                                       "is too large to be exact with a point or an exponent; "
+                                       "write all its digits"};
   return kTexts[static_cast<int>(error)];
 }
 

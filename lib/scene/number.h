@@ -16,12 +16,13 @@ inline std::string to_text(int value) { return std::to_string(value); }
 std::string to_text(const Double3& value);
 
 /// What became of a text that should be a number.
-enum class NumberError { none, not_a_number, not_finite, too_large, too_small, not_whole };
+enum class NumberError { none, not_a_number, not_finite, too_large, too_small, not_whole, inexact };
 
 /// Decimal numbers only ([+-]digits[.digits][e[+-]digits]); no octal, hex, underscores. Denormal
 /// values are `too_small`: arithmetic on them loses digits and speed.
 NumberError read_number(const std::string& text, double& value);
-/// The same grammar; 1e3 and 4.0 are whole. Leading zeros are decimal: 010 is 10.
+/// The same grammar; 1e3 and 4.0 are whole, up to 2^53, beyond which a double is not exact. Leading
+/// zeros are decimal: 010 is 10.
 NumberError read_number(const std::string& text, std::int64_t& value);
 /// "is not finite" and the like, to follow the text itself in a message.
 std::string describe(NumberError error);

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lib/base/json.h"
+#include "lib/scene/base_scene.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/load.h"
 #include "lib/scene/number.h"
@@ -17,9 +18,9 @@ Json number_schema(const Key& key, bool whole) {
   Json out{{"type", whole ? "integer" : "number"}};
   const Range& r = key.range;
   if (std::isfinite(r.min))
-    out[r.above_min ? "exclusiveMinimum" : "minimum"] = Json::parse(to_text(r.min));
+    out[r.above_min ? "exclusiveMinimum" : "minimum"] = Json::parse(bound_text(key, r.min));
   if (std::isfinite(r.max))
-    out[r.below_max ? "exclusiveMaximum" : "maximum"] = Json::parse(to_text(r.max));
+    out[r.below_max ? "exclusiveMaximum" : "maximum"] = Json::parse(bound_text(key, r.max));
   return out;
 }
 
@@ -85,25 +86,29 @@ Json key_schema(const Key& key) {
   return out;
 }
 
+/// Whether an object must have all that is required, or may be a part: over a base.
+enum class Extent { whole, part };
+
 /// Object with the keys and blocks that stand directly in `block`. kind < 0: of no kind.
-Json object_schema(const KeyTable& table, const Block& block, int kind);
+Json object_schema(const KeyTable& table, const Block& block, int kind, Extent extent);
 
 /// Of the mapping that may stand in a key's place.
 Json form_schema(const Key& key) {
   const KeyTable& table = key.form();
-  return object_schema(table, *table.find_block(key.leaf()), -1);
+  return object_schema(table, *table.find_block(key.leaf()), -1, Extent::whole);
 }
 
 /// Of each kind where there are kinds, or else of all.
-Json kinds_schema(const KeyTable& table, const Block& block) {
+Json kinds_schema(const KeyTable& table, const Block& block, Extent extent) {
   Json kinds = Json::array();
   for (int k = 0; block.kind != nullptr && k < int(block.kind->choices.size()); ++k)
-    kinds.push_back(object_schema(table, block, k));
-  return kinds.empty() ? object_schema(table, block, -1) : Json{{"oneOf", kinds}};
+    kinds.push_back(object_schema(table, block, k, extent));
+  if (kinds.empty()) return object_schema(table, block, -1, extent);
+  return {{extent == Extent::whole ? "oneOf" : "anyOf", kinds}};  // a part may be of several
 }
 
-Json block_schema(const KeyTable& table, const Block& block) {
-  const Json object = kinds_schema(table, block);
+Json block_schema(const KeyTable& table, const Block& block, Extent extent) {
+  const Json object = kinds_schema(table, block, extent);
   if (!block.optional) return object;
   const Json words =
       table.has_required(block) ? Json{"off", false} : Json{"on", "off", true, false};
@@ -114,10 +119,10 @@ Json list_schema(const KeyTable& table, const Block& block) {
   return {{"description", block.help + "."},
           {"type", "array"},
           {"minItems", block.list->least},
-          {"items", kinds_schema(table, block)}};
+          {"items", kinds_schema(table, block, Extent::whole)}};
 }
 
-Json object_schema(const KeyTable& table, const Block& block, int kind) {
+Json object_schema(const KeyTable& table, const Block& block, int kind, Extent extent) {
   Json properties = Json::object(), required = Json::array(), corners = Json::array();
   for (const Key* key : block.keys) {
     if (kind >= 0 && !(key->kinds & (1u << kind))) continue;
@@ -136,27 +141,62 @@ Json object_schema(const KeyTable& table, const Block& block, int kind) {
   for (const bool lists : {false, true})
     for (const Block& child : table.blocks) {
       if (bool(child.list) != lists || child.parent != &block) continue;
-      properties[child.leaf()] = lists ? list_schema(table, child) : block_schema(table, child);
+      properties[child.leaf()] =
+          lists ? list_schema(table, child) : block_schema(table, child, extent);
       if (table.is_required(child)) required.push_back(child.leaf());
     }
   Json out{{"type", "object"}, {"additionalProperties", false}};
   if (block.parent != nullptr && !block.list) out["description"] = block.help;
-  if (!required.empty()) out["required"] = required;
+  if (!required.empty() && extent == Extent::whole) out["required"] = required;
   if (!corners.empty())
     out["oneOf"] = {{{"required", corners}}, {{"required", {"center", "size"}}}};
   out["properties"] = properties;
   return out;
 }
 
+/// What a mapping that stands alone must have besides: what Extent::part leaves out.
+Json required_schema(const KeyTable& table, const Block& block) {
+  Json children = Json::object(), blocks = Json::array(), kinds = Json::array();
+  for (const Block& child : table.blocks) {
+    if (child.parent != &block) continue;
+    if (table.is_required(child)) blocks.push_back(child.leaf());
+    if (child.list) continue;
+    if (Json inner = required_schema(table, child); !inner.empty()) children[child.leaf()] = inner;
+  }
+  const auto of_kind = [&](int kind) {
+    Json required = blocks, out = Json::object();
+    for (const Key* key : block.keys)
+      if (key->required && (kind < 0 || (key->kinds & (1u << kind))))
+        required.push_back(key->leaf());
+    if (!required.empty()) out["required"] = required;
+    return out;
+  };
+  Json out = of_kind(-1);
+  if (block.kind != nullptr) {
+    for (int k = 0; k < int(block.kind->choices.size()); ++k) {
+      kinds.push_back(of_kind(k));
+      kinds.back()["properties"][block.kind->leaf()] = {
+          {"const", block.kind->choices[std::size_t(k)]}};
+    }
+    out = {{"anyOf", kinds}};
+  }
+  if (!children.empty()) out["properties"] = children;
+  return out;
+}
+
 }  // namespace
 
 std::string schema_of(const KeyTable& table) {
-  return json_text(object_schema(table, *table.find_block(""), -1));
+  return json_text(object_schema(table, *table.find_block(""), -1, Extent::whole));
 }
 
 std::string json_schema() {
   Json out{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Scene of pbf"}};
-  out.update(object_schema(scene_table(), *scene_table().find_block(""), -1));
+  const Block& top = *scene_table().find_block("");
+  out.update(object_schema(scene_table(), top, -1, Extent::part));
+  out["properties"][kBaseKey] = {{"description", kBaseHelp}, {"type", "string"}, {"minLength", 1}};
+  out["if"] = {{"required", {kBaseKey}}};
+  out["else"] = required_schema(scene_table(), top);
   return json_text(out, 1) + "\n";
 }
 

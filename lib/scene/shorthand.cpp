@@ -1,7 +1,6 @@
 #include "lib/scene/shorthand.h"
 
 #include <algorithm>
-#include <functional>
 
 #include "lib/scene/number.h"
 #include "lib/scene/value.h"
@@ -13,22 +12,6 @@ Node scalar_node(const Node& like, double value) {
   return {Node::Kind::scalar, to_text(value), false, {}, {}, like.origin, like.line, like.column};
 }
 
-/// f(value, around) for every value that stands at the key's path, `around` the mapping it is in.
-using Visit = std::function<void(Node&, Node&)>;
-void visit(Node& at, const std::string& path, const Visit& f) {
-  if (at.kind != Node::Kind::map) return;
-  if (Node* value = at.find(path)) f(*value, at);  // also of a path in one word
-  const std::size_t dot = path.find('.');
-  if (dot == path.npos) return;
-  const std::string first = path.substr(0, dot), rest = path.substr(dot + 1);
-  const std::size_t bracket = first.find('[');
-  Node* child = at.find(first.substr(0, bracket));
-  if (child == nullptr) return;
-  if (bracket == first.npos) return visit(*child, rest, f);
-  if (child->kind == Node::Kind::list)
-    for (Node& item : child->items) visit(item, rest, f);
-}
-
 double number_at(Node& root, const std::string& path, double otherwise) {
   double found = otherwise;
   visit(root, path, [&](Node& value, Node&) {
@@ -37,15 +20,6 @@ double number_at(Node& root, const std::string& path, double otherwise) {
       found = v;
   });
   return found;
-}
-
-void erase(Node& map, const std::string& key) {
-  for (std::size_t i = 0; i < map.keys.size(); ++i)
-    if (map.keys[i].text == key) {
-      map.keys.erase(map.keys.begin() + std::ptrdiff_t(i));
-      map.items.erase(map.items.begin() + std::ptrdiff_t(i));
-      return;
-    }
 }
 
 void append(Node& map, const std::string& key, const Node& like, const Node& value) {
@@ -110,11 +84,19 @@ bool write_out_box(const Key& min, Node& entry, const std::string& path, bool fl
   std::vector<double> low(c), high(c);
   for (std::size_t a = 0; a < c.size(); ++a) low[a] -= 0.5 * s[a], high[a] += 0.5 * s[a];
   const Node at_center = *center, at_size = *size;
-  erase(entry, "center");
-  erase(entry, "size");
+  entry.erase("center");
+  entry.erase("size");
   append(entry, "min", at_center, list_node(at_center, low));
   append(entry, "max", at_size, list_node(at_size, high));
   return true;
+}
+
+/// In the place of a box that cannot be told.
+void put_any_box(Node& entry) {
+  entry.erase("center");
+  entry.erase("size");
+  for (const char* corner : {"min", "max"})
+    if (entry.find(corner) == nullptr) append(entry, corner, entry, list_node(entry, {0, 0, 0}));
 }
 
 }  // namespace
@@ -127,19 +109,25 @@ Node list_node(const Node& like, const std::vector<double>& numbers) {
   return list;
 }
 
-bool write_out_boxes(const KeyTable& table, Node& root, Problems& problems) {
+std::vector<std::string> write_out_boxes(const KeyTable& table, Node& root, Problems& problems) {
   const bool flat = is_flat(root);
-  bool fine = true;
+  std::vector<std::string> bad;
   for (const Key& key : table.keys) {
     if (!key.by_center || key.leaf() != "min") continue;
     const Block& list = *key.block;
     Node* entries = root.find(list.leaf());
     if (entries == nullptr || entries->kind != Node::Kind::list) continue;
-    for (std::size_t i = 0; i < entries->items.size(); ++i)
-      if (Node& entry = entries->items[i]; entry.kind == Node::Kind::map && has_key(entry, key))
-        fine = write_out_box(key, entry, list.entry_path(i), flat, problems) && fine;
+    for (std::size_t i = 0; i < entries->items.size(); ++i) {
+      Node& entry = entries->items[i];
+      const std::string path = list.entry_path(i);
+      if (entry.kind != Node::Kind::map || !has_key(entry, key) ||
+          write_out_box(key, entry, path, flat, problems))
+        continue;
+      put_any_box(entry);
+      bad.insert(bad.end(), {path + ".min", path + ".max"});
+    }
   }
-  return fine;
+  return bad;
 }
 
 void write_out_plane(const KeyTable& table, Node& root) {
@@ -175,12 +163,15 @@ void write_out_plane(const KeyTable& table, Node& root) {
   }
 }
 
-bool write_out(Node& root, Problems& problems) {
-  if (root.kind != Node::Kind::map) return true;
-  const bool gravity = write_out_gravity(root, problems);
-  const bool boxes = write_out_boxes(scene_table(), root, problems);
+std::vector<std::string> write_out(Node& root, Problems& problems) {
+  if (root.kind != Node::Kind::map) return {};
+  std::vector<std::string> bad = write_out_boxes(scene_table(), root, problems);
+  if (!write_out_gravity(root, problems)) {
+    root.erase("gravity");
+    bad.push_back("gravity");
+  }
   write_out_plane(scene_table(), root);
-  return gravity && boxes;
+  return bad;
 }
 
 }  // namespace pbf::inline scene_module

@@ -9,15 +9,17 @@
 
 namespace pbf::inline scene_module {
 
-/// Of a scene's tree. False: something is wrong, and added to `problems`; the tree is of no use.
-bool write_out(Node& root, Problems& problems);
+/// Of a scene's tree. What is wrong is added to `problems`, the paths of the keys that it is about
+/// are given back, and what stands in the tree for them is good to be read but means nothing: the
+/// rest of the scene is looked at too.
+std::vector<std::string> write_out(Node& root, Problems& problems);
 
 /// The mapping that `gravity` may be: its table of keys, for the schema.
 const KeyTable& gravity_table();
 
 /// Its parts, in the order in which they are called.
 bool write_out_gravity(Node& root, Problems& problems);
-bool write_out_boxes(const KeyTable& table, Node& root, Problems& problems);
+std::vector<std::string> write_out_boxes(const KeyTable& table, Node& root, Problems& problems);
 void write_out_plane(const KeyTable& table, Node& root);
 
 /// Whether the tree says `dimensions: 2`.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "lib/scene/base_scene.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/synonyms.h"
 
@@ -69,6 +70,12 @@ std::vector<std::string> preferred(const std::vector<std::string>& paths,
   return paths.size() <= kMost ? paths : std::vector<std::string>{};
 }
 
+/// Whether this is the block, or a block or list around it.
+bool is_around(const std::string& name, const std::string& block) {
+  return block.rfind(name, 0) == 0 &&
+         (block.size() == name.size() || block[name.size()] == '.' || block[name.size()] == '[');
+}
+
 }  // namespace
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& words) {
@@ -95,11 +102,15 @@ std::string nearest_choice(const std::string& word, const std::vector<std::strin
 
 Suggestion suggest_key(const KeyTable& table, const std::string& path) {
   std::vector<std::string> paths, siblings, leaves;
-  for (const Block& block : table.blocks)
-    if (block.parent != nullptr) paths.push_back(join(block.parent->path, block.leaf()));
-  for (const Key& key : table.keys) paths.push_back(key.path);
-  // First among the block's own keys: `solver.step` is near solver.sor, not time.step.
   const std::string in = block_of(path), wrong = leaf_of(path);
+  // Who is in a block means nothing that is around it: {solver: {sovler: 4}}.
+  for (const Block& block : table.blocks)
+    if (block.parent != nullptr)
+      if (const std::string name = join(block.parent->path, block.leaf()); !is_around(name, in))
+        paths.push_back(name);
+  for (const Key& key : table.keys) paths.push_back(key.path);
+  if (in.empty() && &table == &scene_table()) paths.push_back(kBaseKey);
+  // First among the block's own keys: `solver.step` is near solver.sor, not time.step.
   for (const std::string& p : paths) {
     if (block_of(p) == in) siblings.push_back(leaf_of(p));
     leaves.push_back(leaf_of(p));

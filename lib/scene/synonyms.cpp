@@ -19,6 +19,9 @@ const std::vector<KeySynonym>& key_synonyms() {
       {{"density", "rho", "rho0", "density0", "fluiddensity"}, {"fluid.rest_density"}},
       {{"particlemass"}, {"fluid.mass"}},
       {{"g", "gravitation", "gravityvector"}, {"gravity"}},
+      {{"g", "value", "strength", "acceleration"}, {"gravity.magnitude"}, "", false},
+      {{"angle", "tiltangle", "inclination"}, {"gravity.tilt"}, "", false},
+      {{"direction", "side", "face"}, {"gravity.toward"}, "", false},
       {{"iters", "niter", "numiterations", "niterations", "solveriterations"},
        {"solver.iterations"}},
       {{"omega", "overrelaxation", "sorfactor"}, {"solver.sor"}},
@@ -84,6 +87,10 @@ const std::vector<KeySynonym>& key_synonyms() {
       {{"nthreads", "numthreads", "cores", "ncores", "cpus"}, {"threads"}},
       {{"dim", "ndim", "dims"}, {"dimensions"}},
       {{"title", "scenename"}, {"name"}},
+      {{"include", "includes", "import", "imports", "extend", "extends", "inherit", "inherits",
+        "parent", "basefile", "basescene"},
+       {},
+       "a scene builds on another one with base: other.yaml at the top of its file"},
   };
   return kSynonyms;
 }

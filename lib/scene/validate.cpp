@@ -18,10 +18,10 @@ std::string around(const std::string& path) {
   return end == std::string::npos ? "" : path.substr(0, end);
 }
 
-/// `off` anywhere; null from the command line only: in a file it is a block whose keys were
+/// `off`, or a null that is written: nothing at all, in a file, is a block whose keys were
 /// forgotten or commented out.
 bool turns_off(const Node& node) {
-  if (node.kind == Node::Kind::null) return node.line < 0;
+  if (node.kind == Node::Kind::null) return node.line < 0 || !node.text.empty();
   return !node.quoted && node.is_word({"off", "false"});
 }
 

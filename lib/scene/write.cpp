@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "lib/base/text.h"
+#include "lib/scene/base_scene.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/load.h"
 
@@ -167,6 +168,7 @@ std::string reference_yaml() {
          "# Only the keys marked `required` must be there. Try it: pbf run reference.yaml\n"
          "# Any key can be changed from the command line: --set solver.iterations=8,\n"
          "# --set bodies[0].velocity=[1,0,0], --set viscosity=off\n" +
+         comment(format("%s: %s [text; optional]", kBaseKey, kBaseHelp), "") + "\n" +
          yaml_of(scene_table(), object(example_scene()), true);
 }
 

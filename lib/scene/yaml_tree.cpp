@@ -19,11 +19,21 @@ struct Refused {
   std::string what;
 };
 
+/// Where each line of a text begins; behind a byte order mark.
+std::vector<std::size_t> line_starts(const std::string& text) {
+  std::vector<std::size_t> starts{text.rfind("\xEF\xBB\xBF", 0) == 0 ? std::size_t{3} : 0};
+  for (std::size_t at = 0; (at = text.find('\n', at)) != text.npos;) starts.push_back(++at);
+  return starts;
+}
+
 /// Builds the tree from the parser's events; throws Refused for what scene files may not hold.
 class TreeBuilder : public YAML::EventHandler {
  public:
-  TreeBuilder(const std::string& origin, bool lines)
-      : origin_(std::make_shared<const std::string>(origin)), lines_(lines) {}
+  TreeBuilder(const std::string& text, const Origin& origin, bool lines)
+      : text_(text),
+        starts_(line_starts(text)),
+        origin_(std::make_shared<const Origin>(origin)),
+        lines_(lines) {}
 
   Node take() { return std::move(root_); }
 
@@ -34,7 +44,9 @@ class TreeBuilder : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     refuse_anchor(mark, anchor);
-    add(make(mark, Node::Kind::null));
+    Node node = make(mark, Node::Kind::null);
+    node.text = null_word(mark);
+    add(std::move(node));
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
     throw Refused{mark, "aliases (*name) are not supported; write the value out"};
@@ -64,6 +76,18 @@ class TreeBuilder : public YAML::EventHandler {
  private:
   Node make(const YAML::Mark& mark, Node::Kind kind) const {
     return {kind, "", false, {}, {}, origin_, lines_ ? mark.line : -1, lines_ ? mark.column : -1};
+  }
+  /// yaml-cpp calls a value that is not there and one that is written "null" alike.
+  std::string null_word(const YAML::Mark& mark) const {
+    if (mark.line < 0 || std::size_t(mark.line) >= starts_.size()) return "";
+    const std::size_t at = starts_[std::size_t(mark.line)] + std::size_t(mark.column);
+    for (const char* word : {"null", "Null", "NULL", "~"}) {
+      const std::size_t end = at + std::string_view(word).size();
+      if (text_.compare(at < text_.size() ? at : 0, end - at, word) == 0 &&
+          (end >= text_.size() || std::string_view(" \t\r\n,]}").find(text_[end]) != text_.npos))
+        return word;
+    }
+    return "";
   }
   void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) const {
     if (anchor != 0) throw Refused{mark, "anchors (&name) are not supported; write the value out"};
@@ -96,20 +120,23 @@ class TreeBuilder : public YAML::EventHandler {
     (is_key ? parent.keys : parent.items).push_back(std::move(node));
   }
 
-  std::shared_ptr<const std::string> origin_;
+  const std::string& text_;
+  std::vector<std::size_t> starts_;
+  std::shared_ptr<const Origin> origin_;
   bool lines_;
   int documents_ = 0;
   std::vector<Node> open_;
   Node root_;
 };
 
-std::string place_of(const std::string& origin, bool lines, int line, int column) {
-  if (!lines || line < 0) return origin;
-  return origin + ":" + std::to_string(line + 1) + ":" + std::to_string(column + 1);
+std::string place_of(const Origin& origin, bool lines, int line, int column) {
+  if (!lines || line < 0) return origin.shown();
+  return origin.name + ":" + std::to_string(line + 1) + ":" + std::to_string(column + 1) +
+         origin.included;
 }
 
 /// YAML forbids tabs as indentation; yaml-cpp's words for it do not say so.
-void refuse_tabs(const std::string& text, const std::string& origin, bool lines) {
+void refuse_tabs(const std::string& text, const Origin& origin, bool lines) {
   int number = 0;
   for (std::size_t start = 0; start < text.size(); ++number) {
     const std::size_t end = std::min(text.find('\n', start), text.size());
@@ -135,6 +162,15 @@ Node* Node::find(const std::string& key) {
   return nullptr;
 }
 
+void Node::erase(const std::string& key) {
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (keys[i].kind == Kind::scalar && keys[i].text == key) {
+      keys.erase(keys.begin() + std::ptrdiff_t(i));
+      items.erase(items.begin() + std::ptrdiff_t(i));
+      return;
+    }
+}
+
 bool Node::is_word(std::initializer_list<const char*> words) const {
   return kind == Kind::scalar && std::find(words.begin(), words.end(), text) != words.end();
 }
@@ -146,9 +182,9 @@ std::string Node::shown() const {
   return std::string("\"").append(one_line(text, 60)) + "\"";
 }
 
-Node parse_yaml(const std::string& text, const std::string& origin, bool lines) {
+Node parse_yaml(const std::string& text, const Origin& origin, bool lines) {
   refuse_tabs(text, origin, lines);
-  TreeBuilder builder(origin, lines);
+  TreeBuilder builder(text, origin, lines);
   try {
     // Without the blank end: behind it yaml-cpp 0.7 does not miss the closing quote of a text.
     std::istringstream in(text.substr(0, text.find_last_not_of(" \t\r\n") + 1));
@@ -162,6 +198,20 @@ Node parse_yaml(const std::string& text, const std::string& origin, bool lines) 
                     "not valid YAML: " + e.msg + (lines ? layout_remedy(text, e.mark.line) : "")};
   }
   return builder.take();
+}
+
+void visit(Node& at, const std::string& path, const std::function<void(Node&, Node&)>& f) {
+  if (at.kind != Node::Kind::map) return;
+  if (Node* value = at.find(path)) f(*value, at);  // also of a path in one word
+  const std::size_t dot = path.find('.');
+  if (dot == path.npos) return;
+  const std::string first = path.substr(0, dot), rest = path.substr(dot + 1);
+  const std::size_t bracket = first.find('[');
+  Node* child = at.find(first.substr(0, bracket));
+  if (child == nullptr) return;
+  if (bracket == first.npos) return visit(*child, rest, f);
+  if (child->kind == Node::Kind::list)
+    for (Node& item : child->items) visit(item, rest, f);
 }
 
 }  // namespace pbf::inline scene_module

@@ -89,6 +89,8 @@ CompareResult compare_files(const std::string& a, const std::string& b);
 
 std::string compare_text(const CompareResult& result);
 std::string compare_json(const CompareResult& result);
+/// A case for every part and every line of it. `seconds` that it all took.
+std::string compare_junit(const CompareResult& result, double seconds);
 /// One page that needs nothing else: tables and diagrams as SVG.
 std::string compare_html(const CompareResult& result);
 

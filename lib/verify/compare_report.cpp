@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lib/base/text.h"
+#include "lib/io/junit.h"
 #include "lib/io/table.h"
 #include "lib/verify/compare.h"
 
@@ -117,6 +118,27 @@ std::string compare_text(const CompareResult& r) {
     if (!p.rows.empty()) out += table_of(p.rows).text("  ");
   }
   return out + "\n" + conclusion(r);
+}
+
+std::string compare_junit(const CompareResult& r, double seconds) {
+  JunitSuite suite{"pbf compare", {{"A", r.a}, {"B", r.b}}, {}, seconds};
+  for (const std::string& note : r.notes) suite.properties.emplace_back("note", note);
+  for (const ComparePart& p : r.parts) {
+    JunitCase& part = suite.cases.emplace_back(JunitCase{"pbf compare", p.name});
+    part.skipped = p.verdict == Verdict::not_judged;
+    (p.verdict == Verdict::differs ? part.failure : part.details) = p.finding;
+    if (p.verdict == Verdict::differs) part.details = "tolerance: " + p.tolerance_source;
+    for (const CompareRow& x : p.rows) {
+      JunitCase& row = suite.cases.emplace_back(JunitCase{p.name, x.what});
+      row.skipped = x.verdict == Verdict::not_judged;
+      row.details = format("error %.6g, rms %.3g, relative %.3g, ulps %.3g, tolerance %.6g",
+                           x.error, x.rms, x.relative, x.ulps, x.tolerance);
+      if (x.verdict == Verdict::differs)
+        row.failure = format("differs by %.6g, tolerance %.6g", x.error, x.tolerance) +
+                      (x.unit.empty() ? "" : format(" (%s)", x.unit.c_str()));
+    }
+  }
+  return junit_xml(suite);
 }
 
 std::string compare_json(const CompareResult& r) {

@@ -38,6 +38,29 @@ TEST_CASE("stability: a table and a CSV with a verdict per case, exit 6 when one
   CHECK(pbf::test::pbf({"stability", "--suite", "none.yaml"}, folder.path()).code == 2);
 }
 
+TEST_CASE("stability: JUnit XML of a suite, which no map has") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  folder.write("suite.yaml", kSuite);
+  folder.write("t.xml", "what was there");
+  const Args suite{"stability", "--suite", "suite.yaml", "--quiet", "--junit"};
+  const auto with = [&](Args more) {
+    more.insert(more.begin(), suite.begin(), suite.end());
+    return pbf::test::pbf(more, folder.path());
+  };
+  CHECK(with({"t.xml"}).code == 6);
+  const std::string xml = read_text(folder / "t.xml");
+  CHECK(has(xml, "<testsuite name=\"pbf stability\" tests=\"2\" failures=\"1\""));
+  CHECK(has(xml, "<testcase classname=\"one\" name=\"good\" time=\"0."));
+  CHECK(has(xml, "<failure message=\"lost 0, speed "));
+  CHECK(with({"t.csv", "--csv", "t.csv"}).code == 2);
+  CHECK(with({"none/t.xml"}).code == 5);
+  const Outcome input = with({"tiny.yaml"});  // told before the cases are run
+  CHECK(input.code == 2);
+  CHECK(input.out == "");
+  CHECK(with({"m.xml", "--map", "time.step,gravity", "tiny.yaml"}).code == 2);
+}
+
 TEST_CASE("stability: a map is a CSV with a class per run") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());

@@ -80,12 +80,24 @@ def _whole_paths(value: Any, folder: str) -> Any:
             else _whole_paths(item, folder) for key, item in value.items()}
 
 
+def base_words(scene: Any, folder: str | os.PathLike[str] | None) -> list[str]:
+    """--base-folder of a call: the folder that was given; of dicts the working folder, from which
+    their bases are meant, for the files written of them lie elsewhere."""
+    scenes = scene if isinstance(scene, list | tuple) else [scene]
+    dicts = any(isinstance(one, Mapping) and "base" in one for one in scenes)
+    folder = os.getcwd() if folder is None and dicts else folder
+    return [] if folder is None else ["--base-folder", os.fspath(folder)]
+
+
 def write_scene(scene: Mapping[str, Any], path: Path) -> Path:
-    """Writes a dict as a scene file; relative `path`s in it are meant from the working folder.
+    """Writes a dict as a scene file; relative `path`s in it, and its `base`, are meant from the
+    working folder.
 
     BadInput when a file is there that this function has not written.
     """
     content = _whole_paths(plain(scene, "scene"), os.getcwd())
+    if isinstance(content.get("base"), str) and content["base"]:
+        content["base"] = os.path.join(os.getcwd(), content["base"])
     if path.is_dir() or path.exists() and not path.read_bytes().startswith(MARK.encode()):
         raise BadInput(f"{path}: the scene would be written here, but another file is there; give "
                        "another out, or move it")

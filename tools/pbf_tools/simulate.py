@@ -11,26 +11,27 @@ from typing import Any
 from . import program as pbf
 from .errors import BadInput, FileError, PbfError
 from .run_file import Run
-from .scene_text import Scene, set_words, write_scene
+from .scene_text import Scene, base_words, set_words, write_scene
 
 RUN_FILE = "run.vtkhdf"
 
 
-def plan(scene: Scene, *, program: str | os.PathLike[str] | None = None,
-         **overrides: Any) -> dict[str, Any]:
+def plan(scene: Scene, *, base_folder: str | os.PathLike[str] | None = None,
+         program: str | os.PathLike[str] | None = None, **overrides: Any) -> dict[str, Any]:
     """What `pbf plan --json` says of a scene: particles, passes, memory (bytes), files, time per
     update (ms, None before `pbf bench --calibrate`), warnings. Runs nothing.
 
         plan("configs/dam_break.yaml", fluid__spacing=0.008)["particles"]
 
-    PbfError with the program's message for a scene that cannot be.
+    base_folder as in `run`. PbfError with the program's message for a scene that cannot be.
     """
     found = pbf.find(program)
     with tempfile.TemporaryDirectory() as folder:
         path = os.fspath(write_scene(scene, Path(folder) / "scene.yaml")
                          if isinstance(scene, Mapping) else scene)
         try:
-            return pbf.answer(found, ["plan", path, "--json", *set_words(overrides)])
+            return pbf.answer(found, ["plan", path, "--json", *base_words(scene, base_folder),
+                                      *set_words(overrides)])
         except PbfError as problem:  # whose file is gone
             problem.args = (str(problem).replace(f"{folder}/", ""),)
             raise
@@ -38,8 +39,8 @@ def plan(scene: Scene, *, program: str | os.PathLike[str] | None = None,
 
 def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool = False,
         overwrite: bool = False, strict: bool = False, max_walltime: float | None = None,
-        progress: bool | None = None, program: str | os.PathLike[str] | None = None,
-        **overrides: Any) -> Run:
+        progress: bool | None = None, base_folder: str | os.PathLike[str] | None = None,
+        program: str | os.PathLike[str] | None = None, **overrides: Any) -> Run:
     """Simulates a scene, a file, a dict of the same keys or a run file to repeat, into the folder
     `out` (out/NAME when not given) and opens its run file. A dict is written to OUT.yaml, which `pbf run` takes too.
 
@@ -48,7 +49,9 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
     `output` gets `output: {}`, for a Run is read from its file.
 
     resume, overwrite, strict, max_walltime (s): the options of `pbf run`. progress: a line that is
-    overwritten; by default in a terminal and in a notebook. program: see `program.find`.
+    overwritten; by default in a terminal and in a notebook. base_folder: bases of the scene
+    (`base: other.yaml`) may lie in the tree of this folder too, not only in that of the scene's
+    own; of a dict, in the working folder's. program: see `program.find`.
 
     PbfError with the program's message and exit code when it fails; Diverged when the guard stopped
     it, Stopped at max_walltime, both with the Run up to there in `.run`. An interrupt (Ctrl-C)
@@ -61,14 +64,15 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
             raise BadInput(f"{scene}: give out=, the folder in which this run is repeated")
         forecast = None  # a run file holds a scene that has been planned, with output
     else:
-        forecast = plan(scene, program=found, **overrides)
+        forecast = plan(scene, base_folder=base_folder, program=found, **overrides)
     folder = Path(out) if out is not None else Path("out") / forecast["scene"]
+    bases = base_words(scene, base_folder)
     if isinstance(scene, Mapping):
         if folder.exists() and not (resume or overwrite):  # before its scene is replaced
             raise BadInput(f"{folder}: the output folder exists; overwrite=True replaces the run in "
                            "it, resume=True goes on with it, or give another out")
         scene = write_scene(scene, folder.with_name(folder.name + ".yaml"))
-    words = ["run", os.fspath(scene), "--out", str(folder), *set_words(overrides)]
+    words = ["run", os.fspath(scene), "--out", str(folder), *bases, *set_words(overrides)]
     if forecast and not writes_a_run_file(forecast):
         words += ["--set", "output={}"]
     words += [word for word, given in (("--resume", resume), ("--overwrite", overwrite),

@@ -12,7 +12,7 @@ from typing import Any
 from . import program as pbf
 from .errors import BadInput, PbfWarning
 from .run_file import Run
-from .scene_text import Scene, set_words, text, write_scene
+from .scene_text import Scene, base_words, set_words, text, write_scene
 from .simulate import opened, plan, writes_a_run_file
 from .table import Table, read_csv, write_text
 
@@ -41,13 +41,14 @@ class Batch(Table):
 def batch(scenes: Scene | Sequence[Scene], grid: Mapping[str, Sequence[Any]] | None = None,
           out: str | os.PathLike[str] | None = None, *, jobs: int = 1, threads: int | None = None,
           strict: bool = False, max_walltime: float | None = None, progress: bool | None = None,
+          base_folder: str | os.PathLike[str] | None = None,
           program: str | os.PathLike[str] | None = None, **overrides: Any) -> Batch:
     """Runs scenes (a file or a dict, several of them, a folder, or a list as `pbf batch` takes it)
     with every combination of the values of `grid`, `jobs` at a time, each in a folder of `out`.
 
         batch("dam.yaml", {"solver.iterations": [2, 4, 8]}, "out/sweep", output={"every": 0.1})
 
-    Overrides as in `run`, for all of them; scenes without `output` get `output: {}`, those of a
+    Overrides and base_folder as in `run`, for all of them; scenes without `output` get `output: {}`, those of a
     folder or of a list file excepted. Given again, it leaves alone what is finished and goes
     on with what was stopped. Dicts are written to OUT.scenes/, or to OUT.yaml when there is one.
 
@@ -57,8 +58,8 @@ def batch(scenes: Scene | Sequence[Scene], grid: Mapping[str, Sequence[Any]] | N
     """
     found = pbf.find(program)
     folder = Path(out) if out is not None else Path("out") / f"batch_{_stem(scenes)}"
-    words = ["batch", *_input(scenes, folder, found, overrides), "--out", str(folder), "--jobs", str(jobs),
-             *set_words(overrides)]
+    words = ["batch", *_input(scenes, folder, found, base_folder, overrides), "--out", str(folder),
+             "--jobs", str(jobs), *base_words(scenes, base_folder), *set_words(overrides)]
     for key, values in (grid or {}).items():
         name = key.replace("__", ".")
         if isinstance(values, str | bytes | Mapping) or not hasattr(values, "__iter__"):
@@ -93,11 +94,13 @@ def _stem(scenes: Any) -> str:
     return Path(scenes).resolve().stem if isinstance(scenes, str | os.PathLike) else "scenes"
 
 
-def _input(scenes: Any, folder: Path, program: str, overrides: Mapping[str, Any]) -> list[str]:
+def _input(scenes: Any, folder: Path, program: str, base_folder: Any,
+           overrides: Mapping[str, Any]) -> list[str]:
     """What `pbf batch` reads: the path as given, the file of a dict, or a list of several; and
     output for scenes without."""
     def lacks_output(scene: Scene) -> bool:
-        return not writes_a_run_file(plan(scene, program=program, **overrides))
+        return not writes_a_run_file(plan(scene, base_folder=base_folder, program=program,
+                                          **overrides))
 
     if isinstance(scenes, str | os.PathLike):
         one = Path(scenes).suffix in (".yaml", ".yml") and not Path(scenes).is_dir()

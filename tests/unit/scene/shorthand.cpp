@@ -1,6 +1,7 @@
 // Shorter ways to write values give the scene that the long way gives.
 #include "lib/scene/shorthand.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lib/scene/auto_step.h"
@@ -160,14 +161,44 @@ TEST_CASE("gravity: what is wrong with its magnitude") {
       {"{magnitude: -1}", "gravity.magnitude: \"-1\" is out of range"},
       {"{toward: z_min}", "gravity.toward: \"z_min\" is not one of x_min, x_max, y_min, y_max"},
       {"{x: 0}", "gravity.x: unknown key"},
+      {"{g: 9.81}", "gravity.g: unknown key, did you mean gravity.magnitude?"},
+      {"{angle: 5}", "gravity.angle: unknown key, did you mean gravity.tilt?"},
+      {"{gravty: 9.81}", "gravity.gravty: unknown key\n"},
   };
   for (const ShortForm& c : cases) {
     const std::string error = parse_error(kMinimal + "gravity: " + c.text + "\n");
     CAPTURE(c.text, error);
-    CHECK(contains(error, c.message));
+    CHECK(contains(error + "\n", c.message));
   }
   CHECK(contains(parse_error(kFlatText + "gravity: {tilt: 5, toward: y_max}\n"),
                  "with dimensions: 2 nothing moves along y"));
+}
+
+TEST_CASE("short forms: what is wrong with one hides nothing else of the file") {
+  const std::string error = parse_error(
+      with_bodies("[{shape: block, center: [0.5, 0.5], size: [1, 1, 1]}, {shape: block, min: [0, "
+                  "0, 0], max: [2, 1, 1]}]") +
+      "gravity: {tilt: x}\nsolver: {iterations: -1}\nvorticity: {epsilon: wide}\n" +
+      without_size("box", "center: [1, 1, 1]"));
+  CAPTURE(error);
+  for (const char* part :
+       {"bodies[0].center: expected 3 numbers", "gravity.tilt: expected a number, got \"x\"",
+        "solver.iterations: \"-1\" is out of range", "vorticity.epsilon: expected a number",
+        "bodies[1].max: reaches x = 2, outside the domain", "obstacles[0].size: missing"})
+    CHECK(contains(error, part));
+  // What stands in for them is not judged.
+  for (const char* part : {"bodies[0].m", "obstacles[0].m", "inverted", "empty", "no particle"})
+    CHECK_FALSE(contains(error, part));
+  CHECK(std::count(error.begin(), error.end(), '\n') == 5);
+  const std::string negative = parse_error(kMinimal + "gravity: -9.81\nnme: x\n");
+  CHECK(contains(negative, "write 9.81"));
+  CHECK(contains(negative, "nme: unknown key"));
+  const std::string beside = parse_error(
+      with_bodies("[{shape: block, size: [1, 1, 1], min: [0, 0, wide], max: [1, 1, 1]}]"));
+  CHECK(contains(beside, "bodies[0].size: is given beside min"));
+  CHECK(contains(beside, "bodies[0].min: element 2: expected a number"));
+  CHECK_FALSE(
+      contains(parse_error(kMinimal + "gravity: {tilt: x}\n", {"time.step=auto"}), "time.step"));
 }
 
 TEST_CASE("time.step: auto: by gravity, by the speed of bodies, and a whole part of a frame") {
@@ -195,8 +226,8 @@ TEST_CASE("time.step: auto: by gravity, by the speed of bodies, and a whole part
 
 TEST_CASE("time.step: auto: what it cannot choose by") {
   CHECK(contains(parse_error(kMinimal, {"time.step=auto", "gravity=0"}),
-                 "time.step: auto goes by gravity and the velocities of bodies, and there is "
-                 "neither; give a number"));
+                 "time.step: auto goes by gravity, the velocities of bodies and motions, and there "
+                 "are none; give a number"));
   const std::string error = parse_error(kMinimal, {"time.step=auto", "fluid.spacing=-1"});
   CHECK(contains(error, "fluid.spacing"));
   CHECK_FALSE(contains(error, "time.step"));

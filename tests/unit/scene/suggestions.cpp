@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "lib/scene/keys.h"
+#include "lib/scene/shorthand.h"
 #include "lib/scene/synonyms.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_samples.h"
@@ -54,6 +55,22 @@ TEST_CASE("suggestions: what other programs call a key") {
       {"camera", "render.camera"},
       {"Gravity", "gravity"},
       {"colour", "render.color"},
+      {"solver.sovler", ""},  // what is around it is not meant
+      {"solver.solver", ""},
+      {"solver.solve", ""},
+      {"time.tme", ""},
+      {"domain.box", ""},
+      {"fluid.fluids", ""},
+      {"bodies[].bodies", ""},
+      {"bodies[].particles", ""},
+      {"obstacles[].obstacle", ""},
+      {"obstacles[].motion.motions", ""},
+      {"render.camera.rendr", ""},
+      {"render.camera.camra", ""},
+      {"solver.iteratons", "solver.iterations"},
+      {"slover", "solver"},
+      {"Base", "base"},
+      {"extends", "a scene builds on another one with base: other.yaml at the top of its file"},
       {"output_dir",
        "the folder of a run is given on the command line: pbf run SCENE --out FOLDER"},
       {"output.folder",
@@ -97,7 +114,10 @@ TEST_CASE("suggestions: every synonym leads to keys of the scene, and is none of
     CHECK((!s.keys.empty() || !s.note.empty()));
     for (const char* path : s.keys) {
       CAPTURE(path);
-      const Key* key = scene_table().find_key(path);
+      const bool form = scene_table().find_key(path) == nullptr &&
+                        gravity_table().find_key(path) != nullptr;  // of a mapping for a value
+      const KeyTable& table = form ? gravity_table() : scene_table();
+      const Key* key = table.find_key(path);
       const Block* block = scene_table().find_block(path);
       if (block == nullptr) block = scene_table().find_block(std::string(path) + "[]");
       CHECK((key != nullptr || block != nullptr));
@@ -105,7 +125,7 @@ TEST_CASE("suggestions: every synonym leads to keys of the scene, and is none of
         CAPTURE(word);
         CHECK(word.find_first_of("_- ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string::npos);
         const std::string in = key ? key->block->path : block->parent->path;
-        CHECK(scene_table().find_key(join(in, word)) == nullptr);
+        CHECK(table.find_key(join(in, word)) == nullptr);
       }
     }
   }

@@ -1,0 +1,75 @@
+#include "lib/scene/scene_text.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "lib/base/error.h"
+#include "lib/base/inputs.h"
+#include "lib/base/plain_text.h"
+#include "lib/scene/file_kind.h"
+
+namespace pbf::inline scene_module {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{4} << 20;     // of a scene or a study
+constexpr std::size_t kMaxResult = std::size_t{256} << 20;  // of what pbf itself wrote
+
+std::size_t limit_of(const std::string& what) {
+  return what == "scene" || what == "study" ? kMaxBytes : kMaxResult;
+}
+
+void check_text(const std::string& text, const Origin& origin, const std::string& what) {
+  if (text.rfind("\x89HDF\r\n\x1a\n", 0) == 0)
+    bad_input(origin.shown(), "is an HDF5 file, expected a " + what +
+                                  " in YAML; of a run file pbf plan " + origin.name +
+                                  " --resolved prints the scene");
+  if (text.size() > limit_of(what))
+    bad_input(origin.shown(),
+              "is larger than 4 MiB; many particles belong into a file body (shape: file)");
+  if (const auto found = find_bad_text(text))
+    bad_input(origin.name + ":" + std::to_string(found->line + 1) + ":" +
+                  std::to_string(found->column + 1) + origin.included,
+              "is not plain text: " + found->what + "; " + found->remedy + "; expected a " + what +
+                  " in YAML");
+}
+
+}  // namespace
+
+std::string text_of_file(const Origin& file, const std::string& what) {
+  namespace fs = std::filesystem;
+  std::error_code ec;
+  const fs::file_status status = fs::status(file.name, ec);
+  if (fs::is_directory(status))
+    bad_input(file.shown(), "is a directory, expected a " + what + " file");
+  note_input(file.name);
+  std::ifstream in(file.name, std::ios::binary);
+  if (!in) bad_input(file.shown(), "cannot be opened: " + std::string(std::strerror(errno)));
+  // One byte more than allowed tells a file that is too large, without reading all of it.
+  std::string text(limit_of(what) + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (in.bad()) bad_input(file.shown(), "reading failed");
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
+}
+
+Node tree_of_text(const std::string& text, const Origin& origin, const std::string& what) {
+  check_text(text, origin, what);
+  if (const std::string other = other_text(text, origin.name, what); !other.empty())
+    bad_input(origin.shown(), other);
+  try {
+    Node root = parse_yaml(text, origin, true);
+    if (const std::string other = other_file(root, origin.name, what); !other.empty())
+      bad_input(origin.shown(), other);
+    if (root.kind != Node::Kind::null) return root;
+  } catch (const YamlError& e) {
+    bad_input(e.place, e.what);
+  }
+  bad_input(origin.shown(),
+            "is empty" + std::string(what == "scene" ? "; `pbf config --example` prints a scene "
+                                                       "to start from"
+                                                     : ""));
+}
+
+}  // namespace pbf::inline scene_module
