@@ -17,8 +17,10 @@ set(PBF_FEATURES "openmp")
 if(PBF_RENDER)
   string(APPEND PBF_FEATURES " render")
 endif()
+set(PBF_VERSION_CUDART "")
 if(PBF_HAS_CUDA)
   string(APPEND PBF_FEATURES " cuda")
+  set(PBF_VERSION_CUDART "${CUDAToolkit_VERSION_MAJOR}.${CUDAToolkit_VERSION_MINOR}")
 endif()
 set(PBF_COMMIT "@PBF_COMMIT@")  # filled in by write_commit.cmake
 configure_file(${CMAKE_CURRENT_LIST_DIR}/build_info.h.in

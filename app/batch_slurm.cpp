@@ -68,6 +68,7 @@ std::string slurm_script(const SlurmWishes& w) {
          (w.needs.device ? " --gres=none" : "") +
          " \"$0\" collect\n"
          "fi\n"
+         "export SRUN_CPUS_PER_TASK=\"${SLURM_CPUS_PER_TASK:-1}\"  # Slurm >= 22.05\n"
          "srun " +
          w.command +
          " --only \"$SLURM_ARRAY_TASK_ID\" --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n"

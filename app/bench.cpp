@@ -115,6 +115,9 @@ int command_bench(const BenchOptions& o) {
   if (o.scenes.empty())
     scenes.emplace_back().scene = parse_scene(
         o.calibrate ? calibration_scene_yaml() : bench_scene_yaml(), "built-in scene", o.overrides);
+  if (o.calibrate && calibration_path().empty())
+    throw Error(ExitCode::bad_input,
+                "no place for the calibration: set PBF_CALIBRATION to the path of a file");
   check_output("--csv", o.csv);
   check_output("--json", o.json);
   if (!o.csv.empty() && !o.json.empty() && same_output(o.csv, o.json))

@@ -13,6 +13,7 @@ BuildInfo build_info() {
                     {"Eigen", PBF_VERSION_EIGEN},
                     {"nlohmann", PBF_VERSION_JSON}};
   if (*PBF_VERSION_PNG) info.libraries.emplace_back("libpng", PBF_VERSION_PNG);
+  if (*PBF_VERSION_CUDART) info.libraries.emplace_back("cudart", PBF_VERSION_CUDART);
   return info;
 }
 

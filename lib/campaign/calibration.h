@@ -22,7 +22,7 @@ struct StageCosts {
 };
 
 /// $PBF_CALIBRATION, else $XDG_DATA_HOME/pbf/calibration.csv, else
-/// ~/.local/share/pbf/calibration.csv. Error(bad_input) where none of them is set.
+/// ~/.local/share/pbf/calibration.csv; empty where none of them is set, as in services.
 std::string calibration_path();
 
 /// The scene that is measured: the benchmark's with every pass on. YAML.
@@ -31,8 +31,8 @@ std::string calibration_scene_yaml();
 /// From a late row of the benchmark of that scene.
 StageCosts calibration_of(const BenchRow& row);
 
-/// All that is stored; none where the file is not there. Error(io) for one that cannot be read,
-/// Error(bad_input), naming the line, for one that cannot be understood.
+/// All that is stored; none where the file is not there or the path is empty. Error(io) for one
+/// that cannot be read, Error(bad_input), naming the line, for one that cannot be understood.
 std::vector<StageCosts> read_calibration(const std::string& path);
 
 /// Stores `rows`, in place of those of the same backend, precision, device, threads and number of

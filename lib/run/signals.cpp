@@ -1,14 +1,27 @@
 #include "lib/run/signals.h"
 
+#include <ctime>
+
 namespace pbf::inline run_module {
 namespace {
 
 constexpr int kStopping[] = {SIGTERM, SIGINT};
-volatile std::sig_atomic_t seen = 0, save = 0;
+constexpr std::sig_atomic_t kOneStop = 3;  // s
+volatile std::sig_atomic_t seen = 0, seen_at = 0, save = 0;
 
+// All that it calls is async-signal-safe.
 extern "C" void pbf_on_stop(int number) {
-  seen = number;
-  for (const int s : kStopping) std::signal(s, SIG_DFL);  // async-signal-safe
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  const auto second = static_cast<std::sig_atomic_t>(now.tv_sec);
+  if (seen == 0) {
+    seen_at = second;
+    seen = number;
+    std::signal(SIGINT, SIG_DFL);
+  } else if (second - seen_at >= kOneStop) {
+    std::signal(number, SIG_DFL);
+    raise(number);
+  }
 }
 
 extern "C" void pbf_on_save(int) { save = 1; }

@@ -21,6 +21,20 @@ std::string summary(const fs::path& folder) {
   return all;
 }
 
+/// A process that `parent` has started; 0 when there is none.
+pid_t child_of(pid_t parent) {
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename().string();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    const std::string stat = read_text(entry.path() / "stat");
+    std::istringstream words(stat.substr(stat.rfind(')') + 1));
+    char state = 0;
+    pid_t of = 0;
+    if (words >> state >> of && of == parent) return std::stoi(name);
+  }
+  return 0;
+}
+
 }  // namespace
 
 TEST_CASE("a batch of 12 runs killed at random and rerun has the summary of the undisturbed one") {
@@ -72,6 +86,26 @@ TEST_CASE("a batch of 12 runs killed at random and rerun has the summary of the 
   CHECK(pbf::test::pbf(killed, folder.path()).code == 0);
   CHECK(fs::last_write_time(folder / "b/s_iterations=1_kernels=paper_step=0.002/run.vtkhdf") ==
         time);
+}
+
+TEST_CASE("a signal to all processes of a batch, as Slurm and systemd send it, saves its run") {
+  const Scratch folder;
+  folder.write("s.yaml", tiny_scene());
+  Process batch({"batch", "s.yaml", "--grid", "time.end=100000", "--out", "b", "--threads", "1"},
+                folder.path());
+  const std::string run = (folder / "b/s_end=100000").string();
+  wait_until([&] { return fs::exists(run + "/run.vtkhdf"); });
+  pid_t child = 0;
+  wait_until([&] { return (child = child_of(batch.id())) != 0; });
+  REQUIRE(child > 0);
+  ::kill(child, SIGTERM);
+  batch.send(SIGTERM);
+  const Outcome o = batch.wait();
+  CAPTURE(o.err);
+  CHECK(o.code == 75);
+  CHECK(has(o.err, "stopped"));
+  CHECK_FALSE(has(o.err, "killed"));
+  CHECK(fs::exists(run + "/checkpoint.h5"));
 }
 
 TEST_CASE("a batch over a folder tells which runs failed and why, and finishes the others") {

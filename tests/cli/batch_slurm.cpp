@@ -24,7 +24,7 @@ TEST_CASE("the Slurm script of a batch runs every run as a task and requeues tho
   CHECK_FALSE(has(o.out, "gres"));
   const std::string script = folder.write("job.sh", o.out);
   // srun and scontrol as Slurm has them, as far as the script goes.
-  folder.write("srun", "#!/bin/sh\nexec \"$@\"\n");
+  folder.write("srun", "#!/bin/sh\n[ \"$SRUN_CPUS_PER_TASK\" = 1 ] && exec \"$@\"\n");
   folder.write("scontrol", "#!/bin/sh\necho \"$@\" >> requeued\n");
   folder.write("sbatch", "#!/bin/sh\necho \"$@\" >> submitted\necho '7;cluster'\n");
   for (const char* tool : {"srun", "scontrol", "sbatch"})
@@ -146,7 +146,7 @@ TEST_CASE("whatever is in its words, the Slurm script runs one command and nothi
       for (std::string line; std::getline(text, line); ++lines)
         directives += line.rfind("#SBATCH", 0) == 0;
       CHECK(directives == 8);
-      CHECK(lines == 28);
+      CHECK(lines == 29);
       const std::string script = folder.write("job.sh", o.out);
       const std::string run =
           "cd " + folder.path().string() +

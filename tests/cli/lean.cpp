@@ -180,6 +180,21 @@ TEST_CASE("the peak memory of a run is that of one particle and the arrays of th
 }
 #endif
 
+TEST_CASE("without a home folder plan has no calibration, and bench says so before it measures") {
+  const Scratch folder;
+  const std::vector<std::string> nowhere{"HOME=", "XDG_DATA_HOME=", "PBF_CALIBRATION="};
+  const std::string scene = folder.write("tiny.yaml", tiny_scene());
+  const Outcome plan = pbf::test::pbf({"plan", scene}, folder.path(), nowhere);
+  CAPTURE(plan.err);
+  CHECK(plan.code == 0);
+  CHECK(has(plan.out, "not known"));
+  const Outcome bench = pbf::test::pbf({"bench", "--calibrate", "--n", "64", "--threads", "1"},
+                                       folder.path(), nowhere);
+  CHECK(bench.code == 2);
+  CHECK(bench.out.empty());
+  CHECK(has(bench.err, "set PBF_CALIBRATION to the path of a file"));
+}
+
 TEST_CASE("bench --calibrate stores what plan estimates the time of an update from") {
   const Scratch folder;
   const std::string store = "PBF_CALIBRATION", path = (folder / "sub/calibration.csv").string();

@@ -146,13 +146,6 @@ std::string endless(const Scratch& folder) {
 const std::vector<std::string> kEndless{"run",       "long.yaml", "--out", "o",
                                         "--threads", "1",         "--set", "time.end=100000"};
 
-/// Waits until `there` holds; a minute is a hang. The test goes on, to end what it has started.
-template <class Condition>
-void wait_until(Condition there) {
-  for (int i = 0; i < 6000 && !there(); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  CHECK(there());
-}
 /// CPU time of a process outside the kernel.
 double user_seconds(const Process& process) {
   const std::string text = read_text("/proc/" + std::to_string(process.id()) + "/stat");

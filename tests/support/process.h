@@ -3,9 +3,13 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
+
+#include "tests/support/catch.h"
 
 namespace pbf::test {
 
@@ -37,6 +41,14 @@ class Process {
   pid_t pid_ = -1;
   std::filesystem::path out_, err_;
 };
+
+/// Waits until `there` holds; a minute is a hang. The test goes on, to end what it has started.
+template <class Condition>
+void wait_until(Condition there) {
+  for (int i = 0; i < 6000 && !there(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  CHECK(there());
+}
 
 using Args = std::vector<std::string>;
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 import json
 import os
 import re
@@ -22,9 +23,9 @@ _PROGRESS = re.compile(r" *\d+ %  update |\[\d+/\d+\] ")  # of a run, of a batch
 
 
 def find(program: str | os.PathLike[str] | None = None) -> str:
-    """The program: the argument, the environment variable PBF, `pbf` on the PATH, or build/pbf of
-    the tree that this package lies in. BadInput for one named that cannot be run, MissingPackage
-    when there is none."""
+    """The program: the argument, the environment variable PBF, the one of the wheel that this
+    package came in, `pbf` on the PATH, or build/pbf of the tree that this package lies in. BadInput
+    for one named that cannot be run, MissingPackage when there is none."""
     for source, named in (("program", program), ("the environment variable PBF",
                                                  os.environ.get("PBF"))):
         if named:
@@ -33,11 +34,29 @@ def find(program: str | os.PathLike[str] | None = None) -> str:
                 raise BadInput(f"{os.fspath(named)} ({source}): is no program that can be run")
             return os.path.abspath(path)
     built = Path(__file__).resolve().parents[2] / "build/pbf"
-    path = shutil.which("pbf") or (str(built) if os.access(built, os.X_OK) else None)
+    path = _of_wheel() or shutil.which("pbf") or (str(built) if os.access(built, os.X_OK) else None)
     if path is None:
         raise MissingPackage("pbf is not on the PATH; build it with tools/demo, or name it with "
                              "program= or the environment variable PBF")
     return path
+
+
+def _of_wheel() -> str | None:
+    """The program that pip installed together with this package, also where its folder is not on
+    the PATH, as in a notebook of an environment that is not activated."""
+    package = Path(__file__).resolve().parent
+    try:
+        wheel = importlib.metadata.distribution("pbf")
+    except importlib.metadata.PackageNotFoundError:
+        return None
+    if Path(os.fspath(wheel.locate_file(package.name))).resolve() != package:
+        return None  # of another installation
+    installed = [wheel.locate_file(file) for file in wheel.files or [] if file.name == "pbf"]
+    # `pip install --target` moves the scripts and leaves its list of files as it was.
+    for path in (*installed, package.parent / "bin/pbf"):
+        if os.access(path, os.X_OK) and not os.path.isdir(path):
+            return os.path.abspath(path)
+    return None
 
 
 class Line:
