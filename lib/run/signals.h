@@ -9,7 +9,8 @@ namespace pbf::inline run_module {
 
 /// From now on SIGTERM or SIGINT sets the flag of signal_seen(); a second one ends the program at
 /// once. A SIGTERM less than 3 s after the first signal is none: Slurm and systemd send theirs to
-/// every process, and the run of a batch gets it from the batch once more. SIGUSR1 sets that of save_asked(). Signals that HeldSignals kept waiting arrive now.
+/// every process, and the run of a batch gets it from the batch once more. SIGUSR1 sets that of
+/// save_asked(). Signals that HeldSignals kept waiting arrive now.
 void watch_signals();
 
 /// While one lives, SIGTERM, SIGINT and SIGUSR1 wait, also in a process that is started then, until
