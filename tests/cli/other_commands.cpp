@@ -162,7 +162,9 @@ TEST_CASE("run and render draw the same bytes: frame, range, name and moving sol
   }
   REQUIRE(drawn.code == 0);
   fs::remove(folder / "drops.csv");  // the run file is enough
-  REQUIRE(pbf::test::pbf({"render", "o/run.vtkhdf"}, folder.path()).code == 0);
+  const Outcome again = pbf::test::pbf({"render", "o/run.vtkhdf"}, folder.path());
+  CAPTURE(again.err);
+  REQUIRE(again.code == 0);
   for (int k = 0; k <= 5; ++k) {
     const std::string name = "frame_00000" + std::to_string(k) + ".png";
     CAPTURE(name);
