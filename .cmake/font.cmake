@@ -2,8 +2,8 @@
 find_path(PBF_STB_INCLUDE_DIR stb/stb_truetype.h
           DOC "Folder that holds stb/stb_truetype.h (package libstb-dev)")
 if(NOT PBF_STB_INCLUDE_DIR)
-  message(FATAL_ERROR "stb/stb_truetype.h, which draws the text on pictures, was not found: install "
-                      "libstb-dev (tools/setup does), pass -DPBF_STB_INCLUDE_DIR=FOLDER, or build "
+  message(FATAL_ERROR "stb/stb_truetype.h, which draws the text on pictures, was not found: "
+                      "install libstb-dev (tools/setup does), pass -DPBF_STB_INCLUDE_DIR=FOLDER, or build "
                       "without pictures with -DPBF_RENDER=OFF")
 endif()
 set(PBF_FONT ${PROJECT_SOURCE_DIR}/lib/render/font)

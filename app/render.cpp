@@ -57,7 +57,9 @@ int command_render(const RenderOptions& options) {
   const RunInfo info = reader.info();
   Scene scene =
       parse_stored_scene(info.resolved_scene, options.run + " (the scene stored in it)", {});
-  read_motions(scene, folder_of_files(scene, options.run, info.scene_path));
+  // Of the scene's files pictures need the tables of motions alone.
+  if (!motion_paths(scene).empty())
+    read_motions(scene, folder_of_files(scene, options.run, info.scene_path));
   apply_render_options(options, scene);
   const auto frames = select_frames(options.frames, reader.frames());
   const std::filesystem::path folder =

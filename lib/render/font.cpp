@@ -16,15 +16,15 @@ namespace {
 
 constexpr char32_t kMissing = 0xfffd, kEllipsis = 0x2026;
 
-struct Face {
+struct Typeface {
   stbtt_fontinfo info{};
-  Face() {
+  Typeface() {
     if (!stbtt_InitFont(&info, kFontData, 0))
       throw Error(ExitCode::internal, "the embedded font cannot be read");
   }
 };
-const stbtt_fontinfo& face() {
-  static const Face one;
+const stbtt_fontinfo& typeface() {
+  static const Typeface one;
   return one.info;
 }
 
@@ -54,12 +54,12 @@ char32_t next_character(const std::string& text, std::size_t& i) {
 }
 
 float scale_of(double size) {
-  return stbtt_ScaleForMappingEmToPixels(&face(), static_cast<float>(size));
+  return stbtt_ScaleForMappingEmToPixels(&typeface(), static_cast<float>(size));
 }
 
 double advance(char32_t c, double size) {
   int width = 0, bearing = 0;
-  stbtt_GetCodepointHMetrics(&face(), static_cast<int>(c), &width, &bearing);
+  stbtt_GetCodepointHMetrics(&typeface(), static_cast<int>(c), &width, &bearing);
   return static_cast<double>(scale_of(size)) * width;
 }
 
@@ -67,9 +67,9 @@ void draw_glyph(Image& image, char32_t c, double x, double line, double size, Rg
   const float scale = scale_of(size);
   const double left = std::floor(x), top = std::floor(line);
   const auto shift_x = static_cast<float>(x - left), shift_y = static_cast<float>(line - top);
-  const int glyph = stbtt_FindGlyphIndex(&face(), static_cast<int>(c));
+  const int glyph = stbtt_FindGlyphIndex(&typeface(), static_cast<int>(c));
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  stbtt_GetGlyphBitmapBoxSubpixel(&face(), glyph, scale, scale, shift_x, shift_y, &x0, &y0, &x1,
+  stbtt_GetGlyphBitmapBoxSubpixel(&typeface(), glyph, scale, scale, shift_x, shift_y, &x0, &y0, &x1,
                                   &y1);
   const int width = x1 - x0, height = y1 - y0;
   // Also where the place is too far away for an int.
@@ -77,8 +77,8 @@ void draw_glyph(Image& image, char32_t c, double x, double line, double size, Rg
       !(top + y1 > 0 && top + y0 < image.height))
     return;
   std::vector<std::uint8_t> cover(static_cast<std::size_t>(width) * height);
-  stbtt_MakeGlyphBitmapSubpixel(&face(), cover.data(), width, height, width, scale, scale, shift_x,
-                                shift_y, glyph);
+  stbtt_MakeGlyphBitmapSubpixel(&typeface(), cover.data(), width, height, width, scale, scale,
+                                shift_x, shift_y, glyph);
   const int from_x = static_cast<int>(left) + x0, from_y = static_cast<int>(top) + y0;
   for (int j = std::max(0, -from_y); j < height && from_y + j < image.height; ++j)
     for (int i = std::max(0, -from_x); i < width && from_x + i < image.width; ++i) {

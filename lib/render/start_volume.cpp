@@ -15,7 +15,7 @@ constexpr int kSlices = 4;                    // of heights in a cell
 constexpr int kSamples = 24;                  // of a round body along an axis
 
 /// Whether a place of its box is in a round body.
-bool is_in(const Body& body, const Double3& x) {
+bool is_in(const scene_module::Body& body, const Double3& x) {
   if (body.shape == Shape::sphere) return length(x - body.center) <= body.radius;
   const Double3 axis = unit(body.to - body.from), way = x - body.from;
   const double along = dot(way, axis);
@@ -74,7 +74,7 @@ bool StartVolume::is_open(const Double3& place) const {
 }
 
 // A box's part of each cell, so that a pool with a level surface is exactly the volume at rest.
-Parcel StartVolume::of_block(const Body& body) const {
+Parcel StartVolume::of_block(const scene_module::Body& body) const {
   Parcel out;
   std::array<int, 3> from{}, to{};
   Double3 low = body.min, high = body.max;
@@ -104,7 +104,7 @@ Parcel StartVolume::of_block(const Body& body) const {
   return out;
 }
 
-Parcel StartVolume::of_shape(const Body& body) const {
+Parcel StartVolume::of_shape(const scene_module::Body& body) const {
   Parcel out;
   const BodyBox box = body_box(body);
   const std::array<int, 3> n{kSamples, scene_.plane() ? 1 : kSamples, kSamples};
@@ -135,12 +135,12 @@ std::vector<Parcel> StartVolume::parcels(std::int64_t particles) const {
   std::vector<Parcel> out;
   const double cell = scene_.cell_volume();
   double known = 0, files = 0;
-  for (const Body& body : scene_.bodies)
+  for (const scene_module::Body& body : scene_.bodies)
     if (body.shape == Shape::file)
       files += 1;
     else
       known += lattice_count(body, scene_.fluid.spacing, scene_.plane());
-  for (const Body& body : scene_.bodies) {
+  for (const scene_module::Body& body : scene_.bodies) {
     Parcel parcel;
     switch (body.shape) {
       case Shape::block:

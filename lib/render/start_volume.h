@@ -37,8 +37,8 @@ class StartVolume {
  private:
   Double3 corner(const std::array<int, 3>& cell) const;
   bool is_open(const Double3& place) const;
-  Parcel of_block(const Body& body) const;
-  Parcel of_shape(const Body& body) const;
+  Parcel of_block(const scene_module::Body& body) const;
+  Parcel of_shape(const scene_module::Body& body) const;
 
   const Scene& scene_;
   Double3 up_, edge_{};  ///< of a cell, m

@@ -122,7 +122,8 @@ TEST_CASE("pictures are drawn by a run and, later, from its file") {
       {{"--color", "density"}, "density"}, {{"--frames", "9"}, "0 to 5"},
       {{"--frames", "4:2"}, "--frames"},   {{"--frames", "a"}, "--frames"},
       {{"--size", "80"}, "--size"},        {{"--size", "8x8"}, "--size"},
-      {{"--range", "2,1"}, "--range"},     {{"--camera", "fov=500"}, "fov"},
+      {{"--range", "2,1"}, "--range"},     {{"--range", "nan,1"}, "quantile"},
+      {{"--range", "0"}, "quantile"},      {{"--camera", "fov=500"}, "fov"},
       {{"--camera", "zoom=2"}, "zoom"},    {{"--color", "pressure"}, "pressure"}};
   for (const auto& [args, fragment] : bad) {
     CAPTURE(args);
@@ -131,6 +132,44 @@ TEST_CASE("pictures are drawn by a run and, later, from its file") {
     const Outcome o = render(all);
     CHECK(o.code == 2);
     CHECK(has(o.err, fragment));
+  }
+}
+
+TEST_CASE("run and render draw the same bytes: frame, range, name and moving solids") {
+  const Scratch folder;
+  const std::string moving =
+      folder.write("moving.yaml",
+                   "name: Rührer @ 1 Hz, Ø 水\n"
+                   "domain: {min: [0, 0, 0], max: [0.8, 0.6, 2]}\n"
+                   "fluid: {spacing: 0.05}\n"
+                   "bodies:\n"
+                   "  - {shape: block, min: [0, 0, 0], max: [0.8, 0.6, 0.2]}\n"
+                   "  - {shape: file, path: drops.csv}\n"
+                   "obstacles:\n"
+                   "  - {name: blade, shape: box, min: [0.2, 0.2, 0.1], max: [0.5, 0.3, 0.3],\n"
+                   "     motion: {kind: velocity, angular: [0, 0, 180]}}\n"
+                   "tank_motion: {kind: sine, axis: [0, 1, 0], amplitude: 3, period: 1}\n"
+                   "time: {step: 0.004, end: 0.2}\n"
+                   "output: {every: 0.04}\n"
+                   "render: {every: 0.04, size: [320, 240], camera: {orbit: 40}}\n");
+  folder.write("drops.csv", "x,y,z\n0.2,0.2,0.7\n0.6,0.3,0.8\n");
+  const Outcome drawn =
+      pbf::test::pbf({"run", moving, "--out", "o", "--threads", "1"}, folder.path());
+  CAPTURE(drawn.err);
+  if (drawn.code == 4) {
+    REQUIRE(has(drawn.err, "OSMesa"));
+    PBF_SKIP("no off-screen GL library");
+  }
+  REQUIRE(drawn.code == 0);
+  fs::remove(folder / "drops.csv");  // the run file is enough
+  const Outcome again = pbf::test::pbf({"render", "o/run.vtkhdf"}, folder.path());
+  CAPTURE(again.err);
+  REQUIRE(again.code == 0);
+  for (int k = 0; k <= 5; ++k) {
+    const std::string name = "frame_00000" + std::to_string(k) + ".png";
+    CAPTURE(name);
+    REQUIRE(fs::exists(folder / "o/frames" / name));
+    CHECK(read_text(folder / "o/frames" / name) == read_text(folder / "o/render" / name));
   }
 }
 #endif

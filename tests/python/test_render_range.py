@@ -33,7 +33,8 @@ def range_of(done):
 
 @pytest.mark.parametrize("chosen", ["all", "3", "2:20:5", "-4:"])
 def test_the_range_is_the_quantiles_of_the_frames_chosen(pbf, minimal, frames, tmp_path, chosen):
-    index = {"all": slice(None), "3": [3], "2:20:5": slice(2, 20, 5), "-4:": slice(-4, None)}[chosen]
+    index = {"all": slice(None), "3": [3], "2:20:5": slice(2, 20, 5),
+             "-4:": slice(-4, None)}[chosen]
     done = render(pbf, minimal, tmp_path, "--frames", chosen, "--range", "quantile")
     assert range_of(done) == pytest.approx(np.percentile(frames[0][index], [1, 99]), rel=1e-6)
 

@@ -1,0 +1,56 @@
+// Texts on a picture that keep clear of each other, and filled rectangles.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "lib/render/colormap.h"
+#include "lib/render/renderer.h"
+
+namespace pbf::inline render_module {
+
+inline constexpr Rgb kInk{42, 48, 58}, kFaintInk{92, 102, 116};
+
+/// Fills [x0, x1) x [y0, y1), clipped; the colour of a row comes from `color(y)`.
+template <class F>
+void fill(Image& image, double x0, double y0, double x1, double y1, F color) {
+  const auto edge = [](double v, int end) {
+    return static_cast<int>(std::clamp(std::round(v), 0.0, static_cast<double>(end)));
+  };
+  for (int y = edge(y0, image.height); y < edge(y1, image.height); ++y) {
+    const Rgb c = color(y);
+    for (int x = edge(x0, image.width); x < edge(x1, image.width); ++x)
+      std::copy(c.begin(), c.end(),
+                image.rgb.begin() + 3 * (static_cast<std::ptrdiff_t>(y) * image.width + x));
+  }
+}
+
+/// Pixels.
+struct TextBox {
+  double x0, y0, x1, y1;
+  bool meets(const TextBox& b) const { return x0 < b.x1 && b.x0 < x1 && y0 < b.y1 && b.y0 < y1; }
+};
+
+/// Texts of one size on a picture, none over another.
+class Texts {
+ public:
+  /// `size`: pixels per em.
+  Texts(Image& image, double size) : image_(image), size_(size) {}
+
+  void keep_free(const TextBox& box) { taken_.push_back(box); }
+  /// The room of a text whose capitals' top left corner is at (x, y).
+  TextBox box_of(const std::string& text, double x, double y) const;
+  /// Whether the box lies in the picture and on nothing that is taken.
+  bool fits(const TextBox& box) const;
+  /// Draws it where it fits, with a light rim, so that it is read on fluid too.
+  void put(const std::string& text, double x, double y, Rgb color);
+
+ private:
+  Image& image_;
+  double size_;
+  std::vector<TextBox> taken_;
+};
+
+}  // namespace pbf::inline render_module
