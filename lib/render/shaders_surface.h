@@ -1,0 +1,141 @@
+// The fluid as one surface: depth of the spheres, thickness, smoothing and water.
+#pragma once
+
+namespace pbf::inline render_module::shaders {
+
+// Behind kSphereVertex. Kept are 1/z, in which planes are linear over the picture, 0 where there is
+// no fluid, and the place on the colour bar, 0 to 254, -1 without a value.
+inline constexpr const char* kSurfaceDepthFragment = R"(
+flat in vec3 f_center;
+flat in float f_share;
+flat in float f_radius;
+in vec2 f_ray;
+out vec2 o_surface;
+void main() {
+  vec3 d = vec3(f_ray, 1.0);
+  float dd = dot(d, d);
+  vec3 p = (dot(d, f_center) / dd) * d - f_center;
+  float h2 = f_radius * f_radius - dot(p, p);
+  if (h2 <= 0.0) discard;
+  float z = f_center.z + p.z - sqrt(h2 / dd);
+  if (z <= 0.0) discard;
+  gl_FragDepth = u_depth.x - u_depth.y / z;
+  o_surface = vec2(1.0 / z, f_share > 254.5 ? -1.0 : f_share);
+}
+)";
+
+// Behind kSphereVertex, added up: what a ray passes through in the spheres before the scene, of
+// which each counts with the fluid's volume of its particle, so that overlaps count once.
+inline constexpr const char* kThicknessFragment = R"(
+flat in vec3 f_center;
+flat in float f_radius;
+in vec2 f_ray;
+uniform sampler2D u_stored;
+uniform int u_factor;
+out float o_thickness;
+void main() {
+  vec3 d = vec3(f_ray, 1.0);
+  vec3 p = (dot(d, f_center) / dot(d, d)) * d - f_center;
+  float h2 = f_radius * f_radius - dot(p, p);
+  float scene = texelFetch(u_stored, ivec2(gl_FragCoord.xy) * u_factor + u_factor / 2, 0).r;
+  if (h2 <= 0.0 || f_center.z <= 0.0 || scene < u_depth.x - u_depth.y / f_center.z) discard;
+  o_thickness = 2.0 * sqrt(h2) * 0.466;  // d^3 / (4/3 pi (0.8 d)^3)
+}
+)";
+
+// Behind kResolveVertex: one direction of the smoothing. A pair of pixels at the same distance to
+// both sides counts when its mean is near the pixel in the middle, which a plane's is however
+// steeply it is seen, and neither lies off the fluid.
+inline constexpr const char* kSmoothFragment = R"(
+uniform sampler2D u_surface;
+uniform vec2 u_along;  // (1, 0) or (0, 1)
+uniform vec2 u_width;  // m: of the filter to each side, and how far off a pair may be
+out vec2 o_surface;
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy), last = textureSize(u_surface, 0) - 1;
+  vec2 here = texelFetch(u_surface, at, 0).rg;
+  o_surface = here;
+  if (here.x <= 0.0) return;
+  float z = 1.0 / here.x;
+  float stride = clamp(u_width.x / (u_step * z * 8.0), 0.25, 8.0);  // pixels
+  vec2 sum = here, weight = vec2(1.0);
+  for (int k = 1; k <= 8; ++k) {
+    ivec2 off = ivec2(u_along * round(float(k) * stride));
+    vec2 a = texelFetch(u_surface, clamp(at + off, ivec2(0), last), 0).rg;
+    vec2 b = texelFetch(u_surface, clamp(at - off, ivec2(0), last), 0).rg;
+    if (a.x <= 0.0 || b.x <= 0.0) continue;
+    float away = (0.5 * (a.x + b.x) - here.x) * z * z / u_width.y;
+    float w = 2.0 * exp(-float(k * k) / 24.0 - away * away);
+    sum.x += w * 0.5 * (a.x + b.x);
+    weight.x += w;
+    if (a.y >= 0.0 && b.y >= 0.0) {
+      sum.y += w * 0.5 * (a.y + b.y);
+      weight.y += w;
+    }
+  }
+  o_surface = vec2(sum.x / weight.x, here.y < 0.0 ? here.y : sum.y / weight.y);
+}
+)";
+
+// Behind kResolveVertex and kShadowed: the fluid before the scene. Its colour is that of the
+// colour bar, lit as spheres are; where it is thin the scene shines through, refracted; the sky is
+// reflected at grazing angles (Schlick) and the sun where it glances.
+inline constexpr const char* kWaterFragment = R"(
+uniform sampler2D u_surface, u_thickness, u_scene, u_stored, u_bar;
+uniform int u_factor;
+uniform vec2 u_size;
+uniform float u_radius;  // m, of the spheres
+uniform float u_clear;   // m of fluid after which 1/e of the scene is left
+out vec4 o_color;
+vec3 place(ivec2 at, float inverse) {
+  return vec3((2.0 * (vec2(at) + 0.5) / u_size - 1.0 + u_lens.zw) / u_lens.xy, 1.0) / inverse;
+}
+float inverse_at(ivec2 at) {
+  return texelFetch(u_surface, clamp(at, ivec2(0), ivec2(u_size) - 1), 0).r;
+}
+// Along the surface in one direction of the picture, to the side that is nearer in depth.
+vec3 slope(ivec2 at, ivec2 off, float here) {
+  float a = inverse_at(at + off), b = inverse_at(at - off);
+  if (a <= 0.0 && b <= 0.0) return place(at + off, here) - place(at, here);
+  bool forth = b <= 0.0 || (a > 0.0 && abs(a - here) < abs(b - here));
+  return forth ? place(at + off, a) - place(at, here) : place(at, here) - place(at - off, b);
+}
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  vec3 scene = texelFetch(u_scene, at, 0).rgb;
+  o_color = vec4(scene, 1.0);
+  vec2 here = texelFetch(u_surface, at, 0).rg;
+  if (here.x <= 0.0) return;
+  float stored = u_depth.x - u_depth.y * here.x, covered = 0.0;
+  for (int j = 0; j < u_factor; ++j)
+    for (int i = 0; i < u_factor; ++i)
+      covered += step(stored, texelFetch(u_stored, at * u_factor + ivec2(i, j), 0).r);
+  if (covered == 0.0) return;
+  vec3 p = place(at, here.x), eye = -normalize(p);
+  vec3 n = normalize(cross(slope(at, ivec2(1, 0), here.x), slope(at, ivec2(0, 1), here.x)));
+  if (dot(n, p) > 0.0) n = -n;
+
+  float thick = texelFetch(u_thickness, at, 0).r, left = exp(-thick / u_clear);
+  int low = clamp(int(here.y), 0, 253);
+  vec3 color = here.y < 0.0 ? texelFetch(u_bar, ivec2(255, 0), 0).rgb
+                            : mix(texelFetch(u_bar, ivec2(low, 0), 0).rgb,
+                                  texelFetch(u_bar, ivec2(low + 1, 0), 0).rgb, here.y - float(low));
+  float hidden = shadowed(p, 1.0);
+  vec4 body = lit(color, n);
+  body.rgb *= 1.0 - body.a * hidden;
+  vec2 bend = n.xy * min(thick, 4.0 * u_radius) * here.x / u_step * 0.25;
+  vec3 behind = texelFetch(u_scene, clamp(at - ivec2(bend), ivec2(0), ivec2(u_size) - 1), 0).rgb;
+  vec3 seen = mix(body.rgb, behind * mix(vec3(1.0), color, 0.6 * (1.0 - left)), left);
+
+  float facing = max(dot(n, eye), 0.0);
+  float mirror = min(0.02 + 0.98 * pow(1.0 - facing, 5.0), 0.45) * (1.0 - left);
+  float up = dot(reflect(-eye, n), u_sky.xyz);
+  seen = mix(seen, mix(vec3(0.50, 0.53, 0.56), vec3(0.96, 0.98, 1.0), smoothstep(-0.4, 0.5, up)),
+             mirror);
+  float glance = max(dot(n, normalize(u_sun.xyz + eye)), 0.0);
+  seen += 0.35 * pow(glance, 90.0) * (1.0 - hidden) * (1.0 - left);
+  o_color.rgb = mix(scene, seen, covered / float(u_factor * u_factor));
+}
+)";
+
+}  // namespace pbf::inline render_module::shaders
