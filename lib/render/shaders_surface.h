@@ -106,7 +106,8 @@ void main() {
   o_color = vec4(scene, 1.0);
   vec2 here = texelFetch(u_surface, at, 0).rg;
   if (here.x <= 0.0) return;
-  float stored = u_depth.x - u_depth.y * here.x, covered = 0.0;
+  // The spheres reach beyond the fluid, 0.375 of their radius: what lies on a wall wins.
+  float stored = u_depth.x - u_depth.y / (1.0 / here.x + 0.375 * u_radius), covered = 0.0;
   for (int j = 0; j < u_factor; ++j)
     for (int i = 0; i < u_factor; ++i)
       covered += step(stored, texelFetch(u_stored, at * u_factor + ivec2(i, j), 0).r);
@@ -115,7 +116,10 @@ void main() {
   vec3 n = normalize(cross(slope(at, ivec2(1, 0), here.x), slope(at, ivec2(0, 1), here.x)));
   if (dot(n, p) > 0.0) n = -n;
 
-  float thick = texelFetch(u_thickness, at, 0).r, left = exp(-thick / u_clear);
+  float thick = texelFetch(u_thickness, at, 0).r, left = 0.5 * exp(-thick / u_clear);
+  // A ray that passes a sphere's outline at a distance e within has a chord of 2 sqrt(2 R e).
+  float chord = thick / 0.466;
+  covered *= clamp(chord * chord * here.x / (8.0 * u_radius * u_step), 0.0, 1.0);
   int low = clamp(int(here.y), 0, 253);
   vec3 color = here.y < 0.0 ? texelFetch(u_bar, ivec2(255, 0), 0).rgb
                             : mix(texelFetch(u_bar, ivec2(low, 0), 0).rgb,

@@ -68,8 +68,8 @@ void Surface::draw_thickness(const Lens& lens, const gl::Texture& stored) {
 
 void Surface::smooth(const Lens& lens) {
   nothing_.bind();
-  // Wide first: the second round takes away what its stride has left.
-  for (const double width : {4.0, 2.0})
+  // Narrow first, for what the wide one would step over; narrow last, for what it has left of that.
+  for (const double width : {1.0, 4.0, 1.5})
     for (const bool upright : {false, true}) {
       (upright ? depth_ : between_).draw_into();
       lens.use(gl_, smooth_program_, 1);
