@@ -9,6 +9,7 @@
 #include "lib/base/error.h"
 #include "lib/render/box.h"
 #include "lib/render/camera.h"
+#include "lib/render/fluid_surface.h"
 #include "lib/render/gl_context.h"
 #include "lib/render/gl_objects.h"
 #include "lib/render/light.h"
@@ -18,7 +19,6 @@
 #include "lib/render/shaders_shadow.h"
 #include "lib/render/shadow.h"
 #include "lib/render/solids.h"
-#include "lib/render/surface.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline render_module {
@@ -66,8 +66,8 @@ struct Pipeline {
   gl::Program spheres, solids, flat, resolve;
   gl::Buffer particle_buffer, solid_buffer, flat_buffer, nothing;
   gl::Target samples, picture;
-  std::optional<ShadowMap> shadow;  // but not in two dimensions
-  std::optional<Surface> surface;   // where the style asks for it
+  std::optional<ShadowMap> shadow;      // but not in two dimensions
+  std::optional<FluidSurface> surface;  // where the style asks for it
 
   Pipeline(const gl::Table& table, const View& view)
       : gl(table),

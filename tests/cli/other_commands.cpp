@@ -119,8 +119,9 @@ TEST_CASE("pictures are drawn by a run and, later, from its file") {
         read_text(folder / "fast/frames/frame_000002.png"));
 
   // In the other style too.
-  CHECK(render({"--frames", "4", "--style", "surface", "--color", "speed", "--out", "again"})
-            .code == 0);
+  CHECK(
+      render({"--frames", "4", "--style", "surface", "--color", "speed", "--out", "again"}).code ==
+      0);
   CHECK(pbf::test::pbf({"run", scene, "--out", "water", "--set", "render.style=surface", "--set",
                         "render.color=speed", "--set", "output.fields=[velocity]"},
                        folder.path())

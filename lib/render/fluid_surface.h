@@ -12,10 +12,10 @@ namespace pbf::inline render_module {
 /// Method: W. van der Laan, S. Green, M. Sainz, "Screen space fluid rendering with curvature flow",
 /// I3D 2009; the depth is smoothed by pairs of pixels on both sides, which leaves planes as they
 /// are, in place of curvature flow.
-class Surface {
+class FluidSurface {
  public:
   /// `factor`: samples per pixel and direction of the scene's depth.
-  Surface(const gl::Table& gl, const View& view, int factor);
+  FluidSurface(const gl::Table& gl, const View& view, int factor);
 
   /// What the scene without the fluid is to be drawn into first.
   const gl::Target& scene() const { return scene_; }
@@ -25,6 +25,7 @@ class Surface {
             const gl::Texture& stored, const ShadowMap* shadow, const gl::Target& picture);
 
  private:
+  void use(const Lens& lens, const gl::Program& program) const;
   void draw_depth(const Lens& lens);
   void draw_thickness(const Lens& lens, const gl::Texture& stored);
   void smooth(const Lens& lens);
@@ -33,7 +34,8 @@ class Surface {
   std::array<int, 2> size_;
   int factor_;
   bool flat_;
-  double radius_;  ///< of the spheres drawn, m
+  Double3 low_, high_;  ///< m, of the domain; far away where a wall is open
+  double radius_;       ///< of the spheres drawn, m
   gl::Size visible_ = 0;
   gl::Program depth_program_, thickness_program_, smooth_program_, water_program_;
   gl::Buffer nothing_;
