@@ -97,6 +97,8 @@ void add_render(CLI::App& app, int& code) {
   c->add_option("--frames", o.frames, "all, k, a:b or a:b:step; b excluded, negative from the end");
   c->add_option("--size", o.size, "WIDTHxHEIGHT in pixels");
   c->add_option("--camera", o.camera, "position=x,y,z;target=x,y,z;fov=degrees;orbit=degrees/s");
+  c->add_option("--style", o.style, "How the fluid is drawn")
+      ->check(CLI::IsMember(words_of<RenderStyle>()));
   c->add_option("--color", o.color, "What colours the particles")
       ->check(CLI::IsMember(words_of<ColorBy>()));
   c->add_option(

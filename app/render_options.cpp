@@ -104,6 +104,7 @@ void apply_render_options(const RenderOptions& o, Scene& scene) {
       bad("--size", o.size, "WIDTHxHEIGHT in pixels, each from 16 to 16384, e.g. 1280x720");
     render.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
   }
+  if (!o.style.empty()) render.style = *named<RenderStyle>(o.style);
   if (!o.color.empty()) {
     const ColorBy color = *named<ColorBy>(o.color);
     if (color != render.color) render.range.reset();

@@ -11,12 +11,12 @@
 namespace pbf::inline app_module {
 
 struct RenderOptions {
-  std::string run;             ///< path of run.vtkhdf
-  std::string frames = "all";  ///< k, a:b, a:b:step (b excluded, negative from the end) or all
-  std::string size;            ///< WxH, empty: as the scene says
-  std::string camera;          ///< position=x,y,z;target=x,y,z;fov=deg;orbit=deg/s
-  std::string color, range;    ///< empty: as the scene says
-  std::string out;             ///< folder, empty: render/ beside the run file
+  std::string run;                  ///< path of run.vtkhdf
+  std::string frames = "all";       ///< k, a:b, a:b:step (b excluded, negative from the end) or all
+  std::string size;                 ///< WxH, empty: as the scene says
+  std::string camera;               ///< position=x,y,z;target=x,y,z;fov=deg;orbit=deg/s
+  std::string style, color, range;  ///< empty: as the scene says
+  std::string out;                  ///< folder, empty: render/ beside the run file
 };
 
 /// "all", "k", "a:b" or "a:b:step", as Python slices: b excluded, negative from the end, empty for
@@ -26,8 +26,8 @@ std::vector<std::int64_t> select_frames(const std::string& text, std::int64_t fr
 /// Whether the range follows from the frames.
 bool by_quantile(const RenderOptions& options);
 
-/// Replaces what --size, --camera, --color and --range say in the scene's render settings. A new
-/// colour without a range gets that field's own range.
+/// Replaces what --size, --camera, --style, --color and --range say in the scene's render settings.
+/// A new colour without a range gets that field's own range.
 void apply_render_options(const RenderOptions& options, Scene& scene);
 
 }  // namespace pbf::inline app_module

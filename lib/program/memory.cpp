@@ -119,6 +119,10 @@ void add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   const std::int64_t pixels = std::int64_t(s.render->size[0]) * s.render->size[1];
   add("2 x 2 samples, colour and depth", "byte", 8, 4 * pixels);
   add("picture, read back and as RGB", "byte", 11, pixels);
+  if (s.dimensions == 3)
+    add("shadow map, at most", "byte", 4, std::int64_t(kShadowTexels) * kShadowTexels);
+  if (const int bytes = about(s.render->style).bytes_per_pixel)
+    add("surface: depth, its smoothing, thickness", "byte", bytes, pixels);
   // llvmpipe's lists of what covers each tile: a fit to its growth from 8 000 to 500 000 particles.
   add("tiles of the software rasteriser", "byte", 1,
       std::int64_t(std::max(0.0, 6000 * std::pow(double(n), 0.8) - 8e6)));

@@ -1,6 +1,9 @@
 #include "lib/render/gl_objects.h"
 
+#include <array>
+
 #include "lib/base/error.h"
+#include "lib/base/text.h"
 #include "lib/render/shaders.h"
 
 namespace pbf::inline render_module::gl {
@@ -17,10 +20,10 @@ void check_built(Uint name, Enum status, GetInt get, GetLog log, const char* wha
               std::string("the OpenGL driver refuses ") + what + ": " + text.data());
 }
 
-Uint compiled(const Table& gl, Enum type, const char* body) {
+Uint compiled(const Table& gl, Enum type, const char* library, const char* body) {
   const Uint shader = gl.CreateShader(type);
-  const std::array<const Char*, 2> text{shaders::kHead, body};
-  gl.ShaderSource(shader, 2, text.data(), nullptr);
+  const std::array<const Char*, 3> text{shaders::kHead, library, body};
+  gl.ShaderSource(shader, 3, text.data(), nullptr);
   gl.CompileShader(shader);
   check_built(shader, COMPILE_STATUS, gl.GetShaderiv, gl.GetShaderInfoLog, "a shader");
   return shader;
@@ -28,13 +31,14 @@ Uint compiled(const Table& gl, Enum type, const char* body) {
 
 }  // namespace
 
-Program::Program(const Table& gl, const char* vertex, const char* fragment)
+Program::Program(const Table& gl, const char* vertex, const char* fragment, const char* library)
     : gl_(gl), name_(gl.CreateProgram()) {
-  for (const auto& [type, body] : {std::pair{VERTEX_SHADER, vertex}, {FRAGMENT_SHADER, fragment}}) {
-    const Uint shader = compiled(gl, type, body);
+  const auto attach = [&](Uint shader) {
     gl.AttachShader(name_, shader);
     gl.DeleteShader(shader);  // lives on while attached
-  }
+  };
+  attach(compiled(gl, VERTEX_SHADER, "", vertex));
+  attach(compiled(gl, FRAGMENT_SHADER, library, fragment));
   gl.LinkProgram(name_);
   check_built(name_, LINK_STATUS, gl.GetProgramiv, gl.GetProgramInfoLog, "a program");
 }
@@ -66,34 +70,55 @@ void Buffer::fill(const void* data, std::size_t bytes) const {
   gl_.BufferData(ARRAY_BUFFER, static_cast<std::ptrdiff_t>(bytes), data, STREAM_DRAW);
 }
 
-Target::Target(const Table& gl, Size width, Size height, bool depth)
+Texture::Texture(const Table& gl, Size width, Size height, const Format& format, const void* data)
+    : gl_(gl) {
+  gl.GenTextures(1, &name_);
+  gl.BindTexture(TEXTURE_2D, name_);
+  gl.TexImage2D(TEXTURE_2D, 0, static_cast<Int>(format.internal), width, height, 0, format.layout,
+                format.type, data);
+  gl.TexParameteri(TEXTURE_2D, TEXTURE_MIN_FILTER, NEAREST);
+  gl.TexParameteri(TEXTURE_2D, TEXTURE_MAG_FILTER, NEAREST);
+  gl.TexParameteri(TEXTURE_2D, TEXTURE_WRAP_S, CLAMP_TO_EDGE);
+  gl.TexParameteri(TEXTURE_2D, TEXTURE_WRAP_T, CLAMP_TO_EDGE);
+}
+
+void Texture::compare_linearly() const {
+  gl_.BindTexture(TEXTURE_2D, name_);
+  gl_.TexParameteri(TEXTURE_2D, TEXTURE_MIN_FILTER, LINEAR);
+  gl_.TexParameteri(TEXTURE_2D, TEXTURE_MAG_FILTER, LINEAR);
+  gl_.TexParameteri(TEXTURE_2D, TEXTURE_COMPARE_MODE, COMPARE_REF_TO_TEXTURE);
+}
+
+void Texture::bind(const Program& program, const char* name, Uint unit) const {
+  gl_.ActiveTexture(TEXTURE0 + unit);
+  gl_.BindTexture(TEXTURE_2D, name_);
+  gl_.Uniform1i(program.uniform(name), static_cast<Int>(unit));
+}
+
+Target::Target(const Table& gl, Size width, Size height, const Format& color, Depth depth)
     : gl_(gl), width_(width), height_(height) {
   gl.GenFramebuffers(1, &frame_);
   gl.BindFramebuffer(FRAMEBUFFER, frame_);
-  const auto attach = [&](Uint& texture, Int format, Enum layout, Enum type, Enum point) {
-    gl.GenTextures(1, &texture);
-    gl.BindTexture(TEXTURE_2D, texture);
-    gl.TexImage2D(TEXTURE_2D, 0, format, width, height, 0, layout, type, nullptr);
-    gl.TexParameteri(TEXTURE_2D, TEXTURE_MIN_FILTER, NEAREST);
-    gl.TexParameteri(TEXTURE_2D, TEXTURE_MAG_FILTER, NEAREST);
-    gl.FramebufferTexture2D(FRAMEBUFFER, point, TEXTURE_2D, texture, 0);
+  const auto attach = [&](std::optional<Texture>& texture, const Format& format, Enum point) {
+    texture.emplace(gl, width, height, format);
+    gl.FramebufferTexture2D(FRAMEBUFFER, point, TEXTURE_2D, texture->name(), 0);
   };
-  attach(textures_[0], static_cast<Int>(RGBA8), RGBA, UNSIGNED_BYTE, COLOR_ATTACHMENT0);
-  if (depth)
-    attach(textures_[1], static_cast<Int>(DEPTH_COMPONENT32F), DEPTH_COMPONENT, FLOAT,
-           DEPTH_ATTACHMENT);
+  if (depth != Depth::alone) {
+    attach(color_, color, COLOR_ATTACHMENT0);
+  } else {  // OpenGL 3.3 calls a framebuffer incomplete when it would draw a colour it has not
+    gl.DrawBuffer(NONE);
+    gl.ReadBuffer(NONE);
+  }
+  if (depth != Depth::without) attach(depth_, kDepth32, DEPTH_ATTACHMENT);
   const Enum state = gl.CheckFramebufferStatus(FRAMEBUFFER);
   if (state != FRAMEBUFFER_COMPLETE || gl.GetError() != NO_ERROR)
-    throw Error(ExitCode::unavailable, "the OpenGL driver gives no picture of " +
-                                           std::to_string(width) + "x" + std::to_string(height) +
-                                           " samples; choose a smaller render.size");
+    throw Error(ExitCode::unavailable,
+                format("the OpenGL driver gives no picture of %d x %d samples; choose a smaller "
+                       "render.size",
+                       width, height));
 }
 
-Target::~Target() {
-  gl_.DeleteFramebuffers(1, &frame_);
-  gl_.DeleteTextures(1, &textures_[0]);
-  if (textures_[1]) gl_.DeleteTextures(1, &textures_[1]);
-}
+Target::~Target() { gl_.DeleteFramebuffers(1, &frame_); }
 
 void Target::draw_into() const {
   gl_.BindFramebuffer(FRAMEBUFFER, frame_);

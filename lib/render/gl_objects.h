@@ -1,8 +1,8 @@
 // Owners of OpenGL objects. Made and destroyed while their context is current.
 #pragma once
 
-#include <array>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -13,7 +13,8 @@ namespace pbf::inline render_module::gl {
 /// A linked program. Throws Error(unavailable) with the driver's message when it does not build.
 class Program {
  public:
-  Program(const Table& gl, const char* vertex, const char* fragment);
+  /// `library`: stands before `fragment`.
+  Program(const Table& gl, const char* vertex, const char* fragment, const char* library = "");
   ~Program() { gl_.DeleteProgram(name_); }
   Program(const Program&) = delete;
   void use() const { gl_.UseProgram(name_); }
@@ -47,23 +48,48 @@ class Buffer {
   Uint array_ = 0, buffer_ = 0;
 };
 
-/// A framebuffer with an RGBA8 colour texture and, on request, a float depth texture.
+/// What a texel holds: the internal format of OpenGL, and that of the bytes it is filled with.
+struct Format {
+  Enum internal, layout, type;
+};
+inline constexpr Format kColor8{RGBA8, RGBA, UNSIGNED_BYTE}, kPair32{RG32F, RG, FLOAT},
+    kSum16{R16F, RED, FLOAT}, kDepth32{DEPTH_COMPONENT32F, DEPTH_COMPONENT, FLOAT};
+
+/// A texture of one level, read texel by texel unless set otherwise.
+class Texture {
+ public:
+  /// `data`: texels from the lowest row on, or null.
+  Texture(const Table& gl, Size width, Size height, const Format& format,
+          const void* data = nullptr);
+  ~Texture() { gl_.DeleteTextures(1, &name_); }
+  Texture(const Texture&) = delete;
+  Uint name() const { return name_; }
+  /// For a sampler2DShadow: the share of the four texels around a place that are not nearer.
+  void compare_linearly() const;
+  /// Makes it the texture of unit `unit` and of the sampler `name` of `program`, which is in use.
+  void bind(const Program& program, const char* name, Uint unit) const;
+
+ private:
+  const Table& gl_;
+  Uint name_ = 0;
+};
+
+/// A framebuffer with a colour texture, a float depth texture, or both.
 class Target {
  public:
-  Target(const Table& gl, Size width, Size height, bool depth);
+  enum class Depth { without, with, alone };
+  Target(const Table& gl, Size width, Size height, const Format& color, Depth depth);
   ~Target();
   Target(const Target&) = delete;
   void draw_into() const;
-  Size width() const { return width_; }
-  Size height() const { return height_; }
-  Uint color() const { return textures_[0]; }
-  Uint depth() const { return textures_[1]; }
+  const Texture& color() const { return *color_; }
+  const Texture& depth() const { return *depth_; }
 
  private:
   const Table& gl_;
   Size width_, height_;
   Uint frame_ = 0;
-  std::array<Uint, 2> textures_{};
+  std::optional<Texture> color_, depth_;
 };
 
 }  // namespace pbf::inline render_module::gl

@@ -22,14 +22,20 @@ inline constexpr Enum NO_ERROR = 0, OUT_OF_MEMORY = 0x0505;
 inline constexpr Enum TRIANGLES = 0x0004, TRIANGLE_STRIP = 0x0005;
 inline constexpr Bits DEPTH_BUFFER_BIT = 0x0100, COLOR_BUFFER_BIT = 0x4000;
 inline constexpr Enum LEQUAL = 0x0203, DEPTH_TEST = 0x0B71;
+inline constexpr Enum BLEND = 0x0BE2, ONE = 1, NONE = 0;
 inline constexpr Enum UNSIGNED_BYTE = 0x1401, FLOAT = 0x1406;
 inline constexpr Enum RGBA = 0x1908, RGBA8 = 0x8058, DEPTH_COMPONENT = 0x1902;
 inline constexpr Enum DEPTH_COMPONENT32F = 0x8CAC;
+inline constexpr Enum RED = 0x1903, RG = 0x8227, R16F = 0x822D, RG32F = 0x8230;
 inline constexpr Enum PACK_ALIGNMENT = 0x0D05, MAX_TEXTURE_SIZE = 0x0D33;
 inline constexpr Enum MAX_VIEWPORT_DIMS = 0x0D3A;
 inline constexpr Enum TEXTURE_2D = 0x0DE1, TEXTURE0 = 0x84C0;
 inline constexpr Enum TEXTURE_MAG_FILTER = 0x2800, TEXTURE_MIN_FILTER = 0x2801;
-inline constexpr Int NEAREST = 0x2600;
+inline constexpr Int NEAREST = 0x2600, LINEAR = 0x2601;
+inline constexpr Enum TEXTURE_WRAP_S = 0x2802, TEXTURE_WRAP_T = 0x2803;
+inline constexpr Int CLAMP_TO_EDGE = 0x812F;
+inline constexpr Enum TEXTURE_COMPARE_MODE = 0x884C;
+inline constexpr Int COMPARE_REF_TO_TEXTURE = 0x884E;
 inline constexpr Enum ARRAY_BUFFER = 0x8892, STREAM_DRAW = 0x88E0;
 inline constexpr Enum FRAGMENT_SHADER = 0x8B30, VERTEX_SHADER = 0x8B31;
 inline constexpr Enum COMPILE_STATUS = 0x8B81, LINK_STATUS = 0x8B82;
@@ -44,6 +50,9 @@ inline constexpr Enum COLOR_ATTACHMENT0 = 0x8CE0, DEPTH_ATTACHMENT = 0x8D00;
   X(void, Enable, (Enum))                                                         \
   X(void, Disable, (Enum))                                                        \
   X(void, DepthFunc, (Enum))                                                      \
+  X(void, BlendFunc, (Enum, Enum))                                                \
+  X(void, DrawBuffer, (Enum))                                                     \
+  X(void, ReadBuffer, (Enum))                                                     \
   X(void, Viewport, (Int, Int, Size, Size))                                       \
   X(void, Clear, (Bits))                                                          \
   X(void, PixelStorei, (Enum, Int))                                               \

@@ -26,6 +26,11 @@ Double3 vector(const FieldArray& field, std::size_t i) {
   return {value(field, 3 * i), value(field, 3 * i + 1), value(field, 3 * i + 2)};
 }
 
+std::uint8_t share_of(double place) {
+  if (std::isnan(place)) return kNoShare;
+  return static_cast<std::uint8_t>(std::lround((kNoShare - 1) * std::clamp(place, 0.0, 1.0)));
+}
+
 void check_field(const Snapshot& snapshot, const std::string& name, int components,
                  const std::string& what) {
   const FieldArray* field = snapshot.find(name);
@@ -48,6 +53,10 @@ void check_field(const Snapshot& snapshot, const std::string& name, int componen
 }
 
 }  // namespace
+
+double drawn_radius(const View& view) {
+  return (view.style == RenderStyle::surface ? 1.6 : 1) * view.radius;
+}
 
 void check_fields(const Snapshot& snapshot, ColorBy color) {
   check_field(snapshot, "position", 3, "a picture");
@@ -77,7 +86,7 @@ void collect(const Snapshot& snapshot, const View& view, const Projection& proje
   out.list.reserve(snapshot.count);
 
   const auto color = color_map(view.color);
-  const double r = view.radius, low = view.range[0], span = view.range[1] - view.range[0];
+  const double r = drawn_radius(view), low = view.range[0], span = view.range[1] - view.range[0];
   const double tan_y = projection.tan_half;
   const double tan_x = tan_y * projection.size[0] / projection.size[1];
   // Planes through the eye: left and right, bottom and top of the (shifted) picture.
@@ -86,18 +95,30 @@ void collect(const Snapshot& snapshot, const View& view, const Projection& proje
   const double bottom = -tan_y * (1 - shift_y), top = tan_y * (1 + shift_y);
   const double reach_left = r * std::hypot(1, left), reach_right = r * std::hypot(1, right);
   const double reach_bottom = r * std::hypot(1, bottom), reach_top = r * std::hypot(1, top);
+  const auto at = [&](std::size_t i) { return projection.to_view(vector(position, i)); };
+  // Written so that NaN fails; a sphere around the eye would hide everything and is left out.
+  const auto is_seen = [&](const Double3& v) {
+    return v[2] > -r && dot(v, v) > r * r && v[0] > left * v[2] - reach_left &&
+           v[0] < right * v[2] + reach_right && v[1] > bottom * v[2] - reach_bottom &&
+           v[1] < top * v[2] + reach_top && v[2] < 1e30;
+  };
   for (std::size_t i = 0; i < snapshot.count; ++i) {
-    const Double3 v = projection.to_view(vector(position, i));
-    // Written so that NaN fails; a sphere around the eye would hide everything and is left out.
-    if (!(v[2] > -r && dot(v, v) > r * r && v[0] > left * v[2] - reach_left &&
-          v[0] < right * v[2] + reach_right && v[1] > bottom * v[2] - reach_bottom &&
-          v[1] < top * v[2] + reach_top && v[2] < 1e30))
-      continue;
+    const Double3 v = at(i);
+    if (!is_seen(v)) continue;
     const double shown = shown_value(field, view, i);
+    const double place = (shown - low) / span;
     out.list.push_back({static_cast<float>(v[0]), static_cast<float>(v[1]),
-                        static_cast<float>(v[2]), color((shown - low) / span)});
+                        static_cast<float>(v[2]), color(place), share_of(place)});
     out.nearest = std::min(out.nearest, v[2] - r);
     out.farthest = std::max(out.farthest, v[2] + r);
+  }
+  out.visible = out.list.size();
+  if (view.flat || out.visible == snapshot.count) return;
+  for (std::size_t i = 0; i < snapshot.count; ++i) {
+    const Double3 v = at(i);
+    if (is_seen(v) || !(dot(v, v) < 1e30)) continue;
+    out.list.push_back({static_cast<float>(v[0]), static_cast<float>(v[1]),
+                        static_cast<float>(v[2]), Rgb{}, kNoShare});
   }
 }
 

@@ -13,16 +13,23 @@ namespace pbf::inline render_module {
 struct ParticleVertex {
   float x, y, depth;  ///< centre in view space, m: subtracted and turned in double before rounding
   Rgb color;
-  std::uint8_t unused = 0;
+  std::uint8_t share;  ///< where on the colour bar, 0 to 254; kNoShare without a value
 };
+inline constexpr std::uint8_t kNoShare = 255;
 
 struct ParticleVertices {
-  std::vector<ParticleVertex> list;
+  std::vector<ParticleVertex> list;      ///< those in the picture first
+  std::size_t visible = 0;               ///< how many are; the rest may cast a shadow into it
   double nearest = 1e300, farthest = 0;  ///< depth of the surfaces, m
 };
 
-/// The particles in front of the eye and inside the picture, coloured. Particles with a position
-/// that is not finite are left out. Throws Error(bad_input) when a field is missing or misshapen.
+/// m, of the spheres that are drawn: larger for a surface, so that no ray passes between particles
+/// that rest as a lattice.
+double drawn_radius(const View& view);
+
+/// The particles in front of the eye and inside the picture, coloured; behind them, but not of a
+/// scene in two dimensions, the others. Particles with a position that is not finite are left out.
+/// Throws Error(bad_input) when a field is missing or misshapen.
 void collect(const Snapshot& snapshot, const View& view, const Projection& projection,
              ParticleVertices& out);
 

@@ -3,22 +3,30 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "lib/base/error.h"
 #include "lib/render/box.h"
 #include "lib/render/camera.h"
+#include "lib/render/fluid_surface.h"
 #include "lib/render/gl_context.h"
 #include "lib/render/gl_objects.h"
 #include "lib/render/grid.h"
+#include "lib/render/light.h"
 #include "lib/render/overlay.h"
 #include "lib/render/particles.h"
 #include "lib/render/shaders.h"
+#include "lib/render/shaders_shadow.h"
+#include "lib/render/shadow.h"
 #include "lib/render/solids.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline render_module {
 namespace {
+
+/// What a shadow takes away of the floor's light, which is drawn as fully lit.
+constexpr double kFloorInShadow = 0.3;
 
 void check_view(const View& view) {
   const auto bad = [](const std::string& what) { throw Error(ExitCode::bad_input, what); };
@@ -55,38 +63,47 @@ int samples_per_edge(const gl::Table& gl, std::array<int, 2> size) {
 struct Pipeline {
   const gl::Table& gl;
   int factor;
-  gl::Program spheres, flat, resolve;
-  gl::Buffer particle_buffer, flat_buffer, nothing;
+  Light light;
+  gl::Program spheres, solids, flat, resolve;
+  gl::Buffer particle_buffer, solid_buffer, flat_buffer, nothing;
   gl::Target samples, picture;
+  std::optional<ShadowMap> shadow;      // but not in two dimensions
+  std::optional<FluidSurface> surface;  // where the style asks for it
 
-  Pipeline(const gl::Table& table, std::array<int, 2> size)
+  Pipeline(const gl::Table& table, const View& view)
       : gl(table),
-        factor(samples_per_edge(table, size)),
+        factor(samples_per_edge(table, view.size)),
+        light(light_of(view)),
         spheres(table, shaders::kSphereVertex, shaders::kSphereFragment),
+        solids(table, shaders::kSolidVertex, shaders::kSolidFragment),
         flat(table, shaders::kFlatVertex, shaders::kFlatFragment),
-        resolve(table, shaders::kResolveVertex, shaders::kResolveFragment),
+        resolve(table, shaders::kResolveVertex, shaders::kResolveFragment, shaders::kShadowed),
         particle_buffer(table, sizeof(ParticleVertex),
                         {{3, gl::FLOAT, 0, offsetof(ParticleVertex, x)},
                          {4, gl::UNSIGNED_BYTE, 1, offsetof(ParticleVertex, color)}},
                         1),
+        solid_buffer(table, sizeof(SolidVertex),
+                     {{3, gl::FLOAT, 0, offsetof(SolidVertex, x)},
+                      {3, gl::FLOAT, 0, offsetof(SolidVertex, normal)}},
+                     0),
         flat_buffer(table, sizeof(FlatVertex),
                     {{3, gl::FLOAT, 0, offsetof(FlatVertex, x)},
                      {4, gl::UNSIGNED_BYTE, 1, offsetof(FlatVertex, color)},
                      {2, gl::FLOAT, 0, offsetof(FlatVertex, grid)}},
                     0),
         nothing(table, 4, {}, 0),
-        samples(table, factor * size[0], factor * size[1], true),
-        picture(table, size[0], size[1], false) {}
+        samples(table, factor * view.size[0], factor * view.size[1], gl::kColor8,
+                gl::Target::Depth::with),
+        picture(table, view.size[0], view.size[1], gl::kColor8, gl::Target::Depth::without) {
+    if (!view.flat) shadow.emplace(table, view, light);
+    if (view.style == RenderStyle::surface) surface.emplace(table, view, factor);
+  }
 
-  void set_lens(const gl::Program& program, const Projection& p, double depth_a, double depth_b) {
-    program.use();
-    const double aspect = static_cast<double>(p.size[0]) / p.size[1];
-    gl.Uniform4f(program.uniform("u_lens"), static_cast<float>(1 / (p.tan_half * aspect)),
-                 static_cast<float>(1 / p.tan_half), static_cast<float>(p.shift[0]),
-                 static_cast<float>(p.shift[1]));
-    gl.Uniform1f(program.uniform("u_step"), static_cast<float>(p.pixel() / factor));
-    gl.Uniform2f(program.uniform("u_depth"), static_cast<float>(depth_a),
-                 static_cast<float>(depth_b));
+  template <class Vertex>
+  void draw_triangles(const gl::Buffer& buffer, const std::vector<Vertex>& corners) const {
+    buffer.bind();
+    buffer.fill(corners.data(), corners.size() * sizeof(Vertex));
+    gl.DrawArrays(gl::TRIANGLES, 0, static_cast<gl::Size>(corners.size()));
   }
 };
 
@@ -100,7 +117,7 @@ struct Renderer::Impl {
 
   Impl(const View& v, int threads) : view((check_view(v), v)), context(threads) {
     const GlCurrent current(context);
-    pipeline = std::make_unique<Pipeline>(context.gl(), view.size);
+    pipeline = std::make_unique<Pipeline>(context.gl(), view);
   }
   ~Impl() {
     const GlCurrent current(context);
@@ -122,8 +139,8 @@ void Renderer::Impl::draw_scene(const Projection& projection) {
     near = std::min(near, depth);
     far = std::max(far, depth);
   }
-  const SolidSurfaces solids = surfaces_of(view, projection);
-  for (const FlatVertex& v : solids.triangles) {
+  const SolidSurfaces solids = surfaces_of(view, projection, p.light.sun);
+  for (const SolidVertex& v : solids.triangles) {
     near = std::min<double>(near, v.depth);
     far = std::max<double>(far, v.depth);
   }
@@ -132,44 +149,55 @@ void Renderer::Impl::draw_scene(const Projection& projection) {
   const double a = far / (far - near), b = a * near;
 
   const double line = std::max(1.0, view.size[1] / 720.0);  // pixels
-  triangles = solids.triangles;
-  add_floor(view, projection, triangles);
-  add_floor_grid(view, projection, line, near, triangles);
-  for (const auto& [from, to] : solids.creases)
-    add_line(from, to, kCrease, projection, 1.2 * line, near, triangles);
-  add_box_edges(view, projection, 1.6 * line, near, triangles);
+  const Lens lens{projection, p.light, a, b};
+  const ShadowMap* shadow = p.shadow ? &*p.shadow : nullptr;
+  p.particle_buffer.bind();
+  p.particle_buffer.fill(particles.list.data(), particles.list.size() * sizeof(ParticleVertex));
+  if (shadow)
+    p.shadow->draw(lens, p.particle_buffer, particles.list.size(), view.radius, solids.casters);
 
   p.samples.draw_into();
   gl.Enable(gl::DEPTH_TEST);
   gl.DepthFunc(gl::LEQUAL);
   gl.Clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
-  p.set_lens(p.flat, projection, a, b);
-  p.flat_buffer.bind();
-  p.flat_buffer.fill(triangles.data(), triangles.size() * sizeof(FlatVertex));
-  gl.DrawArrays(gl::TRIANGLES, 0, static_cast<gl::Size>(triangles.size()));
-  if (!particles.list.empty()) {
-    p.set_lens(p.spheres, projection, a, b);
+  lens.use(gl, p.solids, p.factor);
+  set_uniform(gl, p.solids, "u_color", (1 / 255.0) * kClay);
+  p.draw_triangles(p.solid_buffer, solids.triangles);
+  lens.use(gl, p.flat, p.factor);
+  gl.Uniform1f(p.flat.uniform("u_share"), static_cast<float>(kFloorInShadow));
+  triangles.clear();
+  add_floor(view, projection, triangles);
+  p.draw_triangles(p.flat_buffer, triangles);
+  gl.Uniform1f(p.flat.uniform("u_share"), 0);
+  triangles.clear();
+  add_floor_grid(view, projection, line, near, triangles);
+  for (const auto& [from, to] : solids.creases)
+    add_line(from, to, kCrease, projection, 1.2 * line, near, triangles);
+  add_box_edges(view, projection, 1.6 * line, near, triangles);
+  p.draw_triangles(p.flat_buffer, triangles);
+  const bool as_spheres = particles.visible > 0 && !p.surface;
+  if (as_spheres) {
+    lens.use(gl, p.spheres, p.factor);
     gl.Uniform1f(p.spheres.uniform("u_radius"), static_cast<float>(view.radius));
     p.particle_buffer.bind();
-    p.particle_buffer.fill(particles.list.data(), particles.list.size() * sizeof(ParticleVertex));
-    gl.DrawArraysInstanced(gl::TRIANGLE_STRIP, 0, 4, static_cast<gl::Size>(particles.list.size()));
+    gl.DrawArraysInstanced(gl::TRIANGLE_STRIP, 0, 4, static_cast<gl::Size>(particles.visible));
   }
 
-  p.picture.draw_into();
+  (p.surface ? p.surface->scene() : p.picture).draw_into();
   gl.Disable(gl::DEPTH_TEST);
-  p.set_lens(p.resolve, projection, a, b);
+  lens.use(gl, p.resolve, p.factor);
   gl.Uniform1i(p.resolve.uniform("u_factor"), p.factor);
   gl.Uniform2f(p.resolve.uniform("u_size"), static_cast<float>(view.size[0]),
                static_cast<float>(view.size[1]));
   gl.Uniform1f(p.resolve.uniform("u_radius"), static_cast<float>(view.radius));
-  gl.Uniform1i(p.resolve.uniform("u_color"), 0);
-  gl.Uniform1i(p.resolve.uniform("u_stored"), 1);
-  gl.ActiveTexture(gl::TEXTURE0);
-  gl.BindTexture(gl::TEXTURE_2D, p.samples.color());
-  gl.ActiveTexture(gl::TEXTURE0 + 1);
-  gl.BindTexture(gl::TEXTURE_2D, p.samples.depth());
+  p.samples.color().bind(p.resolve, "u_color", 0);
+  p.samples.depth().bind(p.resolve, "u_stored", 1);
+  ShadowMap::use(shadow, lens, gl, p.resolve, 2);
   p.nothing.bind();
   gl.DrawArrays(gl::TRIANGLES, 0, 3);
+  if (p.surface)
+    p.surface->draw(lens, p.particle_buffer, particles.visible, p.samples.depth(), shadow,
+                    p.picture);
 }
 
 Image Renderer::Impl::read_back() {

@@ -31,6 +31,7 @@ struct View {
   bool flat = false;     ///< a scene in two dimensions: seen along y by default
   Double3 up{0, 0, 1};   ///< against gravity
   double radius = 0.01;  ///< m, drawn radius of a particle
+  RenderStyle style = RenderStyle::spheres;
   ColorBy color = ColorBy::speed;
   double rest_density = 1000;         ///< kg/m^3
   std::array<double, 2> range{0, 1};  ///< of the colour bar, in the unit of the field
@@ -46,8 +47,10 @@ struct View {
 /// run (lib/render/reach.h; density: 0.9..1.1 rho0; compression: 0..1 %; id: 0..n-1).
 View view_of(const Scene& scene, std::int64_t particles);
 
-/// Draws lit spheres (impostors), obstacles, the box with lengths along its floor, a colour bar
-/// with unit, and the scene's name, time and number of particles.
+/// Draws the particles as lit spheres (impostors) or as one surface, obstacles, the box with
+/// lengths along its floor, a colour bar with unit, and the scene's name, time and number of
+/// particles. Sky and ground light the scene from above and below; the sun casts one soft shadow,
+/// but not in two dimensions.
 class Renderer {
  public:
   /// Opens OSMesa, else EGL surfaceless, else an EGL device; the environment variable PBF_GL

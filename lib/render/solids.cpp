@@ -10,8 +10,7 @@
 namespace pbf::inline render_module {
 namespace {
 
-constexpr Double3 kColor{190, 176, 160};  // clay: neither the cool greys of the box nor viridis
-constexpr int kAround = 64;               // corners of a circle, a multiple of 4
+constexpr int kAround = 64;  // corners of a circle, a multiple of 4
 
 struct Corner {
   Double3 place, normal;  // m; out of the solid, of the smooth surface
@@ -204,37 +203,30 @@ std::vector<Face> faces_of(const View& view, Solid<double> solid) {
   return std::move(body.faces);
 }
 
-/// The particles' light, without a dark side: round bodies would look flat there.
-std::array<std::uint8_t, 4> lit(const Double3& normal) {
-  static const Double3 light = unit({-0.45, 0.75, -0.75});
-  const double shade = 0.70 + 0.38 * dot(unit(normal), light);
-  std::array<std::uint8_t, 4> color{};
-  for (std::size_t k = 0; k < 3; ++k)
-    color[k] = static_cast<std::uint8_t>(std::clamp(shade * kColor[k], 0.0, 255.0));
-  return color;
-}
-
 }  // namespace
 
-SolidSurfaces surfaces_of(const View& view, const Projection& projection) {
+SolidSurfaces surfaces_of(const View& view, const Projection& projection, const Double3& sun) {
   SolidSurfaces out;
   const auto seen = [&](const Corner& c) {
-    const Double3 p = projection.to_view(c.place);
-    const Double3& n = c.normal;
-    return FlatVertex{
+    const Double3 p = projection.to_view(c.place), n = unit(c.normal);
+    return SolidVertex{
         static_cast<float>(p[0]),
         static_cast<float>(p[1]),
         static_cast<float>(p[2]),
-        lit({dot(n, projection.right), dot(n, projection.up), dot(n, projection.forward)}),
-        {}};
+        {static_cast<float>(dot(n, projection.right)), static_cast<float>(dot(n, projection.up)),
+         static_cast<float>(dot(n, projection.forward))}};
+  };
+  const auto add = [&](const Polygon& polygon, std::vector<SolidVertex>& triangles) {
+    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+      for (const std::size_t k : {std::size_t{0}, i, i + 1}) triangles.push_back(seen(polygon[k]));
   };
   for (const Solid<double>& solid : view.solids)
     for (const Face& face : faces_of(view, solid)) {
       const Polygon& polygon = face.polygon;
-      if (polygon.size() < 3 || face.inside.beyond(projection.eye) <= 0) continue;
-      for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-        for (const std::size_t k : {std::size_t{0}, i, i + 1})
-          out.triangles.push_back(seen(polygon[k]));
+      if (polygon.size() < 3) continue;
+      if (!view.flat && dot(face.inside.normal, sun) <= 0) add(polygon, out.casters);
+      if (face.inside.beyond(projection.eye) <= 0) continue;
+      add(polygon, out.triangles);
       for (std::size_t i = 0; i < polygon.size(); ++i)
         if (polygon[i].crease)
           out.creases.push_back({projection.to_view(polygon[i].place),

@@ -40,6 +40,7 @@ View view_of(const Scene& scene, std::int64_t particles) {
   const double g = length(scene.gravity);
   if (g > 0) view.up = (-1 / g) * scene.gravity;
   view.radius = render.radius > 0 ? render.radius : 0.5 * scene.fluid.spacing;
+  view.style = render.style;
   view.color = render.color;
   view.rest_density = scene.fluid.rest_density;
   view.size = render.size;

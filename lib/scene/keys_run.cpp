@@ -54,6 +54,10 @@ KeyRows run_rows() {
        key(KEY(render->every), number("s", kSeconds),
            "Time between pictures, rounded to whole frames of `output`; not below output.every."),
        key(KEY(render->size), number("px", {16, 16384}), "Width and height of a picture."),
+       key(KEY(render->style), one_of(words_of<RenderStyle>()),
+           "How the fluid is drawn. surface: as one smooth surface of water, coloured as the "
+           "spheres "
+           "would be."),
        key(KEY(render->color), one_of(words_of<ColorBy>()),
            "What colours the particles. density: blue below rest_density, red above; compression: "
            "the density's excess over rest_density, relative."),

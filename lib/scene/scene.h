@@ -13,6 +13,7 @@
 #include "kernels/boundary/obstacle_shape.h"
 #include "lib/scene/coloring.h"
 #include "lib/scene/motion.h"
+#include "lib/scene/render_style.h"
 
 namespace pbf::inline scene_module {
 
@@ -198,6 +199,7 @@ struct Camera {
 struct Render {
   double every = 0.1;  ///< s between pictures, rounded to whole frames of `output`
   std::array<int, 2> size{1280, 720};
+  RenderStyle style = RenderStyle::spheres;
   ColorBy color = ColorBy::speed;
   std::optional<std::array<double, 2>> range;  ///< of the colour bar; absent: from the scene
   double radius = 0;  ///< m, drawn radius of a particle; 0: half the spacing

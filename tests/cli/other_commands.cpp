@@ -118,13 +118,27 @@ TEST_CASE("pictures are drawn by a run and, later, from its file") {
   CHECK(read_text(folder / "again/frame_000002.png") ==
         read_text(folder / "fast/frames/frame_000002.png"));
 
+  // In the other style too.
+  CHECK(
+      render({"--frames", "4", "--style", "surface", "--color", "speed", "--out", "again"}).code ==
+      0);
+  CHECK(pbf::test::pbf({"run", scene, "--out", "water", "--set", "render.style=surface", "--set",
+                        "render.color=speed", "--set", "output.fields=[velocity]"},
+                       folder.path())
+            .code == 0);
+  CHECK(read_text(folder / "again/frame_000004.png") ==
+        read_text(folder / "water/frames/frame_000004.png"));
+  CHECK(read_text(folder / "again/frame_000004.png") !=
+        read_text(folder / "fast/frames/frame_000004.png"));
+
   const std::vector<std::pair<std::vector<std::string>, std::string>> bad{
       {{"--color", "density"}, "density"}, {{"--frames", "9"}, "0 to 5"},
       {{"--frames", "4:2"}, "--frames"},   {{"--frames", "a"}, "--frames"},
       {{"--size", "80"}, "--size"},        {{"--size", "8x8"}, "--size"},
       {{"--range", "2,1"}, "--range"},     {{"--range", "nan,1"}, "quantile"},
       {{"--range", "0"}, "quantile"},      {{"--camera", "fov=500"}, "fov"},
-      {{"--camera", "zoom=2"}, "zoom"},    {{"--color", "pressure"}, "pressure"}};
+      {{"--camera", "zoom=2"}, "zoom"},    {{"--color", "pressure"}, "pressure"},
+      {{"--style", "foam"}, "foam"}};
   for (const auto& [args, fragment] : bad) {
     CAPTURE(args);
     auto all = args;

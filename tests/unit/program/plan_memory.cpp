@@ -153,6 +153,15 @@ TEST_CASE(
   CHECK(bytes_of(bare.memory, "frames under way") == 0);
   const Plan frames = plan({"output.fields=[density]", "output.precision=double"});
   CHECK(bytes_of(frames.memory, "frames under way") == 4 * 8 * 1000);
+  // What pictures of a style draw into is counted where they have it, and by their pixels.
+  const auto pictures = [&](const char* render, const char* array) {
+    return bytes_of(plan({std::string("render=") + render}).memory, array);
+  };
+  const char* surface = "surface: depth, its smoothing, thickness";
+  CHECK(pictures("{}", surface) == 0);
+  CHECK(pictures("{style: surface, size: [320, 200]}", surface) == 26 * 320 * 200);
+  CHECK(pictures("{}", "shadow map, at most") == 4 * 512 * 512);
+  CHECK(bytes_of(bare.memory, "shadow map, at most") == 0);
   // A feature switched on with strength zero is not there either.
   CHECK(count_passes(plan({"viscosity.xsph=0", "vorticity.epsilon=0", "tensile.k=0"}).program)
             .size() == count_passes(bare.program).size());

@@ -92,3 +92,10 @@ TEST_CASE("a small dam break among obstacles looks like the kept picture", "[ren
   scene.obstacles = {box, ball, pillar, slope};
   check_kept(view_of(scene, 1), "obstacles");
 }
+
+TEST_CASE("a small dam break as one surface looks like the kept picture", "[render]") {
+  PBF_NEEDS_GL();
+  Scene scene = tank();
+  scene.render->style = RenderStyle::surface;
+  check_kept(view_of(scene, 1), "surface");
+}

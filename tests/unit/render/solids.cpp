@@ -64,11 +64,11 @@ double traced(const Solid<double>& solid, const Double3& min, const Double3& max
 }
 
 /// The same for the triangles; the nearest one.
-double met(const std::vector<FlatVertex>& triangles, const Double3& ray) {
+double met(const std::vector<SolidVertex>& triangles, const Double3& ray) {
   double nearest = kNever;
   for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
     const auto at = [&](std::size_t k) {
-      const FlatVertex& v = triangles[i + k];
+      const SolidVertex& v = triangles[i + k];
       return Double3{v.x, v.y, v.depth};
     };
     const Double3 a = at(0), u = at(1) - a, w = at(2) - a, p = cross(ray, w);
@@ -85,7 +85,7 @@ double met(const std::vector<FlatVertex>& triangles, const Double3& ray) {
 /// How many of 400 rays from the eye met the first solid; each checked, within `min` and `max`.
 int checked_rays(const View& view, const Double3& min, const Double3& max) {
   const Projection p = projection_of(view, 0);
-  const std::vector<FlatVertex> triangles = surfaces_of(view, p).triangles;
+  const std::vector<SolidVertex> triangles = surfaces_of(view, p, {0, 0, 1}).triangles;
   std::mt19937 random(7);
   std::uniform_real_distribution<double> tangent(-0.35, 0.35);
   // Round bodies are inscribed: 0.25 % of their radius, here at most 0.4 m.
@@ -153,14 +153,14 @@ TEST_CASE("an eye in an obstacle sees out of it", "[render]") {
   const Scene scene = scene_with({sphere({4, -1.5, 5.7}, 0.4)});
   View view = view_of(scene, 1);
   view.camera.position = Double3{4.1, -1.5, 5.7};
-  CHECK(surfaces_of(view, projection_of(view, 0)).triangles.empty());
+  CHECK(surfaces_of(view, projection_of(view, 0), {0, 0, 1}).triangles.empty());
 }
 
 TEST_CASE("an obstacle outside of the domain is not drawn", "[render]") {
   for (const Obstacle& o : {sphere({7, -1.5, 5.7}, 0.4), plane({4, -1.5, 4}, {0, 0, 1}),
                             box({4, -3, 5}, {4.5, -2.1, 6}, {0, 0, 1}, 0)}) {
     const View view = view_of(scene_with({o}), 1);
-    CHECK(surfaces_of(view, projection_of(view, 0)).triangles.empty());
+    CHECK(surfaces_of(view, projection_of(view, 0), {0, 0, 1}).triangles.empty());
   }
 }
 
@@ -169,7 +169,7 @@ TEST_CASE("obstacles a million metres from the origin are the same", "[render]")
   Scene scene = scene_with({o});
   const auto triangles = [&] {
     const View view = view_of(scene, 1);
-    return surfaces_of(view, projection_of(view, 0)).triangles;
+    return surfaces_of(view, projection_of(view, 0), {0, 0, 1}).triangles;
   };
   const auto here = triangles();
   for (Double3* p :
@@ -201,7 +201,7 @@ TEST_CASE("of a scene in two dimensions the cut is drawn, at the plane of the pa
     View view = view_of(scene, 1);
     view.camera.position = Double3{4, -6, 5.75};
     const Projection p = projection_of(view, 0);
-    const std::vector<FlatVertex> triangles = surfaces_of(view, p).triangles;
+    const std::vector<SolidVertex> triangles = surfaces_of(view, p, {0, 0, 1}).triangles;
     int hits = 0;
     for (int i = 0; i < 40; ++i)
       for (int k = 0; k < 30; ++k) {

@@ -67,6 +67,22 @@ TEST_CASE("the thread writes every picture under its number, as the renderer dra
   }
 }
 
+TEST_CASE("the thread draws a surface as the renderer does", "[render]") {
+  PBF_NEEDS_GL();
+  const Folder dir("thread_surface");
+  View view = front_view();
+  view.style = RenderStyle::surface;
+  RenderThread thread(view, dir.path.string());
+  for (int i = 0; i < 3; ++i) thread.draw(at(i), i);
+  thread.finish();
+  Renderer renderer(view);
+  const fs::path own = dir.path / "own.png";
+  for (const int i : {2, 0}) {
+    write_png(own.string(), renderer.draw(at(i)));
+    CHECK(bytes_of(dir.path / ("frame_00000" + std::to_string(i) + ".png")) == bytes_of(own));
+  }
+}
+
 TEST_CASE("an error of the thread is thrown by the next call, once", "[render]") {
   PBF_NEEDS_GL();
   const Folder dir("thread_error");

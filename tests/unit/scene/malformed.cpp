@@ -23,6 +23,8 @@ const std::vector<Case> kAppended{
     {"slover: {}\n", "6:1: slover: unknown key, did you mean solver?"},
     {"render: {camera: {fvo: 3}}\n",
      "render.camera.fvo: unknown key, did you mean render.camera.fov?"},
+    {"render: {style: surfaces}\n",
+     "6:17: render.style: \"surfaces\" is not one of spheres, surface; did you mean surface?"},
     {"qqqqqqqqqqqq: 1\n", "6:1: qqqqqqqqqqqq: unknown key"},
     {"\"two\\nlines\": 1\n", "6:1: two\\nlines: unknown key"},
     {"Gravity: [0, 0, 0]\n", "did you mean gravity?"},

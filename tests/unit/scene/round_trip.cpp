@@ -112,6 +112,7 @@ Scene unlike_default() {
   s.output = Output{1.0 / 30, 0.0375, {"density"}, Precision::dbl, Compression::gzip};
   s.render = Render{0.5,
                     {640, 480},
+                    RenderStyle::surface,
                     ColorBy::density,
                     std::array<double, 2>{900, 1100},
                     0.02,

@@ -1,0 +1,134 @@
+#include "lib/render/fluid_surface.h"
+
+#include <array>
+
+#include "lib/render/colormap.h"
+#include "lib/render/particles.h"
+#include "lib/render/shaders.h"
+#include "lib/render/shaders_shadow.h"
+#include "lib/render/shaders_surface.h"
+#include "lib/scene/vector3.h"
+
+namespace pbf::inline render_module {
+namespace {
+
+using Depth = gl::Target::Depth;
+
+/// The colours of the shares that particles have; the last is for those without a value.
+std::array<std::array<std::uint8_t, 4>, kNoShare + 1> bar_of(ColorBy color) {
+  std::array<std::array<std::uint8_t, 4>, kNoShare + 1> bar{};
+  for (std::size_t i = 0; i < bar.size(); ++i) {
+    const Rgb c =
+        i == kNoShare ? kNoValue : color_map(color)(static_cast<double>(i) / (kNoShare - 1));
+    bar[i] = {c[0], c[1], c[2], 255};
+  }
+  return bar;
+}
+
+}  // namespace
+
+FluidSurface::FluidSurface(const gl::Table& gl, const View& view, int factor)
+    : gl_(gl),
+      size_(view.size),
+      factor_(factor),
+      flat_(view.flat),
+      low_(view.domain_min),
+      high_(view.domain_max),
+      radius_(drawn_radius(view)),
+      depth_program_(gl, shaders::kSphereVertex, shaders::kSurfaceDepthFragment, shaders::kWithin),
+      thickness_program_(gl, shaders::kSphereVertex, shaders::kThicknessFragment, shaders::kWithin),
+      smooth_program_(gl, shaders::kResolveVertex, shaders::kSmoothFragment),
+      water_program_(gl, shaders::kResolveVertex, shaders::kWaterFragment, shaders::kShadowed),
+      nothing_(gl, 4, {}, 0),
+      bar_(gl, kNoShare + 1, 1, gl::kColor8, bar_of(view.color).data()),
+      depth_(gl, size_[0], size_[1], gl::kPair32, Depth::with),
+      between_(gl, size_[0], size_[1], gl::kPair32, Depth::without),
+      thickness_(gl, size_[0], size_[1], gl::kSum16, Depth::without),
+      scene_(gl, size_[0], size_[1], gl::kColor8, Depth::without) {
+  const double far = 1e6 * length(high_ - low_);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (view.open[k][0]) low_[k] -= far;
+    if (view.open[k][1]) high_[k] += far;
+  }
+}
+
+/// For the spheres.
+void FluidSurface::use(const Lens& lens, const gl::Program& program) const {
+  constexpr std::array<const char*, 3> kNames{"u_axis_x", "u_axis_y", "u_axis_z"};
+  lens.use(gl_, program, 1);
+  gl_.Uniform1f(program.uniform("u_radius"), static_cast<float>(radius_));
+  const Double3 eye = lens.projection.eye;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Double3 axis{};
+    axis[k] = 1;
+    set_uniform(gl_, program, kNames[k], lens.seen(axis));
+  }
+  set_uniform(gl_, program, "u_low", low_ - eye);
+  set_uniform(gl_, program, "u_high", high_ - eye);
+}
+
+void FluidSurface::draw_depth(const Lens& lens) {
+  depth_.draw_into();
+  gl_.Enable(gl::DEPTH_TEST);
+  gl_.Clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
+  use(lens, depth_program_);
+  gl_.DrawArraysInstanced(gl::TRIANGLE_STRIP, 0, 4, visible_);
+  gl_.Disable(gl::DEPTH_TEST);
+}
+
+void FluidSurface::draw_thickness(const Lens& lens, const gl::Texture& stored) {
+  thickness_.draw_into();
+  gl_.Clear(gl::COLOR_BUFFER_BIT);
+  gl_.Enable(gl::BLEND);
+  gl_.BlendFunc(gl::ONE, gl::ONE);
+  use(lens, thickness_program_);
+  gl_.Uniform1i(thickness_program_.uniform("u_factor"), factor_);
+  stored.bind(thickness_program_, "u_stored", 0);
+  gl_.DrawArraysInstanced(gl::TRIANGLE_STRIP, 0, 4, visible_);
+  gl_.Disable(gl::BLEND);
+}
+
+void FluidSurface::smooth(const Lens& lens) {
+  nothing_.bind();
+  // Narrow first, for what the wide one would step over; narrow last, for what it has left of that.
+  for (const double width : {1.0, 4.0, 1.5})
+    for (const bool upright : {false, true}) {
+      (upright ? depth_ : between_).draw_into();
+      lens.use(gl_, smooth_program_, 1);
+      (upright ? between_ : depth_).color().bind(smooth_program_, "u_surface", 0);
+      gl_.Uniform2f(smooth_program_.uniform("u_along"), upright ? 0.0f : 1.0f,
+                    upright ? 1.0f : 0.0f);
+      gl_.Uniform2f(smooth_program_.uniform("u_width"), static_cast<float>(width * radius_),
+                    static_cast<float>(radius_));
+      gl_.DrawArrays(gl::TRIANGLES, 0, 3);
+    }
+}
+
+void FluidSurface::draw(const Lens& lens, const gl::Buffer& particles, std::size_t visible,
+                        const gl::Texture& stored, const ShadowMap* shadow,
+                        const gl::Target& picture) {
+  visible_ = static_cast<gl::Size>(visible);
+  particles.bind();
+  draw_depth(lens);
+  draw_thickness(lens, stored);
+  smooth(lens);
+
+  picture.draw_into();
+  lens.use(gl_, water_program_, 1);
+  depth_.color().bind(water_program_, "u_surface", 0);
+  thickness_.color().bind(water_program_, "u_thickness", 1);
+  scene_.color().bind(water_program_, "u_scene", 2);
+  stored.bind(water_program_, "u_stored", 3);
+  bar_.bind(water_program_, "u_bar", 4);
+  ShadowMap::use(shadow, lens, gl_, water_program_, 5);
+  gl_.Uniform1i(water_program_.uniform("u_factor"), factor_);
+  gl_.Uniform2f(water_program_.uniform("u_size"), static_cast<float>(size_[0]),
+                static_cast<float>(size_[1]));
+  gl_.Uniform1f(water_program_.uniform("u_radius"), static_cast<float>(radius_));
+  // Water of a plane is looked at along its thickness, which says nothing.
+  gl_.Uniform2f(water_program_.uniform("u_clear"), static_cast<float>(3 * radius_),
+                flat_ ? 0.0f : 0.4f);
+  gl_.DrawArrays(gl::TRIANGLES, 0, 3);
+}
+
+}  // namespace pbf::inline render_module
