@@ -122,7 +122,7 @@ void add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   if (s.dimensions == 3)
     add("shadow map, at most", "byte", 4, std::int64_t(kShadowTexels) * kShadowTexels);
   if (const int bytes = about(s.render->style).bytes_per_pixel)
-    add("surface: depth, its smoothing, thickness", "byte", bytes, pixels);
+    add("depth and thickness of the surface", "byte", bytes, pixels);
   // llvmpipe's lists of what covers each tile: a fit to its growth from 8 000 to 500 000 particles.
   add("tiles of the software rasteriser", "byte", 1,
       std::int64_t(std::max(0.0, 6000 * std::pow(double(n), 0.8) - 8e6)));
@@ -138,7 +138,7 @@ void add_fixed(const Scene& s, MemoryPlan& memory) {
 #endif
   memory.fixed.push_back({"program and libraries", mb(program)});
   if (s.output) memory.fixed.push_back({"HDF5 and the writer's thread", mb(10), false, true});
-  if (s.render) memory.fixed.push_back({"OpenGL and LLVM in software", mb(81), false, true});
+  if (s.render) memory.fixed.push_back({"OpenGL and LLVM in software", mb(83), false, true});
   if (s.backend == Backend::cuda) {
     memory.fixed.push_back({"CUDA driver on the host", mb(129 - program)});
     memory.fixed.push_back({"CUDA kernels and graphs on the host", mb(27), false, true});

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lib/base/error.h"
+#include "lib/render/camera.h"
 #include "lib/render/colormap.h"
 #include "lib/render/gl_context.h"
 #include "lib/render/renderer.h"
@@ -81,6 +82,23 @@ inline double focal(int height) { return 0.5 * height / std::tan(17.5 * std::num
 inline pbf::Rgb pixel(const pbf::Image& image, int x, int y) {
   const auto* p = &image.rgb[3 * static_cast<std::size_t>(y * image.width + x)];
   return {p[0], p[1], p[2]};
+}
+
+/// Where `place` (m) is seen, whatever stands before it.
+inline pbf::Rgb pixel_at(const pbf::Image& image, const pbf::View& view, const pbf::Double3& place,
+                         double time = 0) {
+  const auto [x, y] = pbf::projection_of(view, time).to_pixel(place);
+  REQUIRE((x > 0 && x < image.width && y > 0 && y < image.height));
+  return pixel(image, static_cast<int>(x), static_cast<int>(y));
+}
+
+/// An obstacle: a box along the axes, `half` (m) to each side of its centre.
+inline pbf::Solid<double> plate(const pbf::Double3& center, const pbf::Double3& half) {
+  pbf::Solid<double> solid;
+  solid.shape = pbf::ObstacleShape::box;
+  solid.center = {center[0], center[1], center[2]};
+  solid.half = {half[0], half[1], half[2]};
+  return solid;
 }
 
 inline int chroma(const pbf::Rgb& c) {

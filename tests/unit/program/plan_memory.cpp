@@ -157,7 +157,7 @@ TEST_CASE(
   const auto pictures = [&](const char* render, const char* array) {
     return bytes_of(plan({std::string("render=") + render}).memory, array);
   };
-  const char* surface = "surface: depth, its smoothing, thickness";
+  const char* surface = "depth and thickness of the surface";
   CHECK(pictures("{}", surface) == 0);
   CHECK(pictures("{style: surface, size: [320, 200]}", surface) == 26 * 320 * 200);
   CHECK(pictures("{}", "shadow map, at most") == 4 * 512 * 512);

@@ -41,29 +41,16 @@ Snapshot pool(int layers) {
   return lattice(layers, [](const Double3&) { return 0.5; });
 }
 
-Rgb at(const Image& image, const View& view, const Double3& place) {
-  const auto [x, y] = projection_of(view, 0).to_pixel(place);
-  return pixel(image, static_cast<int>(x), static_cast<int>(y));
-}
-
 /// Largest difference of green around its mean over the middle of a pool `height` deep.
 double unevenness(const Image& image, const View& view, double height) {
   double low = 255, high = 0, sum = 0;
   int n = 0;
   for (double x = 0.5; x < 1.5; x += 0.013)
     for (double y = 0.5; y < 1.5; y += 0.013, ++n) {
-      const double green = at(image, view, {x, y, height})[1];
+      const double green = pixel_at(image, view, {x, y, height})[1];
       low = std::min(low, green), high = std::max(high, green), sum += green;
     }
   return (high - low) / (sum / n);
-}
-
-Solid<double> plate(double z) {
-  Solid<double> solid;
-  solid.shape = ObstacleShape::box;
-  solid.center = {1, 1, z};
-  solid.half = {0.3, 0.3, 0.02};
-  return solid;
 }
 
 }  // namespace
@@ -96,7 +83,7 @@ TEST_CASE("the surface has no holes between the particles of one layer at rest",
     int least = 255;
     for (double x = 0.3; x < 1.7; x += 0.005)
       for (double y = 0.3; y < 1.7; y += 0.005)
-        least = std::min(least, chroma(at(image, view, {x, y, 0.5 * kSpacing})));
+        least = std::min(least, chroma(pixel_at(image, view, {x, y, 0.5 * kSpacing})));
     return least;
   };
   // Through a hole the floor is seen, which has no colour; one layer of water is a pale green.
@@ -118,7 +105,7 @@ TEST_CASE(
   const Snapshot s = lattice(8, [](const Double3& p) { return p[0] < 1 ? 0.3 : 0.8; });
   const Image image = Renderer(view).draw(s);
   const auto off = [&](double x, double value) {
-    return hue_distance(hue(at(image, view, {x, 1, 0.4})), hue(viridis(value)));
+    return hue_distance(hue(pixel_at(image, view, {x, 1, 0.4})), hue(viridis(value)));
   };
   CHECK(off(0.4, 0.3) < 6);
   CHECK(off(1.6, 0.8) < 6);
@@ -134,12 +121,12 @@ TEST_CASE("an obstacle before the surface hides it, and one behind is hidden", "
   view.camera.position = Double3{1, 0.5, 4};
   const Snapshot s = pool(10);  // 0.5 m deep
   const auto seen = [&](double z) {
-    view.solids = {plate(z)};
-    return at(Renderer(view).draw(s), view, {1, 1, z});
+    view.solids = {plate({1, 1, z}, {0.3, 0.3, 0.02})};
+    return pixel_at(Renderer(view).draw(s), view, {1, 1, z});
   };
   const int open = chroma([&] {
     view.solids = {};
-    return at(Renderer(view).draw(s), view, {1, 1, 0.5});
+    return pixel_at(Renderer(view).draw(s), view, {1, 1, 0.5});
   }());
   CHECK(open > 60);
   CHECK(chroma(seen(0.7)) < 45);
@@ -202,7 +189,7 @@ TEST_CASE("in two dimensions the surface is a plane in the colour of the value",
   int low = 255, high = 0;
   for (double x = 0.2; x < 1.8; x += 0.01)
     for (double z = 0.1; z < 0.4; z += 0.01) {
-      const Rgb c = at(image, view, {x, 0, z});
+      const Rgb c = pixel_at(image, view, {x, 0, z});
       CHECK(hue_distance(hue(c), hue(viridis(0.6))) < 4);
       low = std::min<int>(low, c[1]), high = std::max<int>(high, c[1]);
     }

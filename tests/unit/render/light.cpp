@@ -42,24 +42,7 @@ Double3 fallen(const View& view, const Double3& from) {
   return from - (from[2] / sun[2]) * sun;
 }
 
-Rgb at(const Image& image, const View& view, const Double3& place, double time = 0) {
-  const auto [x, y] = projection_of(view, time).to_pixel(place);
-  REQUIRE(x > 0);
-  REQUIRE(x < image.width);
-  REQUIRE(y > 0);
-  REQUIRE(y < image.height);
-  return pixel(image, static_cast<int>(x), static_cast<int>(y));
-}
-
 double grey(const Rgb& c) { return (c[0] + c[1] + c[2]) / 3.0; }
-
-Solid<double> plate(const Double3& center, const Double3& half) {
-  Solid<double> solid;
-  solid.shape = ObstacleShape::box;
-  solid.center = {center[0], center[1], center[2]};
-  solid.half = {half[0], half[1], half[2]};
-  return solid;
-}
 
 }  // namespace
 
@@ -72,10 +55,10 @@ TEST_CASE("the floor is darker where a ball of particles stands in the sun, and 
   const Double3 center{0.9, 0.9, 0.5};
   const Image image = renderer.draw(ball(center, 0.2));
   const Double3 below = fallen(view, center);
-  CHECK(grey(at(image, view, below)) < 0.85 * grey(at(empty, view, below)));
+  CHECK(grey(pixel_at(image, view, below)) < 0.85 * grey(pixel_at(empty, view, below)));
   for (const Double3& beside : {below + Double3{0.45, 0, 0}, below + Double3{0, 0.5, 0},
                                 below + Double3{0, -0.5, 0}, Double3{0.3, 0.3, 0}})
-    CHECK(at(image, view, beside) == at(empty, view, beside));
+    CHECK(pixel_at(image, view, beside) == pixel_at(empty, view, beside));
 }
 
 TEST_CASE("a shadow has a soft edge, which falls off in one direction", "[render]") {
@@ -90,7 +73,7 @@ TEST_CASE("a shadow has a soft edge, which falls off in one direction", "[render
   double last = 1;
   for (double off = 0.3; off > 0.1; off -= 0.002) {
     const Double3 place = fallen(view, center) + Double3{off, 0, 0};
-    const double share = grey(at(image, view, place)) / grey(at(empty, view, place));
+    const double share = grey(pixel_at(image, view, place)) / grey(pixel_at(empty, view, place));
     CHECK(share < last + 0.02);
     between += share > 0.75 && share < 0.97;
     last = share;
@@ -106,11 +89,11 @@ TEST_CASE("an obstacle casts a shadow on the floor and on particles", "[render]"
   const Double3 top{1, 1, 0.35}, sun = light_of(view).sun;
   const Double3 middle = top + (0.55 / sun[2]) * sun, floor = fallen(view, middle);
   const Snapshot none = snapshot({}, {});
-  const double open_top = grey(at(Renderer(view).draw(low), view, top));
-  const double open_floor = grey(at(Renderer(view).draw(none), view, floor));
+  const double open_top = grey(pixel_at(Renderer(view).draw(low), view, top));
+  const double open_floor = grey(pixel_at(Renderer(view).draw(none), view, floor));
   view.solids = {plate(middle, {0.2, 0.2, 0.01})};  // seen beside both from here
-  CHECK(grey(at(Renderer(view).draw(low), view, top)) < 0.85 * open_top);
-  CHECK(grey(at(Renderer(view).draw(none), view, floor)) < 0.85 * open_floor);
+  CHECK(grey(pixel_at(Renderer(view).draw(low), view, top)) < 0.85 * open_top);
+  CHECK(grey(pixel_at(Renderer(view).draw(none), view, floor)) < 0.85 * open_floor);
 }
 
 TEST_CASE("what stands in the sun alone is not in its own shadow", "[render]") {
@@ -118,10 +101,10 @@ TEST_CASE("what stands in the sun alone is not in its own shadow", "[render]") {
   View view = tank_view();
   view.solids = {plate({1, 1, 0.3}, {0.4, 0.4, 0.1})};
   const Image image = Renderer(view).draw(snapshot({}, {}));
-  const double middle = grey(at(image, view, {1, 1, 0.4}));
+  const double middle = grey(pixel_at(image, view, {1, 1, 0.4}));
   for (double x : {0.7, 0.85, 1.15, 1.3})
     for (double y : {0.7, 0.9, 1.1, 1.3})
-      CHECK(grey(at(image, view, {x, y, 0.4})) == Approx(middle).epsilon(0.03));
+      CHECK(grey(pixel_at(image, view, {x, y, 0.4})) == Approx(middle).epsilon(0.03));
 }
 
 TEST_CASE("a face towards the sky is brighter than one beside, and that than one below",
@@ -132,7 +115,7 @@ TEST_CASE("a face towards the sky is brighter than one beside, and that than one
   const auto seen_from = [&](const Double3& eye, const Double3& place) {
     view.camera.position = eye;
     view.camera.target = Double3{1, 1, 0.5};
-    return grey(at(Renderer(view).draw(snapshot({}, {})), view, place));
+    return grey(pixel_at(Renderer(view).draw(snapshot({}, {})), view, place));
   };
   const double top = seen_from({1, -3, 2.5}, {1, 1, 0.7});
   const double side = seen_from({1, -3, 0.5}, {1, 0.6, 0.5});
@@ -167,7 +150,7 @@ TEST_CASE("particles that the camera does not see cast their shadow into the pic
   REQUIRE(light_of(view).sun == light_of(tank_view()).sun);
   Renderer renderer(view);
   const Image empty = renderer.draw(snapshot({}, {})), image = renderer.draw(ball(center, 0.2));
-  CHECK(grey(at(image, view, below)) < 0.85 * grey(at(empty, view, below)));
+  CHECK(grey(pixel_at(image, view, below)) < 0.85 * grey(pixel_at(empty, view, below)));
   for (int x = 0; x < 200; x += 20) CHECK(chroma(pixel(image, x, 30)) < 40);  // no particle in it
 }
 
@@ -181,8 +164,8 @@ TEST_CASE("the sun stands still while the camera goes round", "[render]") {
   for (const double time : {0.0, 0.5, 1.0}) {
     Snapshot none = snapshot({}, {}), some = ball(center, 0.2);
     none.time = some.time = time;
-    CHECK(grey(at(renderer.draw(some), view, below, time)) <
-          0.85 * grey(at(renderer.draw(none), view, below, time)));
+    CHECK(grey(pixel_at(renderer.draw(some), view, below, time)) <
+          0.85 * grey(pixel_at(renderer.draw(none), view, below, time)));
   }
 }
 
@@ -197,8 +180,8 @@ TEST_CASE("in two dimensions nothing is in shadow", "[render]") {
   const Image alone = Renderer(view).draw(snapshot(places, {0.6}));
   for (int i = 0; i < 12; ++i) places.push_back({0.4 + 0.06 * i, 0.04, 0.6});
   const Image both = Renderer(view).draw(snapshot(places, std::vector<double>(13, 0.6)));
-  CHECK(at(alone, view, low) == at(both, view, low));
-  CHECK(chroma(at(alone, view, low)) > 60);
+  CHECK(pixel_at(alone, view, low) == pixel_at(both, view, low));
+  CHECK(chroma(pixel_at(alone, view, low)) > 60);
 }
 
 TEST_CASE("particles that are not finite or far outside cast no shadow", "[render]") {
