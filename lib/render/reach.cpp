@@ -17,7 +17,7 @@ constexpr double kPast = 1.25;       // of flow past a solid, over the solid's
 constexpr double kArriving = 0.8;    // of what falls, over the speed at which it arrives
 constexpr double kThrown = 2;        // of what an obstacle throws up, over the obstacle's
 constexpr double kSplash = 12;       // heights, over that of energy spread evenly
-constexpr double kJet = 1.25;        // of a crater's jet, over the fall that made it
+constexpr double kJet = 1.6;         // of a crater's jet, over the fall that made it
 constexpr double kCalm = 0.05;       // spacings that the particles of a calm pool fall
 constexpr double kBodyShare = 0.01;  // of the fluid, from which on a body counts by itself
 

@@ -26,7 +26,7 @@ struct Reach {
 ///   spacing, as particles of a calm pool have (0.6 to 0.9 of it measured).
 ///   height: the highest of the start, with the speed of each body upwards; of the surface at rest
 ///   and twelve times e/g, for a part of the fluid may take the energy of the rest; of that surface
-///   and 1.25 times the height from which a body falls; and of the solids, at all times.
+///   and 1.6 times the height from which a body falls; and of the solids, at all times.
 /// Where fluid can leave through a side or the floor, it rests at the floor. A body from a file
 /// counts as spread over the domain: `particles` less those of the others.
 /// Without gravity there is no height to tell: infinite.

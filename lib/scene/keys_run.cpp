@@ -63,9 +63,8 @@ KeyRows run_rows() {
            "the density's excess over rest_density, relative."),
        key(KEY(render->range), number("", {-1e30, 1e30}),
            "Ends of the colour bar, [low, high], in the unit of the field. auto: of the speed from "
-           "0 to "
-           "what the energy of the start, moving obstacles and the tank let expect; of the density "
-           "10 % about rest_density; of the compression from 0 to 1 %.",
+           "0 to what the energy of the start and the motions of obstacles and tank suggest; of "
+           "the density 10 % about rest_density; of the compression from 0 to 1 %.",
            automatic),
        key(KEY(render->radius), number("m", {0, 1e9, true}),
            "Drawn radius of a particle. auto: half the spacing.", automatic),
