@@ -167,10 +167,10 @@ void Renderer::Impl::draw_scene(const Projection& projection) {
   gl.Uniform1f(p.flat.uniform("u_share"), static_cast<float>(kFloorInShadow));
   triangles.clear();
   add_floor(view, projection, triangles);
+  add_floor_grid(view, projection, line, near, triangles);
   p.draw_triangles(p.flat_buffer, triangles);
   gl.Uniform1f(p.flat.uniform("u_share"), 0);
   triangles.clear();
-  add_floor_grid(view, projection, line, near, triangles);
   for (const auto& [from, to] : solids.creases)
     add_line(from, to, kCrease, projection, 1.2 * line, near, triangles);
   add_box_edges(view, projection, 1.6 * line, near, triangles);
