@@ -212,6 +212,10 @@ int command_run(const RunOptions& options) {
   auto solver = make_solver(scene, plan, std::move(start));
   double solver_init = 0;  // the solver reports its own part of "init"
   for (const StageTime& s : solver->info().stages) solver_init += s.name == "init" ? s.seconds : 0;
+#ifdef PBF_HAS_RENDER
+  std::unique_ptr<RenderThread> pictures;  // here, for not every machine has what draws them
+  if (scene.render) pictures = std::make_unique<RenderThread>(view_of(scene, plan.particles));
+#endif
   clock.add("init", wall.seconds() - solver_init);
   clock.begin();
   if (!folder) folder = std::make_unique<RunFolder>(out, existing);
@@ -220,6 +224,9 @@ int command_run(const RunOptions& options) {
     RunParts parts{loaded,        plan,    *solver, log,      clock,
                    wall,          *folder, from,    warnings, options.max_walltime,
                    options.strict};
+#ifdef PBF_HAS_RENDER
+    parts.pictures = std::move(pictures);
+#endif
     return simulate(parts, note, options.log_json);
   } catch (const std::exception& e) {
     try {

@@ -54,7 +54,7 @@ GlContext::GlContext(int threads, const GlLibraries& libraries) {
     try {
       platform_ = open();
     } catch (const NoPlatform& e) {
-      tried += e.what();
+      if (tried.find(e.what()) == std::string::npos) tried += e.what();  // one library, two ways
     }
   };
   attempt("osmesa", "OSMesa", [&] { return open_osmesa(libraries.osmesa); });
@@ -65,7 +65,7 @@ GlContext::GlContext(int threads, const GlLibraries& libraries) {
                 "pictures need OpenGL 3.3 and none could be opened; tried:" + tried +
                     "\nInstall the package libosmesa6, or libegl1 and libgl1-mesa-dri" +
                     (wanted.empty() ? "" : " (PBF_GL=" + wanted + " allows no other way)") +
-                    ", or leave pictures out (no `render` in the scene).");
+                    ", or leave pictures out (--set render=off).");
   const GlCurrent current(*this);
 #define PBF_GL_LOAD(result, name, parameters)                                             \
   table_.name = reinterpret_cast<decltype(table_.name)>(platform_->function("gl" #name)); \

@@ -39,8 +39,7 @@ struct RenderThread::Impl {
   bool told = false;            // of an error
   Worker worker{kWaiting + 1};  // last: its jobs use the rest
 
-  Impl(const View& view, const std::string& folder)
-      : dir(folder), color(view.color), renderer(view, 1) {}
+  explicit Impl(const View& view) : color(view.color), renderer(view, 1) {}
 
   void draw(const Snapshot& snapshot, std::int64_t index) {
     const Stopwatch watch;
@@ -55,13 +54,19 @@ struct RenderThread::Impl {
   }
 };
 
-RenderThread::RenderThread(const View& view, const std::string& dir) {
+RenderThread::RenderThread(const View& view) : impl_(std::make_unique<Impl>(view)) {}
+
+RenderThread::RenderThread(const View& view, const std::string& dir) : RenderThread(view) {
+  into(dir);
+}
+
+void RenderThread::into(const std::string& dir) {
   std::error_code error;
   std::filesystem::create_directories(dir, error);
   if (error)
     throw Error(ExitCode::io,
                 dir + ": the folder of the pictures cannot be made: " + error.message());
-  impl_ = std::make_unique<Impl>(view, dir);
+  impl_->dir = dir;
 }
 
 RenderThread::~RenderThread() = default;

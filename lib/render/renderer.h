@@ -79,8 +79,12 @@ void write_png(const std::string& path, const Image& image);
 /// beside it is not stalled (LP_NUM_THREADS in the environment wins).
 class RenderThread {
  public:
-  /// Makes the folder and opens the GL library: throws Error(io) or Error(unavailable) at once.
+  /// Opens the GL library: throws Error(unavailable) at once. Before the first picture: into().
+  explicit RenderThread(const View& view);
+  /// The same, and into().
   RenderThread(const View& view, const std::string& dir);
+  /// Makes the folder of the pictures. Throws Error(io).
+  void into(const std::string& dir);
   /// Draws what is queued; an error that finish() would have thrown is lost.
   ~RenderThread();
   /// Queues a copy of the fields that the picture needs; blocks while 2 wait. An error of the

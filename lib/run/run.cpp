@@ -70,10 +70,7 @@ void open_files(RunParts& run, const std::string& started) {
                      : std::make_unique<RunWriter>(path, info, gzip);
   }
 #ifdef PBF_HAS_RENDER
-  if (!run.scene.render) return;
-  run.folder.make_frames_folder();
-  run.pictures = std::make_unique<RenderThread>(view_of(run.scene, run.plan.particles),
-                                                run.folder.file("frames"));
+  if (run.pictures) run.pictures->into(run.folder.file(RunFolder::kPictures));
 #endif
 }
 

@@ -36,7 +36,7 @@ struct RunParts {
   std::FILE* json = nullptr;            ///< one line per measure, null: none; owned by the caller
   std::unique_ptr<RunWriter> writer{};  ///< null: none
 #ifdef PBF_HAS_RENDER
-  std::unique_ptr<RenderThread> pictures{};  ///< the same
+  std::unique_ptr<RenderThread> pictures{};  ///< the same; the caller's, made before the folder
 #endif
   const Scene& scene = loaded.scene;
   Schedule schedule = make_schedule(scene);
@@ -49,8 +49,8 @@ struct RunParts {
   std::string stop_reason{};  ///< "SIGTERM", ...
 };
 
-/// Opens run file and pictures, where the scene has them; `started`: utc_now() of the session.
-/// Throws Error(io).
+/// Opens the run file and makes the folder of the pictures, where there are some; `started`:
+/// utc_now() of the session. Throws Error(io).
 void open_files(RunParts& run, const std::string& started);
 
 /// Warnings of a run, told as they come up, and its progress.

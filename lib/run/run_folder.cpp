@@ -161,7 +161,7 @@ bool RunFolder::owns(const std::string& folder, const std::string& path) {
   };
   const std::string name = fs::path(path).filename().string();
   const bool inside = place(path).parent_path() == place(fs::path(folder) / name).parent_path();
-  return inside && (own_file(name) || name == ".lock" || name == "frames");
+  return inside && (own_file(name) || name == ".lock" || name == kPictures);
 }
 
 /// Nobody but pbf has business with these names, and to follow a link or wait for a FIFO among them
@@ -172,8 +172,8 @@ void RunFolder::refuse_special_files() const {
     if (own_file(entry.path().filename().string())) require_own_file(entry.path().string());
   }
   if (error) fail(path_, "cannot be read", error.message());
-  if (!fs::is_directory(fs::symlink_status(path_ / "frames", error)))
-    require_own_file((path_ / "frames").string());
+  if (!fs::is_directory(fs::symlink_status(path_ / kPictures, error)))
+    require_own_file((path_ / kPictures).string());
 }
 
 bool RunFolder::has(const std::string& name) const {
@@ -185,7 +185,7 @@ bool RunFolder::holds_other_files() const {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(path_, error)) {
     const std::string name = entry.path().filename().string();
-    if (!own_file(name) && name != ".lock" && name != "frames") return true;
+    if (!own_file(name) && name != ".lock" && name != kPictures) return true;
   }
   return false;
 }
@@ -211,21 +211,15 @@ void RunFolder::remove_own_files() const {
     for (const auto& p : found) remove(p);
   };
   remove_in(path_, own_file);
-  const fs::file_status frames = fs::symlink_status(path_ / "frames", error);
-  if (fs::exists(frames) && !fs::is_directory(frames)) remove(path_ / "frames");
+  const fs::file_status frames = fs::symlink_status(path_ / kPictures, error);
+  if (fs::exists(frames) && !fs::is_directory(frames)) remove(path_ / kPictures);
   if (!fs::is_directory(frames)) return;
-  remove_in(path_ / "frames", own_picture);
-  fs::remove(path_ / "frames", error);  // only when nothing foreign is left in it
+  remove_in(path_ / kPictures, own_picture);
+  fs::remove(path_ / kPictures, error);  // only when nothing foreign is left in it
 }
 
 void RunFolder::write_text(const std::string& name, const std::string& text) const {
   write_text_file(file(name), text, Naming::own);
-}
-
-void RunFolder::make_frames_folder() const {
-  std::error_code error;
-  fs::create_directories(path_ / "frames", error);
-  if (error) fail(path_ / "frames", "cannot be made", error.message());
 }
 
 }  // namespace pbf::inline run_module

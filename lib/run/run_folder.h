@@ -12,6 +12,8 @@ enum class ExistingFolder { refuse, overwrite, resume };
 
 class RunFolder {
  public:
+  static constexpr const char* kPictures = "frames";  ///< the folder of the pictures in it
+
   /// Whether the folder is there, before any work is done and without touching anything. Throws
   /// Error(bad_input) for an existing one when `refuse`; Error(io) for something that is no folder.
   static bool check(const std::string& path, ExistingFolder existing);
@@ -36,8 +38,7 @@ class RunFolder {
   bool holds_other_files() const;
   /// Writes a text file, which nobody sees half written. Throws Error(io).
   void write_text(const std::string& name, const std::string& text) const;
-  void remove(const std::string& name) const;  ///< where it is there; Error(io)
-  void make_frames_folder() const;
+  void remove(const std::string& name) const;
 
  private:
   void lock();

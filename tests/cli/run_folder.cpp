@@ -190,6 +190,20 @@ TEST_CASE("SIGTERM and SIGINT end a run with exit code 75, a checkpoint and a re
   }
 }
 
+#ifdef PBF_HAS_RENDER
+TEST_CASE("a run whose pictures cannot be drawn ends before its folder is made") {
+  const Scratch folder;
+  const std::string scene = folder.write("tiny.yaml", tiny_scene("render: {}\n"));
+  const Outcome o =
+      pbf::test::pbf({"run", scene, "--out", "o/"}, folder.path(), {"PBF_GL=directx"});
+  CHECK(o.code == 2);
+  CHECK(has(o.err, "PBF_GL is \"directx\""));
+  CHECK_FALSE(fs::exists(folder / "o"));
+  CHECK(pbf::test::pbf({"run", scene, "--out", "o/", "--set", "render=off"}, folder.path()).code ==
+        0);
+}
+#endif
+
 TEST_CASE("SIGUSR1 saves a checkpoint, and the run goes on") {
   const Scratch folder;
   endless(folder);
