@@ -1,11 +1,11 @@
 """A view of a run file for ParaView (5.13 or later): particles as spheres coloured by speed, the time
 in the picture, the edges of the domain. Edit it as you like; every line is ParaView's own scripting.
 
-    PBF_RUN=out/dam_break/run.vtkhdf paraview --script=tools/paraview_state.py
-    pvpython tools/paraview_state.py out/dam_break/run.vtkhdf picture.png 0.5    one moment, in s
-    pvpython tools/paraview_state.py out/dam_break/run.vtkhdf film.png           all: film.0000.png, ...
+    PBF_RUN=out/demo/run.vtkhdf paraview --script=tools/paraview_state.py
+    pvpython tools/paraview_state.py out/demo/run.vtkhdf picture.png 0.5    one moment, in s
+    pvpython tools/paraview_state.py out/demo/run.vtkhdf film.png           all: film.0000.png, ...
 
-Without PBF_RUN and arguments it opens out/dam_break/run.vtkhdf. The domain is that of
+Without PBF_RUN and arguments it opens out/demo/run.vtkhdf. The domain is that of
 scene.resolved.yaml beside the run file; without it the edges are those of the particles.
 """
 
@@ -99,7 +99,7 @@ def show(run):
 
 
 def main(words):
-    run = words[0] if words else os.environ.get("PBF_RUN", "out/dam_break/run.vtkhdf")
+    run = words[0] if words else os.environ.get("PBF_RUN", "out/demo/run.vtkhdf")
     view, particles = show(os.path.abspath(run))
     if len(words) < 2:
         pv.Render(view)
