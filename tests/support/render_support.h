@@ -92,6 +92,15 @@ inline pbf::Rgb pixel_at(const pbf::Image& image, const pbf::View& view, const p
   return pixel(image, static_cast<int>(x), static_cast<int>(y));
 }
 
+/// First row below the name, the time and the number of particles in a picture up to 500 pixels
+/// high.
+inline constexpr int kBelowTexts = 36;
+
+/// The bytes of the rows below these texts, which differ where the number of particles does.
+inline std::vector<std::uint8_t> below_texts(const pbf::Image& image) {
+  return {image.rgb.begin() + 3 * kBelowTexts * image.width, image.rgb.end()};
+}
+
 /// An obstacle: a box along the axes, `half` (m) to each side of its centre.
 inline pbf::Solid<double> plate(const pbf::Double3& center, const pbf::Double3& half) {
   pbf::Solid<double> solid;

@@ -193,5 +193,5 @@ TEST_CASE("particles that are not finite or far outside cast no shadow", "[rende
   const Image image = renderer.draw(snapshot(
       {{nan, 1, 1}, {1, 1, inf}, {1e200, 0, 0}, {1e30, 1e30, 1e30}, {0, 0, 1e7}, {-1e7, 5, 3}},
       std::vector<double>(6, 1.0)));
-  CHECK(image.rgb == empty.rgb);
+  CHECK(below_texts(image) == below_texts(empty));
 }
