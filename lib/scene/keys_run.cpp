@@ -14,10 +14,11 @@ KeyRows run_rows() {
                       "Stops a run whose measurements are not physical, and names the cause.",
                       on_by_default, effect(Effect::adaptive)),
        optional_block(KEY(output), "Frames in run.vtkhdf.", exact(kNoPhysics)),
-       optional_block(KEY(checkpoint),
-                      "Checkpoints: the complete state, for --resume. A run that is stopped by a "
-                      "signal or the wall-time limit saves one even without this block.",
-                      effect(Effect::none)),
+       optional_block(
+           KEY(checkpoint),
+           "Checkpoints: the complete state, at intervals and at the end, for --resume. A run that "
+           "is stopped by a signal or the wall-time limit saves one even without this block.",
+           effect(Effect::none)),
        optional_block(KEY(render), "Pictures, drawn while the simulation runs.", exact(kNoPhysics)),
        {"render.camera", "The camera of the pictures."}},
       {key(KEY(measure_every), number("", {1, 2147483647}),

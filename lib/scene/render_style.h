@@ -14,7 +14,8 @@ struct RenderStyleInfo {
 /// In the order of the enum. Surface: two pairs of floats, depth, thickness and the scene below.
 inline constexpr RenderStyleInfo kRenderStyles[] = {{"spheres", 0}, {"surface", 8 + 8 + 4 + 2 + 4}};
 
-/// Texels of the shadow map along its longer side, 4 bytes each; scenes in two dimensions have none.
+/// Texels of the shadow map along its longer side, 4 bytes each; scenes in two dimensions have
+/// none.
 inline constexpr int kShadowTexels = 512;
 
 constexpr const RenderStyleInfo& about(RenderStyle s) { return kRenderStyles[static_cast<int>(s)]; }
