@@ -45,7 +45,7 @@ TEST_CASE("loads and gauges are compared in the frozen step and behind it, float
     for (const char* what : {"loads: z_min force_z", "loads: turned force_x", "loads: ball force_y",
                              "loads: blade torque_x", "loads: pipe force_peak", "gauges: H",
                              "gauges: U x", "gauges: P", "gauges: P peak"}) {
-      const CompareRow& found = row(r.parts[part], what);
+      const CompareRow found = row(r.parts[part], what);
       CAPTURE(found.what, found.error, found.tolerance);
       CHECK(found.error > 0);
       CHECK(found.relative < 1e-2);  // it is a number of some size that is compared

@@ -120,7 +120,7 @@ TEST_CASE("the statistics of a frame are those of its particles", "[compare]") {
   CHECK(number(f, "potential energy").value == Approx(potential / 2000));
   CHECK(number(f, "kinetic energy").value == Approx(kinetic / 2000));
   CHECK(number(f, "centre of mass x").uncertainty > 0);
-  const auto& front = number(f, "front x (99.9 %)");
+  const auto front = number(f, "front x (99.9 %)");
   std::vector<double> sorted;
   for (std::size_t i = 0; i < s.count; ++i) sorted.push_back(x[3 * i] - 1);
   std::sort(sorted.begin(), sorted.end());
