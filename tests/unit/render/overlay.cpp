@@ -95,7 +95,8 @@ TEST_CASE("the colour bar runs from the low to the high end of viridis", "[rende
   }
 }
 
-TEST_CASE("every tick has its number beside it; title, unit, name and time are there", "[render]") {
+TEST_CASE("every tick has its number beside it, and title, unit, name and time are there",
+          "[render]") {
   for (const std::array<int, 2>& size :
        {std::array{320, 240}, {640, 360}, {1280, 720}, {3840, 2160}}) {
     const View view = bar_view(size);
