@@ -2,18 +2,11 @@
 
 #include <vector>
 
+#include "lib/scene/file_kind.h"
 #include "lib/scene/suggest.h"
 
 namespace pbf::inline app_module {
 namespace {
-
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-bool is_scene(const std::string& argument) {
-  return ends_with(argument, ".yaml") || ends_with(argument, ".yml");
-}
 
 std::vector<std::string> names(const std::vector<const CLI::App*>& commands) {
   std::vector<std::string> all;
@@ -41,7 +34,7 @@ std::string of_extra(const CLI::App& command, const std::string& extra) {
   const std::size_t equals = extra.find('=');
   if (equals != std::string::npos && equals > 0 && command.get_option_no_throw("--set") != nullptr)
     return extra + ": not expected here; did you mean --set " + extra + "?";
-  if (is_scene(extra))
+  if (has_scene_name(extra))
     return extra + ": " + pbf +
            " takes one file; pbf batch runs many: all scenes of a folder, or a "
            "text file that names one per line";
@@ -68,7 +61,7 @@ std::string explain(const CLI::App& app, const CLI::ParseError& e) {
   std::string message = what, meant;
   if (!extras.empty() && extras[0][0] != '-') {
     message = extras[0] + ": unknown command";
-    meant = is_scene(extras[0]) ? "run " + extras[0] : nearest_word(extras[0], commands);
+    meant = has_scene_name(extras[0]) ? "run " + extras[0] : nearest_word(extras[0], commands);
     if (!meant.empty()) message += ", did you mean pbf " + meant + "?";
   }
   message += "; the commands are";

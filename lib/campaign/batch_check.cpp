@@ -21,9 +21,8 @@ void add_needs(const BatchMember& m, std::vector<std::string> overrides,
   overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
   const LoadedScene loaded = load_scene_or_run(m.scene, overrides, base_folder);
   const std::int64_t n = count_particles(loaded.scene, loaded.folder);
-  Plan plan = make_plan(loaded.scene, n);
-  if (here) return refuse_if_too_large(loaded.scene, plan);
-  plan = make_plan(loaded.scene, n, start_neighbors(loaded.scene, loaded.folder, n));
+  if (here) return refuse_if_too_large(loaded.scene, make_plan(loaded.scene, n));
+  const Plan plan = make_plan(loaded.scene, n, start_neighbors(loaded.scene, loaded.folder, n));
   needs.host_bytes = std::max(needs.host_bytes, plan_memory(loaded.scene, plan).host_peak());
   needs.device |= about(loaded.scene.backend).on_device;
 }

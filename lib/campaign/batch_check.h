@@ -16,9 +16,9 @@ struct BatchNeeds {
 };
 
 /// Reads and plans every run, with `overrides` (key.path=value) before its own; `base_folder` as
-/// in load_scene(). `here`: on this
-/// machine, whose memory must hold each of them. Throws Error, with the code of the first one that
-/// cannot run, naming it and up to nine more, each with its message.
+/// in load_scene(). `here`: on this machine, whose memory must hold each of them. Throws Error,
+/// with the code of the first one that cannot run, naming it and up to nine more, each with its
+/// message.
 BatchNeeds check_members(const std::vector<BatchMember>& members,
                          const std::vector<std::string>& overrides, const std::string& base_folder,
                          bool here);

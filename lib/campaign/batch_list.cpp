@@ -13,6 +13,7 @@
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
 #include "lib/base/plain_text.h"
+#include "lib/scene/file_kind.h"
 
 namespace pbf::inline campaign_module {
 namespace {
@@ -21,17 +22,11 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostRuns = 100000;
 
-bool is_run_file(const fs::path& p) { return p.extension() == ".vtkhdf" || p.extension() == ".h5"; }
-bool is_scene(const fs::path& p) {
-  return p.extension() == ".yaml" || p.extension() == ".yml" || is_run_file(p);
-}
-
 std::vector<BatchMember> of_folder(const std::string& path) {
   std::vector<BatchMember> all;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(path, error))
-    if (is_scene(entry.path()) && !is_run_file(entry.path()))
-      all.push_back({"", entry.path().string(), {}});
+    if (has_scene_name(entry.path().string())) all.push_back({"", entry.path().string(), {}});
   if (error) bad_input(path, "cannot be read: " + error.message());
   if (all.empty()) bad_input(path, "holds no scene (*.yaml)");
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.scene < b.scene; });
@@ -61,7 +56,7 @@ std::vector<BatchMember> of_list(const std::string& path) {
       }
     }
     if (m.scene.empty()) continue;
-    if (!is_scene(m.scene))
+    if (!has_scene_name(m.scene) && !has_run_name(m.scene))
       bad_input(where, m.scene + " is no scene (*.yaml) and no run file (*.vtkhdf)");
     all.push_back(m);
     if (all.size() > kMostRuns) bad_input(path, "has more than 100000 lines");
@@ -122,7 +117,7 @@ std::vector<BatchMember> batch_members(const std::string& input, std::vector<Gri
   std::vector<BatchMember> scenes, all;
   if (fs::is_directory(input, error))
     scenes = of_folder(input);
-  else if (is_scene(input))
+  else if (has_scene_name(input) || has_run_name(input))
     scenes = {{"", input, {}}};
   else
     scenes = of_list(input);

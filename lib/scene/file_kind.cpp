@@ -1,6 +1,7 @@
 #include "lib/scene/file_kind.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 #include <vector>
 
@@ -31,15 +32,23 @@ bool is_run(const std::string& line) {
   std::istringstream words(line);
   std::string scene, setting;
   words >> scene;
-  const std::size_t dot = scene.rfind('.');
-  const std::string end = dot == std::string::npos ? "" : scene.substr(dot);
-  if (end != ".yaml" && end != ".yml" && end != ".h5" && end != ".vtkhdf") return false;
+  if (!has_scene_name(scene) && !has_run_name(scene)) return false;
   while (words >> setting)
     if (setting.find('=') == std::string::npos) return false;
   return true;
 }
 
 }  // namespace
+
+bool has_scene_name(const std::string& path) {
+  const std::filesystem::path end = std::filesystem::path(path).extension();
+  return end == ".yaml" || end == ".yml";
+}
+
+bool has_run_name(const std::string& path) {
+  const std::filesystem::path end = std::filesystem::path(path).extension();
+  return end == ".vtkhdf" || end == ".h5";
+}
 
 std::string other_text(const std::string& text, const std::string& path,
                        const std::string& wanted) {

@@ -7,6 +7,11 @@
 
 namespace pbf::inline scene_module {
 
+/// Whether a file is named as a scene (*.yaml, *.yml), or as a run file (*.vtkhdf; *.h5 of earlier
+/// versions).
+bool has_scene_name(const std::string& path);
+bool has_run_name(const std::string& path);
+
 /// What is said of a file in the place of a `wanted` ("scene", "study", "stability suite"), by its
 /// text before it is read as YAML: "is a list of runs, expected a scene; pbf batch FILE takes it".
 /// Empty: it may be one.

@@ -8,14 +8,13 @@ tables with the columns time, kinetic_energy, potential_energy (to-csv --log).
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 import numpy as np
 
 from . import style
 from .errors import BadInput
-from .run_file import Run
-from .table import Table, need, read_csv
+from .logs import read_log, short_names
+from .table import Table
 
 EXAMPLE = """examples:
   python -m pbf_tools plot-energy out/demo/run.vtkhdf -o energy.png
@@ -28,19 +27,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     style.add_output(parser, "energy.png")
 
 
-def read_log(path: str) -> tuple[Table, str]:
-    """The log of a run file or a CSV table, and a title for it."""
-    if path.endswith(".csv"):
-        log, name = read_csv(path), Path(path).stem
-    else:
-        run_file = Run(path)
-        log, name = run_file.log, run_file.title
-    need(log, COLUMNS, path)
-    return log, name
-
-
 def run(args: argparse.Namespace) -> int:
-    logs = [read_log(path) for path in args.runs]
+    logs = [read_log(path, COLUMNS) for path in args.runs]
     fig, ((axes,),) = style.figure()
     if len(logs) == 1:
         detail = _one(axes, logs[0][0], logs[0][1])
@@ -68,10 +56,7 @@ def _one(axes, log: Table, name: str) -> str:
 
 
 def _many(axes, logs: list[tuple[Table, str]], paths: list[str]) -> str:
-    labels = [Path(p).parent.name or Path(p).stem for p in paths]
-    if len(set(labels)) < len(labels):
-        labels = paths
-    for k, ((log, _), label) in enumerate(zip(logs, labels)):
+    for k, ((log, _), label) in enumerate(zip(logs, short_names(paths))):
         total = log["kinetic_energy"] + log["potential_energy"]
         if not total[0] > 0:
             raise BadInput(f"{paths[k]}: the energy at the start is not above 0, so nothing can be "

@@ -15,8 +15,8 @@ import numpy as np
 
 from . import style
 from .errors import BadInput
-from .run_file import Run
-from .table import Table, need, read_csv
+from .logs import read_log, short_names
+from .table import Table, need
 
 EXAMPLE = """examples:
   python -m pbf_tools plot-log out/demo/run.vtkhdf
@@ -28,13 +28,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("words", nargs="+", metavar="RUN... COLUMN...",
                         help="run files or CSV tables, then columns of the log or patterns of them")
     style.add_output(parser, "log.png")
-
-
-def read_log(path: str) -> Table:
-    """The log of a run file or of a CSV table; BadInput without a column of time."""
-    log = read_csv(path) if path.endswith(".csv") else Run(path).log
-    need(log, ["time"], path)
-    return log
 
 
 def split(words: list[str]) -> tuple[list[str], list[str]]:
@@ -67,7 +60,7 @@ def choose(log: Table, patterns: list[str], path: str) -> list[str]:
 
 def run(args: argparse.Namespace) -> int:
     files, patterns = split(args.words)
-    logs = [read_log(path) for path in files]
+    logs = [read_log(path, ["time"])[0] for path in files]
     if not patterns:
         for name in logs[0]:
             print(f"{name:28} {logs[0].units.get(name, '')}")
@@ -77,9 +70,7 @@ def run(args: argparse.Namespace) -> int:
         need(log, names, path)
     units = list(dict.fromkeys(logs[0].units.get(name, "") for name in names))
     fig, rows = style.figure(len(units), 1, (6.4, 1.4 + 2.6 * len(units)))
-    labels = [Path(p).parent.name or Path(p).stem for p in files]
-    if len(set(labels)) < len(labels):
-        labels = files
+    labels = short_names(files)
     for (axes,), unit in zip(rows, units):
         here, k = [n for n in names if logs[0].units.get(n, "") == unit], 0
         for name in here:
