@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
+import re
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -53,3 +56,35 @@ class Stopped(PbfError):
 
 class PbfWarning(UserWarning):
     """A warning of the program."""
+
+
+def unknown(what: str, name: str, names: Iterable[str]) -> str:
+    """What to say of a name that is not among those there are: the nearest ones, and all.
+
+    >>> unknown("column", "force_x", ["time", "load/post/force_x"])
+    'no column force_x, did you mean load/post/force_x? There are time, load/post/force_x'
+    >>> unknown("gauge", "V", ["H", "P"]), unknown("field", "x", [])
+    ('no gauge V; there are H, P', 'no field x; there is none')
+    """
+    names = list(names)
+    near = nearest(name, names)
+    everything = ", ".join(names)
+    if near:
+        return f"no {what} {name}, did you mean {' or '.join(near)}? There are {everything}"
+    return f"no {what} {name}; there {'are ' + everything if names else 'is none'}"
+
+
+def nearest(name: str, names: list[str]) -> list[str]:
+    """At most three names that may be meant: with the last part of this name, else with nearly the
+    same letters.
+
+    >>> nearest("iterations", ["time.step", "solver.iterations"]), nearest("timestep", ["time.step"])
+    (['solver.iterations'], ['time.step'])
+    """
+    def last(text: str) -> str:
+        return re.split(r"[./]", text.lower())[-1]
+
+    same = [n for n in names if last(n) == last(name)]
+    lower = {n.lower(): n for n in names}
+    close = difflib.get_close_matches(name.lower(), lower, n=3, cutoff=0.7)
+    return (same or [lower[n] for n in close])[:3]

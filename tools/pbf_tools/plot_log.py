@@ -1,8 +1,8 @@
 """Columns of the log of one or several runs over time: loads, energies, compression, front, work.
 
 Columns with the same unit share a panel. A pattern takes several columns: 'load/*/force_x'. Without
-a column, the command lists those of the first run. Takes run files, or CSV tables with a column
-time (to-csv --log).
+a column, the command lists those of the first run. Takes runs, or CSV tables with a column time
+(to-csv --log).
 """
 
 from __future__ import annotations
@@ -15,30 +15,32 @@ import numpy as np
 
 from . import style
 from .errors import BadInput
-from .logs import read_log, short_names
+from .logs import RUN_HELP, read_log, short_names
+from .run_path import is_run
 from .table import Table, need
 
 EXAMPLE = """examples:
-  python -m pbf_tools plot-log out/demo/run.vtkhdf
-  python -m pbf_tools plot-log out/demo/run.vtkhdf load/post/force_x compression_mean -o demo.png
-  python -m pbf_tools plot-log out/a/run.vtkhdf out/b/run.vtkhdf front_x -o fronts.png"""
+  python -m pbf_tools plot-log out/demo
+  python -m pbf_tools plot-log out/demo load/post/force_x compression_mean -o demo.png
+  python -m pbf_tools plot-log out/a out/b front_x -o fronts.png"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("words", nargs="+", metavar="RUN... COLUMN...",
-                        help="run files or CSV tables, then columns of the log or patterns of them")
+                        help=f"{RUN_HELP}, or CSV table (several), then columns of the log or "
+                             "patterns of them")
     style.add_output(parser, "log.png")
 
 
 def split(words: list[str]) -> tuple[list[str], list[str]]:
-    """Files and columns: what names a file that is there, or ends like one, is a file.
+    """Runs and columns: what names a file or folder that is there, or ends like a file, is a run.
 
-    >>> split(["a/run.vtkhdf", "b.csv", "load/*/force_x", "front_x"])
-    (['a/run.vtkhdf', 'b.csv'], ['load/*/force_x', 'front_x'])
+    >>> split(["a/run.vtkhdf", "b.csv", ".", "load/*/force_x", "front_x"])
+    (['a/run.vtkhdf', 'b.csv', '.'], ['load/*/force_x', 'front_x'])
     """
-    files = [w for w in words if w.endswith((".vtkhdf", ".h5", ".csv")) or Path(w).is_file()]
+    files = [w for w in words if is_run(w) or w.endswith(".csv") or Path(w).is_file()]
     if not files:
-        raise BadInput(f"{words[0]}: no such run file or table; name one before the columns")
+        raise BadInput(f"{words[0]}: no such run or table; name one before the columns")
     return files, [w for w in words if w not in files]
 
 

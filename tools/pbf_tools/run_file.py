@@ -12,8 +12,9 @@ import h5py
 import numpy as np
 
 from . import index
-from .errors import BadInput
+from .errors import BadInput, unknown
 from .fields import Field, Frames
+from .run_path import run_path
 from .table import Table
 
 T = TypeVar("T")
@@ -47,7 +48,7 @@ class Run:
     """A run file, finished, still being written or cut off by a crash; see `open`."""
 
     def __init__(self, path: str | os.PathLike[str]):
-        self.path = Path(path)
+        self.path = run_path(path)
         self.refresh()
 
     def refresh(self) -> Run:
@@ -125,8 +126,7 @@ class Run:
 
     def __getitem__(self, name: str) -> Field:
         if name not in self._index.fields:
-            there = ", ".join(self.fields) or "none yet"
-            raise BadInput(f"{self.path}: no field {name}; the fields are {there}")
+            raise BadInput(f"{self.path}: {unknown('field', name, self.fields)}")
         return Field(self, name, self._index.fields[name])
 
     def track(self, particle: int, *fields: str) -> Table:
@@ -203,8 +203,7 @@ class Run:
         log = self.log
         if f"pose/{name}/x" not in log:
             moving = sorted({key.split("/")[1] for key in log if key.startswith("pose/")})
-            raise BadInput(f"{self.path}: no obstacle {name} that moves; "
-                           + ("there are " + ", ".join(moving) if moving else "none does"))
+            raise BadInput(f"{self.path}: {unknown('moving obstacle', name, moving)}")
         times = log["time"]
         if not times[0] <= time <= times[-1] * (1 + 1e-9):
             raise BadInput(f"{self.path}: {time} s is not in the log, which has {times[0]} to "
@@ -259,7 +258,7 @@ def _gauges(file: h5py.File) -> dict[str, Gauge]:
 
 
 def open(path: str | os.PathLike[str]) -> Run:  # noqa: A001, as in h5py and gzip
-    """Opens a run file. Works on one still being written (`refresh` shows new frames) and on one
+    """Opens a run, by its file or by its folder. Works on one still being written (`refresh` shows new frames) and on one
     that a crash cut off: every frame that was reported is there.
 
     FileError with the reason when it is not a run file that this version reads.

@@ -11,9 +11,8 @@ from typing import Any
 from . import program as pbf
 from .errors import BadInput, FileError, PbfError
 from .run_file import Run
+from .run_path import ENDINGS, RUN_FILE
 from .scene_text import Scene, base_words, set_words, write_scene
-
-RUN_FILE = "run.vtkhdf"
 
 
 def plan(scene: Scene, *, base_folder: str | os.PathLike[str] | None = None,
@@ -59,7 +58,7 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
     program are PbfWarning.
     """
     found = pbf.find(program)
-    if not isinstance(scene, Mapping) and Path(scene).suffix in (".vtkhdf", ".h5"):
+    if not isinstance(scene, Mapping) and Path(scene).suffix in ENDINGS:
         if out is None:
             raise BadInput(f"{scene}: give out=, the folder in which this run is repeated")
         forecast = None  # a run file holds a scene that has been planned, with output
