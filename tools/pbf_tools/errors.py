@@ -76,10 +76,11 @@ def unknown(what: str, name: str, names: Iterable[str]) -> str:
 
 def nearest(name: str, names: list[str]) -> list[str]:
     """At most three names that may be meant: with the last part of this name, else with nearly the
-    same letters.
+    same letters, else with this name in them.
 
-    >>> nearest("iterations", ["time.step", "solver.iterations"]), nearest("timestep", ["time.step"])
-    (['solver.iterations'], ['time.step'])
+    >>> names = ["time.step", "solver.iterations", "kinetic_energy"]
+    >>> nearest("iterations", names), nearest("timestep", names), nearest("energy", names)
+    (['solver.iterations'], ['time.step'], ['kinetic_energy'])
     """
     def last(text: str) -> str:
         return re.split(r"[./]", text.lower())[-1]
@@ -87,4 +88,5 @@ def nearest(name: str, names: list[str]) -> list[str]:
     same = [n for n in names if last(n) == last(name)]
     lower = {n.lower(): n for n in names}
     close = difflib.get_close_matches(name.lower(), lower, n=3, cutoff=0.7)
-    return (same or [lower[n] for n in close])[:3]
+    within = [n for n in names if len(name) > 2 and name.lower() in n.lower()]
+    return (same or [lower[n] for n in close] or within)[:3]

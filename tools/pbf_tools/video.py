@@ -31,6 +31,7 @@ FPS = 25.0  # where nothing says the times of the pictures
 # More are not shown: screens show 60 in a second, and browsers slow down a GIF of more than 50.
 MOST = {".gif": 50.0}
 MOST_ELSEWHERE = 60.0
+LEAST_FPS, LEAST_SECONDS = 5.0, 0.5  # below, a film at the speed of the scene gets a note
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -86,27 +87,31 @@ def times_of(files: list[Path], run: str | None) -> np.ndarray | None:
     return times[frames]
 
 
-def pace(times: np.ndarray | None, args: argparse.Namespace, most: float) -> tuple[int, float]:
-    """Which pictures to take, each n-th, and how many of these per second."""
-    if args.fps is not None or times is None or len(times) < 2:
-        return 1, args.fps or FPS
-    interval = float(times[-1] - times[0]) / (len(times) - 1)  # s of the scene
+def pace(times: np.ndarray | None, args: argparse.Namespace,
+         most: float) -> tuple[int, float, float | None]:
+    """Which pictures to take, each n-th; how many of these per second; and the seconds of the scene
+    between two of all pictures, None where these are not known."""
+    if times is None or len(times) < 2:
+        return 1, args.fps or FPS, None
+    interval = float(times[-1] - times[0]) / (len(times) - 1)
     if not interval > 0:
-        raise BadInput("the pictures are not in the order of time; give --fps")
+        raise BadInput("the pictures are not in the order of time: number them as the frames of "
+                       "their run")
+    if args.fps is not None:
+        return 1, args.fps, interval
     speed = 1.0 if args.speed is None else args.speed
     n = max(1, math.ceil(speed / (interval * most) - 1e-6))
-    return n, speed / (interval * n)
+    return n, speed / (interval * n), interval
 
 
-def said_speed(times: np.ndarray | None, fps: float) -> str:
+def said_speed(speed: float | None) -> str:
     """How fast the film is, for the message at the end.
 
-    >>> said_speed(np.array([0, 0.04, 0.08]), 25), said_speed(np.array([0, 0.02]), 12.5)
+    >>> said_speed(1.0), said_speed(0.25)
     ('at the speed of the scene', '0.25 times as fast as the scene')
     """
-    if times is None or len(times) < 2:
+    if speed is None:
         return "speed unknown: no run file with the times of the pictures"
-    speed = float(times[-1] - times[0]) / (len(times) - 1) * fps
     return "at the speed of the scene" if abs(speed - 1) < 5e-3 else \
         f"{speed:.3g} times as fast as the scene"
 
@@ -129,8 +134,8 @@ def run(args: argparse.Namespace) -> int:
     if times is None and args.speed is not None:
         raise BadInput(f"--speed {args.speed:g}: no run file beside {files[0].parent} says when the "
                        "pictures were; name it with --times, or give --fps")
-    n, fps = pace(times, args, MOST.get(out.suffix, MOST_ELSEWHERE))
-    files, times = files[::n], None if times is None else times[::n]
+    n, fps, interval = pace(times, args, MOST.get(out.suffix, MOST_ELSEWHERE))
+    files = files[::n]
     if out.suffix in FILMS:
         if not ffmpeg:
             raise MissingPackage(f"{args.ffmpeg}: not found, and {out.suffix} needs ffmpeg; "
@@ -138,8 +143,14 @@ def run(args: argparse.Namespace) -> int:
         _film(ffmpeg, files, out, fps, args.width)
     else:
         _animation(files, out, fps, args.width)
-    print(f"wrote {out}: {len(files)} pictures, {len(files) / fps:.3g} s, {said_speed(times, fps)}, "
-          f"{out.stat().st_size / 1e6:.3g} MB")
+    seconds = len(files) / fps
+    print(f"wrote {out}: {len(files)} pictures, {seconds:.3g} s, "
+          f"{said_speed(interval and n * interval * fps)}, {out.stat().st_size / 1e6:.3g} MB")
+    if interval and args.fps is None and args.speed is None and \
+            (fps < LEAST_FPS or seconds < LEAST_SECONDS):
+        print(f"pbf_tools: note: at this speed the film has {fps:.3g} pictures per second and lasts "
+              f"{seconds:.2g} s; --speed {FPS * interval:.2g} shows all pictures, {FPS:g} per second",
+              file=sys.stderr)
     return 0
 
 
