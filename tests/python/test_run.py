@@ -172,8 +172,24 @@ def test_the_program_is_the_one_named_else_that_of_the_environment(pbf, tmp_path
     assert program.find() == str(other)
     monkeypatch.setattr(program.shutil, "which", lambda name: None)
     monkeypatch.setattr(program.os, "access", lambda *_: False)
-    with pytest.raises(pbf_tools.MissingPackage, match="not on the PATH; build it"):
+    with pytest.raises(pbf_tools.MissingPackage, match="not on the PATH, .*; build it"):
         program.find()
+
+
+def test_a_package_that_pip_took_out_of_its_tree_finds_the_program_built_in_the_working_folder(
+        pbf, tmp_path, monkeypatch):
+    monkeypatch.delenv("PBF")
+    monkeypatch.setattr(program.shutil, "which", lambda name: None)
+    monkeypatch.setattr(program, "__file__", str(tmp_path / "lib/site-packages/pbf_tools/program.py"))
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(pbf_tools.MissingPackage, match="no build/pbf in the working folder"):
+        program.find()
+    (tmp_path / "build/pbf").mkdir(parents=True)  # a folder is no program
+    with pytest.raises(pbf_tools.MissingPackage):
+        program.find()
+    (tmp_path / "build/pbf").rmdir()
+    (tmp_path / "build/pbf").symlink_to(pbf)
+    assert program.find() == str(tmp_path / "build/pbf")
 
 
 def test_what_is_named_and_is_no_program_is_refused(tmp_path, monkeypatch):
