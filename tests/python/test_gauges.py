@@ -7,6 +7,7 @@ import pytest
 from conftest import drawn
 
 import pbf_tools
+from pbf_tools import style
 
 
 @pytest.fixture(scope="module")
@@ -68,3 +69,61 @@ def test_plot_gauges_of_a_run_without_gauges_says_so(minimal, tools, tmp_path):
     code, _, err = tools("plot-gauges", minimal, "-o", tmp_path / "a.png")
     assert code == 2 and "no gauges; give the scene some" in err
     assert pbf_tools.open(minimal).gauges == {}
+
+
+@pytest.fixture
+def two(gauged, pbf, tmp_path):
+    """The run folders of that dam break and of a finer one without its gauge of the flow."""
+    scene = (gauged.parent.parent / "s.yaml").read_text()
+    kept = [line for line in scene.splitlines(keepends=True) if "name: Q" not in line]
+    (tmp_path / "s.yaml").write_text("".join(kept))
+    subprocess.run([pbf, "run", "s.yaml", "--set", "fluid.spacing=0.04", "--quiet", "--out",
+                    "fine"], check=True, cwd=tmp_path, capture_output=True)
+    return gauged.parent, tmp_path / "fine"
+
+
+def test_gauges_of_several_runs_share_panels_and_one_legend(two, tools, tmp_path, monkeypatch):
+    drawings, save = [], style.save
+    monkeypatch.setattr(style, "save", lambda fig, args: (drawings.append(fig), save(fig, args)))
+    code, _, err = tools("plot-gauges", *two, "--peaks", "-o", tmp_path / "a.png")
+    assert code == 0 and drawn(tmp_path / "a.png")
+    assert "not drawn, as not every run has it: Q" in err
+    panels = {a.get_title(loc="left"): a for a in drawings[0].axes if a.get_visible()}
+    assert list(panels) == ["H", "P", "U"]
+    assert [len(panel.lines) for panel in panels.values()] == [2, 4, 6]
+    legends = [a.get_legend() for a in drawings[0].axes if a.get_legend()]
+    assert len(legends) == 1
+    assert [t.get_text() for t in legends[0].get_texts()] == ["run", "fine", "x", "y", "z",
+                                                             "peak of an update"]
+    for label, run, line in zip(("run", "fine"), two, panels["H"].lines):
+        time, level = pbf_tools.open(run).gauges["H"]
+        assert np.array_equal(line.get_ydata(), level), label
+        assert line.get_color() == style.COLORS[two.index(run)]
+
+
+def test_every_run_is_compared_with_the_experiment(two, tools, tmp_path):
+    time, level = pbf_tools.open(two[0]).gauges["H"]
+    (tmp_path / "e.csv").write_text("t,H\n" + "".join(f"{t},{y}\n" for t, y in zip(time, level)))
+    code, out, _ = tools("plot-gauges", *two, "--gauge", "H", "--experiment", tmp_path / "e.csv",
+                         "-o", tmp_path / "a.png")
+    assert code == 0 and "H, run: H: RMS deviation 0 m, correlation 1.000 over 31 points" in out
+    assert "H, fine: H: RMS deviation 0.0" in out
+
+
+def test_gauges_that_runs_do_not_share_are_refused(two, minimal, tools, tmp_path, pbf):
+    for runs, words, text in (
+            (two, ("--gauge", "Q"), f"{two[1]}: no gauge Q; there are H, P, U"),
+            (two, ("--gauge", "h"), f"{two[0]}: no gauge h, did you mean H?"),
+            ((two[0], minimal), (), "no gauges; give the scene some")):
+        code, _, err = tools("plot-gauges", *runs, *words, "-o", tmp_path / "a.png")
+        assert code == 2 and text in err, err
+    scene = (tmp_path / "s.yaml").read_text()
+    for old, new, text in (("name: H, kind: level, at: [0.2, 0.15]",
+                            "name: H, kind: velocity, at: [0.2, 0.15, 0.1]",
+                            "gauge H is one of velocity"),
+                           ("name: ", "name: other_", "no gauge that all runs have")):
+        (tmp_path / "s.yaml").write_text(scene.replace(old, new))
+        subprocess.run([pbf, "run", "s.yaml", "--set", "time.end=0.02", "--quiet", "--overwrite",
+                        "--out", "other"], check=True, cwd=tmp_path, capture_output=True)
+        code, _, err = tools("plot-gauges", two[0], tmp_path / "other", "-o", tmp_path / "a.png")
+        assert code == 2 and text in err, err

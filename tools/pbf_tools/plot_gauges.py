@@ -167,8 +167,9 @@ def run(args: argparse.Namespace) -> int:
     if len(runs) > 1:
         _legend_of_runs(axes[0, -1], labels, [runs[0][1][name] for name in names], over, args.peaks)
     titles = dict.fromkeys(file.title for file in files)
-    shown = args.title or (next(iter(titles)) if len(titles) == 1 else f"{len(runs)} runs")
-    fig.suptitle(shown, fontsize=9)
+    scenes = ", ".join(dict.fromkeys(file.name for file in files))
+    fig.suptitle(args.title or (next(iter(titles)) if len(titles) == 1 else
+                                f"{scenes}: {len(runs)} runs"), fontsize=9)
     style.save(fig, args)
     return 0
 
