@@ -260,7 +260,8 @@ def test_the_front_of_a_run_starts_at_one_and_ends_before_the_wall(tools, pbf, t
     (("plot-log", "front_x"), 2, "front_x: no such run or table"),
     (("plot-log", "none.vtkhdf", "front_x"), 5, "none.vtkhdf: cannot read the run file"),
     (("plot-front", SEED), 2, "--width"),
-    (("plot-nothing",), 2, "invalid choice"),
+    (("plot-gauge",), 2, "no command plot-gauge, did you mean plot-gauges? There are plot-log"),
+    ((), 2, "required: COMMAND"),
     (("plot-energy", ROOT / "README.md"), 5, "not an HDF5 file")], ids=str)
 def test_bad_input_is_one_error_with_the_programs_exit_code(tools, tmp_path, monkeypatch, arguments,
                                                            code, text):

@@ -7,7 +7,7 @@ import importlib
 import os
 import sys
 
-from .errors import BadInput, ToolError
+from .errors import BadInput, ToolError, unknown
 from .run_path import RUN_FILE
 
 # Command -> what it does; the module has the same name with _ for -.
@@ -69,8 +69,11 @@ def refuse_inputs(args: argparse.Namespace) -> None:
 
 def main(arguments: list[str] | None = None) -> int:
     """Runs one command; an error a user can mend is one line on stderr and its exit code."""
-    args = parser().parse_args(arguments)
+    words = sys.argv[1:] if arguments is None else arguments
     try:
+        if words and not words[0].startswith("-") and words[0] not in COMMANDS:
+            raise BadInput(unknown("command", words[0], COMMANDS))
+        args = parser().parse_args(words)
         refuse_inputs(args)
         code = args.run(args) or 0
         sys.stdout.flush()

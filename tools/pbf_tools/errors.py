@@ -87,6 +87,6 @@ def nearest(name: str, names: list[str]) -> list[str]:
 
     same = [n for n in names if last(n) == last(name)]
     lower = {n.lower(): n for n in names}
-    close = difflib.get_close_matches(name.lower(), lower, n=3, cutoff=0.7)
+    close = difflib.get_close_matches(name.lower(), lower, n=1, cutoff=0.7)
     within = [n for n in names if len(name) > 2 and name.lower() in n.lower()]
     return (same or [lower[n] for n in close] or within)[:3]

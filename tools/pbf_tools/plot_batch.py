@@ -15,14 +15,15 @@ import numpy as np
 from matplotlib.ticker import NullLocator
 
 from . import style
-from .errors import BadInput, FileError
-from .table import Table, need, read_csv
+from .errors import BadInput
+from .sweep import read_batch
+from .table import Table, need
 
 EXAMPLE = """examples:
   python -m pbf_tools plot-batch out/sweep -o sweep.png          (error against run time)
   python -m pbf_tools plot-batch out/sweep --x solver.iterations --y compression_mean --log
   python -m pbf_tools plot-batch out/sweep/summary.csv --x time.step --y energy_drift"""
-SUMMARY, RUN_TIME, ERROR = "summary.csv", "seconds", "compression_mean"
+RUN_TIME, ERROR = "seconds", "compression_mean"
 MOST_LABELS = 80  # beside points; more cover each other
 
 
@@ -46,14 +47,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def read_summary(path: str) -> Table:
-    """The summary of a batch, given by its file or its folder."""
-    file = Path(path)
-    if file.is_dir():
-        file = file / SUMMARY
-        if not file.is_file():
-            raise FileError(f"{path}: no {SUMMARY} in this folder; name the folder that `pbf batch "
-                            "--out` wrote (with --collect it writes the summary of what is there)")
-    table = read_csv(file)
+    """The summary of a batch, given by its file or its folder; scenes by their short names."""
+    table = read_batch(path)
     if "scene" in table:
         table["scene"] = np.array([Path(str(scene)).stem for scene in table["scene"]], str)
     return table

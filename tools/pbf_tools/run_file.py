@@ -20,7 +20,7 @@ from .table import Table
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Gauge:
     """Readings of a gauge: `value` has shape (readings,), of a velocity (readings, 3). Pressures
     also have the `peak` of single updates, flows the `total` since the start (kg).
@@ -42,6 +42,17 @@ class Gauge:
 
     def __iter__(self) -> Iterator[np.ndarray]:
         return iter((self.time, self.value))
+
+    def __repr__(self) -> str:
+        return f"<gauge {self.name}: {self.kind} ({self.unit}) at {self.place}, " \
+               f"{len(self.time)} readings>"
+
+
+class Gauges(dict):
+    """Gauges by name; the name of one that is not there gets a suggestion."""
+
+    def __missing__(self, name: str) -> Gauge:
+        raise KeyError(unknown("gauge", name, self))
 
 
 class Run:
@@ -183,7 +194,7 @@ class Run:
         return self._read(_log, "cannot read the log")
 
     @property
-    def gauges(self) -> dict[str, Gauge]:
+    def gauges(self) -> Gauges:
         """The gauges of the run by name; empty where its scene has none.
 
         `time, value = run.gauges["H2"]`.
@@ -238,10 +249,10 @@ def _log(file: h5py.File) -> Table:
                  {name: index._text(d.attrs.get("units", "1")) for name, d in data.items()})
 
 
-def _gauges(file: h5py.File) -> dict[str, Gauge]:
+def _gauges(file: h5py.File) -> Gauges:
     group = file.get("pbf/gauges")
     if group is None:
-        return {}
+        return Gauges()
     more = {part: group[part] for part in ("total", "peak") if part in group}
     data = {name: d for name, d in group.items()
             if isinstance(d, h5py.Dataset) and name not in ("time", "update")}
@@ -249,12 +260,12 @@ def _gauges(file: h5py.File) -> dict[str, Gauge]:
     # A process killed while it wrote them may leave columns of different lengths.
     rows = min(len(d) for d in every)
     time = group["time"][:rows]
-    return {name: Gauge(name, index._text(d.attrs.get("kind", "")),
-                        index._text(d.attrs.get("place", "")),
-                        index._text(d.attrs.get("units", "1")), time, d[:rows],
-                        *(more[part][name][:rows] if name in more.get(part, ()) else None
-                          for part in ("total", "peak")))
-            for name, d in data.items()}
+    return Gauges({
+        name: Gauge(name, index._text(d.attrs.get("kind", "")),
+                    index._text(d.attrs.get("place", "")), index._text(d.attrs.get("units", "1")),
+                    time, d[:rows], *(more[part][name][:rows] if name in more.get(part, ()) else None
+                                      for part in ("total", "peak")))
+        for name, d in data.items()})
 
 
 def open(path: str | os.PathLike[str]) -> Run:  # noqa: A001, as in h5py and gzip
