@@ -146,7 +146,7 @@ def reason(path):
 
 def test_files_that_are_no_run_files_are_refused_with_the_reason(samples, tmp_path):
     assert "no such file" in reason(tmp_path / "missing.h5")
-    assert "a folder" in reason(tmp_path)
+    assert "no run.vtkhdf in this folder" in reason(tmp_path)
     (tmp_path / "empty.h5").touch()
     assert "empty" in reason(tmp_path / "empty.h5")
     (tmp_path / "text.h5").write_text("time,front\n" * 1000)
@@ -242,7 +242,7 @@ def test_a_file_without_frames_has_none(samples, tmp_path):
         file["VTKHDF/Steps"].attrs["NSteps"] = np.int64(0)
     run = pbf_tools.open(path)
     assert len(run.frames) == 0 and run.fields == [] and list(run.frames) == []
-    with pytest.raises(pbf_tools.BadInput, match="none yet"):
+    with pytest.raises(pbf_tools.BadInput, match="no field position; there is none"):
         run["position"]
 
 

@@ -72,7 +72,7 @@ def test_a_run_is_planned_and_run_again_by_its_folder_too(minimal, tmp_path):
     assert pbf_tools.plan(minimal.parent)["particles"] == 4000
     assert pbf_tools.run(minimal.parent, "again", time__end=0.02).name == "minimal"
     for action in (pbf_tools.plan, pbf_tools.run):
-        with pytest.raises(pbf_tools.BadInput, match=r"no run.vtkhdf in this folder, but in .*run"):
+        with pytest.raises(pbf_tools.FileError, match=r"no run.vtkhdf in this folder, but in .*run"):
             action(minimal.parent.parent)
 
 

@@ -54,13 +54,13 @@ def test_a_run_folder_that_a_command_reads_keeps_its_file(tools, sweep):
                                      ("plot-stages",), ("plot-front",), ("to-csv",), ("surface",)])
 def test_a_folder_without_a_run_says_where_runs_are(tools, sweep, tmp_path, command):
     code, _, err = tools(*command, sweep)
-    assert code == 2 and "no run.vtkhdf in this folder, but in 2 below it" in err
+    assert code == 5 and "no run.vtkhdf in this folder, but in 2 below it" in err
     assert f"{sweep}/a, {sweep}/b" in err and f"{sweep}/*/run.vtkhdf" in err
 
 
 def test_a_folder_without_a_run_says_what_is_in_it(sweep, tmp_path):
     def message(folder):
-        with pytest.raises(pbf_tools.BadInput) as caught:
+        with pytest.raises(pbf_tools.FileError) as caught:
             pbf_tools.open(folder)
         return str(caught.value)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from .errors import BadInput
+from .errors import FileError
 
 RUN_FILE = "run.vtkhdf"
 ENDINGS = (".vtkhdf", ".h5", ".hdf5")
@@ -21,7 +21,7 @@ def is_run(path: str | os.PathLike[str]) -> bool:
 
 
 def run_path(path: str | os.PathLike[str]) -> Path:
-    """The run file that a path names, itself or as the folder that it is in. BadInput for a folder
+    """The run file that a path names, itself or as the folder that it is in. FileError for a folder
     without one, which says where there are some; a file need not be there.
 
     >>> run_path("out/demo/run.vtkhdf").as_posix()
@@ -32,7 +32,7 @@ def run_path(path: str | os.PathLike[str]) -> Path:
         return given
     if (given / RUN_FILE).is_file():
         return given / RUN_FILE
-    raise BadInput(f"{path}: {_why_not(given)}")
+    raise FileError(f"{path}: {_why_not(given)}")
 
 
 def _why_not(folder: Path) -> str:
