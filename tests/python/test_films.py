@@ -55,7 +55,7 @@ def test_a_film_that_cannot_be_made_says_why(tools, pictures, tmp_path):
 
 @pytest.fixture
 def filmed(minimal, pictures):
-    """A run folder with 12 pictures and the run file whose first frames, 0.02 s apart, they show."""
+    """A run folder with 12 pictures and the run whose first frames, 0.02 s apart, they show."""
     shutil.copy(minimal, pictures)
     return pictures
 
@@ -106,6 +106,10 @@ def test_pictures_of_a_folder_elsewhere_are_timed_by_the_run_that_is_named(tools
     assert code == 2 and "name it with --times, or give --fps" in err
     code, out, _ = tools("video", away, "-o", tmp_path / "a.gif", "--times", minimal.parent)
     assert code == 0 and "at the speed of the scene" in out
+    shutil.copy(away / "frame_0.png", away / "first.png")
+    code, _, err = tools("video", away, "-o", tmp_path / "a.gif", "--times", minimal)
+    assert code == 2 and "first.png is not one of them" in err
+    (away / "first.png").unlink()
     (away / "frame_11.png").rename(away / "frame_26.png")  # the run has frames 0 to 25
     code, _, err = tools("video", away, "-o", tmp_path / "a.gif", "--times", minimal)
     assert code == 2 and "has 26 frames, and" in err and "frame_26.png is not one of them" in err
@@ -118,6 +122,24 @@ def test_a_film_that_is_over_at_once_or_stands_still_says_how_to_mend_that(tools
     assert "note" not in tools("video", filmed, "-o", tmp_path / "a.gif", "--speed", 1)[2]
     code, _, err = tools("video", filmed, "-o", tmp_path / "a.gif", "--every", 11)
     assert "note:" in err
+
+
+def test_a_film_of_pictures_at_uneven_times_says_that_its_speed_is_a_mean(tools, filmed, tmp_path):
+    pytest.importorskip("PIL")
+    (filmed / "frames/frame_11.png").rename(filmed / "frames/frame_22.png")
+    code, out, err = tools("video", filmed, "-o", tmp_path / "a.gif", "--speed", 1)
+    assert code == 0 and "the speed of the film is a mean" in err
+    assert sum(shown(tmp_path / "a.gif")) == 480  # 12 times 0.04 s, the mean
+
+
+def test_a_run_file_that_cannot_be_read_does_not_keep_one_from_a_film(tools, filmed, tmp_path):
+    pytest.importorskip("PIL")
+    (filmed / "run.vtkhdf").write_text("no HDF5\n" * 1000)
+    code, out, err = tools("video", filmed, "-o", tmp_path / "a.gif")
+    assert code == 0 and "12 pictures, 0.48 s, speed unknown" in out
+    assert "note:" in err and "not an HDF5 file; without it" in err
+    code, _, err = tools("video", filmed, "-o", tmp_path / "b.gif", "--times", filmed)
+    assert code == 5 and "not an HDF5 file" in err
 
 
 def test_ffmpeg_is_told_the_rate_that_gives_the_speed(tools, filmed, tmp_path):

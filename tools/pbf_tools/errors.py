@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
+import sys
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
@@ -56,6 +57,11 @@ class Stopped(PbfError):
 
 class PbfWarning(UserWarning):
     """A warning of the program."""
+
+
+def note(text: str) -> None:
+    """What a command tells beside its result."""
+    print(f"pbf_tools: note: {text}", file=sys.stderr)
 
 
 def unknown(what: str, name: str, names: Iterable[str]) -> str:

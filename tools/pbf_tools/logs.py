@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
-from .errors import BadInput
+from .errors import BadInput, note
 from .run_file import Run
 from .run_path import RUN_FILE, run_path
 from .table import Table, need, read_csv
@@ -20,8 +19,7 @@ def read_run(path: str) -> Run:
     run = Run(path)
     if run.status in UNFINISHED:
         reached = f"up to {run.times[-1]:g} s" if len(run.times) else "without a frame"
-        print(f"pbf_tools: note: {path}: this run {UNFINISHED[run.status]}; it is shown {reached}",
-              file=sys.stderr)
+        note(f"{path}: this run {UNFINISHED[run.status]}; it is shown {reached}")
     return run
 
 

@@ -8,14 +8,13 @@ stand beside them, and the other keys make the curves. Runs that did not finish 
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 import numpy as np
 from matplotlib.ticker import NullLocator
 
 from . import style
-from .errors import BadInput
+from .errors import BadInput, note
 from .sweep import read_batch
 from .table import Table, need
 
@@ -76,12 +75,11 @@ def finished(table: Table) -> Table:
     other = [str(reason) for reason in table["reason"] if reason != "finished"]
     if other:
         kinds = ", ".join(f"{other.count(kind)} {kind}" for kind in dict.fromkeys(other))
-        print(f"pbf_tools: note: left out {len(other)} of {len(table)} runs, which did not finish: "
-              f"{kinds}", file=sys.stderr)
+        note(f"left out {len(other)} of {len(table)} runs, which did not finish: {kinds}")
     rows = table.where(table["reason"] == "finished")
     if not len(rows):
-        raise BadInput("no run of this batch has finished; its summary says why (columns reason and "
-                       "message)")
+        raise BadInput("no run of this batch has finished; its summary says why (columns reason "
+                       "and message)")
     return rows
 
 
@@ -128,8 +126,8 @@ def _drawable(table: Table, args: argparse.Namespace, log_x: bool, log_y: bool) 
         raise BadInput(f"{args.summary}: no finished run has both {args.x} and {args.y}"
                        + (" above 0" if positive else ""))
     if not good.all():
-        print(f"pbf_tools: note: left out {np.count_nonzero(~good)} runs whose {args.x} or {args.y} "
-              f"is missing{positive}", file=sys.stderr)
+        note(f"left out {np.count_nonzero(~good)} runs whose {args.x} or {args.y} is missing"
+             + positive)
     return table.where(good)
 
 

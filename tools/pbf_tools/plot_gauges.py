@@ -1,21 +1,21 @@
 """Gauge readings of one or several runs over time, together with measured ones.
 
 There is one panel per gauge: levels, velocities (x, y, z), flows, pressures with their peaks.
-Several runs share the panels of the gauges that all of them have, one colour each. An experiment is a CSV table with a time column. The panel shows the RMS deviation, the correlation and
-the number of points compared. A column named like a gauge ("H2", "H2_m") belongs to it; --column
+Several runs share the panels of the gauges that all of them have, one colour each. An experiment
+is a CSV table with a time column; the RMS deviation from it, the correlation and the number of
+points compared are printed. A column named like a gauge ("H2", "H2_m") belongs to it; --column
 assigns other columns.
 """
 
 from __future__ import annotations
 
 import argparse
-import sys
 
 import numpy as np
 from matplotlib.lines import Line2D
 
 from . import style
-from .errors import BadInput, unknown
+from .errors import BadInput, note, unknown
 from .logs import RUN_HELP, read_run, short_names
 from .run_file import Gauge
 from .table import Table, need, read_csv
@@ -132,8 +132,7 @@ def choose(runs: list[tuple[str, dict[str, Gauge]]], wanted: list[str] | None) -
             f"{path} has {', '.join(gauges)}" for path, gauges in runs))
     left = dict.fromkeys(name for _, gauges in runs for name in gauges if name not in everywhere)
     if left and not wanted:
-        print(f"pbf_tools: note: not drawn, as not every run has it: {', '.join(left)}",
-              file=sys.stderr)
+        note(f"not drawn, as not every run has it: {', '.join(left)}")
     for name in names:
         for path, gauges in runs:
             if not len(gauges[name].time):

@@ -260,17 +260,18 @@ def _gauges(file: h5py.File) -> Gauges:
     # A process killed while it wrote them may leave columns of different lengths.
     rows = min(len(d) for d in every)
     time = group["time"][:rows]
-    return Gauges({
-        name: Gauge(name, index._text(d.attrs.get("kind", "")),
-                    index._text(d.attrs.get("place", "")), index._text(d.attrs.get("units", "1")),
-                    time, d[:rows], *(more[part][name][:rows] if name in more.get(part, ()) else None
-                                      for part in ("total", "peak")))
-        for name, d in data.items()})
+    return Gauges(
+        {name: Gauge(name, index._text(d.attrs.get("kind", "")),
+                     index._text(d.attrs.get("place", "")), index._text(d.attrs.get("units", "1")),
+                     time, d[:rows],
+                     *(more[part][name][:rows] if name in more.get(part, ()) else None
+                       for part in ("total", "peak")))
+         for name, d in data.items()})
 
 
 def open(path: str | os.PathLike[str]) -> Run:  # noqa: A001, as in h5py and gzip
-    """Opens a run, by its file or by its folder. Works on one still being written (`refresh` shows new frames) and on one
-    that a crash cut off: every frame that was reported is there.
+    """Opens a run, by its file or by its folder. Works on one still being written (`refresh` shows
+    new frames) and on one that a crash cut off: every frame that was reported is there.
 
     FileError with the reason when it is not a run file that this version reads.
 

@@ -69,8 +69,8 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
     folder = Path(out) if out is not None else Path("out") / forecast["scene"]
     bases = base_words(scene, base_folder)
     if folder.exists() and not (resume or overwrite):  # before the scene of a dict is replaced
-        raise BadInput(f"{folder}: the output folder exists; overwrite=True replaces the run in it, "
-                       "resume=True goes on with it, or give another out")
+        raise BadInput(f"{folder}: the output folder exists; overwrite=True replaces the run in "
+                       "it, resume=True goes on with it, or give another out")
     if isinstance(scene, Mapping):
         scene = write_scene(scene, folder.with_name(folder.name + ".yaml"))
     words = ["run", os.fspath(scene), "--out", str(folder), *bases, *set_words(overrides)]

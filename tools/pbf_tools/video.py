@@ -12,12 +12,11 @@ import math
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 
-from .errors import BadInput, FileError, MissingPackage
+from .errors import BadInput, FileError, MissingPackage, note
 from .logs import RUN_HELP
 from .run_file import Run
 from .run_path import RUN_FILE
@@ -46,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     pace.add_argument("--fps", type=float, help="pictures per second instead, whatever speed "
                                                 "that is")
     parser.add_argument("--times", metavar="RUN",
-                        help=f"{RUN_HELP} that the pictures were drawn from, when they are elsewhere")
+                        help=f"{RUN_HELP} whose frames the pictures show, when they are elsewhere")
     parser.add_argument("--width", type=int, metavar="PX",
                         help="of the film (default: as the pictures, but 640 for .gif and .png)")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="take each N-th picture")
@@ -73,18 +72,21 @@ def times_of(files: list[Path], run: str | None) -> np.ndarray | None:
     """When each picture was, s: the number in its name is that of a frame of the run beside the
     pictures, or in the folder above. None without one that has these frames."""
     folder = files[0].absolute().parent
-    found = [Path(run)] if run else [f / RUN_FILE for f in (folder, folder.parent)
-                                     if (f / RUN_FILE).is_file()]
+    beside = next((f / RUN_FILE for f in (folder, folder.parent) if (f / RUN_FILE).is_file()), None)
     numbers = [re.findall(r"\d+", file.stem) for file in files]
-    if not found or not all(numbers):
+    if run is None and (beside is None or not all(numbers)):
         return None
-    times, frames = Run(found[0]).times, [int(n[-1]) for n in numbers]
-    if max(frames) >= len(times):
+    try:
+        times, frames = Run(run or beside).times, [int(n[-1]) if n else -1 for n in numbers]
+    except FileError as problem:
         if run:
-            raise BadInput(f"{run}: has {len(times)} frames, and {files[frames.index(max(frames))]} "
-                           "is not one of them")
+            raise
+        note(f"{problem}; without it, the times of the pictures are not known")
         return None
-    return times[frames]
+    strange = [file for file, k in zip(files, frames) if not 0 <= k < len(times)]
+    if strange and run:
+        raise BadInput(f"{run}: has {len(times)} frames, and {strange[0]} is not one of them")
+    return None if strange else times[frames]
 
 
 def pace(times: np.ndarray | None, args: argparse.Namespace,
@@ -97,6 +99,8 @@ def pace(times: np.ndarray | None, args: argparse.Namespace,
     if not interval > 0:
         raise BadInput("the pictures are not in the order of time: number them as the frames of "
                        "their run")
+    if np.max(np.diff(times)) > 1.5 * np.min(np.diff(times)):
+        note("the times between the pictures differ: the speed of the film is a mean")
     if args.fps is not None:
         return 1, args.fps, interval
     speed = 1.0 if args.speed is None else args.speed
@@ -132,8 +136,8 @@ def run(args: argparse.Namespace) -> int:
         raise BadInput(f"{out}: the ending must be one of {' '.join(FILMS + ANIMATIONS)}")
     times = times_of(files, args.times)
     if times is None and args.speed is not None:
-        raise BadInput(f"--speed {args.speed:g}: no run file beside {files[0].parent} says when the "
-                       "pictures were; name it with --times, or give --fps")
+        raise BadInput(f"--speed {args.speed:g}: no run file beside {files[0].parent} says when "
+                       "the pictures were; name it with --times, or give --fps")
     n, fps, interval = pace(times, args, MOST.get(out.suffix, MOST_ELSEWHERE))
     files = files[::n]
     if out.suffix in FILMS:
@@ -148,9 +152,8 @@ def run(args: argparse.Namespace) -> int:
           f"{said_speed(interval and n * interval * fps)}, {out.stat().st_size / 1e6:.3g} MB")
     if interval and args.fps is None and args.speed is None and \
             (fps < LEAST_FPS or seconds < LEAST_SECONDS):
-        print(f"pbf_tools: note: at this speed the film has {fps:.3g} pictures per second and lasts "
-              f"{seconds:.2g} s; --speed {FPS * interval:.2g} shows all pictures, {FPS:g} per second",
-              file=sys.stderr)
+        note(f"at this speed the film has {fps:.3g} pictures per second and lasts {seconds:.2g} s; "
+             f"--speed {FPS * interval:.2g} shows all pictures, {FPS:g} per second")
     return 0
 
 
