@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a run file holds and how to get at it, cell by cell (# %% opens as a notebook in editors).
 
-    python tools/example.py [out/demo/run.vtkhdf]
+    python tools/example.py [out/demo]
 """
 
 # %% Open a run: nothing is read yet but what lies where. Works while the run is under way.
@@ -11,7 +11,7 @@ import numpy as np
 
 import pbf_tools
 
-run = pbf_tools.open(sys.argv[1] if len(sys.argv) > 1 else "out/demo/run.vtkhdf")
+run = pbf_tools.open(sys.argv[1] if len(sys.argv) > 1 else "out/demo")
 print(run)
 print("fields:", {name: run.units[name] for name in run.fields})
 print("spacing:", run.info["spacing"], run.units["spacing"])

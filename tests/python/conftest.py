@@ -6,11 +6,18 @@ import sys
 from pathlib import Path
 
 import pytest
+from matplotlib.image import imread
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 
 collect_ignore = ["check_run_file.py", "check_vtk.py", "run_pytest.py"]
+
+
+def drawn(path):
+    """Whether the file is a picture that is neither empty nor of one colour."""
+    pixels = imread(path)[..., :3]
+    return pixels.shape[0] > 200 and pixels.shape[1] > 300 and pixels.std() > 0.02
 
 
 @pytest.fixture(scope="session")

@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, drawn
 from matplotlib.image import imread
 
 import pbf_tools
@@ -99,6 +99,30 @@ def test_the_pages_python_examples_run(demo):
     assert any("import h5py" in b for b in blocks)
     for block in blocks:
         assert run_python(["-c", block], demo).strip()
+
+
+def test_the_tutorial_of_the_python_tools_runs_in_its_order(demo, pictures):
+    for folder in ("frames", "density"):  # what needs OpenGL
+        shutil.copytree(pictures / "frames", demo / "out/demo" / folder)
+    page = (ROOT / "tools/README.md").read_text().partition("## Reading run files")[0]
+    done = []
+    for kind, block in re.findall(r"```(\w*)\n(.*?)```", page, re.DOTALL):
+        if kind == "python":
+            assert run_python(["-c", block], demo).strip()
+        for line in block.splitlines() if not kind else ():
+            if line.startswith("python -m pbf_tools "):
+                run_python(line.split()[1:], demo)
+                done += line.split()[3:4]
+    assert {"plot-log", "plot-energy", "video", "plot-batch"} <= set(done)
+    for name in ("force", "energy", "sweep", "iterations"):
+        assert drawn(demo / f"{name}.png"), name
+    assert all((demo / f"{name}.gif").exists() for name in ("demo", "slow", "density"))
+
+
+def test_the_page_of_the_python_tools_lists_every_command():
+    page = (ROOT / "tools/README.md").read_text().partition("## Commands")[2].partition("\n## ")[0]
+    rows = re.findall(r"^\| (`[^|]*) \|", page, re.MULTILINE)
+    assert sorted(re.findall(r"`([\w-]+)`", " ".join(rows))) == sorted(COMMANDS)
 
 
 def test_the_figures_of_speed_are_drawn_again_from_committed_times(tmp_path):

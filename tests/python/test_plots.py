@@ -6,21 +6,14 @@ import subprocess
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import ROOT, drawn
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.image import imread
 
 import pbf_tools
 from pbf_tools import Table, front_data, plot_front, plot_stages, plot_study, style
 from pbf_tools.bench import Setup
 
 SEED = ROOT / "tests/regression/bench/reference_speedup_nvidia_h200.csv"
-
-
-def drawn(path):
-    """Whether the file is a picture that is neither empty nor of one colour."""
-    pixels = imread(path)[..., :3]
-    return pixels.shape[0] > 200 and pixels.shape[1] > 300 and pixels.std() > 0.02
 
 
 def test_speedup_is_the_quotient_of_the_times_in_the_table(tools, tmp_path):
@@ -232,7 +225,6 @@ def test_a_front_made_from_the_measured_one_deviates_by_nothing(tools, tmp_path)
 
 
 def test_the_front_of_a_run_starts_at_one_and_ends_before_the_wall(tools, pbf, tmp_path):
-    import subprocess
     subprocess.run([pbf, "run", ROOT / "configs/dam_break.yaml", "--set", "fluid.spacing=0.05",
                     "--set", "render=off", "--set", "time.end=0.6", "--set", "time.step=0.004",
                     "--set", "measure_every=2", "--quiet", "--threads", "2", "--out",
@@ -265,10 +257,11 @@ def test_the_front_of_a_run_starts_at_one_and_ends_before_the_wall(tools, pbf, t
     (("plot-stages", SEED, "--state", "late"), 2, "no rows of state late"),
     (("plot-energy", SEED), 2, "no column time"),
     (("plot-log", SEED, "frame"), 2, "no column time"),
-    (("plot-log", "front_x"), 2, "front_x: no such run file or table"),
+    (("plot-log", "front_x"), 2, "front_x: no such run or table"),
     (("plot-log", "none.vtkhdf", "front_x"), 5, "none.vtkhdf: cannot read the run file"),
     (("plot-front", SEED), 2, "--width"),
-    (("plot-nothing",), 2, "invalid choice"),
+    (("plot-gauge",), 2, "no command plot-gauge, did you mean plot-gauges? There are plot-log"),
+    ((), 2, "required: COMMAND"),
     (("plot-energy", ROOT / "README.md"), 5, "not an HDF5 file")], ids=str)
 def test_bad_input_is_one_error_with_the_programs_exit_code(tools, tmp_path, monkeypatch, arguments,
                                                            code, text):
@@ -291,64 +284,3 @@ def test_a_setup_left_open_must_be_one():
     assert len(Setup.parse("cpu:4").rows(rows)) == 1
     with pytest.raises(Exception, match="several kinds of threads"):
         Setup.parse("cpu").rows(rows)
-
-
-@pytest.fixture(scope="module")
-def gauged(pbf, tmp_path_factory):
-    """run.vtkhdf of a small dam break with a gauge of every kind, read every 0.01 s."""
-    folder = tmp_path_factory.mktemp("gauges")
-    (folder / "s.yaml").write_text(
-        "domain: {min: [0, 0, 0], max: [1, 0.3, 0.6]}\n"
-        "fluid: {spacing: 0.05}\n"
-        "bodies: [{shape: block, min: [0, 0, 0], max: [0.4, 0.3, 0.5]}]\n"
-        "gauges:\n"
-        "  - {name: H, kind: level, at: [0.2, 0.15]}\n"
-        "  - {name: U, kind: velocity, at: [0.2, 0.15, 0.1]}\n"
-        "  - {name: Q, kind: flow, center: [0.5, 0.15, 0.3], normal: [1, 0, 0], size: [0.3, 0.6]}\n"
-        "  - {name: P, kind: pressure, on: z_min, at: [0.2, 0.15, 0], radius: 0.1}\n"
-        "time: {step: 0.002, end: 0.3}\n"
-        "output: {every: 0.1, gauges_every: 0.01}\n")
-    subprocess.run([pbf, "run", "s.yaml", "--quiet", "--out", "run"], check=True, cwd=folder,
-                   capture_output=True)
-    return folder / "run/run.vtkhdf"
-
-
-def test_gauges_are_read_with_their_units_and_drawn_over_an_experiment(gauged, tools, tmp_path):
-    run = pbf_tools.open(gauged)
-    assert sorted(run.gauges) == ["H", "P", "Q", "U"]
-    time, level = run.gauges["H"]
-    assert len(time) == 31 and np.allclose(time, 0.01 * np.arange(31))
-    assert abs(level[0] - 0.5) < 0.005 and level[-1] < 0.45
-    flow, pressure, velocity = (run.gauges[name] for name in "QPU")
-    assert flow.unit == "kg/s" and pressure.unit == "Pa" and velocity.value.shape == (31, 3)
-    assert np.allclose(np.cumsum(flow.value[1:]) * 0.01, flow.total[1:], atol=1e-9)
-    assert np.all(pressure.peak >= pressure.value * (1 - 1e-12)) and pressure.total is None
-    assert "x = 0.2 m" in run.gauges["H"].place
-
-    table = tmp_path / "e.csv"
-    table.write_text("# measured\nt_s,H_m,wave,word\n"
-                     + "".join(f"{t},{y},{2 * y},a\n" for t, y in zip(time, level)))
-    code, out, _ = tools("plot-gauges", gauged, "--experiment", table, "--peaks", "-o",
-                         tmp_path / "a.png")
-    assert code == 0 and drawn(tmp_path / "a.png")
-    assert "H: H_m: RMS deviation 0 m, correlation 1.000 over 31 points" in out
-    code, out, _ = tools("plot-gauges", gauged, "--gauge", "H", "--experiment", table, "--column",
-                         "wave", "--scale", 0.5, "-o", tmp_path / "b.svg")
-    assert code == 0 and "H: wave: RMS deviation 0 m" in out
-    code, out, _ = tools("plot-gauges", gauged, "--experiment", table, "--column", "H=wave",
-                         "--shift", 0.095, "-o", tmp_path / "c.png")
-    assert code == 0 and "over 21 points" in out
-    for words, wanted in ((("--gauge", "V"), "no gauge V; there are H, P, Q, U"),
-                          (("--experiment", table, "--column", "wave"), "say to which"),
-                          (("--experiment", table, "--column", "H=x"), "no column x"),
-                          (("--experiment", table, "--column", "H=word"), "no numbers"),
-                          (("--experiment", table, "--gauge", "U"), "no column is named as a gauge"),
-                          (("--column", "H=x"), "give --experiment FILE")):
-        code, _, err = tools("plot-gauges", gauged, *words, "-o", tmp_path / "d.png")
-        assert code == 2 and wanted in err, (words, err)
-
-
-def test_plot_gauges_of_a_run_without_gauges_says_so(minimal, tools, tmp_path):
-    code, _, err = tools("plot-gauges", minimal, "-o", tmp_path / "a.png")
-    assert code == 2 and "no gauges; give the scene some" in err
-    assert pbf_tools.open(minimal).gauges == {}

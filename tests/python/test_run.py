@@ -57,9 +57,8 @@ def test_a_dict_is_run_and_its_file_repeats_it(scene, pbf, tmp_path):
 def test_a_scene_file_is_run_as_it_stands(minimal):
     run = pbf_tools.run(ROOT / "configs/minimal.yaml", out="again", threads=2)
     assert np.array_equal(run["position"][-1], pbf_tools.open(minimal)["position"][-1])
-    with pytest.raises(pbf_tools.PbfError, match="again: the output folder exists") as error:
+    with pytest.raises(pbf_tools.BadInput, match="again: the output folder exists; overwrite=True"):
         pbf_tools.run(ROOT / "configs/minimal.yaml", out="again")
-    assert error.value.exit_code == 2 and error.value.run is None
 
 
 def test_a_run_file_is_run_again(minimal):
@@ -67,6 +66,14 @@ def test_a_run_file_is_run_again(minimal):
     assert np.array_equal(run["position"][1], pbf_tools.open(minimal)["position"][1])
     with pytest.raises(pbf_tools.BadInput, match="give out="):
         pbf_tools.run(minimal)
+
+
+def test_a_run_is_planned_and_run_again_by_its_folder_too(minimal, tmp_path):
+    assert pbf_tools.plan(minimal.parent)["particles"] == 4000
+    assert pbf_tools.run(minimal.parent, "again", time__end=0.02).name == "minimal"
+    for action in (pbf_tools.plan, pbf_tools.run):
+        with pytest.raises(pbf_tools.FileError, match="no run.vtkhdf in this folder, but in .*run"):
+            action(minimal.parent.parent)
 
 
 def test_particle_files_of_a_dict_are_those_of_the_working_folder(scene, tmp_path):
@@ -172,8 +179,24 @@ def test_the_program_is_the_one_named_else_that_of_the_environment(pbf, tmp_path
     assert program.find() == str(other)
     monkeypatch.setattr(program.shutil, "which", lambda name: None)
     monkeypatch.setattr(program.os, "access", lambda *_: False)
-    with pytest.raises(pbf_tools.MissingPackage, match="not on the PATH; build it"):
+    with pytest.raises(pbf_tools.MissingPackage, match="not on the PATH, .*; build it"):
         program.find()
+
+
+def test_a_package_that_pip_took_out_of_its_tree_finds_the_program_built_in_the_working_folder(
+        pbf, tmp_path, monkeypatch):
+    monkeypatch.delenv("PBF")
+    monkeypatch.setattr(program.shutil, "which", lambda name: None)
+    monkeypatch.setattr(program, "__file__", str(tmp_path / "lib/pbf_tools/program.py"))
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(pbf_tools.MissingPackage, match="no build/pbf in the working folder"):
+        program.find()
+    (tmp_path / "build/pbf").mkdir(parents=True)  # a folder is no program
+    with pytest.raises(pbf_tools.MissingPackage):
+        program.find()
+    (tmp_path / "build/pbf").rmdir()
+    (tmp_path / "build/pbf").symlink_to(pbf)
+    assert program.find() == str(tmp_path / "build/pbf")
 
 
 def test_what_is_named_and_is_no_program_is_refused(tmp_path, monkeypatch):
@@ -260,6 +283,12 @@ def test_a_batch_of_a_grid_gives_a_table_of_runs(scene):
     again = pbf_tools.batch(scene, {"solver.iterations": [2, 4], "time.step": [.004, .002]},
                             "out/sweep", time={"end": 0.1})
     assert again.runs[0].path.stat().st_mtime_ns == stamp
+    for path in ("out/sweep", "out/sweep/summary.csv"):
+        read = pbf_tools.read_batch(path)
+        assert read.csv() == again.csv() and read.units == again.units
+        assert [run.status for run in read.runs] == ["finished"] * 4
+    with pytest.raises(pbf_tools.FileError, match="no summary.csv in this folder"):
+        pbf_tools.read_batch("out")
 
 
 def test_a_batch_of_several_scenes_names_those_that_fail(scene, tmp_path):

@@ -7,24 +7,26 @@ import importlib
 import os
 import sys
 
-from .errors import BadInput, ToolError
+from .errors import BadInput, ToolError, unknown
+from .run_path import RUN_FILE
 
 # Command -> what it does; the module has the same name with _ for -.
 COMMANDS = {
-    "plot-speedup": "speed-up of one backend over another against the number of particles",
-    "plot-time": "time per particle and update against the number of particles",
-    "plot-stages": "share of every stage in the time of an update, stacked",
     "plot-log": "any columns of the log over time: loads, compression, front",
     "plot-energy": "energies of runs over time",
     "plot-gauges": "readings of gauges over time against experiments",
-    "plot-study": "error against run time, with the Pareto front",
-    "plot-map": "which settings run stably, which degrade, which are stopped",
     "plot-front": "front of a dam break against experiments",
-    "compare": "differences of two run files",
+    "plot-batch": "the summary of a batch: error against run time, or any two columns",
+    "plot-study": "error against run time of a study, with the Pareto front",
+    "plot-map": "which settings run stably, which degrade, which are stopped",
+    "plot-stages": "share of every stage in the time of an update, stacked",
+    "plot-speedup": "speed-up of one backend over another against the number of particles",
+    "plot-time": "time per particle and update against the number of particles",
     "video": "film from the pictures of a run",
+    "compare": "differences of two runs",
     "to-csv": "frames, the log or a track as CSV; frames as extended XYZ",
-    "make-scene": "scene from a shape, a picture or a mesh",
     "surface": "surface of the fluid as triangles",
+    "make-scene": "scene from a shape, a picture or a mesh",
 }
 
 
@@ -39,7 +41,7 @@ def parser() -> argparse.ArgumentParser:
         description="Plots, compares and converts what pbf writes.",
         epilog="Exit codes: 0 done, 1 internal error, 2 bad command line or table, 4 package not\n"
                "installed, 5 file cannot be read or written, 6 difference found (compare).\n\n"
-               "Example: python -m pbf_tools plot-energy out/demo/run.vtkhdf -o energy.png")
+               "Example: python -m pbf_tools plot-energy out/demo -o energy.png")
     commands = top.add_subparsers(metavar="COMMAND", required=True)
     for name, summary in COMMANDS.items():
         module = importlib.import_module("." + name.replace("-", "_"), __package__)
@@ -56,6 +58,8 @@ def refuse_inputs(args: argparse.Namespace) -> None:
     outputs = [given.pop(name) for name in ("out", "csv") if isinstance(given.get(name), str)]
     values = [v for value in given.values() for v in (value if isinstance(value, list) else [value])]
     inputs = [v for v in values if isinstance(v, str) and os.path.isfile(v)]
+    inputs += [os.path.join(v, RUN_FILE) for v in values if isinstance(v, str)
+               and os.path.isfile(os.path.join(v, RUN_FILE))]
     for out in outputs:
         for path in inputs:
             if os.path.isfile(out) and os.path.samefile(out, path):
@@ -65,8 +69,11 @@ def refuse_inputs(args: argparse.Namespace) -> None:
 
 def main(arguments: list[str] | None = None) -> int:
     """Runs one command; an error a user can mend is one line on stderr and its exit code."""
-    args = parser().parse_args(arguments)
+    words = sys.argv[1:] if arguments is None else arguments
     try:
+        if words and not words[0].startswith("-") and words[0] not in COMMANDS:
+            raise BadInput(unknown("command", words[0], COMMANDS))
+        args = parser().parse_args(words)
         refuse_inputs(args)
         code = args.run(args) or 0
         sys.stdout.flush()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .errors import BadInput
+from .errors import BadInput, unknown
 from .table import Table, need, read_csvs
 
 TIME = "ms_per_step_median"
@@ -27,9 +27,10 @@ def read_bench(paths: list[str], state: str) -> Table:
     return rows
 
 
-def add_arguments(parser) -> None:
-    """Which tables, and which rows of them."""
-    parser.add_argument("csv", nargs="+", metavar="CSV", help="tables written by pbf bench --csv")
+def add_arguments(parser, metavar: str = "CSV", runs: str = "") -> None:
+    """Which tables, and which rows of them; `runs` where a command takes these instead."""
+    parser.add_argument("csv", nargs="+", metavar=metavar,
+                        help="tables written by pbf bench --csv" + runs)
     parser.add_argument("--state", default="auto", choices=("auto", "start", "late"),
                         help="updates to take: from the start on, after the warm-up; auto: late "
                              "where there is one")
@@ -42,7 +43,7 @@ def pick_scenes(table: Table, wanted: list[str] | None) -> list[str]:
     there = list(dict.fromkeys(table["scene"].tolist()))
     for name in wanted or []:
         if name not in there:
-            raise BadInput(f"no scene {name} in the tables; there are {', '.join(there)}")
+            raise BadInput(unknown("scene", name, there))
     return wanted or there
 
 

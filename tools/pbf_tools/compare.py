@@ -1,4 +1,4 @@
-"""Differences of two run files: particle distances in every common frame, and measures over time.
+"""Differences of two runs: particle distances in every common frame, and measures over time.
 
 Two frames match when their times agree to a thousandth of the interval between frames; particles
 match by id. Distances are in smoothing lengths h of the first run. In chaotic flow, single particles
@@ -13,18 +13,19 @@ import numpy as np
 
 from . import style
 from .errors import BadInput
+from .logs import RUN_HELP, read_run
 from .run_file import Run
 from .table import Table, write_text
 
 EXAMPLE = """examples:
-  python -m pbf_tools compare out/float/run.vtkhdf out/double/run.vtkhdf
-  python -m pbf_tools compare a/run.vtkhdf b/run.vtkhdf --max-rms 0.01 --csv diff.csv --out diff.png"""
+  python -m pbf_tools compare out/float out/double
+  python -m pbf_tools compare out/a out/b --max-rms 0.01 --csv diff.csv --out diff.png"""
 MEASURES = ("compression_mean", "kinetic_energy", "potential_energy")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("a", metavar="A", help="run file")
-    parser.add_argument("b", metavar="B", help="run file")
+    parser.add_argument("a", metavar="A", help=RUN_HELP)
+    parser.add_argument("b", metavar="B", help=RUN_HELP)
     parser.add_argument("--max-rms", type=float, metavar="H",
                         help="exit 6 when the RMS distance of a frame exceeds this many h, when one run "
                              "lacks frames or particles of the other, or ended otherwise")
@@ -82,7 +83,7 @@ def one_sided(a: Run, b: Run, table: Table) -> list[str]:
 
 
 def run(args: argparse.Namespace) -> int:
-    a, b = Run(args.a), Run(args.b)
+    a, b = read_run(args.a), read_run(args.b)
     table = distances(a, b)
     print(f"A {a.title}\nB {b.title}\ndistances in h = {a.info['smoothing_length']:g} m")
     print(f"{'time s':>10} {'particles':>10} {'mean':>10} {'rms':>10} {'max':>10} {'centres':>10}")

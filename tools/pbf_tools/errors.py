@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
+import re
+import sys
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -53,3 +57,42 @@ class Stopped(PbfError):
 
 class PbfWarning(UserWarning):
     """A warning of the program."""
+
+
+def note(text: str) -> None:
+    """What a command tells beside its result."""
+    print(f"pbf_tools: note: {text}", file=sys.stderr)
+
+
+def unknown(what: str, name: str, names: Iterable[str]) -> str:
+    """What to say of a name that is not among those there are: the nearest ones, and all.
+
+    >>> unknown("column", "force_x", ["time", "load/post/force_x"])
+    'no column force_x, did you mean load/post/force_x? There are time, load/post/force_x'
+    >>> unknown("gauge", "V", ["H", "P"]), unknown("field", "x", [])
+    ('no gauge V; there are H, P', 'no field x; there is none')
+    """
+    names = list(names)
+    near = nearest(name, names)
+    everything = ", ".join(names)
+    if near:
+        return f"no {what} {name}, did you mean {' or '.join(near)}? There are {everything}"
+    return f"no {what} {name}; there {'are ' + everything if names else 'is none'}"
+
+
+def nearest(name: str, names: list[str]) -> list[str]:
+    """At most three names that may be meant: with the last part of this name, else with nearly the
+    same letters, else with this name in them.
+
+    >>> names = ["time.step", "solver.iterations", "kinetic_energy"]
+    >>> nearest("iterations", names), nearest("timestep", names), nearest("energy", names)
+    (['solver.iterations'], ['time.step'], ['kinetic_energy'])
+    """
+    def last(text: str) -> str:
+        return re.split(r"[./]", text.lower())[-1]
+
+    same = [n for n in names if last(n) == last(name)]
+    lower = {n.lower(): n for n in names}
+    close = difflib.get_close_matches(name.lower(), lower, n=1, cutoff=0.7)
+    within = [n for n in names if len(name) > 2 and name.lower() in n.lower()]
+    return (same or [lower[n] for n in close] or within)[:3]

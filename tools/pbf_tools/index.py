@@ -65,8 +65,6 @@ def read(path: Path, action: Callable[[h5py.File], T], what: str) -> T:
 def _reason(path: Path, problem: Exception) -> str:
     if not path.exists():
         return "no such file"
-    if path.is_dir():
-        return "a folder; name the run.vtkhdf in it"
     if not os.access(path, os.R_OK):
         return "permission denied"
     if path.stat().st_size == 0:

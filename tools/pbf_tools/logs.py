@@ -1,29 +1,50 @@
-"""Logs of runs for plots: from run files, or from the CSV tables that to-csv --log writes."""
+"""Runs for the commands: files or folders of runs, or the CSV tables that to-csv --log writes."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from .errors import BadInput, note
 from .run_file import Run
+from .run_path import RUN_FILE, run_path
 from .table import Table, need, read_csv
+
+UNFINISHED = {"running": "is under way, or was killed", "stopped": "was stopped early",
+              "diverged": "was stopped by the guard"}
+RUN_HELP = "run file or run folder"
+
+
+def read_run(path: str) -> Run:
+    """A run; says on stderr when it has not come to its end."""
+    run = Run(path)
+    if run.status in UNFINISHED:
+        reached = f"up to {run.times[-1]:g} s" if len(run.times) else "without a frame"
+        note(f"{path}: this run {UNFINISHED[run.status]}; it is shown {reached}")
+    return run
 
 
 def read_log(path: str, columns: list[str]) -> tuple[Table, str]:
-    """The log of a run file or a CSV table, and a title for it; BadInput without these columns."""
+    """The log of a run or a CSV table, and a title for it; BadInput without these columns."""
     if path.endswith(".csv"):
         log, name = read_csv(path), Path(path).stem
     else:
-        run_file = Run(path)
-        log, name = run_file.log, run_file.title
+        run = read_run(path)
+        log, name = run.log, run.title
+        if not len(log):
+            raise BadInput(f"{path}: this run has not measured anything yet")
     need(log, columns, path)
     return log, name
 
 
 def short_names(paths: list[str]) -> list[str]:
-    """What tells runs apart in a legend: their folders, or the paths where folders share a name.
+    """What tells runs apart in a legend: their folders or, of files with other names, these; the
+    paths where that is the same for two.
 
-    >>> short_names(["out/a/run.vtkhdf", "log.csv"]), short_names(["x/a/run.vtkhdf", "y/a/b.csv"])
-    (['a', 'log'], ['x/a/run.vtkhdf', 'y/a/b.csv'])
+    >>> short_names(["out/a/run.vtkhdf", "x/log.csv"])
+    ['a', 'log']
+    >>> short_names(["x/a/run.vtkhdf", "y/a/run.vtkhdf"])
+    ['x/a/run.vtkhdf', 'y/a/run.vtkhdf']
     """
-    names = [Path(p).parent.name or Path(p).stem for p in paths]
+    files = [run_path(path).absolute() for path in paths]
+    names = [file.parent.name if file.name == RUN_FILE else file.stem for file in files]
     return paths if len(set(names)) < len(names) else names

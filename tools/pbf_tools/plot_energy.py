@@ -1,7 +1,7 @@
 """Kinetic, potential and total energy of a run over time; of several runs, the total of each.
 
 Energies are measured from the domain's lower corner. The total of several runs is drawn relative
-to its value at the start, so that a gain shows as a curve above 1. Takes run files, or CSV
+to its value at the start, so that a gain shows as a curve above 1. Takes runs, or CSV
 tables with the columns time, kinetic_energy, potential_energy (to-csv --log).
 """
 
@@ -13,17 +13,17 @@ import numpy as np
 
 from . import style
 from .errors import BadInput
-from .logs import read_log, short_names
+from .logs import RUN_HELP, read_log, short_names
 from .table import Table
 
 EXAMPLE = """examples:
-  python -m pbf_tools plot-energy out/demo/run.vtkhdf -o energy.png
-  python -m pbf_tools plot-energy out/float/run.vtkhdf out/double/run.vtkhdf -o energies.png"""
+  python -m pbf_tools plot-energy out/demo -o energy.png
+  python -m pbf_tools plot-energy out/float out/double -o energies.png"""
 COLUMNS = ["time", "kinetic_energy", "potential_energy"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("runs", nargs="+", metavar="RUN", help="run files or CSV tables")
+    parser.add_argument("runs", nargs="+", metavar="RUN", help=f"{RUN_HELP}, or CSV table")
     style.add_output(parser, "energy.png")
 
 

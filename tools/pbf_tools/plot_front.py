@@ -12,19 +12,18 @@ from __future__ import annotations
 import argparse
 import re
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from . import style
 from .errors import BadInput
 from .front_data import REFERENCES
-from .run_file import Run
+from .logs import RUN_HELP, read_run, short_names
 from .table import Table, need, read_csv
 
 EXAMPLE = """examples:
-  python -m pbf_tools plot-front out/demo/run.vtkhdf -o front.png
-  python -m pbf_tools plot-front out/coarse/run.vtkhdf out/fine/run.vtkhdf --reference martin-moyce
+  python -m pbf_tools plot-front out/dam_break -o front.png
+  python -m pbf_tools plot-front out/coarse out/fine --reference martin-moyce
   python -m pbf_tools plot-front front.csv --width 0.4 --height 0.8   (columns time, front_x)"""
 
 
@@ -32,7 +31,6 @@ EXAMPLE = """examples:
 class Front:
     """A simulated front: T and Z, shape (measures,), until the far wall."""
 
-    label: str
     title: str
     ratio: float
     t: np.ndarray
@@ -40,7 +38,7 @@ class Front:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("runs", nargs="+", metavar="RUN", help="run files, or CSV tables of a log")
+    parser.add_argument("runs", nargs="+", metavar="RUN", help=f"{RUN_HELP}, or CSV table of a log")
     parser.add_argument("--axis", choices="xyz", default="x", help="along the flow (default x)")
     parser.add_argument("--reference", action="append", choices=list(REFERENCES), metavar="NAME",
                         help="experiment (repeatable; default: all of the column's shape): "
@@ -82,16 +80,15 @@ def best_shift(t: np.ndarray, z: np.ndarray, table: Table) -> tuple[float, float
 def read_front(path: str, args: argparse.Namespace) -> Front:
     """The front of a run file or a table, dimensionless."""
     axis = "xyz".index(args.axis)
-    column, label = f"front_{args.axis}", Path(path).parent.name or Path(path).stem
+    column = f"front_{args.axis}"
     if path.endswith(".csv"):
         if args.width is None or args.height is None:
             raise BadInput(f"{path}: a table does not say how large the column was: give --width "
                            "and --height")
         log, back, wall, half, own_g = read_csv(path), 0.0, np.inf, 0.0, 9.81
-        own_width, own_height, title, label = args.width, args.height, Path(path).stem, \
-            Path(path).stem
+        own_width, own_height, title = args.width, args.height, short_names([path])[0]
     else:
-        r = Run(path)
+        r = read_run(path)
         if not len(r.frames):
             raise BadInput(f"{path}: no frame yet, so the column is not known")
         gravity = _gravity(r.scene, path)
@@ -115,7 +112,7 @@ def read_front(path: str, args: argparse.Namespace) -> Front:
     if end < 2:
         raise BadInput(f"{path}: fewer than two measures before the front reaches the wall")
     ratio = height / width
-    return Front(label, title, ratio, log["time"][:end] * np.sqrt(ratio * g / width) + args.shift,
+    return Front(title, ratio, log["time"][:end] * np.sqrt(ratio * g / width) + args.shift,
                  (x[:end] - back) / width)
 
 
@@ -127,7 +124,7 @@ def _gravity(scene: str, path: str) -> np.ndarray:
 
 
 def run(args: argparse.Namespace) -> int:
-    fronts = [read_front(path, args) for path in args.runs]
+    fronts, labels = [read_front(path, args) for path in args.runs], short_names(args.runs)
     def same_shape(name: str, front: Front) -> bool:
         return abs(REFERENCES[name].ratio - front.ratio) < 0.1
 
@@ -136,20 +133,20 @@ def run(args: argparse.Namespace) -> int:
         raise BadInput(f"the column is {fronts[0].ratio:.3g} times as high as wide; the experiments here had "
                        "1 and 2. Choose some anyway with --reference")
     fig, ((axes,),) = style.figure(size=(6.6, 5))
-    for k, front in enumerate(fronts):
-        axes.plot(front.t, front.z, color=style.COLORS[k % 8], label=f"pbf, {front.label}",
+    for k, (front, label) in enumerate(zip(fronts, labels)):
+        axes.plot(front.t, front.z, color=style.COLORS[k % 8], label=f"pbf, {label}",
                   linestyle=("-", "--", "-.", ":")[k % 4], linewidth=2)
     for k, name in enumerate(names):
         data = REFERENCES[name].read()
         axes.plot(data["T"], data["Z"], linestyle="", color=style.COLORS[(k + len(fronts)) % 8],
                   marker=style.MARKERS[k % 8], label=REFERENCES[name].label, alpha=0.85,
                   markersize=3 if len(data) > 50 else 5)
-        for front in fronts:
+        for front, label in zip(fronts, labels):
             if not (args.reference or same_shape(name, front)):
                 continue
             rms, n = deviation(front.t, front.z, data)
             shift, least = best_shift(front.t, front.z, data)
-            print(f"{front.label}: {REFERENCES[name].label}: RMS deviation of Z {rms:.3f} over {n} "
+            print(f"{label}: {REFERENCES[name].label}: RMS deviation of Z {rms:.3f} over {n} "
                   f"points; {least:.3f} with T shifted by {shift:+.2f}")
     last = max(f.t[-1] for f in fronts)
     axes.set(xlim=(0, 1.15 * last), ylim=(0.9, 1.15 * max(f.z.max() for f in fronts)))

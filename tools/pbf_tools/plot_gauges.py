@@ -1,8 +1,9 @@
-"""Gauge readings of a run over time, together with measured ones.
+"""Gauge readings of one or several runs over time, together with measured ones.
 
-There is one panel per gauge: levels, velocities (x, y, z), flows, pressures with their peaks. An
-experiment is a CSV table with a time column. The panel shows the RMS deviation, the correlation and
-the number of points compared. A column named like a gauge ("H2", "H2_m") belongs to it; --column
+There is one panel per gauge: levels, velocities (x, y, z), flows, pressures with their peaks.
+Several runs share the panels of the gauges that all of them have, one colour each. An experiment
+is a CSV table with a time column; the RMS deviation from it, the correlation and the number of
+points compared are printed. A column named like a gauge ("H2", "H2_m") belongs to it; --column
 assigns other columns.
 """
 
@@ -11,22 +12,28 @@ from __future__ import annotations
 import argparse
 
 import numpy as np
+from matplotlib.lines import Line2D
 
 from . import style
-from .errors import BadInput
-from .run_file import Gauge, Run
+from .errors import BadInput, note, unknown
+from .logs import RUN_HELP, read_run, short_names
+from .run_file import Gauge
 from .table import Table, need, read_csv
 
 EXAMPLE = """examples:
-  python -m pbf_tools plot-gauges out/dam_break_over_box/run.vtkhdf -o gauges.png
+  python -m pbf_tools plot-gauges out/dam_break_over_box -o gauges.png
+  python -m pbf_tools plot-gauges out/coarse out/fine --gauge H2 -o levels.png
   python -m pbf_tools plot-gauges run.vtkhdf --experiment heights.csv --column H2=h2 --column H4=h4
   python -m pbf_tools plot-gauges run.vtkhdf --gauge P1 --experiment p.csv --column p1 --shift 0.02"""
 
+DASHES = ("-", "--", "-.")  # of the components of a velocity
+PEAK = "peak of an update"
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("run_file", metavar="RUN", help="run file with gauges")
+    parser.add_argument("runs", nargs="+", metavar="RUN", help=f"{RUN_HELP}, with gauges")
     parser.add_argument("--gauge", action="append", metavar="NAME",
-                        help="gauge to draw (repeatable; default: all)")
+                        help="gauge to draw (repeatable; default: all that every run has)")
     parser.add_argument("--experiment", action="append", default=[], metavar="FILE",
                         help="CSV table of measured values (repeatable)")
     parser.add_argument("--column", action="append", default=[], metavar="[GAUGE=]NAME",
@@ -85,8 +92,7 @@ def measured(args: argparse.Namespace, gauges: list[Gauge]) -> dict[str, list]:
                                f"belongs, --column {names[0]}={text}")
             gauge, column = (text if text in names else names[0]), text
         if gauge not in names:
-            raise BadInput(f"--column {text}: no gauge {gauge} is drawn; there are "
-                           f"{', '.join(names)}")
+            raise BadInput(f"--column {text}: {unknown('drawn gauge', gauge, names)}")
         wanted.setdefault(gauge, []).append(column)
     out: dict[str, list] = {name: [] for name in names}
     tables = [(path, read_csv(path)) for path in args.experiment]
@@ -109,58 +115,109 @@ def measured(args: argparse.Namespace, gauges: list[Gauge]) -> dict[str, list]:
     return out
 
 
+def choose(runs: list[tuple[str, dict[str, Gauge]]], wanted: list[str] | None) -> list[str]:
+    """The gauges to draw, those asked for or all that every run has; BadInput when a run lacks one
+    that was asked for, when it is another quantity there, or when nothing is left."""
+    for path, gauges in runs:
+        if not gauges:
+            raise BadInput(f"{path}: no gauges; give the scene some (key gauges) and run it")
+        for name in wanted or []:
+            if name not in gauges:
+                raise BadInput(f"{path}: {unknown('gauge', name, gauges)}")
+    first = runs[0][1]
+    everywhere = [name for name in first if all(name in gauges for _, gauges in runs)]
+    names = list(dict.fromkeys(wanted or everywhere))
+    if not names:
+        raise BadInput("no gauge that all runs have: " + "; ".join(
+            f"{path} has {', '.join(gauges)}" for path, gauges in runs))
+    left = dict.fromkeys(name for _, gauges in runs for name in gauges if name not in everywhere)
+    if left and not wanted:
+        note(f"not drawn, as not every run has it: {', '.join(left)}")
+    for name in names:
+        for path, gauges in runs:
+            if not len(gauges[name].time):
+                raise BadInput(f"{path}: gauge {name} has no readings yet")
+            if gauges[name].kind != first[name].kind:
+                raise BadInput(f"{path}: gauge {name} is one of {gauges[name].kind}, and in "
+                               f"{runs[0][0]} one of {first[name].kind}; draw them apart")
+    return names
+
+
 def run(args: argparse.Namespace) -> int:
-    run_file = Run(args.run_file)
-    all_gauges = run_file.gauges
-    if not all_gauges:
-        raise BadInput(f"{args.run_file}: no gauges; give the scene some (key gauges) and run it")
-    for name in args.gauge or []:
-        if name not in all_gauges:
-            raise BadInput(f"{args.run_file}: no gauge {name}; there are {', '.join(all_gauges)}")
-    gauges = [all_gauges[name] for name in args.gauge or all_gauges]
-    for g in gauges:
-        if not len(g.time):
-            raise BadInput(f"{args.run_file}: gauge {g.name} has no readings yet")
-    over = measured(args, gauges)
-    columns = 1 if len(gauges) < 4 else 2
-    rows = (len(gauges) + columns - 1) // columns
-    fig, axes = style.figure(rows, columns, (6.4 * columns, 1.0 + 2.4 * rows), sharex=True)
-    for axis in axes.flat[len(gauges):]:
+    files = [read_run(path) for path in args.runs]
+    runs = [(path, file.gauges) for path, file in zip(args.runs, files)]
+    names, labels = choose(runs, args.gauge), short_names(args.runs)
+    over = measured(args, [runs[0][1][name] for name in names])
+    columns = 1 if len(names) < 4 else 2
+    rows = (len(names) + columns - 1) // columns
+    wide = 1.6 if len(runs) > 1 else 0  # for the legend
+    fig, axes = style.figure(rows, columns, (6.4 * columns + wide, 1.0 + 2.4 * rows), sharex=True)
+    for axis in axes.flat[len(names):]:
         axis.set_visible(False)
-    for g, axis in zip(gauges, axes.flat):
-        draw(axis, g, over[g.name], args.peaks)
-    last = max(g.time[-1] for g in gauges)
-    for k, axis in enumerate(axes.flat[:len(gauges)]):
-        axis.set_xlim(0, last)
-        if k + columns >= len(gauges):
+    last = 0.0
+    for k, (name, axis) in enumerate(zip(names, axes.flat)):
+        readings = {label: gauges[name] for label, (_, gauges) in zip(labels, runs)}
+        draw(axis, readings, over[name], args.peaks)
+        last = max(last, *(float(g.time[-1]) for g in readings.values()))
+        if k + columns >= len(names):
             axis.set_xlabel("time (s)")
             axis.tick_params(labelbottom=True)
-    fig.suptitle(args.title or run_file.title, fontsize=9)
+    axes.flat[0].set_xlim(0, last)
+    if len(runs) > 1:
+        _legend_of_runs(axes[0, -1], labels, [runs[0][1][name] for name in names], over, args.peaks)
+    titles = dict.fromkeys(file.title for file in files)
+    scenes = ", ".join(dict.fromkeys(file.name for file in files))
+    fig.suptitle(args.title or (next(iter(titles)) if len(titles) == 1 else
+                                f"{scenes}: {len(runs)} runs"), fontsize=9)
     style.save(fig, args)
     return 0
 
 
-def draw(axes, g: Gauge, measured: list, peaks: bool) -> None:
-    style.title(axes, g.name, f"{g.kind}, {g.place}")
-    axes.set_ylabel(f"{g.kind} ({g.unit})")
+def draw(axes, readings: dict[str, Gauge], measured: list, peaks: bool) -> None:
+    """The panel of a gauge: its readings in every run, by the run's name, over measured values. One
+    run has a colour for each component of a velocity, several have one for each run."""
+    first, alone = next(iter(readings.values())), len(readings) == 1
+    places = {g.place for g in readings.values()}
+    style.title(axes, first.name, first.kind + (f", {first.place}" if len(places) == 1 else ""))
+    axes.set_ylabel(f"{first.kind} ({first.unit})")
     for k, (column, t, y) in enumerate(measured):
-        dots = len(t) <= 200
-        axes.plot(t, y, color=style.COLORS[(6 - k) % 8], linewidth=0 if dots else 1,
-                  marker="." if dots else "", label=f"measured ({column})")
-    if g.value.ndim == 2:
-        for c, name in enumerate("xyz"):
-            axes.plot(g.time, g.value[:, c], color=style.COLORS[c], label=name,
-                      linestyle=("-", "--", "-.")[c])
-    else:
-        axes.plot(g.time, g.value, color=style.COLORS[0], label="run")
-    if peaks and g.peak is not None:
-        axes.plot(g.time, g.peak, color=style.COLORS[1], linewidth=0.8, alpha=0.7,
-                  label="run, peak of an update")
-    if measured or g.value.ndim == 2 or (peaks and g.peak is not None):
-        axes.legend()
-    for column, t, y in measured:
+        axes.plot(t, y, **_look_of_measured(k, t), label=f"measured ({column})")
+    for k, (name, g) in enumerate(readings.items()):
         if g.value.ndim == 2:
-            continue
-        rms, correlation, n = deviation(g, t, y)
-        print(f"{g.name}: {column}: RMS deviation {rms:.4g} {g.unit}, correlation "
-              f"{correlation:.3f} over {n} points")
+            for c, component in enumerate("xyz"):
+                axes.plot(g.time, g.value[:, c], color=style.COLORS[c if alone else k % 8],
+                          label=component, linestyle=DASHES[c])
+        else:
+            axes.plot(g.time, g.value, color=style.COLORS[k % 8], label="run")
+        if peaks and g.peak is not None:
+            axes.plot(g.time, g.peak, color=style.COLORS[1 if alone else k % 8], linewidth=0.8,
+                      alpha=0.7, label="run, " + PEAK, linestyle="-" if alone else ":")
+    if alone and len(axes.lines) > 1:
+        axes.legend()
+    for column, t, y in measured if first.value.ndim == 1 else ():
+        for name, g in readings.items():
+            rms, correlation, n = deviation(g, t, y)
+            print(f"{g.name}{'' if alone else ', ' + name}: {column}: RMS deviation {rms:.4g} "
+                  f"{g.unit}, correlation {correlation:.3f} over {n} points")
+
+
+def _look_of_measured(k: int, t: np.ndarray) -> dict[str, object]:
+    look = {"color": "#000000" if k == 0 else style.GREY}
+    if len(t) <= 200:
+        return {**look, "linewidth": 0, "marker": ".dx+"[k % 4]}
+    return {**look, "linewidth": 1, "linestyle": ("-", "--", "-.", ":")[k % 4]}
+
+
+def _legend_of_runs(axes, labels: list[str], gauges: list[Gauge], over: dict[str, list],
+                    peaks: bool) -> None:
+    """One legend for all panels: the colours of the runs, and what the kinds of lines mean."""
+    entries = {label: Line2D([], [], color=style.COLORS[k % 8]) for k, label in enumerate(labels)}
+    if any(g.value.ndim == 2 for g in gauges):
+        entries |= {c: Line2D([], [], color=style.GREY, linestyle=line)
+                    for c, line in zip("xyz", DASHES)}
+    if peaks and any(g.peak is not None for g in gauges):
+        entries[PEAK] = Line2D([], [], color=style.GREY, linestyle=":", linewidth=0.8)
+    for columns in over.values():
+        for k, (column, t, _) in enumerate(columns):
+            entries[f"measured ({column})"] = Line2D([], [], **_look_of_measured(k, t))
+    style.side_legend(axes, list(entries.values()), list(entries))

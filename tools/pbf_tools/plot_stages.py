@@ -1,7 +1,7 @@
 """Share of every stage in the time of an update, stacked, a bar per number of particles.
 
 A row of panels per scene, a column per backend. Above each bar stands the time of one update.
-Takes tables of pbf bench, or one run file: then the shares are those of its whole log.
+Takes tables of pbf bench, or runs: then each has a bar, with the shares of its whole log.
 """
 
 from __future__ import annotations
@@ -12,16 +12,18 @@ import numpy as np
 
 from . import bench, style
 from .errors import BadInput
-from .run_file import Run
+from .logs import RUN_HELP, read_run, short_names
+from .run_path import is_run
 from .table import Table
 
 EXAMPLE = """examples:
   python -m pbf_tools plot-stages tests/regression/bench/reference_speedup_nvidia_h200.csv -o stages.png
-  python -m pbf_tools plot-stages out/demo/run.vtkhdf --grouped"""
+  python -m pbf_tools plot-stages out/demo --grouped
+  python -m pbf_tools plot-stages out/float out/double -o stages.png"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    bench.add_arguments(parser)
+    bench.add_arguments(parser, "RUN|CSV", f", or runs: each a {RUN_HELP}")
     parser.add_argument("--setup", action="append", metavar="SETUP",
                         help="panels: backend[:threads][:precision] (repeatable; default: all)")
     parser.add_argument("--grouped", action="store_true",
@@ -87,8 +89,8 @@ def draw(axes, labels: list[str], columns: list[tuple[dict[str, float], float]],
 
 
 def run(args: argparse.Namespace) -> int:
-    if any(path.endswith((".vtkhdf", ".h5", ".hdf5")) for path in args.csv):
-        return _run_file(args)
+    if any(map(is_run, args.csv)):
+        return _runs(args)
     table = bench.read_bench(args.csv, args.state)
     scenes = bench.pick_scenes(table, args.scene)
     setups = [bench.Setup.parse(text) for text in args.setup] if args.setup else _setups(table)
@@ -120,19 +122,25 @@ def _setups(table: Table) -> list[bench.Setup]:
     return [bench.Setup(b, int(t) if b == "cpu" else None, p) for b, t, p in keys]
 
 
-def _run_file(args: argparse.Namespace) -> int:
-    if len(args.csv) > 1:
-        raise BadInput("give one run file, or tables of pbf bench")
-    run_file = Run(args.csv[0])
-    log = run_file.log
-    stages = {name[6:]: float(np.sum(v)) for name, v in log.items() if name.startswith("stage/")}
-    if not stages or not sum(stages.values()):
-        raise BadInput(f"{args.csv[0]}: the log has no times of stages yet")
-    fig, ((axes,),) = style.figure(size=(5.2, 4.2))
-    handles = draw(axes, [f"{run_file.info['particles']} particles"],
-                   [(stages, sum(stages.values()))], "s", args.grouped)
+def _runs(args: argparse.Namespace) -> int:
+    if not all(map(is_run, args.csv)):
+        raise BadInput("give runs, or tables of pbf bench, not both")
+    runs, parts = [read_run(path) for path in args.csv], []
+    for path, run_file in zip(args.csv, runs):
+        stages = {name[6:]: float(np.sum(v)) for name, v in run_file.log.items()
+                  if name.startswith("stage/")}
+        if not stages or not sum(stages.values()):
+            raise BadInput(f"{path}: the log has no times of stages yet")
+        parts.append((stages, sum(stages.values())))
+    names = short_names(args.csv)
+    labels = [f"{name}\n{run_file.info['particles']} particles"
+              for name, run_file in zip(names, runs)]
+    fig, ((axes,),) = style.figure(size=(3.8 + 1.4 * len(runs), 4.2))
+    handles = draw(axes, labels, parts, "s", args.grouped)
     axes.set_ylabel("share of the time of all stages (%)")
-    _finish(fig, axes, handles, args, f"Time per stage\n{run_file.title}")
+    titles = dict.fromkeys(run_file.title for run_file in runs)
+    _finish(fig, axes, handles, args,
+            "Time per stage" + (f"\n{next(iter(titles))}" if len(titles) == 1 else ""))
     return 0
 
 

@@ -24,8 +24,9 @@ _PROGRESS = re.compile(r" *\d+ %  update |\[\d+/\d+\] ")  # of a run, of a batch
 
 def find(program: str | os.PathLike[str] | None = None) -> str:
     """The program: the argument, the environment variable PBF, the one of the wheel that this
-    package came in, `pbf` on the PATH, or build/pbf of the tree that this package lies in. BadInput
-    for one named that cannot be run, MissingPackage when there is none."""
+    package came in, `pbf` on the PATH, or build/pbf of the tree that this package lies in or of the
+    working folder, as the pages call it: `pip install ./tools` has taken the package out of its
+    tree. BadInput for one named that cannot be run, MissingPackage when there is none."""
     for source, named in (("program", program), ("the environment variable PBF",
                                                  os.environ.get("PBF"))):
         if named:
@@ -33,11 +34,13 @@ def find(program: str | os.PathLike[str] | None = None) -> str:
             if path is None:
                 raise BadInput(f"{os.fspath(named)} ({source}): is no program that can be run")
             return os.path.abspath(path)
-    built = Path(__file__).resolve().parents[2] / "build/pbf"
-    path = _of_wheel() or shutil.which("pbf") or (str(built) if os.access(built, os.X_OK) else None)
+    built = [tree / "build/pbf" for tree in (Path(__file__).resolve().parents[2], Path.cwd())]
+    path = _of_wheel() or shutil.which("pbf") or next(
+        (str(file) for file in built if file.is_file() and os.access(file, os.X_OK)), None)
     if path is None:
-        raise MissingPackage("pbf is not on the PATH; build it with tools/demo, or name it with "
-                             "program= or the environment variable PBF")
+        raise MissingPackage("pbf is not on the PATH, and there is no build/pbf in the working "
+                             "folder; build it with tools/demo, or name it with program= or the "
+                             "environment variable PBF")
     return path
 
 

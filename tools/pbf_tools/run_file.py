@@ -12,14 +12,15 @@ import h5py
 import numpy as np
 
 from . import index
-from .errors import BadInput
+from .errors import BadInput, unknown
 from .fields import Field, Frames
+from .run_path import run_path
 from .table import Table
 
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Gauge:
     """Readings of a gauge: `value` has shape (readings,), of a velocity (readings, 3). Pressures
     also have the `peak` of single updates, flows the `total` since the start (kg).
@@ -42,12 +43,23 @@ class Gauge:
     def __iter__(self) -> Iterator[np.ndarray]:
         return iter((self.time, self.value))
 
+    def __repr__(self) -> str:
+        return f"<gauge {self.name}: {self.kind} ({self.unit}) at {self.place}, " \
+               f"{len(self.time)} readings>"
+
+
+class Gauges(dict):
+    """Gauges by name; the name of one that is not there gets a suggestion."""
+
+    def __missing__(self, name: str) -> Gauge:
+        raise KeyError(unknown("gauge", name, self))
+
 
 class Run:
     """A run file, finished, still being written or cut off by a crash; see `open`."""
 
     def __init__(self, path: str | os.PathLike[str]):
-        self.path = Path(path)
+        self.path = run_path(path)
         self.refresh()
 
     def refresh(self) -> Run:
@@ -125,8 +137,7 @@ class Run:
 
     def __getitem__(self, name: str) -> Field:
         if name not in self._index.fields:
-            there = ", ".join(self.fields) or "none yet"
-            raise BadInput(f"{self.path}: no field {name}; the fields are {there}")
+            raise BadInput(f"{self.path}: {unknown('field', name, self.fields)}")
         return Field(self, name, self._index.fields[name])
 
     def track(self, particle: int, *fields: str) -> Table:
@@ -183,7 +194,7 @@ class Run:
         return self._read(_log, "cannot read the log")
 
     @property
-    def gauges(self) -> dict[str, Gauge]:
+    def gauges(self) -> Gauges:
         """The gauges of the run by name; empty where its scene has none.
 
         `time, value = run.gauges["H2"]`.
@@ -203,8 +214,7 @@ class Run:
         log = self.log
         if f"pose/{name}/x" not in log:
             moving = sorted({key.split("/")[1] for key in log if key.startswith("pose/")})
-            raise BadInput(f"{self.path}: no obstacle {name} that moves; "
-                           + ("there are " + ", ".join(moving) if moving else "none does"))
+            raise BadInput(f"{self.path}: {unknown('moving obstacle', name, moving)}")
         times = log["time"]
         if not times[0] <= time <= times[-1] * (1 + 1e-9):
             raise BadInput(f"{self.path}: {time} s is not in the log, which has {times[0]} to "
@@ -239,10 +249,10 @@ def _log(file: h5py.File) -> Table:
                  {name: index._text(d.attrs.get("units", "1")) for name, d in data.items()})
 
 
-def _gauges(file: h5py.File) -> dict[str, Gauge]:
+def _gauges(file: h5py.File) -> Gauges:
     group = file.get("pbf/gauges")
     if group is None:
-        return {}
+        return Gauges()
     more = {part: group[part] for part in ("total", "peak") if part in group}
     data = {name: d for name, d in group.items()
             if isinstance(d, h5py.Dataset) and name not in ("time", "update")}
@@ -250,17 +260,18 @@ def _gauges(file: h5py.File) -> dict[str, Gauge]:
     # A process killed while it wrote them may leave columns of different lengths.
     rows = min(len(d) for d in every)
     time = group["time"][:rows]
-    return {name: Gauge(name, index._text(d.attrs.get("kind", "")),
-                        index._text(d.attrs.get("place", "")),
-                        index._text(d.attrs.get("units", "1")), time, d[:rows],
-                        *(more[part][name][:rows] if name in more.get(part, ()) else None
-                          for part in ("total", "peak")))
-            for name, d in data.items()}
+    return Gauges(
+        {name: Gauge(name, index._text(d.attrs.get("kind", "")),
+                     index._text(d.attrs.get("place", "")), index._text(d.attrs.get("units", "1")),
+                     time, d[:rows],
+                     *(more[part][name][:rows] if name in more.get(part, ()) else None
+                       for part in ("total", "peak")))
+         for name, d in data.items()})
 
 
 def open(path: str | os.PathLike[str]) -> Run:  # noqa: A001, as in h5py and gzip
-    """Opens a run file. Works on one still being written (`refresh` shows new frames) and on one
-    that a crash cut off: every frame that was reported is there.
+    """Opens a run, by its file or by its folder. Works on one still being written (`refresh` shows
+    new frames) and on one that a crash cut off: every frame that was reported is there.
 
     FileError with the reason when it is not a run file that this version reads.
 

@@ -11,9 +11,8 @@ from typing import Any
 from . import program as pbf
 from .errors import BadInput, FileError, PbfError
 from .run_file import Run
+from .run_path import ENDINGS, RUN_FILE, run_path
 from .scene_text import Scene, base_words, set_words, write_scene
-
-RUN_FILE = "run.vtkhdf"
 
 
 def plan(scene: Scene, *, base_folder: str | os.PathLike[str] | None = None,
@@ -28,7 +27,7 @@ def plan(scene: Scene, *, base_folder: str | os.PathLike[str] | None = None,
     found = pbf.find(program)
     with tempfile.TemporaryDirectory() as folder:
         path = os.fspath(write_scene(scene, Path(folder) / "scene.yaml")
-                         if isinstance(scene, Mapping) else scene)
+                         if isinstance(scene, Mapping) else run_path(scene))
         try:
             return pbf.answer(found, ["plan", path, "--json", *base_words(scene, base_folder),
                                       *set_words(overrides)])
@@ -41,8 +40,9 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
         overwrite: bool = False, strict: bool = False, max_walltime: float | None = None,
         progress: bool | None = None, base_folder: str | os.PathLike[str] | None = None,
         program: str | os.PathLike[str] | None = None, **overrides: Any) -> Run:
-    """Simulates a scene, a file, a dict of the same keys or a run file to repeat, into the folder
-    `out` (out/NAME when not given) and opens its run file. A dict is written to OUT.yaml, which `pbf run` takes too.
+    """Simulates a scene, a file, a dict of the same keys or a run to repeat (its file or folder),
+    into the folder `out` (out/NAME when not given) and opens its run file. A dict is written to
+    OUT.yaml, which `pbf run` takes too.
 
     Overrides are keys of the scene, as those of --set: `solver__iterations=8`,
     `time={"end": 1}`, `**{"bodies[0].velocity": [1, 0, 0]}`; None is off. A scene without
@@ -59,7 +59,8 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
     program are PbfWarning.
     """
     found = pbf.find(program)
-    if not isinstance(scene, Mapping) and Path(scene).suffix in (".vtkhdf", ".h5"):
+    scene = scene if isinstance(scene, Mapping) else run_path(scene)
+    if isinstance(scene, Path) and scene.suffix in ENDINGS:
         if out is None:
             raise BadInput(f"{scene}: give out=, the folder in which this run is repeated")
         forecast = None  # a run file holds a scene that has been planned, with output
@@ -67,10 +68,10 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
         forecast = plan(scene, base_folder=base_folder, program=found, **overrides)
     folder = Path(out) if out is not None else Path("out") / forecast["scene"]
     bases = base_words(scene, base_folder)
+    if folder.exists() and not (resume or overwrite):  # before the scene of a dict is replaced
+        raise BadInput(f"{folder}: the output folder exists; overwrite=True replaces the run in "
+                       "it, resume=True goes on with it, or give another out")
     if isinstance(scene, Mapping):
-        if folder.exists() and not (resume or overwrite):  # before its scene is replaced
-            raise BadInput(f"{folder}: the output folder exists; overwrite=True replaces the run in "
-                           "it, resume=True goes on with it, or give another out")
         scene = write_scene(scene, folder.with_name(folder.name + ".yaml"))
     words = ["run", os.fspath(scene), "--out", str(folder), *bases, *set_words(overrides)]
     if forecast and not writes_a_run_file(forecast):

@@ -13,14 +13,14 @@ import numpy as np
 
 from . import frame_range
 from .errors import BadInput, FileError, MissingPackage
-from .run_file import Run
+from .logs import RUN_HELP, read_run
 
 EXAMPLE = """example:
-  python -m pbf_tools surface out/demo/run.vtkhdf --frames 0:-1:5 --out surface"""
+  python -m pbf_tools surface out/demo --frames 0:-1:5 --out surface"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("run_file", metavar="RUN", help="run file")
+    parser.add_argument("run_file", metavar="RUN", help=RUN_HELP)
     parser.add_argument("--frames", default="-1", help=frame_range.HELP + " (default %(default)s)")
     parser.add_argument("-o", "--out", default="surface", metavar="FOLDER",
                         help="folder of the .ply files (default %(default)s)")
@@ -64,7 +64,7 @@ def write_ply(path: Path, vertices: np.ndarray, triangles: np.ndarray) -> None:
 def run(args: argparse.Namespace) -> int:
     if not 0.05 <= args.cube <= 4 or args.smoothing < 0:
         raise BadInput("--cube goes from 0.05 to 4 spacings, --smoothing from 0")
-    r = Run(args.run_file)
+    r = read_run(args.run_file)
     for k in frame_range.parse(args.frames, len(r.frames)):
         vertices, triangles = reconstruct(r["position"][k], float(r.info["spacing"]), args.cube,
                                           args.smoothing)

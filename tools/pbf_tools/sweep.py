@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from . import program as pbf
-from .errors import BadInput, PbfWarning
+from .errors import BadInput, FileError, PbfWarning
 from .run_file import Run
 from .scene_text import Scene, base_words, set_words, text, write_scene
 from .simulate import opened, plan, writes_a_run_file
 from .table import Table, read_csv, write_text
 
 OUTPUT = ("--set", "output={}")
+SUMMARY = "summary.csv"
 
 
 class Batch(Table):
@@ -36,6 +37,22 @@ class Batch(Table):
     @property
     def runs(self) -> list[Run | None]:
         return [opened(self.out / name) for name in self["name"].tolist()]
+
+
+def read_batch(out: str | os.PathLike[str]) -> Batch:
+    """The summary of a batch that `pbf batch` has run, by its folder or by its summary.csv.
+
+        table = read_batch("out/sweep")
+        table["seconds"], table.runs[0].log
+    """
+    path = Path(out)
+    if path.is_dir():
+        path = path / SUMMARY
+        if not path.is_file():
+            raise FileError(f"{out}: no {SUMMARY} in this folder; name the folder that `pbf batch "
+                            "--out` wrote (with --collect it writes the summary of what is there)")
+    summary = read_csv(path)
+    return Batch(summary.columns, summary.units, path.parent)
 
 
 def batch(scenes: Scene | Sequence[Scene], grid: Mapping[str, Sequence[Any]] | None = None,
@@ -77,8 +94,7 @@ def batch(scenes: Scene | Sequence[Scene], grid: Mapping[str, Sequence[Any]] | N
     code, message = pbf.call(found, words, progress)
     if message or code not in (0, 6, pbf.RESUMABLE):
         raise pbf.error(code, message)
-    summary = read_csv(folder / "summary.csv")
-    table = Batch(summary.columns, summary.units, folder)
+    table = read_batch(folder)
     bad = table.where(table["reason"] != "finished")
     if len(bad):
         first = ": ".join(str(bad[c][0]) for c in ("name", "reason", "message") if bad[c][0])

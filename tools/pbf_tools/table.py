@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .errors import BadInput, FileError, MissingPackage
+from .errors import BadInput, FileError, MissingPackage, unknown
 
 if TYPE_CHECKING:
     import pandas
@@ -59,7 +59,7 @@ class Table(dict):
         return self
 
     def __missing__(self, name: str) -> np.ndarray:
-        raise KeyError(f"no column {name}; there are {', '.join(self)}")
+        raise KeyError(unknown("column", name, self))
 
     def __len__(self) -> int:
         """Number of rows."""
@@ -190,10 +190,9 @@ def read_csvs(paths: list[str]) -> Table:
 
 def need(table: Table, names: list[str], what: str) -> None:
     """BadInput unless the table has these columns and at least one row."""
-    missing = [name for name in names if name not in table.columns]
-    if missing:
-        raise BadInput(f"{what}: no column {', '.join(missing)}; there are "
-                       f"{', '.join(table.columns)}")
+    for name in names:
+        if name not in table:
+            raise BadInput(f"{what}: {unknown('column', name, table)}")
     if not len(table):
         raise BadInput(f"{what}: the table has no rows")
 

@@ -13,20 +13,21 @@ import numpy as np
 from . import frame_range
 from .errors import BadInput
 from .fields import Frame
+from .logs import RUN_HELP, read_run
 from .run_file import Run
 from .table import Table, write_text
 
 EXAMPLE = """examples:
-  python -m pbf_tools to-csv out/demo/run.vtkhdf --log -o log.csv
-  python -m pbf_tools to-csv out/demo/run.vtkhdf --frames -1 -o last.csv
-  python -m pbf_tools to-csv out/demo/run.vtkhdf --frames -1 --particles -o start.csv
+  python -m pbf_tools to-csv out/demo --log -o log.csv
+  python -m pbf_tools to-csv out/demo --frames -1 -o last.csv
+  python -m pbf_tools to-csv out/demo --frames -1 --particles -o start.csv
       (x,y,z,vx,vy,vz: a body of shape `file` in another scene starts from there; with
        solver.prestabilize: false its compression stays as it is)
-  python -m pbf_tools to-csv out/demo/run.vtkhdf --frames all --xyz -o run.xyz"""
+  python -m pbf_tools to-csv out/demo --frames all --xyz -o run.xyz"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("run_file", metavar="RUN", help="run file")
+    parser.add_argument("run_file", metavar="RUN", help=RUN_HELP)
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--log", action="store_true", help="measures and seconds per stage")
     what.add_argument("--track", type=int, metavar="ID", help="one particle over all frames")
@@ -60,7 +61,7 @@ def extended_xyz(frame: Frame, fields: list[str]) -> str:
 
 
 def run(args: argparse.Namespace) -> int:
-    text = _text(Run(args.run_file), args)
+    text = _text(read_run(args.run_file), args)
     if args.out:
         write_text(args.out, text)
     else:
