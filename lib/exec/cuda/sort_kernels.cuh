@@ -1,6 +1,8 @@
 // Kernels of the counting sort by bin, within a bin by id.
 #pragma once
 
+#include <cub/block/block_scan.cuh>
+
 #include "kernels/pair_sum.h"
 #include "lib/exec/cuda/kernel_start.cuh"
 #include "lib/exec/cuda/list_pass.cuh"
@@ -67,6 +69,9 @@ struct OrderPass {
   }
 };
 
+using SortScan = cub::BlockScan<int, kSortThreads, cub::BLOCK_SCAN_WARP_SCANS>;
+static_assert(sizeof(SortScan::TempStorage) + kSortBins * sizeof(int) <= 48 * 1024);
+
 /// One block sorts few particles (kSortParticles, kSortBins). Runs `first` (see CountPass) as well,
 /// and gathers.
 template <class First, class Gather>
@@ -75,7 +80,7 @@ __global__ void __launch_bounds__(kSortThreads)
                       ListState* lists, OrderPass<Gather> place) {
   wait_for_previous();
   extern __shared__ int count[];  // bins
-  __shared__ int warp_sum[32];
+  __shared__ SortScan::TempStorage shared;
   const int t = threadIdx.x;
   const int* bin = place.bin;
   for (int b = t; b < bins; b += kSortThreads) count[b] = 0;
@@ -85,30 +90,14 @@ __global__ void __launch_bounds__(kSortThreads)
     arrival[i] = atomicAdd(&count[bin[i]], 1);
   }
   __syncthreads();
-  // Exclusive scan: a run of bins per thread (an odd number, against bank conflicts), then the
-  // threads' sums within warps, then the warps'.
+  // Exclusive scan: a run of bins per thread (an odd number, against bank conflicts), then the sums
+  // of the threads.
   const int run = ((bins + kSortThreads - 1) / kSortThreads) | 1;
   const int first = min(t * run, bins), last = min(first + run, bins);
   int sum = 0;
   for (int b = first; b < last; ++b) sum += count[b];
-  int before = sum;
-  for (int d = 1; d < 32; d *= 2) {
-    const int other = __shfl_up_sync(0xffffffffu, before, d);
-    if (t % 32 >= d) before += other;
-  }
-  if (t % 32 == 31) warp_sum[t / 32] = before;
-  __syncthreads();
-  if (t < 32) {
-    const int mine = warp_sum[t];
-    int all = mine;
-    for (int d = 1; d < 32; d *= 2) {
-      const int other = __shfl_up_sync(0xffffffffu, all, d);
-      if (t >= d) all += other;
-    }
-    warp_sum[t] = all - mine;
-  }
-  __syncthreads();
-  before += warp_sum[t / 32] - sum;
+  int before;
+  SortScan(shared).ExclusiveSum(sum, before);
   for (int b = first; b < last; ++b) {
     const int mine = count[b];
     count[b] = start[b] = before;
