@@ -45,8 +45,8 @@ constexpr int list_stride(int n) { return (n + 31) / 32 * 32; }
 /// Blocks of 128 threads that share a measure's sums.
 constexpr int reduce_blocks(std::int64_t n) { return int(n < 65536 ? (n + 127) / 128 : 512); }
 
-/// Up to so many particles and bins one block sorts them, with the counters in 48 KiB of shared
-/// memory, which every device has.
-constexpr int kSortThreads = 1024, kSortParticles = 3000, kSortBins = 12 * 1024;
+/// Up to so many particles and bins one block sorts them. The counters and a scan over the threads
+/// share 48 KiB of memory, which every device has.
+constexpr int kSortThreads = 1024, kSortParticles = 3000, kSortBins = 12 * 1024 - 64;
 
 }  // namespace pbf::inline program_module

@@ -65,6 +65,9 @@ void add_state(const Scene& s, const Plan& plan, std::int64_t bins, const std::s
     add("sums of a measure by block", "int64",
         int((sizeof(MeasureCounts) + sizeof(MeasureTerms)) / 8), reduce_blocks(n) + 1);
   add("histogram of compression", "int64", 1, kCompressionBins);
+  if (add.on_device)  // CUB: a histogram per block of some 6000 particles, at most 396 on an H200
+    add("scratch of the histogram", "int64", kCompressionBins,
+        std::min<std::int64_t>(n / 6000, 396) + 1);
 }
 
 /// While the solver is made. Emission and conversion let go of each array as soon as it is used.

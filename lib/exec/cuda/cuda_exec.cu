@@ -53,11 +53,9 @@ void CudaExec::book(double scale) {
 
 void CudaExec::scan(int n, int* start) {
   // The count behind the last bin is 0, so the scan ends with the number of particles.
-  std::size_t bytes = 0;
-  PBF_CUDA_CHECK(cub::DeviceScan::ExclusiveSum(nullptr, bytes, counts_.data(), start, n, stream_));
-  if (scan_.size() < bytes) scan_.resize(bytes);
-  PBF_CUDA_CHECK(
-      cub::DeviceScan::ExclusiveSum(scan_.data(), bytes, counts_.data(), start, n, stream_));
+  with_scratch(scan_, [&](void* scratch, std::size_t& bytes) {
+    return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts_.data(), start, n, stream_);
+  });
 }
 
 bool CudaExec::new_condition(cudaGraphConditionalHandle& handle) {

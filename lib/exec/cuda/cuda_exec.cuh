@@ -2,7 +2,11 @@
 // are few particles.
 #pragma once
 
+#include <thrust/iterator/counting_iterator.h>
+#include <thrust/iterator/transform_iterator.h>
+
 #include <algorithm>
+#include <cub/device/device_histogram.cuh>
 #include <cub/device/device_scan.cuh>
 #include <string>
 #include <vector>
@@ -130,14 +134,18 @@ class CudaExec {
     return measure_.result(stream_);
   }
 
-  /// See CpuExec. At most 12000 bins: their counters lie in shared memory.
+  /// See CpuExec.
   template <class Pass>
   const std::vector<std::int64_t>& count_in_bins(int n, int bins, const Pass& pass) {
     in_bins_.resize(std::size_t(bins));
     in_bins_host_.resize(std::size_t(bins));
     PBF_CUDA_CHECK(cudaMemsetAsync(in_bins_.data(), 0, in_bins_.bytes(), stream_));
-    launch(count_in_bins_kernel<Pass>, std::min(n, kBinBlock * kBinBlocks), kBinBlock,
-           std::size_t(bins) * sizeof(unsigned), n, bins, pass, in_bins_.data());
+    const auto bin = thrust::make_transform_iterator(thrust::counting_iterator<int>(0), pass);
+    if (n > 0)
+      with_scratch(in_bins_scratch_, [&](void* scratch, std::size_t& bytes) {
+        return cub::DeviceHistogram::HistogramEven(scratch, bytes, bin, in_bins_.data(), bins + 1,
+                                                   0, bins, n, stream_);
+      });
     PBF_CUDA_CHECK(cudaMemcpyAsync(in_bins_host_.data(), in_bins_.data(), in_bins_.bytes(),
                                    cudaMemcpyDeviceToHost, stream_));
     synchronize();
@@ -227,10 +235,19 @@ class CudaExec {
   std::size_t bytes() const {
     return words_.bytes() + overflows_.bytes() + overflow_of_.bytes() + count_.bytes() +
            counts_.bytes() + slot_.bytes() + scan_.bytes() + measure_.bytes() + in_bins_.bytes() +
-           repeat_.bytes() + copy_.bytes();
+           in_bins_scratch_.bytes() + repeat_.bytes() + copy_.bytes();
   }
 
  private:
+  /// A device-wide algorithm of CUB: call(scratch, bytes) says how many bytes it needs where
+  /// `scratch` is null, else runs.
+  template <class Call>
+  static void with_scratch(DeviceBuffer<char>& scratch, const Call& call) {
+    std::size_t bytes = 0;
+    PBF_CUDA_CHECK(call(nullptr, bytes));
+    if (scratch.size() < bytes) scratch.resize(bytes);
+    PBF_CUDA_CHECK(call(scratch.data(), bytes));
+  }
   /// Enough blocks of `block` threads for `threads`.
   template <class... P, class... A>
   void launch(void (*kernel)(P...), int threads, int block, std::size_t shared, const A&... args) {
@@ -298,13 +315,14 @@ class CudaExec {
   std::vector<const char*> stages_;  ///< of the marks since begin()
   MeasureSpace measure_;
   DeviceBuffer<unsigned long long> in_bins_;
+  DeviceBuffer<char> in_bins_scratch_;
   PinnedBuffer<unsigned long long> in_bins_host_;
   std::vector<std::int64_t> counted_;
   DeviceBuffer<int4> words_, overflows_;
   DeviceBuffer<int> count_, overflow_of_, counts_, slot_;
   DeviceBuffer<ListState> list_state_;
   PinnedBuffer<ListState> list_state_host_;
-  DeviceBuffer<char> scan_;
+  DeviceBuffer<char> scan_;  ///< apart from other scratch: recorded updates hold its address
   DeviceBuffer<RepeatState> repeat_;
 };
 

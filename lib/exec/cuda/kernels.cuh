@@ -38,24 +38,6 @@ __global__ void __launch_bounds__(kBlock)
   for (int k = blockIdx.x * kBlock + threadIdx.x; k < n; k += gridDim.x * kBlock) pass(k);
 }
 
-/// Adds the number of particles that pass(i) puts into each bin: in shared memory first, since most
-/// particles of a fluid share few bins. Integers: the order of the additions does not matter.
-constexpr int kBinBlock = 256, kBinBlocks = 512;
-template <class Pass>
-__global__ void __launch_bounds__(kBinBlock)
-    count_in_bins_kernel(int n, int bins, Pass pass, unsigned long long* out) {
-  wait_for_previous();
-  extern __shared__ unsigned in_bin[];  // bins
-  for (int b = threadIdx.x; b < bins; b += kBinBlock) in_bin[b] = 0;
-  __syncthreads();
-  for (std::int64_t i = blockIdx.x * kBinBlock + threadIdx.x; i < n;
-       i += std::int64_t(gridDim.x) * kBinBlock)
-    if (const int b = pass(int(i)); b >= 0) atomicAdd(&in_bin[b], 1u);
-  __syncthreads();
-  for (int b = threadIdx.x; b < bins; b += kBinBlock)
-    if (in_bin[b]) atomicAdd(&out[b], static_cast<unsigned long long>(in_bin[b]));
-}
-
 /// A neighbour sum by several threads per particle.
 template <int lanes, class Pass>
 __global__ void __launch_bounds__(kBlock) lanes_kernel(int n, Pass pass) {

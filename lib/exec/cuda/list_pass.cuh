@@ -2,6 +2,9 @@
 // candidates are collected as bits, then taken out in order.
 #pragma once
 
+#include <cub/util_ptx.cuh>
+#include <cub/warp/warp_scan.cuh>
+
 #include "lib/exec/cuda/transposed_lists.cuh"
 
 namespace pbf::inline PBF_VARIANT {
@@ -99,19 +102,13 @@ struct ListPass {
     count_row(i, xi, a);
     count_row(i, xi, b);
     const int mine = a.found + b.found;
-    int place = mine;  // inclusive prefix over the lanes, then exclusive
-#pragma unroll
-    for (int d = 1; d < lanes; d *= 2) {
-      const int below = __shfl_up_sync(0xffffffffu, place, d, lanes);
-      if (lane >= d) place += below;
-    }
-    const int all = __shfl_sync(0xffffffffu, place, lanes - 1, lanes);
-    place -= mine;
+    using LaneScan = cub::WarpScan<int, lanes>;
+    __shared__ typename LaneScan::TempStorage shared;  // empty: it shuffles
+    int place, all;
+    LaneScan(shared).ExclusiveSum(mine, place, all);
     int4* overflow = nullptr;
     if (last && all > 4 * capacity.first) overflow = take_overflow(i);
-    // A pointer travels as two words.
-    overflow = reinterpret_cast<int4*>(
-        __shfl_sync(0xffffffffu, reinterpret_cast<std::uint64_t>(overflow), lanes - 1, lanes));
+    overflow = cub::ShuffleIndex<lanes>(overflow, lanes - 1, 0xffffffffu);
     const List list{words + i, overflow};
     place = write_row(i, xi, a, place, list);
     write_row(i, xi, b, place, list);

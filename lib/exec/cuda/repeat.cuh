@@ -4,6 +4,7 @@
 #include <cuda_runtime.h>
 
 #include <cstdint>
+#include <cub/block/block_reduce.cuh>
 
 #include "lib/exec/cuda/kernel_start.cuh"
 
@@ -34,12 +35,10 @@ __global__ void __launch_bounds__(kBlock) repeat_kernel(int n, Pass pass, Repeti
   for (std::int64_t i = blockIdx.x * kBlock + threadIdx.x; i < n;
        i += std::int64_t(gridDim.x) * kBlock)
     sum += pass(int(i));
-  for (int d = 16; d > 0; d /= 2) sum += __shfl_down_sync(0xffffffffu, sum, d);
-  __shared__ unsigned long long warp_sum[kBlock / 32];
-  if (threadIdx.x % 32 == 0) warp_sum[threadIdx.x / 32] = sum;
-  __syncthreads();
+  using BlockSum = cub::BlockReduce<unsigned long long, kBlock>;
+  __shared__ typename BlockSum::TempStorage shared;
+  sum = BlockSum(shared).Sum(sum);
   if (threadIdx.x != 0) return;
-  for (int w = 1; w < kBlock / 32; ++w) sum += warp_sum[w];
   RepeatState& s = *r.state;
   atomicAdd(&s.sum, sum);
   __threadfence();

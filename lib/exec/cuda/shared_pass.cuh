@@ -2,27 +2,29 @@
 // any order (kernels/pass_level_cells.h).
 #pragma once
 
-#include <type_traits>
+#include <cub/block/block_reduce.cuh>
+#include <cub/warp/warp_reduce.cuh>
+#include <utility>
 
 #include "lib/exec/cuda/kernel_start.cuh"
 
 namespace pbf::inline PBF_VARIANT {
 
-/// The sum over `lanes` <= 32 threads side by side, in the first of them.
-template <class Part>
-__device__ __forceinline__ Part sum_of_lanes(Part mine, int lanes) {
-  static_assert(std::is_trivially_copyable_v<Part> && sizeof(Part) % 4 == 0);
-  const unsigned mine_first = threadIdx.x % 32 / lanes * lanes;
-  const unsigned mask = ~0u >> (32 - lanes) << mine_first;
-  for (int step = lanes / 2; step > 0; step /= 2) {
-    unsigned words[sizeof(Part) / 4];
-    memcpy(words, &mine, sizeof(Part));
-    for (unsigned& w : words) w = __shfl_down_sync(mask, w, step, lanes);
-    Part other;
-    memcpy(&other, words, sizeof(Part));
-    mine += other;
+struct AddParts {
+  template <class Part>
+  __device__ Part operator()(Part a, const Part& b) const {
+    a += b;
+    return a;
   }
-  return mine;
+};
+
+/// The sum over `lanes` <= 32 threads side by side, in the first of them.
+template <int lanes, class Part>
+__device__ __forceinline__ Part sum_of_lanes(const Part& mine) {
+  using LaneSum = cub::WarpReduce<Part, lanes>;
+  __shared__ typename LaneSum::TempStorage shared;
+  static_assert(sizeof shared == 1, "shuffles need no memory: one for all groups of lanes");
+  return LaneSum(shared).Reduce(mine, AddParts{});
 }
 
 template <class Pass>
@@ -32,7 +34,7 @@ __global__ void __launch_bounds__(kBlock) shared_kernel(int n, const __grid_cons
   const int thread = blockIdx.x * kBlock + threadIdx.x, i = thread / lanes, lane = thread % lanes;
   typename Pass::Part mine{};
   if (i < n) mine = pass.part(i, lane, lanes);
-  mine = sum_of_lanes(mine, lanes);
+  mine = sum_of_lanes<lanes>(mine);
   if (i < n && lane == 0) pass.finish(i, mine);
 }
 
@@ -50,7 +52,7 @@ __global__ void __launch_bounds__(kBrickBlock<Pass>)
   const bool there = pass.grid.has(c);
   typename Pass::Part mine{};
   if (there) mine = pass.part(c, lane, Pass::lanes);
-  mine = sum_of_lanes(mine, Pass::lanes);
+  mine = sum_of_lanes<Pass::lanes>(mine);
   if (lane == 0) found[k] = there ? pass.finish(c, mine) : 0;
   __syncthreads();
   constexpr int warps = kBrickBlock<Pass> / 32;
@@ -58,12 +60,28 @@ __global__ void __launch_bounds__(kBrickBlock<Pass>)
     decltype(pass.share(0, 0, 0)) sum{};
     for (int j = threadIdx.x % 32; j < Pass::brick_cells; j += 32)
       sum += pass.share(which, j, found[j]);
-    sum = sum_of_lanes(sum, 32);
+    sum = sum_of_lanes<32>(sum);
     if (threadIdx.x % 32 == 0) pass.finish_corner(brick, which, sum);
   }
 }
 
-/// Groups of items that are shared by 32 threads and fewer, or by a block. A block is of one group.
+/// The sum over a block of `threads`, in its first thread.
+template <int threads, class Part>
+__device__ __forceinline__ Part sum_of_block(const Part& mine) {
+  using BlockSum = cub::BlockReduce<Part, threads>;
+  __shared__ typename BlockSum::TempStorage shared;
+  return BlockSum(shared).Reduce(mine, AddParts{});
+}
+
+/// sum_of_lanes where only the program that runs knows how many: 1, or one of `widths`.
+template <class Part, int... widths>
+__device__ __forceinline__ void sum_of_some_lanes(Part& mine, int lanes,
+                                                  std::integer_sequence<int, widths...>) {
+  ((lanes == widths ? void(mine = sum_of_lanes<widths>(mine)) : void()), ...);
+}
+
+/// Groups of items, of which each is shared by a power of two up to 32 threads, or by a block. A
+/// block is of one group.
 constexpr int kTeam = 512;
 template <class Pass>
 __host__ __device__ int team_blocks(const Pass& pass, int group) {
@@ -72,7 +90,6 @@ __host__ __device__ int team_blocks(const Pass& pass, int group) {
 template <class Pass>
 __global__ void __launch_bounds__(kTeam) team_kernel(const __grid_constant__ Pass pass) {
   using Part = typename Pass::Part;
-  __shared__ Part of_warp[kTeam / 32];
   wait_for_previous();
   int group = 0, first = 0, block = blockIdx.x;
   for (int b; block >= (b = team_blocks(pass, group)); block -= b) first += pass.size(group++);
@@ -81,12 +98,10 @@ __global__ void __launch_bounds__(kTeam) team_kernel(const __grid_constant__ Pas
   const bool mine_is_one = i < pass.size(group);
   Part mine{};
   if (mine_is_one) mine = pass.part(first + i, lane, lanes);
-  mine = sum_of_lanes(mine, min(lanes, 32));
-  if (lanes > 32) {
-    if (lane % 32 == 0) of_warp[lane / 32] = mine;
-    __syncthreads();
-    if (lane < kTeam / 32) mine = sum_of_lanes(of_warp[lane], kTeam / 32);
-  }
+  if (lanes == kTeam)
+    mine = sum_of_block<kTeam>(mine);
+  else
+    sum_of_some_lanes(mine, lanes, std::integer_sequence<int, 2, 4, 8, 16, 32>{});
   if (mine_is_one && lane == 0) pass.finish(first + i, mine);
 }
 
