@@ -7,6 +7,7 @@
 #include "lib/scene/base_scene.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/overrides.h"
+#include "lib/scene/scene_name.h"
 #include "lib/scene/scene_text.h"
 #include "lib/scene/shorthand.h"
 #include "lib/scene/validate.h"
@@ -69,7 +70,9 @@ Node load_tree(const std::string& path, const std::string& what) {
 
 Node load_scene_tree(const std::string& path, const std::string& base_folder) {
   std::vector<SceneFile> bases;
-  return with_bases(load_tree(path, "scene"), path, base_folder, bases);
+  Node root = with_bases(load_tree(path, "scene"), path, base_folder, bases);
+  name_by_file(root, path);
+  return root;
 }
 
 Scene scene_of_tree(const Node& root, Problems& problems, bool* automatic) {
@@ -120,6 +123,7 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
   std::vector<SceneFile> bases;
   Node root = with_bases(tree_of_text(loaded.text, path, "scene"), path, base_folder, bases);
   loaded.bases = files_text(bases);
+  loaded.named_by_file = name_by_file(root, path);
   loaded.scene = scene_with_overrides(std::move(root), overrides, &loaded.auto_step);
   return loaded;
 }
