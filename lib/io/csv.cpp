@@ -58,7 +58,7 @@ std::vector<CsvRow> read_csv(const std::string& path, const std::string& remedy,
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (const auto found = find_bad_text(line)) fail(found->what + "; " + found->remedy);
     if (trimmed(line).empty() || line[0] == '#') continue;
-    CsvRow row{lines.where(), {}};
+    CsvRow row{lines.where(), {}, lines.number()};
     for (std::string_view rest = line;;) {
       const std::size_t comma = rest.find(',');
       row.cells.emplace_back(trimmed(rest.substr(0, comma)));

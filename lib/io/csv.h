@@ -31,6 +31,7 @@ class CsvLines {
   bool next(std::string& line);
   /// "path:line" of the last one.
   std::string where() const { return where(number_); }
+  std::int64_t number() const { return number_; }
 
  private:
   std::string where(std::int64_t line) const { return path_ + ":" + std::to_string(line); }
@@ -42,10 +43,11 @@ class CsvLines {
   std::int64_t number_ = 0;
 };
 
-/// A row of a small table: where it stands, and its cells, trimmed.
+/// A row of a small table: where it stands, "path:line", and its cells, trimmed.
 struct CsvRow {
   std::string where;
   std::vector<std::string> cells;
+  std::int64_t line = 0;
 };
 
 /// A small table without quoted cells: the header, then rows of as many cells. Empty lines and

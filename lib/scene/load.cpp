@@ -62,6 +62,17 @@ void choose_step(PlacedScene& placed, Problems& problems) {
   step = Time{}.step;
 }
 
+/// Where the files are named that are read later.
+void keep_places(PlacedScene& placed) {
+  Scene& s = placed.scene;
+  for (std::size_t k = 0; k < s.bodies.size(); ++k)
+    s.bodies[k].place.text = placed.place("bodies[" + std::to_string(k) + "].path");
+  for (std::size_t k = 0; k < s.obstacles.size(); ++k)
+    if (auto& motion = s.obstacles[k].motion)
+      motion->place.text = placed.place("obstacles[" + std::to_string(k) + "].motion.path");
+  if (s.tank_motion) s.tank_motion->place.text = placed.place("tank_motion.path");
+}
+
 }  // namespace
 
 Node load_tree(const std::string& path, const std::string& what) {
@@ -85,6 +96,7 @@ Scene scene_of_tree(const Node& root, Problems& problems, bool* automatic) {
   if (automatic != nullptr) *automatic = placed.scene.time.step == 0;
   if (placed.scene.time.step == 0) choose_step(placed, problems);
   check_scene(placed, problems);
+  keep_places(placed);
   return placed.scene;
 }
 
