@@ -55,8 +55,16 @@ TEST_CASE("a run that was recorded under another name goes on, wherever its scen
   CAPTURE(o.err);
   CHECK(o.code == 0);
   CHECK(fs::exists(folder / "a/DONE"));
-  // Its own run file has the name that it was recorded under.
-  REQUIRE(pbf::test::pbf({"run", "a/run.vtkhdf", "--quiet"}, folder.path()).code == 0);
+}
+
+TEST_CASE("a run file is repeated under the name that it was recorded under") {
+  const Scratch folder;
+  folder.write("s.yaml", unnamed());
+  REQUIRE(pbf::test::pbf({"run", "s.yaml", "--out", "a", "--quiet", "--set", "name=scene"},
+                         folder.path())
+              .code == 0);
+  fs::rename(folder / "a", folder / "moved");
+  REQUIRE(pbf::test::pbf({"run", "moved/run.vtkhdf", "--quiet"}, folder.path()).code == 0);
   CHECK(fs::exists(folder / "out/scene/DONE"));
 }
 
