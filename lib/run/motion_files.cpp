@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "lib/base/error.h"
-#include "lib/base/plain_text.h"
 #include "lib/base/text.h"
 #include "lib/io/csv.h"
 #include "lib/run/motion_step.h"
@@ -43,11 +42,9 @@ class Reader {
     if (!rows.empty())
       for (const std::string& cell : rows[0].cells) header += (header.empty() ? "" : ",") + cell;
     if (std::find(headers.begin(), headers.end(), header) == headers.end())
-      fail(
-          rows.empty() ? file_ : rows[0].where,
-          "expected the header " + headers[0] + " or " + headers[1] +
-              (rows.empty() ? ", and the file is empty" : ", got " + one_line(header, 60)) +
-              (header.find_first_of(";\t") != header.npos ? "; columns are parted by commas" : ""));
+      fail(rows.empty() ? file_ : rows[0].where,
+           (rows.empty() ? "is empty" : wrong_header(header)) + ", expected the header " +
+               headers[0] + " or " + headers[1]);
     MotionTable t;
     t.file = fs::absolute(file_).string();
     t.columns = int(rows[0].cells.size()) - 1;
@@ -82,7 +79,7 @@ class Reader {
       return read_csv(file_);
     } catch (const Error& e) {
       throw Error(e.code(), key_ + ": " + e.what() +
-                                (e.code() == ExitCode::io
+                                (e.code() == ExitCode::io && !fs::exists(file_)
                                      ? "; its path counts from the folder of the scene file"
                                      : ""));
     }

@@ -1,6 +1,7 @@
 // Warnings about where obstacles go. Parts of scene_warnings(). `tracks`: tracks_of() the scene.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "lib/run/obstacle_track.h"
@@ -8,8 +9,14 @@
 
 namespace pbf::inline run_module {
 
+/// "obstacles[0] (gate)"
+std::string named(const Scene& scene, std::size_t obstacle);
+/// Up to three of them, and how many more.
+std::string listed(const std::vector<std::string>& texts);
+
 /// Kind "table": the curve of a table swings beyond the rows on both sides where no smooth motion
-/// turns back, by more than a tenth of a spacing.
+/// turns back, by more than a tenth of a spacing; or its first row puts the obstacle elsewhere, as
+/// a table of places does in the place of displacements.
 void add_tables(const Scene& scene, std::vector<Warning>& list);
 
 /// Kind "wall": a motion carries an obstacle through a wall by more than a spacing, or out of the

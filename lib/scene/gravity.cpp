@@ -64,6 +64,10 @@ bool write_out_gravity(Node& root, Problems& problems) {
   if (node == nullptr) return true;
   Form form;
   if (node->kind == Node::Kind::scalar && !node->quoted) {
+    if (node->is_word({"off", "none", "false"})) {
+      problems.add(node->place(), "gravity", "is " + node->text + "; write 0 for none");
+      return false;
+    }
     double g = 0;
     if (read_number(node->text, g) != NumberError::none) return true;  // its reader says more
     if (g < 0) {

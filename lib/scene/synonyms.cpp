@@ -16,6 +16,9 @@ constexpr const char* kNoMass =
 constexpr const char* kNoFriction = "walls and obstacles have no friction, fluid slides along them";
 constexpr const char* kOneFluid =
     "all bodies are of one fluid; fluid.rest_density and the block viscosity say which";
+constexpr const char* kHalf = "It is half the diameter";
+constexpr const char* kEdges =
+    "a box has min and max, or center and size; a cylinder the ends of its axis, from and to";
 constexpr const char* kPeriod = "It is the time of one oscillation, 1/frequency";
 constexpr const char* kXsph = "It is the factor of XSPH, not a viscosity of the fluid";
 
@@ -53,6 +56,14 @@ const std::vector<KeySynonym>& key_synonyms() {
       within("bodies[]", {"motion", "angular", "angularvelocity", "omega", "fixed", "static"}, {},
              "bodies are fluid with a velocity at the start; solids that move as told are "
              "obstacles (obstacles[].motion)"),
+      within("bodies[]", {"diameter", "d"}, {"bodies[].radius"}, kHalf),
+      within("obstacles[]", {"diameter", "d"}, {"obstacles[].radius"}, kHalf),
+      within("bodies[]", {"height", "length", "width", "depth"}, {}, kEdges),
+      within("obstacles[]", {"height", "length", "width", "depth"}, {}, kEdges),
+      within("tank_motion", {"velocity", "v", "speed", "angular"}, {},
+             "a tank swings (kind: sine) or follows a table (kind: file); at a constant velocity "
+             "its fluid would be as at rest"),
+      within("gravity", {"x", "y", "z"}, {}, "a vector is a list, gravity: [x, y, z]"),
       within("bodies[]", {"name", "id", "label"}, {},
              "bodies have no names; the first is bodies[0]"),
       within("bodies[]", {"color", "colour"}, {"render.color"}, "It colours all particles alike"),

@@ -120,6 +120,17 @@ TEST_CASE("tables: what the run does not reach, and what is small, is not told")
   CHECK(contains(tables(s), "at 1.2 and 10 s"));
 }
 
+TEST_CASE("tables: places that were given for displacements are told") {
+  const MotionTable places = rows({0, 1}, {{0.5, 0.5, 0.6}, {0.5, 0.5, 0.5}});
+  CHECK(contains(tables(by_table(places)),
+                 "obstacles[0] (ball) is 0.927 m away from its place in the scene at the first row "
+                 "of its table (fall.csv): x, y, z there count from that place; begin with 0,0,0"));
+  CHECK(tables(by_table(rows({0, 1}, {{0.05}, {0.05}}))) == "");
+  Scene goes_on = by_table(places);  // from a state of another run
+  goes_on.time.motion_begin = 0.5, goes_on.time.end = 0.4;
+  CHECK(tables(goes_on) == "");
+}
+
 TEST_CASE("tables: rotations count by how far they move the obstacle, the tank's by its size") {
   MotionTable t = rows({0, 0.1, 5}, {{}, {0, 0, 0, 0, 30, 0}, {0, 0, 0, 0, 30, 0}});
   t.columns = 6;

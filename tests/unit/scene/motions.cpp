@@ -115,12 +115,23 @@ TEST_CASE("files of motions: what is wrong is named with its line") {
   CHECK(file_error("t,ax,ay,az\n0,0,0,0\n0.30,1,0,0\n0.30,1,0,0\n2,0,0,0\n") ==
         "tank_motion.path: m.csv:4: time 0.30 does not follow 0.30; times must grow");
   CHECK(file_error("t,x\n0,0\n") ==
-        "tank_motion.path: m.csv:1: expected the header t,angle or t,ax,ay,az, got t,x");
-  CHECK(contains(file_error(""), "tank_motion.path: m.csv: expected the header"));
-  CHECK(contains(file_error(""), "and the file is empty"));
+        "tank_motion.path: m.csv:1: the header is \"t,x\", expected the header t,angle or "
+        "t,ax,ay,az");
+  CHECK(contains(file_error(""), "tank_motion.path: m.csv: is empty, expected the header"));
   CHECK(contains(file_error("t;ax;ay;az\n0;0;0;0\n2;0;0;0\n"),
-                 "got t;ax;ay;az; columns are parted by commas"));
-  CHECK(contains(file_error("0,0,0,0\n2,0,0,0\n"), "m.csv:1: expected the header"));
+                 "m.csv:1: the header is \"t;ax;ay;az\"; commas part the columns, decimals take a "
+                 "point, expected the header t,angle or t,ax,ay,az"));
+  CHECK(contains(file_error("t;ax;ay;az\n0,5;0;0;0\n"),
+                 "m.csv:2: has 2 values, the header names "
+                 "1; commas part the columns"));
+  CHECK(contains(file_error("0,0,0,0\n2,0,0,0\n"),
+                 "m.csv:1: the first line holds numbers, no header, expected the header"));
+  // A path may lead to any file: what is no header is not shown.
+  const std::string other = file_error("root:x:0:0:secret\n");
+  CHECK(contains(other, "m.csv:1: the first line is no header"));
+  CHECK_FALSE(contains(other, "secret"));
+  // Of a spreadsheet.
+  CHECK(file_error("\xEF\xBB\xBFt,ax,ay,az\r\n0,0,0,0\r\n2,1,0,0\r\n") == "");
   CHECK(file_error("t,ax,ay,az\n0,0,0,0\n2,1,zero,0\n") ==
         "tank_motion.path: m.csv:3: ay: \"zero\" is not a number");
   CHECK(contains(file_error("t,ax,ay,az\n0,0,0,0\n2,1,0\n"), "tank_motion.path: m.csv:3: has 3"));

@@ -166,6 +166,8 @@ TEST_CASE("gravity: what is wrong with its magnitude") {
       {"{tilt: 1e13}", "gravity.tilt: "},
       {"9.81 m/s2", "write the number without a unit, the key is in m/s^2: 9.81"},
       {"9.81 m/s^2", "write the number without a unit, the key is in m/s^2: 9.81"},
+      {"off", "gravity: is off; write 0 for none"},
+      {"{x: 0, z: -9.81}", "gravity.x: unknown key; a vector is a list, gravity: [x, y, z]"},
       {"1 g", "the key is in m/s^2: 9.80665"},
       {"0 0 -9.81", "expected 3 numbers [x, y, z], got \"0 0 -9.81\"; write [0, 0, -9.81]"},
       {"(0, 0, -9.81)", "; write [0, 0, -9.81]"},

@@ -103,6 +103,10 @@ TEST_CASE("suggestions: what obstacles and bodies do not have is said, no key of
   CHECK(suggested("viscosity.dynamic") == "viscosity.xsph");
   CHECK(suggested("viscosity.kind") == "viscosity.xsph");
   CHECK(contains(suggested("fluid.speed_of_sound"), "there is no equation of state"));
+  CHECK(suggested("obstacles[].diameter") == "obstacles[].radius");
+  CHECK(suggested("bodies[].diameter") == "bodies[].radius");
+  CHECK(contains(suggested("bodies[].height"), "a cylinder the ends of its axis"));
+  CHECK(contains(suggested("tank_motion.velocity"), "a tank swings"));
   // In other blocks these words mean what they did.
   CHECK(suggested("density") == "fluid.rest_density");
   CHECK(suggested("fluid.density") == "fluid.rest_density");
