@@ -71,6 +71,17 @@ std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
                 bytes_text(double(i.bytes)).c_str(), folder.c_str());
 }
 
+/// Runs of scenes without a name were kept in out/scene by earlier versions: told before another
+/// one begins in out/<file>.
+std::string elsewhere_note(const LoadedScene& loaded, const std::string& out) {
+  const std::string before = std::string("out/") + Scene{}.name;
+  std::error_code error;
+  if (!loaded.named_by_file || !std::filesystem::exists(before + "/scene.resolved.yaml", error))
+    return "";
+  return out + " is not there, and the run begins at its start; " + before +
+         " holds a run of a scene without a name: to go on with that one, give --out " + before;
+}
+
 /// A folder that is missing is told before the run folder is made. It may be the run folder itself.
 void check_json(const std::string& path, const std::string& out) {
   namespace fs = std::filesystem;
@@ -206,6 +217,9 @@ int command_run(const RunOptions& options) {
       return 0;
     }
   }
+  if (options.resume && options.out.empty() && !there)
+    if (const std::string note = elsewhere_note(loaded, out); !note.empty())
+      log.note("pbf: " + note);
   // A new folder comes last: a scene that cannot run leaves nothing behind.
   take_files(loaded, start.files, from.notes);
   const std::string note = start_note(start, scene);

@@ -1,7 +1,6 @@
 #include "lib/campaign/batch_list.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include "lib/base/inputs.h"
 #include "lib/base/plain_text.h"
 #include "lib/scene/file_kind.h"
+#include "lib/scene/scene_name.h"
 
 namespace pbf::inline campaign_module {
 namespace {
@@ -65,18 +65,6 @@ std::vector<BatchMember> of_list(const std::string& path) {
   return all;
 }
 
-/// What may stand in the name of a folder on any system.
-std::string plain(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    if (std::isalnum(static_cast<unsigned char>(c)) || std::string(".-=_").find(c) != text.npos)
-      out += c;
-    else if (!out.empty() && out.back() != '-')
-      out += '-';
-  while (!out.empty() && out.back() == '-') out.pop_back();
-  return out.substr(0, 150);
-}
-
 void name_all(std::vector<BatchMember>& all) {
   std::set<std::string> taken;
   std::map<std::string, int> next;  // the number to try for a name: not all of them again
@@ -88,7 +76,7 @@ void name_all(std::vector<BatchMember>& all) {
       name += '_';
       name += o.substr(dot == std::string::npos ? 0 : dot + 1);
     }
-    name = plain(name);
+    name = plain_name(name);
     if (name.empty() || name[0] == '.') name.insert(0, "run");
     m.name = name;
     for (int& k = next.try_emplace(name, 2).first->second; !taken.insert(m.name).second; ++k)

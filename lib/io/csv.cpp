@@ -1,5 +1,6 @@
 #include "lib/io/csv.h"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -13,6 +14,27 @@ std::string_view trimmed(std::string_view s) {
   while (!s.empty() && (s.back() == ' ' || s.back() == '\t' || s.back() == '\r'))
     s.remove_suffix(1);
   return s;
+}
+
+std::string_view without_mark(std::string_view line) {
+  if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+  return line;
+}
+
+std::string wrong_header(const std::string& header) {
+  constexpr std::string_view kLetters = "xyzuvwtrangleXYZUVWTR_,;:| \t";
+  if (header.size() <= 40 && header.find_first_not_of(kLetters) == std::string::npos)
+    return "the header is \"" + header + "\"" + separator_remedy(header);
+  if (header.find_first_not_of("0123456789+-.eE,; \t") == std::string::npos)
+    return "the first line holds numbers, no header";
+  return "the first line is no header (" +
+         std::to_string(1 + std::count(header.begin(), header.end(), ',')) +
+         " columns; not shown, for the file may be anything)";
+}
+
+std::string separator_remedy(const std::string& header) {
+  const bool other = header.find(',') == header.npos && header.find_first_of("; \t") != header.npos;
+  return other ? "; commas part the columns, decimals take a point" : "";
 }
 
 CsvLines::CsvLines(RegularFile& file, const std::string& path, CsvOptions options)
@@ -57,8 +79,9 @@ std::vector<CsvRow> read_csv(const std::string& path, const std::string& remedy,
     };
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (const auto found = find_bad_text(line)) fail(found->what + "; " + found->remedy);
+    if (lines.number() == 1) line = std::string(without_mark(line));
     if (trimmed(line).empty() || line[0] == '#') continue;
-    CsvRow row{lines.where(), {}};
+    CsvRow row{lines.where(), {}, lines.number()};
     for (std::string_view rest = line;;) {
       const std::size_t comma = rest.find(',');
       row.cells.emplace_back(trimmed(rest.substr(0, comma)));
@@ -67,7 +90,7 @@ std::vector<CsvRow> read_csv(const std::string& path, const std::string& remedy,
     }
     if (!rows.empty() && row.cells.size() != rows[0].cells.size())
       fail("has " + std::to_string(row.cells.size()) + " values, the header names " +
-           std::to_string(rows[0].cells.size()));
+           std::to_string(rows[0].cells.size()) + separator_remedy(rows[0].cells[0]));
     rows.push_back(std::move(row));
   }
   if (sha256) *sha256 = hash.text();

@@ -14,6 +14,16 @@ namespace pbf::inline io_module {
 /// Without blanks at its ends, and without the carriage return of a Windows line.
 std::string_view trimmed(std::string_view text);
 
+/// Of a first line: without the byte order mark of spreadsheets.
+std::string_view without_mark(std::string_view line);
+
+/// What a first line is that is no header that was expected: "the header is ...", and what is wrong
+/// with its separators. It is quoted only where it consists of what headers consist of: it may be
+/// the first line of anything.
+std::string wrong_header(const std::string& header);
+/// The same of separators alone; empty: they are commas.
+std::string separator_remedy(const std::string& header);
+
 /// How a file's lines are read.
 struct CsvOptions {
   Sha256* hash = nullptr;                         ///< gets the bytes that are read
@@ -31,6 +41,7 @@ class CsvLines {
   bool next(std::string& line);
   /// "path:line" of the last one.
   std::string where() const { return where(number_); }
+  std::int64_t number() const { return number_; }
 
  private:
   std::string where(std::int64_t line) const { return path_ + ":" + std::to_string(line); }
@@ -42,10 +53,11 @@ class CsvLines {
   std::int64_t number_ = 0;
 };
 
-/// A row of a small table: where it stands, and its cells, trimmed.
+/// A row of a small table: where it stands, "path:line", and its cells, trimmed.
 struct CsvRow {
   std::string where;
   std::vector<std::string> cells;
+  std::int64_t line = 0;
 };
 
 /// A small table without quoted cells: the header, then rows of as many cells. Empty lines and

@@ -20,25 +20,12 @@ bool printable(std::string_view s) {
   return std::all_of(s.begin(), s.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-/// What a first line is that is no header. It is quoted only where it consists of what headers
-/// consist of: it may be the first line of anything.
-std::string wrong_header(const std::string& header) {
-  constexpr std::string_view kLetters = "xyzuvwXYZUVW_,;:|";
-  if (header.size() <= 40 && header.find_first_not_of(kLetters) == std::string::npos)
-    return "the header is \"" + header + "\"";
-  if (header.find_first_not_of("0123456789+-.eE,") == std::string::npos)
-    return "the first line holds numbers, no header";
-  return "the first line is no header (" +
-         std::to_string(1 + std::count(header.begin(), header.end(), ',')) +
-         " columns; not shown, for the file may be anything)";
-}
-
 /// The header without blanks; tells how many columns follow.
 int csv_columns(std::string_view line, const std::string& where) {
   std::string header;
   for (char c : trimmed(line))
     if (c != ' ' && c != '\t') header += c;
-  if (header.rfind("\xEF\xBB\xBF", 0) == 0) header.erase(0, 3);  // byte order mark of spreadsheets
+  header = std::string(without_mark(header));
   if (header == "x,y,z") return 3;
   if (header == "x,y,z,vx,vy,vz") return 6;
   bad_input(where, wrong_header(header) + ", " + kExpected);

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "lib/base/error.h"
+#include "lib/program/motion_table.h"
+#include "lib/program/motion_times.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline program_module {
@@ -45,90 +47,6 @@ void must_be_read(const MotionTable& table, const std::string& path) {
   if (table.time.empty()) throw Error(ExitCode::internal, "the motion in " + path + " is not read");
 }
 
-/// Column c at a time: cubic between rows, by slopes of second order; beyond the table straight on.
-/// A slope takes the longer of the two ways beside its row no farther than 1.5 times what the
-/// larger of the two rises is, which no smooth motion does. So a jump between two rows close
-/// together, with long ones around, swings beyond the table by less than a quarter of itself.
-double cubic(const MotionTable& table, std::size_t c, double t) {
-  const std::vector<double>& at = table.time;
-  const std::size_t n = at.size();
-  if (n == 1) return table.values[0][c];
-  const auto y = [&](std::size_t k) { return table.values[k][c]; };
-  const auto rise = [&](std::size_t k) { return (y(k + 1) - y(k)) / (at[k + 1] - at[k]); };
-  const auto slope = [&](std::size_t k) {
-    if (k == 0) return rise(0);
-    if (k == n - 1) return rise(n - 2);
-    const double before = at[k] - at[k - 1], behind = at[k + 1] - at[k];
-    const double rises = std::max(std::fabs(y(k) - y(k - 1)), std::fabs(y(k + 1) - y(k)));
-    const double most = 1.5 * rises / std::max(before, behind);
-    return std::clamp((rise(k - 1) * behind + rise(k) * before) / (before + behind), -most, most);
-  };
-  if (t <= at[0]) return y(0) + slope(0) * (t - at[0]);
-  if (t >= at[n - 1]) return y(n - 1) + slope(n - 1) * (t - at[n - 1]);
-  const auto k = std::size_t(std::upper_bound(at.begin(), at.end(), t) - at.begin()) - 1;
-  const double width = at[k + 1] - at[k], u = (t - at[k]) / width, w = 1 - u;
-  return w * w * (1 + 2 * u) * y(k) + u * u * (1 + 2 * w) * y(k + 1) +
-         width * u * w * (w * slope(k) - u * slope(k + 1));
-}
-/// The same straight between rows, and beyond them as at the ends.
-double straight(const MotionTable& table, std::size_t c, double t) {
-  const std::vector<double>& at = table.time;
-  const std::size_t n = at.size();
-  if (t <= at[0] || n == 1) return table.values[0][c];
-  if (t >= at[n - 1]) return table.values[n - 1][c];
-  const auto k = std::size_t(std::upper_bound(at.begin(), at.end(), t) - at.begin()) - 1;
-  const double u = (t - at[k]) / (at[k + 1] - at[k]);
-  return (1 - u) * table.values[k][c] + u * table.values[k + 1][c];
-}
-
-/// f(t) at some times of an interval, both ends included, close enough for a sine and for tables.
-template <class F>
-void for_times(const Scene& s, double from, double to, F&& f) {
-  double shortest = to - from;
-  const auto look = [&](const Swing& swing, bool swings, const MotionTable& table) {
-    if (swings) shortest = std::min(shortest, swing.period / 32);
-    if (!table.time.empty() && table.time.size() > 1)
-      shortest = std::min(shortest,
-                          (table.time.back() - table.time.front()) / double(table.time.size()) / 2);
-  };
-  for (const Obstacle& o : s.obstacles)
-    if (o.motion) look(*o.motion, o.motion->kind == MotionKind::sine, o.motion->table);
-  if (s.tank_motion)
-    look(*s.tank_motion, s.tank_motion->kind == TankMotionKind::sine, s.tank_motion->table);
-  const int n = shortest > 0 ? int(std::clamp((to - from) / shortest, 1.0, 4096.0)) : 1;
-  for (int k = 0; k <= n; ++k) f(from + (to - from) * k / n);
-  // Rows may lie closer together than these times, where something jumps.
-  const auto rows = [&](const MotionTable& table) {
-    const std::vector<double>& at = table.time;
-    const double begin = s.time.motion_begin;
-    for (auto row = std::lower_bound(at.begin(), at.end(), begin + from);
-         row != at.end() && *row <= begin + to; ++row) {
-      f(*row - begin);
-      if (row != at.begin()) f(0.5 * (row[-1] + *row) - begin);
-    }
-  };
-  for (const Obstacle& o : s.obstacles)
-    if (o.motion) rows(o.motion->table);
-  if (s.tank_motion) rows(s.tank_motion->table);
-}
-
-/// m: half the size of what is in the domain at most.
-double radius_of(const Scene& s, const Obstacle& o) {
-  const double all = length(s.domain.max - s.domain.min);
-  switch (o.shape) {
-    case ObstacleShape::plane:
-      return all;
-    case ObstacleShape::box:
-      return std::min(all, 0.5 * length(o.max - o.min));
-    case ObstacleShape::sphere:
-      return std::min(all, o.radius);
-    case ObstacleShape::cylinder:
-    case ObstacleShape::capsule:
-      return std::min(all, 0.5 * length(o.to - o.from) + o.radius);
-  }
-  return all;
-}
-
 }  // namespace
 
 Double3 Pose::of(const Double3& x) const { return pivot + times(turn, x - pivot) + shift; }
@@ -151,6 +69,22 @@ Double3 middle_of(const Obstacle& o) {
       break;
   }
   return 0.5 * (o.from + o.to);
+}
+
+double size_of(const Scene& s, const Obstacle& o) {
+  const double all = length(s.domain.max - s.domain.min);
+  switch (o.shape) {
+    case ObstacleShape::plane:
+      return all;
+    case ObstacleShape::box:
+      return std::min(all, 0.5 * length(o.max - o.min));
+    case ObstacleShape::sphere:
+      return std::min(all, o.radius);
+    case ObstacleShape::cylinder:
+    case ObstacleShape::capsule:
+      return std::min(all, 0.5 * length(o.to - o.from) + o.radius);
+  }
+  return all;
 }
 
 Pose pose_of(const Scene& s, const Obstacle& o, double time) {
@@ -238,11 +172,10 @@ FrameStep<double> frame_step(const Scene& s, const Axes& axes, double time, doub
 
 double fastest_obstacle(const Scene& s, double from, double to) {
   double fastest = 0;
-  if (!has_moving_obstacles(s)) return fastest;
   const double dt = 1e-3 * s.time.step;
-  for_times(s, from, to, [&](double t) {
-    for (const Obstacle& o : s.obstacles) {
-      if (!o.motion) continue;
+  for (const Obstacle& o : s.obstacles) {
+    if (!o.motion) continue;
+    for (const double t : telling_times(s, *o.motion, from, to)) {
       const Pose a = pose_of(s, o, t), b = pose_of(s, o, t + dt);
       const Double3 middle = middle_of(o);
       double turned = 0;  // of the ends of the axes of a unit frame; the turn is a part of it
@@ -250,9 +183,9 @@ double fastest_obstacle(const Scene& s, double from, double to) {
         for (std::size_t j = 0; j < 3; ++j) turned += std::pow(b.turn[i][j] - a.turn[i][j], 2);
       fastest = std::max(
           fastest,
-          (length(b.of(middle) - a.of(middle)) + std::sqrt(turned / 2) * radius_of(s, o)) / dt);
+          (length(b.of(middle) - a.of(middle)) + std::sqrt(turned / 2) * size_of(s, o)) / dt);
     }
-  });
+  }
   return fastest;
 }
 
@@ -260,7 +193,7 @@ double greatest_pull(const Scene& s, double from, double to) {
   double most = length(s.gravity);
   if (!s.tank_motion) return most;
   const double h = s.h(), dt = s.time.step;
-  for_times(s, from, to, [&](double t) {
+  for (const double t : telling_times(s, *s.tank_motion, from, to)) {
     const FrameStep<double> f = frame_step(s, {}, t, dt);
     for (int corner = 0; corner < 8; ++corner) {
       const auto at = [&](int k) {
@@ -271,7 +204,7 @@ double greatest_pull(const Scene& s, double from, double to) {
           f.accelerated({at(0), s.plane() ? 0.0 : at(1), at(2)}, {0.0, 0.0, 0.0});
       most = std::max(most, h / dt * std::sqrt(dot(v, v)));
     }
-  });
+  }
   return most;
 }
 
@@ -280,12 +213,12 @@ double greatest_sway(const Scene& s, double from, double to) {
   if (!s.tank_motion) return most;
   const double h = s.h(), dt = s.time.step;
   const Double3 middle = (0.5 / h) * (s.domain.max - s.domain.min), g = (dt / h) * s.gravity;
-  for_times(s, from, to, [&](double t) {
+  for (const double t : telling_times(s, *s.tank_motion, from, to)) {
     const FrameStep<double> f = frame_step(s, {}, t, dt);
     const Vec3<double> v =
         f.accelerated({middle[0], s.plane() ? 0.0 : middle[1], middle[2]}, {0.0, 0.0, 0.0});
     most = std::max(most, h / dt * length(Double3{v.x, v.y, v.z} - g));
-  });
+  }
   return most;
 }
 

@@ -34,6 +34,9 @@ Pose pose_of(const Scene& scene, const Obstacle& obstacle, double time);
 /// m: the point about which it turns where the scene names none.
 Double3 middle_of(const Obstacle& obstacle);
 
+/// m: how far what it holds is from that point at most, no more than the domain is long.
+double size_of(const Scene& scene, const Obstacle& obstacle);
+
 /// How the tank stands: turned about its axis, and how far it has gone (m).
 struct TankPose {
   double angle = 0;  ///< radians

@@ -14,6 +14,12 @@
 namespace pbf::inline run_module {
 namespace {
 
+/// "scene.yaml:4:30: bodies[0]", for messages about its particles.
+std::string name_of(const Scene& scene, std::size_t body) {
+  const std::string& place = scene.bodies[body].place.text;
+  return (place.empty() ? "" : place + ": ") + "bodies[" + std::to_string(body) + "]";
+}
+
 /// Refuses particles outside the domain. What lies outside by rounding only (a sphere that touches
 /// a wall) is put on the wall. In two dimensions everything is put on the plane.
 void hold_inside(const Scene& scene, std::size_t body, std::size_t first, std::vector<Double3>& x) {
@@ -26,8 +32,8 @@ void hold_inside(const Scene& scene, std::size_t body, std::size_t first, std::v
       const double slack = 1e-9 * (domain.max[a] - domain.min[a]);
       if (!(x[i][a] >= domain.min[a] - slack && x[i][a] <= domain.max[a] + slack))
         throw Error(ExitCode::bad_input,
-                    "bodies[" + std::to_string(body) + "]: particle " + std::to_string(i - first) +
-                        " at " + to_text(x[i]) + " is outside the domain along " + "xyz"[a] + " (" +
+                    name_of(scene, body) + ": particle " + std::to_string(i - first) + " at " +
+                        to_text(x[i]) + " is outside the domain along " + "xyz"[a] + " (" +
                         to_text(domain.min[a]) + " .. " + to_text(domain.max[a]) + " m); " +
                         (plane && a == 1 ? "with dimensions: 2 that is the slab which holds all "
                                            "particles; give them such a y"
@@ -61,19 +67,19 @@ void hold_off_walls(const Scene& s, std::size_t body, std::size_t first, Particl
   all.farthest_put = std::max(all.farthest_put, farthest);
   if (too_far == 0) return;
   throw Error(ExitCode::bad_input,
-              "bodies[" + std::to_string(body) + "]: " + std::to_string(too_far) +
+              name_of(s, body) + ": " + std::to_string(too_far) +
                   " particles are nearer to a wall than solver.wall_margin (" + to_text(margin) +
                   " m) by more than half of fluid.spacing, the farthest by " + to_text(farthest) +
                   " m; move the body away from the walls or lower solver.wall_margin");
 }
 
 /// In two dimensions nothing leaves the plane. A body's own velocity is checked with the scene.
-void refuse_velocity_along_y(std::size_t body, const std::vector<Double3>& v) {
+void refuse_velocity_along_y(const Scene& scene, std::size_t body, const std::vector<Double3>& v) {
   for (std::size_t i = 0; i < v.size(); ++i)
     if (v[i][1] != 0)
       throw Error(ExitCode::bad_input,
-                  "bodies[" + std::to_string(body) + "]: particle " + std::to_string(i) +
-                      " has velocity " + to_text(v[i]) +
+                  name_of(scene, body) + ": particle " + std::to_string(i) + " has velocity " +
+                      to_text(v[i]) +
                       "; with dimensions: 2 its y component must be 0: set it so in the file, or "
                       "give dimensions: 3");
 }
@@ -118,11 +124,36 @@ std::size_t drop_inside(const FreePlaces& free, std::size_t first, Particles& al
   return dropped;
 }
 
+/// f() reads the file of a body; what is wrong with it is told with the key that names it.
+template <class F>
+auto of_file(const Scene& scene, std::size_t b, F&& f) {
+  try {
+    return f();
+  } catch (const Error& e) {
+    throw Error(e.code(), name_of(scene, b) + ".path: " + e.what());
+  }
+}
+
+double count_of_file(const Scene& scene, std::size_t b, const std::string& path) {
+  return of_file(scene, b, [&] {
+    const std::int64_t n = count_particle_file(path);
+    if (n < 1) bad_input(path, "holds no particles");
+    return double(n);
+  });
+}
+
 }  // namespace
 
 std::string resolved_path(const Body& body, const std::string& scene_dir) {
   const std::filesystem::path path(body.path);
   return path.is_absolute() ? body.path : (std::filesystem::path(scene_dir) / path).string();
+}
+
+Particles particles_of_file(const Scene& scene, std::size_t b, const std::string& scene_dir,
+                            std::string* sha256) {
+  return of_file(scene, b, [&] {
+    return read_particle_file(resolved_path(scene.bodies[b], scene_dir), sha256);
+  });
 }
 
 std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {
@@ -133,19 +164,13 @@ std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {
     if (!free.all()) {
       const auto count = [&](const Double3& x) { sum += free.has(x); };
       if (body.shape == Shape::file)
-        for (const Double3& x : read_particle_file(resolved_path(body, scene_dir)).position)
-          count(x);
+        for (const Double3& x : particles_of_file(scene, b, scene_dir).position) count(x);
       else
         for_each_point(body, scene.fluid.spacing, scene.plane(), count);
       continue;
     }
-    const double n = body.shape == Shape::file
-                         ? static_cast<double>(count_particle_file(resolved_path(body, scene_dir)))
-                         : lattice_count(body, scene.fluid.spacing, scene.plane());
-    if (n < 1 && body.shape == Shape::file)
-      throw Error(ExitCode::bad_input, "bodies[" + std::to_string(b) + "]: " +
-                                           resolved_path(body, scene_dir) + ": holds no particles");
-    sum += n;
+    sum += body.shape == Shape::file ? count_of_file(scene, b, resolved_path(body, scene_dir))
+                                     : lattice_count(body, scene.fluid.spacing, scene.plane());
   }
   if (sum < 1)
     throw Error(ExitCode::bad_input,
@@ -158,10 +183,11 @@ std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {
 
 std::vector<SceneFile> scene_files(const Scene& scene, const std::string& scene_dir) {
   std::vector<SceneFile> files;
-  for (const Body& body : scene.bodies) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
     if (body.shape != Shape::file) continue;
     SceneFile& file = files.emplace_back(SceneFile{body.path, ""});
-    read_particle_file(resolved_path(body, scene_dir), &file.sha256);
+    particles_of_file(scene, b, scene_dir, &file.sha256);
   }
   for (SceneFile& file : motion_files(scene, scene_dir)) files.push_back(std::move(file));
   return files;
@@ -178,8 +204,8 @@ Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
     const std::size_t first = all.size();
     if (body.shape == Shape::file) {
       SceneFile& file = all.files.emplace_back(SceneFile{body.path, ""});
-      const Particles p = read_particle_file(resolved_path(body, scene_dir), &file.sha256);
-      if (scene.dimensions == 2) refuse_velocity_along_y(b, p.velocity);
+      const Particles p = particles_of_file(scene, b, scene_dir, &file.sha256);
+      if (scene.dimensions == 2) refuse_velocity_along_y(scene, b, p.velocity);
       all.position.insert(all.position.end(), p.position.begin(), p.position.end());
       all.velocity.insert(all.velocity.end(), p.velocity.begin(), p.velocity.end());
     } else {

@@ -13,6 +13,11 @@ namespace pbf::inline run_module {
 /// Path of a file body's file.
 std::string resolved_path(const Body& body, const std::string& scene_dir);
 
+/// The particles of a file body. What is wrong with its file is told with the place in the scene
+/// that names it; else throws as read_particle_file(), and takes `sha256` as that does.
+Particles particles_of_file(const Scene& scene, std::size_t body, const std::string& scene_dir,
+                            std::string* sha256 = nullptr);
+
 /// The files of the scene's bodies and motions, in their order, as they are now. Throws as
 /// emit_particles().
 std::vector<SceneFile> scene_files(const Scene& scene, const std::string& scene_dir);

@@ -31,6 +31,7 @@ void for_each_file(AnyScene& s, F&& f) {
 
 class Reader {
  public:
+  /// `key`: with the place where it stands.
   Reader(const Scene& scene, std::string key, std::string file)
       : s_(scene), key_(std::move(key)), file_(std::move(file)) {}
 
@@ -42,7 +43,8 @@ class Reader {
       for (const std::string& cell : rows[0].cells) header += (header.empty() ? "" : ",") + cell;
     if (std::find(headers.begin(), headers.end(), header) == headers.end())
       fail(rows.empty() ? file_ : rows[0].where,
-           "expected the header " + headers[0] + " or " + headers[1]);
+           (rows.empty() ? "is empty" : wrong_header(header)) + ", expected the header " +
+               headers[0] + " or " + headers[1]);
     MotionTable t;
     t.file = fs::absolute(file_).string();
     t.columns = int(rows[0].cells.size()) - 1;
@@ -57,8 +59,9 @@ class Reader {
       if (s_.dimensions == 2) must_lie_flat(rows[0], rows[r], values);
       t.time.push_back(time);
       t.values.push_back(values);
+      t.line.push_back(rows[r].line);
     }
-    if (t.time.size() < 2) fail(file_, "needs two rows at least");
+    if (t.time.size() < 2) fail(file_, "needs at least two rows of numbers below the header");
     const double from = s_.time.motion_begin, to = from + s_.time.end, slack = 1e-9 * s_.time.end;
     if (t.time.front() > from + slack || t.time.back() < to - slack)
       fail(file_, format("goes from %.6g to %.6g s, the run from %.6g to %.6g s; give a table that "
@@ -75,7 +78,10 @@ class Reader {
     try {
       return read_csv(file_);
     } catch (const Error& e) {
-      throw Error(e.code(), key_ + ": " + e.what());
+      throw Error(e.code(), key_ + ": " + e.what() +
+                                (e.code() == ExitCode::io && !fs::exists(file_)
+                                     ? "; its path counts from the folder of the scene file"
+                                     : ""));
     }
   }
   void number(const CsvRow& row, const std::string& name, std::size_t c, double& out) const {
@@ -100,7 +106,8 @@ class Reader {
 
 void read_motions(Scene& scene, const std::string& dir, bool auto_step) {
   for_each_file(scene, [&](auto& m, const std::string& key) {
-    Reader reader(scene, key, file_of(m.path, dir));
+    const std::string place = m.place.text.empty() ? "" : m.place.text + ": ";
+    Reader reader(scene, place + key, file_of(m.path, dir));
     if constexpr (std::is_same_v<std::decay_t<decltype(m)>, Motion>) {
       m.table = reader.read({"t,x,y,z", "t,x,y,z,rx,ry,rz"});
     } else {

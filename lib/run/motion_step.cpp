@@ -17,13 +17,7 @@ template <class F>
 double largest(const Scene& s, const Swing& swing, bool swings, const MotionTable& table, F&& f) {
   const double begin = s.time.motion_begin;
   if (!table.time.empty()) return f(0.0, std::max(0.0, table.time.back() - begin));
-  if (!swings) return f(0.0, 0.0);
-  constexpr int kParts = 64;  // of the growth, which may be shorter than a period
-  const double grown = std::max(0.0, swing.ramp - begin);
-  double most = f(grown, grown + swing.period);
-  for (int k = 0; grown > 0 && k < kParts; ++k)
-    most = std::max(most, f(grown * k / kParts, grown * (k + 1) / kParts));
-  return most;
+  return swings ? f(0.0, std::max(0.0, swing.ramp - begin) + swing.period) : f(0.0, 0.0);
 }
 
 /// The step with which speeds and accelerations are looked at, s: over a long one, what swings is

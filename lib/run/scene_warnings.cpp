@@ -5,7 +5,8 @@
 #include "kernels/relative_motion.h"
 #include "lib/base/text.h"
 #include "lib/program/motion.h"
-#include "lib/program/obstacles.h"
+#include "lib/run/motion_warnings.h"
+#include "lib/run/obstacle_track.h"
 #include "lib/run/overlap.h"
 #include "lib/run/warnings.h"
 #include "lib/scene/auto_step.h"
@@ -120,39 +121,35 @@ void add_motion(const Scene& s, std::vector<Warning>& list) {
 
 /// Whether it lies beyond a face of the domain, by more than walls and obstacles reach.
 bool out_of_reach(const Scene& s, const Solid<double>& o) {
-  double size[3];
-  for (std::size_t k = 0; k < 3; ++k) size[k] = (s.domain.max[k] - s.domain.min[k]) / s.h();
   if (o.shape == ObstacleShape::plane) {
+    double size[3];
+    for (std::size_t k = 0; k < 3; ++k) size[k] = (s.domain.max[k] - s.domain.min[k]) / s.h();
     for (int corner = 0; corner < 8; ++corner)
       if (distance<3>(o, {corner & 1 ? size[0] : 0, corner & 2 ? size[1] : 0,
                           corner & 4 ? size[2] : 0}) < 1)
         return false;
     return true;
   }
-  const double center[3] = {o.center.x, o.center.y, o.center.z};
-  const double half[3] = {o.half.x, o.half.y, o.half.z};
-  for (int k = 0; k < 3; ++k) {
-    if (s.plane() && k == 1) continue;
-    double reach = 1;
-    if (o.shape == ObstacleShape::box)
-      for (int axis = 0; axis < 3; ++axis) reach += std::fabs(o.turn[axis][k]) * half[axis];
-    else
-      reach += o.half.x + std::fabs(o.turn[2][k]) * o.half.z;
-    if (center[k] + reach < 0 || center[k] - reach > size[k]) return true;
-  }
+  const Extents of_solid = extents_of(o), of_domain = extents_of(s);
+  for (std::size_t k = 0; k < 3; ++k)
+    if (!(s.plane() && k == 1) && !of_domain[k].meets({of_solid[k].low - 1, of_solid[k].high + 1}))
+      return true;
   return false;
 }
 
-void add_obstacles(const Scene& s, std::vector<Warning>& list) {
+void add_obstacles(const Scene& s, const std::vector<Track>& tracks, std::vector<Warning>& list) {
   if (!closed_box(s)) return;  // fluid goes on beyond
-  const std::vector<Solid<double>> solids = solids_of(s);
-  for (std::size_t k = 0; k < solids.size(); ++k)
-    if (!s.obstacles[k].motion && out_of_reach(s, solids[k])) {
-      list.push_back({"obstacles", format("obstacles[%zu] (%s) lies outside the domain: no fluid "
-                                          "will meet it; move it or remove it",
-                                          k, s.obstacles[k].name.c_str())});
-      return;
-    }
+  for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
+    if (!std::ranges::all_of(tracks[k].solid, [&](const auto& o) { return out_of_reach(s, o); }))
+      continue;
+    list.push_back(
+        {"obstacles", format("obstacles[%zu] (%s) %s: no fluid will meet it; move it or "
+                             "remove it",
+                             k, s.obstacles[k].name.c_str(),
+                             s.obstacles[k].motion ? "stays outside the domain all the time"
+                                                   : "lies outside the domain")});
+    return;
+  }
 }
 
 void add_overlap(const Scene& s, const std::string& dir, std::vector<Warning>& list) {
@@ -255,7 +252,11 @@ std::vector<Warning> scene_warnings(const Scene& scene, const std::string& scene
   add_step(scene, particles, list);
   add_speed(scene, list);
   add_motion(scene, list);
-  add_obstacles(scene, list);
+  add_tables(scene, list);
+  const std::vector<Track> tracks = tracks_of(scene);
+  add_obstacles(scene, tracks, list);
+  add_walls(scene, tracks, list);
+  add_collisions(scene, tracks, list);
   add_overlap(scene, scene_dir, list);
   add_crowded(scene, particles, list);
   add_output(scene, list);

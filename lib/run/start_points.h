@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "lib/io/particle_file.h"
 #include "lib/run/emit.h"
 #include "lib/scene/points.h"
 
@@ -18,8 +17,9 @@ class StartPoints {
  public:
   /// Throws as emit_particles() does for a file that cannot be read.
   StartPoints(const Scene& scene, const std::string& scene_dir) : scene_(scene) {
-    for (const Body& b : scene.bodies)
-      if (b.shape == Shape::file) files_.push_back(read_particle_file(resolved_path(b, scene_dir)));
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+      if (scene.bodies[b].shape == Shape::file)
+        files_.push_back(particles_of_file(scene, b, scene_dir));
   }
   /// f(index of the body, place in m). In two dimensions every place is on the plane.
   template <class F>

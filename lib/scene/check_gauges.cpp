@@ -141,9 +141,10 @@ class GaugeChecker : public SceneRules {
   std::string unknown_surface(const std::string& on) const {
     std::vector<std::string> names(kFaceNames.begin(), kFaceNames.end());
     for (const Obstacle& o : s_.obstacles) names.push_back(o.name);
-    const std::string near = nearest_word(on, names);
+    const std::string near = nearest_choice(on, names);
     return "no obstacle is named " + on + ", and no wall of the domain" +
-           (near.empty() ? "; there are " + joined(names, ", ") : "; did you mean " + near + "?");
+           (near.empty() ? "; there are " : "; did you mean " + near + "? There are ") +
+           joined(names, ", ");
   }
 
   bool is_place(const std::vector<double>& at) {

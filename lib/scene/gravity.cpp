@@ -10,6 +10,7 @@
 namespace pbf::inline scene_module {
 namespace {
 
+/// In the order of kFaceNames.
 enum class Side { x_min, x_max, y_min, y_max };
 
 struct Tilted {
@@ -28,10 +29,14 @@ struct Form {
 KeyRows rows() {
   return {{{"", "A scene."}, {"gravity", "Gravity by its magnitude."}},
           {key(FORM_KEY(gravity.magnitude), number("m/s^2", {0, 1e12}), "Its magnitude."),
-           key(FORM_KEY(gravity.tilt), number("degrees", {0, 180}),
-               "The angle between it and straight down, -z."),
-           key(FORM_KEY(gravity.toward), one_of({"x_min", "x_max", "y_min", "y_max"}),
+           key(FORM_KEY(gravity.tilt), number("degrees", kCoordinate),
+               "The angle between it and straight down, -z; 0 to 90."),
+           key(FORM_KEY(gravity.toward), one_of({kFaceNames.begin(), kFaceNames.begin() + 4}),
                "The face of the domain to which it is tilted.")}};
+}
+
+const char* opposite(const Form& form) {
+  return kFaceNames[std::size_t(static_cast<int>(form.gravity.toward) ^ 1)];
 }
 
 Double3 vector_of(const Tilted& g) {
@@ -59,6 +64,10 @@ bool write_out_gravity(Node& root, Problems& problems) {
   if (node == nullptr) return true;
   Form form;
   if (node->kind == Node::Kind::scalar && !node->quoted) {
+    if (node->is_word({"off", "none", "false"})) {
+      problems.add(node->place(), "gravity", "is " + node->text + "; write 0 for none");
+      return false;
+    }
     double g = 0;
     if (read_number(node->text, g) != NumberError::none) return true;  // its reader says more
     if (g < 0) {
@@ -77,6 +86,15 @@ bool write_out_gravity(Node& root, Problems& problems) {
     Problems own;
     if (!read_tree(gravity_table(), tree, object(form), own).bad.empty()) {
       read_tree(gravity_table(), tree, object(form), problems);
+      return false;
+    }
+    const double tilt = form.gravity.tilt;
+    if (!(tilt >= 0 && tilt <= 90)) {
+      problems.add(node->find("tilt")->place(), "gravity.tilt",
+                   "is " + to_text(tilt) + ", and gravity is tilted by 0 to 90 degrees from " +
+                       "straight down; " +
+                       (tilt < 0 ? "for the other way give toward: " + std::string(opposite(form))
+                                 : "for one that points upward give the vector, [x, y, z]"));
       return false;
     }
   } else {

@@ -27,7 +27,9 @@ std::string row(const Key& key) {
   std::string help = cell(key.help);
   if (kind != nullptr && kind != &key)
     help = format("(%s) %s", cell(kind->kinds_text(key.kinds)).c_str(), help.c_str());
-  const std::string standard = key.required ? "required" : code(value_text(key, key.standard));
+  const std::string standard = key.required  ? "required"
+                               : key.usually ? default_text(key)
+                                             : code(default_text(key));
   return format("| %s | %s | %s | %s | %s |\n", code(key.leaf()).c_str(),
                 cell(unit_text(key)).c_str(), cell(range_text(key)).c_str(), standard.c_str(),
                 help.c_str());

@@ -92,6 +92,10 @@ inline auto effect(Effect effect) {
 inline auto exact(const char* why) {
   return [=](auto& row) { row.exact = why; };
 }
+/// What it is in a scene file that does not have it.
+inline auto usually(const char* what) {
+  return [=](Key& row) { row.usually = what; };
+}
 /// This value turns what the key is for off, and is not rounded.
 inline auto off_at(double value) {
   return [=](Key& row) { row.off = value; };

@@ -37,6 +37,10 @@ std::string value_text(const Key& key, const Object& holder) {
   return format_field(key, key.field(holder));
 }
 
+std::string default_text(const Key& key) {
+  return key.usually ? key.usually : value_text(key, key.standard);
+}
+
 std::string Key::kinds_text(unsigned bits) const {
   std::vector<std::string> words;
   for (std::size_t k = 0; k < choices.size(); ++k)

@@ -100,6 +100,8 @@ struct Key {
   /// Numbers on which results depend are rounded at random for the ensemble of `pbf compare`, as a
   /// solver of lower precision rounds them once. Why this one is not; null: it is. Or its block's.
   const char* exact = nullptr;
+  /// What pages say in place of the default of a scene without a file; null: that default.
+  const char* usually = nullptr;
   /// The value that turns it off, which is not rounded; none: 0 stays 0.
   double off = std::numeric_limits<double>::quiet_NaN();
   // From the table:
@@ -191,6 +193,8 @@ std::string range_text(const Key& key);
 std::string bound_text(const Key& key, double bound);
 /// YAML text of the key's value in the object that holds it.
 std::string value_text(const Key& key, const Object& holder);
+/// The default for pages, "0.02" or "the name of the scene file". Not of a required key.
+std::string default_text(const Key& key);
 /// "fluid", "spacing" -> "fluid.spacing"; of the top level the leaf.
 std::string join(const std::string& block, const std::string& leaf);
 

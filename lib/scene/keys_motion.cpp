@@ -112,7 +112,8 @@ KeyRows motion_rows() {
        key(KEY(tensile->delta_q), number("h", {0, 1, true, true}),
            "Distance, in h, at which the artificial pressure equals k."),
        key(KEY(tensile->n), number("", {1, 16}), "Exponent."),
-       key(KEY(viscosity->xsph), number("", {0, 10}), "Factor c; stable up to 1.", scaled(linear)),
+       key(KEY(viscosity->xsph), number("", {0, 10}),
+           "Factor c, not a viscosity in Pa s or m^2/s; stable up to 1.", scaled(linear)),
        key(KEY(vorticity->epsilon), number("1/s", {0, 1000}),
            "Strength. The force is limited to twice the rate at which neighbours approach, so that "
            "it adds no more energy than the flow loses.")}};

@@ -28,7 +28,9 @@ KeyRows start_rows() {
                    .further = "{name: ball, shape: sphere, center: [0.5, 0.5, 0.5], radius: 0.1, "
                               "loads: true}"},
                   exact("all solvers of a comparison have the same solids"))},
-      {key(KEY(name), plain, "Name of the scene, for titles and logs.", effect(Effect::none)),
+      {key(KEY(name), plain,
+           "Name of the scene, for titles and logs, and of the folder of its runs, out/NAME.",
+           effect(Effect::none), usually("that of the scene file, without .yaml")),
        key(KEY(dimensions), number("", {2, 3}),
            "2: the fluid lies in the x-z plane in the middle of the domain's y, whose extent is "
            "the thickness of the slab, at most h, without walls. Bodies are cut by that plane. "

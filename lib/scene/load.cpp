@@ -7,6 +7,7 @@
 #include "lib/scene/base_scene.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/overrides.h"
+#include "lib/scene/scene_name.h"
 #include "lib/scene/scene_text.h"
 #include "lib/scene/shorthand.h"
 #include "lib/scene/validate.h"
@@ -61,6 +62,17 @@ void choose_step(PlacedScene& placed, Problems& problems) {
   step = Time{}.step;
 }
 
+/// Where the files are named that are read later.
+void keep_places(PlacedScene& placed) {
+  Scene& s = placed.scene;
+  for (std::size_t k = 0; k < s.bodies.size(); ++k)
+    s.bodies[k].place.text = placed.place("bodies[" + std::to_string(k) + "].path");
+  for (std::size_t k = 0; k < s.obstacles.size(); ++k)
+    if (auto& motion = s.obstacles[k].motion)
+      motion->place.text = placed.place("obstacles[" + std::to_string(k) + "].motion.path");
+  if (s.tank_motion) s.tank_motion->place.text = placed.place("tank_motion.path");
+}
+
 }  // namespace
 
 Node load_tree(const std::string& path, const std::string& what) {
@@ -69,7 +81,9 @@ Node load_tree(const std::string& path, const std::string& what) {
 
 Node load_scene_tree(const std::string& path, const std::string& base_folder) {
   std::vector<SceneFile> bases;
-  return with_bases(load_tree(path, "scene"), path, base_folder, bases);
+  Node root = with_bases(load_tree(path, "scene"), path, base_folder, bases);
+  name_by_file(root, path);
+  return root;
 }
 
 Scene scene_of_tree(const Node& root, Problems& problems, bool* automatic) {
@@ -82,6 +96,7 @@ Scene scene_of_tree(const Node& root, Problems& problems, bool* automatic) {
   if (automatic != nullptr) *automatic = placed.scene.time.step == 0;
   if (placed.scene.time.step == 0) choose_step(placed, problems);
   check_scene(placed, problems);
+  keep_places(placed);
   return placed.scene;
 }
 
@@ -120,6 +135,7 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
   std::vector<SceneFile> bases;
   Node root = with_bases(tree_of_text(loaded.text, path, "scene"), path, base_folder, bases);
   loaded.bases = files_text(bases);
+  loaded.named_by_file = name_by_file(root, path);
   loaded.scene = scene_with_overrides(std::move(root), overrides, &loaded.auto_step);
   return loaded;
 }

@@ -22,6 +22,7 @@ struct LoadedScene {
   std::string files;                   ///< files_text() of what was, or (run file) has been, read
   bool files_known = false;            ///< whether the run file has `files`
   bool auto_step = false;              ///< time.step: auto, chosen without motions so far
+  bool named_by_file = false;          ///< the scene says no name
 };
 
 /// Reads `path` and the files that it builds on (lib/scene/base_scene.h), which lie in its folder's

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,13 @@
 namespace pbf::inline scene_module {
 
 using Double3 = std::array<double, 3>;
+
+/// Where a scene file names another one, "scene.yaml:9:30", for messages; empty in a scene that was
+/// not read. No part of what the scene says: two that differ in it are equal.
+struct Place {
+  std::string text;
+  bool operator==(const Place&) const { return true; }
+};
 
 enum class MotionKind { sine, velocity, file };
 enum class TankMotionKind { sine, file };
@@ -32,6 +40,7 @@ struct MotionTable {
   int columns = 0;
   std::vector<double> time;                   ///< s
   std::vector<std::array<double, 6>> values;  ///< x y z rx ry rz; angle; ax ay az
+  std::vector<std::int64_t> line{};           ///< of the file
   bool operator==(const MotionTable&) const = default;
 };
 
@@ -40,6 +49,7 @@ struct Motion : Swing {
   MotionKind kind = MotionKind::sine;
   Double3 velocity{}, angular{};  ///< velocity: m/s, degrees/s
   std::string path;               ///< file: CSV t,x,y,z or t,x,y,z,rx,ry,rz
+  Place place;                    ///< of the path
   MotionTable table;
   bool operator==(const Motion&) const = default;
 };
@@ -48,6 +58,7 @@ struct Motion : Swing {
 struct TankMotion : Swing {
   TankMotionKind kind = TankMotionKind::sine;
   std::string path;  ///< file: CSV t,angle or t,ax,ay,az
+  Place place;       ///< of the path
   MotionTable table;
   bool operator==(const TankMotion&) const = default;
 };

@@ -37,6 +37,7 @@ struct Body {
   std::uint64_t seed = 1;  ///< random_box: seed of the generator
   std::string path;        ///< file: CSV (header x,y,z[,vx,vy,vz]) or HDF5 (position[,velocity]);
                            ///< relative to the scene file
+  Place place{};           ///< of the path
   Double3 velocity{};      ///< m/s, added to every particle of the body
   bool operator==(const Body&) const = default;
 };
@@ -208,7 +209,7 @@ struct Render {
 };
 
 struct Scene {
-  std::string name = "scene";
+  std::string name = "scene";  ///< of one from a file without a name: lib/scene/scene_name.h
   int dimensions = 3;  ///< 2: the x-z plane in the middle of the domain's y, which is its thickness
   Domain domain;
   Fluid fluid;

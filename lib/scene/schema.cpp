@@ -82,7 +82,7 @@ Json key_schema(const Key& key) {
     out["anyOf"] = {{{"const", "auto"}}, type};
   else
     out.update(type);
-  if (!key.required) out["default"] = default_value(key, field);
+  if (!key.required && !key.usually) out["default"] = default_value(key, field);
   return out;
 }
 

@@ -95,8 +95,12 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
 }
 
 std::string nearest_choice(const std::string& word, const std::vector<std::string>& choices) {
+  std::string written = bare(word);
+  for (const std::string rest : {"wall", "face"})  // the left wall
+    if (written.size() > rest.size() && written.ends_with(rest))
+      written.resize(written.size() - rest.size());
   for (const WordSynonym& s : word_synonyms())
-    if (bare(word) == s.written && std::ranges::count(choices, s.meant)) return s.meant;
+    if (written == s.written && std::ranges::count(choices, s.meant)) return s.meant;
   return nearest_word(word, choices);
 }
 
@@ -116,8 +120,11 @@ Suggestion suggest_key(const KeyTable& table, const std::string& path) {
     leaves.push_back(leaf_of(p));
   }
   Suggestion of_synonym;
+  for (const KeySynonym& s : key_synonyms())
+    if (!s.in.empty() && s.in == in && std::ranges::count(s.written, bare(wrong)))
+      return {{s.keys.begin(), s.keys.end()}, s.note};
   for (const KeySynonym& s : key_synonyms()) {
-    if (!std::ranges::count(s.written, bare(wrong))) continue;
+    if (!s.in.empty() || !std::ranges::count(s.written, bare(wrong))) continue;
     std::vector<std::string> known;
     for (const char* key : s.keys)
       if (std::ranges::count(paths, key)) known.push_back(key);

@@ -2,8 +2,90 @@
 
 namespace pbf::inline scene_module {
 
+namespace {
+
+/// What is so in a block alone.
+KeySynonym within(const char* block, std::vector<std::string> written,
+                  std::vector<const char*> keys, std::string note) {
+  return {std::move(written), std::move(keys), std::move(note), true, block};
+}
+
+constexpr const char* kNoMass =
+    "obstacles have no mass: they stand still, or move as obstacles[].motion tells, and the fluid "
+    "does not push them";
+constexpr const char* kNoFriction = "walls and obstacles have no friction, fluid slides along them";
+constexpr const char* kOneFluid =
+    "all bodies are of one fluid; fluid.rest_density and the block viscosity say which";
+constexpr const char* kHalf = "It is half the diameter";
+constexpr const char* kEdges =
+    "a box has min and max, or center and size; a cylinder the ends of its axis, from and to";
+constexpr const char* kPeriod = "It is the time of one oscillation, 1/frequency";
+constexpr const char* kXsph = "It is the factor of XSPH, not a viscosity of the fluid";
+
+}  // namespace
+
 const std::vector<KeySynonym>& key_synonyms() {
   static const std::vector<KeySynonym> kSynonyms{
+      within("obstacles[]",
+             {"density", "rho", "rho0", "restdensity", "mass", "weight", "inertia", "gravity",
+              "dynamic", "floating", "buoyancy", "rigid", "rigidbody"},
+             {}, kNoMass),
+      within("obstacles[]",
+             {"friction", "frictioncoefficient", "mu", "roughness", "slip", "noslip", "restitution",
+              "elasticity", "bounce", "stiffness", "material"},
+             {}, kNoFriction),
+      within("obstacles[]", {"fixed", "static", "moving", "movable", "stationary"}, {},
+             "obstacles stand still unless they have a block motion"),
+      within("obstacles[]",
+             {"velocity", "initialvelocity", "v0", "vel", "v", "speed", "linearvelocity"},
+             {"obstacles[].motion.velocity"}, "An obstacle moves by its block motion"),
+      within("obstacles[]", {"angularvelocity", "omega", "angular", "rpm", "spin", "rotationspeed"},
+             {"obstacles[].motion.angular"}, "An obstacle moves by its block motion"),
+      within("obstacles[].motion", {"frequency", "freq", "f", "hz"}, {"obstacles[].motion.period"},
+             kPeriod),
+      within("tank_motion", {"frequency", "freq", "f", "hz"}, {"tank_motion.period"}, kPeriod),
+      within("obstacles[].motion", {"speed", "v", "vel", "linear"}, {"obstacles[].motion.velocity"},
+             ""),
+      within("obstacles[].motion",
+             {"rotation", "rotate", "spin", "rpm", "angularspeed", "rotationspeed"},
+             {"obstacles[].motion.angular"}, "It is in degrees per second about each axis"),
+      within("bodies[]",
+             {"density", "rho", "rho0", "restdensity", "mass", "weight", "material", "fluid",
+              "viscosity", "nu", "mu", "phase"},
+             {}, kOneFluid),
+      within("bodies[]", {"motion", "angular", "angularvelocity", "omega", "fixed", "static"}, {},
+             "bodies are fluid with a velocity at the start; solids that move as told are "
+             "obstacles (obstacles[].motion)"),
+      within("bodies[]", {"diameter", "d"}, {"bodies[].radius"}, kHalf),
+      within("obstacles[]", {"diameter", "d"}, {"obstacles[].radius"}, kHalf),
+      within("bodies[]", {"height", "length", "width", "depth"}, {}, kEdges),
+      within("obstacles[]", {"height", "length", "width", "depth"}, {}, kEdges),
+      within("tank_motion", {"velocity", "v", "speed", "angular"}, {},
+             "a tank swings (kind: sine) or follows a table (kind: file); at a constant velocity "
+             "its fluid would be as at rest"),
+      within("gravity", {"x", "y", "z"}, {}, "a vector is a list, gravity: [x, y, z]"),
+      within("bodies[]", {"name", "id", "label"}, {},
+             "bodies have no names; the first is bodies[0]"),
+      within("bodies[]", {"color", "colour"}, {"render.color"}, "It colours all particles alike"),
+      within("obstacles[]", {"color", "colour"}, {}, "obstacles have one colour in all pictures"),
+      within("domain", {"friction", "slip", "noslip", "roughness", "walltype", "contactangle"}, {},
+             kNoFriction),
+      within("domain", {"walls", "boundary", "boundaries", "boundaryconditions", "bc", "closed"},
+             {"domain.open"}, "Faces are walls unless they are listed there"),
+      within("fluid", {"viscosity"}, {"viscosity"}, "It is a block at the top of the file"),
+      within("viscosity", {"kind", "type", "model", "method", "kinematic", "dynamic", "value"},
+             {"viscosity.xsph"}, kXsph),
+      {{"periodic", "periodicity", "cyclic", "periodicboundary"},
+       {},
+       "there are no periodic boundaries: a face of the domain is a wall, or open (domain.open)"},
+      {{"soundspeed", "speedofsound", "gamma", "eos", "equationofstate", "bulkmodulus",
+        "stiffness"},
+       {},
+       "there is no equation of state; time.step and solver.iterations decide how far the fluid is "
+       "compressed"},
+      {{"motion", "movement", "shaking", "excitation"},
+       {"tank_motion"},
+       "Obstacles move by a block motion of their own"},
       {{"dt", "timestep", "deltat", "stepsize", "timestepsize"}, {"time.step"}},
       {{"tend", "endtime", "duration", "tmax", "tfinal", "finaltime", "simulationtime", "totaltime",
         "stopat", "stoptime", "maxtime"},
@@ -66,7 +148,7 @@ const std::vector<KeySynonym>& key_synonyms() {
       {{"angularvelocity", "omega"}, {"obstacles[].motion.angular"}, "", false},
       {{"nu", "mu", "c", "kinematicviscosity", "dynamicviscosity", "viscositycoefficient"},
        {"viscosity.xsph"},
-       "It is the factor of XSPH, not a viscosity of the fluid"},
+       kXsph},
       {{"factor", "coefficient", "strength"},
        {"viscosity.xsph", "tensile.k", "vorticity.epsilon"},
        "",
@@ -129,6 +211,15 @@ const std::vector<WordSynonym>& word_synonyms() {
       {"halfspace", "plane"},
       {"sin", "sine"},
       {"harmonic", "sine"},
+      {"cosine", "sine"},
+      {"sinusoidal", "sine"},
+      {"oscillation", "sine"},
+      {"periodic", "sine"},
+      {"rotation", "velocity"},
+      {"translation", "velocity"},
+      {"linear", "velocity"},
+      {"constant", "velocity"},
+      {"table", "file"},
       {"height", "level"},
       {"discharge", "flow"},
       {"flux", "flow"},
@@ -149,8 +240,24 @@ const std::vector<WordSynonym>& word_synonyms() {
       {"floor", "z_min"},
       {"top", "z_max"},
       {"ceiling", "z_max"},
+      {"ground", "z_min"},
+      {"bed", "z_min"},
+      {"base", "z_min"},
+      {"down", "z_min"},
+      {"lower", "z_min"},
+      {"upper", "z_max"},
+      {"up", "z_max"},
+      {"lid", "z_max"},
+      {"roof", "z_max"},
       {"front", "y_min"},
+      {"near", "y_min"},
       {"back", "y_max"},
+      {"rear", "y_max"},
+      {"far", "y_max"},
+      {"west", "x_min"},
+      {"east", "x_max"},
+      {"south", "y_min"},
+      {"north", "y_max"},
       // of options of the command line
       {"o", "out"},
       {"output", "out"},

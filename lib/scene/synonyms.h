@@ -12,6 +12,7 @@ struct KeySynonym {
   std::vector<const char*> keys;  ///< paths of the table; those in the block at hand come first
   std::string note{};             ///< behind the question, or alone without keys
   bool anywhere = true;           ///< false: so common a word means these in their blocks only
+  std::string in{};               ///< counts in this block alone, before all others: "obstacles[]"
 };
 
 struct WordSynonym {

@@ -165,8 +165,9 @@ class Validator {
                        (block.keys.empty() ? "" : block.keys[0]->leaf() + ": ") + "...}, got " +
                        value.shown();
     if (value.kind == Node::Kind::scalar) what += missing_space(value.text);
-    if (const std::string scalar = in_block(block, value); !scalar.empty())
-      what += "; write " + scalar;
+    std::string inside = in_block(block, value);
+    if (inside.empty()) inside = file_in_block(block, value);
+    if (!inside.empty()) what += "; write " + inside;
     if (block.optional)
       what += table_.has_required(block) ? "; write off for off"
                                          : "; write {} or on for on with the defaults, off for off";
@@ -187,6 +188,20 @@ class Validator {
     if (!is_numeric(first.field(first.standard)) || !in_range(first, number)) return "";
     return block.leaf() + ": {" + first.leaf() + ": " + value.text + "} (" +
            first.help.substr(0, first.help.find_last_not_of('.') + 1) + ")";
+  }
+
+  /// "motion: {kind: file, path: gate.csv}" for a file's name in the place of a block that may name
+  /// one, "motion: {kind: sine, ...}" for a word of its kinds; else empty.
+  static std::string file_in_block(const Block& block, const Node& value) {
+    if (block.kind == nullptr || value.kind != Node::Kind::scalar) return "";
+    if (const std::string kind = nearest_choice(value.text, block.kind->choices); !kind.empty())
+      return block.leaf() + ": {" + block.kind->leaf() + ": " + kind + ", ...}";
+    if (!value.text.ends_with(".csv")) return "";
+    for (const Key* key : block.keys)
+      if (key->names_file)
+        return block.leaf() + ": {" + block.kind->leaf() + ": " +
+               block.kind->kinds_text(key->kinds) + ", " + key->leaf() + ": " + value.text + "}";
+    return "";
   }
 
   void read_list(const Block& block, const Node& value) {

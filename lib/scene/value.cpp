@@ -50,6 +50,12 @@ std::string read_numbers(const Key& key, const Node& node, std::array<T, N>& out
            (N == 3 && node.items.size() == 2 && key.flat != FlatY::none
                 ? "; two, [x, z], do with dimensions: 2"
                 : "") +
+           (node.kind == Node::Kind::scalar ? list_remedy(node.text, N) : "") +
+           (node.kind == Node::Kind::scalar && N == 3 && key.unit.empty() ? axis_remedy(node.text)
+                                                                          : "") +
+           (node.kind == Node::Kind::scalar && !node.quoted && key.form != nullptr
+                ? number_remedy(node.text, key.unit)
+                : "") +
            (node.items.size() > N ? "; commas part the numbers, decimals take a point" : "");
   std::array<T, N> values{};
   Key element = key;
@@ -87,8 +93,12 @@ std::string read_text(const Key& key, const Node& node, std::string& out) {
 }
 
 std::string read_words(const Key& key, const Node& node, std::vector<std::string>& out) {
-  if (node.kind != Node::Kind::list)
-    return instead_of("a list of words such as [" + key.choices[0] + "]", node);
+  if (node.kind != Node::Kind::list) {
+    const std::string near =
+        node.kind == Node::Kind::scalar ? nearest_choice(node.text, key.choices) : std::string();
+    return instead_of("a list of words such as [" + (near.empty() ? key.choices[0] : near) + "]",
+                      node);
+  }
   std::vector<std::string> words;
   for (const Node& item : node.items) {
     if (choice_of(key, item) < 0) return not_among(key.choices, item);

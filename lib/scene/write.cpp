@@ -38,7 +38,7 @@ std::string documentation(const Key& key) {
   if (!unit.empty()) facts.push_back("unit " + unit);
   if (!range.empty()) facts.push_back(range);
   if (unit.empty() && range.empty()) facts.push_back("text");
-  facts.push_back(key.required ? "required" : "default " + value_text(key, key.standard));
+  facts.push_back(key.required ? "required" : "default " + default_text(key));
   return key.help + " [" + joined(facts, "; ") + "]";
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 #include <vector>
 
 #include "lib/base/plain_text.h"
@@ -18,10 +19,38 @@ struct Unit {
   double factor;
 };
 constexpr Unit kUnits[] = {
-    {"ms", "s", 1e-3},     {"us", "s", 1e-6}, {"min", "s", 60},          {"h", "s", 3600},
-    {"mm", "m", 1e-3},     {"cm", "m", 1e-2}, {"dm", "m", 0.1},          {"km", "m", 1e3},
-    {"g", "kg", 1e-3},     {"t", "kg", 1e3},  {"g/cm^3", "kg/m^3", 1e3}, {"g/cm3", "kg/m^3", 1e3},
-    {"cm/s", "m/s", 1e-2}, {"%", "", 1e-2},
+    {"ms", "s", 1e-3},
+    {"us", "s", 1e-6},
+    {"min", "s", 60},
+    {"h", "s", 3600},
+    {"mm", "m", 1e-3},
+    {"cm", "m", 1e-2},
+    {"dm", "m", 0.1},
+    {"km", "m", 1e3},
+    {"g", "kg", 1e-3},
+    {"t", "kg", 1e3},
+    {"g/cm^3", "kg/m^3", 1e3},
+    {"g/cm3", "kg/m^3", 1e3},
+    {"cm/s", "m/s", 1e-2},
+    {"%", "", 1e-2},
+    {"km/h", "m/s", 1 / 3.6},
+    {"sec", "s", 1},
+    {"seconds", "s", 1},
+    {"m/s2", "m/s^2", 1},
+    {"m/s\u00b2", "m/s^2", 1},
+    {"m/s**2", "m/s^2", 1},
+    {"cm/s^2", "m/s^2", 1e-2},
+    {"g", "m/s^2", 9.80665},
+    {"kg/m3", "kg/m^3", 1},
+    {"kg/m\u00b3", "kg/m^3", 1},
+    {"g/l", "kg/m^3", 1},
+    {"deg", "degrees", 1},
+    {"degree", "degrees", 1},
+    {"\u00b0", "degrees", 1},
+    {"rad", "degrees", 57.29577951308232},
+    {"deg/s", "degrees/s", 1},
+    {"rad/s", "degrees/s", 57.29577951308232},
+    {"rpm", "degrees/s", 6},
 };
 
 bool is_number(const std::string& text, double& value) {
@@ -49,6 +78,13 @@ std::string unit_behind(const std::string& text, double& value) {
       std::isdigit(static_cast<unsigned char>(unit[1])))
     return "";
   return unit;
+}
+
+/// Whether a key of "m or degrees" takes such a number.
+bool is_of(const std::string& one, const std::string& unit) {
+  const std::size_t rest = unit.find(" or ");
+  return one == unit ||
+         (rest != unit.npos && (one == unit.substr(0, rest) || one == unit.substr(rest + 4)));
 }
 
 std::string without(std::string text, const std::string& characters) {
@@ -149,9 +185,11 @@ std::string number_remedy(const std::string& text, const std::string& unit) {
   if (const std::string comma = comma_remedy(text); !comma.empty()) return comma;
   if (const std::string other = unit_behind(text, value); !other.empty()) {
     const std::string in = unit.empty() || unit == "1" ? "" : ", the key is in " + unit;
-    double factor = other == unit ? 1 : 0;
+    if (other == "Hz" && unit == "s" && value > 0)
+      return "; the key is a time in s, 1/frequency: " + format("%.12g", 1 / value);
+    double factor = is_of(other, unit) ? 1 : 0;
     for (const Unit& u : kUnits)
-      if (other == u.written && unit == u.of) factor = u.factor;
+      if (other == u.written && is_of(u.of, unit)) factor = u.factor;
     return "; write the number without a unit" + in +
            (factor > 0 ? ": " + format("%.12g", value * factor) : "");
   }
@@ -163,6 +201,32 @@ std::string number_remedy(const std::string& text, const std::string& unit) {
       text.find_first_of("*/") != text.npos)
     return "; formulas are not computed: write the result";
   return "";
+}
+
+std::string axis_remedy(const std::string& text) {
+  const bool back = !text.empty() && text[0] == '-';
+  const std::string axis = text.substr(back || text.starts_with('+') ? 1 : 0);
+  if (axis.size() != 1 || std::string("xyzXYZ").find(axis) == std::string::npos) return "";
+  std::string list;
+  for (const char c : {'x', 'y', 'z'})
+    list += (list.empty() ? "" : ", ") +
+            std::string(std::tolower(static_cast<unsigned char>(axis[0])) != c ? "0"
+                        : back                                                 ? "-1"
+                                                                               : "1");
+  return "; write [" + list + "]";
+}
+
+std::string list_remedy(const std::string& text, std::size_t numbers) {
+  std::string words = text;
+  std::replace_if(
+      words.begin(), words.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
+  words = without(words, "()");
+  std::istringstream in(words);
+  std::vector<std::string> all;
+  double value = 0;
+  for (std::string word; in >> word; all.push_back(word))
+    if (!is_number(word, value)) return "";
+  return all.size() == numbers ? "; write [" + joined(all, ", ") + "]" : "";
 }
 
 std::string missing_space(const std::string& text) {

@@ -11,6 +11,12 @@ namespace pbf::inline scene_module {
 /// in s: write 0.002".
 std::string number_remedy(const std::string& text, const std::string& unit);
 
+/// "0 0 -9.81" in the place of a list of so many numbers: "; write [0, 0, -9.81]"; else empty.
+std::string list_remedy(const std::string& text, std::size_t numbers);
+
+/// "-z" in the place of a direction: "; write [0, 0, -1]"; else empty.
+std::string axis_remedy(const std::string& text);
+
 /// For "step:0.002", which is a text to YAML and no key: "; a space is missing behind step:".
 std::string missing_space(const std::string& text);
 

@@ -54,6 +54,26 @@ def test_a_dict_is_run_and_its_file_repeats_it(scene, pbf, tmp_path):
     assert pbf_tools.run(scene, "out/one", overwrite=True).times[-1] == pytest.approx(0.2)
 
 
+def test_a_scene_without_a_name_has_that_of_its_file_and_a_dict_is_called_scene(scene, tmp_path):
+    del scene["name"]
+    assert pbf_tools.plan(scene)["scene"] == "scene"
+    assert str(pbf_tools.run(scene).path) == "out/scene/run.vtkhdf"
+    one = scene_text.write_scene({**scene, "output": {}}, tmp_path / "tank (1).yaml")
+    assert pbf_tools.plan(one)["scene"] == "tank-1"
+    assert str(pbf_tools.run(one).path) == "out/tank-1/run.vtkhdf"
+    assert str(pbf_tools.run(one, resume=True).path) == "out/tank-1/run.vtkhdf"
+
+
+def test_warnings_of_a_motion_come_before_the_run(scene):
+    scene["obstacles"] = [{"name": "ball", "shape": "sphere", "center": [1, 0.2, 0.3],
+                           "radius": 0.1, "motion": {"kind": "velocity",
+                                                     "velocity": [0, 0, -2]}}]
+    kinds = [warning["kind"] for warning in pbf_tools.plan(scene)["warnings"]]
+    assert kinds == ["wall"]
+    with pytest.warns(pbf_tools.PbfWarning, match=r"obstacles\[0\] \(ball\) goes through the wall"):
+        pbf_tools.run(scene, "out/through")
+
+
 def test_a_scene_file_is_run_as_it_stands(minimal):
     run = pbf_tools.run(ROOT / "configs/minimal.yaml", out="again", threads=2)
     assert np.array_equal(run["position"][-1], pbf_tools.open(minimal)["position"][-1])

@@ -41,8 +41,9 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
         progress: bool | None = None, base_folder: str | os.PathLike[str] | None = None,
         program: str | os.PathLike[str] | None = None, **overrides: Any) -> Run:
     """Simulates a scene, a file, a dict of the same keys or a run to repeat (its file or folder),
-    into the folder `out` (out/NAME when not given) and opens its run file. A dict is written to
-    OUT.yaml, which `pbf run` takes too.
+    into the folder `out` and opens its run file. Without `out` that is out/NAME, with the name of
+    the scene: of a file that says none its own, of a dict "scene". A dict is written to OUT.yaml,
+    which `pbf run` takes too.
 
     Overrides are keys of the scene, as those of --set: `solver__iterations=8`,
     `time={"end": 1}`, `**{"bodies[0].velocity": [1, 0, 0]}`; None is off. A scene without

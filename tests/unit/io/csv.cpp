@@ -36,6 +36,10 @@ TEST_CASE("a small CSV table is read with its places, without comments, blanks a
   CHECK(rows[3].cells == std::vector<std::string>{"4", "5"});
   CHECK(holds(rows[3].where, "t.csv:8"));
   CHECK(read_csv(folder.write("empty.csv", "")).empty());
+  CHECK(rows[3].line == 8);
+  // The byte order mark of a spreadsheet is no part of the header.
+  CHECK(read_csv(folder.write("m.csv", "\xEF\xBB\xBFT,Z\n1,2\n"))[0].cells ==
+        std::vector<std::string>{"T", "Z"});
 }
 
 TEST_CASE("the pass that reads a CSV table gives the SHA-256 of all its bytes") {

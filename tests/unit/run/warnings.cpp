@@ -265,8 +265,8 @@ TEST_CASE("intervals beyond the end of a run are named, each of them") {
 }
 
 TEST_CASE(
-    "an obstacle that stands where no fluid will meet it is told, one that reaches in or moves is "
-    "not") {
+    "an obstacle that stands where no fluid will meet it is told, one that reaches or comes in "
+    "is not") {
   // h is 0.1 m, the box 0.4 x 0.4 x 1.2 m.
   const auto told = [](const Obstacle& o, const std::vector<std::string>& open = {}) {
     Scene s = pool();
@@ -287,6 +287,12 @@ TEST_CASE(
   box.turn_angle = 0;
   box.motion = Motion{};
   box.motion->kind = MotionKind::velocity;
+  CHECK(told(box) ==
+        "obstacles[0] (far) stays outside the domain all the time: no fluid will meet it; move it "
+        "or remove it");
+  box.motion->velocity = {0.5, 0, 0};  // away
+  CHECK_FALSE(told(box).empty());
+  box.motion->velocity = {-0.02, 0, 0};
   CHECK(told(box).empty());
   Obstacle ball = obstacle(ObstacleShape::sphere);
   ball.center = {0.2, -0.4, 0.2}, ball.radius = 0.31;

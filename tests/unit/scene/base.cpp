@@ -24,7 +24,9 @@ struct Scenes {
   }
   std::string path(const std::string& name) const { return (folder.path / name).string(); }
   Scene scene(const std::string& text, const std::vector<std::string>& overrides = {}) const {
-    return load_scene(write("my.yaml", text), overrides).scene;
+    Scene s = load_scene(write("my.yaml", text), overrides).scene;
+    if (s.name == "my") s.name = Scene{}.name;  // as one that was parsed
+    return s;
   }
   std::string error(const std::string& text, const std::string& base_folder = "") const {
     return without(error_of([&] { load_scene(write("my.yaml", text), {}, base_folder); }));

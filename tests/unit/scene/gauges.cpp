@@ -120,6 +120,19 @@ TEST_CASE("gauges: a pressure gauge lies on the surface that it names, where flu
   CHECK(contains(gauge_error(pressure("bax", "[0.2, 0.35, 0.15]")),
                  "gauges[0].on: no obstacle is named bax, and no wall of the domain; did you mean "
                  "box?"));
+  for (const auto& [written, wall] :
+       std::vector<std::pair<std::string, std::string>>{{"floor", "z_min"},
+                                                        {"bottom", "z_min"},
+                                                        {"Ground", "z_min"},
+                                                        {"left wall", "x_min"},
+                                                        {"back_wall", "y_max"},
+                                                        {"lid", "z_max"},
+                                                        {"zmin", "z_min"},
+                                                        {"east", "x_max"}})
+    CHECK(contains(gauge_error(pressure(written, "[0.2, 0.35, 0.15]")),
+                   "no wall of the domain; did you mean " + wall + "? There are x_min, x_max"));
+  CHECK(contains(gauge_error(pressure("somewhere", "[0.2, 0.35, 0.15]")),
+                 "no wall of the domain; there are x_min, x_max"));
   CHECK(contains(gauge_error(pressure("box", "[0.35, 0.35, 0]")),
                  "gauges[0].at: no fluid comes to this place of box"));
   CHECK(contains(gauge_error(pressure("z_min", "[0.3, 0.3, 0]")),

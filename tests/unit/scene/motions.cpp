@@ -27,12 +27,15 @@ std::string file_error(const std::string& text, const std::string& tank = "",
                        const std::vector<std::string>& set = {}) {
   const test::TemporaryFolder folder;
   Scene s = parse(kMinimal + "tank_motion: {kind: file, path: m.csv" + tank + "}\n", set);
+  const std::string place = "scene.yaml:6:33: ";
   folder.write("m.csv", text);
   try {
     read_motions(s, folder.path.string());
   } catch (const Error& e) {
     CHECK(e.code() == ExitCode::bad_input);
-    const std::string what = e.what(), dir = folder.path.string() + "/";
+    std::string what = e.what(), dir = folder.path.string() + "/";
+    CHECK(what.rfind(place, 0) == 0);  // where the scene names the file
+    what.erase(0, place.size());
     const auto at = what.find(dir);
     return at == std::string::npos ? what : what.substr(0, at) + what.substr(at + dir.size());
   }
@@ -112,8 +115,23 @@ TEST_CASE("files of motions: what is wrong is named with its line") {
   CHECK(file_error("t,ax,ay,az\n0,0,0,0\n0.30,1,0,0\n0.30,1,0,0\n2,0,0,0\n") ==
         "tank_motion.path: m.csv:4: time 0.30 does not follow 0.30; times must grow");
   CHECK(file_error("t,x\n0,0\n") ==
-        "tank_motion.path: m.csv:1: expected the header t,angle or t,ax,ay,az");
-  CHECK(contains(file_error(""), "tank_motion.path: m.csv: expected the header"));
+        "tank_motion.path: m.csv:1: the header is \"t,x\", expected the header t,angle or "
+        "t,ax,ay,az");
+  CHECK(contains(file_error(""), "tank_motion.path: m.csv: is empty, expected the header"));
+  CHECK(contains(file_error("t;ax;ay;az\n0;0;0;0\n2;0;0;0\n"),
+                 "m.csv:1: the header is \"t;ax;ay;az\"; commas part the columns, decimals take a "
+                 "point, expected the header t,angle or t,ax,ay,az"));
+  CHECK(contains(file_error("t;ax;ay;az\n0,5;0;0;0\n"),
+                 "m.csv:2: has 2 values, the header names "
+                 "1; commas part the columns"));
+  CHECK(contains(file_error("0,0,0,0\n2,0,0,0\n"),
+                 "m.csv:1: the first line holds numbers, no header, expected the header"));
+  // A path may lead to any file: what is no header is not shown.
+  const std::string other = file_error("root:x:0:0:secret\n");
+  CHECK(contains(other, "m.csv:1: the first line is no header"));
+  CHECK_FALSE(contains(other, "secret"));
+  // Of a spreadsheet.
+  CHECK(file_error("\xEF\xBB\xBFt,ax,ay,az\r\n0,0,0,0\r\n2,1,0,0\r\n") == "");
   CHECK(file_error("t,ax,ay,az\n0,0,0,0\n2,1,zero,0\n") ==
         "tank_motion.path: m.csv:3: ay: \"zero\" is not a number");
   CHECK(contains(file_error("t,ax,ay,az\n0,0,0,0\n2,1,0\n"), "tank_motion.path: m.csv:3: has 3"));
@@ -125,9 +143,36 @@ TEST_CASE("files of motions: what is wrong is named with its line") {
   CHECK(contains(file_error("t,angle\n0,0\n2,1\n"), "holds angles; give tank_motion.axis"));
   CHECK(contains(file_error("t,ax,ay,az\n0,0,0,0\n2,1,0,0\n", ", axis: [0, 1, 0]"),
                  "holds accelerations, which have no axis"));
-  CHECK(contains(file_error("t,ax,ay,az\n0,0,0,0\n"), "needs two rows at least"));
+  CHECK(contains(file_error("t,ax,ay,az\n0,0,0,0\n"),
+                 "needs at least two rows of numbers below the header"));
   Scene s = parse(kMinimal + "tank_motion: {kind: file, path: none.csv}\n");
-  CHECK_THROWS(read_motions(s, "."));
+  CHECK(
+      contains(error_of([&] { read_motions(s, "."); }),
+               "5 scene.yaml:6:33: tank_motion.path: ./none.csv: cannot be opened: No such file or "
+               "directory; its path counts from the folder of the scene file"));
+}
+
+TEST_CASE("files of motions and bodies: the place in the scene stands before that in the file") {
+  const test::TemporaryFolder folder;
+  folder.write("p.csv", "t,x,y,z\n0,0,0,0\n2,0.1,0\n");
+  Scene s = parse(kMinimal + obstacle("{kind: file, path: p.csv}"));
+  const std::string dir = folder.path.string();
+  CHECK(error_of([&] { read_motions(s, dir); }) ==
+        "2 scene.yaml:6:103: obstacles[0].motion.path: " + dir +
+            "/p.csv:3: has 3 values, the header names 4");
+  folder.write("b.csv", "x,y,z\n0.1,0.1,oops\n");
+  Scene b = parse(with_bodies("[{shape: file, path: b.csv}]"));
+  const std::string place = "2 scene.yaml:3:30: bodies[0].path: " + dir + "/b.csv:2: z: ";
+  CHECK(contains(error_of([&] { emit_particles(b, dir); }), place));
+  CHECK(contains(error_of([&] { scene_files(b, dir); }), place));
+  b.bodies[0].path = "none.csv";
+  CHECK(contains(error_of([&] { count_particles(b, dir); }),
+                 "5 scene.yaml:3:30: bodies[0].path: " + dir + "/none.csv: cannot be opened"));
+  // A scene that was made and not read has no place, and equals one that was.
+  Scene made = s;
+  made.obstacles[0].motion->place.text.clear();
+  CHECK(made == s);
+  CHECK(contains(error_of([&] { read_motions(made, dir); }), "2 obstacles[0].motion.path: "));
 }
 
 TEST_CASE("files of motions: the run keeps what it read of them, and may lie elsewhere") {

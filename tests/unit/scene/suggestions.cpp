@@ -82,11 +82,51 @@ TEST_CASE("suggestions: what other programs call a key") {
   }
 }
 
+TEST_CASE("suggestions: what obstacles and bodies do not have is said, no key of other blocks") {
+  for (const char* key : {"density", "mass", "Rest_Density", "weight"})
+    CHECK(contains(suggested(std::string("obstacles[].") + key), "obstacles have no mass"));
+  for (const char* key : {"friction", "material", "restitution", "no_slip"})
+    CHECK(contains(suggested(std::string("obstacles[].") + key), "have no friction"));
+  for (const char* key : {"fixed", "static", "moving"})
+    CHECK(contains(suggested(std::string("obstacles[].") + key), "stand still unless"));
+  for (const char* key : {"velocity", "speed", "v"})
+    CHECK(suggested(std::string("obstacles[].") + key) == "obstacles[].motion.velocity");
+  CHECK(suggested("obstacles[].angular_velocity") == "obstacles[].motion.angular");
+  CHECK(suggested("obstacles[].motion.frequency") == "obstacles[].motion.period");
+  CHECK(suggested("tank_motion.frequency") == "tank_motion.period");
+  CHECK(suggested("obstacles[].motion.speed") == "obstacles[].motion.velocity");
+  for (const char* key : {"density", "mass", "viscosity", "material"})
+    CHECK(contains(suggested(std::string("bodies[].") + key), "all bodies are of one fluid"));
+  CHECK(contains(suggested("bodies[].motion"), "solids that move as told are obstacles"));
+  CHECK(contains(suggested("domain.friction"), "have no friction"));
+  CHECK(suggested("domain.walls") == "domain.open");
+  CHECK(suggested("viscosity.dynamic") == "viscosity.xsph");
+  CHECK(suggested("viscosity.kind") == "viscosity.xsph");
+  CHECK(contains(suggested("fluid.speed_of_sound"), "there is no equation of state"));
+  CHECK(suggested("obstacles[].diameter") == "obstacles[].radius");
+  CHECK(suggested("bodies[].diameter") == "bodies[].radius");
+  CHECK(contains(suggested("bodies[].height"), "a cylinder the ends of its axis"));
+  CHECK(contains(suggested("tank_motion.velocity"), "a tank swings"));
+  // In other blocks these words mean what they did.
+  CHECK(suggested("density") == "fluid.rest_density");
+  CHECK(suggested("fluid.density") == "fluid.rest_density");
+  CHECK(suggested("bodies[].v0") == "bodies[].velocity");
+}
+
+TEST_CASE("suggestions: walls by the names that people give them") {
+  const std::vector<std::string> faces(kFaceNames.begin(), kFaceNames.end());
+  CHECK(nearest_choice("bottom wall", faces) == "z_min");
+  CHECK(nearest_choice("RIGHT_FACE", faces) == "x_max");
+  CHECK(nearest_choice("ceiling", faces) == "z_max");
+  CHECK(nearest_choice("north", faces) == "y_max");
+  CHECK(nearest_choice("wall", faces) == "");
+  CHECK(nearest_choice("side", faces) == "");
+}
+
 TEST_CASE("suggestions: nothing where nothing is near") {
   for (const char* path :
-       {"qqqqqqqqqqqq", "gui", "mpi", "x", "", "foo", "solver.abc", "bodies[].size",
-        "bodies[].colour", "temperature", "solver.preconditioner", "fluid.name_of_it", "cfl_number",
-        "log", "tes", "wind"})
+       {"qqqqqqqqqqqq", "gui", "mpi", "x", "", "foo", "solver.abc", "bodies[].size", "temperature",
+        "solver.preconditioner", "fluid.name_of_it", "cfl_number", "log", "tes", "wind"})
     CHECK(suggested(path) == "");
 }
 
@@ -124,7 +164,7 @@ TEST_CASE("suggestions: every synonym leads to keys of the scene, and is none of
       for (const std::string& word : s.written) {
         CAPTURE(word);
         CHECK(word.find_first_of("_- ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string::npos);
-        const std::string in = key ? key->block->path : block->parent->path;
+        const std::string in = !s.in.empty() ? s.in : key ? key->block->path : block->parent->path;
         CHECK(table.find_key(join(in, word)) == nullptr);
       }
     }
@@ -142,7 +182,14 @@ TEST_CASE("suggestions: in messages, with the entry of the list") {
       {"out: here\n", "out: unknown key; the folder of a run is given on the command line"},
       {"viscosity: 0.1\n",
        "viscosity: expected a block {xsph: ...}, got \"0.1\"; write viscosity: {xsph: 0.1} (Factor "
-       "c; stable up to 1); write {} or on"},
+       "c, not a viscosity in Pa s or m^2/s; stable up to 1); write {} or on"},
+      {"domain.open: top\n", "expected a list of words such as [z_max], got \"top\""},
+      {"tank_motion: sin\n", "; write tank_motion: {kind: sine, ...}"},
+      {"tank_motion: {kind: sine, axis: y, amplitude: 1, period: 2}\n",
+       "tank_motion.axis: expected 3 numbers [x, y, z] or auto, got \"y\"; write [0, 1, 0]"},
+      {"tank_motion: roll.csv\n", "; write tank_motion: {kind: file, path: roll.csv}"},
+      {"fluid.viscosity: 0.001\n", "did you mean viscosity? It is a block at the top of the file"},
+      {"domain.periodic: [x]\n", "unknown key; there are no periodic boundaries"},
       {"viscosity: 100\n", "got \"100\"; write {} or on"},  // out of its range
       {"output: 0.02\n", "write output: {every: 0.02}"},
       {"output: out/here\n", "expected a block {every: ...}, got \"out/here\"; write {} or on"},

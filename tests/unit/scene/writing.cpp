@@ -22,6 +22,17 @@ std::string refused_file(const std::string& text, const std::string& wanted) {
 
 }  // namespace
 
+TEST_CASE("writing: a direction by its letter, a list without brackets") {
+  CHECK(axis_remedy("z") == "; write [0, 0, 1]");
+  CHECK(axis_remedy("-X") == "; write [-1, 0, 0]");
+  CHECK(axis_remedy("+y") == "; write [0, 1, 0]");
+  for (const char* text : {"", "-", "w", "xy", "--z", "2"}) CHECK(axis_remedy(text) == "");
+  CHECK(list_remedy("0 0 -9.81", 3) == "; write [0, 0, -9.81]");
+  CHECK(list_remedy("(1, 2; 3)", 3) == "; write [1, 2, 3]");
+  for (const char* text : {"", "0 0", "0 0 0 0", "a b c", "1 2 3m"})
+    CHECK(list_remedy(text, 3) == "");
+}
+
 TEST_CASE("writing: a number with a unit, a comma, separators, a formula") {
   const std::string s = "; write the number without a unit, the key is in s";
   const std::vector<std::pair<Slip, std::string>> cases{
@@ -34,7 +45,18 @@ TEST_CASE("writing: a number with a unit, a comma, separators, a formula") {
       {{"20 mm", "; write the number without a unit, the key is in m: 0.02"}, "m"},
       {{"1 g/cm^3", "; write the number without a unit, the key is in kg/m^3: 1000"}, "kg/m^3"},
       {{"5 %", "; write the number without a unit: 0.05"}, ""},
-      {{"45°", "; write the number without a unit, the key is in degrees"}, "degrees"},
+      {{"45°", "; write the number without a unit, the key is in degrees: 45"}, "degrees"},
+      {{"9.81 m/s2", "; write the number without a unit, the key is in m/s^2: 9.81"}, "m/s^2"},
+      {{"9.81 m/s²", "; write the number without a unit, the key is in m/s^2: 9.81"}, "m/s^2"},
+      {{"1000 kg/m3", "; write the number without a unit, the key is in kg/m^3: 1000"}, "kg/m^3"},
+      {{"30 rpm", "; write the number without a unit, the key is in degrees/s: 180"}, "degrees/s"},
+      {{"5 cm", "; write the number without a unit, the key is in m or degrees: 0.05"},
+       "m or degrees"},
+      {{"5 deg", "; write the number without a unit, the key is in m or degrees: 5"},
+       "m or degrees"},
+      {{"5 kg", "; write the number without a unit, the key is in m or degrees"}, "m or degrees"},
+      {{"2 Hz", "; the key is a time in s, 1/frequency: 0.5"}, "s"},
+      {{"0 Hz", s}, "s"},
       {{"2 mm", s}, "s"},
       {{"0,5", "; decimals take a point: write 0.5"}, "m"},
       {{"-0,25", "; decimals take a point: write -0.25"}, "m"},

@@ -1,0 +1,95 @@
+#include "lib/program/motion_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pbf::inline program_module {
+namespace {
+
+double slope_at(const MotionTable& table, std::size_t c, std::size_t k) {
+  const std::vector<double>& at = table.time;
+  const std::size_t n = at.size();
+  const auto y = [&](std::size_t row) { return table.values[row][c]; };
+  const auto rise = [&](std::size_t row) {
+    return (y(row + 1) - y(row)) / (at[row + 1] - at[row]);
+  };
+  if (k == 0) return rise(0);
+  if (k == n - 1) return rise(n - 2);
+  const double before = at[k] - at[k - 1], behind = at[k + 1] - at[k];
+  const double rises = std::max(std::fabs(y(k) - y(k - 1)), std::fabs(y(k + 1) - y(k)));
+  const double most = 1.5 * rises / std::max(before, behind);
+  return std::clamp((rise(k - 1) * behind + rise(k) * before) / (before + behind), -most, most);
+}
+
+/// The slope of a piece as a polynomial of u = 0 .. 1: a u^2 + b u + c, times the width.
+struct SlopeOf {
+  double a, b, c;
+  explicit SlopeOf(const CurvePiece& p)
+      : a(6 * (p.y0 - p.y1) + 3 * p.width * (p.slope0 + p.slope1)),
+        b(-6 * (p.y0 - p.y1) - p.width * (4 * p.slope0 + 2 * p.slope1)),
+        c(p.width * p.slope0) {}
+};
+
+}  // namespace
+
+std::vector<double> CurvePiece::turns() const {
+  const SlopeOf s(*this);
+  std::vector<double> at;
+  const auto add = [&](double u) {
+    if (u > 0 && u < 1) at.push_back(begin + u * width);
+  };
+  const double inside = s.b * s.b - 4 * s.a * s.c;
+  if (inside < 0) return at;
+  // Without a difference of like numbers, also where it is hardly a parabola.
+  const double q = -0.5 * (s.b + std::copysign(std::sqrt(inside), s.b));
+  if (s.a != 0) add(q / s.a);
+  if (q != 0) add(s.c / q);
+  std::sort(at.begin(), at.end());
+  return at;
+}
+
+std::optional<double> CurvePiece::steepest() const {
+  const SlopeOf s(*this);
+  if (s.a == 0) return std::nullopt;
+  const double u = -s.b / (2 * s.a);
+  if (!(u > 0 && u < 1)) return std::nullopt;
+  return begin + u * width;
+}
+
+std::size_t piece_at(const MotionTable& table, double t) {
+  const std::vector<double>& at = table.time;
+  const auto next = std::size_t(std::upper_bound(at.begin(), at.end(), t) - at.begin());
+  return std::clamp<std::size_t>(next, 1, at.size() - 1) - 1;
+}
+
+CurvePiece curve_piece(const MotionTable& table, std::size_t c, std::size_t row) {
+  return {table.time[row],         table.time[row + 1] - table.time[row],
+          table.values[row][c],    table.values[row + 1][c],
+          slope_at(table, c, row), slope_at(table, c, row + 1)};
+}
+
+double cubic(const MotionTable& table, std::size_t c, double t) {
+  const std::vector<double>& at = table.time;
+  const std::size_t n = at.size();
+  if (n == 1) return table.values[0][c];
+  const auto y = [&](std::size_t k) { return table.values[k][c]; };
+  const auto slope = [&](std::size_t k) { return slope_at(table, c, k); };
+  if (t <= at[0]) return y(0) + slope(0) * (t - at[0]);
+  if (t >= at[n - 1]) return y(n - 1) + slope(n - 1) * (t - at[n - 1]);
+  const auto k = std::size_t(std::upper_bound(at.begin(), at.end(), t) - at.begin()) - 1;
+  const double width = at[k + 1] - at[k], u = (t - at[k]) / width, w = 1 - u;
+  return w * w * (1 + 2 * u) * y(k) + u * u * (1 + 2 * w) * y(k + 1) +
+         width * u * w * (w * slope(k) - u * slope(k + 1));
+}
+
+double straight(const MotionTable& table, std::size_t c, double t) {
+  const std::vector<double>& at = table.time;
+  const std::size_t n = at.size();
+  if (t <= at[0] || n == 1) return table.values[0][c];
+  if (t >= at[n - 1]) return table.values[n - 1][c];
+  const auto k = std::size_t(std::upper_bound(at.begin(), at.end(), t) - at.begin()) - 1;
+  const double u = (t - at[k]) / (at[k + 1] - at[k]);
+  return (1 - u) * table.values[k][c] + u * table.values[k + 1][c];
+}
+
+}  // namespace pbf::inline program_module

@@ -1,0 +1,244 @@
+#include "lib/run/motion_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "lib/base/text.h"
+#include "lib/program/motion.h"
+#include "lib/run/obstacle_track.h"
+#include "lib/scene/surface.h"
+#include "lib/scene/vector3.h"
+
+namespace pbf::inline run_module {
+namespace {
+
+// -------------------------------------------------------------------------------------- walls
+
+/// Of an obstacle and a wall, in m: how far its far side is behind the wall, and its near side.
+struct Behind {
+  double far, near;
+};
+Behind behind(const Scene& s, const Solid<double>& solid, int face) {
+  const auto axis = std::size_t(face / 2);
+  const Extent e = extents_of(solid)[axis];
+  const double size = extents_of(s)[axis].high, h = s.h();
+  if (face % 2 == 1) return {(e.high - size) * h, (e.low - size) * h};
+  return {-e.low * h, -e.high * h};
+}
+
+/// The wall that is above: gravity points away from it. -1: there is none.
+int top_of(const Scene& s) {
+  const int axis = level_axis(s);
+  const double g = s.gravity[std::size_t(axis)];
+  return g == 0 ? -1 : 2 * axis + (g < 0 ? 1 : 0);
+}
+
+/// Whether what turns in place has its pivot at the wall.
+bool is_hinged(const Scene& s, const Obstacle& o, int face) {
+  const Motion& m = *o.motion;
+  const bool turns = m.kind == MotionKind::sine       ? m.axis.has_value()
+                     : m.kind == MotionKind::velocity ? length(m.velocity) == 0
+                                                      : false;
+  if (!turns) return false;
+  const auto axis = std::size_t(face / 2);
+  const double at = m.pivot.value_or(middle_of(o))[axis];
+  const double wall = (face % 2 == 1 ? s.domain.max : s.domain.min)[axis];
+  return (face % 2 == 1 ? wall - at : at - wall) <= s.fluid.spacing;
+}
+
+/// The first time from `bad` back to `good` at which f holds; s.
+template <class F>
+double onset(double good, double bad, F&& f) {
+  for (int k = 0; k < 30; ++k) {
+    const double middle = 0.5 * (good + bad);
+    (f(middle) ? bad : good) = middle;
+  }
+  return bad;
+}
+
+struct Crossing {
+  bool leaves = false;                 ///< it is behind the wall as a whole
+  double by = 0, worst = 0, from = 0;  ///< m; s: when it is farthest behind, and when it begins
+};
+
+std::optional<Crossing> crossing(const Scene& s, const Obstacle& o, const Track& track, int face) {
+  const double slack = s.fluid.spacing, at_start = behind(s, track.solid[0], face).far;
+  Crossing c;
+  if (at_start <= slack) {
+    if (is_hinged(s, o, face)) return std::nullopt;
+    const double limit = slack + std::max(0.0, at_start);
+    for (std::size_t k = 0; k < track.time.size(); ++k)
+      if (const double far = behind(s, track.solid[k], face).far; far > c.by)
+        c.by = far, c.worst = track.time[k];
+    if (!(c.by > limit)) return std::nullopt;
+    const auto is_behind = [&](double t) {
+      return behind(s, solid_at(s, o, t), face).far > std::max(0.0, at_start) + 1e-6 * slack;
+    };
+    std::size_t k = 0;
+    while (behind(s, track.solid[k], face).far <= limit) ++k;
+    // Back to where it was still before the wall.
+    std::size_t before = k;
+    while (before > 0 && is_behind(track.time[before])) --before;
+    c.from = onset(track.time[before], track.time[std::min(before + 1, k)], is_behind);
+    return c;
+  }
+  if (behind(s, track.solid[0], face).near > 0) return std::nullopt;  // it comes from there
+  const auto is_out = [&](double t) { return behind(s, solid_at(s, o, t), face).near > 0; };
+  for (std::size_t k = 0; k < track.time.size(); ++k) {
+    const double near = behind(s, track.solid[k], face).near;
+    if (near > c.by) c.by = near, c.worst = track.time[k];
+    if (near > 0 && !c.leaves)
+      c.leaves = true, c.from = onset(track.time[k - 1], track.time[k], is_out);
+  }
+  return c.leaves && c.by > slack ? std::optional(c) : std::nullopt;
+}
+
+std::string motion_remedy(const Obstacle& o, bool leaves) {
+  if (leaves && o.motion->kind == MotionKind::sine)
+    return "lower motion.amplitude, or make the obstacle longer";
+  switch (o.motion->kind) {
+    case MotionKind::sine:
+      return o.motion->direction ? "lower motion.amplitude, or move the obstacle away from the wall"
+                                 : "lower motion.amplitude, or make the obstacle shorter";
+    case MotionKind::velocity:
+      return length(o.motion->velocity) == 0
+                 ? "make the obstacle shorter, or move it away from the wall"
+                 : "end the run earlier, or give a table that stops it (motion: {kind: file})";
+    case MotionKind::file:
+      break;
+  }
+  return "change the rows of its table";
+}
+
+std::string wall_text(const Scene& s, std::size_t k, const Track& track) {
+  const Obstacle& o = s.obstacles[k];
+  std::string text;
+  double most = 0;
+  for (int face = 0; face < 6; ++face) {
+    if ((s.plane() && face / 2 == 1) || s.domain.is_open(face / 2, face % 2 == 1) ||
+        face == top_of(s))
+      continue;
+    const std::optional<Crossing> c = crossing(s, o, track, face);
+    if (!c || c->by <= most) continue;
+    most = c->by;
+    text = named(s, k) +
+           format(c->leaves ? " leaves the tank through the wall %s at %.4g s, and is up to %.2g m "
+                              "behind it (at %.4g s); "
+                            : " goes through the wall %s from %.4g s on, by up to %.2g m (at %.4g "
+                              "s); ",
+                  kFaceNames[std::size_t(face)], c->from, c->by, c->worst) +
+           motion_remedy(o, c->leaves);
+  }
+  return text;
+}
+
+// --------------------------------------------------------------------------------- collisions
+
+struct Meeting {
+  double thickness = 0, worst = 0, from = 0;  ///< m; s
+  bool at_start = false;
+};
+
+class Meetings {
+ public:
+  Meetings(const Scene& s, const std::vector<Track>& tracks)
+      : s_(s), tracks_(tracks), least_(0.5 * s.fluid.spacing / s.h()) {}
+
+  std::optional<Meeting> of(std::size_t a, std::size_t b) const {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!(s_.plane() && k == 1) && !tracks_[a].swept[k].meets(tracks_[b].swept[k]))
+        return std::nullopt;
+    Meeting m;
+    if (shared(a, b, 0) > 0) {
+      const bool plane = s_.obstacles[a].shape == ObstacleShape::plane ||
+                         s_.obstacles[b].shape == ObstacleShape::plane;
+      if (plane) return std::nullopt;
+      return Meeting{shared(a, b, 0), 0, 0, true};
+    }
+    double before = 0;
+    bool met = false;
+    for (const double t : times(a, b)) {
+      const double thick = shared(a, b, t);
+      if (thick > m.thickness) m.thickness = thick, m.worst = t;
+      if (thick > 0 && !met)
+        met = true, m.from = onset(before, t, [&](double x) { return shared(a, b, x) > 0; });
+      before = t;
+    }
+    return met ? std::optional(m) : std::nullopt;
+  }
+
+ private:
+  std::vector<double> times(std::size_t a, std::size_t b) const {
+    std::vector<double> all = tracks_[a].time;
+    all.insert(all.end(), tracks_[b].time.begin(), tracks_[b].time.end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+  }
+  Solid<double> at(std::size_t k, double time) const {
+    const Track& track = tracks_[k];
+    const auto found = std::lower_bound(track.time.begin(), track.time.end(), time);
+    if (track.time.size() == 1) return track.solid[0];
+    if (found != track.time.end() && *found == time)
+      return track.solid[std::size_t(found - track.time.begin())];
+    return solid_at(s_, s_.obstacles[k], time);
+  }
+  double shared(std::size_t a, std::size_t b, double time) const {
+    return shared_thickness(s_, at(a, time), at(b, time), least_) * s_.h();
+  }
+
+  const Scene& s_;
+  const std::vector<Track>& tracks_;
+  double least_;  ///< h
+};
+
+}  // namespace
+
+std::string named(const Scene& s, std::size_t k) {
+  return format("obstacles[%zu] (%s)", k, s.obstacles[k].name.c_str());
+}
+
+std::string listed(const std::vector<std::string>& texts) {
+  constexpr std::size_t kShown = 3;
+  const std::vector<std::string> shown(
+      texts.begin(), texts.begin() + std::ptrdiff_t(std::min(kShown, texts.size())));
+  return joined(shown, "; ") +
+         (texts.size() > kShown ? format("; and %zu more", texts.size() - kShown) : std::string());
+}
+
+void add_walls(const Scene& s, const std::vector<Track>& tracks, std::vector<Warning>& list) {
+  std::vector<std::string> texts;
+  for (std::size_t k = 0; k < s.obstacles.size(); ++k)
+    if (s.obstacles[k].motion && s.obstacles[k].shape != ObstacleShape::plane)
+      texts.push_back(wall_text(s, k, tracks[k]));
+  std::erase(texts, "");
+  if (!texts.empty()) list.push_back({"wall", listed(texts)});
+}
+
+void add_collisions(const Scene& s, const std::vector<Track>& tracks, std::vector<Warning>& list) {
+  const std::size_t n = s.obstacles.size();
+  const Meetings meetings(s, tracks);
+  std::vector<std::string> at_start, later;
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = a + 1; b < n; ++b) {
+      const std::optional<Meeting> m = meetings.of(a, b);
+      if (!m) continue;
+      const std::string both = named(s, a) + " and " + named(s, b);
+      if (m->at_start)
+        at_start.push_back(both + format(" overlap by %.2g m at the start", m->thickness));
+      else
+        later.push_back(both + format(" run into each other at %.4g s and overlap by up to %.2g m "
+                                      "(at %.4g s)",
+                                      m->from, m->thickness, m->worst));
+    }
+  std::vector<std::string> texts = at_start;
+  texts.insert(texts.end(), later.begin(), later.end());
+  if (!texts.empty())
+    list.push_back({"collision", listed(texts) +
+                                     "; fluid beside the place feels both of them: let them touch, "
+                                     "or keep them apart"});
+}
+
+}  // namespace pbf::inline run_module
