@@ -187,7 +187,7 @@ TEST_CASE("without a home folder plan has no calibration, and bench says so befo
   const Outcome plan = pbf::test::pbf({"plan", scene}, folder.path(), nowhere);
   CAPTURE(plan.err);
   CHECK(plan.code == 0);
-  CHECK(has(plan.out, "not known"));
+  CHECK(has(plan.out, "a rule of thumb"));
   const Outcome bench = pbf::test::pbf({"bench", "--calibrate", "--n", "64", "--threads", "1"},
                                        folder.path(), nowhere);
   CHECK(bench.code == 2);
@@ -220,11 +220,16 @@ TEST_CASE("bench --calibrate stores what plan estimates the time of an update fr
   CAPTURE(bench.err);
   CHECK(bench.code == 0);
   CHECK(has(bench.err, path));
-  CHECK(has(before.out, "not known"));
-  CHECK(has(before.out, "--calibrate"));
-  CHECK(has(after.out, " ms, from"));
-  CHECK(number_after(json.out, "\"time_per_update_ms\":") > 0);
-  CHECK(has(other.out, "not known"));  // another precision: no guess
+  CHECK(has(before.out, "a rule of thumb"));
+  CHECK(has(before.out, "pbf bench --calibrate measures this machine"));
+  CHECK(has(after.out, " for the updates, without output; by pbf bench --calibrate on "));
+  CHECK_FALSE(has(after.out, "thumb"));
+  const double ms = number_after(json.out, "\"time_per_update_ms\":");
+  CHECK(ms > 0);
+  CHECK(number_after(json.out, "\"run_time_s\":") ==
+        Approx(ms * 1e-3 * number_after(json.out, "\"updates\":")));
+  CHECK(has(json.out, "\"run_time_is_rough\":false"));
+  CHECK(has(other.out, "a rule of thumb"));  // another precision was not measured
   CHECK(bad.code == 2);
   CHECK(has(bad.err, "; remove the file and run pbf bench --calibrate again"));
   CHECK(has(bad.err, "bad.csv:"));
