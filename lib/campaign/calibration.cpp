@@ -178,7 +178,8 @@ std::optional<TimeEstimate> estimate_time(const Plan& plan, const Scene& s,
 }
 
 std::string RunTime::text() const {
-  return std::string(least ? "at least " : "about ") + duration_text(seconds) +
+  return (seconds < 0.05 ? "below 0.1 s"
+                         : (least ? "at least " : "about ") + duration_text(seconds)) +
          " for the updates, without output; " + basis +
          (rough ? "; pbf bench --calibrate measures this machine" : "");
 }

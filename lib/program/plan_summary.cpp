@@ -23,8 +23,8 @@ std::string memory_line(const Plan& plan, const Scene& s, const PlanTotals& tota
   const bool on_device = about(s.backend).on_device;
   std::string out = "about " + bytes_text(double(totals.host_bytes)) + " on the host";
   if (on_device) out += ", " + bytes_text(double(totals.device_bytes)) + " on the device";
-  out += std::string(" (") + word(s.backend) + " " + word(s.precision);
-  return out + (on_device ? ")" : ", " + threads_text(s, plan.particles) + ")");
+  out += std::string("; ") + word(s.backend) + " " + word(s.precision);
+  return out + (on_device ? "" : ", " + threads_text(s, plan.particles));
 }
 
 /// The sum, and the files that make it.

@@ -36,7 +36,7 @@ std::string step_lines(const StepHistory& s, double step, std::int64_t all) {
     shares += format("%s%.4g s in %.3g %%", shares.empty() ? "" : ", ", shortest,
                      percent(double(s.updates[k]), double(all)));
   }
-  std::string out = format("time step           changed %ld times, shortest %.4g s, mean %.4g s\n",
+  std::string out = format("time step           %ld changes, shortest %.4g s, mean %.4g s\n",
                            s.changes, shortest, steps > 0 ? step * updates / steps : 0);
   if (s.changes > 0) out += "                    " + shares + " of the updates\n";
   if (s.repeats > 0)
@@ -99,18 +99,17 @@ std::string error_lines(const Diagnostics& last, double max_of_run) {
 }
 
 std::string energy_lines(const Diagnostics& first, const Diagnostics& last) {
-  std::string out =
-      format("energy              %.6g J at the start, %.6g J at the end (%.3g J of it kinetic)",
-             first.energy, last.energy, last.kinetic_energy);
+  std::string out = format(
+      "energy              %.6g J at the start, %.6g J at the end (%.3g J of it kinetic)\n"
+      "  drift             %+.3g %% from start to end: splashes and friction lose energy\n"
+      "  largest rise      %.3g %% at any time: 0 is good, above 1 %% the method adds energy\n",
+      first.energy, last.energy, last.kinetic_energy, 100 * last.energy_drift,
+      100 * last.energy_rise);
   if (last.moved)
-    out += format("; %.6g J came from moving parts, which drift and rise leave out", last.work);
-  return out +
-         format(
-             "\n"
-             "  drift             %+.3g %% from start to end: splashes and friction lose energy\n"
-             "  largest rise      %.3g %% at any time: 0 is good, above 1 %% the method adds "
-             "energy\n",
-             100 * last.energy_drift, 100 * last.energy_rise);
+    out += format(
+        "  work              %.6g J of what moves by itself; drift and rise are without it\n",
+        last.work);
+  return out;
 }
 
 }  // namespace
@@ -145,8 +144,7 @@ std::string run_summary(const RunParts& run, const Watch& watch,
     out += format(
         "fast fluid          %ld times a particle moved by more than %g h past a neighbour in one "
         "step, at most by %.3g h;\n"
-        "                    harmless while rare; where fluid passes through fluid a warning "
-        "follows\n",
+        "                    harmless while rare, else fluid may pass through fluid\n",
         last.unresolved, kResolvedWay, last.relative_way_max);
   if (const auto steps = watch.steps(updates)) out += step_lines(*steps, scene.time.step, updates);
   if (scene.solver.speed_limit > 0)

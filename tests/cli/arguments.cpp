@@ -49,7 +49,6 @@ TEST_CASE("arguments: --help is help wherever it stands, also where an option wa
     CHECK(o.code == 0);
     CHECK(has(o.out, "Usage: pbf " + args[0] + " [OPTIONS]"));
   }
-  CHECK(pbf::test::pbf({"rnu", "--help"}, folder.path()).code == 2);
 }
 
 TEST_CASE("arguments: a file that another command takes is told by its kind") {

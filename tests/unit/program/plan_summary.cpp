@@ -30,10 +30,10 @@ TEST_CASE("plan summary: the sums are those of its parts, in the text and in the
   for (const PlanFile& f : plan.files) disk += f.bytes;
   CHECK(totals.disk_bytes == disk);
   const std::string text = plan_summary(plan, s, "as long as it takes");
-  CHECK(contains(text, "\n  time      1 s in 100 updates of 0.01 s; dt sqrt(g/h) = 0.07, "));
+  CHECK(contains(text, "\n  time      1 s in 100 updates of 0.01 s; dt sqrt(g/h) = 0.07 ("));
   CHECK(contains(text, "\n  run time  as long as it takes\n"));
   CHECK(contains(
-      text, "\n  memory    about " + bytes_text(double(totals.host_bytes)) + " on the host ("));
+      text, "\n  memory    about " + bytes_text(double(totals.host_bytes)) + " on the host; "));
   CHECK(contains(text, "\n  disk      " + bytes_text(double(disk)) + ": run.vtkhdf "));
   CHECK_FALSE(contains(text, "log.txt"));  // next to nothing
   CHECK(std::count(text.begin(), text.end(), '\n') == 5);

@@ -41,7 +41,7 @@ TEST_CASE("scene difference: every key that matters is named, with both values")
   // A block that comes, or another kind, brings its keys: they are not listed too.
   CHECK(difference({"viscosity.xsph=0.3", "solver.iterations=8"}) ==
         "viscosity: off before, on now; solver.iterations: 4 before, 8 now");
-  CHECK(difference({"tank_motion={kind: file, path: t.csv}"},
+  CHECK(difference({"tank_motion={kind: file, path: t.csv, axis: [0, 1, 0]}"},
                    {"tank_motion={kind: sine, axis: [0, 1, 0], amplitude: 2, period: 3}"}) ==
         "tank_motion.kind: sine before, file now");
 }
