@@ -66,10 +66,12 @@ std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
   const BuildInfo build = build_info();
   std::string where = i.backend + " " + i.precision;
   if (!about(scene.backend).on_device) where += ", " + threads_text(scene, plan.particles);
-  return format("pbf %s (%s)  scene %s: %ld particles, %ld updates of %.4g s\n%s on %s, %s -> %s",
-                build.version.c_str(), build.commit.c_str(), scene.name.c_str(), plan.particles,
-                make_schedule(scene).updates, scene.time.step, where.c_str(), i.device.c_str(),
-                bytes_text(double(i.bytes)).c_str(), folder.c_str());
+  return format(
+      "pbf %s (%s)  scene %s: %ld particles, %ld updates of %.4g s\n%s on %s; the solver "
+      "holds %s; files in %s",
+      build.version.c_str(), build.commit.c_str(), scene.name.c_str(), plan.particles,
+      make_schedule(scene).updates, scene.time.step, where.c_str(), i.device.c_str(),
+      bytes_text(double(i.bytes)).c_str(), folder.c_str());
 }
 
 /// A folder that is missing is told before the run folder is made. It may be the run folder itself.
