@@ -123,7 +123,7 @@ std::string run_summary(const RunParts& run, const Watch& watch,
   const double wall = run.wall.seconds(), loop = run.loop_seconds;
   const auto own = double(updates - run.from.update());
   std::string out = format("particles           %ld\n", plan.particles);
-  out += format("updates             %ld, %.6g s simulated\n", updates,
+  out += format("updates             %ld (%.6g s simulated)\n", updates,
                 double(updates) * scene.time.step);
   out += "wall time           " + duration_text(wall) + ", " + duration_text(loop) +
          " of it from the first update to the last, with output\n";
