@@ -22,7 +22,7 @@
 #include "lib/program/schedule.h"
 #include "lib/run/emit.h"
 #include "lib/run/load_run.h"
-#include "lib/run/resume.h"
+#include "lib/run/run_record.h"
 #include "lib/run/signals.h"
 
 namespace pbf::inline app_module {
@@ -145,10 +145,11 @@ class Batch {
       const std::string other =
           difference_of_record(record, loaded.scene, scene_files(loaded.scene, loaded.folder));
       if (!other.empty())
-        throw Error(ExitCode::bad_input, folder + " is of another scene: " + other);
+        throw Error(ExitCode::bad_input, folder + " is of another scene: " + other + kOther);
       const std::string file = difference_of_file(folder, loaded.scene);
       if (!file.empty())
-        throw Error(ExitCode::bad_input, folder + "/run.vtkhdf is of another scene: " + file);
+        throw Error(ExitCode::bad_input,
+                    folder + "/run.vtkhdf is of another scene: " + file + kOther);
       const std::string doubt = why_not_finished(folder, loaded.scene);
       if (!doubt.empty()) throw Error(ExitCode::resumable, "DONE is there, but " + doubt);
       if (make_schedule(loaded.scene).updates > make_schedule(record.scene).updates)
@@ -185,6 +186,9 @@ class Batch {
     if (!end.message.empty()) line += ": " + end.message;
     log_.note(line);
   }
+
+  static constexpr const char* kOther =
+      ". Give the same scenes and options as before, or another folder with --out";
 
   const BatchOptions& o_;
   std::vector<BatchMember> members_;

@@ -1,8 +1,11 @@
 // The command line of pbf; every error ends here, as one message and an exit code.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/explain.h"
@@ -28,6 +31,16 @@ const char* const kExitCodes =
     "  75  stopped early by a signal or the wall-time limit, after saving\n\n"
     "Example: pbf run configs/dam_break.yaml --out out/dam_break";
 
+/// What is parsed. Of a command with --help in any place only these two words: an option before it
+/// would take it for its value.
+std::vector<const char*> words_of_line(int argc, char** argv) {
+  std::vector<const char*> words(argv, argv + argc);
+  const auto asks = [](std::string_view word) { return word == "--help" || word == "-h"; };
+  if (argc > 2 && *argv[1] != '-' && std::any_of(argv + 2, argv + argc, asks))
+    words = {argv[0], argv[1], "--help"};
+  return words;
+}
+
 int run_main(int argc, char** argv) {
   CLI::App app("pbf: Position Based Fluids, from a scene file to HDF5 and pictures.", "pbf");
   app.set_version_flag("--version", "pbf " + build_info().version);
@@ -38,7 +51,8 @@ int run_main(int argc, char** argv) {
                          add_study, add_batch, add_stability, add_info})
     add(app, code);
   try {
-    app.parse(argc, argv);
+    const std::vector<const char*> words = words_of_line(argc, argv);
+    app.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) {  // --help, --version; on stdout, where a lost write is seen
       std::ostringstream text;

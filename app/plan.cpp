@@ -24,35 +24,43 @@ struct PlanOptions {
   std::string scene;
   std::vector<std::string> overrides;
   std::string base_folder;
-  bool resolved = false, json = false;
+  bool resolved = false, json = false, arrays = false;
 };
 
 const char* const kPlanHelp =
-    "The time per update is an estimate from what `pbf bench --calibrate` has stored on this\n"
-    "machine; without it none is printed.\n"
+    "The first five lines are the answer: particles; time and updates; run time; peak memory, "
+    "with\n"
+    "program and libraries; size of all files. Then come warnings, files, memory on every "
+    "backend,\n"
+    "the passes of an update, and what is left out.\n"
+    "The run time is that of the updates, from what `pbf bench --calibrate` has stored on this\n"
+    "machine; without it, on the CPU, a rule of thumb.\n"
     "Example:\n  pbf plan configs/dam_break.yaml --set fluid.spacing=0.005";
 
-std::string time_text(const std::optional<TimeEstimate>& time) {
-  if (!time)
-    return "time per update\n  not known: nothing is stored for this backend, precision, CPU and "
-           "number of threads; pbf bench --calibrate measures it";
-  return format("time per update\n  about %.4g ms, from pbf bench --calibrate on %s", time->ms,
-                time->basis.c_str());
+std::string run_time_text(const std::optional<RunTime>& time) {
+  return time ? time->text()
+              : "not known; pbf bench --calibrate --backend cuda measures this machine";
 }
 
 std::string warnings_text(const std::vector<Warning>& warnings) {
-  std::string text = "\nwarnings\n";
+  std::string text = "warnings\n";
   for (const Warning& w : warnings) text += "  " + w.text + "\n";
   return warnings.empty() ? std::string() : text;
 }
 
-std::string json(const Plan& plan, const Scene& scene, const std::optional<TimeEstimate>& time,
-                 const std::vector<Warning>& warnings) {
+std::string json(const Plan& plan, const Scene& scene, const std::optional<TimeEstimate>& update,
+                 const std::optional<RunTime>& all, const std::vector<Warning>& warnings) {
   Json out = plan_json(plan, scene);
+  out["run_time_s"] = nullptr;
+  if (all) {
+    out["run_time_s"] = all->seconds;
+    out["run_time_is_rough"] = all->rough;
+    out["run_time_basis"] = all->basis;
+  }
   out["time_per_update_ms"] = nullptr;
-  if (time) {
-    out["time_per_update_ms"] = time->ms;
-    out["time_measured_on"] = time->basis;
+  if (update) {
+    out["time_per_update_ms"] = update->ms;
+    out["time_measured_on"] = update->basis;
   }
   Json& list = out["warnings"] = Json::array();
   for (const Warning& w : warnings) list.push_back({{"kind", w.kind}, {"text", w.text}});
@@ -69,12 +77,20 @@ int command_plan(const PlanOptions& options) {
   const Plan plan = make_plan(loaded.scene, n, start_neighbors(loaded.scene, dir, n));
   const int threads = solver_threads(loaded.scene, plan.particles);
   const std::vector<StageCosts> costs = read_calibration(calibration_path());
-  const auto time = estimate_time(plan, loaded.scene, costs, threads, cpu_model());
+  const auto update = estimate_time(plan, loaded.scene, costs, threads, cpu_model());
+  const auto all = run_time(plan, loaded.scene, update, threads);
   const std::vector<Warning> warnings = scene_warnings(loaded.scene, dir, n);
-  std::string text =
-      options.resolved ? resolved_yaml(loaded.scene)
-      : options.json   ? json(plan, loaded.scene, time, warnings)
-                       : plan_text(plan, loaded.scene) + time_text(time) + warnings_text(warnings);
+  std::string text;
+  if (options.resolved) {
+    text = resolved_yaml(loaded.scene);
+  } else if (options.json) {
+    text = json(plan, loaded.scene, update, all, warnings);
+  } else {
+    text = plan_summary(plan, loaded.scene, run_time_text(all)) + warnings_text(warnings) +
+           plan_details(plan, loaded.scene);
+    text += options.arrays ? plan_arrays(plan, loaded.scene)
+                           : "--arrays lists every array; --json has it all\n";
+  }
   while (!text.empty() && text.back() == '\n') text.pop_back();
   log.result(text);
   return 0;
@@ -85,13 +101,17 @@ int command_plan(const PlanOptions& options) {
 void add_plan(CLI::App& app, int& code) {
   const auto [c, o] = add_command(
       app, code, command_plan, "plan",
-      "Passes, arrays, memory and files of a scene, and what is left out; runs nothing", kPlanHelp);
+      "Particles, run time, memory and disk of a scene before it is run; runs nothing", kPlanHelp);
   c->add_option("SCENE", o.scene, "Scene file (YAML), or a run file for its scene")->required();
   add_overrides(c, o.overrides);
   add_base_folder(c, o.base_folder);
   CLI::Option* resolved =
       c->add_flag("--resolved", o.resolved, "Print the scene with every default filled in");
-  c->add_flag("--json", o.json, "Print the plan as one JSON object")->excludes(resolved);
+  CLI::Option* as_json =
+      c->add_flag("--json", o.json, "Print the plan as one JSON object")->excludes(resolved);
+  c->add_flag("--arrays", o.arrays, "List every array, and the memory of program and libraries")
+      ->excludes(resolved)
+      ->excludes(as_json);
 }
 
 }  // namespace pbf::inline app_module

@@ -18,6 +18,7 @@
 #include "lib/run/resume.h"
 #include "lib/run/run.h"
 #include "lib/run/run_folder.h"
+#include "lib/run/run_record.h"
 #include "lib/run/signals.h"
 #include "lib/run/start_neighbors.h"
 #include "lib/run/warnings.h"
@@ -65,10 +66,12 @@ std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
   const BuildInfo build = build_info();
   std::string where = i.backend + " " + i.precision;
   if (!about(scene.backend).on_device) where += ", " + threads_text(scene, plan.particles);
-  return format("pbf %s (%s)  scene %s: %ld particles, %ld updates of %.4g s\n%s on %s, %s -> %s",
-                build.version.c_str(), build.commit.c_str(), scene.name.c_str(), plan.particles,
-                make_schedule(scene).updates, scene.time.step, where.c_str(), i.device.c_str(),
-                bytes_text(double(i.bytes)).c_str(), folder.c_str());
+  return format(
+      "pbf %s (%s)  scene %s: %ld particles, %ld updates of %.4g s\n%s on %s; the solver "
+      "holds %s; files in %s",
+      build.version.c_str(), build.commit.c_str(), scene.name.c_str(), plan.particles,
+      make_schedule(scene).updates, scene.time.step, where.c_str(), i.device.c_str(),
+      bytes_text(double(i.bytes)).c_str(), folder.c_str());
 }
 
 /// Runs of scenes without a name were kept in out/scene by earlier versions: told before another
@@ -213,7 +216,6 @@ int command_run(const RunOptions& options) {
     from = find_resume_point(*folder, scene, start.files, plan.particles, build_info().commit);
     if (from.finished) {
       for (const std::string& note : from.notes) log.note("pbf: " + note);
-      log.note(out + ": the run is finished (DONE is there); nothing to do");
       return 0;
     }
   }
@@ -270,8 +272,8 @@ void add_run(CLI::App& app, int& code) {
       c->add_flag("--overwrite", o.overwrite, "Replace the run in an existing folder");
   c->add_flag(
        "--resume", o.resume,
-       "Go on from the last checkpoint; leave a finished run as it is and exit 0, or prolong "
-       "it to a later time.end; start it when the folder is not there")
+       "Go on from the last checkpoint; leave a run that has reached time.end as it is and exit "
+       "0, or prolong it to a later time.end; start it when the folder is not there")
       ->excludes(overwrite);
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
   c->add_flag("--strict", o.strict,

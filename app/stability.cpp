@@ -36,6 +36,17 @@ struct StabilityCommandOptions {
 
 const char* const kStabilityHelp =
     "Exit code 6 when a case is not as it must be.\n"
+    "A map (--map X_KEY,Y_KEY) runs one scene for every combination of values of the two keys\n"
+    "(--x, --y) and of solver.iterations (--iterations): 6 x 6 x 5 runs where none is given. "
+    "Where\n"
+    "gravity or h differ, the time simulated goes with sqrt(h/g), so that the flows are alike.\n"
+    "Each run is\n"
+    "  stable    it came to the end, with a mean compression over its last quarter up to --limit\n"
+    "  degraded  it came to the end, but more compressed: give more iterations or a shorter step\n"
+    "  stopped   the guard ended it; the column stopped_for has the reason\n"
+    "The table, to stdout or --csv, has a row per run. dt_hat is dt sqrt(g/h), the step without\n"
+    "dimension, by which scenes of other sizes can be judged too: where the class changes with\n"
+    "it alone, the largest stable dt_hat holds for them. pbf_tools plot-map draws the map.\n"
     "Examples:\n"
     "  pbf stability --reduced --csv stability.csv\n"
     "  pbf stability stiffness column_48 --precision double\n"
@@ -224,6 +235,9 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
   check_output("--csv", o.csv);
   Log log(o.quiet);
   const std::vector<MapCell> grid = map_cells(map);
+  log.note(format("pbf: %zu runs of %s: %zu values of %s, %zu of %s, %zu of solver.iterations",
+                  grid.size(), map.scene.c_str(), map.x.size(), map.x_key.c_str(), map.y.size(),
+                  map.y_key.c_str(), map.iterations.size()));
   const Stopwatch watch;
   const auto cells = in_parallel<MapCell>(
       grid.size(), jobs, log, "runs", [&](std::size_t k) { return run_map_cell(map, grid[k]); },
@@ -232,8 +246,11 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
   for (const MapCell& c : cells) ++count[static_cast<int>(c.verdict)];
   const std::string csv = table_of(cells, map, o).csv();
   o.csv.empty() ? log.result(csv) : write_text_file(o.csv, csv);
-  log.result(format("%zu runs: %ld stable, %ld degraded, %ld stopped, %.0f s", cells.size(),
-                    count[0], count[1], count[2], watch.seconds()));
+  log.result(
+      format("%zu runs: %ld stable, %ld degraded (mean compression above %g %%), %ld stopped by "
+             "the guard, "
+             "%.0f s",
+             cells.size(), count[0], count[1], 100 * map.limit, count[2], watch.seconds()));
   return 0;
 }
 
@@ -259,12 +276,14 @@ void add_stability(CLI::App& app, int& code) {
   c->add_option("CASE", o.cases,
                 "Cases or groups of the suite, all when none is given; with --map "
                 "the scene file (configs/stiff/pool.yaml)");
-  c->add_option("--suite", o.suite,
-                "Suite file; configs/stability.yaml that comes with the program when not given");
+  CLI::Option* suite = c->add_option(
+      "--suite", o.suite,
+      "Suite file; configs/stability.yaml that comes with the program when not given");
   c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember(words_of<Backend>()));
   c->add_option("--precision", o.precision, "Of the computation")
       ->check(CLI::IsMember(words_of<Precision>()));
-  c->add_flag("--reduced", o.reduced, "Fewer particles and updates, where the suite says so");
+  CLI::Option* reduced =
+      c->add_flag("--reduced", o.reduced, "Fewer particles and updates, where the suite says so");
   c->add_option("--jobs", o.jobs, "Cases at once; all CPU threads when not given, 1 on cuda")
       ->transform(whole_number(1, 4096));
   add_overrides(c, o.overrides);
@@ -274,19 +293,24 @@ void add_stability(CLI::App& app, int& code) {
       "--junit", o.junit, "Write the verdicts to this file, as JUnit XML for CI systems");
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
   CLI::Option* map = c->add_option(
-      "--map", o.map, "X_KEY,Y_KEY: run a scene over a grid of two of its keys instead");
-  junit->excludes(map);
+      "--map", o.map,
+      "X_KEY,Y_KEY: run one scene over values of two of its keys and of solver.iterations, "
+      "and say where it is stable (see below)");
+  for (CLI::Option* of_suite : {junit, reduced, suite}) of_suite->excludes(map);
   for (const auto& [name, values] : {std::pair{"--x", &o.x}, {"--y", &o.y}})
-    c->add_option(name, *values,
-                  "Values along this axis of the map: a,b,c or LOW:HIGH:COUNT in equal ratios; the "
-                  "scene's own times 1/4 ... 8 when not given")
+    c->add_option(
+         name, *values,
+         "Values of this key: a,b,c or LOW:HIGH:COUNT in equal ratios; the scene's own times "
+         "1/4, 1/2, 1, 2, 4, 8 when not given")
         ->needs(map);
-  c->add_option("--iterations", o.settings.iterations, "Of the map, separated by commas")
+  c->add_option("--iterations", o.settings.iterations,
+                "Values of solver.iterations, separated by commas; 1,2,4,8,16 when not given")
       ->delimiter(',')
       ->transform(whole_number(0, 100000))
       ->needs(map);
   c->add_option("--limit", o.settings.limit,
-                "Mean compression above which a run of a map is degraded")
+                "Mean compression above which a run of a map is degraded; 0.01 is 1 %, and taken "
+                "when not given")
       ->transform(number_from(0, false, ""))
       ->needs(map);
 }

@@ -10,28 +10,33 @@ fail() { # fail CODE TEXT
 # The comment at the head of the script, which is its help.
 usage() { sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"; }
 
-# follow LOG: copies its input to LOG and shows where it stands, on a terminal by a line that the
-# next one overwrites, else by a line every 10 seconds, also when nothing comes.
+# follow LOG [kept]: copies its input to LOG and shows where it stands and since how many seconds: on
+# a terminal in a line that is overwritten every second, else in a line every $every seconds, whether
+# something comes or not. `kept`: of a build, whose steps begin with [n/N]; other lines, which are the
+# compiler's, stay on a terminal.
+every=10
 follow() {
-  local line='' part status=0 said=$SECONDS shown
+  local line='' part status=0 begun=$SECONDS said=$SECONDS where='' keep=${2:-}
   : >"$1"
   while [ $status -eq 0 ] || [ $status -gt 128 ]; do # above 128: nothing came for so long
     status=0
-    IFS= read -r -t 10 part || status=$?
+    IFS= read -r -t 1 part || status=$?
     line+=$part
-    shown=$line
-    if [ $status -gt 128 ]; then
-      shown="... $SECONDS s"
-    elif [ $status -eq 0 ] || [ -n "$line" ]; then
+    if [ $status -le 128 ] && { [ $status -eq 0 ] || [ -n "$line" ]; }; then
       printf '%s\n' "$line" >>"$1"
+      if [ -t 1 ] && [ -n "$keep" ] && [[ $line != \[+([0-9])/+([0-9])\]* ]]; then
+        printf '\r\033[K%s\n' "$line"
+      elif [ -n "$line" ]; then
+        where=${line##*$'\r'} # what it would overwrite itself
+      fi
       line=''
     fi
     if [ -t 1 ]; then
-      shown=${shown##*$'\r'} # what it would overwrite itself
-      printf '\r\033[K%s' "${shown:0:79}"
-    elif [ $((SECONDS - said)) -ge 10 ] && [ -n "$shown" ]; then
+      part="$((SECONDS - begun)) s  $where"
+      printf '\r\033[K%s' "${part:0:79}"
+    elif [ $((SECONDS - said)) -ge $every ]; then
       said=$SECONDS
-      printf '%s\n' "$shown"
+      printf '%s s  %s\n' $((SECONDS - begun)) "${where:-...}"
     fi
   done
   if [ -t 1 ]; then printf '\r\033[K'; fi
@@ -69,12 +74,14 @@ configure() {
   fi
 }
 
-# build TARGETS...: on a terminal Ninja's own line of progress; the compiler's words stay.
+# build TARGETS...: on a terminal the compiler's words stay, else they come when it fails.
 build() {
+  local log=build/build.log
   say "building $* in build/"
   if [ -t 1 ]; then
-    cmake --build build --target "$@" || fail 1 "the build failed, see above"
+    cmake --build build --target "$@" 2>&1 | follow "$log" kept ||
+      fail 1 "the build failed, see above; the text is also in $log"
   else
-    quietly build/build.log cmake --build build --target "$@"
+    quietly "$log" cmake --build build --target "$@"
   fi
 }

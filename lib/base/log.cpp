@@ -82,16 +82,16 @@ std::string progress_line(const ProgressState& s, double wall, double wall_since
                           std::int64_t updates_since) {
   const double part = s.updates > 0 ? double(s.update) / double(s.updates) : 1;
   std::string line =
-      format("%3.0f %%  update %lld/%lld  t %.4g s", 100 * part, static_cast<long long>(s.update),
-             static_cast<long long>(s.updates), s.time);
+      format("%3.0f %%  update %lld/%lld  %.4g s simulated", 100 * part,
+             static_cast<long long>(s.update), static_cast<long long>(s.updates), s.time);
   if (wall_since > 0 && updates_since > 0)
     line += "  " + si_number(double(updates_since) * double(s.particles) / wall_since) +
             " particle-updates/s";
-  line += format("  compression mean %.2g %% max %.2g %%", 100 * s.compression_mean,
+  line += format("  compression mean %.2g %%, max %.2g %%", 100 * s.compression_mean,
                  100 * s.compression_max);
   const std::int64_t own = s.update - s.first_update;
   if (own > 0 && part < 1)
-    line += "  ETA " + duration_text(wall * double(s.updates - s.update) / double(own));
+    line += "  " + duration_text(wall * double(s.updates - s.update) / double(own)) + " to go";
   return line;
 }
 

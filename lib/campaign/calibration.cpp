@@ -177,4 +177,34 @@ std::optional<TimeEstimate> estimate_time(const Plan& plan, const Scene& s,
   return out;
 }
 
+std::string RunTime::text() const {
+  return (seconds < 0.05 ? "below 0.1 s"
+                         : (least ? "at least " : "about ") + duration_text(seconds)) +
+         " for the updates, without output; " + basis +
+         (rough ? "; pbf bench --calibrate measures this machine" : "");
+}
+
+std::optional<RunTime> run_time(const Plan& plan, const Scene& s,
+                                const std::optional<TimeEstimate>& measured, int threads) {
+  const auto updates = double(plan_totals(plan, s).updates);
+  RunTime out;
+  out.least = plan.finest_level > 0 || plan.repeats > 0;
+  if (measured) {
+    out.seconds = updates * measured->ms * 1e-3;
+    out.basis = "by pbf bench --calibrate on " + measured->basis;
+    return out;
+  }
+  if (about(s.backend).on_device) return std::nullopt;
+  // The neighbour lists, and every pass over them: nine in an update of 4 iterations.
+  int passes = 1;
+  for (const auto& [p, times] : count_passes(plan.program)) passes += p->gathers != 0 ? times : 0;
+  const double neighbors = rest_neighbors(s) / rest_neighbors(Scene{});
+  out.rough = true;
+  out.seconds = updates * double(plan.particles) * (passes / 9.0) * neighbors /
+                (kRoughRate * std::max(1, threads));
+  out.basis = format("a rule of thumb (%s particle-updates/s per CPU thread), maybe 3 times off",
+                     si_number(kRoughRate).c_str());
+  return out;
+}
+
 }  // namespace pbf::inline campaign_module

@@ -52,4 +52,22 @@ std::optional<TimeEstimate> estimate_time(const Plan& plan, const Scene& scene,
                                           const std::vector<StageCosts>& rows, int threads,
                                           const std::string& cpu);
 
+/// What to expect of a run's time, and how far to trust it.
+struct RunTime {
+  double seconds = 0;        ///< of all updates
+  bool rough = false;        ///< a rule of thumb, nothing was measured here
+  bool least = false;        ///< the scene may repeat steps or iterations
+  std::string basis;         ///< "by pbf bench --calibrate on AMD EPYC"
+  std::string text() const;  ///< "about 5.1 s for the updates, ..."
+};
+
+/// From `measured` (estimate_time()); where there is nothing from kRoughRate, on the CPU. On a
+/// device nothing is known then: GPUs differ too much.
+std::optional<RunTime> run_time(const Plan& plan, const Scene& scene,
+                                const std::optional<TimeEstimate>& measured, int threads);
+
+/// Particles that one CPU thread updates in a second, with 4 iterations, h = 2 d and float: the
+/// front page's times on one core. Within a factor of three on processors of the last ten years.
+inline constexpr double kRoughRate = 1.2e6;
+
 }  // namespace pbf::inline campaign_module

@@ -68,7 +68,7 @@ struct StabilityRow : Figures {
   std::string tightest;  ///< the criterion that this is of
   std::vector<StabilityCheck> checks;  ///< empty where the run did not come to its end
   std::int64_t fast = 0;
-  double dt_hat = 0;  ///< dt sqrt(|g|/h)
+  double dt_hat = 0;  ///< relative_step(), lib/scene/auto_step.h
   double nearest = 0;
   Double3 center{};  ///< of mass at the end, in h from the domain's lower corner
   double seconds = 0;

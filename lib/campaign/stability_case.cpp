@@ -8,6 +8,7 @@
 #include "lib/campaign/stability.h"
 #include "lib/run/motion_files.h"
 #include "lib/run/warnings.h"
+#include "lib/scene/auto_step.h"
 #include "lib/scene/load.h"
 #include "lib/scene/overrides.h"
 
@@ -129,8 +130,7 @@ void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s
 void run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
   const std::string dir = std::filesystem::path(c.scene).parent_path().string();
   const Scene s = scene_of(c, o, dir);
-  row.dt_hat =
-      s.time.step * std::sqrt(std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]) / s.h());
+  row.dt_hat = relative_step(s);
   const Course course = run_course(s, dir, [&](Solver& solver) {
     const Snapshot snap = solver.download({}, ScalarType::f64).get();
     const auto x = snap.fields[0].as<double>();

@@ -6,6 +6,7 @@
 
 #include "lib/base/error.h"
 #include "lib/run/motion_files.h"
+#include "lib/scene/auto_step.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/load.h"
 #include "lib/scene/number.h"
@@ -106,7 +107,7 @@ MapCell run_map_cell(const StabilityMap& m, MapCell c) {
   // Some hundred measures of every run, however many updates it takes.
   s.measure_every = std::max(1, int(s.time.end / s.time.step / 200));
   c.scene = s.name;
-  c.dt_hat = s.time.step * std::sqrt(g / s.h());
+  c.dt_hat = relative_step(s);
   const Course course = run_course(s, std::filesystem::path(m.scene).parent_path().string());
   static_cast<Figures&>(c) = course;
   if (course.event) {

@@ -28,7 +28,7 @@ struct MapCell : Figures {
   std::vector<std::string> settings;  ///< that make the cell, KEY=VALUE
   std::string scene;                  ///< its name
   MapClass verdict = MapClass::stable;
-  double dt_hat = 0;        ///< dt sqrt(|g|/h)
+  double dt_hat = 0;        ///< relative_step(), lib/scene/auto_step.h
   std::string stopped_for;  ///< the guard's alarm
 };
 

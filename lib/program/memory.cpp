@@ -206,4 +206,16 @@ MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
   return memory;
 }
 
+std::vector<MemoryChoice> memory_choices(const Scene& scene, const Plan& plan) {
+  std::vector<MemoryChoice> out;
+  for (const Backend backend : all_of<Backend>())
+    for (const Precision precision : all_of<Precision>()) {
+      Scene choice = scene;
+      choice.backend = backend;
+      choice.precision = precision;
+      out.push_back({backend, precision, plan_memory(choice, plan)});
+    }
+  return out;
+}
+
 }  // namespace pbf::inline program_module

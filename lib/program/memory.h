@@ -78,4 +78,13 @@ constexpr std::int64_t cpu_scratch_entries(int list_entries) {
 /// number of CPU threads, which depends on this machine where the scene leaves it open.
 MemoryPlan plan_memory(const Scene& scene, const Plan& plan);
 
+/// The memory of the scene on a backend, in a precision.
+struct MemoryChoice {
+  Backend backend;
+  Precision precision;
+  MemoryPlan memory;
+};
+/// One for every backend and precision.
+std::vector<MemoryChoice> memory_choices(const Scene& scene, const Plan& plan);
+
 }  // namespace pbf::inline program_module

@@ -26,9 +26,9 @@ struct StartNeighbors {
 
 /// Files of one kind that the run leaves behind, with their estimated size.
 struct PlanFile {
-  std::string name;  ///< "run.vtkhdf", "frames/frame_*.png"
-  std::int64_t number = 1, bytes = 0;
-  std::string note;  ///< "101 frames"
+  std::string name;                    ///< "run.vtkhdf", "frames/frame_*.png"
+  std::int64_t number = 1, bytes = 0;  ///< of all of them
+  std::string note;                    ///< "101 frames"
 };
 
 struct Plan {
@@ -76,10 +76,29 @@ struct Plan {
 /// rest. Throws Error(bad_input) where the grid of the scene cannot be numbered.
 Plan make_plan(const Scene& scene, std::int64_t particles, StartNeighbors start = {});
 
-/// The plan for people: passes, arrays, files, what was left out and because of which key.
+/// What a run comes to, as one number each.
+struct PlanTotals {
+  std::int64_t updates = 0;
+  double end = 0;  ///< s, simulated: whole updates
+  /// Peaks of all that the run holds, with program and libraries; device: 0 where there is none.
+  std::int64_t host_bytes = 0, device_bytes = 0;
+  std::int64_t disk_bytes = 0;  ///< of all files
+};
+PlanTotals plan_totals(const Plan& plan, const Scene& scene);
+
+// The plan for people, in parts.
+
+/// What is asked first, in five lines: particles, time, run time, memory, disk. `run_time`: what
+/// its line says; empty: there is none.
+std::string plan_summary(const Plan& plan, const Scene& scene, const std::string& run_time);
+/// Files, memory by backend and precision, grid, passes, what is left out because of which key.
+std::string plan_details(const Plan& plan, const Scene& scene);
+/// Every array with its type, life, place and size, and the memory that is fixed.
+std::string plan_arrays(const Plan& plan, const Scene& scene);
+/// All of it, as a run file keeps it.
 std::string plan_text(const Plan& plan, const Scene& scene);
 
-/// The same as one JSON object.
+/// The same as one JSON object; plan_json.cpp.
 Json plan_json(const Plan& plan, const Scene& scene);
 
 }  // namespace pbf::inline program_module

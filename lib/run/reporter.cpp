@@ -115,10 +115,12 @@ std::vector<Warning> Reporter::found(bool end) const {
   if ((long_time && compressed_ > 0) || at_end)
     list.push_back(
         {"compressed",
-         format("the fluid is no liquid: mean compression above %g %% through %.3g %% of the "
-                "updates, %.3g %% at %s; give a shorter time.step or more solver.iterations",
-                100 * kNoLiquid, percent(double(compressed_), double(run_.schedule.updates)),
-                100 * m.compression_mean, end ? "the end" : "present")});
+         format(
+             "the fluid is compressed as no liquid is: mean compression above %g %% through %.3g "
+             "%% of the "
+             "updates, %.3g %% at %s; give a shorter time.step or more solver.iterations",
+             100 * kNoLiquid, percent(double(compressed_), double(run_.schedule.updates)),
+             100 * m.compression_mean, end ? "the end" : "present")});
   const double share =
       double(m.unresolved) /
       (double(run_.plan.particles) * double(run_.schedule.updates) * run_.scene.solver.substeps);

@@ -5,27 +5,17 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <sstream>
 
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
 #include "lib/program/schedule.h"
-#include "lib/scene/difference.h"
+#include "lib/run/run_record.h"
 #include "lib/scene/load.h"
 
 namespace pbf::inline run_module {
 namespace {
-
-/// files_text() from the comments that scene_record() begins with.
-std::string recorded_files(const std::string& record) {
-  std::string files;
-  std::istringstream lines(record);
-  for (std::string line; std::getline(lines, line) && line.rfind("# ", 0) == 0;)
-    if (line.find("  ") != std::string::npos) files += line.substr(2) + "\n";
-  return files;
-}
 
 /// Runs of such scenes give the same bits with one program, whatever the machine.
 bool exact(const Scene& s) { return about(s.backend).exact || s.solver.reproducible; }
@@ -76,12 +66,11 @@ class Finder {
       if (!other.empty()) refuse(kRunFile, other);
       const std::string doubt = why_not_finished(folder_.path(), scene_);
       if (doubt.empty()) {
-        if (schedule_.updates < done)
-          point_.notes.push_back(
-              format("%s: the run is finished up to update %ld, beyond the end "
-                     "that the scene now has",
-                     folder_.path().c_str(), done));
-        point_.finished = true;
+        finish(schedule_.updates < done
+                   ? format("the run is finished, up to %.6g s, beyond time.end, which is now %.6g "
+                            "s; nothing to do",
+                            double(done) * before.time.step, scene_.time.end)
+                   : "the run is finished (DONE is there); nothing to do");
         return point_;
       }
       point_.notes.push_back("DONE is there, but " + doubt);
@@ -89,7 +78,17 @@ class Finder {
     point_.started = true;
     point_.saved = read_checkpoint(folder_.path(), point_.notes);
     check_checkpoint(particles);
+    if (point_.saved && point_.saved->state.updates > schedule_.updates) {
+      leave_as_it_is();
+      return point_;
+    }
     if (scene_.output) look_at_file(before);
+    if (schedule_.updates < done)
+      point_.notes.push_back(
+          format("time.end is %.6g s now, %.6g s before: the run ends earlier", scene_.time.end,
+                 before.time.end) +
+          (beyond_ > 0 ? format("; %ld frames of run.vtkhdf beyond it are removed", beyond_)
+                       : std::string()));
     if (!point_.saved)
       point_.notes.push_back("there is no checkpoint: the run starts again from its first update" +
                              (point_.frames > 0
@@ -105,17 +104,43 @@ class Finder {
   /// That a file of the folder is of this scene and its files.
   void refuse_other(const std::string& name, const std::string& scene,
                     const std::string& files) const {
-    std::string difference = physics_difference(
-        parse_stored_scene(scene, folder_.file(name) + ": its scene", {}), scene_);
-    if (difference.empty()) difference = files_difference(files, files_);
+    const std::string difference = difference_of_runs(
+        parse_stored_scene(scene, folder_.file(name) + ": its scene", {}), files, scene_, files_);
     if (!difference.empty()) refuse(name, difference);
   }
   [[noreturn]] void refuse(const std::string& name, const std::string& difference) const {
     throw Error(ExitCode::bad_input,
                 (name.empty() ? folder_.path() : folder_.file(name)) + ": cannot resume: " +
-                    (name.empty() ? "" : "it is of another scene: ") + difference +
-                    "; only time.end, checkpoint, threads and backend may change. Restore it, or "
-                    "start again with --overwrite");
+                    (name.empty() ? "" : "it is of another scene: ") + difference + kSame);
+  }
+  void finish(const std::string& why) {
+    point_.notes.push_back(folder_.path() + ": " + why);
+    point_.finished = true;
+  }
+  /// A run that was stopped beyond the end which the scene now has: what it asks for is there.
+  void leave_as_it_is() {
+    const auto reached = point_.saved->state.updates;
+    const std::string at = format("%.6g s (update %ld)", double(reached) * scene_.time.step,
+                                  reached),
+                      end = format("time.end, which is now %.6g s", scene_.time.end);
+    std::string doubt;
+    if (scene_.output) {
+      if (!folder_.has(kRunFile)) bad("cannot resume: " + at + lost_file("is missing", end));
+      try {
+        try_run_file(folder_.file(kRunFile));
+        const RunInfo info = RunReader(folder_.file(kRunFile)).info();
+        refuse_other(kRunFile, info.resolved_scene, info.scene_files);
+      } catch (const Error& e) {
+        if (e.code() == ExitCode::bad_input) throw;
+        bad("cannot resume: " + at + lost_file("cannot be read", end));
+      }
+    }
+    finish("the run was stopped at " + at + ", beyond " + end +
+           "; nothing to do. A later time.end goes on from there");
+  }
+  static std::string lost_file(const std::string& what, const std::string& end) {
+    return " is done, beyond " + end + ", but run.vtkhdf " + what +
+           "; give a later time.end, or start again with --overwrite";
   }
 
   void check_checkpoint(std::int64_t particles) {
@@ -130,11 +155,6 @@ class Finder {
       throw Error(ExitCode::io, folder_.path() +
                                     "/checkpoint.h5: holds another number of particles or another "
                                     "precision than the scene; remove it to start again");
-    if (s.state.updates > schedule_.updates)
-      bad(
-          format("cannot resume: time.end ends after update %ld, the checkpoint is of update %ld; "
-                 "raise time.end",
-                 schedule_.updates, s.state.updates));
   }
 
   void look_at_file(const Scene& before) {
@@ -163,7 +183,9 @@ class Finder {
     }
     // Frames behind the checkpoint stay when the run to come writes the same.
     const bool same = exact(before) && exact(scene_) && info.commit == commit_;
-    point_.frames = prefix(file->updates(), same ? schedule_.updates : u,
+    const std::vector<std::int64_t> frames = file->updates();
+    beyond_ = std::ranges::count_if(frames, [&](auto f) { return f > schedule_.updates; });
+    point_.frames = prefix(frames, same ? schedule_.updates : u,
                            [&](std::int64_t k) { return schedule_.update_of_frame(k); });
     if (point_.saved && (point_.frames < schedule_.frames_until(u) ||
                          point_.rows.log < schedule_.measures_until(u) ||
@@ -189,6 +211,10 @@ class Finder {
     point_.rows = {};
   }
 
+  static constexpr const char* kSame =
+      ". Give the same scene, files and --set options as at the start (only time.end, checkpoint, "
+      "threads and backend may change), or start anew: in another folder with --out, or in this "
+      "one with --overwrite";
   static constexpr const char* kOtherwise =
       "; resume with that program, or start again with --overwrite";
   const RunFolder& folder_;
@@ -198,6 +224,7 @@ class Finder {
   Schedule schedule_;
   ResumePoint point_;
   bool damaged_ = false;
+  std::int64_t beyond_ = 0;  // frames of run.vtkhdf after the end
 };
 
 }  // namespace
@@ -208,19 +235,6 @@ ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene,
   return Finder(folder, scene, files, commit).find(particles);
 }
 
-std::string difference_of_record(const LoadedScene& record, const Scene& scene,
-                                 const std::vector<SceneFile>& files) {
-  const std::string difference = physics_difference(record.scene, scene);
-  return difference.empty() ? files_difference(recorded_files(record.text), files) : difference;
-}
-
-std::string scene_record(const Scene& scene, const std::string& files) {
-  std::string text = files.empty() ? "" : "# SHA-256 of its particle files:\n";
-  std::istringstream lines(files);
-  for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
-  return text + resolved_yaml(scene);
-}
-
 void prepare_resume(const RunFolder& folder, const ResumePoint& from) {
   folder.remove("DONE");
   if (!from.keep_file && folder.has(kRunFile)) {
@@ -228,38 +242,6 @@ void prepare_resume(const RunFolder& folder, const ResumePoint& from) {
     if (std::rename(folder.file(kRunFile).c_str(), aside.c_str()) != 0)
       throw Error(ExitCode::io, aside + ": cannot be made: " + std::strerror(errno));
   }
-}
-
-std::string difference_of_file(const std::string& folder, const Scene& scene) {
-  const std::string path = folder + "/" + kRunFile;
-  try {
-    try_run_file(path);
-    return physics_difference(
-        parse_stored_scene(RunReader(path).info().resolved_scene, path + ": its scene", {}), scene);
-  } catch (const Error&) {
-    return {};
-  }
-}
-
-std::string why_not_finished(const std::string& folder, const Scene& scene) {
-  if (!scene.output) return {};
-  const std::string path = folder + "/" + kRunFile;
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) return "run.vtkhdf is missing";
-  try {
-    try_run_file(path);
-    const RunReader file(path);
-    if (file.status() != "finished") return "run.vtkhdf is of a run that is " + file.status();
-    // The last frame is that of the end. The log is not asked: one of an earlier version will do.
-    const std::vector<std::int64_t> frames = file.updates();
-    const std::int64_t end = make_schedule(scene).updates,
-                       last = frames.empty() ? 0 : frames.back();
-    if (last < end)
-      return format("the frames of run.vtkhdf end at update %ld, the run at %ld", last, end);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return {};
 }
 
 }  // namespace pbf::inline run_module

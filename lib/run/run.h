@@ -166,8 +166,8 @@ class Saving : public Observer {
 /// run; what writing and drawing throw.
 void run_session(RunParts& run);
 
-/// What there is to say at the end, with the seconds per stage and per group of stages, in percent
-/// of the wall time; what no stage booked is "other".
+/// What there is to say at the end, in plain words: what each number is and what is good. With the
+/// seconds per group of stages, in percent of the wall time; what no stage booked is "other".
 std::string run_summary(const RunParts& run, const Watch& watch,
                         const std::vector<StageTime>& stages);
 

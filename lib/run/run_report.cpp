@@ -15,16 +15,12 @@
 namespace pbf::inline run_module {
 namespace {
 
-std::string row(const std::string& name, double seconds, double wall) {
-  return format("  %-28s %10.3f s  %5.1f %%\n", name.c_str(), seconds, percent(seconds, wall));
-}
-
 /// Nothing when the scene does not define the measure.
 std::string pool_line(const Diagnostics& m) {
   if (std::isnan(m.height_kept)) return {};
   return format(
-      "height kept         %.4f of the depth at rest, deviation from hydrostatic %.2g %% (both for "
-      "a pool at rest)\n",
+      "height kept         %.4f of the depth at rest, pressure %.2g %% off the hydrostatic one: of "
+      "a pool at rest 1 and 0 are right\n",
       m.height_kept, 100 * m.hydrostatic_deviation);
 }
 
@@ -44,39 +40,76 @@ std::string step_lines(const StepHistory& s, double step, std::int64_t all) {
                            s.changes, shortest, steps > 0 ? step * updates / steps : 0);
   if (s.changes > 0) out += "                    " + shares + " of the updates\n";
   if (s.repeats > 0)
-    out += format("                    %ld times back to the last good state\n", s.repeats);
+    out += format("                    %ld times back to the last good state after an alarm\n",
+                  s.repeats);
   if (s.floor > 0)
     out += format("                    %ld measures asked for less than time.adaptive.step_min\n",
                   s.floor);
   return out;
 }
 
-std::string stage_table(const std::vector<StageTime>& stages, double wall, bool fused) {
-  std::string out = "time per stage\n";
-  double rest = wall;
-  for (const auto& s : stages) {
-    out +=
-        row(s.name + (s.name == "lambda" && fused ? " (with the density)" : ""), s.seconds, wall);
-    rest -= s.seconds;
-  }
-  return out + row("other", rest, wall) + row("total", wall, wall);
+/// "grid 1.107, neighbors 3.849": the stages of a group, with their seconds where there are
+/// several.
+std::string stages_of(StageGroup group, const std::vector<StageTime>& stages, double& sum) {
+  std::vector<std::string> parts;
+  for (const Stage& stage : kStages)
+    for (const StageTime& s : stages)
+      if (stage.group == group && s.name == stage.name) {
+        sum += s.seconds;
+        parts.push_back(format("%s %.3f", s.name.c_str(), s.seconds));
+      }
+  return joined(parts, ", ");
 }
 
-/// The same folded into seven groups, initialization ... post-processing.
-std::string group_table(const std::vector<StageTime>& stages, double wall, bool fused) {
-  std::string out = "time per group of stages\n";
+/// Seconds per group of stages, and of each stage in it.
+std::string time_table(const std::vector<StageTime>& stages, double wall, bool fused) {
+  std::string out = "time                        seconds  of the wall time, and by stage\n";
+  const auto row = [&](const char* name, double seconds, const std::string& of) {
+    out += format("  %-25s %8.3f  %5.1f %%", name, seconds, percent(seconds, wall)) +
+           (of.empty() ? "\n" : "  " + of + "\n");
+  };
   double rest = wall;
   for (std::size_t g = 0; g < std::size(kStageGroupNames); ++g) {
+    const auto group = static_cast<StageGroup>(g);
     double sum = 0;
-    for (const Stage& stage : kStages)
-      for (const auto& s : stages)
-        if (static_cast<std::size_t>(stage.group) == g && s.name == stage.name) sum += s.seconds;
+    std::string of = stages_of(group, stages, sum);
+    if (fused && group == StageGroup::density) of = "in lambda, in one loop";
+    row(kStageGroupNames[g], sum, of);
     rest -= sum;
-    std::string name = kStageGroupNames[g];
-    if (fused && name == "densities") name += " (in lambdas)";
-    out += row(name, sum, wall);
   }
-  return out + row("other", rest, wall);
+  row("other", rest, "");
+  row("total", wall, "");
+  return out;
+}
+
+/// The error of the run, and what is good.
+std::string error_lines(const Diagnostics& last, double max_of_run) {
+  return format(
+      "compression         of the fluid beyond its rest density, the error of the run: a mean "
+      "below "
+      "1 %% is good\n"
+      "  at the end        mean %.3g %%, RMS %.3g %%, largest %.3g %%; 99 %% of the particles "
+      "below "
+      "%.3g %%\n"
+      "                    %.3g %% of the particles above 1 %%, %.3g %% above 10 %%\n"
+      "  over the run      largest %.3g %%\n",
+      100 * last.compression_mean, 100 * last.compression_rms, 100 * last.compression_max,
+      100 * last.compression_p99, 100 * last.share_above_1, 100 * last.share_above_10,
+      100 * max_of_run);
+}
+
+std::string energy_lines(const Diagnostics& first, const Diagnostics& last) {
+  std::string out = format(
+      "energy              %.6g J at the start, %.6g J at the end (%.3g J of it kinetic)\n"
+      "  drift             %+.3g %% from start to end: splashes and friction lose energy\n"
+      "  largest rise      %.3g %% at any time: 0 is good, above 1 %% the method adds energy\n",
+      first.energy, last.energy, last.kinetic_energy, 100 * last.energy_drift,
+      100 * last.energy_rise);
+  if (last.moved)
+    out += format(
+        "  work              %.6g J of what moves by itself; drift and rise are without it\n",
+        last.work);
+  return out;
 }
 
 }  // namespace
@@ -88,53 +121,41 @@ std::string run_summary(const RunParts& run, const Watch& watch,
   const Diagnostics &first = watch.first(), &last = watch.last();
   const std::int64_t updates = run.solver.updates();
   const double wall = run.wall.seconds(), loop = run.loop_seconds;
-  std::string out = format(
-      "particles           %ld\n"
-      "updates             %ld  (%.6g s simulated)\n"
-      "wall time           %s  (%s in updates and output)\n"
-      "speed               %s particle-updates/s\n"
-      "compression         mean %.3g %%, RMS %.3g %%, 99th percentile %.3g %%, max %.3g %% at the "
-      "end; max %.3g %% over the run\n"
-      "                    above 1 %%: %.3g %% of the particles, above 10 %%: %.3g %%\n"
-      "energy              %.6g J at the end (kinetic %.3g J), %.6g J at the start: drift %+.3g "
-      "%%, "
-      "largest rise %.3g %%\n"
-      "peak memory         %s\n",
-      plan.particles, updates, double(updates) * scene.time.step, duration_text(wall).c_str(),
-      duration_text(loop).c_str(),
-      loop > 0
-          ? si_number(double(plan.particles) * double(updates - run.from.update()) / loop).c_str()
-          : "0",
-      100 * last.compression_mean, 100 * last.compression_rms, 100 * last.compression_p99,
-      100 * last.compression_max, 100 * run.compression_max, 100 * last.share_above_1,
-      100 * last.share_above_10, last.energy, last.kinetic_energy, first.energy,
-      100 * last.energy_drift, 100 * last.energy_rise, bytes_text(double(peak_memory())).c_str());
-  if (last.moved)
-    out += format(
-        "work                %.6g J of what moves by itself; drift and rise are without it\n",
-        last.work);
+  const auto own = double(updates - run.from.update());
+  std::string out = format("particles           %ld\n", plan.particles);
+  out += format("updates             %ld (%.6g s simulated)\n", updates,
+                double(updates) * scene.time.step);
+  out += "wall time           " + duration_text(wall) + ", " + duration_text(loop) +
+         " of it from the first update to the last, with output\n";
+  out += "speed               " + si_number(loop > 0 ? double(plan.particles) * own / loop : 0) +
+         " particle-updates/s in these " + duration_text(loop) + "\n";
+  out += error_lines(last, run.compression_max) + energy_lines(first, last);
+  out += "peak memory         " + bytes_text(double(peak_memory())) + " on the host\n";
   out += pool_line(last);
   if (last.non_finite > 0)
     out += format("not finite          %ld particles at the end, left out of the figures above\n",
                   last.non_finite);
   if (plan.tolerance > 0)
     out += format(
-        "iterations              %.3g per substep on average, at most %d, for a tolerance of %.4g "
-        "%%\n",
+        "iterations          %.3g per substep on average, at most %d, for a tolerance of %.4g %%\n",
         double(last.iterations_done) / (double(updates) * plan.substeps),
         scene.solver.iterations * (1 + plan.repeats), 100 * plan.tolerance);
   if (last.unresolved > 0)
-    out += format("fast past neighbours %ld times more than %g h in a step, at most %.3g h\n",
-                  last.unresolved, kResolvedWay, last.relative_way_max);
+    out += format(
+        "fast fluid          %ld times a particle moved by more than %g h past a neighbour in one "
+        "step, at most by %.3g h;\n"
+        "                    harmless while rare, else fluid may pass through fluid\n",
+        last.unresolved, kResolvedWay, last.relative_way_max);
   if (const auto steps = watch.steps(updates)) out += step_lines(*steps, scene.time.step, updates);
   if (scene.solver.speed_limit > 0)
     out += format("speed limit         %ld times a particle was slowed down to %.4g m/s\n",
                   last.fast, scene.solver.speed_limit * scene.h() / scene.time.step);
-  out += stage_table(stages, wall, scene.solver.fused);
+  out += time_table(stages, wall, scene.solver.fused);
   if (run.drawing_seconds > 0)
-    out += format("  drawing took %.3f s on a thread of its own, beside the stages above\n",
-                  run.drawing_seconds);
-  out += group_table(stages, wall, scene.solver.fused);
+    out += format(
+        "  drawing took %.3f s on a thread beside the run; render, above, is how long the run "
+        "waited for it\n",
+        run.drawing_seconds);
   out += "files in            " + run.folder.path();
   if (run.frames_written > 0)
     out += format("\n  run.vtkhdf        %ld frames, %s", run.frames_written,

@@ -18,14 +18,19 @@ double two_digits(double x) {
   return cut;
 }
 
+double magnitude(const Double3& v) { return std::hypot(v[0], v[1], v[2]); }
+
 }  // namespace
+
+double relative_step(const Scene& s) {
+  return s.time.step * std::sqrt(magnitude(s.gravity) / s.h());
+}
 
 StepRule step_rule(const Scene& s) {
   constexpr double never = std::numeric_limits<double>::infinity();
-  const auto length = [](const Double3& v) { return std::hypot(v[0], v[1], v[2]); };
   double fastest = 0;
-  for (const Body& b : s.bodies) fastest = std::max(fastest, length(b.velocity));
-  const double g = length(s.gravity);
+  for (const Body& b : s.bodies) fastest = std::max(fastest, magnitude(b.velocity));
+  const double g = magnitude(s.gravity);
   return {g > 0 ? kSafeStep * std::sqrt(s.h() / g) : never,
           fastest > 0 ? kSafeWay * s.h() / fastest : never};
 }

@@ -17,6 +17,9 @@ struct StepRule {
 /// dt sqrt(g/h): the mean compression of a pool of 12 layers stays below 0.1 % with 4 iterations
 /// (configs/README.md).
 inline constexpr double kSafeStep = 0.03;
+/// dt sqrt(|g|/h), time.step without dimension; 0 without gravity. In one update fluid at rest
+/// falls by its square in h: it decides how far a pool is compressed, whatever its size.
+double relative_step(const Scene& scene);
 /// Way of a body in a step, in h: fluid that moves past other fluid by 0.4 h may pass through it
 /// (kernels/relative_motion.h), and what falls gains speed.
 inline constexpr double kSafeWay = 0.2;

@@ -204,8 +204,9 @@ std::string join(const std::string& block, const std::string& leaf);
 std::string yaml_of(const KeyTable& table, const Object& object, bool comments);
 /// JSON Schema of the struct's mapping, without the document around it.
 std::string schema_of(const KeyTable& table);
-/// Keys and blocks with less effect than `least` are not looked at.
-std::string first_difference(const KeyTable& table, const Object& before, const Object& now,
-                             Effect least);
+/// "solver.iterations: 4 before, 8 now" for each; keys and blocks with less effect than `least` are
+/// not looked at, nor are the keys of a block that is only in one of both.
+std::vector<std::string> differences(const KeyTable& table, const Object& before, const Object& now,
+                                     Effect least);
 
 }  // namespace pbf::inline scene_module

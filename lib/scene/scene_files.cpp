@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "lib/base/sha256.h"
+#include "lib/scene/difference.h"
 
 namespace pbf::inline scene_module {
 namespace {
@@ -29,6 +30,7 @@ std::string scene_digest(const std::string& resolved_scene, const std::string& f
 }
 
 std::string files_difference(const std::string& before, const std::vector<SceneFile>& now) {
+  std::vector<std::string> changed;
   for (const SceneFile& file : now) {
     const std::string wanted = line_of(file);
     const std::size_t digits = wanted.find("  ");
@@ -39,10 +41,11 @@ std::string files_difference(const std::string& before, const std::vector<SceneF
           at != std::string::npos && line.substr(at) == wanted.substr(digits))
         other = line;
     if (!other.empty() && other != wanted)
-      return file.path + ": its contents have changed: SHA-256 " +
-             other.substr(0, other.find("  ")) + " before, " + wanted.substr(0, digits) + " now";
+      changed.push_back(file.path + ": its contents have changed: SHA-256 " +
+                        other.substr(0, other.find("  ")) + " before, " + wanted.substr(0, digits) +
+                        " now");
   }
-  return {};
+  return first_of(changed);
 }
 
 }  // namespace pbf::inline scene_module

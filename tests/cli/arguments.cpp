@@ -39,6 +39,18 @@ TEST_CASE("arguments: unknown options, commands, second scenes and forgotten --s
   }
 }
 
+TEST_CASE("arguments: --help is help wherever it stands, also where an option wants a value") {
+  const Scratch folder;
+  for (const Args& args :
+       {Args{"stability", "--map", "--help"}, Args{"run", "a.yaml", "--out", "-h"},
+        Args{"plan", "--set", "--help"}, Args{"bench", "--n", "x", "--help"}}) {
+    const Outcome o = pbf::test::pbf(args, folder.path());
+    CAPTURE(args, o.err);
+    CHECK(o.code == 0);
+    CHECK(has(o.out, "Usage: pbf " + args[0] + " [OPTIONS]"));
+  }
+}
+
 TEST_CASE("arguments: a file that another command takes is told by its kind") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());

@@ -1,4 +1,6 @@
 // plan, render, info, config and the help texts.
+#include <sstream>
+
 #include "lib/io/run_file.h"
 #include "tests/support/catch.h"
 #include "tests/support/process.h"
@@ -45,6 +47,48 @@ TEST_CASE("info names version, libraries and devices") {
     CHECK(has(o.out, part));
   const Outcome version = pbf::test::pbf({"--version"}, folder.path());
   CHECK(o.out.rfind(version.out.substr(0, version.out.find('\n')), 0) == 0);
+}
+
+TEST_CASE("plan says first what is asked first, and lists arrays only when it is asked to") {
+  const Scratch folder;
+  const std::string scene =
+      folder.write("s.yaml", tiny_scene("threads: 1\nrender: {every: 0.05, size: [320, 240]}\n"));
+  const std::vector<std::string> nothing{"PBF_CALIBRATION=" + (folder / "none.csv").string()};
+  const auto plan = [&](const Args& more) {
+    Args args{"plan", scene};
+    args.insert(args.end(), more.begin(), more.end());
+    return pbf::test::pbf(args, folder.path(), nothing);
+  };
+  const Outcome text = plan({});
+  REQUIRE(text.code == 0);
+  std::istringstream lines(text.out);
+  std::vector<std::string> head(6);
+  for (std::string& line : head) std::getline(lines, line);
+  CAPTURE(text.out);
+  CHECK(has(head[0], ": 64 particles, spacing d = "));
+  CHECK(has(head[0], " m, smoothing length h = "));
+  CHECK(has(head[1], "  time      0.1 s in 20 updates of 0.005 s; dt sqrt(g/h) = "));
+  CHECK(has(head[1], "(time.step: auto takes 0.03 at most)"));
+  CHECK(has(head[2], "  run time  below 0.1 s for the updates"));
+  CHECK(has(head[3], " MiB on the host; cpu float, 1 thread"));
+  CHECK(has(head[4], "  disk      "));
+  CHECK(has(head[4], "run.vtkhdf"));
+  CHECK_FALSE(has(text.out, "emitted position"));
+  CHECK(has(text.out, "--arrays lists every array"));
+  // Warnings come before the rest.
+  const Outcome warned = plan({"--set", "output.every=5", "--set", "render=off"});
+  CHECK(has(warned.out, "\nwarnings\n"));
+  CHECK(warned.out.find("\nwarnings\n") < warned.out.find("\nfiles\n"));
+  const Outcome arrays = plan({"--arrays"});
+  CHECK(has(arrays.out, "emitted position"));
+  CHECK(has(arrays.out, "program and libraries"));
+  CHECK_FALSE(has(arrays.out, "--arrays lists"));
+  for (const char* other : {"--json", "--resolved"}) CHECK(plan({"--arrays", other}).code == 2);
+  // Without a calibration there is no guess for a device.
+  const Outcome device = plan({"--set", "backend=cuda"});
+  CHECK(has(device.out, "  run time  not known; pbf bench --calibrate --backend cuda measures"));
+  CHECK(has(device.out, " on the device; cuda float\n"));
+  CHECK(has(plan({"--set", "backend=cuda", "--json"}).out, "\"run_time_s\":null"));
 }
 
 TEST_CASE("plan runs nothing, names what is left out, and prints a scene that resolves to itself") {

@@ -133,6 +133,68 @@ TEST_CASE("a finished run can be prolonged, to the bytes of the long run") {
   }
 }
 
+TEST_CASE("an earlier end is told where it lies ahead, and leaves a run alone that is beyond it") {
+  const Scratch folder;
+  write_scene(folder);
+  const auto with = [&](const std::string& out, const std::string& end) {
+    return pbf::test::pbf(
+        {"run", "s.yaml", "--out", out, "--threads", "1", "--resume", "--set", "time.end=" + end},
+        folder.path());
+  };
+  // Finished up to 0.2 s.
+  REQUIRE(run_scene(folder, "b", {"--set", "time.end=0.2"}).code == 0);
+  const Outcome done = with("b", "0.1");
+  CHECK(done.code == 0);
+  CHECK(has(done.err,
+            "b: the run is finished, up to 0.2 s, beyond time.end, which is now 0.1 s; nothing to "
+            "do"));
+  CHECK(has(with("b", "0.2").err, "b: the run is finished (DONE is there); nothing to do"));
+
+  // Stopped on the way to 0.8 s.
+  REQUIRE(run_scene(folder, "c", {"--set", "time.end=80", "--max-walltime", "0.5"}).code == 75);
+  const std::string file = read_text(folder / "c/run.vtkhdf");
+  const Outcome beyond = with("c", "0.002");
+  CAPTURE(beyond.err);
+  CHECK(beyond.code == 0);
+  CHECK(has(beyond.err, "c: the run was stopped at "));
+  CHECK(has(beyond.err,
+            ", beyond time.end, which is now 0.002 s; nothing to do. A later time.end "
+            "goes on from there"));
+  CHECK(read_text(folder / "c/run.vtkhdf") == file);
+  CHECK_FALSE(fs::exists(folder / "c/DONE"));
+  // Nothing is said to be there that is not: the run file is looked at.
+  fs::rename(folder / "c/run.vtkhdf", folder / "c/kept");
+  const Outcome lost = with("c", "0.002");
+  CHECK(lost.code == 2);
+  CHECK(has(lost.err, "but run.vtkhdf is missing; give a later time.end, or start again with"));
+  folder.write("c/run.vtkhdf", "no such file");
+  CHECK(has(with("c", "0.002").err, "but run.vtkhdf cannot be read; give a later time.end"));
+  fs::rename(folder / "c/kept", folder / "c/run.vtkhdf");
+  // Ahead of the checkpoint: it ends there, and the note says so.
+  const double reached = pbf::RunReader((folder / "c/run.vtkhdf").string()).times().back();
+  const Outcome earlier = with("c", std::to_string(reached + 0.1));
+  CAPTURE(earlier.err);
+  CHECK(earlier.code == 0);
+  CHECK(has(earlier.err, " s now, 80 s before: the run ends earlier"));
+  CHECK(fs::exists(folder / "c/DONE"));
+  CHECK_FALSE(has(with("b", "0.3").err, "ends earlier"));  // prolonged
+}
+
+TEST_CASE("a killed run that ends earlier says that frames beyond its end are removed") {
+  const Scratch folder;
+  write_scene(folder);
+  const Args args{"run", "s.yaml", "--out", "b", "--quiet", "--threads", "1"};
+  CHECK(end_by(folder, args, SIGKILL, 12).code == 128 + SIGKILL);
+  const std::int64_t frames = pbf::RunReader((folder / "b/run.vtkhdf").string()).frames();
+  const Outcome o = pbf::test::pbf(
+      {"run", "s.yaml", "--out", "b", "--threads", "1", "--resume", "--set", "time.end=0.05"},
+      folder.path());
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  CHECK(has(o.err, "; " + std::to_string(frames - 6) + " frames of run.vtkhdf beyond it are "));
+  CHECK(pbf::RunReader((folder / "b/run.vtkhdf").string()).frames() == 6);
+}
+
 TEST_CASE("a run of an earlier version, whose log lacks a column, is refused by name") {
   const Scratch folder;
   write_scene(folder);
@@ -150,7 +212,8 @@ TEST_CASE("a run of an earlier version, whose log lacks a column, is refused by 
   CHECK(has(o.err, "--overwrite"));
 }
 
-TEST_CASE("a changed physics key is an error that names it, and other keys may change") {
+TEST_CASE(
+    "changed physics keys are an error that names them all and the remedy, others may change") {
   const Scratch folder;
   write_scene(folder);
   REQUIRE(run_scene(folder, "b", {"--max-walltime", "0.02"}).code == 75);
@@ -160,13 +223,24 @@ TEST_CASE("a changed physics key is an error that names it, and other keys may c
       {"bodies.0.max=[0.4,0.6,0.7]", "bodies[0].max"},
       {"precision=double", "precision: float before, double now"},
       {"output.every=0.02", "output.every"}};
+  Args all{"--resume"};
+  const auto remedy = [](const std::string& said) {
+    return has(said, ". Give the same scene, files and --set options as at the start") &&
+           has(said, "in another folder with --out, or in this one with --overwrite");
+  };
   for (const auto& [set, text] : bad) {
     const Outcome o = run_scene(folder, "b", {"--resume", "--set", set});
     CAPTURE(o.err);
     CHECK(o.code == 2);
     CHECK(has(o.err, text));
-    CHECK(has(o.err, "--overwrite"));
+    CHECK(remedy(o.err));
+    all.insert(all.end(), {"--set", set});
   }
+  const Outcome o = run_scene(folder, "b", all);
+  CAPTURE(o.err);
+  CHECK(o.code == 2);
+  for (const auto& [set, text] : bad) CHECK(has(o.err, text));
+  CHECK(remedy(o.err));
   CHECK(run_scene(folder, "b",
                   {"--resume", "--set", "threads=2", "--set", "checkpoint.every=5", "--set",
                    "time.end=0.9", "--set", "name=other"})

@@ -36,6 +36,20 @@ TEST_CASE("a run leaves its file, resolved scene, log and DONE, and says so") {
   for (const char* part : {"particles           64", "updates             20", "lambda",
                            "particle-updates/s", "gridding/neighbours", "peak memory", "out/tiny"})
     CHECK(has(o.out, part));
+  for (const char* part :
+       {"updates             20 (0.1 s simulated)\n", "a mean below 1 % is good",
+        "  largest rise      ", "0 is good, above 1 % the method adds energy",
+        "  densities                    0.000    0.0 %  in lambda, in one loop\n",
+        "of the wall time"})
+    CHECK(has(o.out, part));
+  // One number for one thing: the seconds of a group are those of its stages.
+  const auto after = [&](const std::string& word) {
+    const std::size_t at = o.out.find(word);
+    REQUIRE(at != std::string::npos);
+    return std::stod(o.out.substr(at + word.size()));
+  };
+  CHECK(after("  gridding/neighbours ") ==
+        Approx(after("  grid ") + after(", neighbors ")).margin(0.0011));
   CHECK(has(read_text(run / "log.txt"), o.out));  // the summary, word for word
   CHECK(has(read_text(run / "log.txt"), o.err));
   const std::string json = read_text(folder / "m.json");

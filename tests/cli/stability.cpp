@@ -70,6 +70,7 @@ TEST_CASE("stability: a map is a CSV with a class per run") {
                      folder.path());
   CHECK(o.code == 0);
   CHECK(has(o.out, "4 runs: "));
+  CHECK(has(o.out, " degraded (mean compression above 1 %), "));
   const std::string csv = read_text(folder / "map.csv");
   CHECK(has(csv, "x_key,y_key,x,y,iterations,class,dt_hat,compression_mean"));
   CHECK(has(csv, "time.step,gravity,0.002,5"));
@@ -78,6 +79,31 @@ TEST_CASE("stability: a map is a CSV with a class per run") {
         pbf::test::pbf({"stability", "tiny.yaml", "--map", map, "--quiet"}, folder.path());
     CHECK(wrong.code == 2);
     CHECK(has(wrong.err, "--map"));
+  }
+}
+
+TEST_CASE("stability: help says what a map varies, and what its classes and numbers mean") {
+  const Scratch folder;
+  const Outcome help = pbf::test::pbf({"stability", "--map", "--help"}, folder.path());
+  CHECK(help.code == 0);
+  for (const char* part :
+       {"every combination of values of the two keys", "and of solver.iterations", "6 x 6 x 5 runs",
+        "stable    it came to the end", "degraded  it came to the end", "stopped   the guard",
+        "dt_hat is dt sqrt(g/h)", "1,2,4,8,16 when not given", "0.01 is 1 %"})
+    CHECK(has(help.out, part));
+  folder.write("tiny.yaml", tiny_scene());
+  const Outcome said = pbf::test::pbf({"stability", "tiny.yaml", "--map", "time.step,gravity",
+                                       "--x", "0.002,0.004", "--y", "5", "--iterations", "1,2"},
+                                      folder.path());
+  CHECK(
+      has(said.err, "4 runs of tiny.yaml: 2 values of time.step, 1 of gravity, 2 of solver.iter"));
+  // What is of the suite alone is refused, where it did nothing.
+  for (const Args& more : {Args{"--reduced"}, Args{"--suite", "suite.yaml"}}) {
+    Args args{"stability", "tiny.yaml", "--map", "time.step,gravity"};
+    args.insert(args.end(), more.begin(), more.end());
+    const Outcome o = pbf::test::pbf(args, folder.path());
+    CHECK(o.code == 2);
+    CHECK(has(o.err, "--map"));
   }
 }
 

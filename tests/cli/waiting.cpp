@@ -103,10 +103,10 @@ TEST_CASE("threads that wait for one whose core is taken use next to no CPU time
 TEST_CASE("a small scene runs on one thread unless threads are given, and plan and run say so") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());
-  CHECK(has(pbf::test::pbf({"plan", scene}, folder.path()).out, "\n1 thread"));
+  CHECK(has(pbf::test::pbf({"plan", scene}, folder.path()).out, "; cpu float, 1 thread"));
   CHECK(has(pbf::test::pbf({"plan", scene, "--json"}, folder.path()).out, "\"threads\":1,"));
   CHECK(has(pbf::test::pbf({"plan", scene, "--set", "threads=3"}, folder.path()).out,
-            "\n3 threads\n"));
+            "; cpu float, 3 threads\n"));
   CHECK(has(pbf::test::pbf({"run", scene, "--out", "a"}, folder.path()).err, "float, 1 thread"));
   CHECK(has(pbf::test::pbf({"run", scene, "--out", "b", "--threads", "3"}, folder.path()).err,
             "float, 3 threads on"));

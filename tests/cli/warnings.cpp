@@ -59,7 +59,7 @@ TEST_CASE("a warning is on stderr, also with --quiet, in log.txt and in the run 
   const std::vector<std::string> told = warnings_in(o.err);
   REQUIRE(told.size() == 5);  // the step; two kinds on the way, and both again at the end
   CHECK(has(told[0], "times the longest that is safe"));
-  CHECK(has(o.err, "pbf: warning: the fluid is no liquid"));
+  CHECK(has(o.err, "pbf: warning: the fluid is compressed as no liquid is"));
   CHECK(warnings_in(read_text(folder / "a/log.txt")) == told);
   CHECK(has(o.out, "warning") == false);  // stdout is for results
   const std::vector<std::string> list = kept(folder / "a/run.vtkhdf");

@@ -249,6 +249,19 @@ def test_the_table_of_commands_has_every_command_of_the_program():
         r"^  (\d+) ", codes, re.MULTILINE)
 
 
+def test_the_plan_on_the_page_is_the_one_that_the_program_prints(pbf, tmp_path):
+    """But for bytes, which depend on the libraries of the build, and for the run time."""
+    page = (ROOT / "app/README.md").read_text()
+    words, shown = re.search(r"<code>pbf (plan [^<]*)</code></summary>\n\n```\n(.*?)```", page,
+                             re.DOTALL).groups()
+    done = subprocess.run([pbf, *words.split()], capture_output=True, text=True, cwd=ROOT,
+                          env={**ENVIRONMENT, "PBF_CALIBRATION": str(tmp_path / "none.csv")})
+    assert done.returncode == 0, done.stderr
+    def plain(text):
+        return [line for line in text.splitlines() if not re.search("MiB|KiB|run time", line)]
+    assert plain(shown) == plain(done.stdout) and "MiB on the host" in shown
+
+
 def test_the_commands_of_the_front_page_run_one_after_the_other(tmp_path):
     shutil.copytree(ROOT / "configs", tmp_path / "configs")
     (tmp_path / "build").mkdir()

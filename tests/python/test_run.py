@@ -106,6 +106,10 @@ def test_particle_files_of_a_dict_are_those_of_the_working_folder(scene, tmp_pat
 def test_a_plan_says_what_a_scene_needs_and_runs_nothing(scene, tmp_path):
     plan = pbf_tools.plan(scene, precision="double")
     assert plan["particles"] == 500 and plan["memory"][0]["host_peak"] > 1e6
+    own = next(m for m in plan["memory"] if (m["backend"], m["precision"]) == ("cpu", "double"))
+    assert plan["host_bytes"] == own["host_peak"] and plan["device_bytes"] == 0
+    assert plan["disk_bytes"] == sum(f["bytes"] for f in plan["files"])
+    assert plan["run_time_s"] > 0 and plan["run_time_basis"]
     assert pbf_tools.plan(ROOT / "configs/dam_break.yaml")["scene"] == "dam_break"
     assert not list(tmp_path.iterdir())
     with pytest.raises(pbf_tools.PbfError, match=r"^scene.yaml:\d+:\d+: fluid.spacin"):

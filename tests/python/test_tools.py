@@ -2,6 +2,7 @@
 
 import os
 import pty
+import re
 import shutil
 import subprocess
 
@@ -129,14 +130,35 @@ def test_a_build_that_fails_shows_all_of_its_output(tree):
     assert "[2/3] Building" in text and "FAILED: it is broken" in text and "failed, see above" in text
     assert not any(c.startswith("pbf") for c in calls)
     code, text, _ = tree("tools/demo", BREAK="yes", terminal=True)
-    assert code == 1 and "FAILED: it is broken" in text and "the build failed, see above" in text
+    assert code == 1 and "FAILED: it is broken\r\n" in text and "the build failed, see above" in text
+    assert "build/build.log" in text and "[2/3] Building" in (tree.folder / "build/build.log").read_text()
 
 
 def test_a_terminal_shows_each_step_in_one_line_that_is_overwritten(tree):
     code, text, _ = tree("tools/setup", installed=False, terminal=True)
-    assert code == 0 and "\r\x1b[KUnpacking g++\r\x1b[K" in text
+    assert code == 0 and re.search(r"\r\x1b\[K\d+ s  Unpacking g\+\+\r\x1b\[K", text)
     assert "tools/setup: installing g++ cmake" in text
     code, text, _ = tree("tools/setup", installed=False)
     assert code == 0 and "\r" not in text and "\x1b" not in text and "Unpacking" not in text
     code, text, _ = tree("tools/setup")
     assert code == 0 and "nothing is missing" in text
+
+
+def test_a_long_build_says_where_it_is_at_least_every_ten_seconds(tree):
+    """Here every second. Compilers may take longer than that over one file, and say nothing."""
+    assert "\nevery=10\n" in (ROOT / "tools/shared.sh").read_text()
+    follow = ". tools/shared.sh; every=1; follow log"
+    slow = "echo '[1/9] Building CXX object a.o'; sleep 3; printf '[2/9'; sleep 2; echo '] half a line'"
+    _, text, _ = tree("bash", "-c", f"{{ {slow}; }} | {{ {follow}; }}")
+    said = [int(s) for s in re.findall(r"^(\d+) s  \[1/9\] Building CXX object a\.o$", text, re.MULTILINE)]
+    assert len(said) >= 3 and max(b - a for a, b in zip(said, said[1:])) <= 3, text
+    assert (tree.folder / "log").read_text() == "[1/9] Building CXX object a.o\n[2/9] half a line\n"
+    _, text, _ = tree("bash", "-c", f"sleep 2.5 | {{ {follow}; }}")
+    assert re.search(r"^\d s  \.\.\.$", text, re.MULTILINE)
+
+
+def test_a_terminal_keeps_what_the_compiler_says_and_counts_the_seconds(tree):
+    slow = "echo '[1/2] Building a'; sleep 2.5; echo 'a.cpp:1: warning: w'; echo '[2/2] Linking'"
+    _, text, _ = tree("bash", "-c", f". tools/shared.sh; {{ {slow}; }} | follow log kept", terminal=True)
+    assert "\ra.cpp:1: warning: w\r\n" in text.replace("\x1b[K", "")
+    assert "1 s  [1/2] Building a\r" in text and "2 s  [1/2] Building a\r" in text

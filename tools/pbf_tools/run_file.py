@@ -108,8 +108,8 @@ class Run:
 
     @property
     def plan(self) -> str:
-        """What `pbf plan` said of the scene when the run began: passes, arrays, memory, files, what
-        is left out; empty for a file without it."""
+        """What `pbf plan --arrays` said of the scene when the run began, but for the run time;
+        empty for a file without it."""
         return self._read(lambda file: index._text(file["pbf"].attrs.get("plan", "")),
                           "cannot read the plan")
 

@@ -17,10 +17,11 @@ from .scene_text import Scene, base_words, set_words, write_scene
 
 def plan(scene: Scene, *, base_folder: str | os.PathLike[str] | None = None,
          program: str | os.PathLike[str] | None = None, **overrides: Any) -> dict[str, Any]:
-    """What `pbf plan --json` says of a scene: particles, passes, memory (bytes), files, time per
-    update (ms, None before `pbf bench --calibrate`), warnings. Runs nothing.
+    """What `pbf plan --json` says of a scene: particles, updates, run_time_s (a rule of thumb before
+    `pbf bench --calibrate`; None where nothing is known), host_bytes, device_bytes and disk_bytes,
+    which are sums, then passes, memory by backend, files, warnings. Runs nothing.
 
-        plan("configs/dam_break.yaml", fluid__spacing=0.008)["particles"]
+        plan("configs/dam_break.yaml", fluid__spacing=0.008)["host_bytes"]
 
     base_folder as in `run`. PbfError with the program's message for a scene that cannot be.
     """

@@ -49,10 +49,10 @@ TEST_CASE("a progress line gives the rate since the last line and the time left 
   // 50 updates of 2000 particles in the last 2 s; a quarter of the work took 10 s.
   const std::string line = progress_line(s, 10, 2, 50);
   CHECK(line ==
-        " 25 %  update 250/1000  t 0.5 s  50 k particle-updates/s  compression mean 0.1 % max 2 %"
-        "  ETA 30 s");
+        " 25 %  update 250/1000  0.5 s simulated  50 k particle-updates/s  compression mean 0.1 %, "
+        "max 2 %  30 s to go");
   s.update = 1000;
-  CHECK(progress_line(s, 40, 2, 50).find("ETA") == std::string::npos);
+  CHECK(progress_line(s, 40, 2, 50).find("to go") == std::string::npos);
 }
 
 TEST_CASE("the stage clock sums per name, keeps the order, and books nothing before begin") {

@@ -17,7 +17,7 @@ TEST_CASE("scene difference: exactly these keys leave the results of a run alone
   CHECK(adaptive == std::vector<std::string>{"guard.speed", "guard.energy", "guard.neighbors"});
 }
 
-TEST_CASE("scene difference: the first key that matters is named, with both values") {
+TEST_CASE("scene difference: every key that matters is named, with both values") {
   const auto difference = [](const std::vector<std::string>& now,
                              const std::vector<std::string>& before = {}) {
     return physics_difference(parse(kMinimal, before), parse(kMinimal, now));
@@ -34,8 +34,35 @@ TEST_CASE("scene difference: the first key that matters is named, with both valu
                     "{shape: sphere, center: [.5, .5, .8], radius: .2}]"}) ==
         "bodies: 1 before, 2 now");
   // Keys come before bodies, wherever the file has them.
-  CHECK(difference({"bodies[0].velocity=[0, 0, 1]", "gravity=[0, 0, 0]"}) ==
-        "gravity: [0, 0, -9.81] before, [0, 0, 0] now");
+  CHECK(
+      difference({"bodies[0].velocity=[0, 0, 1]", "gravity=[0, 0, 0]"}) ==
+      "gravity: [0, 0, -9.81] before, [0, 0, 0] now; bodies[0].velocity: [0, 0, 0] before, [0, 0, "
+      "1] now");
+  // A block that comes, or another kind, brings its keys: they are not listed too.
+  CHECK(difference({"viscosity.xsph=0.3", "solver.iterations=8"}) ==
+        "viscosity: off before, on now; solver.iterations: 4 before, 8 now");
+  CHECK(difference({"tank_motion={kind: file, path: t.csv, axis: [0, 1, 0]}"},
+                   {"tank_motion={kind: sine, axis: [0, 1, 0], amplitude: 2, period: 3}"}) ==
+        "tank_motion.kind: sine before, file now");
+}
+
+TEST_CASE("scene difference: a long list is cut, and says how much more there is") {
+  std::vector<std::string> parts{"a", "b"};
+  CHECK(first_of({}) == "");
+  CHECK(first_of(parts) == "a; b");
+  CHECK(first_of(parts, 2) == "a; b");
+  CHECK(first_of({"a", "b", "c", "d"}, 2) == "a; b; and 2 more");
+  std::string many, others;
+  for (int k = 0; k < 12; ++k) {
+    many += ", {shape: sphere, center: [.5, .5, .5], radius: .2}";
+    others += ", {shape: sphere, center: [.5, .5, .5], radius: .1}";
+  }
+  const std::string first = "bodies=[{shape: block, min: [0, 0, 0], max: [1, 1, 0.5]}";
+  const std::string said = physics_difference(parse(kMinimal, {first + many + "]"}),
+                                              parse(kMinimal, {first + others + "]"}));
+  CHECK(contains(said, "bodies[1].radius: 0.2 before, 0.1 now; bodies[2].radius"));
+  CHECK(contains(said, "bodies[8].radius: 0.2 before, 0.1 now; and 4 more"));
+  CHECK_FALSE(contains(said, "bodies[9]"));
 }
 
 TEST_CASE("scene difference: the guard matters where its alarms shorten the step") {

@@ -1,5 +1,6 @@
 // Lists of structs are rows of the table of keys. A table of its own, of structs that the program
 // knows nothing of, with two lists: one must have entries and has kinds, one may be empty.
+#include "lib/scene/difference.h"
 #include "lib/scene/key_rows.h"
 #include "lib/scene/overrides.h"
 #include "lib/scene/validate.h"
@@ -59,7 +60,7 @@ std::string yaml(const Tank& tank, bool comments = false) {
   return yaml_of(tank_table(), object(tank), comments);
 }
 std::string difference(const Tank& a, const Tank& b, Effect least = Effect::results) {
-  return first_difference(tank_table(), object(a), object(b), least);
+  return first_of(differences(tank_table(), object(a), object(b), least));
 }
 
 const std::string kGates =
@@ -225,6 +226,8 @@ TEST_CASE("lists as rows: two structs differ in the number of entries or in a ke
   CHECK(difference(read("gates: [{form: disc, radius: 1}, {form: disc, radius: 1}, "
                         "{form: disc, radius: 1}]\n"),
                    tank) == "gates: 3 before, 2 now");
+  CHECK(difference(tank, read(kTank, {"gates[0].radius=2", "gates[1].length=4"})) ==
+        "gates[0].radius: 1 before, 2 now; gates[1].length: 3 before, 4 now");
   // Keys and lists that leave the results alone are not looked at, unless asked for.
   CHECK(difference(tank, read(kTank, {"gates[0].label=x", "gauges=[]"})).empty());
   CHECK(difference(tank, read(kTank, {"gates[0].label=x"}), Effect::none) ==

@@ -2,6 +2,7 @@
 // that the program knows nothing of.
 #include <nlohmann/json.hpp>
 
+#include "lib/scene/difference.h"
 #include "lib/scene/key_rows.h"
 #include "lib/scene/overrides.h"
 #include "lib/scene/validate.h"
@@ -152,7 +153,7 @@ TEST_CASE("a block that is off says nothing of the optional blocks in it") {
   CHECK(yaml(Rig{}) == "length: 1\nnote: \"\"\nowner: nobody\nprobe: off\n");
   CHECK(yaml(rig(yaml(Rig{}))) == yaml(Rig{}));
   const auto difference = [](const Rig& a, const Rig& b) {
-    return first_difference(rig_table(), object(a), object(b), Effect::results);
+    return first_of(differences(rig_table(), object(a), object(b), Effect::results));
   };
   const Rig bare = rig("probe: {radius: 1, label: a}\n");
   const Rig whole = rig("probe: {radius: 1, label: a, filter: {width: 3}}\n");

@@ -1,0 +1,88 @@
+// The plan as JSON.
+#include <nlohmann/json.hpp>
+
+#include "lib/base/json.h"
+#include "lib/program/plan.h"
+#include "lib/program/threads.h"
+#include "lib/scene/auto_step.h"
+
+namespace pbf::inline program_module {
+namespace {
+
+/// One object per backend and precision, with its arrays.
+Json memory_json(const Plan& plan, const Scene& scene) {
+  Json out = Json::array();
+  const auto place = [](bool on_device) { return on_device ? "device" : "host"; };
+  for (const MemoryChoice& c : memory_choices(scene, plan)) {
+    const MemoryPlan& m = c.memory;
+    Json fixed = Json::array(), arrays = Json::array();
+    for (const FixedMemory& f : m.fixed)
+      fixed.push_back({{"name", f.name}, {"bytes", f.bytes}, {"place", place(f.on_device)}});
+    for (const PlanArray& a : m.arrays)
+      arrays.push_back({{"name", a.name},
+                        {"type", a.type},
+                        {"components", a.components},
+                        {"elements", a.elements},
+                        {"bytes", a.bytes},
+                        {"held", held_name(a.held)},
+                        {"place", place(a.on_device)}});
+    out.push_back({{"backend", word(c.backend)},
+                   {"precision", word(c.precision)},
+                   {"solver_bytes", m.solver_bytes()},
+                   {"host_arrays", m.host_arrays},
+                   {"host_fixed", m.fixed_bytes(false)},
+                   {"host_peak", m.host_peak()},
+                   {"device_arrays", m.device_arrays},
+                   {"device_fixed", m.fixed_bytes(true)},
+                   {"device_peak", m.device_peak()},
+                   {"fixed", fixed},
+                   {"arrays", arrays}});
+  }
+  return out;
+}
+
+}  // namespace
+
+Json plan_json(const Plan& plan, const Scene& s) {
+  Json axes = Json::array(), passes = Json::array(), files = Json::array(), left = Json::array();
+  for (const int axis : plan.axes.of) axes.push_back(std::string(1, char('x' + axis)));
+  for (const PassCount& c : count_passes(plan.program))
+    passes.push_back({{"name", c.pass->name},
+                      {"stage", c.pass->stage},
+                      {"reads", field_names(c.pass->reads)},
+                      {"writes", field_names(c.pass->writes)},
+                      {"gathers", gathers_text(*c.pass)},
+                      {"per_update", c.times}});
+  for (const PlanFile& f : plan.files)
+    files.push_back({{"name", f.name}, {"number", f.number}, {"bytes", f.bytes}});
+  for (const LeftOut& l : plan.left_out) left.push_back({{"what", l.what}, {"because", l.because}});
+  const PlanTotals totals = plan_totals(plan, s);
+  return {{"scene", s.name},
+          {"particles", plan.particles},
+          {"spacing_m", s.fluid.spacing},
+          {"h_m", s.h()},
+          {"end_s", totals.end},
+          {"step_s", s.time.step},
+          {"updates", totals.updates},
+          {"relative_step", relative_step(s)},
+          {"host_bytes", totals.host_bytes},
+          {"device_bytes", totals.device_bytes},
+          {"disk_bytes", totals.disk_bytes},
+          {"bytes", plan.bytes()},
+          {"cells", {plan.cells[0], plan.cells[1], plan.cells[2]}},
+          {"cell_edge_h", plan.cell_edge},
+          {"vol", plan.vol},
+          {"wall_scale", plan.wall_scale},
+          {"wall_range_h", plan.wall_range},
+          {"mass_kg", plan.mass},
+          {"axes", axes},
+          {"finest_level", plan.finest_level},
+          {"lists_per_update", plan.lists_per_update},
+          {"threads", about(s.backend).on_device ? 0 : solver_threads(s, plan.particles)},
+          {"passes", passes},
+          {"memory", memory_json(plan, s)},
+          {"files", files},
+          {"left_out", left}};
+}
+
+}  // namespace pbf::inline program_module
