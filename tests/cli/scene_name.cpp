@@ -68,7 +68,7 @@ TEST_CASE("a run file is repeated under the name that it was recorded under") {
   CHECK(fs::exists(folder / "out/scene/DONE"));
 }
 
-TEST_CASE("--resume of a scene without a name tells of a run that lies in out/scene") {
+TEST_CASE("resume of a scene without a name tells of a run that lies in out/scene") {
   const Scratch folder;
   folder.write("tank.yaml", unnamed());
   REQUIRE(
