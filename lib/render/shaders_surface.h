@@ -70,17 +70,23 @@ void main() {
   o_surface = here;
   if (here.x <= 0.0) return;
   float z = 1.0 / here.x;
-  float stride = clamp(u_width.x / (u_step * z * 8.0), 0.25, 8.0);  // pixels
+  // Whole pixels, so that neighbours take the same places; the weights follow the length.
+  float reach = max(u_width.x / (u_step * z), 1.0);  // pixels
+  int stride = int(ceil(reach / 16.0));
+  float joined = 1.0;  // falls at every step over an edge: what lies behind it is another body
   vec2 sum = here, weight = vec2(1.0);
-  for (int k = 1; k <= 8; ++k) {
-    ivec2 off = ivec2(u_along * round(float(k) * stride));
+  for (int k = 1; k <= 16; ++k) {
+    float far = float(k * stride) / reach;
+    if (far > 1.0) break;
+    ivec2 off = ivec2(u_along) * (k * stride);
     vec2 a = texelFetch(u_surface, clamp(at + off, ivec2(0), last), 0).rg;
     vec2 b = texelFetch(u_surface, clamp(at - off, ivec2(0), last), 0).rg;
-    if (a.x <= 0.0 || b.x <= 0.0) continue;
+    if (a.x <= 0.0 || b.x <= 0.0) break;
     float away = (0.5 * (a.x + b.x) - here.x) * z * z / u_width.y;
-    float rise = abs(a.x - b.x) * z / (float(k) * stride * u_step);
-    if (rise > 12.0) continue;  // an outline, not a slope
-    float w = 2.0 * exp(-float(k * k) / 24.0 - away * away);
+    float rise = abs(a.x - b.x) * z / (float(k * stride) * u_step);
+    joined = min(joined, exp(-away * away) * (1.0 - smoothstep(6.0, 12.0, rise)));
+    if (joined < 0.02) break;
+    float w = 2.0 * exp(-2.7 * far * far) * joined;
     sum.x += w * 0.5 * (a.x + b.x);
     weight.x += w;
     if (a.y >= 0.0 && b.y >= 0.0) {
