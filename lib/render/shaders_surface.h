@@ -42,17 +42,22 @@ void main() {
 }
 )";
 
-// Behind kSphereVertex and kWithin, added up: what a ray passes through in the spheres before the
-// scene, of which each counts with the fluid's volume of its particle, so that overlaps count once.
+// Behind kSphereVertex and kWithin, added up. First what a ray passes through in the spheres before
+// the scene, of which each counts with the fluid's volume of its particle, so that overlaps count
+// once. Then how deep it goes into them, 1 through the middle of one, whatever clips or hides them:
+// where the sum falls to a level is the outline of the fluid.
 inline constexpr const char* kThicknessFragment = R"(
 uniform sampler2D u_stored;
 uniform int u_factor;
-out float o_thickness;
+out vec2 o_thickness;
 void main() {
+  vec3 d = vec3(f_ray, 1.0), p = (dot(d, f_center) / dot(d, d)) * d - f_center;
+  float inside = max(1.0 - dot(p, p) / (f_radius * f_radius), 0.0);
   vec2 ends = within();
   float scene = texelFetch(u_stored, ivec2(gl_FragCoord.xy) * u_factor + u_factor / 2, 0).r;
-  if (ends.x <= 0.0 || ends.y <= ends.x || scene < u_depth.x - u_depth.y / f_center.z) discard;
-  o_thickness = (ends.y - ends.x) * length(vec3(f_ray, 1.0)) * 0.466;  // d^3 / (4/3 pi (0.8 d)^3)
+  bool hidden = scene < u_depth.x - u_depth.y / f_center.z;
+  float chord = hidden || ends.x <= 0.0 ? 0.0 : max(ends.y - ends.x, 0.0);
+  o_thickness = vec2(chord * length(d) * 0.466, inside);  // d^3 / (4/3 pi (0.8 d)^3)
 }
 )";
 
@@ -84,9 +89,10 @@ void main() {
     if (a.x <= 0.0 || b.x <= 0.0) break;
     float away = (0.5 * (a.x + b.x) - here.x) * z * z / u_width.y;
     float rise = abs(a.x - b.x) * z / (float(k * stride) * u_step);
-    joined = min(joined, exp(-away * away) * (1.0 - smoothstep(6.0, 12.0, rise)));
-    if (joined < 0.02) break;
-    float w = 2.0 * exp(-2.7 * far * far) * joined;
+    float outline = smoothstep(6.0, 12.0, rise);  // not a slope
+    joined -= 1.3 * outline * float(stride) * u_step * z / u_width.y;
+    if (joined <= 0.0) break;
+    float w = 2.0 * exp(-2.7 * far * far - away * away) * joined * (1.0 - outline);
     sum.x += w * 0.5 * (a.x + b.x);
     weight.x += w;
     if (a.y >= 0.0 && b.y >= 0.0) {
@@ -124,6 +130,23 @@ vec3 slope(ivec2 at, ivec2 off, float here) {
   bool forth = b <= 0.0 || (a > 0.0 && rise < fall);
   return forth ? place(at + off, a) - place(at, here) : place(at, here) - place(at - off, b);
 }
+// Share of the pixel within the outline, which is where half of what lies around is in spheres: it
+// goes along a row of them, and a lone one keeps most of its size.
+float inside(ivec2 at, float inverse) {
+  float reach = max(0.9 * u_radius * inverse / u_step, 1.0), sum = 0.0, squares = 0.0;  // pixels
+  vec2 rise = vec2(0.0);
+  for (int k = 0; k < 24; ++k) {
+    float angle = 2.39996 * float(k), far = reach * sqrt((float(k) + 0.5) / 24.0);
+    ivec2 off = ivec2(round(far * vec2(cos(angle), sin(angle))));
+    float f = texelFetch(u_thickness, clamp(at + off, ivec2(0), ivec2(u_size) - 1), 0).g;
+    f = min(2.0 * f, 1.0);
+    sum += f;
+    rise += f * vec2(off);
+    squares += 0.5 * float(off.x * off.x + off.y * off.y);
+  }
+  float slope = length(rise) / squares;  // per pixel
+  return clamp(0.5 + (sum / 24.0 - 0.45) / max(slope, 1e-3), 0.0, 1.0);
+}
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec3 scene = texelFetch(u_scene, at, 0).rgb;
@@ -140,11 +163,7 @@ void main() {
   vec3 n = normalize(cross(slope(at, ivec2(1, 0), here.x), slope(at, ivec2(0, 1), here.x)));
   if (dot(n, p) > 0.0) n = -n;
 
-  // Along a straight outline 6 of 9 pixels are fluid, and the middle one is by three quarters.
-  float around = 0.0;
-  for (int j = -1; j <= 1; ++j)
-    for (int i = -1; i <= 1; ++i) around += step(1e-30, inverse_at(at + ivec2(i, j)));
-  covered *= clamp(around / 6.0 - 0.25, 0.0, 1.0);
+  covered *= inside(at, here.x);
 
   float thick = texelFetch(u_thickness, at, 0).r, left = u_clear.y * exp(-thick / u_clear.x);
   int low = clamp(int(here.y), 0, 253);
