@@ -133,10 +133,10 @@ vec3 slope(ivec2 at, ivec2 off, float here) {
 // Share of the pixel within the outline, which is where half of what lies around is in spheres: it
 // goes along a row of them, and a lone one keeps most of its size.
 float inside(ivec2 at, float inverse) {
-  float reach = max(0.9 * u_radius * inverse / u_step, 1.0), sum = 0.0, squares = 0.0;  // pixels
+  float reach = max(u_radius * inverse / u_step, 1.0), sum = 0.0, squares = 0.0;  // pixels
   vec2 rise = vec2(0.0);
-  for (int k = 0; k < 24; ++k) {
-    float angle = 2.39996 * float(k), far = reach * sqrt((float(k) + 0.5) / 24.0);
+  for (int k = 0; k < 32; ++k) {
+    float angle = 2.39996 * float(k), far = reach * sqrt((float(k) + 0.5) / 32.0);
     ivec2 off = ivec2(round(far * vec2(cos(angle), sin(angle))));
     float f = texelFetch(u_thickness, clamp(at + off, ivec2(0), ivec2(u_size) - 1), 0).g;
     f = min(2.0 * f, 1.0);
@@ -145,7 +145,7 @@ float inside(ivec2 at, float inverse) {
     squares += 0.5 * float(off.x * off.x + off.y * off.y);
   }
   float slope = length(rise) / squares;  // per pixel
-  return clamp(0.5 + (sum / 24.0 - 0.45) / max(slope, 1e-3), 0.0, 1.0);
+  return clamp(0.5 + (sum / 32.0 - 0.5) / max(slope, 1e-3), 0.0, 1.0);
 }
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
