@@ -145,7 +145,7 @@ float inside(ivec2 at, float inverse) {
     squares += 0.5 * float(off.x * off.x + off.y * off.y);
   }
   float slope = length(rise) / squares;  // per pixel
-  return clamp(0.5 + (sum / 32.0 - 0.5) / max(slope, 1e-3), 0.0, 1.0);
+  return clamp(0.5 + (sum / 32.0 - 0.46) / max(slope, 1e-3), 0.0, 1.0);
 }
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
