@@ -75,24 +75,27 @@ void main() {
   o_surface = here;
   if (here.x <= 0.0) return;
   float z = 1.0 / here.x;
-  // Whole pixels, so that neighbours take the same places; the weights follow the length.
   float reach = max(u_width.x / (u_step * z), 1.0);  // pixels
-  int stride = int(ceil(reach / 16.0));
-  float joined = 1.0;  // falls at every step over an edge: what lies behind it is another body
+  float joined = 1.0;  // falls with the way over edges: what lies behind them is another body
   vec2 sum = here, weight = vec2(1.0);
-  for (int k = 1; k <= 16; ++k) {
-    float far = float(k * stride) / reach;
-    if (far > 1.0) break;
-    ivec2 off = ivec2(u_along) * (k * stride);
+  int last_far = 0;
+  for (int k = 0; k < 20; ++k) {
+    // The same whole pixels for all, so that neighbours see the same; wider ones count more.
+    int far = max(last_far + 1, int(1.22 * float(last_far) + 0.5)), step = far - last_far;
+    last_far = far;
+    if (float(far) > reach) break;
+    ivec2 off = ivec2(u_along) * far;
     vec2 a = texelFetch(u_surface, clamp(at + off, ivec2(0), last), 0).rg;
     vec2 b = texelFetch(u_surface, clamp(at - off, ivec2(0), last), 0).rg;
     if (a.x <= 0.0 || b.x <= 0.0) break;
     float away = (0.5 * (a.x + b.x) - here.x) * z * z / u_width.y;
-    float rise = abs(a.x - b.x) * z / (float(k * stride) * u_step);
+    float rise = abs(a.x - b.x) * z / (float(far) * u_step);
     float outline = smoothstep(6.0, 12.0, rise);  // not a slope
-    joined -= 1.3 * outline * float(stride) * u_step * z / u_width.y;
+    joined -= 1.3 * outline * float(step) * u_step * z / u_width.y;
     if (joined <= 0.0) break;
-    float w = 2.0 * exp(-2.7 * far * far - away * away) * joined * (1.0 - outline);
+    float share = float(far) / reach;
+    float w = 2.0 * float(step) * exp(-2.7 * share * share - away * away);
+    w *= joined * (1.0 - outline);
     sum.x += w * 0.5 * (a.x + b.x);
     weight.x += w;
     if (a.y >= 0.0 && b.y >= 0.0) {
