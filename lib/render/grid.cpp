@@ -13,6 +13,8 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kGridLine{188, 197, 207, 0};
 constexpr double kOnFloor = 0.9999;  // nearer by less than what lies on the floor is high
 
+constexpr std::size_t kHeights = 7;  // at most: a few say it
+
 /// The unit in which a length is a number for people.
 struct LengthUnit {
   const char* word;
@@ -191,7 +193,8 @@ std::vector<EdgeLabels> length_labels(const View& view, const Projection& projec
     };
     int factor = 1;
     for (int k = 0; multiples(low, high, factor * step).size() >= 2; ++k) {
-      add(multiples(low, high, factor * step));
+      const auto places = multiples(low, high, factor * step);
+      if (!upright || places.size() <= kHeights) add(places);
       factor = k % 3 == 1 ? factor / 2 * 5 : 2 * factor;  // 1, 2, 5, 10, 20, 50 ...
     }
     out.push_back(std::move(edge));

@@ -63,7 +63,7 @@ void main() {
 
 // Behind kResolveVertex: one direction of the smoothing. A pair of pixels at the same distance to
 // both sides counts when its mean is near the pixel in the middle, which a plane's is however
-// steeply it is seen, and neither lies off the fluid.
+// steeply it is seen, no pixel up to there lies off the fluid, and few lie behind an edge.
 inline constexpr const char* kSmoothFragment = R"(
 uniform sampler2D u_surface;
 uniform vec2 u_along;  // (1, 0) or (0, 1)
@@ -81,7 +81,7 @@ void main() {
   int last_far = 0;
   for (int k = 0; k < 20; ++k) {
     // The same whole pixels for all, so that neighbours see the same; wider ones count more.
-    int far = max(last_far + 1, int(1.22 * float(last_far) + 0.5)), step = far - last_far;
+    int far = max(last_far + 1, int(1.22 * float(last_far) + 0.5)), gap = far - last_far;
     last_far = far;
     if (float(far) > reach) break;
     ivec2 off = ivec2(u_along) * far;
@@ -91,10 +91,10 @@ void main() {
     float away = (0.5 * (a.x + b.x) - here.x) * z * z / u_width.y;
     float rise = abs(a.x - b.x) * z / (float(far) * u_step);
     float outline = smoothstep(6.0, 12.0, rise);  // not a slope
-    joined -= 1.3 * outline * float(step) * u_step * z / u_width.y;
+    joined -= 1.3 * outline * float(gap) * u_step * z / u_width.y;
     if (joined <= 0.0) break;
     float share = float(far) / reach;
-    float w = 2.0 * float(step) * exp(-2.7 * share * share - away * away);
+    float w = 2.0 * float(gap) * exp(-2.7 * share * share - away * away);
     w *= joined * (1.0 - outline);
     sum.x += w * 0.5 * (a.x + b.x);
     weight.x += w;

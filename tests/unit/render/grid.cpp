@@ -118,6 +118,16 @@ TEST_CASE("heights go as far as the default camera shows, and up the box for ano
   CHECK(last() == "z = 8.0 m");
 }
 
+TEST_CASE("heights are few, up a tower too", "[render]") {
+  const View view = tank_view({0, 0, 0}, {1, 1, 30});
+  const auto heights = length_labels(view, projection_of(view, 0)).back();
+  REQUIRE(!heights.of.empty());
+  for (const auto& labels : heights.of) {
+    CHECK(labels.size() >= 2);
+    CHECK(labels.size() <= 7);
+  }
+}
+
 TEST_CASE("heights are on the right where the left is open, and nowhere where both are",
           "[render]") {
   View view = tank_view({0, 0, 0}, {2, 1, 1});
