@@ -43,7 +43,7 @@ FluidSurface::FluidSurface(const gl::Table& gl, const View& view, int factor)
       bar_(gl, kNoShare + 1, 1, gl::kColor8, bar_of(view.color).data()),
       depth_(gl, size_[0], size_[1], gl::kPair32, Depth::with),
       between_(gl, size_[0], size_[1], gl::kPair32, Depth::without),
-      thickness_(gl, size_[0], size_[1], gl::kSum16, Depth::without),
+      thickness_(gl, size_[0], size_[1], gl::kSums16, Depth::without),
       scene_(gl, size_[0], size_[1], gl::kColor8, Depth::without) {
   const double far = 1e6 * length(high_ - low_);
   for (std::size_t k = 0; k < 3; ++k) {

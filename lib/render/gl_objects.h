@@ -53,7 +53,7 @@ struct Format {
   Enum internal, layout, type;
 };
 inline constexpr Format kColor8{RGBA8, RGBA, UNSIGNED_BYTE}, kPair32{RG32F, RG, FLOAT},
-    kSum16{R16F, RED, FLOAT}, kDepth32{DEPTH_COMPONENT32F, DEPTH_COMPONENT, FLOAT};
+    kSums16{RG16F, RG, FLOAT}, kDepth32{DEPTH_COMPONENT32F, DEPTH_COMPONENT, FLOAT};
 
 /// A texture of one level, read texel by texel unless set otherwise.
 class Texture {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "lib/base/text.h"
 #include "lib/scene/vector3.h"
@@ -11,6 +12,8 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kGridLine{188, 197, 207, 0};
 constexpr double kOnFloor = 0.9999;  // nearer by less than what lies on the floor is high
+
+constexpr std::size_t kHeights = 7;  // at most: a few say it
 
 /// The unit in which a length is a number for people.
 struct LengthUnit {
@@ -55,6 +58,34 @@ std::vector<Edge> edges_of(const View& view, const Projection& projection) {
     if (!view.open[other][take_high]) edges.push_back({axis, take_high ? high : low});
   }
   return edges;
+}
+
+/// The vertical edge on the left of the box in the picture, else that on the right; none where both
+/// lie at an open face. Nothing of the box is beyond them. Not in two dimensions.
+std::optional<Edge> upright_edge(const View& view, const Projection& projection) {
+  if (view.flat) return {};
+  const auto vertical = static_cast<unsigned>(vertical_axis(view.up));
+  const unsigned u = (vertical + 1) % 3, w = (vertical + 2) % 3;
+  struct Place {
+    double x;  // pixels
+    Edge edge;
+    bool open;
+  };
+  std::vector<Place> places;
+  for (unsigned i = 0; i < 4; ++i) {
+    const unsigned corner = (i & 1) << u | (i >> 1) << w;
+    Double3 middle = corner_of(view, corner);
+    middle[vertical] = 0.5 * (view.domain_min[vertical] + view.domain_max[vertical]);
+    if (projection.to_view(middle)[2] <= 0) return {};
+    places.push_back({projection.to_pixel(middle)[0],
+                      {vertical, corner},
+                      view.open[u][i & 1] || view.open[w][i >> 1]});
+  }
+  const auto [left, right] = std::minmax_element(
+      places.begin(), places.end(), [](const Place& a, const Place& b) { return a.x < b.x; });
+  if (!left->open) return left->edge;
+  if (!right->open) return right->edge;
+  return {};
 }
 
 /// Sizes of what labels and lines measure: the floor, or the framed part of the plane.
@@ -115,33 +146,43 @@ std::vector<EdgeLabels> length_labels(const View& view, const Projection& projec
   const double longest = longest_side(view);
   const LengthUnit unit = unit_for(longest);
   const Double3 box = view.domain_max - view.domain_min;
+  const auto vertical = static_cast<unsigned>(vertical_axis(view.up));
+  std::vector<Edge> edges = edges_of(view, projection);
+  if (const auto edge = upright_edge(view, projection)) edges.push_back(*edge);
   std::vector<EdgeLabels> out;
-  for (const auto& [axis, corner] : edges_of(view, projection)) {
-    const double low = view.domain_min[axis], high = view.domain_max[axis];
-    const unsigned other =
-        3 - axis - (view.flat ? 1 : static_cast<unsigned>(vertical_axis(view.up)));
+  for (const auto& [axis, corner] : edges) {
+    const bool upright = !view.flat && axis == vertical;
+    // The default camera shows the floor whole, but not the air above the highest splash.
+    const bool framed = upright && !view.camera.position;
+    const double low = framed ? frame_of(view)[0][axis] : view.domain_min[axis];
+    const double high = framed ? frame_of(view)[7][axis] : view.domain_max[axis];
+    // Where the middle of the box is, seen from the edge.
+    Double3 inwards{};
+    for (unsigned k = 0; k < 3; ++k)
+      if (k != axis && (upright || k != (view.flat ? 1 : vertical)))
+        inwards[k] = (corner >> k & 1 ? -1e-3 : 1e-3) * (upright ? box[k] : length(box));
     double step = grid_step(longest);
     if (multiples(low, high, step).size() < 2) step = grid_step(high - low);
     const auto label = [&](double at, bool last) {
       LengthLabel l;
       Double3 x = corner_of(view, corner);
       x[axis] = at;
-      Double3 beyond = x;
-      beyond[other] += (corner >> other & 1 ? 1e-3 : -1e-3) * length(box);
       const int decimals =
           std::max(0, static_cast<int>(-std::floor(std::log10(step / unit.metres) + 1e-9)));
       l.text = at == 0 ? "0" : format("%.*f", std::min(decimals, 12), at / unit.metres);
       if (last) l.text = format("%c = %s %s", "xyz"[axis], l.text.c_str(), unit.word);
       if (projection.to_view(x)[2] <= 1e-6 * length(box)) return LengthLabel{};
       l.place = projection.to_pixel(x);
-      const auto further = projection.to_pixel(beyond);
-      const double dx = further[0] - l.place[0], dy = further[1] - l.place[1];
+      const auto further = projection.to_pixel(x - inwards);
+      // Beside an upright edge, at the height of its place.
+      const double dx = further[0] - l.place[0], dy = upright ? 0 : further[1] - l.place[1];
       const double size = std::hypot(dx, dy);
       if (!(size > 0) || !std::isfinite(size)) return LengthLabel{};
       l.away = {dx / size, dy / size};
       return l;
     };
     EdgeLabels edge;
+    edge.ticks = view.flat || upright;
     const auto add = [&](const std::vector<double>& places) {
       std::vector<LengthLabel> labels;
       for (const double at : places) {
@@ -152,7 +193,8 @@ std::vector<EdgeLabels> length_labels(const View& view, const Projection& projec
     };
     int factor = 1;
     for (int k = 0; multiples(low, high, factor * step).size() >= 2; ++k) {
-      add(multiples(low, high, factor * step));
+      const auto places = multiples(low, high, factor * step);
+      if (!upright || places.size() <= kHeights) add(places);
       factor = k % 3 == 1 ? factor / 2 * 5 : 2 * factor;  // 1, 2, 5, 10, 20, 50 ...
     }
     out.push_back(std::move(edge));

@@ -1,5 +1,5 @@
-// Lengths in pictures: lines on the floor at round places, and labels along its near edges; in two
-// dimensions a scale along the lower and the left edge.
+// Lengths in pictures: lines on the floor at round places, and labels along its near edges and up
+// one edge of the box; in two dimensions a scale along the lower and the left edge.
 #pragma once
 
 #include <array>
@@ -35,9 +35,12 @@ struct LengthLabel {
 /// second, fifth, tenth ... multiple, from which one chooses by the room that there is.
 struct EdgeLabels {
   std::vector<std::vector<LengthLabel>> of;
+  bool ticks = false;  ///< whether each has one; on the floor it stands at a line of the grid
 };
 
-/// Of the two near edges; none where no floor is seen. Places behind the eye are left out.
+/// Of the two near edges of the floor and of a vertical one on the outline of the box; in two
+/// dimensions of the lower and the left one. None where no floor is seen. Places behind the eye are
+/// left out.
 std::vector<EdgeLabels> length_labels(const View& view, const Projection& projection);
 
 }  // namespace pbf::inline render_module

@@ -101,7 +101,7 @@ void draw_lengths(Image& image, Texts& texts, const View& view, const Projection
     if (!chosen || std::count_if(chosen->begin(), chosen->end(), fitting) < 2) continue;
     for (const LengthLabel& l : *chosen) {
       const auto [x, y] = start_of(l, outline, size);
-      if (view.flat && fitting(l)) {
+      if (edge.ticks && fitting(l)) {
         const double line = std::max(1.0, std::round(0.07 * size));
         const double to_x = l.place[0] + 0.3 * size * l.away[0],
                      to_y = l.place[1] + 0.3 * size * l.away[1];

@@ -7,8 +7,8 @@
 namespace pbf::inline render_module {
 
 /// Draws the labels of length_labels() (lib/render/grid.h) beside the box: as many as keep a
-/// distance from each other, none of an edge on which fewer than two fit. In two dimensions each
-/// has a tick. `size`: of the text, pixels per em.
+/// distance from each other, none of an edge on which fewer than two fit. `size`: of the text,
+/// pixels per em.
 void draw_lengths(Image& image, Texts& texts, const View& view, const Projection& projection,
                   double size);
 

@@ -115,9 +115,8 @@ Room room_of(const View& view) {
   const double size = text_size(view.size), width = view.size[0], height = view.size[1];
   const BarPlace bar = bar_place(view.size, ticks_of(view.range));
   const double column = std::max(width - bar.x0, text_width(about(view.color).word, size));
-  const double beside = view.flat ? 5.8 : 3.2;  // there the numbers of an axis
-  Room room{beside * size / width, (column + 4.2 * size) / width, (1.6 + 2 * kLine) * size / height,
-            2.6 * size / height};
+  Room room{5.8 * size / width,  // there the numbers of an axis
+            (column + 4.2 * size) / width, (1.6 + 2 * kLine) * size / height, 2.6 * size / height};
   // In a picture of a few letters' size the fluid comes first.
   const double across = std::min(1.0, 0.5 / (room.left + room.right));
   const double along = std::min(1.0, 0.5 / (room.top + room.bottom));

@@ -48,9 +48,9 @@ struct View {
 View view_of(const Scene& scene, std::int64_t particles);
 
 /// Draws the particles as lit spheres (impostors) or as one surface, obstacles, the box with
-/// lengths along its floor, a colour bar with unit, and the scene's name, time and number of
-/// particles. Sky and ground light the scene from above and below; the sun casts one soft shadow,
-/// but not in two dimensions.
+/// lengths along its floor and up one edge, a colour bar with unit, and the scene's name, time and
+/// number of particles. Sky and ground light the scene from above and below; the sun casts one soft
+/// shadow, but not in two dimensions.
 class Renderer {
  public:
   /// Opens OSMesa, else EGL surfaceless, else an EGL device; the environment variable PBF_GL

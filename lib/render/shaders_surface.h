@@ -42,23 +42,28 @@ void main() {
 }
 )";
 
-// Behind kSphereVertex and kWithin, added up: what a ray passes through in the spheres before the
-// scene, of which each counts with the fluid's volume of its particle, so that overlaps count once.
+// Behind kSphereVertex and kWithin, added up. First what a ray passes through in the spheres before
+// the scene, of which each counts with the fluid's volume of its particle, so that overlaps count
+// once. Then how deep it goes into them, 1 through the middle of one, whatever clips or hides them:
+// where the sum falls to a level is the outline of the fluid.
 inline constexpr const char* kThicknessFragment = R"(
 uniform sampler2D u_stored;
 uniform int u_factor;
-out float o_thickness;
+out vec2 o_thickness;
 void main() {
+  vec3 d = vec3(f_ray, 1.0), p = (dot(d, f_center) / dot(d, d)) * d - f_center;
+  float inside = max(1.0 - dot(p, p) / (f_radius * f_radius), 0.0);
   vec2 ends = within();
   float scene = texelFetch(u_stored, ivec2(gl_FragCoord.xy) * u_factor + u_factor / 2, 0).r;
-  if (ends.x <= 0.0 || ends.y <= ends.x || scene < u_depth.x - u_depth.y / f_center.z) discard;
-  o_thickness = (ends.y - ends.x) * length(vec3(f_ray, 1.0)) * 0.466;  // d^3 / (4/3 pi (0.8 d)^3)
+  bool hidden = scene < u_depth.x - u_depth.y / f_center.z;
+  float chord = hidden || ends.x <= 0.0 ? 0.0 : max(ends.y - ends.x, 0.0);
+  o_thickness = vec2(chord * length(d) * 0.466, inside);  // d^3 / (4/3 pi (0.8 d)^3)
 }
 )";
 
 // Behind kResolveVertex: one direction of the smoothing. A pair of pixels at the same distance to
 // both sides counts when its mean is near the pixel in the middle, which a plane's is however
-// steeply it is seen, and neither lies off the fluid.
+// steeply it is seen, no pixel up to there lies off the fluid, and few lie behind an edge.
 inline constexpr const char* kSmoothFragment = R"(
 uniform sampler2D u_surface;
 uniform vec2 u_along;  // (1, 0) or (0, 1)
@@ -70,17 +75,27 @@ void main() {
   o_surface = here;
   if (here.x <= 0.0) return;
   float z = 1.0 / here.x;
-  float stride = clamp(u_width.x / (u_step * z * 8.0), 0.25, 8.0);  // pixels
+  float reach = max(u_width.x / (u_step * z), 1.0);  // pixels
+  float joined = 1.0;  // falls with the way over edges: what lies behind them is another body
   vec2 sum = here, weight = vec2(1.0);
-  for (int k = 1; k <= 8; ++k) {
-    ivec2 off = ivec2(u_along * round(float(k) * stride));
+  int last_far = 0;
+  for (int k = 0; k < 20; ++k) {
+    // The same whole pixels for all, so that neighbours see the same; wider ones count more.
+    int far = max(last_far + 1, int(1.22 * float(last_far) + 0.5)), gap = far - last_far;
+    last_far = far;
+    if (float(far) > reach) break;
+    ivec2 off = ivec2(u_along) * far;
     vec2 a = texelFetch(u_surface, clamp(at + off, ivec2(0), last), 0).rg;
     vec2 b = texelFetch(u_surface, clamp(at - off, ivec2(0), last), 0).rg;
-    if (a.x <= 0.0 || b.x <= 0.0) continue;
+    if (a.x <= 0.0 || b.x <= 0.0) break;
     float away = (0.5 * (a.x + b.x) - here.x) * z * z / u_width.y;
-    float rise = abs(a.x - b.x) * z / (float(k) * stride * u_step);
-    if (rise > 12.0) continue;  // an outline, not a slope
-    float w = 2.0 * exp(-float(k * k) / 24.0 - away * away);
+    float rise = abs(a.x - b.x) * z / (float(far) * u_step);
+    float outline = smoothstep(6.0, 12.0, rise);  // not a slope
+    joined -= 1.3 * outline * float(gap) * u_step * z / u_width.y;
+    if (joined <= 0.0) break;
+    float share = float(far) / reach;
+    float w = 2.0 * float(gap) * exp(-2.7 * share * share - away * away);
+    w *= joined * (1.0 - outline);
     sum.x += w * 0.5 * (a.x + b.x);
     weight.x += w;
     if (a.y >= 0.0 && b.y >= 0.0) {
@@ -118,6 +133,23 @@ vec3 slope(ivec2 at, ivec2 off, float here) {
   bool forth = b <= 0.0 || (a > 0.0 && rise < fall);
   return forth ? place(at + off, a) - place(at, here) : place(at, here) - place(at - off, b);
 }
+// Share of the pixel within the outline, which is where half of what lies around is in spheres: it
+// goes along a row of them, and a lone one keeps most of its size.
+float inside(ivec2 at, float inverse) {
+  float reach = max(u_radius * inverse / u_step, 1.0), sum = 0.0, squares = 0.0;  // pixels
+  vec2 rise = vec2(0.0);
+  for (int k = 0; k < 32; ++k) {
+    float angle = 2.39996 * float(k), far = reach * sqrt((float(k) + 0.5) / 32.0);
+    ivec2 off = ivec2(round(far * vec2(cos(angle), sin(angle))));
+    float f = texelFetch(u_thickness, clamp(at + off, ivec2(0), ivec2(u_size) - 1), 0).g;
+    f = min(2.0 * f, 1.0);
+    sum += f;
+    rise += f * vec2(off);
+    squares += 0.5 * float(off.x * off.x + off.y * off.y);
+  }
+  float slope = length(rise) / squares;  // per pixel
+  return clamp(0.5 + (sum / 32.0 - 0.46) / max(slope, 1e-3), 0.0, 1.0);
+}
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec3 scene = texelFetch(u_scene, at, 0).rgb;
@@ -134,11 +166,7 @@ void main() {
   vec3 n = normalize(cross(slope(at, ivec2(1, 0), here.x), slope(at, ivec2(0, 1), here.x)));
   if (dot(n, p) > 0.0) n = -n;
 
-  // Along a straight outline 6 of 9 pixels are fluid, and the middle one is by three quarters.
-  float around = 0.0;
-  for (int j = -1; j <= 1; ++j)
-    for (int i = -1; i <= 1; ++i) around += step(1e-30, inverse_at(at + ivec2(i, j)));
-  covered *= clamp(around / 6.0 - 0.25, 0.0, 1.0);
+  covered *= inside(at, here.x);
 
   float thick = texelFetch(u_thickness, at, 0).r, left = u_clear.y * exp(-thick / u_clear.x);
   int low = clamp(int(here.y), 0, 253);

@@ -12,18 +12,19 @@ TextBox Texts::box_of(const std::string& text, double x, double y) const {
 }
 
 bool Texts::fits(const TextBox& box) const {
-  return box.x0 >= 0 && box.y0 >= 0 && box.x1 <= image_.width && box.y1 <= image_.height &&
+  const double r = rim();
+  return box.x0 >= r && box.y0 >= 0 && box.x1 <= image_.width - r && box.y1 <= image_.height &&
          std::none_of(taken_.begin(), taken_.end(), [&](const TextBox& b) { return b.meets(box); });
 }
 
 void Texts::put(const std::string& text, double x, double y, Rgb color) {
-  constexpr Rgb rim{246, 248, 250};
+  constexpr Rgb light{246, 248, 250};
   const TextBox box = box_of(text, x, y);
   if (text.empty() || !fits(box)) return;
   taken_.push_back(box);
-  const double r = std::max(1.0, 0.06 * size_);
+  const double r = rim();
   for (const auto& [dx, dy] : {std::array{-r, 0.0}, {r, 0.0}, {0.0, -r}, {0.0, r}})
-    draw_text(image_, text, x + dx, y + dy, size_, rim);
+    draw_text(image_, text, x + dx, y + dy, size_, light);
   draw_text(image_, text, x, y, size_, color);
 }
 

@@ -48,6 +48,8 @@ class Texts {
   void put(const std::string& text, double x, double y, Rgb color);
 
  private:
+  double rim() const { return std::max(1.0, 0.06 * size_); }  ///< its width, pixels
+
   Image& image_;
   double size_;
   std::vector<TextBox> taken_;

@@ -52,7 +52,7 @@ TEST_CASE("a label stands at the place that it names, on a near edge of the floo
       View view = tank_view(min, min + size);
       const Projection p = projection_of(view, 0);
       const auto edges = length_labels(view, p);
-      REQUIRE(edges.size() == 2);
+      REQUIRE(edges.size() == 3);
       for (std::size_t k = 0; k < 2; ++k)  // along x, along y
         for (const auto& labels : edges[k].of) {
           REQUIRE(labels.size() >= 2);
@@ -78,6 +78,69 @@ TEST_CASE("a label stands at the place that it names, on a near edge of the floo
           CHECK(labels.back().text.find(" m") != std::string::npos);
         }
     }
+}
+
+TEST_CASE("heights stand at their places on the left of the box, with the floor's unit",
+          "[render]") {
+  View view = tank_view({-1, 2, 0.1}, {2, 3, 1.7});
+  const Projection p = projection_of(view, 0);
+  double left = 1e9;
+  for (unsigned corner = 0; corner < 8; ++corner)
+    left = std::min(left, p.to_pixel(corner_of(view, corner))[0]);
+  const auto edges = length_labels(view, p);
+  const EdgeLabels& heights = edges.back();
+  CHECK(heights.ticks);
+  CHECK_FALSE(edges.front().ticks);
+  REQUIRE(heights.of.front().size() == 3);  // 0.5, 1, 1.5
+  CHECK(heights.of.front().back().text == "z = 1.5 m");
+  for (const LengthLabel& l : heights.of.front()) {
+    CHECK(l.away == std::array<double, 2>{-1, 0});
+    double nearest = 1e9;
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      Double3 x = corner_of(view, corner);
+      x[2] = number_of(l.text);
+      const auto at = p.to_pixel(x);
+      nearest = std::min(nearest, std::hypot(at[0] - l.place[0], at[1] - l.place[1]));
+      CHECK(at[0] > l.place[0] - 1e-6);  // nothing of the box is further left
+    }
+    CHECK(nearest < 1e-6);
+  }
+}
+
+TEST_CASE("heights go as far as the default camera shows, and up the box for another", "[render]") {
+  View view = tank_view({0, 0, 0}, {2, 1, 8});
+  view.frame = std::array{Double3{0, 0, 0}, Double3{2, 1, 1}};
+  const auto last = [&] {
+    return length_labels(view, projection_of(view, 0)).back().of[0].back().text;
+  };
+  CHECK(last() == "z = 1.0 m");
+  view.camera.position = Double3{1, -20, 4};
+  CHECK(last() == "z = 8.0 m");
+}
+
+TEST_CASE("heights are few, up a tower too", "[render]") {
+  const View view = tank_view({0, 0, 0}, {1, 1, 30});
+  const auto heights = length_labels(view, projection_of(view, 0)).back();
+  REQUIRE(!heights.of.empty());
+  for (const auto& labels : heights.of) {
+    CHECK(labels.size() >= 2);
+    CHECK(labels.size() <= 7);
+  }
+}
+
+TEST_CASE("heights are on the right where the left is open, and nowhere where both are",
+          "[render]") {
+  View view = tank_view({0, 0, 0}, {2, 1, 1});
+  view.camera.position = Double3{1, -5, 2};
+  const auto away = [&]() -> double {
+    const auto edges = length_labels(view, projection_of(view, 0));
+    return edges.back().ticks ? edges.back().of[0][0].away[0] : 0;
+  };
+  CHECK(away() == -1);
+  view.open[0][0] = true;
+  CHECK(away() == 1);
+  view.open[0][1] = true;
+  CHECK(away() == 0);
 }
 
 TEST_CASE("small and large scenes are labelled in units for people", "[render]") {
@@ -113,7 +176,7 @@ TEST_CASE("no lengths where no floor is seen: from below, and where it is open",
     add_floor_grid(view, p, 1, 1e-3, lines);
     return std::pair{lines.size() / 6, length_labels(view, p).size()};
   };
-  CHECK(count() == std::pair<std::size_t, std::size_t>{9 + 4, 2});
+  CHECK(count() == std::pair<std::size_t, std::size_t>{9 + 4, 3});
   view.open[2][0] = true;
   CHECK(count() == std::pair<std::size_t, std::size_t>{0, 0});
   view.open[2] = {false, true};
@@ -123,7 +186,7 @@ TEST_CASE("no lengths where no floor is seen: from below, and where it is open",
   view.camera.position = Double3{1, -3, -2};
   CHECK(count() == std::pair<std::size_t, std::size_t>{0, 0});
   view.up = {0, 0, -1};  // then the eye is above the floor, which is at z = 1
-  CHECK(count().second == 2);
+  CHECK(count().second == 3);
   view.camera.position = Double3{1, -3, 1.5};
   CHECK(count().second == 0);
 }
