@@ -1,11 +1,8 @@
 // pbf stability: the suite of stiff and extreme cases, and maps over two scene keys.
 #include <algorithm>
-#include <atomic>
-#include <mutex>
-#include <system_error>
-#include <thread>
 
 #include "app/commands.h"
+#include "app/in_parallel.h"
 #include "app/options.h"
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
@@ -17,6 +14,7 @@
 #include "lib/campaign/stability_map.h"
 #include "lib/io/junit.h"
 #include "lib/io/table.h"
+#include "lib/run/signals.h"
 
 namespace pbf::inline app_module {
 namespace {
@@ -35,7 +33,8 @@ struct StabilityCommandOptions {
 };
 
 const char* const kStabilityHelp =
-    "Exit code 6 when a case is not as it must be.\n"
+    "Exit code 6 when a case is not as it must be; 75 when SIGINT or SIGTERM stopped the command,\n"
+    "after writing what was done.\n"
     "A map (--map X_KEY,Y_KEY) runs one scene for every combination of values of the two keys\n"
     "(--x, --y) and of solver.iterations (--iterations): 6 x 6 x 5 runs where none is given. "
     "Where\n"
@@ -52,43 +51,6 @@ const char* const kStabilityHelp =
     "  pbf stability stiffness column_48 --precision double\n"
     "  pbf stability --map time.step,gravity --x 0.001:0.05:6 --y 1,10,100 --csv map.csv\n"
     "  python -m pbf_tools plot-map map.csv -o map.png";
-
-/// work(k) for k below n on `jobs` threads, with a line of progress after each: "k of n WHAT, time"
-/// and name(row). The first exception is thrown at the end.
-template <class Row, class Work, class Name>
-std::vector<Row> in_parallel(std::size_t n, int jobs, Log& log, const char* what, const Work& work,
-                             const Name& name) {
-  const Stopwatch watch;
-  std::vector<Row> rows(n);
-  std::size_t done = 0;
-  std::atomic<std::size_t> next{0};
-  std::exception_ptr failed;
-  std::mutex mutex;
-  const auto loop = [&] {
-    for (std::size_t k = next++; k < n; k = next++) {
-      try {
-        Row row = work(k);
-        const std::lock_guard lock(mutex);
-        log.transient(format("%zu of %zu %s, %.0f s", ++done, n, what, watch.seconds()) +
-                      name(row));
-        rows[k] = std::move(row);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!failed) failed = std::current_exception();
-        next = n;
-      }
-    }
-  };
-  std::vector<std::thread> threads;
-  try {
-    for (int j = 1; j < jobs; ++j) threads.emplace_back(loop);
-  } catch (const std::system_error&) {  // no more to be had: those that run do the work
-  }
-  loop();
-  for (std::thread& t : threads) t.join();
-  if (failed) std::rethrow_exception(failed);
-  return rows;
-}
 
 std::vector<StabilityCase> chosen(const StabilityCommandOptions& o) {
   const std::string suite = o.suite.empty() ? shipped_file("configs/stability.yaml") : o.suite;
@@ -189,6 +151,21 @@ std::string junit_of(const std::vector<StabilityRow>& rows, const StabilityComma
   return junit_xml(suite);
 }
 
+/// Keeps the rows that are there. When some are not: says what is lost, and the code is that of a
+/// stop.
+template <class Row>
+std::vector<Row> finished(std::vector<std::optional<Row>> rows, const char* what, Log& log,
+                          int& code) {
+  std::vector<Row> out;
+  for (auto& row : rows)
+    if (row) out.push_back(*std::move(row));
+  if (out.size() == rows.size()) return out;
+  code = static_cast<int>(ExitCode::resumable);
+  log.note(format("pbf: stopped early by %s with %zu of %zu %s done; the same command starts anew",
+                  signal_seen().c_str(), out.size(), rows.size(), what));
+  return out;
+}
+
 int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int jobs) {
   Log log(o.quiet);
   const std::vector<StabilityCase> cases = chosen(o);
@@ -198,10 +175,12 @@ int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int
   if (!o.csv.empty() && !o.junit.empty() && same_output(o.csv, o.junit))
     throw Error(ExitCode::bad_input, "--csv and --junit name one file: " + o.csv);
   const Stopwatch watch;
-  auto rows = in_parallel<StabilityRow>(
-      cases.size(), jobs, log, "cases",
-      [&](std::size_t k) { return run_stability_case(cases[k], run); },
-      [](const StabilityRow& r) { return ": " + r.name; });
+  int code = static_cast<int>(ExitCode::done);
+  auto rows = finished(in_parallel<StabilityRow>(
+                           cases.size(), jobs, log, "cases",
+                           [&](std::size_t k) { return run_stability_case(cases[k], run); },
+                           [](const StabilityRow& r) { return ": " + r.name; }),
+                       "cases", log, code);
   judge_likeness(cases, rows);
   std::int64_t failed = 0;
   std::string group;
@@ -215,7 +194,8 @@ int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int
                     o.precision.c_str(), o.reduced ? ", reduced" : "", failed, watch.seconds()));
   if (!o.csv.empty()) write_text_file(o.csv, table_of(rows, o).csv());
   if (!o.junit.empty()) write_text_file(o.junit, junit_of(rows, o, watch.seconds()));
-  return static_cast<int>(failed == 0 ? ExitCode::done : ExitCode::difference);
+  if (code == 0 && failed > 0) code = static_cast<int>(ExitCode::difference);
+  return code;
 }
 
 int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int jobs) {
@@ -239,9 +219,12 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
                   grid.size(), map.scene.c_str(), map.x.size(), map.x_key.c_str(), map.y.size(),
                   map.y_key.c_str(), map.iterations.size()));
   const Stopwatch watch;
-  const auto cells = in_parallel<MapCell>(
-      grid.size(), jobs, log, "runs", [&](std::size_t k) { return run_map_cell(map, grid[k]); },
-      [](const MapCell&) { return std::string(); });
+  int code = static_cast<int>(ExitCode::done);
+  const auto cells = finished(
+      in_parallel<MapCell>(
+          grid.size(), jobs, log, "runs", [&](std::size_t k) { return run_map_cell(map, grid[k]); },
+          [](const MapCell&) { return std::string(); }),
+      "runs", log, code);
   std::int64_t count[3] = {0, 0, 0};
   for (const MapCell& c : cells) ++count[static_cast<int>(c.verdict)];
   const std::string csv = table_of(cells, map, o).csv();
@@ -251,7 +234,7 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
              "the guard, "
              "%.0f s",
              cells.size(), count[0], count[1], 100 * map.limit, count[2], watch.seconds()));
-  return 0;
+  return code;
 }
 
 int command_stability(const StabilityCommandOptions& o) {
@@ -263,6 +246,8 @@ int command_stability(const StabilityCommandOptions& o) {
   run.threads = std::max(1, usable_threads() / jobs);
   run.overrides = o.overrides;
   run.base_folder = o.base_folder;
+  run.stop = [] { return !signal_seen().empty(); };
+  watch_signals();
   return o.map.empty() ? run_suite(o, run, jobs) : run_map(o, run, jobs);
 }
 

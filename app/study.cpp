@@ -85,13 +85,10 @@ std::optional<MemberResult> result_of(const Study& study, const StudyMember& mem
     log.note(name + ": its result is damaged and made again: " + e.what());
   }
   const Stopwatch watch;
-  double told = 0;
   const auto progress = [&](double share) {
-    if (watch.seconds() - told < (log.terminal() ? 0.5 : 10)) return;
-    told = watch.seconds();
-    const std::string line = name + format(": %.0f %%, %s left", 100 * share,
-                                           duration_text(told / share - told).c_str());
-    log.terminal() ? log.transient(line) : log.note(line);
+    const double s = watch.seconds();
+    log.progress(name +
+                 format(": %.0f %%, %s left", 100 * share, duration_text(s / share - s).c_str()));
   };
   auto result = run_member(
       study, member, [] { return !signal_seen().empty(); }, progress);

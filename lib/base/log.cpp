@@ -68,6 +68,12 @@ void Log::transient(const std::string& text) {
   dirty_ = true;
 }
 
+void Log::progress(const std::string& text) {
+  if (since_progress_.seconds() < (terminal_ ? 0.5 : 10)) return;
+  terminal_ ? transient(text) : note(text);
+  since_progress_ = Stopwatch();
+}
+
 void Log::file_only(const std::string& text) { to_file(escaped(text) + "\n"); }
 
 void Log::close() {

@@ -32,6 +32,8 @@ class Log {
   void result(const std::string& text);
   /// A line that the next one overwrites on a terminal; the file does not get it.
   void transient(const std::string& text);
+  /// A line of progress: on a terminal twice a second as transient(), else every 10 s as note().
+  void progress(const std::string& text);
   /// A line for the file alone.
   void file_only(const std::string& text);
   /// Closes the log file. Throws Error(io) when something could not be written (disk full).
@@ -46,6 +48,7 @@ class Log {
   bool quiet_, terminal_, dirty_ = false;
   std::string path_;
   std::FILE* file_ = nullptr;
+  Stopwatch since_progress_;
 };
 
 /// Where a run stands, for one line of progress.

@@ -81,19 +81,20 @@ struct StabilityOptions {
   int threads = 0;                     ///< of one case; 0: all
   std::vector<std::string> overrides;  ///< --set, after the case's own
   std::string base_folder;             ///< as in load_scene()
+  std::function<bool()> stop;          ///< asked between updates: whether to give up; empty: never
 };
 
 /// Without output, and where and with what the options say.
 void prepare(Scene& scene, const StabilityOptions& o);
 
 /// Runs one case and judges it, but for `like`. Throws Error(unavailable) where the backend is not
-/// there; every other error of the case is judged.
-StabilityRow run_stability_case(const StabilityCase& c, const StabilityOptions& o);
+/// there; every other error of the case is judged. Empty when o.stop() said so.
+std::optional<StabilityRow> run_stability_case(const StabilityCase& c, const StabilityOptions& o);
 
 /// How far two centres of mass may lie apart to be alike, h.
 constexpr double kLikeness = 0.05;
 
-/// Judges `like` of rows[k] against the row of that name.
+/// Judges `like` of every row, as the case of its name asks, against the row that is meant.
 void judge_likeness(const std::vector<StabilityCase>& cases, std::vector<StabilityRow>& rows);
 
 /// What a run went through, of what the criteria ask for.
@@ -110,8 +111,10 @@ struct Course : Figures {
 };
 
 /// Runs a scene under its guard to the end or to an alarm; `done` gets the solver at the end.
-Course run_course(const Scene& scene, const std::string& dir,
-                  const std::function<void(Solver&)>& done = {});
+/// Empty when stop(), asked between updates, said so.
+std::optional<Course> run_course(const Scene& scene, const std::string& dir,
+                                 const std::function<bool()>& stop = {},
+                                 const std::function<void(Solver&)>& done = {});
 
 /// Least distance of two particles, in the unit of `x` (3 per particle); infinite for one particle.
 double nearest_distance(const std::vector<double>& x);

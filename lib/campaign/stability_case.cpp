@@ -127,15 +127,19 @@ void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s
         format(", %ld changes of the step, %ld times back", c.steps->changes, c.steps->repeats);
 }
 
-void run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
+/// False when o.stop() said so.
+bool run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
   const std::string dir = std::filesystem::path(c.scene).parent_path().string();
   const Scene s = scene_of(c, o, dir);
   row.dt_hat = relative_step(s);
-  const Course course = run_course(s, dir, [&](Solver& solver) {
+  const auto nearest = [&](Solver& solver) {
     const Snapshot snap = solver.download({}, ScalarType::f64).get();
     const auto x = snap.fields[0].as<double>();
     row.nearest = nearest_distance({x.begin(), x.end()}) / s.fluid.spacing;
-  });
+  };
+  const std::optional<Course> ran = run_course(s, dir, o.stop, nearest);
+  if (!ran) return false;
+  const Course& course = *ran;
   static_cast<Figures&>(row) = course;
   row.fast = course.last.fast;
   for (std::size_t a = 0; a < 3; ++a)
@@ -145,13 +149,14 @@ void run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
     const std::string alarm = kAlarmNames[static_cast<int>(course.event->alarm)];
     row.happened = "guard: " + alarm + ", " + course.guard_text;
     row.good = c.must.guard == "allowed" || c.must.guard == alarm;
-    return;
+    return true;
   }
   row.good = !must_stop && !c.must.error;
   judge(row, c.must, course, s);
-  if (c.must.warns.empty() || scene_warns(s, dir, row.particles, c.must.warns)) return;
+  if (c.must.warns.empty() || scene_warns(s, dir, row.particles, c.must.warns)) return true;
   row.happened += ", no such warning (!)";
   row.good = false;
+  return true;
 }
 
 }  // namespace
@@ -164,14 +169,14 @@ void prepare(Scene& s, const StabilityOptions& o) {
   s.threads = o.threads;
 }
 
-StabilityRow run_stability_case(const StabilityCase& c, const StabilityOptions& o) {
+std::optional<StabilityRow> run_stability_case(const StabilityCase& c, const StabilityOptions& o) {
   StabilityRow row;
   row.name = c.name;
   row.group = c.group;
   row.must = must_text(c.must);
   const Stopwatch watch;
   try {
-    run(row, c, o);
+    if (!run(row, c, o)) return std::nullopt;
   } catch (const Error& e) {
     if (e.code() == ExitCode::unavailable && !c.must.error) throw;
     row.happened = format("error %d: ", static_cast<int>(e.code())) + e.what();
@@ -183,20 +188,22 @@ StabilityRow run_stability_case(const StabilityCase& c, const StabilityOptions& 
 }
 
 void judge_likeness(const std::vector<StabilityCase>& cases, std::vector<StabilityRow>& rows) {
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (cases[k].must.like.empty()) continue;
-    const auto other = std::ranges::find(rows, cases[k].must.like, &StabilityRow::name);
+  for (StabilityRow& row : rows) {
+    const auto own = std::ranges::find(cases, row.name, &StabilityCase::name);
+    if (own == cases.end() || own->must.like.empty()) continue;
+    const std::string& like = own->must.like;
+    const auto other = std::ranges::find(rows, like, &StabilityRow::name);
     if (other == rows.end()) {
-      rows[k].happened += ", " + cases[k].must.like + " was not run";
+      row.happened += ", " + like + " was not run";
       continue;
     }
     double distance = 0;
     for (std::size_t a = 0; a < 3; ++a)
-      distance = std::max(distance, std::fabs(rows[k].center[a] - other->center[a]));
+      distance = std::max(distance, std::fabs(row.center[a] - other->center[a]));
     const bool good = distance <= kLikeness;
-    rows[k].checks.push_back({"like", distance, kLikeness, good});
-    rows[k].happened += ", like " + number(distance) + " h" + (good ? "" : " (!)");
-    rows[k].good = rows[k].good && good;
+    row.checks.push_back({"like", distance, kLikeness, good});
+    row.happened += ", like " + number(distance) + " h" + (good ? "" : " (!)");
+    row.good = row.good && good;
   }
 }
 

@@ -26,8 +26,9 @@ double most_through(const Scene& scene, Solver& solver) {
 
 }  // namespace
 
-Course run_course(const Scene& scene, const std::string& dir,
-                  const std::function<void(Solver&)>& done) {
+std::optional<Course> run_course(const Scene& scene, const std::string& dir,
+                                 const std::function<bool()>& stop,
+                                 const std::function<void(Solver&)>& done) {
   Course c;
   c.particles = count_particles(scene, dir);
   const Plan plan = make_plan(scene, c.particles);
@@ -51,7 +52,15 @@ Course run_course(const Scene& scene, const std::string& dir,
     loads_since = m.time;
     compression.push_back({m.compression_mean, m.compression_max});
   });
-  Session(*solver, {&watch, &watch.choosing()}).run(make_schedule(scene).updates);
+  bool stopped = false;
+  Callback stopping([](std::int64_t) { return kAlways; },
+                    [&](Session&) {
+                      stopped = stop && stop();
+                      return stopped ? Now::stop : Now::go_on;
+                    });
+  // Calls of a second, so that nobody waits longer for a stop.
+  Session(*solver, {&watch, &watch.choosing(), &stopping}, 1).run(make_schedule(scene).updates);
+  if (stopped) return std::nullopt;
   c.last = watch.last();
   c.updates = c.last.update;
   if (watch.event()) c.event = *watch.event();

@@ -96,7 +96,7 @@ std::vector<MapCell> map_cells(const StabilityMap& m) {
   return cells;
 }
 
-MapCell run_map_cell(const StabilityMap& m, MapCell c) {
+std::optional<MapCell> run_map_cell(const StabilityMap& m, MapCell c) {
   const Scene base = scene_with(m.scene, m.run, {});
   Scene s = scene_with(m.scene, m.run, c.settings);
   const double g0 = length(base.gravity), g = length(s.gravity);
@@ -108,7 +108,9 @@ MapCell run_map_cell(const StabilityMap& m, MapCell c) {
   s.measure_every = std::max(1, int(s.time.end / s.time.step / 200));
   c.scene = s.name;
   c.dt_hat = relative_step(s);
-  const Course course = run_course(s, std::filesystem::path(m.scene).parent_path().string());
+  const auto ran = run_course(s, std::filesystem::path(m.scene).parent_path().string(), m.run.stop);
+  if (!ran) return std::nullopt;
+  const Course& course = *ran;
   static_cast<Figures&>(c) = course;
   if (course.event) {
     c.verdict = MapClass::stopped;

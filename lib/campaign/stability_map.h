@@ -41,7 +41,8 @@ std::vector<double> map_values(const std::string& scene, const StabilityOptions&
 std::vector<MapCell> map_cells(const StabilityMap& map);
 
 /// Runs one cell. Where gravity changes, the time simulated changes with sqrt(h/g), so that all
-/// cells see the same dimensionless time. Throws Error(bad_input) for a scene that is none.
-MapCell run_map_cell(const StabilityMap& map, MapCell cell);
+/// cells see the same dimensionless time. Empty when map.run.stop() said so. Throws
+/// Error(bad_input) for a scene that is none.
+std::optional<MapCell> run_map_cell(const StabilityMap& map, MapCell cell);
 
 }  // namespace pbf::inline campaign_module

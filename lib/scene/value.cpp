@@ -28,7 +28,10 @@ std::string read_one(const Key& key, const Node& node, T& out) {
   const std::string wanted =
       std::string(whole ? "a whole number" : "a number") + (key.automatic ? " or auto" : "");
   if (node.kind != Node::Kind::scalar) return instead_of(wanted, node);
-  if (node.quoted) return instead_of(wanted, node) + " in quotes; remove them";
+  if (node.quoted) {
+    const std::string remedy = number_remedy(node.text, key.unit);
+    return instead_of(wanted, node) + (remedy.empty() ? " in quotes; remove them" : remedy);
+  }
   std::conditional_t<whole, std::int64_t, double> v{};
   const NumberError error = read_number(node.text, v);
   if (error == NumberError::not_a_number)

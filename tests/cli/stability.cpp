@@ -1,4 +1,8 @@
 // pbf stability, and what the guard leaves behind in a run folder.
+#include <chrono>
+#include <csignal>
+#include <thread>
+
 #include "lib/io/run_file.h"
 #include "tests/support/catch.h"
 #include "tests/support/process.h"
@@ -36,6 +40,48 @@ TEST_CASE("stability: a table and a CSV with a verdict per case, exit 6 when one
   CHECK(none.code == 2);
   CHECK(has(none.err, "no case or group three"));
   CHECK(pbf::test::pbf({"stability", "--suite", "none.yaml"}, folder.path()).code == 2);
+}
+
+TEST_CASE("stability: SIGTERM ends it with 75, and the cases done until then are written") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  folder.write(
+      "suite.yaml",
+      "cases:\n"
+      "  - {name: short, group: one, scene: tiny.yaml, must: {speed: 100}}\n"
+      "  - {name: endless, group: one, scene: tiny.yaml, set: {time.end: 1.0e+5}, must: {}}\n");
+  Outcome o;
+  for (const int ms : {300, 1000, 3000, 10000, 30000}) {  // a busy machine may need long
+    Process suite({"stability", "--suite", "suite.yaml", "--csv", "t.csv", "--jobs", "1"},
+                  folder.path());
+    std::this_thread::sleep_for(std::chrono::milliseconds(ms));
+    suite.send(SIGTERM);
+    o = suite.wait();
+    if (has(o.err, "with 1 of 2 cases done")) break;
+  }
+  CAPTURE(o.err, o.out);
+  CHECK(o.code == 75);
+  CHECK(has(o.err, "stopped early by SIGTERM with 1 of 2 cases done"));
+  CHECK(has(o.out, "1 cases on cpu float: 0 failed"));
+  CHECK(has(read_text(folder / "t.csv"), "\nshort,one,"));
+  CHECK(!has(read_text(folder / "t.csv"), "endless"));
+}
+
+TEST_CASE("stability: a line of progress every ten seconds without a terminal") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  Args map{"stability",     "tiny.yaml", "--map",    "time.step,gravity", "--x",
+           "1e-5:1e-4:400", "--y",       "1:10:400", "--iterations",      "4",
+           "--csv",         "map.csv"};
+  Process maps(map, folder.path());
+  std::this_thread::sleep_for(std::chrono::seconds(13));
+  maps.send(SIGINT);
+  const Outcome o = maps.wait();
+  CAPTURE(o.err);
+  CHECK(o.code == 75);
+  CHECK(has(o.err, " of 160000 runs, "));
+  CHECK(count(o.err, " of 160000 runs, ") <= 3);
+  CHECK(has(o.err, "stopped early by SIGINT with "));
 }
 
 TEST_CASE("stability: JUnit XML of a suite, which no map has") {

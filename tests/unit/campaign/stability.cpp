@@ -28,7 +28,7 @@ StabilityRow run_one(const std::string& must, const std::string& set = "time.end
                                      "}, must: {" + must + "}}\n"));
   StabilityOptions o;
   o.threads = 1;
-  return run_stability_case(cases.at(0), o);
+  return run_stability_case(cases.at(0), o).value();
 }
 
 }  // namespace
@@ -137,7 +137,7 @@ TEST_CASE("stability case: files of motions lie beside the scene") {
       "file, path: m.csv}}]}}\n"));
   StabilityOptions o;
   o.threads = 1;
-  const StabilityRow row = run_stability_case(cases.at(0), o);
+  const StabilityRow row = run_stability_case(cases.at(0), o).value();
   CAPTURE(row.happened);
   CHECK(row.good);
 }
@@ -209,13 +209,13 @@ TEST_CASE("stability map: gravity is scaled along its own direction, and time wi
   m.run.overrides = {"time.end=0.1"};
   const auto cells = map_cells(m);
   REQUIRE(cells.size() == 1);
-  const MapCell c = run_map_cell(m, cells[0]);
+  const MapCell c = run_map_cell(m, cells[0]).value();
   CHECK(c.dt_hat == Approx(0.002 * std::sqrt(20 / 0.2)));
   CHECK(c.verdict == MapClass::stable);
   m.limit = 0;
-  CHECK(run_map_cell(m, cells[0]).verdict == MapClass::degraded);
+  CHECK(run_map_cell(m, cells[0])->verdict == MapClass::degraded);
   m.run.overrides.push_back("guard.speed=0.0001");
-  CHECK(run_map_cell(m, cells[0]).stopped_for == "speed");
+  CHECK(run_map_cell(m, cells[0])->stopped_for == "speed");
 }
 
 }  // namespace pbf::scene_test

@@ -69,7 +69,7 @@ TEST_CASE("guard: energy that a start cannot release ends the run") {
       std::vector<std::string> set = c.set;
       set.push_back(std::string("solver.prestabilize=") + relieved);
       CAPTURE(c.scene, set);
-      const Course course = run_course(shipped(c.scene, set), ".");
+      const Course course = run_course(shipped(c.scene, set), ".").value();
       REQUIRE(course.event);
       CHECK((course.event->alarm == Alarm::energy || course.event->alarm == Alarm::speed));
     }
@@ -89,7 +89,7 @@ TEST_CASE("guard: a jittered ball without gravity runs to its end, however fast 
         s.bodies[0].shape = Shape::file;
         s.bodies[0].path = "ball.csv";
         s.bodies[0].velocity = {speed, 0, 0};
-        const Course c = run_course(s, folder.path.string());
+        const Course c = run_course(s, folder.path.string()).value();
         CHECK_FALSE(c.event);
         CHECK(c.guard_text.empty());
       }
