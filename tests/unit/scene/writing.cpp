@@ -86,6 +86,10 @@ TEST_CASE("writing: slips in a scene") {
       {"output: {every: 20 ms}\n",
        "scene.yaml:6:17: output.every: expected a number, got \"20 ms\"; write the number without "
        "a unit, the key is in s: 0.02"},
+      {"output: {every: \"20 ms\"}\n",
+       "output.every: expected a number, got \"20 ms\"; write the number without a unit, the key "
+       "is in s: 0.02"},
+      {"output: {every: \"0.02\"}\n", "got \"0.02\" in quotes; remove them"},
       {"gravity: [0, 0, -9,81]\n",
        "expected 3 numbers [x, y, z], got a list of 4; commas part the numbers, decimals take a "
        "point"},
