@@ -12,8 +12,7 @@
 #include "lib/base/text.h"
 #include "lib/campaign/stability.h"
 #include "lib/campaign/stability_map.h"
-#include "lib/io/junit.h"
-#include "lib/io/table.h"
+#include "lib/campaign/stability_report.h"
 #include "lib/run/signals.h"
 
 namespace pbf::inline app_module {
@@ -79,78 +78,6 @@ std::vector<StabilityCase> chosen(const StabilityCommandOptions& o) {
   return out;
 }
 
-std::string cut(const std::string& text, std::size_t width) {
-  std::string line = text.substr(0, text.find('\n'));
-  return line.size() <= width ? line : line.substr(0, width - 3) + "...";
-}
-
-std::string row_text(const StabilityRow& r) {
-  // By how much: the criterion nearest to its limit, as a share of the limit.
-  const std::string margin =
-      r.used > 0 ? format("%3.0f %% of %s", 100 * r.used, r.tightest.c_str()) : std::string();
-  return format("%-24s %-4s  %-16s must  %s\n%49s %s", r.name.c_str(), r.good ? "ok" : "FAIL",
-                margin.c_str(), r.must.c_str(), "did ", cut(r.happened, 150).c_str());
-}
-
-Table table_of(const std::vector<StabilityRow>& rows, const StabilityCommandOptions& o) {
-  using R = const StabilityRow&;
-  return TableOf<StabilityRow>({{"case", [](R r) { return r.name; }},
-                                {"group", [](R r) { return r.group; }},
-                                {"backend", [&](R) { return o.backend; }},
-                                {"precision", [&](R) { return o.precision; }},
-                                {"size", [&](R) { return o.reduced ? "reduced" : "full"; }},
-                                {"particles", [](R r) { return r.particles; }},
-                                {"updates", [](R r) { return r.updates; }},
-                                {"dt_hat", [](R r) { return r.dt_hat; }},
-                                {"verdict", [](R r) { return r.good ? "ok" : "fail"; }},
-                                {"used", [](R r) { return r.used; }},
-                                {"tightest", [](R r) { return r.tightest; }},
-                                {"must", [](R r) { return r.must; }},
-                                {"happened", [](R r) { return r.happened; }},
-                                {"speed_max", [](R r) { return r.speed_max; }},
-                                {"energy_rise", [](R r) { return r.energy_rise; }},
-                                {"compression_mean", [](R r) { return r.compression_mean; }},
-                                {"compression_max", [](R r) { return r.compression_max; }},
-                                {"nearest", [](R r) { return r.nearest; }},
-                                {"slowed_down", [](R r) { return r.fast; }},
-                                {"seconds", [](R r) { return r.seconds; }}},
-                               rows);
-}
-
-Table table_of(const std::vector<MapCell>& cells, const StabilityMap& map,
-               const StabilityCommandOptions& o) {
-  using C = const MapCell&;
-  return TableOf<MapCell>({{"scene", [](C c) { return c.scene; }},
-                           {"backend", [&](C) { return o.backend; }},
-                           {"precision", [&](C) { return o.precision; }},
-                           {"x_key", [&](C) { return map.x_key; }},
-                           {"y_key", [&](C) { return map.y_key; }},
-                           {"x", [](C c) { return c.x; }},
-                           {"y", [](C c) { return c.y; }},
-                           {"iterations", [](C c) { return c.iterations; }},
-                           {"class", [](C c) { return kMapClassNames[int(c.verdict)]; }},
-                           {"dt_hat", [](C c) { return c.dt_hat; }},
-                           {"compression_mean", [](C c) { return c.compression_mean; }},
-                           {"compression_max", [](C c) { return c.compression_max; }},
-                           {"energy_rise", [](C c) { return c.energy_rise; }},
-                           {"stopped_for", [](C c) { return c.stopped_for; }}},
-                          cells);
-}
-
-std::string junit_of(const std::vector<StabilityRow>& rows, const StabilityCommandOptions& o,
-                     double seconds) {
-  JunitSuite suite{"pbf stability",
-                   {{"backend", o.backend},
-                    {"precision", o.precision},
-                    {"size", o.reduced ? "reduced" : "full"}},
-                   {},
-                   seconds};
-  for (const StabilityRow& r : rows)
-    suite.cases.push_back({r.group, r.name, r.seconds, r.good ? "" : cut(r.happened, 150),
-                           "must " + r.must + "\ndid " + r.happened});
-  return junit_xml(suite);
-}
-
 /// Keeps the rows that are there. When some are not: says what is lost, and the code is that of a
 /// stop.
 template <class Row>
@@ -187,13 +114,13 @@ int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int
   for (const StabilityRow& r : rows) {
     if (r.group != group) log.result(r.group);
     group = r.group;
-    log.result(row_text(r));
+    log.result(stability_text(r));
     failed += r.good ? 0 : 1;
   }
   log.result(format("%zu cases on %s %s%s: %ld failed, %.1f s", rows.size(), o.backend.c_str(),
                     o.precision.c_str(), o.reduced ? ", reduced" : "", failed, watch.seconds()));
-  if (!o.csv.empty()) write_text_file(o.csv, table_of(rows, o).csv());
-  if (!o.junit.empty()) write_text_file(o.junit, junit_of(rows, o, watch.seconds()));
+  if (!o.csv.empty()) write_text_file(o.csv, stability_table(rows, run).csv());
+  if (!o.junit.empty()) write_text_file(o.junit, stability_junit(rows, run, watch.seconds()));
   if (code == 0 && failed > 0) code = static_cast<int>(ExitCode::difference);
   return code;
 }
@@ -227,7 +154,7 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
       "runs", log, code);
   std::int64_t count[3] = {0, 0, 0};
   for (const MapCell& c : cells) ++count[static_cast<int>(c.verdict)];
-  const std::string csv = table_of(cells, map, o).csv();
+  const std::string csv = map_table(cells, map).csv();
   o.csv.empty() ? log.result(csv) : write_text_file(o.csv, csv);
   log.result(
       format("%zu runs: %ld stable, %ld degraded (mean compression above %g %%), %ld stopped by "

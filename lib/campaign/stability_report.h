@@ -1,0 +1,26 @@
+// Results of the stability suite and of stability maps as text, tables and JUnit XML.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/campaign/stability.h"
+#include "lib/campaign/stability_map.h"
+#include "lib/io/table.h"
+
+namespace pbf::inline campaign_module {
+
+/// Two lines for people: the verdict, what the case must do, and what it did.
+std::string stability_text(const StabilityRow& r);
+
+/// A row per case.
+Table stability_table(const std::vector<StabilityRow>& rows, const StabilityOptions& o);
+
+/// A row per run of a map.
+Table map_table(const std::vector<MapCell>& cells, const StabilityMap& map);
+
+/// JUnit XML with a test case per case. seconds: of the whole suite, wall time.
+std::string stability_junit(const std::vector<StabilityRow>& rows, const StabilityOptions& o,
+                            double seconds);
+
+}  // namespace pbf::inline campaign_module
