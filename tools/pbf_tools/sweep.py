@@ -65,9 +65,10 @@ def batch(scenes: Scene | Sequence[Scene], grid: Mapping[str, Sequence[Any]] | N
 
         batch("dam.yaml", {"solver.iterations": [2, 4, 8]}, "out/sweep", output={"every": 0.1})
 
-    Overrides and base_folder as in `run`, for all of them; scenes without `output` get `output: {}`, those of a
-    folder or of a list file excepted. Given again, it leaves alone what is finished and goes
-    on with what was stopped. Dicts are written to OUT.scenes/, or to OUT.yaml when there is one.
+    Overrides and base_folder as in `run`, for all of them; scenes without `output` get
+    `output: {}`, those of a folder or of a list file excepted. Given again, it leaves alone what is
+    finished and goes on with what was stopped. Dicts are written to OUT.scenes/, or to OUT.yaml
+    when there is one.
 
     Runs that failed are rows of the summary too, with `exit_code`, `reason` and `message`, and
     give a PbfWarning. PbfError where there is no summary, as for a scene or a grid that cannot be.
