@@ -12,6 +12,7 @@ from typing import Any
 from . import program as pbf
 from .errors import BadInput, FileError, PbfWarning
 from .run_file import Run
+from .run_path import run_path
 from .scene_text import Scene, base_words, set_words, text, write_scene
 from .simulate import opened, plan, writes_a_run_file
 from .table import Table, read_csv, write_text
@@ -136,7 +137,7 @@ def _input(scenes: Any, folder: Path, program: str, base_folder: Any,
             names.add(name)
             path = write_scene(scene, beside / f"{name}.yaml").absolute()
         else:
-            path = Path(scene).absolute()
+            path = run_path(scene).absolute()
         if re.search(r"[\s#]", str(path)):
             raise BadInput(f"{path}: a list of scenes cannot hold a path with blanks or #; rename "
                            "it, or give another out")
