@@ -204,10 +204,11 @@ def test_every_whole_scene_of_the_pages_can_be_planned(tmp_path):
 
 def test_fragments_of_scenes_on_the_pages_fit_into_a_scene(tmp_path):
     """Blocks with bodies, obstacles or motion, laid over a tank that has room for them."""
-    tank = {"domain": "{min: [0, 0, 0], max: [3.5, 1, 1]}", "fluid": "{spacing: 0.05}",
+    tank = {"domain": "{min: [0, 0, 0], max: [3.5, 1, 1]}", "fluid": "{spacing: 0.025}",
             "bodies": "[{shape: block, min: [0, 0, 0], max: [1, 1, 0.3]}]",
             "time": "{step: 0.002, end: 1}", "gravity": "9.81"}
-    (tmp_path / "gate.csv").write_text("t,x,y,z\n0,0,0,0\n1,0,0,1\n")
+    for name in ("gate", "fall"):
+        (tmp_path / f"{name}.csv").write_text("t,x,y,z\n0,0,0,0\n1,0,0,1\n")
     tried = 0
     for block in yaml_blocks(ROOT / "configs/README.md"):
         keys = set(re.findall(r"^(\w+):", block, re.MULTILINE))

@@ -95,8 +95,8 @@ def test_any_column_of_the_log_is_drawn_and_its_extremes_are_printed(tools, mini
     code, out, _ = tools("plot-log", minimal, "front_x", "compression_*", "-o", tmp_path / "a.png")
     assert code == 0 and drawn(tmp_path / "a.png")
     lines = out.splitlines()
-    assert lines[0] == (f"front_x, run: {log['front_x'].min():.6g} to {log['front_x'].max():.6g} m, "
-                        f"at the end {log['front_x'][-1]:.6g}")
+    assert lines[0] == (f"front_x, minimal: {log['front_x'].min():.6g} to "
+                        f"{log['front_x'].max():.6g} m, at the end {log['front_x'][-1]:.6g}")
     assert [line.split(",")[0] for line in lines[1:5]] == [
         n for n in log if n.startswith("compression_")]
     tools("to-csv", minimal, "--log", "-o", tmp_path / "log.csv")

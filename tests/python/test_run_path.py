@@ -123,3 +123,13 @@ def test_a_column_that_is_not_in_the_log_gets_suggestions_and_the_list(tools, mi
     assert "There are time, " in err and "potential_energy" in err
     with pytest.raises(KeyError, match=f"did you mean {meant}"):
         pbf_tools.open(minimal).log[column]
+
+
+def test_a_batch_repeats_runs_given_by_folder_or_by_file(minimal, sweep, pbf, tmp_path, monkeypatch):
+    monkeypatch.setenv("PBF", str(pbf))
+    table = pbf_tools.batch([sweep / "a", sweep / "b/run.vtkhdf"], {"time.end": [0.02]},
+                            tmp_path / "again")
+    assert table["reason"].tolist() == ["finished"] * 2
+    assert [run.times[-1] for run in table.runs] == pytest.approx([0.02, 0.02])
+    with pytest.raises(pbf_tools.FileError, match="no run.vtkhdf in this folder, but in 2 below"):
+        pbf_tools.batch([sweep, sweep / "a"], out=tmp_path / "none")

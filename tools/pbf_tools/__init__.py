@@ -1,15 +1,38 @@
 """Runs scenes of pbf, and reads, plots and compares its run files. Start with
 `pbf_tools.open("run.vtkhdf")` or `pbf_tools.run("scene.yaml")`."""
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from .errors import (BadInput, Diverged, FileError, MissingPackage, PbfError, PbfWarning, Stopped,
                      ToolError)
-from .fields import Field, Frame
-from .run_file import Gauge, Run, open
-from .simulate import plan, run
-from .sweep import Batch, batch, read_batch
-from .table import Table, read_csv
+
+if TYPE_CHECKING:
+    from .fields import Field, Frame
+    from .run_file import Gauge, Run, open
+    from .simulate import plan, run
+    from .sweep import Batch, batch, read_batch
+    from .table import Table, read_csv
 
 __all__ = ["BadInput", "Batch", "Diverged", "Field", "FileError", "Frame", "Gauge",
            "MissingPackage", "PbfError", "PbfWarning", "Run", "Stopped", "Table", "ToolError",
            "batch", "open", "plan", "read_batch", "read_csv", "run"]
 __version__ = "0.1.0"
+
+# Where the rest is. It needs numpy and h5py, and is read when it is asked for: the command line
+# must come as far as a message when they are not installed.
+_PLACES = {"Field": "fields", "Frame": "fields", "Gauge": "run_file", "Run": "run_file",
+           "open": "run_file", "plan": "simulate", "run": "simulate", "Batch": "sweep",
+           "batch": "sweep", "read_batch": "sweep", "Table": "table", "read_csv": "table"}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _PLACES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module("." + _PLACES[name], __name__), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

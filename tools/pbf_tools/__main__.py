@@ -6,8 +6,9 @@ import argparse
 import importlib
 import os
 import sys
+from types import ModuleType
 
-from .errors import BadInput, ToolError, unknown
+from .errors import BadInput, MissingPackage, ToolError, unknown
 from .run_path import RUN_FILE
 
 # Command -> what it does; the module has the same name with _ for -.
@@ -34,8 +35,26 @@ class Formatter(argparse.RawDescriptionHelpFormatter):
     """Keeps the lines of examples."""
 
 
-def parser() -> argparse.ArgumentParser:
-    """The whole command line, with `run` of the chosen command as a default."""
+NEEDED = ("numpy", "h5py", "matplotlib")  # tools/pyproject.toml
+
+
+def module_of(command: str) -> ModuleType:
+    """The module of a command; MissingPackage with the remedy where it needs one that is missing."""
+    try:
+        return importlib.import_module("." + command.replace("-", "_"), __package__)
+    except ImportError as problem:
+        for name in NEEDED:
+            try:
+                importlib.import_module(name)
+            except ImportError as reason:
+                first = (str(reason).strip() or "ImportError").splitlines()[0]
+                raise MissingPackage(f"{command} needs {name}, which {sys.executable} cannot "
+                                     f"import ({first}): pip install {name}") from problem
+        raise
+
+
+def parser(command: str | None = None) -> argparse.ArgumentParser:
+    """The whole command line, with the arguments of the chosen command and its `run`."""
     top = argparse.ArgumentParser(
         prog="pbf_tools", formatter_class=Formatter,
         description="Plots, compares and converts what pbf writes.",
@@ -44,7 +63,10 @@ def parser() -> argparse.ArgumentParser:
                "Example: python -m pbf_tools plot-energy out/demo -o energy.png")
     commands = top.add_subparsers(metavar="COMMAND", required=True)
     for name, summary in COMMANDS.items():
-        module = importlib.import_module("." + name.replace("-", "_"), __package__)
+        if name != command:
+            commands.add_parser(name, help=summary)
+            continue
+        module = module_of(name)
         sub = commands.add_parser(name, help=summary, description=module.__doc__,
                                   epilog=module.EXAMPLE, formatter_class=Formatter)
         module.add_arguments(sub)
@@ -73,7 +95,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         if words and not words[0].startswith("-") and words[0] not in COMMANDS:
             raise BadInput(unknown("command", words[0], COMMANDS))
-        args = parser().parse_args(words)
+        args = parser(words[0] if words else None).parse_args(words)
         refuse_inputs(args)
         code = args.run(args) or 0
         sys.stdout.flush()

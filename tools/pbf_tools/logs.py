@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 from .errors import BadInput, note
@@ -23,21 +24,42 @@ def read_run(path: str) -> Run:
     return run
 
 
-def read_log(path: str, columns: list[str]) -> tuple[Table, str]:
-    """The log of a run or a CSV table, and a title for it; BadInput without these columns."""
+@dataclass
+class Log:
+    """A log to draw: its columns, the name of its scene or table, a title, names of gauges."""
+
+    table: Table
+    name: str
+    title: str
+    gauges: list[str]
+
+
+def read_log(path: str, columns: list[str]) -> Log:
+    """The log of a run, or a CSV table; BadInput without these columns."""
     if path.endswith(".csv"):
-        log, name = read_csv(path), Path(path).stem
+        name = Path(path).stem
+        log = Log(read_csv(path), name, name, [])
     else:
         run = read_run(path)
-        log, name = run.log, run.title
-        if not len(log):
+        log = Log(run.log, run.name, run.title, list(run.gauges))
+        if not len(log.table):
             raise BadInput(f"{path}: this run has not measured anything yet")
-    need(log, columns, path)
-    return log, name
+    need(log.table, columns, path)
+    return log
+
+
+def labels(paths: list[str], names: list[str]) -> list[str]:
+    """What a legend calls runs: the names of their scenes where no two are the same, else what
+    tells their files apart.
+
+    >>> labels(["out/1", "out/2"], ["drop", "wave"]), labels(["out/1", "out/2"], ["drop", "drop"])
+    (['drop', 'wave'], ['1', '2'])
+    """
+    return names if len(set(names)) == len(names) else short_names(paths)
 
 
 def short_names(paths: list[str]) -> list[str]:
-    """What tells runs apart in a legend: their folders or, of files with other names, these; the
+    """What tells files of runs apart: their folders or, of files with other names, these; the
     paths where that is the same for two.
 
     >>> short_names(["out/a/run.vtkhdf", "x/log.csv"])

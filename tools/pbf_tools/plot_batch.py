@@ -13,9 +13,10 @@ from pathlib import Path
 import numpy as np
 from matplotlib.ticker import NullLocator
 
-from . import style
+from . import gaps, style
 from .errors import BadInput, note
-from .sweep import read_batch
+from .simulate import opened
+from .sweep import Batch, read_batch
 from .table import Table, need
 
 EXAMPLE = """examples:
@@ -46,11 +47,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def read_summary(path: str) -> Table:
-    """The summary of a batch, given by its file or its folder; scenes by their short names."""
+    """The summary of a batch, given by its file or its folder; scenes by their names."""
     table = read_batch(path)
     if "scene" in table:
-        table["scene"] = np.array([Path(str(scene)).stem for scene in table["scene"]], str)
+        paths = table["scene"].tolist()
+        names = scene_names(table, list(dict.fromkeys(paths)))
+        table["scene"] = np.array([names[scene] for scene in paths], str)
     return table
+
+
+def scene_names(table: Batch, paths: list[str]) -> dict[str, str]:
+    """What the scenes of a batch are called: as they say themselves in a run, else as their files;
+    the whole paths where that is the same for two."""
+    def name_of(path: str) -> str:
+        for row in np.flatnonzero(table["scene"] == path) if "name" in table else ():
+            run = opened(table.out / str(table["name"][row]))
+            if run:
+                return run.name
+        return Path(path).stem
+
+    for names in ([name_of(path) for path in paths], [Path(path).stem for path in paths]):
+        if len(set(names)) == len(paths):
+            return dict(zip(paths, names))
+    return {path: path for path in paths}
 
 
 def swept_keys(table: Table) -> list[str]:
@@ -113,21 +132,27 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _drawable(table: Table, args: argparse.Namespace, log_x: bool, log_y: bool) -> Table:
-    """The rows that the axes can show; how many others there are is said on stderr."""
-    good = np.full(len(table), True)
+    """The rows that the axes can show; why others are left out is said on stderr."""
+    good, reasons = np.full(len(table), True), []
     for name, log in ((args.x, log_x), (args.y, log_y)):
-        if table[name].dtype.kind == "f":
-            good &= np.isfinite(table[name]) & ((table[name] > 0) | (not log))
-        elif log:
-            raise BadInput(f"{args.summary}: column {name} is not one of numbers, and has no "
-                           "logarithmic axis")
-    positive = " or not above 0, which a logarithmic axis cannot show" if log_x or log_y else ""
+        values = table[name]
+        if values.dtype.kind != "f":
+            if log:
+                raise BadInput(f"{args.summary}: column {name} is not one of numbers, and has no "
+                               "logarithmic axis")
+            continue
+        missing = ~np.isfinite(values)
+        low = ~missing & (values <= 0) & log
+        good &= ~missing & ~low
+        for bad, text in ((missing, f"is missing{gaps.why(name)}"),
+                          (low, "is not above 0, which a logarithmic axis cannot show")):
+            if bad.any():
+                reasons.append(f"in {np.count_nonzero(bad)} {name} {text}")
+    said = f"{np.count_nonzero(~good)} of {len(good)} finished runs: {'; '.join(reasons)}"
     if not good.any():
-        raise BadInput(f"{args.summary}: no finished run has both {args.x} and {args.y}"
-                       + (" above 0" if positive else ""))
-    if not good.all():
-        note(f"left out {np.count_nonzero(~good)} runs whose {args.x} or {args.y} is missing"
-             + positive)
+        raise BadInput(f"{args.summary}: nothing to draw, left out {said}")
+    if reasons:
+        note(f"left out {said}")
     return table.where(good)
 
 

@@ -13,8 +13,7 @@ import numpy as np
 
 from . import style
 from .errors import BadInput
-from .logs import RUN_HELP, read_log, short_names
-from .table import Table
+from .logs import RUN_HELP, Log, labels, read_log
 
 EXAMPLE = """examples:
   python -m pbf_tools plot-energy out/demo -o energy.png
@@ -31,7 +30,7 @@ def run(args: argparse.Namespace) -> int:
     logs = [read_log(path, COLUMNS) for path in args.runs]
     fig, ((axes,),) = style.figure()
     if len(logs) == 1:
-        detail = _one(axes, logs[0][0], logs[0][1])
+        detail = _one(axes, logs[0])
     else:
         detail = _many(axes, logs, args.runs)
     axes.set_xlabel("time (s)")
@@ -40,8 +39,8 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _one(axes, log: Table, name: str) -> str:
-    t, kinetic, potential = (log[c] for c in COLUMNS)
+def _one(axes, log: Log) -> str:
+    t, kinetic, potential = (log.table[c] for c in COLUMNS)
     for k, (label, values) in enumerate((("total", kinetic + potential), ("potential", potential),
                                          ("kinetic", kinetic))):
         axes.plot(t, values, label=label, color=style.COLORS[k],
@@ -52,20 +51,20 @@ def _one(axes, log: Table, name: str) -> str:
     total = kinetic + potential
     print(f"total energy: {total[0]:.6g} J at the start, {np.nanmax(total):.6g} J at most, "
           f"{total[-1]:.6g} J at the end")
-    return name
+    return log.title
 
 
-def _many(axes, logs: list[tuple[Table, str]], paths: list[str]) -> str:
-    for k, ((log, _), label) in enumerate(zip(logs, short_names(paths))):
-        total = log["kinetic_energy"] + log["potential_energy"]
+def _many(axes, logs: list[Log], paths: list[str]) -> str:
+    for k, (log, label) in enumerate(zip(logs, labels(paths, [log.name for log in logs]))):
+        total = log.table["kinetic_energy"] + log.table["potential_energy"]
         if not total[0] > 0:
             raise BadInput(f"{paths[k]}: the energy at the start is not above 0, so nothing can be "
                            "drawn relative to it; draw this run by itself")
-        axes.plot(log["time"], total / total[0], label=label, color=style.COLORS[k % 8],
+        axes.plot(log.table["time"], total / total[0], label=label, color=style.COLORS[k % 8],
                   linestyle=("-", "--", "-.", ":")[k % 4])
         print(f"{label:24} energy, relative to the start: {np.nanmax(total) / total[0]:.6g} at "
               f"most, {total[-1] / total[0]:.6g} at the end")
     axes.axhline(1, color=style.GREY, linewidth=0.8)
     axes.set_ylabel("total energy / energy at the start (1)")
     axes.legend()
-    return "; ".join(dict.fromkeys(name for _, name in logs)) if len(logs) < 3 else ""
+    return "; ".join(dict.fromkeys(log.title for log in logs)) if len(logs) < 3 else ""

@@ -18,7 +18,7 @@ import numpy as np
 from . import style
 from .errors import BadInput
 from .front_data import REFERENCES
-from .logs import RUN_HELP, read_run, short_names
+from .logs import RUN_HELP, labels, read_run, short_names
 from .table import Table, need, read_csv
 
 EXAMPLE = """examples:
@@ -31,6 +31,7 @@ EXAMPLE = """examples:
 class Front:
     """A simulated front: T and Z, shape (measures,), until the far wall."""
 
+    name: str
     title: str
     ratio: float
     t: np.ndarray
@@ -86,7 +87,8 @@ def read_front(path: str, args: argparse.Namespace) -> Front:
             raise BadInput(f"{path}: a table does not say how large the column was: give --width "
                            "and --height")
         log, back, wall, half, own_g = read_csv(path), 0.0, np.inf, 0.0, 9.81
-        own_width, own_height, title = args.width, args.height, short_names([path])[0]
+        own_width, own_height = args.width, args.height
+        name = title = short_names([path])[0]
     else:
         r = read_run(path)
         if not len(r.frames):
@@ -101,7 +103,7 @@ def read_front(path: str, args: argparse.Namespace) -> Front:
         half, back = d / 2, float(low[axis]) - d / 2
         wall = float(r.info["domain_max"][axis]) - float(r.info["smoothing_length"])
         own_width, own_height, own_g = float(size[axis]), float(size[up]), float(abs(gravity[up]))
-        log, title = r.log, r.title
+        log, name, title = r.log, r.name, r.title
     need(log, ["time", column], path)
     width, height, g = (own if given is None else given for given, own in
                         ((args.width, own_width), (args.height, own_height), (args.gravity, own_g)))
@@ -112,7 +114,7 @@ def read_front(path: str, args: argparse.Namespace) -> Front:
     if end < 2:
         raise BadInput(f"{path}: fewer than two measures before the front reaches the wall")
     ratio = height / width
-    return Front(title, ratio, log["time"][:end] * np.sqrt(ratio * g / width) + args.shift,
+    return Front(name, title, ratio, log["time"][:end] * np.sqrt(ratio * g / width) + args.shift,
                  (x[:end] - back) / width)
 
 
@@ -124,7 +126,9 @@ def _gravity(scene: str, path: str) -> np.ndarray:
 
 
 def run(args: argparse.Namespace) -> int:
-    fronts, labels = [read_front(path, args) for path in args.runs], short_names(args.runs)
+    fronts = [read_front(path, args) for path in args.runs]
+    names_of_runs = labels(args.runs, [front.name for front in fronts])
+
     def same_shape(name: str, front: Front) -> bool:
         return abs(REFERENCES[name].ratio - front.ratio) < 0.1
 
@@ -133,7 +137,7 @@ def run(args: argparse.Namespace) -> int:
         raise BadInput(f"the column is {fronts[0].ratio:.3g} times as high as wide; the experiments here had "
                        "1 and 2. Choose some anyway with --reference")
     fig, ((axes,),) = style.figure(size=(6.6, 5))
-    for k, (front, label) in enumerate(zip(fronts, labels)):
+    for k, (front, label) in enumerate(zip(fronts, names_of_runs)):
         axes.plot(front.t, front.z, color=style.COLORS[k % 8], label=f"pbf, {label}",
                   linestyle=("-", "--", "-.", ":")[k % 4], linewidth=2)
     for k, name in enumerate(names):
@@ -141,7 +145,7 @@ def run(args: argparse.Namespace) -> int:
         axes.plot(data["T"], data["Z"], linestyle="", color=style.COLORS[(k + len(fronts)) % 8],
                   marker=style.MARKERS[k % 8], label=REFERENCES[name].label, alpha=0.85,
                   markersize=3 if len(data) > 50 else 5)
-        for front, label in zip(fronts, labels):
+        for front, label in zip(fronts, names_of_runs):
             if not (args.reference or same_shape(name, front)):
                 continue
             rms, n = deviation(front.t, front.z, data)

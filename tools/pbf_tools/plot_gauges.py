@@ -14,9 +14,9 @@ import argparse
 import numpy as np
 from matplotlib.lines import Line2D
 
-from . import style
+from . import gaps, style
 from .errors import BadInput, note, unknown
-from .logs import RUN_HELP, read_run, short_names
+from .logs import RUN_HELP, labels, read_run
 from .run_file import Gauge
 from .table import Table, need, read_csv
 
@@ -146,7 +146,7 @@ def choose(runs: list[tuple[str, dict[str, Gauge]]], wanted: list[str] | None) -
 def run(args: argparse.Namespace) -> int:
     files = [read_run(path) for path in args.runs]
     runs = [(path, file.gauges) for path, file in zip(args.runs, files)]
-    names, labels = choose(runs, args.gauge), short_names(args.runs)
+    names, called = choose(runs, args.gauge), labels(args.runs, [file.name for file in files])
     over = measured(args, [runs[0][1][name] for name in names])
     columns = 1 if len(names) < 4 else 2
     rows = (len(names) + columns - 1) // columns
@@ -156,15 +156,16 @@ def run(args: argparse.Namespace) -> int:
         axis.set_visible(False)
     last = 0.0
     for k, (name, axis) in enumerate(zip(names, axes.flat)):
-        readings = {label: gauges[name] for label, (_, gauges) in zip(labels, runs)}
+        readings = {label: gauges[name] for label, (_, gauges) in zip(called, runs)}
         draw(axis, readings, over[name], args.peaks)
         last = max(last, *(float(g.time[-1]) for g in readings.values()))
         if k + columns >= len(names):
             axis.set_xlabel("time (s)")
             axis.tick_params(labelbottom=True)
-    axes.flat[0].set_xlim(0, last)
+    if last > 0:
+        axes.flat[0].set_xlim(0, last)
     if len(runs) > 1:
-        _legend_of_runs(axes[0, -1], labels, [runs[0][1][name] for name in names], over, args.peaks)
+        _legend_of_runs(axes[0, -1], called, [runs[0][1][name] for name in names], over, args.peaks)
     titles = dict.fromkeys(file.title for file in files)
     scenes = ", ".join(dict.fromkeys(file.name for file in files))
     fig.suptitle(args.title or (next(iter(titles)) if len(titles) == 1 else
@@ -182,13 +183,17 @@ def draw(axes, readings: dict[str, Gauge], measured: list, peaks: bool) -> None:
     axes.set_ylabel(f"{first.kind} ({first.unit})")
     for k, (column, t, y) in enumerate(measured):
         axes.plot(t, y, **_look_of_measured(k, t), label=f"measured ({column})")
+        if np.isnan(y).all():  # single gaps are usual in a table of several gauges
+            gaps.tell(f"{first.name}, measured ({column})", y)
     for k, (name, g) in enumerate(readings.items()):
+        gaps.tell(f"{first.name}, {name}", g.value, "readings", g.kind)
         if g.value.ndim == 2:
             for c, component in enumerate("xyz"):
                 axes.plot(g.time, g.value[:, c], color=style.COLORS[c if alone else k % 8],
-                          label=component, linestyle=DASHES[c])
+                          label=component, linestyle=DASHES[c], **gaps.points(g.value[:, c]))
         else:
-            axes.plot(g.time, g.value, color=style.COLORS[k % 8], label="run")
+            axes.plot(g.time, g.value, color=style.COLORS[k % 8], label="run",
+                      **gaps.points(g.value))
         if peaks and g.peak is not None:
             axes.plot(g.time, g.peak, color=style.COLORS[1 if alone else k % 8], linewidth=0.8,
                       alpha=0.7, label="run, " + PEAK, linestyle="-" if alone else ":")

@@ -10,14 +10,15 @@ from __future__ import annotations
 import argparse
 import os
 import re
+from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 
 import numpy as np
 
-from . import style
+from . import gaps, style
 from .errors import BadInput
-from .logs import RUN_HELP, read_log, short_names
+from .logs import RUN_HELP, labels, read_log
 from .run_path import is_run
 from .table import Table, need
 
@@ -49,7 +50,7 @@ def split(words: list[str]) -> tuple[list[str], list[str]]:
     return files, [w for w in words if w not in files]
 
 
-def choose(log: Table, patterns: list[str], path: str) -> list[str]:
+def choose(log: Table, patterns: list[str], path: str, gauges: Sequence[str] = ()) -> list[str]:
     """The columns that the patterns take, in the order of the patterns and once each.
 
     >>> table = Table({"time": [0.], "load/a/force_x": [1.], "load/b/force_x": [2.]})
@@ -59,6 +60,9 @@ def choose(log: Table, patterns: list[str], path: str) -> list[str]:
     taken: dict[str, None] = {}
     for pattern in patterns:
         found = [name for name in log if fnmatchcase(name, pattern)]
+        if not found and pattern in gauges:
+            raise BadInput(f"{path}: {pattern} is a gauge, which is not in the log; draw it with "
+                           f"plot-gauges {path} --gauge {pattern}")
         if not found:
             need(log, [pattern], path)
         taken.update(dict.fromkeys(found))
@@ -80,43 +84,51 @@ def common(names: list[str]) -> str:
 
 def run(args: argparse.Namespace) -> int:
     files, patterns = split(args.words)
-    logs = [read_log(path, ["time"])[0] for path in files]
+    read = [read_log(path, ["time"]) for path in files]
+    logs = [log.table for log in read]
     if not patterns:
         for name in logs[0]:
             print(f"{name:28} {logs[0].units.get(name, '')}")
         return 0
-    names = choose(logs[0], patterns, files[0])
+    names = choose(logs[0], patterns, files[0], read[0].gauges)
     for path, log in zip(files[1:], logs[1:]):
         need(log, names, path)
-    units = list(dict.fromkeys(logs[0].units.get(name, "") for name in names))
-    labels, panels = short_names(files), {unit: [] for unit in units}
+    runs = labels(files, [log.name for log in read])
+    panels: dict[str, list[str]] = {}
     for name in names:
-        panels[logs[0].units.get(name, "")].append(name)
+        panels.setdefault(logs[0].units.get(name, ""), []).append(name)
     beside = any(len(here) * len(logs) > MOST_INSIDE for here in panels.values())
-    size = (6.4 + (2.2 if beside else 0), 1.4 + 2.6 * len(units))
-    fig, rows = style.figure(len(units), 1, size, sharex=True)
+    size = (6.4 + (2.2 if beside else 0), 1.4 + 2.6 * len(panels))
+    fig, rows = style.figure(len(panels), 1, size, sharex=True)
     said: list[str] | None = None  # what the legend above says
     for (axes,), (unit, here) in zip(rows, panels.items()):
-        k = 0
-        for name in here:
-            for log, label in zip(logs, labels):
-                values = np.asarray(log[name], float)
-                axes.plot(log["time"], values, color=style.COLORS[k % 8],
-                          linestyle=("-", "--", "-.", ":")[k // 8 % 4],
-                          label=name if len(logs) == 1 else
-                          label if len(here) == 1 else f"{name}, {label}")
-                k += 1
-                if np.isfinite(values).any():
-                    print(f"{name}, {label}: {np.nanmin(values):.6g} to {np.nanmax(values):.6g}"
-                          f"{'' if unit in ('', '1') else ' ' + unit}, at the end {values[-1]:.6g}")
-        axes.set_ylabel(f"{common(here)} ({unit or '1'})".lstrip())
+        draw(axes, here, unit, dict(zip(runs, logs)))
         entries = axes.get_legend_handles_labels()[1]
-        if k > 1 and entries != said:
+        if len(entries) > 1 and entries != said:
             style.side_legend(axes) if beside else axes.legend()
         said = entries
     rows[-1][0].set_xlabel("time (s)")
     text = ", ".join(names)
     style.title(rows[0][0], args.title or (text if len(text) <= MOST_IN_TITLE else "Log"),
-                ", ".join(labels) if len(labels) < 4 else f"{len(labels)} runs")
+                read[0].title if len(read) == 1 else ", ".join(runs) if len(runs) < 4
+                else f"{len(runs)} runs")
     style.save(fig, args)
     return 0
+
+
+def draw(axes, names: list[str], unit: str, logs: dict[str, Table]) -> None:
+    """The panel of the columns of a unit, of every run by its name; prints their extremes."""
+    k = 0
+    for name in names:
+        for label, log in logs.items():
+            values = np.asarray(log[name], float)
+            axes.plot(log["time"], values, color=style.COLORS[k % 8],
+                      linestyle=("-", "--", "-.", ":")[k // 8 % 4],
+                      label=name if len(logs) == 1 else
+                      label if len(names) == 1 else f"{name}, {label}", **gaps.points(values))
+            k += 1
+            gaps.tell(f"{name}, {label}", values, kind=name)
+            if np.isfinite(values).any():
+                print(f"{name}, {label}: {np.nanmin(values):.6g} to {np.nanmax(values):.6g}"
+                      f"{'' if unit in ('', '1') else ' ' + unit}, at the end {values[-1]:.6g}")
+    axes.set_ylabel(f"{common(names)} ({unit or '1'})".lstrip())

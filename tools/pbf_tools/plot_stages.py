@@ -12,7 +12,7 @@ import numpy as np
 
 from . import bench, style
 from .errors import BadInput
-from .logs import RUN_HELP, read_run, short_names
+from .logs import RUN_HELP, labels, read_run
 from .run_path import is_run
 from .table import Table
 
@@ -132,11 +132,11 @@ def _runs(args: argparse.Namespace) -> int:
         if not stages or not sum(stages.values()):
             raise BadInput(f"{path}: the log has no times of stages yet")
         parts.append((stages, sum(stages.values())))
-    names = short_names(args.csv)
-    labels = [f"{name}\n{run_file.info['particles']} particles"
-              for name, run_file in zip(names, runs)]
+    names = labels(args.csv, [run_file.name for run_file in runs])
+    below = [f"{name}\n{run_file.info['particles']} particles"
+             for name, run_file in zip(names, runs)]
     fig, ((axes,),) = style.figure(size=(3.8 + 1.4 * len(runs), 4.2))
-    handles = draw(axes, labels, parts, "s", args.grouped)
+    handles = draw(axes, below, parts, "s", args.grouped)
     axes.set_ylabel("share of the time of all stages (%)")
     titles = dict.fromkeys(run_file.title for run_file in runs)
     _finish(fig, axes, handles, args,

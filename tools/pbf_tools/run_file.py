@@ -15,6 +15,7 @@ from . import index
 from .errors import BadInput, unknown
 from .fields import Field, Frames
 from .run_path import run_path
+from .scene_text import name_in
 from .table import Table
 
 T = TypeVar("T")
@@ -115,8 +116,9 @@ class Run:
 
     @property
     def name(self) -> str:
-        """Name of the scene: the scene file's without its ending."""
-        return Path(str(self.info["scene_path"])).stem
+        """Name of the scene, as it says itself, else that of its file without the ending."""
+        return name_in(str(self.info.get("resolved_scene", ""))) or \
+            Path(str(self.info["scene_path"])).stem
 
     @property
     def status(self) -> str:

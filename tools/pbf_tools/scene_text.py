@@ -49,6 +49,19 @@ def text(value: Any, where: str) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
+def name_in(resolved: str) -> str:
+    """The name that a scene with every default written out says; empty where it says none.
+
+    >>> name_in("name: drop\\ntime: 1\\n"), name_in('name: "a \\\\"b\\\\": c"'), name_in("time: 1")
+    ('drop', 'a "b": c', '')
+    """
+    said = re.search(r"^name: (.+)$", resolved, re.MULTILINE)
+    if not said:
+        return ""
+    name = said[1].strip()
+    return str(json.loads(name)) if name.startswith('"') else name
+
+
 def settings(overrides: Mapping[str, Any], path: str = "") -> dict[str, Any]:
     """Keys of the scene and their values: `solver__iterations`, "solver.iterations" and a dict say
     the same, and a dict changes only the keys in it.

@@ -12,6 +12,7 @@ from typing import Any
 from . import program as pbf
 from .errors import BadInput, FileError, PbfWarning
 from .run_file import Run
+from .run_path import run_path
 from .scene_text import Scene, base_words, set_words, text, write_scene
 from .simulate import opened, plan, writes_a_run_file
 from .table import Table, read_csv, write_text
@@ -65,9 +66,10 @@ def batch(scenes: Scene | Sequence[Scene], grid: Mapping[str, Sequence[Any]] | N
 
         batch("dam.yaml", {"solver.iterations": [2, 4, 8]}, "out/sweep", output={"every": 0.1})
 
-    Overrides and base_folder as in `run`, for all of them; scenes without `output` get `output: {}`, those of a
-    folder or of a list file excepted. Given again, it leaves alone what is finished and goes
-    on with what was stopped. Dicts are written to OUT.scenes/, or to OUT.yaml when there is one.
+    Overrides and base_folder as in `run`, for all of them; scenes without `output` get
+    `output: {}`, those of a folder or of a list file excepted. Given again, it leaves alone what is
+    finished and goes on with what was stopped. Dicts are written to OUT.scenes/, or to OUT.yaml
+    when there is one.
 
     Runs that failed are rows of the summary too, with `exit_code`, `reason` and `message`, and
     give a PbfWarning. PbfError where there is no summary, as for a scene or a grid that cannot be.
@@ -135,7 +137,7 @@ def _input(scenes: Any, folder: Path, program: str, base_folder: Any,
             names.add(name)
             path = write_scene(scene, beside / f"{name}.yaml").absolute()
         else:
-            path = Path(scene).absolute()
+            path = run_path(scene).absolute()
         if re.search(r"[\s#]", str(path)):
             raise BadInput(f"{path}: a list of scenes cannot hold a path with blanks or #; rename "
                            "it, or give another out")

@@ -1,0 +1,41 @@
+"""What a plot cannot show: columns and readings without a value (nan), told in a note."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .errors import note
+
+_POOL = "only a pool has it: gravity along an axis, walls on all sides, no obstacles, " \
+        "no tank_motion"
+WHY = {"height_kept": _POOL, "hydrostatic_deviation": _POOL,
+       "velocity": "no particle was within h of this gauge"}  # column, or kind of gauge
+
+
+def why(name: str) -> str:
+    """Why a column or a kind of gauge can be nan, to follow a sentence; empty where not known.
+
+    >>> why("velocity"), why("front_x")
+    ('; no particle was within h of this gauge', '')
+    """
+    return f"; {WHY[name]}" if name in WHY else ""
+
+
+def tell(who: str, values: np.ndarray, rows: str = "rows", kind: str = "") -> None:
+    """A note when a curve to be drawn has gaps, or nothing to show at all. `kind`: key of `why`."""
+    missing = np.isnan(values if values.ndim == 1 else values[:, 0])
+    count = int(np.count_nonzero(missing))
+    if count:
+        every = count == len(missing)
+        note(f"{who}: {'nothing to draw, ' if every else ''}nan in "
+             f"{'all' if every else f'{count} of'} {len(missing)} {rows}{why(kind)}")
+
+
+def points(values: np.ndarray) -> dict[str, object]:
+    """How a curve is drawn: with a mark where it has values, but no two side by side for a line.
+
+    >>> points(np.array([1.0])), points(np.array([1.0, 2.0])), points(np.array([np.nan, 2, np.nan]))
+    ({'marker': 'o'}, {}, {'marker': 'o'})
+    """
+    there = np.isfinite(values)
+    return {} if np.any(there[1:] & there[:-1]) else {"marker": "o"}
