@@ -42,6 +42,18 @@ TEST_CASE("two scenes without a name do not share a folder") {
   }
 }
 
+TEST_CASE("two scenes on one base that has a name do not share a folder") {
+  const Scratch folder;
+  folder.write("base.yaml", "name: tank\n" + unnamed());
+  folder.write("low.yaml", "base: base.yaml\nsolver: {iterations: 1}\n");
+  folder.write("high.yaml", "base: base.yaml\nsolver: {iterations: 2}\n");
+  for (const char* scene : {"low.yaml", "high.yaml"})
+    CHECK(pbf::test::pbf({"run", scene, "--quiet"}, folder.path()).code == 0);
+  CHECK(fs::exists(folder / "out/low/DONE"));
+  CHECK(fs::exists(folder / "out/high/DONE"));
+  CHECK_FALSE(fs::exists(folder / "out/tank"));
+}
+
 TEST_CASE("a run that was recorded under another name goes on, wherever its scene lies now") {
   const Scratch folder;
   folder.write("s.yaml", unnamed());
