@@ -238,9 +238,10 @@ void add_batch(CLI::App& app, int& code) {
   const auto [c, o] = add_command(
       app, code, command_batch, "batch",
       "Many scenes, or one with a grid of settings: each run in a process of its own", kBatchHelp);
-  c->add_option("INPUT", o.input,
-                "Folder of scenes (*.yaml), a scene, or a list: a scene on each line, then "
-                "KEY.PATH=VALUE where wanted")
+  c->add_option(
+       "INPUT", o.input,
+       "Folder of scenes (*.yaml), a scene, or a list: a scene or a run on each line, then "
+       "KEY.PATH=VALUE where wanted")
       ->required();
   c->add_option("--out", o.out, "Folder of the run folders; out/batch_<name> when not given");
   add_repeatable(

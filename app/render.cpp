@@ -10,6 +10,7 @@
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
 #include "lib/io/run_file.h"
+#include "lib/io/run_path.h"
 #include "lib/run/load_run.h"
 #include "lib/run/motion_files.h"
 #include "lib/scene/load.h"
@@ -24,7 +25,7 @@ namespace {
 
 const char* const kRenderHelp =
     "Example:\n"
-    "  pbf render out/dam_break/run.vtkhdf --frames 0:-1:5 --size 1920x1080 --color density \\\n"
+    "  pbf render out/dam_break --frames 0:-1:5 --size 1920x1080 --color density \\\n"
     "      --camera 'position=3,-4,2;fov=30'";
 
 #ifndef PBF_HAS_RENDER
@@ -52,19 +53,19 @@ void take_quantiles(View& view, const RunReader& reader, const std::vector<std::
 }
 
 int command_render(const RenderOptions& options) {
-  try_run_file(options.run);
-  const RunReader reader(options.run);
+  const std::string run = only_run_path(options.run);
+  try_run_file(run);
+  const RunReader reader(run);
   const RunInfo info = reader.info();
-  Scene scene =
-      parse_stored_scene(info.resolved_scene, options.run + " (the scene stored in it)", {});
+  Scene scene = parse_stored_scene(info.resolved_scene, run + " (the scene stored in it)", {});
   // Of the scene's files pictures need the tables of motions alone.
   if (!motion_paths(scene).empty())
-    read_motions(scene, folder_of_files(scene, options.run, info.scene_path));
+    read_motions(scene, folder_of_files(scene, run, info.scene_path));
   apply_render_options(options, scene);
   const auto frames = select_frames(options.frames, reader.frames());
-  const std::filesystem::path folder =
-      options.out.empty() ? std::filesystem::path(options.run).parent_path() / "render"
-                          : std::filesystem::path(options.out);
+  const std::filesystem::path folder = options.out.empty()
+                                           ? std::filesystem::path(run).parent_path() / "render"
+                                           : std::filesystem::path(options.out);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
@@ -93,7 +94,7 @@ int command_render(const RenderOptions& options) {
 void add_render(CLI::App& app, int& code) {
   const auto [c, o] = add_command(app, code, command_render, "render",
                                   "Pictures from the frames of a run file", kRenderHelp);
-  c->add_option("RUN", o.run, "Run file (run.vtkhdf)")->required();
+  c->add_option("RUN", o.run, "A run: its run file (run.vtkhdf) or its folder")->required();
   c->add_option("--frames", o.frames, "all, k, a:b or a:b:step; b excluded, negative from the end");
   c->add_option("--size", o.size, "WIDTHxHEIGHT in pixels");
   c->add_option("--camera", o.camera, "position=x,y,z;target=x,y,z;fov=degrees;orbit=degrees/s");

@@ -88,8 +88,7 @@ TEST_CASE("resume of a scene without a name tells of a run that lies in out/scen
       0);
   const Outcome o = pbf::test::pbf({"run", "tank.yaml", "--resume"}, folder.path());
   CHECK(o.code == 0);
-  CHECK(
-      has(o.err, "out/tank is not there, and the run begins at its start; out/scene holds a run"));
+  CHECK(has(o.err, "out/tank is not there: the run begins at its start; out/scene holds a run"));
   CHECK(has(o.err, "give --out out/scene"));
   CHECK(fs::exists(folder / "out/tank/DONE"));
   // Not once it is there, nor for a scene with a name.
