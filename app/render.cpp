@@ -33,22 +33,43 @@ int command_render(const RenderOptions&) {
   throw Error(ExitCode::unavailable, "this build draws no pictures; build with -DPBF_RENDER=ON");
 }
 #else
+/// What a range is of, and how it follows from the quantiles `of` the frames.
+std::string meaning(const View& view, std::array<double, 2> quantiles, const std::string& of) {
+  const std::string are = "the 1 % and 99 % quantiles " + of;
+  switch (view.color) {
+    case ColorBy::speed:
+      return "speed in m/s, " + are;
+    case ColorBy::density:
+      return format("density in kg/m^3, as far below as above the rest density %.6g; ",
+                    view.rest_density) +
+             are + format(" are %.6g and %.6g", quantiles[0], quantiles[1]);
+    case ColorBy::compression:
+      return "compression as a share (0.01 is 1 %), " + are;
+    case ColorBy::id:
+      break;
+  }
+  return "ids of particles, " + are;
+}
+
 /// The 1 % and the 99 % quantile of the frames.
 void take_quantiles(View& view, const RunReader& reader, const std::vector<std::int64_t>& frames,
                     std::int64_t particles, Log& log) {
   QuantileRange values(view, particles * static_cast<std::int64_t>(frames.size()));
   for (const std::int64_t k : frames) values.add(reader.frame(k));
-  const std::array<double, 2> range = values.between(0.01, 0.99);
+  const std::array<double, 2> quantiles = values.between(0.01, 0.99);
   const std::string taken = values.stride() == 1 ? ""
                                                  : format(", of every %ldth particle",
                                                           static_cast<long>(values.stride()));
-  if (range[0] < range[1]) {
-    view.range = range;
-    log.note(format("range %.9g,%.9g: the 1 %% and 99 %% quantiles of %zu frame%s%s", range[0],
-                    range[1], frames.size(), frames.size() == 1 ? "" : "s", taken.c_str()));
+  const BarRange bar = bar_range(view, quantiles);
+  if (bar.ends[0] < bar.ends[1]) {
+    view.range = bar.ends;
+    log.note("range " + bar.text + ": " +
+             meaning(view, quantiles,
+                     format("of %zu frame%s%s", frames.size(), frames.size() == 1 ? "" : "s",
+                            taken.c_str())));
   } else {
     log.note(format("range %.9g,%.9g, the scene's own: all values of the frames chosen are %.9g%s",
-                    view.range[0], view.range[1], range[0], taken.c_str()));
+                    view.range[0], view.range[1], quantiles[0], taken.c_str()));
   }
 }
 
