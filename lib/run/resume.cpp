@@ -183,6 +183,7 @@ class Finder {
     refuse_older_log(*file, info);
     refuse_other(kRunFile, info.resolved_scene, info.scene_files);  // no files in older ones
     point_.keep_file = true;
+    add_earlier(file->sessions());
     const std::int64_t u = point_.update();
     if (point_.saved) {
       point_.rows.log = prefix(file->log_column("update"), u,
@@ -201,6 +202,15 @@ class Finder {
                          point_.rows.log < schedule_.measures_until(u) ||
                          point_.rows.gauges < schedule_.gauges_until(u)))
       forget("run.vtkhdf ends before the checkpoint");
+  }
+  void add_earlier(const std::vector<RunSession>& sessions) {
+    EarlierSessions& earlier = point_.earlier.emplace();
+    for (const RunSession& s : sessions) {
+      const auto began = utc_seconds(s.started), ended = utc_seconds(s.ended);
+      ++earlier.sessions;
+      earlier.whole &= began && ended;
+      if (began && ended) earlier.seconds += std::max(0.0, *ended - *began);
+    }
   }
   /// A log without one of today's columns cannot go on, and the results would be others.
   void refuse_older_log(const RunReader& file, const RunInfo& info) const {
