@@ -246,8 +246,9 @@ void add_batch(CLI::App& app, int& code) {
   c->add_option("--out", o.out, "Folder of the run folders; out/batch_<name> when not given");
   add_repeatable(
       c, "--grid", o.grid,
-      "KEY=V1,V2,... or KEY=FIRST:LAST:COUNT: a run for every value; repeatable, then for "
-      "every combination");
+      "KEY=V1,V2,... or KEY=FIRST:LAST:COUNT in equal steps, both ends included (--x and --y of "
+      "pbf stability take equal ratios): a run for every value; repeatable, then for every "
+      "combination");
   add_overrides(c, o.overrides);
   add_base_folder(c, o.base_folder);
   c->add_option("--jobs", o.jobs, "Runs at a time")->transform(whole_number(1, 4096));
