@@ -216,8 +216,8 @@ int command_batch(const BatchOptions& o) {
     return 0;
   }
   if (o.only >= std::int64_t(members.size()))
-    throw Error(ExitCode::bad_input,
-                format("--only %ld: there are %zu runs, counted from 0", o.only, members.size()));
+    throw Error(ExitCode::bad_input, format("--only %ld: the runs are counted from 0 to %zu",
+                                            o.only, members.size() - 1));
   std::error_code error;
   fs::create_directories(out, error);
   if (error) throw Error(ExitCode::io, out + ": the folder cannot be made: " + error.message());
@@ -243,7 +243,8 @@ void add_batch(CLI::App& app, int& code) {
        "Folder of scenes (*.yaml), a scene, or a list: a scene or a run on each line, then "
        "KEY.PATH=VALUE where wanted")
       ->required();
-  c->add_option("--out", o.out, "Folder of the run folders; out/batch_<name> when not given");
+  c->add_option("--out", o.out, "Folder of the run folders; out/batch_<name> when not given")
+      ->check(not_empty());
   add_repeatable(
       c, "--grid", o.grid,
       "KEY=V1,V2,... or KEY=FIRST:LAST:COUNT in equal steps, both ends included (--x and --y of "

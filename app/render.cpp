@@ -127,7 +127,8 @@ void add_render(CLI::App& app, int& code) {
       "--range", o.range,
       "LOW,HIGH of the colour bar, in the unit of the field; or quantile: from 1 % to 99 % of "
       "the particles of all --frames lie in it");
-  c->add_option("--out", o.out, "Folder of the pictures; render/ beside the run file");
+  c->add_option("--out", o.out, "Folder of the pictures; render/ beside the run file")
+      ->check(not_empty());
 }
 
 }  // namespace pbf::inline app_module

@@ -240,7 +240,10 @@ void add_run(CLI::App& app, int& code) {
   c->add_option("SCENE", o.scene,
                 "Scene file (YAML), or a run to repeat: its run file or its folder")
       ->required();
-  c->add_option("--out", o.out, "Run folder; out/<scene name> when not given");
+  c->add_option(
+       "--out", o.out,
+       "Run folder; out/<scene name> when not given, with --resume of a run the one that it is in")
+      ->check(not_empty());
   c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember(words_of<Backend>()));
   c->add_option("--precision", o.precision, "Of the computation")
       ->check(CLI::IsMember(words_of<Precision>()));

@@ -149,3 +149,22 @@ TEST_CASE("a finished run without a checkpoint says that it is made again before
             "0.2 s it starts again from its first update; the 6 frames that are there stay. With "
             "checkpoint: {every: 60} in the scene a finished run can be prolonged\n"));
 }
+
+TEST_CASE("a folder without a run is not called one to replace or to go on with") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  fs::create_directory(folder / "a");
+  const Outcome o = pbf::test::pbf({"run", "tiny.yaml", "--out", "a"}, folder.path());
+  CHECK(o.code == 2);
+  CHECK(has(o.err,
+            "a: the output folder exists, without a run in it; give --overwrite to write "
+            "into it beside what is there, or another folder with --out\n"));
+}
+
+TEST_CASE("a setting with spaces before its = says so") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  const Outcome o = pbf::test::pbf({"plan", "tiny.yaml", "--set", "time.end = 0.1"}, folder.path());
+  CHECK(o.code == 2);
+  CHECK(has(o.err, "--set time.end = 0.1: has a space before the =; write KEY.PATH=VALUE"));
+}
