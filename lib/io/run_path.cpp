@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostLooked = 10000, kMostShown = 3;
 
-bool there(const fs::path& file) {
+bool is_there(const fs::path& file) {
   std::error_code error;
   return fs::exists(file, error);
 }
@@ -36,7 +36,7 @@ Contents look_into(const fs::path& folder) {
     const std::string path = it->path().string();
     if (++looked > kMostLooked) break;
     if (it->path().filename() == kResolvedScene) continue;
-    if (there(it->path() / kRunFile)) found.runs_below.push_back(path);
+    if (is_there(it->path() / kRunFile)) found.runs_below.push_back(path);
     if (has_run_name(path)) found.run_files.push_back(path);
     if (has_scene_name(path)) found.scenes.push_back(path);
   }
@@ -57,7 +57,7 @@ std::string why_not(const std::string& path) {
     return missing + ", but in " + some(in.runs_below) + "; name " +
            (in.runs_below.size() == 1 ? "that" : "one of them");
   if (!in.run_files.empty()) return missing + ", but " + some(in.run_files) + "; name the file";
-  if (there(fs::path(path) / kResolvedScene))
+  if (is_there(fs::path(path) / kResolvedScene))
     return missing +
            ": a run that writes no frames, or one that has not begun; give its scene "
            "output: {} and run it again";
@@ -72,7 +72,7 @@ std::string run_path(const std::string& path) {
   std::error_code error;
   if (!fs::is_directory(path, error)) return path;
   const fs::path file = fs::path(path) / kRunFile;
-  if (!there(file)) bad_input(path, why_not(path));
+  if (!is_there(file)) bad_input(path, why_not(path));
   return file.string();
 }
 
@@ -99,7 +99,7 @@ std::string only_run_path(const std::string& path) {
 std::string folder_of_run(const std::string& run_file) {
   const fs::path file(run_file);
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  return file.filename() == kRunFile && there(folder / kResolvedScene) ? folder.string() : "";
+  return file.filename() == kRunFile && is_there(folder / kResolvedScene) ? folder.string() : "";
 }
 
 }  // namespace pbf::inline io_module

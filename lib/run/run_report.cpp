@@ -16,18 +16,18 @@
 namespace pbf::inline run_module {
 namespace {
 
-constexpr double kStill = 1e-3;  // of the energy of the pool at rest, what moves may have
+constexpr double kAtRest = 1e-3;  // of the energy of the pool at rest, what moves may have
 
 /// Whether the fluid has come to rest: it hardly moves, and had the time to.
-bool at_rest(const Diagnostics& m, const Scene& s, double mass) {
+bool has_come_to_rest(const Diagnostics& m, const Scene& s, double mass) {
   const double at_rest = (m.energy - m.kinetic_energy) / m.height_kept;  // M g H0/2, J
   const double g = length(s.gravity), depth = 2 * at_rest / (mass * g);
-  return m.kinetic_energy < kStill * at_rest && m.time > 2 * std::sqrt(depth / g);
+  return m.kinetic_energy < kAtRest * at_rest && m.time > 2 * std::sqrt(depth / g);
 }
 
 /// Nothing when the scene does not define the measure, and of fluid that is still moving.
 std::string pool_line(const Diagnostics& m, const Scene& s, double mass) {
-  if (std::isnan(m.height_kept) || !at_rest(m, s, mass)) return {};
+  if (std::isnan(m.height_kept) || !has_come_to_rest(m, s, mass)) return {};
   return format(
       "pool at rest        height %.4f of what its volume gives, 1 is right; pressure %.2g %% off "
       "the hydrostatic one, 0 is right\n",

@@ -74,3 +74,21 @@ TEST_CASE("arguments: a file that another command takes is told by its kind") {
   CHECK(error({"study", "tiny.yaml"}) ==
         "2 pbf: error: tiny.yaml: is a scene, expected a study; pbf run tiny.yaml takes it\n");
 }
+
+TEST_CASE("ranges are written alike, and the help of each says in which steps they go") {
+  const Scratch folder;
+  const auto help = [&](const char* command) {
+    std::string text = pbf::test::pbf({command, "--help"}, folder.path()).out;
+    std::string one_line;
+    for (const char c : text)
+      if (c != '\n' && (c != ' ' || (!one_line.empty() && one_line.back() != ' ')))
+        one_line += c;
+      else if (!one_line.empty() && one_line.back() != ' ')
+        one_line += ' ';
+    return one_line;
+  };
+  CHECK(has(help("batch"), "FIRST:LAST:COUNT in equal steps, both ends included"));
+  CHECK(has(help("batch"), "pbf stability take equal ratios"));
+  CHECK(has(help("stability"), "FIRST:LAST:COUNT in equal ratios, both ends included"));
+  CHECK(has(help("stability"), "--grid of pbf batch takes equal steps"));
+}

@@ -181,22 +181,6 @@ TEST_CASE("a summary has a column with its unit for every key that the grid or t
   CHECK(has(rows[5], ",,0.003,\"[0,0,1]\",x,0,finished"));
 }
 
-TEST_CASE("a summary tells how many particles each run has") {
-  const Scratch folder;
-  folder.write("tiny.yaml", tiny_scene());
-  REQUIRE(pbf::test::pbf({"batch", "tiny.yaml", "--grid", "fluid.spacing=0.1,0.2", "--out", "o",
-                          "--set", "time.end=0.01", "--quiet"},
-                         folder.path())
-              .code == 0);
-  std::istringstream lines(read_text(folder / "o/summary.csv"));
-  std::string units, head, many, few;
-  std::getline(lines, units), std::getline(lines, head), std::getline(lines, many),
-      std::getline(lines, few);
-  CHECK(head.ends_with(",particles,frames,warnings,seconds"));
-  CHECK(has(many, ",64,2,"));
-  CHECK(has(few, ",8,2,"));
-}
-
 TEST_CASE("a batch of a list takes the settings of its lines, and wrong lists are told by line") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());

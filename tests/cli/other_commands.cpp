@@ -311,21 +311,3 @@ TEST_CASE("a map over a key of whole numbers runs whole numbers, and refuses oth
   CHECK(range.code == 0);
   CHECK(has(range.out, "4 runs:"));
 }
-
-TEST_CASE("ranges are written alike, and the help of each says in which steps they go") {
-  const Scratch folder;
-  const auto help = [&](const char* command) {
-    std::string text = pbf::test::pbf({command, "--help"}, folder.path()).out;
-    std::string one_line;
-    for (const char c : text)
-      if (c != '\n' && (c != ' ' || (!one_line.empty() && one_line.back() != ' ')))
-        one_line += c;
-      else if (!one_line.empty() && one_line.back() != ' ')
-        one_line += ' ';
-    return one_line;
-  };
-  CHECK(has(help("batch"), "FIRST:LAST:COUNT in equal steps, both ends included"));
-  CHECK(has(help("batch"), "pbf stability take equal ratios"));
-  CHECK(has(help("stability"), "FIRST:LAST:COUNT in equal ratios, both ends included"));
-  CHECK(has(help("stability"), "--grid of pbf batch takes equal steps"));
-}
