@@ -216,8 +216,8 @@ int command_batch(const BatchOptions& o) {
     return 0;
   }
   if (o.only >= std::int64_t(members.size()))
-    throw Error(ExitCode::bad_input,
-                format("--only %ld: there are %zu runs, counted from 0", o.only, members.size()));
+    throw Error(ExitCode::bad_input, format("--only %ld: the runs are counted from 0 to %zu",
+                                            o.only, members.size() - 1));
   std::error_code error;
   fs::create_directories(out, error);
   if (error) throw Error(ExitCode::io, out + ": the folder cannot be made: " + error.message());
@@ -238,15 +238,18 @@ void add_batch(CLI::App& app, int& code) {
   const auto [c, o] = add_command(
       app, code, command_batch, "batch",
       "Many scenes, or one with a grid of settings: each run in a process of its own", kBatchHelp);
-  c->add_option("INPUT", o.input,
-                "Folder of scenes (*.yaml), a scene, or a list: a scene on each line, then "
-                "KEY.PATH=VALUE where wanted")
+  c->add_option(
+       "INPUT", o.input,
+       "Folder of scenes (*.yaml), a scene, or a list: a scene or a run on each line, then "
+       "KEY.PATH=VALUE where wanted")
       ->required();
-  c->add_option("--out", o.out, "Folder of the run folders; out/batch_<name> when not given");
+  c->add_option("--out", o.out, "Folder of the run folders; out/batch_<name> when not given")
+      ->check(not_empty());
   add_repeatable(
       c, "--grid", o.grid,
-      "KEY=V1,V2,... or KEY=FIRST:LAST:COUNT: a run for every value; repeatable, then for "
-      "every combination");
+      "KEY=V1,V2,... or KEY=FIRST:LAST:COUNT in equal steps, both ends included (--x and --y of "
+      "pbf stability take equal ratios): a run for every value; repeatable, then for every "
+      "combination");
   add_overrides(c, o.overrides);
   add_base_folder(c, o.base_folder);
   c->add_option("--jobs", o.jobs, "Runs at a time")->transform(whole_number(1, 4096));

@@ -169,7 +169,7 @@ void add_bench(CLI::App& app, int& code) {
       "Time per update and per stage over sizes, backends, precisions and threads", kBenchHelp);
   CLI::Option* scenes = c->add_option(
       "SCENE", o.scenes,
-      "Scene files, or run files for their scenes; a built-in dam break when none is given");
+      "Scene files, or runs for their scenes; a built-in dam break when none is given");
   c->add_flag("--calibrate", o.calibrate,
               "Time every pass of the built-in scene and store it, for the times of pbf plan, in "
               "$PBF_CALIBRATION, else ~/.local/share/pbf/calibration.csv")

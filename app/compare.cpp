@@ -8,6 +8,7 @@
 #include "lib/base/log.h"
 #include "lib/base/output_file.h"
 #include "lib/base/stage_clock.h"
+#include "lib/io/run_path.h"
 #include "lib/run/load_run.h"
 
 namespace pbf::inline app_module {
@@ -39,7 +40,7 @@ const char* const kCompareHelp =
     "Examples:\n"
     "  pbf compare configs/minimal.yaml --between cpu:double,cuda:float --report compare.html\n"
     "  pbf compare configs/minimal.yaml --between cpu:float@1,cpu:float@2\n"
-    "  pbf compare out/a/run.vtkhdf out/b/run.vtkhdf";
+    "  pbf compare out/a out/b";
 
 void check_report(const std::string& path) {
   if (path.empty() || path.ends_with(".html") || path.ends_with(".json")) return;
@@ -86,11 +87,12 @@ CompareResult files(const CompareOptions& o) {
     throw Error(ExitCode::bad_input,
                 "--set and --set-b go with --between: run files are what they are");
   if (o.inputs.size() != 2)
-    throw Error(ExitCode::bad_input, "two run files are needed, or one scene with --between A,B; " +
+    throw Error(ExitCode::bad_input, "two runs are needed, or one scene with --between A,B; " +
                                          std::to_string(o.inputs.size()) + " given");
-  for (const std::string& path : o.inputs) note_input(path);
+  const std::string a = only_run_path(o.inputs[0]), b = only_run_path(o.inputs[1]);
+  for (const std::string& path : {a, b}) note_input(path);
   check_reports(o);
-  return compare_files(o.inputs[0], o.inputs[1]);
+  return compare_files(a, b);
 }
 
 int command_compare(const CompareOptions& o) {
@@ -112,8 +114,8 @@ void add_compare(CLI::App& app, int& code) {
       "Whether two runs, or one scene on two backends, differ by more than rounding", kCompareHelp);
   c->add_option(
        "INPUT", o.inputs,
-       "Two run files (run.vtkhdf), or with --between one scene file, or a run file for its "
-       "scene")
+       "Two runs (run.vtkhdf, or the folder that it is in), or with --between one scene file, or "
+       "a run for its scene")
       ->required();
   c->add_option("--between", o.between,
                 "A,B: two sides BACKEND:PRECISION or BACKEND:PRECISION@THREADS")

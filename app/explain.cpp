@@ -1,5 +1,6 @@
 #include "app/explain.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "lib/scene/file_kind.h"
@@ -26,11 +27,16 @@ std::string nearest_option(const CLI::App& command, const std::string& written) 
   return near.empty() ? "" : "; did you mean --" + near + "?";
 }
 
+bool takes_files(const CLI::App& command) {
+  return !command.get_options([](const CLI::Option* o) { return o->get_positional(); }).empty();
+}
+
 /// Of the first argument that the command does not take; empty: nothing but what CLI11 says.
 std::string of_extra(const CLI::App& command, const std::string& extra) {
   const std::string pbf = "pbf " + command.get_name();
   if (extra.size() > 1 && extra[0] == '-')
     return extra + ": " + pbf + " has no such option" + nearest_option(command, extra);
+  if (!takes_files(command)) return extra + ": " + pbf + " takes no file, only options";
   const std::size_t equals = extra.find('=');
   if (equals != std::string::npos && equals > 0 && command.get_option_no_throw("--set") != nullptr)
     return extra + ": not expected here; did you mean --set " + extra + "?";
@@ -53,7 +59,11 @@ std::string explain(const CLI::App& app, const CLI::ParseError& e) {
   if (!chosen.empty()) {
     std::string message;
     if (dynamic_cast<const CLI::ExtrasError*>(&e) && !extras.empty())
-      message = of_extra(*chosen[0], extras[0]);
+      message = std::ranges::find(extras, "=") != extras.end()
+                    ? "=: not expected here; a setting is one word without spaces, KEY.PATH=VALUE"
+                    : of_extra(*chosen[0], extras[0]);
+    else if (dynamic_cast<const CLI::RequiredError*>(&e) && what.find("at most 1") != what.npos)
+      message = "give one of " + what.substr(std::min(what.size(), what.find('[')));
     if (message.empty()) message = what;
     return message + "\nSee pbf " + chosen[0]->get_name() + " --help";
   }

@@ -47,6 +47,13 @@ inline void add_base_folder(CLI::App* command, std::string& folder) {
       ->check(CLI::ExistingDirectory);
 }
 
+/// For the name of a folder or file: "" is what a script gives whose variable is not set.
+inline CLI::Validator not_empty() {
+  return CLI::Validator(
+      [](std::string& text) { return text.empty() ? "is empty; give a name" : std::string(); },
+      "NAME");
+}
+
 /// The measures of a run, a line each, for help.
 std::string diagnostics_text();
 

@@ -102,7 +102,9 @@ void add_plan(CLI::App& app, int& code) {
   const auto [c, o] = add_command(
       app, code, command_plan, "plan",
       "Particles, run time, memory and disk of a scene before it is run; runs nothing", kPlanHelp);
-  c->add_option("SCENE", o.scene, "Scene file (YAML), or a run file for its scene")->required();
+  c->add_option("SCENE", o.scene,
+                "Scene file (YAML), or a run for its scene: its run file or its folder")
+      ->required();
   add_overrides(c, o.overrides);
   add_base_folder(c, o.base_folder);
   CLI::Option* resolved =

@@ -10,6 +10,7 @@
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
 #include "lib/io/run_file.h"
+#include "lib/io/run_path.h"
 #include "lib/run/load_run.h"
 #include "lib/run/motion_files.h"
 #include "lib/scene/load.h"
@@ -24,7 +25,7 @@ namespace {
 
 const char* const kRenderHelp =
     "Example:\n"
-    "  pbf render out/dam_break/run.vtkhdf --frames 0:-1:5 --size 1920x1080 --color density \\\n"
+    "  pbf render out/dam_break --frames 0:-1:5 --size 1920x1080 --color density \\\n"
     "      --camera 'position=3,-4,2;fov=30'";
 
 #ifndef PBF_HAS_RENDER
@@ -32,39 +33,60 @@ int command_render(const RenderOptions&) {
   throw Error(ExitCode::unavailable, "this build draws no pictures; build with -DPBF_RENDER=ON");
 }
 #else
+/// What a range is of, and how it follows from the quantiles `of` the frames.
+std::string meaning(const View& view, std::array<double, 2> quantiles, const std::string& of) {
+  const std::string are = "the 1 % and 99 % quantiles " + of;
+  switch (view.color) {
+    case ColorBy::speed:
+      return "speed in m/s, " + are;
+    case ColorBy::density:
+      return format("density in kg/m^3, as far below as above the rest density %.6g; ",
+                    view.rest_density) +
+             are + format(" are %.6g and %.6g", quantiles[0], quantiles[1]);
+    case ColorBy::compression:
+      return "compression as a share (0.01 is 1 %), " + are;
+    case ColorBy::id:
+      break;
+  }
+  return "ids of particles, " + are;
+}
+
 /// The 1 % and the 99 % quantile of the frames.
 void take_quantiles(View& view, const RunReader& reader, const std::vector<std::int64_t>& frames,
                     std::int64_t particles, Log& log) {
   QuantileRange values(view, particles * static_cast<std::int64_t>(frames.size()));
   for (const std::int64_t k : frames) values.add(reader.frame(k));
-  const std::array<double, 2> range = values.between(0.01, 0.99);
+  const std::array<double, 2> quantiles = values.between(0.01, 0.99);
   const std::string taken = values.stride() == 1 ? ""
                                                  : format(", of every %ldth particle",
                                                           static_cast<long>(values.stride()));
-  if (range[0] < range[1]) {
-    view.range = range;
-    log.note(format("range %.9g,%.9g: the 1 %% and 99 %% quantiles of %zu frame%s%s", range[0],
-                    range[1], frames.size(), frames.size() == 1 ? "" : "s", taken.c_str()));
+  const BarRange bar = bar_range(view, quantiles);
+  if (bar.ends[0] < bar.ends[1]) {
+    view.range = bar.ends;
+    log.note("range " + bar.text + ": " +
+             meaning(view, quantiles,
+                     format("of %zu frame%s%s", frames.size(), frames.size() == 1 ? "" : "s",
+                            taken.c_str())));
   } else {
     log.note(format("range %.9g,%.9g, the scene's own: all values of the frames chosen are %.9g%s",
-                    view.range[0], view.range[1], range[0], taken.c_str()));
+                    view.range[0], view.range[1], quantiles[0], taken.c_str()));
   }
 }
 
 int command_render(const RenderOptions& options) {
-  try_run_file(options.run);
-  const RunReader reader(options.run);
+  const std::string run = only_run_path(options.run);
+  try_run_file(run);
+  const RunReader reader(run);
   const RunInfo info = reader.info();
-  Scene scene =
-      parse_stored_scene(info.resolved_scene, options.run + " (the scene stored in it)", {});
+  Scene scene = parse_stored_scene(info.resolved_scene, run + " (the scene stored in it)", {});
   // Of the scene's files pictures need the tables of motions alone.
   if (!motion_paths(scene).empty())
-    read_motions(scene, folder_of_files(scene, options.run, info.scene_path));
+    read_motions(scene, folder_of_files(scene, run, info.scene_path));
   apply_render_options(options, scene);
   const auto frames = select_frames(options.frames, reader.frames());
-  const std::filesystem::path folder =
-      options.out.empty() ? std::filesystem::path(options.run).parent_path() / "render"
-                          : std::filesystem::path(options.out);
+  const std::filesystem::path folder = options.out.empty()
+                                           ? std::filesystem::path(run).parent_path() / "render"
+                                           : std::filesystem::path(options.out);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
@@ -93,7 +115,7 @@ int command_render(const RenderOptions& options) {
 void add_render(CLI::App& app, int& code) {
   const auto [c, o] = add_command(app, code, command_render, "render",
                                   "Pictures from the frames of a run file", kRenderHelp);
-  c->add_option("RUN", o.run, "Run file (run.vtkhdf)")->required();
+  c->add_option("RUN", o.run, "A run: its run file (run.vtkhdf) or its folder")->required();
   c->add_option("--frames", o.frames, "all, k, a:b or a:b:step; b excluded, negative from the end");
   c->add_option("--size", o.size, "WIDTHxHEIGHT in pixels");
   c->add_option("--camera", o.camera, "position=x,y,z;target=x,y,z;fov=degrees;orbit=degrees/s");
@@ -105,7 +127,8 @@ void add_render(CLI::App& app, int& code) {
       "--range", o.range,
       "LOW,HIGH of the colour bar, in the unit of the field; or quantile: from 1 % to 99 % of "
       "the particles of all --frames lie in it");
-  c->add_option("--out", o.out, "Folder of the pictures; render/ beside the run file");
+  c->add_option("--out", o.out, "Folder of the pictures; render/ beside the run file")
+      ->check(not_empty());
 }
 
 }  // namespace pbf::inline app_module

@@ -6,6 +6,7 @@
 
 #include "app/commands.h"
 #include "app/options.h"
+#include "app/run_place.h"
 #include "lib/base/error.h"
 #include "lib/base/output_file.h"
 #include "lib/base/text.h"
@@ -45,7 +46,10 @@ const char* const kRunHelp =
     "  pbf run configs/dam_break.yaml\n"
     "  pbf run configs/dam_break.yaml --out out/fine --set fluid.spacing=0.01 --threads 8\n"
     "  pbf run configs/dam_break.yaml --set checkpoint.every=60 --resume\n"
-    "  pbf run out/fine/run.vtkhdf --out out/again\n"
+    "  pbf run out/fine --out out/again\n"
+    "  pbf run out/fine --resume\n"
+    "A run is given by its folder or its run file; it is repeated, or with --resume and without\n"
+    "--out gone on with where it is.\n"
     "SIGTERM and SIGINT finish the update, save a checkpoint and exit 75, as --max-walltime\n"
     "does; a second one ends at once. SIGUSR1 saves a checkpoint and goes on. With\n"
     "time.adaptive and the guard, checkpoints are of the last measure or frame, and no run\n"
@@ -72,32 +76,6 @@ std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
       build.version.c_str(), build.commit.c_str(), scene.name.c_str(), plan.particles,
       make_schedule(scene).updates, scene.time.step, where.c_str(), i.device.c_str(),
       bytes_text(double(i.bytes)).c_str(), folder.c_str());
-}
-
-/// Runs of scenes without a name were kept in out/scene by earlier versions: told before another
-/// one begins in out/<file>.
-std::string elsewhere_note(const LoadedScene& loaded, const std::string& out) {
-  const std::string before = std::string("out/") + Scene{}.name;
-  std::error_code error;
-  if (!loaded.named_by_file || !std::filesystem::exists(before + "/scene.resolved.yaml", error))
-    return "";
-  return out + " is not there, and the run begins at its start; " + before +
-         " holds a run of a scene without a name: to go on with that one, give --out " + before;
-}
-
-/// A folder that is missing is told before the run folder is made. It may be the run folder itself.
-void check_json(const std::string& path, const std::string& out) {
-  namespace fs = std::filesystem;
-  if (path.empty()) return;
-  if (RunFolder::owns(out, path))
-    throw Error(ExitCode::bad_input,
-                "--log-json " + path + ": the run itself writes this file; give another name");
-  const fs::path parent = fs::path(path).parent_path();
-  std::error_code error;
-  if (parent.empty() || fs::is_directory(parent, error)) return check_output("--log-json", path);
-  if (fs::absolute(parent).lexically_normal() == fs::absolute(out).lexically_normal()) return;
-  throw Error(ExitCode::io, "--log-json " + path + ": the folder " + parent.string() +
-                                " is not there; make it first");
 }
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
@@ -192,15 +170,16 @@ int command_run(const RunOptions& options) {
                 "render: this build draws no pictures; remove the key, or build with "
                 "-DPBF_RENDER=ON");
 #endif
-  const std::string out = options.out.empty() ? "out/" + scene.name : options.out;
+  const std::string out = run_place(loaded, options.out, options.resume);
   const ExistingFolder existing = options.overwrite ? ExistingFolder::overwrite
                                   : options.resume  ? ExistingFolder::resume
                                                     : ExistingFolder::refuse;
   Log log(options.quiet);
+  if (existing == ExistingFolder::refuse) refuse_own_folder(loaded, out);
   const bool there = RunFolder::check(out, existing);
   const std::string& dir = loaded.folder;
   const std::int64_t particles = count_particles(scene, dir);
-  check_json(options.log_json, out);  // now that all is read
+  check_log_json(options.log_json, out);  // now that all is read
   if (there && options.overwrite) RunFolder::refuse_overwrite(out);
   refuse_if_too_large(scene, make_plan(scene, particles));  // before a look at every particle
   const Plan plan = make_plan(scene, particles, start_neighbors(scene, dir, particles));
@@ -219,9 +198,8 @@ int command_run(const RunOptions& options) {
       return 0;
     }
   }
-  if (options.resume && options.out.empty() && !there)
-    if (const std::string note = elsewhere_note(loaded, out); !note.empty())
-      log.note("pbf: " + note);
+  if (options.resume && !there)
+    log.note("pbf: " + not_there_note(loaded, out, !options.out.empty()));
   // A new folder comes last: a scene that cannot run leaves nothing behind.
   take_files(loaded, start.files, from.notes);
   const std::string note = start_note(start, scene);
@@ -259,9 +237,13 @@ void add_run(CLI::App& app, int& code) {
   const auto [c, o] = add_command(app, code, command_run, "run",
                                   "Simulate a scene: run.vtkhdf and pictures in one folder",
                                   std::string(kRunHelp) + diagnostics_text());
-  c->add_option("SCENE", o.scene, "Scene file (YAML), or the run file of a run to repeat")
+  c->add_option("SCENE", o.scene,
+                "Scene file (YAML), or a run to repeat: its run file or its folder")
       ->required();
-  c->add_option("--out", o.out, "Run folder; out/<scene name> when not given");
+  c->add_option(
+       "--out", o.out,
+       "Run folder; out/<scene name> when not given, with --resume of a run the one that it is in")
+      ->check(not_empty());
   c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember(words_of<Backend>()));
   c->add_option("--precision", o.precision, "Of the computation")
       ->check(CLI::IsMember(words_of<Precision>()));

@@ -212,7 +212,8 @@ void add_stability(CLI::App& app, int& code) {
   for (const auto& [name, values] : {std::pair{"--x", &o.x}, {"--y", &o.y}})
     c->add_option(
          name, *values,
-         "Values of this key: a,b,c or LOW:HIGH:COUNT in equal ratios; the scene's own times "
+         "Values of this key: V1,V2,... or FIRST:LAST:COUNT in equal ratios, both ends included "
+         "(--grid of pbf batch takes equal steps); the scene's own times "
          "1/4, 1/2, 1, 2, 4, 8 when not given")
         ->needs(map);
   c->add_option("--iterations", o.settings.iterations,

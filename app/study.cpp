@@ -189,7 +189,8 @@ void add_study(CLI::App& app, int& code) {
                                   "Error against run time over a grid of settings",
                                   std::string(kStudyHelp) + diagnostics_text() + kStudyMeasures);
   c->add_option("STUDY", o.study, "Study file (YAML)")->required();
-  c->add_option("--out", o.out, "Folder of the tables; out/study_<name> when not given");
+  c->add_option("--out", o.out, "Folder of the tables; out/study_<name> when not given")
+      ->check(not_empty());
   add_repeatable(c, "--set", o.overrides,
                  "Replace one key of the scene in every run, KEY.PATH=VALUE; the study's variants "
                  "and grid come after it");

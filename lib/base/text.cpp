@@ -64,4 +64,11 @@ std::string utc_now() {
   return text;
 }
 
+std::optional<double> utc_seconds(const std::string& text) {
+  std::tm parts{};
+  const char* end = ::strptime(text.c_str(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  if (end == nullptr || *end != '\0') return {};
+  return static_cast<double>(::timegm(&parts));
+}
+
 }  // namespace pbf::inline base_module

@@ -1,6 +1,7 @@
 // Small helpers for text: formatting, numbers and durations for people.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,5 +29,7 @@ bool is_file_name(std::string_view text);
 
 /// Now, UTC, ISO 8601: "2024-05-01T12:00:00Z".
 std::string utc_now();
+/// The same in seconds, to take the difference of two; nothing for a text of another form.
+std::optional<double> utc_seconds(const std::string& text);
 
 }  // namespace pbf::inline base_module

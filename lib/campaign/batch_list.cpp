@@ -12,6 +12,8 @@
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
 #include "lib/base/plain_text.h"
+#include "lib/io/run_file.h"
+#include "lib/io/run_path.h"
 #include "lib/scene/file_kind.h"
 #include "lib/scene/scene_name.h"
 
@@ -28,6 +30,13 @@ std::vector<BatchMember> of_folder(const std::string& path) {
   for (const auto& entry : fs::directory_iterator(path, error))
     if (has_scene_name(entry.path().string())) all.push_back({"", entry.path().string(), {}});
   if (error) bad_input(path, "cannot be read: " + error.message());
+  if (all.size() == 1 && fs::path(all[0].scene).filename() == kResolvedScene) {
+    const std::string file = (fs::path(path) / kRunFile).string();
+    bad_input(path, "is the folder of a run, expected one of scenes; pbf run " + path +
+                        " --resume goes on with the run, and pbf batch " +
+                        (fs::exists(file, error) ? file : all[0].scene) +
+                        " --grid KEY=V1,V2 runs its scene with other settings");
+  }
   if (all.empty()) bad_input(path, "holds no scene (*.yaml)");
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.scene < b.scene; });
   return all;
@@ -56,8 +65,16 @@ std::vector<BatchMember> of_list(const std::string& path) {
       }
     }
     if (m.scene.empty()) continue;
-    if (!has_scene_name(m.scene) && !has_run_name(m.scene))
-      bad_input(where, m.scene + " is no scene (*.yaml) and no run file (*.vtkhdf)");
+    std::error_code error;
+    if (fs::is_directory(m.scene, error)) {
+      try {
+        run_path(m.scene);
+      } catch (const Error& e) {
+        bad_input(where, e.what());
+      }
+    } else if (!has_scene_name(m.scene) && !has_run_name(m.scene)) {
+      bad_input(where, m.scene + " is no scene (*.yaml) and no run (*.vtkhdf, or its folder)");
+    }
     all.push_back(m);
     if (all.size() > kMostRuns) bad_input(path, "has more than 100000 lines");
   }
@@ -69,7 +86,10 @@ void name_all(std::vector<BatchMember>& all) {
   std::set<std::string> taken;
   std::map<std::string, int> next;  // the number to try for a name: not all of them again
   for (BatchMember& m : all) {
-    std::string name = fs::path(m.scene).stem().string();
+    std::error_code error;
+    const fs::path scene = fs::path(m.scene).lexically_normal();
+    const fs::path last = scene.has_filename() ? scene : scene.parent_path();
+    std::string name = (fs::is_directory(scene, error) ? last.filename() : last.stem()).string();
     for (const std::string& o : m.overrides) {
       const std::size_t equals = o.find('=');
       const std::size_t dot = o.rfind('.', equals);

@@ -18,9 +18,9 @@ struct BatchMember {
 GridAxis parse_axis(const std::string& text);
 
 /// `input`: a folder (its *.yaml and *.yml, in order of names), a scene (*.yaml, *.yml, or a run
-/// file *.vtkhdf), or a list: a text file with a scene on each line, relative to the list, followed
-/// by key.path=value where wanted; # begins a comment. The last axis runs fastest. Throws
-/// Error(bad_input) naming file and line.
+/// file *.vtkhdf), or a list: a text file with a scene, or a run's file or folder, on each line,
+/// relative to the list, followed by key.path=value where wanted; # begins a comment. The last axis
+/// runs fastest. Throws Error(bad_input) naming file and line.
 std::vector<BatchMember> batch_members(const std::string& input, std::vector<GridAxis> axes);
 
 }  // namespace pbf::inline campaign_module

@@ -63,23 +63,27 @@ std::string unit_of_key(const std::string& key) {
   return found ? unit_text(*found) : "";
 }
 
-/// Of a run's file: the last measures, the numbers of frames and warnings, seconds; empty cells
-/// without one.
+constexpr const char* kOfFile[] = {"particles", "frames", "warnings", "seconds"};
+
+/// Of a run's file: the last measures, the numbers of particles, frames and warnings, seconds;
+/// empty cells without one.
 void add_results(const std::string& path, std::vector<Cell>& row) {
   const std::vector<std::string> names = last_values();
-  std::vector<Cell> cells(names.size() + 3);
+  std::vector<Cell> cells(names.size() + std::size(kOfFile));
   std::error_code error;
   if (std::filesystem::exists(path, error)) try {
       const RunReader file(path);
       for (std::size_t k = 0; k < names.size(); ++k)
         if (const auto column = file.log_column(names[k]); !column.empty())
           cells[k] = column.back();
-      cells[names.size()] = file.frames();
+      const RunInfo info = file.info();
+      cells[names.size()] = info.particles;
+      cells[names.size() + 1] = file.frames();
+      cells[names.size() + 2] = std::int64_t(info.warnings.size());
       double seconds = 0;
       for (const std::string& name : file.log_columns())
         if (name.rfind("stage/", 0) == 0)
           for (const double s : file.log_column(name)) seconds += s;
-      cells[names.size() + 1] = std::int64_t(file.info().warnings.size());
       cells.back() = seconds;
     } catch (const Error&) {
       cells.assign(cells.size(), Cell{});  // the message of the run says what is wrong with it
@@ -110,7 +114,7 @@ std::string batch_summary(const std::vector<BatchMember>& members,
   std::vector<std::string> columns{"name", "scene", "settings", "exit_code", "reason", "message"};
   const std::vector<std::string> names = last_values();
   columns.insert(columns.end(), names.begin(), names.end());
-  columns.insert(columns.end(), {"frames", "warnings", "seconds"});
+  columns.insert(columns.end(), std::begin(kOfFile), std::end(kOfFile));
   std::map<std::string, std::string> units = units_of_results();
   std::vector<std::string> of_keys;
   for (const std::string& key : keys) {

@@ -119,12 +119,12 @@ std::vector<double> numbers_listed(const std::string& key, const std::string& te
     return values;
   }
   if (first == last || text.find(':', first + 1) != last)
-    bad_input(where, "expected a,b,c or LOW:HIGH:COUNT");
+    bad_input(where, "expected V1,V2,... or FIRST:LAST:COUNT");
   const double low = number(text.substr(0, first)),
                high = number(text.substr(first + 1, last - first - 1)),
                count = number(text.substr(last + 1));
   if (!(low > 0 && high > low && count >= 2 && count <= 1000 && count == std::floor(count)))
-    bad_input(where, text + " is no range with 0 < LOW < HIGH and 2 to 1000 values");
+    bad_input(where, text + " is no range with 0 < FIRST < LAST and 2 to 1000 values");
   for (int k = 0; k < int(count); ++k) {
     const double v = low * std::pow(high / low, k / (count - 1));
     if (!whole)

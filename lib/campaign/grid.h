@@ -56,8 +56,8 @@ std::vector<std::string> listed_values(const std::string& text);
 /// for what begins like a range and is none.
 std::vector<std::string> range_values(const std::string& where, const std::string& text);
 
-/// Numbers of "a,b,c" or LOW:HIGH:COUNT (in equal ratios), rounded or required to be whole where
-/// `whole`. Throws Error(bad_input), "values of KEY: ...".
+/// Numbers of "V1,V2,..." or FIRST:LAST:COUNT (in equal ratios), rounded or required to be whole
+/// where `whole`. Throws Error(bad_input), "values of KEY: ...".
 std::vector<double> numbers_listed(const std::string& key, const std::string& text, bool whole);
 
 }  // namespace pbf::inline campaign_module

@@ -163,14 +163,13 @@ std::vector<EdgeLabels> length_labels(const View& view, const Projection& projec
         inwards[k] = (corner >> k & 1 ? -1e-3 : 1e-3) * (upright ? box[k] : length(box));
     double step = grid_step(longest);
     if (multiples(low, high, step).size() < 2) step = grid_step(high - low);
-    const auto label = [&](double at, bool last) {
+    const auto label = [&](double at) {
       LengthLabel l;
       Double3 x = corner_of(view, corner);
       x[axis] = at;
       const int decimals =
           std::max(0, static_cast<int>(-std::floor(std::log10(step / unit.metres) + 1e-9)));
       l.text = at == 0 ? "0" : format("%.*f", std::min(decimals, 12), at / unit.metres);
-      if (last) l.text = format("%c = %s %s", "xyz"[axis], l.text.c_str(), unit.word);
       if (projection.to_view(x)[2] <= 1e-6 * length(box)) return LengthLabel{};
       l.place = projection.to_pixel(x);
       const auto further = projection.to_pixel(x - inwards);
@@ -183,10 +182,12 @@ std::vector<EdgeLabels> length_labels(const View& view, const Projection& projec
     };
     EdgeLabels edge;
     edge.ticks = view.flat || upright;
+    edge.axis = "xyz"[axis];
+    edge.unit = unit.word;
     const auto add = [&](const std::vector<double>& places) {
       std::vector<LengthLabel> labels;
       for (const double at : places) {
-        LengthLabel l = label(at, at == places.back());
+        LengthLabel l = label(at);
         if (!l.text.empty()) labels.push_back(std::move(l));
       }
       edge.of.push_back(std::move(labels));

@@ -26,7 +26,7 @@ void add_floor_grid(const View& view, const Projection& projection, double width
 
 /// A label of a length, beside a place of an edge.
 struct LengthLabel {
-  std::string text;             ///< "0.5", the last of an edge with axis and unit: "x = 2 m"
+  std::string text;             ///< "0.5"
   std::array<double, 2> place;  ///< pixels, on the edge
   std::array<double, 2> away;   ///< unit vector in the picture, out of the box
 };
@@ -35,7 +35,8 @@ struct LengthLabel {
 /// second, fifth, tenth ... multiple, from which one chooses by the room that there is.
 struct EdgeLabels {
   std::vector<std::vector<LengthLabel>> of;
-  bool ticks = false;  ///< whether each has one; on the floor it stands at a line of the grid
+  bool ticks = false;      ///< whether each has one; on the floor it stands at a line of the grid
+  std::string axis, unit;  ///< "y", "m": of the edge, not of its last number
 };
 
 /// Of the two near edges of the floor and of a vertical one on the outline of the box; in two

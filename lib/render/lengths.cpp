@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "lib/render/font.h"
 #include "lib/render/grid.h"
@@ -71,12 +73,44 @@ std::array<double, 2> start_of(const LengthLabel& label, const Outline& outline,
   return start(near);
 }
 
+/// Axis and unit of an edge: beyond its last number, else beside the middle of its numbers; where
+/// there is no room, the unit alone behind the last number.
+void put_name(Texts& texts, const EdgeLabels& edge, const std::vector<LengthLabel>& labels,
+              const Outline& outline, double size) {
+  const LengthLabel &first = labels.front(), &last = labels.back();
+  const std::string name = edge.axis + " (" + edge.unit + ")";
+  const double dx = last.place[0] - first.place[0], dy = last.place[1] - first.place[1];
+  const double way = std::max(1e-9, std::hypot(dx, dy));
+  const auto put = [&](LengthLabel l) {
+    const auto [x, y] = start_of(l, outline, size);
+    const TextBox box = texts.box_of(l.text, x, y);
+    if (!texts.fits({box.x0 - 0.4 * size, box.y0, box.x1 + 0.4 * size, box.y1}) ||
+        !is_beside(box, outline))
+      return false;
+    texts.put(l.text, x, y, kFaintInk);
+    return true;
+  };
+  for (double off = size; off <= 4 * size; off += 0.25 * size)
+    if (put({name, {last.place[0] + off * dx / way, last.place[1] + off * dy / way}, last.away}))
+      return;
+  for (double off = size; off <= 4 * size; off += 0.25 * size)
+    if (put({name,
+             {first.place[0] + 0.5 * dx + off * last.away[0],
+              first.place[1] + 0.5 * dy + off * last.away[1]},
+             last.away}))
+      return;
+  const auto [x, y] = start_of(last, outline, size);
+  texts.put(edge.unit, x + text_width(last.text, size) + 0.3 * size, y, kFaintInk);
+}
+
 }  // namespace
 
 void draw_lengths(Image& image, Texts& texts, const View& view, const Projection& projection,
                   double size) {
   const Outline outline = outline_of(view, projection);
-  for (const EdgeLabels& edge : length_labels(view, projection)) {
+  const std::vector<EdgeLabels> edges = length_labels(view, projection);
+  std::vector<std::pair<const EdgeLabels*, std::vector<LengthLabel>>> drawn;
+  for (const EdgeLabels& edge : edges) {
     // As many as keep a distance from each other.
     const auto* chosen = edge.of.empty() ? nullptr : &edge.of.back();
     for (const auto& labels : edge.of) {
@@ -99,9 +133,12 @@ void draw_lengths(Image& image, Texts& texts, const View& view, const Projection
     };
     // One number alone measures nothing.
     if (!chosen || std::count_if(chosen->begin(), chosen->end(), fitting) < 2) continue;
+    auto& shown = drawn.emplace_back(&edge, std::vector<LengthLabel>{}).second;
     for (const LengthLabel& l : *chosen) {
       const auto [x, y] = start_of(l, outline, size);
-      if (edge.ticks && fitting(l)) {
+      if (!fitting(l)) continue;
+      shown.push_back(l);
+      if (edge.ticks) {
         const double line = std::max(1.0, std::round(0.07 * size));
         const double to_x = l.place[0] + 0.3 * size * l.away[0],
                      to_y = l.place[1] + 0.3 * size * l.away[1];
@@ -112,6 +149,8 @@ void draw_lengths(Image& image, Texts& texts, const View& view, const Projection
       texts.put(l.text, x, y, kInk);
     }
   }
+  for (const auto& [edge, shown] : drawn)  // numbers come first
+    if (!shown.empty()) put_name(texts, *edge, shown, outline, size);
 }
 
 }  // namespace pbf::inline render_module

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string>
 
 #include "lib/base/error.h"
+#include "lib/base/text.h"
 #include "lib/render/particles.h"
 
 namespace pbf::inline render_module {
@@ -42,13 +44,24 @@ std::array<double, 2> QuantileRange::between(double low, double high) {
     throw Error(ExitCode::bad_input, "--range quantile: no particle of the frames chosen has a " +
                                          std::string(about(view_.color).word) +
                                          "; choose other --frames, or give --range LOW,HIGH");
-  std::array<double, 2> range{quantile_of(values_, low), quantile_of(values_, high)};
-  if (view_.color == ColorBy::density) {
-    const double rest = view_.rest_density;
-    const double off = std::max(std::abs(range[0] - rest), std::abs(range[1] - rest));
-    range = {rest - off, rest + off};
+  return {quantile_of(values_, low), quantile_of(values_, high)};
+}
+
+BarRange bar_range(const View& view, std::array<double, 2> quantiles) {
+  BarRange bar{quantiles, ""};
+  const char* digits = "%.9g,%.9g";
+  if (view.color == ColorBy::density) {
+    const double rest = view.rest_density;
+    double off = std::max(std::abs(quantiles[0] - rest), std::abs(quantiles[1] - rest));
+    off = std::strtod(format("%.6g", off).c_str(), nullptr);
+    bar.ends = {rest - off, rest + off};
+    digits = "%.12g,%.12g";
   }
-  return range;
+  bar.text = format(digits, bar.ends[0], bar.ends[1]);
+  char* comma = nullptr;
+  bar.ends[0] = std::strtod(bar.text.c_str(), &comma);
+  bar.ends[1] = std::strtod(comma + 1, nullptr);
+  return bar;
 }
 
 }  // namespace pbf::inline render_module

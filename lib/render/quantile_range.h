@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "lib/render/renderer.h"
@@ -20,9 +21,8 @@ class QuantileRange {
   std::int64_t stride() const { return stride_; }  ///< every so many values are taken
 
   /// The values with the shares `low` and `high` (0..1) of all below them, straight between
-  /// neighbours in their order, as numpy.quantile. For the density they are moved apart to lie as
-  /// far below as above rest_density, whose colour is the middle of the map. Error(bad_input) where
-  /// there is no value. Both are equal where all values are. Takes the values apart: call it once.
+  /// neighbours in their order, as numpy.quantile. Error(bad_input) where there is no value. Both
+  /// are equal where all values are. Takes the values apart: call it once.
   std::array<double, 2> between(double low, double high);
 
  private:
@@ -30,5 +30,15 @@ class QuantileRange {
   std::int64_t stride_ = 1, seen_ = 0;
   std::vector<double> values_;
 };
+
+/// A colour bar from quantile to quantile.
+struct BarRange {
+  std::array<double, 2> ends;
+  std::string text;  ///< "LOW,HIGH": these very numbers, for --range
+};
+
+/// For the density the quantiles are moved apart to lie as far below as above rest_density, whose
+/// colour is the middle of the map.
+BarRange bar_range(const View& view, std::array<double, 2> quantiles);
 
 }  // namespace pbf::inline render_module

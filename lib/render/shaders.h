@@ -171,12 +171,15 @@ void main() {
     float reach = clamp(3.0 * u_radius / (u_step * z), 2.0 * float(u_factor),
                         12.0 * float(u_factor));  // in samples
     float scale = 1.0 / max(u_radius, 0.7 * u_step * z), hidden = 0.0;
-    for (int k = 0; k < 12; ++k) {
-      float angle = 2.39996 * float(k), far = reach * sqrt((float(k) + 1.0) / 12.0);
+    // Each sample shows the outline of a sphere before a smooth surface: many, and the far ones
+    // weak, so that none is seen. The weights add up to 1.
+    for (int k = 0; k < 48; ++k) {
+      float angle = 2.39996 * float(k), share = (float(k) + 0.5) / 48.0;
+      float far = reach * sqrt(share), weight = (1.5 - 1.0 * share) / 48.0;
       float behind = (z - z_at(at + ivec2(far * cos(angle), far * sin(angle)))) * scale;
-      hidden += smoothstep(0.6, 4.0, behind) * (1.0 - smoothstep(12.0, 40.0, behind));
+      hidden += weight * smoothstep(0.6, 4.0, behind) * (1.0 - smoothstep(12.0, 40.0, behind));
     }
-    open = 1.0 - 0.65 * hidden / 12.0;
+    open = 1.0 - 0.65 * hidden;
     if (kept > 0.51 || (kept > 0.0 && kept < 0.5)) {
       vec2 ray = (2.0 * gl_FragCoord.xy / u_size - 1.0 + u_lens.zw) / u_lens.xy;
       float sun_z = u_depth.y / (u_depth.x - nearest);

@@ -1,24 +1,15 @@
 #include "lib/run/load_run.h"
 
 #include <filesystem>
-#include <fstream>
 
 #include "lib/base/error.h"
-#include "lib/io/h5_signature.h"
 #include "lib/io/run_file.h"
+#include "lib/io/run_path.h"
 #include "lib/run/emit.h"
 #include "lib/run/motion_files.h"
 
 namespace pbf::inline run_module {
 namespace {
-
-bool is_hdf5(const std::string& path) {
-  // Anything else, a pipe say, can be read once: the scene's reader must find it whole.
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return false;
-  std::ifstream in(path, std::ios::binary);
-  return h5::begins_as_hdf5(in);
-}
 
 namespace fs = std::filesystem;
 
@@ -47,9 +38,10 @@ std::string folder_of_files(const Scene& scene, const std::string& run_file,
                   "(0: the number of the body)");
 }
 
-LoadedScene load_scene_or_run(const std::string& path, const std::vector<std::string>& overrides,
+LoadedScene load_scene_or_run(const std::string& given, const std::vector<std::string>& overrides,
                               const std::string& base_folder) {
-  if (!is_hdf5(path)) {
+  const std::string path = run_path(given);
+  if (!is_hdf5_file(path)) {
     LoadedScene loaded = load_scene(path, overrides, base_folder);
     read_motions(loaded.scene, loaded.folder, loaded.auto_step);
     return loaded;

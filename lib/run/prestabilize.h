@@ -15,7 +15,8 @@ struct Prestabilized {
   int steps = 0;                  ///< without time; 0: the start is as it was given
   double compression_before = 0;  ///< mean, 1
   double most_before = 0;         ///< 1, of the most compressed particle
-  double compression_after = 0;   ///< 1
+  double compression_after = 0;   ///< mean, 1
+  double most_after = 0;          ///< 1
   double moved = 0;               ///< spacings, no particle went farther
   double kick = 0;                ///< J, what one more step would move them by, over dt
   double harmless = 0;            ///< J, the kick at which the steps end

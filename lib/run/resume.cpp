@@ -89,11 +89,7 @@ class Finder {
                  before.time.end) +
           (beyond_ > 0 ? format("; %ld frames of run.vtkhdf beyond it are removed", beyond_)
                        : std::string()));
-    if (!point_.saved)
-      point_.notes.push_back("there is no checkpoint: the run starts again from its first update" +
-                             (point_.frames > 0
-                                  ? format("; the %ld frames that are there stay", point_.frames)
-                                  : std::string()));
+    if (!point_.saved) point_.notes.push_back(from_the_start(before, done));
     return point_;
   }
 
@@ -112,6 +108,20 @@ class Finder {
     throw Error(ExitCode::bad_input,
                 (name.empty() ? folder_.path() : folder_.file(name)) + ": cannot resume: " +
                     (name.empty() ? "" : "it is of another scene: ") + difference + kSame);
+  }
+  /// What it costs that there is no checkpoint.
+  std::string from_the_start(const Scene& before, std::int64_t done) const {
+    const bool prolonged = folder_.has("DONE") && schedule_.updates > done;
+    std::string text = "there is no checkpoint: the run starts again from its first update";
+    if (prolonged)
+      text = format(
+          "the run is finished up to %.6g s, but has kept no checkpoint: to reach "
+          "time.end %.6g s it starts again from its first update",
+          double(done) * before.time.step, scene_.time.end);
+    if (point_.frames > 0) text += format("; the %ld frames that are there stay", point_.frames);
+    if (prolonged && !scene_.checkpoint)
+      text += ". With checkpoint: {every: 60} in the scene a finished run can be prolonged";
+    return text;
   }
   void finish(const std::string& why) {
     point_.notes.push_back(folder_.path() + ": " + why);
@@ -173,6 +183,7 @@ class Finder {
     refuse_older_log(*file, info);
     refuse_other(kRunFile, info.resolved_scene, info.scene_files);  // no files in older ones
     point_.keep_file = true;
+    add_earlier(file->sessions());
     const std::int64_t u = point_.update();
     if (point_.saved) {
       point_.rows.log = prefix(file->log_column("update"), u,
@@ -191,6 +202,15 @@ class Finder {
                          point_.rows.log < schedule_.measures_until(u) ||
                          point_.rows.gauges < schedule_.gauges_until(u)))
       forget("run.vtkhdf ends before the checkpoint");
+  }
+  void add_earlier(const std::vector<RunSession>& sessions) {
+    EarlierSessions& earlier = point_.earlier.emplace();
+    for (const RunSession& s : sessions) {
+      const auto began = utc_seconds(s.started), ended = utc_seconds(s.ended);
+      ++earlier.sessions;
+      earlier.whole &= began && ended;
+      if (began && ended) earlier.seconds += std::max(0.0, *ended - *began);
+    }
   }
   /// A log without one of today's columns cannot go on, and the results would be others.
   void refuse_older_log(const RunReader& file, const RunInfo& info) const {

@@ -15,14 +15,22 @@
 
 namespace pbf::inline run_module {
 
+/// The processes that worked on a run before.
+struct EarlierSessions {
+  std::int64_t sessions = 0;
+  double seconds = 0;  ///< of wall time, all of them
+  bool whole = true;   ///< false: one was killed, and nobody knows when
+};
+
 struct ResumePoint {
-  bool finished = false;           ///< done up to the end that the scene asks for; notes say it
-  bool started = false;            ///< there is something to go on with; else everything is new
-  std::optional<SavedRun> saved;   ///< the state to go on from; absent: the start
-  bool keep_file = false;          ///< go on in run.vtkhdf; else it is written anew
-  std::int64_t frames = 0;         ///< of run.vtkhdf that stay: the run would write the same
-  KeptRows rows;                   ///< of the log and of gauges, that stay
-  std::vector<std::string> notes;  ///< what the user should know
+  bool finished = false;          ///< done up to the end that the scene asks for; notes say it
+  bool started = false;           ///< there is something to go on with; else everything is new
+  std::optional<SavedRun> saved;  ///< the state to go on from; absent: the start
+  bool keep_file = false;         ///< go on in run.vtkhdf; else it is written anew
+  std::int64_t frames = 0;        ///< of run.vtkhdf that stay: the run would write the same
+  KeptRows rows;                  ///< of the log and of gauges, that stay
+  std::optional<EarlierSessions> earlier;  ///< that run.vtkhdf knows of
+  std::vector<std::string> notes;          ///< what the user should know
   std::int64_t update() const { return saved ? saved->state.updates : 0; }
 };
 

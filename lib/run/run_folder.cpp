@@ -70,9 +70,12 @@ bool RunFolder::check(const std::string& path, ExistingFolder existing) {
     fail(folder, "the output folder cannot be used", "it is not a folder");
   if (existing == ExistingFolder::refuse)
     throw Error(ExitCode::bad_input,
-                path +
-                    ": the output folder exists; give --overwrite to replace the run in it, "
-                    "--resume to go on with it, or another folder with --out");
+                path + (fs::exists(folder / "scene.resolved.yaml", error)
+                            ? ": the output folder exists; give --overwrite to replace the run in "
+                              "it, --resume to go on with it, or another folder with --out"
+                            : ": the output folder exists, without a run in it; give --overwrite "
+                              "to write into it beside what is there, or another folder with "
+                              "--out"));
   return true;
 }
 

@@ -10,17 +10,27 @@
 #include "lib/base/stages.h"
 #include "lib/base/text.h"
 #include "lib/run/run.h"
+#include "lib/scene/vector3.h"
 #include "lib/solver/diagnostics.h"
 
 namespace pbf::inline run_module {
 namespace {
 
-/// Nothing when the scene does not define the measure.
-std::string pool_line(const Diagnostics& m) {
-  if (std::isnan(m.height_kept)) return {};
+constexpr double kAtRest = 1e-3;  // of the energy of the pool at rest, what moves may have
+
+/// Whether the fluid has come to rest: it hardly moves, and had the time to.
+bool has_come_to_rest(const Diagnostics& m, const Scene& s, double mass) {
+  const double at_rest = (m.energy - m.kinetic_energy) / m.height_kept;  // M g H0/2, J
+  const double g = length(s.gravity), depth = 2 * at_rest / (mass * g);
+  return m.kinetic_energy < kAtRest * at_rest && m.time > 2 * std::sqrt(depth / g);
+}
+
+/// Nothing when the scene does not define the measure, and of fluid that is still moving.
+std::string pool_line(const Diagnostics& m, const Scene& s, double mass) {
+  if (std::isnan(m.height_kept) || !has_come_to_rest(m, s, mass)) return {};
   return format(
-      "height kept         %.4f of the depth at rest, pressure %.2g %% off the hydrostatic one: of "
-      "a pool at rest 1 and 0 are right\n",
+      "pool at rest        height %.4f of what its volume gives, 1 is right; pressure %.2g %% off "
+      "the hydrostatic one, 0 is right\n",
       m.height_kept, 100 * m.hydrostatic_deviation);
 }
 
@@ -98,18 +108,46 @@ std::string error_lines(const Diagnostics& last, double max_of_run) {
       100 * max_of_run);
 }
 
-std::string energy_lines(const Diagnostics& first, const Diagnostics& last) {
+/// What takes energy. Walls and obstacles have no friction.
+std::string losses(const Scene& s) {
+  std::string more;
+  if (s.viscosity) more = "viscosity";
+  if (s.solver.velocity_damping < 1)
+    more += (more.empty() ? "" : " and ") + std::string("velocity_damping");
+  return "the method loses energy in splashes, more with longer steps" +
+         (more.empty() ? more : ", and " + more + " takes some");
+}
+
+std::string energy_lines(const Diagnostics& first, const Diagnostics& last, const Scene& scene) {
   std::string out = format(
       "energy              %.6g J at the start, %.6g J at the end (%.3g J of it kinetic)\n"
-      "  drift             %+.3g %% from start to end: splashes and friction lose energy\n"
+      "  drift             %+.3g %% from start to end: %s\n"
       "  largest rise      %.3g %% at any time: 0 is good, above 1 %% the method adds energy\n",
       first.energy, last.energy, last.kinetic_energy, 100 * last.energy_drift,
-      100 * last.energy_rise);
+      losses(scene).c_str(), 100 * last.energy_rise);
   if (last.moved)
     out += format(
         "  work              %.6g J of what moves by itself; drift and rise are without it\n",
         last.work);
   return out;
+}
+
+/// Updates and wall time: of the run, and of this session where it went on with the run.
+std::string progress_lines(const RunParts& run, double wall) {
+  const std::int64_t updates = run.solver.updates(), before = run.from.update();
+  const std::string loop =
+      duration_text(run.loop_seconds) + " of it from the first update to the last, with output";
+  std::string out = format("updates             %ld (%.6g s simulated)", updates,
+                           double(updates) * run.scene.time.step);
+  if (before == 0) return out + "\nwall time           " + duration_text(wall) + ", " + loop + "\n";
+  out += format(", %ld of them in this session, which went on from update %ld\n", updates - before,
+                before);
+  out += "wall time           " + duration_text(wall) + " in this session, " + loop;
+  if (const auto& earlier = run.from.earlier)
+    out += format("\n                    %s %s in all %ld sessions",
+                  earlier->whole ? "about" : "at least",
+                  duration_text(wall + earlier->seconds).c_str(), earlier->sessions + 1);
+  return out + "\n";
 }
 
 }  // namespace
@@ -123,15 +161,12 @@ std::string run_summary(const RunParts& run, const Watch& watch,
   const double wall = run.wall.seconds(), loop = run.loop_seconds;
   const auto own = double(updates - run.from.update());
   std::string out = format("particles           %ld\n", plan.particles);
-  out += format("updates             %ld (%.6g s simulated)\n", updates,
-                double(updates) * scene.time.step);
-  out += "wall time           " + duration_text(wall) + ", " + duration_text(loop) +
-         " of it from the first update to the last, with output\n";
+  out += progress_lines(run, wall);
   out += "speed               " + si_number(loop > 0 ? double(plan.particles) * own / loop : 0) +
          " particle-updates/s in these " + duration_text(loop) + "\n";
-  out += error_lines(last, run.compression_max) + energy_lines(first, last);
+  out += error_lines(last, run.compression_max) + energy_lines(first, last, scene);
   out += "peak memory         " + bytes_text(double(peak_memory())) + " on the host\n";
-  out += pool_line(last);
+  out += pool_line(last, scene, plan.mass * double(plan.particles));
   if (last.non_finite > 0)
     out += format("not finite          %ld particles at the end, left out of the figures above\n",
                   last.non_finite);

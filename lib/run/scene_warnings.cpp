@@ -8,6 +8,7 @@
 #include "lib/run/motion_warnings.h"
 #include "lib/run/obstacle_track.h"
 #include "lib/run/overlap.h"
+#include "lib/run/unit_warnings.h"
 #include "lib/run/warnings.h"
 #include "lib/scene/auto_step.h"
 
@@ -249,6 +250,7 @@ double compression_at_rest(const Scene& s, std::int64_t particles) {
 std::vector<Warning> scene_warnings(const Scene& scene, const std::string& scene_dir,
                                     std::int64_t particles) {
   std::vector<Warning> list;
+  if (const std::string text = units_text(scene); !text.empty()) list.push_back({"units", text});
   add_step(scene, particles, list);
   add_speed(scene, list);
   add_motion(scene, list);

@@ -9,9 +9,9 @@
 
 namespace pbf::inline run_module {
 
-/// `kind`: step, speed, motion, table, obstacles, wall, collision, overlap, crowded, output (of a
-/// scene); compressed,
-/// passed_through, closed_in, left (of a run). At most one of each kind in a list.
+/// `kind`: units, step, speed, motion, table, obstacles, wall, collision, overlap, crowded, output
+/// (of a scene); compressed, passed_through, closed_in, left (of a run). At most one of each kind
+/// in a list.
 struct Warning {
   std::string kind, text;
 };

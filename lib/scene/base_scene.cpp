@@ -44,12 +44,11 @@ class Chain {
     const Node* named = over.find(kBaseKey);
     if (named == nullptr) return over;
     const Node at = *named;
-    over.erase(kBaseKey);
-    if (const Node* again = over.find(kBaseKey))
-      bad_input(again->place(), "base: given twice, first at " + at.place() + "; remove one");
+    take_out(over, kBaseKey);
     const std::string word = word_of(at);
     const fs::path beside = fs::path(files_.back().path).parent_path();
     Node tree = build(tree_of(at, (beside / word).string()));
+    take_out(tree, "name");  // of that file's runs: two scenes on one base must not share a folder
     make_relative(tree, fs::path(word).parent_path());
     lay_over(tree, over);
     return tree;
@@ -64,6 +63,16 @@ class Chain {
 
   [[noreturn]] static void bad(const Node& at, const std::string& what) {
     bad_input(at.place(), "base: " + what);
+  }
+
+  /// Removes a key of the top level, if it is there.
+  static void take_out(Node& tree, const std::string& key) {
+    const Node* there = tree.find(key);
+    if (there == nullptr) return;
+    const std::string first = there->place();
+    tree.erase(key);
+    if (const Node* again = tree.find(key))
+      bad_input(again->place(), key + ": given twice, first at " + first + "; remove one");
   }
 
   static std::string word_of(const Node& at) {

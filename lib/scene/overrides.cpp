@@ -101,6 +101,8 @@ void apply_override(Node& root, const std::string& argument, Problems& problems)
   if (equals == std::string::npos || equals == 0)
     return problems.add(place, "", "expected key.path=value, e.g. --set solver.iterations=8");
   const std::string path = argument.substr(0, equals);
+  if (path.find_first_of(" \t") != std::string::npos)
+    return problems.add(place, "", "has a space before the =; write KEY.PATH=VALUE without");
   if (!is_path(path, place, problems)) return;
   Node value;
   try {

@@ -24,6 +24,12 @@ TEST_CASE("arguments: unknown options, commands, second scenes and forgotten --s
       {{"plan", "a.yaml", "b.yaml"}, "b.yaml: pbf plan takes one file; pbf batch runs many"},
       {{"run", "a.yaml", "time.step=1"},
        "time.step=1: not expected here; did you mean --set time.step=1?"},
+      {{"run", "a.yaml", "--set", "time.step", "=", "1"},
+       "=: not expected here; a setting is one word without spaces, KEY.PATH=VALUE\n"},
+      {{"config", "a.yaml"}, "a.yaml: pbf config takes no file, only options\n"},
+      {{"info", "x"}, "x: pbf info takes no file, only options\n"},
+      {{"config", "--example", "--schema"}, "give one of [--example,--markdown,--schema]\n"},
+      {{"run", "a.yaml", "--out", ""}, "--out: is empty; give a name\n"},
       {{"rnu", "a.yaml"}, "rnu: unknown command, did you mean pbf run?; the commands are run"},
       {{"a.yaml"}, "a.yaml: unknown command, did you mean pbf run a.yaml?"},
       {{"simulate"}, "simulate: unknown command; the commands are run"},
@@ -67,4 +73,22 @@ TEST_CASE("arguments: a file that another command takes is told by its kind") {
         "it\n");
   CHECK(error({"study", "tiny.yaml"}) ==
         "2 pbf: error: tiny.yaml: is a scene, expected a study; pbf run tiny.yaml takes it\n");
+}
+
+TEST_CASE("ranges are written alike, and the help of each says in which steps they go") {
+  const Scratch folder;
+  const auto help = [&](const char* command) {
+    std::string text = pbf::test::pbf({command, "--help"}, folder.path()).out;
+    std::string one_line;
+    for (const char c : text)
+      if (c != '\n' && (c != ' ' || (!one_line.empty() && one_line.back() != ' ')))
+        one_line += c;
+      else if (!one_line.empty() && one_line.back() != ' ')
+        one_line += ' ';
+    return one_line;
+  };
+  CHECK(has(help("batch"), "FIRST:LAST:COUNT in equal steps, both ends included"));
+  CHECK(has(help("batch"), "pbf stability take equal ratios"));
+  CHECK(has(help("stability"), "FIRST:LAST:COUNT in equal ratios, both ends included"));
+  CHECK(has(help("stability"), "--grid of pbf batch takes equal steps"));
 }

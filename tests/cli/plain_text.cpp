@@ -89,7 +89,7 @@ TEST_CASE("messages write out what arguments, file names and the environment hol
       {{"plan", bad + ".yaml"}, {}, shown + ".yaml:"},
       {{"batch", "scene.yaml", "--grid", bad}, {}, shown},
       {{"render", bad}, {}, shown},
-      {{"compare", bad, "scene.yaml"}, {}, shown},
+      {{"compare", bad, bad}, {}, shown},
       {{"info"}, {"PBF_SIMD=" + bad}, shown},
       {{"plan", "scene.yaml", "--set", "bodies=[{shape: file, path: points.csv}]"}, {}, ""},
       {{"run", "scene.yaml", "--set", "bodies=[{shape: file, path: row.csv}]"}, {}, ""}};

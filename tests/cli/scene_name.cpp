@@ -42,6 +42,18 @@ TEST_CASE("two scenes without a name do not share a folder") {
   }
 }
 
+TEST_CASE("two scenes on one base that has a name do not share a folder") {
+  const Scratch folder;
+  folder.write("base.yaml", "name: tank\n" + unnamed());
+  folder.write("low.yaml", "base: base.yaml\nsolver: {iterations: 1}\n");
+  folder.write("high.yaml", "base: base.yaml\nsolver: {iterations: 2}\n");
+  for (const char* scene : {"low.yaml", "high.yaml"})
+    CHECK(pbf::test::pbf({"run", scene, "--quiet"}, folder.path()).code == 0);
+  CHECK(fs::exists(folder / "out/low/DONE"));
+  CHECK(fs::exists(folder / "out/high/DONE"));
+  CHECK_FALSE(fs::exists(folder / "out/tank"));
+}
+
 TEST_CASE("a run that was recorded under another name goes on, wherever its scene lies now") {
   const Scratch folder;
   folder.write("s.yaml", unnamed());
@@ -76,8 +88,7 @@ TEST_CASE("resume of a scene without a name tells of a run that lies in out/scen
       0);
   const Outcome o = pbf::test::pbf({"run", "tank.yaml", "--resume"}, folder.path());
   CHECK(o.code == 0);
-  CHECK(
-      has(o.err, "out/tank is not there, and the run begins at its start; out/scene holds a run"));
+  CHECK(has(o.err, "out/tank is not there: the run begins at its start; out/scene holds a run"));
   CHECK(has(o.err, "give --out out/scene"));
   CHECK(fs::exists(folder / "out/tank/DONE"));
   // Not once it is there, nor for a scene with a name.

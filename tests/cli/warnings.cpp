@@ -155,7 +155,7 @@ TEST_CASE("summary.csv counts the warnings of each run, and --strict makes them 
   std::string units, head, sound, bad;
   std::getline(lines, units), std::getline(lines, head), std::getline(lines, sound),
       std::getline(lines, bad);
-  REQUIRE(head.ends_with(",frames,warnings,seconds"));
+  REQUIRE(head.ends_with(",particles,frames,warnings,seconds"));
   const auto warnings = [](std::string row) {
     row.resize(row.rfind(','));
     return std::stoi(row.substr(row.rfind(',') + 1));

@@ -45,6 +45,20 @@ def test_a_density_range_lies_about_the_rest_density(pbf, minimal, frames, tmp_p
     done = render(pbf, minimal, tmp_path, "--frames", "-5:", "--color", "density",
                   "--range", "quantile")
     assert range_of(done) == pytest.approx([1000 - off, 1000 + off], rel=1e-6)
+    assert sum(range_of(done)) == pytest.approx(2000, rel=1e-12)
+    said = re.search(r": density in kg/m\^3, as far below as above the rest density 1000; the 1 % and "
+                     r"99 % quantiles of 5 frames are (\S+) and (\S+)\n", done.stderr)
+    assert [float(x) for x in said.groups()] == pytest.approx([low, high], rel=1e-5)
+
+
+@pytest.mark.parametrize("color, said", [
+    ("speed", "speed in m/s, the 1 % and 99 % quantiles of 1 frame"),
+    ("compression", "compression as a share (0.01 is 1 %), the 1 % and 99 % quantiles of 1 frame"),
+    ("id", "ids of particles, the 1 % and 99 % quantiles of 1 frame"),
+])
+def test_a_range_says_what_it_is_of(pbf, minimal, tmp_path, color, said):
+    done = render(pbf, minimal, tmp_path, "--frames", "5", "--color", color, "--range", "quantile")
+    assert f": {said}\n" in done.stderr
 
 
 def test_a_compression_range_and_one_of_ids(pbf, minimal, frames, tmp_path):
@@ -56,11 +70,14 @@ def test_a_compression_range_and_one_of_ids(pbf, minimal, frames, tmp_path):
     assert range_of(done) == pytest.approx(np.percentile(np.arange(4000), [1, 99]))
 
 
-def test_the_picture_is_that_of_the_range_given_by_hand(pbf, minimal, tmp_path):
-    done = render(pbf, minimal, tmp_path / "a", "--frames", "9", "--range", "quantile")
-    low, high = range_of(done)
-    render(pbf, minimal, tmp_path / "b", "--frames", "9", "--range", f"{low:.12g},{high:.12g}")
-    render(pbf, minimal, tmp_path / "c", "--frames", "9")
+@pytest.mark.parametrize("color", ["speed", "density", "compression"])
+def test_the_picture_is_that_of_the_range_as_printed(pbf, minimal, tmp_path, color):
+    options = ["--frames", "9", "--color", color]
+    done = render(pbf, minimal, tmp_path / "a", *options, "--range", "quantile")
+    range_of(done)
+    printed = re.search(r"range (\S+): ", done.stderr).group(1)
+    render(pbf, minimal, tmp_path / "b", *options, "--range", printed)
+    render(pbf, minimal, tmp_path / "c", *options)
     a, b, c = [(tmp_path / x / "frame_000009.png").read_bytes() for x in "abc"]
     assert a == b
     assert a != c

@@ -300,6 +300,7 @@ def test_a_batch_of_a_grid_gives_a_table_of_runs(scene):
     assert isinstance(table, pbf_tools.Table) and len(table) == 4
     assert set(table["reason"]) == {"finished"} and np.all(table["exit_code"] == 0)
     assert [run.status for run in table.runs] == ["finished"] * 4
+    assert list(table["particles"]) == [run.info["particles"] for run in table.runs]
     for row, run in zip(table["compression_mean"], table.runs):
         assert row == pytest.approx(run.log["compression_mean"][-1])
     assert pickle.loads(pickle.dumps(table)).out == table.out

@@ -82,10 +82,10 @@ TEST_CASE("grid: numbers as a list or a range in equal ratios") {
   CHECK(error_of("k", "1,,2") == "values of k: \"\" is not a number");
   CHECK(error_of("k", "1.5", true) == "values of k: 1.5 is not a whole number");
   for (const char* text : {"1:2", "1:2:3:4"})
-    CHECK(error_of("k", text) == "values of k: expected a,b,c or LOW:HIGH:COUNT");
+    CHECK(error_of("k", text) == "values of k: expected V1,V2,... or FIRST:LAST:COUNT");
   for (const char* text : {"2:1:3", "0:1:3", "1:2:1", "1:2:1001", "1:2:2.5"})
     CHECK(error_of("k", text) == "values of k: " + std::string(text) +
-                                     " is no range with 0 < LOW < HIGH and 2 to 1000 values");
+                                     " is no range with 0 < FIRST < LAST and 2 to 1000 values");
 }
 
 TEST_CASE("grid: a range goes from its first to its last value in equal steps") {

@@ -243,3 +243,41 @@ TEST_CASE("the plan says what each pass over pairs reads of the neighbours' rows
   CHECK(json_text(plan_json(plan, s)).find("\"gathers\":\"position lambda id\"") !=
         std::string::npos);
 }
+
+TEST_CASE("plan memory: pictures take what was measured of them, by style, size and obstacles") {
+  // Peaks in MiB of demo.yaml and stirrer.yaml with Mesa 22.3, from the least (OSMesa, shaders kept
+  // on disk by an earlier run) to the most (EGL, shaders compiled).
+  struct Case {
+    const char* scene;
+    const char *style, *size;
+    double least, most;
+  };
+  for (const Case& c : {Case{"demo", "spheres", "[640,360]", 131, 144},
+                        {"demo", "spheres", "[1280,720]", 158, 169},
+                        {"demo", "surface", "[640,360]", 139, 154},
+                        {"demo", "surface", "[1280,720]", 184, 199},
+                        {"stirrer", "spheres", "[640,360]", 128, 140},
+                        {"stirrer", "spheres", "[1280,720]", 154, 167},
+                        {"stirrer", "surface", "[640,360]", 136, 150},
+                        {"stirrer", "surface", "[1280,720]", 181, 197}}) {
+    CAPTURE(c.scene, c.style, c.size);
+    const Scene s = load_scene(PBF_SOURCE_DIR "/configs/" + std::string(c.scene) + ".yaml",
+                               {std::string("render.style=") + c.style,
+                                std::string("render.size=") + c.size, "threads=1"})
+                        .scene;
+    const Plan plan = make_plan(s, count_particles(s, "."));
+    const double forecast = double(plan.memory.host_peak()) / (1 << 20);
+    CHECK(forecast > 0.5 * (c.least + c.most));  // in the upper half
+    CHECK(forecast < 1.02 * c.most);
+  }
+}
+
+TEST_CASE("plan memory: the tiles of the software rasteriser do not grow without end") {
+  Scene s = block(0.1, {"render={}"});
+  const auto tiles = [&](std::int64_t n) {
+    return bytes_of(make_plan(s, n).memory, "tiles of the software rasteriser");
+  };
+  CHECK(tiles(10000) == 7000000);
+  CHECK(tiles(458000) < 32 << 20);
+  CHECK(tiles(100000000) == tiles(458000));
+}

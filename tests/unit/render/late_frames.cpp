@@ -106,14 +106,13 @@ TEST_CASE("the picture of a calm tank shows more than one hue", "[render]") {
 TEST_CASE("quantiles of a range are those of all values, straight between neighbours", "[render]") {
   View view = front_view();
   view.color = ColorBy::density;
-  view.rest_density = 0;  // the middle of the map: then the range is symmetric about 0
   const auto range = [&](std::vector<double> values, double low, double high) {
     for (double& v : values) v -= 1;  // snapshot() adds it
     QuantileRange all(view, 1);
     all.add(snapshot(std::vector<Double3>(values.size()), values));
     return all.between(low, high);
   };
-  CHECK(range({3, -1, 2, 5, 4}, 0, 1) == std::array{-5.0, 5.0});
+  CHECK(range({3, -1, 2, 5, 4}, 0, 1) == std::array{-1.0, 5.0});
   view.color = ColorBy::id;
   CHECK(range(std::vector<double>(101, 7), 0.01, 0.99) == std::array{1.0, 99.0});
   CHECK(range(std::vector<double>(11, 7), 0.25, 0.75) == std::array{2.5, 7.5});
@@ -125,6 +124,22 @@ TEST_CASE("quantiles of a range are those of all values, straight between neighb
   const auto [code, text] = error_of([&] { range({nan, nan}, 0, 1); });
   CHECK(code == 2);
   CHECK(text.find("--range quantile: no particle of the frames chosen has a compression") == 0);
+}
+
+TEST_CASE("a bar has the very numbers that are printed, for densities about the rest density",
+          "[render]") {
+  View view = front_view();
+  view.color = ColorBy::density;
+  view.rest_density = 998.2;
+  const BarRange density = bar_range(view, {725.13999762, 1003.25});
+  CHECK(density.text == "725.14,1271.26");
+  CHECK(density.ends == std::array{725.14, 1271.26});
+  view.color = ColorBy::compression;
+  const BarRange compression = bar_range(view, {0, 1.0 / 300});
+  CHECK(compression.text == "0,0.00333333333");
+  CHECK(compression.ends == std::array{0.0, 0.00333333333});
+  view.color = ColorBy::speed;
+  CHECK(bar_range(view, {2, 2}).ends == std::array{2.0, 2.0});
 }
 
 TEST_CASE("of too many values every so-maniest is taken", "[render]") {

@@ -242,3 +242,34 @@ TEST_CASE("particles before an obstacle are seen and those behind it are not", "
   CHECK(chroma(pixel(cut, 23, 100)) < 40);
   CHECK(chroma(pixel(cut, 15, 100)) > 60);
 }
+
+TEST_CASE("a particle darkens what is close behind it evenly, without outlines", "[render]") {
+  PBF_NEEDS_GL();
+  View view = front_view();
+  view.radius = 0.1;
+  Solid<double> wall;
+  wall.shape = ObstacleShape::box;
+  wall.half = {1.5, 0.01, 1.5};
+  view.solids = {wall};
+  Renderer renderer(view);
+  const Image empty = renderer.draw(snapshot({}, {}));
+  const Image image = renderer.draw(snapshot({{0, -0.35, 0}}, {1.0}));
+  const auto darker = [&](int x, int y) {
+    return double(pixel(empty, x, y)[1]) - pixel(image, x, y)[1];
+  };
+  // Its own outline has a radius of 9 pixels; its shadow falls below. Around it all
+  // is alike.
+  double most = 0, uneven = 0;
+  for (int r = 13; r < 34; ++r) {
+    std::vector<double> ring;
+    for (double angle = 0.2; angle < 3; angle += 0.05)
+      ring.push_back(darker(int(std::lround(100 + r * std::cos(angle))),
+                            int(std::lround(100 - r * std::sin(angle)))));
+    const auto [low, high] = std::minmax_element(ring.begin(), ring.end());
+    most = std::max(most, *high);
+    uneven += (*high - *low) / 21;
+  }
+  CAPTURE(most, uneven);
+  CHECK(most > 8);
+  CHECK(uneven < 0.15 * most);
+}

@@ -56,6 +56,24 @@ TEST_CASE("base: blocks are merged key by key, lists and values are replaced") {
   CHECK(one.domain.max == Double3{2, 1, 1});
 }
 
+TEST_CASE("base: the name of a base is not taken: each file's runs have a folder of their own") {
+  const Scenes files;
+  files.write("base.yaml", "name: tank\n" + kBase);
+  files.write("mid.yaml", "base: base.yaml\nname: mid\n");
+  files.write("low.yaml", "base: base.yaml\n");
+  files.write("high.yaml", "base: mid.yaml\n");
+  files.write("named.yaml", "base: mid.yaml\nname: own\n");
+  for (const auto& [file, name] : std::vector<std::pair<std::string, std::string>>{
+           {"base", "tank"}, {"mid", "mid"}, {"low", "low"}, {"high", "high"}, {"named", "own"}}) {
+    const LoadedScene loaded = load_scene(files.path(file + ".yaml"), {});
+    CHECK(loaded.scene.name == name);
+    CHECK(loaded.named_by_file == (file == "low" || file == "high"));
+  }
+  files.write("twice.yaml", "name: a\nname: b\n" + kBase);
+  CHECK(contains(files.error("base: twice.yaml\n"),
+                 "twice.yaml:2:7 (included from my.yaml:1): name: given twice, first at"));
+}
+
 TEST_CASE("base: off, false and a written null take a block away, on gives its defaults") {
   const Scenes files;
   files.write("base.yaml", kBase);

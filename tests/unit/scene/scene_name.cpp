@@ -60,11 +60,11 @@ TEST_CASE("names: an empty one is still an error, and no file's name is taken in
                  "name: has no value"));
 }
 
-TEST_CASE("names: the name of a base is kept, without one it is the first file's") {
+TEST_CASE("names: a scene on a base is called as its own file, whatever the base's name") {
   const Folder folder;
   folder.write("named.yaml", kMinimal + "name: tank\n");
   folder.write("plain.yaml", kMinimal);
-  CHECK(loaded(folder, "steep.yaml", "base: named.yaml\n").scene.name == "tank");
+  CHECK(loaded(folder, "steep.yaml", "base: named.yaml\n").scene.name == "steep");
   CHECK(loaded(folder, "steep.yaml", "base: plain.yaml\n").scene.name == "steep");
 }
 

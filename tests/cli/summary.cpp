@@ -1,0 +1,77 @@
+// What the summary of a run says, and of which runs; that of a batch.
+#include <sstream>
+
+#include "tests/support/catch.h"
+#include "tests/support/process.h"
+
+using namespace pbf::test;
+
+namespace {
+
+std::string narrow_tank(const std::string& width, const std::string& end) {
+  return "domain: {min: [0, 0, 0], max: [" + width +
+         ", 0.2, 0.5]}\nfluid: {spacing: 0.05}\nbodies:\n"
+         "  - {shape: block, min: [0, 0, 0], max: [0.2, 0.2, 0.4]}\ntime: {step: 0.005, end: " +
+         end + "}\noutput: {}\n";
+}
+
+std::string summary_of(const std::string& scene, const Args& more = {}) {
+  const Scratch folder;
+  folder.write("s.yaml", scene);
+  const Outcome o = run_scene(folder, "a", more);
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  return o.out;
+}
+
+}  // namespace
+
+TEST_CASE("summary: the height and pressure of a pool are told of one that has come to rest") {
+  CHECK(has(summary_of(narrow_tank("0.2", "4")), "pool at rest        height "));
+  CHECK_FALSE(has(summary_of(narrow_tank("0.2", "0.02")), "pool at rest"));  // had no time to move
+  CHECK_FALSE(has(summary_of(narrow_tank("1", "0.5")), "pool at rest"));     // flows
+}
+
+TEST_CASE("summary: what takes energy is what the scene has, and walls have no friction") {
+  const std::string plain = summary_of(narrow_tank("0.2", "0.05"));
+  CHECK(has(plain,
+            "from start to end: the method loses energy in splashes, more with longer "
+            "steps\n"));
+  CHECK_FALSE(has(plain, "friction"));
+  CHECK(has(summary_of(narrow_tank("0.2", "0.05") + "viscosity: {}\n"),
+            "more with longer steps, and viscosity takes some\n"));
+  CHECK(has(summary_of(narrow_tank("0.2", "0.05"), {"--set", "solver.velocity_damping=0.99"}),
+            "more with longer steps, and velocity_damping takes some\n"));
+}
+
+TEST_CASE("summary: after --resume updates and wall time are those of the run and of the session") {
+  const Scratch folder;
+  folder.write("s.yaml", narrow_tank("0.2", "0.5") + "checkpoint: {every: 1000}\n");
+  const Outcome first = run_scene(folder, "a");
+  REQUIRE(first.code == 0);
+  CHECK(has(first.out, "updates             100 (0.5 s simulated)\nwall time "));
+  CHECK_FALSE(has(first.out, "session"));
+  const Outcome second = run_scene(folder, "a", {"--resume", "--set", "time.end=0.7"});
+  REQUIRE(second.code == 0);
+  CHECK(has(second.out,
+            "updates             140 (0.7 s simulated), 40 of them in this session, which went on "
+            "from update 100\n"));
+  CHECK(has(second.out, " in this session, "));
+  CHECK(has(second.out, " in all 2 sessions\n"));
+}
+
+TEST_CASE("a summary tells how many particles each run has") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  REQUIRE(pbf::test::pbf({"batch", "tiny.yaml", "--grid", "fluid.spacing=0.1,0.2", "--out", "o",
+                          "--set", "time.end=0.01", "--quiet"},
+                         folder.path())
+              .code == 0);
+  std::istringstream lines(read_text(folder / "o/summary.csv"));
+  std::string units, head, many, few;
+  std::getline(lines, units), std::getline(lines, head), std::getline(lines, many),
+      std::getline(lines, few);
+  CHECK(head.ends_with(",particles,frames,warnings,seconds"));
+  CHECK(has(many, ",64,2,"));
+  CHECK(has(few, ",8,2,"));
+}
