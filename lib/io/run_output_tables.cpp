@@ -93,6 +93,8 @@ void RunOutput::write_info(const RunInfo& info) {
 void RunOutput::write_warnings(const std::vector<std::string>& warnings) {
   std::string lines;
   for (const std::string& w : warnings) lines += w + "\n";
+  // Rewriting many of them would touch pages that a power cut may then tear.
+  if (h5::has_attribute(pbf_, "warnings") && h5::read_text(pbf_, "warnings") == lines) return;
   h5::write_text(pbf_, "warnings", lines);
 }
 
