@@ -108,23 +108,24 @@ std::string error_lines(const Diagnostics& last, double max_of_run) {
       100 * max_of_run);
 }
 
-/// What takes energy. Walls and obstacles have no friction.
-std::string losses(const Scene& s) {
+/// What takes energy, where some is lost. Walls and obstacles have no friction.
+std::string losses(const Scene& s, double drift) {
+  if (drift >= 0) return "";
   std::string more;
   if (s.viscosity) more = "viscosity";
   if (s.solver.velocity_damping < 1)
     more += (more.empty() ? "" : " and ") + std::string("velocity_damping");
-  return "the method loses energy in splashes, more with longer steps" +
+  return ": the method loses energy in splashes, more with longer steps" +
          (more.empty() ? more : ", and " + more + " takes some");
 }
 
 std::string energy_lines(const Diagnostics& first, const Diagnostics& last, const Scene& scene) {
   std::string out = format(
       "energy              %.6g J at the start, %.6g J at the end (%.3g J of it kinetic)\n"
-      "  drift             %+.3g %% from start to end: %s\n"
+      "  drift             %+.3g %% from start to end%s\n"
       "  largest rise      %.3g %% at any time: 0 is good, above 1 %% the method adds energy\n",
       first.energy, last.energy, last.kinetic_energy, 100 * last.energy_drift,
-      losses(scene).c_str(), 100 * last.energy_rise);
+      losses(scene, last.energy_drift).c_str(), 100 * last.energy_rise);
   if (last.moved)
     out += format(
         "  work              %.6g J of what moves by itself; drift and rise are without it\n",

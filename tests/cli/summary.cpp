@@ -44,6 +44,15 @@ TEST_CASE("summary: what takes energy is what the scene has, and walls have no f
             "more with longer steps, and velocity_damping takes some\n"));
 }
 
+TEST_CASE("summary: where no energy is lost nothing is named that takes it") {
+  const std::string flies = summary_of(
+      "domain: {min: [0, 0, 0], max: [1, 1, 1]}\nfluid: {spacing: 0.1}\ngravity: [0, 0, 0]\n"
+      "bodies: [{shape: block, min: [0.3, 0.3, 0.3], max: [0.6, 0.6, 0.6], velocity: [1, 0, 0]}]\n"
+      "time: {step: 0.01, end: 0.1}\noutput: {}\n");
+  CHECK(has(flies, "+0 % from start to end\n"));
+  CHECK_FALSE(has(flies, "loses energy"));
+}
+
 TEST_CASE("summary: after --resume updates and wall time are those of the run and of the session") {
   const Scratch folder;
   folder.write("s.yaml", narrow_tank("0.2", "0.5") + "checkpoint: {every: 1000}\n");

@@ -20,6 +20,12 @@ def drawn(path):
     return pixels.shape[0] > 200 and pixels.shape[1] > 300 and pixels.std() > 0.02
 
 
+# Falls out of an open floor until the square of its speed overflows a float.
+DIVERGES = {"domain": {"min": [0, 0, 0], "max": [1.6, 0.4, 0.8], "open": ["z_min"]},
+            "gravity": [0, 0, -1e12], "time": {"step": 1e6, "end": 1e9}, "measure_every": 5,
+            "output": {"every": 1e8}}
+
+
 @pytest.fixture(scope="session")
 def pbf():
     """Path of the program."""
@@ -70,3 +76,19 @@ def pictures(tmp_path):
         pixels[..., 0] = k / 11
         imsave(folder / f"frame_{k}.png", pixels)  # 10 sorts before 2 as text
     return folder.parent
+
+
+@pytest.fixture
+def here(pbf, tmp_path, monkeypatch):
+    """An empty working folder, from which pbf_tools finds the program."""
+    monkeypatch.setenv("PBF", str(pbf))
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def scene():
+    """500 particles, 50 updates; no output."""
+    import numpy as np
+    return {"name": "small", "domain": {"min": [0, 0, 0], "max": np.array([1.6, 0.4, 0.8])},
+            "fluid": {"spacing": 0.04}, "time": {"step": 0.004, "end": np.float64(0.2)},
+            "bodies": [{"shape": "block", "min": (0, 0, 0), "max": (0.4, 0.2, 0.4)}]}

@@ -1,8 +1,7 @@
-"""Running from Python: run, plan and batch over the program, their errors and interrupts."""
+"""Running from Python: run and plan over the program, their errors and interrupts."""
 
 import json
 import os
-import pickle
 import re
 import signal
 import subprocess
@@ -12,30 +11,12 @@ import warnings
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import DIVERGES, ROOT
 
 import pbf_tools
 from pbf_tools import program, scene_text
 
-
-@pytest.fixture(autouse=True)
-def here(pbf, tmp_path, monkeypatch):
-    monkeypatch.setenv("PBF", str(pbf))
-    monkeypatch.chdir(tmp_path)
-
-
-@pytest.fixture
-def scene():
-    """500 particles, 50 updates; no output."""
-    return {"name": "small", "domain": {"min": [0, 0, 0], "max": np.array([1.6, 0.4, 0.8])},
-            "fluid": {"spacing": 0.04}, "time": {"step": 0.004, "end": np.float64(0.2)},
-            "bodies": [{"shape": "block", "min": (0, 0, 0), "max": (0.4, 0.2, 0.4)}]}
-
-
-# Falls out of an open floor until the square of its speed overflows a float.
-DIVERGES = {"domain": {"min": [0, 0, 0], "max": [1.6, 0.4, 0.8], "open": ["z_min"]},
-            "gravity": [0, 0, -1e12], "time": {"step": 1e6, "end": 1e9}, "measure_every": 5,
-            "output": {"every": 1e8}}
+pytestmark = pytest.mark.usefixtures("here")
 
 
 def test_a_dict_is_run_and_its_file_repeats_it(scene, pbf, tmp_path):
@@ -126,6 +107,14 @@ def test_what_cannot_be_is_an_exception_with_the_programs_words(scene, changes, 
         pbf_tools.run(scene, "out", **changes)
     assert error.value.exit_code in (code, 2) and text in str(error.value)
     assert not os.path.exists("out")
+
+
+@pytest.mark.parametrize("wrong", [None, 7, ["a.yaml", "b.yaml"]])
+@pytest.mark.parametrize("call", [pbf_tools.plan, pbf_tools.run])
+def test_what_is_no_scene_is_refused(call, wrong):
+    with pytest.raises(pbf_tools.BadInput, match="expected a scene: a path or a dict") as error:
+        call(wrong)
+    assert ("batch" in str(error.value)) == isinstance(wrong, list)
 
 
 def test_a_file_that_the_package_has_not_written_is_kept(scene, tmp_path):
@@ -292,52 +281,6 @@ def test_the_programs_own_lines_of_progress_are_known(scene):
         patch.setattr(program, "Line", Spy)
         pbf_tools.run(scene, "out", time__end=40, fluid__spacing=0.02, max_walltime=5)
     assert seen and all(re.match(r"\d+ %  update \d+/\d+", line) for line in seen)
-
-
-def test_a_batch_of_a_grid_gives_a_table_of_runs(scene):
-    table = pbf_tools.batch(scene, {"solver.iterations": [2, 4], "time__step": np.array([.004, .002])},
-                            "out/sweep", jobs=2, time={"end": 0.1})
-    assert isinstance(table, pbf_tools.Table) and len(table) == 4
-    assert set(table["reason"]) == {"finished"} and np.all(table["exit_code"] == 0)
-    assert [run.status for run in table.runs] == ["finished"] * 4
-    assert list(table["particles"]) == [run.info["particles"] for run in table.runs]
-    for row, run in zip(table["compression_mean"], table.runs):
-        assert row == pytest.approx(run.log["compression_mean"][-1])
-    assert pickle.loads(pickle.dumps(table)).out == table.out
-    stamp = table.runs[0].path.stat().st_mtime_ns
-    again = pbf_tools.batch(scene, {"solver.iterations": [2, 4], "time.step": [.004, .002]},
-                            "out/sweep", time={"end": 0.1})
-    assert again.runs[0].path.stat().st_mtime_ns == stamp
-    for path in ("out/sweep", "out/sweep/summary.csv"):
-        read = pbf_tools.read_batch(path)
-        assert read.csv() == again.csv() and read.units == again.units
-        assert [run.status for run in read.runs] == ["finished"] * 4
-    with pytest.raises(pbf_tools.FileError, match="no summary.csv in this folder"):
-        pbf_tools.read_batch("out")
-
-
-def test_a_batch_of_several_scenes_names_those_that_fail(scene, tmp_path):
-    (tmp_path / "file.yaml").write_text(json.dumps(scene_text.plain(scene, "")))
-    with pytest.warns(pbf_tools.PbfWarning, match="1 of 3 runs are not finished.*bad.*diverged"):
-        table = pbf_tools.batch([scene, {**scene, **DIVERGES, "name": "bad"}, "file.yaml"], out="o")
-    assert table["reason"].tolist() == ["finished", "diverged", "finished"]
-    assert table["name"].tolist() == ["small_output=", "bad", "file_output="] and "guard" in table["message"][1]
-    assert [run.status for run in table.runs] == ["finished", "diverged", "finished"]
-    both = pbf_tools.batch([scene, "file.yaml"], out="p")
-    assert both["name"].tolist() == ["small", "file"] and None not in both.runs
-
-
-@pytest.mark.parametrize("scenes, grid, text", [
-    ([], None, "a list of some"), (["a b.yaml"], None, "blanks"), (7, None, "expected a scene"),
-    ("s.yaml", {"solver.iterations": 3}, "expected a list of values, got 3"),
-    ("s.yaml", {"solver.iterations": "2,4"}, "expected a list of values"),
-    ("s.yaml", {"solver.iterations": []}, "is empty"), ("none.yaml", None, "none.yaml: cannot be"),
-    ("s.yaml", {"solver.iteratons": [1]}, "iteratons: unknown key"), ("s.txt", None, "s.txt")])
-def test_a_batch_that_cannot_be_says_why(scene, tmp_path, scenes, grid, text):
-    (tmp_path / "s.yaml").write_text(json.dumps(scene_text.plain(scene, "")))
-    with pytest.raises(pbf_tools.ToolError) as error:
-        pbf_tools.batch(scenes, grid, "out")
-    assert error.value.exit_code == 2 and text in str(error.value)
 
 
 def test_nothing_warns_where_nothing_is_wrong(scene):

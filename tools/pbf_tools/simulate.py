@@ -28,7 +28,7 @@ def plan(scene: Scene, *, base_folder: str | os.PathLike[str] | None = None,
     found = pbf.find(program)
     with tempfile.TemporaryDirectory() as folder:
         path = os.fspath(write_scene(scene, Path(folder) / "scene.yaml")
-                         if isinstance(scene, Mapping) else run_path(scene))
+                         if isinstance(scene, Mapping) else _path(scene))
         try:
             return pbf.answer(found, ["plan", path, "--json", *base_words(scene, base_folder),
                                       *set_words(overrides)])
@@ -61,7 +61,7 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
     program are PbfWarning.
     """
     found = pbf.find(program)
-    scene = scene if isinstance(scene, Mapping) else run_path(scene)
+    scene = scene if isinstance(scene, Mapping) else _path(scene)
     if isinstance(scene, Path) and scene.suffix in ENDINGS:
         if out is None:
             raise BadInput(f"{scene}: give out=, the folder in which this run is repeated")
@@ -102,6 +102,14 @@ def opened(folder: Path) -> Run | None:
         return Run(folder / RUN_FILE)
     except FileError:
         return None
+
+
+def _path(scene: Any) -> Path:
+    """Of a scene that is no dict."""
+    if isinstance(scene, str | os.PathLike):
+        return run_path(scene)
+    several = "; batch takes several" if isinstance(scene, list | tuple) else ""
+    raise BadInput(f"expected a scene: a path or a dict, got {scene!r}{several}")
 
 
 def _stamp(path: Path) -> tuple[int, int] | None:
