@@ -19,6 +19,7 @@
 #include "lib/campaign/batch_jobs.h"
 #include "lib/campaign/batch_list.h"
 #include "lib/campaign/batch_summary.h"
+#include "lib/io/run_path.h"
 #include "lib/program/schedule.h"
 #include "lib/run/emit.h"
 #include "lib/run/load_run.h"
@@ -141,7 +142,7 @@ class Batch {
     overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
     try {
       const LoadedScene loaded = load_scene_or_run(m.scene, overrides, o_.base_folder);
-      const LoadedScene record = load_stored_scene(folder + "/scene.resolved.yaml");
+      const LoadedScene record = load_stored_scene(folder + "/" + kResolvedScene);
       const std::string other =
           difference_of_record(record, loaded.scene, scene_files(loaded.scene, loaded.folder));
       if (!other.empty())

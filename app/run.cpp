@@ -12,6 +12,7 @@
 #include "lib/base/text.h"
 #include "lib/base/version.h"
 #include "lib/exec/make_solver.h"
+#include "lib/io/run_path.h"
 #include "lib/program/threads.h"
 #include "lib/run/emit.h"
 #include "lib/run/load_run.h"
@@ -126,7 +127,7 @@ int simulate(RunParts& parts, const std::string& start_note, const std::string& 
   const File json = open_json(log_json, from.started);
   parts.json = json.get();
   if (from.started) prepare_resume(folder, from);
-  folder.write_text("scene.resolved.yaml", scene_record(parts.scene, parts.loaded.files));
+  folder.write_text(kResolvedScene, scene_record(parts.scene, parts.loaded.files));
   log.note(banner(parts.scene, parts.plan, parts.solver, folder.path()));
   for (const Warning& w : parts.of_scene) log.warning(w.text);
   for (const std::string& note : from.notes) log.note("pbf: " + note);

@@ -35,7 +35,7 @@ std::string not_there_note(const LoadedScene& loaded, const std::string& out, bo
   // Runs of scenes without a name were kept in out/scene by earlier versions.
   const std::string before = std::string("out/") + Scene{}.name;
   std::error_code error;
-  if (loaded.named_by_file && fs::exists(before + "/scene.resolved.yaml", error))
+  if (loaded.named_by_file && fs::exists(before + "/" + kResolvedScene, error))
     return text + "; " + before +
            " holds a run of a scene without a name: to go on with that one, give --out " + before;
   return text + "; to go on with one that was begun with --out FOLDER, give the same --out";

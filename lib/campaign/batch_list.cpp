@@ -87,7 +87,7 @@ void name_all(std::vector<BatchMember>& all) {
   std::map<std::string, int> next;  // the number to try for a name: not all of them again
   for (BatchMember& m : all) {
     std::error_code error;
-    const fs::path scene = fs::path(m.scene).lexically_normal();
+    const fs::path scene = fs::absolute(m.scene, error).lexically_normal();  // "." has a name too
     const fs::path last = scene.has_filename() ? scene : scene.parent_path();
     std::string name = (fs::is_directory(scene, error) ? last.filename() : last.stem()).string();
     for (const std::string& o : m.overrides) {

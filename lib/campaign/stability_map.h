@@ -32,8 +32,8 @@ struct MapCell : Figures {
   std::string stopped_for;  ///< the guard's alarm
 };
 
-/// Values of an axis from text: V1,V2,... or FIRST:LAST:COUNT (in equal ratios); empty: the scene's own
-/// value times 1/4, 1/2, 1, 2, 4, 8. Throws Error(bad_input).
+/// Values of an axis from text: V1,V2,... or FIRST:LAST:COUNT (in equal ratios); empty: the scene's
+/// own value times 1/4, 1/2, 1, 2, 4, 8. Throws Error(bad_input).
 std::vector<double> map_values(const std::string& scene, const StabilityOptions& run,
                                const std::string& key, const std::string& text);
 

@@ -23,6 +23,13 @@ bool is_there(const fs::path& file) {
   return fs::exists(file, error);
 }
 
+/// Whether it has one or may have: what cannot be looked at, or is a link to nothing, is told when
+/// it is opened.
+bool has_run_file(const fs::path& folder) {
+  std::error_code error;
+  return fs::symlink_status(folder / kRunFile, error).type() != fs::file_type::not_found;
+}
+
 /// What a folder without a run file holds, of the kinds that a command may be meant for.
 struct Contents {
   std::vector<std::string> runs_below, run_files, scenes;
@@ -71,9 +78,8 @@ std::string why_not(const std::string& path) {
 std::string run_path(const std::string& path) {
   std::error_code error;
   if (!fs::is_directory(path, error)) return path;
-  const fs::path file = fs::path(path) / kRunFile;
-  if (!is_there(file)) bad_input(path, why_not(path));
-  return file.string();
+  if (!has_run_file(path)) bad_input(path, why_not(path));
+  return (fs::path(path) / kRunFile).string();
 }
 
 bool is_hdf5_file(const std::string& path) {

@@ -111,8 +111,8 @@ void draw_lengths(Image& image, Texts& texts, const View& view, const Projection
   const std::vector<EdgeLabels> edges = length_labels(view, projection);
   std::vector<std::pair<const EdgeLabels*, std::vector<LengthLabel>>> drawn;
   for (const EdgeLabels& edge : edges) {
-    // As many as keep a distance from each other.
-    const auto* chosen = edge.of.empty() ? nullptr : &edge.of.back();
+    // As many as keep a distance from each other; none where no two do.
+    const std::vector<LengthLabel>* chosen = nullptr;
     for (const auto& labels : edge.of) {
       bool apart = true;
       std::vector<TextBox> boxes;

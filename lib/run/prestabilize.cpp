@@ -106,10 +106,9 @@ std::string prestabilized_text(const Prestabilized& p) {
   std::string text = format(
       "start: compression mean %.3g %%, largest %.3g %%; after %d step%s without time "
       "(solver.prestabilize) mean %.3g %%%s, largest %.3g %%; no particle has moved by more than "
-      "%.2g "
-      "spacings",
+      "%.2g spacings",
       100 * p.compression_before, 100 * p.most_before, p.steps, p.steps == 1 ? "" : "s",
-      100 * p.compression_after, spread ? " (a few particles' is shared by more now)" : "",
+      100 * p.compression_after, spread ? " (spread over more particles now)" : "",
       100 * p.most_after, p.moved);
   if (!p.relieved())
     text +=

@@ -10,6 +10,7 @@
 #include "lib/base/text.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
+#include "lib/io/run_path.h"
 #include "lib/program/schedule.h"
 #include "lib/run/run_record.h"
 #include "lib/scene/load.h"
@@ -42,12 +43,12 @@ class Finder {
         schedule_(make_schedule(scene)) {}
 
   ResumePoint find(std::int64_t particles) {
-    if (!folder_.has("scene.resolved.yaml")) {
+    if (!folder_.has(kResolvedScene)) {
       if (folder_.holds_other_files())
         bad("holds no run to resume, but other files; give another folder with --out");
       return {};  // killed before it had begun
     }
-    const LoadedScene record = load_stored_scene(folder_.file("scene.resolved.yaml"));
+    const LoadedScene record = load_stored_scene(folder_.file(kResolvedScene));
     const Scene& before = record.scene;
     if (const std::string other = difference_of_record(record, scene_, files_); !other.empty())
       refuse("", other);

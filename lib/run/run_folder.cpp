@@ -19,6 +19,7 @@
 #include "lib/base/output_file.h"
 #include "lib/base/own_file.h"
 #include "lib/io/run_file.h"
+#include "lib/io/run_path.h"
 
 namespace pbf::inline run_module {
 namespace fs = std::filesystem;
@@ -39,7 +40,7 @@ bool own_file(const std::string& name) {
                                        kEarlierRunFile,
                                        "run.damaged.h5",
                                        kDamagedRunFile,
-                                       "scene.resolved.yaml",
+                                       kResolvedScene,
                                        "log.txt",
                                        "DONE",
                                        "checkpoint.h5",
@@ -70,7 +71,7 @@ bool RunFolder::check(const std::string& path, ExistingFolder existing) {
     fail(folder, "the output folder cannot be used", "it is not a folder");
   if (existing == ExistingFolder::refuse)
     throw Error(ExitCode::bad_input,
-                path + (fs::exists(folder / "scene.resolved.yaml", error)
+                path + (fs::exists(folder / kResolvedScene, error)
                             ? ": the output folder exists; give --overwrite to replace the run in "
                               "it, --resume to go on with it, or another folder with --out"
                             : ": the output folder exists, without a run in it; give --overwrite "

@@ -111,12 +111,13 @@ std::string error_lines(const Diagnostics& last, double max_of_run) {
 /// What takes energy, where some is lost. Walls and obstacles have no friction.
 std::string losses(const Scene& s, double drift) {
   if (drift >= 0) return "";
-  std::string more;
-  if (s.viscosity) more = "viscosity";
-  if (s.solver.velocity_damping < 1)
-    more += (more.empty() ? "" : " and ") + std::string("velocity_damping");
+  std::vector<std::string> more;
+  if (s.viscosity) more.push_back("viscosity");
+  if (s.solver.velocity_damping < 1) more.push_back("velocity_damping");
   return ": the method loses energy in splashes, more with longer steps" +
-         (more.empty() ? more : ", and " + more + " takes some");
+         (more.empty() ? std::string()
+                       : ", and " + joined(more, " and ") +
+                             (more.size() == 1 ? " takes some" : " take some"));
 }
 
 std::string energy_lines(const Diagnostics& first, const Diagnostics& last, const Scene& scene) {

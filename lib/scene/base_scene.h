@@ -16,9 +16,8 @@ inline constexpr const char* kBaseKey = "base";
 inline constexpr const char* kBaseHelp =
     "Another scene file, from the folder of this one: the scene is that file's, with the keys of "
     "this one laid over it, less its name. Blocks are merged key by key; lists (bodies, obstacles, "
-    "gauges) and "
-    "values are replaced, and off takes a block away. A base may have a base. It lies in the tree "
-    "of the first file's folder, or in that of --base-folder.";
+    "gauges) and values are replaced, and off takes a block away. A base may have a base. It lies "
+    "in the tree of the first file's folder, or in that of --base-folder.";
 
 /// Files of a chain, the first scene among them.
 inline constexpr std::size_t kMostBases = 16;

@@ -30,8 +30,7 @@ KeyRows start_rows() {
                   exact("all solvers of a comparison have the same solids"))},
       {key(KEY(name), plain,
            "Name of the scene, for titles and logs, and of the folder of its runs, out/NAME. That "
-           "of "
-           "a base is not taken.",
+           "of a base is not taken.",
            effect(Effect::none), usually("that of the scene file, without .yaml")),
        key(KEY(dimensions), number("", {2, 3}),
            "2: the fluid lies in the x-z plane in the middle of the domain's y, whose extent is "

@@ -194,6 +194,12 @@ TEST_CASE("without a home folder plan has no calibration, and bench says so befo
   CAPTURE(plan.err);
   CHECK(plan.code == 0);
   CHECK(has(plan.out, "a rule of thumb"));
+  // Of a home folder that cannot be looked into: of another user, or a link to itself.
+  std::filesystem::create_symlink("loop", folder / "loop");
+  const Outcome closed = pbf::test::pbf({"plan", scene}, folder.path(),
+                                        {"HOME=loop", "XDG_DATA_HOME=", "PBF_CALIBRATION="});
+  CHECK(closed.code == 0);
+  CHECK(has(closed.out, "a rule of thumb"));
   const Outcome bench = pbf::test::pbf({"bench", "--calibrate", "--n", "64", "--threads", "1"},
                                        folder.path(), nowhere);
   CHECK(bench.code == 2);

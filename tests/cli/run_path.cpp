@@ -103,6 +103,53 @@ TEST_CASE("run folder: without a run file it is said what is there") {
   CHECK(has(pbf({"batch", "list"}).err, "list:2: empty: no run.vtkhdf in this folder"));
 }
 
+TEST_CASE("run folder: what is no run file in it is told as that, not as a scene or as missing") {
+  const Runs pbf;
+  for (const char* name : {"blank", "text", "linked", "folder", "pipe"})
+    fs::create_directory(pbf.folder / name);
+  pbf.folder.write("blank/run.vtkhdf", "");
+  pbf.folder.write("text/run.vtkhdf", tiny_scene());
+  fs::create_symlink("nowhere", pbf.folder / "linked/run.vtkhdf");
+  fs::create_directory(pbf.folder / "folder/run.vtkhdf");
+  REQUIRE(shell("mkfifo pipe/run.vtkhdf", pbf.folder.path()).code == 0);
+  for (const auto& [name, reason] : std::vector<std::pair<std::string, std::string>>{
+           {"blank", "it is empty"},
+           {"text", "it is no HDF5 file"},
+           {"linked", "No such file or directory"},
+           {"folder", "it is a folder, not a regular file"},
+           {"pipe", "it is a FIFO, not a regular file"}})
+    for (const Args& args :
+         std::vector<Args>{{"run", name}, {"plan", name}, {"compare", "b", name}}) {
+      CAPTURE(args);
+      const Outcome o = pbf(args);
+      CHECK(o.code == 5);
+      CHECK(has(o.err, name + "/run.vtkhdf: cannot read the run file: " + reason));
+    }
+}
+
+TEST_CASE("run folder: one that is closed to the user is not said to hold no run") {
+  const Runs pbf;
+  const Outcome o = shell(
+      "chmod 755 .; chmod 000 b; $STRANGER \"$PBF\" plan b; code=$?\n"
+      "chmod 755 b; exit $code",
+      pbf.folder.path());
+  CHECK(o.code == 5);
+  CHECK(has(o.err, "b/run.vtkhdf: cannot read the run file: Permission denied"));
+}
+
+TEST_CASE("run folder: a list in one takes it as ., called as the folder") {
+  const Runs pbf;
+  pbf.folder.write("b/list", ". solver.iterations=2\n../out/tiny/.\n");
+  const Outcome o = pbf({"batch", "b/list", "--out", "sweep", "--quiet"});
+  CHECK(o.code == 0);
+  CHECK(fs::exists(pbf.folder / "sweep/b_iterations=2/DONE"));
+  CHECK(fs::exists(pbf.folder / "sweep/tiny/DONE"));
+  const Outcome inside =
+      shell("cd b && \"$PBF\" batch list --out ../inside --quiet", pbf.folder.path());
+  CHECK(inside.code == 0);
+  CHECK(fs::exists(pbf.folder / "inside/b_iterations=2/DONE"));
+}
+
 TEST_CASE("run folder: pbf batch takes folders of scenes, and says what one of a run is for") {
   const Runs pbf;
   const Outcome o = pbf({"batch", "b"});

@@ -42,6 +42,9 @@ TEST_CASE("summary: what takes energy is what the scene has, and walls have no f
             "more with longer steps, and viscosity takes some\n"));
   CHECK(has(summary_of(narrow_tank("0.2", "0.05"), {"--set", "solver.velocity_damping=0.99"}),
             "more with longer steps, and velocity_damping takes some\n"));
+  CHECK(has(summary_of(narrow_tank("0.2", "0.05") + "viscosity: {}\n",
+                       {"--set", "solver.velocity_damping=0.99"}),
+            "more with longer steps, and viscosity and velocity_damping take some\n"));
 }
 
 TEST_CASE("summary: where no energy is lost nothing is named that takes it") {

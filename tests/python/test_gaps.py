@@ -114,3 +114,24 @@ def test_one_reading_is_drawn_as_a_point_without_a_warning(pbf, tools, figures, 
 def test_the_name_of_a_gauge_among_columns_leads_to_plot_gauges(gapped, tools, tmp_path):
     code, _, err = tools("plot-log", gapped, "H", "-o", tmp_path / "a.png")
     assert code == 2 and "H is a gauge, which is not in the log; draw it with plot-gauges" in err
+
+
+@pytest.mark.parametrize("command, rows, code, text", [
+    (("plot-energy",), "0,1,2,3\n1,,2,3\n2,1,1,3\n", 0,
+     "note: {}: left out 1 of 3 rows, which have no kinetic_energy"),
+    (("plot-energy",), "0,,2,3\n1,1,,3\n", 2,
+     "{}: nothing to draw, left out 2 of 2 rows, which have no kinetic_energy, potential_energy"),
+    (("plot-energy",), "0,a,2,3\n1,b,3,3\n", 2, "{}: column kinetic_energy is not one of numbers"),
+    (("plot-front", "--width", 1, "--height", 1), "0,1,2,1\n0.1,1,1,\n0.2,1,1,1.2\n0.3,1,1,1.4\n",
+     0, "note: {}: left out 1 of 4 rows, which have no front_x"),
+    (("plot-front", "--width", 1, "--height", 1), "0,1,2,\n1,2,1,\n", 2, "{}: nothing to draw"),
+    (("plot-log", "front_x"), "0,1,2,a\n1,2,1,b\n", 2, "{}: column front_x is not one of numbers")],
+    ids=str)
+def test_tables_with_gaps_or_texts_in_other_plots(tools, tmp_path, recwarn, command, rows, code,
+                                                  text):
+    path = tmp_path / "log.csv"
+    path.write_text("time,kinetic_energy,potential_energy,front_x\n" + rows)
+    done, out, err = tools(command[0], path, *command[1:], "-o", tmp_path / "a.png")
+    assert done == code and text.format(path) in err and err.count("\n") == 1
+    assert "nan" not in out and (tmp_path / "a.png").exists() == (code == 0)
+    assert not [str(w.message) for w in recwarn.list]

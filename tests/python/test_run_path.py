@@ -133,3 +133,27 @@ def test_a_batch_repeats_runs_given_by_folder_or_by_file(minimal, sweep, pbf, tm
     assert [run.times[-1] for run in table.runs] == pytest.approx([0.02, 0.02])
     with pytest.raises(pbf_tools.FileError, match="no run.vtkhdf in this folder, but in 2 below"):
         pbf_tools.batch([sweep, sweep / "a"], out=tmp_path / "none")
+
+
+def test_a_run_file_that_cannot_be_read_is_not_said_to_be_missing(tools, tmp_path):
+    for name in ("linked", "folder"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "linked/run.vtkhdf").symlink_to("nowhere")
+    (tmp_path / "folder/run.vtkhdf").mkdir()
+    for name in ("linked", "folder"):
+        code, _, err = tools("plot-energy", tmp_path / name, "-o", tmp_path / "a.png")
+        assert code == 5 and f"{name}/run.vtkhdf: cannot read the run file: " in err
+        assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize("by_file", [False, True])
+def test_a_run_goes_on_in_its_own_folder(here, scene, by_file):
+    made = pbf_tools.run(scene, "own")
+    given = made.path if by_file else "own"
+    longer = pbf_tools.run(given, resume=True, time={"end": 0.24})
+    assert longer.path == made.path and longer.log["time"][-1] == pytest.approx(0.24)
+    with pytest.raises(pbf_tools.BadInput, match="give out=, the folder in which this run is"):
+        pbf_tools.run(given)
+    shutil.copy("own/run.vtkhdf", "copy.vtkhdf")
+    with pytest.raises(pbf_tools.BadInput, match="give out="):
+        pbf_tools.run("copy.vtkhdf", resume=True)

@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import subprocess
 
 import numpy as np
 import pytest
@@ -57,3 +58,22 @@ def test_a_batch_that_cannot_be_says_why(scene, tmp_path, scenes, grid, text):
     with pytest.raises(pbf_tools.ToolError) as error:
         pbf_tools.batch(scenes, grid, "out")
     assert error.value.exit_code == 2 and text in str(error.value)
+
+
+def test_names_of_runs_and_scenes_stay_texts_where_they_are_numbers(scene, pbf, tools, tmp_path):
+    for k in ("007", "12"):
+        pbf_tools.run({**scene, "name": k}, k, time={"end": 0.02})
+    (tmp_path / "list.txt").write_text("007\n12\n")
+    subprocess.run([pbf, "batch", "list.txt", "--out", "sweep", "--quiet"], check=True)
+    table = pbf_tools.read_batch("sweep")
+    assert table["name"].tolist() == table["scene"].tolist() == ["007", "12"]
+    assert table["message"].tolist() == ["", ""]
+    assert [run.name for run in table.runs] == ["007", "12"]
+    code, out, _ = tools("plot-batch", "sweep", "-o", "a.png")
+    assert code == 0 and out.splitlines()[0].endswith("  007")
+
+
+@pytest.mark.parametrize("wrong", [None, 7, ["a.yaml"]])
+def test_what_is_no_scene_among_several_is_refused(scene, wrong):
+    with pytest.raises(pbf_tools.BadInput, match="expected a scene: a path or a dict, got"):
+        pbf_tools.batch([scene, wrong], out="o")

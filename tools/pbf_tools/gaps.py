@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .errors import note
+from .errors import BadInput, note
+from .table import Table
 
 _POOL = "only a pool has it: gravity along an axis, walls on all sides, no obstacles, " \
         "no tank_motion"
@@ -29,6 +30,28 @@ def tell(who: str, values: np.ndarray, rows: str = "rows", kind: str = "") -> No
         every = count == len(missing)
         note(f"{who}: {'nothing to draw, ' if every else ''}nan in "
              f"{'all' if every else f'{count} of'} {len(missing)} {rows}{why(kind)}")
+
+
+def numbers(table: Table, columns: list[str], path: str) -> None:
+    """BadInput where one of the columns is of texts."""
+    for name in columns:
+        if table[name].dtype.kind == "U":
+            raise BadInput(f"{path}: column {name} is not one of numbers")
+
+
+def whole_rows(table: Table, columns: list[str], path: str) -> Table:
+    """The rows in which all of these columns have a value; a note says how many others there are.
+    BadInput where there is none."""
+    numbers(table, columns, path)
+    there = np.all([np.isfinite(table[name]) for name in columns], axis=0)
+    if there.all():
+        return table
+    missing = ", ".join(name for name in columns if not np.isfinite(table[name]).all())
+    said = f"left out {np.count_nonzero(~there)} of {len(there)} rows, which have no {missing}"
+    if not there.any():
+        raise BadInput(f"{path}: nothing to draw, {said}")
+    note(f"{path}: {said}")
+    return table.where(there)
 
 
 def points(values: np.ndarray) -> dict[str, object]:

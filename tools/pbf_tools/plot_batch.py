@@ -15,6 +15,7 @@ from matplotlib.ticker import NullLocator
 
 from . import gaps, style
 from .errors import BadInput, note
+from .run_path import ENDINGS
 from .simulate import opened
 from .sweep import Batch, read_batch
 from .table import Table, need
@@ -64,12 +65,22 @@ def scene_names(table: Batch, paths: list[str]) -> dict[str, str]:
             run = opened(table.out / str(table["name"][row]))
             if run:
                 return run.name
-        return Path(path).stem
+        return file_name(path)
 
-    for names in ([name_of(path) for path in paths], [Path(path).stem for path in paths]):
+    for names in ([name_of(path) for path in paths], [file_name(path) for path in paths]):
         if len(set(names)) == len(paths):
             return dict(zip(paths, names))
     return {path: path for path in paths}
+
+
+def file_name(path: str) -> str:
+    """Of a scene file or a run file without the ending, of the folder of a run the whole.
+
+    >>> file_name("scenes/dam.yaml"), file_name("out/v1.2/")
+    ('dam', 'v1.2')
+    """
+    given = Path(path)
+    return given.stem if given.suffix in (".yaml", ".yml", *ENDINGS) else given.name or path
 
 
 def swept_keys(table: Table) -> list[str]:

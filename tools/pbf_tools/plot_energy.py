@@ -11,7 +11,7 @@ import argparse
 
 import numpy as np
 
-from . import style
+from . import gaps, style
 from .errors import BadInput
 from .logs import RUN_HELP, Log, labels, read_log
 
@@ -28,6 +28,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     logs = [read_log(path, COLUMNS) for path in args.runs]
+    for path, log in zip(args.runs, logs):
+        log.table = gaps.whole_rows(log.table, COLUMNS, path)
     fig, ((axes,),) = style.figure()
     if len(logs) == 1:
         detail = _one(axes, logs[0])

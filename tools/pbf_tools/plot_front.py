@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import style
+from . import gaps, style
 from .errors import BadInput
 from .front_data import REFERENCES
 from .logs import RUN_HELP, labels, read_run, short_names
@@ -105,6 +105,7 @@ def read_front(path: str, args: argparse.Namespace) -> Front:
         own_width, own_height, own_g = float(size[axis]), float(size[up]), float(abs(gravity[up]))
         log, name, title = r.log, r.name, r.title
     need(log, ["time", column], path)
+    log = gaps.whole_rows(log, ["time", column], path)
     width, height, g = (own if given is None else given for given, own in
                         ((args.width, own_width), (args.height, own_height), (args.gravity, own_g)))
     if not (width > 0 and height > 0 and g > 0):

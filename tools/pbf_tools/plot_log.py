@@ -91,8 +91,9 @@ def run(args: argparse.Namespace) -> int:
             print(f"{name:28} {logs[0].units.get(name, '')}")
         return 0
     names = choose(logs[0], patterns, files[0], read[0].gauges)
-    for path, log in zip(files[1:], logs[1:]):
+    for path, log in zip(files, logs):
         need(log, names, path)
+        gaps.numbers(log, ["time", *names], path)
     runs = labels(files, [log.name for log in read])
     panels: dict[str, list[str]] = {}
     for name in names:

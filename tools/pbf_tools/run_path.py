@@ -8,6 +8,7 @@ from pathlib import Path
 from .errors import FileError
 
 RUN_FILE = "run.vtkhdf"
+RECORD = "scene.resolved.yaml"  # beside the run file: the scene with every default
 ENDINGS = (".vtkhdf", ".h5", ".hdf5")
 
 
@@ -30,9 +31,14 @@ def run_path(path: str | os.PathLike[str]) -> Path:
     given = Path(path)
     if not given.is_dir():
         return given
-    if (given / RUN_FILE).is_file():
+    if os.path.lexists(given / RUN_FILE):  # a link to nothing too: opening it says what is wrong
         return given / RUN_FILE
     raise FileError(f"{path}: {_why_not(given)}")
+
+
+def folder_of_run(file: Path) -> Path | None:
+    """The folder of a run that this is the file of; None for a file by itself, a copy say."""
+    return file.parent if file.name == RUN_FILE and (file.parent / RECORD).is_file() else None
 
 
 def _why_not(folder: Path) -> str:
@@ -48,7 +54,7 @@ def _why_not(folder: Path) -> str:
                f"command that takes several, {folder / '*' / RUN_FILE}{batch}"
     if beside:
         return f"{missing}, but {_some(beside)}; name the file"
-    if (folder / "scene.resolved.yaml").is_file():
+    if (folder / RECORD).is_file():
         return f"{missing}: this run writes no frames; give its scene `output: {{}}` and run it " \
                "again"
     return f"{missing}; name a run file, or the folder that `pbf run --out` wrote"

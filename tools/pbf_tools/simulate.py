@@ -11,7 +11,7 @@ from typing import Any
 from . import program as pbf
 from .errors import BadInput, FileError, PbfError
 from .run_file import Run
-from .run_path import ENDINGS, RUN_FILE, run_path
+from .run_path import ENDINGS, RUN_FILE, folder_of_run, run_path
 from .scene_text import Scene, base_words, set_words, write_scene
 
 
@@ -28,7 +28,7 @@ def plan(scene: Scene, *, base_folder: str | os.PathLike[str] | None = None,
     found = pbf.find(program)
     with tempfile.TemporaryDirectory() as folder:
         path = os.fspath(write_scene(scene, Path(folder) / "scene.yaml")
-                         if isinstance(scene, Mapping) else _path(scene))
+                         if isinstance(scene, Mapping) else scene_path(scene))
         try:
             return pbf.answer(found, ["plan", path, "--json", *base_words(scene, base_folder),
                                       *set_words(overrides)])
@@ -43,8 +43,9 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
         program: str | os.PathLike[str] | None = None, **overrides: Any) -> Run:
     """Simulates a scene, a file, a dict of the same keys or a run to repeat (its file or folder),
     into the folder `out` and opens its run file. Without `out` that is out/NAME, with the name of
-    the scene: of a file that says none its own, of a dict "scene". A dict is written to OUT.yaml,
-    which `pbf run` takes too.
+    the scene: of a file that says none its own, of a dict "scene"; of a run to go on with
+    (resume=True) it is the run's own folder. A dict is written to OUT.yaml, which `pbf run` takes
+    too.
 
     Overrides are keys of the scene, as those of --set: `solver__iterations=8`,
     `time={"end": 1}`, `**{"bodies[0].velocity": [1, 0, 0]}`; None is off. A scene without
@@ -61,8 +62,9 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
     program are PbfWarning.
     """
     found = pbf.find(program)
-    scene = scene if isinstance(scene, Mapping) else _path(scene)
+    scene = scene if isinstance(scene, Mapping) else scene_path(scene)
     if isinstance(scene, Path) and scene.suffix in ENDINGS:
+        out = folder_of_run(scene) if out is None and resume else out
         if out is None:
             raise BadInput(f"{scene}: give out=, the folder in which this run is repeated")
         forecast = None  # a run file holds a scene that has been planned, with output
@@ -104,7 +106,7 @@ def opened(folder: Path) -> Run | None:
         return None
 
 
-def _path(scene: Any) -> Path:
+def scene_path(scene: Any) -> Path:
     """Of a scene that is no dict."""
     if isinstance(scene, str | os.PathLike):
         return run_path(scene)

@@ -12,13 +12,14 @@ from typing import Any
 from . import program as pbf
 from .errors import BadInput, FileError, PbfWarning
 from .run_file import Run
-from .run_path import run_path
 from .scene_text import Scene, base_words, set_words, text, write_scene
-from .simulate import opened, plan, writes_a_run_file
+from .simulate import opened, plan, scene_path, writes_a_run_file
 from .table import Table, read_csv, write_text
 
 OUTPUT = ("--set", "output={}")
 SUMMARY = "summary.csv"
+# Also where they look like numbers.
+TEXTS = ("name", "scene", "settings", "reason", "message")
 
 
 class Batch(Table):
@@ -52,7 +53,7 @@ def read_batch(out: str | os.PathLike[str]) -> Batch:
         if not path.is_file():
             raise FileError(f"{out}: no {SUMMARY} in this folder; name the folder that `pbf batch "
                             "--out` wrote (with --collect it writes the summary of what is there)")
-    summary = read_csv(path)
+    summary = read_csv(path, TEXTS)
     return Batch(summary.columns, summary.units, path.parent)
 
 
@@ -137,7 +138,7 @@ def _input(scenes: Any, folder: Path, program: str, base_folder: Any,
             names.add(name)
             path = write_scene(scene, beside / f"{name}.yaml").absolute()
         else:
-            path = run_path(scene).absolute()
+            path = scene_path(scene).absolute()
         if re.search(r"[\s#]", str(path)):
             raise BadInput(f"{path}: a list of scenes cannot hold a path with blanks or #; rename "
                            "it, or give another out")

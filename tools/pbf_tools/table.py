@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Mapping, MutableMapping
+from collections.abc import Collection, Mapping, MutableMapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -140,11 +140,12 @@ def write_text(path: str | Path, text: str, parents: bool = False) -> None:
         raise FileError(f"{path}: cannot write the file: {problem.strerror}") from None
 
 
-def read_csv(path: str | Path) -> Table:
+def read_csv(path: str | Path, text: Collection[str] = ()) -> Table:
     """A CSV file with a header; lines that start with # are comments, of which "# units: time=s,
     speed=m/s" gives units.
 
-    A column of numbers becomes float64 with nan for empty cells, any other one of strings.
+    A column of numbers becomes float64 with nan for empty cells, any other one of strings, and
+    those named in `text` always.
     FileError when the file cannot be read, BadInput naming the line when it is not a table.
     """
     try:
@@ -161,8 +162,9 @@ def read_csv(path: str | Path) -> Table:
     for (line, _), row in zip(numbered[1:], rows[1:]):
         if len(row) != len(header):
             raise BadInput(f"{path}:{line}: {len(row)} values for {len(header)} columns")
-    return Table({name: _column([row[c] for row in rows[1:]]) for c, name in enumerate(header)},
-                 _units(lines))
+    cells = {name: [row[c] for row in rows[1:]] for c, name in enumerate(header)}
+    return Table({name: np.array(column, dtype=str) if name in text else _column(column)
+                  for name, column in cells.items()}, _units(lines))
 
 
 def _units(lines: list[str]) -> dict[str, str]:

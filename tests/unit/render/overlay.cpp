@@ -192,3 +192,23 @@ TEST_CASE("the default camera keeps its frame clear of labels and colour bar", "
       }
     }
 }
+
+TEST_CASE("an edge too short for two numbers has none, and no name of an axis", "[render]") {
+  View view = bar_view({640, 360});
+  const auto below_the_floor = [&](const Double3& box) {
+    view.domain_max = box;
+    const Projection p = projection_of(view, 0);
+    double floor = 0, left = 1e9, right = 0;
+    for (const double x : {0.0, box[0]})
+      for (const double y : {0.0, box[1]}) {
+        const auto place = p.to_pixel({x, y, 0});
+        floor = std::max(floor, place[1]);
+        left = std::min(left, place[0]), right = std::max(right, place[0]);
+      }
+    Image image = white(640, 360);
+    draw_overlay(image, view, p, "m/s", 1, 0);
+    return ink(image, left - 60, floor + 6, right + 60, 360);  // under the 0 of the heights
+  };
+  CHECK(below_the_floor({1.6, 1.6, 1.6}) > 50);
+  CHECK(below_the_floor({0.1, 0.1, 3}) == 0);
+}

@@ -222,7 +222,7 @@ TEST_CASE("prestabilize: a mean that rises while the largest falls is explained,
       "start: compression mean 0.002 %, largest 0.5 %; after 1 step without time "
       "(solver.prestabilize) mean ";
   const std::string end = ", largest 0.07 %; no particle has moved by more than 0.006 spacings";
-  CHECK(prestabilized_text(p) == begin + "0.0025 % (a few particles' is shared by more now)" + end);
+  CHECK(prestabilized_text(p) == begin + "0.0025 % (spread over more particles now)" + end);
   p.compression_after = 1e-5;
   CHECK(prestabilized_text(p) == begin + "0.001 %" + end);
   // In a run: the edges of a block.
