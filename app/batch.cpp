@@ -204,9 +204,7 @@ int command_batch(const BatchOptions& o) {
   std::vector<GridAxis> axes;
   for (const std::string& g : o.grid) axes.push_back(parse_axis(g));
   std::vector<BatchMember> members = batch_members(o.input, axes);
-  const fs::path input(o.input);
-  const std::string stem = (input.has_filename() ? input : input.parent_path()).stem().string();
-  const std::string out = o.out.empty() ? "out/batch_" + stem : o.out;
+  const std::string out = o.out.empty() ? "out/batch_" + batch_stem(o.input) : o.out;
   Log log(o.quiet);
   if (o.list) {
     log.result(list_text(members));

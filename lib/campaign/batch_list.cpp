@@ -86,10 +86,7 @@ void name_all(std::vector<BatchMember>& all) {
   std::set<std::string> taken;
   std::map<std::string, int> next;  // the number to try for a name: not all of them again
   for (BatchMember& m : all) {
-    std::error_code error;
-    const fs::path scene = fs::absolute(m.scene, error).lexically_normal();  // "." has a name too
-    const fs::path last = scene.has_filename() ? scene : scene.parent_path();
-    std::string name = (fs::is_directory(scene, error) ? last.filename() : last.stem()).string();
+    std::string name = batch_stem(m.scene);
     for (const std::string& o : m.overrides) {
       const std::size_t equals = o.find('=');
       const std::size_t dot = o.rfind('.', equals);
@@ -105,6 +102,16 @@ void name_all(std::vector<BatchMember>& all) {
 }
 
 }  // namespace
+
+std::string batch_stem(const std::string& input) {
+  std::error_code error;
+  fs::path path = fs::absolute(input, error).lexically_normal();  // "." has a name too
+  if (!path.has_filename()) path = path.parent_path();
+  if (fs::is_directory(path, error)) return path.filename().string();
+  if (path.filename() == kRunFile || path.filename() == kResolvedScene)
+    return path.parent_path().filename().string();  // every run has these
+  return path.stem().string();
+}
 
 GridAxis parse_axis(const std::string& text) {
   const std::size_t equals = text.find('=');

@@ -14,6 +14,10 @@ struct BatchMember {
   std::vector<std::string> overrides;  ///< key.path=value: of the list, then of the grid
 };
 
+/// The name of a scene, a folder, a list or a run in those of its runs and of their folder: its
+/// file's, without the ending; of the files that every run has, such as run.vtkhdf, their folder's.
+std::string batch_stem(const std::string& input);
+
 /// Of `--grid key=v1,v2` and key=first:last:count. Throws Error(bad_input) for anything else.
 GridAxis parse_axis(const std::string& text);
 

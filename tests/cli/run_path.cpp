@@ -150,6 +150,19 @@ TEST_CASE("run folder: a list in one takes it as ., called as the folder") {
   CHECK(fs::exists(pbf.folder / "inside/b_iterations=2/DONE"));
 }
 
+TEST_CASE("run folder: a batch names its runs and its folder by that of the run, not by its file") {
+  const Runs pbf;
+  const Args twice = {"--grid", "time.step=0.01,0.005", "--set", "time.end=0.01", "--quiet"};
+  for (const char* file : {"b/run.vtkhdf", "b/scene.resolved.yaml"}) {
+    Args args = {"batch", file};
+    args.insert(args.end(), twice.begin(), twice.end());
+    CAPTURE(args);
+    REQUIRE(pbf(args).code == 0);
+    CHECK(fs::exists(pbf.folder / "out/batch_b/b_step=0.01/DONE"));
+    fs::remove_all(pbf.folder / "out/batch_b");
+  }
+}
+
 TEST_CASE("run folder: pbf batch takes folders of scenes, and says what one of a run is for") {
   const Runs pbf;
   const Outcome o = pbf({"batch", "b"});

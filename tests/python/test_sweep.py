@@ -77,3 +77,10 @@ def test_names_of_runs_and_scenes_stay_texts_where_they_are_numbers(scene, pbf, 
 def test_what_is_no_scene_among_several_is_refused(scene, wrong):
     with pytest.raises(pbf_tools.BadInput, match="expected a scene: a path or a dict, got"):
         pbf_tools.batch([scene, wrong], out="o")
+
+
+def test_the_folder_of_a_batch_is_called_as_the_program_calls_it(scene):
+    pbf_tools.run(scene, "wave.1", output={})
+    for given in ("wave.1/run.vtkhdf", "wave.1/scene.resolved.yaml"):
+        table = pbf_tools.batch(given, time__end=0.01)
+        assert table.out.as_posix() == "out/batch_wave.1" and table["name"].tolist() == ["wave.1"]

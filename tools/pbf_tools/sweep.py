@@ -12,6 +12,7 @@ from typing import Any
 from . import program as pbf
 from .errors import BadInput, FileError, PbfWarning
 from .run_file import Run
+from .run_path import RECORD, RUN_FILE
 from .scene_text import Scene, base_words, set_words, text, write_scene
 from .simulate import opened, plan, scene_path, writes_a_run_file
 from .table import Table, read_csv, write_text
@@ -107,10 +108,15 @@ def batch(scenes: Scene | Sequence[Scene], grid: Mapping[str, Sequence[Any]] | N
 
 
 def _stem(scenes: Any) -> str:
-    """Of the default name of the folder."""
+    """Of the default name of the folder, as `pbf batch` gives it."""
     if isinstance(scenes, Mapping):
         return str(scenes.get("name") or "scene")
-    return Path(scenes).resolve().stem if isinstance(scenes, str | os.PathLike) else "scenes"
+    if not isinstance(scenes, str | os.PathLike):
+        return "scenes"
+    path = Path(scenes).resolve()
+    if path.name in (RUN_FILE, RECORD):  # every run has these
+        path = path.parent
+    return path.name if path.is_dir() else path.stem
 
 
 def _input(scenes: Any, folder: Path, program: str, base_folder: Any,
