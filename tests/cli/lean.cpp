@@ -186,6 +186,29 @@ TEST_CASE("the peak memory of a run is that of one particle and the arrays of th
 }
 #endif
 
+TEST_CASE("the run file has the bytes of the plan, to 15 %, however small the scene is") {
+  const Scratch folder;
+  const std::string tank = tiny_scene();
+  const std::string measured =
+      "obstacles: [{name: step, shape: box, min: [0.6, 0.2, 0], max: [1, 0.8, 0.4], loads: true}]\n"
+      "gauges: [{name: level, kind: level, at: [0.5, 0.5]}]\nmeasure_every: 1\n";
+  for (const std::string& scene : {tank, tank + measured, tank + "precision: double\n"}) {
+    folder.write("s.yaml", scene);
+    for (const char* end : {"0.1", "10"}) {
+      CAPTURE(scene, end);
+      const std::string until = std::string("time.end=") + end;
+      const Outcome plan =
+          pbf::test::pbf({"plan", "s.yaml", "--json", "--set", until}, folder.path());
+      REQUIRE(
+          pbf::test::pbf({"run", "s.yaml", "--set", until, "--out", "o", "--overwrite", "--quiet"},
+                         folder.path())
+              .code == 0);
+      CHECK(number_after(plan.out, "\"disk_bytes\":") ==
+            Approx(double(fs::file_size(folder / "o/run.vtkhdf"))).epsilon(0.15));
+    }
+  }
+}
+
 TEST_CASE("without a home folder plan has no calibration, and bench says so before it measures") {
   const Scratch folder;
   const std::vector<std::string> nowhere{"HOME=", "XDG_DATA_HOME=", "PBF_CALIBRATION="};
