@@ -4,10 +4,10 @@
 
 #include "lib/base/text.h"
 #include "lib/scene/keys.h"
+#include "lib/scene/layout.h"
 #include "lib/scene/number.h"
 #include "lib/scene/suggest.h"
 #include "lib/scene/value.h"
-#include "lib/scene/writing.h"
 
 namespace pbf::inline scene_module {
 namespace {
@@ -130,12 +130,13 @@ class Validator {
     if (!problem.empty()) report(value.place(), path, problem);
   }
 
-  /// What makes a key of something else, in braces: {cfm: 1,5} and {step:0.002}.
+  /// What makes a key of something else, in braces: {cfm: 1,5}, {step:0.002} and {step 0.002}.
   static std::string slip(const Node& name, const Node& value) {
-    if (value.kind != Node::Kind::null) return "";
-    if (!name.text.empty() && name.text.find_first_not_of("0123456789") == std::string::npos)
+    if (value.kind == Node::Kind::null && !name.text.empty() &&
+        name.text.find_first_not_of("0123456789") == std::string::npos)
       return "; decimals take a point, a comma begins the next key";
-    return missing_space(name.text);
+    const std::string space = missing_space(name.text);
+    return space.empty() ? missing_colon(name.text) : space;
   }
 
   /// ", did you mean bodies[1].max?", and what else is to be said; empty: nothing is near.

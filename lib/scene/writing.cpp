@@ -105,79 +105,6 @@ std::string comma_remedy(const std::string& text) {
          (thousands ? ", or " + without(text, ",") + " if thousands were meant" : "");
 }
 
-/// A line of a file: its indentation and what stands there.
-struct Line {
-  std::size_t indent;
-  std::string text;  ///< without the comment and blanks around it
-  int number;        ///< from 0
-};
-
-/// Lines of blocks: without empty ones, and those within brackets that opened before.
-std::vector<Line> block_lines(const std::string& text, int last) {
-  std::vector<Line> lines;
-  int depth = 0, number = 0;
-  for (std::size_t start = 0; start < text.size() && number <= last; ++number) {
-    const std::size_t end = std::min(text.find('\n', start), text.size());
-    std::string line = text.substr(start, end - start);
-    start = end + 1;
-    char quote = 0;
-    int opened = 0;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      const char c = line[i];
-      if (quote != 0) {
-        if (c == quote) quote = 0;
-      } else if (c == '#' && (i == 0 || line[i - 1] == ' ')) {
-        line.resize(i);
-      } else if (c == '\'' || c == '"') {
-        quote = c;
-      } else {
-        opened += (c == '[' || c == '{') - (c == ']' || c == '}');
-      }
-    }
-    const std::size_t first = line.find_first_not_of(" \r");
-    if (first != line.npos && depth == 0)
-      lines.push_back(
-          {first, line.substr(first, line.find_last_not_of(" \r") + 1 - first), number});
-    depth = std::max(0, depth + opened);
-  }
-  return lines;
-}
-
-bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
-
-/// "step: 0.002": a key that has its value on its line.
-bool has_value(const std::string& line) {
-  const std::size_t colon = line.find(": ");
-  return colon != line.npos && is_letter(line[0]) && line.find_first_of("\"'{[") > colon;
-}
-bool is_key(const std::string& line) {
-  return is_letter(line[0]) && (has_value(line) || line.back() == ':');
-}
-
-std::string indentation_remedy(const std::vector<Line>& lines) {
-  std::vector<std::size_t> levels;  // of the lines around
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const Line& line = lines[i];
-    const std::string place = "line " + std::to_string(line.number + 1);
-    while (!levels.empty() && levels.back() > line.indent) levels.pop_back();
-    if (i > 0 && line.indent > lines[i - 1].indent && is_key(line.text) &&
-        has_value(lines[i - 1].text))
-      return "; " + place +
-             " is indented deeper than the line before it, which has a value of its "
-             "own: keys of one block begin in the same column";
-    if (i > 0 && line.indent < lines[i - 1].indent &&
-        (levels.empty() || levels.back() != line.indent))
-      return "; " + place +
-             " is indented like no line above it: keys of one block begin in the "
-             "same column";
-    if (levels.empty() || levels.back() < line.indent) levels.push_back(line.indent);
-    // What follows a dash begins a block of its own.
-    if (line.text.size() > 2 && line.text[0] == '-' && line.text[1] == ' ')
-      levels.push_back(line.indent + line.text.find_first_not_of(' ', 1));
-  }
-  return "";
-}
-
 }  // namespace
 
 std::string number_remedy(const std::string& text, const std::string& unit) {
@@ -227,31 +154,6 @@ std::string list_remedy(const std::string& text, std::size_t numbers) {
   for (std::string word; in >> word; all.push_back(word))
     if (!is_number(word, value)) return "";
   return all.size() == numbers ? "; write [" + joined(all, ", ") + "]" : "";
-}
-
-std::string missing_space(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  if (colon == text.npos || colon == 0 || colon + 1 >= text.size() || !is_letter(text[0]) ||
-      text[colon + 1] == ' ' || text[colon + 1] == '/')
-    return "";
-  const std::string key = text.substr(0, colon);
-  if (!std::all_of(key.begin(), key.end(), [](char c) {
-        return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)) || c == '.';
-      }))
-    return "";
-  return "; a space is missing behind \"" + one_line(key, 40) + ":\"";
-}
-
-std::string layout_remedy(const std::string& text, int line) {
-  const std::vector<Line> lines = block_lines(text, line);
-  // YAML complains of the line behind, for a text may go on there.
-  for (std::size_t back = 0; back < std::min<std::size_t>(2, lines.size()); ++back) {
-    const Line& l = lines[lines.size() - 1 - back];
-    const std::size_t dash = l.text.rfind("- ", 0) == 0 ? l.text.find_first_not_of(' ', 1) : 0;
-    if (const std::string found = missing_space(l.text.substr(dash)); !found.empty())
-      return found + " on line " + std::to_string(l.number + 1);
-  }
-  return indentation_remedy(lines);
 }
 
 }  // namespace pbf::inline scene_module

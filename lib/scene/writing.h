@@ -1,6 +1,5 @@
-// Mistakes of writing that YAML reads as something else: units, commas, missing spaces, wrong
-// indentation. Each function gives a phrase with the remedy, to stand behind what is wrong, or
-// nothing.
+// Mistakes of writing in values: units, commas, axes. Each function gives a phrase with the remedy,
+// to stand behind what is wrong, or nothing.
 #pragma once
 
 #include <string>
@@ -16,12 +15,5 @@ std::string list_remedy(const std::string& text, std::size_t numbers);
 
 /// "-z" in the place of a direction: "; write [0, 0, -1]"; else empty.
 std::string axis_remedy(const std::string& text);
-
-/// For "step:0.002", which is a text to YAML and no key: "; a space is missing behind step:".
-std::string missing_space(const std::string& text);
-
-/// For a file that is not valid YAML from this line on (counted from 0): what its lines up to there
-/// show.
-std::string layout_remedy(const std::string& text, int line);
 
 }  // namespace pbf::inline scene_module

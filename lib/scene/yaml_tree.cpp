@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "lib/base/plain_text.h"
-#include "lib/scene/writing.h"
+#include "lib/scene/layout.h"
 
 namespace pbf::inline scene_module {
 namespace {
@@ -38,8 +38,12 @@ class TreeBuilder : public YAML::EventHandler {
   Node take() { return std::move(root_); }
 
   void OnDocumentStart(const YAML::Mark& mark) override {
-    if (documents_++ > 0)
+    if (documents_++ == 0) return;
+    if (line_of(mark).rfind("---", 0) == 0)
       throw Refused{mark, "a second document starts here; a scene file holds one"};
+    // A text ends at a comment: what follows "name:demo  # about" is no part of it.
+    const std::string remedy = lines_ ? layout_remedy(text_, mark.line) : "";
+    throw Refused{mark, "not valid YAML: the lines above end before this one" + remedy};
   }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
@@ -88,6 +92,11 @@ class TreeBuilder : public YAML::EventHandler {
         return word;
     }
     return "";
+  }
+  std::string_view line_of(const YAML::Mark& mark) const {
+    if (mark.line < 0 || std::size_t(mark.line) >= starts_.size()) return "";
+    const std::size_t start = starts_[std::size_t(mark.line)];
+    return std::string_view(text_).substr(start, text_.find('\n', start) - start);
   }
   void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) const {
     if (anchor != 0) throw Refused{mark, "anchors (&name) are not supported; write the value out"};
@@ -194,8 +203,9 @@ Node parse_yaml(const std::string& text, const Origin& origin, bool lines) {
   } catch (const Refused& e) {
     throw YamlError{place_of(origin, lines, e.mark.line, e.mark.column), e.what};
   } catch (const YAML::Exception& e) {
-    throw YamlError{place_of(origin, lines, e.mark.line, e.mark.column),
-                    "not valid YAML: " + e.msg + (lines ? layout_remedy(text, e.mark.line) : "")};
+    throw YamlError{
+        place_of(origin, lines, e.mark.line, e.mark.column),
+        "not valid YAML: " + e.msg + (lines ? layout_remedy(text, e.mark.line, e.msg) : "")};
   }
   return builder.take();
 }

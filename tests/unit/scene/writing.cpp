@@ -1,5 +1,6 @@
 // Mistakes of writing are called by their name: units, commas, spaces, indentation, other files.
 #include "lib/scene/writing.h"
+#include "lib/scene/layout.h"
 
 #include "lib/scene/file_kind.h"
 #include "tests/support/catch.h"
@@ -103,6 +104,16 @@ TEST_CASE("writing: slips in a scene") {
       {"solver:\n  iterations:4\n  sor: 1\n",
        "a space is missing behind \"iterations:\" on line 7"},
       {"name:x\nthreads: 1\n", "a space is missing behind \"name:\" on line 6"},
+      {"output:{every: 0.1}\n", "a space is missing behind \"output:\""},
+      {"solver: {iterations:{4}, sor: 1}\n", "a space is missing behind \"iterations:\""},
+      {"gauges: [{name: g, at:[0.2,\n  0.2]}]\n", "a space is missing behind \"at:\" on line 6"},
+      {"solver: {iterations 4}\n",
+       "iterations 4: unknown key; a colon is missing behind \"iterations\""},
+      {"solver {iterations: 4}\n", "a colon is missing behind \"solver\""},
+      {"gravity: [0, 0}\n", "a comma, a colon or a closing bracket is missing on this line"},
+      {"solver\n  iterations: 4\n", "a colon is missing behind \"solver\" on line 6"},
+      {"solver: {iterations: 4\nthreads: 1\n", "the { on line 6 is not closed"},
+      {"gravity: [0, 0\nthreads: 1\n", "the [ on line 6 is not closed"},
       {"solver:\niterations: 4\n", "got nothing; its keys stand below it, indented by two spaces"},
       {"solver:\n  iterations: 4\n   sor: 1\n",
        "line 8 is indented deeper than the line before it, which has a value of its own"},
@@ -113,6 +124,13 @@ TEST_CASE("writing: slips in a scene") {
     CAPTURE(c.text, parse_error(kMinimal + c.text));
     CHECK(contains(parse_error(kMinimal + c.text), c.message));
   }
+  CHECK(contains(parse_error("# about\nname:x   # about\n" + kMinimal),
+                 "scene.yaml:3:1: not valid YAML: the lines above end before this one; a space is "
+                 "missing behind \"name:\" on line 2"));
+  CHECK(contains(parse_error("solver {iterations: 4, sor: 1}\n" + kMinimal),
+                 "a colon is missing behind \"solver\" on line 1"));
+  CHECK(contains(parse_error(kMinimal + "---\nname: x\n"),
+                 "scene.yaml:6:1: a second document starts here; a scene file holds one"));
   CHECK(contains(parse_error("step:0.002\n"), "a space is missing behind \"step:\""));
 }
 
@@ -123,6 +141,7 @@ TEST_CASE("writing: nothing is said of what is written well") {
   CHECK(missing_space(":") == "");
   CHECK(missing_space("x:") == "");
   CHECK(missing_space("") == "");
+  for (const char* text : {"", "every", " x", "1 2", "[0, 1]"}) CHECK(missing_colon(text) == "");
   CHECK(layout_remedy("", 0) == "");
   CHECK(layout_remedy("\n\n", 5) == "");
   // Lists in the column of their key, brackets over lines, comments, entries of lists.
