@@ -13,6 +13,10 @@ import os
 import re
 import sys
 
+if {"-h", "--help"} & set(sys.argv[1:]):
+    print(__doc__)  # also where there is no ParaView
+    sys.exit()
+
 import paraview
 from paraview import simple as pv
 

@@ -150,7 +150,7 @@ void plan_files(Plan& plan, const Scene& s) {
   if (s.render) {
     const auto pictures = double(schedule.pictures_until(all));
     const double pixels = double(s.render->size[0]) * s.render->size[1];
-    add("frames/frame_*.png", pictures, pictures * 0.32 * pixels, "0.32 bytes a pixel");
+    add("frames/frame_*.png", pictures, pictures * 0.43 * pixels, "0.43 bytes a pixel, 0.3 to 0.5");
   }
   if (s.checkpoint)
     add("checkpoint.h5, checkpoint_prev.h5", 2, 2 * (6 * (about(s.precision).bytes) + 4) * n + 2e4);

@@ -135,6 +135,11 @@ def test_a_study_is_drawn_with_the_front_given_or_computed(tools, tmp_path):
         assert len(front) == 4 and all("stored" in line for line in front)
     code, _, err = tools("plot-study", table, "--y", "drift", "-o", tmp_path / "b.png")
     assert code == 2 and "no column drift" in err
+    code, out, _ = tools("plot-study", tmp_path, "-o", tmp_path / "c.png")
+    assert code == 0 and drawn(tmp_path / "c.png")
+    (tmp_path / "empty").mkdir()
+    code, _, err = tools("plot-study", tmp_path / "empty", "-o", tmp_path / "d.png")
+    assert code == 5 and "no study.csv in this folder" in err
 
 
 def test_panels_show_the_tables_of_one_name_and_a_series_looks_the_same_in_all(tools, tmp_path):

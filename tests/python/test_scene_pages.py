@@ -78,7 +78,7 @@ def test_from_a_scene_to_a_plot_and_a_film(shell, pictures, tmp_path):
         else:
             assert "warning" not in done.stderr, done.stderr
     sweep = pbf_tools.read_batch(tmp_path / "out/sweep")
-    assert sorted(sweep["fluid.spacing"]) == [0.02, 0.03]
+    assert sorted(sweep["fluid.spacing"]) == [0.02, 0.04]
     assert {run.name for run in sweep.runs} == {"drop"}
 
 

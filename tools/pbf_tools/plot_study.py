@@ -10,23 +10,36 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
 
 import numpy as np
 
 from . import style
-from .errors import BadInput
+from .errors import BadInput, FileError
 from .table import Table, need, read_csvs
 
 EXAMPLE = """example:
   python -m pbf_tools plot-study study.csv --y compression_mean -o study.png"""
 
 
+TABLE = "study.csv"  # of pbf study, in its folder
 PANEL = " panel"  # a column that no table has: which panel, counted from 0, shows a row
 
 
+def _table_of(path: str) -> str:
+    """The table of a study that is named by its file or by the folder of `pbf study --out`."""
+    if not Path(path).is_dir():
+        return path
+    if (Path(path) / TABLE).is_file():
+        return str(Path(path) / TABLE)
+    raise FileError(f"{path}: no {TABLE} in this folder; name a CSV file, or the folder that "
+                    "`pbf study --out` wrote")
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("csv", nargs="+", metavar="CSV",
-                        help="tables written by pbf study, OUT/study.csv")
+    parser.add_argument("csv", nargs="+", metavar="STUDY",
+                        help="folder that pbf study --out wrote, or a table, OUT/study.csv; several "
+                             "are drawn together")
     parser.add_argument("--x", default="seconds_median", metavar="COLUMN",
                         help="run time, s (default %(default)s)")
     parser.add_argument("--x-spread", default="seconds_spread", metavar="COLUMN",
@@ -113,6 +126,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _rows(args: argparse.Namespace) -> Table:
     """The rows that can be drawn, each with its panel; what is left out is said on stderr."""
+    args.csv = [_table_of(path) for path in args.csv]
     table = read_csvs(args.csv)
     need(table, [args.x, args.y], ", ".join(args.csv))
     for name in (args.x, args.y):

@@ -234,7 +234,7 @@ class Run:
         return index.read(self.path, action, what)
 
     def __repr__(self) -> str:
-        return f"<run {self.title}: {len(self.times)} frames, {self.status}>"
+        return f"<run {self.title}: {len(self.times)} frames, {self.status}; {self.path}>"
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.fields)
