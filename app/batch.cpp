@@ -217,14 +217,14 @@ int command_batch(const BatchOptions& o) {
   if (o.only >= std::int64_t(members.size()))
     throw Error(ExitCode::bad_input, format("--only %ld: the runs are counted from 0 to %zu",
                                             o.only, members.size() - 1));
+  const bool one = o.only >= 0;  // a task of an array: no summary, others write beside it
+  if (!one && !o.collect) check_members(members, o.overrides, o.base_folder, true);
   std::error_code error;
   fs::create_directories(out, error);
   if (error) throw Error(ExitCode::io, out + ": the folder cannot be made: " + error.message());
   require_own_file(out + "/summary.csv");
   check_output("--out", out + "/summary.csv");
   watch_signals();
-  const bool one = o.only >= 0;  // a task of an array: no summary, others write beside it
-  if (!one && !o.collect) check_members(members, o.overrides, o.base_folder, true);
   if (one) members = {members[static_cast<std::size_t>(o.only)]};
   Batch batch(o, members, out, log);
   o.collect ? batch.collect() : batch.run();

@@ -31,7 +31,7 @@ std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Partic
 #else
   throw Error(ExitCode::unavailable,
               "this build has no CUDA backend; run with --backend cpu, or build with "
-              "-DPBF_CUDA=ON where a CUDA toolkit is installed");
+              "tools/demo --cuda (-DPBF_CUDA=ON) where a CUDA toolkit is installed");
 #endif
 }
 

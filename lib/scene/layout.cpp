@@ -177,6 +177,9 @@ std::string layout_remedy(const std::string& text, int line, const std::string& 
   // YAML complains of the line behind, for a text may go on there.
   for (std::size_t back = 0; back < std::min<std::size_t>(2, lines.size()); ++back) {
     const Line& l = lines[lines.size() - 1 - back];
+    if (l.text.size() > 1 && l.text[0] == '-' &&
+        std::string("{[").find(l.text[1]) != std::string::npos)
+      return "; a space is missing behind the \"-\" on line " + std::to_string(l.number + 1);
     const std::size_t dash = l.text.rfind("- ", 0) == 0 ? l.text.find_first_not_of(' ', 1) : 0;
     if (const std::string found = missing_space(l.text.substr(dash)); !found.empty())
       return found + " on line " + std::to_string(l.number + 1);

@@ -1,14 +1,18 @@
 #include "lib/scene/scene_text.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
 #include "lib/base/plain_text.h"
+#include "lib/base/shipped_file.h"
 #include "lib/scene/file_kind.h"
+#include "lib/scene/suggest.h"
 
 namespace pbf::inline scene_module {
 namespace {
@@ -35,6 +39,25 @@ void check_text(const std::string& text, const Origin& origin, const std::string
                   " in YAML");
 }
 
+/// For a file that is not there: the nearest name in its folder, or what comes with the program.
+std::string nearest_file(const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path file(path), folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  std::error_code error;
+  if (fs::exists(file, error)) return "";
+  std::vector<std::string> names;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (has_scene_name(it->path().string()) && names.size() < 10000)
+      names.push_back(it->path().stem().string());
+  std::ranges::sort(names);
+  const std::string near = has_scene_name(path) ? nearest_word(file.stem().string(), names) : "";
+  if (!near.empty())
+    return "; did you mean " + (file.parent_path() / (near + file.extension().string())).string() +
+           "?";
+  const std::string shipped = shipped_file("configs/" + file.filename().string());
+  return fs::exists(shipped, error) ? "; " + shipped + " comes with pbf" : "";
+}
+
 }  // namespace
 
 std::string text_of_file(const Origin& file, const std::string& what) {
@@ -45,7 +68,10 @@ std::string text_of_file(const Origin& file, const std::string& what) {
     bad_input(file.shown(), "is a directory, expected a " + what + " file");
   note_input(file.name);
   std::ifstream in(file.name, std::ios::binary);
-  if (!in) bad_input(file.shown(), "cannot be opened: " + std::string(std::strerror(errno)));
+  if (!in) {
+    const std::string reason = std::strerror(errno);
+    bad_input(file.shown(), "cannot be opened: " + reason + nearest_file(file.name));
+  }
   // One byte more than allowed tells a file that is too large, without reading all of it.
   std::string text(limit_of(what) + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));

@@ -221,6 +221,14 @@ TEST_CASE("a folder without a run is not called one to replace or to go on with"
             "into it beside what is there, or another folder with --out\n"));
 }
 
+TEST_CASE("a scene that is not there: one that comes with the program is named") {
+  const Scratch folder;
+  const Outcome o = pbf::test::pbf({"plan", "dam_break.yaml"}, folder.path());
+  CHECK(o.code == 2);
+  CHECK(has(o.err, "dam_break.yaml: cannot be opened: No such file or directory; "));
+  CHECK(has(o.err, "configs/dam_break.yaml comes with pbf"));
+}
+
 TEST_CASE("a setting with spaces before its = says so") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());

@@ -35,6 +35,11 @@ TEST_CASE("load: missing files, directories, binary and huge files are bad input
   const Folder folder;
   const std::string missing = (folder.path / "no.yaml").string();
   CHECK(load_error(missing) == "2 " + missing + ": cannot be opened: No such file or directory");
+  folder.write("sloshing.yaml", kMinimal);
+  const std::string typed = (folder.path / "slosing.yaml").string();
+  CHECK(load_error(typed) == "2 " + typed +
+                                 ": cannot be opened: No such file or directory; did you " +
+                                 "mean " + (folder.path / "sloshing.yaml").string() + "?");
   CHECK(contains(load_error(folder.path.string()), ": is a directory, expected a scene file"));
   CHECK(contains(load_error(folder.write("e.yaml", "")), "e.yaml: is empty"));
   CHECK(contains(load_error(folder.write("b.yaml", std::string("\x89PNG\r\n\0\1", 8))),

@@ -111,6 +111,7 @@ TEST_CASE("writing: slips in a scene") {
        "iterations 4: unknown key; a colon is missing behind \"iterations\""},
       {"solver {iterations: 4}\n", "a colon is missing behind \"solver\""},
       {"gravity: [0, 0}\n", "a comma, a colon or a closing bracket is missing on this line"},
+      {"gauges:\n  -{name: g, kind: level}\n", "a space is missing behind the \"-\" on line 7"},
       {"solver\n  iterations: 4\n", "a colon is missing behind \"solver\" on line 6"},
       {"solver: {iterations: 4\nthreads: 1\n", "the { on line 6 is not closed"},
       {"gravity: [0, 0\nthreads: 1\n", "the [ on line 6 is not closed"},
