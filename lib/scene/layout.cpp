@@ -14,6 +14,18 @@ bool is_of_key(char c) {
   return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)) || c == '.';
 }
 
+/// The key that a text begins with; empty where it begins with none.
+std::string first_key(const std::string& text) {
+  if (text.empty() || !is_letter(text[0])) return "";
+  return {text.begin(), std::find_if_not(text.begin(), text.end(), is_of_key)};
+}
+
+std::string colon_missing(const std::string& key) {
+  return "; a colon is missing behind \"" + one_line(key, 40) + "\"";
+}
+
+std::string on_line(std::size_t number) { return " on line " + std::to_string(number + 1); }
+
 /// f(i) for every character of a line outside quotes. Returns where its comment begins.
 template <class F>
 std::size_t visit_plain(const std::string& line, F f) {
@@ -33,21 +45,30 @@ std::size_t visit_plain(const std::string& line, F f) {
   return line.size();
 }
 
+/// The lines up to this one, as they stand.
+std::vector<std::string> raw_lines(const std::string& text, int last) {
+  std::vector<std::string> lines;
+  for (std::size_t start = 0; start < text.size() && int(lines.size()) <= last;) {
+    const std::size_t end = std::min(text.find('\n', start), text.size());
+    lines.push_back(text.substr(start, end - start));
+    start = end + 1;
+  }
+  return lines;
+}
+
 /// A line of a file: its indentation and what stands there.
 struct Line {
   std::size_t indent;
-  std::string text;  ///< without the comment and blanks around it
-  int number;        ///< from 0
+  std::string text;    ///< without the comment and blanks around it
+  std::size_t number;  ///< from 0
 };
 
 /// Lines of blocks: without empty ones, and those within brackets that opened before.
-std::vector<Line> block_lines(const std::string& text, int last) {
+std::vector<Line> block_lines(const std::vector<std::string>& raw) {
   std::vector<Line> lines;
-  int depth = 0, number = 0;
-  for (std::size_t start = 0; start < text.size() && number <= last; ++number) {
-    const std::size_t end = std::min(text.find('\n', start), text.size());
-    std::string line = text.substr(start, end - start);
-    start = end + 1;
+  int depth = 0;
+  for (std::size_t number = 0; number < raw.size(); ++number) {
+    std::string line = raw[number];
     int opened = 0;
     line.resize(visit_plain(line, [&](std::size_t i) {
       opened += (line[i] == '[' || line[i] == '{') - (line[i] == ']' || line[i] == '}');
@@ -94,17 +115,6 @@ std::string indentation_remedy(const std::vector<Line>& lines) {
   return "";
 }
 
-/// The lines up to this one, as they stand.
-std::vector<std::string> raw_lines(const std::string& text, int last) {
-  std::vector<std::string> lines;
-  for (std::size_t start = 0; start < text.size() && int(lines.size()) <= last;) {
-    const std::size_t end = std::min(text.find('\n', start), text.size());
-    lines.push_back(text.substr(start, end - start));
-    start = end + 1;
-  }
-  return lines;
-}
-
 /// "{min:[0, 0, 0]}": "; a space is missing behind "min:"".
 std::string missing_space_before_bracket(const std::string& line) {
   std::string found;
@@ -124,17 +134,15 @@ std::string missing_colon_of_block(const std::vector<Line>& lines) {
   const std::size_t n = lines.size();
   for (std::size_t k = n; k-- > (n < 2 ? 0 : n - 2);) {
     const std::string& text = lines[k].text;
-    const std::size_t end =
-        std::size_t(std::find_if_not(text.begin(), text.end(), is_of_key) - text.begin());
-    if (end == 0 || !is_letter(text[0])) continue;
+    const std::string key = first_key(text);
+    if (key.empty()) continue;
+    const std::size_t end = key.size();
     const std::size_t next = text.find_first_not_of(' ', end);
     const bool before_bracket =
         next != text.npos && next > end && (text[next] == '{' || text[next] == '[');
     const bool above_block =
         next == text.npos && k + 1 < n && lines[k + 1].indent > lines[k].indent;
-    if (before_bracket || above_block)
-      return "; a colon is missing behind \"" + one_line(text.substr(0, end), 40) + "\" on line " +
-             std::to_string(lines[k].number + 1);
+    if (before_bracket || above_block) return colon_missing(key) + on_line(lines[k].number);
   }
   return "";
 }
@@ -149,8 +157,8 @@ std::string missing_bracket(const std::vector<std::string>& lines) {
       if ((c == ']' || c == '}') && !open.empty()) open.pop_back();
     });
   if (open.empty()) return "; a comma, a colon or a closing bracket is missing on this line";
-  return std::string("; the ") + open.back().first + " on line " +
-         std::to_string(open.back().second + 1) + " is not closed, or a comma is missing";
+  return std::string("; the ") + open.back().first + on_line(open.back().second) +
+         " is not closed, or a comma is missing";
 }
 
 }  // namespace
@@ -166,28 +174,26 @@ std::string missing_space(const std::string& text) {
 }
 
 std::string missing_colon(const std::string& text) {
-  const std::size_t end =
-      std::size_t(std::find_if_not(text.begin(), text.end(), is_of_key) - text.begin());
-  if (end == 0 || !is_letter(text[0]) || end >= text.size() || text[end] != ' ') return "";
-  return "; a colon is missing behind \"" + one_line(text.substr(0, end), 40) + "\"";
+  const std::string key = first_key(text);
+  return key.empty() || !text.substr(key.size()).starts_with(' ') ? "" : colon_missing(key);
 }
 
 std::string layout_remedy(const std::string& text, int line, const std::string& reason) {
-  const std::vector<Line> lines = block_lines(text, line);
+  const std::vector<std::string> raw = raw_lines(text, line);
+  const std::vector<Line> lines = block_lines(raw);
   // YAML complains of the line behind, for a text may go on there.
   for (std::size_t back = 0; back < std::min<std::size_t>(2, lines.size()); ++back) {
     const Line& l = lines[lines.size() - 1 - back];
     if (l.text.size() > 1 && l.text[0] == '-' &&
         std::string("{[").find(l.text[1]) != std::string::npos)
-      return "; a space is missing behind the \"-\" on line " + std::to_string(l.number + 1);
+      return "; a space is missing behind the \"-\"" + on_line(l.number);
     const std::size_t dash = l.text.rfind("- ", 0) == 0 ? l.text.find_first_not_of(' ', 1) : 0;
     if (const std::string found = missing_space(l.text.substr(dash)); !found.empty())
-      return found + " on line " + std::to_string(l.number + 1);
+      return found + on_line(l.number);
   }
-  const std::vector<std::string> raw = raw_lines(text, line);
   for (std::size_t k = raw.size(); k-- > 0 && k + 2 >= raw.size();)
     if (const std::string found = missing_space_before_bracket(raw[k]); !found.empty())
-      return found + " on line " + std::to_string(k + 1);
+      return found + on_line(k);
   if (const std::string found = missing_colon_of_block(lines); !found.empty()) return found;
   if (reason.find("flow not found") != reason.npos || reason.find("flow end") != reason.npos)
     return missing_bracket(raw);

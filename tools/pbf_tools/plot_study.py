@@ -37,7 +37,7 @@ def _table_of(path: str) -> str:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("csv", nargs="+", metavar="STUDY",
+    parser.add_argument("csv", nargs="+", metavar="STUDY", type=_table_of,
                         help="folder that pbf study --out wrote, or a table, OUT/study.csv; several "
                              "are drawn together")
     parser.add_argument("--x", default="seconds_median", metavar="COLUMN",
@@ -126,7 +126,6 @@ def run(args: argparse.Namespace) -> int:
 
 def _rows(args: argparse.Namespace) -> Table:
     """The rows that can be drawn, each with its panel; what is left out is said on stderr."""
-    args.csv = [_table_of(path) for path in args.csv]
     table = read_csvs(args.csv)
     need(table, [args.x, args.y], ", ".join(args.csv))
     for name in (args.x, args.y):
