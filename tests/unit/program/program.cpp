@@ -1,0 +1,230 @@
+// The passes of an update. The expected sequences are written by hand from kernels/README.md ("The
+// step") and the features' own rules.
+#include "lib/program/program.h"
+
+#include "tests/support/catch.h"
+#include "tests/support/program_steps.h"
+#include "tests/support/scene_samples.h"
+
+namespace pbf::scene_test {
+namespace {
+
+using test::text;
+
+const std::string kRound = "0-2(density+lambda, delta)";
+
+}  // namespace
+
+TEST_CASE("program: every feature has its passes where the step wants them, and no others") {
+  struct Row {
+    std::string more;
+    std::vector<std::string> set;
+    std::string update;
+  };
+  const std::string start = "predict, sort, lists, ";
+  const Row row = GENERATE_COPY(
+      Row{"", {}, start + kRound},
+      Row{"", {"solver.fused=false"}, start + "0-2(density, lambda, delta)"},
+      Row{"", {"solver.iterations=1"}, start + "0-0(density+lambda, delta)"},
+      Row{"", {"viscosity.xsph=0.1"}, start + kRound + ", xsph"},
+      Row{"", {"viscosity.xsph=0"}, start + kRound},
+      Row{"", {"vorticity.epsilon=0.1"}, start + kRound + ", curl, confinement"},
+      Row{"", {"vorticity.epsilon=0"}, start + kRound},
+      Row{"",
+          {"viscosity.xsph=0.1", "vorticity.epsilon=0.1"},
+          start + kRound + ", xsph, curl, confinement"},
+      Row{"", {"tensile.k=0.01"}, start + kRound},  // in the loop of delta
+      Row{kTank, {}, "motion, " + start + kRound},
+      Row{kStanding, {}, start + "near solids, " + kRound},
+      // What moves does work, which is known from its load.
+      Row{kWaveMaker, {}, "motion, " + start + "near solids, " + kRound + ", loads"},
+      Row{kStanding, {"obstacles.0.loads=true"}, start + "near solids, " + kRound + ", loads"},
+      Row{"", {"domain.loads=true"}, start + "near solids, " + kRound + ", loads"},
+      Row{kFlow, {}, start + kRound + ", flow"}, Row{kLevelGauge, {}, start + kRound},
+      Row{kFlow,
+          {"viscosity.xsph=0.1", "domain.loads=true"},
+          start + "near solids, " + kRound + ", xsph, loads, flow"},
+      Row{"",
+          {"solver.levels=on"},
+          start + "level cells, 0-2(density+lambda, level multipliers, delta)"},
+      Row{"",
+          {"solver.levels=on", "domain.loads=true"},
+          start + "near solids, level cells, 0-2(density+lambda, level multipliers, loads of the "
+                  "levels, delta), loads"},
+      // The levels push walls, not obstacles.
+      Row{kStanding,
+          {"solver.levels=on", "obstacles.0.loads=true"},
+          start +
+              "near solids, level cells, 0-2(density+lambda, level multipliers, delta), loads"});
+  CAPTURE(row.more, row.set);
+  CHECK(text(program_of(row.more, row.set).update) == row.update);
+}
+
+TEST_CASE("program: updates in a row are joined, and the first and last update have their ends") {
+  struct Row {
+    std::string more;
+    std::vector<std::string> set;
+    std::string first, next, last;
+  };
+  const Row row = GENERATE_COPY(
+      Row{"", {}, "predict+sort", "predict+sort", ""},
+      Row{"", {"viscosity.xsph=0.1"}, "predict+sort", "xsph+predict+sort", "xsph"},
+      Row{"",
+          {"viscosity.xsph=0.1", "vorticity.epsilon=0.1"},
+          "predict+sort",
+          "xsph, curl, confinement, predict+sort",
+          "xsph, curl, confinement"},
+      Row{"", {"domain.loads=true"}, "predict+sort", "loads, predict+sort", "loads"},
+      Row{"",
+          {"domain.loads=true", "viscosity.xsph=0.1"},
+          "predict+sort",
+          "xsph, loads, predict+sort",
+          "xsph, loads"},
+      Row{kTank, {}, "motion, predict+sort", "motion, predict+sort", ""},
+      // Neither xsph nor delta may take particles along before what moves has moved.
+      Row{kTank,
+          {"viscosity.xsph=0.1"},
+          "motion, predict+sort",
+          "xsph, motion, predict+sort",
+          "xsph"},
+      Row{kFlow, {"viscosity.xsph=0.1"}, "predict+sort", "xsph, flow, predict+sort", "xsph, flow"});
+  CAPTURE(row.more, row.set);
+  const Program p = program_of(row.more, row.set);
+  CHECK(p.has_pairs());
+  CHECK(text(p.first) == row.first);
+  CHECK(text(p.next) == row.next);
+  CHECK(text(p.last) == row.last);
+}
+
+TEST_CASE("program: substeps share lists, and their last iteration takes particles to the next") {
+  struct Row {
+    std::string more;
+    std::vector<std::string> set;
+    UpdateShape shape;
+    std::string update, rest;
+  };
+  const std::string start = "predict, sort, lists, ", most = "0-1(density+lambda, delta), ",
+                    taken = most + "2-2(density+lambda, delta+predict), ",
+                    once = "0-0(density+lambda, delta)",
+                    once_taken = "0-0(density+lambda, delta+predict), ";
+  const Row row = GENERATE_COPY(
+      Row{"", {}, {1, 1, 0}, start + kRound, "lists, " + kRound},
+      Row{"", {}, {2, 1, 0}, start + kRound + ", predict, " + kRound, "lists, " + taken + kRound},
+      Row{"",
+          {},
+          {3, 1, 0},
+          start + kRound + ", predict, " + kRound + ", predict, " + kRound,
+          "lists, " + taken + taken + kRound},
+      // Positions are predicted already where these lists begin.
+      Row{"",
+          {},
+          {2, 2, 0},
+          start + kRound + ", " + start + kRound,
+          "lists, " + taken + "sort, lists, " + kRound},
+      Row{"",
+          {"solver.iterations=1"},
+          {5, 2, 0},  // two substeps, then three
+          start + once + ", predict, " + once + ", " + start + once + ", predict, " + once +
+              ", predict, " + once,
+          "lists, " + once_taken + once_taken + "sort, lists, " + once_taken + once_taken + once},
+      Row{"",
+          {"solver.fused=false", "solver.iterations=2"},
+          {2, 1, 0},
+          start + "0-1(density, lambda, delta), predict, 0-1(density, lambda, delta)",
+          "lists, 0-0(density, lambda, delta), 1-1(density, lambda, delta+predict), 0-1(density, "
+          "lambda, delta)"},
+      Row{kTank,
+          {},
+          {2, 1, 0},
+          "motion, " + start + kRound + ", motion, predict, " + kRound,
+          "lists, " + kRound + ", motion, predict, " + kRound},
+      Row{kTank,
+          {},
+          {2, 2, 0},
+          "motion, " + start + kRound + ", motion, " + start + kRound,
+          "lists, " + kRound + ", motion, predict+sort, lists, " + kRound},
+      // What goes with the lists is made with them, not in every substep.
+      Row{kStanding,
+          {"solver.iterations=1"},
+          {3, 2, 0},
+          start + "near solids, " + once + ", " + start + "near solids, " + once + ", predict, " +
+              once,
+          "lists, near solids, " + once_taken + "sort, lists, near solids, " + once_taken + once},
+      Row{"",
+          {"solver.iterations=0", "viscosity.xsph=0.1"},
+          {3, 2, 0},
+          start + start + "predict, xsph",
+          "lists, predict+sort, lists, predict"});
+  CAPTURE(row.more, row.set, row.shape.substeps, row.shape.lists_per_update);
+  const Program p = program_of(row.more, row.set, row.shape);
+  CHECK(text(p.rest) == row.rest);
+  CHECK(text(p.update) == row.update);
+}
+
+TEST_CASE("program: iterations until a tolerance follow those that always run, in every substep") {
+  const std::string until = kRound + ", until 4(" + kRound + ")";
+  const Program one = program_of("", {}, {1, 1, 4});
+  CHECK(text(one.update) == "predict, sort, lists, " + until);
+  CHECK(text(one.rest) == "lists, " + until);
+  // How many there are is not known before: the last one is not told apart.
+  const Program two = program_of("", {}, {2, 2, 4});
+  CHECK(text(two.rest) == "lists, " + until + ", predict+sort, lists, " + until);
+  const Program shared = program_of("", {}, {2, 1, 4});
+  CHECK(text(shared.rest) == "lists, " + until + ", predict, " + until);
+  CHECK(text(program_of("", {"solver.iterations=0", "viscosity.xsph=0.1"}, {1, 1, 4}).update) ==
+        "predict, sort, lists, xsph");
+}
+
+TEST_CASE("program: without pairs particles only move") {
+  struct Row {
+    std::string more;
+    std::vector<std::string> set;
+    int substeps;
+    std::string update, rest, end;
+  };
+  const Row row = GENERATE_COPY(
+      Row{"", {}, 1, "predict", "predict", ""},
+      Row{"", {}, 2, "predict, predict", "predict, predict", ""},
+      Row{kTank, {}, 2, "motion, predict, motion, predict", "motion, predict, motion, predict", ""},
+      Row{kStanding, {}, 1, "predict", "predict", ""},
+      Row{"", {"domain.loads=true"}, 1, "predict, loads", "predict", "loads"},
+      Row{kFlow,
+          {"domain.loads=true"},
+          2,
+          "predict, predict, loads, flow",
+          "predict, predict",
+          "loads, flow"});
+  std::vector<std::string> set{"solver.iterations=0"};
+  set.insert(set.end(), row.set.begin(), row.set.end());
+  CAPTURE(row.more, set);
+  const Program p = program_of(row.more, set, {row.substeps, row.substeps, 0});
+  CHECK_FALSE(p.has_pairs());
+  CHECK(text(p.update) == row.update);
+  CHECK(text(p.first) == "");
+  CHECK(text(p.rest) == row.rest);
+  CHECK(text(p.next) == row.end);
+  CHECK(text(p.last) == row.end);
+}
+
+TEST_CASE("program: a step without time has lists and iterations alone") {
+  const std::vector<std::string> all{"solver.levels=on", "domain.loads=true", "viscosity.xsph=0.1",
+                                     "vorticity.epsilon=0.1"};
+  const std::string lists = "lists, near solids, level cells, ",
+                    round = "0-2(density+lambda, level multipliers, loads of the levels, delta)";
+  const Program one = program_of(kTank + kFlow, all, {1, 1, 0}, true);
+  CHECK(text(one.update) == "predict, sort, " + lists + round);
+  CHECK(text(one.first) == "predict+sort");
+  CHECK(text(one.rest) == lists + round);
+  CHECK(text(one.next) == "predict+sort");
+  CHECK(text(one.last) == "");
+  // Nothing moves in between, so delta takes the particles along.
+  const Program two = program_of(kTank, {}, {2, 1, 0}, true);
+  CHECK(text(two.rest) ==
+        "lists, 0-1(density+lambda, delta), 2-2(density+lambda, delta+predict), " + kRound);
+  CHECK(text(program_of("", {}, {1, 1, 2}, true).rest) ==
+        "lists, " + kRound + ", until 2(" + kRound + ")");
+  CHECK(text(program_of("", {"solver.iterations=0", "viscosity.xsph=0.1"}, {}, true).update) ==
+        "predict");
+}
+
+}  // namespace pbf::scene_test
