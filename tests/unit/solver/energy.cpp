@@ -3,6 +3,7 @@
 
 #include "lib/solver/diagnostics.h"
 #include "tests/support/catch.h"
+#include "tests/support/folder.h"
 
 using namespace pbf;
 
@@ -53,4 +54,36 @@ TEST_CASE("a history with an infinite rise, as old checkpoints hold, goes on fin
   track.follow(m);
   CHECK(m.energy_rise == 1);
   CHECK(m.energy_drift == 1);
+}
+
+TEST_CASE("drift and rise leave out the work of what moves, and help and page say so") {
+  struct Measure {
+    double energy, work, drift, rise;
+  };
+  const auto check = [](const std::vector<Measure>& measures) {
+    EnergyTrack track;
+    for (const Measure& wanted : measures) {
+      Diagnostics m;
+      m.energy = wanted.energy;
+      m.work = wanted.work;
+      track.follow(m);
+      CAPTURE(m.energy, m.work);
+      CHECK(m.energy_drift == Approx(wanted.drift).margin(1e-15));
+      CHECK(m.energy_rise == Approx(wanted.rise).margin(1e-15));
+    }
+  };
+  // E - W is 10, 11, 7, 9.
+  check({{10, 0, 0, 0}, {13, 2, 0.1, 0.1}, {9, 2, -0.3, 0.1}, {12, 3, -0.1, 0.2}});
+  // Without energy at the start the divisor is the largest E, 5 and then 8, not the largest E - W.
+  check({{0, 0, 0, 0}, {5, 2, 0.6, 0.6}, {8, 2, 0.75, 0.75}, {4, 2, 0.25, 0.75}});
+  const std::string help = diagnostics_help(),
+                    page = test::read_file(PBF_SOURCE_DIR "/lib/solver/DIAGNOSTICS.md");
+  for (const char* line :
+       {"energy_drift             (E - W - E0)/E0; W: work of moving bodies, E0: E at the start "
+        "(if none: the largest E)",
+        "energy_rise              largest (E - W) - (lowest E - W before), over E0"})
+    CHECK(help.find(line) != std::string::npos);
+  CHECK(page.find("| `energy_drift` | (E − W − E0)/E0. ") != std::string::npos);
+  CHECK(page.find("| `energy_rise` | largest rise of E − W above its lowest earlier value, ") !=
+        std::string::npos);
 }
