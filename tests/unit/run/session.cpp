@@ -10,75 +10,16 @@
 
 #include "lib/program/schedule.h"
 #include "tests/support/catch.h"
+#include "tests/support/counting_solver.h"
 
 using namespace pbf;
 
 namespace {
 
-class CountingSolver : public Solver {
- public:
-  struct Call {
-    int updates;
-    StepOptions options;
-  };
-  std::vector<Call> calls;
-  double seconds = 0;  ///< that an update takes
-
-  void step(int n, const StepOptions& options) override {
-    calls.push_back({n, options});
-    for (const Stopwatch watch; watch.seconds() < n * seconds;) continue;
-    now_ += n;
-  }
-  SolverState state(Which which) override {
-    SolverState s;
-    s.updates = which == Which::kept ? kept_ : now_;
-    return s;
-  }
-  void set_state(const SolverState& s) override { now_ = s.updates; }
-  void keep() override { kept_ = now_; }
-  std::int64_t updates() const override { return now_; }
-  std::future<Snapshot> download(const std::vector<std::string>&, ScalarType) override {
-    return std::async(std::launch::deferred, [] { return Snapshot{}; });
-  }
-  Diagnostics measure() override { return {}; }
-  std::vector<WallLoad> loads(Interval) override { return {}; }
-  std::vector<double> gauges(Interval) override { return {}; }
-  SolverInfo info() const override { return {}; }
-
- private:
-  std::int64_t now_ = 0, kept_ = 0;
-};
-
-using Told = std::vector<std::string>;
-
-/// Wants every multiple of `every`; kEveryCall and kAlways stand for themselves.
-class Recorder : public Observer {
- public:
-  Recorder(std::string name, std::int64_t every, Told& told)
-      : name_(std::move(name)), every_(every), told_(told) {}
-  std::function<Now(Session&)> then = [](Session&) { return Now::go_on; };
-  std::vector<std::int64_t> seen;
-
-  std::int64_t next(std::int64_t u) const override {
-    return every_ > 0 ? next_multiple(u, every_) : every_;
-  }
-  Now at(Session& session) override {
-    seen.push_back(session.update());
-    told_.push_back(name_ + " " + std::to_string(session.update()));
-    return then(session);
-  }
-  void end(Session& session) override {
-    told_.push_back(name_ + " ends " + std::to_string(session.update()));
-  }
-  void close() noexcept override { told_.push_back(name_ + " closes"); }
-
- private:
-  std::string name_;
-  std::int64_t every_;
-  Told& told_;
-};
-
-using Updates = std::vector<std::int64_t>;
+using test::CountingSolver;
+using test::Recorder;
+using test::Told;
+using test::Updates;
 
 }  // namespace
 

@@ -1,0 +1,136 @@
+// What a run leaves in its folder, and when: frames, rows and checkpoints of a solver that only
+// counts.
+#include <algorithm>
+#include <optional>
+
+#include "lib/run/run.h"
+#include "tests/support/catch.h"
+#include "tests/support/counted_run.h"
+
+namespace pbf::scene_test {
+
+TEST_CASE("a run has each frame and row once, at its interval and at the end, with its state") {
+  CountedRun r(ten_updates());
+  CHECK(r.error() == "no error");
+  CHECK(r.frames() == Updates{0, 3, 6, 9, 10});
+  CHECK(r.steps_of_frames() == Updates{0, 3, 6, 9, 10});
+  CHECK(r.column("update") == std::vector<double>{0, 4, 8, 10});
+  CHECK(r.status() == "finished");
+  CHECK(r.run.status == "finished");
+  CHECK(r.run.frames_written == 5);
+  CHECK_FALSE(r.saved());  // no key checkpoint
+  Scene even = ten_updates();
+  even.time.end = 0.12;
+  CountedRun whole(even);
+  CHECK(whole.error() == "no error");
+  CHECK(whole.frames() == Updates{0, 3, 6, 9, 12});
+  CHECK(whole.column("update") == std::vector<double>{0, 4, 8, 12});
+}
+
+TEST_CASE("a run that goes back has each frame and row once, of what came out in the end") {
+  CountedRun r(saving_always(adaptive()));
+  r.solver.flow = wrong_at(r.solver, 8);
+  CHECK(r.error() == "no error");
+  CHECK(r.frames() == Updates{0, 3, 6, 9, 10});
+  CHECK(r.steps_of_frames() == Updates{0, 3, 6, 12, 14});
+  CHECK(r.column("update") == std::vector<double>{0, 4, 8, 10});
+  CHECK(r.column("dt") == std::vector<double>{0.01, 0.01, 0.005, 0.005});
+}
+
+TEST_CASE(
+    "checkpoints come last: all before them is on the disk, and they are the solver's state") {
+  CountedRun r(saving_always(ten_updates()));
+  r.solver.flow = [](Diagnostics& m) {
+    m.energy = 5 + double(m.update);
+    m.compression_max = m.update == 10 ? 0.5 : 0.1 * double(m.update);
+  };
+  Updates at;
+  r.solver.before_state = [&] {
+    const std::int64_t u = r.solver.updates();
+    at.push_back(u);
+    if (r.run.writer) CHECK(r.run.writer->frames_written() == frames_until(u));
+    if (!r.run.writer) CHECK(u == 10);
+    if (at.size() > 1) CHECK(r.saved()->state.updates == at[at.size() - 2]);
+  };
+  CHECK(r.error() == "no error");
+  // After every call, before the first one, and at the end: once each.
+  CHECK(std::is_sorted(at.begin(), at.end()));
+  CHECK(std::adjacent_find(at.begin(), at.end()) == at.end());
+  for (const std::int64_t u : {0, 3, 4, 6, 8, 9, 10})
+    CHECK(std::find(at.begin(), at.end(), u) != at.end());
+  const SavedRun saved = r.saved().value();
+  r.solver.before_state = [] {};
+  CHECK(saved.state.updates == 10);
+  CHECK(saved.state.steps == 10);
+  CHECK(saved.state.position == r.solver.state(Which::now).position);
+  CHECK(saved.energy.first == 5);
+  // What a longer run would not have is not in it: the measure at the end of this one.
+  CHECK(saved.energy.time == Approx(0.08));
+  CHECK(saved.energy.largest == 13);
+  CHECK(saved.compression_max == Approx(0.8));
+  CHECK(r.run.compression_max == Approx(0.8));
+}
+
+TEST_CASE("a run that is stopped saves the state that it leaves, with a frame and a row of it") {
+  CountedRun r(ten_updates());
+  r.stop_at(4);
+  CHECK(r.error() == "no error");
+  CHECK(r.run.status == "stopped");
+  CHECK(r.run.stop_reason == "--max-walltime");
+  CHECK(r.status() == "stopped");
+  CHECK(r.solver.updates() == 4);
+  CHECK(r.frames() == Updates{0, 3, 4});
+  CHECK(r.column("update") == std::vector<double>{0, 4});
+  CHECK(r.saved().value().state.position == r.solver.state(Which::now).position);
+  // At the last update there is nothing to stop.
+  CountedRun late(ten_updates());
+  late.stop_at(10);
+  CHECK(late.error() == "no error");
+  CHECK(late.run.status == "finished");
+  CHECK_FALSE(late.saved());
+}
+
+TEST_CASE("a run without time is stopped at its start, one that goes back at its first event") {
+  CountedRun plain(ten_updates());
+  plain.run.max_walltime = 1e-9;
+  CHECK(plain.error() == "no error");
+  CHECK(plain.solver.calls.empty());
+  CHECK(plain.frames() == Updates{0});
+  CHECK(plain.column("update") == std::vector<double>{0});
+  CHECK(plain.saved().value().state.updates == 0);
+  CountedRun back(adaptive());
+  back.run.max_walltime = 1e-9;
+  CHECK(back.error() == "no error");
+  CHECK(back.frames() == Updates{0, 3});
+  CHECK(back.saved().value().state.updates == 3);
+  CHECK(back.run.status == "stopped");
+}
+
+TEST_CASE(
+    "a run that goes back and is stopped in between leaves nothing behind its last good state") {
+  CountedRun r(adaptive());
+  const Silence silence;
+  open_files(r.run, "2026-01-01T00:00:00Z");
+  // As run_session() has them, and one that asks for the end at update 5.
+  std::optional<run_module::Rows> rows;
+  Watch watch(r.run.scene, r.run.plan, r.run.solver,
+              [&](Diagnostics& m, double dt) { rows->take(m, dt); });
+  Reporter reporter(r.run, watch);
+  rows.emplace(r.run, reporter);
+  Frames frames(r.run, reporter);
+  Told told;
+  Recorder asks("asks", 5, told);
+  asks.then = [&](Session& session) {
+    if (session.update() == 5) r.run.max_walltime = 1e-9;
+    return Now::go_on;
+  };
+  Saving saving(r.run, frames, *rows, watch, reporter);
+  Session(r.solver, {&watch, &frames, &watch.choosing(), &reporter, &asks, &saving}).run(10);
+  CHECK(asks.seen == Updates{0, 5});
+  CHECK(r.solver.updates() == 4);
+  CHECK(r.saved().value().state.updates == 4);
+  CHECK(r.frames() == Updates{0, 3, 4});
+  CHECK(r.column("update") == std::vector<double>{0, 4});
+}
+
+}  // namespace pbf::scene_test
