@@ -46,7 +46,7 @@ Distance from_cpu(Case c, int updates) {
 
 }  // namespace
 
-TEST_CASE("one update equals the brute-force oracle, feature by feature") {
+TEST_CASE("one update equals the brute-force oracle, feature by feature", "[slow]") {
   const bool flat = GENERATE(false, true);
   Case c = here(flat ? flat_block(15, 14, 0.3, 0.4) : jittered_block(6, 5, 7, 0.3, 0.4));
   SECTION("defaults") {}
@@ -108,7 +108,7 @@ TEST_CASE("the density and the neighbour counts of a state equal brute force ove
   CHECK(m.neighbors_max == most);
 }
 
-TEST_CASE("100 updates stay near the CPU in the measures that chaos does not touch") {
+TEST_CASE("100 updates stay near the CPU in the measures that chaos does not touch", "[slow]") {
   Case c = here(jittered_block(16, 16, 24, 0.1, 0));
   c.scene.domain.max[0] += 0.4;
   everything_on(c.scene);
@@ -148,7 +148,8 @@ TEST_CASE("few particles are sorted in a box of however many bins") {
   CHECK(from_cpu(c, 3).worst < (is_double() ? 1e-11 : 1e-4));
 }
 
-TEST_CASE("5 updates follow the CPU at every size that shares its sums among fewer threads") {
+TEST_CASE("5 updates follow the CPU at every size that shares its sums among fewer threads",
+          "[slow]") {
   // A device shares neighbour sums among 8, 4, 2 and 1 threads at these edges of a cube (10648 to
   // 125000 particles), among 4, 2 and 1 at those of a square (2809 to 60025), and lists among 2 and
   // 1; 16 share in the smaller cubes of other tests.
@@ -168,7 +169,7 @@ TEST_CASE("5 updates follow the CPU at every size that shares its sums among few
         Approx(d.reference.neighbors_mean).epsilon(is_double() ? 1e-12 : 1e-4));
 }
 
-TEST_CASE("two runs of one scene give the same bytes") {
+TEST_CASE("two runs of one scene give the same bytes", "[slow]") {
   const bool flat = GENERATE(false, true);
   Case c = here(flat ? flat_block(64, 60, 0.3, 0.4) : jittered_block(16, 16, 16, 0.3, 0.4));
   everything_on(c.scene);
@@ -179,7 +180,7 @@ TEST_CASE("two runs of one scene give the same bytes") {
                    b->download({"velocity", "density"}, pbf::ScalarType::f32).get()));
 }
 
-TEST_CASE("with solver.reproducible the CPU's bytes come out, on 1 thread or more") {
+TEST_CASE("with solver.reproducible the CPU's bytes come out, on 1 thread or more", "[slow]") {
   // At these sizes the device sorts in one block, makes lists by eight threads each, and by one.
   const int edge = GENERATE(12, 24, 40);
   Case c = here(jittered_block(edge, edge, edge, 0.3, 0.4));

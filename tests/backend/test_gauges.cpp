@@ -250,7 +250,8 @@ TEST_CASE("flow counts what goes through the rectangle alone, with the sign of i
   CHECK(later[5] == Approx(9 * mass));
 }
 
-TEST_CASE("pressure gauges of a tank at rest read what hydrostatics says, also in edges") {
+TEST_CASE("pressure gauges of a tank at rest read what hydrostatics says, also in edges",
+          "[slow]") {
   const bool flat = GENERATE(false, true);
   const std::size_t up = flat ? 2 : std::size_t(GENERATE(0, 2));
   // No multiple of d: the crystal of a lattice at rest pushes sideways by 2 % more than it weighs.
@@ -326,7 +327,7 @@ TEST_CASE("a disc larger than its surface reads the surface's whole load over it
     }
 }
 
-TEST_CASE("gauges do not depend on threads, pass-by-pass updates, or being handed over") {
+TEST_CASE("gauges do not depend on threads, pass-by-pass updates, or being handed over", "[slow]") {
   Case c = splash_among_gauges(GENERATE(false, true));
   auto a = make(c);
   a->step(20);

@@ -50,7 +50,7 @@ oracle::LevelNodes check_against_oracle(const Case& c) {
 
 }  // namespace
 
-TEST_CASE("one update with levels equals the brute-force oracle, feature by feature") {
+TEST_CASE("one update with levels equals the brute-force oracle, feature by feature", "[slow]") {
   const bool flat = GENERATE(false, true);
   Case c = flat ? flat_column() : column();
   SECTION("defaults") { CHECK(against_oracle(c).nodes.off == 0); }
@@ -85,14 +85,14 @@ TEST_CASE("one update with levels equals the brute-force oracle, feature by feat
   CHECK(reach_of_levels(c) > 1e-3);
 }
 
-TEST_CASE("levels with gravity and the long edge along x equal the brute-force oracle") {
+TEST_CASE("levels with gravity and the long edge along x equal the brute-force oracle", "[slow]") {
   Case c = in_box(jittered_block(26, 6, 5, 0.1, 0.4, 1, 0.985), {26.6, 6.4, 5.2});
   c.scene.gravity = {-9.81, 0, 0};
   check_against_oracle(c);
   CHECK(reach_of_levels(c) > 1e-3);
 }
 
-TEST_CASE("nodes beside air and open faces are off, as in the brute-force oracle") {
+TEST_CASE("nodes beside air and open faces are off, as in the brute-force oracle", "[slow]") {
   SECTION("a box half empty") {
     const Case c = in_box(jittered_block(6, 5, 13, 0.1, 0.4, 1, 0.985), {6.4, 5.2, 26.6});
     const auto nodes = check_against_oracle(c);
@@ -121,7 +121,7 @@ TEST_CASE("nodes beside air and open faces are off, as in the brute-force oracle
   }
 }
 
-TEST_CASE("nodes whose hats an obstacle reaches are off, as in the brute-force oracle") {
+TEST_CASE("nodes whose hats an obstacle reaches are off, as in the brute-force oracle", "[slow]") {
   Case c = GENERATE(false, true) ? flat_column() : column();
   obstacle_test::Placing put(c.scene);
   SECTION("a turned box") { put.box({1, 0.5, 9.1}, {2, 1.5, 10.4}, {0, 1, 0}, 30); }
@@ -136,7 +136,7 @@ TEST_CASE("nodes whose hats an obstacle reaches are off, as in the brute-force o
   CHECK(reach_of_levels(c) > 1e-3);
 }
 
-TEST_CASE("levels move fluid that no wall holds as the brute-force oracle does") {
+TEST_CASE("levels move fluid that no wall holds as the brute-force oracle does", "[slow]") {
   SECTION("a block in the middle of a box, not on the grid") {
     Case c = in_box(jittered_block(20, 18, 22, 0.1, 0.4, 1, 0.97), {60.5, 55, 50});
     c.scene.fluid.smoothing_ratio = 2.1;  // half a cell is no whole number
@@ -195,7 +195,8 @@ TEST_CASE("levels count a crowd as compressed by a twentieth, as the brute-force
   CHECK(reach_of_levels(c) > 1e-3);
 }
 
-TEST_CASE("with levels and solver.reproducible the CPU's bytes come out, on 1 thread or more") {
+TEST_CASE("with levels and solver.reproducible the CPU's bytes come out, on 1 thread or more",
+          "[slow]") {
   const bool flat = GENERATE(false, true);
   Case c = flat ? in_box(flat_block(150, 150, 0.2, 0.2), {151, 1, 163})
                 : in_box(jittered_block(24, 24, 40, 0.2, 0.2), {24.4, 27, 46});

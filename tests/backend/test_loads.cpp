@@ -96,7 +96,7 @@ TEST_CASE("the loads on the walls are the weight less the change of momentum") {
   check_balance(c);
 }
 
-TEST_CASE("the walls of a tank at rest bear what hydrostatics says, whatever the axes") {
+TEST_CASE("the walls of a tank at rest bear what hydrostatics says, whatever the axes", "[slow]") {
   const std::size_t up = std::size_t(GENERATE(0, 1, 2));
   const bool upside_down = GENERATE(false, true);
   const pbf::Double3 size{0.24, 0.2, 0.28};

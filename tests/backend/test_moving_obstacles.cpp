@@ -133,7 +133,8 @@ TEST_CASE("a plate of 0.25 h that goes by 3 h a step takes all that is in its wa
   }
 }
 
-TEST_CASE("nothing gets into a stirrer in 10000 updates, or what it may gain is its work") {
+TEST_CASE("nothing gets into a stirrer in 10000 updates, or what it may gain is its work",
+          "[slow]") {
   const bool flat = GENERATE(false, true);
   Case c = flat ? flat_block(20, 10, 0.05, 0) : jittered_block(8, 8, 5, 0.05, 0);
   pbf::Scene& s = c.scene;
@@ -203,7 +204,8 @@ TEST_CASE(
   CHECK(deepest_now(c, *solver) < fine());
 }
 
-TEST_CASE("obstacles in motion: the same bits by any batches, passes, threads and after a resume") {
+TEST_CASE("obstacles in motion: the same bits by any batches, passes, threads and after a resume",
+          "[slow]") {
   Case c = stirred(GENERATE(false, true));
   c.scene.solver.substeps = GENERATE(1, 3);
   const int level = GENERATE(0, 1);

@@ -102,7 +102,7 @@ TEST_CASE("loads on walls and obstacles are the weight less the change of moment
   check_all_loads(c);
 }
 
-TEST_CASE("with levels too loads are the weight less the change of momentum") {
+TEST_CASE("with levels too loads are the weight less the change of momentum", "[slow]") {
   const bool flat = GENERATE(false, true);
   Case c = flat ? flat_block(22, 40, 0.1, 0.3) : jittered_block(12, 10, 26, 0.1, 0.3);
   for (std::size_t k = 0; k < 3; ++k)
@@ -127,7 +127,8 @@ TEST_CASE("with levels too loads are the weight less the change of momentum") {
   CHECK(std::fabs(energy() - with) > 0.01 * with);  // they do act
 }
 
-TEST_CASE("a submerged cube of 8 spacings is lifted by what it displaces, and not pushed aside") {
+TEST_CASE("a submerged cube of 8 spacings is lifted by what it displaces, and not pushed aside",
+          "[slow]") {
   Case c = jittered_block(18, 18, 18, 0, 0);
   const double d = c.scene.fluid.spacing, edge = 8 * d;
   for (std::size_t k = 0; k < 3; ++k)
@@ -150,7 +151,8 @@ TEST_CASE("a submerged cube of 8 spacings is lifted by what it displaces, and no
   for (const double t : load[0].torque) CHECK(std::fabs(t) < 0.01 * lift * edge);
 }
 
-TEST_CASE("a partition between two depths of water carries the difference of their thrusts") {
+TEST_CASE("a partition between two depths of water carries the difference of their thrusts",
+          "[slow]") {
   // 0.4 m and 0.2 m, each 0.2 m long, d = 20 mm, 4 layers wide; the partition is one spacing thick.
   Case c = jittered_block(21, 4, 20, 0, 0);
   pbf::Scene& s = c.scene;
@@ -176,7 +178,8 @@ TEST_CASE("a partition between two depths of water carries the difference of the
   CHECK(std::fabs(load.force[2]) < 0.003 * thrust);
 }
 
-TEST_CASE("a box that stands on the floor is pressed down by what is above it, and not aside") {
+TEST_CASE("a box that stands on the floor is pressed down by what is above it, and not aside",
+          "[slow]") {
   // 12 x 12 spacings wide and 8 high in water 16 deep: nothing is below it, so it is not lifted.
   Case c = jittered_block(22, 22, 16, 0, 0);
   pbf::Scene& s = c.scene;
@@ -200,7 +203,7 @@ TEST_CASE("a box that stands on the floor is pressed down by what is above it, a
   CHECK(std::fabs(load.force[1]) < 0.005 * weight);
 }
 
-TEST_CASE("a plate of 0.25 h holds fluid on its side for 2000 updates") {
+TEST_CASE("a plate of 0.25 h holds fluid on its side for 2000 updates", "[slow]") {
   const bool turned = GENERATE(false, true);
   Case c = in_domain(jittered_block(5, 5, 7, 0.1, 0.3), {5, 2.5, 5}, {0, 0, 0});
   c.scene.gravity = {8, 0, -9.81};
@@ -225,7 +228,8 @@ TEST_CASE("a plate of 0.25 h holds fluid on its side for 2000 updates") {
   CHECK(behind == 0);
 }
 
-TEST_CASE("fluid that falls onto crossed ramps, into a wedge, through a gap stays outside") {
+TEST_CASE("fluid that falls onto crossed ramps, into a wedge, through a gap stays outside",
+          "[slow]") {
   const bool flat = GENERATE(false, true);
   Case c = flat ? flat_block(16, 24, 0.1, 0.3) : jittered_block(10, 6, 12, 0.1, 0.3);
   c = in_domain(c, {flat ? 9.0 : 6.0, 3.2, 14}, {0.4, 0, 5});

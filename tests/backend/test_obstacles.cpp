@@ -55,7 +55,7 @@ void check_by_force(const Case& c) {
 
 }  // namespace
 
-TEST_CASE("one update among obstacles of every shape equals the brute-force oracle") {
+TEST_CASE("one update among obstacles of every shape equals the brute-force oracle", "[slow]") {
   Case c = GENERATE(false, true) ? all_flat_shapes() : all_shapes();
   SECTION("defaults") {
     // Many are in reach of an obstacle, and many meet one.
@@ -92,7 +92,8 @@ TEST_CASE("one update among obstacles of every shape equals the brute-force orac
   check_by_force(c);
 }
 
-TEST_CASE("one update among obstacles in a box with any longest edge is that of brute force") {
+TEST_CASE("one update among obstacles in a box with any longest edge is that of brute force",
+          "[slow]") {
   const std::size_t longest = GENERATE(0u, 1u, 2u);
   Case c = jittered_block(7, 8, 9, 0.2, 0.4);
   for (std::size_t k = 0; k < 3; ++k)
@@ -139,7 +140,8 @@ TEST_CASE("obstacles far from the origin of coordinates give the same bits as ne
   CHECK(std::memcmp(near_state.loads.data(), far_state.loads.data(), 10 * sizeof(pbf::Load)) == 0);
 }
 
-TEST_CASE("updates among obstacles have the same bits on 1 and 2 threads, and pass by pass") {
+TEST_CASE("updates among obstacles have the same bits on 1 and 2 threads, and pass by pass",
+          "[slow]") {
   Case c = GENERATE(false, true) ? all_flat_shapes() : all_shapes();
   c.scene.domain.loads = true;
   if (c.scene.dimensions == 3) REQUIRE(c.particles.size() > 1024);

@@ -41,7 +41,7 @@ const pbf::TraceArray& last(const pbf::StepTrace& t, const char* quantity) {
 
 }  // namespace
 
-TEST_CASE("a state put into a fresh solver continues to the last bit") {
+TEST_CASE("a state put into a fresh solver continues to the last bit", "[slow]") {
   const Case c = everything();
   auto a = make(c);
   a->step(13);
@@ -73,7 +73,8 @@ TEST_CASE("a state put into a fresh solver continues to the last bit") {
   CHECK(same(a->state(), b->state()));
 }
 
-TEST_CASE("an update by trace() gives the bytes of step(1), before, between and after others") {
+TEST_CASE("an update by trace() gives the bytes of step(1), before, between and after others",
+          "[slow]") {
   Case c = everything();
   SECTION("as it is") {}
   SECTION("substeps, which step(1) joins in one pass") {
@@ -94,7 +95,7 @@ TEST_CASE("an update by trace() gives the bytes of step(1), before, between and 
   }
 }
 
-TEST_CASE("how often a run is measured does not change its bytes") {
+TEST_CASE("how often a run is measured does not change its bytes", "[slow]") {
   Case c = everything();
   SECTION("as it is") {}
   SECTION("substeps, after which a measure makes its own lists") {

@@ -172,7 +172,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("under a constant acceleration the level is tilted by it, with levels too") {
+TEST_CASE("under a constant acceleration the level is tilted by it, with levels too", "[slow]") {
   const bool levels = GENERATE(false, true);
   Case c = flat_block(40, 16, 0.05, 0);
   if (levels) {
@@ -192,7 +192,8 @@ TEST_CASE("under a constant acceleration the level is tilted by it, with levels 
   CHECK(got * 180 / kPi == Approx(-std::atan(2 / 9.81) * 180 / kPi).margin(0.5));
 }
 
-TEST_CASE("a tank that turns steadily shows the parabola, and its fluid comes to rest in it") {
+TEST_CASE("a tank that turns steadily shows the parabola, and its fluid comes to rest in it",
+          "[slow]") {
   Case c = jittered_block(16, 16, 7, 0.02, 0);
   pbf::Scene& s = c.scene;
   s.domain.max = {s.domain.min[0] + 0.32, s.domain.min[1] + 0.32, s.domain.min[2] + 0.6};
@@ -212,7 +213,8 @@ TEST_CASE("a tank that turns steadily shows the parabola, and its fluid comes to
   CHECK(std::sqrt(2 * m.kinetic_energy / (0.008 * double(c.particles.size()))) < 0.05);
 }
 
-TEST_CASE("a tank in motion: the same bits by any batches, passes, threads and after a resume") {
+TEST_CASE("a tank in motion: the same bits by any batches, passes, threads and after a resume",
+          "[slow]") {
   Case c = slosh(GENERATE(false, true));
   c.scene.solver.substeps = GENERATE(1, 3);
   const int level = GENERATE(0, 1);

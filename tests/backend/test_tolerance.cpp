@@ -73,7 +73,8 @@ TEST_CASE("whole repeats of the iterations follow, and no more than max_iteratio
   CHECK(solver->measure().iterations_done == 2 * 3);
 }
 
-TEST_CASE("a tolerance is met in the same iterations in one call, in many, and pass by pass") {
+TEST_CASE("a tolerance is met in the same iterations in one call, in many, and pass by pass",
+          "[slow]") {
   Case c = crowded();
   c.scene.solver.iterations = 2;
   c.scene.solver.substeps = 2;

@@ -129,7 +129,7 @@ TEST_CASE("viscosity brakes a rigid rotation at its surface alone, by 0.13 c (h/
   CHECK(1 - angular_momentum(*s) / before == Approx(0.13 * c_factor / 36).epsilon(0.1));
 }
 
-TEST_CASE("vorticity confinement gives a free ball no energy, whatever its epsilon") {
+TEST_CASE("vorticity confinement gives a free ball no energy, whatever its epsilon", "[slow]") {
   const double epsilon = GENERATE(1.0, 10.0, 100.0);
   const double spin = GENERATE(3.0, 0.0), noise = GENERATE(0.0, 0.2, 0.5);
   const double ratio = GENERATE(2.0, 3.0);
@@ -148,7 +148,7 @@ TEST_CASE("vorticity confinement gives a free ball no energy, whatever its epsil
   CHECK(most < 1.01 * start);
 }
 
-TEST_CASE("a pool comes to rest with vorticity confinement as it does without") {
+TEST_CASE("a pool comes to rest with vorticity confinement as it does without", "[slow]") {
   Case c = stirred_pool(8, 8, 6, 0.02);
   const double without = late_energy(c, 1000);
   for (const double epsilon : {10.0, 1000.0}) {
@@ -158,7 +158,7 @@ TEST_CASE("a pool comes to rest with vorticity confinement as it does without") 
   }
 }
 
-TEST_CASE("the roll in a stirred pool decays more slowly with vorticity confinement") {
+TEST_CASE("the roll in a stirred pool decays more slowly with vorticity confinement", "[slow]") {
   double without = 0, with = 0;
   for (const std::uint32_t seed : {1u, 2u}) {
     Case c = stirred_pool(16, 6, 12, 0.5, seed);

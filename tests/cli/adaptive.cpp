@@ -42,7 +42,7 @@ std::string difference(const Scratch& folder) {
 
 }  // namespace
 
-TEST_CASE("a run that the guard stops goes on with time.adaptive, and says what it did") {
+TEST_CASE("a run that the guard stops goes on with time.adaptive, and says what it did", "[slow]") {
   const Scratch folder;
   write_adaptive(folder, "off");
   REQUIRE(run_scene(folder, "fixed").code == 3);
@@ -75,7 +75,8 @@ TEST_CASE("a run that the guard stops goes on with time.adaptive, and says what 
   CHECK(times.back() == Approx(3.2));
 }
 
-TEST_CASE("an adaptive run stopped again and again ends in the bytes of the undisturbed run") {
+TEST_CASE("an adaptive run stopped again and again ends in the bytes of the undisturbed run",
+          "[slow]") {
   const Scratch folder;
   write_adaptive(folder, GENERATE(as<std::string>{}, "{step_min: 0.0003}", kAlarms));
   const std::string guard = GENERATE("guard={}", "guard=off");
@@ -102,8 +103,8 @@ TEST_CASE("an adaptive run stopped again and again ends in the bytes of the undi
   CHECK(steps("a") == steps("b"));
 }
 
-TEST_CASE(
-    "a killed adaptive run ends in the same bytes, a prolonged one in those of the long one") {
+TEST_CASE("a killed adaptive run ends in the same bytes, a prolonged one in those of the long one",
+          "[slow]") {
   const Scratch folder;
   write_adaptive(folder, kAlarms);
   const Args set{"--resume", "--set", "checkpoint.every=0.001"};

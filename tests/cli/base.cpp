@@ -59,7 +59,7 @@ TEST_CASE("base: a run keeps the whole scene, and goes on while the chain says t
   CHECK_FALSE(fs::exists(pbf.folder / "o2"));
 }
 
-TEST_CASE("base: settings and grids come after it, in every command") {
+TEST_CASE("base: settings and grids come after it, in every command", "[slow]") {
   const OnBase pbf;
   CHECK(has(pbf({"plan", "my.yaml", "--set", "fluid.spacing=0.05", "--resolved"}).out,
             "spacing: 0.05\n"));
@@ -97,7 +97,7 @@ TEST_CASE("base: settings and grids come after it, in every command") {
   CHECK(pbf({"batch", "my.yaml", "--grid", "base=a.yaml,b.yaml", "--out", "x"}).code == 2);
 }
 
-TEST_CASE("base: outside the scene's folder it needs --base-folder, in every command") {
+TEST_CASE("base: outside the scene's folder it needs --base-folder, in every command", "[slow]") {
   const OnBase pbf;
   fs::create_directories(pbf.folder / "deep");
   pbf.folder.write("deep/d.yaml", "base: ../my.yaml\nname: d\noutput: off\n");

@@ -37,7 +37,8 @@ pid_t child_of(pid_t parent) {
 
 }  // namespace
 
-TEST_CASE("a batch of 12 runs killed at random and rerun has the summary of the undisturbed one") {
+TEST_CASE("a batch of 12 runs killed at random and rerun has the summary of the undisturbed one",
+          "[slow]") {
   const Scratch folder;
   folder.write("s.yaml",
                "name: s\n"
@@ -155,7 +156,8 @@ TEST_CASE("every run of a batch is looked at before the first one starts") {
   CHECK_FALSE(fs::exists(folder / "o/a_iterations=1"));
 }
 
-TEST_CASE("a summary has a column with its unit for every key that the grid or the list sets") {
+TEST_CASE("a summary has a column with its unit for every key that the grid or the list sets",
+          "[slow]") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());
   folder.write("list.txt", "tiny.yaml time.end=0.05\ntiny.yaml bodies.0.velocity=[0,0,1] name=x\n");
@@ -228,7 +230,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a run whose file is not its own is not called finished, and is made again") {
+TEST_CASE("a run whose file is not its own is not called finished, and is made again", "[slow]") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());
   const std::vector<std::string> batch{"batch", "tiny.yaml", "--out", "o", "--threads", "1"};

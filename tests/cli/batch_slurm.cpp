@@ -11,7 +11,8 @@
 using namespace pbf::test;
 namespace fs = std::filesystem;
 
-TEST_CASE("the Slurm script of a batch runs every run as a task and requeues those that stop") {
+TEST_CASE("the Slurm script of a batch runs every run as a task and requeues those that stop",
+          "[slow]") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());
   const Outcome o = pbf::test::pbf(
@@ -106,7 +107,8 @@ TEST_CASE("the Slurm script asks for the CPUs, the time, the memory and the GPU 
   CHECK(has(bad.err, "1 of 2 runs cannot start"));
 }
 
-TEST_CASE("whatever is in its words, the Slurm script runs one command and nothing else") {
+TEST_CASE("whatever is in its words, the Slurm script runs one command and nothing else",
+          "[slow]") {
   const Scratch folder;
   // Each word would make a file `owned` if the script let it.
   const std::vector<std::string> words{"name=b\ntouch owned #",

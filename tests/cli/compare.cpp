@@ -49,7 +49,8 @@ TEST_CASE("compare: float and double of one scene cannot be told apart as sample
   CHECK(has(o.out, "no two samples can be told apart"));
 }
 
-TEST_CASE("compare: run files of other scenes, particles, frames or fields say what differs") {
+TEST_CASE("compare: run files of other scenes, particles, frames or fields say what differs",
+          "[slow]") {
   const Scratch folder;
   const std::string a = run_tiny(folder, "a");
   std::vector<std::string> key;
@@ -93,7 +94,7 @@ TEST_CASE("compare: run files of other scenes, particles, frames or fields say w
   for (const auto& f : fragments) CHECK(has(o.out, f));
 }
 
-TEST_CASE("compare: shipped scenes in float and in double are the same") {
+TEST_CASE("compare: shipped scenes in float and in double are the same", "[slow]") {
   const Scratch folder;
   std::vector<std::string> scene;
   // Densities of 1 +- rounding in frame 0; the flat top of a pool; flows that chaos has mixed.

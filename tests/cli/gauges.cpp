@@ -78,7 +78,7 @@ TEST_CASE("gauges are read with the measures by default, and at the end") {
   CHECK(reader.gauge("update").back() == 205);
 }
 
-TEST_CASE("a stopped run with gauges ends in the bytes of the undisturbed run") {
+TEST_CASE("a stopped run with gauges ends in the bytes of the undisturbed run", "[slow]") {
   const Scratch folder;
   const bool adaptive = GENERATE(false, true);
   write_gauge_scene(folder, "");
@@ -89,7 +89,7 @@ TEST_CASE("a stopped run with gauges ends in the bytes of the undisturbed run") 
   CHECK(run_difference(folder / "a/run.vtkhdf", folder / "b/run.vtkhdf") == "");
 }
 
-TEST_CASE("a finished run with gauges goes on to a later end as if it had not stopped") {
+TEST_CASE("a finished run with gauges goes on to a later end as if it had not stopped", "[slow]") {
   const Scratch folder;
   write_gauge_scene(folder);
   const std::vector<std::string> keep{"--set", "checkpoint={}"};

@@ -17,7 +17,7 @@ std::string repeated(int count, const std::function<std::string(const std::strin
 
 }  // namespace
 
-TEST_CASE("a study with a hundred thousand keys or variants is refused with the limit") {
+TEST_CASE("a study with a hundred thousand keys or variants is refused with the limit", "[slow]") {
   const Scratch folder;
   folder.write("scene.yaml", tiny_scene());
   const struct {
@@ -43,7 +43,8 @@ TEST_CASE("a study with a hundred thousand keys or variants is refused with the 
   }
 }
 
-TEST_CASE("a list names a hundred thousand runs of one scene, each by a number of its own") {
+TEST_CASE("a list names a hundred thousand runs of one scene, each by a number of its own",
+          "[slow]") {
   const Scratch folder;
   folder.write("scene.yaml", tiny_scene());
   folder.write("list", repeated(100000, [](const std::string&) { return "scene.yaml\n"; }));

@@ -65,7 +65,8 @@ bool opens_in_h5py(const fs::path& file, std::int64_t frames) {
 
 }  // namespace
 
-TEST_CASE("runs killed at random moments lose no reported frame and end in the same bytes") {
+TEST_CASE("runs killed at random moments lose no reported frame and end in the same bytes",
+          "[slow]") {
   const int kills = number("PBF_KILLS", 6);
   const unsigned seed = static_cast<unsigned>(number("PBF_SEED", 1));
   std::mt19937 random(seed);

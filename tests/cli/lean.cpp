@@ -152,7 +152,8 @@ TEST_CASE("the OpenGL library is mapped by a run that draws: the control of the 
 
 // AddressSanitizer has memory of its own, several times that of the run.
 #ifndef __SANITIZE_ADDRESS__
-TEST_CASE("the peak memory of a run is that of one particle and the arrays of the plan, to 5 %") {
+TEST_CASE("the peak memory of a run is that of one particle and the arrays of the plan, to 5 %",
+          "[slow]") {
   const Scratch folder;
   const auto scene = [&](const std::string& count, const std::string& spacing) {
     return folder.write(
@@ -186,7 +187,7 @@ TEST_CASE("the peak memory of a run is that of one particle and the arrays of th
 }
 #endif
 
-TEST_CASE("the run file has the bytes of the plan, to 15 %, however small the scene is") {
+TEST_CASE("the run file has the bytes of the plan, to 15 %, however small the scene is", "[slow]") {
   const Scratch folder;
   const std::string tank = tiny_scene();
   const std::string measured =

@@ -53,7 +53,7 @@ TEST_CASE("the limit on the size of files reaches every kind of file as an error
   CHECK_FALSE(fs::exists(folder / "t.csv"));
 }
 
-TEST_CASE("where no thread can be started, the error names the limit and the remedy") {
+TEST_CASE("where no thread can be started, the error names the limit and the remedy", "[slow]") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());
   REQUIRE(shell("chmod 777 .", folder.path()).code == 0);

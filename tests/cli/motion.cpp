@@ -55,7 +55,7 @@ TEST_CASE("what moves: poses and work are columns of the log, the plan says what
   CHECK(has(still.out, "motion of the tank: no key tank_motion"));
 }
 
-TEST_CASE("what moves: stopped and resumed, also with adaptive steps, the same bytes") {
+TEST_CASE("what moves: stopped and resumed, also with adaptive steps, the same bytes", "[slow]") {
   const Scratch folder;
   write_moving_scene(folder);
   std::vector<std::string> set{"--set", "solver.iterations=8"};

@@ -69,7 +69,8 @@ TEST_CASE("obstacles alone, without loads of the walls, have columns of their ow
   CHECK(loads("") == 14);
 }
 
-TEST_CASE("a stopped run with obstacles and loads ends in the bytes of the undisturbed run") {
+TEST_CASE("a stopped run with obstacles and loads ends in the bytes of the undisturbed run",
+          "[slow]") {
   const Scratch folder;
   write_obstacle_scene(folder);
   REQUIRE(run_scene(folder, "a").code == 0);

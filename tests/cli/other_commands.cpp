@@ -124,7 +124,7 @@ TEST_CASE("a scene too large for the memory of any machine exits 4 before anythi
 }
 
 #ifdef PBF_HAS_RENDER
-TEST_CASE("pictures are drawn by a run and, later, from its file") {
+TEST_CASE("pictures are drawn by a run and, later, from its file", "[slow]") {
   const Scratch folder;
   const std::string scene = folder.write(
       "tiny.yaml", tiny_scene("render: {every: 0.04, size: [64, 48], color: density}\n"));
@@ -232,7 +232,8 @@ TEST_CASE("run and render draw the same bytes: frame, range, name and moving sol
 }
 #endif
 
-TEST_CASE("a start too crowded for the memory of any machine exits 4 before anything is made") {
+TEST_CASE("a start too crowded for the memory of any machine exits 4 before anything is made",
+          "[slow]") {
   const Scratch folder;
   const std::string scene = folder.write(
       "s.yaml",
@@ -249,7 +250,7 @@ TEST_CASE("a start too crowded for the memory of any machine exits 4 before anyt
   CHECK(has(pbf::test::pbf({"plan", scene}, folder.path()).out, "\nstart: about 2000000"));
 }
 
-TEST_CASE("whole numbers on the command line are read as people write them, or refused") {
+TEST_CASE("whole numbers on the command line are read as people write them, or refused", "[slow]") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());
   folder.write("study.yaml", "scene: tiny.yaml\n");

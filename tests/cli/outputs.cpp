@@ -117,7 +117,7 @@ TEST_CASE("a folder that cannot be written is told before the work, with exit co
   CHECK(has(o.err, "--csv closed/a.csv: its folder closed cannot be written: Permission denied"));
 }
 
-TEST_CASE("no output takes the place of a file that the command reads") {
+TEST_CASE("no output takes the place of a file that the command reads", "[slow]") {
   const Scratch folder;
   const std::string csv = "x,y,z\n0.5,0.5,0.5\n0.7,0.5,0.5\n";
   folder.write("points.csv", csv);

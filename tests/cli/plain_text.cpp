@@ -17,7 +17,8 @@ bool is_clean(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("files with control characters or bytes that are not UTF-8 are refused at their place") {
+TEST_CASE("files with control characters or bytes that are not UTF-8 are refused at their place",
+          "[slow]") {
   const Scratch folder;
   const std::string nasty[] = {"\x1b[31m", "\x7f",
                                "\xc2\x9b"

@@ -55,7 +55,7 @@ Outcome end_by(const Scratch& folder, const Args& args, int signal, std::int64_t
 
 }  // namespace
 
-TEST_CASE("a run stopped again and again ends in the bytes of the undisturbed run") {
+TEST_CASE("a run stopped again and again ends in the bytes of the undisturbed run", "[slow]") {
   const Scratch folder;
   write_scene(folder);
   const std::string precision = GENERATE("float", "double");
@@ -91,7 +91,8 @@ TEST_CASE("a run stopped again and again ends in the bytes of the undisturbed ru
   CHECK(sessions.back().last_update == 400);
 }
 
-TEST_CASE("a killed run keeps its frames and ends in the same bytes, with and without checkpoint") {
+TEST_CASE("a killed run keeps its frames and ends in the same bytes, with and without checkpoint",
+          "[slow]") {
   const Scratch folder;
   write_scene(folder);
   const bool checkpoint = GENERATE(false, true);
@@ -115,7 +116,7 @@ TEST_CASE("a killed run keeps its frames and ends in the same bytes, with and wi
   CHECK(difference(folder, "a", "b") == "");
 }
 
-TEST_CASE("a finished run can be prolonged, to the bytes of the long run") {
+TEST_CASE("a finished run can be prolonged, to the bytes of the long run", "[slow]") {
   const Scratch folder;
   write_scene(folder);
   const std::string end = GENERATE("0.113", "0.12");  // not at, and at, a frame
@@ -133,7 +134,8 @@ TEST_CASE("a finished run can be prolonged, to the bytes of the long run") {
   }
 }
 
-TEST_CASE("an earlier end is told where it lies ahead, and leaves a run alone that is beyond it") {
+TEST_CASE("an earlier end is told where it lies ahead, and leaves a run alone that is beyond it",
+          "[slow]") {
   const Scratch folder;
   write_scene(folder);
   const auto with = [&](const std::string& out, const std::string& end) {
@@ -212,8 +214,8 @@ TEST_CASE("a run of an earlier version, whose log lacks a column, is refused by 
   CHECK(has(o.err, "--overwrite"));
 }
 
-TEST_CASE(
-    "changed physics keys are an error that names them all and the remedy, others may change") {
+TEST_CASE("changed physics keys are an error that names them all and the remedy, others may change",
+          "[slow]") {
   const Scratch folder;
   write_scene(folder);
   REQUIRE(run_scene(folder, "b", {"--max-walltime", "0.02"}).code == 75);
@@ -247,7 +249,7 @@ TEST_CASE(
             .code == 0);
 }
 
-TEST_CASE("a damaged checkpoint is told and the one before it is taken") {
+TEST_CASE("a damaged checkpoint is told and the one before it is taken", "[slow]") {
   const Scratch folder;
   write_scene(folder);
   REQUIRE(run_scene(folder, "a", {}).code == 0);
@@ -274,7 +276,8 @@ TEST_CASE("a damaged checkpoint is told and the one before it is taken") {
   CHECK(has(none.err, "remove it"));
 }
 
-TEST_CASE("a run that is killed at its start leaves no process behind that holds its folder") {
+TEST_CASE("a run that is killed at its start leaves no process behind that holds its folder",
+          "[slow]") {
   const Scratch folder;
   write_scene(folder);
   const Args args{"run",       "s.yaml", "--out",          "b",   "--resume", "--quiet",
@@ -293,7 +296,7 @@ TEST_CASE("a run that is killed at its start leaves no process behind that holds
   }
 }
 
-TEST_CASE("two runs cannot write to one folder") {
+TEST_CASE("two runs cannot write to one folder", "[slow]") {
   const Scratch folder;
   write_scene(folder);
   Process first({"run", "s.yaml", "--out", "b", "--quiet", "--set", "time.end=1000"},
@@ -314,7 +317,7 @@ TEST_CASE("two runs cannot write to one folder") {
   CHECK_FALSE(fs::exists(folder / "b/.lock"));
 }
 
-TEST_CASE("a run file runs again to the same bytes") {
+TEST_CASE("a run file runs again to the same bytes", "[slow]") {
   const Scratch folder;
   write_scene(folder);
   REQUIRE(run_scene(folder, "a", {"--set", "solver.iterations=2"}).code == 0);

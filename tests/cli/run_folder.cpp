@@ -231,7 +231,7 @@ TEST_CASE("SIGUSR1 saves a checkpoint, and the run goes on") {
   CHECK(run.wait().code == 75);
 }
 
-TEST_CASE("a second signal ends a run at once") {
+TEST_CASE("a second signal ends a run at once", "[slow]") {
   const Scratch folder;
   // One update takes many seconds, so the first signal is still waiting for it.
   folder.write("slow.yaml", tiny_scene("solver: {iterations: 100000}\n"));

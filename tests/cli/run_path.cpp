@@ -20,7 +20,7 @@ struct Runs {
 
 }  // namespace
 
-TEST_CASE("run folder: every command that reads runs takes it for the run file in it") {
+TEST_CASE("run folder: every command that reads runs takes it for the run file in it", "[slow]") {
   const Runs pbf;
   CHECK(pbf({"plan", "b", "--resolved"}).out == pbf({"plan", "b/run.vtkhdf", "--resolved"}).out);
   CHECK(pbf({"plan", "b/"}).code == 0);
@@ -45,7 +45,7 @@ TEST_CASE("run folder: every command that reads runs takes it for the run file i
   CHECK(fs::exists(pbf.folder / "sweep/tiny/DONE"));
 }
 
-TEST_CASE("run folder: with --resume the run goes on where it is, by its file too") {
+TEST_CASE("run folder: with --resume the run goes on where it is, by its file too", "[slow]") {
   const Runs pbf;
   for (const char* given : {"b", "b/run.vtkhdf"}) {
     const Outcome o = pbf({"run", given, "--resume"});
@@ -70,7 +70,7 @@ TEST_CASE("run folder: a run is not repeated into its own folder") {
             "--resume to go on with it"));
 }
 
-TEST_CASE("run folder: without a run file it is said what is there") {
+TEST_CASE("run folder: without a run file it is said what is there", "[slow]") {
   const Runs pbf;
   fs::create_directory(pbf.folder / "empty");
   fs::create_directory(pbf.folder / "scenes");
@@ -103,7 +103,8 @@ TEST_CASE("run folder: without a run file it is said what is there") {
   CHECK(has(pbf({"batch", "list"}).err, "list:2: empty: no run.vtkhdf in this folder"));
 }
 
-TEST_CASE("run folder: what is no run file in it is told as that, not as a scene or as missing") {
+TEST_CASE("run folder: what is no run file in it is told as that, not as a scene or as missing",
+          "[slow]") {
   const Runs pbf;
   for (const char* name : {"blank", "text", "linked", "folder", "pipe"})
     fs::create_directory(pbf.folder / name);
@@ -137,7 +138,7 @@ TEST_CASE("run folder: one that is closed to the user is not said to hold no run
   CHECK(has(o.err, "b/run.vtkhdf: cannot read the run file: Permission denied"));
 }
 
-TEST_CASE("run folder: a list in one takes it as ., called as the folder") {
+TEST_CASE("run folder: a list in one takes it as ., called as the folder", "[slow]") {
   const Runs pbf;
   pbf.folder.write("b/list", ". solver.iterations=2\n../out/tiny/.\n");
   const Outcome o = pbf({"batch", "b/list", "--out", "sweep", "--quiet"});
@@ -150,7 +151,8 @@ TEST_CASE("run folder: a list in one takes it as ., called as the folder") {
   CHECK(fs::exists(pbf.folder / "inside/b_iterations=2/DONE"));
 }
 
-TEST_CASE("run folder: a batch names its runs and its folder by that of the run, not by its file") {
+TEST_CASE("run folder: a batch names its runs and its folder by that of the run, not by its file",
+          "[slow]") {
   const Runs pbf;
   const Args twice = {"--grid", "time.step=0.01,0.005", "--set", "time.end=0.01", "--quiet"};
   for (const char* file : {"b/run.vtkhdf", "b/scene.resolved.yaml"}) {
@@ -187,7 +189,7 @@ TEST_CASE("a file that is no run is told from a damaged one, and a scene from bo
   }
 }
 
-TEST_CASE("resume says where it looked for a run that is not there") {
+TEST_CASE("resume says where it looked for a run that is not there", "[slow]") {
   const Runs pbf;
   fs::remove_all(pbf.folder / "out");
   const Outcome o = pbf({"run", "tiny.yaml", "--resume"});

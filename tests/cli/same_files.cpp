@@ -80,7 +80,7 @@ TEST_CASE("a run file names the files of its scene as sha256sum checks them") {
   CHECK(std::system(whole.c_str()) == 0);
 }
 
-TEST_CASE("a run file runs again with the particle files of its run, and with no other") {
+TEST_CASE("a run file runs again with the particle files of its run, and with no other", "[slow]") {
   const Ran r;
   check_done(r.run({"a/run.vtkhdf", "--out", "b"}));
   CHECK(run_difference(r.folder / "a/run.vtkhdf", r.folder / "b/run.vtkhdf") == "");
@@ -131,7 +131,8 @@ TEST_CASE("a run file of an earlier version, without hashes, runs again with a n
   check_done(r.run({"a/run.vtkhdf", "--out", "b"}), "a/run.vtkhdf is of an earlier version");
 }
 
-TEST_CASE("a run is resumed with the particle files that it was begun with, done or not") {
+TEST_CASE("a run is resumed with the particle files that it was begun with, done or not",
+          "[slow]") {
   const Ran r;
   const Args again{"s/s.yaml", "--out", "a", "--resume"};
   check_done(r.run(again));
@@ -147,7 +148,7 @@ TEST_CASE("a run is resumed with the particle files that it was begun with, done
   CHECK(run_difference(r.folder / "a/run.vtkhdf", r.folder / "b/run.vtkhdf") == "");
 }
 
-TEST_CASE("a checkpoint or run file of another scene with as many particles is refused") {
+TEST_CASE("a checkpoint or run file of another scene with as many particles is refused", "[slow]") {
   const Ran r;
   check_done(r.run({"s/s.yaml", "--out", "b", "--set", "viscosity.xsph=0.1"}));
   const Args longer{"s/s.yaml", "--out", "a", "--resume", "--set", "time.end=0.2"};

@@ -27,7 +27,8 @@ Outcome resume(const Scratch& folder) {
 
 }  // namespace
 
-TEST_CASE("a link in a run folder is not followed, and the error names it and the remedy") {
+TEST_CASE("a link in a run folder is not followed, and the error names it and the remedy",
+          "[slow]") {
   for (const std::string name : kNames) {
     for (const std::string target : {"../victim", "../new"}) {
       const Scratch folder;
@@ -51,7 +52,7 @@ TEST_CASE("a link in a run folder is not followed, and the error names it and th
   CHECK(read_text(folder / "victim") == "precious");
 }
 
-TEST_CASE("a FIFO and a folder in a run folder are errors, and nothing hangs") {
+TEST_CASE("a FIFO and a folder in a run folder are errors, and nothing hangs", "[slow]") {
   for (const std::string name : kNames) {
     const Scratch folder;
     begin(folder);

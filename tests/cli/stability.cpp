@@ -19,7 +19,7 @@ const char* const kSuite =
 
 }  // namespace
 
-TEST_CASE("stability: a table and a CSV with a verdict per case, exit 6 when one fails") {
+TEST_CASE("stability: a table and a CSV with a verdict per case, exit 6 when one fails", "[slow]") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());
   folder.write("suite.yaml", kSuite);
@@ -42,7 +42,8 @@ TEST_CASE("stability: a table and a CSV with a verdict per case, exit 6 when one
   CHECK(pbf::test::pbf({"stability", "--suite", "none.yaml"}, folder.path()).code == 2);
 }
 
-TEST_CASE("stability: SIGTERM ends it with 75, and the cases done until then are written") {
+TEST_CASE("stability: SIGTERM ends it with 75, and the cases done until then are written",
+          "[slow]") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());
   folder.write(
@@ -67,7 +68,7 @@ TEST_CASE("stability: SIGTERM ends it with 75, and the cases done until then are
   CHECK(!has(read_text(folder / "t.csv"), "endless"));
 }
 
-TEST_CASE("stability: a line of progress every ten seconds without a terminal") {
+TEST_CASE("stability: a line of progress every ten seconds without a terminal", "[slow]") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());
   Args map{"stability",     "tiny.yaml", "--map",    "time.step,gravity", "--x",
@@ -84,7 +85,7 @@ TEST_CASE("stability: a line of progress every ten seconds without a terminal") 
   CHECK(has(o.err, "stopped early by SIGINT with "));
 }
 
-TEST_CASE("stability: JUnit XML of a suite, which no map has") {
+TEST_CASE("stability: JUnit XML of a suite, which no map has", "[slow]") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());
   folder.write("suite.yaml", kSuite);
@@ -155,7 +156,8 @@ TEST_CASE("stability: help says what a map varies, and what its classes and numb
 
 TEST_CASE(
     "guard: a run that blows up ends with exit 3, says where, and leaves a scene that repeats "
-    "it, and without the guard it goes on") {
+    "it, and without the guard it goes on",
+    "[slow]") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());
   const std::vector<std::string> blow{"run", scene, "--out", "o", "--set", "tensile.k=1000"};
@@ -181,7 +183,8 @@ TEST_CASE(
   CHECK(pbf::test::pbf(off, folder.path()).code == 0);
 }
 
-TEST_CASE("guard: the scene that repeats an event names the particle by the id that it had") {
+TEST_CASE("guard: the scene that repeats an event names the particle by the id that it had",
+          "[slow]") {
   const Scratch folder;
   folder.write("tiny.yaml", tiny_scene());
   // A first update with tensile, and one after the particles have been sorted, with viscosity.

@@ -66,7 +66,7 @@ TEST_CASE("a study writes its tables, keeps its runs, and does only what is miss
   CHECK(has(remade.err, "log has no column compression_mean"));
 }
 
-TEST_CASE("a killed study goes on where it was, and SIGTERM stops it with 75") {
+TEST_CASE("a killed study goes on where it was, and SIGTERM stops it with 75", "[slow]") {
   const Folder folder(
       "repeats: 1\ngrid: {solver.iterations: [1, 2, 3, 4, 5, 6]}\nset: {time.end: 1}\n");
   fs::remove(folder / "study.yaml");

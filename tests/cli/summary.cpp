@@ -26,13 +26,15 @@ std::string summary_of(const std::string& scene, const Args& more = {}) {
 
 }  // namespace
 
-TEST_CASE("summary: the height and pressure of a pool are told of one that has come to rest") {
+TEST_CASE("summary: the height and pressure of a pool are told of one that has come to rest",
+          "[slow]") {
   CHECK(has(summary_of(narrow_tank("0.2", "4")), "pool at rest        height "));
   CHECK_FALSE(has(summary_of(narrow_tank("0.2", "0.02")), "pool at rest"));  // had no time to move
   CHECK_FALSE(has(summary_of(narrow_tank("1", "0.5")), "pool at rest"));     // flows
 }
 
-TEST_CASE("summary: what takes energy is what the scene has, and walls have no friction") {
+TEST_CASE("summary: what takes energy is what the scene has, and walls have no friction",
+          "[slow]") {
   const std::string plain = summary_of(narrow_tank("0.2", "0.05"));
   CHECK(has(plain,
             "from start to end: the method loses energy in splashes, more with longer "

@@ -73,7 +73,7 @@ TEST_CASE("waiting threads sleep soon, by the runtime's own word, unless the use
   CHECK(std::stod(spin_count({"OMP_WAIT_POLICY=active"})) > 1e6);
 }
 
-TEST_CASE("threads that wait for one whose core is taken use next to no CPU time") {
+TEST_CASE("threads that wait for one whose core is taken use next to no CPU time", "[slow]") {
   const Scratch folder;
   const std::string scene = folder.write(
       "s.yaml",

@@ -82,7 +82,8 @@ std::vector<Vec4<Real>> random_points(int n, double lo, double hi) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("neighbour lists hold exactly the pairs closer than h", "", float, double) {
+TEMPLATE_TEST_CASE("neighbour lists hold exactly the pairs closer than h", "[slow]", float,
+                   double) {
   using R = TestType;
   SECTION("random points") { check_lists<R>(random_points<R>(3000, 0, 5), {5, 5, 5}, 6, 6, 6); }
   SECTION("random points, many more than one chunk and one cell") {

@@ -111,7 +111,7 @@ void random_paths(const ObstacleSample& s, int count) {
 TEMPLATE_TEST_CASE(
     "a path that meets an obstacle ends outside on the side where it met it, others "
     "end where they were to",
-    "", float, double) {
+    "[slow]", float, double) {
   for (const auto& s : samples(3)) random_paths<3, TestType>(s, 10000);
   for (const auto& s : samples(2)) random_paths<2, TestType>(s, 10000);
 }

@@ -65,7 +65,7 @@ TEST_CASE("the obstacles' quadrature along rays gives the half space and the bal
   }
 }
 
-TEST_CASE("an obstacle's share is the kernel's integral over the solid") {
+TEST_CASE("an obstacle's share is the kernel's integral over the solid", "[slow]") {
   for (const auto& s : obstacle_samples(3)) {
     CAPTURE(s.name);
     const double worst = worst_share<Smoothing::consistent>(s, 60);
@@ -93,7 +93,7 @@ TEST_CASE("a long cylinder's share is within 0.001 of rho0 of the integral from 
   }
 }
 
-TEST_CASE("an obstacle's share in the plane is the kernel's integral over its section") {
+TEST_CASE("an obstacle's share in the plane is the kernel's integral over its section", "[slow]") {
   for (const auto& s : obstacle_samples(2)) {
     CAPTURE(s.name);
     const double worst = worst_share<Smoothing::consistent_2d>(s, 100);

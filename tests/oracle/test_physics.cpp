@@ -79,8 +79,8 @@ TEST_CASE(
   CHECK(worst_energy < 1.03 * e0);
 }
 
-TEST_CASE(
-    "a pool keeps 0.97 of its height with the smallest smoothing ratio that a scene may have") {
+TEST_CASE("a pool keeps 0.97 of its height with the smallest smoothing ratio that a scene may have",
+          "[slow]") {
   for (const int dimensions : {2, 3})
     for (const auto kernels : {pbf::KernelMode::consistent, pbf::KernelMode::paper}) {
       CAPTURE(dimensions, int(kernels));

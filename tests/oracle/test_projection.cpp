@@ -134,7 +134,7 @@ double largest(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
-TEST_CASE("the exact projection equals an independent dense solve to 1e-9 spacings") {
+TEST_CASE("the exact projection equals an independent dense solve to 1e-9 spacings", "[slow]") {
   Case c = jittered_block(3, 3, 3, 0.05, 0, 3, 0.97);
   for (std::size_t k = 0; k < 3; ++k) c.scene.domain.max[k] = c.scene.domain.min[k] + 0.07;
   SECTION("between walls") {}

@@ -6,7 +6,8 @@
 
 using namespace oracle_test;
 
-TEST_CASE("one update in double equals the brute-force oracle to rounding, feature by feature") {
+TEST_CASE("one update in double equals the brute-force oracle to rounding, feature by feature",
+          "[slow]") {
   Case c = jittered_block(6, 5, 7, 0.3, 0.4);
   SECTION("defaults") {}
   SECTION("the paper's kernels") { c.scene.solver.kernels = pbf::KernelMode::paper; }
@@ -41,7 +42,8 @@ TEST_CASE("one update in double equals the brute-force oracle to rounding, featu
   CHECK(d.velocity < 2e-12);
 }
 
-TEST_CASE("one update is exact in boxes of far more than 2^31 cells, at either end of them") {
+TEST_CASE("one update is exact in boxes of far more than 2^31 cells, at either end of them",
+          "[slow]") {
   Case c = jittered_block(6, 5, 7, 0.3, 0.4);
   const double h = c.scene.h();
   auto &low = c.scene.domain.min, &high = c.scene.domain.max;
@@ -97,7 +99,7 @@ TEST_CASE("float follows double to single rounding over one update") {
   CHECK(worst > 0);  // else both ran in the same precision
 }
 
-TEST_CASE("1 and 2 threads give the same bits after 50 updates with every feature on") {
+TEST_CASE("1 and 2 threads give the same bits after 50 updates with every feature on", "[slow]") {
   Case c = jittered_block(20, 20, 50, 0.3, 0.4);  // above the sizes at which threads are used
   c.scene.precision = GENERATE(pbf::Precision::single, pbf::Precision::dbl);
   c.scene.tensile = pbf::Tensile{};

@@ -96,7 +96,8 @@ double square_lattice_factor(double ratio) {
 
 }  // namespace
 
-TEST_CASE("with h = 3.5 d a standing wave in 30 layers is at most 2 % off linear theory") {
+TEST_CASE("with h = 3.5 d a standing wave in 30 layers is at most 2 % off linear theory",
+          "[slow]") {
   const double ratio = frequency(tank(50, 30, 0.01, 3.5, 0.0014), 400, 0.01);
   CAPTURE(ratio);  // with h = 2 d 1.048: tests/regression/standing_wave
   CHECK(ratio > 0.98);

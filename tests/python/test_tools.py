@@ -124,6 +124,22 @@ def test_the_tests_get_the_options_of_cmake_and_of_ctest(tree):
     assert calls[2].startswith("ctest ") and calls[2].endswith(" -R resume")
 
 
+def test_the_quick_part_is_less_is_chosen_by_its_label_and_says_that_it_is_a_part(tree):
+    code, text, calls = tree("tools/test", "--quick", "--", "-R", "guard")
+    assert code == 0
+    assert calls[1] == "cmake --build build --target pbf unit oracle cli backend frozen"
+    assert "-L quick" in calls[2] and calls[2].endswith(" -R guard")
+    assert text.rstrip().splitlines()[-1].startswith("tools/test: this was the quick part")
+    code, text, calls = tree("tools/test")
+    assert code == 0 and "quick" not in text and "-L" not in calls[2].split()
+
+
+def test_the_quick_part_needs_no_python_packages(tree):
+    (tree.folder / "build/venv/bin/python").unlink()
+    code, text, _ = tree("tools/test", "--quick")
+    assert code == 0 and "pytest" not in text
+
+
 def test_a_build_that_fails_shows_all_of_its_output(tree):
     code, text, calls = tree("tools/demo", BREAK="yes")
     assert code == 1

@@ -42,7 +42,9 @@ struct Case {
   bool readings = false;
 };
 
-std::vector<Case> read_cases() {
+/// Those of the given names, or all.
+std::vector<Case> read_cases(std::vector<std::string> names) {
+  const bool all = names.empty();
   std::ifstream in(kRoot / "tests/regression/frozen/cases.txt");
   std::vector<Case> cases;
   for (std::string line; std::getline(in, line);) {
@@ -50,6 +52,7 @@ std::vector<Case> read_cases() {
     Case c;
     std::string file;
     if (!(words >> c.name) || c.name[0] == '#' || !(words >> file)) continue;
+    if (!all && std::erase(names, c.name) == 0) continue;
     c.file = kRoot / file;
     for (std::string word; words >> word;)
       if (word == "readings")
@@ -58,6 +61,8 @@ std::vector<Case> read_cases() {
         c.set.push_back(word);
     cases.push_back(c);
   }
+  for (const std::string& name : names)
+    throw Error(ExitCode::bad_input, "cases.txt has no case " + name);
   return cases;
 }
 
@@ -169,8 +174,8 @@ std::vector<Found> run_all(const std::vector<Case>& cases, Backend backend, int 
   return found;
 }
 
-int main_of(bool write, Backend backend, bool times) {
-  const std::vector<Case> cases = read_cases();
+int main_of(const std::vector<std::string>& names, bool write, Backend backend, bool times) {
+  const std::vector<Case> cases = read_cases(names);
   const Stopwatch watch;
   const auto found =
       run_all(cases, backend, about(backend).on_device ? 1 : usable_threads(), times);
@@ -194,7 +199,7 @@ int main_of(bool write, Backend backend, bool times) {
     else if (was->second != found[k].row)
       say(key, "was " + was->second + ", is " + found[k].row);
   }
-  if (!write)
+  if (!write && names.empty())
     for (const auto& [key, row] : left) say(key, "is no case of cases.txt");
   const auto slowest =
       std::max_element(found.begin(), found.end(),
@@ -217,20 +222,23 @@ int main_of(bool write, Backend backend, bool times) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   bool write = false, times = false;
+  std::vector<std::string> names;
   Backend backend = Backend::cpu;
   for (int k = 1; k < argc; ++k) {
-    if (std::strcmp(argv[k], "--write") == 0) {
+    if (std::strcmp(argv[k], "--write") == 0 && names.empty()) {
       write = true;
     } else if (std::strcmp(argv[k], "--times") == 0) {
       times = true;
     } else if (std::strcmp(argv[k], "--on") == 0 && k + 1 < argc && named<Backend>(argv[k + 1])) {
       backend = *named<Backend>(argv[++k]);
+    } else if (argv[k][0] != '-' && !write) {
+      names.push_back(argv[k]);
     } else {
       std::printf(
           "Runs the cases of tests/regression/frozen/cases.txt and compares with hashes.csv.\n"
-          "Usage: frozen [--on BACKEND] [--write] [--times]\n"
+          "Usage: frozen [--on BACKEND] [--times] [--write | CASE...]\n"
           "  --on BACKEND  with solver.reproducible: the same hashes; exit 77 without a GPU for "
           "it\n"
           "  --write       write hashes.csv anew, where one and two threads agree\n"
@@ -241,10 +249,13 @@ int main(int argc, char** argv) {
   if (backend == Backend::cuda) {
     std::string why = "this build has no CUDA backend";
 #ifdef PBF_HAS_CUDA
-    if (cuda_available(&why)) return main_of(write, backend, times);
+    if (cuda_available(&why)) return main_of(names, write, backend, times);
 #endif
     std::printf("skipped: %s\n", why.c_str());
     return 77;
   }
-  return main_of(write, backend, times);
+  return main_of(names, write, backend, times);
+} catch (const pbf::Error& e) {
+  std::printf("frozen: %s\n", e.what());
+  return static_cast<int>(e.code());
 }

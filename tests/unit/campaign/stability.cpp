@@ -45,7 +45,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("stability suite: whatever is wrong in the file is told with its place") {
+TEST_CASE("stability suite: whatever is wrong in the file is told with its place", "[slow]") {
   CHECK(suite_error(kCase) == "no error");
   CHECK(contains(suite_error("cases:\n  - {name: a, group: g, scene: s.yaml, must: {sped: 3}}\n"),
                  "suite.yaml:2:47: sped: unknown key, did you mean speed?"));
@@ -63,7 +63,8 @@ TEST_CASE("stability suite: whatever is wrong in the file is told with its place
   CHECK(contains(suite_error("casse: []\n"), "did you mean cases?"));
 }
 
-TEST_CASE("stability case: a criterion that is not met fails the case, and says by how much") {
+TEST_CASE("stability case: a criterion that is not met fails the case, and says by how much",
+          "[slow]") {
   const StabilityRow good = run_one("speed: 100, nearest: 0.5");
   CHECK(good.good);
   CHECK(good.used > 0);
@@ -80,7 +81,8 @@ TEST_CASE("stability case: a criterion that is not met fails the case, and says 
 
 TEST_CASE(
     "stability case: an error or a stop by the guard counts where it must happen, and only "
-    "then") {
+    "then",
+    "[slow]") {
   CHECK(run_one("error: 2, says: time.step", "time.step: .nan").good);
   CHECK_FALSE(run_one("error: 2, says: gravity", "time.step: .nan").good);
   CHECK_FALSE(run_one("error: 3", "time.step: .nan").good);
@@ -92,7 +94,8 @@ TEST_CASE(
   CHECK_FALSE(run_one("speed: 100", fast).good);
 }
 
-TEST_CASE("stability case: how deep in obstacles, what goes through, and what loads add up to") {
+TEST_CASE("stability case: how deep in obstacles, what goes through, and what loads add up to",
+          "[slow]") {
   const std::string box = "{name: a, shape: box, min: [0.4, -1, -1], max: [0.6, 2, 2]}";
   const std::string set = "time.end: 0.1, obstacles: [" + box + "]";
   const StabilityRow good = run_one("penetration: 0.0001, loads: 0.0001", set);

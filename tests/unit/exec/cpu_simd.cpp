@@ -97,7 +97,8 @@ void check_loads() {
 
 }  // namespace
 
-TEST_CASE("lanes of every width give the bits of one particle at a time, pass by pass", "[simd]") {
+TEST_CASE("lanes of every width give the bits of one particle at a time, pass by pass",
+          "[slow][simd]") {
   const bool dbl = GENERATE(false, true);
   const bool flat = GENERATE(false, true);
   // 315: no width divides it.

@@ -160,7 +160,8 @@ TEST_CASE("soft links within a particle file are followed") {
   CHECK(read_particle_file(path).position.at(1)[0] == 0.75);
 }
 
-TEST_CASE("a run file that takes in another file is refused, whatever the way and the place") {
+TEST_CASE("a run file that takes in another file is refused, whatever the way and the place",
+          "[slow]") {
   const TemporaryFolder folder;
   const std::string other = others_file(folder);
   for (const char* place : {"VTKHDF/Points", "VTKHDF/PointData/velocity", "VTKHDF/Steps/Values",

@@ -79,7 +79,8 @@ TEST_CASE("a place that cannot be written to is named with the reason", "[run_fi
            [&] { RunWriter(folder / "missing/run.vtkhdf", sample_info(20), false); });
 }
 
-TEST_CASE("a full disk ends the run with the frame, the reason and what is kept", "[run_file]") {
+TEST_CASE("a full disk ends the run with the frame, the reason and what is kept",
+          "[slow][run_file]") {
   const TemporaryFolder folder;
   const std::string path = folder / "run.vtkhdf";
   const bool gzip = GENERATE(false, true);
@@ -244,7 +245,7 @@ TEST_CASE("files that are no run files are named with the reason", "[run_file]")
   refused(newer, "format version 7; this program reads version 1");
 }
 
-TEST_CASE("a file cut off anywhere is refused or read, never a crash", "[run_file]") {
+TEST_CASE("a file cut off anywhere is refused or read, never a crash", "[slow][run_file]") {
   const TemporaryFolder folder;
   const std::string good = good_file(folder, 3), cut = folder / "cut.h5";
   const auto size = static_cast<std::int64_t>(std::filesystem::file_size(good));

@@ -47,7 +47,7 @@ class Replica {
 }  // namespace
 
 TEST_CASE("after every single write to the disk all frames reported so far are readable",
-          "[run_file][many_states]") {
+          "[slow][run_file][many_states]") {
   const TemporaryFolder folder;
   const std::string path = folder / "run.vtkhdf";
   const bool gzip = GENERATE(false, true);

@@ -73,7 +73,7 @@ class Disk {
 }  // namespace
 
 TEST_CASE("a power cut at any moment leaves every reported frame, and no frame that is not whole",
-          "[run_file][many_states]") {
+          "[slow][run_file][many_states]") {
   const TemporaryFolder folder;
   const std::string path = folder / "run.vtkhdf";
   const bool gzip = GENERATE(false, true);

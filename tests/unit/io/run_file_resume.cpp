@@ -69,7 +69,7 @@ void check_whole(const std::string& path, std::int64_t frames) {
 }  // namespace
 
 TEST_CASE("a file goes on from whatever any single write to the disk has left",
-          "[run_file][many_states]") {
+          "[slow][run_file][many_states]") {
   const TemporaryFolder folder;
   const std::string path = folder / "run.vtkhdf", replica = folder / "replica.h5",
                     again = folder / "again.h5";

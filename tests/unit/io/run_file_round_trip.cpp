@@ -33,7 +33,7 @@ void check_round_trip(const std::vector<std::size_t>& counts, bool gzip, ScalarT
 
 }  // namespace
 
-TEST_CASE("every frame comes back bit for bit", "[run_file]") {
+TEST_CASE("every frame comes back bit for bit", "[slow][run_file]") {
   SECTION("float") { check_round_trip({1000, 1000, 1000, 1000}, false, ScalarType::f32); }
   SECTION("double") { check_round_trip({1000, 1000}, false, ScalarType::f64); }
   SECTION("gzip") { check_round_trip({5000, 5000}, true, ScalarType::f32); }

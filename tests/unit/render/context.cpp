@@ -103,7 +103,7 @@ TEST_CASE("a snapshot without the field of the colour is refused by its name", "
   CHECK(error_of([&] { renderer.draw(Snapshot{}); }).second.find("position") != std::string::npos);
 }
 
-TEST_CASE("EGL without a window draws the same picture as the first choice", "[render]") {
+TEST_CASE("EGL without a window draws the same picture as the first choice", "[slow][render]") {
   PBF_NEEDS_GL();
   const Snapshot s = snapshot({{0, 0, 0}, {0.6, 0.5, 0.4}, {-0.6, -0.3, 0.2}}, {0.1, 0.5, 0.9});
   Renderer first(front_view());

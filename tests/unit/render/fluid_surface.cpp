@@ -55,7 +55,7 @@ double unevenness(const Image& image, const View& view, double height) {
 
 }  // namespace
 
-TEST_CASE("a pool at rest is one even surface, where spheres are a pattern", "[render]") {
+TEST_CASE("a pool at rest is one even surface, where spheres are a pattern", "[slow][render]") {
   PBF_NEEDS_GL();
   const Snapshot s = pool(4);
   const double height = 4 * kSpacing;
@@ -74,7 +74,7 @@ TEST_CASE("a pool at rest is one even surface, where spheres are a pattern", "[r
   }
 }
 
-TEST_CASE("the surface has no holes between the particles of one layer at rest", "[render]") {
+TEST_CASE("the surface has no holes between the particles of one layer at rest", "[slow][render]") {
   PBF_NEEDS_GL();
   View view = pool_view();
   view.camera.target = Double3{1, 1, 0};
@@ -114,7 +114,7 @@ TEST_CASE(
   CHECK(between >= 4);
 }
 
-TEST_CASE("an obstacle before the surface hides it, and one behind is hidden", "[render]") {
+TEST_CASE("an obstacle before the surface hides it, and one behind is hidden", "[slow][render]") {
   PBF_NEEDS_GL();
   View view = pool_view();
   view.camera.target = Double3{1, 1, 0.3};
@@ -221,7 +221,7 @@ TEST_CASE("in two dimensions the surface is a plane in the colour of the value",
 }
 
 TEST_CASE("the surface is the same from picture to picture and for any number of threads",
-          "[render]") {
+          "[slow][render]") {
   PBF_NEEDS_GL();
   const View view = pool_view();
   const Snapshot s = lattice(3, [](const Double3& p) { return 0.5 * p[0]; });

@@ -37,7 +37,8 @@ Course course_of(const std::string& name, std::vector<std::string> keys) {
 
 }  // namespace
 
-TEST_CASE("shipped scenes stay in the picture, and in the range of their colours", "[render]") {
+TEST_CASE("shipped scenes stay in the picture, and in the range of their colours",
+          "[slow][render]") {
   const std::vector<std::pair<std::string, std::vector<std::string>>> scenes{
       {"dam_break", {"fluid.spacing=0.05"}},
       {"dam_break", {"fluid.spacing=0.05", "domain.max=[1.6,0.4,9]"}},

@@ -49,7 +49,7 @@ TEST_CASE("a strict run stops at its first warning, after saving, and ends with 
   CHECK(r.frames() == Updates{0, 3, 4});
 }
 
-TEST_CASE("a disk that fills up ends a run with 5; no checkpoint is ahead of the frames") {
+TEST_CASE("a disk that fills up ends a run with 5, and no checkpoint is ahead of the frames") {
   std::int64_t bytes = 0;
   {
     CountedRun whole(ten_updates());

@@ -90,7 +90,8 @@ TEST_CASE("a run that is stopped saves the state that it leaves, with a frame an
   CHECK_FALSE(late.saved());
 }
 
-TEST_CASE("a run without time is stopped at its start, one that goes back at its first event") {
+TEST_CASE(
+    "a run whose wall time is over stops at its start, one that goes back at its first event") {
   CountedRun plain(ten_updates());
   plain.run.max_walltime = 1e-9;
   CHECK(plain.error() == "no error");

@@ -209,7 +209,7 @@ TEST_CASE("a file whose particles lie in the same places twice is named") {
   std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a search for overlap ends, also where all particles are in one place") {
+TEST_CASE("a search for overlap ends, also where all particles are in one place", "[slow]") {
   Scene s = pool();
   for (int b = 0; b < 2; ++b) {
     if (b == 1) s.bodies.push_back(s.bodies[0]);

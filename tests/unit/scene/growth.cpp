@@ -22,14 +22,15 @@ std::string many(Piece piece, std::size_t part = 1) {
 
 }  // namespace
 
-TEST_CASE("4 MiB of comments, of empty lines or of lines of one text are read") {
+TEST_CASE("4 MiB of comments, of empty lines or of lines of one text are read", "[slow]") {
   CHECK(parse_error(many([](int) { return "#\n"; }) + kMinimal) == "no error");
   CHECK(parse_error(many([](int) { return "\n"; }) + kMinimal) == "no error");
   CHECK(contains(parse_error(kMinimal + "name: >\n" + many([](int) { return "  x\n\n"; })),
                  "longer than 1000 bytes"));
 }
 
-TEST_CASE("4 MiB of unknown keys, wrong entries or repeated keys are counted, 100 shown") {
+TEST_CASE("4 MiB of unknown keys, wrong entries or repeated keys are counted, 100 shown",
+          "[slow]") {
   const auto key = [](int i) { return std::to_string(i).append(": 1\n"); };
   const auto entry = [](int) { return "  - {shape: block, mn: [0, 0, 0], max: [9, 9, 9]}\n"; };
   const std::string before = kMinimal.substr(0, kMinimal.find("bodies:"));

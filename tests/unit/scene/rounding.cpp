@@ -77,7 +77,7 @@ TEST_CASE("how long a box may be depends on the precision alone, not on the numb
 
 // Positions are as coarse as the box is high. Along x and y it is 4 h wide, so that half a million
 // steps visit few cells; nothing moves there.
-TEST_CASE("a fall just within the limit is right within 2 %, far beyond it is not") {
+TEST_CASE("a fall just within the limit is right within 2 %, far beyond it is not", "[slow]") {
   const std::vector<std::string> shaft{"domain.min=[4.8,0.3,0]", "domain.max=[5.2,0.7,10]"};
   for (const char* end : {"0.04", "0.1", "0.4"}) {
     Scene s = parse(falling("1.0e-3", end), shaft);

@@ -93,7 +93,7 @@ TEST_CASE("two files of one content are the same, whatever their precision", "[c
 }
 
 TEST_CASE("what one of two files holds and the other does not is a difference, by name",
-          "[compare]") {
+          "[slow][compare]") {
   Made b = other();
   std::vector<std::string> named;
   SECTION("a side that ended after its first frame") {
@@ -155,7 +155,7 @@ TEST_CASE("files without one frame between them cannot be compared", "[compare]"
   }
 }
 
-TEST_CASE("samples that differ by rounding are equal, by more they are not", "[compare]") {
+TEST_CASE("samples that differ by rounding are equal, by more they are not", "[slow][compare]") {
   const auto [ulps, same] = GENERATE(table<double, bool>({{4, true}, {1e5, false}}));
   const std::string field = GENERATE("position", "velocity", "density");
   CAPTURE(ulps, field);
@@ -203,7 +203,8 @@ TEST_CASE("stored as float and as double, the same numbers are the same", "[comp
   CHECK_FALSE(compare(Made{}, b).same());  // both promise the bits of the CPU in double
 }
 
-TEST_CASE("values that are no numbers are the same only where both files have them", "[compare]") {
+TEST_CASE("values that are no numbers are the same only where both files have them",
+          "[slow][compare]") {
   const std::string field = GENERATE("position", "velocity", "density");
   CAPTURE(field);
   Made sick = other();

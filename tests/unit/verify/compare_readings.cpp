@@ -34,7 +34,7 @@ const CompareRow& row(const ComparePart& p, const std::string& what) {
 }  // namespace
 
 TEST_CASE("loads and gauges are compared in the frozen step and behind it, float within tolerance",
-          "[compare]") {
+          "[slow][compare]") {
   const Scene s = defect_scene("solids");
   const CompareResult r = compare(s, s, "cpu:float");
   CHECK(r.same());
@@ -71,7 +71,8 @@ TEST_CASE("sides that promise the same bits have the same loads and readings", "
     }
 }
 
-TEST_CASE("what moves no particle but changes a load or a reading is found there", "[compare]") {
+TEST_CASE("what moves no particle but changes a load or a reading is found there",
+          "[slow][compare]") {
   const std::vector<std::array<const char*, 3>> cases{
       {"solids", "fluid.rest_density=1001", "loads"},
       {"solids", "gauges.0.at=[0.24,0.12]", "gauges"},

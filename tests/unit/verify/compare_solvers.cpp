@@ -118,7 +118,8 @@ TEST_CASE("an error that lambda inherits from the density of its own pass is not
 }
 
 // At the start of a dam break all particles are slow, and float rounds the way of each substep.
-TEST_CASE("roundings that go one way do so in every substep, and are no difference", "[compare]") {
+TEST_CASE("roundings that go one way do so in every substep, and are no difference",
+          "[slow][compare]") {
   const Scene s = load_scene(std::string(PBF_SOURCE_DIR) + "/configs/dam_break_2d.yaml",
                              {"threads=1", "solver.substeps=6"})
                       .scene;
@@ -169,7 +170,7 @@ TEST_CASE("two doubles of different arithmetic promise nothing, yet a key of 1e-
 }
 
 TEST_CASE("a difference that shows only later is traced in the update where it begins",
-          "[compare]") {
+          "[slow][compare]") {
   // The far wall is elsewhere on B, in the same cell: nobody is near it at first.
   CompareSettings s = settings("cpu:double", "cpu:float");
   s.warmup = 0;
