@@ -26,12 +26,12 @@ inline Scene ten_updates(int gauges = 100) {
   s.guard.reset();
   return s;
 }
-inline Scene guarded(Scene s = ten_updates()) {
+inline Scene with_guard(Scene s = ten_updates()) {
   s.guard.emplace();
   return s;
 }
 /// At most four times as fine.
-inline Scene adaptive(Scene s = guarded()) {
+inline Scene with_shorter_steps(Scene s = with_guard()) {
   s.time.adaptive.emplace().step_min = s.time.step / 4;
   return s;
 }

@@ -11,7 +11,7 @@
 namespace pbf::scene_test {
 
 TEST_CASE("an alarm without a way back ends a run with 3, and the checkpoint before it stays") {
-  CountedRun r(saving_always(guarded()));
+  CountedRun r(saving_always(with_guard()));
   r.solver.flow = [](Diagnostics& m) { m.non_finite = m.update >= 7; };
   r.solver.fault = 7;
   const std::string error = r.error();
@@ -25,7 +25,7 @@ TEST_CASE("an alarm without a way back ends a run with 3, and the checkpoint bef
 }
 
 TEST_CASE("a state that the guard objects to where it would be saved is not saved") {
-  CountedRun r(saving_always(guarded()));
+  CountedRun r(saving_always(with_guard()));
   r.solver.flow = [](Diagnostics& m) { m.non_finite = m.update == 6; };  // no measure is due there
   r.solver.fault = 5;
   CHECK(r.error().rfind("3 ", 0) == 0);

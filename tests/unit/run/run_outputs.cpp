@@ -28,7 +28,7 @@ TEST_CASE("a run has each frame and row once, at its interval and at the end, wi
 }
 
 TEST_CASE("a run that goes back has each frame and row once, of what came out in the end") {
-  CountedRun r(saving_always(adaptive()));
+  CountedRun r(saving_always(with_shorter_steps()));
   r.solver.flow = wrong_at(r.solver, 8);
   CHECK(r.error() == "no error");
   CHECK(r.frames() == Updates{0, 3, 6, 9, 10});
@@ -71,6 +71,21 @@ TEST_CASE(
   CHECK(r.run.compression_max == Approx(0.8));
 }
 
+TEST_CASE("a checkpoint of a run that goes back holds its last good state, not the present one") {
+  CountedRun r(saving_always(with_shorter_steps()));
+  Updates at, in_checkpoints;
+  r.solver.before_state = [&] {
+    at.push_back(r.solver.updates());
+    if (at.size() > 1) in_checkpoints.push_back(r.saved()->state.updates);
+  };
+  CHECK(r.error() == "no error");
+  CHECK(at.at(1) == 1);  // the first call is of one update
+  CHECK(in_checkpoints.at(1) == 0);
+  for (const std::int64_t u : in_checkpoints) CHECK((u % 3 == 0 || u % 4 == 0));
+  // The end of this run is none of a longer one.
+  CHECK(r.saved()->state.updates == 9);
+}
+
 TEST_CASE("a run that is stopped saves the state that it leaves, with a frame and a row of it") {
   CountedRun r(ten_updates());
   r.stop_at(4);
@@ -99,7 +114,7 @@ TEST_CASE(
   CHECK(plain.frames() == Updates{0});
   CHECK(plain.column("update") == std::vector<double>{0});
   CHECK(plain.saved().value().state.updates == 0);
-  CountedRun back(adaptive());
+  CountedRun back(with_shorter_steps());
   back.run.max_walltime = 1e-9;
   CHECK(back.error() == "no error");
   CHECK(back.frames() == Updates{0, 3});
@@ -109,7 +124,7 @@ TEST_CASE(
 
 TEST_CASE(
     "a run that goes back and is stopped in between leaves nothing behind its last good state") {
-  CountedRun r(adaptive());
+  CountedRun r(with_shorter_steps());
   const Silence silence;
   open_files(r.run, "2026-01-01T00:00:00Z");
   // As run_session() has them, and one that asks for the end at update 5.

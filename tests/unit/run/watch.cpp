@@ -49,7 +49,7 @@ TEST_CASE("watch: a run that is stopped between two measures has one more, with 
 }
 
 TEST_CASE("watch: an alarm ends a run without shorter steps at the update at fault") {
-  WatchedSession s(guarded());
+  WatchedSession s(with_guard());
   s.solver.flow = wrong_at(s.solver, 8);
   s.solver.fault = 5;
   s.run();
@@ -69,7 +69,7 @@ TEST_CASE("watch: an alarm ends a run without shorter steps at the update at fau
 }
 
 TEST_CASE("watch: a guard keeps the state of every good measure") {
-  WatchedSession s(guarded());
+  WatchedSession s(with_guard());
   s.run();
   CHECK(s.solver.kept() == 10);
   CHECK(s.watch.guard()->last_good().update == 10);
@@ -77,7 +77,7 @@ TEST_CASE("watch: a guard keeps the state of every good measure") {
 }
 
 TEST_CASE("watch: an alarm repeats the updates since the last good state with half the step") {
-  WatchedSession s(adaptive());
+  WatchedSession s(with_shorter_steps());
   s.solver.flow = wrong_at(s.solver, 8);
   s.run();
   CHECK_FALSE(s.watch.event());
@@ -105,7 +105,7 @@ TEST_CASE("watch: an alarm repeats the updates since the last good state with ha
 }
 
 TEST_CASE("watch: what is wrong at a frame is taken back before anybody has seen the frame") {
-  WatchedSession s(adaptive());
+  WatchedSession s(with_shorter_steps());
   s.solver.flow = wrong_at(s.solver, 6);
   s.frames.then = [&](Session& session) {
     if (session.update() == 6) CHECK(s.solver.steps() == 4 + 2 * 2);
@@ -118,7 +118,7 @@ TEST_CASE("watch: what is wrong at a frame is taken back before anybody has seen
 }
 
 TEST_CASE("watch: with the finest step an alarm ends the run, and no step was tried twice") {
-  WatchedSession s(adaptive());
+  WatchedSession s(with_shorter_steps());
   s.solver.flow = [](Diagnostics& m) { m.non_finite = m.update == 8; };
   s.solver.fault = 7;
   s.run();
@@ -139,7 +139,7 @@ TEST_CASE("watch: with the finest step an alarm ends the run, and no step was tr
 TEST_CASE("watch: readings of gauges that are taken back come once, over their whole interval") {
   for (const std::int64_t wrong : {6, 8}) {
     CAPTURE(wrong);
-    WatchedSession s(adaptive(guarded(ten_updates(2))));
+    WatchedSession s(with_shorter_steps(with_guard(ten_updates(2))));
     s.solver.flow = wrong_at(s.solver, wrong);
     s.run();
     CHECK(s.watch.steps()->repeats == 1);
@@ -156,7 +156,7 @@ TEST_CASE("watch: readings of gauges that are taken back come once, over their w
 TEST_CASE("watch: a run that goes on repeats no measure, and knows its start and its step") {
   const std::int64_t from = GENERATE(6, 8);
   CAPTURE(from);
-  WatchedSession s(adaptive());
+  WatchedSession s(with_shorter_steps());
   SavedRun saved;
   saved.first.compression_mean = 0.25;
   saved.energy = {true, 7, 5, 9, 0.5, 0, 0, 0.08};
@@ -175,8 +175,18 @@ TEST_CASE("watch: a run that goes on repeats no measure, and knows its start and
   for (const auto& call : s.calls()) CHECK(call[2] == 1);
 }
 
+TEST_CASE("watch: a run that goes on where it ends has no measure of it again") {
+  WatchedSession s(ten_updates());
+  s.solver.step(8, {});
+  SavedRun saved;
+  saved.energy = {true, 7, 5, 9, 0.5, 0, 0, 0.08};
+  s.watch.go_on_from(saved);
+  s.run(8, 8);
+  CHECK(s.taken.empty());
+}
+
 TEST_CASE("watch: before a state is saved, a run that has no way back has it measured") {
-  WatchedSession s(guarded());
+  WatchedSession s(with_guard());
   s.solver.flow = [](Diagnostics& m) { m.non_finite = m.update == 7; };
   s.solver.fault = 5;
   std::vector<bool> good;
@@ -194,7 +204,7 @@ TEST_CASE("watch: before a state is saved, a run that has no way back has it mea
   CHECK(s.watch.event()->last_good.updates == 6);
   CHECK(s.updates() == Updates{0, 4, 6});  // nobody gets what is wrong
   // One that goes back saves its last good state.
-  WatchedSession back(adaptive());
+  WatchedSession back(with_shorter_steps());
   back.run(6);
   back.solver.step(1, {});
   const std::size_t measures = back.solver.measured.size();

@@ -8,7 +8,7 @@
 namespace pbf::scene_test {
 
 TEST_CASE("watch: a new step is chosen behind what needs the state as it was measured") {
-  WatchedSession s(adaptive());
+  WatchedSession s(with_shorter_steps());
   // 0.8 h in an update from 4 on. Compressed by 10 %, half of it after each 4 steps without time,
   // which lift the fluid by 1 J.
   s.solver.flow = [&](Diagnostics& m) {
@@ -44,7 +44,7 @@ TEST_CASE("watch: a new step is chosen behind what needs the state as it was mea
 }
 
 TEST_CASE("watch: the state relieved for a shorter step is the one to go back to") {
-  WatchedSession s(adaptive());
+  WatchedSession s(with_shorter_steps());
   s.solver.flow = [&](Diagnostics& m) {
     if (m.update == 4) m.speed_max = 16;
     if (m.update == 4) m.compression_mean = s.solver.steps_without_time() > 0 ? 1e-5 : 0.1;
@@ -59,7 +59,7 @@ TEST_CASE("watch: the state relieved for a shorter step is the one to go back to
 }
 
 TEST_CASE("watch: a measure at the end of a run alone chooses no step") {
-  WatchedSession s(adaptive());
+  WatchedSession s(with_shorter_steps());
   s.solver.flow = [](Diagnostics& m) { m.speed_max = m.update == 10 ? 16 : 0; };
   s.run();
   CHECK(s.watch.options().level == 0);
