@@ -1,6 +1,7 @@
 // What a run leaves in its folder, and when: frames, rows and checkpoints of a solver that only
 // counts.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "lib/run/run.h"
@@ -28,13 +29,31 @@ TEST_CASE("a run has each frame and row once, at its interval and at the end, wi
 }
 
 TEST_CASE("a run that goes back has each frame and row once, of what came out in the end") {
+  const std::int64_t wrong = GENERATE(6, 8);  // a frame, a measure
+  CAPTURE(wrong);
   CountedRun r(saving_always(with_shorter_steps()));
-  r.solver.flow = wrong_at(r.solver, 8);
+  r.solver.flow = wrong_at(r.solver, wrong);
   CHECK(r.error() == "no error");
   CHECK(r.frames() == Updates{0, 3, 6, 9, 10});
-  CHECK(r.steps_of_frames() == Updates{0, 3, 6, 12, 14});
+  // From the last good state on, 4 or 6, there are two steps in an update.
+  CHECK(r.steps_of_frames() == (wrong == 6 ? Updates{0, 3, 8, 14, 16} : Updates{0, 3, 6, 12, 14}));
   CHECK(r.column("update") == std::vector<double>{0, 4, 8, 10});
   CHECK(r.column("dt") == std::vector<double>{0.01, 0.01, 0.005, 0.005});
+}
+
+TEST_CASE("a frame is of the state as it was measured, before what a shorter step does to it") {
+  CountedRun r(with_shorter_steps());
+  r.solver.flow = [&](Diagnostics& m) {
+    m.speed_max = 16;
+    m.compression_mean = 0.1 * std::exp2(-double(r.solver.steps_without_time() / 4));
+  };
+  CHECK(r.error() == "no error");
+  const RunReader file(r.folder.file(kRunFile));
+  const auto without_time = [&](std::int64_t k) {
+    return file.frame(k).fields.at(0).as<float>()[1];
+  };
+  CHECK(without_time(0) == 0);
+  CHECK(without_time(1) == 8);
 }
 
 TEST_CASE(
