@@ -16,6 +16,13 @@
 namespace pbf::inline program_module {
 namespace {
 
+std::int64_t sum(const MemoryPlan& m, bool on_device, Held held) {
+  std::int64_t bytes = 0;
+  for (const PlanArray& a : m.arrays)
+    if (a.on_device == on_device && a.held == held) bytes += a.bytes;
+  return bytes;
+}
+
 bool has_field(const Scene& s, const char* name) {
   if (s.output) {
     const auto& f = s.output->fields;
@@ -90,15 +97,18 @@ std::int64_t add_start(const Scene& s, const Plan& plan, const std::string& real
 std::int64_t add_prestabilize(const Scene& s, const Plan& plan, const std::string& real,
                               MemoryPlan& memory) {
   if (!s.solver.prestabilize || s.solver.iterations == 0) return 0;
+  // One body on its lattice has no compression to take out.
+  if (plan.start.empty() && s.bodies.size() == 1 && s.obstacles.empty()) return 0;
   const std::int64_t n = plan.particles, kept = n * (8 * size_of(real) + 4);
   Adder{memory, false, Held::start}("positions around steps without time", "double", 3, 2 * n);
   return 48 * n - (s.guard && !about(s.backend).on_device ? kept : 0);
 }
 
 /// What frames and pictures take: on the host beside the solver, and the staging on the device.
-void add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
+/// Returns what stays between them.
+std::int64_t add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   const int scalars = downloaded_scalars(s);
-  if (scalars == 0) return;
+  if (scalars == 0) return 0;
   const std::int64_t n = plan.particles;
   const bool on_device = about(s.backend).on_device;
   const std::string real = word(s.output ? s.output->precision : Precision::single);
@@ -112,11 +122,13 @@ void add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   add("frames under way", real, scalars, frames * n);
   add("ids of frames under way", "int32", 1, frames * n);
   if (s.output) add("vertex numbers of the first frame", "int64", 1, n);
+  // Chunks of several fields and sizes, before and after: malloc keeps as much again as is in use.
   if (s.output && s.output->compression == Compression::gzip)
-    add("chunk before and after compression", real, 3, 2 * std::min<std::int64_t>(n, 1 << 22));
-  if (!s.render) return;
+    add("chunks before and after compression", real, 3, 4 * std::min<std::int64_t>(n, 1 << 22));
+  if (!s.render) return 0;
   const int colored = 3 + about(s.render->color).components;
   add("pictures waiting", real, colored, frames * n);
+  const std::int64_t before = sum(memory, false, Held::output);
   add("vertices, and the driver's copy", "byte", 16, 2 * n);
   const std::int64_t pixels = std::int64_t(s.render->size[0]) * s.render->size[1];
   add("2 x 2 samples, colour and depth", "byte", 8, 4 * pixels);
@@ -128,22 +140,38 @@ void add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   // llvmpipe's lists of what covers each tile, which it draws and empties when they have this size:
   // measured from 3 500 to 460 000 particles.
   add("tiles of the software rasteriser", "byte", 1, std::min<std::int64_t>(700 * n, 28 << 20));
+  return sum(memory, false, Held::output) - before;
+}
+
+/// A checkpoint: the state as io/checkpoint.h has it, and the chunk that gets its checksum.
+void add_checkpoint(const Scene& s, const Plan& plan, const std::string& real, MemoryPlan& memory) {
+  if (!s.checkpoint) return;
+  const Adder add{memory, false, Held::checkpoint};
+  add("state for a checkpoint", "double", 6, plan.particles);
+  add("ids for a checkpoint", "int32", 1, plan.particles);
+  add("chunk before and after its checksum", real, 3,
+      2 * std::min<std::int64_t>(plan.particles, 1 << 18));
 }
 
 /// Measured: see tests/regression/lean_check and tests/regression/lean/README.md.
 void add_fixed(const Scene& s, MemoryPlan& memory) {
   const auto mb = [](double x) { return std::int64_t(x * 1e6); };
 #ifdef PBF_HAS_CUDA
-  const double program = 19;  // with the device's code
+  const double program = 17.6;  // with the device's code
 #else
-  const double program = 17;
+  const double program = 15.6;
 #endif
   memory.fixed.push_back({"program and libraries", mb(program)});
-  if (s.output) memory.fixed.push_back({"HDF5 and the writer's thread", mb(10), false, true});
+  if (s.output || s.checkpoint) memory.fixed.push_back({"HDF5", mb(4.5), false, true});
+  if (s.output)  // two nodes, their keys and what HDF5 keeps of each
+    memory.fixed.push_back(
+        {"indices of the run file", mb(0.068 * run_file_datasets(s)), false, true});
+  if (s.output && s.output->compression == Compression::gzip)
+    memory.fixed.push_back({"zlib", mb(0.8), false, true});
   if (s.render) {
-    // Of Mesa 22.3: OSMesa takes 5 MB less than EGL, and both some 7 less, with a surface 10, where
+    // Of Mesa 22.3: OSMesa takes 5 MB less than EGL, and both some 9 less, with a surface 12, where
     // Mesa has kept the shaders of an earlier run on disk. This lies in the upper half.
-    memory.fixed.push_back({"OpenGL and LLVM in software", mb(93), false, true});
+    memory.fixed.push_back({"OpenGL and LLVM in software", mb(91.3), false, true});
     if (s.render->style == RenderStyle::surface)
       memory.fixed.push_back({"shaders of the surface", mb(6), false, true});
     if (!s.obstacles.empty())
@@ -156,13 +184,6 @@ void add_fixed(const Scene& s, MemoryPlan& memory) {
   }
 }
 
-std::int64_t sum(const MemoryPlan& m, bool on_device, Held held) {
-  std::int64_t bytes = 0;
-  for (const PlanArray& a : m.arrays)
-    if (a.on_device == on_device && a.held == held) bytes += a.bytes;
-  return bytes;
-}
-
 }  // namespace
 
 const char* held_name(Held held) {
@@ -173,6 +194,8 @@ const char* held_name(Held held) {
       return "solver";
     case Held::output:
       return "output";
+    case Held::checkpoint:
+      return "checkpoint";
   }
   return "";
 }
@@ -200,15 +223,17 @@ MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
     add_cuda_lists(s, plan, bins, solver);
   else
     add_cpu_lists(s, plan, solver);
-  add_output(s, plan, memory);
+  const std::int64_t stays = add_output(s, plan, memory);
+  add_checkpoint(s, plan, real, memory);
   const std::int64_t start = add_start(s, plan, real, memory);
   const std::int64_t relieved = add_prestabilize(s, plan, real, memory);
   add_fixed(s, memory);
   std::int64_t later = 0;
   for (const FixedMemory& f : memory.fixed) later += f.after_start ? f.bytes : 0;
-  memory.host_arrays =
-      std::max(start - later, sum(memory, false, Held::solver) +
-                                  std::max(sum(memory, false, Held::output), relieved - later));
+  const std::int64_t beside =
+      std::max({sum(memory, false, Held::output), stays + sum(memory, false, Held::checkpoint),
+                relieved - later});
+  memory.host_arrays = std::max(start - later, sum(memory, false, Held::solver) + beside);
   memory.device_arrays = sum(memory, true, Held::solver);
   return memory;
 }

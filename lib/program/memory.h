@@ -14,8 +14,8 @@ namespace pbf::inline program_module {
 struct Plan;
 
 /// How long an array lives: while the solver is made, as long as the solver, while a frame or a
-/// picture is under way.
-enum class Held { start, solver, output };
+/// picture is under way, while a checkpoint is written.
+enum class Held { start, solver, output, checkpoint };
 const char* held_name(Held held);
 
 /// One array, or one kind of array where threads or frames have one each.

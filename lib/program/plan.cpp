@@ -102,11 +102,7 @@ void plan_left_out(Plan& plan, const Scene& s) {
       "solver.reproducible is false");
 }
 
-/// Of a table of run.vtkhdf with `rows` rows of 8 bytes in each column: an index, and whole chunks
-/// of 1024 rows. 23 kB for the first chunk of each and its index, measured over 10 scenes.
-double table_bytes(double columns, double rows) {
-  return columns * (2.3e4 + std::floor(rows / 1024) * 1024 * 8);
-}
+constexpr double kOtherDatasets = 48;  // of run.vtkhdf, beside the columns of log and gauges
 
 /// Of the log: measures and stages; the load on a wall or an obstacle; the pose of one that moves.
 double log_columns(const Scene& s) {
@@ -120,6 +116,12 @@ double gauge_columns(const Scene& s) {
   for (const Gauge& g : s.gauges)
     columns += g.kind == GaugeKind::velocity ? 3 : g.kind == GaugeKind::level ? 1 : 2;
   return columns;
+}
+
+/// Of a table of run.vtkhdf with `rows` rows of 8 bytes in each column: an index, and whole chunks
+/// of 1024 rows. 23 kB for the first chunk of each and its index, measured over 10 scenes.
+double table_bytes(double columns, double rows) {
+  return columns * (2.3e4 + std::floor(rows / 1024) * 1024 * 8);
 }
 
 void plan_files(Plan& plan, const Scene& s) {
@@ -138,11 +140,11 @@ void plan_files(Plan& plan, const Scene& s) {
     double row = 3 * scalar;  // position
     for (const auto& f : s.output->fields) row += (f == "velocity" ? 3 : 1) * scalar;
     const double frames = double(schedule.frames_until(all));
-    // Ids and the numbers of the vertices once; 48 other datasets; the ends of a frame's chunks,
-    // which fill pages where they are large. gzip: 1.45 times smaller. Measured.
+    // Ids and the numbers of the vertices once; the ends of a frame's chunks, which fill pages
+    // where they are large. gzip: 1.45 times smaller. Measured.
     const double bytes =
         (frames * row + 12) * n / (s.output->compression == Compression::gzip ? 1.45 : 1) +
-        frames * std::min(5 * n, 9e3) + table_bytes(48, 0) +
+        frames * std::min(5 * n, 9e3) + table_bytes(kOtherDatasets, 0) +
         table_bytes(log_columns(s), double(schedule.measures_until(all))) +
         table_bytes(gauge_columns(s), double(schedule.gauges_until(all)));
     add("run.vtkhdf", 1, bytes, std::to_string(std::int64_t(frames)) + " frames");
@@ -157,6 +159,10 @@ void plan_files(Plan& plan, const Scene& s) {
 }
 
 }  // namespace
+
+double run_file_datasets(const Scene& s) {
+  return kOtherDatasets + log_columns(s) + gauge_columns(s);
+}
 
 UpdateShape Plan::shape() const { return {substeps, lists_per_update, repeats}; }
 

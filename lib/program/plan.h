@@ -71,6 +71,9 @@ struct Plan {
   UpdateShape shape() const;
 };
 
+/// Datasets of run.vtkhdf, each with an index: the columns of log and gauges among them.
+double run_file_datasets(const Scene& scene);
+
 /// Pure: touches no file and no device. `particles` from count_particles(). `start`: of
 /// start_neighbors(), for the memory of a crowded start; without it the start counts as fluid at
 /// rest. Throws Error(bad_input) where the grid of the scene cannot be numbered.

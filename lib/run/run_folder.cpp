@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -52,6 +54,41 @@ bool own_file(const std::string& name) {
          std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
 }
 
+/// The first letters of a regular file; nothing of a link, a folder or a file that is not there.
+std::optional<std::string> start_of(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(fs::symlink_status(path, error))) return {};
+  std::string text(3, '\0');
+  std::ifstream in(path, std::ios::binary);
+  in.read(text.data(), std::ssize(text));
+  text.resize(std::size_t(in.gcount()));
+  return text;
+}
+
+/// A file that has the name of one of a run, and stands where no run has been: somebody's own.
+/// Links are left out, for to replace one harms nobody.
+std::optional<fs::path> others_file(const fs::path& folder) {
+  const auto log = start_of(folder / "log.txt");
+  if (log && *log == "pbf") return {};  // the log of a run begins with the name of the program
+  if (log && !log->empty()) return folder / "log.txt";
+  const auto all_in = [](const fs::path& where, bool (*own)(const std::string&)) {
+    std::set<fs::path> found;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(where, error))
+      if (own(entry.path().filename().string()) && start_of(entry.path()).value_or("") != "")
+        found.insert(entry.path());
+    return found;
+  };
+  const std::set<fs::path> found = all_in(folder, own_file);
+  // A run whose log was removed has the record of its scene, and something beside it.
+  if (found.contains(folder / kResolvedScene) && found.size() > 1) return {};
+  if (!found.empty()) return *found.begin();
+  const fs::path frames = folder / RunFolder::kPictures;
+  if (fs::is_symlink(frames)) return {};
+  const std::set<fs::path> pictures = all_in(frames, own_picture);
+  return pictures.empty() ? std::nullopt : std::optional(*pictures.begin());
+}
+
 /// File descriptors of the locks that this process holds.
 std::set<int>& locks() {
   static std::set<int> all;
@@ -77,6 +114,11 @@ bool RunFolder::check(const std::string& path, ExistingFolder existing) {
                             : ": the output folder exists, without a run in it; give --overwrite "
                               "to write into it beside what is there, or another folder with "
                               "--out"));
+  if (const auto file = others_file(folder))
+    throw Error(ExitCode::bad_input,
+                file->string() +
+                    ": a run would replace this file, which is of no run of pbf; move it away, or "
+                    "give another folder with --out");
   return true;
 }
 

@@ -1,6 +1,7 @@
 #include "lib/scene/scene_text.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -72,11 +73,16 @@ std::string text_of_file(const Origin& file, const std::string& what) {
     const std::string reason = std::strerror(errno);
     bad_input(file.shown(), "cannot be opened: " + reason + nearest_file(file.name));
   }
-  // One byte more than allowed tells a file that is too large, without reading all of it.
-  std::string text(limit_of(what) + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  // A block at a time: the text stays as long as the run does, and its room with it. One byte more
+  // than allowed tells a file that is too large, without reading all of it.
+  const std::size_t most = limit_of(what) + 1;
+  std::string text;
+  std::array<char, 16384> block;
+  while (in && text.size() < most) {
+    in.read(block.data(), block.size());
+    text.append(block.data(), static_cast<std::size_t>(in.gcount()));
+  }
   if (in.bad()) bad_input(file.shown(), "reading failed");
-  text.resize(static_cast<std::size_t>(in.gcount()));
   return text;
 }
 

@@ -139,6 +139,33 @@ TEST_CASE("option --overwrite replaces the files of pbf and leaves everything el
   CHECK(pbf::RunReader((folder / "o/run.vtkhdf").string()).times().back() == Approx(0.05));
 }
 
+TEST_CASE(
+    "a file that only has the name of one of a run is never replaced, and the message names it") {
+  for (const char* name : {"log.txt", "scene.resolved.yaml", "run.vtkhdf", "DONE", "checkpoint.h5",
+                           "guard_scene.yaml", "frames/frame_000001.png"})
+    for (const char* how : {"--overwrite", "--resume"}) {
+      CAPTURE(name, how);
+      const Scratch folder;
+      folder.write("tiny.yaml", tiny_scene());
+      fs::create_directories(folder / "mine/frames");
+      folder.write(std::string("mine/") + name, "my own words");
+      const Outcome o = pbf::test::pbf({"run", "tiny.yaml", "--out", "mine", how}, folder.path());
+      CHECK(o.code == 2);
+      CHECK(has(o.err, std::string("mine/") + name + ": a run would replace this file"));
+      CHECK(has(o.err, "give another folder with --out"));
+      CHECK(read_text(folder / "mine" / name) == "my own words");
+    }
+}
+
+TEST_CASE("option --overwrite replaces a run whose log was removed") {
+  const Scratch folder;
+  const std::string scene = folder.write("tiny.yaml", tiny_scene());
+  REQUIRE(pbf::test::pbf({"run", scene, "--out", "o"}, folder.path()).code == 0);
+  fs::remove(folder / "o/log.txt");
+  CHECK(pbf::test::pbf({"run", scene, "--out", "o", "--overwrite"}, folder.path()).code == 0);
+  CHECK(fs::exists(folder / "o/log.txt"));
+}
+
 TEST_CASE("option --resume leaves a finished run untouched and starts one that is not there") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());

@@ -74,7 +74,7 @@ def test_plot_gauges_of_a_run_without_gauges_says_so(minimal, tools, tmp_path):
 def test_a_gauge_shows_itself_in_one_line_and_a_wrong_name_gets_a_suggestion(gauged):
     gauges = pbf_tools.open(gauged).gauges
     assert repr(gauges["H"]) == "<gauge H: level (m) at x = 0.2 m, y = 0.15 m, 31 readings>"
-    with pytest.raises(KeyError, match="no gauge h, did you mean H"):
+    with pytest.raises(pbf_tools.UnknownName, match="no gauge h, did you mean H"):
         gauges["h"]
 
 

@@ -93,12 +93,12 @@ def test_a_plan_says_what_a_scene_needs_and_runs_nothing(scene, tmp_path):
     assert plan["run_time_s"] > 0 and plan["run_time_basis"]
     assert pbf_tools.plan(ROOT / "configs/dam_break.yaml")["scene"] == "dam_break"
     assert not list(tmp_path.iterdir())
-    with pytest.raises(pbf_tools.PbfError, match=r"^scene.yaml:\d+:\d+: fluid.spacin"):
+    with pytest.raises(pbf_tools.PbfError, match=r"^scene \(a dict\): fluid.spacin"):
         pbf_tools.plan({**scene, "fluid": {"spacin": 0.1}})
 
 
 @pytest.mark.parametrize("changes, code, text", [
-    ({"solver__iteratons": 3}, 2, "--set solver.iteratons=3: solver.iteratons: unknown key, did"),
+    ({"solver__iteratons": 3}, 2, "argument solver__iteratons: solver.iteratons: unknown key, did"),
     ({"time": {"step": -1}}, 2, "time.step"), ({"gravity": float("nan")}, 2, "gravity"),
     ({"backend": "gpu"}, 2, "backend"), ({"name": object()}, 2, "a object is no value"),
     ({"bodies": [{"shape": "file", "path": "none.csv"}]}, 5, "none.csv")], ids=str)
@@ -107,6 +107,50 @@ def test_what_cannot_be_is_an_exception_with_the_programs_words(scene, changes, 
         pbf_tools.run(scene, "out", **changes)
     assert error.value.exit_code in (code, 2) and text in str(error.value)
     assert not os.path.exists("out")
+
+
+@pytest.mark.parametrize("call", [pbf_tools.plan, pbf_tools.run, pbf_tools.batch])
+@pytest.mark.parametrize("changes, said", [
+    ({"fluid": {"spacin": 0.1, "spacing": 0.1}},
+     "scene (a dict): fluid.spacin: unknown key, did you mean fluid.spacing?"),
+    ({"bodies": [{"shape": "blok"}]}, 'scene (a dict): bodies[0].shape: "blok" is not one of'),
+    ({"base": "none.yaml"}, "its path counts from the working folder"),
+    ({"bodies": [{"shape": "file", "path": "none.csv"}]}, "relative to the working folder")])
+def test_an_error_in_a_dict_names_its_key_and_no_file(scene, call, changes, said):
+    with pytest.raises(pbf_tools.PbfError) as error:
+        call(scene | changes)
+    assert said in str(error.value)
+    assert not re.search(r"yaml:\d|scene\.yaml|--set", str(error.value))
+
+
+@pytest.mark.parametrize("call, argument, said", [
+    (pbf_tools.run, "overwrit", "neither an argument of run nor a key of a scene, did you mean "
+                                "overwrite?"),
+    (pbf_tools.run, "max_waltime", "neither an argument of run nor a key of a scene, did you mean "
+                                   "max_walltime?"),
+    (pbf_tools.plan, "overwrite", "neither an argument of plan nor a key of a scene; there are "
+                                  "scene, base_folder, program"),
+    (pbf_tools.batch, "job", "neither an argument of batch nor a key of a scene, did you mean jobs?"),
+    (pbf_tools.run, "solver__iteration", "solver.iteration: unknown key, did you mean "
+                                         "solver.iterations?"),
+    (pbf_tools.run, "treads", "treads: unknown key, did you mean threads?")])
+def test_a_mistyped_argument_is_named_with_the_nearest(scene, call, argument, said):
+    with pytest.raises(pbf_tools.PbfError) as error:
+        call(scene, **{argument: 3})
+    assert str(error.value) == f"argument {argument}: {said}"
+    assert not os.path.exists("out")
+
+
+@pytest.mark.parametrize("call", [pbf_tools.plan, pbf_tools.run, pbf_tools.batch, pbf_tools.open,
+                                  pbf_tools.read_batch])
+def test_a_path_that_is_not_there_is_one_kind_of_error(call, tmp_path):
+    (tmp_path / "column.yaml").touch()
+    path = "colum.yaml" if call not in (pbf_tools.open, pbf_tools.read_batch) else "nowhere"
+    with pytest.raises(pbf_tools.NotThere, match=f"^{path}: .*no such") as error:
+        call(path)
+    for kind in (pbf_tools.UnknownName, KeyError, pbf_tools.FileError, pbf_tools.ToolError):
+        assert isinstance(error.value, kind)
+    assert ("did you mean column.yaml?" in str(error.value)) == (path == "colum.yaml")
 
 
 @pytest.mark.parametrize("wrong", [None, 7, ["a.yaml", "b.yaml"]])
@@ -226,6 +270,7 @@ def test_a_program_that_is_killed_says_so(tmp_path):
     fake.write_text("#!/bin/sh\ncase $1 in plan) echo '{\"scene\":\"s\",\"files\":[]}';;\n"
                     "*) kill -9 $$;; esac\n")
     fake.chmod(0o755)
+    (tmp_path / "s.yaml").touch()
     with pytest.raises(pbf_tools.PbfError, match="ended by signal 9") as error:
         pbf_tools.run("s.yaml", "out", program=fake)
     assert error.value.exit_code == 137

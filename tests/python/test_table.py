@@ -26,7 +26,7 @@ def test_a_table_is_a_mapping_of_its_columns(table):
     assert type(dict(table)) is dict and type(table.columns) is dict
     assert len(table) == 3 and len(pbf_tools.Table({})) == 0  # rows, as of a DataFrame
     assert repr(table) == "<Table of 3 rows: time (s), speed (m/s), name>"
-    with pytest.raises(KeyError, match="no column velocity; there are time, speed, name"):
+    with pytest.raises(pbf_tools.UnknownName, match="no column velocity; there are time, speed, name"):
         table["velocity"]
 
 

@@ -4,8 +4,8 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from .errors import (BadInput, Diverged, FileError, MissingPackage, PbfError, PbfWarning, Stopped,
-                     ToolError)
+from .errors import (BadInput, Diverged, FileError, MissingPackage, NotThere, PbfError, PbfWarning,
+                     Stopped, ToolError, UnknownName)
 
 if TYPE_CHECKING:
     from .fields import Field, Frame
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from .table import Table, read_csv
 
 __all__ = ["BadInput", "Batch", "Diverged", "Field", "FileError", "Frame", "Gauge",
-           "MissingPackage", "PbfError", "PbfWarning", "Run", "Stopped", "Table", "ToolError",
-           "batch", "open", "plan", "read_batch", "read_csv", "run"]
+           "MissingPackage", "NotThere", "PbfError", "PbfWarning", "Run", "Stopped", "Table",
+           "ToolError", "UnknownName", "batch", "open", "plan", "read_batch", "read_csv", "run"]
 __version__ = "0.1.0"
 
 # Where the rest is. It needs numpy and h5py, and is read when it is asked for: the command line

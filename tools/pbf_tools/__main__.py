@@ -8,7 +8,7 @@ import os
 import sys
 from types import ModuleType
 
-from .errors import BadInput, MissingPackage, ToolError, unknown
+from .errors import BadInput, MissingPackage, ToolError, UnknownName, unknown
 from .run_path import RUN_FILE
 
 # Command -> what it does; the module has the same name with _ for -.
@@ -94,7 +94,7 @@ def main(arguments: list[str] | None = None) -> int:
     words = sys.argv[1:] if arguments is None else arguments
     try:
         if words and not words[0].startswith("-") and words[0] not in COMMANDS:
-            raise BadInput(unknown("command", words[0], COMMANDS))
+            raise UnknownName(unknown("command", words[0], COMMANDS))
         args = parser(words[0] if words else None).parse_args(words)
         refuse_inputs(args)
         code = args.run(args) or 0

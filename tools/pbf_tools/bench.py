@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .errors import BadInput, unknown
+from .errors import BadInput, UnknownName, unknown
 from .table import Table, need, read_csvs
 
 TIME = "ms_per_step_median"
@@ -43,7 +43,7 @@ def pick_scenes(table: Table, wanted: list[str] | None) -> list[str]:
     there = list(dict.fromkeys(table["scene"].tolist()))
     for name in wanted or []:
         if name not in there:
-            raise BadInput(unknown("scene", name, there))
+            raise UnknownName(unknown("scene", name, there))
     return wanted or there
 
 

@@ -36,6 +36,19 @@ class FileError(ToolError):
     exit_code = 5
 
 
+class UnknownName(BadInput, KeyError):
+    """A column, field, gauge, obstacle, command or scene of a table that is not there; the message
+    has the nearest names and all there are."""
+
+    __str__ = Exception.__str__  # that of KeyError adds quotes
+
+
+class NotThere(UnknownName, FileError):
+    """A run, a batch or a scene whose file is not there; the message has what is beside it."""
+
+    exit_code = FileError.exit_code
+
+
 class PbfError(ToolError):
     """The program `pbf` ended with an error: its message, its exit code (`exit_code`), and `run`,
     the Run as far as it came, or None where it has no run file."""

@@ -12,7 +12,8 @@ from typing import Any, TypeVar
 import h5py
 import numpy as np
 
-from .errors import FileError
+from .errors import FileError, NotThere
+from .run_path import beside
 
 FORMAT_VERSION = 1  # of /pbf; lib/io/run_layout.h
 T = TypeVar("T")
@@ -57,14 +58,14 @@ def read(path: Path, action: Callable[[h5py.File], T], what: str) -> T:
                 options = {}
                 continue
             if attempt == 3 or not os.access(path, os.R_OK):
+                if not path.exists():
+                    raise NotThere(f"{path}: {what}: no such file{beside(path)}") from None
                 raise FileError(f"{path}: {what}: {_reason(path, problem)}") from None
         time.sleep(0.02)
     raise AssertionError("not reached")
 
 
 def _reason(path: Path, problem: Exception) -> str:
-    if not path.exists():
-        return "no such file"
     if not os.access(path, os.R_OK):
         return "permission denied"
     if path.stat().st_size == 0:

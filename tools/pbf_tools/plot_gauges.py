@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from . import gaps, style
-from .errors import BadInput, note, unknown
+from .errors import BadInput, UnknownName, note, unknown
 from .logs import RUN_HELP, labels, read_run
 from .run_file import Gauge
 from .table import Table, need, read_csv
@@ -92,7 +92,7 @@ def measured(args: argparse.Namespace, gauges: list[Gauge]) -> dict[str, list]:
                                f"belongs, --column {names[0]}={text}")
             gauge, column = (text if text in names else names[0]), text
         if gauge not in names:
-            raise BadInput(f"--column {text}: {unknown('drawn gauge', gauge, names)}")
+            raise UnknownName(f"--column {text}: {unknown('drawn gauge', gauge, names)}")
         wanted.setdefault(gauge, []).append(column)
     out: dict[str, list] = {name: [] for name in names}
     tables = [(path, read_csv(path)) for path in args.experiment]
@@ -123,7 +123,7 @@ def choose(runs: list[tuple[str, dict[str, Gauge]]], wanted: list[str] | None) -
             raise BadInput(f"{path}: no gauges; give the scene some (key gauges) and run it")
         for name in wanted or []:
             if name not in gauges:
-                raise BadInput(f"{path}: {unknown('gauge', name, gauges)}")
+                raise UnknownName(f"{path}: {unknown('gauge', name, gauges)}")
     first = runs[0][1]
     everywhere = [name for name in first if all(name in gauges for _, gauges in runs)]
     names = list(dict.fromkeys(wanted or everywhere))

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 from . import index
-from .errors import BadInput, unknown
+from .errors import BadInput, UnknownName, unknown
 from .fields import Field, Frames
 from .run_path import run_path
 from .scene_text import name_in
@@ -53,7 +53,7 @@ class Gauges(dict):
     """Gauges by name; the name of one that is not there gets a suggestion."""
 
     def __missing__(self, name: str) -> Gauge:
-        raise KeyError(unknown("gauge", name, self))
+        raise UnknownName(unknown("gauge", name, self))
 
 
 class Run:
@@ -139,7 +139,7 @@ class Run:
 
     def __getitem__(self, name: str) -> Field:
         if name not in self._index.fields:
-            raise BadInput(f"{self.path}: {unknown('field', name, self.fields)}")
+            raise UnknownName(f"{self.path}: {unknown('field', name, self.fields)}")
         return Field(self, name, self._index.fields[name])
 
     def track(self, particle: int, *fields: str) -> Table:
@@ -216,7 +216,7 @@ class Run:
         log = self.log
         if f"pose/{name}/x" not in log:
             moving = sorted({key.split("/")[1] for key in log if key.startswith("pose/")})
-            raise BadInput(f"{self.path}: {unknown('moving obstacle', name, moving)}")
+            raise UnknownName(f"{self.path}: {unknown('moving obstacle', name, moving)}")
         times = log["time"]
         if not times[0] <= time <= times[-1] * (1 + 1e-9):
             raise BadInput(f"{self.path}: {time} s is not in the log, which has {times[0]} to "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from .errors import FileError
+from .errors import FileError, NotThere, nearest
 
 RUN_FILE = "run.vtkhdf"
 RECORD = "scene.resolved.yaml"  # beside the run file: the scene with every default
@@ -33,7 +33,24 @@ def run_path(path: str | os.PathLike[str]) -> Path:
         return given
     if os.path.lexists(given / RUN_FILE):  # a link to nothing too: opening it says what is wrong
         return given / RUN_FILE
-    raise FileError(f"{path}: {_why_not(given)}")
+    raise NotThere(f"{path}: {_why_not(given)}")
+
+
+def beside(path: Path) -> str:
+    """For a run or a scene that is not there, the end of a message: what is in its folder, and the
+    nearest."""
+    scene = path.suffix in (".yaml", ".yml")
+    path = path.parent if path.name == RUN_FILE and not path.parent.is_dir() else path
+    names = sorted({found.name for found in path.parent.glob("*.y*ml")} if scene else
+                   {found.parent.name for found in path.parent.glob(f"*/{RUN_FILE}")} |
+                   {found.name for found in path.parent.glob("*.vtkhdf")})
+    what = "scenes" if scene else "runs"
+    near = nearest(path.stem, [Path(name).stem for name in names])
+    if near:
+        meant = next(name for name in names if Path(name).stem == near[0])
+        return f", did you mean {path.parent / meant}?"
+    some = ", ".join(names[:5]) + (", ..." if len(names) > 5 else "")
+    return f"; {what} in {path.parent}: {some}" if names else f"; there are no {what} in {path.parent}"
 
 
 def folder_of_run(file: Path) -> Path | None:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import inspect
 import os
+import re
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from . import program as pbf
-from .errors import BadInput, FileError, PbfError
+from .errors import BadInput, FileError, NotThere, PbfError, nearest
 from .run_file import Run
-from .run_path import ENDINGS, RUN_FILE, folder_of_run, run_path
-from .scene_text import Scene, base_words, set_words, write_scene
+from .run_path import ENDINGS, RUN_FILE, beside, folder_of_run, is_run, run_path
+from .scene_text import Scene, base_words, set_words, settings, text, write_scene
 
 
 def plan(scene: Scene, *, base_folder: str | os.PathLike[str] | None = None,
@@ -25,6 +27,13 @@ def plan(scene: Scene, *, base_folder: str | os.PathLike[str] | None = None,
 
     base_folder as in `run`. PbfError with the program's message for a scene that cannot be.
     """
+    return forecast_of(scene, plan, base_folder, program, overrides)
+
+
+def forecast_of(scene: Scene, call: Callable, base_folder: str | os.PathLike[str] | None,
+                program: str | os.PathLike[str] | None,
+                overrides: Mapping[str, Any]) -> dict[str, Any]:
+    """`plan` for the function `call`, which errors in arguments name."""
     found = pbf.find(program)
     with tempfile.TemporaryDirectory() as folder:
         path = os.fspath(write_scene(scene, Path(folder) / "scene.yaml")
@@ -32,9 +41,42 @@ def plan(scene: Scene, *, base_folder: str | os.PathLike[str] | None = None,
         try:
             return pbf.answer(found, ["plan", path, "--json", *base_words(scene, base_folder),
                                       *set_words(overrides)])
-        except PbfError as problem:  # whose file is gone
-            problem.args = (str(problem).replace(f"{folder}/", ""),)
+        except PbfError as problem:
+            said = of_dict(str(problem), path) if isinstance(scene, Mapping) else str(problem)
+            problem.args = (in_python(said, overrides, call),)
             raise
+
+
+def of_dict(message: str, path: str) -> str:
+    """An error of the file that a dict was written to: the path of the key says where it is.
+
+    >>> of_dict("/tmp/s.yaml:16:3: fluid.spacingg: unknown key", "/tmp/s.yaml")
+    'scene (a dict): fluid.spacingg: unknown key'
+    """
+    message = re.sub(rf"{re.escape(path)}(:\d+)*: ", "scene (a dict): ", message)
+    for folder in (f"the folder of {path}", "the folder of the scene file"):
+        message = message.replace(folder, "the working folder")
+    return message.replace(path, "the dict")
+
+
+def in_python(message: str, overrides: Mapping[str, Any], call: Callable) -> str:
+    """An error in an override: the program has it by --set, the caller as an argument of `call`.
+
+    >>> in_python("--set overwrit=true: overwrit: unknown key", {"overwrit": True}, run)
+    'argument overwrit: neither an argument of run nor a key of a scene, did you mean overwrite?'
+    """
+    for given, value in overrides.items():
+        for key, part in settings({given: value}).items():
+            message = message.replace(f"--set {key}={text(part, key)}: ", f"argument {given}: ")
+        names = [name for name, parameter in inspect.signature(call).parameters.items()
+                 if parameter.kind is not parameter.VAR_KEYWORD]
+        near = nearest(given, names)
+        hint = f", did you mean {near[0]}?" if near else f"; there are {', '.join(names)}"
+        # Where the program knows a key with nearly this name, that is meant.
+        message = re.sub(rf"^(argument {re.escape(given)}: ){re.escape(given)}: unknown key$",
+                         rf"\1neither an argument of {call.__name__} nor a key of a scene{hint}",
+                         message, flags=re.MULTILINE)
+    return message
 
 
 def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool = False,
@@ -69,7 +111,7 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
             raise BadInput(f"{scene}: give out=, the folder in which this run is repeated")
         forecast = None  # a run file holds a scene that has been planned, with output
     else:
-        forecast = plan(scene, base_folder=base_folder, program=found, **overrides)
+        forecast = forecast_of(scene, run, base_folder, found, overrides)
     folder = Path(out) if out is not None else Path("out") / forecast["scene"]
     bases = base_words(scene, base_folder)
     if folder.exists() and not (resume or overwrite):  # before the scene of a dict is replaced
@@ -90,7 +132,7 @@ def run(scene: Scene, out: str | os.PathLike[str] | None = None, *, resume: bool
         return Run(folder / RUN_FILE)
     # A file that has not changed is another run's: this one did not begin.
     begun = _stamp(folder / RUN_FILE) != before
-    raise pbf.error(code, message, opened(folder) if begun else None)
+    raise pbf.error(code, in_python(message, overrides, run), opened(folder) if begun else None)
 
 
 def writes_a_run_file(forecast: dict[str, Any]) -> bool:
@@ -109,7 +151,12 @@ def opened(folder: Path) -> Run | None:
 def scene_path(scene: Any) -> Path:
     """Of a scene that is no dict."""
     if isinstance(scene, str | os.PathLike):
-        return run_path(scene)
+        path = run_path(scene)
+        if not path.exists():
+            problem = NotThere(f"{path}: no such {'run' if is_run(path) else 'scene'}{beside(path)}")
+            problem.exit_code = BadInput.exit_code  # as the program has it of its argument
+            raise problem
+        return path
     several = "; batch takes several" if isinstance(scene, list | tuple) else ""
     raise BadInput(f"expected a scene: a path or a dict, got {scene!r}{several}")
 

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from . import program as pbf
-from .errors import BadInput, FileError, PbfWarning
+from .errors import BadInput, NotThere, PbfWarning
 from .run_file import Run
 from .run_path import RECORD, RUN_FILE
 from .scene_text import Scene, base_words, set_words, text, write_scene
-from .simulate import opened, plan, scene_path, writes_a_run_file
+from .simulate import forecast_of, in_python, opened, scene_path, writes_a_run_file
 from .table import Table, read_csv, write_text
 
 OUTPUT = ("--set", "output={}")
@@ -49,10 +49,12 @@ def read_batch(out: str | os.PathLike[str]) -> Batch:
         table["seconds"], table.runs[0].log
     """
     path = Path(out)
+    if not path.exists():
+        raise NotThere(f"{path}: no such batch; name the folder that `pbf batch --out` wrote")
     if path.is_dir():
         path = path / SUMMARY
         if not path.is_file():
-            raise FileError(f"{out}: no {SUMMARY} in this folder; name the folder that `pbf batch "
+            raise NotThere(f"{out}: no {SUMMARY} in this folder; name the folder that `pbf batch "
                             "--out` wrote (with --collect it writes the summary of what is there)")
     summary = read_csv(path, TEXTS)
     return Batch(summary.columns, summary.units, path.parent)
@@ -97,7 +99,7 @@ def batch(scenes: Scene | Sequence[Scene], grid: Mapping[str, Sequence[Any]] | N
         words += ["--max-walltime", str(max_walltime)]
     code, message = pbf.call(found, words, progress)
     if message or code not in (0, 6, pbf.RESUMABLE):
-        raise pbf.error(code, message)
+        raise pbf.error(code, in_python(message, overrides, batch))
     table = read_batch(folder)
     bad = table.where(table["reason"] != "finished")
     if len(bad):
@@ -124,8 +126,7 @@ def _input(scenes: Any, folder: Path, program: str, base_folder: Any,
     """What `pbf batch` reads: the path as given, the file of a dict, or a list of several; and
     output for scenes without."""
     def lacks_output(scene: Scene) -> bool:
-        return not writes_a_run_file(plan(scene, base_folder=base_folder, program=program,
-                                          **overrides))
+        return not writes_a_run_file(forecast_of(scene, batch, base_folder, program, overrides))
 
     if isinstance(scenes, str | os.PathLike):
         one = Path(scenes).suffix in (".yaml", ".yml") and not Path(scenes).is_dir()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .errors import BadInput, FileError, MissingPackage, unknown
+from .errors import BadInput, FileError, MissingPackage, UnknownName, unknown
 
 if TYPE_CHECKING:
     import pandas
@@ -59,7 +59,7 @@ class Table(dict):
         return self
 
     def __missing__(self, name: str) -> np.ndarray:
-        raise KeyError(unknown("column", name, self))
+        raise UnknownName(unknown("column", name, self))
 
     def __len__(self) -> int:
         """Number of rows."""
@@ -194,7 +194,7 @@ def need(table: Table, names: list[str], what: str) -> None:
     """BadInput unless the table has these columns and at least one row."""
     for name in names:
         if name not in table:
-            raise BadInput(f"{what}: {unknown('column', name, table)}")
+            raise UnknownName(f"{what}: {unknown('column', name, table)}")
     if not len(table):
         raise BadInput(f"{what}: the table has no rows")
 
