@@ -171,7 +171,7 @@ PBF_HD void sum_over_neighbors_by_lanes(const Pass& pass, int i, int end) {
   typename Pass::template SumOf<V> sum{};
   const int* entry = pass.lists.group(i);
   for (int left = pass.lists.rounds(i); left > 0; --left, entry += W)
-    pass.add(sum, own, pass.other(Scattered<W>{entry}), 0, 0, true);
+    pass.add(sum, own, pass.other(Scattered<W>{entry}));
   constexpr int parts = sizeof(sum) / sizeof(V);
   Real part[parts * W];
   memcpy(part, &sum, sizeof sum);

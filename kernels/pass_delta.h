@@ -1,5 +1,5 @@
 // delta and move: the position correction of one Jacobi iteration. Macklin & Mueller 2013, eq. 12,
-// 14; artificial pressure eq. 13; walls as in boundary.h.
+// 14; artificial pressure eq. 13.
 #pragma once
 
 #include "kernels/pair_sum.h"
@@ -70,12 +70,12 @@ struct DeltaPass {
     return w;
   }
   template <class V>
-  PBF_HD void add(SumOf<V>& s, const Vec4<V>& x, const Vec4<V>& y, int, int, bool on) const {
+  PBF_HD void add(SumOf<V>& s, const Vec4<V>& x, const Vec4<V>& y) const {
     if constexpr (!tensile && Lists::skip_inactive && sizeof(V) == sizeof(Real)) {
       if (x.w + y.w == V(0)) return;  // neither is compressed
     }
     const Vec<V, D> d = point<D>(x) - point<D>(y);
-    const V q2 = pair_q_squared(d, on);
+    const V q2 = dot(d, d);
     const Root<V> root = root_of(q2);
     const V t = Spiky<Real>::t(root.q);
     s.move = s.move + (weight(x, y, q2, t) * t * t * root.inverse) * d;

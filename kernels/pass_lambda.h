@@ -37,8 +37,9 @@ struct DensityPass {
     return point<D>(load(position, j));
   }
   template <class V>
-  PBF_HD void add(SumOf<V>& s, const Vec<V, D>& x, const Vec<V, D>& y, int, int, bool on) const {
-    const V q2 = pair_q_squared(x - y, on);
+  PBF_HD void add(SumOf<V>& s, const Vec<V, D>& x, const Vec<V, D>& y) const {
+    const Vec<V, D> d = x - y;
+    const V q2 = dot(d, d);
     s.shape += density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t(root_of(q2).q));
   }
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
@@ -117,9 +118,9 @@ struct LambdaPass {
     return point<D>(load(position, j));
   }
   template <class V>
-  PBF_HD void add(SumOf<V>& s, const Vec<V, D>& x, const Vec<V, D>& y, int, int, bool on) const {
+  PBF_HD void add(SumOf<V>& s, const Vec<V, D>& x, const Vec<V, D>& y) const {
     const Vec<V, D> d = x - y;
-    const V q2 = pair_q_squared(d, on);
+    const V q2 = dot(d, d);
     const Root<V> root = root_of(q2);
     const V t = Spiky<Real>::t(root.q), t2 = t * t;
     if constexpr (with_density) s.shape += density_shape<Real, S>(q2, t);

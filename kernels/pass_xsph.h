@@ -47,9 +47,9 @@ struct XsphPass {
     return moving_other(load(position, j), load(velocity, j));
   }
   template <class V>
-  PBF_HD void add(VectorSum<V, D>& s, const XsphOwn<V, D>& a, const MovingOther<V>& b, int, int,
-                  bool on) const {
-    const V q2 = pair_q_squared(a.x - point<D>(b.x), on);
+  PBF_HD void add(VectorSum<V, D>& s, const XsphOwn<V, D>& a, const MovingOther<V>& b) const {
+    const Vec<V, D> d = a.x - point<D>(b.x);
+    const V q2 = dot(d, d);
     const V shape = density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t(root_of(q2).q));
     s.v = s.v + (shape * (a.w + b.x.w)) * (point<D>(b.v) - a.v);
   }
