@@ -9,7 +9,6 @@
 //   SumOf<V> (value-initialised to 0)  and each(f): f(V&) for every member
 //   add(SumOf<V>&, own, other) const   one neighbour's share
 //   finish(i, Own, Sum) const          writes the result
-//   far_only                           solids are left to a second launch (boundary/far_box.h)
 // where V is Real for one particle, Lanes for several at once (kernels/lanes.h), and Own, Sum are
 // those of one particle.
 #pragma once
@@ -47,18 +46,18 @@ PBF_HD void sum_over_neighbors(const Pass& pass, int i) {
 }
 
 template <class V, class F>
-PBF_HD void each_component(Vec3<V>& v, F&& f) {
+PBF_HD constexpr void each_component(Vec3<V>& v, F&& f) {
   f(v.x);
   f(v.y);
   f(v.z);
 }
 template <class V, class F>
-PBF_HD void each_component(Vec2<V>& v, F&& f) {
+PBF_HD constexpr void each_component(Vec2<V>& v, F&& f) {
   f(v.x);
   f(v.z);
 }
 template <class V, class F>
-PBF_HD void each_component(V& v, F&& f) {
+PBF_HD constexpr void each_component(V& v, F&& f) {
   f(v);
 }
 
@@ -67,7 +66,7 @@ template <class V, int dimensions>
 struct VectorSum {
   Vec<V, dimensions> v;
   template <class F>
-  PBF_HD void each(F&& f) {
+  PBF_HD constexpr void each(F&& f) {
     each_component(v, f);
   }
 };

@@ -168,7 +168,8 @@ struct GatherPass {
     id_out[to] = id[from];
   }
   PBF_HD bool is_predicted(int from) const {
-    if constexpr (Boundary::far_only) return boundary.near.room && boundary.near.has(from);
+    if constexpr (Boundary::far_only)
+      return boundary.near.way_left_squared && boundary.near.near(from);
     return false;
   }
 };

@@ -28,7 +28,6 @@ struct CurlPass {
   Vec4<Real>* curl;  ///< out: min(dt eps, 2 dt approach, 0.05) omega; w = |omega|
 
   static constexpr int D = dimensions;
-  static constexpr bool far_only = false;
   static constexpr unsigned gathers = kPlace | kInverseDensity | kVelocity;
   using Own = MovingOwn<Real, D>;
   template <class V>
@@ -65,7 +64,6 @@ struct CurlPass {
     const Real gain = min2(p.update_dt * limit, Real(0.05));
     curl[i] = with_w(gain * omega, square_root(dot(omega, omega)));
   }
-  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 /// What the two sides bring to the gradient of |omega|; x.w = 1/density.
@@ -100,7 +98,6 @@ struct VorticityPass {
   Vec4<Real>* velocity;        ///< in/out
 
   static constexpr int D = dimensions;
-  static constexpr bool far_only = false;
   static constexpr unsigned gathers = kPlace | kInverseDensity | kCurl;
   using Own = CurlOwn<Real>;
   template <class V>
@@ -125,7 +122,6 @@ struct VorticityPass {
     const Vec3<Real> push = cross(in_space(s.v), xyz(a.curl));
     velocity[i] = with_w(xyz(velocity[i]) + Real(1) / size * push, Real(0));
   }
-  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -32,7 +32,7 @@ struct XsphPass {
   int* bin;  ///< out; null: no update follows
 
   static constexpr int D = dimensions_of(S);
-  static constexpr bool far_only = false, leaves_rows = Boundary::far_only;
+  static constexpr bool leaves_rows = Boundary::far_only;
   static constexpr unsigned gathers = kPlace | kInverseDensity | kVelocity;
   using Own = XsphOwn<Real, D>;
   template <class V>
@@ -59,7 +59,6 @@ struct XsphPass {
     velocity_out[i] = with_w(v, Real(0));
     if (bin) bin[i] = predicted_bin<D>(i, in_space(a.x), v, p, boundary);
   }
-  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -48,7 +48,7 @@ struct Solids : Box<Real> {
   }
   /// The way of row i, while the lists hold, ended at x.
   PBF_HD void came_to(int i, Vec3<Real> x) const {
-    if (near.room && !near.has(i) && is_near(x)) near.add(i);
+    if (near.way_left_squared && !near.near(i) && is_near(x)) near.mark_near(i);
   }
   PBF_HD double penetration(const double (&x)[3]) const {
     double deepest = Box<Real>::penetration(x);

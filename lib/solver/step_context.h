@@ -119,7 +119,7 @@ struct StepContext {
 
   /// Positions came from elsewhere: until the lists are made all rows count as near solids.
   void forget_near() {
-    if (solids_.near.room) each(AllNearPass<Real>{solids_.near, rows_});
+    if (solids_.near.way_left_squared) each(AllNearPass<Real>{solids_.near, rows_});
   }
 
   /// Which of the two arrays each field lies in, as bits: updates that were recorded hold for one
@@ -250,7 +250,7 @@ void StepContext<Real, Exec>::make_solids(const Scene& in_its_axes, const Plan& 
   const double move = 0.8 * kNearRoom / moves;
   solids_.near = {data<Real>(field::near_room), data<int>(field::near_row), near_count_.data(),
                   nullptr, Real(move * move)};
-  const std::vector<Real> behind(Exec::padding, solids_.near.far_room);
+  const std::vector<Real> behind(Exec::padding, solids_.near.far_way_squared);
   exec.to_device(behind.data(), behind.size(), data<Real>(field::near_room) + rows_);
   const std::vector<int> cells = half_cells_near_solids(scene, run.standing, run.moving, p,
                                                         solids_.clear, has_wall_loads(scene));

@@ -174,7 +174,7 @@ class Stepper {
     c_.exec.begin();
     c_.booked_as = "measure";
     for (const int pass : {Passes::index_of<Sort>(), Passes::index_of<MakeLists>()}) launch(pass);
-    if (c_.solids().near.room) launch(Passes::index_of<FindNear>());
+    if (c_.solids().near.way_left_squared) launch(Passes::index_of<FindNear>());
     c_.booked_as = nullptr;
     return true;
   }

@@ -81,7 +81,7 @@ void sort_predicted(C& c, const char* stage, const First& first) {
       const Solids<Real> solids = solids_of(c);
       sort_rows(c, stage, first, gather,
                 Listed<NearPredictPass<Real, decltype(d)::value>>{
-                    solids.near.room ? solids.near.count : nullptr,
+                    solids.near.way_left_squared ? solids.near.count : nullptr,
                     {c.p, solids, c.position(), c.velocity(), c.template data<int>(field::bin),
                      c.counts()}});
     });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/boundary/far_box.h"
+#include "kernels/boundary/near_split.h"
 #include "lib/program/features/loads.h"
 
 namespace pbf::inline program_module::field {
@@ -24,7 +25,7 @@ Solids<typename C::Real> solids_of(C& c) {
   if (!(c.p.dt > 0)) solids.frame = nullptr;
   // A far row is farther from what it can meet than the range of the walls' density.
   const auto way = c.p.dt * c.p.boundary.inv_range;
-  solids.near.per_speed = way * way * solids.near.far_room;
+  solids.near.per_speed = way * way * solids.near.far_way_squared;
   return solids;
 }
 
@@ -51,9 +52,10 @@ void each_then_near(C& c, Make&& make) {
   if (!c.solids().around) return c.each(make(c.p.boundary));
   const Solids<Real> solids = solids_of(c);
   if (!solids.obstacles && !(moves && solids.loaded)) return c.each(make(c.p.boundary));
-  c.each(make(FarBox<Real>(solids)));
-  const auto pass = make(solids);
-  c.exec.for_listed(solids.near.count, c.rows(), NearPass<std::decay_t<decltype(pass)>>{pass});
+  const auto far = make(FarBox<Real>(solids));
+  const auto near = make(solids);
+  c.each(FarHalf<std::decay_t<decltype(far)>>{far});
+  c.exec.for_listed(solids.near.count, c.rows(), NearHalf<std::decay_t<decltype(near)>>{near});
 }
 
 struct FindNear {
