@@ -14,7 +14,7 @@ struct MoveSolids {
   static PassInfo info() { return {"motion", "predict", {}, {hidden({&field::motion})}}; }
   template <class C>
   static void launch(C& c) {
-    c.over(1, c.moving().pass(c.placed()));
+    c.items(1, c.moving().pass(c.placed()));
   }
 };
 
@@ -30,7 +30,7 @@ struct Predict {
   template <class C>
   static void launch(C& c) {
     with_boundary(c, [&](const auto& boundary) {
-      c.each(MovePass<typename C::Real, std::decay_t<decltype(boundary)>>{
+      c.items(MovePass<typename C::Real, std::decay_t<decltype(boundary)>>{
           c.p, boundary, c.position(), c.velocity(), c.counts()});
     });
   }

@@ -49,13 +49,13 @@ void with_far_boundary(C& c, F&& f) {
 template <bool moves, class C, class Make>
 void each_then_near(C& c, Make&& make) {
   using Real = typename C::Real;
-  if (!c.solids().around) return c.each(make(c.p.boundary));
+  if (!c.solids().around) return c.pairs(make(c.p.boundary));
   const Solids<Real> solids = solids_of(c);
-  if (!solids.obstacles && !(moves && solids.loaded)) return c.each(make(c.p.boundary));
+  if (!solids.obstacles && !(moves && solids.loaded)) return c.pairs(make(c.p.boundary));
   const auto far = make(FarBox<Real>(solids));
   const auto near = make(solids);
-  c.each(FarHalf<std::decay_t<decltype(far)>>{far});
-  c.exec.for_listed(solids.near.count, c.rows(), NearHalf<std::decay_t<decltype(near)>>{near});
+  c.pairs(FarHalf<std::decay_t<decltype(far)>>{far});
+  c.listed(solids.near.count, NearHalf<std::decay_t<decltype(near)>>{near});
 }
 
 struct FindNear {
@@ -69,14 +69,14 @@ struct FindNear {
   static void launch(C& c) {
     using Real = typename C::Real;
     const Solids<Real> solids = solids_of(c);
-    c.exec.for_listed(solids.near.count, c.rows(), ForgetNearPass<Real>{solids.near});
-    c.over(1, ClearNearPass<Real>{solids.near});
+    c.listed(solids.near.count, ForgetNearPass<Real>{solids.near});
+    c.items(1, ClearNearPass<Real>{solids.near});
     if (const auto& cells = c.near_half_cells(); cells.size() > 0)
-      c.over(int(cells.size()), FindNearPass<Real>{solids, c.position(), cells.data(),
-                                                   c.template data<int>(field::bin_start),
-                                                   bins_per_cell(c.p.dimensions)});
+      c.items(int(cells.size()), FindNearPass<Real>{solids, c.position(), cells.data(),
+                                                    c.template data<int>(field::bin_start),
+                                                    bins_per_cell(c.p.dimensions)});
     else
-      c.each(FindNearPass<Real>{solids, c.position()});
+      c.items(FindNearPass<Real>{solids, c.position()});
   }
 };
 
