@@ -9,6 +9,7 @@
 //   SumOf<V> (value-initialised to 0)  and each(f): f(V&) for every member
 //   add(SumOf<V>&, own, other) const   one neighbour's share
 //   finish(i, Own, Sum) const          writes the result
+//   stays_far, far_bound               if it moves particles: boundary/near_split.h
 // where V is Real for one particle, Lanes for several at once (kernels/lanes.h), and Own, Sum are
 // those of one particle.
 #pragma once

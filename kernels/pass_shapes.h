@@ -4,6 +4,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <utility>
 
 #include "kernels/measure.h"
 
@@ -50,18 +51,24 @@ concept TeamPass = InParts<P> && requires(const P p) {
   { p.lanes(0, 1) } -> std::convertible_to<int>;
 };
 
+template <class P>
+using BrickOf = decltype(std::declval<const P&>().brick(0));
+template <class P>
+using CellOf = decltype(std::declval<const P&>().cell(std::declval<BrickOf<P>>(), 0));
+template <class P>
+using ShareOf = decltype(std::declval<const P&>().share(0, 0, std::int64_t(0)));
+
 /// Over the cells of bricks, `lanes` threads for each: finish(cell, sum) gives a number of a cell,
 /// finish_corner(brick, which, sum) takes what the cells give to a corner (kernels/levels.h).
 template <class P>
-concept BrickPass = requires(const P p, decltype(p.brick(0)) brick,
-                             decltype(p.share(0, 0, 0)) sum) {
-  requires InParts<P, decltype(p.cell(brick, 0))>;
+concept BrickPass = InParts<P, CellOf<P>> &&
+    requires(const P p, BrickOf<P> brick, CellOf<P> cell, typename P::Part part, ShareOf<P> sum) {
   { P::lanes } -> std::convertible_to<int>;
   { P::brick_cells } -> std::convertible_to<int>;
   { P::brick_corners } -> std::convertible_to<int>;
   { p.grid.bricks() } -> std::convertible_to<int>;
-  { p.grid.has(p.cell(brick, 0)) } -> std::same_as<bool>;
-  { p.finish(p.cell(brick, 0), p.part(p.cell(brick, 0), 0, 1)) } -> std::same_as<std::int64_t>;
+  { p.grid.has(cell) } -> std::same_as<bool>;
+  { p.finish(cell, part) } -> std::same_as<std::int64_t>;
   sum += sum;
   p.finish_corner(brick, 0, sum);
 };
