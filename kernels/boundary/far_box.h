@@ -36,7 +36,7 @@ struct FarBox : Box<Real> {
 
   /// Whether a way may lead to a solid, or end near one.
   PBF_HD_RARE bool comes_near(Vec3<Real> from, Vec3<Real> to) const {
-    return (loaded && !clear.has(to)) || (obstacles && bounds.meets(from, to));
+    return may_meet_solids(*this, from, to);
   }
   /// Whether row i, which is far, may be near after a move in an iteration.
   PBF_HD bool leaves(int i, Vec3<Real> from, Vec3<Real> move) const {

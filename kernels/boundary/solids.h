@@ -64,4 +64,10 @@ struct Solids : Box<Real> {
   }
 };
 
+/// Whether a way may lead to a solid, or end near one; of Solids or FarBox.
+template <class Boundary, class Real>
+PBF_HD bool may_meet_solids(const Boundary& b, Vec3<Real> from, Vec3<Real> to) {
+  return (b.loaded && !b.clear.has(to)) || (b.obstacles && b.bounds.meets(from, to));
+}
+
 }  // namespace pbf::inline PBF_VARIANT
