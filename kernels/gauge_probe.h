@@ -5,7 +5,8 @@
 
 #include <cstdint>
 
-#include "kernels/boundary/loads.h"
+#include "kernels/atomics.h"
+#include "kernels/vec3.h"
 
 namespace pbf {
 

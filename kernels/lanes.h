@@ -143,23 +143,22 @@ PBF_HD bool all_at_most(const Lanes<Real, W>& a, const Lanes<Real, W>& b) {
 }
 
 /// What comes after the sums is short and has branches: one particle at a time. part: component c
-/// of lane l is at [c W + l]. finish(i, own, sum).
-template <int W, class Pass, class Real, class Finish>
-PBF_HD void finish_lanes(const Pass& pass, int i, int end, const Real* part, Finish&& finish) {
+/// of lane l is at [c W + l].
+template <int W, class Pass, class Real>
+PBF_HD void finish_lanes(const Pass& pass, int i, int end, const Real* part) {
   constexpr int parts = sizeof(typename Pass::Sum) / sizeof(Real);
   for (int l = 0; l < W && i + l < end; ++l) {
     Real mine[parts];
     for (int c = 0; c < parts; ++c) mine[c] = part[c * W + l];
     typename Pass::Sum one;
     memcpy(&one, mine, sizeof one);
-    finish(i + l, pass.own(i + l), one);
+    pass.finish(i + l, pass.own(i + l), one);
   }
 }
 /// Where some of them may be near solids.
 template <int W, class Pass, class Real>
 PBF_HD_APART void finish_each(const Pass& pass, int i, int end, const Real* part) {
-  finish_lanes<W>(pass, i, end, part,
-                  [&](int row, const auto& own, const auto& sum) { pass.finish(row, own, sum); });
+  finish_lanes<W>(pass, i, end, part);
 }
 
 /// The neighbour sums of W adjacent particles, the first of them a multiple of W, as many of them
@@ -171,23 +170,15 @@ PBF_HD void sum_over_neighbors_by_lanes(const Pass& pass, int i, int end) {
   typename Pass::template SumOf<V> sum{};
   const int* entry = pass.lists.group(i);
   for (int left = pass.lists.rounds(i); left > 0; --left, entry += W)
-    pass.add(sum, own, pass.other(Scattered<W>{entry}), 0, 0, true);
+    pass.add(sum, own, pass.other(Scattered<W>{entry}));
   constexpr int parts = sizeof(sum) / sizeof(V);
   Real part[parts * W];
   memcpy(part, &sum, sizeof sum);
-  if constexpr (Pass::far_only) {
+  if constexpr (requires { pass.plain(); }) {  // boundary/near_split.h
     if (!pass.all_far(Adjacent<W>{i}, own, sum)) return finish_each<W>(pass, i, end, part);
-    finish_lanes<W>(
-        pass, i, end,
-        part, [&](int row, const auto& mine, const auto& one) __attribute__((always_inline)) {
-          pass.finish_far(row, mine, one);
-        });
+    finish_lanes<W>(pass.plain(), i, end, part);
   } else {
-    finish_lanes<W>(
-        pass, i, end,
-        part, [&](int row, const auto& mine, const auto& one) __attribute__((always_inline)) {
-          pass.finish(row, mine, one);
-        });
+    finish_lanes<W>(pass, i, end, part);
   }
 }
 

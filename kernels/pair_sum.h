@@ -7,9 +7,9 @@
 //   own(i) const                       what particle i brings: position, lambda, ...
 //   other(j) const                     what is gathered from a neighbour
 //   SumOf<V> (value-initialised to 0)  and each(f): f(V&) for every member
-//   add(SumOf<V>&, own, other, i, j, on)  one neighbour's share; none when `on` is false
+//   add(SumOf<V>&, own, other) const   one neighbour's share
 //   finish(i, Own, Sum) const          writes the result
-//   far_only                           solids are left to a second launch (boundary/far_box.h)
+//   stays_far, far_bound               if it moves particles: boundary/near_split.h
 // where V is Real for one particle, Lanes for several at once (kernels/lanes.h), and Own, Sum are
 // those of one particle.
 #pragma once
@@ -42,31 +42,23 @@ template <class Pass>
 PBF_HD void sum_over_neighbors(const Pass& pass, int i) {
   const typename Pass::Own own = pass.own(i);
   typename Pass::Sum sum{};
-  pass.lists.for_each(i, [&](int j) { pass.add(sum, own, pass.other(j), i, j, true); });
+  pass.lists.for_each(i, [&](int j) { pass.add(sum, own, pass.other(j)); });
   pass.finish(i, own, sum);
 }
 
-/// |d|^2 in h^2, or a value beyond every kernel for a pair that is switched off: selecting here
-/// costs one instruction and makes every term of the pair zero.
-template <class Vector>
-PBF_HD auto pair_q_squared(Vector d, bool on) {
-  const auto q2 = dot(d, d);
-  return on ? q2 : decltype(dot(d, d))(4);
-}
-
 template <class V, class F>
-PBF_HD void each_component(Vec3<V>& v, F&& f) {
+PBF_HD constexpr void each_component(Vec3<V>& v, F&& f) {
   f(v.x);
   f(v.y);
   f(v.z);
 }
 template <class V, class F>
-PBF_HD void each_component(Vec2<V>& v, F&& f) {
+PBF_HD constexpr void each_component(Vec2<V>& v, F&& f) {
   f(v.x);
   f(v.z);
 }
 template <class V, class F>
-PBF_HD void each_component(V& v, F&& f) {
+PBF_HD constexpr void each_component(V& v, F&& f) {
   f(v);
 }
 
@@ -75,7 +67,7 @@ template <class V, int dimensions>
 struct VectorSum {
   Vec<V, dimensions> v;
   template <class F>
-  PBF_HD void each(F&& f) {
+  PBF_HD constexpr void each(F&& f) {
     each_component(v, f);
   }
 };

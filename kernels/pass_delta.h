@@ -1,5 +1,5 @@
 // delta and move: the position correction of one Jacobi iteration. Macklin & Mueller 2013, eq. 12,
-// 14; artificial pressure eq. 13; walls as in boundary.h.
+// 14; artificial pressure eq. 13.
 #pragma once
 
 #include "kernels/pair_sum.h"
@@ -40,7 +40,6 @@ struct DeltaPass {
   [[no_unique_address]] Coarse coarse{};  ///< LevelMove or NoLevelMove
 
   static constexpr int D = dimensions_of(S);
-  static constexpr bool far_only = Boundary::far_only;
   static constexpr unsigned gathers = kPlace | kLambda | kId;
   using Own = Vec4<Real>;
   template <class V>
@@ -48,7 +47,7 @@ struct DeltaPass {
     Vec<V, D> move;
     V closeness{};  ///< sum of 1/q: beyond any other sum where a neighbour is in the same place
     template <class F>
-    PBF_HD void each(F&& f) {
+    PBF_HD constexpr void each(F&& f) {
       each_component(move, f);
       f(closeness);
     }
@@ -70,30 +69,33 @@ struct DeltaPass {
     return w;
   }
   template <class V>
-  PBF_HD void add(SumOf<V>& s, const Vec4<V>& x, const Vec4<V>& y, int, int, bool on) const {
+  PBF_HD void add(SumOf<V>& s, const Vec4<V>& x, const Vec4<V>& y) const {
     if constexpr (!tensile && Lists::skip_inactive && sizeof(V) == sizeof(Real)) {
       if (x.w + y.w == V(0)) return;  // neither is compressed
     }
     const Vec<V, D> d = point<D>(x) - point<D>(y);
-    const V q2 = pair_q_squared(d, on);
+    const V q2 = dot(d, d);
     const Root<V> root = root_of(q2);
     const V t = Spiky<Real>::t(root.q);
     s.move = s.move + (weight(x, y, q2, t) * t * t * root.inverse) * d;
     s.closeness += root.inverse;
   }
-  PBF_HD void finish(int i, const Own& own, const Sum& s) const {
-    if constexpr (far_only) {
-      if (boundary.near.has(i)) return leave(i, s);
-      const Vec3<Real> x = xyz(own), free = free_move(i, own, s);
-      if (boundary.leaves(i, x, free)) return leave(i, s);
-      if (moves_on) {
-        const Vec3<Real> target = x + free, inside = boundary.path_end(x, target);
-        const Vec3<Real> next =
-            predict(inside, new_velocity(i, free, target, inside), p, boundary).x;
-        if (boundary.comes_near(inside, next)) return leave(i, s);
-      }
-    }
-    finish_far(i, own, s);
+  /// Of the first launch (boundary/near_split.h).
+  PBF_HD bool stays_far(int i, const Own& own, const Sum& s) const {
+    const Vec3<Real> x = xyz(own), free = free_move(i, own, s);
+    if (boundary.leaves(i, x, free)) return false;
+    if (!moves_on) return true;
+    const Vec3<Real> target = x + free, inside = boundary.path_end(x, target);
+    const Vec3<Real> next = predict(inside, new_velocity(i, free, target, inside), p, boundary).x;
+    return !boundary.comes_near(inside, next);
+  }
+  /// Beyond every way where it says nothing. Nothing is known of the levels.
+  template <class V>
+  PBF_HD V far_bound(const Vec4<V>& own, const SumOf<V>& s) const requires(!Coarse::on) {
+    if (moves_on) return V(coincident());
+    const V twice(2), pairs(p.sor * pair_factor()), wall(p.sor * boundary.steepest());
+    const V w = wall * own.w, bound = twice * (pairs * pairs * dot(s.move, s.move) + w * w);
+    return max2(s.closeness - V(coincident()), bound);
   }
   PBF_HD Vec3<Real> new_velocity(int i, Vec3<Real> free, Vec3<Real> target,
                                  Vec3<Real> inside) const {
@@ -108,7 +110,7 @@ struct DeltaPass {
     if constexpr (Coarse::on) return free + coarse(i);
     return free;
   }
-  PBF_HD void finish_far(int i, const Own& own, const Sum& s) const {
+  PBF_HD void finish(int i, const Own& own, const Sum& s) const {
     const Vec3<Real> x = xyz(own), free = free_move(i, own, s);
     const Vec3<Real> target = x + free;
     Vec3<Real> inside;
@@ -126,29 +128,9 @@ struct DeltaPass {
     position_out[i] = with_w(inside, Real(1) / density[i]);
     velocity[i] = with_w(v, Real(0));
   }
-  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
-  /// Whether all rows of a group stay far from solids, by a bound on their moves.
-  template <class Rows, class V>
-  PBF_HD bool all_far(Rows i, const Vec4<V>& own, const SumOf<V>& s) const {
-    if (Coarse::on || moves_on) return false;
-    const V twice(2), pairs(p.sor * pair_factor()), wall(p.sor * boundary.steepest());
-    const V w = wall * own.w;
-    return all_at_most(s.closeness, V(coincident())) &&
-           all_at_most(twice * (pairs * pairs * dot(s.move, s.move) + w * w),
-                       adjacent(boundary.near.room, i));
-  }
   PBF_HD Real pair_factor() const { return p.vol * Spiky<Real, D>::gradient_norm; }
   /// More than all sums of 1/q but those of neighbours in the same place.
   static PBF_HD Real coincident() { return Real(0.5e12); }
-  /// To the near rows, with the sums.
-  PBF_HD_RARE void leave(int i, const Sum& s) const {
-    if (!boundary.near.has(i)) boundary.near.add(i);
-    boundary.near.sums[i] = with_w(in_space(s.move), s.closeness);
-  }
-  PBF_HD Sum kept(int i) const {
-    const Vec4<Real> s = boundary.near.sums[i];
-    return {point<D>(s), s.w};
-  }
 
   /// The share of the neighbours in the same place, whose zero distance vectors left no direction:
   /// a loop of its own, so that the pair loop need not choose.

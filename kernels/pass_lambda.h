@@ -16,14 +16,13 @@ struct DensityPass {
   Real* density;  ///< out
 
   static constexpr int D = dimensions_of(S);
-  static constexpr bool far_only = Boundary::far_only;
   static constexpr unsigned gathers = kPlace;
   using Own = Vec<Real, D>;
   template <class V>
   struct SumOf {
     V shape{};
     template <class F>
-    PBF_HD void each(F&& f) {
+    PBF_HD constexpr void each(F&& f) {
       f(shape);
     }
   };
@@ -37,27 +36,16 @@ struct DensityPass {
     return point<D>(load(position, j));
   }
   template <class V>
-  PBF_HD void add(SumOf<V>& s, const Vec<V, D>& x, const Vec<V, D>& y, int, int, bool on) const {
-    const V q2 = pair_q_squared(x - y, on);
+  PBF_HD void add(SumOf<V>& s, const Vec<V, D>& x, const Vec<V, D>& y) const {
+    const Vec<V, D> d = x - y;
+    const V q2 = dot(d, d);
     s.shape += density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t(root_of(q2).q));
   }
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
-    if constexpr (far_only) {
-      if (boundary.near.has(i)) return void(density[i] = s.shape);
-    }
-    finish_far(i, x, s);
-  }
-  PBF_HD void finish_far(int i, const Own& x, const Sum& s) const {
     // 1: the particle itself.
     density[i] = p.vol * density_norm<Real, S>() * (Real(1) + s.shape) +
                  boundary.template term<S>(in_space(x)).density;
   }
-  PBF_HD Sum kept(int i) const { return {density[i]}; }
-  template <class Rows, class V>
-  PBF_HD bool all_far(Rows i, const Vec<V, D>&, const SumOf<V>&) const {
-    return all_at_most(V(0), adjacent(boundary.near.room, i));
-  }
-  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 /// C from the density: one-sided by default (only compression is corrected). NaN stays NaN, so that
@@ -93,7 +81,6 @@ struct LambdaPass {
   StepCounts* counts;
 
   static constexpr int D = dimensions_of(S);
-  static constexpr bool far_only = Boundary::far_only;
   static constexpr unsigned gathers = kPlace;
   using Own = Vec<Real, D>;
   template <class V>
@@ -101,7 +88,7 @@ struct LambdaPass {
     V shape{}, squares{};
     Vec<V, D> gradient;
     template <class F>
-    PBF_HD void each(F&& f) {
+    PBF_HD constexpr void each(F&& f) {
       if constexpr (with_density) f(shape);
       f(squares);
       each_component(gradient, f);
@@ -117,9 +104,9 @@ struct LambdaPass {
     return point<D>(load(position, j));
   }
   template <class V>
-  PBF_HD void add(SumOf<V>& s, const Vec<V, D>& x, const Vec<V, D>& y, int, int, bool on) const {
+  PBF_HD void add(SumOf<V>& s, const Vec<V, D>& x, const Vec<V, D>& y) const {
     const Vec<V, D> d = x - y;
-    const V q2 = pair_q_squared(d, on);
+    const V q2 = dot(d, d);
     const Root<V> root = root_of(q2);
     const V t = Spiky<Real>::t(root.q), t2 = t * t;
     if constexpr (with_density) s.shape += density_shape<Real, S>(q2, t);
@@ -128,12 +115,6 @@ struct LambdaPass {
     s.gradient = s.gradient + (t2 * root.inverse) * d;
   }
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
-    if constexpr (far_only) {
-      if (boundary.near.has(i)) return keep(i, s);
-    }
-    finish_far(i, x, s);
-  }
-  PBF_HD void finish_far(int i, const Own& x, const Sum& s) const {
     const BoundaryTerm<Real> wall = boundary.template term<S>(in_space(x));
     Real rho;
     if constexpr (with_density) {
@@ -153,19 +134,6 @@ struct LambdaPass {
     // Last, where nothing else is held in registers.
     if (load(position, i).w < Real(0)) count_unresolved(i, p, lists, velocity, counts);
   }
-  PBF_HD void keep(int i, const Sum& s) const {
-    boundary.near.sums[i] = with_w(in_space(s.gradient), s.squares);
-    if constexpr (with_density) density[i] = s.shape;
-  }
-  PBF_HD Sum kept(int i) const {
-    const Vec4<Real> s = boundary.near.sums[i];
-    return {with_density ? density[i] : Real(0), s.w, point<D>(s)};
-  }
-  template <class Rows, class V>
-  PBF_HD bool all_far(Rows i, const Vec<V, D>&, const SumOf<V>&) const {
-    return all_at_most(V(0), adjacent(boundary.near.room, i));
-  }
-  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 }  // namespace pbf::inline PBF_VARIANT

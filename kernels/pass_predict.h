@@ -64,16 +64,22 @@ PBF_HD Moving<Real> predict_anywhere(int i, Vec3<Real> x, Vec3<Real> v, const Pa
     return predict(x, v, p, boundary);
 }
 
-/// Writes x* and the velocity that goes with it for particle i at x with velocity v.
+/// Writes x* of particle i and the velocity that goes with it.
+template <class Real>
+PBF_HD void put(int i, const Moving<Real>& m, Vec4<Real>* position, Vec4<Real>* velocity,
+                StepCounts* counts) {
+  if (m.fast) count_one(&counts->fast);
+  position[i] = with_w(m.x, m.mark);
+  velocity[i] = with_w(m.v, Real(0));
+}
+/// The same for particle i at x with velocity v.
 template <class Real, class Boundary>
 PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
                     const Boundary& boundary, Vec4<Real>* position, Vec4<Real>* velocity,
                     StepCounts* counts) {
   const Moving<Real> m = predict_anywhere(i, x, v, p, boundary);
   if constexpr (Boundary::books) boundary.came_to(i, m.x);
-  if (m.fast) count_one(&counts->fast);
-  position[i] = with_w(m.x, m.mark);
-  velocity[i] = with_w(m.v, Real(0));
+  put(i, m, position, velocity, counts);
 }
 
 /// The bin of x* of row i, or -1 where NearPredictPass finds it.
@@ -113,9 +119,7 @@ struct NearPredictPass {
   PBF_HD void operator()(int k) const {
     const int i = row(k);
     const Moving<Real> m = predict_at_solids(i, xyz(position[i]), xyz(velocity[i]), p, boundary);
-    if (m.fast) count_one(&counts->fast);
-    position[i] = with_w(m.x, m.mark);
-    velocity[i] = with_w(m.v, Real(0));
+    put(i, m, position, velocity, counts);
     bin[i] = bin_of<D>(m.x, p);
   }
 };
@@ -129,7 +133,13 @@ struct MovePass {
   Vec4<Real>*position, *velocity;  ///< in/out
   StepCounts* counts;
   PBF_HD void operator()(int i) const {
-    move_on(i, xyz(position[i]), xyz(velocity[i]), p, boundary, position, velocity, counts);
+    const Vec3<Real> x = xyz(position[i]), v = xyz(velocity[i]);
+    if constexpr (Boundary::books) {
+      // Most go where plain walls let them; so the solids are asked for the others alone.
+      const Moving<Real> m = predict(x, v, p, boundary);
+      if (!may_meet_solids(boundary, x, m.x)) return put(i, m, position, velocity, counts);
+    }
+    move_on(i, x, v, p, boundary, position, velocity, counts);
   }
 };
 
@@ -168,7 +178,8 @@ struct GatherPass {
     id_out[to] = id[from];
   }
   PBF_HD bool is_predicted(int from) const {
-    if constexpr (Boundary::far_only) return boundary.near.room && boundary.near.has(from);
+    if constexpr (Boundary::far_only)
+      return boundary.near.way_left_squared && boundary.near.near(from);
     return false;
   }
 };

@@ -6,10 +6,10 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// grad W_ij vol/rho_j, in 1/h; zero for a coincident pair, and when not `on`.
+/// grad W_ij vol/rho_j, in 1/h; zero for a coincident pair.
 template <int D, class Real, class V>
-PBF_HD Vec<V, D> weighted_gradient(Vec<V, D> d, V inv_rho_j, const Params<Real>& p, bool on) {
-  const V q2 = pair_q_squared(d, on);
+PBF_HD Vec<V, D> weighted_gradient(Vec<V, D> d, V inv_rho_j, const Params<Real>& p) {
+  const V q2 = dot(d, d);
   const Root<V> root = root_of(q2);
   const V t = Spiky<Real>::t(root.q);
   return (p.vol * Spiky<Real, D>::gradient_norm * t * t * root.inverse * inv_rho_j) * d;
@@ -28,7 +28,6 @@ struct CurlPass {
   Vec4<Real>* curl;  ///< out: min(dt eps, 2 dt approach, 0.05) omega; w = |omega|
 
   static constexpr int D = dimensions;
-  static constexpr bool far_only = false;
   static constexpr unsigned gathers = kPlace | kInverseDensity | kVelocity;
   using Own = MovingOwn<Real, D>;
   template <class V>
@@ -51,10 +50,9 @@ struct CurlPass {
     return moving_other(load(position, j), load(velocity, j));
   }
   template <class V>
-  PBF_HD void add(SumOf<V>& s, const MovingOwn<V, D>& a, const MovingOther<V>& b, int, int,
-                  bool on) const {
+  PBF_HD void add(SumOf<V>& s, const MovingOwn<V, D>& a, const MovingOther<V>& b) const {
     const Vec<V, D> d = a.x - point<D>(b.x), v = point<D>(b.v) - a.v;
-    const Root<V> root = root_of(pair_q_squared(d, on));
+    const Root<V> root = root_of(dot(d, d));
     const V t = Spiky<Real>::t(root.q), weight = p.vol * t * t * b.x.w;
     s.v = s.v + cross((Spiky<Real, D>::gradient_norm * weight * root.inverse) * d, v);
     const V rate = max2(dot(v, d) * root.inverse * root.inverse, V(0));
@@ -66,7 +64,6 @@ struct CurlPass {
     const Real gain = min2(p.update_dt * limit, Real(0.05));
     curl[i] = with_w(gain * omega, square_root(dot(omega, omega)));
   }
-  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 /// What the two sides bring to the gradient of |omega|; x.w = 1/density.
@@ -101,7 +98,6 @@ struct VorticityPass {
   Vec4<Real>* velocity;        ///< in/out
 
   static constexpr int D = dimensions;
-  static constexpr bool far_only = false;
   static constexpr unsigned gathers = kPlace | kInverseDensity | kCurl;
   using Own = CurlOwn<Real>;
   template <class V>
@@ -116,10 +112,9 @@ struct VorticityPass {
     return curl_other(load(position, j), load(curl, j).w);
   }
   template <class V>
-  PBF_HD void add(VectorSum<V, D>& s, const CurlOwn<V>& a, const CurlOther<V>& b, int, int,
-                  bool on) const {
-    s.v = s.v + (b.magnitude - a.curl.w) *
-                    weighted_gradient<D>(point<D>(a.x) - point<D>(b.x), b.x.w, p, on);
+  PBF_HD void add(VectorSum<V, D>& s, const CurlOwn<V>& a, const CurlOther<V>& b) const {
+    s.v = s.v +
+          (b.magnitude - a.curl.w) * weighted_gradient<D>(point<D>(a.x) - point<D>(b.x), b.x.w, p);
   }
   PBF_HD void finish(int i, const Own& a, const Sum& s) const {
     if (a.x.w > Real(1)) return;
@@ -127,7 +122,6 @@ struct VorticityPass {
     const Vec3<Real> push = cross(in_space(s.v), xyz(a.curl));
     velocity[i] = with_w(xyz(velocity[i]) + Real(1) / size * push, Real(0));
   }
-  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 }  // namespace pbf::inline PBF_VARIANT

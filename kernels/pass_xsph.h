@@ -32,7 +32,7 @@ struct XsphPass {
   int* bin;  ///< out; null: no update follows
 
   static constexpr int D = dimensions_of(S);
-  static constexpr bool far_only = false, leaves_rows = Boundary::far_only;
+  static constexpr bool leaves_rows = Boundary::far_only;
   static constexpr unsigned gathers = kPlace | kInverseDensity | kVelocity;
   using Own = XsphOwn<Real, D>;
   template <class V>
@@ -47,9 +47,9 @@ struct XsphPass {
     return moving_other(load(position, j), load(velocity, j));
   }
   template <class V>
-  PBF_HD void add(VectorSum<V, D>& s, const XsphOwn<V, D>& a, const MovingOther<V>& b, int, int,
-                  bool on) const {
-    const V q2 = pair_q_squared(a.x - point<D>(b.x), on);
+  PBF_HD void add(VectorSum<V, D>& s, const XsphOwn<V, D>& a, const MovingOther<V>& b) const {
+    const Vec<V, D> d = a.x - point<D>(b.x);
+    const V q2 = dot(d, d);
     const V shape = density_shape<Real, S>(q2, is_paper(S) ? V(0) : Spiky<Real>::t(root_of(q2).q));
     s.v = s.v + (shape * (a.w + b.x.w)) * (point<D>(b.v) - a.v);
   }
@@ -59,7 +59,6 @@ struct XsphPass {
     velocity_out[i] = with_w(v, Real(0));
     if (bin) bin[i] = predicted_bin<D>(i, in_space(a.x), v, p, boundary);
   }
-  PBF_HD void operator()(int i) const { sum_over_neighbors(*this, i); }
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -29,33 +29,22 @@ struct FarBox : Box<Real> {
   /// Whether row i, in the order of the last sort, starts the step with a speed at which it sees
   /// nothing but plain walls; else it is near from now on.
   PBF_HD bool stays_far(int i, Real speed_squared) const {
-    if (!near.room || near.may_go(i, speed_squared)) return true;
-    if (!near.has(i)) near.add(i);
+    if (!near.way_left_squared || near.may_go(i, speed_squared)) return true;
+    if (!near.near(i)) near.mark_near(i);
     return false;
   }
 
   /// Whether a way may lead to a solid, or end near one.
   PBF_HD_RARE bool comes_near(Vec3<Real> from, Vec3<Real> to) const {
-    return (loaded && !clear.has(to)) || (obstacles && bounds.meets(from, to));
+    return may_meet_solids(*this, from, to);
   }
   /// Whether row i, which is far, may be near after a move in an iteration.
   PBF_HD bool leaves(int i, Vec3<Real> from, Vec3<Real> move) const {
-    return !(dot(move, move) <= near.room[i]) && comes_near(from, from + move);
+    return !(dot(move, move) <= near.way_left_squared[i]) && comes_near(from, from + move);
   }
   /// At least the largest gradient of the walls' density, 1/h: of a half space it is below 1.6 over
   /// the range, and three pairs of walls may be near.
   PBF_HD Real steepest() const { return Real(6) * this->scale * this->inv_range; }
-};
-
-/// The second launch of a pass: for the near rows, from the sums that the first one kept. `pass` is
-/// the same one with the boundary Solids.
-template <class Pass>
-struct NearPass {
-  Pass pass;
-  PBF_HD void operator()(int k) const {
-    const int i = pass.boundary.near.row[k];
-    pass.finish(i, pass.own(i), pass.kept(i));
-  }
 };
 
 /// Which rows are near, once the lists are made; of all rows, or of those in the half cells that
@@ -78,7 +67,7 @@ struct FindNearPass {
 template <class Real>
 struct ForgetNearPass {
   NearRows<Real> near;
-  PBF_HD void operator()(int k) const { near.room[near.row[k]] = near.far_room; }
+  PBF_HD void operator()(int k) const { near.way_left_squared[near.row[k]] = near.far_way_squared; }
 };
 template <class Real>
 struct ClearNearPass {
@@ -91,7 +80,7 @@ struct AllNearPass {
   NearRows<Real> near;
   int n;
   PBF_HD void operator()(int i) const {
-    near.room[i] = Real(-1);
+    near.way_left_squared[i] = Real(-1);
     near.row[i] = i;
     if (i == 0) *near.count = n;
   }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "kernels/atomics.h"
 #include "kernels/boundary/moving.h"
 #include "kernels/boundary/patch.h"
 #include "kernels/vec3.h"
@@ -36,14 +37,6 @@ struct Load {
 }  // namespace pbf
 
 namespace pbf::inline PBF_VARIANT {
-
-PBF_HD void add_whole(std::int64_t* sum, std::int64_t term) {
-#if defined(__CUDA_ARCH__)
-  atomicAdd(reinterpret_cast<unsigned long long*>(sum), static_cast<unsigned long long>(term));
-#elif !defined(__CUDACC__)
-  __atomic_fetch_add(sum, term, __ATOMIC_RELAXED);
-#endif
-}
 
 /// Where loads are booked.
 template <class Real>

@@ -1,6 +1,7 @@
 // The rows near solids: passes over all particles leave them to a second launch over these few.
 #pragma once
 
+#include "kernels/atomics.h"
 #include "kernels/vec3.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -13,39 +14,23 @@ template <class Real>
 struct NearRows {
   /// h^2, of each row: the square of what it may move in an iteration before somebody must look
   /// whether it came near; below 0 if it is near. So one comparison tells both.
-  Real* room = nullptr;
+  Real* way_left_squared = nullptr;
   int* row = nullptr;          ///< those that are near, in no order
   int* count = nullptr;        ///< of these
   Vec4<Real>* sums = nullptr;  ///< of each row; free between the passes of an iteration
-  Real far_room = 0;           ///< of rows that are not near
-  /// far_room over the square of the speed at which a far row may meet something in a step.
+  Real far_way_squared = 0;    ///< way_left_squared of rows that are not near
+  /// That over the square of the speed at which a far row may meet something in a step.
   Real per_speed = 0;
 
-  PBF_HD bool has(int i) const { return room[i] < Real(0); }
-  PBF_HD void add(int i) const {
-    room[i] = Real(-1);
-    row[next()] = i;
+  PBF_HD bool near(int i) const { return way_left_squared[i] < Real(0); }
+  PBF_HD void mark_near(int i) const {
+    way_left_squared[i] = Real(-1);
+    row[take_place(count)] = i;
   }
   /// Whether row i, with that speed, goes on from where it came in the last iteration as if there
   /// were no solids.
   PBF_HD bool may_go(int i, Real speed_squared) const {
-    return speed_squared * per_speed <= room[i];
-  }
-
- private:
-  PBF_HD int next() const {
-#if defined(__CUDA_ARCH__)
-    // One atomic for all threads that are here together.
-    const unsigned together = __activemask();
-    const int lane = int(threadIdx.x % 32), first = __ffs(int(together)) - 1;
-    int begin = 0;
-    if (lane == first) begin = atomicAdd(count, __popc(together));
-    return __shfl_sync(together, begin, first) + __popc(together & ((1u << lane) - 1));
-#elif !defined(__CUDACC__)
-    return __atomic_fetch_add(count, 1, __ATOMIC_RELAXED);
-#else
-    return 0;
-#endif
+    return speed_squared * per_speed <= way_left_squared[i];
   }
 };
 

@@ -48,7 +48,7 @@ struct Solids : Box<Real> {
   }
   /// The way of row i, while the lists hold, ended at x.
   PBF_HD void came_to(int i, Vec3<Real> x) const {
-    if (near.room && !near.has(i) && is_near(x)) near.add(i);
+    if (near.way_left_squared && !near.near(i) && is_near(x)) near.mark_near(i);
   }
   PBF_HD double penetration(const double (&x)[3]) const {
     double deepest = Box<Real>::penetration(x);
@@ -63,5 +63,11 @@ struct Solids : Box<Real> {
     return deepest;
   }
 };
+
+/// Whether a way may lead to a solid, or end near one; of Solids or FarBox.
+template <class Boundary, class Real>
+PBF_HD bool may_meet_solids(const Boundary& b, Vec3<Real> from, Vec3<Real> to) {
+  return (b.loaded && !b.clear.has(to)) || (b.obstacles && b.bounds.meets(from, to));
+}
 
 }  // namespace pbf::inline PBF_VARIANT

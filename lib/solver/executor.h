@@ -11,6 +11,7 @@
 #include "kernels/boundary/near_rows.h"
 #include "kernels/measure.h"
 #include "kernels/params.h"
+#include "kernels/pass_shapes.h"
 #include "lib/solver/solver.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -23,8 +24,45 @@ struct CopyTarget {
 
 /// Stand-ins for what an executor is called with.
 namespace archetype {
-struct Pass {
+struct Item {
   PBF_HD void operator()(int) const {}
+};
+struct Pair {
+  struct Own {};
+  struct Sum {};
+  static constexpr int D = 3;
+  int lists = 0;
+  PBF_HD Own own(int) const { return {}; }
+  PBF_HD int other(int) const { return 0; }
+  PBF_HD void add(Sum&, const Own&, int) const {}
+  PBF_HD void finish(int, const Own&, const Sum&) const {}
+};
+template <class Of>
+struct Parts {
+  using Part = int;
+  PBF_HD Part part(Of, int, int) const { return 0; }
+  PBF_HD std::int64_t finish(Of, Part) const { return 0; }
+};
+struct Shared : Parts<int> {
+  static constexpr int lanes = 2;
+};
+struct Team : Parts<int> {
+  PBF_HD int items() const { return 0; }
+  PBF_HD int groups() const { return 0; }
+  PBF_HD int size(int) const { return 0; }
+  PBF_HD int lanes(int, int) const { return 1; }
+};
+struct Cell {};
+struct Brick : Parts<Cell> {
+  static constexpr int lanes = 2, brick_cells = 16, brick_corners = 8;
+  struct Grid {
+    PBF_HD int bricks() const { return 0; }
+    PBF_HD bool has(Cell) const { return true; }
+  } grid;
+  PBF_HD int brick(int) const { return 0; }
+  PBF_HD Cell cell(int, int) const { return {}; }
+  PBF_HD int share(int, int, std::int64_t) const { return 0; }
+  PBF_HD void finish_corner(int, int, int) const {}
 };
 struct Residual {
   PBF_HD std::uint64_t operator()(int) const { return 0; }
@@ -39,7 +77,7 @@ struct Sorted {
 struct Gather {
   PBF_HD void operator()(int, int) const {}
 };
-struct Measure {
+struct Reduce {
   PBF_HD MeasureCounts counts(int) const { return {}; }
   PBF_HD MeasureTerms terms(int, const MeasureUnits&) const { return {}; }
 };
@@ -80,10 +118,14 @@ concept Executor = requires(E e, const E c, int* ints, unsigned long long* count
   // after finish_copy().
   e.template start_copy<float>(targets, archetype::Write{});
   e.finish_copy(targets);
-  // pass(i) for every particle, sums of all of them.
-  e.for_each(1, archetype::Pass{});
-  e.for_listed(ints, 1, archetype::Pass{});  // for as many as *ints says, at most 1
-  { e.reduce(1, archetype::Measure{}) } -> std::same_as<MeasureSums>;
+  // A launch for each shape of passes, for so many items or particles.
+  e.items(1, archetype::Item{});
+  e.pairs(1, archetype::Pair{});
+  e.shared(1, archetype::Shared{});
+  e.teams(archetype::Team{});
+  e.bricks(archetype::Brick{});
+  e.listed(ints, 1, archetype::Item{});  // for as many as *ints says, at most 1
+  { e.reduce(1, archetype::Reduce{}) } -> std::same_as<MeasureSums>;
   { e.count_in_bins(1, 1, archetype::Bin{}) } -> std::convertible_to<std::vector<std::int64_t>>;
   // body() while the sum of a pass is above a limit.
   e.repeat_while("stage", 1, 1, archetype::Residual{}, std::uint64_t(0), count, archetype::Body{});

@@ -42,8 +42,8 @@ struct GaugeArrays {
     std::vector<ProbeSums> all(sums.size());
     if (all.empty()) return all;
     c.exec.to_device(all.data(), all.size(), sums.data());
-    c.each(ProbePass<typename C::Real>{probe.data(), int(probe.size()), c.position(), c.velocity(),
-                                       update_dt, sums.data()});
+    c.items(ProbePass<typename C::Real>{probe.data(), int(probe.size()), c.position(), c.velocity(),
+                                        update_dt, sums.data()});
     c.exec.to_host(sums.data(), all.size(), all.data());
     return all;
   }

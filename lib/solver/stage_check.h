@@ -50,7 +50,7 @@ class StageCheck {
       if (a.stores_fourth && w.to.other) a.position = c_.other(*w.to.field);
     }
     if (pass.writes[0].part == Written::pairs) {
-      c_.each(ListSizePass<typename Exec::Lists>{c_.lists, c_.sort_order()});  // free by now
+      c_.items(ListSizePass<typename Exec::Lists>{c_.lists, c_.sort_order()});  // free by now
       a.neighbors = c_.sort_order();
     }
     return a;

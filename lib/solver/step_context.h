@@ -49,14 +49,38 @@ struct StepContext {
 
   // What passes use.
   int rows() const { return rows_; }  ///< in use
+  // Launches by the shape of a pass (kernels/pass_shapes.h), over all rows or n items.
   template <class Pass>
-  void each(const Pass& pass) {
-    exec.for_each(rows_, pass);
+  void items(const Pass& pass) {
+    exec.items(rows_, pass);
   }
-  /// Over cells or nodes: n of them.
   template <class Pass>
-  void over(int n, const Pass& pass) {
-    exec.for_each(n, pass);
+  void items(int n, const Pass& pass) {
+    exec.items(n, pass);
+  }
+  template <class Pass>
+  void pairs(const Pass& pass) {
+    exec.pairs(rows_, pass);
+  }
+  template <class Pass>
+  void shared(int n, const Pass& pass) {
+    exec.shared(n, pass);
+  }
+  template <class Pass>
+  void teams(const Pass& pass) {
+    exec.teams(pass);
+  }
+  template <class Pass>
+  void bricks(const Pass& pass) {
+    exec.bricks(pass);
+  }
+  template <class Pass>
+  void listed(const int* count, const Pass& pass) {
+    exec.listed(count, rows_, pass);
+  }
+  template <class Pass>
+  MeasureSums reduce(const Pass& pass) {
+    return exec.reduce(rows_, pass);
   }
   template <class F>
   void with_smoothing(F&& f) const {
@@ -119,7 +143,7 @@ struct StepContext {
 
   /// Positions came from elsewhere: until the lists are made all rows count as near solids.
   void forget_near() {
-    if (solids_.near.room) each(AllNearPass<Real>{solids_.near, rows_});
+    if (solids_.near.way_left_squared) items(AllNearPass<Real>{solids_.near, rows_});
   }
 
   /// Which of the two arrays each field lies in, as bits: updates that were recorded hold for one
@@ -250,7 +274,7 @@ void StepContext<Real, Exec>::make_solids(const Scene& in_its_axes, const Plan& 
   const double move = 0.8 * kNearRoom / moves;
   solids_.near = {data<Real>(field::near_room), data<int>(field::near_row), near_count_.data(),
                   nullptr, Real(move * move)};
-  const std::vector<Real> behind(Exec::padding, solids_.near.far_room);
+  const std::vector<Real> behind(Exec::padding, solids_.near.far_way_squared);
   exec.to_device(behind.data(), behind.size(), data<Real>(field::near_room) + rows_);
   const std::vector<int> cells = half_cells_near_solids(scene, run.standing, run.moving, p,
                                                         solids_.clear, has_wall_loads(scene));
@@ -284,9 +308,9 @@ struct SavedState {
     counts.resize(1);
     loads.resize(std::size_t(c.state().walls));
     flows.resize(std::size_t(c.state().flows));
-    c.each(CopyStatePass<Real>{c.state(), state()});
+    c.items(CopyStatePass<Real>{c.state(), state()});
   }
-  void restore(StepContext<Real, Exec>& c) { c.each(CopyStatePass<Real>{state(), c.state()}); }
+  void restore(StepContext<Real, Exec>& c) { c.items(CopyStatePass<Real>{state(), c.state()}); }
 };
 
 }  // namespace pbf::inline PBF_VARIANT

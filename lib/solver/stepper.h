@@ -96,12 +96,9 @@ class Stepper {
   /// h^2/s^3, of the particles' velocities with what the motion of the tank adds to gravity.
   double power(const FrameStep<double>& frame, double dt) {
     const Vec3<Real>& g = c_.p.gravity;
-    return c_.exec
-        .reduce(size(), PowerPass<Real>{frame,
-                                        1 / dt,
-                                        {double(g.x), double(g.y), double(g.z)},
-                                        c_.position(),
-                                        c_.velocity()})
+    return c_
+        .reduce(PowerPass<Real>{
+            frame, 1 / dt, {double(g.x), double(g.y), double(g.z)}, c_.position(), c_.velocity()})
         .x[0];
   }
 
@@ -174,7 +171,7 @@ class Stepper {
     c_.exec.begin();
     c_.booked_as = "measure";
     for (const int pass : {Passes::index_of<Sort>(), Passes::index_of<MakeLists>()}) launch(pass);
-    if (c_.solids().near.room) launch(Passes::index_of<FindNear>());
+    if (c_.solids().near.way_left_squared) launch(Passes::index_of<FindNear>());
     c_.booked_as = nullptr;
     return true;
   }
@@ -192,9 +189,9 @@ class Stepper {
     const int n = size();
     MeasureSums sums;
     with_boundary(c_, [&](const auto& boundary) {
-      sums = c_.exec.reduce(n, MeasurePass<Real, Lists, std::decay_t<decltype(boundary)>>{
-                                   c_.p, boundary, c_.lists, c_.position(), c_.velocity(),
-                                   c_.density(), c_.counts(), given});
+      sums = c_.reduce(MeasurePass<Real, Lists, std::decay_t<decltype(boundary)>>{
+          c_.p, boundary, c_.lists, c_.position(), c_.velocity(), c_.density(), c_.counts(),
+          given});
     });
     sums.compression_p99 = compression_percentile(
         c_.exec.count_in_bins(n, kCompressionBins, CompressionBinPass<Real>{c_.density()}),
@@ -211,17 +208,17 @@ class Stepper {
     c_.exec.begin();
     if (density) sum_density();
     const auto from = [&](int k) { return origin[std::size_t(plan_.axes.of[k])]; };
-    c_.each(ExportPass<Real, Out>{h,
-                                  rest_density,
-                                  {from(0), from(1), from(2)},
-                                  plan_.axes,
-                                  c_.position(),
-                                  c_.velocity(),
-                                  c_.density(),
-                                  c_.ids(),
-                                  position,
-                                  velocity,
-                                  density});
+    c_.items(ExportPass<Real, Out>{h,
+                                   rest_density,
+                                   {from(0), from(1), from(2)},
+                                   plan_.axes,
+                                   c_.position(),
+                                   c_.velocity(),
+                                   c_.density(),
+                                   c_.ids(),
+                                   position,
+                                   velocity,
+                                   density});
     c_.exec.mark("download");
   }
 

@@ -88,7 +88,7 @@ class Tracer {
     Exec& exec = c_.exec;
     typename Exec::template Buffer<int> size, begin, flat;
     size.resize(n_);
-    exec.for_each(int(n_), ListSizePass<Lists>{lists, size.data()});
+    exec.items(int(n_), ListSizePass<Lists>{lists, size.data()});
     std::vector<int> sizes = host(size.data()), starts(n_);
     int sum = 0;
     for (std::size_t k = 0; k < n_; ++k) starts[k] = sum, sum += sizes[k];
@@ -96,7 +96,7 @@ class Tracer {
     begin.resize(n_);
     exec.to_device(starts.data(), n_, begin.data());
     flat.resize(std::size_t(sum) + 1);
-    exec.for_each(int(n_), FlatListPass<Lists>{lists, int(n_), begin.data(), flat.data()});
+    exec.items(int(n_), FlatListPass<Lists>{lists, int(n_), begin.data(), flat.data()});
     std::vector<int> all(std::size_t(sum), 0);
     exec.to_host(flat.data(), all.size(), all.data());
     id_ = host(c_.ids());

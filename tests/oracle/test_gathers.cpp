@@ -105,7 +105,7 @@ void check(const Make& make) {
 
   const auto result = [&](Rows<Real> in, int i) {
     Rows<Real> out = in;
-    make(p, lists, in, out)(i);
+    sum_over_neighbors(make(p, lists, in, out), i);
     const auto k = std::size_t(i);
     std::vector<Real> all{out.density[k]};
     for (const auto* v : {&out.position[k], &out.velocity[k], &out.curl[k]})

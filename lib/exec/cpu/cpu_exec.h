@@ -75,30 +75,40 @@ class CpuExec {
     if (n) std::memcpy(host, from, n * sizeof(T));
   }
 
-  /// pass(i) for i in 0..n-1. Dynamic pieces: particles at the surface have fewer neighbours, and
-  /// another program may take a core for a while. What threads could share is more work each.
-  template <class Pass>
-  void for_each(int n, const Pass& pass) {
-    constexpr int share = requires { typename Pass::Part; }
-    ? 16 : 1, piece = kPiece / share;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (n > kChunk / share)
-    for (int first = 0; first < n; first += piece) {
-      const int last = std::min(n - first, piece) + first;
-      if constexpr (requires { typename Pass::Sum; })
-        sum_over_neighbors(simd_, pass, first, last);
-      else
-        for (int i = first; i < last; ++i) one(pass, i);
-    }
+  // Passes by their shapes (kernels/pass_shapes.h). Of what threads could share, one makes the
+  // whole.
+  template <ItemPass Pass>
+  void items(int n, const Pass& pass) {
+    in_pieces<1>(n, [&](int first, int last) {
+      for (int i = first; i < last; ++i) pass(i);
+    });
   }
-
-  /// pass(k) for k in 0..*count-1; at most `most`.
-  template <class Pass>
-  void for_listed(const int* count, int, const Pass& pass) {
-    for_each(*count, pass);
+  template <PairPass Pass>
+  void pairs(int n, const Pass& pass) {
+    in_pieces<1>(n, [&](int first, int last) { sum_over_neighbors(simd_, pass, first, last); });
+  }
+  template <SharedPass Pass>
+  void shared(int n, const Pass& pass) {
+    wholes(n, pass);
+  }
+  template <TeamPass Pass>
+  void teams(const Pass& pass) {
+    wholes(pass.items(), pass);
+  }
+  template <BrickPass Pass>
+  void bricks(const Pass& pass) {
+    in_pieces<kShare>(pass.grid.bricks(), [&](int first, int last) {
+      for (int n = first; n < last; ++n) of_brick(pass, n);
+    });
+  }
+  /// The items 0..*count-1; at most `most`.
+  template <ItemPass Pass>
+  void listed(const int* count, int, const Pass& pass) {
+    items(*count, pass);
   }
 
   /// A measure: its maxima and counts, then the sums in units that these decide.
-  template <class Pass>
+  template <ReducePass Pass>
   MeasureSums reduce(int n, const Pass& pass) {
     const auto counts = sum<MeasureCounts>(n, [&](int i) { return pass.counts(i); });
     const MeasureUnits unit(counts);
@@ -137,20 +147,23 @@ class CpuExec {
     return in_bins_;
   }
 
-  /// first(i) for every particle, which writes first.bin[i], or leaves it to `listed`; a counting
+  /// first(i) for every particle, which writes first.bin[i], or leaves it to `near`; a counting
   /// sort by bin, within a bin by id (start[b] = first place of bin b, start[bins] = n);
   /// gather(from, to) for every particle. So the order of rows follows from the positions alone,
   /// not from the rows before. Marks `stage` after `first`.
   template <class First, class Listed, class Gather>
-  void sort_by_bin(const char* stage, const First& first, const Listed& listed, int n, int bins,
+  void sort_by_bin(const char* stage, const First& first, const Listed& near, int n, int bins,
                    const int* id, int* order, int* start, const Gather& gather) {
-    for_each(n, first);
-    if constexpr (requires { listed.pass; }) {
-      if (listed.count) for_listed(listed.count, n, listed.pass);
+    if constexpr (PairPass<First>)
+      pairs(n, first);
+    else
+      items(n, first);
+    if constexpr (requires { near.pass; }) {
+      if (near.count) listed(near.count, n, near.pass);
     }
     mark(stage);
     sort(first.bin, id, n, bins, order, start);
-    for_each(n, [&](int k) { gather(order[k], k); });
+    items(n, [&](int k) { gather(order[k], k); });
   }
   /// order[k] = row of the k-th particle by (bin, id).
   void sort(const int* bin, const int* id, int n, int bins, int* order, int* start);
@@ -189,15 +202,20 @@ class CpuExec {
   std::size_t bytes() const;
 
  private:
-  /// Of a pass that threads could share, one makes the whole.
+  /// f(first, last) for pieces of 0..n-1; an item is the work of `share` particles. Dynamic:
+  /// particles at the surface have fewer neighbours, and another program may take a core for a
+  /// while.
+  template <int share, class F>
+  void in_pieces(int n, const F& f) {
+    constexpr int piece = kPiece / share;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (n > kChunk / share)
+    for (int first = 0; first < n; first += piece) f(first, std::min(n - first, piece) + first);
+  }
   template <class Pass>
-  static void one(const Pass& pass, int i) {
-    if constexpr (requires { Pass::brick_corners; })
-      of_brick(pass, i);
-    else if constexpr (requires { typename Pass::Part; })
-      pass.finish(i, pass.part(i, 0, 1));
-    else
-      pass(i);
+  void wholes(int n, const Pass& pass) {
+    in_pieces<kShare>(n, [&](int first, int last) {
+      for (int i = first; i < last; ++i) pass.finish(i, pass.part(i, 0, 1));
+    });
   }
   /// See LevelBrickPass.
   template <class Pass>
@@ -231,6 +249,7 @@ class CpuExec {
   }
 
   static constexpr int kChunk = 1 << ChunkedLists::chunk_bits;
+  static constexpr int kShare = 16;   ///< of what threads could share, in particles
   static constexpr int kPiece = 256;  ///< of a pass: whole groups of lists, a few microseconds
   int threads_, list_entries_;
   Simd simd_;

@@ -29,7 +29,7 @@ template <class Pass>
 void sum_over_neighbors(Simd simd, const Pass& pass, int first, int last) {
   switch (simd) {
     case Simd::scalar:
-      for (int i = first; i < last; ++i) pass(i);
+      for (int i = first; i < last; ++i) sum_over_neighbors(pass, i);
       return;
 #ifdef PBF_HAS_AVX
     case Simd::avx2:

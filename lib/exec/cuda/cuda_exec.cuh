@@ -90,39 +90,45 @@ class CudaExec {
     synchronize();
   }
 
+  template <ItemPass Pass>
+  void items(int n, const Pass& pass) {
+    launch(item_kernel<Pass>, n, kBlock, 0, n, pass);
+  }
   /// The threads of a neighbour sum shape its tree, so their number follows from the particles of
   /// the whole scene, not from those here.
-  template <class Pass>
-  void for_each(int n, const Pass& pass) {
-    if constexpr (requires { typename Pass::Sum; }) {
-      // In two dimensions a list has a third of the words: half as many threads have something to
-      // do.
-      constexpr bool space = Pass::D == 3;
-      if (launch_lanes < 16, space ? kSixteenLanes : 0 > (n, pass)) return;
-      if (launch_lanes < space ? 8 : 4, kEightLanes > (n, pass)) return;
-      if (launch_lanes < space ? 4 : 2, kFourLanes > (n, pass)) return;
-      if (launch_lanes < 2, space ? kTwoLanes : 0 > (n, pass)) return;
-    }
-    if constexpr (requires { Pass::brick_corners; })
-      launch(brick_kernel<Pass>, n * kBrickBlock<Pass>, kBrickBlock<Pass>, 0, pass);
-    else if constexpr (requires { pass.groups(); }) {
-      int blocks = 0;
-      for (int g = 0; g < pass.groups(); ++g) blocks += team_blocks(pass, g);
-      launch(team_kernel<Pass>, blocks * kTeam, kTeam, 0, pass);
-    } else if constexpr (requires { typename Pass::Part; })
-      launch(shared_kernel<Pass>, n * Pass::lanes, kBlock, 0, n, pass);
-    else
-      launch(apply_kernel<Pass>, n, kBlock, 0, n, pass);
+  template <PairPass Pass>
+  void pairs(int n, const Pass& pass) {
+    // In two dimensions a list has a third of the words: half as many threads have something to
+    // do.
+    constexpr bool space = Pass::D == 3;
+    if (launch_lanes < 16, space ? kSixteenLanes : 0 > (n, pass)) return;
+    if (launch_lanes < space ? 8 : 4, kEightLanes > (n, pass)) return;
+    if (launch_lanes < space ? 4 : 2, kFourLanes > (n, pass)) return;
+    if (launch_lanes < 2, space ? kTwoLanes : 0 > (n, pass)) return;
+    launch(pair_kernel<Pass>, n, kBlock, 0, n, pass);
   }
-
+  template <SharedPass Pass>
+  void shared(int n, const Pass& pass) {
+    launch(shared_kernel<Pass>, n * Pass::lanes, kBlock, 0, n, pass);
+  }
+  template <TeamPass Pass>
+  void teams(const Pass& pass) {
+    int blocks = 0;
+    for (int g = 0; g < pass.groups(); ++g) blocks += team_blocks(pass, g);
+    launch(team_kernel<Pass>, blocks * kTeam, kTeam, 0, pass);
+  }
+  template <BrickPass Pass>
+  void bricks(const Pass& pass) {
+    launch(brick_kernel<Pass>, pass.grid.bricks() * kBrickBlock<Pass>, kBrickBlock<Pass>, 0, pass);
+  }
   /// See CpuExec. How many they are is known on the device alone.
-  template <class Pass>
-  void for_listed(const int* count, int most, const Pass& pass) {
+  template <ItemPass Pass>
+  void listed(const int* count, int most, const Pass& pass) {
     launch(listed_kernel<Pass>, std::min(most, kBlock * kListedBlocks), kBlock, 0, count, pass);
   }
 
   /// See CpuExec. The maxima stay on the device for the sums, so the host waits once.
-  template <class Pass>
+  template <ReducePass Pass>
   MeasureSums reduce(int n, const Pass& pass) {
     if (n == 0) return {};
     measure_.make(n, stream_);
@@ -182,9 +188,9 @@ class CudaExec {
 
   /// See CpuExec; `order` is memory for the arrivals.
   template <class First, class Listed, class Gather>
-  void sort_by_bin(const char* stage, const First& first, const Listed& listed, int n, int bins,
+  void sort_by_bin(const char* stage, const First& first, const Listed& near, int n, int bins,
                    const int* id, int* order, int* start, const Gather& gather) {
-    constexpr bool leaves_rows = requires { listed.pass; };
+    constexpr bool leaves_rows = requires { near.pass; };
     slot_.resize(std::size_t(n));
     const OrderPass<Gather> in_order{first.bin, id, start, slot_.data(), gather};
     if (n <= kSortParticles && bins <= kSortBins) {
@@ -193,10 +199,10 @@ class CudaExec {
                kSortThreads, std::size_t(bins) * sizeof(int), before, n, bins, order, slot_.data(),
                start, list_state_.data(), in_order);
       };
-      if constexpr (leaves_rows || requires { typename First::Sum; }) {
-        for_each(n, first);
+      if constexpr (leaves_rows || PairPass<First>) {
+        items_or_pairs(n, first);
         if constexpr (leaves_rows) {
-          if (listed.count) for_listed(listed.count, n, listed.pass);
+          if (near.count) listed(near.count, n, near.pass);
         }
         mark(stage);
         sort(NothingFirst{});
@@ -209,17 +215,16 @@ class CudaExec {
       counts_.resize(std::size_t(bins) + 1);
       PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), stream_));
     }
-    for_each(n, CountPass<First>{first, counts_.data(), order});
+    items_or_pairs(n, CountPass<First>{first, counts_.data(), order});
     if constexpr (leaves_rows) {
-      using Near = std::decay_t<decltype(listed.pass)>;
-      if (listed.count)
-        for_listed(listed.count, n, CountPass<Near>{listed.pass, counts_.data(), order});
+      using Near = std::decay_t<decltype(near.pass)>;
+      if (near.count) listed(near.count, n, CountPass<Near>{near.pass, counts_.data(), order});
     }
     mark(stage);
     scan(bins + 1, start);
-    for_each(n, PlacePass{first.bin, start, order, slot_.data(), counts_.data(), list_state_.data(),
-                          n, bins + 1});
-    for_each(n, in_order);
+    items(n, PlacePass{first.bin, start, order, slot_.data(), counts_.data(), list_state_.data(), n,
+                       bins + 1});
+    items(n, in_order);
   }
 
   template <class Real>
@@ -239,6 +244,13 @@ class CudaExec {
   }
 
  private:
+  template <class Pass>
+  void items_or_pairs(int n, const Pass& pass) {
+    if constexpr (PairPass<Pass>)
+      pairs(n, pass);
+    else
+      items(n, pass);
+  }
   /// A device-wide algorithm of CUB: call(scratch, bytes) says how many bytes it needs where
   /// `scratch` is null, else runs.
   template <class Call>
@@ -284,7 +296,7 @@ class CudaExec {
     if (n <= kListLanes)
       launch(list_lanes_kernel<Real, D>, pass.lanes * n, kBlock, 0, pass);
     else
-      for_each(n, pass);
+      items(n, pass);
   }
   void allocate_lists(int n);
   void clear_overflow();

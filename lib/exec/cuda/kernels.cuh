@@ -23,10 +23,17 @@ constexpr int kRepeatBlocks = 512;
 constexpr int kListedBlocks = 1024;
 
 template <class Pass>
-__global__ void __launch_bounds__(kBlock) apply_kernel(int n, Pass pass) {
+__global__ void __launch_bounds__(kBlock) item_kernel(int n, Pass pass) {
   wait_for_previous();
   const int i = blockIdx.x * kBlock + threadIdx.x;
   if (i < n) pass(i);
+}
+
+template <class Pass>
+__global__ void __launch_bounds__(kBlock) pair_kernel(int n, Pass pass) {
+  wait_for_previous();
+  const int i = blockIdx.x * kBlock + threadIdx.x;
+  if (i < n) sum_over_neighbors(pass, i);
 }
 
 /// For as many items as *count says.

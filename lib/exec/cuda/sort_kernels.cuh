@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/pair_sum.h"
+#include "kernels/pass_shapes.h"
 #include "lib/exec/cuda/kernel_start.cuh"
 #include "lib/exec/cuda/list_pass.cuh"
 
@@ -12,13 +13,9 @@ namespace pbf::inline PBF_VARIANT {
 template <class First>
 struct CountPass : First {
   int *count, *arrival;
-  __device__ void operator()(int i) const {
-    if constexpr (requires { typename First::Sum; }) {
-      sum_over_neighbors(*this, i);
-    } else {
-      First::operator()(i);
-      arrive(row_of(static_cast<const First&>(*this), i, 0));
-    }
+  __device__ void operator()(int i) const requires ItemPass<First> {
+    First::operator()(i);
+    arrive(row_of(static_cast<const First&>(*this), i, 0));
   }
   template <class Own, class Sum>
   __device__ void finish(int i, const Own& own, const Sum& sum) const {

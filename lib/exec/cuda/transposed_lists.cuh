@@ -69,7 +69,7 @@ __device__ __forceinline__ void sum_over_neighbors_by_lanes(const Pass& pass, in
   if (valid) {
     own = pass.own(i);
     pass.lists.for_each(
-        i, [&](int j) { pass.add(sum, own, pass.other(j), i, j, true); }, lane, lanes);
+        i, [&](int j) { pass.add(sum, own, pass.other(j)); }, lane, lanes);
   }
   sum.each([](auto& x) {
 #pragma unroll
@@ -101,7 +101,7 @@ __device__ __forceinline__ void sum_in_order_by_lanes(const Pass& pass, int thre
 #pragma unroll
       for (int e = 0; e < 4; ++e) {
         Sum term{};
-        pass.add(term, own, pass.other(j[e]), i, j[e], true);
+        pass.add(term, own, pass.other(j[e]));
         const Real* part = reinterpret_cast<const Real*>(&term);
         for (int c = 0; c < parts; ++c) mine[4 * lane + e][c] = part[c];
       }

@@ -30,7 +30,7 @@ struct Curl {
   template <class C>
   static void launch(C& c) {
     with_dimensions(c.p.dimensions, [&](auto d) {
-      c.each(CurlPass<typename C::Real, typename C::Lists, decltype(d)::value>{
+      c.pairs(CurlPass<typename C::Real, typename C::Lists, decltype(d)::value>{
           c.p, c.lists, c.position(), c.velocity(), c.vectors(field::curl)});
     });
   }
@@ -49,7 +49,7 @@ struct Confine {
   template <class C>
   static void launch(C& c) {
     with_dimensions(c.p.dimensions, [&](auto d) {
-      c.each(VorticityPass<typename C::Real, typename C::Lists, decltype(d)::value>{
+      c.pairs(VorticityPass<typename C::Real, typename C::Lists, decltype(d)::value>{
           c.p, c.lists, c.position(), c.vectors(field::curl), c.velocity()});
     });
   }

@@ -19,9 +19,9 @@ namespace pbf::inline PBF_VARIANT {
 template <class C>
 void take_sides(C& c, bool count) {
   auto& g = c.gauges;
-  c.each(FlowPass<typename C::Real>{g.gate.data(), int(g.gate.size()), c.position(), c.ids(),
-                                    c.template data<int>(field::flow_sides),
-                                    count ? g.flow.data() : nullptr, double(c.p.update_dt)});
+  c.items(FlowPass<typename C::Real>{g.gate.data(), int(g.gate.size()), c.position(), c.ids(),
+                                     c.template data<int>(field::flow_sides),
+                                     count ? g.flow.data() : nullptr, double(c.p.update_dt)});
 }
 
 struct CountFlow {

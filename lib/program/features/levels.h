@@ -83,32 +83,31 @@ struct LevelCellsAndNodes {
     int* reach = c.template data<int>(field::node_reach);
     int* count = c.template data<int>(field::cell_count);
     with_dimensions(c.p.dimensions, [&](auto d) {
-      c.over(l.grid.bricks(), LevelHomePass<Real, decltype(d)::value>{
-                                  {l.grid, c.template data<std::int64_t>(field::corner_sum)},
-                                  c.p,
-                                  c.template data<int>(field::bin_start),
-                                  c.scene.domain.open.empty() ? nullptr : c.position(),
-                                  c.scene.obstacles.empty() ? nullptr : c.solids().around,
-                                  c.template data<int>(field::run_start),
-                                  c.template data<int>(field::level_home),
-                                  count,
-                                  c.template data<std::int64_t>(field::cell_sum)});
+      c.bricks(LevelHomePass<Real, decltype(d)::value>{
+          {l.grid, c.template data<std::int64_t>(field::corner_sum)},
+          c.p,
+          c.template data<int>(field::bin_start),
+          c.scene.domain.open.empty() ? nullptr : c.position(),
+          c.scene.obstacles.empty() ? nullptr : c.solids().around,
+          c.template data<int>(field::run_start),
+          c.template data<int>(field::level_home),
+          count,
+          c.template data<std::int64_t>(field::cell_sum)});
     });
     const LevelSums sums = level_sums(c);
-    c.over(sums.items(),
-           LevelNodePass<Real>{sums, c.p.boundary.walls, l.beta * l.grid.edge * l.grid.edge,
-                               c.template data<Real>(field::node_answer), walls});
+    c.teams(LevelNodePass<Real>{sums, c.p.boundary.walls, l.beta * l.grid.edge * l.grid.edge,
+                                c.template data<Real>(field::node_answer), walls});
     const LevelReachPass reached{l.all, walls, reach};
-    c.over(reached.items(), reached);
+    c.shared(reached.items(), reached);
     const auto over = [&](int k) { return l.gamma / l.grid.last[k]; };
-    c.over(l.grid.size(), LevelFactorPass<Real>{l.all,
-                                                l.grid,
-                                                l.gamma / l.grid.edge,
-                                                {over(0), over(1), over(2)},
-                                                count,
-                                                walls,
-                                                reach,
-                                                c.vectors(field::cell_factor)});
+    c.items(l.grid.size(), LevelFactorPass<Real>{l.all,
+                                                 l.grid,
+                                                 l.gamma / l.grid.edge,
+                                                 {over(0), over(1), over(2)},
+                                                 count,
+                                                 walls,
+                                                 reach,
+                                                 c.vectors(field::cell_factor)});
   }
 };
 
@@ -136,19 +135,18 @@ struct LevelMultipliers {
     const LevelPlan& l = c.levels;
     auto* multiplier = c.template data<Real>(field::multiplier);
     with_dimensions(c.p.dimensions, [&](auto d) {
-      c.over(l.grid.bricks(), LevelSumPass<Real, decltype(d)::value>{
-                                  {l.grid, c.template data<std::int64_t>(field::corner_sum)},
-                                  c.template data<int>(field::run_start),
-                                  homes_beside_open_faces(c),
-                                  c.density(),
-                                  c.template data<std::int64_t>(field::cell_sum)});
+      c.bricks(LevelSumPass<Real, decltype(d)::value>{
+          {l.grid, c.template data<std::int64_t>(field::corner_sum)},
+          c.template data<int>(field::run_start),
+          homes_beside_open_faces(c),
+          c.density(),
+          c.template data<std::int64_t>(field::cell_sum)});
     });
     const LevelSums sums = level_sums(c);
-    c.over(sums.items(),
-           LevelMultiplierPass<Real>{sums, c.template data<Real>(field::node_answer), multiplier});
-    c.over(l.grid.size(),
-           LevelMovePass<Real>{l.all, l.grid, multiplier, c.vectors(field::cell_factor),
-                               c.vectors(field::level_move)});
+    c.teams(LevelMultiplierPass<Real>{sums, c.template data<Real>(field::node_answer), multiplier});
+    c.items(l.grid.size(),
+            LevelMovePass<Real>{l.all, l.grid, multiplier, c.vectors(field::cell_factor),
+                                c.vectors(field::level_move)});
   }
 };
 
@@ -165,7 +163,7 @@ struct BookLevels {
     using Real = typename C::Real;
     if (!(c.p.dt > 0)) return;
     const LevelPlan& l = c.levels;
-    c.over(
+    c.items(
         l.all.level[0].size(),
         LevelLoadPass<Real>{l.all, l.grid, c.template data<Real>(field::multiplier),
                             c.vectors(field::cell_factor), c.template data<int>(field::cell_count),

@@ -41,7 +41,7 @@ struct SumLoads {
   }
   template <class C>
   static void launch(C& c) {
-    c.over(
+    c.items(
         int(load_walls(c.scene)),
         LoadPass{load_sums(c), c.loads(), double(c.p.inv_dt), double(c.p.update_dt),
                  moment_unit(c.p.boundary), c.moving().velocity(), int(c.scene.obstacles.size())});

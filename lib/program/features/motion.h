@@ -14,7 +14,7 @@ struct MoveSolids {
   static PassInfo info() { return {"motion", "predict", {}, {hidden({&field::motion})}}; }
   template <class C>
   static void launch(C& c) {
-    c.over(1, c.moving().pass(c.placed()));
+    c.items(1, c.moving().pass(c.placed()));
   }
 };
 
@@ -30,7 +30,7 @@ struct Predict {
   template <class C>
   static void launch(C& c) {
     with_boundary(c, [&](const auto& boundary) {
-      c.each(MovePass<typename C::Real, std::decay_t<decltype(boundary)>>{
+      c.items(MovePass<typename C::Real, std::decay_t<decltype(boundary)>>{
           c.p, boundary, c.position(), c.velocity(), c.counts()});
     });
   }
@@ -81,7 +81,7 @@ void sort_predicted(C& c, const char* stage, const First& first) {
       const Solids<Real> solids = solids_of(c);
       sort_rows(c, stage, first, gather,
                 Listed<NearPredictPass<Real, decltype(d)::value>>{
-                    solids.near.room ? solids.near.count : nullptr,
+                    solids.near.way_left_squared ? solids.near.count : nullptr,
                     {c.p, solids, c.position(), c.velocity(), c.template data<int>(field::bin),
                      c.counts()}});
     });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/boundary/far_box.h"
+#include "kernels/boundary/near_split.h"
 #include "lib/program/features/loads.h"
 
 namespace pbf::inline program_module::field {
@@ -24,7 +25,7 @@ Solids<typename C::Real> solids_of(C& c) {
   if (!(c.p.dt > 0)) solids.frame = nullptr;
   // A far row is farther from what it can meet than the range of the walls' density.
   const auto way = c.p.dt * c.p.boundary.inv_range;
-  solids.near.per_speed = way * way * solids.near.far_room;
+  solids.near.per_speed = way * way * solids.near.far_way_squared;
   return solids;
 }
 
@@ -48,12 +49,13 @@ void with_far_boundary(C& c, F&& f) {
 template <bool moves, class C, class Make>
 void each_then_near(C& c, Make&& make) {
   using Real = typename C::Real;
-  if (!c.solids().around) return c.each(make(c.p.boundary));
+  if (!c.solids().around) return c.pairs(make(c.p.boundary));
   const Solids<Real> solids = solids_of(c);
-  if (!solids.obstacles && !(moves && solids.loaded)) return c.each(make(c.p.boundary));
-  c.each(make(FarBox<Real>(solids)));
-  const auto pass = make(solids);
-  c.exec.for_listed(solids.near.count, c.rows(), NearPass<std::decay_t<decltype(pass)>>{pass});
+  if (!solids.obstacles && !(moves && solids.loaded)) return c.pairs(make(c.p.boundary));
+  const auto far = make(FarBox<Real>(solids));
+  const auto near = make(solids);
+  c.pairs(FarHalf<std::decay_t<decltype(far)>>{far});
+  c.listed(solids.near.count, NearHalf<std::decay_t<decltype(near)>>{near});
 }
 
 struct FindNear {
@@ -67,14 +69,14 @@ struct FindNear {
   static void launch(C& c) {
     using Real = typename C::Real;
     const Solids<Real> solids = solids_of(c);
-    c.exec.for_listed(solids.near.count, c.rows(), ForgetNearPass<Real>{solids.near});
-    c.over(1, ClearNearPass<Real>{solids.near});
+    c.listed(solids.near.count, ForgetNearPass<Real>{solids.near});
+    c.items(1, ClearNearPass<Real>{solids.near});
     if (const auto& cells = c.near_half_cells(); cells.size() > 0)
-      c.over(int(cells.size()), FindNearPass<Real>{solids, c.position(), cells.data(),
-                                                   c.template data<int>(field::bin_start),
-                                                   bins_per_cell(c.p.dimensions)});
+      c.items(int(cells.size()), FindNearPass<Real>{solids, c.position(), cells.data(),
+                                                    c.template data<int>(field::bin_start),
+                                                    bins_per_cell(c.p.dimensions)});
     else
-      c.each(FindNearPass<Real>{solids, c.position()});
+      c.items(FindNearPass<Real>{solids, c.position()});
   }
 };
 

@@ -33,7 +33,7 @@ struct Xsph {
   }
   template <class C>
   static void launch(C& c) {
-    with_xsph(c, nullptr, [&](const auto& pass) { c.each(pass); });
+    with_xsph(c, nullptr, [&](const auto& pass) { c.pairs(pass); });
   }
 };
 

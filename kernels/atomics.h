@@ -1,0 +1,55 @@
+// Sums, counts and maxima that many threads raise at once: of whole numbers, so in any order.
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/hd.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+PBF_HD void add_whole(std::int64_t* sum, std::int64_t term) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(reinterpret_cast<unsigned long long*>(sum), static_cast<unsigned long long>(term));
+#elif !defined(__CUDACC__)
+  __atomic_fetch_add(sum, term, __ATOMIC_RELAXED);
+#endif
+}
+
+PBF_HD void count_one(unsigned long long* count) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(count, 1ull);
+#elif !defined(__CUDACC__)
+  __atomic_fetch_add(count, 1ull, __ATOMIC_RELAXED);
+#endif
+}
+
+/// *at = max(*at, value) for values that are not negative: their bits are in the order of integers.
+PBF_HD void raise_to(float* at, float value) {
+#if defined(__CUDA_ARCH__)
+  atomicMax(reinterpret_cast<unsigned*>(at), __float_as_uint(value));
+#elif !defined(__CUDACC__)
+  float now;
+  __atomic_load(at, &now, __ATOMIC_RELAXED);
+  while (now < value &&
+         !__atomic_compare_exchange(at, &now, &value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+#endif
+}
+
+/// A place behind the *count that are taken, which is taken then.
+PBF_HD int take_place(int* count) {
+#if defined(__CUDA_ARCH__)
+  // One atomic for all threads that are here together.
+  const unsigned together = __activemask();
+  const int lane = int(threadIdx.x % 32), first = __ffs(int(together)) - 1;
+  int begin = 0;
+  if (lane == first) begin = atomicAdd(count, __popc(together));
+  return __shfl_sync(together, begin, first) + __popc(together & ((1u << lane) - 1));
+#elif !defined(__CUDACC__)
+  return __atomic_fetch_add(count, 1, __ATOMIC_RELAXED);
+#else
+  return 0;
+#endif
+}
+
+}  // namespace pbf::inline PBF_VARIANT
