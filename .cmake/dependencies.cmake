@@ -4,7 +4,6 @@ find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(HDF5 REQUIRED COMPONENTS C)
 find_package(yaml-cpp REQUIRED)
 find_package(CLI11 REQUIRED)
-find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(nlohmann_json REQUIRED)
 
 add_library(pbf_dependencies INTERFACE)
@@ -14,7 +13,7 @@ else()
   set(PBF_YAML yaml-cpp)
 endif()
 target_link_libraries(pbf_dependencies INTERFACE
-  Threads::Threads CLI11::CLI11 Eigen3::Eigen nlohmann_json::nlohmann_json ${CMAKE_DL_LIBS})
+  Threads::Threads CLI11::CLI11 nlohmann_json::nlohmann_json ${CMAKE_DL_LIBS})
 
 include(${CMAKE_CURRENT_LIST_DIR}/archives.cmake)
 if(PBF_STATIC)

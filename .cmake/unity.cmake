@@ -5,7 +5,7 @@ option(PBF_UNITY "Compile the sources of a folder together" ON)
 function(pbf_unity target)  # pbf_unity(target): after the target has all its sources
   get_target_property(sources ${target} SOURCES)
   # Those that take long to optimise would hold up their folder.
-  list(FILTER sources EXCLUDE REGEX "/lib/exec/cpu/|/lib/campaign/exact_projection\\.cpp$")
+  list(FILTER sources EXCLUDE REGEX "/lib/exec/cpu/|/tests/oracle/(active_set|exact_projection)\\.cpp$")
   foreach(source IN LISTS sources)
     cmake_path(ABSOLUTE_PATH source)
     cmake_path(GET source PARENT_PATH folder)

@@ -19,7 +19,7 @@ struct CompareOptions {
   std::vector<std::string> between;                 ///< two sides, BACKEND:PRECISION[@THREADS]
   std::vector<std::string> overrides, overrides_b;  ///< of both sides, of B alone
   CompareSettings settings;
-  std::string report;  ///< path, .html or .json; empty: none
+  std::string report;  ///< path of a .json; empty: none
   std::string junit;   ///< path; empty: none
   std::string base_folder;
   bool quiet = false;
@@ -38,14 +38,16 @@ const char* const kCompareHelp =
     "at once, after chaos has grown, may still be one of rounding: --between tells.\n"
     "Exit code 0 when nothing differs by more, 6 when something does.\n"
     "Examples:\n"
-    "  pbf compare configs/minimal.yaml --between cpu:double,cuda:float --report compare.html\n"
+    "  pbf compare configs/minimal.yaml --between cpu:double,cuda:float --report compare.json\n"
     "  pbf compare configs/minimal.yaml --between cpu:float@1,cpu:float@2\n"
     "  pbf compare out/a out/b";
 
 void check_report(const std::string& path) {
-  if (path.empty() || path.ends_with(".html") || path.ends_with(".json")) return;
+  if (path.empty() || path.ends_with(".json")) return;
   throw Error(ExitCode::bad_input,
-              "--report " + path + ": the name must end in .html (with diagrams) or .json");
+              "--report " + path +
+                  ": the name must end in .json; the tables and diagrams of such a "
+                  "report are drawn by: python3 -m pbf_tools plot-compare REPORT.json");
 }
 
 /// After the inputs are known.
@@ -54,11 +56,6 @@ void check_reports(const CompareOptions& o) {
   check_output("--junit", o.junit);
   if (!o.report.empty() && !o.junit.empty() && same_output(o.report, o.junit))
     throw Error(ExitCode::bad_input, "--report and --junit name one file: " + o.report);
-}
-
-void write_report(const std::string& path, const CompareResult& result) {
-  if (path.empty()) return;
-  write_text_file(path, path.ends_with(".json") ? compare_json(result) : compare_html(result));
 }
 
 CompareResult between(const CompareOptions& o, Log& log) {
@@ -101,7 +98,7 @@ int command_compare(const CompareOptions& o) {
   const Stopwatch watch;
   const CompareResult result = o.between.empty() ? files(o) : between(o, log);
   log.result(compare_text(result));
-  write_report(o.report, result);
+  if (!o.report.empty()) write_text_file(o.report, compare_json(result));
   if (!o.junit.empty()) write_text_file(o.junit, compare_junit(result, watch.seconds()));
   return static_cast<int>(result.same() ? ExitCode::done : ExitCode::difference);
 }
@@ -133,7 +130,7 @@ void add_compare(CLI::App& app, int& code) {
   c->add_option("--seed", o.settings.seed, "Of the random roundings")
       ->transform(whole_number(0, std::numeric_limits<std::int64_t>::max()));
   c->add_option("--report", o.report,
-                "Write the result to this file: .html, with diagrams, or .json");
+                "Write the result to this .json file, which pbf_tools plot-compare draws");
   c->add_option("--junit", o.junit, "Write the verdicts to this file, as JUnit XML for CI systems");
   c->add_flag("--quiet", o.quiet, "No progress on stderr");
 }

@@ -41,7 +41,6 @@ const char* const kStudyHelp =
     "  clock: wall                        # or cpu, of all threads: on busy machines\n"
     "  energy_limit: 0.01                 # larger energy_rise: no verdict [default];\n"
     "                                     # a variant may have its own\n"
-    "  projection: [0.2, 0.4]             # s, compare with the exact projection\n"
     "  reference: {solver.iterations: 64} # keys; reference_distance to this run\n"
     "  front: {axis: x, length: 0.1, factor: 2, data: [front.csv]}\n"
     "                                     # T = t sqrt(factor g/length), Z = x/length\n"
@@ -53,7 +52,6 @@ const char* const kStudyHelp =
     "\n";
 
 const char* const kStudyMeasures =
-    "  projection_mean, _rms, _max  distance of one update from the exact projection [spacings]\n"
     "  reference_distance     RMS distance of the centres of mass / (volume)^(1/3) [1]\n"
     "  front_rms_<data>       RMS of Z - Z published [1]; all fronts in OUT/front.csv\n\n"
     "Example:\n"

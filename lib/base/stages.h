@@ -1,31 +1,45 @@
 // The stages of a run: one name everywhere, in timers, run.vtkhdf, `pbf plan`, `pbf bench` and
-// plots.
+// plots. This is the only list: tools/pbf_tools/data/stages.json is written by
+// `pbf config --stages`, and tests hold that file and the table of app/README.md against it.
 #pragma once
 
 namespace pbf::inline base_module {
 
-/// What the summary of a run adds up.
+/// What the summary of a run adds up: an index of kStageGroups.
 enum class StageGroup { init, grid, density, lambda, delta, move, output };
 
-/// By StageGroup.
-inline constexpr const char* kStageGroupNames[] = {
-    "initialization", "gridding/neighbours",       "densities",      "lambdas",
-    "deltas",         "position/velocity updates", "post-processing"};
+struct StageGroupInfo {
+  const char *name, *color;  ///< color: of plots, #rrggbb
+};
+
+inline constexpr StageGroupInfo kStageGroups[] = {
+    {"initialization", "#000000"}, {"gridding/neighbours", "#D55E00"},
+    {"densities", "#009E73"},      {"lambdas", "#0072B2"},
+    {"deltas", "#56B4E9"},         {"position/velocity updates", "#CC79A7"},
+    {"post-processing", "#8A8A8A"}};
 
 struct Stage {
   const char* name;
   StageGroup group;
   bool of_update;  ///< of an update, not around it: a column of `pbf bench`
+  const char* color;
 };
 
-inline constexpr Stage kStages[] = {
-    {"init", StageGroup::init, false},      {"predict", StageGroup::move, true},
-    {"grid", StageGroup::grid, true},       {"neighbors", StageGroup::grid, true},
-    {"density", StageGroup::density, true}, {"lambda", StageGroup::lambda, true},
-    {"levels", StageGroup::lambda, true},   {"delta", StageGroup::delta, true},
-    {"residual", StageGroup::lambda, true}, {"xsph", StageGroup::move, true},
-    {"vorticity", StageGroup::move, true},  {"measure", StageGroup::output, false},
-    {"guard", StageGroup::output, false},   {"download", StageGroup::output, false},
-    {"write", StageGroup::output, false},   {"render", StageGroup::output, false}};
+inline constexpr Stage kStages[] = {{"init", StageGroup::init, false, "#000000"},
+                                    {"predict", StageGroup::move, true, "#F0E442"},
+                                    {"grid", StageGroup::grid, true, "#E69F00"},
+                                    {"neighbors", StageGroup::grid, true, "#D55E00"},
+                                    {"density", StageGroup::density, true, "#009E73"},
+                                    {"lambda", StageGroup::lambda, true, "#0072B2"},
+                                    {"levels", StageGroup::lambda, true, "#88CCAA"},
+                                    {"delta", StageGroup::delta, true, "#56B4E9"},
+                                    {"residual", StageGroup::lambda, true, "#1B3A5C"},
+                                    {"xsph", StageGroup::move, true, "#CC79A7"},
+                                    {"vorticity", StageGroup::move, true, "#7A3E9D"},
+                                    {"measure", StageGroup::output, false, "#B0B0B0"},
+                                    {"guard", StageGroup::output, false, "#C4B08B"},
+                                    {"download", StageGroup::output, false, "#8A8A8A"},
+                                    {"write", StageGroup::output, false, "#666666"},
+                                    {"render", StageGroup::output, false, "#444444"}};
 
 }  // namespace pbf::inline base_module

@@ -10,7 +10,6 @@ BuildInfo build_info() {
   info.libraries = {{"HDF5", PBF_VERSION_HDF5},
                     {"yaml-cpp", PBF_VERSION_YAML_CPP},
                     {"CLI11", PBF_VERSION_CLI11},
-                    {"Eigen", PBF_VERSION_EIGEN},
                     {"nlohmann", PBF_VERSION_JSON}};
   if (*PBF_VERSION_PNG) info.libraries.emplace_back("libpng", PBF_VERSION_PNG);
   if (*PBF_VERSION_CUDART) info.libraries.emplace_back("cudart", PBF_VERSION_CUDART);

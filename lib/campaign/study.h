@@ -34,7 +34,6 @@ struct Study {
   double energy_limit = 0.01;                ///< of members whose variant has none of its own
   int repeats = 3;                           ///< of the timing, the whole run counts as one
   bool cpu_clock = false;                    ///< seconds are the process's CPU time, not the wall's
-  std::vector<double> projection;            ///< s, when the exact projection is compared
   std::optional<Front> front;
 };
 

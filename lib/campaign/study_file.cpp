@@ -68,6 +68,12 @@ Study StudyReader::read(const std::vector<std::string>& overrides, const std::st
   study_.path = path_;
   study_.name = fs::path(path_).stem().string();
   bool has_scene = false;
+  if (const Node* gone = root_.find("projection")) {
+    bad(*gone, "projection",
+        "studies no longer measure the distance from the exact projection; the page "
+        "lib/solver/DIAGNOSTICS.md has it. Remove the key");
+    problems_.raise();
+  }
   read_map(root_, "",
            {{"name",
              [&](const Node& n) {
@@ -98,7 +104,6 @@ Study StudyReader::read(const std::vector<std::string>& overrides, const std::st
             {"from", [&](const Node& n) { number(n, "from", 0., 1e9, study_.from); }},
             {"energy_limit",
              [&](const Node& n) { energy_limit(n, "energy_limit", study_.energy_limit); }},
-            {"projection", [&](const Node& n) { numbers(n, "projection", 0, study_.projection); }},
             {"reference",
              [&](const Node& n) {
                reference_ = settings(n, "reference");

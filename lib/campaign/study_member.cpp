@@ -1,13 +1,9 @@
 #include "lib/campaign/study_member.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <set>
 
 #include "lib/base/error.h"
 #include "lib/base/text.h"
-#include "lib/campaign/exact_projection.h"
 #include "lib/exec/make_solver.h"
 #include "lib/io/run_layout.h"
 #include "lib/program/motion.h"
@@ -53,26 +49,6 @@ bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, WorkTrack&
   return false;
 }
 
-/// Root mean square (and mean, and maximum) over several projections.
-struct ProjectionSum {
-  double mean = 0, squares = 0, max = 0;
-  int n = 0, failed = 0;
-  void add(const ProjectionError& e) {
-    if (!e.converged) ++failed;
-    mean += e.mean;
-    squares += e.rms * e.rms;
-    max = std::max(max, e.max);
-    ++n;
-  }
-  void give(MemberResult& out) const {
-    const bool known = n > 0 && failed == 0;
-    out.projection_mean = known ? mean / n : NAN;
-    out.projection_rms = known ? std::sqrt(squares / n) : NAN;
-    out.projection_max = known ? max : NAN;
-    if (failed) out.message = "the exact projection did not converge";
-  }
-};
-
 }  // namespace
 
 const std::vector<double>& MemberResult::series(const std::string& name) const {
@@ -101,9 +77,6 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
   Scene scene = member.scene;
   read_motions(scene, study.scene_dir);
   const Schedule schedule = make_schedule(scene);
-  if (!study.projection.empty() && !scene.obstacles.empty())
-    throw Error(ExitCode::bad_input,
-                "projection: the exact projection does not know obstacles; remove one of them");
   MemberResult out;
   out.updates = schedule.updates;
   out.particles = count_particles(scene, study.scene_dir);
@@ -115,13 +88,7 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
   };
   // A short repeat is a tenth of the run, but no fewer than 20 updates.
   const std::int64_t early = std::min(out.updates, std::max<std::int64_t>(20, out.updates / 10));
-  std::set<std::int64_t> moments;
-  for (const double t : study.projection) moments.insert(std::llround(t / scene.time.step));
-
-  double early_seconds = 0, timed = 0, booked = 0;
-  std::int64_t early_timed = 0, timed_updates = 0, last = 0;
-  ProjectionSum projection;
-  std::optional<std::vector<double>> compared;  // of an update that is under way, its start
+  double early_seconds = 0;
   bool stopped = false;
   {
     const std::unique_ptr<Solver> solver = start();
@@ -131,47 +98,31 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
     EnergyTrack energy;
     WorkTrack work;
     const auto next = [&](std::int64_t u) {
-      if (compared) return u + 1;
-      const auto moment = moments.upper_bound(u);
-      return std::min({schedule.next_measure(u), u < early ? early : kNever,
-                       moment == moments.end() ? kNever : *moment});
+      return std::min(schedule.next_measure(u), u < early ? early : kNever);
     };
     const auto at = [&](Session& session) {
-      const std::int64_t u = session.update(), updates = u - last;
-      const double seconds = seconds_of(session, study) - booked;
-      if (compared) {
-        projection.add(projection_error(*solver, scene, plan, *compared));
-        compared.reset();
-      } else {
-        timed += seconds;
-        timed_updates += updates;
-        if (u <= early) early_seconds += seconds, early_timed += updates;
-      }
-      booked += seconds;
-      last = u;
+      const std::int64_t u = session.update();
+      const double seconds = seconds_of(session, study);
+      if (u > 0) out.seconds = seconds * double(out.updates) / double(u);
+      if (u <= early) early_seconds = seconds;
       if (schedule.measures(u)) {
         const bool good = measure(*solver, scene, energy, work, out);
         if (u > 0) progress(double(u) / double(out.updates));
         if (!good) return Now::stop;
       }
       stopped = u < out.updates && stop();
-      if (u < out.updates && !stopped && moments.contains(u))
-        compared = projection_start(*solver, scene, plan);
       return stopped ? Now::stop : Now::go_on;
     };
     Callback course(next, at);
     Session(*solver, {&course}).run(out.updates);
   }
   if (stopped) return std::nullopt;
-  projection.give(out);
-  // An update at which the projection was looked at is not timed; it took as long as the others.
-  if (timed_updates > 0) out.seconds = timed * double(out.updates) / double(timed_updates);
   if (out.status != "finished") return out;
-  for (int r = 1; r < study.repeats && early_timed > 0; ++r) {
+  for (int r = 1; r < study.repeats && early > 0; ++r) {
     if (stop()) return std::nullopt;
     const std::unique_ptr<Solver> solver = start();
     Session again(*solver);
-    again.run(early_timed);
+    again.run(early);
     out.ratios.push_back(seconds_of(again, study) / early_seconds);
   }
   return out;

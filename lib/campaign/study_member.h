@@ -19,8 +19,6 @@ struct MemberResult {
   std::int64_t threads = 0, particles = 0, updates = 0;
   double seconds = 0;          ///< s, of all updates, without measures and the start
   std::vector<double> ratios;  ///< of short repeats: their time over that of the same first updates
-  /// Distance from the exact projection, over the moments of Study::projection; NaN without.
-  double projection_mean = 0, projection_rms = 0, projection_max = 0;
   /// The log of measures by the columns' names of run.vtkhdf.
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;
@@ -30,8 +28,8 @@ struct MemberResult {
   double seconds_spread() const;  ///< s, the longest less the shortest repeat
 };
 
-/// What the result depends on: program, machine, resolved scene, particle files, repeats, moments
-/// of projection. Two members with the same key are the same run.
+/// What the result depends on: program, machine, resolved scene, particle files and repeats. Two
+/// members with the same key are the same run.
 std::string member_key(const Study& study, const StudyMember& member);
 
 /// Runs a member. `stop` is asked between updates; when it says so the answer is empty. `progress`

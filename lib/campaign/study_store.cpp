@@ -43,9 +43,6 @@ void for_each_member(Result& r, F&& f) {
   f("particles", r.particles);
   f("updates", r.updates);
   f("seconds", r.seconds);
-  f("projection_mean", r.projection_mean);
-  f("projection_rms", r.projection_rms);
-  f("projection_max", r.projection_max);
 }
 
 [[noreturn]] void bad(const std::string& what) { throw Error(ExitCode::bad_input, what); }
@@ -102,8 +99,7 @@ std::string member_key(const Study& study, const StudyMember& m) {
                  resolved_yaml(scene),
                  files_text(scene_files(m.scene, study.scene_dir)),
                  study.repeats,
-                 study.cpu_clock,
-                 study.projection};
+                 study.cpu_clock};
   return sha256(json_text(key)).substr(0, 16);
 }
 

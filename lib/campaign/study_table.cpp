@@ -100,8 +100,6 @@ std::vector<std::string> study_error_measures(const Study& study) {
   std::vector<std::string> names;
   for (const Diagnostic& m : study_diagnostics()) names.push_back(m.name);
   names.push_back("height_error");
-  if (!study.projection.empty())
-    names.insert(names.end(), {"projection_mean", "projection_rms", "projection_max"});
   if (study.reference) names.push_back("reference_distance");
   if (study.front)
     for (const FrontData& d : study.front->data) names.push_back("front_rms_" + d.name);
@@ -124,9 +122,6 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
   for (const Diagnostic& m : study_diagnostics())
     row.measures.push_back(over_window(result, m, study.from));
   row.measures.push_back(std::fabs(1 - row.measures[index_of(study, "height_kept")]));
-  if (!study.projection.empty())
-    row.measures.insert(row.measures.end(),
-                        {result.projection_mean, result.projection_rms, result.projection_max});
   const Scene& s = member.scene;
   if (study.reference) {
     // The edge of a cube, or of a square, that holds the fluid.

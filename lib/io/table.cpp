@@ -87,22 +87,16 @@ Json Table::json() const {
   return out;
 }
 
-std::vector<std::vector<std::string>> Table::words() const {
-  std::vector<std::vector<std::string>> out;
-  for (const auto& row : rows_) {
-    auto& words = out.emplace_back();
-    for (std::size_t c = 0; c < row.size(); ++c) words.push_back(word(row[c], columns_[c].number));
-  }
-  return out;
-}
-
 std::string Table::text(const std::string& indent) const {
-  std::vector<std::vector<std::string>> lines = words();
-  auto& head = *lines.emplace(lines.begin());
+  std::vector<std::vector<std::string>> lines(1);
   std::vector<std::size_t> widths;
   for (const Form& column : columns_) {
-    head.push_back(column.name);
+    lines[0].push_back(column.name);
     widths.push_back(static_cast<std::size_t>(std::abs(column.width)));
+  }
+  for (const auto& row : rows_) {
+    auto& line = lines.emplace_back();
+    for (std::size_t c = 0; c < row.size(); ++c) line.push_back(word(row[c], columns_[c].number));
   }
   for (const auto& line : lines)
     for (std::size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], line[c].size());

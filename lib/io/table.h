@@ -42,8 +42,6 @@ class Table {
   Json json() const;
   /// Aligned lines for people, the names first, "-" for a missing value.
   std::string text(const std::string& indent = "") const;
-  /// The words of text(), row by row, without the names.
-  std::vector<std::vector<std::string>> words() const;
 
  protected:
   struct Form {

@@ -79,12 +79,12 @@ std::string time_table(const std::vector<StageTime>& stages, double wall, bool f
            (of.empty() ? "\n" : "  " + of + "\n");
   };
   double rest = wall;
-  for (std::size_t g = 0; g < std::size(kStageGroupNames); ++g) {
+  for (std::size_t g = 0; g < std::size(kStageGroups); ++g) {
     const auto group = static_cast<StageGroup>(g);
     double sum = 0;
     std::string of = stages_of(group, stages, sum);
     if (fused && group == StageGroup::density) of = "in lambda, in one loop";
-    row(kStageGroupNames[g], sum, of);
+    row(kStageGroups[g].name, sum, of);
     rest -= sum;
   }
   row("other", rest, "");

@@ -99,7 +99,7 @@ std::string nearest_choice(const std::string& word, const std::vector<std::strin
   for (const std::string rest : {"wall", "face"})  // the left wall
     if (written.size() > rest.size() && written.ends_with(rest))
       written.resize(written.size() - rest.size());
-  for (const WordSynonym& s : word_synonyms())
+  for (const WordSynonym& s : synonyms().words)
     if (written == s.written && std::ranges::count(choices, s.meant)) return s.meant;
   return nearest_word(word, choices);
 }
@@ -120,17 +120,17 @@ Suggestion suggest_key(const KeyTable& table, const std::string& path) {
     leaves.push_back(leaf_of(p));
   }
   Suggestion of_synonym;
-  for (const KeySynonym& s : key_synonyms())
+  for (const KeySynonym& s : synonyms().keys)
     if (!s.in.empty() && s.in == in && std::ranges::count(s.written, bare(wrong)))
-      return {{s.keys.begin(), s.keys.end()}, s.note};
-  for (const KeySynonym& s : key_synonyms()) {
+      return {s.keys, s.note};
+  for (const KeySynonym& s : synonyms().keys) {
     if (!s.in.empty() || !std::ranges::count(s.written, bare(wrong))) continue;
     std::vector<std::string> known;
-    for (const char* key : s.keys)
+    for (const std::string& key : s.keys)
       if (std::ranges::count(paths, key)) known.push_back(key);
     if (known.empty() && !s.keys.empty()) continue;  // of another table
     known = preferred(known, in);
-    if (!s.anywhere && !known.empty() && block_of(known[0]) != in) continue;
+    if (s.own_block && !known.empty() && block_of(known[0]) != in) continue;
     if (known.empty() && !s.keys.empty()) continue;
     of_synonym = {known, s.note};
     if (known.empty() || block_of(known[0]) == in) return of_synonym;

@@ -1,4 +1,5 @@
-// What users of other programs write for keys and words of ours.
+// What users of other programs write for keys and words of ours: the contents of synonyms.yaml,
+// which says what its entries mean.
 #pragma once
 
 #include <string>
@@ -6,21 +7,25 @@
 
 namespace pbf::inline scene_module {
 
-/// Words in small letters without "_", "-" and spaces.
 struct KeySynonym {
-  std::vector<std::string> written;
-  std::vector<const char*> keys;  ///< paths of the table; those in the block at hand come first
-  std::string note{};             ///< behind the question, or alone without keys
-  bool anywhere = true;           ///< false: so common a word means these in their blocks only
-  std::string in{};               ///< counts in this block alone, before all others: "obstacles[]"
+  std::vector<std::string> written, keys;
+  std::string note;
+  bool own_block = false;
+  std::string in;
 };
 
 struct WordSynonym {
   std::string written, meant;
 };
 
-const std::vector<KeySynonym>& key_synonyms();
-/// Of one word perhaps several: the one counts that is allowed.
-const std::vector<WordSynonym>& word_synonyms();
+struct Synonyms {
+  std::vector<KeySynonym> keys;
+  std::vector<WordSynonym> words;
+};
+
+/// Reads the text when it is asked for the first time.
+const Synonyms& synonyms();
+
+extern const char* const kSynonymText;  ///< lib/scene/synonyms.yaml, made by .cmake/synonyms.cmake
 
 }  // namespace pbf::inline scene_module

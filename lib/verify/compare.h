@@ -59,7 +59,7 @@ struct Curve {
   std::vector<double> x, y;
 };
 
-/// A diagram; y is drawn logarithmically, values <= 0 left out.
+/// A diagram of the JSON report; its y axis is logarithmic.
 struct Diagram {
   std::string title, x_label, y_label;
   std::vector<Curve> curves;
@@ -91,7 +91,5 @@ std::string compare_text(const CompareResult& result);
 std::string compare_json(const CompareResult& result);
 /// A case for every part and every line of it. `seconds` that it all took.
 std::string compare_junit(const CompareResult& result, double seconds);
-/// One page that needs nothing else: tables and diagrams as SVG.
-std::string compare_html(const CompareResult& result);
 
 }  // namespace pbf::inline verify_module

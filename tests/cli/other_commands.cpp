@@ -39,6 +39,14 @@ TEST_CASE("config --schema prints a JSON Schema with the keys of a scene") {
   CHECK(has(o.out, "\"smoothing_ratio\""));
 }
 
+TEST_CASE("config --stages prints the list of stages that the plots read") {
+  const Scratch folder;
+  const Outcome o = pbf::test::pbf({"config", "--stages"}, folder.path());
+  CHECK(o.code == 0);
+  CHECK(o.out == read_text(fs::path(PBF_SOURCE_DIR) / "tools/pbf_tools/data/stages.json"));
+  CHECK(has(o.out, "\"group\": \"gridding/neighbours\""));
+}
+
 TEST_CASE("info names version, libraries and devices") {
   const Scratch folder;
   const Outcome o = pbf::test::pbf({"info"}, folder.path());

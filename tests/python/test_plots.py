@@ -76,6 +76,20 @@ def test_stages_sum_to_the_whole_update_and_groups_lose_nothing(tools, tmp_path)
     assert code == 0 and drawn(tmp_path / "a.png")
 
 
+def test_stages_of_a_run_that_are_not_in_the_list_are_drawn_as_other(tools, minimal, tmp_path,
+                                                                     monkeypatch):
+    figures, save = [], style.save
+    monkeypatch.setattr(style, "save", lambda fig, args: (figures.append(fig), save(fig, args)))
+    assert "not know" not in tools("plot-stages", minimal, "-o", tmp_path / "a.png")[2]
+    for name in ("grid", "neighbors"):
+        monkeypatch.delitem(style.STAGES, name)
+    code, _, err = tools("plot-stages", minimal, "-o", tmp_path / "b.png")
+    assert code == 0 and "does not know the stages grid, neighbors; they are drawn as other" in err
+    before, after = ([bar.get_height() for bar in fig.axes[0].patches] for fig in figures)
+    assert sum(before) == pytest.approx(100) and sum(after) == pytest.approx(100)
+    assert len(after) == len(before) - 1  # two less, and other
+
+
 def test_plots_of_a_run_file_are_drawn(tools, minimal, tmp_path):
     for command in ("plot-energy", "plot-stages"):
         assert tools(command, minimal, "-o", tmp_path / f"{command}.png")[0] == 0

@@ -74,7 +74,8 @@ def test_a_wheel_holds_program_scenes_package_and_licences(wheel):
         metadata = packed.read(next(n for n in names if n.endswith("METADATA"))).decode()
         tags = packed.read(next(n for n in names if n.endswith("/WHEEL"))).decode()
     for end in (".data/scripts/pbf", "share/pbf/configs/stability.yaml", "pbf_tools/__init__.py",
-                "pbf_tools/data/lobovsky_2014_front_h600.csv", "licenses/pbf.txt",
+                "pbf_tools/data/lobovsky_2014_front_h600.csv",
+                "pbf_tools/data/stages.json", "licenses/pbf.txt",
                 "licenses/libhdf5-dev.txt"):
         assert any(n.endswith(end) for n in names), end
     assert not any(n.endswith(".pyc") for n in names)

@@ -24,6 +24,7 @@ COMMANDS = {
     "plot-speedup": "speed-up of one backend over another against the number of particles",
     "plot-time": "time per particle and update against the number of particles",
     "video": "film from the pictures of a run",
+    "plot-compare": "the report of pbf compare: diagrams and tables",
     "compare": "differences of two runs",
     "to-csv": "frames, the log or a track as CSV; frames as extended XYZ",
     "surface": "surface of the fluid as triangles",

@@ -11,7 +11,7 @@ import argparse
 import numpy as np
 
 from . import bench, style
-from .errors import BadInput
+from .errors import BadInput, note
 from .logs import RUN_HELP, labels, read_run
 from .run_path import is_run
 from .table import Table
@@ -131,6 +131,11 @@ def _runs(args: argparse.Namespace) -> int:
                   if name.startswith("stage/")}
         if not stages or not sum(stages.values()):
             raise BadInput(f"{path}: the log has no times of stages yet")
+        unknown = {name for name in stages if name not in style.STAGES}  # of another version
+        if unknown:
+            note(f"{path}: this pbf_tools does not know the stages {', '.join(sorted(unknown))}; they "
+                 "are drawn as other")
+            stages["other"] = sum(stages.pop(name) for name in unknown)
         parts.append((stages, sum(stages.values())))
     names = labels(args.csv, [run_file.name for run_file in runs])
     below = [f"{name}\n{run_file.info['particles']} particles"

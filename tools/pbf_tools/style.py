@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import textwrap
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import matplotlib
@@ -22,22 +24,15 @@ COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#00
 MARKERS = "osD^vPX*"
 GREY = "#8A8A8A"
 
-# lib/base/stages.h, the program's list (a test holds this one against it): a stage has one colour
-# in every plot; `other` is what no stage booked.
-STAGES = {"init": "#000000", "predict": "#F0E442", "grid": "#E69F00", "neighbors": "#D55E00",
-          "density": "#009E73", "lambda": "#0072B2", "levels": "#88CCAA", "delta": "#56B4E9",
-          "residual": "#1B3A5C", "xsph": "#CC79A7", "vorticity": "#7A3E9D", "measure": "#B0B0B0",
-          "guard": "#C4B08B", "download": "#8A8A8A", "write": "#666666", "render": "#444444",
-          "other": "#D9D9D9"}
-
-# The seven groups in the summary of `pbf run` (app/README.md).
-GROUPS = {"initialization": ("init",), "gridding/neighbours": ("grid", "neighbors"),
-          "densities": ("density",), "lambdas": ("lambda", "levels", "residual"),
-          "deltas": ("delta",),
-          "position/velocity updates": ("predict", "xsph", "vorticity"),
-          "post-processing": ("measure", "guard", "download", "write", "render")}
-GROUP_COLORS = dict(zip(GROUPS, ("#000000", "#D55E00", "#009E73", "#0072B2", "#56B4E9", "#CC79A7",
-                                 "#8A8A8A")))
+# The program's list (lib/base/stages.h) as `pbf config --stages` prints it: a stage has one colour in
+# every plot; `other` is what no stage of the list booked. The groups are those of the summary of
+# `pbf run`.
+with open(Path(__file__).parent / "data/stages.json", encoding="utf-8") as _file:
+    _LIST = json.load(_file)
+STAGES = {stage["name"]: stage["color"] for stage in _LIST["stages"]} | {"other": "#D9D9D9"}
+GROUP_COLORS = {group["name"]: group["color"] for group in _LIST["groups"]}
+GROUPS = {name: tuple(s["name"] for s in _LIST["stages"] if s["group"] == name)
+          for name in GROUP_COLORS}
 
 matplotlib.rcParams.update({
     "font.size": 10, "axes.titlesize": 10, "axes.labelsize": 10, "legend.fontsize": 8.5,

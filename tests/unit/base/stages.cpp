@@ -1,5 +1,4 @@
-// The program's list of stages is that of the page and of the plots, and nothing is booked beside
-// it.
+// The program's list of stages is that of the page, and nothing is booked beside it.
 #include "lib/base/stages.h"
 
 #include <chrono>
@@ -31,7 +30,7 @@ std::string text_of(const std::string& path) {
 std::map<std::string, std::string> listed() {
   std::map<std::string, std::string> out;
   for (const Stage& s : kStages)
-    CHECK(out.emplace(s.name, kStageGroupNames[static_cast<int>(s.group)]).second);
+    CHECK(out.emplace(s.name, kStageGroups[static_cast<int>(s.group)].name).second);
   return out;
 }
 
@@ -66,23 +65,6 @@ TEST_CASE("app/README.md's table of stages has every stage of the program in its
       CHECK(there.emplace(name, group).second);
   }
   CHECK(there == listed());
-}
-
-TEST_CASE("the plots colour and group every stage of the program, and no other") {
-  const std::string style = text_of("tools/pbf_tools/style.py");
-  const auto expected = listed();
-  std::set<std::string> names{"other"};
-  for (const auto& [name, group] : expected) names.insert(name);
-  const auto colored = all(between(style, "\nSTAGES = {", "}"), "\"([a-z]+)\": \"#");
-  CHECK(std::set<std::string>(colored.begin(), colored.end()) == names);
-  CHECK(colored.size() == names.size());
-  const std::string groups = between(style, "\nGROUPS = {", "}");
-  std::map<std::string, std::string> there;
-  const std::regex entry("\"([^\"]+)\": \\(([^)]*)\\)");
-  for (auto m = std::sregex_iterator(groups.begin(), groups.end(), entry);
-       m != std::sregex_iterator(); ++m)
-    for (const std::string& name : all((*m)[2], "\"([a-z]+)\"")) there[name] = (*m)[1];
-  CHECK(there == expected);
 }
 
 TEST_CASE("a solver books and a plan names listed stages only, and the list has no dead ones") {

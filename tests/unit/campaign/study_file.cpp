@@ -117,6 +117,9 @@ TEST_CASE("what is wrong with a study is said with file, line and column, all at
       {"targets: [nan]", "targets: \"nan\""},
       {"error: compresion_mean", "did you mean compression_mean?"},
       {"error: projection_rms", "is no measure of this study"},
+      {"projection: [0.2]\nerror: projection_rms",
+       ":2:13: projection: studies no longer measure the distance from the exact projection; the "
+       "page lib/solver/DIAGNOSTICS.md has it. Remove the key"},
       {"from: 1", ":2:7: from: 1 s is not before time.end (0.04 s)"},
       {"front: {axis: w, length: 1}", "expected x, y or z"},
       {"front: {axis: x}", "front.length: is missing"},

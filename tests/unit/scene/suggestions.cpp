@@ -150,16 +150,16 @@ TEST_CASE("suggestions: words") {
 }
 
 TEST_CASE("suggestions: every synonym leads to keys of the scene, and is none of its block's") {
-  for (const KeySynonym& s : key_synonyms()) {
+  for (const KeySynonym& s : synonyms().keys) {
     CHECK((!s.keys.empty() || !s.note.empty()));
-    for (const char* path : s.keys) {
+    for (const std::string& path : s.keys) {
       CAPTURE(path);
       const bool form = scene_table().find_key(path) == nullptr &&
                         gravity_table().find_key(path) != nullptr;  // of a mapping for a value
       const KeyTable& table = form ? gravity_table() : scene_table();
       const Key* key = table.find_key(path);
       const Block* block = scene_table().find_block(path);
-      if (block == nullptr) block = scene_table().find_block(std::string(path) + "[]");
+      if (block == nullptr) block = scene_table().find_block(path + "[]");
       CHECK((key != nullptr || block != nullptr));
       for (const std::string& word : s.written) {
         CAPTURE(word);

@@ -185,7 +185,7 @@ TEST_CASE("a difference that shows only later is traced in the update where it b
   CHECK(r.stage == "density");  // the wall's share of it
 }
 
-TEST_CASE("reports hold every part, and the page needs nothing from elsewhere", "[compare]") {
+TEST_CASE("reports hold every part", "[compare]") {
   CompareResult r;
   r.a = "cpu:double <1>";
   r.b = "cpu:float";
@@ -196,14 +196,11 @@ TEST_CASE("reports hold every part, and the page needs nothing from elsewhere", 
   r.parts.push_back(p);
   r.diagrams.push_back({"title", "update", "h", {{"one", {1, 2, 3}, {1e-7, 0, 1e-3}}}});
   CHECK_FALSE(r.same());
-  const std::string text = compare_text(r), page = compare_html(r), data = compare_json(r);
+  const std::string text = compare_text(r), data = compare_json(r);
   CHECK(text.find("DIFFERENT, first in stage `lambda`") != std::string::npos);
   CHECK(text.find("tolerance: why") != std::string::npos);
-  CHECK(page.find("cpu:double &lt;1&gt;") != std::string::npos);
-  CHECK(page.find("<svg") != std::string::npos);
-  for (const char* foreign : {"http", "src=", "<script", "@import", "nan", "inf,"})
-    CHECK(page.find(foreign) == std::string::npos);
   CHECK(data.find("\"stage\": \"lambda\"") != std::string::npos);
   CHECK(data.find("\"tolerance\": 1.0,") != std::string::npos);
   CHECK(data.find("\"horizon_updates\": null") != std::string::npos);
+  CHECK(data.find("\"diagram\": \"title\"") != std::string::npos);
 }

@@ -1,8 +1,8 @@
-#include "lib/campaign/active_set.h"
+#include "tests/oracle/active_set.h"
 
 #include <Eigen/SparseCholesky>
 
-namespace pbf::inline campaign_module {
+namespace pbf::test {
 
 /// mu_ of the active rows alone, the others 0.
 bool Multipliers::solve_active(const ConstraintSet& c, const Eigen::VectorXd& r) {
@@ -64,4 +64,4 @@ bool Multipliers::solve(const ConstraintSet& c, const Eigen::VectorXd& r) {
   return false;
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::test

@@ -8,7 +8,7 @@
 #include "lib/scene/scene.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::test {
 
 /// Where the particles would go with no constraint but the clamp: x* = x + dt (v + dt g), damping
 /// and clamp as in the update. `position` (m) and `velocity` (m/s) of 3n values, as is the result.
@@ -37,11 +37,11 @@ struct ProjectionError {
   Projection exact;
 };
 
-/// The predicted positions of the next update of a solver of this scene and plan. Error(bad_input)
-/// where an update is several steps.
+/// The predicted positions of the next update of a solver of this scene and plan. An update has to
+/// be one substep, and obstacles are not known.
 std::vector<double> projection_start(Solver& solver, const Scene& scene, const Plan& plan);
 /// The error of that update, after which the solver is now.
 ProjectionError projection_error(Solver& solver, const Scene& scene, const Plan& plan,
                                  const std::vector<double>& start);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::test

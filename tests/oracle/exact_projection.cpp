@@ -1,4 +1,4 @@
-#include "lib/campaign/exact_projection.h"
+#include "tests/oracle/exact_projection.h"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -8,12 +8,11 @@
 
 #include "kernels/boundary/box.h"
 #include "kernels/pass_predict.h"
-#include "lib/base/error.h"
-#include "lib/campaign/active_set.h"
 #include "lib/exec/cpu/cpu_exec.h"
 #include "lib/solver/params.h"
+#include "tests/oracle/active_set.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::test {
 namespace {
 
 using Vector = Eigen::VectorXd;
@@ -267,9 +266,6 @@ Projection project_exactly(const Scene& scene, const Plan& plan, const std::vect
 }
 
 std::vector<double> projection_start(Solver& solver, const Scene& scene, const Plan& plan) {
-  if (scene.solver.substeps != 1)
-    throw Error(ExitCode::bad_input,
-                "projection: one update is compared with one projection; set solver.substeps to 1");
   const Snapshot before = solver.download({"velocity"}, ScalarType::f64).get();
   return predicted_positions(scene, plan, positions(before.fields[0]),
                              positions(*before.find("velocity")));
@@ -296,4 +292,4 @@ ProjectionError projection_error(Solver& solver, const Scene& scene, const Plan&
   return e;
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::test

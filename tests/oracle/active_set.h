@@ -4,7 +4,7 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-namespace pbf::inline campaign_module {
+namespace pbf::test {
 
 /// Linearised at some x: C(x + s) = value + jacobian s. The first `equalities` rows must become 0,
 /// the others at most 0.
@@ -32,4 +32,4 @@ class Multipliers {
   std::vector<char> active_;
 };
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::test
