@@ -1,6 +1,8 @@
 // density and lambda. Macklin & Mueller 2013, eq. 2 (density), 1 (C), 8 (gradient), 11 (lambda).
 #pragma once
 
+#include <type_traits>
+
 #include "kernels/pair_sum.h"
 #include "kernels/relative_motion.h"
 
@@ -88,7 +90,7 @@ struct LambdaPass {
   Lists lists;
   const Vec4<Real>* position;
   Vec4<Real>* position_out;    ///< out: the same position with w = lambda
-  Real* density;               ///< out when with_density, else in
+  std::conditional_t<with_density, Real, const Real>* density;  ///< out, or in
   const Vec4<Real>* velocity;  ///< of the neighbours of marked particles, for a count alone
   StepCounts* counts;
 

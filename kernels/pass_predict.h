@@ -142,8 +142,9 @@ struct BinPass {
   PBF_HD void operator()(int i) const { bin[i] = bin_of<D>(xyz(position[i]), p); }
 };
 
-/// Puts the particles in the order of bins; with `moving`, as predicted. Position's w = 1
-/// (1/density, until an iteration replaces it), or -1 as a mark for the first iteration.
+/// Puts the particles in the order of bins; with `moving`, as predicted: then position's w = 1
+/// (1/density, until an iteration replaces it), or -1 as a mark for the first iteration. Otherwise
+/// w comes along.
 template <class Real, class Boundary, bool moving>
 struct GatherPass {
   Params<Real> p;
@@ -156,12 +157,10 @@ struct GatherPass {
   PBF_HD void operator()(int from, int to) const {
     const Vec4<Real> at = position[from];
     Moving<Real> m{xyz(at), xyz(velocity[from]), false};
-    if constexpr (moving) {
-      if (is_predicted(from))
-        m.mark = at.w;
-      else
-        m = predict(m.x, m.v, p, boundary);
-    }
+    if (!moving || is_predicted(from))
+      m.mark = at.w;
+    else
+      m = predict(m.x, m.v, p, boundary);
     if (m.fast) count_one(&counts->fast);
     position_out[to] = with_w(m.x, m.mark);
     velocity_out[to] = with_w(m.v, Real(0));
