@@ -120,12 +120,16 @@ PBF_HD Vec4<Lanes<Real, W>> transposed(const Vec4<Real>* a, Index i) {
   return r;
 }
 template <class Real, int W>
-PBF_HD Vec4<Lanes<Real, W>> load(const Vec4<Real>* a, Adjacent<W> i) {
-  return transposed<Real, W>(a, i);
+PBF_HD Vec4<Lanes<Real, W>> load(OwnRows<const Vec4<Real>> a, Adjacent<W> i) {
+  return transposed<Real, W>(a.rows(), i);
 }
 template <class Real, int W>
-PBF_HD Vec4<Lanes<Real, W>> load(const Vec4<Real>* a, Scattered<W> i) {
-  return transposed<Real, W>(a, i);
+PBF_HD Vec4<Lanes<Real, W>> load(GatheredRows<Vec4<Real>> a, Adjacent<W> i) {
+  return transposed<Real, W>(a.rows(), i);
+}
+template <class Real, int W>
+PBF_HD Vec4<Lanes<Real, W>> load(GatheredRows<Vec4<Real>> a, Scattered<W> i) {
+  return transposed<Real, W>(a.rows(), i);
 }
 
 /// A number of each of W adjacent rows; the array must reach that far.

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "kernels/cell_index.h"
+#include "kernels/rows.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -29,11 +30,11 @@ struct ChunkedLists {
     const int width = 1 << width_bits;
     const int* e = group(i) + (i & (width - 1));
     const int* end = e + std::ptrdiff_t(rounds(i)) * width;
-    for (; e != end && *e != far; e += width) f(*e);
+    for (; e != end && *e != far; e += width) f(Neighbor{*e});
   }
   PBF_HD int size(int i) const {
     int n = 0;
-    for_each(i, [&](int) { ++n; });
+    for_each(i, [&](Neighbor) { ++n; });
     return n;
   }
 

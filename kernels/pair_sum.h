@@ -3,7 +3,6 @@
 //
 // Such a pass has
 //   D                                  dimensions of the scene
-//   gathers                            Fields of a neighbour's row that it reads
 //   own(i) const                       what particle i brings: position, lambda, ...
 //   other(j) const                     what is gathered from a neighbour
 //   SumOf<V> (value-initialised to 0)  and each(f): f(V&) for every member
@@ -19,30 +18,12 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// What a row has for the passes over its neighbours. A pass that reads a field of another row
-/// finds there what the last pass that wrote it has left.
-enum Fields : unsigned {
-  kPlace = 1,           ///< x, y, z of the position
-  kLambda = 2,          ///< its w after the lambda pass
-  kInverseDensity = 4,  ///< its w after the delta pass
-  kVelocity = 8,
-  kCurl = 16,
-  kId = 32
-};
-struct FieldName {
-  unsigned field;
-  const char* name;
-};
-inline constexpr FieldName kFieldNames[] = {
-    {kPlace, "position"},    {kLambda, "lambda"}, {kInverseDensity, "1/density"},
-    {kVelocity, "velocity"}, {kCurl, "curl"},     {kId, "id"}};
-
 /// One particle on one thread: the sequential form, and the reference for the others.
 template <class Pass>
 PBF_HD void sum_over_neighbors(const Pass& pass, int i) {
   const typename Pass::Own own = pass.own(i);
   typename Pass::Sum sum{};
-  pass.lists.for_each(i, [&](int j) { pass.add(sum, own, pass.other(j)); });
+  pass.lists.for_each(i, [&](Neighbor j) { pass.add(sum, own, pass.other(j)); });
   pass.finish(i, own, sum);
 }
 

@@ -31,16 +31,15 @@ struct DeltaPass {
   Params<Real> p;
   Boundary boundary;
   Lists lists;
-  const Vec4<Real>* position;  ///< w = lambda
-  const Real* density;
-  const int* id;             ///< of each row
-  Vec4<Real>* position_out;  ///< out; w = 1/density
-  Vec4<Real>* velocity;      ///< in/out, h/s
-  StepCounts* moves_on;      ///< not null: on to the next substep's x* and velocity at once
+  GatheredRows<Vec4<Real>> position;  ///< w = lambda
+  OwnRows<const Real> density;
+  GatheredRows<int> id;              ///< of each row
+  OwnRows<Vec4<Real>> position_out;  ///< out; w = 1/density
+  OwnRows<Vec4<Real>> velocity;      ///< in/out, h/s
+  StepCounts* moves_on;              ///< not null: on to the next substep's x* and velocity at once
   [[no_unique_address]] Coarse coarse{};  ///< LevelMove or NoLevelMove
 
   static constexpr int D = dimensions_of(S);
-  static constexpr unsigned gathers = kPlace | kLambda | kId;
   using Own = Vec4<Real>;
   template <class V>
   struct SumOf {
@@ -136,7 +135,7 @@ struct DeltaPass {
   /// a loop of its own, so that the pair loop need not choose.
   PBF_HD Vec3<Real> separate(int i, const Own& own) const {
     Vec3<Real> sum;
-    lists.for_each(i, [&](int j) {
+    lists.for_each(i, [&](Neighbor j) {
       const Vec4<Real> y = load(position, j);
       const Vec3<Real> d = xyz(own) - xyz(y);
       const Real q2 = dot(d, d);

@@ -34,8 +34,8 @@ template <class Real>
 struct FlowPass {
   const FlowGate* gate;
   int gates;
-  const Vec4<Real>* position;
-  const int* id;
+  OwnRows<const Vec4<Real>> position;
+  OwnRows<const int> id;
   int* sides;        ///< in/out, by id
   FlowCount* count;  ///< null: the sides are taken for the first time
   double update_dt;  ///< s

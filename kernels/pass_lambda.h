@@ -1,6 +1,8 @@
 // density and lambda. Macklin & Mueller 2013, eq. 2 (density), 1 (C), 8 (gradient), 11 (lambda).
 #pragma once
 
+#include <type_traits>
+
 #include "kernels/pair_sum.h"
 #include "kernels/relative_motion.h"
 
@@ -12,11 +14,10 @@ struct DensityPass {
   Params<Real> p;
   Boundary boundary;
   Lists lists;
-  const Vec4<Real>* position;
-  Real* density;  ///< out
+  GatheredRows<Vec4<Real>> position;
+  OwnRows<Real> density;  ///< out
 
   static constexpr int D = dimensions_of(S);
-  static constexpr unsigned gathers = kPlace;
   using Own = Vec<Real, D>;
   template <class V>
   struct SumOf {
@@ -74,14 +75,13 @@ struct LambdaPass {
   Params<Real> p;
   Boundary boundary;
   Lists lists;
-  const Vec4<Real>* position;
-  Vec4<Real>* position_out;    ///< out: the same position with w = lambda
-  Real* density;               ///< out when with_density, else in
-  const Vec4<Real>* velocity;  ///< of the neighbours of marked particles, for a count alone
+  GatheredRows<Vec4<Real>> position;
+  OwnRows<Vec4<Real>> position_out;  ///< out: the same position with w = lambda
+  OwnRows<std::conditional_t<with_density, Real, const Real>> density;  ///< out, or in
+  GatheredRows<Vec4<Real>> velocity;  ///< of the neighbours of marked particles, for a count alone
   StepCounts* counts;
 
   static constexpr int D = dimensions_of(S);
-  static constexpr unsigned gathers = kPlace;
   using Own = Vec<Real, D>;
   template <class V>
   struct SumOf {

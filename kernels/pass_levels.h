@@ -116,7 +116,7 @@ struct LevelMovePass {
 template <class Real>
 struct LevelMove {
   static constexpr bool on = true;
-  const int* home;
+  OwnRows<const int> home;
   const Vec4<Real>* move;
 
   PBF_HD Vec3<Real> operator()(int i) const {

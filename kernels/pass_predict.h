@@ -66,8 +66,8 @@ PBF_HD Moving<Real> predict_anywhere(int i, Vec3<Real> x, Vec3<Real> v, const Pa
 
 /// Writes x* of particle i and the velocity that goes with it.
 template <class Real>
-PBF_HD void put(int i, const Moving<Real>& m, Vec4<Real>* position, Vec4<Real>* velocity,
-                StepCounts* counts) {
+PBF_HD void put(int i, const Moving<Real>& m, OwnRows<Vec4<Real>> position,
+                OwnRows<Vec4<Real>> velocity, StepCounts* counts) {
   if (m.fast) count_one(&counts->fast);
   position[i] = with_w(m.x, m.mark);
   velocity[i] = with_w(m.v, Real(0));
@@ -75,8 +75,8 @@ PBF_HD void put(int i, const Moving<Real>& m, Vec4<Real>* position, Vec4<Real>* 
 /// The same for particle i at x with velocity v.
 template <class Real, class Boundary>
 PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
-                    const Boundary& boundary, Vec4<Real>* position, Vec4<Real>* velocity,
-                    StepCounts* counts) {
+                    const Boundary& boundary, OwnRows<Vec4<Real>> position,
+                    OwnRows<Vec4<Real>> velocity, StepCounts* counts) {
   const Moving<Real> m = predict_anywhere(i, x, v, p, boundary);
   if constexpr (Boundary::books) boundary.came_to(i, m.x);
   put(i, m, position, velocity, counts);
@@ -100,7 +100,7 @@ struct PredictPass {
   static constexpr bool leaves_rows = Boundary::far_only;  ///< to NearPredictPass
   Params<Real> p;
   Boundary boundary;
-  const Vec4<Real>*position, *velocity;
+  OwnRows<const Vec4<Real>> position, velocity;
   int* bin;  ///< out
   PBF_HD void operator()(int i) const {
     bin[i] = predicted_bin<D>(i, xyz(position[i]), xyz(velocity[i]), p, boundary);
@@ -112,8 +112,8 @@ template <class Real, int D>
 struct NearPredictPass {
   Params<Real> p;
   Solids<Real> boundary;
-  Vec4<Real>*position, *velocity;  ///< in/out
-  int* bin;                        ///< out
+  OwnRows<Vec4<Real>> position, velocity;  ///< in/out
+  int* bin;                                ///< out
   StepCounts* counts;
   PBF_HD int row(int k) const { return boundary.near.row[k]; }
   PBF_HD void operator()(int k) const {
@@ -130,7 +130,7 @@ template <class Real, class Boundary>
 struct MovePass {
   Params<Real> p;
   Boundary boundary;
-  Vec4<Real>*position, *velocity;  ///< in/out
+  OwnRows<Vec4<Real>> position, velocity;  ///< in/out
   StepCounts* counts;
   PBF_HD void operator()(int i) const {
     const Vec3<Real> x = xyz(position[i]), v = xyz(velocity[i]);
@@ -147,13 +147,14 @@ struct MovePass {
 template <class Real, int D>
 struct BinPass {
   Params<Real> p;
-  const Vec4<Real>* position;
+  OwnRows<const Vec4<Real>> position;
   int* bin;  ///< out
   PBF_HD void operator()(int i) const { bin[i] = bin_of<D>(xyz(position[i]), p); }
 };
 
-/// Puts the particles in the order of bins; with `moving`, as predicted. Position's w = 1
-/// (1/density, until an iteration replaces it), or -1 as a mark for the first iteration.
+/// Puts the particles in the order of bins; with `moving`, as predicted: then position's w = 1
+/// (1/density, until an iteration replaces it), or -1 as a mark for the first iteration. Otherwise
+/// w comes along.
 template <class Real, class Boundary, bool moving>
 struct GatherPass {
   Params<Real> p;
@@ -166,12 +167,10 @@ struct GatherPass {
   PBF_HD void operator()(int from, int to) const {
     const Vec4<Real> at = position[from];
     Moving<Real> m{xyz(at), xyz(velocity[from]), false};
-    if constexpr (moving) {
-      if (is_predicted(from))
-        m.mark = at.w;
-      else
-        m = predict(m.x, m.v, p, boundary);
-    }
+    if (!moving || is_predicted(from))
+      m.mark = at.w;
+    else
+      m = predict(m.x, m.v, p, boundary);
     if (m.fast) count_one(&counts->fast);
     position_out[to] = with_w(m.x, m.mark);
     velocity_out[to] = with_w(m.v, Real(0));

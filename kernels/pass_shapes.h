@@ -22,7 +22,7 @@ concept PairPass = requires(const P p, int i, const typename P::Own own, typenam
   { P::D } -> std::convertible_to<int>;
   p.lists;
   { p.own(i) } -> std::convertible_to<typename P::Own>;
-  p.add(sum, own, p.other(i));
+  p.add(sum, own, p.other(Neighbor{i}));
   p.finish(i, own, sum);
 };
 

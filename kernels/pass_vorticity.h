@@ -23,12 +23,11 @@ template <class Real, class Lists, int dimensions>
 struct CurlPass {
   Params<Real> p;
   Lists lists;
-  const Vec4<Real>* position;  ///< w = 1/density
-  const Vec4<Real>* velocity;
-  Vec4<Real>* curl;  ///< out: min(dt eps, 2 dt approach, 0.05) omega; w = |omega|
+  GatheredRows<Vec4<Real>> position;  ///< w = 1/density
+  GatheredRows<Vec4<Real>> velocity;
+  OwnRows<Vec4<Real>> curl;  ///< out: min(dt eps, 2 dt approach, 0.05) omega; w = |omega|
 
   static constexpr int D = dimensions;
-  static constexpr unsigned gathers = kPlace | kInverseDensity | kVelocity;
   using Own = MovingOwn<Real, D>;
   template <class V>
   struct SumOf {
@@ -93,12 +92,11 @@ template <class Real, class Lists, int dimensions>
 struct VorticityPass {
   Params<Real> p;
   Lists lists;
-  const Vec4<Real>* position;  ///< w = 1/density
-  const Vec4<Real>* curl;      ///< times its gain; w = |omega|
-  Vec4<Real>* velocity;        ///< in/out
+  GatheredRows<Vec4<Real>> position;  ///< w = 1/density
+  GatheredRows<Vec4<Real>> curl;      ///< times its gain; w = |omega|
+  OwnRows<Vec4<Real>> velocity;       ///< in/out
 
   static constexpr int D = dimensions;
-  static constexpr unsigned gathers = kPlace | kInverseDensity | kCurl;
   using Own = CurlOwn<Real>;
   template <class V>
   using SumOf = VectorSum<V, D>;  ///< eta

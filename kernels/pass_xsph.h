@@ -26,14 +26,13 @@ struct XsphPass {
   Params<Real> p;
   Boundary boundary;
   Lists lists;
-  const Vec4<Real>* position;  ///< w = 1/density
-  const Vec4<Real>* velocity;  ///< h/s
-  Vec4<Real>* velocity_out;
+  GatheredRows<Vec4<Real>> position;  ///< w = 1/density
+  GatheredRows<Vec4<Real>> velocity;  ///< h/s
+  OwnRows<Vec4<Real>> velocity_out;
   int* bin;  ///< out; null: no update follows
 
   static constexpr int D = dimensions_of(S);
   static constexpr bool leaves_rows = Boundary::far_only;
-  static constexpr unsigned gathers = kPlace | kInverseDensity | kVelocity;
   using Own = XsphOwn<Real, D>;
   template <class V>
   using SumOf = VectorSum<V, D>;

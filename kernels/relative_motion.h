@@ -17,12 +17,12 @@ constexpr double kResolvedWay = 0.4;
 /// predicted, h/s.
 template <class Real, class Lists>
 PBF_HD void count_unresolved(int i, const Params<Real>& p, const Lists& lists,
-                             const Vec4<Real>* velocity, StepCounts* counts) {
+                             GatheredRows<Vec4<Real>> velocity, StepCounts* counts) {
   constexpr Real limit = Real(kResolvedWay * kResolvedWay);
   const Vec3<Real> way = p.dt * xyz(velocity[i]);
   Real longest(0);
-  lists.for_each(i, [&](int j) {
-    if (j >= lists.far) return;  // what fills up a list
+  lists.for_each(i, [&](Neighbor j) {
+    if (j.row >= lists.far) return;  // what fills up a list
     const Vec3<Real> d = way - p.dt * xyz(velocity[j]);
     longest = max2(longest, dot(d, d));
   });

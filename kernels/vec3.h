@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "kernels/hd.h"
+#include "kernels/rows.h"
 
 namespace pbf::inline PBF_VARIANT {
 
@@ -133,6 +133,14 @@ PBF_HD Vec4<Real> load(const Vec4<Real>* a, int i) {
 #else
   return a[i];
 #endif
+}
+template <class T>
+PBF_HD auto load(OwnRows<T> a, int i) {
+  return load(a.rows(), i);
+}
+template <class T>
+PBF_HD auto load(GatheredRows<T> a, Neighbor j) {
+  return load(a.rows(), j.row);
 }
 
 /// False for NaN and infinities, without a library call (x - x is 0 only for finite x).

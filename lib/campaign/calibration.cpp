@@ -198,7 +198,7 @@ std::optional<RunTime> run_time(const Plan& plan, const Scene& s,
   if (about(s.backend).on_device) return std::nullopt;
   // The neighbour lists, and every pass over them: nine in an update of 4 iterations.
   int passes = 1;
-  for (const auto& [p, times] : count_passes(plan.program)) passes += p->gathers != 0 ? times : 0;
+  for (const auto& [p, times] : count_passes(plan.program)) passes += p->over_pairs() ? times : 0;
   const double neighbors = rest_neighbors(s) / rest_neighbors(Scene{});
   out.rough = true;
   out.seconds = updates * double(plan.particles) * (passes / 9.0) * neighbors /

@@ -44,23 +44,22 @@ void add_state(const Scene& s, const Plan& plan, std::int64_t bins, const std::s
   const auto type_name = [&](const FieldInfo& f) -> std::string {
     return f.type == Type::real ? real : f.type == Type::int64 ? "int64" : "int32";
   };
-  const RowCounts counts{n,
-                         padding,
-                         bins,
-                         plan.levels.cells(),
-                         plan.levels.runs(s.dimensions),
-                         plan.levels.bricks(),
-                         plan.levels.nodes(),
-                         load_walls(s)};
+  const Sizes counts{n,
+                     padding,
+                     bins,
+                     plan.levels.cells(),
+                     plan.levels.runs(s.dimensions),
+                     plan.levels.bricks(),
+                     plan.levels.nodes(),
+                     load_walls(s)};
   for (const FieldInfo* f : plan.program.fields) {
     if (f == &field::order && !add.on_device) continue;  // it stands in id'
     for (const char* which : {"", "'"})
-      if (*which == '\0' || f->doubled)
-        add((std::string(f->name) + which).c_str(), type_name(*f), f->components,
-            rows_of(*f, counts));
+      if (*which == '\0' || f->pair)
+        add((std::string(f->name) + which).c_str(), type_name(*f), f->components, f->rows(counts));
   }
   for (const FieldInfo* f : plan.program.fields) {
-    if (!f->state) continue;
+    if (f->life != Life::state) continue;
     // The last good state; and a batch of updates is done again when a list outgrows its capacity.
     const std::pair<bool, const char*> copies[] = {{bool(s.guard), "kept "},
                                                    {add.on_device, "saved "}};

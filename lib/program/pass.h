@@ -1,47 +1,62 @@
 // The description of a pass, and lists of passes as types. A pass is a struct with
-//   static PassInfo info();
-//   template <class C> static void launch(C& c);   // c: lib/solver/step_context.h
-// A pass that fuses two successive passes also has `using Fuses = Pair<First, Second>`.
+//   static constexpr PassText text{name, stage, remedy};
+//   using Needs = pbf::Needs<...>;                       // needs.h
+//   template <class G> static void launch(const G& c);   // c: granted.h
+// A pass that writes into the other array of a pair and leaves it as the first one also has
+// `using Flips = pbf::Flips<...>`; its Needs call it by the name that it has then. A pass that does
+// the work of two successive ones has `using Fuses = Pair<First, Second>`.
 #pragma once
 
 #include <array>
 #include <type_traits>
 #include <vector>
 
-#include "lib/program/field.h"
+#include "lib/program/needs.h"
 
 namespace pbf::inline program_module {
 
-/// What a pass leaves behind in a field (where it lies after the pass), as those see it who look at
-/// an update pass by pass.
-struct Written {
-  enum Part { hidden, vector, fourth, scalar, pairs };
-  Access to;
-  Part part = hidden;              ///< x, y, z; w; a number per particle; the lists
-  const char* quantity = "";       ///< "position"
-  const char* unit = "1";          ///< of the internal frame
-  bool sum = false;                ///< over neighbours: carries the rounding of its terms
-  bool axial = false;              ///< a cross product: its sign depends on the hand of the axes
-  bool before_sort = false;        ///< its rows are in the order before the sort
-  const char* stage = nullptr;     ///< shown as that of another stage than the pass's
-  const FieldInfo* row = nullptr;  ///< not null: it names each particle's row, -1: none
-  double grain = 0;                ///< in `unit`: finer steps than this it cannot make
-};
-inline Written vector(Access to, const char* quantity, const char* unit) {
-  return {to, Written::vector, quantity, unit};
-}
-inline Written hidden(Access to) { return {to}; }
-
-struct PassInfo {
-  const char* name;   ///< in `pbf plan`
-  const char* stage;  ///< a row of lib/base/stages.h: where its time is booked
-  std::vector<Access> reads;
-  std::vector<Written> writes;
-  unsigned gathers = 0;  ///< Fields of neighbours' rows that it reads (kernels/pair_sum.h)
-  int stored = -1;       ///< of `writes`: what a fault that is no number is put into; -1: velocity
+struct PassText {
+  const char* name;         ///< in `pbf plan`
+  const char* stage;        ///< a row of lib/base/stages.h: where its time is booked
   const char* remedy = "";  ///< "lower viscosity.xsph", where particles go wrong here; empty: none
                             ///< of its own, but those of the whole step
 };
+
+/// What a pass leaves behind in a field, as those see it who look at an update pass by pass.
+struct Written {
+  enum Part { vector, fourth, scalar, pairs };
+  const FieldInfo* field;
+  Part part;
+  const char *quantity, *unit;
+  const char* stage;  ///< not null: shown as that of another stage than the pass's
+  bool sum = false;   ///< over neighbors: carries the rounding of its terms
+};
+
+struct PassInfo : PassText {
+  std::vector<AccessInfo> needs;  ///< joined(): each field once
+  std::vector<AccessInfo> steps;  ///< as declared: what is done with w, in order
+  std::vector<const FieldInfo*> flips;
+  std::vector<Written> written;
+  int stored = -1;  ///< of `written`: what a fault that is no number is put into; -1: velocity
+
+  bool makes_lists() const;
+  bool over_pairs() const;  ///< uses the lists
+};
+
+/// With what follows from the declarations.
+PassInfo described(const PassText& text, std::vector<AccessInfo> declared,
+                   std::vector<const FieldInfo*> flips);
+
+/// Of pass P in a scene.
+template <class P>
+PassInfo info_of(const Scene& scene) {
+  std::vector<AccessInfo> declared;
+  P::Needs::list(scene, declared);
+  if constexpr (requires { typename P::Flips; })
+    return described(P::text, std::move(declared), P::Flips::list());
+  else
+    return described(P::text, std::move(declared), {});
+}
 
 template <class First, class Second>
 struct Pair {};
@@ -56,18 +71,19 @@ struct PassList {
     while (!same[k]) ++k;
     return k;
   }
-  static std::vector<PassInfo> infos() { return {Ps::info()...}; }
+  static std::vector<PassInfo> infos(const Scene& scene) { return {info_of<Ps>(scene)...}; }
+  static constexpr std::array<PassText, sizeof...(Ps)> texts{Ps::text...};
   /// The one that does the work of passes a and b, or -1.
   static int fused(int a, int b) {
     int found = -1;
     ((fuses<Ps>(a, b) ? void(found = index_of<Ps>()) : void()), ...);
     return found;
   }
-  /// Launches pass `index`.
-  template <class C>
-  static void launch(int index, C& c) {
-    static constexpr void (*all[])(C&) = {&Ps::template launch<C>...};
-    all[index](c);
+  /// f.template operator()<P>() of pass `index`.
+  template <class F>
+  static void with(int index, F&& f) {
+    int k = 0;
+    ((k++ == index ? void(f.template operator()<Ps>()) : void()), ...);
   }
 
  private:

@@ -49,8 +49,8 @@ Json plan_json(const Plan& plan, const Scene& s) {
   for (const PassCount& c : count_passes(plan.program))
     passes.push_back({{"name", c.pass->name},
                       {"stage", c.pass->stage},
-                      {"reads", field_names(c.pass->reads)},
-                      {"writes", field_names(c.pass->writes)},
+                      {"reads", reads_text(*c.pass)},
+                      {"writes", writes_text(*c.pass)},
                       {"gathers", gathers_text(*c.pass)},
                       {"per_update", c.times}});
   for (const PlanFile& f : plan.files)

@@ -54,10 +54,12 @@ std::string passes_part(const Plan& plan, const Scene& s) {
                               "passes of one step; 2^k of them in an update at level k = 0 ... "
                               "%d\n",
                               plan.finest_level);
-  for (const auto& [p, times] : count_passes(plan.program))
+  for (const auto& [p, times] : count_passes(plan.program)) {
+    const std::string gathers = gathers_text(*p);
     out += format("  %-22s x%-3d stage %-10s reads %-34s writes %s", p->name, times, p->stage,
-                  field_names(p->reads).c_str(), field_names(p->writes).c_str()) +
-           (p->gathers == 0 ? "\n" : "; of neighbours " + gathers_text(*p) + "\n");
+                  reads_text(*p).c_str(), writes_text(*p).c_str()) +
+           (gathers.empty() ? "\n" : "; of neighbours " + gathers + "\n");
+  }
   if (plan.substeps > 1)
     out += format("  %d substeps of %.4g s on %d list%s: at most %.3g h of way on one list\n",
                   plan.substeps, s.time.step / plan.substeps, plan.lists_per_update,

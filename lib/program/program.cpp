@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "lib/base/error.h"
+#include "lib/base/text.h"
 #include "lib/program/features.h"
 
 namespace pbf::inline program_module {
@@ -15,7 +17,7 @@ ProgramStep step_of() {
 
 /// What features say of a scene.
 struct Builder {
-  Steps at_start, with_lists, in_iteration, behind, at_end;
+  Steps at_start, with_lists, with_all_lists, in_iteration, behind, at_end;
   std::vector<LeftOut> without;
 
   /// Before each substep.
@@ -23,9 +25,11 @@ struct Builder {
   void start() {
     at_start.push_back(step_of<P>());
   }
+  /// Whenever lists are made; with `updates_alone` not for a measure.
   template <class P>
-  void lists() {
+  void lists(bool updates_alone = false) {
     with_lists.push_back(step_of<P>());
+    if (!updates_alone) with_all_lists.push_back(step_of<P>());
   }
   template <class P>
   void iteration() {
@@ -88,33 +92,92 @@ void add_substeps(Steps& to, const Builder& b, int iterations, int repeats, int 
   }
 }
 
-void collect_fields(const Steps& steps, std::vector<const FieldInfo*>& to) {
+void collect_fields(const Steps& steps, Program& p) {
   for (const ProgramStep& s : steps) {
-    collect_fields(s.body, to);
+    collect_fields(s.body, p);
     if (s.index < 0) continue;
-    const PassInfo& pass = pass_infos()[std::size_t(s.index)];
-    const auto add = [&](const Access& a) {
-      if (a.field != &field::lists && a.field != &field::motion &&
-          std::find(to.begin(), to.end(), a.field) == to.end())
-        to.push_back(a.field);
-    };
-    for (const Access& a : pass.reads) add(a);
-    for (const Written& w : pass.writes) add(w.to);
+    for (const AccessInfo& a : p.passes[std::size_t(s.index)].needs) {
+      const FieldInfo* f = &a.field->primary();
+      if (f->rows && std::find(p.fields.begin(), p.fields.end(), f) == p.fields.end())
+        p.fields.push_back(f);
+    }
   }
 }
 
 /// The sum between the rounds of `until`.
 const PassInfo& residual() {
-  static const PassInfo info{"mean compression", "residual", {{&field::density}}, {}};
+  static const PassInfo info =
+      described({"mean compression", "residual"}, {{&field::density, kReads}}, {});
   return info;
 }
 
-void count(const Steps& steps, int times, std::vector<PassCount>& to) {
+const char* word(W w) {
+  constexpr const char* words[] = {"", "mark", "lambda", "1/density"};
+  return words[int(w)];
+}
+
+/// What the fourth component of each of the two arrays of positions holds.
+struct Fourth {
+  W first = W::any, second = W::any;
+
+  W& of(const FieldInfo& f) { return f.first ? second : first; }
+  /// A pass in that iteration of a substep. Throws Error(internal) where it asks for what is not
+  /// there.
+  void after(const PassInfo& pass, int iteration, bool has_iterations) {
+    for (const FieldInfo* f : pass.flips)
+      if (f == &field::position) std::swap(first, second);
+    for (const AccessInfo& a : pass.steps) {
+      if (&a.field->primary() != &field::position || !(a.how & kReading) || a.w == W::any ||
+          (a.when == When::first_iteration && iteration > 0) || of(*a.field) == a.w)
+        continue;
+      throw Error(ExitCode::internal,
+                  format("pass '%s' asks for %s in w of %s, which holds '%s'", pass.name, word(a.w),
+                         name_of(*a.field).c_str(), word(of(*a.field))));
+    }
+    for (const AccessInfo& a : pass.steps) {
+      if (&a.field->primary() != &field::position || !(a.how & (kWrites | kPlaces))) continue;
+      // The sort carries w along. Without iterations nothing is marked: all are 1.
+      const bool carried = (a.how & kPlaces) && a.w == W::any;
+      const W w = carried ? of(other<field::position>) : a.w;
+      if (w != W::any) of(*a.field) = w == W::mark && !has_iterations ? W::inverse_density : w;
+    }
+  }
+};
+
+void follow(const Program& p, const Steps& steps, int iteration, Fourth& w) {
   for (const ProgramStep& s : steps) {
-    count(s.body, times * s.times, to);
+    if (s.kind == ProgramStep::pass)
+      w.after(p.passes[std::size_t(s.index)], iteration, p.has_iterations);
+    // The second iteration stands for all that follow.
+    for (int k = s.first; s.kind == ProgramStep::iterate && k < s.first + std::min(s.times, 2); ++k)
+      follow(p, s.body, k, w);
+    if (s.kind == ProgramStep::until) follow(p, s.body, 1, w);
+  }
+}
+
+/// Every pass finds in w what it asks for, pass by pass and with passes joined, in the first update
+/// and in those behind it.
+void check_fourth(const Program& p) {
+  Fourth seen, fast;
+  for (int updates = 0; updates < 2; ++updates) follow(p, p.update, 0, seen);
+  for (const Steps* steps : {&p.first, &p.rest, &p.next, &p.rest, &p.last})
+    follow(p, *steps, 0, fast);
+}
+
+template <class Name>
+std::string names(const std::vector<AccessInfo>& needs, const Name& name) {
+  std::string out;
+  for (const AccessInfo& a : needs)
+    if (const std::string one = name(a); !one.empty()) out += (out.empty() ? "" : " ") + one;
+  return out;
+}
+
+void count(const Program& program, const Steps& steps, int times, std::vector<PassCount>& to) {
+  for (const ProgramStep& s : steps) {
+    count(program, s.body, times * s.times, to);
     if (s.kind == ProgramStep::iterate) continue;
     const PassInfo* pass =
-        s.kind == ProgramStep::until ? &residual() : &pass_infos()[std::size_t(s.index)];
+        s.kind == ProgramStep::until ? &residual() : &program.passes[std::size_t(s.index)];
     const int mine = s.kind == ProgramStep::until ? times * s.times : times;
     const auto at =
         std::find_if(to.begin(), to.end(), [&](const PassCount& c) { return c.pass == pass; });
@@ -132,16 +195,14 @@ Steps operator+(Steps a, const Steps& b) {
 
 }  // namespace
 
-const std::vector<PassInfo>& pass_infos() {
-  static const std::vector<PassInfo> infos = Passes::infos();
-  return infos;
-}
+std::span<const PassText> pass_texts() { return Passes::texts; }
 
 Program make_program(const Scene& scene, const UpdateShape& shape, bool without_time) {
   Builder b;
   Features::add(scene, b);
-  if (without_time) b.at_start.clear(), b.behind.clear(), b.at_end.clear();
   Program p;
+  p.has_iterations = !b.in_iteration.empty();
+  if (without_time) b.at_start.clear(), b.behind.clear(), b.at_end.clear();
   Steps middle;
   if (b.in_iteration.empty() && b.behind.empty()) {  // no pairs: particles only move
     for (int s = 0; s < shape.substeps; ++s) {
@@ -168,41 +229,38 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
   p.rest = joined(Steps(begin, middle.end()));
   p.next = joined(end + head);
   p.last = joined(end);
+  p.lists = Steps{step_of<Sort>(), step_of<MakeLists>()} + b.with_all_lists;
+  p.passes = Passes::infos(scene);
   p.fields = {&field::position, &field::velocity, &field::density,  &field::id,
               &field::bin,      &field::order,    &field::bin_start};
-  collect_fields(p.update, p.fields);
-  collect_fields(b.with_lists, p.fields);  // a measure makes lists in any case
+  collect_fields(p.update, p);
+  collect_fields(p.lists, p);  // a measure makes lists in any case
   p.left_out = b.without;
+  check_fourth(p);
   return p;
 }
 
-std::vector<PassCount> count_passes(const Steps& steps) {
+std::vector<PassCount> count_passes(const Program& program, const Steps& steps) {
   std::vector<PassCount> out;
-  count(steps, 1, out);
+  count(program, steps, 1, out);
   return out;
 }
-std::vector<PassCount> count_passes(const Program& p) { return count_passes(p.next + p.rest); }
+std::vector<PassCount> count_passes(const Program& p) { return count_passes(p, p.next + p.rest); }
 
-std::string field_names(const std::vector<Access>& fields) {
-  std::string out;
-  for (const Access& a : fields) {
-    out.append(out.empty() ? "" : " ").append(a.field->name).append(a.other ? "'" : "");
-  }
-  return out;
+std::string reads_text(const PassInfo& pass) {
+  return names(pass.needs,
+               [](const AccessInfo& a) { return a.how & kReading ? name_of(*a.field) : ""; });
 }
-
-std::string field_names(const std::vector<Written>& fields) {
-  std::vector<Access> to;
-  for (const Written& w : fields)
-    if (to.empty() || to.back().field != w.to.field) to.push_back(w.to);
-  return field_names(to);
+std::string writes_text(const PassInfo& pass) {
+  return names(pass.needs,
+               [](const AccessInfo& a) { return a.how & kWriting ? name_of(*a.field) : ""; });
 }
-
 std::string gathers_text(const PassInfo& pass) {
-  std::string out;
-  for (const auto& [field, name] : kFieldNames)
-    if (pass.gathers & field) out.append(out.empty() ? "" : " ").append(name);
-  return out;
+  return names(pass.needs, [](const AccessInfo& a) -> std::string {
+    if (!(a.how & kGathers)) return "";
+    const bool place = a.field->primary().name == field::position.name;
+    return place && a.w != W::any ? std::string("position ") + word(a.w) : a.field->name;
+  });
 }
 
 }  // namespace pbf::inline program_module

@@ -1,6 +1,7 @@
 // The passes of an update: one list that is executed, printed, counted and traced.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,12 @@ struct Program {
   /// The same with passes joined that can be: n updates are first, rest, (next, rest) n - 1 times,
   /// last, to the same bits.
   Steps first, rest, next, last;
-  /// Every field of the passes, and those that a solver has in any case.
+  /// Makes lists at the present positions, for a measure.
+  Steps lists;
+  bool has_iterations = false;
+  /// What the passes declare in this scene, by index in Passes.
+  std::vector<PassInfo> passes;
+  /// Every field of the passes, and those that a solver has in any case; of a pair the first.
   std::vector<const FieldInfo*> fields;
   std::vector<LeftOut> left_out;  ///< the features that the scene does without
 
@@ -45,7 +51,7 @@ struct PassCount {
   const PassInfo* pass;
   int times;
 };
-std::vector<PassCount> count_passes(const Steps& steps);
+std::vector<PassCount> count_passes(const Program& program, const Steps& steps);
 /// Those of an update in the middle of a run.
 std::vector<PassCount> count_passes(const Program& program);
 
@@ -57,13 +63,13 @@ struct UpdateShape {
 /// The update of a scene, or its step without time.
 Program make_program(const Scene& scene, const UpdateShape& shape, bool without_time = false);
 
-/// What the passes say of themselves, by index in Passes.
-const std::vector<PassInfo>& pass_infos();
+/// Name, stage and remedy of every pass, by index in Passes.
+std::span<const PassText> pass_texts();
 
-/// "position velocity'"
-std::string field_names(const std::vector<Access>& fields);
-std::string field_names(const std::vector<Written>& fields);
-/// "position lambda", of the neighbours' rows that a pass reads.
+/// "position velocity'", of the fields that a pass reads, or leaves something in.
+std::string reads_text(const PassInfo& pass);
+std::string writes_text(const PassInfo& pass);
+/// "position lambda", of what it reads of the neighbors' rows.
 std::string gathers_text(const PassInfo& pass);
 
 }  // namespace pbf::inline program_module

@@ -54,7 +54,8 @@ std::vector<StageTime> Rows::stages() const {
   const Scene& scene = run_.scene;
   StageClock sum;
   sum.entry("init");
-  for (const PassCount& c : count_passes(run_.plan.program.update)) sum.entry(c.pass->stage);
+  for (const PassCount& c : count_passes(run_.plan.program, run_.plan.program.update))
+    sum.entry(c.pass->stage);
   sum.entry("measure");
   if (scene.guard || scene.time.adaptive) sum.entry("guard");
   if (scene.output || scene.render) sum.entry("download");

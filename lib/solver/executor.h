@@ -33,7 +33,7 @@ struct Pair {
   static constexpr int D = 3;
   int lists = 0;
   PBF_HD Own own(int) const { return {}; }
-  PBF_HD int other(int) const { return 0; }
+  PBF_HD int other(Neighbor) const { return 0; }
   PBF_HD void add(Sum&, const Own&, int) const {}
   PBF_HD void finish(int, const Own&, const Sum&) const {}
 };

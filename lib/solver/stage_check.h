@@ -44,14 +44,15 @@ class StageCheck {
   Arrays arrays(const PassInfo& pass) {
     Arrays a{c_.position()};
     if (pass.stored >= 0) {
-      const Written& w = pass.writes[std::size_t(pass.stored)];
-      if (w.part == Written::scalar) a.density = c_.template data<Real>(*w.to.field);
+      const Written& w = pass.written[std::size_t(pass.stored)];
+      if (w.part == Written::scalar) a.density = c_.template data<Real>(*w.field);
       a.stores_fourth = w.part == Written::fourth;
-      if (a.stores_fourth && w.to.other) a.position = c_.other(*w.to.field);
+      if (a.stores_fourth) a.position = c_.template data<Vec4<Real>>(*w.field);
     }
-    if (pass.writes[0].part == Written::pairs) {
-      c_.items(ListSizePass<typename Exec::Lists>{c_.lists, c_.sort_order()});  // free by now
-      a.neighbors = c_.sort_order();
+    if (pass.makes_lists()) {
+      int* free = c_.template data<int>(other<field::id>);  // until the next sort
+      c_.items(ListSizePass<typename Exec::Lists>{c_.lists, free});
+      a.neighbors = free;
     }
     return a;
   }

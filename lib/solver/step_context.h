@@ -94,27 +94,21 @@ struct StepContext {
     iterations = 0;
   }
 
-  // Arrays. The other one of two is written by passes that reorder or overwrite, then flipped.
+  /// Rows of a field; null where the scene does without it.
   template <class T>
   T* data(const FieldInfo& f) {
-    Slot& s = slot(f);
-    return reinterpret_cast<T*>(s.rows[s.now].data());
+    Slot* s = slot(f);
+    return s ? reinterpret_cast<T*>(s->rows[s->now ^ (f.first ? 1 : 0)].data()) : nullptr;
   }
-  template <class T>
-  T* other_data(const FieldInfo& f) {
-    Slot& s = slot(f);
-    return reinterpret_cast<T*>(s.rows[1 - s.now].data());
-  }
-  void flip(const FieldInfo& f) { slot(f).now ^= 1; }
-  Vec4<Real>* vectors(const FieldInfo& f) { return data<Vec4<Real>>(f); }
-  Vec4<Real>* other(const FieldInfo& f) { return other_data<Vec4<Real>>(f); }
-  Vec4<Real>* position() { return vectors(field::position); }
-  Vec4<Real>* velocity() { return vectors(field::velocity); }
+  /// The second of its two arrays becomes the first.
+  void flip(const FieldInfo& f) { slot(f)->now ^= 1; }
+  Vec4<Real>* position() { return data<Vec4<Real>>(field::position); }
+  Vec4<Real>* velocity() { return data<Vec4<Real>>(field::velocity); }
   Real* density() { return data<Real>(field::density); }
   int* ids() { return data<int>(field::id); }
-  /// rows() numbers: the order of a sort, free after it.
+  /// rows() numbers: the order of a sort, in a pass that flips the ids.
   int* sort_order() {
-    return Exec::order_in_place ? other_data<int>(field::id) : data<int>(field::order);
+    return Exec::order_in_place ? data<int>(field::id) : data<int>(field::order);
   }
   StepCounts* counts() { return counts_.data(); }
   /// For with_boundary() (features/solids.h); its walls are not set.
@@ -151,7 +145,7 @@ struct StepContext {
   int placement() const {
     int bits = 0, bit = 1;
     for (const Slot& s : slots_)
-      if (s.info->doubled) bits |= s.now ? bit : 0, bit *= 2;
+      if (s.info->pair) bits |= s.now ? bit : 0, bit *= 2;
     return bits;
   }
 
@@ -173,10 +167,10 @@ struct StepContext {
     Buffer<char> rows[2];
     int now = 0;
   };
-  Slot& slot(const FieldInfo& f) {
-    std::size_t k = 0;
-    while (slots_[k].info != &f) ++k;
-    return slots_[k];
+  Slot* slot(const FieldInfo& f) {
+    for (Slot& s : slots_)
+      if (s.info == &f.primary()) return &s;
+    return nullptr;
   }
 
   int rows_ = 0, capacity_ = 0;
@@ -201,25 +195,25 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
                                    const Plan& plan, int moves) {
   const std::size_t n = first_position.size();
   rows_ = capacity_ = int(n);
-  const RowCounts sizes{rows_,
-                        std::int64_t(Exec::padding),
-                        bin_count(p),
-                        levels.cells(),
-                        levels.runs(p.dimensions),
-                        levels.bricks(),
-                        levels.nodes(),
-                        load_walls(scene)};
+  const Sizes sizes{rows_,
+                    std::int64_t(Exec::padding),
+                    bin_count(p),
+                    levels.cells(),
+                    levels.runs(p.dimensions),
+                    levels.bricks(),
+                    levels.nodes(),
+                    load_walls(scene)};
   for (const FieldInfo* f : fields) {
     if (f == &field::order && Exec::order_in_place) continue;
-    const auto count = std::size_t(rows_of(*f, sizes));
+    const auto count = std::size_t(f->rows(sizes));
     const std::size_t row =
         std::size_t(f->components) * (f->type == Type::real    ? sizeof(Real)
                                       : f->type == Type::int64 ? sizeof(std::int64_t)
                                                                : sizeof(int));
     slots_.push_back({f, {}, 0});
-    for (int k = 0; k < (f->doubled ? 2 : 1); ++k) {
+    for (int k = 0; k < (f->pair ? 2 : 1); ++k) {
       slots_.back().rows[k].resize(count * row);
-      if (f->rows != Rows::padded || f->components != 4) continue;
+      if (f->rows != per_padded_row || f->components != 4) continue;
       // Behind the last row: infinitely far away for any kernel, and at rest.
       const Real far = f == &field::position ? Real(1e9) : Real(0);
       const std::vector<Vec4<Real>> rows(Exec::padding,
@@ -260,7 +254,7 @@ void StepContext<Real, Exec>::make_solids(const Scene& in_its_axes, const Plan& 
   around.before = moving_.before();
   around.solids = int(plan.solids.size());
   around.flat = p.dimensions == 2;
-  if (has_loads(scene)) around.loads = load_book(*this);
+  if (has_loads(scene)) around.loads = load_book(*this, data<LoadSums>(field::load_sums));
   around_.resize(1);
   exec.to_device(&around, 1, around_.data());
   solids_.around = around_.data();

@@ -12,6 +12,7 @@
 #include "lib/program/plan.h"
 #include "lib/solver/compression_percentile.h"
 #include "lib/solver/executor.h"
+#include "lib/solver/granted.h"
 #include "lib/solver/params.h"
 #include "lib/solver/stage_check.h"
 #include "lib/solver/step_context.h"
@@ -24,6 +25,7 @@ class Stepper {
  public:
   using Lists = typename Exec::Lists;
   using Saved = SavedState<Real, Exec>;
+  using Context = StepContext<Real, Exec>;
 
   /// Positions and velocities are in the internal frame, in the order of ids 0..n-1. What comes out
   /// is along the scene's axes.
@@ -113,7 +115,7 @@ class Stepper {
     if (c_.gauges.gate.size() == 0) return;
     if (!(c_.p.dt > 0)) sides_are_current_ = false;
     if (sides_are_current_ || !(c_.p.dt > 0)) return;
-    take_sides(c_, false);
+    take_sides(Granted<Context, CountFlow>(c_), false);
     sides_are_current_ = true;
   }
 
@@ -170,8 +172,7 @@ class Stepper {
     if (c_.lists_are_current) return false;
     c_.exec.begin();
     c_.booked_as = "measure";
-    for (const int pass : {Passes::index_of<Sort>(), Passes::index_of<MakeLists>()}) launch(pass);
-    if (c_.solids().near.way_left_squared) launch(Passes::index_of<FindNear>());
+    run(program_->lists);
     c_.booked_as = nullptr;
     return true;
   }
@@ -238,8 +239,8 @@ class Stepper {
     return now;
   }
   void launch(int pass) {
-    Passes::launch(pass, c_);
-    c_.exec.mark(c_.booked(pass_infos()[std::size_t(pass)].stage));
+    launch_pass<Passes>(pass, c_);
+    c_.exec.mark(c_.booked(Passes::texts[std::size_t(pass)].stage));
   }
 
   void run(const Steps& steps) {
@@ -279,14 +280,14 @@ class Stepper {
       if (index == Passes::index_of<Predict>()) ++substep;
       const bool start = index <= Passes::index_of<MakeLists>();
       const int next = substep + (index == Passes::index_of<MoveSolids>());
-      seen(pass_infos()[std::size_t(index)], c_.iterating ? c_.iterations : start ? next : 0);
+      seen(program_->passes[std::size_t(index)], c_.iterating ? c_.iterations : start ? next : 0);
     });
     moved();
   }
 
   void sum_density() {
     if (density_is_current_) return;
-    Passes::launch(Passes::index_of<Density>(), c_);
+    launch_pass<Passes>(Passes::index_of<Density>(), c_);
     density_is_current_ = true;
   }
   SolverState downloaded(const StateArrays<Real>& from, std::int64_t updates, std::int64_t steps) {

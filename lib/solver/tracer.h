@@ -34,8 +34,8 @@ struct FlatListPass {
   int* out;
   PBF_HD void operator()(int i) const {
     int* to = out + begin[i];
-    lists.for_each(i, [&](int j) {
-      if (j < n) *to++ = j;
+    lists.for_each(i, [&](Neighbor j) {
+      if (j.row < n) *to++ = j.row;
     });
   }
 };
@@ -48,20 +48,18 @@ class Tracer {
 
   /// Records what a pass has left behind.
   void record(const PassInfo& pass, int number) {
-    for (const Written& w : pass.writes) {
+    for (const Written& w : pass.written) {
       stage_ = w.stage ? w.stage : pass.stage;
       iteration_ = number;
       amplitude_ = options_.unit_roundoff * (w.sum ? 4 + std::sqrt(most_terms_) : 1);
-      grain_ = w.grain;
-      const FieldInfo& f = *w.to.field;
-      const auto vectors = [&] { return w.to.other ? c_.other(f) : c_.vectors(f); };
+      const FieldInfo& f = *w.field;
+      grain_ = f.shown.grain;
+      const auto vectors = [&] { return c_.template data<Vec4<Real>>(f); };
       const auto component = [](Vec4<Real>& x, int k) -> Real& { return (&x.x)[k]; };
       const auto fourth = [](Vec4<Real>& x, int) -> Real& { return x.w; };
       switch (w.part) {
-        case Written::hidden:
-          break;
         case Written::vector:
-          array(w, 3, vectors(), component, w.axial ? axes_.handedness() : 1);
+          array(w, 3, vectors(), component, f.shown.axial ? axes_.handedness() : 1);
           break;
         case Written::fourth:
           array(w, 1, vectors(), fourth);
@@ -115,18 +113,20 @@ class Tracer {
   }
   /// Of a field whose rows particles name.
   std::size_t rows_named(const FieldInfo& f) const {
-    return std::size_t(rows_of(f, {.cells = c_.levels.cells(), .nodes = c_.levels.nodes()}));
+    return std::size_t(f.rows({.cells = c_.levels.cells(), .nodes = c_.levels.nodes()}));
   }
   /// Records n rows of `components` scalars, component(row, c) of what lies at `from`; rounds them
   /// and puts the values to follow in their place, where asked to. sign: of the scene's vector.
   template <class T, class Component>
   void array(const Written& w, int components, T* from, const Component& component, int sign = 1) {
-    const std::vector<int> named = w.row ? host(c_.template data<int>(*w.row)) : std::vector<int>{};
-    std::vector<T> all = w.row ? host(from, rows_named(*w.to.field)) : std::vector<T>{};
-    std::vector<T> v = w.row ? std::vector<T>(n_) : host(from);
+    const Shown& shown = w.field->shown;
+    const std::vector<int> named =
+        shown.row ? host(c_.template data<int>(*shown.row)) : std::vector<int>{};
+    std::vector<T> all = shown.row ? host(from, rows_named(*w.field)) : std::vector<T>{};
+    std::vector<T> v = shown.row ? std::vector<T>(n_) : host(from);
     for (std::size_t k = 0; k < named.size(); ++k)
       if (named[k] >= 0) v[k] = all[std::size_t(named[k])];
-    id_ = host(w.before_sort ? c_.template other_data<int>(field::id) : c_.ids());
+    id_ = host(shown.before_sort ? c_.template data<int>(other<field::id>) : c_.ids());
     trace_.arrays.push_back(
         {stage_, iteration_, w.quantity, w.unit, components, {}, w.stage != nullptr});
     TraceArray& to = trace_.arrays.back();
@@ -149,7 +149,7 @@ class Tracer {
     if (std::is_integral_v<Scalar> || (amplitude_ == 0 && !follow)) return;
     for (std::size_t k = 0; k < named.size(); ++k)
       if (named[k] >= 0) all[std::size_t(named[k])] = v[k];
-    if (w.row)
+    if (shown.row)
       c_.exec.to_device(all.data(), all.size(), from);
     else
       c_.exec.to_device(v.data(), n_, from);

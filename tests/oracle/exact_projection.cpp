@@ -95,7 +95,8 @@ class Constraints {
       entries.emplace_back(i, 3 * j + 1, g.y);
       entries.emplace_back(i, 3 * j + 2, g.z);
     };
-    lists_.for_each(i, [&](int j) {
+    lists_.for_each(i, [&](Neighbor neighbor) {
+      const int j = neighbor.row;
       const V3 d = xi - point(x, j);
       const double q2 = dot(d, d);
       sum += density_shape_at(q2);
@@ -137,7 +138,8 @@ class Constraints {
       sorted[std::size_t(now)] = from[std::size_t(old)];
       order_[std::size_t(now)] = old;
     };
-    exec_.sort_by_bin("grid", BinPass<double, dimensions_of(S)>{p_, from.data(), bin.data()},
+    const OwnRows<const V4> rows(from.data());
+    exec_.sort_by_bin("grid", BinPass<double, dimensions_of(S)>{p_, rows, bin.data()},
                       NothingListed{}, n_, bin_count(p_), row.data(), bin_order.data(),
                       bin_start_.data(), gather);
     const Vector before = start_;

@@ -46,7 +46,7 @@ void check_lists(Simd simd, const std::vector<Vec4<Real>>& x, Vec3<Real> box, in
   const auto lists = exec.build_lists(n, n, sorted.data(), start.data(), p);
   for (int i = 0; i < n; ++i) {
     std::vector<int> found, expected;
-    lists.for_each(i, [&](int j) { found.push_back(j); });
+    lists.for_each(i, [&](Neighbor j) { found.push_back(j.row); });
     for (int j = 0; j < n; ++j) {
       const auto &a = sorted[std::size_t(i)], &b = sorted[std::size_t(j)];
       const Real dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
@@ -217,7 +217,8 @@ struct Sorted {
     const auto made = exec.build_lists(n, n, x.data(), start.data(), p);
     lists.resize(ids.size());
     for (int i = 0; i < n; ++i)
-      made.for_each(i, [&](int j) { lists[std::size_t(i)].push_back(id[std::size_t(j)]); });
+      made.for_each(i,
+                    [&](Neighbor j) { lists[std::size_t(i)].push_back(id[std::size_t(j.row)]); });
   }
 };
 

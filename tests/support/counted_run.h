@@ -58,15 +58,15 @@ struct CountedRun {
       run_session(run);
     });
   }
-  Updates frames() const { return RunReader(folder.file(kRunFile)).updates(); }
+  UpdateNumbers frames() const { return RunReader(folder.file(kRunFile)).updates(); }
   std::string status() const { return RunReader(folder.file(kRunFile)).status(); }
   std::vector<double> column(const std::string& name) const {
     return RunReader(folder.file(kRunFile)).log_column(name);
   }
   /// Of each frame: the steps that its state has behind it.
-  Updates steps_of_frames() const {
+  UpdateNumbers steps_of_frames() const {
     const RunReader file(folder.file(kRunFile));
-    Updates out;
+    UpdateNumbers out;
     for (std::int64_t k = 0; k < file.frames(); ++k)
       out.push_back(std::int64_t(file.frame(k).fields.at(0).as<float>()[0]));
     return out;

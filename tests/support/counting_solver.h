@@ -126,7 +126,7 @@ class CountingSolver : public Solver, public Inspection {
 };
 
 using Told = std::vector<std::string>;
-using Updates = std::vector<std::int64_t>;
+using UpdateNumbers = std::vector<std::int64_t>;
 
 /// Wants every multiple of `every`; kEveryCall and kAlways stand for themselves.
 class Recorder : public Observer {
@@ -134,7 +134,7 @@ class Recorder : public Observer {
   Recorder(std::string name, std::int64_t every, Told& told)
       : name_(std::move(name)), every_(every), told_(told) {}
   std::function<Now(Session&)> then = [](Session&) { return Now::go_on; };
-  Updates seen;
+  UpdateNumbers seen;
 
   std::int64_t next(std::int64_t u) const override {
     return every_ > 0 ? next_multiple(u, every_) : every_;

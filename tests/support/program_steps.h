@@ -21,7 +21,7 @@ inline const std::vector<std::array<std::string, 3>> kFusedPasses = {
 };
 
 inline std::string pass_name(const ProgramStep& s) {
-  return pass_infos().at(std::size_t(s.index)).name;
+  return pass_texts()[std::size_t(s.index)].name;
 }
 
 /// "lists, 0-2(lambda, delta), until 4(0-2(lambda, delta))": passes, iterations, repetitions.

@@ -14,7 +14,7 @@ namespace pbf::scene_test {
 using test::CountingSolver;
 using test::Recorder;
 using test::Told;
-using test::Updates;
+using test::UpdateNumbers;
 
 /// Ten updates, measured every 4, with frames every 3 and gauges read every `gauges`.
 inline Scene ten_updates(int gauges = 100) {
@@ -60,14 +60,14 @@ struct WatchedSession {
     session.use(watch.options());
     session.run(end, seen);
   }
-  Updates updates() const {
-    Updates out;
+  UpdateNumbers updates() const {
+    UpdateNumbers out;
     for (const Diagnostics& m : taken) out.push_back(m.update);
     return out;
   }
-  /// Updates since the load was taken before, of each measure.
-  Updates loads() const {
-    Updates out;
+  /// UpdateNumbers since the load was taken before, of each measure.
+  UpdateNumbers loads() const {
+    UpdateNumbers out;
     for (const Diagnostics& m : taken) out.push_back(std::int64_t(m.loads.at(0).force[2]));
     return out;
   }

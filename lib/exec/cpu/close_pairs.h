@@ -37,7 +37,7 @@ PBF_HD void copy_run_by_lanes(const Vec4<Real>* position, int b, int e, int n,
                               const CandidateCopy<Real, D>& to) {
   int j = b;
   for (; j < e && j + W <= n; j += W) {
-    const Vec4<Lanes<Real, W>> from = load(position, Adjacent<W>{j});
+    const Vec4<Lanes<Real, W>> from = load(OwnRows<const Vec4<Real>>(position), Adjacent<W>{j});
     from.x.to(to.x + (j - b));
     if constexpr (D == 3) from.y.to(to.y + (j - b));
     from.z.to(to.z + (j - b));

@@ -44,10 +44,10 @@ struct TransposedLists {
         step = lanes;
       }
       const int4 j = load_once(w);
-      f(j.x);
-      f(j.y);
-      f(j.z);
-      f(j.w);
+      f(Neighbor{j.x});
+      f(Neighbor{j.y});
+      f(Neighbor{j.z});
+      f(Neighbor{j.w});
     }
   }
   /// Word k of particle i.
@@ -69,7 +69,7 @@ __device__ __forceinline__ void sum_over_neighbors_by_lanes(const Pass& pass, in
   if (valid) {
     own = pass.own(i);
     pass.lists.for_each(
-        i, [&](int j) { pass.add(sum, own, pass.other(j)); }, lane, lanes);
+        i, [&](Neighbor j) { pass.add(sum, own, pass.other(j)); }, lane, lanes);
   }
   sum.each([](auto& x) {
 #pragma unroll
@@ -101,7 +101,7 @@ __device__ __forceinline__ void sum_in_order_by_lanes(const Pass& pass, int thre
 #pragma unroll
       for (int e = 0; e < 4; ++e) {
         Sum term{};
-        pass.add(term, own, pass.other(j[e]));
+        pass.add(term, own, pass.other(Neighbor{j[e]}));
         const Real* part = reinterpret_cast<const Real*>(&term);
         for (int c = 0; c < parts; ++c) mine[4 * lane + e][c] = part[c];
       }

@@ -8,7 +8,9 @@
 
 namespace pbf::inline program_module::field {
 /// 1/s, curl times its gain; w = its magnitude without it.
-inline constexpr FieldInfo curl{"curl", Type::real, 4, Rows::padded};
+inline constexpr struct CurlRows : Vectors {
+} curl{{"curl", per_padded_row, Life::pass, false,
+        Shown{.quantity = "curl times its gain", .unit = "1/s", .sum = true, .axial = true}}};
 }  // namespace pbf::inline program_module::field
 
 namespace pbf::inline PBF_VARIANT {
@@ -16,41 +18,27 @@ namespace pbf::inline PBF_VARIANT {
 inline constexpr const char* kLessConfinement = "lower vorticity.epsilon";
 
 struct Curl {
-  static PassInfo info() {
-    Written curl = vector({&field::curl}, "curl times its gain", "1/s");
-    curl.sum = curl.axial = true;
-    return {"curl",
-            "vorticity",
-            {{&field::position}, {&field::velocity}, {&field::lists}},
-            {curl},
-            CurlPass<float, ChunkedLists, 3>::gathers,
-            -1,
-            kLessConfinement};
-  }
-  template <class C>
-  static void launch(C& c) {
+  static constexpr PassText text{"curl", "vorticity", kLessConfinement};
+  using Needs = pbf::Needs<Gathers<field::position, W::inverse_density>, Gathers<field::velocity>,
+                           UsesLists, Writes<field::curl>>;
+  template <class G>
+  static void launch(const G& c) {
     with_dimensions(c.p.dimensions, [&](auto d) {
-      c.pairs(CurlPass<typename C::Real, typename C::Lists, decltype(d)::value>{
-          c.p, c.lists, c.position(), c.velocity(), c.vectors(field::curl)});
+      c.pairs(CurlPass<typename G::Real, typename G::Lists, decltype(d)::value>{
+          c.p, c.lists(), c[field::position], c[field::velocity], c[field::curl]});
     });
   }
 };
 
 struct Confine {
-  static PassInfo info() {
-    return {"confinement",
-            "vorticity",
-            {{&field::position}, {&field::curl}, {&field::lists}, {&field::velocity}},
-            {vector({&field::velocity}, "velocity", "h/s")},
-            VorticityPass<float, ChunkedLists, 3>::gathers,
-            -1,
-            kLessConfinement};
-  }
-  template <class C>
-  static void launch(C& c) {
+  static constexpr PassText text{"confinement", "vorticity", kLessConfinement};
+  using Needs = pbf::Needs<Gathers<field::position, W::inverse_density>, Gathers<field::curl>,
+                           UsesLists, Updates<field::velocity>>;
+  template <class G>
+  static void launch(const G& c) {
     with_dimensions(c.p.dimensions, [&](auto d) {
-      c.pairs(VorticityPass<typename C::Real, typename C::Lists, decltype(d)::value>{
-          c.p, c.lists, c.position(), c.vectors(field::curl), c.velocity()});
+      c.pairs(VorticityPass<typename G::Real, typename G::Lists, decltype(d)::value>{
+          c.p, c.lists(), c[field::position], c[field::curl], c[field::velocity]});
     });
   }
 };

@@ -8,72 +8,59 @@
 namespace pbf::inline PBF_VARIANT {
 
 struct Density {
-  static PassInfo info() {
-    return {"density",
-            "density",
-            {{&field::position}, {&field::lists}},
-            {{{&field::density}, Written::scalar, "density", "rho0", true}},
-            DensityPass<float, ChunkedLists, Smoothing::consistent, Box<float>>::gathers,
-            0};
-  }
-  template <class C>
-  static void launch(C& c) {
+  static constexpr PassText text{"density", "density"};
+  using Needs = pbf::Needs<Gathers<field::position>, UsesLists, Writes<field::density>, NearNeeds,
+                           NearSumNeeds>;
+  template <class G>
+  static void launch(const G& c) {
     c.with_smoothing([&](auto s) {
       each_then_near<false>(c, [&](const auto& boundary) {
-        return DensityPass<typename C::Real, typename C::Lists, decltype(s)::value,
-                           std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists, c.position(),
-                                                             c.density()};
+        return DensityPass<typename G::Real, typename G::Lists, decltype(s)::value,
+                           std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists(),
+                                                             c[field::position], c[field::density]};
       });
     });
   }
 };
 
-/// What a pass gathers is the same in every form of it.
-constexpr unsigned kLambdaGathers =
-    LambdaPass<float, ChunkedLists, Smoothing::consistent, true, Box<float>>::gathers;
+/// Velocities are those of the neighbors of marked particles, which are counted before anything
+/// else has moved.
+using LambdaNeeds = Needs<Gathers<field::position>, UsesLists,
+                          Reads<field::position, W::mark, When::first_iteration>,
+                          Gathers<field::velocity, W::any, When::first_iteration>, NearNeeds,
+                          NearSumNeeds, Writes<other<field::position>, W::lambda>>;
 
-template <bool with_density, class C>
-void launch_lambda(C& c) {
+template <bool with_density, class G>
+void launch_lambda(const G& c) {
   c.with_smoothing([&](auto s) {
     each_then_near<false>(c, [&](const auto& boundary) {
-      return LambdaPass<typename C::Real, typename C::Lists, decltype(s)::value, with_density,
-                        std::decay_t<decltype(boundary)>>{
-          c.p,         boundary,     c.lists,   c.position(), c.other(field::position),
-          c.density(), c.velocity(), c.counts()};
+      return LambdaPass<typename G::Real, typename G::Lists, decltype(s)::value, with_density,
+                        std::decay_t<decltype(boundary)>>{c.p,
+                                                          boundary,
+                                                          c.lists(),
+                                                          c[field::position],
+                                                          c[other<field::position>],
+                                                          c[field::density],
+                                                          c[field::velocity],
+                                                          c.context().counts()};
     });
   });
 }
-inline Written written_lambda() {
-  return {other(field::position), Written::fourth, "lambda", "h^2", true};
-}
 
 struct Lambda {
-  static PassInfo info() {
-    return {"lambda",
-            "lambda",
-            {{&field::position}, {&field::lists}, {&field::density}},
-            {written_lambda()},
-            kLambdaGathers,
-            0};
-  }
-  template <class C>
-  static void launch(C& c) {
+  static constexpr PassText text{"lambda", "lambda"};
+  using Needs = pbf::Needs<Reads<field::density>, LambdaNeeds>;
+  template <class G>
+  static void launch(const G& c) {
     launch_lambda<false>(c);
   }
 };
 
 struct DensityLambda {
-  static PassInfo info() {
-    return {"density+lambda",
-            "lambda",
-            {{&field::position}, {&field::lists}},
-            {{{&field::density}, Written::scalar, "density", "rho0", true, false, false, "density"},
-             written_lambda()},
-            kLambdaGathers,
-            1};
-  }
-  template <class C>
-  static void launch(C& c) {
+  static constexpr PassText text{"density+lambda", "lambda"};
+  using Needs = pbf::Needs<Writes<field::density>, LambdaNeeds>;
+  template <class G>
+  static void launch(const G& c) {
     launch_lambda<true>(c);
   }
 };

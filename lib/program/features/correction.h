@@ -8,40 +8,40 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-template <class C>
-void launch_delta(C& c, StepCounts* moves_on) {
+template <class G>
+void launch_delta(const G& c, StepCounts* moves_on) {
   auto p = c.p;
-  p.sor = c.sor();
+  p.sor = c.context().sor();
   c.with_smoothing([&](auto s) {
     with_bool(c.scene.tensile && c.scene.tensile->k != 0, [&](auto tensile) {
       with_level_move(c, [&](const auto& coarse) {
         each_then_near<true>(c, [&](const auto& boundary) {
-          return DeltaPass<typename C::Real, typename C::Lists, decltype(s)::value,
+          return DeltaPass<typename G::Real, typename G::Lists, decltype(s)::value,
                            decltype(tensile)::value, std::decay_t<decltype(coarse)>,
-                           std::decay_t<decltype(boundary)>>{
-              p,           boundary, c.lists,      c.other(field::position),
-              c.density(), c.ids(),  c.position(), c.velocity(),
-              moves_on,    coarse};
+                           std::decay_t<decltype(boundary)>>{p,
+                                                             boundary,
+                                                             c.lists(),
+                                                             c[other<field::position>],
+                                                             c[field::density],
+                                                             c[field::id],
+                                                             c[field::position],
+                                                             c[field::velocity],
+                                                             moves_on,
+                                                             coarse};
         });
       });
     });
   });
 }
-inline PassInfo delta_info(const char* name) {
-  return {name,
-          "delta",
-          {other(field::position), {&field::lists}, {&field::density}, {&field::velocity}},
-          {vector({&field::position}, "position", "h"),
-           {{&field::position}, Written::fourth, "1/density", "1/rho0"},
-           vector({&field::velocity}, "velocity", "h/s")},
-          DeltaPass<float, ChunkedLists, Smoothing::consistent, true, NoLevelMove<float>,
-                    Box<float>>::gathers};
-}
 
 struct Delta {
-  static PassInfo info() { return delta_info("delta"); }
-  template <class C>
-  static void launch(C& c) {
+  static constexpr PassText text{"delta", "delta"};
+  using Needs =
+      pbf::Needs<Gathers<other<field::position>, W::lambda>, UsesLists, Gathers<field::id>,
+                 Reads<field::density>, Writes<field::position, W::inverse_density>,
+                 Updates<field::velocity>, If<has_levels, LevelMoveNeeds>, NearSumNeeds, MoveNeeds>;
+  template <class G>
+  static void launch(const G& c) {
     launch_delta(c, nullptr);
   }
 };
@@ -49,10 +49,11 @@ struct Delta {
 /// Takes the particles to the next substep as well: the same arithmetic in one launch less.
 struct DeltaPredict {
   using Fuses = Pair<Delta, Predict>;
-  static PassInfo info() { return delta_info("delta+predict"); }
-  template <class C>
-  static void launch(C& c) {
-    launch_delta(c, c.counts());
+  static constexpr PassText text{"delta+predict", "delta"};
+  using Needs = Then<Delta::Needs, Predict::Needs>;
+  template <class G>
+  static void launch(const G& c) {
+    launch_delta(c, c.context().counts());
   }
 };
 

@@ -10,26 +10,27 @@
 
 namespace pbf::inline program_module::field {
 /// Of each particle, in the order of ids: bits say on which side of each flow gauge it is.
-inline constexpr FieldInfo flow_sides{"flow sides", Type::int32, 1, Rows::particles};
+inline constexpr struct FlowSides : Plain<int> {
+} flow_sides{{"flow sides", per_particle, Life::lists}};
 }  // namespace pbf::inline program_module::field
 
 namespace pbf::inline PBF_VARIANT {
 
 /// `count`: what has changed sides counts.
-template <class C>
-void take_sides(C& c, bool count) {
-  auto& g = c.gauges;
-  c.items(FlowPass<typename C::Real>{g.gate.data(), int(g.gate.size()), c.position(), c.ids(),
-                                     c.template data<int>(field::flow_sides),
+template <class G>
+void take_sides(const G& c, bool count) {
+  auto& g = c.context().gauges;
+  c.items(FlowPass<typename G::Real>{g.gate.data(), int(g.gate.size()), c[field::position],
+                                     c[field::id], c[field::flow_sides],
                                      count ? g.flow.data() : nullptr, double(c.p.update_dt)});
 }
 
 struct CountFlow {
-  static PassInfo info() {
-    return {"flow", "measure", {{&field::position}, {&field::id}}, {hidden({&field::flow_sides})}};
-  }
-  template <class C>
-  static void launch(C& c) {
+  static constexpr PassText text{"flow", "measure"};
+  using Needs = pbf::Needs<Reads<field::position>, Reads<field::id>, Reads<field::flow_sides>,
+                           Places<field::flow_sides>>;
+  template <class G>
+  static void launch(const G& c) {
     take_sides(c, true);
   }
 };

@@ -12,91 +12,95 @@
 
 namespace pbf::inline program_module::field {
 /// Of each particle the cell that it was in when the lists were made.
-inline constexpr FieldInfo level_home{"level home", Type::int32, 1, Rows::particles};
+inline constexpr struct LevelHome : Plain<int> {
+} level_home{{"level home", per_particle, Life::lists, false, Shown{"level cell"}}};
 /// Of each run, its first particle.
-inline constexpr FieldInfo run_start{"level run start", Type::int32, 1, Rows::runs};
+inline constexpr struct RunStart : Plain<int> {
+} run_start{{"level run start", per_run, Life::lists}};
 /// Of each cell: particles; sums, of particles while the lists are made, of C in iterations; what
 /// LevelFactorPass names, 1/h.
-inline constexpr FieldInfo cell_count{"level cell count", Type::int32, 1, Rows::cells};
-inline constexpr FieldInfo cell_sum{"level cell sum", Type::int64, 1, Rows::cells};
-inline constexpr FieldInfo cell_factor{"level factor", Type::real, 4, Rows::cells};
+inline constexpr struct CellCount : Plain<int> {
+} cell_count{{"level cell count", per_cell, Life::lists}};
+inline constexpr struct CellSum : Plain<std::int64_t> {
+} cell_sum{{"level cell sum", per_cell, Life::pass}};
+inline constexpr struct CellFactor : Vectors {
+} cell_factor{{"level factor", per_cell, Life::lists}};
 /// Of each brick's corners: shares of the sums.
-inline constexpr FieldInfo corner_sum{"level corner sum", Type::int64, 8, Rows::bricks};
+inline constexpr struct CornerSum : Plain<std::int64_t, 8> {
+} corner_sum{{"level corner sum", per_brick, Life::pass}};
 /// Of each node: WallBits of the walls under its hat; those and what coarser ones around it know;
 /// what it makes of the sum of C, the multiplier (h^2).
-inline constexpr FieldInfo node_walls{"level walls", Type::int32, 1, Rows::nodes};
-inline constexpr FieldInfo node_reach{"level reach", Type::int32, 1, Rows::nodes};
-inline constexpr FieldInfo node_answer{"level answer", Type::real, 1, Rows::nodes};
-inline constexpr FieldInfo multiplier{"level multiplier", Type::real, 1, Rows::nodes};
-/// Of each cell, h.
-inline constexpr FieldInfo level_move{"level move", Type::real, 4, Rows::cells};
+inline constexpr struct NodeWalls : Plain<int> {
+} node_walls{{"level walls", per_node, Life::lists}};
+inline constexpr struct NodeReach : Plain<int> {
+} node_reach{{"level reach", per_node, Life::lists}};
+inline constexpr struct NodeAnswer : Numbers {
+} node_answer{{"level answer", per_node, Life::lists}};
+inline constexpr struct Multiplier : Numbers {
+} multiplier{{"level multiplier", per_node, Life::pass}};
+/// Of each cell, h. Its grain is kExcessUnit of one particle among those around a node.
+inline constexpr struct LevelMoves : Vectors {
+} level_move{
+    {"level move", per_cell, Life::pass, false,
+     Shown{.quantity = "level displacement", .unit = "h", .row = &level_home, .grain = 4e-12}}};
 }  // namespace pbf::inline program_module::field
 
 namespace pbf::inline PBF_VARIANT {
 
+inline bool has_levels(const Scene& s) { return why_no_levels(s) == nullptr; }
+inline bool has_open_faces(const Scene& s) { return !s.domain.open.empty(); }
+
+using LevelMoveNeeds = Needs<Reads<field::level_home>, Looks<field::level_move>>;
 /// f(LevelMove or NoLevelMove) of the scene.
-template <class C, class F>
-void with_level_move(C& c, F&& f) {
-  using Real = typename C::Real;
-  if (c.levels.all.count == 0) return f(NoLevelMove<Real>{});
-  f(LevelMove<Real>{c.template data<int>(field::level_home), c.vectors(field::level_move)});
+template <class G, class F>
+void with_level_move(const G& c, F&& f) {
+  using Real = typename G::Real;
+  if (c.context().levels.all.count == 0) return f(NoLevelMove<Real>{});
+  f(LevelMove<Real>{c[field::level_home], c[field::level_move]});
 }
 
 /// Over cells and bricks, and what lies at their corners.
-template <class C>
-LevelSums level_sums(C& c) {
-  LevelSums sums{c.levels.all,
-                 {{}, true, c.template data<std::int64_t>(field::cell_sum)},
-                 {{}, false, c.template data<std::int64_t>(field::corner_sum)}};
+inline LevelSums level_sums(const LevelPlan& l, std::int64_t* cell_sum, std::int64_t* corner_sum) {
+  LevelSums sums{l.all, {{}, true, cell_sum}, {{}, false, corner_sum}};
   for (int k = 0; k < 3; ++k) {
-    sums.cells.grid.nodes[k] = c.levels.grid.cells[k];
-    sums.corners.grid.nodes[k] = 2 * c.levels.grid.bricks(k);
+    sums.cells.grid.nodes[k] = l.grid.cells[k];
+    sums.corners.grid.nodes[k] = 2 * l.grid.bricks(k);
   }
   return sums;
 }
-template <class C>
-const int* homes_beside_open_faces(C& c) {
-  return c.scene.domain.open.empty() ? nullptr : c.template data<int>(field::level_home);
-}
 
-/// Who is in which cell, and what each node makes of its sum: as long as the lists.
+/// Which cell holds which particles, and what each node makes of the sums around it. Holds as long
+/// as the lists.
 struct LevelCellsAndNodes {
-  static PassInfo info() {
-    return {"level cells",
-            "levels",
-            {{&field::position}, {&field::bin_start}},
-            {{{&field::level_home}, Written::scalar, "level cell"},
-             hidden({&field::run_start}),
-             hidden({&field::cell_count}),
-             hidden({&field::cell_sum}),
-             hidden({&field::cell_factor}),
-             hidden({&field::corner_sum}),
-             hidden({&field::node_walls}),
-             hidden({&field::node_reach}),
-             hidden({&field::node_answer})}};
-  }
-  template <class C>
-  static void launch(C& c) {
-    using Real = typename C::Real;
-    const LevelPlan& l = c.levels;
-    int* walls = c.template data<int>(field::node_walls);
-    int* reach = c.template data<int>(field::node_reach);
-    int* count = c.template data<int>(field::cell_count);
+  static constexpr PassText text{"level cells", "levels"};
+  using Needs =
+      pbf::Needs<If<has_open_faces, Reads<field::position>>, Looks<field::bin_start>,
+                 Places<field::level_home>, Places<field::run_start>, Places<field::cell_count>,
+                 Places<field::cell_sum>, Places<field::cell_factor>, Places<field::corner_sum>,
+                 Places<field::node_walls>, Places<field::node_reach>, Places<field::node_answer>>;
+  template <class G>
+  static void launch(const G& c) {
+    using Real = typename G::Real;
+    auto& parts = c.context();
+    const LevelPlan& l = parts.levels;
+    int* walls = c[field::node_walls];
+    int* reach = c[field::node_reach];
+    int* count = c[field::cell_count];
     with_dimensions(c.p.dimensions, [&](auto d) {
       c.bricks(LevelHomePass<Real, decltype(d)::value>{
-          {l.grid, c.template data<std::int64_t>(field::corner_sum)},
+          {l.grid, c[field::corner_sum]},
           c.p,
-          c.template data<int>(field::bin_start),
-          c.scene.domain.open.empty() ? nullptr : c.position(),
-          c.scene.obstacles.empty() ? nullptr : c.solids().around,
-          c.template data<int>(field::run_start),
-          c.template data<int>(field::level_home),
+          c[field::bin_start],
+          has_open_faces(c.scene) ? c[field::position].rows() : nullptr,
+          c.scene.obstacles.empty() ? nullptr : parts.solids().around,
+          c[field::run_start],
+          c[field::level_home],
           count,
-          c.template data<std::int64_t>(field::cell_sum)});
+          c[field::cell_sum]});
     });
-    const LevelSums sums = level_sums(c);
+    const LevelSums sums = level_sums(l, c[field::cell_sum], c[field::corner_sum]);
     c.teams(LevelNodePass<Real>{sums, c.p.boundary.walls, l.beta * l.grid.edge * l.grid.edge,
-                                c.template data<Real>(field::node_answer), walls});
+                                c[field::node_answer], walls});
     const LevelReachPass reached{l.all, walls, reach};
     c.shared(reached.items(), reached);
     const auto over = [&](int k) { return l.gamma / l.grid.last[k]; };
@@ -107,67 +111,52 @@ struct LevelCellsAndNodes {
                                                  count,
                                                  walls,
                                                  reach,
-                                                 c.vectors(field::cell_factor)});
+                                                 c[field::cell_factor]});
   }
 };
 
 struct LevelMultipliers {
-  static PassInfo info() {
-    return {"level multipliers",
-            "levels",
-            {{&field::density},
-             {&field::run_start},
-             {&field::level_home},
-             {&field::node_answer},
-             {&field::cell_factor}},
-            {hidden({&field::cell_sum}), hidden({&field::corner_sum}), hidden({&field::multiplier}),
-             move()}};
-  }
-  static Written move() {
-    Written w = vector({&field::level_move}, "level displacement", "h");
-    w.row = &field::level_home;
-    w.grain = 4e-12;  // kExcessUnit of one particle among those around a node
-    return w;
-  }
-  template <class C>
-  static void launch(C& c) {
-    using Real = typename C::Real;
-    const LevelPlan& l = c.levels;
-    auto* multiplier = c.template data<Real>(field::multiplier);
+  static constexpr PassText text{"level multipliers", "levels"};
+  using Needs =
+      pbf::Needs<Reads<field::density>, Looks<field::run_start>,
+                 If<has_open_faces, Reads<field::level_home>>, Looks<field::node_answer>,
+                 Looks<field::cell_factor>, Places<field::cell_sum>, Places<field::corner_sum>,
+                 Places<field::multiplier>, Places<field::level_move>>;
+  template <class G>
+  static void launch(const G& c) {
+    using Real = typename G::Real;
+    const LevelPlan& l = c.context().levels;
+    Real* multiplier = c[field::multiplier];
     with_dimensions(c.p.dimensions, [&](auto d) {
       c.bricks(LevelSumPass<Real, decltype(d)::value>{
-          {l.grid, c.template data<std::int64_t>(field::corner_sum)},
-          c.template data<int>(field::run_start),
-          homes_beside_open_faces(c),
-          c.density(),
-          c.template data<std::int64_t>(field::cell_sum)});
+          {l.grid, c[field::corner_sum]},
+          c[field::run_start],
+          has_open_faces(c.scene) ? c[field::level_home].rows() : nullptr,
+          c[field::density].rows(),
+          c[field::cell_sum]});
     });
-    const LevelSums sums = level_sums(c);
-    c.teams(LevelMultiplierPass<Real>{sums, c.template data<Real>(field::node_answer), multiplier});
-    c.items(l.grid.size(),
-            LevelMovePass<Real>{l.all, l.grid, multiplier, c.vectors(field::cell_factor),
-                                c.vectors(field::level_move)});
+    const LevelSums sums = level_sums(l, c[field::cell_sum], c[field::corner_sum]);
+    c.teams(LevelMultiplierPass<Real>{sums, c[field::node_answer], multiplier});
+    c.items(l.grid.size(), LevelMovePass<Real>{l.all, l.grid, multiplier, c[field::cell_factor],
+                                               c[field::level_move]});
   }
 };
 
 /// Behind the multipliers, where loads are asked for.
 struct BookLevels {
-  static PassInfo info() {
-    return {"loads of the levels",
-            "measure",
-            {{&field::multiplier}, {&field::cell_factor}, {&field::cell_count}},
-            {hidden({&field::load_sums})}};
-  }
-  template <class C>
-  static void launch(C& c) {
-    using Real = typename C::Real;
+  static constexpr PassText text{"loads of the levels", "measure"};
+  using Needs = pbf::Needs<Looks<field::multiplier>, Looks<field::cell_factor>,
+                           Looks<field::cell_count>, Adds<field::load_sums>>;
+  template <class G>
+  static void launch(const G& c) {
+    using Real = typename G::Real;
     if (!(c.p.dt > 0)) return;
-    const LevelPlan& l = c.levels;
-    c.items(
-        l.all.level[0].size(),
-        LevelLoadPass<Real>{l.all, l.grid, c.template data<Real>(field::multiplier),
-                            c.vectors(field::cell_factor), c.template data<int>(field::cell_count),
-                            c.p.boundary.extent, load_book(c)});
+    auto& parts = c.context();
+    const LevelPlan& l = parts.levels;
+    c.items(l.all.level[0].size(),
+            LevelLoadPass<Real>{l.all, l.grid, c[field::multiplier], c[field::cell_factor],
+                                c[field::cell_count], c.p.boundary.extent,
+                                load_book(parts, c[field::load_sums].sums())});
   }
 };
 
@@ -176,7 +165,7 @@ struct Levels {
   template <class B>
   static void add(const Scene& s, B& b) {
     if (const char* why = why_no_levels(s)) return b.left_out("levels: grids coarser than h", why);
-    b.template lists<LevelCellsAndNodes>();
+    b.template lists<LevelCellsAndNodes>(true);
     b.template iteration<LevelMultipliers>();
     if (has_wall_loads(s)) b.template iteration<BookLevels>();
   }

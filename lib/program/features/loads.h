@@ -12,7 +12,8 @@
 
 namespace pbf::inline program_module::field {
 /// Of each wall kLoadParts times LoadSums; 0 between two updates.
-inline constexpr FieldInfo load_sums{"load sums", Type::int64, 6 * kLoadParts, Rows::walls};
+inline constexpr struct LoadRows : Plain<LoadSums, kLoadParts, std::int64_t> {
+} load_sums{{"load sums", per_wall, Life::update}};
 }  // namespace pbf::inline program_module::field
 
 namespace pbf::inline PBF_VARIANT {
@@ -25,26 +26,26 @@ double moment_unit(const Box<Real>& box) {
   return std::exp2(std::ceil(std::log2(longest)));
 }
 
+/// Of a pass that books loads.
+using BookNeeds = If<has_loads, Adds<field::load_sums>>;
+
+/// sums: null, or those of the scene.
 template <class C>
-LoadSums* load_sums(C& c) {
-  return c.template data<LoadSums>(field::load_sums);
-}
-template <class C>
-LoadBook<typename C::Real> load_book(C& c) {
-  return {load_sums(c), typename C::Real(1 / moment_unit(c.p.boundary)), c.gauges.patch.data(),
+LoadBook<typename C::Real> load_book(C& c, LoadSums* sums) {
+  return {sums, typename C::Real(1 / moment_unit(c.p.boundary)), c.gauges.patch.data(),
           int(c.gauges.patch.size()), summed_walls(c.scene)};
 }
 
 struct SumLoads {
-  static PassInfo info() {
-    return {"loads", "measure", {{&field::load_sums}}, {hidden({&field::load_sums})}};
-  }
-  template <class C>
-  static void launch(C& c) {
-    c.items(
-        int(load_walls(c.scene)),
-        LoadPass{load_sums(c), c.loads(), double(c.p.inv_dt), double(c.p.update_dt),
-                 moment_unit(c.p.boundary), c.moving().velocity(), int(c.scene.obstacles.size())});
+  static constexpr PassText text{"loads", "measure"};
+  using Needs = pbf::Needs<Updates<field::load_sums>>;
+  template <class G>
+  static void launch(const G& c) {
+    auto& parts = c.context();
+    c.items(int(load_walls(c.scene)),
+            LoadPass{c[field::load_sums].rows(), parts.loads(), double(c.p.inv_dt),
+                     double(c.p.update_dt), moment_unit(c.p.boundary), parts.moving().velocity(),
+                     int(c.scene.obstacles.size())});
   }
 };
 

@@ -11,79 +11,73 @@ namespace pbf::inline PBF_VARIANT {
 
 /// Where what moves goes in the step to come; of scenes in which something does.
 struct MoveSolids {
-  static PassInfo info() { return {"motion", "predict", {}, {hidden({&field::motion})}}; }
-  template <class C>
-  static void launch(C& c) {
-    c.items(1, c.moving().pass(c.placed()));
+  static constexpr PassText text{"motion", "predict"};
+  using Needs = pbf::Needs<Writes<field::motion>>;
+  template <class G>
+  static void launch(const G& c) {
+    auto& parts = c.context();
+    c.items(1, parts.moving().pass(parts.placed()));
   }
 };
 
 /// x* and the velocity that goes with it, in place.
 struct Predict {
-  static PassInfo info() {
-    return {"predict",
-            "predict",
-            {{&field::position}, {&field::velocity}},
-            {vector({&field::position}, "position", "h"),
-             vector({&field::velocity}, "velocity", "h/s")}};
-  }
-  template <class C>
-  static void launch(C& c) {
-    with_boundary(c, [&](const auto& boundary) {
-      c.items(MovePass<typename C::Real, std::decay_t<decltype(boundary)>>{
-          c.p, boundary, c.position(), c.velocity(), c.counts()});
+  static constexpr PassText text{"predict", "predict"};
+  using Needs = pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>, MoveNeeds>;
+  template <class G>
+  static void launch(const G& c) {
+    auto& parts = c.context();
+    with_boundary(parts, [&](const auto& boundary) {
+      c.items(MovePass<typename G::Real, std::decay_t<decltype(boundary)>>{
+          c.p, boundary, c[field::position], c[field::velocity], parts.counts()});
     });
   }
 };
 
-inline PassInfo sort_info(const char* name) {
-  std::vector<Access> reads{{&field::position}, {&field::velocity}, {&field::id}};
-  std::vector<Written> writes{{{&field::bin}, Written::scalar, "bin"},
-                              hidden({&field::order}),
-                              hidden({&field::bin_start}),
-                              vector({&field::position}, "position", "h"),
-                              vector({&field::velocity}, "velocity", "h/s"),
-                              hidden({&field::id})};
-  writes[0].before_sort = true;
-  return {name, "grid", std::move(reads), std::move(writes)};
-}
+/// What a sort does besides with positions. Rows as they were are in the second arrays. Where its
+/// order stands is the executor's choice.
+using GatherNeeds = Needs<Writes<field::bin>, Places<field::order>, Places<field::bin_start>,
+                          Looks<other<field::id>>, Places<field::id>, Places<field::velocity>>;
 
 /// Runs `first`, the pass that gives every particle its bin, and `listed`, which gives it to those
 /// that the first leaves out; then puts the particles in the order of bins.
-template <class C, class First, class Gather, class Listed>
-void sort_rows(C& c, const char* stage, const First& first, const Gather& gather,
+template <class G, class First, class Gather, class Listed>
+void sort_rows(const G& c, const char* stage, const First& first, const Gather& gather,
                const Listed& listed) {
-  c.exec.sort_by_bin(c.booked(stage), first, listed, c.rows(), bin_count(c.p), c.ids(),
-                     c.sort_order(), c.template data<int>(field::bin_start), gather);
-  c.flip(field::position);
-  c.flip(field::velocity);
-  c.flip(field::id);
+  auto& parts = c.context();
+  parts.exec.sort_by_bin(parts.booked(stage), first, listed, c.rows(), bin_count(c.p),
+                         c[other<field::id>], parts.sort_order(), c[field::bin_start], gather);
 }
-template <bool moving, class C, class Boundary>
-auto gather_pass(C& c, const Boundary& boundary) {
-  return GatherPass<typename C::Real, Boundary, moving>{c.p,
+/// velocity, velocity_out: the arrays that it gathers from and into.
+template <bool moving, class G, class Boundary, class Vectors>
+auto gather_pass(const G& c, const Boundary& boundary, const Vectors* velocity,
+                 Vectors* velocity_out) {
+  return GatherPass<typename G::Real, Boundary, moving>{c.p,
                                                         boundary,
-                                                        c.position(),
-                                                        c.velocity(),
-                                                        c.ids(),
-                                                        c.other(field::position),
-                                                        c.other(field::velocity),
-                                                        c.template other_data<int>(field::id),
-                                                        c.counts()};
+                                                        c[other<field::position>],
+                                                        velocity,
+                                                        c[other<field::id>],
+                                                        c[field::position],
+                                                        velocity_out,
+                                                        c[field::id],
+                                                        c.context().counts()};
 }
-/// With particles as predicted from c.position() and c.velocity().
-template <class C, class First>
-void sort_predicted(C& c, const char* stage, const First& first) {
-  using Real = typename C::Real;
-  const auto gather = gather_pass<true>(c, first.boundary);
+/// With particles as predicted from where they are.
+template <class G, class First, class Vectors>
+void sort_predicted(const G& c, const char* stage, const First& first, Vectors* velocity,
+                    Vectors* velocity_out) {
+  using Real = typename G::Real;
+  using Rows = OwnRows<Vec4<Real>>;
+  const auto gather = gather_pass<true>(c, first.boundary, velocity, velocity_out);
   if constexpr (First::leaves_rows)
     with_dimensions(c.p.dimensions, [&](auto d) {
-      const Solids<Real> solids = solids_of(c);
+      auto& parts = c.context();
+      const Solids<Real> solids = solids_of(parts);
       sort_rows(c, stage, first, gather,
                 Listed<NearPredictPass<Real, decltype(d)::value>>{
                     solids.near.way_left_squared ? solids.near.count : nullptr,
-                    {c.p, solids, c.position(), c.velocity(), c.template data<int>(field::bin),
-                     c.counts()}});
+                    {c.p, solids, Rows(c[other<field::position>]), Rows(velocity),
+                     c[field::bin].rows(), parts.counts()}});
     });
   else
     sort_rows(c, stage, first, gather, NothingListed{});
@@ -91,46 +85,60 @@ void sort_predicted(C& c, const char* stage, const First& first) {
 
 /// The positions as they are.
 struct Sort {
-  static PassInfo info() { return sort_info("sort"); }
-  template <class C>
-  static void launch(C& c) {
+  static constexpr PassText text{"sort", "grid"};
+  using Flips = pbf::Flips<field::position, field::velocity, field::id>;
+  using Needs = pbf::Needs<Looks<other<field::position>>, Looks<other<field::velocity>>,
+                           Writes<field::bin>, Places<field::position>, GatherNeeds>;
+  template <class G>
+  static void launch(const G& c) {
+    using Real = typename G::Real;
     with_dimensions(c.p.dimensions, [&](auto d) {
-      sort_rows(c, "predict",
-                BinPass<typename C::Real, decltype(d)::value>{c.p, c.position(),
-                                                              c.template data<int>(field::bin)},
-                gather_pass<false>(c, c.p.boundary), NothingListed{});
+      sort_rows(
+          c, "predict",
+          BinPass<Real, decltype(d)::value>{
+              c.p, OwnRows<const Vec4<Real>>(c[other<field::position>]), c[field::bin].rows()},
+          gather_pass<false>(c, c.p.boundary, c[other<field::velocity>], c[field::velocity]),
+          NothingListed{});
     });
   }
 };
+
+/// The near rows are predicted in place, before the others.
+using SortPredictedNeeds =
+    Needs<Looks<other<field::position>>, If<has_solids, Places<other<field::position>>>,
+          Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, MoveNeeds>;
 
 /// x* is computed for its bin, and once more where the particles are gathered, which is cheaper
 /// than writing and reading it.
 struct PredictSort {
   using Fuses = Pair<Predict, Sort>;
-  static PassInfo info() { return sort_info("predict+sort"); }
-  template <class C>
-  static void launch(C& c) {
+  static constexpr PassText text{"predict+sort", "grid"};
+  using Flips = Sort::Flips;
+  using Needs = pbf::Needs<SortPredictedNeeds, Looks<other<field::velocity>>,
+                           If<has_solids, Places<other<field::velocity>>>>;
+  template <class G>
+  static void launch(const G& c) {
+    using Real = typename G::Real;
+    using Rows = OwnRows<const Vec4<Real>>;
     with_dimensions(c.p.dimensions, [&](auto d) {
-      with_far_boundary(c, [&](const auto& boundary) {
-        sort_predicted(
-            c, "predict",
-            PredictPass<typename C::Real, std::decay_t<decltype(boundary)>, decltype(d)::value>{
-                c.p, boundary, c.position(), c.velocity(), c.template data<int>(field::bin)});
+      with_far_boundary(c.context(), [&](const auto& boundary) {
+        Vec4<Real>* velocity = c[other<field::velocity>];
+        sort_predicted(c, "predict",
+                       PredictPass<Real, std::decay_t<decltype(boundary)>, decltype(d)::value>{
+                           c.p, boundary, Rows(c[other<field::position>]), Rows(velocity),
+                           c[field::bin].rows()},
+                       velocity, c[field::velocity]);
       });
     });
   }
 };
 
 struct MakeLists {
-  static PassInfo info() {
-    return {"lists",
-            "neighbors",
-            {{&field::position}, {&field::bin_start}},
-            {{{&field::lists}, Written::pairs}}};
-  }
-  template <class C>
-  static void launch(C& c) {
-    c.make_lists();
+  static constexpr PassText text{"lists", "neighbors"};
+  using Needs = pbf::Needs<Gathers<field::position>, Looks<field::bin_start>, MakesLists>;
+  template <class G>
+  static void launch(const G& c) {
+    c.context().make_lists();
   }
 };
 

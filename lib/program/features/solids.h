@@ -8,11 +8,22 @@
 
 namespace pbf::inline program_module::field {
 /// See kernels/boundary/near_rows.h.
-inline constexpr FieldInfo near_room{"room", Type::real, 1, Rows::padded};
-inline constexpr FieldInfo near_row{"near rows", Type::int32, 1, Rows::particles};
+inline constexpr struct NearRoom : Numbers {
+} near_room{{"room", per_padded_row, Life::lists}};
+inline constexpr struct NearRow : Plain<int> {
+} near_row{{"near rows", per_particle, Life::lists}};
 }  // namespace pbf::inline program_module::field
 
 namespace pbf::inline PBF_VARIANT {
+
+inline bool has_obstacles(const Scene& s) { return !s.obstacles.empty(); }
+/// Of a pass over neighbors that leaves near rows to a second launch. Their sums over neighbors lie
+/// in the other array of velocities.
+using NearNeeds = If<has_obstacles, Reads<field::near_room>, Looks<field::near_row>>;
+using NearSumNeeds = If<has_obstacles, Updates<other<field::velocity>>>;
+/// Of a pass that moves particles: rows come near, and what solids do to them is booked.
+using MoveNeeds =
+    Needs<If<has_solids, Updates<field::near_room>, Places<field::near_row>>, BookNeeds>;
 
 /// Of the present state: arrays are flipped, walls may be those of steps without time.
 template <class C>
@@ -21,7 +32,7 @@ Solids<typename C::Real> solids_of(C& c) {
   static_cast<Box<typename C::Real>&>(solids) = c.p.boundary;
   solids.loaded = has_wall_loads(c.scene);
   solids.booked = has_loads(c.scene) && c.p.dt > 0;
-  solids.near.sums = c.other(field::velocity);
+  solids.near.sums = c.template data<Vec4<typename C::Real>>(other<field::velocity>);
   if (!(c.p.dt > 0)) solids.frame = nullptr;
   // A far row is farther from what it can meet than the range of the walls' density.
   const auto way = c.p.dt * c.p.boundary.inv_range;
@@ -46,11 +57,12 @@ void with_far_boundary(C& c, F&& f) {
 /// Launches make(boundary), a pass over neighbours: once for all particles, and where there is more
 /// than plain walls once more for those near it. moves: the pass moves particles, so that loads are
 /// booked in it.
-template <bool moves, class C, class Make>
-void each_then_near(C& c, Make&& make) {
-  using Real = typename C::Real;
-  if (!c.solids().around) return c.pairs(make(c.p.boundary));
-  const Solids<Real> solids = solids_of(c);
+template <bool moves, class G, class Make>
+void each_then_near(const G& c, Make&& make) {
+  using Real = typename G::Real;
+  auto& parts = c.context();
+  if (!parts.solids().around) return c.pairs(make(c.p.boundary));
+  const Solids<Real> solids = solids_of(parts);
   if (!solids.obstacles && !(moves && solids.loaded)) return c.pairs(make(c.p.boundary));
   const auto far = make(FarBox<Real>(solids));
   const auto near = make(solids);
@@ -59,24 +71,22 @@ void each_then_near(C& c, Make&& make) {
 }
 
 struct FindNear {
-  static PassInfo info() {
-    return {"near solids",
-            "neighbors",
-            {{&field::position}},
-            {hidden({&field::near_room}), hidden({&field::near_row})}};
-  }
-  template <class C>
-  static void launch(C& c) {
-    using Real = typename C::Real;
-    const Solids<Real> solids = solids_of(c);
+  static constexpr PassText text{"near solids", "neighbors"};
+  using Needs = pbf::Needs<Reads<field::position>, Looks<field::bin_start>,
+                           Updates<field::near_room>, Places<field::near_row>>;
+  template <class G>
+  static void launch(const G& c) {
+    using Real = typename G::Real;
+    auto& parts = c.context();
+    const Solids<Real> solids = solids_of(parts);
     c.listed(solids.near.count, ForgetNearPass<Real>{solids.near});
     c.items(1, ClearNearPass<Real>{solids.near});
-    if (const auto& cells = c.near_half_cells(); cells.size() > 0)
-      c.items(int(cells.size()), FindNearPass<Real>{solids, c.position(), cells.data(),
-                                                    c.template data<int>(field::bin_start),
-                                                    bins_per_cell(c.p.dimensions)});
+    if (const auto& cells = parts.near_half_cells(); cells.size() > 0)
+      c.items(int(cells.size()),
+              FindNearPass<Real>{solids, c[field::position].rows(), cells.data(),
+                                 c[field::bin_start], bins_per_cell(c.p.dimensions)});
     else
-      c.items(FindNearPass<Real>{solids, c.position()});
+      c.items(FindNearPass<Real>{solids, c[field::position].rows()});
   }
 };
 

@@ -6,44 +6,49 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// The velocities come out in the other array, and the arrays trade places. bin: null, or where the
-/// particles' bins in the next update go.
-template <class C, class Use>
-void with_xsph(C& c, int* bin, const Use& use) {
-  c.flip(field::velocity);
+inline constexpr const char* kLessXsph = "lower viscosity.xsph";
+
+/// use(the pass from velocities into others). bin: null, or where the particles' bins in the next
+/// update go.
+template <class G, class Rows, class Use>
+void with_xsph(const G& c, GatheredRows<Rows> position, GatheredRows<Rows> velocity,
+               OwnRows<Rows> velocity_out, int* bin, const Use& use) {
   c.with_smoothing([&](auto s) {
-    with_far_boundary(c, [&](const auto& boundary) {
-      use(XsphPass<typename C::Real, typename C::Lists, decltype(s)::value,
-                   std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists, c.position(),
-                                                     c.other(field::velocity), c.velocity(), bin});
+    with_far_boundary(c.context(), [&](const auto& boundary) {
+      use(XsphPass<typename G::Real, typename G::Lists, decltype(s)::value,
+                   std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists(), position, velocity,
+                                                     velocity_out, bin});
     });
   });
 }
-inline PassInfo xsph_info(PassInfo writes, const char* name) {
-  writes.name = name;
-  writes.reads = {{&field::position}, {&field::velocity}, {&field::lists}};
-  writes.gathers = XsphPass<float, ChunkedLists, Smoothing::consistent, Box<float>>::gathers;
-  writes.remedy = "lower viscosity.xsph";
-  return writes;
-}
 
 struct Xsph {
-  static PassInfo info() {
-    return xsph_info({"", "xsph", {}, {vector({&field::velocity}, "velocity", "h/s")}}, "xsph");
-  }
-  template <class C>
-  static void launch(C& c) {
-    with_xsph(c, nullptr, [&](const auto& pass) { c.pairs(pass); });
+  static constexpr PassText text{"xsph", "xsph", kLessXsph};
+  using Flips = pbf::Flips<field::velocity>;
+  using Needs = pbf::Needs<Gathers<field::position, W::inverse_density>,
+                           Gathers<other<field::velocity>>, UsesLists, Writes<field::velocity>>;
+  template <class G>
+  static void launch(const G& c) {
+    with_xsph(c, c[field::position], c[other<field::velocity>], c[field::velocity], nullptr,
+              [&](const auto& pass) { c.pairs(pass); });
   }
 };
 
+/// The velocities go into the other array, and the sort takes them back.
 struct XsphPredictSort {
   using Fuses = Pair<Xsph, PredictSort>;
-  static PassInfo info() { return xsph_info(sort_info(""), "xsph+predict+sort"); }
-  template <class C>
-  static void launch(C& c) {
-    with_xsph(c, c.template data<int>(field::bin),
-              [&](const auto& pass) { sort_predicted(c, "xsph", pass); });
+  static constexpr PassText text{"xsph+predict+sort", "xsph", kLessXsph};
+  using Flips = pbf::Flips<field::position, field::id>;
+  using Needs = pbf::Needs<Gathers<other<field::position>, W::inverse_density>, SortPredictedNeeds,
+                           Gathers<field::velocity>, UsesLists, Places<other<field::velocity>>>;
+  template <class G>
+  static void launch(const G& c) {
+    using Rows = Vec4<typename G::Real>;
+    Rows *position = c[other<field::position>], *from = c[field::velocity],
+         *to = c[other<field::velocity>];
+    with_xsph(c, GatheredRows<Rows>(position), GatheredRows<Rows>(from), OwnRows<Rows>(to),
+              c[field::bin].rows(),
+              [&](const auto& pass) { sort_predicted(c, "xsph", pass, to, from); });
   }
 };
 

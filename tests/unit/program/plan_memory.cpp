@@ -103,7 +103,7 @@ TEST_CASE("every stage that the plan names runs as often as it says, and no othe
     const Made m = make(0.1, f, updates);
     std::set<std::string> planned{"init", "measure"}, ran;
     std::map<std::string, int> times;
-    for (const PassCount& c : count_passes(m.plan.program.update)) {
+    for (const PassCount& c : count_passes(m.plan.program, m.plan.program.update)) {
       planned.insert(c.pass->stage);
       times[c.pass->stage] += c.times;
     }
@@ -233,8 +233,9 @@ TEST_CASE("the plan says what each pass over pairs reads of the neighbours' rows
   const Scene s = block(0.1, {"viscosity={}", "vorticity={}", "tensile={}"});
   const Plan plan = make_plan(s, 1000);
   std::vector<std::string> gathers;
-  for (const auto& [pass, times] : count_passes(plan.program.update))
-    if (pass->gathers) gathers.push_back(std::string(pass->stage) + ": " + gathers_text(*pass));
+  for (const auto& [pass, times] : count_passes(plan.program, plan.program.update))
+    if (pass->over_pairs())
+      gathers.push_back(std::string(pass->stage) + ": " + gathers_text(*pass));
   CHECK(gathers == std::vector<std::string>{"lambda: position", "delta: position lambda id",
                                             "xsph: position 1/density velocity",
                                             "vorticity: position 1/density velocity",

@@ -71,12 +71,12 @@ TEST_CASE("program: passes are counted as often as they run at most, with what t
                            {"delta", 5},
                            {"delta+predict", 1}});
   const Program p = program_of("", {}, {2, 2, 4});
-  CHECK(counts_of(count_passes(p.update)) == std::vector<Count>{{"predict", 2},
-                                                                {"sort", 2},
-                                                                {"lists", 2},
-                                                                {"density+lambda", 30},
-                                                                {"delta", 30},
-                                                                {"mean compression", 8}});
+  CHECK(counts_of(count_passes(p, p.update)) == std::vector<Count>{{"predict", 2},
+                                                                   {"sort", 2},
+                                                                   {"lists", 2},
+                                                                   {"density+lambda", 30},
+                                                                   {"delta", 30},
+                                                                   {"mean compression", 8}});
 }
 
 TEST_CASE("program: the arrays are those of its passes, each once, and those of every solver") {
@@ -110,14 +110,14 @@ TEST_CASE("program: the arrays are those of its passes, each once, and those of 
 
 TEST_CASE("program: the fused passes are those of the table, and names tell all passes apart") {
   std::set<std::string> names;
-  for (const PassInfo& pass : pass_infos()) CHECK(names.insert(pass.name).second);
+  for (const PassText& pass : pass_texts()) CHECK(names.insert(pass.name).second);
   std::set<std::string> found, expected;
   for (const auto& [both, first, second] : test::kFusedPasses)
     expected.insert(both + " = " + first + " + " + second);
   for (int a = 0; a < Passes::size; ++a)
     for (int b = 0; b < Passes::size; ++b)
       if (const int both = Passes::fused(a, b); both >= 0) {
-        const auto name = [](int k) { return std::string(pass_infos()[std::size_t(k)].name); };
+        const auto name = [](int k) { return std::string(pass_texts()[std::size_t(k)].name); };
         found.insert(name(both) + " = " + name(a) + " + " + name(b));
       }
   CHECK(found == expected);

@@ -45,7 +45,7 @@ std::string advice(const Scene& s, const Diagnostics* start, Alarm alarm,
   e.alarm = alarm;
   e.measure = w.first;
   e.stage = StageEvent{alarm, 3, stage, "", 0, 5, {}, {}, 1};
-  for (const PassInfo& pass : pass_infos())
+  for (const PassText& pass : pass_texts())
     if (pass.stage == stage) e.stage->remedy = pass.remedy;
   const std::string text = guard.text(e);
   return text.substr(text.find("To help: "));

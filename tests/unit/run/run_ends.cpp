@@ -19,7 +19,7 @@ TEST_CASE("an alarm without a way back ends a run with 3, and the checkpoint bef
   CHECK(contains(error, "guard_state.h5 the last good state (update 6)"));
   CHECK(r.run.status == "diverged");
   CHECK(r.status() == "diverged");
-  CHECK(r.frames() == Updates{0, 3, 6, 7});
+  CHECK(r.frames() == UpdateNumbers{0, 3, 6, 7});
   CHECK(r.saved().value().state.updates == 6);
   for (const char* name : {"guard_state.h5", "guard_scene.yaml"}) CHECK(r.folder.has(name));
 }
@@ -46,7 +46,7 @@ TEST_CASE("a strict run stops at its first warning, after saving, and ends with 
   CHECK(contains(error, "hold the run up to update 4 of 10"));
   CHECK(r.run.stop_reason == "--strict");
   CHECK(r.saved().value().state.updates == 4);
-  CHECK(r.frames() == Updates{0, 3, 4});
+  CHECK(r.frames() == UpdateNumbers{0, 3, 4});
 }
 
 TEST_CASE("a disk that fills up ends a run with 5, and no checkpoint is ahead of the frames") {
@@ -91,7 +91,7 @@ TEST_CASE("a checkpoint that cannot be written ends a run with 5, whose frames a
   const std::string error = r.error();
   CHECK(error.rfind("5 ", 0) == 0);
   CHECK(contains(error, "cannot write the checkpoint"));
-  CHECK(r.frames() == Updates{0, 3});
+  CHECK(r.frames() == UpdateNumbers{0, 3});
   CHECK(r.status() == "stopped");
   CHECK(r.run.status == "");  // no observer came to its end
   CHECK_FALSE(r.saved());

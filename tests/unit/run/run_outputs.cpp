@@ -13,8 +13,8 @@ namespace pbf::scene_test {
 TEST_CASE("a run has each frame and row once, at its interval and at the end, with its state") {
   CountedRun r(ten_updates());
   CHECK(r.error() == "no error");
-  CHECK(r.frames() == Updates{0, 3, 6, 9, 10});
-  CHECK(r.steps_of_frames() == Updates{0, 3, 6, 9, 10});
+  CHECK(r.frames() == UpdateNumbers{0, 3, 6, 9, 10});
+  CHECK(r.steps_of_frames() == UpdateNumbers{0, 3, 6, 9, 10});
   CHECK(r.column("update") == std::vector<double>{0, 4, 8, 10});
   CHECK(r.status() == "finished");
   CHECK(r.run.status == "finished");
@@ -24,7 +24,7 @@ TEST_CASE("a run has each frame and row once, at its interval and at the end, wi
   even.time.end = 0.12;
   CountedRun whole(even);
   CHECK(whole.error() == "no error");
-  CHECK(whole.frames() == Updates{0, 3, 6, 9, 12});
+  CHECK(whole.frames() == UpdateNumbers{0, 3, 6, 9, 12});
   CHECK(whole.column("update") == std::vector<double>{0, 4, 8, 12});
 }
 
@@ -34,9 +34,10 @@ TEST_CASE("a run that goes back has each frame and row once, of what came out in
   CountedRun r(saving_always(with_shorter_steps()));
   r.solver.flow = wrong_at(r.solver, wrong);
   CHECK(r.error() == "no error");
-  CHECK(r.frames() == Updates{0, 3, 6, 9, 10});
+  CHECK(r.frames() == UpdateNumbers{0, 3, 6, 9, 10});
   // From the last good state on, 4 or 6, there are two steps in an update.
-  CHECK(r.steps_of_frames() == (wrong == 6 ? Updates{0, 3, 8, 14, 16} : Updates{0, 3, 6, 12, 14}));
+  CHECK(r.steps_of_frames() ==
+        (wrong == 6 ? UpdateNumbers{0, 3, 8, 14, 16} : UpdateNumbers{0, 3, 6, 12, 14}));
   CHECK(r.column("update") == std::vector<double>{0, 4, 8, 10});
   CHECK(r.column("dt") == std::vector<double>{0.01, 0.01, 0.005, 0.005});
 }
@@ -63,7 +64,7 @@ TEST_CASE(
     m.energy = 5 + double(m.update);
     m.compression_max = m.update == 10 ? 0.5 : 0.1 * double(m.update);
   };
-  Updates at;
+  UpdateNumbers at;
   r.solver.before_state = [&] {
     const std::int64_t u = r.solver.updates();
     at.push_back(u);
@@ -92,7 +93,7 @@ TEST_CASE(
 
 TEST_CASE("a checkpoint of a run that goes back holds its last good state, not the present one") {
   CountedRun r(saving_always(with_shorter_steps()));
-  Updates at, in_checkpoints;
+  UpdateNumbers at, in_checkpoints;
   r.solver.before_state = [&] {
     at.push_back(r.solver.updates());
     if (at.size() > 1) in_checkpoints.push_back(r.saved()->state.updates);
@@ -113,7 +114,7 @@ TEST_CASE("a run that is stopped saves the state that it leaves, with a frame an
   CHECK(r.run.stop_reason == "--max-walltime");
   CHECK(r.status() == "stopped");
   CHECK(r.solver.updates() == 4);
-  CHECK(r.frames() == Updates{0, 3, 4});
+  CHECK(r.frames() == UpdateNumbers{0, 3, 4});
   CHECK(r.column("update") == std::vector<double>{0, 4});
   CHECK(r.saved().value().state.position == r.solver.state(Which::now).position);
   // At the last update there is nothing to stop.
@@ -130,13 +131,13 @@ TEST_CASE(
   plain.run.max_walltime = 1e-9;
   CHECK(plain.error() == "no error");
   CHECK(plain.solver.calls.empty());
-  CHECK(plain.frames() == Updates{0});
+  CHECK(plain.frames() == UpdateNumbers{0});
   CHECK(plain.column("update") == std::vector<double>{0});
   CHECK(plain.saved().value().state.updates == 0);
   CountedRun back(with_shorter_steps());
   back.run.max_walltime = 1e-9;
   CHECK(back.error() == "no error");
-  CHECK(back.frames() == Updates{0, 3});
+  CHECK(back.frames() == UpdateNumbers{0, 3});
   CHECK(back.saved().value().state.updates == 3);
   CHECK(back.run.status == "stopped");
 }
@@ -161,10 +162,10 @@ TEST_CASE(
   };
   Saving saving(r.run, frames, *rows, watch, reporter);
   Session(r.solver, {&watch, &frames, &watch.choosing(), &reporter, &asks, &saving}).run(10);
-  CHECK(asks.seen == Updates{0, 5});
+  CHECK(asks.seen == UpdateNumbers{0, 5});
   CHECK(r.solver.updates() == 4);
   CHECK(r.saved().value().state.updates == 4);
-  CHECK(r.frames() == Updates{0, 3, 4});
+  CHECK(r.frames() == UpdateNumbers{0, 3, 4});
   CHECK(r.column("update") == std::vector<double>{0, 4});
 }
 

@@ -19,7 +19,7 @@ namespace {
 using test::CountingSolver;
 using test::Recorder;
 using test::Told;
-using test::Updates;
+using test::UpdateNumbers;
 
 }  // namespace
 
@@ -29,8 +29,8 @@ TEST_CASE("a session calls every observer at the updates that it asks for, and a
   Recorder threes("a", 3, told), fives("b", 5, told);
   Session(solver, {&threes, &fives}).run(11);
   CHECK(solver.updates() == 11);
-  CHECK(threes.seen == Updates{0, 3, 6, 9});
-  CHECK(fives.seen == Updates{0, 5, 10});
+  CHECK(threes.seen == UpdateNumbers{0, 3, 6, 9});
+  CHECK(fives.seen == UpdateNumbers{0, 5, 10});
   // No more calls than there are updates asked for.
   CHECK(solver.calls.size() == 6);
 }
@@ -105,9 +105,9 @@ TEST_CASE("an observer that goes back has the updates since repeated for all beh
     return Now::go_on;
   };
   Session(solver, {&judge, &row, &call}).run(12);
-  CHECK(judge.seen == Updates{0, 4, 8, 8, 12});
-  CHECK(row.seen == Updates{0, 4, 8, 12});  // the first 8 never was
-  CHECK(call.seen == Updates{4, 4, 8, 12});
+  CHECK(judge.seen == UpdateNumbers{0, 4, 8, 8, 12});
+  CHECK(row.seen == UpdateNumbers{0, 4, 8, 12});  // the first 8 never was
+  CHECK(call.seen == UpdateNumbers{4, 4, 8, 12});
   std::int64_t done = 0;
   for (const auto& c : solver.calls) done += c.updates;
   CHECK(done == 16);
@@ -162,9 +162,9 @@ TEST_CASE("a session that goes on from a state does not repeat what was done the
   Told told;
   Recorder threes("a", 3, told), call("b", kEveryCall, told), always("c", kAlways, told);
   Session(solver, {&threes, &call, &always}).run(12, 6);
-  CHECK(threes.seen == Updates{9, 12});
-  CHECK(call.seen == Updates{9, 12});
-  CHECK(always.seen == Updates{6, 9, 12});
+  CHECK(threes.seen == UpdateNumbers{9, 12});
+  CHECK(call.seen == UpdateNumbers{9, 12});
+  CHECK(always.seen == UpdateNumbers{6, 9, 12});
   // Nothing is left to do: no update, but the ends.
   told.clear();
   Session(solver, {&threes}).run(12, 12);

@@ -20,15 +20,15 @@ using Readings = std::vector<std::pair<std::int64_t, double>>;
 TEST_CASE("watch: a measure at every multiple of measure_every and at the end, each once") {
   WatchedSession s(ten_updates());
   s.run();
-  CHECK(s.updates() == Updates{0, 4, 8, 10});
+  CHECK(s.updates() == UpdateNumbers{0, 4, 8, 10});
   CHECK(s.steps == std::vector<double>(4, 0.01));
-  CHECK(s.loads() == Updates{0, 4, 4, 2});
+  CHECK(s.loads() == UpdateNumbers{0, 4, 4, 2});
   CHECK(s.watch.first().update == 0);
   CHECK(s.watch.last().update == 10);
   // The load at the end ends no interval: a run that goes on counts it once more.
   CHECK(s.solver.loads(Interval::goes_on).at(0).force[2] == 2);
   // Without a guard nothing is measured but that, and no state is kept.
-  CHECK(s.solver.measured == Updates{0, 4, 8, 10});
+  CHECK(s.solver.measured == UpdateNumbers{0, 4, 8, 10});
   CHECK(s.solver.kept() == 0);
   CHECK(s.watch.options() == StepOptions{});
 }
@@ -37,15 +37,15 @@ TEST_CASE("watch: a run that is stopped between two measures has one more, with 
   WatchedSession s(ten_updates());
   s.behind.then = [](Session& session) { return session.update() == 6 ? Now::stop : Now::go_on; };
   s.run();
-  CHECK(s.updates() == Updates{0, 4, 6});
-  CHECK(s.loads() == Updates{0, 4, 2});
+  CHECK(s.updates() == UpdateNumbers{0, 4, 6});
+  CHECK(s.loads() == UpdateNumbers{0, 4, 2});
   CHECK(s.solver.loads(Interval::goes_on).at(0).force[2] == 2);
   WatchedSession at_a_measure(ten_updates());
   at_a_measure.behind.then = [](Session& session) {
     return session.update() == 4 ? Now::stop : Now::go_on;
   };
   at_a_measure.run();
-  CHECK(at_a_measure.updates() == Updates{0, 4});
+  CHECK(at_a_measure.updates() == UpdateNumbers{0, 4});
 }
 
 TEST_CASE("watch: an alarm ends a run without shorter steps at the update at fault") {
@@ -59,8 +59,8 @@ TEST_CASE("watch: an alarm ends a run without shorter steps at the update at fau
   CHECK(s.watch.event()->stage->update == 5);
   CHECK(s.watch.event()->last_good.updates == 4);
   // The measure that shows it stands in the log; nothing behind the watch is called any more.
-  CHECK(s.updates() == Updates{0, 4, 8});
-  CHECK(s.frames.seen == Updates{0, 3, 6});
+  CHECK(s.updates() == UpdateNumbers{0, 4, 8});
+  CHECK(s.frames.seen == UpdateNumbers{0, 3, 6});
   CHECK(s.solver.updates() == 5);
   const Told end{s.told.end() - 7, s.told.end()};
   CHECK(end == Told{"before 8", "before ends 5", "frames ends 5", "behind ends 5", "before closes",
@@ -90,16 +90,16 @@ TEST_CASE("watch: an alarm repeats the updates since the last good state with ha
       contains(s.notes[0], "update 8, 0.08 s: alarm of the guard (non_finite), back to update 6"));
   CHECK_FALSE(contains(s.notes[0], "without time"));  // nothing is compressed
   // Nobody behind the watch gets what was taken back, nor anything twice.
-  CHECK(s.updates() == Updates{0, 4, 8, 10});
+  CHECK(s.updates() == UpdateNumbers{0, 4, 8, 10});
   CHECK(s.steps == std::vector<double>{0.01, 0.01, 0.005, 0.005});
-  CHECK(s.frames.seen == Updates{0, 3, 6, 9});
-  CHECK(s.before.seen == Updates{3, 4, 6, 8, 8, 9, 10});
-  CHECK(s.behind.seen == Updates{3, 4, 6, 6, 8, 9, 10});
+  CHECK(s.frames.seen == UpdateNumbers{0, 3, 6, 9});
+  CHECK(s.before.seen == UpdateNumbers{3, 4, 6, 8, 8, 9, 10});
+  CHECK(s.behind.seen == UpdateNumbers{3, 4, 6, 6, 8, 9, 10});
   CHECK(s.solver.steps() == 6 + 2 * 4);
   CHECK(s.watch.steps()->repeats == 1);
-  CHECK(s.watch.steps(10)->updates == Updates{6, 4, 0});
+  CHECK(s.watch.steps(10)->updates == UpdateNumbers{6, 4, 0});
   // A load does not count twice what was done twice.
-  CHECK(s.loads() == Updates{0, 4, 4, 2});
+  CHECK(s.loads() == UpdateNumbers{0, 4, 4, 2});
   // The end of this run is none of a longer one: no state is kept for it.
   CHECK(s.solver.kept() == 9);
 }
@@ -112,9 +112,9 @@ TEST_CASE("watch: what is wrong at a frame is taken back before anybody has seen
     return Now::go_on;
   };
   s.run();
-  CHECK(s.frames.seen == Updates{0, 3, 6, 9});
-  CHECK(s.watch.steps(10)->updates == Updates{4, 6, 0});
-  CHECK(s.updates() == Updates{0, 4, 8, 10});
+  CHECK(s.frames.seen == UpdateNumbers{0, 3, 6, 9});
+  CHECK(s.watch.steps(10)->updates == UpdateNumbers{4, 6, 0});
+  CHECK(s.updates() == UpdateNumbers{0, 4, 8, 10});
 }
 
 TEST_CASE("watch: with the finest step an alarm ends the run, and no step was tried twice") {
@@ -127,8 +127,8 @@ TEST_CASE("watch: with the finest step an alarm ends the run, and no step was tr
   CHECK(s.solver.updates() == 7);
   CHECK(s.notes.size() == 2);
   CHECK(s.watch.steps()->repeats == 2);
-  CHECK(s.updates() == Updates{0, 4, 8});
-  CHECK(s.frames.seen == Updates{0, 3, 6});
+  CHECK(s.updates() == UpdateNumbers{0, 4, 8});
+  CHECK(s.frames.seen == UpdateNumbers{0, 3, 6});
   // From frame 6: with each of the three steps, and once more stage by stage with the finest.
   std::vector<int> levels;
   for (const auto& c : s.calls())
@@ -168,8 +168,8 @@ TEST_CASE("watch: a run that goes on repeats no measure, and knows its start and
   CHECK(s.watch.go_on_from(saved).update == from);
   CHECK(s.solver.kept() == from);
   s.run(10, from);
-  CHECK(s.updates() == (from == 8 ? Updates{10} : Updates{8, 10}));
-  CHECK(s.frames.seen == Updates{9});
+  CHECK(s.updates() == (from == 8 ? UpdateNumbers{10} : UpdateNumbers{8, 10}));
+  CHECK(s.frames.seen == UpdateNumbers{9});
   CHECK(s.watch.first().compression_mean == 0.25);
   CHECK(s.watch.first().energy == 7);
   for (const auto& call : s.calls()) CHECK(call[2] == 1);
@@ -196,13 +196,13 @@ TEST_CASE("watch: before a state is saved, a run that has no way back has it mea
   };
   s.run(6);
   CHECK(good == std::vector<bool>{true, true});
-  CHECK(s.solver.measured == Updates{0, 4, 6, 6});  // 4 is known; 6 is the end, too
-  CHECK(s.updates() == Updates{0, 4, 6});
+  CHECK(s.solver.measured == UpdateNumbers{0, 4, 6, 6});  // 4 is known; 6 is the end, too
+  CHECK(s.updates() == UpdateNumbers{0, 4, 6});
   s.solver.step(1, {});
   CHECK_FALSE(s.watch.state_is_good());
   REQUIRE(s.watch.event());
   CHECK(s.watch.event()->last_good.updates == 6);
-  CHECK(s.updates() == Updates{0, 4, 6});  // nobody gets what is wrong
+  CHECK(s.updates() == UpdateNumbers{0, 4, 6});  // nobody gets what is wrong
   // One that goes back saves its last good state.
   WatchedSession back(with_shorter_steps());
   back.run(6);

@@ -55,7 +55,7 @@ TEST_CASE("watch: the state relieved for a shorter step is the one to go back to
   int reliefs = 0;
   for (const auto& c : s.solver.calls) reliefs += c.options.without_time.has_value();
   CHECK(reliefs == 1);
-  CHECK(s.updates() == Updates{0, 4, 8, 10});
+  CHECK(s.updates() == UpdateNumbers{0, 4, 8, 10});
 }
 
 TEST_CASE("watch: a measure at the end of a run alone chooses no step") {
