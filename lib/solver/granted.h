@@ -109,7 +109,12 @@ class Granted {
 template <class P, class C>
 void launch_one(C& c) {
   if constexpr (requires { typename P::Flips; }) P::Flips::flip(c);
-  P::launch(Granted<C, P>(c));
+  const auto launch = [&] { P::launch(Granted<C, P>(c)); };
+  // Only an executor of tests looks at what a pass touches.
+  if constexpr (requires { c.exec.watched(P::text.name, c.arrays(), launch); })
+    c.exec.watched(P::text.name, c.arrays(), launch);
+  else
+    launch();
 }
 /// Launches pass `index` of a PassList.
 template <class Passes, class C>

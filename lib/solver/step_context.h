@@ -22,6 +22,14 @@
 
 namespace pbf::inline PBF_VARIANT {
 
+/// An array of a field; second: the other one of a pair.
+struct FieldMemory {
+  const FieldInfo* field;
+  bool second;
+  char* begin;
+  std::size_t bytes;
+};
+
 /// The fields of a program in the memory of an executor, and the parts of a step around them.
 template <class RealType, class Exec>
 struct StepContext {
@@ -99,6 +107,14 @@ struct StepContext {
   T* data(const FieldInfo& f) {
     Slot* s = slot(f);
     return s ? reinterpret_cast<T*>(s->rows[s->now ^ (f.first ? 1 : 0)].data()) : nullptr;
+  }
+  /// Where all fields lie now.
+  std::vector<FieldMemory> arrays() {
+    std::vector<FieldMemory> all;
+    for (Slot& s : slots_)
+      for (int k = 0; k < (s.info->pair ? 2 : 1); ++k)
+        all.push_back({s.info, k == 1, s.rows[s.now ^ k].data(), s.rows[s.now ^ k].bytes()});
+    return all;
   }
   /// The second of its two arrays becomes the first.
   void flip(const FieldInfo& f) { slot(f)->now ^= 1; }
