@@ -20,6 +20,7 @@ namespace {
 
 struct PlanOptions {
   std::string scene;
+  int threads = 0;  ///< 0: as the scene says
   std::vector<std::string> overrides;
   std::string base_folder;
   bool resolved = false, json = false, arrays = false;
@@ -68,9 +69,10 @@ std::string json(const Plan& plan, const Scene& scene, const std::optional<TimeE
 int command_plan(const PlanOptions& options) {
   Log log(false);
   // Planned for --resolved too: a scene that cannot run is an error in every form of the answer.
-  const Start start =
-      prepare(load_scene_or_run(options.scene, options.overrides, options.base_folder),
-              {.fits = false, .warnings = true, .particles = false});
+  std::vector<std::string> overrides = options.overrides;
+  if (options.threads > 0) overrides.push_back("threads=" + std::to_string(options.threads));
+  const Start start = prepare(load_scene_or_run(options.scene, overrides, options.base_folder),
+                              {.fits = false, .warnings = true, .particles = false});
   const Plan& plan = start.plan;
   const Scene& scene = start.scene();
   const int threads = solver_threads(scene, plan.particles);
@@ -102,6 +104,8 @@ void add_plan(CLI::App& app, int& code) {
   c->add_option("SCENE", o.scene,
                 "Scene file (YAML), or a run for its scene: its run file or its folder")
       ->required();
+  c->add_option("--threads", o.threads, "CPU threads of the run, which its memory depends on")
+      ->transform(whole_number(1, 4096));
   add_overrides(c, o.overrides);
   add_base_folder(c, o.base_folder);
   CLI::Option* resolved =
