@@ -17,7 +17,7 @@ void add_needs(const BatchMember& m, std::vector<std::string> overrides,
                const std::string& base_folder, bool here, BatchNeeds& needs) {
   overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
   const Start start = prepare(load_scene_or_run(m.scene, overrides, base_folder),
-                              {.fits = here, .neighbors = !here, .particles = false});
+                              {.fits = here, .particles = false});
   needs.host_bytes = std::max(needs.host_bytes, start.plan.memory.host_peak());
   needs.device |= about(start.scene().backend).on_device;
 }

@@ -54,6 +54,21 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   return info;
 }
 
+/// The run file and the folder of the pictures, where there are some.
+void open_files(RunParts& run, const std::string& started) {
+  if (const auto& output = run.scene.output) {
+    const std::string path = run.folder.file(kRunFile);
+    const RunInfo info = run_info(run, started);
+    const bool gzip = output->compression == Compression::gzip;
+    run.writer = run.from.keep_file
+                     ? std::make_unique<RunWriter>(path, info, gzip, run.from.frames, run.from.rows)
+                     : std::make_unique<RunWriter>(path, info, gzip);
+  }
+#ifdef PBF_HAS_RENDER
+  if (run.pictures) run.pictures->into(run.folder.file(RunFolder::kPictures));
+#endif
+}
+
 /// Saves the last good state and a scene that goes on from it, and ends the run.
 [[noreturn]] void report_alarm(const Watch& watch, const Scene& scene, const RunFolder& folder) {
   const GuardEvent& e = *watch.event();
@@ -135,20 +150,6 @@ RunResult simulate(RunParts& run) {
 }
 
 }  // namespace
-
-void open_files(RunParts& run, const std::string& started) {
-  if (const auto& output = run.scene.output) {
-    const std::string path = run.folder.file(kRunFile);
-    const RunInfo info = run_info(run, started);
-    const bool gzip = output->compression == Compression::gzip;
-    run.writer = run.from.keep_file
-                     ? std::make_unique<RunWriter>(path, info, gzip, run.from.frames, run.from.rows)
-                     : std::make_unique<RunWriter>(path, info, gzip);
-  }
-#ifdef PBF_HAS_RENDER
-  if (run.pictures) run.pictures->into(run.folder.file(RunFolder::kPictures));
-#endif
-}
 
 void run_session(RunParts& run) {
   const Stopwatch loop;

@@ -46,10 +46,6 @@ struct RunParts {
   std::string stop_reason{};  ///< "SIGTERM", ...
 };
 
-/// Opens the run file and makes the folder of the pictures, where there are some; `started`:
-/// utc_now() of the session. Throws Error(io).
-void open_files(RunParts& run, const std::string& started);
-
 /// Warnings of a run, told as they come up, and its progress.
 class Reporter : public Observer {
  public:

@@ -39,8 +39,8 @@ Start prepare(LoadedScene loaded, const PrepareOptions& options) {
     start.plan = make_plan(scene, particles, std::move(neighbors));
     if (options.fits) refuse_if_too_large(scene, start.plan);
   };
-  if (options.fits || !options.neighbors) plan({});  // before a look at every particle
-  if (options.neighbors) plan(start_neighbors(points, particles));
+  if (options.fits) plan({});  // before a look at every particle
+  plan(start_neighbors(points, particles));
   if (options.warnings) start.warnings = scene_warnings(points, particles);
   if (options.strict && !start.warnings.empty())
     throw Error(ExitCode::difference, "--strict: " + warning_lines(start.warnings));

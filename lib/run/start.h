@@ -1,8 +1,8 @@
-// The one way into a run: prepare() reads a scene's files and plans it, solver_of() begins it for
-// whoever steps the solver on, run() does all that `pbf run` does.
+// The one way into a run. prepare() reads a scene's files and plans it; solver_of() makes a solver
+// at the start, for whoever advances it; run() does all that `pbf run` does.
 #pragma once
 
-#include <functional>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,7 +21,6 @@ namespace pbf::inline run_module {
 /// How far prepare() goes.
 struct PrepareOptions {
   bool fits = true;       ///< refuse what the memory of this machine cannot hold
-  bool neighbors = true;  ///< of the start, for the memory of a crowded one (start_neighbors.h)
   bool warnings = false;  ///< of the scene
   bool strict = false;    ///< they are an error
   bool particles = true;  ///< are made
@@ -36,8 +35,8 @@ struct Start {
   const Scene& scene() const { return loaded.scene; }
 };
 
-/// Opens each particle file of the scene once; motions are read (load_scene_or_run()). Throws, in
-/// this order, what StartPoints, count_particles() and make_plan() throw, Error(unavailable) as
+/// Opens each particle file of the scene once. Its motions have been read (read_motions()). Throws,
+/// in this order, what StartPoints, count_particles() and make_plan() throw, Error(unavailable) as
 /// refuse_if_too_large(), Error(difference) for warnings where they are errors, and what
 /// emit_particles() throws.
 Start prepare(LoadedScene loaded, const PrepareOptions& options = {});
@@ -46,7 +45,7 @@ Start prepare(const Scene& scene, const std::string& folder, const PrepareOption
 /// The same particles under another scene with the same bodies, spacing and domain.
 Start with_scene(const Start& start, const Scene& scene);
 
-/// A solver before its first update; the particles move in, and prestabilize() relieves them.
+/// A solver before its first update. The particles move into it, and prestabilize() is done.
 std::unique_ptr<Solver> solver_of(Start& start);
 
 /// Where a run writes.
@@ -71,10 +70,10 @@ struct RunResult {
   std::int64_t updates = 0;  ///< that are done
 };
 
-/// Runs into a folder, or goes on with the run there. Whatever ends it is told in control.log and
-/// in the folder's log.txt. A scene that cannot run leaves no folder behind. Several runs may be
-/// under way in one process, each with a folder, a token and a log of its own. Throws as
-/// run_session(), RunFolder, find_resume_point(), take_files() and make_solver() do.
+/// Runs into a folder, or goes on with the run there. Its lines go to control.log and the folder's
+/// log.txt, an error that ends it to log.txt. A scene that cannot run leaves no folder behind.
+/// Several runs may be under way in one process, each with a folder, a token and a log of its own.
+/// Throws as run_session(), RunFolder, find_resume_point(), take_files() and make_solver() do.
 RunResult run(Start start, const RunPlace& place, Control& control);
 
 }  // namespace pbf::inline run_module
