@@ -101,7 +101,7 @@ class Batch {
   }
 
   void run() {
-    const auto stop = [this] { return !signal_seen().empty() || time_is_up(); };
+    const auto stop = [this] { return signal_token().why() || time_is_up(); };
     run_jobs(
         o_.jobs, members_.size(), [this](std::size_t k) { return arguments(members_[k]); }, stop,
         [this](std::size_t k, const JobEnd& end) { ended(members_[k], end); });
@@ -143,8 +143,8 @@ class Batch {
     try {
       const LoadedScene loaded = load_scene_or_run(m.scene, overrides, o_.base_folder);
       const LoadedScene record = load_stored_scene(folder + "/" + kResolvedScene);
-      const std::string other =
-          difference_of_record(record, loaded.scene, scene_files(loaded.scene, loaded.folder));
+      const StartPoints points(loaded.scene, loaded.folder);
+      const std::string other = difference_of_record(record, loaded.scene, points.files());
       if (!other.empty())
         throw Error(ExitCode::bad_input, folder + " is of another scene: " + other + kOther);
       const std::string file = difference_of_file(folder, loaded.scene);

@@ -12,16 +12,15 @@
 #include "lib/base/text.h"
 #include "lib/campaign/calibration.h"
 #include "lib/program/threads.h"
-#include "lib/run/emit.h"
 #include "lib/run/load_run.h"
-#include "lib/run/start_neighbors.h"
-#include "lib/run/warnings.h"
+#include "lib/run/start.h"
 
 namespace pbf::inline app_module {
 namespace {
 
 struct PlanOptions {
   std::string scene;
+  int threads = 0;  ///< 0: as the scene says
   std::vector<std::string> overrides;
   std::string base_folder;
   bool resolved = false, json = false, arrays = false;
@@ -68,27 +67,27 @@ std::string json(const Plan& plan, const Scene& scene, const std::optional<TimeE
 }
 
 int command_plan(const PlanOptions& options) {
-  const LoadedScene loaded =
-      load_scene_or_run(options.scene, options.overrides, options.base_folder);
   Log log(false);
-  const std::string& dir = loaded.folder;
-  // Counted for --resolved too: a scene that cannot run is an error in every form of the answer.
-  const std::int64_t n = count_particles(loaded.scene, dir);
-  const Plan plan = make_plan(loaded.scene, n, start_neighbors(loaded.scene, dir, n));
-  const int threads = solver_threads(loaded.scene, plan.particles);
+  // Planned for --resolved too: a scene that cannot run is an error in every form of the answer.
+  std::vector<std::string> overrides = options.overrides;
+  if (options.threads > 0) overrides.push_back("threads=" + std::to_string(options.threads));
+  const Start start = prepare(load_scene_or_run(options.scene, overrides, options.base_folder),
+                              {.fits = false, .warnings = true, .particles = false});
+  const Plan& plan = start.plan;
+  const Scene& scene = start.scene();
+  const int threads = solver_threads(scene, plan.particles);
   const std::vector<StageCosts> costs = read_calibration(calibration_path());
-  const auto update = estimate_time(plan, loaded.scene, costs, threads, cpu_model());
-  const auto all = run_time(plan, loaded.scene, update, threads);
-  const std::vector<Warning> warnings = scene_warnings(loaded.scene, dir, n);
+  const auto update = estimate_time(plan, scene, costs, threads, cpu_model());
+  const auto all = run_time(plan, scene, update, threads);
   std::string text;
   if (options.resolved) {
-    text = resolved_yaml(loaded.scene);
+    text = resolved_yaml(scene);
   } else if (options.json) {
-    text = json(plan, loaded.scene, update, all, warnings);
+    text = json(plan, scene, update, all, start.warnings);
   } else {
-    text = plan_summary(plan, loaded.scene, run_time_text(all)) + warnings_text(warnings) +
-           plan_details(plan, loaded.scene);
-    text += options.arrays ? plan_arrays(plan, loaded.scene)
+    text = plan_summary(plan, scene, run_time_text(all)) + warnings_text(start.warnings) +
+           plan_details(plan, scene);
+    text += options.arrays ? plan_arrays(plan, scene)
                            : "--arrays lists every array; --json has it all\n";
   }
   while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -105,6 +104,8 @@ void add_plan(CLI::App& app, int& code) {
   c->add_option("SCENE", o.scene,
                 "Scene file (YAML), or a run for its scene: its run file or its folder")
       ->required();
+  c->add_option("--threads", o.threads, "CPU threads of the run, which its memory depends on")
+      ->transform(whole_number(1, 4096));
   add_overrides(c, o.overrides);
   add_base_folder(c, o.base_folder);
   CLI::Option* resolved =

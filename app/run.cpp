@@ -1,32 +1,17 @@
 // pbf run: a scene in, a run folder out.
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <memory>
 
 #include "app/commands.h"
 #include "app/options.h"
-#include "app/run_place.h"
 #include "lib/base/error.h"
 #include "lib/base/output_file.h"
-#include "lib/base/text.h"
-#include "lib/base/version.h"
-#include "lib/exec/make_solver.h"
 #include "lib/io/run_path.h"
-#include "lib/program/threads.h"
-#include "lib/run/emit.h"
 #include "lib/run/load_run.h"
-#include "lib/run/prestabilize.h"
-#include "lib/run/resume.h"
-#include "lib/run/run.h"
-#include "lib/run/run_folder.h"
-#include "lib/run/run_record.h"
 #include "lib/run/signals.h"
-#include "lib/run/start_neighbors.h"
-#include "lib/run/warnings.h"
-#include "lib/scene/load.h"
+#include "lib/run/start.h"
 
 namespace pbf::inline app_module {
+namespace fs = std::filesystem;
 namespace {
 
 struct RunOptions {
@@ -65,171 +50,71 @@ std::vector<std::string> all_overrides(const RunOptions& o) {
   return list;
 }
 
-std::string banner(const Scene& scene, const Plan& plan, const Solver& solver,
-                   const std::string& folder) {
-  const SolverInfo i = solver.info();
-  const BuildInfo build = build_info();
-  std::string where = i.backend + " " + i.precision;
-  if (!about(scene.backend).on_device) where += ", " + threads_text(scene, plan.particles);
-  return format(
-      "pbf %s (%s)  scene %s: %ld particles, %ld updates of %.4g s\n%s on %s; the solver "
-      "holds %s; files in %s",
-      build.version.c_str(), build.commit.c_str(), scene.name.c_str(), plan.particles,
-      make_schedule(scene).updates, scene.time.step, where.c_str(), i.device.c_str(),
-      bytes_text(double(i.bytes)).c_str(), folder.c_str());
+/// The run folder: `given` by --out; of a run that is resumed by its own file or folder that
+/// folder; else out/<scene name>.
+std::string run_place(const LoadedScene& loaded, const std::string& given, bool resume) {
+  if (!given.empty()) return given;
+  const std::string own = folder_of_run(loaded.run_file);
+  return resume && !own.empty() ? own : "out/" + loaded.scene.name;
 }
 
-using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
-
-File open_json(const std::string& path, bool append) {
-  File file(path.empty() ? nullptr : ::fdopen(open_output_stream(path, append), "a"), std::fclose);
-  if (!path.empty() && !file)
-    throw Error(ExitCode::io,
-                "--log-json " + path + ": cannot be created: " + std::strerror(errno));
-  return file;
+/// Not where the run would repeat itself into the folder that it is in.
+void refuse_own_folder(const LoadedScene& loaded, const std::string& out) {
+  const std::string own = folder_of_run(loaded.run_file);
+  std::error_code error;
+  if (own.empty() || !fs::equivalent(own, out, error)) return;
+  bad_input(out,
+            "holds the run that is to be repeated; give another folder with --out, or --resume to "
+            "go on with it");
 }
 
-/// The start's compression, taken out with a line in the log, and one every 10 s on the way.
-void relieve(Solver& solver, const Scene& scene, const Plan& plan, Log& log) {
-  Stopwatch since;
-  const std::string done =
-      prestabilized_text(prestabilize(solver, scene, plan, [&](const std::string& line) {
-        if (since.seconds() < 10) return log.transient("pbf: " + line);
-        log.note("pbf: " + line);
-        since.reset();
-      }));
-  if (!done.empty()) log.note("pbf: " + done);
+/// What --resume says of a folder that is not there. `given`: by --out.
+std::string not_there_note(const LoadedScene& loaded, const std::string& out, bool given) {
+  const std::string text = out + " is not there: the run begins at its start";
+  if (given) return text;
+  // Runs of scenes without a name were kept in out/scene by earlier versions.
+  const std::string before = std::string("out/") + Scene{}.name;
+  std::error_code error;
+  if (loaded.named_by_file && fs::exists(before + "/" + kResolvedScene, error))
+    return text + "; " + before +
+           " holds a run of a scene without a name: to go on with that one, give --out " + before;
+  return text + "; to go on with one that was begun with --out FOLDER, give the same --out";
 }
 
-/// What was done to the particles of the scene before the start; empty: nothing.
-std::string start_note(const Particles& p, const Scene& scene) {
-  std::string note;
-  if (p.put_on_margin > 0)
-    note = format(
-        "%zu particles were nearer to a wall than solver.wall_margin (%.6g m), by up to "
-        "%.3g m; they start at that distance",
-        p.put_on_margin, scene.solver.wall_margin, p.farthest_put);
-  for (std::size_t b = 0; b < p.in_obstacles.size(); ++b)
-    if (p.in_obstacles[b] > 0)
-      note += format(
-          "%s%zu particles of bodies[%zu] are in obstacles, or nearer to one than 0.4 "
-          "spacings, and are left out",
-          note.empty() ? "" : "; ", p.in_obstacles[b], b);
-  return note;
-}
-
-/// Everything from the made folder on, so that its log.txt also gets the error that ends it.
-int simulate(RunParts& parts, const std::string& start_note, const std::string& log_json) {
-  const ResumePoint& from = parts.from;
-  const RunFolder& folder = parts.folder;
-  Log& log = parts.log;
-  const std::string started = utc_now();
-  const File json = open_json(log_json, from.started);
-  parts.json = json.get();
-  if (from.started) prepare_resume(folder, from);
-  folder.write_text(kResolvedScene, scene_record(parts.scene, parts.loaded.files));
-  log.note(banner(parts.scene, parts.plan, parts.solver, folder.path()));
-  for (const Warning& w : parts.of_scene) log.warning(w.text);
-  for (const std::string& note : from.notes) log.note("pbf: " + note);
-  if (!from.saved && !start_note.empty()) log.note("pbf: " + start_note);
-  for (const std::string& note : rounded_times(parts.scene)) log.note("pbf: " + note);
-  if (from.saved) {
-    parts.solver.set_state(from.saved->state);
-    log.note(format("pbf: goes on from the checkpoint of update %ld", from.update()));
-  } else {
-    parts.clock.mark("init");
-    relieve(parts.solver, parts.scene, parts.plan, log);
-    parts.clock.begin();  // the solver has booked its steps
-  }
-  open_files(parts, started);
-  parts.clock.mark("init");
-  run_session(parts);
-  if (parts.status == "stopped") {
-    log.note(
-        format("pbf: stopped early by %s after update %ld of %ld, after saving; the files "
-               "in %s hold the run up to there: the same command with --resume goes on",
-               parts.stop_reason.c_str(), parts.solver.updates(), parts.schedule.updates,
-               folder.path().c_str()));
-    log.close();
-    return static_cast<int>(ExitCode::resumable);
-  }
-  log.close();
-  folder.write_text("DONE", "finished " + utc_now() + "\n");
-  return 0;
+/// Refuses --log-json where its folder is missing, or the run in `out` writes that file itself.
+void check_log_json(const std::string& path, const std::string& out) {
+  if (path.empty()) return;
+  if (RunFolder::owns(out, path))
+    throw Error(ExitCode::bad_input,
+                "--log-json " + path + ": the run itself writes this file; give another name");
+  const fs::path parent = fs::path(path).parent_path();
+  std::error_code error;
+  if (parent.empty() || fs::is_directory(parent, error)) return check_output("--log-json", path);
+  // It may be the run folder itself, which is made later.
+  if (fs::absolute(parent).lexically_normal() == fs::absolute(out).lexically_normal()) return;
+  throw Error(ExitCode::io, "--log-json " + path + ": the folder " + parent.string() +
+                                " is not there; make it first");
 }
 
 int command_run(const RunOptions& options) {
   watch_signals();
-  const Stopwatch wall;
-  StageClock clock;
+  Log log(options.quiet);
+  Control control{signal_token(), log, options.log_json, options.max_walltime, options.strict};
   LoadedScene loaded =
       load_scene_or_run(options.scene, all_overrides(options), options.base_folder);
-  const Scene& scene = loaded.scene;
-#ifndef PBF_HAS_RENDER
-  if (scene.render)
-    throw Error(ExitCode::unavailable,
-                "render: this build draws no pictures; remove the key, or build with "
-                "-DPBF_RENDER=ON");
-#endif
-  const std::string out = run_place(loaded, options.out, options.resume);
-  const ExistingFolder existing = options.overwrite ? ExistingFolder::overwrite
-                                  : options.resume  ? ExistingFolder::resume
-                                                    : ExistingFolder::refuse;
-  Log log(options.quiet);
-  if (existing == ExistingFolder::refuse) refuse_own_folder(loaded, out);
-  const bool there = RunFolder::check(out, existing);
-  const std::string& dir = loaded.folder;
-  const std::int64_t particles = count_particles(scene, dir);
-  check_log_json(options.log_json, out);  // now that all is read
-  if (there && options.overwrite) RunFolder::refuse_overwrite(out);
-  refuse_if_too_large(scene, make_plan(scene, particles));  // before a look at every particle
-  const Plan plan = make_plan(scene, particles, start_neighbors(scene, dir, particles));
-  refuse_if_too_large(scene, plan);
-  const std::vector<Warning> warnings = scene_warnings(scene, dir, particles);
-  if (options.strict && !warnings.empty())
-    throw Error(ExitCode::difference, "--strict: " + warning_lines(warnings));
-  Particles start = emit_particles(scene, dir);
-  std::unique_ptr<RunFolder> folder;
-  ResumePoint from;
-  if (there && existing == ExistingFolder::resume) {
-    folder = std::make_unique<RunFolder>(out, existing);
-    from = find_resume_point(*folder, scene, start.files, plan.particles, build_info().commit);
-    if (from.finished) {
-      for (const std::string& note : from.notes) log.note("pbf: " + note);
-      return 0;
-    }
-  }
+  const RunPlace place{run_place(loaded, options.out, options.resume),
+                       options.overwrite ? ExistingFolder::overwrite
+                       : options.resume  ? ExistingFolder::resume
+                                         : ExistingFolder::refuse};
+  if (place.existing == ExistingFolder::refuse) refuse_own_folder(loaded, place.folder);
+  const bool there = RunFolder::check(place.folder, place.existing);
+  Start start = prepare(std::move(loaded), {.warnings = true, .strict = options.strict});
+  check_log_json(options.log_json, place.folder);  // now that all is read
+  if (there && options.overwrite) RunFolder::refuse_overwrite(place.folder);
   if (options.resume && !there)
-    log.note("pbf: " + not_there_note(loaded, out, !options.out.empty()));
-  // A new folder comes last: a scene that cannot run leaves nothing behind.
-  take_files(loaded, start.files, from.notes);
-  const std::string note = start_note(start, scene);
-  auto solver = make_solver(scene, plan, std::move(start));
-  double solver_init = 0;  // the solver reports its own part of "init"
-  for (const StageTime& s : solver->info().stages) solver_init += s.name == "init" ? s.seconds : 0;
-#ifdef PBF_HAS_RENDER
-  std::unique_ptr<RenderThread> pictures;  // here, for not every machine has what draws them
-  if (scene.render) pictures = std::make_unique<RenderThread>(view_of(scene, plan.particles));
-#endif
-  clock.add("init", wall.seconds() - solver_init);
-  clock.begin();
-  if (!folder) folder = std::make_unique<RunFolder>(out, existing);
-  log.open(folder->file("log.txt"), from.started);
-  try {
-    RunParts parts{loaded,        plan,    *solver, log,      clock,
-                   wall,          *folder, from,    warnings, options.max_walltime,
-                   options.strict};
-#ifdef PBF_HAS_RENDER
-    parts.pictures = std::move(pictures);
-#endif
-    return simulate(parts, note, options.log_json);
-  } catch (const std::exception& e) {
-    try {
-      log.file_only(std::string("pbf: error: ") + e.what());
-    } catch (const Error&) {  // a full disk: the first error is the one to tell
-    }
-    throw;
-  }
+    log.note("pbf: " + not_there_note(start.loaded, place.folder, !options.out.empty()));
+  const RunResult result = run(std::move(start), place, control);
+  return static_cast<int>(result.stop_reason.empty() ? ExitCode::done : ExitCode::resumable);
 }
 
 }  // namespace

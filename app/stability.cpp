@@ -89,7 +89,7 @@ std::vector<Row> finished(std::vector<std::optional<Row>> rows, const char* what
   if (out.size() == rows.size()) return out;
   code = static_cast<int>(ExitCode::resumable);
   log.note(format("pbf: stopped early by %s with %zu of %zu %s done; the same command starts anew",
-                  signal_seen().c_str(), out.size(), rows.size(), what));
+                  signal_token().why(), out.size(), rows.size(), what));
   return out;
 }
 
@@ -173,7 +173,7 @@ int command_stability(const StabilityCommandOptions& o) {
   run.threads = std::max(1, usable_threads() / jobs);
   run.overrides = o.overrides;
   run.base_folder = o.base_folder;
-  run.stop = [] { return !signal_seen().empty(); };
+  run.stop = [] { return signal_token().why() != nullptr; };
   watch_signals();
   return o.map.empty() ? run_suite(o, run, jobs) : run_map(o, run, jobs);
 }

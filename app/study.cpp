@@ -89,7 +89,7 @@ std::optional<MemberResult> result_of(const Study& study, const StudyMember& mem
                  format(": %.0f %%, %s left", 100 * share, duration_text(s / share - s).c_str()));
   };
   auto result = run_member(
-      study, member, [] { return !signal_seen().empty(); }, progress);
+      study, member, [] { return signal_token().why() != nullptr; }, progress);
   if (!result) return result;
   write_member(path, *result);
   const std::vector<double>& mean = result->series("compression_mean");
@@ -138,7 +138,7 @@ int command_study(const StudyOptions& o) {
     log.note(
         format("pbf: stopped early by %s with %zu of %zu runs done; the same command goes on "
                "from there",
-               signal_seen().c_str(), done, n));
+               signal_token().why(), done, n));
     return static_cast<int>(ExitCode::resumable);
   };
   const auto name_of = [n](const StudyMember& member, std::size_t k) {

@@ -54,7 +54,10 @@ void Log::clear_transient() {
 void Log::say(std::FILE* stream, const std::string& text) {
   const std::string lines = escaped(text) + "\n";
   clear_transient();
-  if (stream) write_to(stream, lines);
+  if (sink_)
+    sink_(lines);
+  else if (stream)
+    write_to(stream, lines);
   to_file(lines);
 }
 

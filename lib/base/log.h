@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <string>
+#include <utility>
 
 #include "lib/base/stage_clock.h"
 
@@ -17,6 +19,8 @@ class Log {
   /// quiet: nothing but results, warnings and errors on the terminal. The file still gets
   /// everything.
   explicit Log(bool quiet);
+  /// Lines go to `sink`, with their newlines, in place of stdout and stderr.
+  explicit Log(std::function<void(const std::string&)> sink) : sink_(std::move(sink)) {}
   ~Log();
   Log(const Log&) = delete;
   Log& operator=(const Log&) = delete;
@@ -45,7 +49,8 @@ class Log {
   void say(std::FILE* stream, const std::string& text);
   void to_file(const std::string& text);
 
-  bool quiet_, terminal_, dirty_ = false;
+  bool quiet_ = false, terminal_ = false, dirty_ = false;
+  std::function<void(const std::string&)> sink_;
   std::string path_;
   std::FILE* file_ = nullptr;
   Stopwatch since_progress_;

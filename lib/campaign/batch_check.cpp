@@ -5,11 +5,8 @@
 
 #include "lib/base/error.h"
 #include "lib/base/text.h"
-#include "lib/exec/make_solver.h"
-#include "lib/program/plan.h"
-#include "lib/run/emit.h"
 #include "lib/run/load_run.h"
-#include "lib/run/start_neighbors.h"
+#include "lib/run/start.h"
 
 namespace pbf::inline campaign_module {
 namespace {
@@ -19,12 +16,10 @@ constexpr std::size_t kMostTold = 10;
 void add_needs(const BatchMember& m, std::vector<std::string> overrides,
                const std::string& base_folder, bool here, BatchNeeds& needs) {
   overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
-  const LoadedScene loaded = load_scene_or_run(m.scene, overrides, base_folder);
-  const std::int64_t n = count_particles(loaded.scene, loaded.folder);
-  if (here) return refuse_if_too_large(loaded.scene, make_plan(loaded.scene, n));
-  const Plan plan = make_plan(loaded.scene, n, start_neighbors(loaded.scene, loaded.folder, n));
-  needs.host_bytes = std::max(needs.host_bytes, plan_memory(loaded.scene, plan).host_peak());
-  needs.device |= about(loaded.scene.backend).on_device;
+  const Start start = prepare(load_scene_or_run(m.scene, overrides, base_folder),
+                              {.fits = here, .particles = false});
+  needs.host_bytes = std::max(needs.host_bytes, start.plan.memory.host_peak());
+  needs.device |= about(start.scene().backend).on_device;
 }
 
 }  // namespace

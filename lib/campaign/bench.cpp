@@ -5,12 +5,9 @@
 
 #include "lib/base/machine.h"
 #include "lib/base/stages.h"
-#include "lib/exec/make_solver.h"
-#include "lib/program/plan.h"
 #include "lib/run/emit.h"
-#include "lib/run/prestabilize.h"
 #include "lib/run/session.h"
-#include "lib/run/start_neighbors.h"
+#include "lib/run/start.h"
 
 namespace pbf::inline campaign_module {
 
@@ -92,13 +89,11 @@ void time_state(Session& session, const BenchSettings& s, BenchRow& row) {
 }  // namespace
 
 std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const BenchSettings& s) {
-  const std::int64_t n = count_particles(scene, dir);
-  const Plan plan = make_plan(scene, n, start_neighbors(scene, dir, n));
-  refuse_if_too_large(scene, plan);
-  const std::unique_ptr<Solver> solver = start_solver(scene, plan, emit_particles(scene, dir));
+  Start start = prepare(scene, dir);
+  const std::unique_ptr<Solver> solver = solver_of(start);
   BenchRow row;
   row.scene = scene.name;
-  row.particles = n;
+  row.particles = start.plan.particles;
   row.settings = s;
   row.iterations = scene.solver.iterations;
   row.dt = scene.time.step;

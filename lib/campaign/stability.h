@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lib/campaign/grid.h"
+#include "lib/run/start.h"
 #include "lib/run/watch.h"
 
 namespace pbf::inline campaign_module {
@@ -112,8 +113,7 @@ struct Course : Figures {
 
 /// Runs a scene under its guard to the end or to an alarm; `done` gets the solver at the end.
 /// Empty when stop(), asked between updates, said so.
-std::optional<Course> run_course(const Scene& scene, const std::string& dir,
-                                 const std::function<bool()>& stop = {},
+std::optional<Course> run_course(Start start, const std::function<bool()>& stop = {},
                                  const std::function<void(Solver&)>& done = {});
 
 /// Least distance of two particles, in the unit of `x` (3 per particle); infinite for one particle.

@@ -7,7 +7,6 @@
 #include "lib/base/text.h"
 #include "lib/campaign/stability.h"
 #include "lib/run/motion_files.h"
-#include "lib/run/warnings.h"
 #include "lib/scene/auto_step.h"
 #include "lib/scene/load.h"
 #include "lib/scene/overrides.h"
@@ -86,13 +85,6 @@ double load_imbalance(const Course& c, const Scene& s, double mass) {
   return std::sqrt(off / weight);
 }
 
-bool scene_warns(const Scene& s, const std::string& dir, std::int64_t particles,
-                 const std::string& words) {
-  return std::ranges::any_of(scene_warnings(s, dir, particles), [&](const Warning& w) {
-    return w.text.find(words) != std::string::npos;
-  });
-}
-
 void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s) {
   const auto at_most = [&](const char* name, double value, double limit) {
     row.checks.push_back({name, value, limit, value <= limit});
@@ -105,11 +97,10 @@ void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s
   if (m.nearest) row.checks.push_back({"near", row.nearest, *m.nearest, row.nearest >= *m.nearest});
   if (m.still) at_most("Ekin", c.last.kinetic_energy / c.scale, *m.still);
   if (m.height) at_most("height lost", height_lost(c, s), *m.height);
-  const Plan plan = make_plan(s, c.particles);
-  const double mass = plan.mass * double(c.particles);
+  const double mass = s.particle_mass() * double(c.particles);
   if (m.momentum) at_most("momentum", momentum_drift(c, mass), *m.momentum);
   if (m.penetration) at_most("in solids", c.penetration / s.h(), *m.penetration);
-  if (m.through) at_most("through", c.through / plan.mass, *m.through);
+  if (m.through) at_most("through", c.through / s.particle_mass(), *m.through);
   if (m.loads) at_most("loads", load_imbalance(c, s, mass), *m.loads);
   for (const StabilityCheck& check : row.checks) {
     const bool least = check.name == std::string("near");
@@ -137,7 +128,11 @@ bool run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
     const auto x = snap.fields[0].as<double>();
     row.nearest = nearest_distance({x.begin(), x.end()}) / s.fluid.spacing;
   };
-  const std::optional<Course> ran = run_course(s, dir, o.stop, nearest);
+  Start start = prepare(s, dir, {.warnings = !c.must.warns.empty()});
+  const bool warned = std::ranges::any_of(start.warnings, [&](const Warning& w) {
+    return w.text.find(c.must.warns) != std::string::npos;
+  });
+  const std::optional<Course> ran = run_course(std::move(start), o.stop, nearest);
   if (!ran) return false;
   const Course& course = *ran;
   static_cast<Figures&>(row) = course;
@@ -153,7 +148,7 @@ bool run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
   }
   row.good = !must_stop && !c.must.error;
   judge(row, c.must, course, s);
-  if (c.must.warns.empty() || scene_warns(s, dir, row.particles, c.must.warns)) return true;
+  if (warned || c.must.warns.empty()) return true;
   row.happened += ", no such warning (!)";
   row.good = false;
   return true;

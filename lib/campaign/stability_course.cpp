@@ -4,8 +4,6 @@
 #include <numeric>
 
 #include "lib/campaign/stability.h"
-#include "lib/run/emit.h"
-#include "lib/run/prestabilize.h"
 #include "lib/solver/gauge_readings.h"
 
 namespace pbf::inline campaign_module {
@@ -26,13 +24,13 @@ double most_through(const Scene& scene, Solver& solver) {
 
 }  // namespace
 
-std::optional<Course> run_course(const Scene& scene, const std::string& dir,
-                                 const std::function<bool()>& stop,
+std::optional<Course> run_course(Start start, const std::function<bool()>& stop,
                                  const std::function<void(Solver&)>& done) {
   Course c;
-  c.particles = count_particles(scene, dir);
-  const Plan plan = make_plan(scene, c.particles);
-  const auto solver = start_solver(scene, plan, emit_particles(scene, dir));
+  const Scene& scene = start.scene();
+  const Plan& plan = start.plan;
+  c.particles = plan.particles;
+  const auto solver = solver_of(start);
   std::vector<std::pair<double, double>> compression;
   double loads_since = 0;  // s
   Watch watch(scene, plan, *solver, [&](const Diagnostics& m, double) {

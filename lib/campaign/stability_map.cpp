@@ -108,7 +108,8 @@ std::optional<MapCell> run_map_cell(const StabilityMap& m, MapCell c) {
   s.measure_every = std::max(1, int(s.time.end / s.time.step / 200));
   c.scene = s.name;
   c.dt_hat = relative_step(s);
-  const auto ran = run_course(s, std::filesystem::path(m.scene).parent_path().string(), m.run.stop);
+  const auto ran =
+      run_course(prepare(s, std::filesystem::path(m.scene).parent_path().string()), m.run.stop);
   if (!ran) return std::nullopt;
   const Course& course = *ran;
   static_cast<Figures&>(c) = course;

@@ -4,16 +4,12 @@
 
 #include "lib/base/error.h"
 #include "lib/base/text.h"
-#include "lib/exec/make_solver.h"
 #include "lib/io/run_layout.h"
 #include "lib/program/motion.h"
-#include "lib/program/plan.h"
 #include "lib/program/schedule.h"
-#include "lib/run/emit.h"
 #include "lib/run/motion_files.h"
-#include "lib/run/prestabilize.h"
 #include "lib/run/session.h"
-#include "lib/run/start_neighbors.h"
+#include "lib/run/start.h"
 
 namespace pbf::inline campaign_module {
 namespace {
@@ -79,19 +75,15 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
   const Schedule schedule = make_schedule(scene);
   MemberResult out;
   out.updates = schedule.updates;
-  out.particles = count_particles(scene, study.scene_dir);
-  const Plan plan =
-      make_plan(scene, out.particles, start_neighbors(scene, study.scene_dir, out.particles));
-  refuse_if_too_large(scene, plan);
-  const auto start = [&] {
-    return start_solver(scene, plan, emit_particles(scene, study.scene_dir));
-  };
+  Start start = prepare(scene, study.scene_dir);
+  const Plan& plan = start.plan;
+  out.particles = plan.particles;
   // A short repeat is a tenth of the run, but no fewer than 20 updates.
   const std::int64_t early = std::min(out.updates, std::max<std::int64_t>(20, out.updates / 10));
   double early_seconds = 0;
   bool stopped = false;
   {
-    const std::unique_ptr<Solver> solver = start();
+    const std::unique_ptr<Solver> solver = solver_of(start);
     const SolverInfo info = solver->info();
     out.backend = info.backend, out.precision = info.precision, out.device = info.device;
     out.threads = info.threads;
@@ -120,7 +112,8 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
   if (out.status != "finished") return out;
   for (int r = 1; r < study.repeats && early > 0; ++r) {
     if (stop()) return std::nullopt;
-    const std::unique_ptr<Solver> solver = start();
+    start = prepare(scene, study.scene_dir);
+    const std::unique_ptr<Solver> solver = solver_of(start);
     Session again(*solver);
     again.run(early);
     out.ratios.push_back(seconds_of(again, study) / early_seconds);

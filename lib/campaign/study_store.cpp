@@ -16,6 +16,7 @@
 #include "lib/exec/devices.h"
 #include "lib/io/run_layout.h"
 #include "lib/run/emit.h"
+#include "lib/run/motion_files.h"
 #include "lib/scene/load.h"
 #include "lib/scene/scene_files.h"
 
@@ -92,12 +93,13 @@ std::string member_key(const Study& study, const StudyMember& m) {
   static const std::string program = program_text();
   Scene scene = m.scene;
   scene.name.clear();
+  read_motions(scene, study.scene_dir);
   const Json key{"2",  // of the format below
                  program,
                  about(m.scene.backend).on_device ? cuda_device_report() : cpu_model(),
                  usable_threads(),
                  resolved_yaml(scene),
-                 files_text(scene_files(m.scene, study.scene_dir)),
+                 files_text(StartPoints(scene, study.scene_dir).files()),
                  study.repeats,
                  study.cpu_clock};
   return sha256(json_text(key)).substr(0, 16);

@@ -17,8 +17,8 @@ void refuse_if_too_large(const Scene& scene, const Plan& plan);
 
 /// Throws Error(unavailable) when the backend, a device or memory is not there. Takes the particles
 /// and lets go of them as it goes.
-/// The particles stay where they are: what runs a scene from its start calls start_solver()
-/// (lib/run/prestabilize.h).
+/// The particles stay where they are: what runs a scene from its start calls solver_of()
+/// (lib/run/start.h).
 std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles);
 
 }  // namespace pbf::inline exec_module

@@ -50,6 +50,26 @@ Reading::Reading(const std::string& path) {
   file_ = File(H5Fopen(path.c_str(), H5F_ACC_RDONLY, file_access()));
 }
 
+// HDF5 would copy the bytes twice. Opened for reading it changes none of them.
+Reading::Reading(const std::string& path, const std::string& bytes) {
+  using Use = H5FD_file_image_op_t;
+  void* const all = const_cast<char*>(bytes.data());
+  H5FD_file_image_callbacks_t uncopied{
+      [](std::size_t, Use, void* own) { return own; },
+      [](void* to, const void*, std::size_t, Use, void*) { return to; },
+      nullptr,
+      [](void*, Use, void*) { return herr_t{0}; },
+      [](void* own) { return own; },
+      [](void*) { return herr_t{0}; },
+      all};
+  const Properties access = file_access();
+  check(H5Pset_fapl_core(access, 1 << 16, false));
+  check(H5Pset_file_image_callbacks(access, &uncopied));
+  check(H5Pset_file_image(access, all, bytes.size()));
+  // HDF5 refuses bytes under the name of a file that is there.
+  file_ = File(H5Fopen((path + "/").c_str(), H5F_ACC_RDONLY, access));
+}
+
 void stay_inside(hid_t parent, const std::string& path) {
   require_lock();
   follow(parent, path, 0);

@@ -14,6 +14,8 @@ namespace pbf::inline io_module::h5 {
 class Reading {
  public:
   explicit Reading(const std::string& path);
+  /// The bytes of a file, which must outlive this; `path` is for messages. Nothing is opened.
+  Reading(const std::string& path, const std::string& bytes);
   operator hid_t() const { return file_; }
 
  private:

@@ -61,39 +61,26 @@ void parse_row(std::string_view line, int columns, const CsvLines& lines, double
               std::to_string(column + 1) + " columns, the header has " + std::to_string(columns));
 }
 
-/// Calls `use(line, columns, where)` for every data line.
-template <class Use>
-void for_each_row(RegularFile& file, const std::string& path, Sha256* hash, Use use) {
-  CsvLines lines(file, path, {hash, kLongestLine, kExpected});
-  int columns = 0;
-  for (std::string line; lines.next(line);) {
-    if (trimmed(line).empty()) continue;
-    if (columns == 0)
-      columns = csv_columns(line, lines.where());
-    else
-      use(std::string_view(line), columns, lines);
-  }
-  if (columns == 0)
-    bad_input(path, "empty, expected a header x,y,z or x,y,z,vx,vy,vz and particles");
-}
-
 }  // namespace
 
 Particles read_particle_csv(RegularFile& file, const std::string& path, Sha256* hash) {
+  CsvLines lines(file, path, {hash, kLongestLine, kExpected});
+  int columns = 0;
   Particles p;
-  for_each_row(file, path, hash, [&p](std::string_view line, int columns, const CsvLines& lines) {
+  for (std::string line; lines.next(line);) {
+    if (trimmed(line).empty()) continue;
+    if (columns == 0) {
+      columns = csv_columns(line, lines.where());
+      continue;
+    }
     double row[6] = {};
     parse_row(line, columns, lines, row);
     p.position.push_back({row[0], row[1], row[2]});
     p.velocity.push_back({row[3], row[4], row[5]});
-  });
+  }
+  if (columns == 0)
+    bad_input(path, "empty, expected a header x,y,z or x,y,z,vx,vy,vz and particles");
   return p;
-}
-
-std::int64_t count_particle_csv(RegularFile& file, const std::string& path) {
-  std::int64_t count = 0;
-  for_each_row(file, path, nullptr, [&count](std::string_view, int, const CsvLines&) { ++count; });
-  return count;
 }
 
 }  // namespace pbf::inline io_module

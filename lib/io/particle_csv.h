@@ -15,7 +15,4 @@ namespace pbf::inline io_module {
 /// begun as a particle file does: a scene from elsewhere may name any file of this machine.
 Particles read_particle_csv(RegularFile& file, const std::string& path, Sha256* hash);
 
-/// Number of lines after the header that are not empty; they are not parsed.
-std::int64_t count_particle_csv(RegularFile& file, const std::string& path);
-
 }  // namespace pbf::inline io_module

@@ -9,7 +9,6 @@
 #include "lib/program/obstacles.h"
 #include "lib/run/motion_files.h"
 #include "lib/scene/number.h"
-#include "lib/scene/points.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -124,24 +123,6 @@ std::size_t drop_inside(const FreePlaces& free, std::size_t first, Particles& al
   return dropped;
 }
 
-/// f() reads the file of a body; what is wrong with it is told with the key that names it.
-template <class F>
-auto of_file(const Scene& scene, std::size_t b, F&& f) {
-  try {
-    return f();
-  } catch (const Error& e) {
-    throw Error(e.code(), name_of(scene, b) + ".path: " + e.what());
-  }
-}
-
-double count_of_file(const Scene& scene, std::size_t b, const std::string& path) {
-  return of_file(scene, b, [&] {
-    const std::int64_t n = count_particle_file(path);
-    if (n < 1) bad_input(path, "holds no particles");
-    return double(n);
-  });
-}
-
 }  // namespace
 
 std::string resolved_path(const Body& body, const std::string& scene_dir) {
@@ -149,29 +130,29 @@ std::string resolved_path(const Body& body, const std::string& scene_dir) {
   return path.is_absolute() ? body.path : (std::filesystem::path(scene_dir) / path).string();
 }
 
-Particles particles_of_file(const Scene& scene, std::size_t b, const std::string& scene_dir,
-                            std::string* sha256) {
-  return of_file(scene, b, [&] {
-    return read_particle_file(resolved_path(scene.bodies[b], scene_dir), sha256);
-  });
+StartPoints::StartPoints(const Scene& scene, const std::string& scene_dir) : scene_(scene) {
+  of_files_.resize(scene.bodies.size());
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) try {
+      if (scene.bodies[b].shape != Shape::file) continue;
+      const std::string path = resolved_path(scene.bodies[b], scene_dir);
+      SceneFile& file = files_.emplace_back(SceneFile{scene.bodies[b].path, ""});
+      of_files_[b] = read_particle_file(path, &file.sha256);
+      if (of_files_[b].size() == 0) bad_input(path, "holds no particles");
+    } catch (const Error& e) {
+      throw Error(e.code(), name_of(scene, b) + ".path: " + e.what());
+    }
+  for (SceneFile& file : motion_files(scene)) files_.push_back(std::move(file));
 }
 
-std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {
+std::int64_t count_particles(const StartPoints& points) {
+  const Scene& scene = points.scene();
   double sum = 0;
   const FreePlaces free(scene);
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    if (!free.all()) {
-      const auto count = [&](const Double3& x) { sum += free.has(x); };
-      if (body.shape == Shape::file)
-        for (const Double3& x : particles_of_file(scene, b, scene_dir).position) count(x);
-      else
-        for_each_point(body, scene.fluid.spacing, scene.plane(), count);
-      continue;
-    }
-    sum += body.shape == Shape::file ? count_of_file(scene, b, resolved_path(body, scene_dir))
-                                     : lattice_count(body, scene.fluid.spacing, scene.plane());
-  }
+  if (!free.all()) points.for_each([&](std::size_t, const Double3& x) { sum += free.has(x); });
+  for (std::size_t b = 0; b < scene.bodies.size() && free.all(); ++b)
+    sum += scene.bodies[b].shape == Shape::file
+               ? double(points.of_file(b).size())
+               : lattice_count(scene.bodies[b], scene.fluid.spacing, scene.plane());
   if (sum < 1)
     throw Error(ExitCode::bad_input,
                 std::string("bodies: the scene has 0 particles") +
@@ -181,30 +162,19 @@ std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {
   return static_cast<std::int64_t>(sum);
 }
 
-std::vector<SceneFile> scene_files(const Scene& scene, const std::string& scene_dir) {
-  std::vector<SceneFile> files;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    if (body.shape != Shape::file) continue;
-    SceneFile& file = files.emplace_back(SceneFile{body.path, ""});
-    particles_of_file(scene, b, scene_dir, &file.sha256);
-  }
-  for (SceneFile& file : motion_files(scene, scene_dir)) files.push_back(std::move(file));
-  return files;
-}
-
-Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
-  const auto total = static_cast<std::size_t>(count_particles(scene, scene_dir));
+Particles emit_particles(StartPoints points) {
+  const Scene& scene = points.scene();
+  const auto total = static_cast<std::size_t>(count_particles(points));
   const FreePlaces free(scene);
   Particles all;
+  all.files = points.files();
   all.position.reserve(total);
   all.velocity.reserve(total);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     const std::size_t first = all.size();
     if (body.shape == Shape::file) {
-      SceneFile& file = all.files.emplace_back(SceneFile{body.path, ""});
-      const Particles p = particles_of_file(scene, b, scene_dir, &file.sha256);
+      const Particles p = points.take_file(b);
       if (scene.dimensions == 2) refuse_velocity_along_y(scene, b, p.velocity);
       all.position.insert(all.position.end(), p.position.begin(), p.position.end());
       all.velocity.insert(all.velocity.end(), p.velocity.begin(), p.velocity.end());
@@ -219,7 +189,6 @@ Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
     if (!free.all()) all.in_obstacles.push_back(drop_inside(free, first, all));
     hold_off_walls(scene, b, first, all);
   }
-  for (SceneFile& file : motion_files(scene, scene_dir)) all.files.push_back(std::move(file));
   return all;
 }
 

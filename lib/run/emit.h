@@ -1,11 +1,14 @@
-// Creates the particles of a scene's bodies.
+// Reads and creates the particles of a scene's bodies.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lib/scene/particles.h"
+#include "lib/scene/points.h"
 #include "lib/scene/scene.h"
 
 namespace pbf::inline run_module {
@@ -13,29 +16,62 @@ namespace pbf::inline run_module {
 /// Path of a file body's file.
 std::string resolved_path(const Body& body, const std::string& scene_dir);
 
-/// The particles of a file body. What is wrong with its file is told with the place in the scene
-/// that names it; else throws as read_particle_file(), and takes `sha256` as that does.
-Particles particles_of_file(const Scene& scene, std::size_t body, const std::string& scene_dir,
-                            std::string* sha256 = nullptr);
+/// The particles of a scene in the order of their ids, before any check of them. The file of a body
+/// is opened here, once, and its particles are kept: whoever takes them sees the same ones.
+class StartPoints {
+ public:
+  /// `scene` must outlive this, `scene_dir` anchors relative paths. What is wrong with a file is
+  /// told with the place in the scene that names it; else throws as read_particle_file(), and
+  /// Error(bad_input) for one without particles.
+  StartPoints(const Scene& scene, const std::string& scene_dir);
+  /// f(index of the body, place in m). In two dimensions every place is on the plane.
+  template <class F>
+  void for_each(F&& f) const {
+    const std::optional<double> plane = scene_.plane();
+    for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+      const auto put = [&](Double3 x) {
+        if (plane) x[1] = *plane;
+        f(b, x);
+      };
+      if (scene_.bodies[b].shape != Shape::file)
+        for_each_point(scene_.bodies[b], scene_.fluid.spacing, plane, put);
+      else
+        for (const Double3& x : of_files_[b].position) put(x);
+    }
+  }
+  const Scene& scene() const { return scene_; }
+  const Particles& of_file(std::size_t body) const { return of_files_[body]; }
+  /// No longer kept.
+  Particles take_file(std::size_t body) { return std::move(of_files_[body]); }
+  /// Of bodies and motions, in their order, as they were read.
+  const std::vector<SceneFile>& files() const { return files_; }
 
-/// The files of the scene's bodies and motions, in their order, as they are now. Throws as
-/// emit_particles().
-std::vector<SceneFile> scene_files(const Scene& scene, const std::string& scene_dir);
+ private:
+  const Scene& scene_;
+  std::vector<Particles> of_files_;  // empty for other bodies
+  std::vector<SceneFile> files_;
+};
 
-/// Number of particles the scene's bodies make, without making them (file bodies are opened).
-/// Throws Error(bad_input) when the number is 0 or above 2^31 - 1.
-std::int64_t count_particles(const Scene& scene, const std::string& scene_dir);
+/// Number of particles the scene's bodies make, without making them. Throws Error(bad_input) when
+/// the number is 0 or above 2^31 - 1.
+std::int64_t count_particles(const StartPoints& points);
 
-/// Makes the particles of every body in order of the list. `scene_dir` anchors relative paths.
-/// Block: lattice points min + (i + 1/2) d for every cell of edge d that fits (to rounding);
-/// sphere: points of the lattice through its centre with |x - c| <= radius; random_box: SplitMix64
-/// seeded by `seed`, three draws per particle (x, y, z), 53-bit mantissa, the same on every
-/// machine. In two dimensions each of them is its cut with the plane: square lattice, disc, two
-/// draws (x, z); particles of a file within the slab are put on it. Particles nearer to a wall than
-/// solver.wall_margin are put on that distance, by up to half a spacing: the first update would
-/// clamp them, and take the way for a velocity.
-/// Throws Error(bad_input) for a particle outside the domain or farther behind the margin, a
-/// file body that cannot be understood, non-finite values; Error(io) for one that cannot be read.
-Particles emit_particles(const Scene& scene, const std::string& scene_dir);
+/// Makes the particles of every body in order of the list. Lets go of those of files as
+/// it goes. Block: lattice points min + (i + 1/2) d for every cell of edge d that fits (to
+/// rounding); sphere: points of the lattice through its centre with |x - c| <= radius; random_box:
+/// SplitMix64 seeded by `seed`, three draws per particle (x, y, z), 53-bit mantissa, the same on
+/// every machine. In two dimensions each of them is its cut with the plane: square lattice, disc,
+/// two draws (x, z); particles of a file within the slab are put on it. Particles nearer to a wall
+/// than solver.wall_margin are put on that distance, by up to half a spacing: the first update
+/// would clamp them, and take the way for a velocity. Throws Error(bad_input) for a particle
+/// outside the domain or farther behind the margin.
+Particles emit_particles(StartPoints points);
+
+inline std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {
+  return count_particles(StartPoints(scene, scene_dir));
+}
+inline Particles emit_particles(const Scene& scene, const std::string& scene_dir) {
+  return emit_particles(StartPoints(scene, scene_dir));
+}
 
 }  // namespace pbf::inline run_module

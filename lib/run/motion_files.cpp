@@ -37,7 +37,8 @@ class Reader {
 
   /// headers: those that are allowed.
   MotionTable read(const std::vector<std::string>& headers) {
-    const std::vector<CsvRow> rows = all_rows();
+    MotionTable t;
+    const std::vector<CsvRow> rows = all_rows(t.sha256);
     std::string header;
     if (!rows.empty())
       for (const std::string& cell : rows[0].cells) header += (header.empty() ? "" : ",") + cell;
@@ -45,7 +46,6 @@ class Reader {
       fail(rows.empty() ? file_ : rows[0].where,
            (rows.empty() ? "is empty" : wrong_header(header)) + ", expected the header " +
                headers[0] + " or " + headers[1]);
-    MotionTable t;
     t.file = fs::absolute(file_).string();
     t.columns = int(rows[0].cells.size()) - 1;
     for (std::size_t r = 1; r < rows.size(); ++r) {
@@ -74,9 +74,9 @@ class Reader {
   }
 
  private:
-  std::vector<CsvRow> all_rows() const {
+  std::vector<CsvRow> all_rows(std::string& sha256) const {
     try {
-      return read_csv(file_);
+      return read_csv(file_, "", &sha256);
     } catch (const Error& e) {
       throw Error(e.code(), key_ + ": " + e.what() +
                                 (e.code() == ExitCode::io && !fs::exists(file_)
@@ -127,12 +127,11 @@ std::vector<std::string> motion_paths(const Scene& scene) {
   return all;
 }
 
-std::vector<SceneFile> motion_files(const Scene& scene, const std::string& dir) {
+std::vector<SceneFile> motion_files(const Scene& scene) {
   std::vector<SceneFile> files;
-  for (const std::string& path : motion_paths(scene)) {
-    SceneFile& file = files.emplace_back(SceneFile{path, ""});
-    read_csv(file_of(path, dir), "", &file.sha256);
-  }
+  for_each_file(scene, [&](const auto& m, const std::string&) {
+    files.push_back({m.path, m.table.sha256});
+  });
   return files;
 }
 

@@ -18,8 +18,8 @@ void read_motions(Scene& scene, const std::string& dir, bool auto_step = false);
 /// The paths of these files, as the scene has them.
 std::vector<std::string> motion_paths(const Scene& scene);
 
-/// The files, as they are now.
-std::vector<SceneFile> motion_files(const Scene& scene, const std::string& dir);
+/// The files, as read_motions() has read them.
+std::vector<SceneFile> motion_files(const Scene& scene);
 
 /// Their paths replaced by what read_motions() found there, so that the scene may lie anywhere.
 void make_paths_absolute(Scene& scene);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "lib/run/body_boxes.h"
-#include "lib/run/start_points.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline run_module {
@@ -91,7 +90,8 @@ std::vector<Candidate> candidates(const Scene& s, const StartPoints& points,
 
 }  // namespace
 
-Overlap find_overlap(const Scene& s, const std::string& scene_dir) {
+Overlap find_overlap(const StartPoints& points) {
+  const Scene& s = points.scene();
   Overlap found;
   const bool file = std::any_of(s.bodies.begin(), s.bodies.end(),
                                 [](const Body& b) { return b.shape == Shape::file; });
@@ -99,7 +99,6 @@ Overlap find_overlap(const Scene& s, const std::string& scene_dir) {
   // By more than rounding: bodies that touch on one lattice are a spacing apart, no less.
   const double reach = 0.5 * s.fluid.spacing * (1 - 1e-6);
   if (!file && !may_be_near(s, reach)) return found;
-  const StartPoints points(s, scene_dir);
   const std::vector<Box> boxes = boxes_of(s, points);
   const Near others = near_bodies(boxes, reach);
   const std::vector<Candidate> list = candidates(s, points, boxes, others, reach);

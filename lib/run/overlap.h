@@ -3,9 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
 
-#include "lib/scene/scene.h"
+#include "lib/run/emit.h"
 
 namespace pbf::inline run_module {
 
@@ -22,6 +21,6 @@ struct Overlap {
 };
 
 /// Looks at the particles alone that lie within half a spacing of another body's box, or in a file.
-Overlap find_overlap(const Scene& scene, const std::string& scene_dir);
+Overlap find_overlap(const StartPoints& points);
 
 }  // namespace pbf::inline run_module

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "lib/base/text.h"
-#include "lib/exec/make_solver.h"
 #include "lib/program/time_levels.h"
 #include "lib/run/guard.h"
 
@@ -116,12 +114,6 @@ std::string prestabilized_text(const Prestabilized& p) {
   if (!p.relieved() && p.compression_after > 0.01)
     text += ": is there room for all of them? Is fluid.mass as meant?";
   return text;
-}
-
-std::unique_ptr<Solver> start_solver(const Scene& scene, const Plan& plan, Particles particles) {
-  std::unique_ptr<Solver> solver = make_solver(scene, plan, std::move(particles));
-  prestabilize(*solver, scene, plan);
-  return solver;
 }
 
 }  // namespace pbf::inline run_module

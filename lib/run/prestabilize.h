@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <string>
 
 #include "lib/program/plan.h"
@@ -38,9 +37,5 @@ Prestabilized prestabilize(Solver& solver, const Scene& scene, const Plan& plan,
 
 /// One line for people; empty when there is nothing to tell.
 std::string prestabilized_text(const Prestabilized& p);
-
-/// A solver at the start of a run: make_solver(), then prestabilize(). What runs a scene from its
-/// first update begins here.
-std::unique_ptr<Solver> start_solver(const Scene& scene, const Plan& plan, Particles particles);
 
 }  // namespace pbf::inline run_module

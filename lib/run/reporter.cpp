@@ -30,7 +30,7 @@ std::string passed_through_text(const Scene& s, const Diagnostics& m, double sha
 
 Reporter::Reporter(RunParts& run, const Watch& watch)
     : run_(run), watch_(watch), progress_(run.log) {
-  for (const Warning& w : run.of_scene) told_.emplace(w.kind, w.text);
+  for (const Warning& w : run.start.warnings) told_.emplace(w.kind, w.text);
   if (run.from.saved) compressed_ = run.from.saved->compressed_updates;
   progress_.start_at(run.from.update());
 }
@@ -53,7 +53,7 @@ void Reporter::end(Session& session) {
     const double h = run_.scene.h();
     count_outside(x.size() / 3, [&](std::size_t i, int a) { return origin[a] + h * x[3 * i + a]; });
   }
-  all_ = run_.of_scene;
+  all_ = run_.start.warnings;
   const bool finished = !watch_.event() && session.update() == run_.schedule.updates;
   for (const Warning& w : found(finished)) all_.push_back(w);
 }

@@ -2,10 +2,20 @@
 
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
+
 #include "lib/base/error.h"
+#include "lib/base/output_file.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
+#include "lib/exec/make_solver.h"
 #include "lib/io/particle_output.h"
+#include "lib/io/run_path.h"
+#include "lib/program/threads.h"
+#include "lib/run/load_run.h"
+#include "lib/run/prestabilize.h"
+#include "lib/run/run_record.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -24,7 +34,7 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   info.scene_bases = loaded.bases;
   info.scene_sha256 = scene_digest(info.resolved_scene, info.scene_files);
   info.overrides = loaded.overrides;
-  for (const Warning& w : run.of_scene) info.warnings.push_back(w.text);
+  for (const Warning& w : run.start.warnings) info.warnings.push_back(w.text);
   info.program_version = build.version;
   info.commit = build.commit;
   info.compiler = build.compiler;
@@ -44,6 +54,21 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   return info;
 }
 
+/// The run file and the folder of the pictures, where there are some.
+void open_files(RunParts& run, const std::string& started) {
+  if (const auto& output = run.scene.output) {
+    const std::string path = run.folder.file(kRunFile);
+    const RunInfo info = run_info(run, started);
+    const bool gzip = output->compression == Compression::gzip;
+    run.writer = run.from.keep_file
+                     ? std::make_unique<RunWriter>(path, info, gzip, run.from.frames, run.from.rows)
+                     : std::make_unique<RunWriter>(path, info, gzip);
+  }
+#ifdef PBF_HAS_RENDER
+  if (run.pictures) run.pictures->into(run.folder.file(RunFolder::kPictures));
+#endif
+}
+
 /// Saves the last good state and a scene that goes on from it, and ends the run.
 [[noreturn]] void report_alarm(const Watch& watch, const Scene& scene, const RunFolder& folder) {
   const GuardEvent& e = *watch.event();
@@ -58,21 +83,73 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
                              folder.file("guard_scene.yaml").c_str()));
 }
 
-}  // namespace
-
-void open_files(RunParts& run, const std::string& started) {
-  if (const auto& output = run.scene.output) {
-    const std::string path = run.folder.file(kRunFile);
-    const RunInfo info = run_info(run, started);
-    const bool gzip = output->compression == Compression::gzip;
-    run.writer = run.from.keep_file
-                     ? std::make_unique<RunWriter>(path, info, gzip, run.from.frames, run.from.rows)
-                     : std::make_unique<RunWriter>(path, info, gzip);
-  }
-#ifdef PBF_HAS_RENDER
-  if (run.pictures) run.pictures->into(run.folder.file(RunFolder::kPictures));
-#endif
+std::string banner(const RunParts& run) {
+  const SolverInfo i = run.solver.info();
+  const BuildInfo build = build_info();
+  const Scene& scene = run.scene;
+  std::string where = i.backend + " " + i.precision;
+  if (!about(scene.backend).on_device) where += ", " + threads_text(scene, run.plan.particles);
+  return format(
+      "pbf %s (%s)  scene %s: %ld particles, %ld updates of %.4g s\n%s on %s; the solver "
+      "holds %s; files in %s",
+      build.version.c_str(), build.commit.c_str(), scene.name.c_str(), run.plan.particles,
+      run.schedule.updates, scene.time.step, where.c_str(), i.device.c_str(),
+      bytes_text(double(i.bytes)).c_str(), run.folder.path().c_str());
 }
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+File open_json(const std::string& path, bool append) {
+  File file(path.empty() ? nullptr : ::fdopen(open_output_stream(path, append), "a"), std::fclose);
+  if (!path.empty() && !file)
+    throw Error(ExitCode::io,
+                "--log-json " + path + ": cannot be created: " + std::strerror(errno));
+  return file;
+}
+
+/// Everything from the made folder on, so that its log.txt also gets the error that ends it.
+RunResult simulate(RunParts& run) {
+  const ResumePoint& from = run.from;
+  Log& log = run.log;
+  const std::string started = utc_now();
+  const auto note = [&log](const std::string& text) { log.note("pbf: " + text); };
+  const File json = open_json(run.control.log_json, from.started);
+  run.json = json.get();
+  if (from.started) prepare_resume(run.folder, from);
+  run.folder.write_text(kResolvedScene, scene_record(run.scene, run.loaded.files));
+  log.note(banner(run));
+  for (const Warning& w : run.start.warnings) log.warning(w.text);
+  for (const std::string& text : from.notes) note(text);
+  if (!from.saved)
+    for (const std::string& text : run.start.notes) note(text);
+  for (const std::string& text : rounded_times(run.scene)) note(text);
+  if (from.saved) {
+    run.solver.set_state(from.saved->state);
+    note(format("goes on from the checkpoint of update %ld", from.update()));
+  } else {
+    run.clock.mark("init");
+    const std::string done = prestabilized_text(
+        prestabilize(run.solver, run.scene, run.plan,
+                     [&log](const std::string& line) { log.progress("pbf: " + line); }));
+    if (!done.empty()) note(done);
+    run.clock.begin();  // the solver has booked its steps
+  }
+  open_files(run, started);
+  run.clock.mark("init");
+  run_session(run);
+  const RunResult result{run.stop_reason, run.solver.updates()};
+  if (run.status == "stopped")
+    note(
+        format("stopped early by %s after update %ld of %ld, after saving; the files in %s hold "
+               "the run up to there: the same command with --resume goes on",
+               result.stop_reason.c_str(), result.updates, run.schedule.updates,
+               run.folder.path().c_str()));
+  log.close();
+  if (run.status != "stopped") run.folder.write_text("DONE", "finished " + utc_now() + "\n");
+  return result;
+}
+
+}  // namespace
 
 void run_session(RunParts& run) {
   const Stopwatch loop;
@@ -100,15 +177,64 @@ void run_session(RunParts& run) {
   session.run(run.schedule.updates, saved ? run.from.update() : -1);
   run.loop_seconds = loop.seconds();
   run.log.result(run_summary(run, watch, rows->stages()));
-  if (!run.strict)  // else all are in the error
+  if (!run.control.strict)  // else all are in the error
     for (const Warning& w : reporter.untold()) run.log.warning(w.text);
   if (watch.event()) report_alarm(watch, run.scene, run.folder);
-  if (run.strict && !reporter.warnings().empty())
+  if (run.control.strict && !reporter.warnings().empty())
     throw Error(ExitCode::difference,
                 "--strict: " + warning_lines(reporter.warnings()) +
                     format("\npbf: the files in %s hold the run up to update %ld of %ld; the same "
                            "command with --resume and without --strict goes on",
                            run.folder.path().c_str(), run.solver.updates(), run.schedule.updates));
+}
+
+RunResult run(Start start, const RunPlace& place, Control& control) {
+#ifndef PBF_HAS_RENDER
+  if (start.scene().render)
+    throw Error(ExitCode::unavailable,
+                "render: this build draws no pictures; remove the key, or build with "
+                "-DPBF_RENDER=ON");
+#endif
+  Log& log = control.log;
+  StageClock clock;
+  std::unique_ptr<RunFolder> folder;
+  ResumePoint from;
+  if (place.existing == ExistingFolder::resume && RunFolder::check(place.folder, place.existing)) {
+    folder = std::make_unique<RunFolder>(place.folder, place.existing);
+    from = find_resume_point(*folder, start.scene(), start.particles.files, start.plan.particles,
+                             build_info().commit);
+    if (from.finished) {
+      for (const std::string& note : from.notes) log.note("pbf: " + note);
+      return {};
+    }
+  }
+  take_files(start.loaded, start.particles.files, from.notes);
+  const auto solver = make_solver(start.scene(), start.plan, std::move(start.particles));
+  double solver_init = 0;  // the solver reports its own part of "init"
+  for (const StageTime& s : solver->info().stages) solver_init += s.name == "init" ? s.seconds : 0;
+#ifdef PBF_HAS_RENDER
+  std::unique_ptr<RenderThread> pictures;  // here, for not every machine has what draws them
+  if (start.scene().render)
+    pictures = std::make_unique<RenderThread>(view_of(start.scene(), start.plan.particles));
+#endif
+  clock.add("init", control.wall.seconds() - solver_init);
+  clock.begin();
+  // A new folder comes last: a scene that cannot run leaves nothing behind.
+  if (!folder) folder = std::make_unique<RunFolder>(place.folder, place.existing);
+  log.open(folder->file("log.txt"), from.started);
+  try {
+    RunParts parts{start, *solver, control, clock, *folder, from};
+#ifdef PBF_HAS_RENDER
+    parts.pictures = std::move(pictures);
+#endif
+    return simulate(parts);
+  } catch (const std::exception& e) {
+    try {
+      log.file_only(std::string("pbf: error: ") + e.what());
+    } catch (const Error&) {  // a full disk: the first error is the one to tell
+    }
+    throw;
+  }
 }
 
 }  // namespace pbf::inline run_module

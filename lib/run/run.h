@@ -8,11 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "lib/base/log.h"
 #include "lib/io/run_file.h"
 #include "lib/run/resume.h"
-#include "lib/run/run_folder.h"
-#include "lib/run/warnings.h"
+#include "lib/run/start.h"
 #include "lib/run/watch.h"
 #ifdef PBF_HAS_RENDER
 #include "lib/render/renderer.h"
@@ -22,23 +20,22 @@ namespace pbf::inline run_module {
 
 /// A run: what it is made of, where it writes to, and what its observers find out.
 struct RunParts {
-  const LoadedScene& loaded;
-  const Plan& plan;
+  const Start& start;
   Solver& solver;
-  Log& log;
+  Control& control;
   StageClock& clock;
-  const Stopwatch& wall;  ///< since the start of the command
   const RunFolder& folder;
   const ResumePoint& from;              ///< the solver has its state
-  std::vector<Warning> of_scene;        ///< that have been told
-  double max_walltime = 0;              ///< s, 0: none
-  bool strict = false;                  ///< a warning ends it
   std::FILE* json = nullptr;            ///< one line per measure, null: none; owned by the caller
   std::unique_ptr<RunWriter> writer{};  ///< null: none
 #ifdef PBF_HAS_RENDER
   std::unique_ptr<RenderThread> pictures{};  ///< the same; the caller's, made before the folder
 #endif
+  const LoadedScene& loaded = start.loaded;
   const Scene& scene = loaded.scene;
+  const Plan& plan = start.plan;
+  Log& log = control.log;
+  const Stopwatch& wall = control.wall;
   Schedule schedule = make_schedule(scene);
 
   double loop_seconds = 0;     ///< s, the updates with their output
@@ -48,10 +45,6 @@ struct RunParts {
   std::string status{};       ///< as in run.vtkhdf: finished, stopped, diverged
   std::string stop_reason{};  ///< "SIGTERM", ...
 };
-
-/// Opens the run file and makes the folder of the pictures, where there are some; `started`:
-/// utc_now() of the session. Throws Error(io).
-void open_files(RunParts& run, const std::string& started);
 
 /// Warnings of a run, told as they come up, and its progress.
 class Reporter : public Observer {

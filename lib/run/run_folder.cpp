@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -90,8 +91,13 @@ std::optional<fs::path> others_file(const fs::path& folder) {
 }
 
 /// File descriptors of the locks that this process holds.
-std::set<int>& locks() {
-  static std::set<int> all;
+struct Locks {
+  std::mutex mutex;  // of `all`, also while a process is copied
+  std::set<int> all;
+};
+
+Locks& locks() {
+  static Locks all;
   return all;
 }
 
@@ -144,7 +150,8 @@ RunFolder::RunFolder(const std::string& path, ExistingFolder existing) : path_(p
 
 RunFolder::~RunFolder() {
   if (lock_ < 0) return;
-  locks().erase(lock_);
+  const std::lock_guard alone(locks().mutex);
+  locks().all.erase(lock_);
   ::unlink(file(".lock").c_str());  // while it is held: the next one makes a new file
   ::close(lock_);
 }
@@ -152,11 +159,15 @@ RunFolder::~RunFolder() {
 /// The system drops the lock with the process, however that ends. A process that this one makes to
 /// try a file in would hold it too, and outlive a SIGKILL of this one: it closes its copy at once.
 void RunFolder::lock() {
-  static const int closed_in_children = pthread_atfork(nullptr, nullptr, [] {
-    for (const int fd : locks()) ::close(fd);
-  });
+  static const int closed_in_children =
+      pthread_atfork([] { locks().mutex.lock(); }, [] { locks().mutex.unlock(); },
+                     [] {
+                       for (const int fd : locks().all) ::close(fd);
+                       locks().mutex.unlock();
+                     });
   if (closed_in_children != 0)
     fail(path_ / ".lock", "cannot be kept from other processes", std::strerror(closed_in_children));
+  const std::lock_guard alone(locks().mutex);
   for (;;) {
     lock_ = open_own_file(file(".lock"), O_RDWR | O_CREAT);
     if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
@@ -179,7 +190,7 @@ void RunFolder::lock() {
       break;
     ::close(std::exchange(lock_, -1));
   }
-  locks().insert(lock_);
+  locks().all.insert(lock_);
   char host[256] = "";
   gethostname(host, sizeof host - 1);
   const std::string who = "process " + std::to_string(getpid()) + " on " + host;

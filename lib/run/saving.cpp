@@ -1,5 +1,4 @@
 #include "lib/run/run.h"
-#include "lib/run/signals.h"
 
 namespace pbf::inline run_module {
 
@@ -7,7 +6,7 @@ Now Saving::at(Session& session) {
   if (session.update() >= run_.schedule.updates) return Now::go_on;
   const auto& checkpoint = run_.scene.checkpoint;
   const bool due = checkpoint && since_save_.seconds() >= checkpoint->every;
-  if ((save_asked() || due) && !save()) return Now::stop;
+  if ((run_.control.stop.take_save() || due) && !save()) return Now::stop;
   // A run that alarms take back goes on to its first measure or frame, so that it gains something.
   const bool goes_back = watch_.goes_back();
   if (goes_back && watch_.guard()->last_good().update <= run_.from.update()) return Now::go_on;
@@ -19,9 +18,11 @@ Now Saving::at(Session& session) {
 }
 
 std::string Saving::why_stop() const {
-  if (std::string signal = signal_seen(); !signal.empty()) return signal;
-  if (run_.max_walltime > 0 && run_.wall.seconds() >= run_.max_walltime) return "--max-walltime";
-  return run_.strict && reporter_.has_told() ? "--strict" : "";
+  const Control& control = run_.control;
+  if (const char* why = control.stop.why()) return why;
+  if (control.max_walltime > 0 && control.wall.seconds() >= control.max_walltime)
+    return "--max-walltime";
+  return control.strict && reporter_.has_told() ? "--strict" : "";
 }
 
 /// All that comes before the state is on the disk before the checkpoint is. A state that the guard

@@ -153,8 +153,8 @@ void add_obstacles(const Scene& s, const std::vector<Track>& tracks, std::vector
   }
 }
 
-void add_overlap(const Scene& s, const std::string& dir, std::vector<Warning>& list) {
-  const Overlap o = find_overlap(s, dir);
+void add_overlap(const StartPoints& points, std::vector<Warning>& list) {
+  const Overlap o = find_overlap(points);
   const char* least = o.more ? "at least " : "";
   std::string text;
   if (o.inside + o.pairs > 0)
@@ -168,7 +168,7 @@ void add_overlap(const Scene& s, const std::string& dir, std::vector<Warning>& l
         "fluid.spacing; ",
         o.file, least, o.within);
   if (text.empty()) return;
-  const char* then = s.solver.prestabilize
+  const char* then = points.scene().solver.prestabilize
                          ? "steps without time part them, so the fluid takes more "
                            "room than the bodies do; move the bodies apart"
                          : "they burst; move the bodies apart, or leave "
@@ -247,8 +247,8 @@ double compression_at_rest(const Scene& s, std::int64_t particles) {
   return 2.0 / 3 * g * dt * dt / h * (depth / h) / iterations;
 }
 
-std::vector<Warning> scene_warnings(const Scene& scene, const std::string& scene_dir,
-                                    std::int64_t particles) {
+std::vector<Warning> scene_warnings(const StartPoints& points, std::int64_t particles) {
+  const Scene& scene = points.scene();
   std::vector<Warning> list;
   if (const std::string text = units_text(scene); !text.empty()) list.push_back({"units", text});
   add_step(scene, particles, list);
@@ -259,7 +259,7 @@ std::vector<Warning> scene_warnings(const Scene& scene, const std::string& scene
   add_obstacles(scene, tracks, list);
   add_walls(scene, tracks, list);
   add_collisions(scene, tracks, list);
-  add_overlap(scene, scene_dir, list);
+  add_overlap(points, list);
   add_crowded(scene, particles, list);
   add_output(scene, list);
   return list;

@@ -7,16 +7,17 @@ namespace {
 
 constexpr int kStopping[] = {SIGTERM, SIGINT};
 constexpr std::sig_atomic_t kOneStop = 3;  // s
-volatile std::sig_atomic_t seen = 0, seen_at = 0, save = 0;
+volatile std::sig_atomic_t seen_at = 0;
+constinit StopToken token;
 
 // All that it calls is async-signal-safe.
 extern "C" void pbf_on_stop(int number) {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
   const auto second = static_cast<std::sig_atomic_t>(now.tv_sec);
-  if (seen == 0) {
+  if (!token.why()) {
     seen_at = second;
-    seen = number;
+    token.ask(number == SIGTERM ? "SIGTERM" : "SIGINT");
     std::signal(SIGINT, SIG_DFL);
   } else if (second - seen_at >= kOneStop) {
     std::signal(number, SIG_DFL);
@@ -24,7 +25,7 @@ extern "C" void pbf_on_stop(int number) {
   }
 }
 
-extern "C" void pbf_on_save(int) { save = 1; }
+extern "C" void pbf_on_save(int) { token.ask_save(); }
 
 void watch(int signal, void (*handler)(int)) {
   struct sigaction action {};
@@ -57,13 +58,7 @@ HeldSignals::HeldSignals() {
 
 HeldSignals::~HeldSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
-std::string signal_seen() { return seen == 0 ? "" : seen == SIGTERM ? "SIGTERM" : "SIGINT"; }
-
-bool save_asked() {
-  const bool asked = save != 0;
-  save = 0;
-  return asked;
-}
+StopToken& signal_token() { return token; }
 
 void see_failed_writes() {
   std::signal(SIGPIPE, SIG_IGN);

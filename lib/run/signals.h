@@ -1,17 +1,20 @@
-// Signals set a flag that asks a run to stop (SIGTERM, SIGINT) or to save its state (SIGUSR1, as
-// sent by Slurm's --signal).
+// Signals ask a token to stop (SIGTERM, SIGINT) or to save (SIGUSR1, as sent by Slurm's --signal).
 #pragma once
 
 #include <csignal>
-#include <string>
+
+#include "lib/run/stop_token.h"
 
 namespace pbf::inline run_module {
 
-/// From now on SIGTERM or SIGINT sets the flag of signal_seen(); a second one ends the program at
+/// From now on SIGTERM or SIGINT asks signal_token() to stop; a second one ends the program at
 /// once. A SIGTERM less than 3 s after the first signal is none: Slurm and systemd send theirs to
-/// every process, and the run of a batch gets it from the batch once more. SIGUSR1 sets that of
-/// save_asked(). Signals that HeldSignals kept waiting arrive now.
+/// every process, and the run of a batch gets it from the batch once more. SIGUSR1 asks it to save.
+/// Signals that HeldSignals kept waiting arrive now.
 void watch_signals();
+
+/// The one token of the process, for a signal is the process's.
+StopToken& signal_token();
 
 /// While one lives, SIGTERM, SIGINT and SIGUSR1 wait, also in a process that is started then, until
 /// that calls watch_signals(): a run is not killed by a signal that comes before it can listen.
@@ -25,12 +28,6 @@ class HeldSignals {
  private:
   sigset_t before_;
 };
-
-/// Name of the signal that asked to stop ("SIGTERM"), empty when none did.
-std::string signal_seen();
-
-/// Whether SIGUSR1 came since the last call.
-bool save_asked();
 
 /// Writing to a pipe whose reader has gone, or beyond the limit of a file's size (ulimit -f), gives
 /// an error instead of ending the program.

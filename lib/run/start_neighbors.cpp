@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "lib/run/body_boxes.h"
-#include "lib/run/start_points.h"
+#include "lib/scene/random.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -86,10 +86,9 @@ class Sample {
 
 }  // namespace
 
-StartNeighbors start_neighbors(const Scene& s, const std::string& scene_dir,
-                               std::int64_t particles) {
+StartNeighbors start_neighbors(const StartPoints& points, std::int64_t particles) {
+  const Scene& s = points.scene();
   if (!may_be_crowded(s)) return {};
-  const StartPoints points(s, scene_dir);
   // Fewer where there are many, for in one clump every particle is looked at for every one of them.
   const std::int64_t wanted =
       std::min(particles, std::clamp<std::int64_t>(400000000 / particles, 256, 4096));

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lib/scene/scene.h"
+#include "lib/run/emit.h"
 
 namespace pbf::inline run_module {
 
@@ -29,8 +29,7 @@ constexpr double kNoLiquid = 0.05;
 double compression_at_rest(const Scene& scene, std::int64_t particles);
 
 /// Of a scene, before anything is run. `particles`: of count_particles(). Takes time in proportion
-/// to the particles that may overlap. Throws as emit_particles() for a file that cannot be read.
-std::vector<Warning> scene_warnings(const Scene& scene, const std::string& scene_dir,
-                                    std::int64_t particles);
+/// to the particles that may overlap.
+std::vector<Warning> scene_warnings(const StartPoints& points, std::int64_t particles);
 
 }  // namespace pbf::inline run_module

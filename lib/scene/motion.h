@@ -36,7 +36,7 @@ struct Swing {
 /// The table of a file: `columns` numbers in each row, at times that grow. No key of a scene: who
 /// loads one fills it in (lib/run/motion_files.h).
 struct MotionTable {
-  std::string file;  ///< where it was read
+  std::string file, sha256;  ///< where it was read, and its bytes
   int columns = 0;
   std::vector<double> time;                   ///< s
   std::vector<std::array<double, 6>> values;  ///< x y z rx ry rz; angle; ax ay az

@@ -4,9 +4,9 @@
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 #include "lib/exec/make_solver.h"
-#include "lib/run/emit.h"
 #include "lib/run/prestabilize.h"
 #include "lib/run/session.h"
+#include "lib/run/start.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/random.h"
 #include "lib/verify/compare_parts.h"
@@ -28,13 +28,12 @@ Scene on(const Scene& scene, const CompareSide& side) {
   return s;
 }
 
-std::unique_ptr<Solver> make(const Scene& scene, const Particles& particles, bool variant) {
-  const Plan plan = make_plan(scene, std::int64_t(particles.size()));
+std::unique_ptr<Solver> make(const Start& start, bool variant) {
 #ifdef PBF_HAS_DEFECT
-  if (variant) return defect::make_cpu_solver(scene, plan, particles);
+  if (variant) return defect::make_cpu_solver(start.scene(), start.plan, start.particles);
 #endif
   if (variant) throw Error(ExitCode::unavailable, "cpu+defect is not in this build");
-  return make_solver(scene, plan, particles);
+  return make_solver(start.scene(), start.plan, start.particles);
 }
 
 void round_to_float(SolverState& s) {
@@ -94,17 +93,17 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
                 "--set-b: both sides start from the same particles, so bodies, fluid.spacing, "
                 "fluid.smoothing_ratio and domain.min must stay; give these to both with --set, or "
                 "compare two run files");
-  const Particles particles = emit_particles(scene_a, dir);
-  const Scene on_a = on(scene_a, settings.a), on_b = on(scene_b, settings.b);
-  const std::unique_ptr<Solver> a = make(on_a, particles, settings.a.variant);
-  const std::unique_ptr<Solver> b = make(on_b, particles, settings.b.variant);
+  const Start start_a = prepare(on(scene_a, settings.a), dir);
+  const Start start_b = with_scene(start_a, on(scene_b, settings.b));
+  const Scene &on_a = start_a.scene(), &on_b = start_b.scene();
+  const std::unique_ptr<Solver> a = make(start_a, settings.a.variant);
+  const std::unique_ptr<Solver> b = make(start_b, settings.b.variant);
   Scene plain = on(scene_a, {Backend::cpu, Precision::dbl, 0, false});
   plain.solver.fused = false;  // a stored density can be rounded; its bits are the same
-  const std::unique_ptr<Solver> reference = make(plain, particles, false);
-  const Plan plan = make_plan(on_a, std::int64_t(particles.size()));
-  const Plan plan_b = make_plan(on_b, std::int64_t(particles.size()));
+  const std::unique_ptr<Solver> reference = make(with_scene(start_a, plain), false);
 
-  Comparison c{&settings, &plan, &on_a, &plan_b, &on_b, a.get(), b.get(), reference.get()};
+  Comparison c{&settings, &start_a.plan, &on_a,   &start_b.plan,
+               &on_b,     a.get(),       b.get(), reference.get()};
   c.u = std::max(about(settings.a.precision).roundoff, about(settings.b.precision).roundoff);
   c.sides = settings.a.precision == settings.b.precision ? 2 : 1;
   const bool promised = settings.a.backend == settings.b.backend ||
@@ -114,19 +113,19 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   if (!c.same_bits)
     for (int m = 0; m < settings.members; ++m)
       c.members.push_back(
-          make(rounded(plain, c.u, settings.seed + std::uint64_t(m)), particles, false));
+          make(with_scene(start_a, rounded(plain, c.u, settings.seed + std::uint64_t(m))), false));
 
   CompareResult result;
   result.a = settings.a.name();
   result.b = settings.b.name();
   result.notes.push_back(
-      format("scene \"%s\", %zu particles, %d updates on %s before the frozen step",
-             scene_a.name.c_str(), particles.size(), settings.warmup, result.a.c_str()));
+      format("scene \"%s\", %ld particles, %d updates on %s before the frozen step",
+             scene_a.name.c_str(), start_a.plan.particles, settings.warmup, result.a.c_str()));
   if (scene_a.time.adaptive || scene_b.time.adaptive)
     result.notes.push_back("time.adaptive is left out: every update is one step");
   note_one_sided(c, result);
   // The others take over A's state.
-  const std::string relieved = prestabilized_text(prestabilize(*a, on_a, plan));
+  const std::string relieved = prestabilized_text(prestabilize(*a, on_a, start_a.plan));
   if (!relieved.empty()) result.notes.push_back(relieved);
   if (progress) progress(format("%d updates of warm-up on %s", settings.warmup, result.a.c_str()));
   advance(*a, settings.warmup);

@@ -31,7 +31,7 @@ pbf::TankMotion by_table(int columns, std::vector<double> time,
   pbf::TankMotion m;
   m.kind = pbf::TankMotionKind::file;
   m.path = "table.csv";
-  m.table = {"table.csv", columns, std::move(time), std::move(values)};
+  m.table = {"table.csv", "", columns, std::move(time), std::move(values)};
   return m;
 }
 

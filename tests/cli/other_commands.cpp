@@ -269,6 +269,7 @@ TEST_CASE("whole numbers on the command line are read as people write them, or r
       {"bench", "--updates", "1", "--repeats", "1", "--warmup", "0", "--n"},
       {"bench", "--updates", "1", "--repeats", "1", "--n", "100", "--threads"},
       {"run", "tiny.yaml", "--threads"},
+      {"plan", "tiny.yaml", "--threads"},
       {"run", "tiny.yaml", "--max-walltime"},
       {"batch", "tiny.yaml", "--list", "--jobs"},
       {"batch", "tiny.yaml", "--list", "--only"},
@@ -319,4 +320,20 @@ TEST_CASE("a map over a key of whole numbers runs whole numbers, and refuses oth
   CAPTURE(range.out, range.err);
   CHECK(range.code == 0);
   CHECK(has(range.out, "4 runs:"));
+}
+
+TEST_CASE("plan --threads plans the run of so many threads, as run --threads would make it") {
+  const Scratch folder;
+  folder.write("s.yaml", tiny_scene("threads: 1\n"));
+  const auto plan = [&](const Args& more) {
+    Args args{"plan", "s.yaml", "--json"};
+    args.insert(args.end(), more.begin(), more.end());
+    return pbf::test::pbf(args, folder.path());
+  };
+  const Outcome given = plan({"--threads", "7"}), set = plan({"--set", "threads=7"});
+  CHECK(given.code == 0);
+  CHECK(given.out == set.out);
+  CHECK(given.out != plan({}).out);
+  CHECK(plan({"--set", "threads=2", "--threads", "7"}).out == set.out);  // the option comes last
+  CHECK(has(pbf::test::pbf({"plan", "s.yaml", "--threads", "7"}, folder.path()).out, "7 threads"));
 }

@@ -111,7 +111,7 @@ std::string result_of(const Scene& s, const std::string& dir, bool readings) {
     row = std::to_string(snapshot.count) + "," + std::to_string(solver.updates()) + "," +
           field_hash(snapshot, "position") + "," + field_hash(snapshot, "velocity");
   };
-  const Course course = run_course(s, dir, {}, at_the_end).value();
+  const Course course = run_course(prepare(s, dir), {}, at_the_end).value();
   if (readings) row.append(",").append(readings_hash(course.last.loads, gauges));
   return row;
 }

@@ -26,7 +26,7 @@ void check_near(const Double3& a, const Double3& b, double margin = 1e-12) {
 }
 MotionTable table(int columns, std::vector<double> time,
                   std::vector<std::array<double, 6>> values) {
-  return {"t.csv", columns, std::move(time), std::move(values)};
+  return {"t.csv", "", columns, std::move(time), std::move(values)};
 }
 
 }  // namespace

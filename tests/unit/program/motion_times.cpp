@@ -63,7 +63,8 @@ TEST_CASE("times of motions: a sine is as fast as it is, in windows of any lengt
 TEST_CASE("times of motions: the steepest place between two rows is found, wherever it is") {
   Scene s = moved("{kind: file, path: t.csv}");
   s.obstacles[0].motion->table = {
-      "t.csv", 3, {0, 0.9, 1, 1.3, 5}, {{}, {0, 0.01}, {0.2, 0.1}, {0.21, 0.3}, {0.21, -0.3}}, {}};
+      "t.csv", "", 3, {0, 0.9, 1, 1.3, 5}, {{}, {0, 0.01}, {0.2, 0.1}, {0.21, 0.3}, {0.21, -0.3}},
+      {}};
   for (const auto& [from, to] : std::vector<std::pair<double, double>>{
            {0, 5}, {0, 0.95}, {0.91, 0.99}, {1, 1.3}, {1.05, 1.1}, {2, 4.9}}) {
     CAPTURE(from, to);
@@ -94,7 +95,7 @@ TEST_CASE("times of motions: a tank that is turned by a table is felt where its 
   Scene s = parse(kMinimal + "tank_motion: {kind: file, path: t.csv, axis: [0, 1, 0]}\n");
   // A kick of 10 ms in the middle of a second: 2 degrees there and back.
   s.tank_motion->table = {
-      "t.csv", 1, {0, 0.5, 0.505, 0.51, 0.511, 2}, {{0}, {0}, {2}, {0}, {0}, {0}}, {}};
+      "t.csv", "", 1, {0, 0.5, 0.505, 0.51, 0.511, 2}, {{0}, {0}, {2}, {0}, {0}, {0}}, {}};
   s.time.step = 1e-4;
   double most = 0;
   for (double t = 0.49; t < 0.52; t += 1e-5) most = std::max(most, greatest_sway(s, t, t));
@@ -104,7 +105,7 @@ TEST_CASE("times of motions: a tank that is turned by a table is felt where its 
 }
 
 TEST_CASE("curves: a piece turns where its values do") {
-  MotionTable t{"t.csv", 3, {0, 1, 2, 6}, {{0}, {1}, {1}, {1}}, {}};
+  MotionTable t{"t.csv", "", 3, {0, 1, 2, 6}, {{0}, {1}, {1}, {1}}, {}};
   const CurvePiece p = curve_piece(t, 0, 1);
   const std::vector<double> turns = p.turns();
   REQUIRE(turns.size() == 1);  // it comes with a slope, and rests from the next row on

@@ -83,14 +83,14 @@ TEST_CASE("cylinder: overlaps are seen, touching is none") {
   Scene s = with_cylinder({0.5, 0.5, 0.4}, {0.5, 0.5, 0.8}, 0.2, 0.05);
   s.bodies.resize(2);
   s.bodies[1].max = {1, 1, 0.4};
-  CHECK(find_overlap(s, ".").inside == 0);
+  CHECK(find_overlap({s, "."}).inside == 0);
   s.bodies[1].max = {1, 1, 0.5};
-  const Overlap o = find_overlap(s, ".");
+  const Overlap o = find_overlap({s, "."});
   CHECK(o.inside > 0);
   s.bodies[1] = Body{};
   s.bodies[1].min = {0.75, 0, 0};  // beside it, within its box along x and y only
   s.bodies[1].max = {1, 1, 1};
-  CHECK(find_overlap(s, ".").inside == 0);
+  CHECK(find_overlap({s, "."}).inside == 0);
 }
 
 TEST_CASE("cylinder: what is wrong with one") {
@@ -120,7 +120,7 @@ TEST_CASE("cylinder: what is wrong with one") {
 
 TEST_CASE("warnings: a step far above the rule of auto, where nothing lies deep") {
   const auto step_warning = [](const Scene& s) {
-    for (const Warning& w : scene_warnings(s, "", 100))
+    for (const Warning& w : scene_warnings({s, ""}, 100))
       if (w.kind == "step") return w.text;
     return std::string();
   };

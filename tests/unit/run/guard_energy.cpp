@@ -6,7 +6,7 @@
 #include "lib/exec/make_solver.h"
 #include "lib/program/program.h"
 #include "lib/run/emit.h"
-#include "lib/run/prestabilize.h"
+#include "lib/run/start.h"
 #include "tests/support/catch.h"
 #include "tests/support/guard_check.h"
 #include "tests/support/scene_samples.h"
@@ -69,7 +69,7 @@ TEST_CASE("guard: energy that a start cannot release ends the run") {
       std::vector<std::string> set = c.set;
       set.push_back(std::string("solver.prestabilize=") + relieved);
       CAPTURE(c.scene, set);
-      const Course course = run_course(shipped(c.scene, set), ".").value();
+      const Course course = run_course(prepare(shipped(c.scene, set), ".")).value();
       REQUIRE(course.event);
       CHECK((course.event->alarm == Alarm::energy || course.event->alarm == Alarm::speed));
     }
@@ -89,7 +89,7 @@ TEST_CASE("guard: a jittered ball without gravity runs to its end, however fast 
         s.bodies[0].shape = Shape::file;
         s.bodies[0].path = "ball.csv";
         s.bodies[0].velocity = {speed, 0, 0};
-        const Course c = run_course(s, folder.path.string()).value();
+        const Course c = run_course(prepare(s, folder.path.string())).value();
         CHECK_FALSE(c.event);
         CHECK(c.guard_text.empty());
       }
@@ -160,8 +160,8 @@ TEST_CASE("guard: with gravity, a shorter step does not widen what the energy ma
   const auto allowed = [](const char* step) {
     Watched w(shipped("tank_at_rest", {"fluid.spacing=0.04", std::string("time.step=") + step,
                                        "precision=double"}));
-    const Diagnostics apart =
-        start_solver(w.scene, w.plan, emit_particles(w.scene, "."))->measure();
+    Start start = prepare(w.scene, ".");
+    const Diagnostics apart = solver_of(start)->measure();
     return w.guard(apart).energy_limit(apart) - total_energy(apart);
   };
   CHECK(allowed("1e-6") == Approx(allowed("1e-4")).epsilon(0.01));

@@ -27,7 +27,7 @@ std::string moving_ball(const std::string& motion) { return kBall + ", motion: "
 MotionTable rows(std::vector<double> time, std::vector<std::array<double, 6>> values) {
   std::vector<std::int64_t> line;
   for (std::size_t k = 0; k < time.size(); ++k) line.push_back(std::int64_t(k) + 2);
-  return {"/far/fall.csv", 3, std::move(time), std::move(values), std::move(line)};
+  return {"/far/fall.csv", "", 3, std::move(time), std::move(values), std::move(line)};
 }
 Scene by_table(MotionTable table, const std::string& obstacle = kBall) {
   Scene s = with(obstacle + ", motion: {kind: file, path: fall.csv}}");

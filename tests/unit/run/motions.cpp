@@ -17,7 +17,7 @@ Scene going(const std::string& speed, const std::string& more = "") {
                speed + ", 0, 0]}}]\n" + more);
 }
 bool warns(const Scene& s) {
-  for (const Warning& w : scene_warnings(s, ".", 100))
+  for (const Warning& w : scene_warnings({s, "."}, 100))
     if (w.kind == "motion") return true;
   return false;
 }

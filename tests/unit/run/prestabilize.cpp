@@ -2,6 +2,7 @@
 #include "lib/run/prestabilize.h"
 #include "lib/exec/make_solver.h"
 #include "lib/run/emit.h"
+#include "lib/run/start.h"
 
 #include <cmath>
 #include <filesystem>
@@ -14,7 +15,8 @@ namespace pbf::scene_test {
 namespace {
 
 std::unique_ptr<Solver> start(const Scene& s, const std::string& dir = ".") {
-  return start_solver(s, make_plan(s, count_particles(s, dir)), emit_particles(s, dir));
+  Start start = prepare(s, dir);
+  return solver_of(start);
 }
 
 std::unique_ptr<Solver> as_given(Scene s, const std::string& dir = ".") {

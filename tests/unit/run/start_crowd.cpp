@@ -32,7 +32,7 @@ TEST_CASE("a start of blocks is sampled exactly when two of them overlap, howeve
         expected = expected || !apart;
       }
     CAPTURE(repeat);
-    REQUIRE(start_neighbors(s, "", 1000).count.empty() == !expected);
+    REQUIRE(start_neighbors({s, ""}, 1000).count.empty() == !expected);
     crowded += expected;
   }
   CHECK(crowded > 100);

@@ -61,7 +61,7 @@ TEST_CASE("the neighbours of a start are those that a look at every pair finds")
           expected[i] += std::sqrt(x * x + y * y + z * z) < s.h();
         }
       // A neighbour of a lattice at a distance of exactly h may be rounded to either side.
-      const std::vector<int> found = start_neighbors(s, ".", std::int64_t(p.size())).count;
+      const std::vector<int> found = start_neighbors({s, "."}, std::int64_t(p.size())).count;
       REQUIRE(found.size() == expected.size());
       int differ = 0;
       for (std::size_t i = 0; i < found.size(); ++i) differ += std::abs(found[i] - expected[i]) > 6;
@@ -72,7 +72,7 @@ TEST_CASE("the neighbours of a start are those that a look at every pair finds")
 
 TEST_CASE("a sample of a large start has the mean of all, and bodies side by side need none") {
   const Scene s = crowd(random_box(20000, 0.3));
-  const auto sample = start_neighbors(s, ".", 20000).count;
+  const auto sample = start_neighbors({s, "."}, 20000).count;
   CHECK(sample.size() == 4096);
   double mean = 0;
   for (const int m : sample) mean += m / 4096.0;
@@ -86,11 +86,11 @@ TEST_CASE("a sample of a large start has the mean of all, and bodies side by sid
       all += (r2 < s.h() * s.h()) / 2000.0;
     }
   CHECK(mean == Approx(all).epsilon(0.02));
-  CHECK(start_neighbors(crowd(kBlock), ".", 512).empty());
-  CHECK(start_neighbors(crowd(kBlock + std::string(", {shape: block, min: [0.4, 0, 0], "
-                                                   "max: [0.8, 0.4, 0.4]}")),
-                        ".", 1024)
-            .empty());
+  const Scene one = crowd(kBlock);
+  CHECK(start_neighbors({one, "."}, 512).empty());
+  const Scene beside =
+      crowd(kBlock + std::string(", {shape: block, min: [0.4, 0, 0], max: [0.8, 0.4, 0.4]}"));
+  CHECK(start_neighbors({beside, "."}, 1024).empty());
 }
 
 TEST_CASE("the plan counts the bytes that the CPU solver holds for crowded starts too, to 12 %") {
@@ -102,7 +102,7 @@ TEST_CASE("the plan counts the bytes that the CPU solver holds for crowded start
       CAPTURE(bodies, dbl);
       const Scene s = crowd(bodies, {std::string("precision=") + (dbl ? "double" : "float")});
       const std::int64_t n = count_particles(s, ".");
-      const Plan plan = make_plan(s, n, start_neighbors(s, ".", n));
+      const Plan plan = make_plan(s, n, start_neighbors({s, "."}, n));
       const auto solver = make_solver(s, plan, emit_particles(s, "."));
       solver->measure();
       solver->keep();

@@ -14,7 +14,7 @@ TEST_CASE("units: values that SI units would not give are named with those that 
     s.time = {0.002, 1, {}};
     change(s);
     const std::string found = units_text(s);
-    const std::vector<Warning> all = scene_warnings(s, ".", 100);
+    const std::vector<Warning> all = scene_warnings({s, "."}, 100);
     CHECK(found.empty() == (all.empty() || all[0].kind != "units"));
     return found;
   };

@@ -27,14 +27,14 @@ Scene pool() {
 
 /// The text of the only warning's kind; empty when there is none of it.
 std::string text_of(const std::string& kind, const Scene& s) {
-  for (const Warning& w : scene_warnings(s, ".", count_particles(s, ".")))
+  for (const Warning& w : scene_warnings({s, "."}, count_particles(s, ".")))
     if (w.kind == kind) return w.text;
   return {};
 }
 
 std::vector<std::string> kinds(const Scene& s, const std::string& dir = ".") {
   std::vector<std::string> list;
-  for (const Warning& w : scene_warnings(s, dir, count_particles(s, dir))) list.push_back(w.kind);
+  for (const Warning& w : scene_warnings({s, dir}, count_particles(s, dir))) list.push_back(w.kind);
   return list;
 }
 
@@ -166,7 +166,7 @@ TEST_CASE("bodies that overlap are named, however their lattices lie in each oth
   Scene random = s;
   random.bodies[1].shape = Shape::random_box;
   random.bodies[1].count = 300;
-  CHECK(find_overlap(random, ".").pairs == all_close_pairs(random));
+  CHECK(find_overlap({random, "."}).pairs == all_close_pairs(random));
   CHECK(all_close_pairs(random) > 10);
 }
 
@@ -219,7 +219,7 @@ TEST_CASE("a search for overlap ends, also where all particles are in one place"
     s.bodies[b].count = 20000;
     s.bodies[b].seed = b;
   }
-  const Overlap o = find_overlap(s, ".");
+  const Overlap o = find_overlap({s, "."});
   CHECK(o.more);
   CHECK(o.pairs > 10000000);
   CHECK(holds(text_of("overlap", s), "at least "));

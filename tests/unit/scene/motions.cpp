@@ -164,7 +164,7 @@ TEST_CASE("files of motions and bodies: the place in the scene stands before tha
   Scene b = parse(with_bodies("[{shape: file, path: b.csv}]"));
   const std::string place = "2 scene.yaml:3:30: bodies[0].path: " + dir + "/b.csv:2: z: ";
   CHECK(contains(error_of([&] { emit_particles(b, dir); }), place));
-  CHECK(contains(error_of([&] { scene_files(b, dir); }), place));
+  CHECK(contains(error_of([&] { StartPoints(b, dir).files(); }), place));
   b.bodies[0].path = "none.csv";
   CHECK(contains(error_of([&] { count_particles(b, dir); }),
                  "5 scene.yaml:3:30: bodies[0].path: " + dir + "/none.csv: cannot be opened"));
@@ -181,7 +181,7 @@ TEST_CASE("files of motions: the run keeps what it read of them, and may lie els
   Scene s = parse(kMinimal + obstacle("{kind: file, path: p.csv}"));
   read_motions(s, folder.path.string());
   CHECK(s.obstacles[0].motion->table.values.size() == 2);
-  const std::vector<SceneFile> files = scene_files(s, folder.path.string());
+  const std::vector<SceneFile> files = StartPoints(s, folder.path.string()).files();
   REQUIRE(files.size() == 1);
   CHECK(files[0].path == "p.csv");
   CHECK(files[0].sha256.size() == 64);

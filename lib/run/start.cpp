@@ -1,0 +1,72 @@
+#include "lib/run/start.h"
+
+#include <utility>
+
+#include "lib/base/error.h"
+#include "lib/base/text.h"
+#include "lib/exec/make_solver.h"
+#include "lib/run/emit.h"
+#include "lib/run/prestabilize.h"
+#include "lib/run/start_neighbors.h"
+
+namespace pbf::inline run_module {
+namespace {
+
+std::vector<std::string> notes_of(const Particles& p, const Scene& scene) {
+  std::vector<std::string> notes;
+  if (p.put_on_margin > 0)
+    notes.push_back(
+        format("%zu particles were nearer to a wall than solver.wall_margin (%.6g m), by up to "
+               "%.3g m; they start at that distance",
+               p.put_on_margin, scene.solver.wall_margin, p.farthest_put));
+  for (std::size_t b = 0; b < p.in_obstacles.size(); ++b)
+    if (p.in_obstacles[b] > 0)
+      notes.push_back(
+          format("%zu particles of bodies[%zu] are in obstacles, or nearer to one than 0.4 "
+                 "spacings, and are left out",
+                 p.in_obstacles[b], b));
+  return notes;
+}
+
+}  // namespace
+
+Start prepare(LoadedScene loaded, const PrepareOptions& options) {
+  Start start{std::move(loaded)};
+  const Scene& scene = start.scene();
+  StartPoints points(scene, start.loaded.folder);
+  const std::int64_t particles = count_particles(points);
+  const auto plan = [&](StartNeighbors neighbors) {
+    start.plan = make_plan(scene, particles, std::move(neighbors));
+    if (options.fits) refuse_if_too_large(scene, start.plan);
+  };
+  if (options.fits) plan({});  // before a look at every particle
+  plan(start_neighbors(points, particles));
+  if (options.warnings) start.warnings = scene_warnings(points, particles);
+  if (options.strict && !start.warnings.empty())
+    throw Error(ExitCode::difference, "--strict: " + warning_lines(start.warnings));
+  if (options.particles) start.particles = emit_particles(std::move(points));
+  start.notes = notes_of(start.particles, scene);
+  return start;
+}
+
+Start prepare(const Scene& scene, const std::string& folder, const PrepareOptions& options) {
+  LoadedScene loaded;
+  loaded.scene = scene;
+  loaded.folder = folder;
+  return prepare(std::move(loaded), options);
+}
+
+Start with_scene(const Start& start, const Scene& scene) {
+  Start other = start;
+  other.loaded.scene = scene;
+  other.plan = make_plan(scene, start.plan.particles, start.plan.start);
+  return other;
+}
+
+std::unique_ptr<Solver> solver_of(Start& start) {
+  auto solver = make_solver(start.scene(), start.plan, std::move(start.particles));
+  prestabilize(*solver, start.scene(), start.plan);
+  return solver;
+}
+
+}  // namespace pbf::inline run_module

@@ -1,0 +1,79 @@
+// The one way into a run. prepare() reads a scene's files and plans it; solver_of() makes a solver
+// at the start, for whoever advances it; run() does all that `pbf run` does.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lib/base/log.h"
+#include "lib/program/plan.h"
+#include "lib/run/run_folder.h"
+#include "lib/run/stop_token.h"
+#include "lib/run/warnings.h"
+#include "lib/scene/load.h"
+#include "lib/scene/particles.h"
+#include "lib/solver/solver.h"
+
+namespace pbf::inline run_module {
+
+/// How far prepare() goes.
+struct PrepareOptions {
+  bool fits = true;       ///< refuse what the memory of this machine cannot hold
+  bool warnings = false;  ///< of the scene
+  bool strict = false;    ///< they are an error
+  bool particles = true;  ///< are made
+};
+
+struct Start {
+  LoadedScene loaded;
+  Plan plan{};
+  Particles particles{};
+  std::vector<Warning> warnings{};
+  std::vector<std::string> notes{};  ///< what was done to the particles, for people
+  const Scene& scene() const { return loaded.scene; }
+};
+
+/// Opens each particle file of the scene once. Its motions have been read (read_motions()). Throws,
+/// in this order, what StartPoints, count_particles() and make_plan() throw, Error(unavailable) as
+/// refuse_if_too_large(), Error(difference) for warnings where they are errors, and what
+/// emit_particles() throws.
+Start prepare(LoadedScene loaded, const PrepareOptions& options = {});
+/// The same of a scene that no file holds; `folder` anchors relative paths.
+Start prepare(const Scene& scene, const std::string& folder, const PrepareOptions& options = {});
+/// The same particles under another scene with the same bodies, spacing and domain.
+Start with_scene(const Start& start, const Scene& scene);
+
+/// A solver before its first update. The particles move into it, and prestabilize() is done.
+std::unique_ptr<Solver> solver_of(Start& start);
+
+/// Where a run writes.
+struct RunPlace {
+  std::string folder;
+  ExistingFolder existing = ExistingFolder::refuse;
+};
+
+/// What a run is told from outside.
+struct Control {
+  StopToken& stop;
+  Log& log;
+  std::string log_json{};   ///< path of a file that gets a line of JSON per measure; empty: none
+  double max_walltime = 0;  ///< s, 0: none
+  bool strict = false;      ///< a warning ends it
+  Stopwatch wall{};         ///< since the command began
+};
+
+/// How a run ended, where nothing was thrown.
+struct RunResult {
+  std::string stop_reason;   ///< "SIGTERM", "--max-walltime"; empty: it is finished
+  std::int64_t updates = 0;  ///< that are done
+};
+
+/// Runs into a folder, or goes on with the run there. Its lines go to control.log and the folder's
+/// log.txt, an error that ends it to log.txt. A scene that cannot run leaves no folder behind.
+/// Several runs may be under way in one process, each with a folder, a token and a log of its own.
+/// Throws as run_session(), RunFolder, find_resume_point(), take_files() and make_solver() do.
+RunResult run(Start start, const RunPlace& place, Control& control);
+
+}  // namespace pbf::inline run_module
