@@ -171,21 +171,11 @@ Track track_of(const Scene& s, const Obstacle& o, int most) {
 }  // namespace
 
 Extents extents_of(const Solid<double>& o) {
-  constexpr double far = std::numeric_limits<double>::infinity();
-  if (o.shape == ObstacleShape::plane) return {{{-far, far}, {-far, far}, {-far, far}}};
   const double center[3] = {o.center.x, o.center.y, o.center.z};
-  const double half[3] = {o.half.x, o.half.y, o.half.z};
   Extents out;
   for (std::size_t k = 0; k < 3; ++k) {
-    double reach = 0;
-    if (o.shape == ObstacleShape::box)
-      for (int axis = 0; axis < 3; ++axis) reach += std::fabs(o.turn[axis][k]) * half[axis];
-    else if (o.shape == ObstacleShape::cylinder)
-      reach = std::fabs(o.turn[2][k]) * half[2] +
-              half[0] * std::sqrt(std::max(0.0, 1 - o.turn[2][k] * o.turn[2][k]));
-    else
-      reach = half[0] + std::fabs(o.turn[2][k]) * half[2];
-    out[k] = {center[k] - reach, center[k] + reach};
+    const Vec3<double> up{double(k == 0), double(k == 1), double(k == 2)};
+    out[k] = {center[k] - reach_along(o, -1.0 * up, false), center[k] + reach_along(o, up, false)};
   }
   return out;
 }

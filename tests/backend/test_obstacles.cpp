@@ -9,7 +9,7 @@ using namespace obstacle_test;
 using backend_test::here;
 using backend_test::is_double;
 using backend_test::same_bytes;
-using pbf::ObstacleShape;
+using pbf_test::ObstacleShape;
 
 namespace {
 
@@ -129,7 +129,7 @@ TEST_CASE("obstacles far from the origin of coordinates give the same bits as ne
   move(far.scene.domain.min), move(far.scene.domain.max);
   for (auto& x : far.particles.position) move(x);
   for (pbf::Obstacle& o : far.scene.obstacles)
-    for (auto* x : {&o.min, &o.max, &o.center, &o.from, &o.to, &o.point}) move(*x);
+    for (pbf::Double3* x : pbf_test::places_in(o)) move(*x);
   auto a = make(c), b = make(far);
   a->step(20);
   b->step(20);
@@ -181,8 +181,8 @@ TEST_CASE("what slides down a tilted face without fluid around it is not braked"
   else
     put.plane({9, 9, 9}, {n[0], 0, n[1]});
   for (std::size_t k = 0; box && k < 3; ++k) {
-    c.scene.obstacles[0].min[k] -= 5 * c.scene.h();
-    c.scene.obstacles[0].max[k] += 5 * c.scene.h();
+    pbf_test::box_of(c.scene.obstacles[0]).min[k] -= 5 * c.scene.h();
+    pbf_test::box_of(c.scene.obstacles[0]).max[k] += 5 * c.scene.h();
   }
   c.particles.position = {put.at({9 + 1e-3 * n[0], 9, 9 + 1e-3 * n[1]})};
   c.particles.velocity = {{0, 0, 0}};
