@@ -2,6 +2,7 @@
 // the few particles there come here, so these functions are not inlined into the passes.
 #pragma once
 
+#include "kernels/boundary/box.h"
 #include "kernels/boundary/keep_out.h"
 #include "kernels/boundary/loads.h"
 #include "kernels/boundary/moving.h"

@@ -5,7 +5,9 @@
 #include <cstring>
 
 #define PBF_SHAPE_TEXT(path) #path
-#define PBF_SHAPE_FILE(name) PBF_SHAPE_TEXT(kernels / shapes / name.h)
+// clang-format off
+#define PBF_SHAPE_FILE(name) PBF_SHAPE_TEXT(kernels/shapes/name.h)
+// clang-format on
 #include "kernels/shapes/list.h"
 
 namespace pbf::inline PBF_VARIANT {

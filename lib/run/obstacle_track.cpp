@@ -119,13 +119,8 @@ class Deepest {
     const Vec3<double> x = place(middle_);
     const double of_a = distance_of(a_, x, flat_), of_b = distance_of(b_, x, flat_);
     const Solid<double>& o = of_a >= of_b ? a_ : b_;
-    constexpr double step = 1e-6;
-    for (int k = 0; k < n_; ++k) {
-      double low[3] = {middle_[0], middle_[1], middle_[2]}, high[3] = {low[0], low[1], low[2]};
-      low[k] -= step, high[k] += step;
-      slope[k] =
-          (distance_of(o, place(high), flat_) - distance_of(o, place(low), flat_)) / (2 * step);
-    }
+    const Vec3<double> n = flat_ ? normal<2>(o, x) : normal<3>(o, x);
+    slope[0] = n.x, slope[1] = flat_ ? n.z : n.y, slope[2] = n.z;
     return std::max(of_a, of_b);
   }
   /// Keeps the half of the ellipsoid that is downhill; how much lower it may be there.

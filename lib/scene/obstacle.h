@@ -8,7 +8,9 @@
 #include "kernels/shapes/shapes.h"
 #include "lib/scene/motion.h"
 
-#define PBF_SHAPE_FILE(name) PBF_SHAPE_TEXT(lib / scene / shapes / name.h)
+// clang-format off
+#define PBF_SHAPE_FILE(name) PBF_SHAPE_TEXT(lib/scene/shapes/name.h)
+// clang-format on
 #include "kernels/shapes/list.h"
 
 namespace pbf::inline scene_module {
