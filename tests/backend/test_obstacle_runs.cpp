@@ -25,7 +25,7 @@ Case splash(bool flat) {
   put.box({0.5, 0.4, 0.4}, {2, 1.9, 1.6}, {flat ? 0.0 : 1.0, 2, 0}, 25);
   put.sphere({4, 2, 1.7}, 1.1);
   pbf::obstacle_keys::Tube& capsule =
-      tube_of(put.tube(ObstacleShape::capsule, {5.5, 1, 5}, {5.9, 3, 5.2}, 1));
+      pbf_test::tube_of(put.tube(ObstacleShape::capsule, {5.5, 1, 5}, {5.9, 3, 5.2}, 1));
   capsule.to[1] = flat ? capsule.from[1] : s.domain.min[1] + 0.12;
   return without_inner(here(c), 0.2);
 }
@@ -241,7 +241,8 @@ TEST_CASE("fluid that falls onto crossed ramps, into a wedge, through a gap stay
   SECTION("a wedge of 20 degrees") {
     put.box({middle - 3, -2, -6}, {middle - 1, 6, 6}, {0, 1, 0}, 10).loads = false;
     put.box({middle + 1, -2, -6}, {middle + 3, 6, 6}, {0, 1, 0}, -10);
-    for (pbf::Obstacle& o : c.scene.obstacles) box_of(o).min[2] -= 0.04, box_of(o).max[2] -= 0.04;
+    for (pbf::Obstacle& o : c.scene.obstacles)
+      pbf_test::box_of(o).min[2] -= 0.04, pbf_test::box_of(o).max[2] -= 0.04;
   }
   SECTION("a gap of one spacing") {
     put.box({-9, -2, 3}, {middle - 0.25, 6, 4});

@@ -36,7 +36,8 @@ Case all_flat_shapes() {
   put.box({1.5, 0, 1.4}, {2.9, 0, 3.2}, {0, 2, 0}, 35);
   put.sphere({6.5, 0, 2.5}, 1.3);
   put.tube(ObstacleShape::capsule, {3, 0, 8}, {4.5, 0, 9.5}, kRound);
-  pbf::Obstacle& o = put.tube(ObstacleShape::cylinder, {9, 0, 8.5}, {9, 0, 8.5}, 1.2);
+  pbf::obstacle_keys::Tube& o =
+      pbf_test::tube_of(put.tube(ObstacleShape::cylinder, {9, 0, 8.5}, {9, 0, 8.5}, 1.2));
   o.from[1] -= 0.01, o.to[1] += 0.01;
   put.box({8, 0, 0}, {9.2, 0, 1.1});
   for (std::size_t i = 0; i < c.particles.size(); i += 3)

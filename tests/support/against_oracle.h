@@ -17,14 +17,15 @@ inline std::vector<oracle::Solid> oracle_solids(const pbf::Scene& s) {
   for (const pbf::Obstacle& o : s.obstacles) {
     oracle::Solid& to = all.emplace_back();
     to.shape = Shape(int(o.shape.index()));
-    using namespace pbf::obstacle_keys;
+    namespace keys = pbf::obstacle_keys;
     const auto keys_of = [&]<class Keys>(const Keys&) {
       return std::holds_alternative<Keys>(o.shape) ? o.as<Keys>() : Keys{};
     };
-    const Box box = keys_of(Box{});
-    const Plane plane = keys_of(Plane{});
-    const Sphere sphere = keys_of(Sphere{});
-    const Tube tube = to.shape == Shape::capsule ? Tube(keys_of(Capsule{})) : keys_of(Cylinder{});
+    const keys::Box box = keys_of(keys::Box{});
+    const keys::Plane plane = keys_of(keys::Plane{});
+    const keys::Sphere sphere = keys_of(keys::Sphere{});
+    const keys::Tube tube = to.shape == Shape::capsule ? keys::Tube(keys_of(keys::Capsule{}))
+                                                       : keys_of(keys::Cylinder{});
     oracle::V axis{box.turn_axis[0], box.turn_axis[1], box.turn_axis[2]};
     long double angle = acosl(-1) / 180 * box.turn_angle;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -3,6 +3,7 @@
 
 #include <initializer_list>
 
+#include "kernels/boundary/obstacle.h"
 #include "lib/scene/scene.h"
 
 namespace pbf_test {
@@ -17,9 +18,16 @@ inline const pbf::obstacle_keys::Box& box_of(const pbf::Obstacle& o) {
 }
 /// The axis and radius of a cylinder or a capsule.
 inline pbf::obstacle_keys::Tube& tube_of(pbf::Obstacle& o) {
-  using namespace pbf::obstacle_keys;
-  if (auto* cylinder = std::get_if<Cylinder>(&o.shape)) return *cylinder;
-  return o.as<Capsule>();
+  if (auto* cylinder = std::get_if<pbf::obstacle_keys::Cylinder>(&o.shape)) return *cylinder;
+  return o.as<pbf::obstacle_keys::Capsule>();
+}
+
+/// The ends of its axis along which the solid goes on behind walls, as bits of WallBit.
+inline unsigned through_of(const pbf::Solid<double>& solid) {
+  return solid.shape.with([](const auto& body) {
+    if constexpr (requires { body.through; }) return body.through;
+    return 0u;
+  });
 }
 
 /// Its keys that are places.
@@ -52,10 +60,9 @@ inline pbf::Obstacle sphere_obstacle(const pbf::Double3& center, double radius) 
 /// A cylinder or a capsule.
 inline pbf::Obstacle tube_obstacle(ObstacleShape shape, const pbf::Double3& from,
                                    const pbf::Double3& to, double radius) {
-  using namespace pbf::obstacle_keys;
-  const Tube tube{from, to, radius};
-  return shape == ObstacleShape::cylinder ? obstacle_of(Cylinder{tube})
-                                          : obstacle_of(Capsule{tube});
+  const pbf::obstacle_keys::Tube tube{from, to, radius};
+  return shape == ObstacleShape::cylinder ? obstacle_of(pbf::obstacle_keys::Cylinder{tube})
+                                          : obstacle_of(pbf::obstacle_keys::Capsule{tube});
 }
 inline pbf::Obstacle plane_obstacle(const pbf::Double3& point, const pbf::Double3& normal) {
   return obstacle_of(pbf::obstacle_keys::Plane{point, normal});

@@ -74,10 +74,7 @@ TEST_CASE("solids: faces on walls or behind them are none, those on open faces a
   const auto through = [](const Obstacle& o, std::vector<std::string> open = {}) {
     Scene s = scene_with(o);
     s.domain.open = std::move(open);
-    return solids_of(s)[0].shape.with([](const auto& body) {
-      if constexpr (requires { body.through; }) return body.through;
-      return 0u;
-    });
+    return pbf_test::through_of(solids_of(s)[0]);
   };
   CHECK(through(box({0, 0.2, 2.5}, {0.5, 0.5, 3})) == 0);
   CHECK(through(box({-0.3, 0.2, 2.5}, {0.5, 0.5, 3})) == x_min);
