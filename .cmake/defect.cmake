@@ -19,6 +19,7 @@ if(PBF_DEFECT)
     message(FATAL_ERROR "PBF_DEFECT=${PBF_DEFECT}: no such entry in ${defect_table}")
   endif()
   file(GLOB sources RELATIVE ${PROJECT_SOURCE_DIR} kernels/*.h kernels/boundary/*.h
+       kernels/shapes/*.h
        lib/program/features/*.h lib/exec/cpu/*.h lib/exec/cpu/*.cpp
        lib/solver/*.h)
   foreach(source IN LISTS sources)

@@ -1,43 +1,26 @@
-// A solid obstacle: a convex body in its own frame, and how far a place is from its surface.
+// A solid: a shape, and where it is.
 #pragma once
 
-#include "kernels/boundary/box.h"
-#include "kernels/boundary/obstacle_shape.h"
+#include "kernels/shapes/shapes.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Lengths in h, in the internal frame. Plain data: it is passed in device memory.
-/// In two dimensions (D = 2) y counts nowhere: a box has no faces along the y of its body, which is
-/// that of the domain; spheres, and cylinders along y, are discs; a capsule's axis lies in the
-/// plane.
+/// Where a body is. Lengths in h, in the internal frame.
 template <class Real>
-struct Solid {
-  ObstacleShape shape = ObstacleShape::plane;
+struct BodyFrame {
   Vec3<Real> center;
   Real turn[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  ///< body coordinates: turn * (x - center)
-  /// box: half edges. cylinder, capsule: z = half the length of the axis (body z), x = radius.
-  /// sphere: x = radius. plane: not used, the solid is where body z < 0.
-  Vec3<Real> half;
-  /// Faces in the body frame (bits as WallBit) behind which the solid goes on, as where it stands
-  /// against a wall of the domain: such a face is none. Box, cylinder and capsule (its ends: z).
-  unsigned through = 0;
 };
 
-/// Where the solid ends along an axis of the body; beyond everything where it goes on.
+/// Plain data: it is passed in device memory. In two dimensions (D = 2) y counts nowhere: bodies
+/// are cut by the plane of the scene.
 template <class Real>
-struct Span {
-  Real low, high;
+struct Solid : BodyFrame<Real> {
+  SomeShape<Real> shape;
 };
-template <class Real>
-PBF_HD Span<Real> span_of(const Solid<Real>& o, int axis) {
-  constexpr Real far(1e9);  // h; its square is a float too
-  const Real half = axis == 0 ? o.half.x : axis == 1 ? o.half.y : o.half.z;
-  return {o.through & (1u << (2 * axis)) ? -far : -half,
-          o.through & (2u << (2 * axis)) ? far : half};
-}
 
 template <int D, class Real>
-PBF_HD Vec3<Real> body_point(const Solid<Real>& o, Vec3<Real> x) {
+PBF_HD Vec3<Real> body_point(const BodyFrame<Real>& o, Vec3<Real> x) {
   Vec3<Real> d = x - o.center;
   if constexpr (D == 2) d.y = 0;
   return {o.turn[0][0] * d.x + o.turn[0][1] * d.y + o.turn[0][2] * d.z,
@@ -46,7 +29,7 @@ PBF_HD Vec3<Real> body_point(const Solid<Real>& o, Vec3<Real> x) {
 }
 /// A direction of the body in the frame of the domain.
 template <int D, class Real>
-PBF_HD Vec3<Real> turned_back(const Solid<Real>& o, Vec3<Real> d) {
+PBF_HD Vec3<Real> turned_back(const BodyFrame<Real>& o, Vec3<Real> d) {
   const Vec3<Real> back{o.turn[0][0] * d.x + o.turn[1][0] * d.y + o.turn[2][0] * d.z,
                         o.turn[0][1] * d.x + o.turn[1][1] * d.y + o.turn[2][1] * d.z,
                         o.turn[0][2] * d.x + o.turn[1][2] * d.y + o.turn[2][2] * d.z};
@@ -54,52 +37,58 @@ PBF_HD Vec3<Real> turned_back(const Solid<Real>& o, Vec3<Real> d) {
   return back;
 }
 
-/// The height on a capsule's axis that is nearest to body z.
-template <class Real>
-PBF_HD Real on_axis(const Solid<Real>& o, Real z) {
-  const Span<Real> axis = span_of(o, 2);
-  return max2(min2(z, axis.high), axis.low);
-}
-template <class Real>
-PBF_HD Vec3<Real> off_axis(const Solid<Real>& o, Vec3<Real> p) {
-  return {p.x, p.y, p.z - on_axis(o, p.z)};
-}
-
-/// The axes along which a shape has faces.
+/// A normal where all those across the body's z are as good; in two dimensions one of the plane.
 template <int D, class Real>
-PBF_HD bool has_faces(const Solid<Real>& o, int axis) {
-  if (o.shape == ObstacleShape::box) return D == 3 || axis != 1;
-  return o.shape == ObstacleShape::cylinder && D == 3 && axis == 2;
-}
-
-/// Distance from the surface of a place in body coordinates, h; below 0 inside.
-template <int D, class Real>
-PBF_HD Real body_distance(const Solid<Real>& o, Vec3<Real> p) {
-  if (o.shape == ObstacleShape::plane) return p.z;
-  if (o.shape == ObstacleShape::sphere) return square_root(dot(p, p)) - o.half.x;
-  if (o.shape == ObstacleShape::capsule) {
-    const Vec3<Real> d = off_axis(o, p);
-    return square_root(dot(d, d)) - o.half.x;
-  }
-  // Faces at right angles: inside the nearest one counts, outside all that the place is beyond.
-  const Real at[3] = {p.x, p.y, p.z};
-  Real nearest(-4e9), outside = 0;
-  const auto face = [&](Real s) {
-    nearest = max2(nearest, s);
-    if (s > Real(0)) outside = outside + s * s;
-  };
-  if (o.shape == ObstacleShape::cylinder) face(square_root(p.x * p.x + p.y * p.y) - o.half.x);
-  for (int axis = 0; axis < 3; ++axis) {
-    const Span<Real> s = span_of(o, axis);
-    if (has_faces<D>(o, axis)) face(max2(at[axis] - s.high, s.low - at[axis]));
-  }
-  return nearest > Real(0) ? square_root(outside) : nearest;
+PBF_HD Vec3<Real> any_across(const BodyFrame<Real>& o) {
+  const Real off = o.turn[0][1] < Real(0) ? -o.turn[0][1] : o.turn[0][1];
+  if (D == 2 && off > Real(0.5)) return {Real(0), Real(1), Real(0)};
+  return {Real(1), Real(0), Real(0)};
 }
 
 /// Distance of x from the surface, h; below 0 inside. Exact on both sides.
 template <int D = 3, class Real>
 PBF_HD_APART Real distance(const Solid<Real>& o, Vec3<Real> x) {
-  return body_distance<D>(o, body_point<D>(o, x));
+  const Vec3<Real> p = body_point<D>(o, x);
+  return o.shape.with([&](const auto& s) { return s.template distance<D>(p); });
+}
+/// Of length 1, out of the solid at the place of its surface that is nearest to x.
+template <int D = 3, class Real>
+PBF_HD_APART Vec3<Real> normal(const Solid<Real>& o, Vec3<Real> x) {
+  const Vec3<Real> p = body_point<D>(o, x);
+  const Vec3<Real> n = o.shape.with([&](const auto& s) { return s.template normal<D>(p); });
+  return turned_back<D>(o, dot(n, n) > Real(0) ? n : any_across<D>(o));
+}
+
+/// Whether the solid goes on behind a wall at an end that lies that way from its centre.
+template <class Shape, class Real>
+PBF_HD bool goes_on(const Shape& shape, Vec3<Real> d) {
+  if constexpr (requires { shape.through; }) {
+    const Real along[3] = {d.x, d.y, d.z};
+    for (int axis = 0; axis < 3; ++axis)
+      if (along[axis] != Real(0) && (shape.through >> (2 * axis) & (along[axis] < 0 ? 1u : 2u)))
+        return true;
+  }
+  return false;
+}
+/// h: how far the body goes from its centre along a direction of the domain, of length 1.
+/// `through`: with what goes on behind walls.
+template <class Real>
+PBF_HD_APART Real reach_along(const Solid<Real>& o, Vec3<Real> d, bool through) {
+  const Vec3<Real> in_body{o.turn[0][0] * d.x + o.turn[0][1] * d.y + o.turn[0][2] * d.z,
+                           o.turn[1][0] * d.x + o.turn[1][1] * d.y + o.turn[1][2] * d.z,
+                           o.turn[2][0] * d.x + o.turn[2][1] * d.y + o.turn[2][2] * d.z};
+  return o.shape.with([&](const auto& s) {
+    return through && goes_on(s, in_body) ? Real(kEndless) : reach_of(s, in_body);
+  });
+}
+/// h: how far the body goes from its centre at most, without what goes on behind walls.
+template <class Real>
+PBF_HD_APART Real size_of(const Solid<Real>& o) {
+  return o.shape.with([](const auto& s) { return size_of_shape<Real>(s); });
+}
+template <class Real>
+PBF_HD bool is_bounded(const Solid<Real>& o) {
+  return size_of(o) < Real(kEndless);
 }
 
 }  // namespace pbf::inline PBF_VARIANT

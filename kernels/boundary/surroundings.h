@@ -2,29 +2,13 @@
 // the few particles there come here, so these functions are not inlined into the passes.
 #pragma once
 
+#include "kernels/boundary/box.h"
 #include "kernels/boundary/keep_out.h"
 #include "kernels/boundary/loads.h"
 #include "kernels/boundary/moving.h"
 #include "kernels/boundary/solid_term.h"
 
 namespace pbf::inline PBF_VARIANT {
-
-/// Edges along the axes, h.
-template <class Real>
-struct Bounds {
-  Vec3<Real> low, high;
-
-  PBF_HD bool has(Vec3<Real> x) const {
-    return x.z <= high.z && x.z >= low.z && x.x <= high.x && x.x >= low.x && x.y <= high.y &&
-           x.y >= low.y;
-  }
-  /// Whether a straight way may come through.
-  PBF_HD bool meets(Vec3<Real> from, Vec3<Real> to) const {
-    return !(from.z > high.z && to.z > high.z) && !(from.z < low.z && to.z < low.z) &&
-           !(from.x > high.x && to.x > high.x) && !(from.x < low.x && to.x < low.x) &&
-           !(from.y > high.y && to.y > high.y) && !(from.y < low.y && to.y < low.y);
-  }
-};
 
 /// An obstacle, and how far around it a particle counts as near.
 template <class Real>
@@ -51,7 +35,7 @@ template <class Real>
 PBF_HD PathEnd<Real> keep_out(const Surroundings<Real>& s, bool start, int k, Vec3<Real> from,
                               Vec3<Real> to) {
   const PlacedSolid<Real>& placed = s.solid[k];
-  if (!placed.bounds.meets(from, to)) return {to, false};
+  if (!placed.bounds.meets(from, to)) return {to};
   const Solid<Real>& before = start && s.before ? s.before[k] : placed.solid;
   return s.flat ? keep_out<2>(before, placed.solid, from, to)
                 : keep_out<3>(before, placed.solid, from, to);
@@ -141,7 +125,7 @@ PBF_HD_APART Vec3<Real> surroundings_path_end(const Surroundings<Real>& s, bool 
     for (int k = 0; k < s.solids; ++k) {
       const PathEnd<Real> end = keep_out(s, start, k, from, to);
       if (!end.hit) continue;
-      const bool wedged = !within_rounding(end.x - to, to, s.solid[k].solid.center);
+      const bool wedged = end.again || !within_rounding(end.x - to, to, s.solid[k].solid.center);
       const bool last = round == rounds && wedged;
       const Vec3<Real> at = !last ? end.x : start && s.before ? carried(s, k, from) : from;
       move_by(6 + k, at - to);

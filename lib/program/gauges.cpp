@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/boundary/box.h"
 #include "kernels/boundary/solid_term.h"
 #include "lib/program/loads.h"
 #include "lib/scene/surface.h"
@@ -122,17 +123,19 @@ FlowGate flow_gate(const Gauge& g, const Scene& s, const Frame& frame) {
   return gate;
 }
 
+Double3 axis_of(const Obstacle& o) {
+  return std::visit([](const auto& keys) { return keys.axes()[2]; }, o.shape);
+}
+
 /// Where the round side of an obstacle is before its centre or axis, seen from x; also beyond the
 /// ends of a cylinder, where there is no surface.
-Double3 on_round_side(const Obstacle& o, const Double3& x, bool flat) {
-  Double3 foot = o.center;
-  if (o.shape != ObstacleShape::sphere) {
-    const Double3 axis = unit(o.to - o.from), middle = 0.5 * (o.from + o.to);
-    const double half = length(o.to - o.from) / 2, z = dot(x - middle, axis);
-    foot = middle + (o.shape == ObstacleShape::capsule ? std::clamp(z, -half, half) : z) * axis;
-  }
+Double3 on_round_side(const Obstacle& o, const RoundSide<double>& side, const Double3& x,
+                      bool flat) {
+  const Double3 axis = axis_of(o);
+  Double3 foot = o.middle();
+  foot = foot + std::clamp(dot(x - foot, axis), side.low, side.high) * axis;
   if (flat) foot[1] = x[1];
-  return foot + o.radius * unit(x - foot);
+  return foot + side.radius * unit(x - foot);
 }
 
 /// Of the disc's share the part where fluid can be before the surface.
@@ -145,7 +148,10 @@ double wetted_area(const Patch& patch, int surface, const SurfacePlace& there, c
                                                  : cross(n, {0, 1, 0}));
   const Double3 v = cross(n, u);
   const double tiny = 1e-6 * h;
-  const std::size_t obstacle = std::size_t(surface) - kFaceNames.size();  // of a round surface
+  const std::size_t faces = kFaceNames.size();
+  const Obstacle* o = std::size_t(surface) < faces ? nullptr : &s.obstacles[surface - faces];
+  const RoundSide<double> side = o ? round_side(*o, s, there.point) : RoundSide<double>{};
+  const bool bent = o && side.radius == 0 && is_bent(*o);
   double sum = 0;
   const int rows = s.dimensions == 2 ? 1 : kCells;
   for (int j = 0; j < rows; ++j)
@@ -154,7 +160,8 @@ double wetted_area(const Patch& patch, int surface, const SurfacePlace& there, c
       const double share = patch_share(patch, (a * a + b * b) / (h * h));
       if (share == 0) continue;
       Double3 x = there.point + a * u + b * v;
-      if (patch.bend > 0) x = on_round_side(s.obstacles[obstacle], x, s.dimensions == 2);
+      if (side.radius > 0) x = on_round_side(*o, side, x, s.dimensions == 2);
+      if (bent) x = nearest_place(*o, s, x).point;
       const SurfacePlace near = nearest_place_on(surface, s, x);
       if (std::fabs(near.distance) > tiny) continue;  // beyond the face
       // What stands on a surface touches it.
@@ -175,18 +182,11 @@ Patch patch_of(const Gauge& g, int surface, const SurfacePlace& there, const Sce
   p.soft = s.fluid.spacing / s.h();
   if (surface < faces) return p;
   const Obstacle& o = s.obstacles[std::size_t(surface - faces)];
-  if (o.shape == ObstacleShape::sphere) {
-    p.bend = o.radius / s.h();
-    frame.place(o.center, p.middle);
-  } else if (o.shape == ObstacleShape::cylinder || o.shape == ObstacleShape::capsule) {
-    const Double3 axis = unit(o.to - o.from);
-    if (o.shape == ObstacleShape::cylinder && std::fabs(dot(axis, there.normal)) > 0.5) return p;
-    p.bend = o.radius / s.h();
-    frame.place(0.5 * (o.from + o.to), p.middle);
-    frame.direction(axis, p.axis);
-    const bool ends = o.shape == ObstacleShape::capsule;
-    p.high = ends ? length(o.to - o.from) / 2 / s.h() : 1e9;
-    p.low = -p.high;
+  if (const RoundSide<double> side = round_side(o, s, there.point); side.radius > 0) {
+    p.bend = side.radius / s.h();
+    frame.place(o.middle(), p.middle);
+    if (side.high > side.low) frame.direction(axis_of(o), p.axis);
+    p.low = side.low / s.h(), p.high = side.high / s.h();
   }
   return p;
 }

@@ -56,35 +56,10 @@ bool has_moving_obstacles(const Scene& s) {
                      [](const Obstacle& o) { return o.motion.has_value(); });
 }
 
-Double3 middle_of(const Obstacle& o) {
-  switch (o.shape) {
-    case ObstacleShape::plane:
-      return o.point;
-    case ObstacleShape::box:
-      return 0.5 * (o.min + o.max);
-    case ObstacleShape::sphere:
-      return o.center;
-    case ObstacleShape::cylinder:
-    case ObstacleShape::capsule:
-      break;
-  }
-  return 0.5 * (o.from + o.to);
-}
-
 double size_of(const Scene& s, const Obstacle& o) {
-  const double all = length(s.domain.max - s.domain.min);
-  switch (o.shape) {
-    case ObstacleShape::plane:
-      return all;
-    case ObstacleShape::box:
-      return std::min(all, 0.5 * length(o.max - o.min));
-    case ObstacleShape::sphere:
-      return std::min(all, o.radius);
-    case ObstacleShape::cylinder:
-    case ObstacleShape::capsule:
-      return std::min(all, 0.5 * length(o.to - o.from) + o.radius);
-  }
-  return all;
+  const double of_body =
+      std::visit([](const auto& keys) { return size_of_shape<double>(keys.make(1)); }, o.shape);
+  return std::min(length(s.domain.max - s.domain.min), of_body);
 }
 
 Pose pose_of(const Scene& s, const Obstacle& o, double time) {
@@ -92,7 +67,7 @@ Pose pose_of(const Scene& s, const Obstacle& o, double time) {
   if (!o.motion) return p;
   const Motion& m = *o.motion;
   const double t = s.time.motion_begin + time;
-  p.pivot = m.pivot.value_or(middle_of(o));
+  p.pivot = m.pivot.value_or(o.middle());
   switch (m.kind) {
     case MotionKind::sine:
       if (m.direction)
@@ -177,7 +152,7 @@ double fastest_obstacle(const Scene& s, double from, double to) {
     if (!o.motion) continue;
     for (const double t : telling_times(s, *o.motion, from, to)) {
       const Pose a = pose_of(s, o, t), b = pose_of(s, o, t + dt);
-      const Double3 middle = middle_of(o);
+      const Double3 middle = o.middle();
       double turned = 0;  // of the ends of the axes of a unit frame; the turn is a part of it
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j) turned += std::pow(b.turn[i][j] - a.turn[i][j], 2);

@@ -12,9 +12,6 @@
 
 namespace pbf::inline program_module {
 
-using Matrix3 = std::array<Double3, 3>;  ///< rows
-inline constexpr Matrix3 kUnit3{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-
 /// Where a body has gone: x -> pivot + turn (x - pivot) + shift, m, along the scene's axes.
 struct Pose {
   Matrix3 turn = kUnit3;
@@ -31,10 +28,7 @@ inline bool has_motion(const Scene& scene) {
 
 /// Of an obstacle at `time` (s since the start). Error(internal) for a file that was not read.
 Pose pose_of(const Scene& scene, const Obstacle& obstacle, double time);
-/// m: the point about which it turns where the scene names none.
-Double3 middle_of(const Obstacle& obstacle);
-
-/// m: how far what it holds is from that point at most, no more than the domain is long.
+/// m: how far what it holds is from its middle at most, no more than the domain is long.
 double size_of(const Scene& scene, const Obstacle& obstacle);
 
 /// How the tank stands: turned about its axis, and how far it has gone (m).

@@ -9,7 +9,7 @@ std::vector<ObstaclePose> obstacle_poses(const Scene& scene, double time) {
   for (const Obstacle& o : scene.obstacles) {
     if (!o.motion) continue;
     const Pose pose = pose_of(scene, o, time);
-    all.push_back({o.name, pose.of(middle_of(o)), pose.turn});
+    all.push_back({o.name, pose.of(o.middle()), pose.turn});
   }
   return all;
 }

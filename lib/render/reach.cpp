@@ -32,24 +32,9 @@ bool leaks(const Scene& scene, const Double3& up) {
 
 /// m along `up`, of the highest place of a solid; of a plane nothing.
 double top_of(const Solid<double>& s, const Double3& up) {
-  Double3 along{};  // of `up` on the axes of the body
-  for (std::size_t r = 0; r < 3; ++r)
-    along[r] = s.turn[r][0] * up[0] + s.turn[r][1] * up[1] + s.turn[r][2] * up[2];
-  const double middle = s.center.x * up[0] + s.center.y * up[1] + s.center.z * up[2];
-  const double axis = std::abs(along[2]) * s.half.z;
-  switch (s.shape) {
-    case ObstacleShape::plane:
-      break;
-    case ObstacleShape::box:
-      return middle + std::abs(along[0]) * s.half.x + std::abs(along[1]) * s.half.y + axis;
-    case ObstacleShape::sphere:
-      return middle + s.half.x;
-    case ObstacleShape::cylinder:
-      return middle + axis + s.half.x * std::sqrt(std::max(0.0, 1 - along[2] * along[2]));
-    case ObstacleShape::capsule:
-      return middle + axis + s.half.x;
-  }
-  return -std::numeric_limits<double>::infinity();
+  const Vec3<double> way{up[0], up[1], up[2]};
+  return is_bounded(s) ? dot(s.center, way) + reach_along(s, way, false)
+                       : -std::numeric_limits<double>::infinity();
 }
 
 /// m along `up`, of the highest place of any obstacle between start and end.
@@ -70,7 +55,8 @@ std::vector<Solid<double>> solids_in_metres(const Scene& scene, double time) {
   std::vector<Solid<double>> solids = solids_of(scene, time);
   for (Solid<double>& s : solids) {
     s.center = Vec3<double>{x, y, z} + h * s.center;
-    s.half = h * s.half;
+    s.shape = s.shape.with(
+        [&](const auto& shape) { return SomeShape<double>(shape.template scaled<double>(h)); });
   }
   return solids;
 }

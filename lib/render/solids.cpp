@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "lib/render/zero_surface.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline render_module {
@@ -60,9 +61,11 @@ Polygon rectangle(std::size_t axis, int side, const Double3& min, const Double3&
   return polygon;
 }
 
-/// The convex body in the scene's frame, put together face by face.
+/// The body in the scene's frame, put together face by face.
 struct Body {
-  const Solid<double>& solid;
+  Solid<double> solid;
+  double size;  ///< m, longer than anything that is seen
+  bool flat;
   std::vector<Face> faces{};
 
   Double3 turned(const Double3& d) const {
@@ -78,6 +81,11 @@ struct Body {
     for (Corner& c : polygon) c = {placed(c.place), turned(c.normal), c.crease};
     const Double3 normal = turned(outward);
     faces.push_back({polygon, {normal, dot(normal, polygon[0].place)}});
+  }
+
+  /// Half a length along an axis; in two dimensions there are no ends along y.
+  double half(std::size_t axis, double length) const {
+    return flat && std::abs(solid.turn[axis][1]) > 0.5 ? size : length;
   }
 
   /// A ring about the body's z: radius and height, and the slope of the surface there.
@@ -126,6 +134,37 @@ struct Body {
   }
 };
 
+void add_faces(Body& body, const shape::Plane<double>&) {
+  body.add(rectangle(2, 1, {-body.size, -body.size, 0}, {body.size, body.size, 0}));
+}
+void add_faces(Body& body, const shape::Box<double>& box) {
+  const Double3 half{body.half(0, box.half.x), body.half(1, box.half.y), body.half(2, box.half.z)};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const int side : {-1, 1}) body.add(rectangle(axis, side, -1.0 * half, half));
+}
+void add_faces(Body& body, const shape::Sphere<double>& s) { body.add_capsule(s.radius, 0); }
+void add_faces(Body& body, const shape::Cylinder<double>& s) {
+  body.add_tube(s.radius, body.half(2, s.half));
+}
+void add_faces(Body& body, const shape::Capsule<double>& s) {
+  body.add_capsule(s.radius, body.half(2, s.half));
+}
+/// Of any other shape: where its distance is 0, in the tetrahedra of a lattice.
+void add_faces(Body& body, const auto& shape) {
+  for (const Triangle& t : zero_surface(shape)) {
+    Polygon polygon;
+    for (const Vec3<double>& p : t) {
+      const Vec3<double> n = shape.template normal<3>(p);
+      polygon.push_back({{p.x, p.y, p.z}, {n.x, n.y, n.z}, false});
+    }
+    const Double3 a = polygon[1].place - polygon[0].place, b = polygon[2].place - polygon[0].place;
+    Double3 outward = cross(a, b);
+    if (!(length(outward) > 0)) continue;
+    outward = (dot(outward, polygon[0].normal) < 0 ? -1 : 1) * unit(outward);
+    body.add(std::move(polygon), outward);
+  }
+}
+
 /// The part of space in which a solid is drawn.
 struct Bounds {
   Double3 min, max;
@@ -134,7 +173,7 @@ Bounds bounds_of(const View& view, const Solid<double>& solid) {
   Bounds b{view.domain_min, view.domain_max};
   const double further = length(b.max - b.min);  // as far as the picture may show
   for (std::size_t k = 0; k < 3; ++k) {
-    if (solid.shape == ObstacleShape::plane) break;
+    if (!is_bounded(solid)) break;
     if (view.open[k][0]) b.min[k] -= further;
     if (view.open[k][1]) b.max[k] += further;
   }
@@ -146,41 +185,19 @@ Bounds bounds_of(const View& view, const Solid<double>& solid) {
   return b;
 }
 
-std::vector<Face> faces_of(const View& view, Solid<double> solid) {
+std::vector<Face> faces_of(const View& view, const Solid<double>& solid) {
   const Bounds bounds = bounds_of(view, solid);
   const double size = length(view.domain_max - view.domain_min);
-  Double3 half{solid.half.x, solid.half.y, solid.half.z};
-  if (view.flat) {
-    solid.center.y = 0.5 * (bounds.min[1] + bounds.max[1]);
-    for (std::size_t k = 0; k < 3; ++k)  // no ends along y
-      if (std::abs(solid.turn[k][1]) > 0.5 && (k == 2 || solid.shape == ObstacleShape::box))
-        half[k] = size;
+  const bool bounded = is_bounded(solid);
+  Body body{solid, size, view.flat};
+  if (view.flat) body.solid.center.y = 0.5 * (bounds.min[1] + bounds.max[1]);
+  if (!bounded) {  // around the point that is nearest to the middle of the domain
+    const Double3 away = 0.5 * (bounds.min + bounds.max) - body.placed({0, 0, 0}),
+                  up = body.turned({0, 0, 1});
+    const Double3 middle = body.placed({0, 0, 0}) + (away - dot(away, up) * up);
+    body.solid.center = {middle[0], middle[1], middle[2]};
   }
-  Body body{solid};
-  switch (solid.shape) {
-    case ObstacleShape::plane: {
-      // Around the point that is nearest to the middle of the domain.
-      const Double3 away = 0.5 * (bounds.min + bounds.max) - body.placed({0, 0, 0}),
-                    up = body.turned({0, 0, 1});
-      const Double3 middle = body.placed({0, 0, 0}) + (away - dot(away, up) * up);
-      solid.center = {middle[0], middle[1], middle[2]};
-      body.add(rectangle(2, 1, {-size, -size, 0}, {size, size, 0}));
-      break;
-    }
-    case ObstacleShape::box:
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        for (const int side : {-1, 1}) body.add(rectangle(axis, side, -1.0 * half, half));
-      break;
-    case ObstacleShape::sphere:
-      body.add_capsule(half[0], 0);
-      break;
-    case ObstacleShape::cylinder:
-      body.add_tube(half[0], half[2]);
-      break;
-    case ObstacleShape::capsule:
-      body.add_capsule(half[0], half[2]);
-      break;
-  }
+  solid.shape.with([&](const auto& shape) { add_faces(body, shape); });
 
   // Cut at the bounds: what is inside of them, and the cuts themselves.
   const std::vector<Face> whole = body.faces;
@@ -189,8 +206,7 @@ std::vector<Face> faces_of(const View& view, Solid<double> solid) {
       HalfSpace keep{{}, side < 0 ? -bounds.min[axis] : bounds.max[axis]};
       keep.normal[axis] = side;
       const bool crosses =
-          solid.shape == ObstacleShape::plane ||
-          std::any_of(whole.begin(), whole.end(), [&](const Face& face) {
+          !bounded || std::any_of(whole.begin(), whole.end(), [&](const Face& face) {
             return std::any_of(face.polygon.begin(), face.polygon.end(),
                                [&](const Corner& c) { return keep.beyond(c.place) > 1e-9 * size; });
           });

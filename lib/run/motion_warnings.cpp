@@ -43,7 +43,7 @@ bool is_hinged(const Scene& s, const Obstacle& o, int face) {
                                                       : false;
   if (!turns) return false;
   const auto axis = std::size_t(face / 2);
-  const double at = m.pivot.value_or(middle_of(o))[axis];
+  const double at = m.pivot.value_or(o.middle())[axis];
   const double wall = (face % 2 == 1 ? s.domain.max : s.domain.min)[axis];
   return (face % 2 == 1 ? wall - at : at - wall) <= s.fluid.spacing;
 }
@@ -152,9 +152,7 @@ class Meetings {
         return std::nullopt;
     Meeting m;
     if (shared(a, b, 0) > 0) {
-      const bool plane = s_.obstacles[a].shape == ObstacleShape::plane ||
-                         s_.obstacles[b].shape == ObstacleShape::plane;
-      if (plane) return std::nullopt;
+      if (!is_bounded(tracks_[a].solid[0]) || !is_bounded(tracks_[b].solid[0])) return std::nullopt;
       return Meeting{shared(a, b, 0), 0, 0, true};
     }
     double before = 0;
@@ -211,7 +209,7 @@ std::string listed(const std::vector<std::string>& texts) {
 void add_walls(const Scene& s, const std::vector<Track>& tracks, std::vector<Warning>& list) {
   std::vector<std::string> texts;
   for (std::size_t k = 0; k < s.obstacles.size(); ++k)
-    if (s.obstacles[k].motion && s.obstacles[k].shape != ObstacleShape::plane)
+    if (s.obstacles[k].motion && is_bounded(tracks[k].solid[0]))
       texts.push_back(wall_text(s, k, tracks[k]));
   std::erase(texts, "");
   if (!texts.empty()) list.push_back({"wall", listed(texts)});

@@ -119,13 +119,8 @@ class Deepest {
     const Vec3<double> x = place(middle_);
     const double of_a = distance_of(a_, x, flat_), of_b = distance_of(b_, x, flat_);
     const Solid<double>& o = of_a >= of_b ? a_ : b_;
-    constexpr double step = 1e-6;
-    for (int k = 0; k < n_; ++k) {
-      double low[3] = {middle_[0], middle_[1], middle_[2]}, high[3] = {low[0], low[1], low[2]};
-      low[k] -= step, high[k] += step;
-      slope[k] =
-          (distance_of(o, place(high), flat_) - distance_of(o, place(low), flat_)) / (2 * step);
-    }
+    const Vec3<double> n = flat_ ? normal<2>(o, x) : normal<3>(o, x);
+    slope[0] = n.x, slope[1] = flat_ ? n.z : n.y, slope[2] = n.z;
     return std::max(of_a, of_b);
   }
   /// Keeps the half of the ellipsoid that is downhill; how much lower it may be there.
@@ -171,21 +166,11 @@ Track track_of(const Scene& s, const Obstacle& o, int most) {
 }  // namespace
 
 Extents extents_of(const Solid<double>& o) {
-  constexpr double far = std::numeric_limits<double>::infinity();
-  if (o.shape == ObstacleShape::plane) return {{{-far, far}, {-far, far}, {-far, far}}};
   const double center[3] = {o.center.x, o.center.y, o.center.z};
-  const double half[3] = {o.half.x, o.half.y, o.half.z};
   Extents out;
   for (std::size_t k = 0; k < 3; ++k) {
-    double reach = 0;
-    if (o.shape == ObstacleShape::box)
-      for (int axis = 0; axis < 3; ++axis) reach += std::fabs(o.turn[axis][k]) * half[axis];
-    else if (o.shape == ObstacleShape::cylinder)
-      reach = std::fabs(o.turn[2][k]) * half[2] +
-              half[0] * std::sqrt(std::max(0.0, 1 - o.turn[2][k] * o.turn[2][k]));
-    else
-      reach = half[0] + std::fabs(o.turn[2][k]) * half[2];
-    out[k] = {center[k] - reach, center[k] + reach};
+    const Vec3<double> up{double(k == 0), double(k == 1), double(k == 2)};
+    out[k] = {center[k] - reach_along(o, -1.0 * up, false), center[k] + reach_along(o, up, false)};
   }
   return out;
 }

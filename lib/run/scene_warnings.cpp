@@ -122,7 +122,7 @@ void add_motion(const Scene& s, std::vector<Warning>& list) {
 
 /// Whether it lies beyond a face of the domain, by more than walls and obstacles reach.
 bool out_of_reach(const Scene& s, const Solid<double>& o) {
-  if (o.shape == ObstacleShape::plane) {
+  if (!is_bounded(o)) {
     double size[3];
     for (std::size_t k = 0; k < 3; ++k) size[k] = (s.domain.max[k] - s.domain.min[k]) / s.h();
     for (int corner = 0; corner < 8; ++corner)

@@ -102,7 +102,7 @@ void add_tables(const Scene& s, std::vector<Warning>& list) {
     if (!o.motion || o.motion->kind != MotionKind::file) continue;
     displaced.push_back(displaced_text(s, k));
     const double lever =
-        kDegree * (size_of(s, o) + length(o.motion->pivot.value_or(middle_of(o)) - middle_of(o)));
+        kDegree * (size_of(s, o) + length(o.motion->pivot.value_or(o.middle()) - o.middle()));
     std::vector<double> lengths{1, 1, 1, lever, lever, lever};
     lengths.resize(std::size_t(o.motion->table.columns));
     texts.push_back(

@@ -122,20 +122,23 @@ class GaugeChecker : public SceneRules {
       return add(g.at, "no fluid comes to this place of " + g.on +
                            ": another obstacle or the end of the domain is before it; move it");
     if (*surface < faces || !good(g.radius)) return;
-    const Obstacle& o = s_.obstacles[std::size_t(*surface - faces)];
-    const bool end = o.shape == ObstacleShape::cylinder &&
-                     std::fabs(dot(unit(o.to - o.from), there.normal)) > 0.5;
-    const bool round = !end && o.shape != ObstacleShape::plane && o.shape != ObstacleShape::box;
-    if (round && g.radius > o.radius - d)
+    const double radius =
+        round_side(s_.obstacles[std::size_t(*surface - faces)], s_, there.point).radius;
+    if (radius > 0 && g.radius > radius - d)
       add(g.radius, "is " + to_text(g.radius) + ", more than the radius of " + g.on +
-                        " less fluid.spacing (" + to_text(o.radius - d) + " m); lower it");
+                        " less fluid.spacing (" + to_text(radius - d) + " m); lower it");
   }
 
   bool good_obstacle(const Obstacle& o) const {
-    return good(o.shape, o.min, o.max, o.turn_axis, o.turn_angle, o.center, o.radius, o.from, o.to,
-                o.point, o.normal) &&
-           dot(o.turn_axis, o.turn_axis) > 0 && dot(o.normal, o.normal) > 0 &&
-           (o.shape != ObstacleShape::cylinder || o.from != o.to);
+    return good(o.shape) &&
+           std::visit(
+               [&]<class Shape>(const Shape& keys) {
+                 const Matrix3 axes = keys.axes();  // not a number of what has no direction
+                 return std::isfinite(axes[0][0]) &&
+                        std::apply([&](const auto&... key) { return good(keys.*key.member...); },
+                                   Shape::keys());
+               },
+               o.shape);
   }
 
   std::string unknown_surface(const std::string& on) const {

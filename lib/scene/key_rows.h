@@ -16,13 +16,6 @@ namespace pbf::inline scene_module {
 /// The same in an entry of a list: MEMBER_OF(bodies, Body, min) is "bodies[].min".
 #define MEMBER_OF(list, Struct, member) #list "[]." MEMBER(Struct, member)
 
-// Bounds that hold off overflow in float arithmetic and nothing that anyone simulates: boxes from
-// 1e-6 m to 1e6 m, up to a million box lengths from the origin.
-inline constexpr Range kCoordinate{-1e12, 1e12};
-inline constexpr Range kLength{1e-9, 1e9};
-inline constexpr Range kSeconds{1e-12, 1e9};
-inline constexpr Range kRate{-1e12, 1e12};
-
 /// "a->b" is "a.b" in the file.
 std::string path_of(std::string member);
 

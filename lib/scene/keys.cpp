@@ -8,6 +8,7 @@ namespace pbf::inline scene_module {
 
 // keys_*.cpp
 KeyRows start_rows();
+KeyRows obstacle_rows();
 KeyRows gauge_rows();
 KeyRows motion_rows();
 KeyRows moved_rows();
@@ -148,8 +149,9 @@ std::map<const void*, std::string> KeyTable::names(const Object& object) const {
 
 const KeyTable& scene_table() {
   static Scene defaults;
-  static const KeyTable table({start_rows(), gauge_rows(), motion_rows(), moved_rows(), run_rows()},
-                              object(defaults));
+  static const KeyTable table(
+      {start_rows(), obstacle_rows(), gauge_rows(), motion_rows(), moved_rows(), run_rows()},
+      object(defaults));
   return table;
 }
 

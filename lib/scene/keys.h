@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "lib/scene/key_traits.h"
 #include "lib/scene/scene.h"
 
 namespace pbf::inline scene_module {
@@ -39,14 +40,6 @@ using Field = std::variant<double*, std::optional<double>*, int*, std::int64_t*,
                            Double3*, std::optional<Double3>*, std::optional<std::array<double, 2>>*,
                            std::array<int, 2>*, ChoiceField>;
 
-/// Allowed values of every number of a key.
-struct Range {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool above_min = false;  ///< min itself is not allowed
-  bool below_max = false;  ///< max itself is not allowed
-};
-
 /// Whether a change leaves the results of a run alone up to its end, so that --resume takes it.
 /// In order: what is more than another counts where that counts.
 enum class Effect {
@@ -57,17 +50,6 @@ enum class Effect {
 
 struct Block;
 struct KeyTable;
-
-/// With `dimensions: 2` a vector may be given by x and z; what its y is then.
-enum class FlatY {
-  none,    ///< it needs three numbers
-  bottom,  ///< that of the domain: 0 ...
-  top,     ///< ... and a spacing above
-  low,     ///< the domain's lower y
-  high,    ///< the domain's upper y
-  middle,  ///< the plane
-  zero,
-};
 
 /// A struct of a scene that has the keys of a block, and its path: "obstacles[1].motion".
 struct Holder {
@@ -88,6 +70,7 @@ struct Key {
   bool is_kind = false;    ///< the word that decides which other keys a block or an entry has
   unsigned kinds = ~0u;    ///< bit 1 << index of every kind that has this key
   FlatY flat = FlatY::none;
+  unsigned in_plane = 0;    ///< bits as of `kinds`: of these kinds y is that of the plane
   bool by_center = false;   ///< a corner of a box that center and size may give as well
   bool names_file = false;  ///< a path, from the folder of the scene file
   /// The table of a mapping in whose place it may be given, or of one number; null: none.

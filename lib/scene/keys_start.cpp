@@ -5,7 +5,6 @@ namespace pbf::inline scene_module {
 
 #define KEY(member) MEMBER(Scene, member)
 #define BODY(member) MEMBER_OF(bodies, Body, member)
-#define OBSTACLE(member) MEMBER_OF(obstacles, Obstacle, member)
 
 constexpr const char* kFrame = "coordinates count from it and the grid is laid by it";
 
@@ -20,14 +19,7 @@ KeyRows start_rows() {
                    .remark = "ids count through them in this order",
                    .example = "{shape: block, min: [0, 0, 0], max: [1, 1, 1]}",
                    .further = "{shape: file, path: particles.csv, velocity: [0, 0, 0]}"},
-                  exact("all solvers of a comparison start from the same particles")),
-       list_block(KEY(obstacles), "Solids that the fluid flows around",
-                  {.entry_name = "obstacle",
-                   .remark = "particles of bodies in them are left out",
-                   .example = "{name: block, shape: box, min: [0.4, 0.4, 0], max: [0.6, 0.6, 0.3]}",
-                   .further = "{name: ball, shape: sphere, center: [0.5, 0.5, 0.5], radius: 0.1, "
-                              "loads: true}"},
-                  exact("all solvers of a comparison have the same solids"))},
+                  exact("all solvers of a comparison start from the same particles"))},
       {key(KEY(name), plain,
            "Name of the scene, for titles and logs, and of the folder of its runs, out/NAME. That "
            "of a base is not taken.",
@@ -92,41 +84,7 @@ KeyRows start_rows() {
            "3).",
            required, of(Shape::file), names_file),
        key(BODY(velocity), number("m/s", kRate),
-           "Initial velocity, added to every particle of the body.", flat(FlatY::zero)),
-       key(OBSTACLE(name), plain, "Name, in the columns of the log.", required),
-       key(OBSTACLE(shape), one_of({"plane", "box", "sphere", "cylinder", "capsule"}),
-           "Shape of the obstacle; decides which keys it has. With dimensions: 2 y does not count, "
-           "and a "
-           "sphere is a disc.",
-           required, is_kind),
-       key(OBSTACLE(min), number("m", kCoordinate),
-           "Lower corner of the box before it is turned. In place of min and max the box may have "
-           "center, its middle, and size, its edges.",
-           required, of(ObstacleShape::box), flat(FlatY::low), by_center),
-       key(OBSTACLE(max), number("m", kCoordinate), "Upper corner of the box before it is turned.",
-           required, of(ObstacleShape::box), flat(FlatY::high), by_center),
-       key(OBSTACLE(turn_axis), number("", {-1e6, 1e6}),
-           "The box is turned about this axis through its middle; with dimensions: 2 about y.",
-           of(ObstacleShape::box)),
-       key(OBSTACLE(turn_angle), number("degrees", {-360, 360}),
-           "By so much, counterclockwise seen from where the axis points.", of(ObstacleShape::box)),
-       key(OBSTACLE(center), number("m", kCoordinate), "Centre of the sphere.", required,
-           of(ObstacleShape::sphere), flat(FlatY::middle)),
-       key(OBSTACLE(radius), number("m", kLength),
-           "Radius; of cylinders, capsules and discs at least the smoothing length.", required,
-           of(ObstacleShape::sphere, ObstacleShape::cylinder, ObstacleShape::capsule)),
-       key(OBSTACLE(from), number("m", kCoordinate), "One end of the axis.", required,
-           of(ObstacleShape::cylinder, ObstacleShape::capsule), flat(FlatY::low)),
-       key(OBSTACLE(to), number("m", kCoordinate), "The other end.", required,
-           of(ObstacleShape::cylinder, ObstacleShape::capsule), flat(FlatY::high)),
-       key(OBSTACLE(point), number("m", kCoordinate), "A point of the plane's face.", required,
-           of(ObstacleShape::plane), flat(FlatY::middle)),
-       key(OBSTACLE(normal), number("", {-1e6, 1e6}),
-           "At right angles to the face, away from the solid.", required, of(ObstacleShape::plane),
-           flat(FlatY::zero)),
-       key(OBSTACLE(loads), plain,
-           "Sums the force and the torque of the fluid on it; columns load/NAME/force_x and so on "
-           "of the log.")}};
+           "Initial velocity, added to every particle of the body.", flat(FlatY::zero))}};
 }
 
 }  // namespace pbf::inline scene_module

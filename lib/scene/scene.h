@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "kernels/boundary/obstacle_shape.h"
 #include "lib/scene/coloring.h"
 #include "lib/scene/motion.h"
+#include "lib/scene/obstacle.h"
 #include "lib/scene/render_style.h"
 
 namespace pbf::inline scene_module {
@@ -40,23 +40,6 @@ struct Body {
   Place place{};           ///< of the path
   Double3 velocity{};      ///< m/s, added to every particle of the body
   bool operator==(const Body&) const = default;
-};
-
-/// A solid in the domain. Which members count depends on `shape`; the loader refuses the others.
-struct Obstacle {
-  std::string name;
-  ObstacleShape shape = ObstacleShape::box;
-  Double3 min{}, max{};        ///< m, box before it is turned
-  Double3 turn_axis{0, 0, 1};  ///< box: the axis through its middle that it is turned about ...
-  double turn_angle = 0;       ///< degrees, ... by the right-hand rule
-  Double3 center{};            ///< m, sphere
-  double radius = 0;           ///< m, sphere, cylinder, capsule
-  Double3 from{}, to{};        ///< m, cylinder, capsule: ends of the axis
-  Double3 point{},
-      normal{0, 0, 1};           ///< m; plane: a point of its face, and the way out of the solid
-  bool loads = false;            ///< the force on it is summed and written down
-  std::optional<Motion> motion;  ///< absent: it stands
-  bool operator==(const Obstacle&) const = default;
 };
 
 /// What is written down of one place while a run goes on.

@@ -27,15 +27,17 @@ void append(Node& map, const std::string& key, const Node& like, const Node& val
   map.items.push_back(value);
 }
 
-/// Whether the entry is of a kind that has this key.
-bool has_key(Node& entry, const Key& key) {
+/// The entry's bit in Key::kinds; of one without kinds all, of an unknown word none.
+unsigned kind_of(Node& entry, const Key& key) {
   const Key* kind = key.block->kind;
-  if (kind == nullptr) return true;
+  if (kind == nullptr) return ~0u;
   const Node* word = entry.find(kind->leaf());
-  if (word == nullptr) return false;
+  if (word == nullptr) return 0;
   const auto it = std::ranges::find(kind->choices, word->text);
-  return it != kind->choices.end() && (key.kinds & (1u << (it - kind->choices.begin())));
+  return it == kind->choices.end() ? 0 : 1u << (it - kind->choices.begin());
 }
+/// Whether the entry is of a kind that has this key.
+bool has_key(Node& entry, const Key& key) { return (key.kinds & kind_of(entry, key)) != 0; }
 
 /// Numbers of one of the two lists, two or three; empty, with what is wrong in `problems`.
 std::vector<double> numbers(const Key& like, const Node& node, const std::string& path, bool flat,
@@ -140,10 +142,7 @@ void write_out_plane(const KeyTable& table, Node& root) {
     visit(root, key.path, [&](Node& value, Node& entry) {
       if (value.kind != Node::Kind::list || !has_key(entry, key)) return;
       FlatY rule = key.flat;
-      // The axis of a cylinder stands on the plane, that of a capsule lies in it.
-      const Node* shape = entry.find("shape");
-      if ((rule == FlatY::low || rule == FlatY::high) && shape && shape->text == "capsule")
-        rule = FlatY::middle;
+      if (key.in_plane & kind_of(entry, key)) rule = FlatY::middle;
       // Of a list with fewer numbers than a place: what a level gauge has.
       const bool level = key.most > 0 && entry.find("kind") && entry.find("kind")->text == "level";
       if (value.items.size() == 2 && !level) {

@@ -6,96 +6,50 @@
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline scene_module {
-namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180;
-
-/// Of a box along the axes about 0 with these half edges, along the first `axes` of them.
-SurfacePlace on_box(const Double3& p, const Double3& half, bool flat) {
-  SurfacePlace out;
-  out.point = p;
-  std::size_t face = 0;
-  double most = -1e300;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (flat && k == 1) continue;
-    const double beyond = std::fabs(p[k]) - half[k];
-    if (beyond > most) most = beyond, face = k;
-    if (beyond > 0) out.point[k] = std::copysign(half[k], p[k]);
-  }
-  if (most <= 0) out.point[face] = std::copysign(half[face], p[face]);
-  out.normal[face] = std::copysign(1.0, p[face]);
-  out.distance = most > 0 ? length(p - out.point) : most;
-  return out;
+Solid<double> solid_in_metres(const Obstacle& o, const Scene& scene) {
+  Double3 middle = o.middle();
+  if (const auto plane = scene.plane()) middle[1] = *plane;
+  Solid<double> solid;
+  solid.center = {middle[0], middle[1], middle[2]};
+  std::visit(
+      [&](const auto& keys) {
+        const Matrix3 axes = keys.axes();
+        for (std::size_t i = 0; i < 3; ++i)
+          for (std::size_t k = 0; k < 3; ++k) solid.turn[i][k] = axes[i][k];
+        solid.shape = keys.make(1);
+      },
+      o.shape);
+  return solid;
 }
-
-/// Of a ball: `foot` is its centre, or the nearest place of an axis.
-SurfacePlace on_ball(const Double3& at, const Double3& foot, double radius) {
-  const Double3 away = at - foot;
-  const double r = length(away);
-  SurfacePlace out;
-  out.normal = r > 0 ? (1 / r) * away : Double3{1, 0, 0};
-  out.point = foot + radius * out.normal;
-  out.distance = r - radius;
-  return out;
-}
-
-SurfacePlace on_tube(const Obstacle& o, const Double3& at, bool flat) {
-  const Double3 axis = unit(o.to - o.from);
-  const double half = length(o.to - o.from) / 2;
-  const Double3 middle = 0.5 * (o.from + o.to);
-  const double z = dot(at - middle, axis);
-  if (o.shape == ObstacleShape::capsule)
-    return on_ball(at, middle + std::clamp(z, -half, half) * axis, o.radius);
-  const SurfacePlace side = on_ball(at, middle + z * axis, o.radius);
-  const double beyond = std::fabs(z) - half, sign = z < 0 ? -1 : 1;
-  if (flat || (beyond <= 0 && side.distance >= beyond)) return side;
-  SurfacePlace end;
-  end.point = at - (sign * beyond) * axis;
-  if (side.distance > 0) end.point = end.point - side.distance * side.normal;
-  end.normal = sign * axis;
-  end.distance =
-      beyond > 0 || side.distance > 0 ? length(at - end.point) : std::max(beyond, side.distance);
-  if (beyond <= side.distance) end.normal = side.normal;
-  return end;
-}
-
-}  // namespace
 
 SurfacePlace nearest_place(const Obstacle& o, const Scene& scene, Double3 at) {
   const auto plane = scene.plane();
-  const bool flat = bool(plane);
-  const auto in_plane = [&](Double3 v) {
-    if (plane) v[1] = *plane;
-    return v;
-  };
-  at = in_plane(at);
-  switch (o.shape) {
-    case ObstacleShape::plane: {
-      SurfacePlace out;
-      out.normal = unit(o.normal);
-      out.distance = dot(at - in_plane(o.point), out.normal);
-      out.point = at - out.distance * out.normal;
-      return out;
-    }
-    case ObstacleShape::box: {
-      const Double3 middle = in_plane(0.5 * (o.min + o.max)), half = 0.5 * (o.max - o.min);
-      const Double3 axis = unit(o.turn_axis);
-      const double angle = o.turn_angle * kDegree;
-      SurfacePlace out = on_box(turned(at - middle, axis, -angle), half, flat);
-      out.point = middle + turned(out.point, axis, angle);
-      out.normal = turned(out.normal, axis, angle);
-      return out;
-    }
-    case ObstacleShape::sphere:
-      return on_ball(at, in_plane(o.center), o.radius);
-    case ObstacleShape::cylinder:
-    case ObstacleShape::capsule:
-      break;
-  }
-  Obstacle tube = o;
-  if (plane && o.shape == ObstacleShape::capsule)
-    tube.from = in_plane(o.from), tube.to = in_plane(o.to);
-  return on_tube(tube, at, flat);
+  if (plane) at[1] = *plane;
+  const Solid<double> solid = solid_in_metres(o, scene);
+  const Vec3<double> x{at[0], at[1], at[2]};
+  const Vec3<double> n = plane ? normal<2>(solid, x) : normal<3>(solid, x);
+  SurfacePlace out;
+  out.distance = plane ? distance<2>(solid, x) : distance<3>(solid, x);
+  out.normal = {n.x, n.y, n.z};
+  out.point = at - out.distance * out.normal;
+  return out;
+}
+
+RoundSide<double> round_side(const Obstacle& o, const Scene& scene, const Double3& at) {
+  const Solid<double> solid = solid_in_metres(o, scene);
+  const Vec3<double> x{at[0], at[1], at[2]};
+  return solid.shape.with([&](const auto& shape) {
+    return scene.plane() ? round_of<2>(shape, body_point<2>(solid, x))
+                         : round_of<3>(shape, body_point<3>(solid, x));
+  });
+}
+
+bool is_bent(const Obstacle& o) {
+  return std::visit(
+      [](const auto& keys) {
+        return requires { keys.make(1).template curvature<3>(Vec3<double>{}); };
+      },
+      o.shape);
 }
 
 SurfacePlace nearest_place(int face, const Scene& scene, Double3 at) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "kernels/boundary/obstacle.h"
 #include "lib/scene/scene.h"
 
 namespace pbf::inline scene_module {
@@ -15,9 +16,17 @@ struct SurfacePlace {
   double distance = 0;  ///< m, of the other place; below 0 in the solid
 };
 
+/// The obstacle where its keys put it, m.
+Solid<double> solid_in_metres(const Obstacle& obstacle, const Scene& scene);
+
 SurfacePlace nearest_place(const Obstacle& obstacle, const Scene& scene, Double3 at);
 /// Of a face of the domain, by its number in kFaceNames.
 SurfacePlace nearest_place(int face, const Scene& scene, Double3 at);
+
+/// The round side of an obstacle that is nearest to a place, m.
+RoundSide<double> round_side(const Obstacle& obstacle, const Scene& scene, const Double3& at);
+/// Whether a surface without such a side is bent.
+bool is_bent(const Obstacle& obstacle);
 
 /// What a name stands for: face 0 to 5, or 6 and the number of the obstacle; nothing for others.
 std::optional<int> surface_named(const Scene& scene, const std::string& name);

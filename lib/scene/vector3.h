@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "lib/scene/scene.h"
+#include "lib/scene/motion.h"
 
 namespace pbf::inline scene_module {
 

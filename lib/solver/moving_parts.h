@@ -48,9 +48,10 @@ template <class Real>
 double radius_of(const Solid<double>& o, const Box<Real>& walls) {
   const double all =
       std::hypot(double(walls.extent.x), double(walls.extent.y), double(walls.extent.z));
-  if (o.shape == ObstacleShape::plane || o.through != 0) return 2 * all;
-  if (o.shape == ObstacleShape::box) return std::hypot(o.half.x, o.half.y, o.half.z);
-  return o.half.x + o.half.z;
+  const auto endless = [](const auto& shape) {
+    return goes_on(shape, Vec3<double>{1, 1, 1}) || goes_on(shape, Vec3<double>{-1, -1, -1});
+  };
+  return o.shape.with(endless) ? 2 * all : std::min(2 * all, size_of(o));
 }
 /// 2 sin of half the angle by which a body turns from a to b.
 inline double chord(const Solid<double>& a, const Solid<double>& b) {

@@ -15,47 +15,21 @@ namespace pbf::inline PBF_VARIANT {
 template <class Real>
 PlacedSolid<Real> placed(const Solid<double>& s, const Box<Real>& walls) {
   PlacedSolid<Real> out;
-  out.solid.shape = s.shape;
-  const auto cast = [](const Vec3<double>& v) {
-    return Vec3<Real>{Real(v.x), Real(v.y), Real(v.z)};
-  };
-  out.solid.center = cast(s.center);
-  out.solid.half = cast(s.half);
-  out.solid.through = s.through;
-  const double range = 1 / double(walls.inv_range) + kNearRoom, far = 1e9;
+  out.solid.shape = s.shape.with(
+      [](const auto& shape) { return SomeShape<Real>(shape.template scaled<Real>(1)); });
+  out.solid.center = scaled<Real>(s.center, 1);
+  const double range = 1 / double(walls.inv_range) + kNearRoom;
   out.reach = Real(range);
-  const double center[3] = {s.center.x, s.center.y, s.center.z};
-  const double half[3] = {s.half.x, s.half.y, s.half.z};
   double low[3], high[3];
+  const double center[3] = {s.center.x, s.center.y, s.center.z};
   for (int k = 0; k < 3; ++k) {
-    double down = range, up = range;
-    for (int axis = 0; axis < 3; ++axis) {
-      out.solid.turn[axis][k] = Real(s.turn[axis][k]);
-      const double t = s.turn[axis][k];
-      switch (s.shape) {
-        case ObstacleShape::plane:  // ends where its face is, if that is along two axes
-          if (axis == 2) {
-            down = t == -1 ? range : far;
-            up = t == 1 ? range : far;
-          }
-          break;
-        case ObstacleShape::sphere:
-          break;
-        case ObstacleShape::box:
-        case ObstacleShape::cylinder:
-        case ObstacleShape::capsule:
-          if (t == 0 || (s.shape != ObstacleShape::box && axis != 2)) break;
-          const bool lower = s.through >> 2 * axis & 1, upper = s.through >> 2 * axis & 2;
-          down += std::fabs(t) * ((t > 0 ? lower : upper) ? far : half[axis]);
-          up += std::fabs(t) * ((t > 0 ? upper : lower) ? far : half[axis]);
-          break;
-      }
-    }
-    const bool round = s.shape != ObstacleShape::plane && s.shape != ObstacleShape::box;
-    low[k] = center[k] - down - (round ? half[0] : 0);
-    high[k] = center[k] + up + (round ? half[0] : 0);
+    for (int axis = 0; axis < 3; ++axis) out.solid.turn[axis][k] = Real(s.turn[axis][k]);
+    const Vec3<double> up{double(k == 0), double(k == 1), double(k == 2)};
+    low[k] = center[k] - reach_along(s, -1.0 * up, true) - range;
+    high[k] = center[k] + reach_along(s, up, true) + range;
   }
-  out.bounds = {cast({low[0], low[1], low[2]}), cast({high[0], high[1], high[2]})};
+  out.bounds = {scaled<Real>(Vec3<double>{low[0], low[1], low[2]}, 1),
+                scaled<Real>(Vec3<double>{high[0], high[1], high[2]}, 1)};
   return out;
 }
 

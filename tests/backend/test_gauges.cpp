@@ -88,8 +88,8 @@ Case splash_among_gauges(bool flat) {
   add_flow(t, at(x, 0.075, 0.35), {1, 0, 0}, flat ? List{0.7} : List{0.15, 0.7});
   add_flow(t, at(0.1, 0.075, 0.1), {0, 0, -1}, flat ? List{0.2} : List{0.2, 0.1});
   add_pressure(t, "z_min", wall, 0.05);
-  const pbf::Obstacle& box = t.obstacles[0];
-  add_pressure(t, box.name,
+  const pbf::obstacle_keys::Box& box = pbf_test::box_of(t.obstacles[0]);
+  add_pressure(t, t.obstacles[0].name,
                {box.min[0], 0.5 * (box.min[1] + box.max[1]), t.domain.min[2] + top / 2}, 0.05);
   return c;
 }

@@ -90,7 +90,7 @@ TEST_CASE("a wall that comes takes a particle along at its speed") {
   const double exact = is_double() ? 1e-11 : 1e-4;
   CHECK(snap.find("velocity")->as<double>()[0] == Approx(0.4).margin(exact));
   CHECK(snap.fields[0].as<double>()[0] ==
-        Approx(c.scene.obstacles[0].max[0] + 0.4 * 0.002 * 150).margin(exact));
+        Approx(pbf_test::box_of(c.scene.obstacles[0]).max[0] + 0.4 * 0.002 * 150).margin(exact));
 }
 
 TEST_CASE("the torque on an obstacle that moves is about where its middle is then") {
@@ -121,7 +121,8 @@ TEST_CASE("a plate of 0.25 h that goes by 3 h a step takes all that is in its wa
   Placing put(s);
   for (auto& x : c.particles.position) x[0] += 5 * s.h();
   put.box({3, -1, -1}, {3.25, 50, 50}).motion = going({3 * s.h() / 0.001, 0, 0});
-  s.obstacles[0].min[1] = s.domain.min[1] - 1, s.obstacles[0].max[1] = s.domain.max[1] + 1;
+  pbf_test::box_of(s.obstacles[0]).min[1] = s.domain.min[1] - 1,
+  pbf_test::box_of(s.obstacles[0]).max[1] = s.domain.max[1] + 1;
   c = here(c);
   auto solver = make(c);
   for (int k = 1; k <= 12; ++k) {
@@ -147,7 +148,8 @@ TEST_CASE("nothing gets into a stirrer in 10000 updates, or what it may gain is 
   put.box({middle - 1.6, middle - 0.2, 0.6}, {middle + 1.6, middle + 0.2, 1.6}).motion =
       going({}, flat ? Double3{0, 360, 0} : Double3{0, 0, 360});
   if (flat)
-    s.obstacles[0].min[2] = s.domain.min[2] + 0.08, s.obstacles[0].max[2] = s.domain.min[2] + 0.1;
+    pbf_test::box_of(s.obstacles[0]).min[2] = s.domain.min[2] + 0.08,
+    pbf_test::box_of(s.obstacles[0]).max[2] = s.domain.min[2] + 0.1;
   c = without_inner(here(c), 0.2);
   auto solver = make(c);
   double most = -1e9;

@@ -7,7 +7,7 @@ using namespace oracle_test;
 using namespace obstacle_test;
 using backend_test::here;
 using backend_test::is_double;
-using pbf::ObstacleShape;
+using pbf_test::ObstacleShape;
 
 namespace {
 
@@ -24,8 +24,9 @@ Case splash(bool flat) {
   for (auto& x : c.particles.position) x[2] += 0.12;  // falls onto them
   put.box({0.5, 0.4, 0.4}, {2, 1.9, 1.6}, {flat ? 0.0 : 1.0, 2, 0}, 25);
   put.sphere({4, 2, 1.7}, 1.1);
-  put.tube(ObstacleShape::capsule, {5.5, 1, 5}, {5.9, 3, 5.2}, 1).to[1] =
-      flat ? s.obstacles.back().from[1] : s.domain.min[1] + 0.12;
+  pbf::obstacle_keys::Tube& capsule =
+      pbf_test::tube_of(put.tube(ObstacleShape::capsule, {5.5, 1, 5}, {5.9, 3, 5.2}, 1));
+  capsule.to[1] = flat ? capsule.from[1] : s.domain.min[1] + 0.12;
   return without_inner(here(c), 0.2);
 }
 
@@ -244,7 +245,8 @@ TEST_CASE("fluid that falls onto crossed ramps, into a wedge, through a gap stay
   SECTION("a wedge of 20 degrees") {
     put.box({middle - 3, -2, -6}, {middle - 1, 6, 6}, {0, 1, 0}, 10).loads = false;
     put.box({middle + 1, -2, -6}, {middle + 3, 6, 6}, {0, 1, 0}, -10);
-    for (pbf::Obstacle& o : c.scene.obstacles) o.min[2] -= 0.04, o.max[2] -= 0.04;
+    for (pbf::Obstacle& o : c.scene.obstacles)
+      pbf_test::box_of(o).min[2] -= 0.04, pbf_test::box_of(o).max[2] -= 0.04;
   }
   SECTION("a gap of one spacing") {
     put.box({-9, -2, 3}, {middle - 0.25, 6, 4});
@@ -257,7 +259,7 @@ TEST_CASE("fluid that falls onto crossed ramps, into a wedge, through a gap stay
   c = without_inner(c, 0.2);
   REQUIRE(c.particles.size() > 300);
   auto s = make(c);
-  const bool fine_steps = c.scene.obstacles[0].shape == ObstacleShape::sphere;
+  const bool fine_steps = pbf_test::shape_of(c.scene.obstacles[0]) == ObstacleShape::sphere;
   run_outside(c, *s, fine_steps ? 60 : 200, 10, fine_steps ? 2 : 0);
 }
 
@@ -308,6 +310,6 @@ TEST_CASE("a block at 100 h a step is stopped by a plate, a ball and the edge of
     CHECK(through < fine());
     before.assign(x.begin(), x.end());
     for (std::size_t i = 0; closed && i < before.size(); i += 3)
-      REQUIRE(x[i] <= c.scene.obstacles[0].min[0] + fine() * c.scene.h());
+      REQUIRE(x[i] <= pbf_test::box_of(c.scene.obstacles[0]).min[0] + fine() * c.scene.h());
   }
 }

@@ -9,7 +9,7 @@ using namespace obstacle_test;
 using backend_test::here;
 using backend_test::is_double;
 using backend_test::same_bytes;
-using pbf::ObstacleShape;
+using pbf_test::ObstacleShape;
 
 namespace {
 
@@ -36,7 +36,8 @@ Case all_flat_shapes() {
   put.box({1.5, 0, 1.4}, {2.9, 0, 3.2}, {0, 2, 0}, 35);
   put.sphere({6.5, 0, 2.5}, 1.3);
   put.tube(ObstacleShape::capsule, {3, 0, 8}, {4.5, 0, 9.5}, kRound);
-  pbf::Obstacle& o = put.tube(ObstacleShape::cylinder, {9, 0, 8.5}, {9, 0, 8.5}, 1.2);
+  pbf::obstacle_keys::Tube& o =
+      pbf_test::tube_of(put.tube(ObstacleShape::cylinder, {9, 0, 8.5}, {9, 0, 8.5}, 1.2));
   o.from[1] -= 0.01, o.to[1] += 0.01;
   put.box({8, 0, 0}, {9.2, 0, 1.1});
   for (std::size_t i = 0; i < c.particles.size(); i += 3)
@@ -130,7 +131,7 @@ TEST_CASE("obstacles far from the origin of coordinates give the same bits as ne
   move(far.scene.domain.min), move(far.scene.domain.max);
   for (auto& x : far.particles.position) move(x);
   for (pbf::Obstacle& o : far.scene.obstacles)
-    for (auto* x : {&o.min, &o.max, &o.center, &o.from, &o.to, &o.point}) move(*x);
+    for (pbf::Double3* x : pbf_test::places_in(o)) move(*x);
   auto a = make(c), b = make(far);
   a->step(20);
   b->step(20);
@@ -183,8 +184,8 @@ TEST_CASE("what slides down a tilted face without fluid around it is not braked"
   else
     put.plane({9, 9, 9}, {n[0], 0, n[1]});
   for (std::size_t k = 0; box && k < 3; ++k) {
-    c.scene.obstacles[0].min[k] -= 5 * c.scene.h();
-    c.scene.obstacles[0].max[k] += 5 * c.scene.h();
+    pbf_test::box_of(c.scene.obstacles[0]).min[k] -= 5 * c.scene.h();
+    pbf_test::box_of(c.scene.obstacles[0]).max[k] += 5 * c.scene.h();
   }
   c.particles.position = {put.at({9 + 1e-3 * n[0], 9, 9 + 1e-3 * n[1]})};
   c.particles.velocity = {{0, 0, 0}};

@@ -6,21 +6,55 @@
 #include <string>
 #include <vector>
 
+#include "kernels/boundary/box.h"
 #include "kernels/boundary/solid_term.h"
 #include "tests/oracle/solid_quadrature.h"
+#include "tests/support/obstacle_shapes.h"
 
 namespace oracle_test {
 
+using pbf_test::ObstacleShape;
+
+/// Lengths of a body, h. box: half edges. cylinder, capsule: z = half the length of the axis, x =
+/// radius. sphere: x = radius.
+struct SampleBody {
+  ObstacleShape shape = ObstacleShape::box;
+  pbf::Vec3<double> half;
+  unsigned through = 0;
+
+  pbf::SomeShape<double> kernels() const {
+    switch (shape) {
+      case ObstacleShape::plane:
+        return pbf::shape::Plane<double>{};
+      case ObstacleShape::sphere:
+        return pbf::shape::Sphere<double>{half.x};
+      case ObstacleShape::cylinder:
+        return pbf::shape::Cylinder<double>{half.x, half.z, through};
+      case ObstacleShape::capsule:
+        return pbf::shape::Capsule<double>{half.x, half.z, through};
+      case ObstacleShape::box:
+        break;
+    }
+    return pbf::shape::Box<double>{half, through};
+  }
+};
+inline pbf::Solid<double> solid_of(const SampleBody& body, pbf::Vec3<double> center = {}) {
+  pbf::Solid<double> o;
+  o.center = center;
+  o.shape = body.kernels();
+  return o;
+}
+
 struct ObstacleSample {
   std::string name;
+  SampleBody body;
   pbf::Solid<double> obstacle;
   Level level;   ///< h, in the frame of the domain
   double reach;  ///< h, the solid (what is of interest of it) is within this distance of its centre
 };
 
 /// In body coordinates; `faces` counts the axes along which a box has faces.
-inline double body_level(const pbf::Solid<double>& o, const Point& p, int dimensions) {
-  using pbf::ObstacleShape;
+inline double body_level(const SampleBody& o, const Point& p, int dimensions) {
   const Point half{o.half.x, o.half.y, o.half.z};
   const double ball = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) - half[0];
   const double tube = std::sqrt(p[0] * p[0] + p[1] * p[1]) - half[0];
@@ -47,14 +81,13 @@ inline double body_level(const pbf::Solid<double>& o, const Point& p, int dimens
 }
 
 /// Turned by `angle` about `axis` (Rodrigues), with its centre somewhere.
-inline ObstacleSample sample(const std::string& name, pbf::ObstacleShape shape,
-                             pbf::Vec3<double> half, int dimensions = 3, Point axis = {0, 1, 0},
-                             double angle = 0, unsigned through = 0) {
-  ObstacleSample s{name, {}, {}, std::clamp(half.x + half.y + half.z, 1.0, 4.0)};
-  s.obstacle.shape = shape;
+inline ObstacleSample sample(const std::string& name, ObstacleShape shape, pbf::Vec3<double> half,
+                             int dimensions = 3, Point axis = {0, 1, 0}, double angle = 0,
+                             unsigned through = 0) {
+  ObstacleSample s{
+      name, {shape, half, through}, {}, {}, std::clamp(half.x + half.y + half.z, 1.0, 4.0)};
+  s.obstacle.shape = s.body.kernels();
   s.obstacle.center = {1.3, dimensions == 2 ? 0 : -0.4, 2.1};
-  s.obstacle.half = half;
-  s.obstacle.through = through;
   const double length = std::hypot(axis[0], std::hypot(axis[1], axis[2]));
   const double c = std::cos(angle), w = std::sin(angle);
   for (double& a : axis) a /= length;
@@ -63,18 +96,17 @@ inline ObstacleSample sample(const std::string& name, pbf::ObstacleShape shape,
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       s.obstacle.turn[i][j] = (i == j ? c : 0) + w * across[i][j] + (1 - c) * axis[i] * axis[j];
-  s.level = [o = s.obstacle, dimensions](const Point& x) {
+  s.level = [o = s.obstacle, body = s.body, dimensions](const Point& x) {
     const Point d{x[0] - o.center.x, dimensions == 2 ? 0 : x[1] - o.center.y, x[2] - o.center.z};
     Point p{};
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) p[i] += o.turn[i][j] * d[j];
-    return body_level(o, p, dimensions);
+    return body_level(body, p, dimensions);
   };
   return s;
 }
 
 inline std::vector<ObstacleSample> obstacle_samples(int dimensions) {
-  using pbf::ObstacleShape;
   const double quarter = std::acos(0.0);
   if (dimensions == 2)
     return {sample("plane", ObstacleShape::plane, {}, 2, {0, 1, 0}, 0.4),
@@ -109,10 +141,9 @@ pbf::Vec3<Real> as(const Point& x) {
 template <class Real>
 pbf::Solid<Real> as(const pbf::Solid<double>& o) {
   pbf::Solid<Real> to;
-  to.shape = o.shape;
+  to.shape = o.shape.with(
+      [](const auto& shape) { return pbf::SomeShape<Real>(shape.template scaled<Real>(1)); });
   to.center = {Real(o.center.x), Real(o.center.y), Real(o.center.z)};
-  to.half = {Real(o.half.x), Real(o.half.y), Real(o.half.z)};
-  to.through = o.through;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) to.turn[i][j] = Real(o.turn[i][j]);
   return to;

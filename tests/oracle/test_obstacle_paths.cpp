@@ -181,7 +181,7 @@ TEST_CASE("a path from inside an obstacle ends at the nearest place of its surfa
       const Vec3<double> x{c.x + r * u(random), D == 2 ? 0 : c.y + r * u(random),
                            c.z + r * u(random)};
       const double depth = -distance<D>(s.obstacle, x);
-      if (depth <= 0 || s.obstacle.through) continue;
+      if (depth <= 0 || s.body.through) continue;
       ++inside;
       const auto end = keep_out<D>(s.obstacle, x, x);
       const auto way = end.x - x;
@@ -194,7 +194,7 @@ TEST_CASE("a path from inside an obstacle ends at the nearest place of its surfa
       const auto out = x + (1 + 0.1 / depth) * way;
       REQUIRE(!keep_out<D>(s.obstacle, x, out).hit);
     }
-    if (!s.obstacle.through) CHECK(inside > 0);
+    if (!s.body.through) CHECK(inside > 0);
   };
   for (const auto& s : samples(3)) check(s, std::integral_constant<int, 3>{});
   for (const auto& s : samples(2)) check(s, std::integral_constant<int, 2>{});
@@ -204,9 +204,8 @@ TEMPLATE_TEST_CASE("paths without length, from an obstacle's face, and past its 
                    double) {
   using Real = TestType;
   using V = Vec3<Real>;
-  Solid<Real> box;  // its faces are numbers without rounding
-  box.shape = ObstacleShape::box;
-  box.half = {1, 1, 1};
+  // Its faces are numbers without rounding.
+  const Solid<Real> box = as<Real>(solid_of({ObstacleShape::box, {1, 1, 1}}));
   const auto unchanged = [](const auto& o, V from, V to) {
     const auto end = keep_out<3>(o, from, to);
     return !end.hit && end.x.x == to.x && end.x.y == to.y && end.x.z == to.z;
@@ -233,9 +232,7 @@ TEMPLATE_TEST_CASE("paths without length, from an obstacle's face, and past its 
     CHECK(unchanged(box, {0, 0, 1 - deep}, {0, h, 2}));  // and out again
   }
   for (auto shape : {ObstacleShape::sphere, ObstacleShape::cylinder, ObstacleShape::capsule}) {
-    Solid<Real> o;
-    o.shape = shape;
-    o.half = {1, 0, 2};
+    const Solid<Real> o = as<Real>(solid_of({shape, {1, 0, 2}}));
     CHECK(unchanged(o, {1, 0, 0}, {1, 0, 0}));
     CHECK(unchanged(o, {1, 0, 0}, {1, 5, 0}));                   // along the tangent
     CHECK(unchanged(o, {1, -5, 0}, {1, 5, 0}));                  // touches it
@@ -255,8 +252,8 @@ TEMPLATE_TEST_CASE("paths without length, from an obstacle's face, and past its 
     CHECK(double(short_way.x.x) == Approx(1).epsilon(1e-6));
     CHECK(double(short_way.x.y) == Approx(1e-3).epsilon(1e-6));
   }
-  Solid<Real> wall = box;  // goes on below: a path never comes in there, nor out
-  wall.through = z_min;
+  // Goes on below: a path never comes in there, nor out.
+  const Solid<Real> wall = as<Real>(solid_of({ObstacleShape::box, {1, 1, 1}, z_min}));
   CHECK(keep_out<3>(wall, V{0, 0, 1}, V{0, 0, -80}).x.z == 1);
   CHECK(keep_out<3>(wall, V{2, 0, -30}, V{-2, 0, -30}).x.x == 1);
 }

@@ -121,8 +121,7 @@ TEMPLATE_TEST_CASE(
     for (double sx : {-1., 0., 1.})  // corners, edges, middles of faces, the centre
       for (double sy : {-1., 0., 1.})
         for (double sz : {-1., 0., 1.}) {
-          const double p[3] = {sx * s.obstacle.half.x, sy * s.obstacle.half.y,
-                               sz * s.obstacle.half.z};
+          const double p[3] = {sx * s.body.half.x, sy * s.body.half.y, sz * s.body.half.z};
           Point x{c.x, c.y, c.z};
           for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) x[j] += s.obstacle.turn[i][j] * p[i];
@@ -138,11 +137,9 @@ TEMPLATE_TEST_CASE(
 }
 
 TEST_CASE("an obstacle goes on behind the faces that are none") {
-  auto o = sample("box", ObstacleShape::box, {1, 1, 1}, 3, {0, 1, 0}, 0, z_min | x_max).obstacle;
-  auto longer = o;  // 10 h more to either side
-  longer.through = 0;
-  longer.half = {6, 1, 6};
-  longer.center = o.center + Vec3<double>{5, 0, -5};
+  const auto o = solid_of({ObstacleShape::box, {1, 1, 1}, z_min | x_max}, {1, 2, 3});
+  // 10 h more to either side
+  const auto longer = solid_of({ObstacleShape::box, {6, 1, 6}}, o.center + Vec3<double>{5, 0, -5});
   for (Vec3<double> p : {Vec3<double>{0.9, 0.2, 0.8}, {1.4, 0.9, 1.1}, {0.3, 1.3, -1.4}}) {
     const auto a = solid_term<Smoothing::consistent>(o, o.center + p, 1 / kRange);
     const auto b = solid_term<Smoothing::consistent>(longer, o.center + p, 1 / kRange);
@@ -202,11 +199,7 @@ TEST_CASE("a lattice at rest around an obstacle's edges and corners has density 
     return solid_term<Smoothing::consistent>(o, as<double>(x), 1 / c.wall_range).share;
   };
   const auto box = [](Vec3<double> center, Vec3<double> half) {
-    Solid<double> o;
-    o.shape = ObstacleShape::box;
-    o.center = center;
-    o.half = half;
-    return o;
+    return solid_of({ObstacleShape::box, half}, center);
   };
   const auto density = [&](const Solid<double>& o, const Point& x) {
     return fluid(x, [&](const Point& p) { return distance(o, as<double>(p)) > 0; }) +

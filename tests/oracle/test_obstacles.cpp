@@ -69,7 +69,7 @@ TEST_CASE("an obstacle's share is the kernel's integral over the solid", "[slow]
   for (const auto& s : obstacle_samples(3)) {
     CAPTURE(s.name);
     const double worst = worst_share<Smoothing::consistent>(s, 60);
-    const auto shape = s.obstacle.shape;
+    const auto shape = s.body.shape;
     const bool exact = shape == ObstacleShape::plane || shape == ObstacleShape::sphere;
     // Plates at their corners 0.0022, short capsules in the middle 0.0025; else below 0.002.
     CHECK(worst < (exact ? 6e-4 : shape == ObstacleShape::capsule ? 0.003 : 0.0024));
@@ -98,16 +98,14 @@ TEST_CASE("an obstacle's share in the plane is the kernel's integral over its se
     CAPTURE(s.name);
     const double worst = worst_share<Smoothing::consistent_2d>(s, 100);
     const double paper = worst_share<Smoothing::paper_2d>(s, 100);
-    CHECK(worst < (s.obstacle.shape == ObstacleShape::box ? 0.004 : 0.002));
+    CHECK(worst < (s.body.shape == ObstacleShape::box ? 0.004 : 0.002));
     CHECK(paper < 0.007);
   }
 }
 
 TEST_CASE("an obstacle's sphere is exact for every radius, its centre included") {
   for (double radius : {0.3, 0.4, 0.7, 1.0, 3.0, 10.0}) {
-    Solid<double> o;
-    o.shape = ObstacleShape::sphere;
-    o.half.x = radius;
+    const Solid<double> o = solid_of({ObstacleShape::sphere, {radius, 0, 0}});
     double worst = 0;
     for (double c = 0.003; c < radius + kRange; c += c < 0.1 ? 0.007 : 0.041)
       for (bool poly6 : {false, true}) {

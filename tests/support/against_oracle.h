@@ -16,27 +16,37 @@ inline std::vector<oracle::Solid> oracle_solids(const pbf::Scene& s) {
   std::vector<oracle::Solid> all;
   for (const pbf::Obstacle& o : s.obstacles) {
     oracle::Solid& to = all.emplace_back();
-    to.shape = Shape(int(o.shape));
-    oracle::V axis{o.turn_axis[0], o.turn_axis[1], o.turn_axis[2]};
-    long double angle = acosl(-1) / 180 * o.turn_angle;
+    to.shape = Shape(int(o.shape.index()));
+    namespace keys = pbf::obstacle_keys;
+    const auto keys_of = [&]<class Keys>(const Keys&) {
+      return std::holds_alternative<Keys>(o.shape) ? o.as<Keys>() : Keys{};
+    };
+    const keys::Box box = keys_of(keys::Box{});
+    const keys::Plane plane = keys_of(keys::Plane{});
+    const keys::Sphere sphere = keys_of(keys::Sphere{});
+    const keys::Tube tube = to.shape == Shape::capsule ? keys::Tube(keys_of(keys::Capsule{}))
+                                                       : keys_of(keys::Cylinder{});
+    oracle::V axis{box.turn_axis[0], box.turn_axis[1], box.turn_axis[2]};
+    long double angle = acosl(-1) / 180 * box.turn_angle;
     for (std::size_t k = 0; k < 3; ++k) {
-      long double low = o.min[k], high = o.max[k];
-      if (o.shape == pbf::ObstacleShape::box && o.turn_angle == 0) {
+      long double low = box.min[k], high = box.max[k];
+      if (to.shape == Shape::box && box.turn_angle == 0) {
         if (low <= s.domain.min[k] && !s.domain.is_open(int(k), false)) low -= 1e3;
         if (high >= s.domain.max[k] && !s.domain.is_open(int(k), true)) high += 1e3;
       }
-      if (o.shape == pbf::ObstacleShape::sphere) low = high = o.center[k];
-      if (o.shape == pbf::ObstacleShape::plane) low = high = o.point[k];
-      if (to.shape >= Shape::cylinder) low = high = (o.from[k] + o.to[k]) / 2;
+      if (to.shape == Shape::sphere) low = high = sphere.center[k];
+      if (to.shape == Shape::plane) low = high = plane.point[k];
+      if (to.shape >= Shape::cylinder) low = high = (tube.from[k] + tube.to[k]) / 2;
       to.center[k] = (low + high) / 2;
       to.half[k] = (high - low) / 2;
     }
-    if (to.shape >= Shape::sphere) to.half[0] = o.radius;
+    if (to.shape >= Shape::sphere)
+      to.half[0] = to.shape == Shape::sphere ? sphere.radius : tube.radius;
     if (to.shape == Shape::plane || to.shape >= Shape::cylinder) {
       // From z to the direction wanted, about what is at right angles to both.
       oracle::V z;
       for (std::size_t k = 0; k < 3; ++k)
-        z[k] = to.shape == Shape::plane ? o.normal[k] : o.to[k] - o.from[k];
+        z[k] = to.shape == Shape::plane ? plane.normal[k] : tube.to[k] - tube.from[k];
       to.half[2] = hypotl(hypotl(z[0], z[1]), z[2]) / 2;
       axis = {-z[1], z[0], 0};
       angle = atan2l(hypotl(z[0], z[1]), z[2]);

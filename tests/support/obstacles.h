@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/support/backend.h"
+#include "tests/support/obstacle_shapes.h"
 
 namespace obstacle_test {
 
@@ -19,35 +20,26 @@ class Placing {
   }
   pbf::Obstacle& box(const pbf::Double3& low, const pbf::Double3& high,
                      const pbf::Double3& axis = {0, 1, 0}, double degrees = 0) {
-    pbf::Obstacle& o = add(pbf::ObstacleShape::box);
-    o.min = at(low), o.max = at(high);
-    o.turn_axis = axis, o.turn_angle = degrees;
-    if (s_.plane()) o.min[1] = s_.domain.min[1], o.max[1] = s_.domain.max[1];
-    return o;
+    pbf::Double3 min = at(low), max = at(high);
+    if (s_.plane()) min[1] = s_.domain.min[1], max[1] = s_.domain.max[1];
+    return add(pbf_test::box_obstacle(min, max, axis, degrees));
   }
   pbf::Obstacle& sphere(const pbf::Double3& center, double radius) {
-    pbf::Obstacle& o = add(pbf::ObstacleShape::sphere);
-    o.center = at(center), o.radius = radius * s_.h();
-    return o;
+    return add(pbf_test::sphere_obstacle(at(center), radius * s_.h()));
   }
   /// A cylinder or a capsule.
-  pbf::Obstacle& tube(pbf::ObstacleShape shape, const pbf::Double3& from, const pbf::Double3& to,
-                      double radius) {
-    pbf::Obstacle& o = add(shape);
-    o.from = at(from), o.to = at(to), o.radius = radius * s_.h();
-    return o;
+  pbf::Obstacle& tube(pbf_test::ObstacleShape shape, const pbf::Double3& from,
+                      const pbf::Double3& to, double radius) {
+    return add(pbf_test::tube_obstacle(shape, at(from), at(to), radius * s_.h()));
   }
   pbf::Obstacle& plane(const pbf::Double3& point, const pbf::Double3& normal) {
-    pbf::Obstacle& o = add(pbf::ObstacleShape::plane);
-    o.point = at(point), o.normal = normal;
-    return o;
+    return add(pbf_test::plane_obstacle(at(point), normal));
   }
 
  private:
-  pbf::Obstacle& add(pbf::ObstacleShape shape) {
-    pbf::Obstacle& o = s_.obstacles.emplace_back();
+  pbf::Obstacle& add(pbf::Obstacle made) {
+    pbf::Obstacle& o = s_.obstacles.emplace_back(std::move(made));
     o.name = "o" + std::to_string(s_.obstacles.size());
-    o.shape = shape;
     o.loads = true;
     return o;
   }

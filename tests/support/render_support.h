@@ -16,6 +16,7 @@
 #include "lib/render/gl_context.h"
 #include "lib/render/renderer.h"
 #include "tests/support/catch.h"
+#include "tests/support/obstacle_shapes.h"
 
 // Ends a test case on a machine where no OpenGL can be opened.
 #define PBF_NEEDS_GL() \
@@ -104,9 +105,8 @@ inline std::vector<std::uint8_t> below_texts(const pbf::Image& image) {
 /// An obstacle: a box along the axes, `half` (m) to each side of its centre.
 inline pbf::Solid<double> plate(const pbf::Double3& center, const pbf::Double3& half) {
   pbf::Solid<double> solid;
-  solid.shape = pbf::ObstacleShape::box;
   solid.center = {center[0], center[1], center[2]};
-  solid.half = {half[0], half[1], half[2]};
+  solid.shape = pbf::shape::Box<double>{{half[0], half[1], half[2]}};
   return solid;
 }
 

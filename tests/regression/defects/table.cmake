@@ -143,8 +143,8 @@ seeded_defect(solid_slab_slope_sign lambda kernels/boundary/solid_share.h
   [[up ? slope : -slope};]] [[up ? -slope : slope};]] solids)
 seeded_defect(solid_bend_missing density kernels/boundary/solid_share.h
   [[k = flat ? bend : Real(0.5) + Real(0.5) * bend,]] [[k = flat ? bend : Real(0.5) * bend,]] solids)
-seeded_defect(solid_ball_slope_sign lambda kernels/boundary/solid_term.h
-  [[{g.density, (g.slope * inv_c) * d}]] [[{g.density, (-g.slope * inv_c) * d}]] solids)
+seeded_defect(solid_ball_slope_sign lambda kernels/shapes/sphere.h
+  [[{g.density, (g.slope * at.inverse) * at.away}]] [[{g.density, (-g.slope * at.inverse) * at.away}]] solids)
 seeded_defect(solid_gradient_not_turned lambda kernels/boundary/solid_term.h
   [[inv_range * turned_back<D>(o, w.gradient);]] [[inv_range * w.gradient;]] solids)
 seeded_defect(solid_beside_wall_added density kernels/boundary/surroundings.h

@@ -5,6 +5,7 @@
 
 #include "lib/program/obstacles.h"
 #include "tests/support/catch.h"
+#include "tests/support/obstacle_shapes.h"
 #include "tests/support/scene_samples.h"
 
 namespace pbf::scene_test {
@@ -92,8 +93,8 @@ TEST_CASE("poses: a box that leaves the wall it stood on has a face there") {
   Scene s = parse(kMinimal +
                   "obstacles: [{name: a, shape: box, min: [0.2, 0.2, 0], max: [0.4, 0.4, 0.3], "
                   "motion: {kind: velocity, velocity: [1, 0, 1]}}]\n");
-  CHECK(solids_of(s, 0)[0].through == 16u);
-  CHECK(solids_of(s, 0.1)[0].through == 0u);
+  CHECK(pbf_test::through_of(solids_of(s, 0)[0]) == 16u);
+  CHECK(pbf_test::through_of(solids_of(s, 0.1)[0]) == 0u);
 }
 
 TEST_CASE("a tank's step: gravity where it stands, turned with it, and what a turning tank adds") {

@@ -3,7 +3,9 @@
 
 #include <cmath>
 
+#include "lib/scene/vector3.h"
 #include "tests/support/catch.h"
+#include "tests/support/obstacle_shapes.h"
 #include "tests/support/quaternion.h"
 #include "tests/support/scene_samples.h"
 
@@ -20,9 +22,7 @@ Scene scene_with(const Obstacle& o) {
 }
 Obstacle box(const Double3& min, const Double3& max, const Double3& axis = {0, 0, 1},
              double angle = 0) {
-  Obstacle o;
-  o.min = min, o.max = max, o.turn_axis = axis, o.turn_angle = angle;
-  return o;
+  return pbf_test::box_obstacle(min, max, axis, angle);
 }
 
 }  // namespace
@@ -44,8 +44,9 @@ TEST_CASE("solids: a box's axes are turned by the right-hand rule about any axis
       CHECK(all[0].center.x == Approx(0.5 / 0.2));  // from the domain's corner, h
       CHECK(all[0].center.y == Approx(0.4 / 0.2));
       CHECK(all[0].center.z == Approx(0.55 / 0.2));
-      CHECK(all[0].half.y == Approx(0.3 / 0.2));
-      CHECK(all[0].half.z == Approx(0.05 / 0.2));
+      const auto body = all[0].shape.as<shape::Box<double>>();
+      CHECK(body.half.y == Approx(0.3 / 0.2));
+      CHECK(body.half.z == Approx(0.05 / 0.2));
     }
 }
 
@@ -73,7 +74,7 @@ TEST_CASE("solids: faces on walls or behind them are none, those on open faces a
   const auto through = [](const Obstacle& o, std::vector<std::string> open = {}) {
     Scene s = scene_with(o);
     s.domain.open = std::move(open);
-    return solids_of(s)[0].through;
+    return pbf_test::through_of(solids_of(s)[0]);
   };
   CHECK(through(box({0, 0.2, 2.5}, {0.5, 0.5, 3})) == 0);
   CHECK(through(box({-0.3, 0.2, 2.5}, {0.5, 0.5, 3})) == x_min);
@@ -88,34 +89,23 @@ TEST_CASE("solids: faces on walls or behind them are none, those on open faces a
   CHECK(through(box({0, 0.2, 2}, {0.5, 0.5, 3}, {0, 0, 1}, 30)) == z_min);
   CHECK(through(box({0, 0.2, 2}, {0.5, 0.5, 3}, {1, 0, 0}, 30)) == 0);
   CHECK(through(box({0, 0.2, 2}, {0.5, 0.5, 3}, {1, 0, 0}, 180)) == z_max);
-  Obstacle tube;
-  tube.shape = ObstacleShape::cylinder;
-  tube.radius = 0.3;
-  tube.from = {0.2, 0.5, 2};
-  tube.to = {0.2, 0.5, 3};
-  CHECK(through(tube) == z_min);
-  std::swap(tube.from, tube.to);
-  CHECK(through(tube) == z_max);
-  tube.from = {0.2, 1.5, 3};
-  tube.to = {0.2, 0.7, 3};
-  CHECK((through(tube) == z_min));  // begins behind y_max
-  tube.to[0] += 1e-3;
-  CHECK(through(tube) == 0);
-  tube.shape = ObstacleShape::plane;
-  CHECK(through(tube) == 0);
+  const auto tube = [](const Double3& from, const Double3& to) {
+    return pbf_test::tube_obstacle(pbf_test::ObstacleShape::cylinder, from, to, 0.3);
+  };
+  CHECK(through(tube({0.2, 0.5, 2}, {0.2, 0.5, 3})) == z_min);
+  CHECK(through(tube({0.2, 0.5, 3}, {0.2, 0.5, 2})) == z_max);
+  CHECK(through(tube({0.2, 1.5, 3}, {0.2, 0.7, 3})) == z_min);  // begins behind y_max
+  CHECK(through(tube({0.2, 1.5, 3}, {0.2 + 1e-3, 0.7, 3})) == 0);
+  CHECK(through(pbf_test::plane_obstacle({0.2, 0.5, 2}, {0, 0, 1})) == 0);
 }
 
 TEST_CASE("solids: frames of planes, cylinders and capsules are right-handed, their z as given") {
   for (const Double3& way :
        {Double3{0, 0, 1}, {0, 0, -2}, {3, 0, 0}, {0, -1, 0}, {1, 2, -3}, {1e-9, 1e5, 1}}) {
-    Obstacle plane, tube;
-    plane.shape = ObstacleShape::plane;
-    plane.point = {0.1, 0.3, 2.4};
-    plane.normal = way;
-    tube.shape = ObstacleShape::capsule;
-    tube.from = {0.1, 0.3, 2.4};
-    for (std::size_t k = 0; k < 3; ++k) tube.to[k] = tube.from[k] + way[k];
-    tube.radius = 0.5;
+    const Double3 from{0.1, 0.3, 2.4};
+    const Obstacle plane = pbf_test::plane_obstacle(from, way);
+    const Obstacle tube =
+        pbf_test::tube_obstacle(pbf_test::ObstacleShape::capsule, from, from + way, 0.5);
     const double size = std::hypot(way[0], way[1], way[2]);
     for (const Obstacle& o : {plane, tube}) {
       const Solid<double> s = solids_of(scene_with(o))[0];
@@ -128,9 +118,10 @@ TEST_CASE("solids: frames of planes, cylinders and capsules are right-handed, th
         for (std::size_t i = 0; i < 3; ++i) dot += s.turn[k][i] * s.turn[b][i];
         CHECK(std::fabs(dot) < 1e-14);
       }
-      if (o.shape == ObstacleShape::plane) continue;
-      CHECK(s.half.x == 2.5);
-      CHECK(s.half.z == Approx(size / 2 / 0.2));
+      if (!is_bounded(s)) continue;
+      const auto body = s.shape.as<shape::Capsule<double>>();
+      CHECK(body.radius == 2.5);
+      CHECK(body.half == Approx(size / 2 / 0.2));
     }
   }
 }

@@ -8,13 +8,13 @@ using namespace pbf_test;
 
 namespace {
 
-struct Bounds {
+struct Edges {
   int x0 = 1 << 20, x1 = -1, y0 = 1 << 20, y1 = -1;  // half open
 };
 
 /// Where the picture has colour, left of the colour bar.
-Bounds coloured(const Image& image) {
-  Bounds b;
+Edges coloured(const Image& image) {
+  Edges b;
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < 3 * image.width / 4; ++x)
       if (chroma(pixel(image, x, y)) > 60)
@@ -36,7 +36,7 @@ double slope(double angle) { return std::tan(angle); }
 TEST_CASE("a sphere in the middle has its analytic radius within a pixel", "[render]") {
   PBF_NEEDS_GL();
   Renderer renderer(front_view());
-  const Bounds b = coloured(renderer.draw(snapshot({{0, 0, 0}}, {1.0})));
+  const Edges b = coloured(renderer.draw(snapshot({{0, 0, 0}}, {1.0})));
   const double radius = focal(200) * slope(std::asin(0.5 / 4));
   CHECK(b.x0 == Approx(100 - radius).margin(1));
   CHECK(b.x1 == Approx(100 + radius).margin(1));
@@ -49,7 +49,7 @@ TEST_CASE("a sphere off the axis has its perspective outline within a pixel", "[
   View view = front_view();
   view.camera.fov = 90;  // f = 100 pixels; the outline is clearly an ellipse
   Renderer renderer(view);
-  const Bounds b = coloured(renderer.draw(snapshot({{-1.5, -2, 0.9}}, {1.0})));
+  const Edges b = coloured(renderer.draw(snapshot({{-1.5, -2, 0.9}}, {1.0})));
   const double half_x = std::asin(0.5 / std::hypot(1.5, 2.0)), to_x = std::atan2(-1.5, 2.0);
   const double half_z = std::asin(0.5 / std::hypot(0.9, 2.0)), to_z = std::atan2(0.9, 2.0);
   CHECK(b.x0 == Approx(std::max(0.0, 100 + 100 * slope(to_x - half_x))).margin(1));

@@ -82,14 +82,10 @@ TEST_CASE("a small dam break looks like the kept picture", "[render]") {
 TEST_CASE("a small dam break among obstacles looks like the kept picture", "[render]") {
   PBF_NEEDS_GL();
   Scene scene = tank();
-  Obstacle box, ball, pillar, slope;
-  box.min = {1.1, -0.1, 0.1}, box.max = {1.6, 0.3, 0.3};
-  box.turn_axis = {0, 1, 0}, box.turn_angle = 20;
-  ball.shape = ObstacleShape::sphere, ball.center = {1.4, 0.7, 0.25}, ball.radius = 0.2;
-  pillar.shape = ObstacleShape::cylinder, pillar.radius = 0.1;
-  pillar.from = {1.8, 0.8, 0}, pillar.to = {1.8, 0.8, 0.7};
-  slope.shape = ObstacleShape::plane, slope.point = {1.7, 0, 0}, slope.normal = {-1, 0, 1};
-  scene.obstacles = {box, ball, pillar, slope};
+  scene.obstacles = {box_obstacle({1.1, -0.1, 0.1}, {1.6, 0.3, 0.3}, {0, 1, 0}, 20),
+                     sphere_obstacle({1.4, 0.7, 0.25}, 0.2),
+                     tube_obstacle(ObstacleShape::cylinder, {1.8, 0.8, 0}, {1.8, 0.8, 0.7}, 0.1),
+                     plane_obstacle({1.7, 0, 0}, {-1, 0, 1})};
   check_kept(view_of(scene, 1), "obstacles");
 }
 

@@ -57,10 +57,8 @@ TEST_CASE("a calm pool has the small range of its particles, and its height", "[
   s.bodies = {block({0, 0, 0}, {0.31, 0.6, 0.37}), block({0.31, 0, 0}, {0.8, 0.6, 0.37})};
   CHECK(reach(s).speed == Approx(calm(s)));
   s.bodies = {block({0, 0, 0}, {0.8, 0.6, 0.37})};
-  Obstacle ball, slope;
-  ball.shape = ObstacleShape::sphere, ball.center = {0.3, 0.3, 0.2}, ball.radius = 0.15;
-  slope.shape = ObstacleShape::plane, slope.point = {0.5, 0, 0}, slope.normal = {-1, 0, 2};
-  s.obstacles = {ball, slope};
+  s.obstacles = {pbf_test::sphere_obstacle({0.3, 0.3, 0.2}, 0.15),
+                 pbf_test::plane_obstacle({0.5, 0, 0}, {-1, 0, 2})};
   CHECK(reach(s).speed == Approx(calm(s)));
 }
 
@@ -81,9 +79,7 @@ TEST_CASE("a drop that falls into a large pool has the range of its own fall", "
 
 TEST_CASE("obstacles take room and lift the fluid at rest", "[render]") {
   Scene s = tank({1, 1, 1}, {block({0, 0, 0}, {0.5, 1, 0.5})});
-  Obstacle box;
-  box.min = {0.5, 0, 0}, box.max = {1, 1, 0.25};
-  s.obstacles = {box};
+  s.obstacles = {pbf_test::box_obstacle({0.5, 0, 0}, {1, 1, 0.25})};
   const auto solids = solids_in_metres(s, 0);
   const StartVolume start(s, {0, 0, 1}, solids);
   // Half of the floor is free up to 0.25 m, all of it above.
@@ -165,8 +161,7 @@ TEST_CASE("tilted gravity lets a level pool slide", "[render]") {
 
 TEST_CASE("what moves sets the range of a calm pool: obstacles and the tank", "[render]") {
   Scene s = tank({0.8, 0.8, 2}, {block({0, 0, 0}, {0.8, 0.8, 0.2})});
-  Obstacle blade;
-  blade.min = {0.1, 0.1, 0.1}, blade.max = {0.2, 0.2, 0.15};
+  Obstacle blade = pbf_test::box_obstacle({0.1, 0.1, 0.1}, {0.2, 0.2, 0.15});
   blade.motion = Motion{};
   blade.motion->kind = MotionKind::velocity;
   blade.motion->velocity = {0.4, 0, 0};

@@ -21,29 +21,6 @@ Scene scene_with(std::vector<Obstacle> obstacles) {
   s.obstacles = std::move(obstacles);
   return s;
 }
-Obstacle sphere(const Double3& center, double radius) {
-  Obstacle o;
-  o.shape = ObstacleShape::sphere;
-  o.center = center, o.radius = radius;
-  return o;
-}
-Obstacle tube(ObstacleShape shape, const Double3& from, const Double3& to, double radius) {
-  Obstacle o;
-  o.shape = shape;
-  o.from = from, o.to = to, o.radius = radius;
-  return o;
-}
-Obstacle box(const Double3& min, const Double3& max, const Double3& axis, double angle) {
-  Obstacle o;
-  o.min = min, o.max = max, o.turn_axis = axis, o.turn_angle = angle;
-  return o;
-}
-Obstacle plane(const Double3& point, const Double3& normal) {
-  Obstacle o;
-  o.shape = ObstacleShape::plane;
-  o.point = point, o.normal = normal;
-  return o;
-}
 
 constexpr double kNever = 1e9;
 
@@ -111,16 +88,17 @@ int checked_rays(const View& view, const Double3& min, const Double3& max) {
 TEST_CASE("what is drawn of an obstacle is where rays meet its surface", "[render]") {
   using Shape = ObstacleShape;
   const std::vector<Obstacle> obstacles{
-      sphere({4, -1.5, 5.7}, 0.4),
-      sphere({3.1, -1.2, 5.1}, 0.4),  // through two walls and the floor
-      box({3.6, -1.7, 5.3}, {4.4, -1.3, 5.8}, {0.3, -1, 0.2}, 33),
-      box({3.6, -1.7, 5}, {4.4, -1.3, 5.4}, {0, 0, 1}, 0),      // on the floor
-      box({3.2, -2.5, 5.2}, {4.9, -0.5, 5.22}, {0, 1, 0}, 25),  // a thin plate from wall to wall
-      tube(Shape::cylinder, {3.7, -1.6, 5.2}, {4.4, -1.3, 6}, 0.25),
-      tube(Shape::cylinder, {4, -1.5, 4}, {4, -1.5, 8}, 0.3),  // from floor to top
-      tube(Shape::capsule, {3.6, -1.7, 5.4}, {4.3, -1.3, 6}, 0.2),
-      plane({4, -1.5, 5.5}, {0.3, -0.1, 1}),
-      plane({3, -1.5, 5.5}, {0, 0, 2})};
+      sphere_obstacle({4, -1.5, 5.7}, 0.4),
+      sphere_obstacle({3.1, -1.2, 5.1}, 0.4),  // through two walls and the floor
+      box_obstacle({3.6, -1.7, 5.3}, {4.4, -1.3, 5.8}, {0.3, -1, 0.2}, 33),
+      box_obstacle({3.6, -1.7, 5}, {4.4, -1.3, 5.4}, {0, 0, 1}, 0),  // on the floor
+      box_obstacle({3.2, -2.5, 5.2}, {4.9, -0.5, 5.22}, {0, 1, 0},
+                   25),  // a thin plate from wall to wall
+      tube_obstacle(Shape::cylinder, {3.7, -1.6, 5.2}, {4.4, -1.3, 6}, 0.25),
+      tube_obstacle(Shape::cylinder, {4, -1.5, 4}, {4, -1.5, 8}, 0.3),  // from floor to top
+      tube_obstacle(Shape::capsule, {3.6, -1.7, 5.4}, {4.3, -1.3, 6}, 0.2),
+      plane_obstacle({4, -1.5, 5.5}, {0.3, -0.1, 1}),
+      plane_obstacle({3, -1.5, 5.5}, {0, 0, 2})};
   for (const Obstacle& o : obstacles) {
     const Scene scene = scene_with({o});
     View view = view_of(scene, 1);
@@ -128,7 +106,7 @@ TEST_CASE("what is drawn of an obstacle is where rays meet its surface", "[rende
     int hits = 0;
     for (const Double3& eye : {Double3{4.3, -5, 6.5}, Double3{8, 0.5, 8}, Double3{3.5, -1, 1},
                                Double3{3.05, -1.95, 6.4}}) {
-      INFO("shape " << int(o.shape) << " at " << &o - obstacles.data() << " eye " << eye[0]);
+      INFO("shape " << o.shape.index() << " at " << &o - obstacles.data() << " eye " << eye[0]);
       view.camera.position = eye;
       hits += checked_rays(view, scene.domain.min, scene.domain.max);
     }
@@ -137,43 +115,45 @@ TEST_CASE("what is drawn of an obstacle is where rays meet its surface", "[rende
 }
 
 TEST_CASE("an obstacle goes on behind an open face, a plane does not", "[render]") {
-  Scene scene = scene_with({tube(ObstacleShape::cylinder, {4, -1.5, 5}, {4, -1.5, 7.2}, 0.2)});
+  Scene scene =
+      scene_with({tube_obstacle(ObstacleShape::cylinder, {4, -1.5, 5}, {4, -1.5, 7.2}, 0.2)});
   scene.domain.open = {"z_max"};
   View view = view_of(scene, 1);
   view.camera.position = Double3{4.3, -6, 7.5};
   CHECK(checked_rays(view, scene.domain.min, {5, -1, 9}) > 20);
   scene.domain.open = {"x_max", "z_min"};
-  scene.obstacles = {plane({4, -1.5, 5.5}, {0.3, -0.1, 1})};
+  scene.obstacles = {plane_obstacle({4, -1.5, 5.5}, {0.3, -0.1, 1})};
   view = view_of(scene, 1);
   view.camera.position = Double3{4.3, -6, 7.5};
   CHECK(checked_rays(view, scene.domain.min, scene.domain.max) > 20);
 }
 
 TEST_CASE("an eye in an obstacle sees out of it", "[render]") {
-  const Scene scene = scene_with({sphere({4, -1.5, 5.7}, 0.4)});
+  const Scene scene = scene_with({sphere_obstacle({4, -1.5, 5.7}, 0.4)});
   View view = view_of(scene, 1);
   view.camera.position = Double3{4.1, -1.5, 5.7};
   CHECK(surfaces_of(view, projection_of(view, 0), {0, 0, 1}).triangles.empty());
 }
 
 TEST_CASE("an obstacle outside of the domain is not drawn", "[render]") {
-  for (const Obstacle& o : {sphere({7, -1.5, 5.7}, 0.4), plane({4, -1.5, 4}, {0, 0, 1}),
-                            box({4, -3, 5}, {4.5, -2.1, 6}, {0, 0, 1}, 0)}) {
+  for (const Obstacle& o :
+       {sphere_obstacle({7, -1.5, 5.7}, 0.4), plane_obstacle({4, -1.5, 4}, {0, 0, 1}),
+        box_obstacle({4, -3, 5}, {4.5, -2.1, 6}, {0, 0, 1}, 0)}) {
     const View view = view_of(scene_with({o}), 1);
     CHECK(surfaces_of(view, projection_of(view, 0), {0, 0, 1}).triangles.empty());
   }
 }
 
 TEST_CASE("obstacles a million metres from the origin are the same", "[render]") {
-  Obstacle o = tube(ObstacleShape::capsule, {3.6, -1.7, 5.4}, {4.3, -1.3, 6}, 0.2);
+  Obstacle o = tube_obstacle(ObstacleShape::capsule, {3.6, -1.7, 5.4}, {4.3, -1.3, 6}, 0.2);
   Scene scene = scene_with({o});
   const auto triangles = [&] {
     const View view = view_of(scene, 1);
     return surfaces_of(view, projection_of(view, 0), {0, 0, 1}).triangles;
   };
   const auto here = triangles();
-  for (Double3* p :
-       {&scene.domain.min, &scene.domain.max, &scene.obstacles[0].from, &scene.obstacles[0].to})
+  for (Double3* p : {&scene.domain.min, &scene.domain.max, &tube_of(scene.obstacles[0]).from,
+                     &tube_of(scene.obstacles[0]).to})
     *p = *p + Double3{1e6, -2e6, 3e6};
   const auto there = triangles();
   REQUIRE(!here.empty());
@@ -193,10 +173,11 @@ TEST_CASE("of a scene in two dimensions the cut is drawn, at the plane of the pa
     int least;  // rays that meet it
   };
   for (const Case& c :
-       {Case{sphere({4, 77, 5.7}, 0.4), 20}, Case{plane({4, 9, 5.5}, {0.3, 0, 1}), 50},
-        Case{box({3.6, -1.5, 5.3}, {4.4, -1.4, 5.8}, {0, 1, 0}, 33), 20},
-        Case{tube(ObstacleShape::cylinder, {4, 3, 5.7}, {4, 4, 5.7}, 0.3), 20},
-        Case{tube(ObstacleShape::capsule, {3.6, 0, 5.4}, {4.3, 0, 6}, 0.2), 20}}) {
+       {Case{sphere_obstacle({4, 77, 5.7}, 0.4), 20},
+        Case{plane_obstacle({4, 9, 5.5}, {0.3, 0, 1}), 50},
+        Case{box_obstacle({3.6, -1.5, 5.3}, {4.4, -1.4, 5.8}, {0, 1, 0}, 33), 20},
+        Case{tube_obstacle(ObstacleShape::cylinder, {4, 3, 5.7}, {4, 4, 5.7}, 0.3), 20},
+        Case{tube_obstacle(ObstacleShape::capsule, {3.6, 0, 5.4}, {4.3, 0, 6}, 0.2), 20}}) {
     scene.obstacles = {c.obstacle};
     View view = view_of(scene, 1);
     view.camera.position = Double3{4, -6, 5.75};
@@ -208,7 +189,7 @@ TEST_CASE("of a scene in two dimensions the cut is drawn, at the plane of the pa
         const Double3 x{3.025 + 0.05 * i, -1.5, 5.025 + 0.05 * k};
         const double away = distance<2>(view.solids[0], Vec3<double>{x[0], x[1], x[2]});
         if (std::abs(away) < 3e-3) continue;  // perspective of the thin slice
-        INFO("shape " << int(c.obstacle.shape) << " x " << x[0] << " z " << x[2]);
+        INFO("shape " << c.obstacle.shape.index() << " x " << x[0] << " z " << x[2]);
         const Double3 seen = p.to_view(x);
         const double drawn = met(triangles, unit(seen));
         CHECK((drawn < kNever) == (away < 0));
@@ -226,8 +207,7 @@ TEST_CASE("particles before an obstacle are seen and those behind it are not", "
   View view = front_view();
   view.radius = 0.2;
   Solid<double> wall;
-  wall.shape = ObstacleShape::box;
-  wall.half = {1, 0.01, 1};  // a thin plate across the view
+  wall.shape = shape::Box<double>{{1, 0.01, 1}};  // a thin plate across the view
   view.solids = {wall};
   Renderer renderer(view);
   const auto seen = [&](double y) {
@@ -248,8 +228,7 @@ TEST_CASE("a particle darkens what is close behind it evenly, without outlines",
   View view = front_view();
   view.radius = 0.1;
   Solid<double> wall;
-  wall.shape = ObstacleShape::box;
-  wall.half = {1.5, 0.01, 1.5};
+  wall.shape = shape::Box<double>{{1.5, 0.01, 1.5}};
   view.solids = {wall};
   Renderer renderer(view);
   const Image empty = renderer.draw(snapshot({}, {}));

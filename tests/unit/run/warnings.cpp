@@ -9,6 +9,7 @@
 #include "lib/run/warnings.h"
 #include "lib/scene/load.h"
 #include "tests/support/catch.h"
+#include "tests/support/obstacle_shapes.h"
 
 using namespace pbf;
 
@@ -40,13 +41,6 @@ std::vector<std::string> kinds(const Scene& s, const std::string& dir = ".") {
 
 bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
-}
-
-Obstacle obstacle(ObstacleShape shape) {
-  Obstacle o;
-  o.name = "far";
-  o.shape = shape;
-  return o;
 }
 
 /// All pairs of two bodies closer than half a spacing, by brute force.
@@ -271,20 +265,21 @@ TEST_CASE(
   const auto told = [](const Obstacle& o, const std::vector<std::string>& open = {}) {
     Scene s = pool();
     s.obstacles = {o};
+    s.obstacles[0].name = "far";
     s.domain.open = open;
     return text_of("obstacles", s);
   };
-  Obstacle box = obstacle(ObstacleShape::box);
-  box.min = {0.49, 0, 0}, box.max = {2, 0.4, 0.4};
+  Obstacle box = pbf_test::box_obstacle({0.49, 0, 0}, {2, 0.4, 0.4});
+  obstacle_keys::Box& keys = pbf_test::box_of(box);
   CHECK(told(box).empty());  // within h
-  box.min[0] = 0.51;
+  keys.min[0] = 0.51;
   CHECK(told(box) ==
         "obstacles[0] (far) lies outside the domain: no fluid will meet it; move it or remove it");
   CHECK(told(box, {"x_max"}).empty());
-  box.turn_angle = 20;
-  box.turn_axis = {0, 1, 0};
+  keys.turn_angle = 20;
+  keys.turn_axis = {0, 1, 0};
   CHECK(told(box).empty());  // its corner comes within h
-  box.turn_angle = 0;
+  keys.turn_angle = 0;
   box.motion = Motion{};
   box.motion->kind = MotionKind::velocity;
   CHECK(told(box) ==
@@ -294,21 +289,18 @@ TEST_CASE(
   CHECK_FALSE(told(box).empty());
   box.motion->velocity = {-0.02, 0, 0};
   CHECK(told(box).empty());
-  Obstacle ball = obstacle(ObstacleShape::sphere);
-  ball.center = {0.2, -0.4, 0.2}, ball.radius = 0.31;
-  CHECK(told(ball).empty());
-  ball.radius = 0.29;
-  CHECK_FALSE(told(ball).empty());
-  Obstacle plane = obstacle(ObstacleShape::plane);
-  plane.point = {0, 0, -0.11}, plane.normal = {0, 0, 1};
-  CHECK_FALSE(told(plane).empty());
-  plane.normal = {0, 0.01, 1};  // rises to the far corner, stays below the floor
-  CHECK_FALSE(told(plane).empty());
-  plane.normal = {0, -0.1, 1};
-  CHECK(told(plane).empty());
-  Obstacle pipe = obstacle(ObstacleShape::capsule);
-  pipe.from = {0.2, 0.2, 1.7}, pipe.to = {0.2, 0.2, 2.5}, pipe.radius = 0.3;
-  CHECK_FALSE(told(pipe).empty());
-  pipe.from[2] = 1.55;
-  CHECK(told(pipe).empty());
+  CHECK(told(pbf_test::sphere_obstacle({0.2, -0.4, 0.2}, 0.31)).empty());
+  CHECK_FALSE(told(pbf_test::sphere_obstacle({0.2, -0.4, 0.2}, 0.29)).empty());
+  const auto plane = [](const Double3& normal) {
+    return pbf_test::plane_obstacle({0, 0, -0.11}, normal);
+  };
+  CHECK_FALSE(told(plane({0, 0, 1})).empty());
+  CHECK_FALSE(told(plane({0, 0.01, 1})).empty());  // rises to the far corner, stays below the floor
+  CHECK(told(plane({0, -0.1, 1})).empty());
+  const auto pipe = [](double from) {
+    return pbf_test::tube_obstacle(pbf_test::ObstacleShape::capsule, {0.2, 0.2, from},
+                                   {0.2, 0.2, 2.5}, 0.3);
+  };
+  CHECK_FALSE(told(pipe(1.7)).empty());
+  CHECK(told(pipe(1.55)).empty());
 }

@@ -38,14 +38,14 @@ TEST_CASE("obstacles: every shape with its keys is read, what is not given has i
             "  - " +
             tube("cylinder", "[1, 1, 1]", "[1, 1, 2]", "0.5") + "\n");
   REQUIRE(s.obstacles.size() == 4);
-  CHECK(s.obstacles[0].shape == ObstacleShape::plane);
-  CHECK(s.obstacles[0].normal == Double3{0, 3, 4});
-  CHECK(s.obstacles[1].max == Double3{0.5, 0.5, 0.3});
-  CHECK(s.obstacles[1].turn_angle == 0);
+  CHECK(s.obstacles[0].as<obstacle_keys::Plane>().normal == Double3{0, 3, 4});
+  CHECK(s.obstacles[1].as<obstacle_keys::Box>().max == Double3{0.5, 0.5, 0.3});
+  CHECK(s.obstacles[1].as<obstacle_keys::Box>().turn_angle == 0);
   CHECK_FALSE(s.obstacles[1].loads);
   CHECK(s.obstacles[2].loads);
-  CHECK(s.obstacles[2].radius == 0.01);  // balls may be as small as they like
-  CHECK(s.obstacles[3].to == Double3{1, 1, 2});
+  CHECK(s.obstacles[2].as<obstacle_keys::Sphere>().radius ==
+        0.01);  // balls may be as small as they like
+  CHECK(s.obstacles[3].as<obstacle_keys::Cylinder>().to == Double3{1, 1, 2});
   CHECK(parse(kMinimal).obstacles.empty());
 }
 

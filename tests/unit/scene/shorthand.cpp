@@ -45,12 +45,12 @@ TEST_CASE("two dimensions: two numbers for vectors, and one spacing of thickness
   CHECK(s.domain.max == Double3{2, 0.05, 1});
   CHECK(s.bodies[0].max == Double3{0.5, 0.05, 0.5});
   CHECK(s.gravity == Double3{0, 0, -9.81});
-  CHECK(s.obstacles[0].min == Double3{1, 0, 0});
+  CHECK(s.obstacles[0].as<obstacle_keys::Box>().min == Double3{1, 0, 0});
   CHECK(s.obstacles[0].motion->velocity == Double3{0.1, 0, 0});
-  CHECK(s.obstacles[1].to == Double3{0.8, 0.05, 0.5});
-  CHECK(s.obstacles[2].from == Double3{1.4, 0.025, 0.5});
-  CHECK(s.obstacles[3].normal == Double3{-1, 0, 1});
-  CHECK(s.obstacles[4].center == Double3{0.7, 0.025, 0.8});
+  CHECK(s.obstacles[1].as<obstacle_keys::Cylinder>().to == Double3{0.8, 0.05, 0.5});
+  CHECK(s.obstacles[2].as<obstacle_keys::Capsule>().from == Double3{1.4, 0.025, 0.5});
+  CHECK(s.obstacles[3].as<obstacle_keys::Plane>().normal == Double3{-1, 0, 1});
+  CHECK(s.obstacles[4].as<obstacle_keys::Sphere>().center == Double3{0.7, 0.025, 0.8});
   CHECK(s.gauges[0].at == std::vector<double>{0.3});
   CHECK(s.gauges[1].at == std::vector<double>{0.3, 0.025, 0.2});
   CHECK(s.gauges[2].normal == Double3{1, 0, 0});
@@ -91,7 +91,7 @@ TEST_CASE("boxes: by center and size") {
   CHECK(s.bodies[0].min == Double3{0, 0, 0});
   CHECK(s.bodies[0].max == Double3{1, 1, 0.5});
   CHECK(s.bodies[1].min == Double3{0.25, 0.25, 0.625});
-  CHECK(s.obstacles[0].max == Double3{0.6, 0.7, 1});
+  CHECK(s.obstacles[0].as<obstacle_keys::Box>().max == Double3{0.6, 0.7, 1});
   CHECK_FALSE(contains(resolved_yaml(s), "size: [1"));
   const Scene flat =
       parse(kFlatText, {"bodies=[{shape: block, center: [0.5, 0.25], size: [1, 0.5]}]"});

@@ -1,0 +1,88 @@
+// Faces at right angles to the axes of a body, some of which there are not.
+#pragma once
+
+#include "kernels/shapes/shape.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// Where a body ends along an axis; beyond everything where it goes on. `through`: faces (bits as
+/// WallBit) behind which the solid goes on, as where it stands against a wall of the domain.
+template <class Real>
+struct Span {
+  Real low, high;
+};
+template <class Real>
+PBF_HD Span<Real> span_of(Real half, unsigned through, int axis) {
+  constexpr Real far(kEndless);
+  return {through & (1u << (2 * axis)) ? -far : -half, through & (2u << (2 * axis)) ? far : half};
+}
+
+/// The distance from faces at right angles: inside the nearest one counts, outside all that the
+/// place is beyond.
+template <class Real>
+struct FaceDistance {
+  Real nearest = Real(-4e9), outside = 0;
+
+  PBF_HD void face(Real s) {
+    nearest = max2(nearest, s);
+    if (s > Real(0)) outside = outside + s * s;
+  }
+  PBF_HD void slab(Real at, Span<Real> s) { face(max2(at - s.high, s.low - at)); }
+  PBF_HD Real value() const { return nearest > Real(0) ? square_root(outside) : nearest; }
+};
+
+/// The face of an axis of the body, on the upper or the lower side.
+template <class Real>
+PBF_HD Tangent<Real> face_of(Span<Real> s, int axis, bool upper) {
+  const Real n(upper ? 1 : -1);
+  return {{axis == 0 ? n : Real(0), axis == 1 ? n : Real(0), axis == 2 ? n : Real(0)},
+          upper ? s.high : -s.low};
+}
+
+/// The nearest of the faces seen from inside.
+template <class Real>
+struct NearestFace {
+  Tangent<Real> best;
+  Real depth = Real(4e9);
+
+  PBF_HD void slab(Real at, Span<Real> s, int axis) {
+    const bool upper = s.high - at < at - s.low;
+    const Real d = upper ? s.high - at : at - s.low;
+    if (d < depth) depth = d, best = face_of(s, axis, upper);
+  }
+};
+/// How far a coordinate is beyond its span, with its sign.
+template <class Real>
+PBF_HD Real beyond(Real at, Span<Real> s) {
+  return max2(at - s.high, Real(0)) - max2(s.low - at, Real(0));
+}
+/// The tangent plane at the place of a convex surface that is d away from p.
+template <class Real>
+PBF_HD Tangent<Real> tangent_towards(Vec3<Real> p, Vec3<Real> d) {
+  const Real away = square_root(dot(d, d));
+  const Vec3<Real> n = (Real(1) / away) * d;
+  return {n, dot(n, p) - away};
+}
+
+template <class Real>
+PBF_HD Stay<Real> both(Stay<Real> a, Stay<Real> b) {
+  return {max2(a.enter, b.enter), min2(a.leave, b.leave)};
+}
+/// The stay of a coordinate inside a span.
+template <class Real>
+PBF_HD Stay<Real> stay_between(Real a, Real d, Span<Real> s) {
+  constexpr Real ever(1e30);
+  if (d == Real(0)) return a > s.low && a < s.high ? Stay<Real>{-ever, ever} : Stay<Real>{};
+  const Real t = (s.low - a) / d, u = (s.high - a) / d;
+  return t < u ? Stay<Real>{t, u} : Stay<Real>{u, t};
+}
+/// What is left of a stay between the faces of an axis, and the face where it enters.
+template <class Real>
+PBF_HD void cut_stay(Stay<Real>& stay, Tangent<Real>& entry, Real at, Real way, Span<Real> s,
+                     int axis) {
+  const Stay<Real> slab = stay_between(at, way, s);
+  if (slab.enter > stay.enter) entry = face_of(s, axis, way < Real(0));
+  stay = both(stay, slab);
+}
+
+}  // namespace pbf::inline PBF_VARIANT

@@ -1,0 +1,61 @@
+// What shapes with a round side have in common: they are told by the distance from a centre or an
+// axis.
+#pragma once
+
+#include "kernels/shapes/faces.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// The stay within a distance of the origin.
+template <class Real>
+PBF_HD Stay<Real> stay_near(Vec3<Real> a, Vec3<Real> d, Real radius) {
+  constexpr Real ever(1e30);
+  const Real dd = dot(d, d);
+  if (!(dd > Real(1e-30)))
+    return dot(a, a) < radius * radius ? Stay<Real>{-ever, ever} : Stay<Real>{};
+  const Real middle = -dot(a, d) / dd;
+  const Vec3<Real> p = a + middle * d;  // not b^2 - ac: that cancels on long paths
+  const Real rest = radius * radius - dot(p, p);
+  if (!(rest > Real(0))) return {};
+  const Real half = square_root(rest / dd);
+  return {middle - half, middle + half};
+}
+
+/// The tangent plane at the direction d from a centre or an axis.
+template <class Real>
+PBF_HD Tangent<Real> round_tangent(Vec3<Real> d, Real level) {
+  const Real length = square_root(dot(d, d));
+  return {length > Real(1e-15) ? (Real(1) / length) * d : Vec3<Real>{}, level};
+}
+
+/// Where a place is from a centre or an axis, in ranges.
+template <class Real>
+struct RoundPlace {
+  Vec3<Real> away;
+  Real radius, distance, inverse;
+  bool beyond;  ///< out of reach
+};
+template <class Real>
+PBF_HD RoundPlace<Real> round_place(Vec3<Real> away, Real radius, Real inv_range) {
+  const Real one(1);
+  radius = radius * inv_range;
+  const Vec3<Real> d = inv_range * away;
+  const Real square = dot(d, d), reach = radius + one;
+  if (square >= reach * reach) return {d, radius, Real(0), Real(0), true};
+  const Real c = square_root(square);
+  return {d, radius, c, one / max2(c, Real(1e-20)), false};
+}
+
+/// A side that is bent along its second direction by `bend`, between the planes of `slab`; both
+/// with their derivatives along the body's z.
+template <Smoothing S, bool of_density, class Real>
+PBF_HD SolidTerm<Real> round_term(const RoundPlace<Real>& p, HalfSpace<Real> bend,
+                                  HalfSpace<Real> slab) {
+  const RoundShare<Real> g =
+      round_share<S, of_density>(p.distance - p.radius, p.radius, bend.density);
+  SolidTerm<Real> w{g.share * slab.density, (g.slope * slab.density * p.inverse) * p.away};
+  w.gradient.z = w.gradient.z + g.by_bend * bend.slope + g.share * slab.slope;
+  return w;
+}
+
+}  // namespace pbf::inline PBF_VARIANT

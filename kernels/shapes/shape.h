@@ -1,0 +1,191 @@
+// What the kernels ask of a solid's shape, and what follows from its distance alone where a shape
+// does not give a closed form.
+#pragma once
+
+#include <concepts>
+
+#include "kernels/boundary/solid_share.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// h: what has no end is this long. Its square is a float too.
+constexpr double kEndless = 1e9;
+
+/// Edges along the axes, h.
+template <class Real>
+struct Bounds {
+  Vec3<Real> low, high;
+
+  PBF_HD bool has(Vec3<Real> x) const {
+    return x.z <= high.z && x.z >= low.z && x.x <= high.x && x.x >= low.x && x.y <= high.y &&
+           x.y >= low.y;
+  }
+  /// Whether a straight way may come through.
+  PBF_HD bool meets(Vec3<Real> from, Vec3<Real> to) const {
+    return !(from.z > high.z && to.z > high.z) && !(from.z < low.z && to.z < low.z) &&
+           !(from.x > high.x && to.x > high.x) && !(from.x < low.x && to.x < low.x) &&
+           !(from.y > high.y && to.y > high.y) && !(from.y < low.y && to.y < low.y);
+  }
+};
+
+/// share: the part of the integral of the unit kernel that is in the solid, 0 to 1, without the
+/// amplitude of walls. gradient: per h, or in body coordinates per range.
+template <class Real>
+struct SolidTerm {
+  Real share = 0;
+  Vec3<Real> gradient;
+};
+
+/// A tangent plane of a shape, where normal . p = level. Where all normals across the body's z are
+/// as good (on an axis, in a centre) the normal is 0.
+template <class Real>
+struct Tangent {
+  Vec3<Real> normal;
+  Real level = 0;
+};
+
+/// The part of a line a + t way between two values of t; none where enter >= leave.
+template <class Real>
+struct Stay {
+  Real enter = 1, leave = 0;
+};
+
+/// A solid in coordinates of its own, lengths in h. With D = 2 the body's section by the plane of
+/// the scene, in which p lies. Plain data. Beside these a shape has a curvature or a share:
+///   curvature<D>(p)                  1/h, mean curvature of the surface at the place nearest to p
+///   share<S, of_density>(p, 1/range) the kernel's share in it, as SolidTerm per range
+/// and where they are known in closed form:
+///   tangent<D>(p)          the tangent plane at the place of the surface that is nearest to p
+///   stay<D>(a, way, entry) the part of a line that is inside, and the tangent plane where it
+///   enters reach(d)               how far it goes from its origin along a direction of length 1
+///   size()                 how far it goes from its origin at most
+///   round<D>(p)            the round side that is nearest to p: RoundSide
+///   ends(), `through`      half lengths along its axes, and which of these ends there are not, as
+///                          bits of WallBit: the solid goes on behind a wall
+template <class Shape, class Real>
+concept SolidShape = requires(const Shape& s, Vec3<Real> p) {
+  { s.template distance<3>(p) } -> std::same_as<Real>;      // from the surface; below 0 inside
+  { s.template normal<3>(p) } -> std::same_as<Vec3<Real>>;  // its gradient
+  { s.bounds() } -> std::same_as<Bounds<Real>>;
+  {s.template scaled<float>(1.0)};  // the same, so many times as large, of other numbers
+  { Shape::convex } -> std::convertible_to<bool>;  // then the distance is a convex function
+};
+
+template <class To, class Real>
+PBF_HD Vec3<To> scaled(const Vec3<Real>& v, double by) {
+  return {To(by * double(v.x)), To(by * double(v.y)), To(by * double(v.z))};
+}
+
+template <int D, class Shape, class Real>
+PBF_HD Tangent<Real> tangent_of(const Shape& s, Vec3<Real> p) {
+  if constexpr (requires { s.template tangent<D>(p); }) {
+    return s.template tangent<D>(p);
+  } else {
+    const Vec3<Real> n = s.template normal<D>(p);
+    return {n, dot(n, p) - s.template distance<D>(p)};
+  }
+}
+
+/// h, less than what rounding does to a distance.
+template <class Real>
+constexpr Real kTouching = Real(sizeof(Real) == 4 ? 2e-6 : 1e-13);
+
+/// By steps of the distance. Along a line the distance from a convex body is a convex function, so
+/// that Newton's steps come no farther than the surface, and soon. It begins outside; where it
+/// leaves is not asked for. A path beside a body that is not convex may need more steps than it is
+/// given: it is held where they end.
+template <int D, class Shape, class Real>
+PBF_HD Stay<Real> stay_by_steps(const Shape& s, Vec3<Real> a, Vec3<Real> way,
+                                Tangent<Real>& entry) {
+  constexpr int steps = 16;
+  constexpr Real ever(1e30);
+  const Real length = square_root(dot(way, way));
+  Real t(0);
+  for (int k = 0; k < steps; ++k) {
+    const Vec3<Real> p = a + t * way;
+    const Real away = s.template distance<D>(p);
+    const Real down = -dot(s.template normal<D>(p), way);
+    if (Shape::convex && !(down > Real(0))) return {};
+    if (away <= kTouching<Real> && down > Real(0)) {
+      entry = tangent_of<D>(s, p);
+      return {t, ever};
+    }
+    t = t + max2(away, kTouching<Real>) / (Shape::convex ? down : length);
+    if (!(t < Real(1))) return {};
+  }
+  if (Shape::convex) return {};  // it touches
+  entry = tangent_of<D>(s, a + t * way);
+  return {t, ever};
+}
+template <int D, class Shape, class Real>
+PBF_HD Stay<Real> stay_of(const Shape& s, Vec3<Real> a, Vec3<Real> way, Tangent<Real>& entry) {
+  if constexpr (requires { s.template stay<D>(a, way, entry); })
+    return s.template stay<D>(a, way, entry);
+  else
+    return stay_by_steps<D>(s, a, way, entry);
+}
+
+/// Of a smooth surface, to first order in its mean curvature H (per range): S - H m/(1 + H q). In
+/// the plane, where H is that of the section, the same. Within 0.004 where no radius of curvature
+/// is below 0.5 h; an estimate of thinner bodies, never below 0.
+template <Smoothing S, bool of_density, class Shape, class Real>
+PBF_HD SolidTerm<Real> smooth_share(const Shape& s, Vec3<Real> p, Real inv_range) {
+  constexpr int D = dimensions_of(S);
+  const Real q = s.template distance<D>(p) * inv_range, one(1);
+  if (!(q < one)) return {};
+  const HalfSpace<Real> flat = half_space_share<S, of_density>(q);
+  if (!(q > -one)) return {flat.density, {}};
+  const HalfSpace<Real> m = curvature_moment<S, of_density>(q);
+  const Real bend = s.template curvature<D>(p) / inv_range, r = one + bend * q;
+  const bool bounded = !(r > Real(0.25));
+  const Real f = bend / (bounded ? Real(0.25) : r), taken = f * m.density;
+  if (!(flat.density > taken)) return {};
+  const Real slope = flat.slope - f * m.slope + (bounded ? Real(0) : f * taken);
+  return {flat.density - taken, slope * s.template normal<D>(p)};
+}
+template <Smoothing S, bool of_density, class Shape, class Real>
+PBF_HD SolidTerm<Real> share_of(const Shape& s, Vec3<Real> p, Real inv_range) {
+  if constexpr (requires { s.template share<S, of_density>(p, inv_range); })
+    return s.template share<S, of_density>(p, inv_range);
+  else
+    return smooth_share<S, of_density>(s, p, inv_range);
+}
+
+/// Of a shape with a closed form, else of its bounds, which hold no less.
+template <class Shape, class Real>
+PBF_HD Real reach_of(const Shape& s, Vec3<Real> d) {
+  if constexpr (requires { s.reach(d); }) {
+    return s.reach(d);
+  } else {
+    const Bounds<Real> b = s.bounds();
+    return max2(d.x * b.low.x, d.x * b.high.x) + max2(d.y * b.low.y, d.y * b.high.y) +
+           max2(d.z * b.low.z, d.z * b.high.z);
+  }
+}
+template <class Real, class Shape>
+PBF_HD Real size_of_shape(const Shape& s) {
+  if constexpr (requires { s.size(); }) {
+    return s.size();
+  } else {
+    const Bounds<Real> b = s.bounds();
+    const Vec3<Real> far{max2(-b.low.x, b.high.x), max2(-b.low.y, b.high.y),
+                         max2(-b.low.z, b.high.z)};
+    return square_root(dot(far, far));
+  }
+}
+
+/// The side at a distance of `radius` from the body's z between two heights, or from its origin
+/// where both are 0. radius 0: the surface is not round there, or not of one radius.
+template <class Real>
+struct RoundSide {
+  Real radius = 0, low = 0, high = 0;
+};
+template <int D, class Shape, class Real>
+PBF_HD RoundSide<Real> round_of(const Shape& s, Vec3<Real> p) {
+  if constexpr (requires { s.template round<D>(p); })
+    return s.template round<D>(p);
+  else
+    return {};
+}
+
+}  // namespace pbf::inline PBF_VARIANT

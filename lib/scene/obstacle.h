@@ -1,0 +1,59 @@
+// A solid in the domain as plain data.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "kernels/shapes/shapes.h"
+#include "lib/scene/motion.h"
+
+// clang-format off
+#define PBF_SHAPE_FILE(name) PBF_SHAPE_TEXT(lib/scene/shapes/name.h)
+// clang-format on
+#include "kernels/shapes/list.h"
+
+namespace pbf::inline scene_module {
+
+namespace obstacle_keys {
+/// The keys of a shape, in the order of the list.
+using Any = std::variant<PBF_SHAPES>;
+}  // namespace obstacle_keys
+
+struct Obstacle {
+  std::string name;
+  obstacle_keys::Any shape = obstacle_keys::Box{};
+  bool loads = false;            ///< the force on it is summed and written down
+  std::optional<Motion> motion;  ///< absent: it stands
+  bool operator==(const Obstacle&) const = default;
+
+  /// The keys of a shape; the obstacle has it.
+  template <class Shape>
+  Shape& as() {
+    return std::get<Shape>(shape);
+  }
+  template <class Shape>
+  const Shape& as() const {
+    return std::get<Shape>(shape);
+  }
+  /// m, where its other keys put it: the middle of a body, and a point of a plane.
+  Double3 middle() const {
+    return std::visit([](const auto& keys) { return keys.middle(); }, shape);
+  }
+};
+
+/// The address that stands for the word of a shape in names of keys; where the variant begins there
+/// is a key of the shape.
+inline const void* address_of_word(const obstacle_keys::Any& shape) {
+  return reinterpret_cast<const char*>(&shape) + 1;
+}
+
+/// f of the keys of each shape, all defaults, in the order of the list.
+template <class F>
+void for_each_shape(F&& f) {
+  [&]<class... Shape>(const std::variant<Shape...>*) {
+    (f(Shape{}), ...);
+  }(static_cast<const obstacle_keys::Any*>(nullptr));
+}
+
+}  // namespace pbf::inline scene_module

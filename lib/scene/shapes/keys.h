@@ -1,0 +1,76 @@
+// What the keys of an obstacle's shape are written with. A shape is a struct with its keys as
+// members (m) and
+//   word                   of scenes
+//   Body                   the kernels' shape
+//   keys()                 its rows in the table: ShapeKey's, in the order of pages
+//   check(rules)           what holds between them, by SceneRules
+//   middle(), axes()       where the body is, m, and its axes as rows
+//   make(h)                the body, lengths over h
+#pragma once
+
+#include <tuple>
+
+#include "kernels/shapes/shapes.h"
+#include "lib/base/text.h"
+#include "lib/scene/body_axes.h"
+#include "lib/scene/key_traits.h"
+
+namespace pbf::inline scene_module {
+
+/// A key. Shapes may share one: of the same name it is the same row of the table.
+template <class Member, class Holder>
+struct ShapeKey {
+  Member Holder::*member;
+  const char *name, *unit;
+  Range range;
+  const char* help;
+  bool required = true;
+  FlatY flat = FlatY::none;
+  bool by_center = false;  ///< a corner of a box that center and size may give as well
+};
+
+namespace obstacle_keys {
+
+inline constexpr const char* kRadiusHelp =
+    "Radius; of cylinders, capsules and discs at least the smoothing length.";
+
+/// The surface's curvature must be seen by the fluid.
+void check_radius(auto& rules, const double& radius) {
+  if (!rules.good_h(radius) || radius >= rules.h()) return;
+  rules.add(radius, "is " + rules.text(radius) + ", below the smoothing length (" +
+                        rules.text(rules.h()) +
+                        " m): the fluid could not see how the surface is "
+                        "curved; enlarge it or lower fluid.spacing to " +
+                        rules.text(radius / rules.smoothing_ratio()));
+}
+
+/// About an axis between two places.
+struct Tube {
+  Double3 from{}, to{};  ///< m, ends of the axis
+  double radius = 0;     ///< m
+  bool operator==(const Tube&) const = default;
+
+  static auto keys_in(FlatY from, FlatY to) {
+    return std::tuple{
+        ShapeKey{&Tube::radius, "radius", "m", kLength, kRadiusHelp},
+        ShapeKey{&Tube::from, "from", "m", kCoordinate, "One end of the axis.", true, from},
+        ShapeKey{&Tube::to, "to", "m", kCoordinate, "The other end.", true, to}};
+  }
+  /// `flat`: what is wrong with the axis with dimensions: 2; null: nothing.
+  void check_axis(auto& rules, const char* flat) const {
+    if (rules.good(from, to)) {
+      if (from == to)
+        rules.add(to, "is where the axis begins (" + rules.name(from) + "); give the other end");
+      else if (flat)
+        rules.add(to, flat);
+    }
+    check_radius(rules, radius);
+  }
+  Double3 middle() const { return 0.5 * from + 0.5 * to; }
+  Double3 along() const { return to - from; }
+  double length() const { return std::hypot(along()[0], along()[1], along()[2]); }
+  Matrix3 axes() const { return frame_along(along()); }
+};
+
+}  // namespace obstacle_keys
+}  // namespace pbf::inline scene_module

@@ -1,0 +1,30 @@
+// A sphere.
+#pragma once
+
+#include "lib/scene/shapes/keys.h"
+
+namespace pbf::inline scene_module {
+namespace obstacle_keys {
+
+struct Sphere {
+  static constexpr const char* word = "sphere";
+  using Body = shape::Sphere<double>;
+  Double3 center{};   ///< m
+  double radius = 0;  ///< m
+  bool operator==(const Sphere&) const = default;
+
+  static auto keys() {
+    return std::tuple{ShapeKey{&Sphere::center, "center", "m", kCoordinate, "Centre of the sphere.",
+                               true, FlatY::middle},
+                      ShapeKey{&Sphere::radius, "radius", "m", kLength, kRadiusHelp}};
+  }
+  void check(auto& rules) const {
+    if (rules.flat()) check_radius(rules, radius);
+  }
+  Double3 middle() const { return center; }
+  Matrix3 axes() const { return kUnit3; }
+  Body make(double h) const { return {radius / h}; }
+};
+
+}  // namespace obstacle_keys
+}  // namespace pbf::inline scene_module
