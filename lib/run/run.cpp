@@ -54,7 +54,8 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   return info;
 }
 
-/// The run file and the folder of the pictures, where there are some.
+}  // namespace
+
 void open_files(RunParts& run, const std::string& started) {
   if (const auto& output = run.scene.output) {
     const std::string path = run.folder.file(kRunFile);
@@ -68,6 +69,8 @@ void open_files(RunParts& run, const std::string& started) {
   if (run.pictures) run.pictures->into(run.folder.file(RunFolder::kPictures));
 #endif
 }
+
+namespace {
 
 /// Saves the last good state and a scene that goes on from it, and ends the run.
 [[noreturn]] void report_alarm(const Watch& watch, const Scene& scene, const RunFolder& folder) {

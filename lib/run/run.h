@@ -153,6 +153,9 @@ class Saving : public Observer {
   Stopwatch since_save_;
 };
 
+/// The run file and the folder of the pictures, where there are some. started: UTC, ISO 8601.
+void open_files(RunParts& run, const std::string& started);
+
 /// Runs to the end, a signal, the wall-time limit or an alarm of the guard, writes the last frame,
 /// closes every file, and tells the summary. Throws Error(guard) after an alarm, whose last good
 /// state and a scene that goes on from it are saved; Error(difference) for the warnings of a strict

@@ -37,19 +37,18 @@ class Silence {
 /// A run of such a solver in a folder of its own.
 struct CountedRun {
   Folder temporary{};
-  LoadedScene loaded{};
-  Plan plan;
+  Start start;
   CountingSolver solver{};
+  StopToken stop{};
   Log log{true};
+  Control control{stop, log};
   StageClock clock{};
-  Stopwatch wall{};
   RunFolder folder{temporary / "run", ExistingFolder::refuse};
   ResumePoint from{};
-  RunParts run{loaded, plan, solver, log, clock, wall, folder, from, {}};
+  RunParts run{start, solver, control, clock, folder, from};
 
   explicit CountedRun(const Scene& scene)
-      : loaded{scene, {}, {}, {}, {}, {}, {}, {}},
-        plan(make_plan(scene, CountingSolver::particles)) {}
+      : start{{scene, {}, {}, {}, {}, {}, {}, {}}, make_plan(scene, CountingSolver::particles)} {}
   /// "no error", or the exit code and the message.
   std::string error() {
     const Silence silence;
@@ -79,7 +78,7 @@ struct CountedRun {
   }
   void stop_at(std::int64_t update) {
     solver.flow = [this, update](Diagnostics& m) {
-      if (m.update >= update) run.max_walltime = 1e-9;
+      if (m.update >= update) control.max_walltime = 1e-9;
     };
   }
 };

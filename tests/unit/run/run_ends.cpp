@@ -36,7 +36,7 @@ TEST_CASE("a state that the guard objects to where it would be saved is not save
 
 TEST_CASE("a strict run stops at its first warning, after saving, and ends with 6") {
   CountedRun r(ten_updates());
-  r.run.strict = true;
+  r.control.strict = true;
   r.solver.flow = [](Diagnostics& m) {
     if (m.update >= 4) m.unresolved = 1, m.relative_way_max = 1.5;
   };

@@ -128,14 +128,14 @@ TEST_CASE("a run that is stopped saves the state that it leaves, with a frame an
 TEST_CASE(
     "a run whose wall time is over stops at its start, one that goes back at its first event") {
   CountedRun plain(ten_updates());
-  plain.run.max_walltime = 1e-9;
+  plain.control.max_walltime = 1e-9;
   CHECK(plain.error() == "no error");
   CHECK(plain.solver.calls.empty());
   CHECK(plain.frames() == UpdateNumbers{0});
   CHECK(plain.column("update") == std::vector<double>{0});
   CHECK(plain.saved().value().state.updates == 0);
   CountedRun back(with_shorter_steps());
-  back.run.max_walltime = 1e-9;
+  back.control.max_walltime = 1e-9;
   CHECK(back.error() == "no error");
   CHECK(back.frames() == UpdateNumbers{0, 3});
   CHECK(back.saved().value().state.updates == 3);
@@ -157,7 +157,7 @@ TEST_CASE(
   Told told;
   Recorder asks("asks", 5, told);
   asks.then = [&](Session& session) {
-    if (session.update() == 5) r.run.max_walltime = 1e-9;
+    if (session.update() == 5) r.control.max_walltime = 1e-9;
     return Now::go_on;
   };
   Saving saving(r.run, frames, *rows, watch, reporter);

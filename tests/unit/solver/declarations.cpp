@@ -126,7 +126,9 @@ concept Writable = requires(T rows, Row row) {
   rows[0] = row;
 };
 template <class G>
-concept HasLists = requires(const G& c) { c.lists(); };
+concept HasLists = requires(const G& c) {
+  c.lists();
+};
 template <class T>
 concept Readable = requires(T rows) {
   rows[0];
