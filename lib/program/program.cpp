@@ -127,7 +127,7 @@ struct Fourth {
     for (const FieldInfo* f : pass.flips)
       if (f == &field::position) std::swap(first, second);
     for (const AccessInfo& a : pass.steps) {
-      if (&a.field->primary() != &field::position || !(a.how & kReading) || a.w == W::any ||
+      if (&a.field->primary() != &field::position || (a.how & kWriting) || a.w == W::any ||
           (a.when == When::first_iteration && iteration > 0) || of(*a.field) == a.w)
         continue;
       throw Error(ExitCode::internal,

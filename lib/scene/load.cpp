@@ -91,7 +91,7 @@ Scene scene_of_tree(const Node& root, Problems& problems, bool* automatic) {
   Node tree = root;
   refuse_base(tree, problems);
   const std::vector<std::string> bad = write_out(tree, problems);
-  static_cast<Places&>(placed) = read_tree(scene_table(), tree, object(placed.scene), problems);
+  static_cast<KeyPlaces&>(placed) = read_tree(scene_table(), tree, object(placed.scene), problems);
   placed.bad.insert(bad.begin(), bad.end());
   if (automatic != nullptr) *automatic = placed.scene.time.step == 0;
   if (placed.scene.time.step == 0) choose_step(placed, problems);

@@ -39,7 +39,7 @@ class Validator {
   Validator(const KeyTable& table, const Object& object, Problems& problems)
       : table_(table), object_(object), problems_(problems) {}
 
-  Places run(const Node& root) {
+  KeyPlaces run(const Node& root) {
     out_.places[""] = root.place();
     if (root.kind == Node::Kind::map)
       read_block(*table_.find_block(""), "", root, object_, ~0u);
@@ -274,17 +274,17 @@ class Validator {
   const KeyTable& table_;
   const Object& object_;
   Problems& problems_;
-  Places out_;
+  KeyPlaces out_;
 };
 
 }  // namespace
 
-std::string Places::place(const std::string& key) const {
+std::string KeyPlaces::place(const std::string& key) const {
   const auto it = places.find(key);
   return it != places.end() ? it->second : place(around(key));
 }
 
-bool Places::good(std::initializer_list<std::string> keys) const {
+bool KeyPlaces::good(std::initializer_list<std::string> keys) const {
   return std::none_of(keys.begin(), keys.end(), [this](const std::string& key) {
     std::string path = key;
     while (!path.empty() && !bad.count(path)) path = around(path);
@@ -292,8 +292,8 @@ bool Places::good(std::initializer_list<std::string> keys) const {
   });
 }
 
-Places read_tree(const KeyTable& table, const Node& root, const Object& object,
-                 Problems& problems) {
+KeyPlaces read_tree(const KeyTable& table, const Node& root, const Object& object,
+                    Problems& problems) {
   return Validator(table, object, problems).run(root);
 }
 

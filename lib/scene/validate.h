@@ -13,7 +13,7 @@
 namespace pbf::inline scene_module {
 
 /// The memory of where each key stood.
-struct Places {
+struct KeyPlaces {
   std::map<std::string, std::string> places;  ///< of keys and blocks that were given
   std::set<std::string> bad;                  ///< keys with a problem: nothing can be said of them
 
@@ -23,13 +23,14 @@ struct Places {
   bool good(std::initializer_list<std::string> keys) const;
 };
 
-struct PlacedScene : Places {
+struct PlacedScene : KeyPlaces {
   Scene scene;
 };
 
 /// Reads every key of the table into the object, reports what is unknown, misplaced, doubled,
 /// missing, of the wrong type or out of range. Paths of lists' keys read "bodies[0].min".
-Places read_tree(const KeyTable& table, const Node& root, const Object& object, Problems& problems);
+KeyPlaces read_tree(const KeyTable& table, const Node& root, const Object& object,
+                    Problems& problems);
 /// Gives keys that a program of an earlier version has written the names that they have now.
 void use_new_names(const KeyTable& table, Node& node, const std::string& block = "");
 

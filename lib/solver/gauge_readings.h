@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/boundary/loads.h"
 #include "lib/program/plan.h"
 
 namespace pbf::inline solver_module {

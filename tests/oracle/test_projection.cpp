@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-#include "lib/run/emit.h"
-#include "lib/run/prestabilize.h"
+#include "lib/run/start.h"
 #include "lib/scene/load.h"
 #include "tests/support/against_oracle.h"
 #include "tests/support/catch.h"
@@ -237,15 +236,14 @@ TEST_CASE("the distance of an update in a dam break is that of the page of diagn
   const Row row = GENERATE(Row{1, 1, 0.0136}, Row{1, 2, 0.0151}, Row{1, 4, 0.0072},
                            Row{1, 8, 0.0030}, Row{1, 16, 0.00095}, Row{0.5, 2, 0.037},
                            Row{0.5, 4, 0.0164}, Row{0.5, 8, 0.0081}, Row{0.5, 16, 0.0033});
-  const pbf::LoadedScene loaded =
-      pbf::load_scene(PBF_SOURCE_DIR "/configs/dam_break.yaml",
-                      {"fluid.spacing=0.05", "time.step=0.004", "viscosity=off",
-                       "solver.sor=" + std::to_string(row.sor),
-                       "solver.iterations=" + std::to_string(row.iterations)});
-  const pbf::Scene& scene = loaded.scene;
-  auto particles = pbf::emit_particles(scene, loaded.folder);
-  const pbf::Plan plan = pbf::make_plan(scene, std::int64_t(particles.size()));
-  const auto solver = pbf::start_solver(scene, plan, std::move(particles));
+  pbf::Start run =
+      pbf::prepare(pbf::load_scene(PBF_SOURCE_DIR "/configs/dam_break.yaml",
+                                   {"fluid.spacing=0.05", "time.step=0.004", "viscosity=off",
+                                    "solver.sor=" + std::to_string(row.sor),
+                                    "solver.iterations=" + std::to_string(row.iterations)}));
+  const pbf::Scene& scene = run.scene();
+  const pbf::Plan& plan = run.plan;
+  const auto solver = pbf::solver_of(run);
   double squares = 0;
   for (const double time : {0.2, 0.4}) {
     solver->step(std::llround(time / scene.time.step) - solver->updates());

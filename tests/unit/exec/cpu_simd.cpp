@@ -84,7 +84,8 @@ void check_loads() {
   const auto rows = numbered<Real>(W + 3);
   int index[W];
   for (int l = 0; l < W; ++l) index[l] = (7 * l + 2) % (W + 3);
-  const auto a = load(rows.data(), Adjacent<W>{3}), s = load(rows.data(), Scattered<W>{index});
+  const GatheredRows<Vec4<Real>> all(rows.data());
+  const auto a = load(all, Adjacent<W>{3}), s = load(all, Scattered<W>{index});
   for (int l = 0; l < W; ++l) {
     const auto is = [&](const Vec4<Lanes<Real, W>>& v, int row) {
       return v.x.v[l] == 4 * row && v.y.v[l] == 4 * row + 1 && v.z.v[l] == 4 * row + 2 &&

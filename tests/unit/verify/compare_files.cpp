@@ -75,7 +75,7 @@ const ComparePart& part(const CompareResult& r, const std::string& name) {
 }
 
 /// A's precision is float, so that the files promise no bits.
-Made other() {
+Made another() {
   Made m;
   m.precision = "float";
   return m;
@@ -84,7 +84,7 @@ Made other() {
 }  // namespace
 
 TEST_CASE("two files of one content are the same, whatever their precision", "[compare]") {
-  for (const Made& b : {Made{}, other()}) {
+  for (const Made& b : {Made{}, another()}) {
     const CompareResult r = compare(Made{}, b);
     CAPTURE(compare_text(r));
     CHECK(r.same());
@@ -94,7 +94,7 @@ TEST_CASE("two files of one content are the same, whatever their precision", "[c
 
 TEST_CASE("what one of two files holds and the other does not is a difference, by name",
           "[slow][compare]") {
-  Made b = other();
+  Made b = another();
   std::vector<std::string> named;
   SECTION("a side that ended after its first frame") {
     b.frames = 1, b.rows = 1;
@@ -144,7 +144,7 @@ TEST_CASE("what one of two files holds and the other does not is a difference, b
 }
 
 TEST_CASE("files without one frame between them cannot be compared", "[compare]") {
-  Made none = other();
+  Made none = another();
   none.frames = 0;
   try {
     compare(none, none);
@@ -159,7 +159,7 @@ TEST_CASE("samples that differ by rounding are equal, by more they are not", "[s
   const auto [ulps, same] = GENERATE(table<double, bool>({{4, true}, {1e5, false}}));
   const std::string field = GENERATE("position", "velocity", "density");
   CAPTURE(ulps, field);
-  Made b = other();
+  Made b = another();
   b.change = [&, ulps = ulps](FieldArray& f, std::int64_t k) {
     if (f.name != field || k == 0) return;
     // A speed of float is known to a way of float over a step.
@@ -207,7 +207,7 @@ TEST_CASE("values that are no numbers are the same only where both files have th
           "[slow][compare]") {
   const std::string field = GENERATE("position", "velocity", "density");
   CAPTURE(field);
-  Made sick = other();
+  Made sick = another();
   sick.change = [&](FieldArray& f, std::int64_t k) {
     if (f.name == field && k == 3) f.as<double>()[5] = kNaN;
   };
@@ -220,7 +220,7 @@ TEST_CASE("values that are no numbers are the same only where both files have th
 
 TEST_CASE("frames of other numbers of particles differ, empty ones on both sides do not",
           "[compare]") {
-  Made none = other(), few = other();
+  Made none = another(), few = another();
   none.count = 0;
   few.count = 599;
   CHECK(compare(none, none).same());
