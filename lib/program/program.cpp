@@ -150,7 +150,7 @@ void follow(const Program& p, const Steps& steps, int iteration, Fourth& w) {
       w.after(p.passes[std::size_t(s.index)], iteration, p.has_iterations);
     // The second iteration stands for all that follow.
     for (int k = s.first; s.kind == ProgramStep::iterate && k < s.first + std::min(s.times, 2); ++k)
-      follow(p, s.body, k, w);
+      follow(p, s.body, iteration + k, w);
     if (s.kind == ProgramStep::until) follow(p, s.body, 1, w);
   }
 }
