@@ -17,7 +17,7 @@
 
 namespace pbf::inline scene_module {
 
-/// A key. Shapes may share one: of the same name it is the same row of the table.
+/// A key. Shapes with keys of the same name share a row of the table.
 template <class Member, class Holder>
 struct ShapeKey {
   Member Holder::*member;
@@ -26,7 +26,7 @@ struct ShapeKey {
   const char* help;
   bool required = true;
   FlatY flat = FlatY::none;
-  bool by_center = false;  ///< a corner of a box that center and size may give as well
+  bool by_center = false;  ///< a corner of a box, which center and size may give as well
 };
 
 namespace obstacle_keys {
@@ -34,7 +34,7 @@ namespace obstacle_keys {
 inline constexpr const char* kRadiusHelp =
     "Radius; of cylinders, capsules and discs at least the smoothing length.";
 
-/// The surface's curvature must be seen by the fluid.
+/// The fluid resolves curvature only down to the smoothing length.
 void check_radius(auto& rules, const double& radius) {
   if (!rules.good_h(radius) || radius >= rules.h()) return;
   rules.add(radius, "is " + rules.text(radius) + ", below the smoothing length (" +
@@ -44,7 +44,7 @@ void check_radius(auto& rules, const double& radius) {
                         rules.text(radius / rules.smoothing_ratio()));
 }
 
-/// About an axis between two places.
+/// A body around an axis between two points.
 struct Tube {
   Double3 from{}, to{};  ///< m, ends of the axis
   double radius = 0;     ///< m
@@ -56,7 +56,7 @@ struct Tube {
         ShapeKey{&Tube::from, "from", "m", kCoordinate, "One end of the axis.", true, from},
         ShapeKey{&Tube::to, "to", "m", kCoordinate, "The other end.", true, to}};
   }
-  /// `flat`: what is wrong with the axis with dimensions: 2; null: nothing.
+  /// `flat`: the error of the axis with dimensions: 2; null: none.
   void check_axis(auto& rules, const char* flat) const {
     if (rules.good(from, to)) {
       if (from == to)
