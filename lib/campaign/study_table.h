@@ -11,7 +11,7 @@ namespace pbf::inline campaign_module {
 
 /// Status of a result. Only finished rows can be on the front or a cheapest setting.
 ///   finished     ran to its end, energy_rise within the limit
-///   energy_rose  ran to its end, but gained more energy than energy_limit: its errors are not valid
+///   energy_rose  ran to its end, but gained more energy than energy_limit: errors not valid
 ///   diverged     particles became not finite or left the box
 ///   unavailable  backend, device or memory is missing
 struct StudyRow {
