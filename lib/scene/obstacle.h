@@ -42,8 +42,8 @@ struct Obstacle {
   }
 };
 
-/// The address of the key `shape` itself in names of keys; the first byte of the variant is the
-/// address of a key of the shape.
+/// The address that stands for the key `shape` in names of keys. It is not that of the variant,
+/// which is also the address of a key of the shape.
 inline const void* address_of_word(const obstacle_keys::Any& shape) {
   return reinterpret_cast<const char*>(&shape) + 1;
 }

@@ -109,7 +109,7 @@ struct SolverSettings {
   int iterations = 4;       ///< constraint iterations per substep; the minimum, with a tolerance
   double tolerance = 0;     ///< mean compression above which more iterations follow; 0: none
   int max_iterations = 32;  ///< maximum per substep, with a tolerance
-  int substeps = 1;  ///< time steps of time.step/substeps that share one update's neighbour lists
+  int substeps = 1;  ///< time steps of time.step/substeps that share one update's neighbor lists
   SolverMethod method = SolverMethod::jacobi;
   LevelsMode levels = LevelsMode::off;
   KernelMode kernels = KernelMode::consistent;
@@ -122,7 +122,7 @@ struct SolverSettings {
   double velocity_damping = 1;  ///< factor on the velocity, once per update
   double speed_limit = 0;       ///< h per time.step, limit for particles; 0: none
   bool prestabilize = true;     ///< remove compression from the start, lib/run/prestabilize.h
-  bool fused = true;            ///< density and lambda in one loop over the neighbours
+  bool fused = true;            ///< density and lambda in one loop over the neighbors
   bool reproducible = false;    ///< cuda: the bits of the CPU, slower (kernels/README.md, "Bits")
   bool operator==(const SolverSettings&) const = default;
 };

@@ -93,7 +93,7 @@ bool write_out_box(const Key& min, Node& entry, const std::string& path, bool fl
   return true;
 }
 
-/// Replaces a box that cannot be determined.
+/// Puts a placeholder in the place of a box that cannot be determined.
 void put_any_box(Node& entry) {
   entry.erase("center");
   entry.erase("size");

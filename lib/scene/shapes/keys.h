@@ -1,11 +1,10 @@
-// What the keys of an obstacle's shape are written with. A shape is a struct with its keys as
-// members (m) and
-//   word                   of scenes
-//   Body                   the kernels' shape
-//   keys()                 its rows in the table: ShapeKey's, in the order of pages
-//   check(rules)           what holds between them, by SceneRules
-//   middle(), axes()       where the body is, m, and its axes as rows
-//   make(h)                the body, lengths over h
+// The parts of a shape of obstacles in scenes. A shape is a struct with its keys as members (m) and
+//   word                   its name in scenes
+//   Body                   its type in the kernels
+//   keys()                 its rows in the table of keys (ShapeKey), in the order of pages
+//   check(rules)           checks rules between its keys, by SceneRules
+//   middle(), axes()       position of the body, m, and its axes as rows
+//   make(h)                the body, with lengths divided by h
 #pragma once
 
 #include <tuple>
