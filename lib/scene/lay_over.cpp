@@ -47,7 +47,7 @@ void gather_words(Node& base, const std::string& name, bool made) {
   }
 }
 
-/// Makes a number for gravity a mapping, so that it can be tilted; refuses a vector.
+/// Makes a number for gravity a mapping that can be tilted; a vector needs a new magnitude.
 void take_magnitude(Node& there, const Node& over) {
   double g = 0;
   if (there.kind == Node::Kind::scalar && read_number(there.text, g) == NumberError::none) {
