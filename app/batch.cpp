@@ -1,5 +1,5 @@
-// pbf batch: many scenes, each in a process and a folder of its own; what is finished is skipped,
-// what was stopped or killed goes on.
+// pbf batch: many scenes, each in its own process and folder. Finished runs are skipped, stopped or
+// killed ones continue.
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -34,12 +34,12 @@ struct BatchOptions {
   std::string out;                           ///< folder of the runs; empty: out/batch_<name>
   std::vector<std::string> grid, overrides;  ///< key=v1,v2; key.path=value
   std::string base_folder;
-  int jobs = 1, threads = 0;     ///< at a time; CPU threads of each, 0: all / jobs
-  std::int64_t only = -1;        ///< this run alone, from 0
+  int jobs = 1, threads = 0;     ///< at a time; CPU threads per run, 0: all / jobs
+  std::int64_t only = -1;        ///< index of the only run, from 0; -1: all
   double max_walltime = 0;       ///< s, 0: none
-  std::string time = "1:00:00";  ///< of a task of the Slurm script
+  std::string time = "1:00:00";  ///< per task of the Slurm script
   bool list = false, slurm = false, collect = false, quiet = false;
-  bool strict = false;  ///< of every run
+  bool strict = false;  ///< for every run
 };
 
 const char* const kBatchHelp =
@@ -58,7 +58,7 @@ const char* const kBatchHelp =
 
 namespace fs = std::filesystem;
 
-/// The command again on one line, for a script that runs elsewhere: absolute paths.
+/// The command on one line, with absolute paths, for a script that runs elsewhere.
 std::string command_text(const BatchOptions& o, const std::string& out) {
   std::string text = shell_quoted(fs::read_symlink("/proc/self/exe").string()) + " batch " +
                      shell_quoted(fs::absolute(o.input).string()) + " --out " +
@@ -78,7 +78,7 @@ std::string script(const BatchOptions& o, const std::string& out,
   wishes.runs = members.size();
   if (o.threads > 0) wishes.threads = o.threads;
   wishes.time = o.time;
-  slurm_seconds(o.time);  // before the runs are looked at
+  slurm_seconds(o.time);  // reports errors before the runs are checked
   std::vector<std::string> overrides = o.overrides;
   overrides.push_back("threads=" + std::to_string(wishes.threads));
   wishes.needs = check_members(members, overrides, o.base_folder, false);
@@ -107,7 +107,7 @@ class Batch {
         [this](std::size_t k, const JobEnd& end) { ended(members_[k], end); });
   }
 
-  /// What became of each run, without running it: from DONE, the scene beside it and run.vtkhdf.
+  /// Collects the results of runs without running them, from DONE, record and run.vtkhdf.
   void collect() {
     for (const BatchMember& m : members_)
       if (fs::exists(out_ + "/" + m.name + "/DONE")) ended(m, end_of(m));
@@ -135,7 +135,7 @@ class Batch {
   }
 
  private:
-  /// How a run with DONE would end if it were given again.
+  /// The result that a run with DONE would have if it were started again.
   JobEnd end_of(const BatchMember& m) const {
     const std::string folder = out_ + "/" + m.name;
     std::vector<std::string> overrides = o_.overrides;
@@ -217,7 +217,7 @@ int command_batch(const BatchOptions& o) {
   if (o.only >= std::int64_t(members.size()))
     throw Error(ExitCode::bad_input, format("--only %ld: the runs are counted from 0 to %zu",
                                             o.only, members.size() - 1));
-  const bool one = o.only >= 0;  // a task of an array: no summary, others write beside it
+  const bool one = o.only >= 0;  // a task of an array: no summary, as other tasks write too
   if (!one && !o.collect) check_members(members, o.overrides, o.base_folder, true);
   std::error_code error;
   fs::create_directories(out, error);

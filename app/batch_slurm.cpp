@@ -9,9 +9,9 @@
 namespace pbf::inline app_module {
 namespace {
 
-constexpr long kLead = 120;  // s before the end in which a run saves
+constexpr long kLead = 120;  // s before the time limit, for saving
 
-/// MiB to ask for: the forecast, a quarter more, and what the batch itself takes.
+/// Memory to request, MiB: the forecast plus a quarter, and that of the batch itself.
 long memory(const BatchNeeds& needs) {
   return long(1.25 * double(needs.host_bytes) / (1024 * 1024)) + 64;
 }

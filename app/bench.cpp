@@ -72,7 +72,7 @@ std::vector<Column<BenchRow>> columns() {
   for (const Stage& stage : kStages) {
     if (!stage.of_update) continue;
     all.push_back({std::string("ms_") + stage.name, [&stage](R r) {
-                     Cell value;  // empty: the scene has no such stage
+                     Cell value;  // empty if the scene has no such stage
                      for (const StageTime& s : r.stages)
                        if (s.name == stage.name) value = s.seconds * 1e3;
                      return value;
@@ -92,7 +92,7 @@ std::string line(const BenchRow& r) {
   return out;
 }
 
-/// What is to come where it takes more than some seconds; else empty.
+/// A note on the duration if it is more than a few seconds; otherwise empty.
 std::string forecast(const BenchOptions& o, std::size_t cases) {
   const BenchSettings& b = o.settings;
   const int updates = b.updates * b.repeats * (b.warmup > 0 ? 2 : 1) + b.warmup;
@@ -122,8 +122,8 @@ int command_bench(const BenchOptions& o) {
   check_output("--json", o.json);
   if (!o.csv.empty() && !o.json.empty() && same_output(o.csv, o.json))
     throw Error(ExitCode::bad_input, "--csv and --json name one file: " + o.csv);
-  // After every row, so that a long benchmark that is cut off leaves its results. What goes into a
-  // pipe cannot be replaced: it waits for the end.
+  // Written after every row, so that an interrupted benchmark leaves its results. A pipe cannot be
+  // rewritten, so it gets the table at the end.
   const auto store = [&](bool end) {
     if (!o.csv.empty() && is_stream(o.csv) == end) write_text_file(o.csv, table.csv());
     if (!o.json.empty() && is_stream(o.json) == end)
@@ -140,7 +140,7 @@ int command_bench(const BenchOptions& o) {
     for (const GridMember& m : grid) {
       const Backend backend = *named<Backend>(o.backends[m.at[1]]);
       const bool on_device = about(backend).on_device;
-      if (on_device && m.at[3] > 0) continue;  // it has no threads
+      if (on_device && m.at[3] > 0) continue;  // a device has no threads
       Scene s = scaled_to(base.scene, o.particles[m.at[0]], base.folder);
       s.backend = backend;
       s.precision = *named<Precision>(o.precisions[m.at[2]]);

@@ -5,8 +5,8 @@
 
 namespace pbf::inline app_module {
 
-/// Each adds its command with its options to the command line. Parsing runs the one that is given
-/// and puts its exit code into `code`; errors are thrown as Error.
+/// Each function adds a command with its options to the command line. Parsing runs the given
+/// command and stores its exit code in `code`; errors are thrown as Error.
 void add_run(CLI::App& app, int& code);
 void add_plan(CLI::App& app, int& code);
 void add_render(CLI::App& app, int& code);

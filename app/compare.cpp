@@ -17,7 +17,7 @@ namespace {
 struct CompareOptions {
   std::vector<std::string> inputs;                  ///< two run files, or one scene with `between`
   std::vector<std::string> between;                 ///< two sides, BACKEND:PRECISION[@THREADS]
-  std::vector<std::string> overrides, overrides_b;  ///< of both sides, of B alone
+  std::vector<std::string> overrides, overrides_b;  ///< for both sides; for B only
   CompareSettings settings;
   std::string report;  ///< path of a .json; empty: none
   std::string junit;   ///< path; empty: none
@@ -50,7 +50,7 @@ void check_report(const std::string& path) {
                   "report are drawn by: python3 -m pbf_tools plot-compare REPORT.json");
 }
 
-/// After the inputs are known.
+/// Checks the paths of reports; called after the inputs are known.
 void check_reports(const CompareOptions& o) {
   check_output("--report", o.report);
   check_output("--junit", o.junit);

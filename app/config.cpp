@@ -43,7 +43,7 @@ int command_config(const ConfigOptions& options) {
                      : options.markdown ? reference_markdown()
                      : options.stages   ? stages_json()
                                         : reference_yaml();
-  if (!text.empty() && text.back() == '\n') text.pop_back();  // result() ends the line
+  if (!text.empty() && text.back() == '\n') text.pop_back();  // result() adds the line break
   Log(false).result(text);
   return 0;
 }

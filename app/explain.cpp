@@ -31,7 +31,7 @@ bool takes_files(const CLI::App& command) {
   return !command.get_options([](const CLI::Option* o) { return o->get_positional(); }).empty();
 }
 
-/// Of the first argument that the command does not take; empty: nothing but what CLI11 says.
+/// The message for an unexpected argument; empty: use that of CLI11.
 std::string of_extra(const CLI::App& command, const std::string& extra) {
   const std::string pbf = "pbf " + command.get_name();
   if (extra.size() > 1 && extra[0] == '-')
@@ -52,7 +52,7 @@ std::string of_extra(const CLI::App& command, const std::string& extra) {
 std::string explain(const CLI::App& app, const CLI::ParseError& e) {
   const auto chosen = app.get_subcommands();
   std::vector<std::string> extras = app.remaining(true);
-  // One that comes where all places are taken is in the message alone.
+  // If all positional arguments are used, the extra one is only in the message.
   const std::string what = e.what(), before = "not expected: ";
   if (const std::size_t at = what.find(before); extras.empty() && at != std::string::npos)
     extras.push_back(what.substr(at + before.size()));

@@ -1,4 +1,4 @@
-// What is said of a command line that CLI11 refuses.
+// Messages for a command line that CLI11 rejects.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,8 +6,8 @@
 
 namespace pbf::inline app_module {
 
-/// CLI11's message, or a better one for arguments that nobody takes (unknown options and commands,
-/// a second scene, a setting without --set), with what may have been meant and where to read on.
+/// CLI11's message, or a better one for unexpected arguments (unknown options and commands, a
+/// second scene, a setting without --set), with a suggestion and where to find help.
 std::string explain(const CLI::App& app, const CLI::ParseError& e);
 
 }  // namespace pbf::inline app_module

@@ -1,4 +1,4 @@
-// Independent pieces of work on several threads, with progress, until a signal ends them.
+// Runs independent work on several threads, with progress, until a signal ends it.
 #pragma once
 
 #include <atomic>
@@ -16,9 +16,9 @@
 
 namespace pbf::inline app_module {
 
-/// work(k) for k below n on `jobs` threads, with a line of progress after each: "k of n WHAT, time"
-/// and name(row). work(k) answers std::optional<Row>; an empty one means that a signal has come,
-/// and no other piece is begun. The first exception is thrown at the end.
+/// Calls work(k) for all k < n on `jobs` threads, with a line of progress after each: "k of n WHAT,
+/// time" and name(row). work(k) returns std::optional<Row>; if it is empty, a signal has come and
+/// no further work is started. The first exception is thrown at the end.
 template <class Row, class Work, class Name>
 std::vector<std::optional<Row>> in_parallel(std::size_t n, int jobs, Log& log, const char* what,
                                             const Work& work, const Name& name) {
@@ -51,7 +51,7 @@ std::vector<std::optional<Row>> in_parallel(std::size_t n, int jobs, Log& log, c
   std::vector<std::thread> threads;
   try {
     for (int j = 1; j < jobs; ++j) threads.emplace_back(loop);
-  } catch (const std::system_error&) {  // no more to be had: those that run do the work
+  } catch (const std::system_error&) {  // no more threads available: continue with those there are
   }
   loop();
   for (std::thread& t : threads) t.join();

@@ -31,8 +31,8 @@ const char* const kExitCodes =
     "  75  stopped early by a signal or the wall-time limit, after saving\n\n"
     "Example: pbf run configs/dam_break.yaml --out out/dam_break";
 
-/// What is parsed. Of a command with --help in any place only these two words: an option before it
-/// would take it for its value.
+/// The words to parse. With --help anywhere, only the command and --help: an option before --help
+/// would take it as its value.
 std::vector<const char*> words_of_line(int argc, char** argv) {
   std::vector<const char*> words(argv, argv + argc);
   const auto asks = [](std::string_view word) { return word == "--help" || word == "-h"; };
@@ -54,7 +54,7 @@ int run_main(int argc, char** argv) {
     const std::vector<const char*> words = words_of_line(argc, argv);
     app.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) {  // --help, --version; on stdout, where a lost write is seen
+    if (e.get_exit_code() == 0) {  // --help, --version; to stdout, where a failed write is detected
       std::ostringstream text;
       app.exit(e, text, text);
       std::fputs(text.str().c_str(), stdout);
@@ -66,7 +66,7 @@ int run_main(int argc, char** argv) {
 }
 
 int fail(ExitCode code, const std::string& message) {
-  // Messages quote what anyone wrote: arguments, file names, the environment, strangers' files.
+  // Messages may quote any text: arguments, file names, the environment, files of others.
   std::fprintf(stderr, "pbf: error: %s\n", escaped(message).c_str());
   return static_cast<int>(code);
 }

@@ -1,5 +1,5 @@
-// What the options of several commands share. Numbers are read as in scenes: "1e3" is 1000, "010"
-// ten, "1.5" no whole number.
+// Options that several commands share. Numbers are read as in scenes: "1e3" is 1000, "010" is ten,
+// and "1.5" is not a whole number.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,8 +14,8 @@
 
 namespace pbf::inline app_module {
 
-/// The command `name`, and its options, which live as long as `app`. Where it is the one that is
-/// given, `code` becomes what `work` makes of them.
+/// Adds the command `name`; its options live as long as `app`. If the command is given, `code` is
+/// set to the result of `work`.
 template <class Options>
 std::pair<CLI::App*, Options&> add_command(CLI::App& app, int& code, int (*work)(const Options&),
                                            const char* name, const char* help,
@@ -37,7 +37,7 @@ inline void add_overrides(CLI::App* command, std::vector<std::string>& overrides
                  "Replace one key of the scene, KEY.PATH=VALUE; repeatable");
 }
 
-/// Where bases of scenes may lie, besides the tree of the scene's own folder.
+/// An additional folder below which bases of scenes may be.
 inline void add_base_folder(CLI::App* command, std::string& folder) {
   command
       ->add_option(
@@ -47,17 +47,17 @@ inline void add_base_folder(CLI::App* command, std::string& folder) {
       ->check(CLI::ExistingDirectory);
 }
 
-/// For the name of a folder or file: "" is what a script gives whose variable is not set.
+/// For names of folders and files: "" usually comes from an unset variable in a script.
 inline CLI::Validator not_empty() {
   return CLI::Validator(
       [](std::string& text) { return text.empty() ? "is empty; give a name" : std::string(); },
       "NAME");
 }
 
-/// The measures of a run, a line each, for help.
+/// The measures of a run, one per line, for help texts.
 std::string diagnostics_text();
 
-/// For Option::transform: a whole number from `low` to `high`, handed on in plain digits.
+/// For Option::transform: a whole number from `low` to `high`, converted to plain digits.
 inline CLI::Validator whole_number(std::int64_t low,
                                    std::int64_t high = std::numeric_limits<int>::max()) {
   const std::string range = std::to_string(low) + " to " + std::to_string(high);
@@ -73,7 +73,7 @@ inline CLI::Validator whole_number(std::int64_t low,
       range);
 }
 
-/// For Option::transform: a number not below `low`, or above it, in `unit`.
+/// For Option::transform: a number from `low` on (above it, if `above`), in `unit`.
 inline CLI::Validator number_from(double low, bool above, const std::string& unit) {
   const std::string what = "a number" + (unit.empty() ? unit : " of " + unit) +
                            (above ? " above " : " from ") + to_text(low) + (above ? "" : " on");

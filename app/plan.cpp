@@ -68,7 +68,7 @@ std::string json(const Plan& plan, const Scene& scene, const std::optional<TimeE
 
 int command_plan(const PlanOptions& options) {
   Log log(false);
-  // Planned for --resolved too: a scene that cannot run is an error in every form of the answer.
+  // Plan for --resolved too: a scene that cannot run is an error in every form of output.
   std::vector<std::string> overrides = options.overrides;
   if (options.threads > 0) overrides.push_back("threads=" + std::to_string(options.threads));
   const Start start = prepare(load_scene_or_run(options.scene, overrides, options.base_folder),

@@ -33,7 +33,7 @@ int command_render(const RenderOptions&) {
   throw Error(ExitCode::unavailable, "this build draws no pictures; build with -DPBF_RENDER=ON");
 }
 #else
-/// What a range is of, and how it follows from the quantiles `of` the frames.
+/// The quantity of a range, and how the range follows from the quantiles of the frames (`of`).
 std::string meaning(const View& view, std::array<double, 2> quantiles, const std::string& of) {
   const std::string are = "the 1 % and 99 % quantiles " + of;
   switch (view.color) {
@@ -51,7 +51,7 @@ std::string meaning(const View& view, std::array<double, 2> quantiles, const std
   return "ids of particles, " + are;
 }
 
-/// The 1 % and the 99 % quantile of the frames.
+/// Sets the range from the 1 % and 99 % quantiles of the frames.
 void take_quantiles(View& view, const RunReader& reader, const std::vector<std::int64_t>& frames,
                     std::int64_t particles, Log& log) {
   QuantileRange values(view, particles * static_cast<std::int64_t>(frames.size()));
@@ -79,7 +79,7 @@ int command_render(const RenderOptions& options) {
   const RunReader reader(run);
   const RunInfo info = reader.info();
   Scene scene = parse_stored_scene(info.resolved_scene, run + " (the scene stored in it)", {});
-  // Of the scene's files pictures need the tables of motions alone.
+  // Pictures need only the tables of motions.
   if (!motion_paths(scene).empty())
     read_motions(scene, folder_of_files(scene, run, info.scene_path));
   apply_render_options(options, scene);

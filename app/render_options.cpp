@@ -69,7 +69,7 @@ std::vector<std::int64_t> select_frames(const std::string& text, std::int64_t fr
   if (text != "all") {
     if (parts.size() > 3) bad("--frames", text, want);
     for (std::size_t i = 0; i < std::min<std::size_t>(2, parts.size()); ++i) {
-      if (parts[i].empty() && parts.size() > 1) continue;  // the end
+      if (parts[i].empty() && parts.size() > 1) continue;  // an omitted bound
       if (read_number(parts[i], range[i]) != NumberError::none) bad("--frames", text, want);
       if (range[i] < 0) range[i] += frames;
     }

@@ -1,4 +1,4 @@
-// The options of `pbf render` as text -> numbers. Every error is Error(bad_input) naming the
+// Converts the options of `pbf render` to numbers. Errors are Error(bad_input) with the name of the
 // option.
 #pragma once
 
@@ -19,15 +19,15 @@ struct RenderOptions {
   std::string out;                  ///< folder, empty: render/ beside the run file
 };
 
-/// "all", "k", "a:b" or "a:b:step", as Python slices: b excluded, negative from the end, empty for
-/// the ends. Refuses what selects nothing of `frames` frames.
+/// "all", "k", "a:b" or "a:b:step", as in Python: b excluded, negative from the end, empty for the
+/// ends. Throws if no frame of `frames` is selected.
 std::vector<std::int64_t> select_frames(const std::string& text, std::int64_t frames);
 
-/// Whether the range follows from the frames.
+/// Whether the range is computed from the frames.
 bool by_quantile(const RenderOptions& options);
 
-/// Replaces what --size, --camera, --style, --color and --range say in the scene's render settings.
-/// A new colour without a range gets that field's own range.
+/// Applies --size, --camera, --style, --color and --range to the scene's render settings. A new
+/// color without a range gets the default range of its field.
 void apply_render_options(const RenderOptions& options, Scene& scene);
 
 }  // namespace pbf::inline app_module

@@ -43,14 +43,14 @@ const char* const kRunHelp =
     "Exit codes are listed in pbf --help.\n\n";
 
 std::vector<std::string> all_overrides(const RunOptions& o) {
-  std::vector<std::string> list = o.overrides;  // the options win: they come last
+  std::vector<std::string> list = o.overrides;  // options come last, so they override --set
   if (!o.backend.empty()) list.push_back("backend=" + o.backend);
   if (!o.precision.empty()) list.push_back("precision=" + o.precision);
   if (o.threads > 0) list.push_back("threads=" + std::to_string(o.threads));
   return list;
 }
 
-/// The run folder: `given` by --out; of a run that is resumed by its own file or folder that
+/// The run folder: `given` by --out; else, to resume a run from its own file or folder, that
 /// folder; else out/<scene name>.
 std::string run_place(const LoadedScene& loaded, const std::string& given, bool resume) {
   if (!given.empty()) return given;
@@ -58,7 +58,7 @@ std::string run_place(const LoadedScene& loaded, const std::string& given, bool 
   return resume && !own.empty() ? own : "out/" + loaded.scene.name;
 }
 
-/// Not where the run would repeat itself into the folder that it is in.
+/// Refuses to repeat a run into its own folder.
 void refuse_own_folder(const LoadedScene& loaded, const std::string& out) {
   const std::string own = folder_of_run(loaded.run_file);
   std::error_code error;
@@ -68,11 +68,11 @@ void refuse_own_folder(const LoadedScene& loaded, const std::string& out) {
             "go on with it");
 }
 
-/// What --resume says of a folder that is not there. `given`: by --out.
+/// Note of --resume on a missing folder. `given`: named by --out.
 std::string not_there_note(const LoadedScene& loaded, const std::string& out, bool given) {
   const std::string text = out + " is not there: the run begins at its start";
   if (given) return text;
-  // Runs of scenes without a name were kept in out/scene by earlier versions.
+  // Earlier versions kept runs of scenes without a name in out/scene.
   const std::string before = std::string("out/") + Scene{}.name;
   std::error_code error;
   if (loaded.named_by_file && fs::exists(before + "/" + kResolvedScene, error))
@@ -81,7 +81,7 @@ std::string not_there_note(const LoadedScene& loaded, const std::string& out, bo
   return text + "; to go on with one that was begun with --out FOLDER, give the same --out";
 }
 
-/// Refuses --log-json where its folder is missing, or the run in `out` writes that file itself.
+/// Refuses --log-json if its folder is missing, or if the run in `out` writes that file itself.
 void check_log_json(const std::string& path, const std::string& out) {
   if (path.empty()) return;
   if (RunFolder::owns(out, path))
@@ -109,7 +109,7 @@ int command_run(const RunOptions& options) {
   if (place.existing == ExistingFolder::refuse) refuse_own_folder(loaded, place.folder);
   const bool there = RunFolder::check(place.folder, place.existing);
   Start start = prepare(std::move(loaded), {.warnings = true, .strict = options.strict});
-  check_log_json(options.log_json, place.folder);  // now that all is read
+  check_log_json(options.log_json, place.folder);  // after all inputs are read
   if (there && options.overwrite) RunFolder::refuse_overwrite(place.folder);
   if (options.resume && !there)
     log.note("pbf: " + not_there_note(start.loaded, place.folder, !options.out.empty()));

@@ -1,11 +1,11 @@
-// Words for the scripts that pbf prints.
+// Quoting of words for the scripts that pbf prints.
 #pragma once
 
 #include <string>
 
 namespace pbf::inline app_module {
 
-/// `text` as one word of bash, on one line: bare where that is safe, in single quotes, or, with
+/// `text` as one word of bash on one line: unquoted if that is safe, else in single quotes or, with
 /// control characters (a line break would end a comment), in $'...' with escapes.
 std::string shell_quoted(const std::string& text);
 

@@ -19,11 +19,11 @@ namespace pbf::inline app_module {
 namespace {
 
 struct StabilityCommandOptions {
-  std::vector<std::string> cases;  ///< names or groups, empty: all; of a map: the scene's path
-  std::string suite;               ///< empty: the one that comes with the program
+  std::vector<std::string> cases;  ///< names or groups, empty: all; with --map: path of the scene
+  std::string suite;               ///< empty: the suite that comes with the program
   std::string backend = "cpu", precision = "float";
   bool reduced = false, quiet = false;
-  int jobs = 0;  ///< cases at once; 0: as many as there are threads, 1 on a device
+  int jobs = 0;  ///< cases at a time; 0: number of threads, 1 on a device
   std::vector<std::string> overrides;
   std::string base_folder;
   std::string csv, junit;  ///< paths, empty: none
@@ -63,7 +63,7 @@ std::vector<StabilityCase> chosen(const StabilityCommandOptions& o) {
     for (const StabilityCase& c : all) {
       if (c.name != name && c.group != name) continue;
       found = true;
-      // What a case is compared with runs too.
+      // Also run the case that it is compared with.
       for (const StabilityCase& other : all)
         if (other.name == c.must.like) add(other);
       add(c);
@@ -78,8 +78,7 @@ std::vector<StabilityCase> chosen(const StabilityCommandOptions& o) {
   return out;
 }
 
-/// Keeps the rows that are there. When some are not: says what is lost, and the code is that of a
-/// stop.
+/// Keeps finished rows. If some are missing, reports it and sets the exit code of an early stop.
 template <class Row>
 std::vector<Row> finished(std::vector<std::optional<Row>> rows, const char* what, Log& log,
                           int& code) {
@@ -96,7 +95,7 @@ std::vector<Row> finished(std::vector<std::optional<Row>> rows, const char* what
 int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int jobs) {
   Log log(o.quiet);
   const std::vector<StabilityCase> cases = chosen(o);
-  for (const StabilityCase& c : cases) note_input(c.scene);  // told before the work, not after it
+  for (const StabilityCase& c : cases) note_input(c.scene);  // so that outputs cannot replace it
   check_output("--csv", o.csv);
   check_output("--junit", o.junit);
   if (!o.csv.empty() && !o.junit.empty() && same_output(o.csv, o.junit))

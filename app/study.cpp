@@ -67,8 +67,8 @@ void make_folder(const std::string& path) {
                                   "; choose another one with --out");
 }
 
-/// The result of a run, `name` among people: kept in the folder from before, or simulated now.
-/// Empty when a signal came. Throws Error(unavailable) where it cannot run here.
+/// The result of a run, called `name` in messages: stored in the folder, or simulated now. Empty
+/// after a signal. Throws Error(unavailable) if it cannot run here.
 std::optional<MemberResult> result_of(const Study& study, const StudyMember& member,
                                       const std::string& folder, const std::string& name,
                                       Log& log) {
@@ -170,7 +170,7 @@ int command_study(const StudyOptions& o) {
     }
     rows.push_back(study_row(study, member, *result, reference ? &*reference : nullptr));
     mark_front(study, rows);
-    write_tables(study, rows, out);  // after every run: what is done can be looked at
+    write_tables(study, rows, out);  // after every run, for early inspection
   }
   log.result(study_text(study, rows));
   log.note("tables in " + out + ": study.csv, study.json" + (study.front ? ", front.csv" : ""));

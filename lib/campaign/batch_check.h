@@ -1,4 +1,4 @@
-// A look at every run of a batch before the first one starts.
+// Checks every run of a batch before the first one starts.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace pbf::inline campaign_module {
 
-/// What the most demanding run of a batch needs, as `pbf plan` forecasts it.
+/// The needs of the most demanding run of a batch, as `pbf plan` forecasts them.
 struct BatchNeeds {
-  std::int64_t host_bytes = 0;  ///< peak of a run
-  bool device = false;          ///< a run is on one
+  std::int64_t host_bytes = 0;  ///< peak of one run
+  bool device = false;          ///< whether a run uses a device
 };
 
-/// Reads and plans every run, with `overrides` (key.path=value) before its own; `base_folder` as
-/// in load_scene(). `here`: on this machine, whose memory must hold each of them. Throws Error,
-/// with the code of the first one that cannot run, naming it and up to nine more, each with its
-/// message.
+/// Reads and plans every run, with `overrides` (key.path=value) applied before its own;
+/// `base_folder` as in load_scene(). `here`: every run must fit into the memory of this machine. If
+/// runs cannot run, throws Error with the code of the first, naming up to ten of them with their
+/// messages.
 BatchNeeds check_members(const std::vector<BatchMember>& members,
                          const std::vector<std::string>& overrides, const std::string& base_folder,
                          bool here);

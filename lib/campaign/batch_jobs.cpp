@@ -18,7 +18,7 @@
 namespace pbf::inline campaign_module {
 namespace {
 
-/// Of all that was written to stderr, the error.
+/// The error message in the text that a child wrote to stderr.
 std::string error_line(int fd) {
   std::string text;
   char block[4096];
@@ -41,11 +41,11 @@ std::string error_line(int fd) {
 struct Job {
   pid_t pid;
   std::size_t index;
-  int err;  // descriptor of what it writes to stderr
+  int err;  // file descriptor of its stderr
 };
 
 Job start(std::size_t index, const std::vector<std::string>& args) {
-  // Everything is made before the fork: only system calls may follow it.
+  // Allocate everything before the fork: only system calls may follow it.
   std::vector<std::string> texts{"pbf"};
   texts.insert(texts.end(), args.begin(), args.end());
   std::vector<char*> argv;
@@ -54,7 +54,7 @@ Job start(std::size_t index, const std::vector<std::string>& args) {
   const int err = memfd_create("pbf-batch", MFD_CLOEXEC);
   const int out = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   const pid_t parent = getpid();
-  const HeldSignals held;  // a limit of the batch may pass before the run listens
+  const HeldSignals held;  // a signal may come before the run has its handlers
   const pid_t pid = err < 0 || out < 0 ? -1 : fork();
   if (pid < 0) {
     const int reason = errno;
@@ -66,7 +66,7 @@ Job start(std::size_t index, const std::vector<std::string>& args) {
                     "--jobs");
   }
   if (pid == 0) {
-    setpgid(0, 0);  // the terminal's Ctrl-C reaches the batch alone, which passes it on
+    setpgid(0, 0);  // Ctrl-C in the terminal reaches only the batch, which forwards it
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent || dup2(out, 1) < 0 || dup2(err, 2) < 0) _exit(1);
     execv("/proc/self/exe", argv.data());
@@ -91,7 +91,7 @@ void run_jobs(int jobs, std::size_t count,
         running.push_back(start(next, args(next)));
       } catch (const Error&) {
         if (running.empty()) throw;
-        break;  // those that run go on; the next one waits for the end of one of them
+        break;  // continue with fewer processes: the next one waits until one ends
       }
       ++next;
     }

@@ -11,14 +11,14 @@ namespace pbf::inline campaign_module {
 /// How a child ended.
 struct JobEnd {
   int code = 0;         ///< exit code; 128 + signal when a signal ended it
-  std::string message;  ///< after "pbf: error: " on its stderr, one line; empty when there is none
+  std::string message;  ///< the line after "pbf: error: " on stderr; may be empty
 };
 
-/// Runs this program with other arguments in processes of their own, at most `jobs` at a time. A
-/// child gets SIGTERM when this process ends, however that happens. Starts job k for k = 0 ..
-/// count-1 with the arguments that args(k) gives, no more once stop() says so: what runs then gets
-/// SIGTERM once and is waited for. ended(k, end) after each. Throws Error(unavailable) when no
-/// process can be started.
+/// Runs this program with other arguments in child processes, at most `jobs` at a time. A child
+/// gets SIGTERM when this process ends, in any way. Starts job k for k = 0 .. count-1 with the
+/// arguments args(k). Once stop() is true, starts no more, sends SIGTERM once to the running jobs
+/// and waits for them. Calls ended(k, end) after each job. Throws Error(unavailable) if no process
+/// can be started.
 void run_jobs(int jobs, std::size_t count,
               const std::function<std::vector<std::string>(std::size_t)>& args,
               const std::function<bool()>& stop,

@@ -84,7 +84,7 @@ std::vector<BatchMember> of_list(const std::string& path) {
 
 void name_all(std::vector<BatchMember>& all) {
   std::set<std::string> taken;
-  std::map<std::string, int> next;  // the number to try for a name: not all of them again
+  std::map<std::string, int> next;  // first suffix to try for a name, to avoid a quadratic search
   for (BatchMember& m : all) {
     std::string name = batch_stem(m.scene);
     for (const std::string& o : m.overrides) {
@@ -105,11 +105,11 @@ void name_all(std::vector<BatchMember>& all) {
 
 std::string batch_stem(const std::string& input) {
   std::error_code error;
-  fs::path path = fs::absolute(input, error).lexically_normal();  // "." has a name too
+  fs::path path = fs::absolute(input, error).lexically_normal();  // resolves "."
   if (!path.has_filename()) path = path.parent_path();
   if (fs::is_directory(path, error)) return path.filename().string();
   if (path.filename() == kRunFile || path.filename() == kResolvedScene)
-    return path.parent_path().filename().string();  // every run has these
+    return path.parent_path().filename().string();  // these names are the same in every run folder
   return path.stem().string();
 }
 

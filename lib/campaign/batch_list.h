@@ -9,22 +9,22 @@
 namespace pbf::inline campaign_module {
 
 struct BatchMember {
-  std::string name;                    ///< of the run, its folder and its row: unique
+  std::string name;                    ///< unique name of the run, its folder and its row
   std::string scene;                   ///< path
   std::vector<std::string> overrides;  ///< key.path=value: of the list, then of the grid
 };
 
-/// The name of a scene, a folder, a list or a run in those of its runs and of their folder: its
-/// file's, without the ending; of the files that every run has, such as run.vtkhdf, their folder's.
+/// Short name of a scene, folder, list or run, for names of runs and of their folder: the file name
+/// without ending or, for a file that every run has (run.vtkhdf), the name of its folder.
 std::string batch_stem(const std::string& input);
 
-/// Of `--grid key=v1,v2` and key=first:last:count. Throws Error(bad_input) for anything else.
+/// Parses `--grid key=v1,v2` or key=first:last:count. Throws Error(bad_input) for anything else.
 GridAxis parse_axis(const std::string& text);
 
-/// `input`: a folder (its *.yaml and *.yml, in order of names), a scene (*.yaml, *.yml, or a run
-/// file *.vtkhdf), or a list: a text file with a scene, or a run's file or folder, on each line,
-/// relative to the list, followed by key.path=value where wanted; # begins a comment. The last axis
-/// runs fastest. Throws Error(bad_input) naming file and line.
+/// `input`: a folder (its *.yaml and *.yml in order of names), a scene (*.yaml, *.yml, or a run
+/// file *.vtkhdf), or a list: a text file with a scene, run file or run folder per line, relative
+/// to the list, optionally followed by key.path=value; # begins a comment. The last axis varies
+/// fastest. Throws Error(bad_input) with file and line.
 std::vector<BatchMember> batch_members(const std::string& input, std::vector<GridAxis> axes);
 
 }  // namespace pbf::inline campaign_module

@@ -17,7 +17,7 @@
 namespace pbf::inline campaign_module {
 namespace {
 
-/// Columns of a run's log whose last value is in the summary.
+/// Columns of a run's log whose last values are in the summary.
 std::vector<std::string> last_values() {
   std::vector<std::string> names{"time", "update"};
   for (const Diagnostic& d : diagnostics())
@@ -31,7 +31,7 @@ std::map<std::string, std::string> units_of_results() {
   return units;
 }
 
-/// Keys that the list and the grid set, in the order in which they come.
+/// Keys that the list and the grid set, in order of first appearance.
 std::vector<std::string> set_keys(const std::vector<BatchMember>& members) {
   std::vector<std::string> keys;
   std::set<std::string> seen;
@@ -42,7 +42,7 @@ std::vector<std::string> set_keys(const std::vector<BatchMember>& members) {
   return keys;
 }
 
-/// The last one given counts, as for --set.
+/// The last setting of a key is used, as for --set.
 Cell value_of(const BatchMember& m, const std::string& key) {
   Cell value;
   for (const std::string& o : m.overrides)
@@ -54,7 +54,7 @@ Cell value_of(const BatchMember& m, const std::string& key) {
   return value;
 }
 
-/// "bodies[0].velocity" and "bodies.0.velocity" are of bodies[].velocity, "gravity[2]" of gravity.
+/// "bodies[0].velocity" and "bodies.0.velocity" mean bodies[].velocity, "gravity[2]" gravity.
 std::string unit_of_key(const std::string& key) {
   static const std::regex index(R"((\.|\[)\d+\]?)"), last(R"(\[\]$)");
   std::string path = std::regex_replace(key, index, "[]");
@@ -65,8 +65,8 @@ std::string unit_of_key(const std::string& key) {
 
 constexpr const char* kOfFile[] = {"particles", "frames", "warnings", "seconds"};
 
-/// Of a run's file: the last measures, the numbers of particles, frames and warnings, seconds;
-/// empty cells without one.
+/// Adds from a run file: last measurements, numbers of particles, frames and warnings, seconds;
+/// empty cells if there is no file.
 void add_results(const std::string& path, std::vector<Cell>& row) {
   const std::vector<std::string> names = last_values();
   std::vector<Cell> cells(names.size() + std::size(kOfFile));
@@ -86,7 +86,7 @@ void add_results(const std::string& path, std::vector<Cell>& row) {
           for (const double s : file.log_column(name)) seconds += s;
       cells.back() = seconds;
     } catch (const Error&) {
-      cells.assign(cells.size(), Cell{});  // the message of the run says what is wrong with it
+      cells.assign(cells.size(), Cell{});  // the message of the run tells what is wrong
     }
   row.insert(row.end(), cells.begin(), cells.end());
 }

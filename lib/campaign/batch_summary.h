@@ -1,4 +1,4 @@
-// The table of `pbf batch`: one row per run, from what its folder holds.
+// The table of `pbf batch`: one row per run, from the contents of its folder.
 #pragma once
 
 #include <map>
@@ -10,16 +10,16 @@
 
 namespace pbf::inline campaign_module {
 
-/// Why a run ended, from its exit code: finished, diverged, stopped, unavailable, ... "waiting":
-/// not started.
+/// Why a run ended, from its exit code: finished, diverged, stopped, unavailable, ...; "waiting" if
+/// it has not started.
 std::string exit_reason(int code);
 
-/// CSV: a comment "# units: column=unit, ..." of the columns that have one; then name, scene,
-/// settings, a column of every key that the list or the grid sets, with its value, empty where a
-/// run has the scene's own ("set.name" where the key has the name of another column), exit code,
-/// reason, message, then the last row of the run's log (time, update, compression, energies, ...)
-/// and its numbers of particles, frames and warnings, where it has a run file, and last `seconds`,
-/// those of all its updates and their output. Only `seconds` depends on the machine.
+/// CSV. A comment "# units: column=unit, ..." precedes the table. Columns: name, scene and
+/// settings; one column per key that the list or the grid sets, empty if a run uses the value of
+/// its scene ("set.name" if the key has the name of another column); exit code, reason and message;
+/// from the run file, if any, the last row of the log (time, update, compression, energies, ...)
+/// and the numbers of particles, frames and warnings; `seconds` of all updates with their output,
+/// the only column that depends on the machine.
 std::string batch_summary(const std::vector<BatchMember>& members,
                           const std::map<std::string, JobEnd>& ends, const std::string& out);
 

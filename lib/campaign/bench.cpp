@@ -33,13 +33,13 @@ Scene scaled_to(const Scene& scene, std::int64_t n, const std::string& dir) {
     for (Body& b : s.bodies) b.count = b.count * n / random;
     return s;
   }
-  // A few rounds, since lattice points come in whole layers.
+  // Iterate, since lattice points come in whole layers.
   for (int round = 0; round < 4; ++round) {
     const double now = double(count_particles(s, dir));
     const double share = now / double(n);
     const double finer = s.dimensions == 2 ? std::sqrt(share) : std::cbrt(share);
     s.fluid.spacing *= finer;
-    if (const auto y = s.plane())  // the slab stays as many spacings thick
+    if (const auto y = s.plane())  // keep the thickness of the slab in spacings
       for (double* face : {&s.domain.min[1], &s.domain.max[1]}) *face = *y + finer * (*face - *y);
   }
   s.time.step = scene.time.step * std::sqrt(s.h() / scene.h());
@@ -70,7 +70,7 @@ void time_state(Session& session, const BenchSettings& s, BenchRow& row) {
   std::vector<double> ms, cpu_ms;
   for (int r = 0; r < s.repeats; ++r) {
     const StepSeconds start = session.seconds();
-    session.run(session.update() + s.updates);  // returns when the device has done them
+    session.run(session.update() + s.updates);  // returns when the device has finished
     ms.push_back((session.seconds().wall - start.wall) * 1e3 / s.updates);
     cpu_ms.push_back((session.seconds().cpu - start.cpu) * 1e3 / s.updates);
   }
@@ -98,7 +98,7 @@ std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const Be
   row.iterations = scene.solver.iterations;
   row.dt = scene.time.step;
   row.h = scene.h();
-  // First use of every kernel; without a warm-up every update counts.
+  // Includes the first use of every kernel; without a warm-up every update is timed.
   Session session(*solver);
   if (s.warmup > 0) session.run(2);
   std::vector<BenchRow> rows;

@@ -22,7 +22,7 @@ namespace {
 const std::vector<std::string> kColumns{"backend",   "precision", "threads", "device",
                                         "particles", "stage",     "ms"};
 
-/// One program at a time changes what a folder holds. A file system without locks has none of this.
+/// Only one program at a time changes the folder. Does nothing on file systems without locks.
 class FolderLock {
  public:
   explicit FolderLock(const std::string& folder)
@@ -39,7 +39,7 @@ class FolderLock {
   int fd_;
 };
 
-/// What tells two measured states apart.
+/// The key of a measured state.
 auto case_of(const StageCosts& c) {
   return std::tie(c.backend, c.precision, c.device, c.threads, c.particles);
 }
@@ -51,7 +51,7 @@ bool parse(const std::string& text, T& value) {
   return r.ec == std::errc() && r.ptr == end;
 }
 
-/// Adds a line to the case it belongs to; false when it is not one.
+/// Adds a line to its case; false if the line is invalid.
 bool add_line(const std::vector<std::string>& cell, std::vector<StageCosts>& rows) {
   StageCosts row;
   double ms = 0;
@@ -65,15 +65,15 @@ bool add_line(const std::vector<std::string>& cell, std::vector<StageCosts>& row
   return true;
 }
 
-/// A device's name without what would end a cell.
+/// A device's name without characters that end a cell of CSV.
 std::string plain_name(std::string name) {
   std::ranges::replace_if(
       name, [](char c) { return c == ',' || c == '"'; }, ' ');
   return name;
 }
 
-/// ms of one pass at n particles; sorted by particles, at least one. Straight lines between the
-/// logarithms.
+/// Time of one pass at n particles, ms; linear interpolation of logarithms. `measured` is sorted by
+/// particles and not empty.
 double at_size(const std::vector<std::pair<double, double>>& measured, double n) {
   if (n <= measured.front().first) return measured.front().second * n / measured.front().first;
   for (std::size_t k = 1; k < measured.size(); ++k) {
@@ -114,7 +114,7 @@ StageCosts calibration_of(const BenchRow& row) {
 
 std::vector<StageCosts> read_calibration(const std::string& path) {
   std::vector<StageCosts> rows;
-  std::error_code error;  // a home folder that is closed to this user holds none
+  std::error_code error;  // e.g. a home folder without access for this user: no calibration
   if (!std::filesystem::exists(path, error)) return rows;
   const std::string remedy = "; remove the file and run pbf bench --calibrate again";
   const std::vector<CsvRow> lines = read_csv(path, remedy);
@@ -165,11 +165,11 @@ std::optional<TimeEstimate> estimate_time(const Plan& plan, const Scene& s,
   for (auto& [stage, sizes] : measured) std::sort(sizes.begin(), sizes.end());
   Scene reference;  // of the calibration: h = 2 d
   const double neighbors = rest_neighbors(s) / rest_neighbors(reference);
-  std::map<std::string, int> passes;  // of each stage: sort and gather are timed together
+  std::map<std::string, int> passes;  // per stage; sort and gather are timed together
   for (const auto& [p, times] : count_passes(plan.program))
     passes[p->stage] = std::max(passes[p->stage], times);
   for (const auto& [stage, times] : passes) {
-    // The calibration's density is summed with lambda, in one loop that takes about as long.
+    // The calibration has no stage for density: lambda includes it and takes about as long.
     auto known = measured.find(stage == "density" && !measured.contains(stage) ? "lambda" : stage);
     if (known == measured.end()) continue;
     const bool of_pairs = stage != "predict" && stage != "grid";
@@ -196,7 +196,7 @@ std::optional<RunTime> run_time(const Plan& plan, const Scene& s,
     return out;
   }
   if (about(s.backend).on_device) return std::nullopt;
-  // The neighbour lists, and every pass over them: nine in an update of 4 iterations.
+  // Making the lists and the passes over them: nine in an update of 4 iterations.
   int passes = 1;
   for (const auto& [p, times] : count_passes(plan.program)) passes += p->over_pairs() ? times : 0;
   const double neighbors = rest_neighbors(s) / rest_neighbors(Scene{});

@@ -1,5 +1,5 @@
-// Axes of values and all their combinations: the grid of a batch, a study, a stability map and a
-// benchmark.
+// Axes of values and all their combinations: grids of batches, studies, stability maps and
+// benchmarks.
 #pragma once
 
 #include <cstddef>
@@ -14,21 +14,21 @@ namespace pbf::inline campaign_module {
 /// Keys of the scene with one value each.
 using Settings = std::vector<std::pair<std::string, Node>>;
 
-/// A value as it was written, on one line.
+/// The text of a value, on one line.
 std::string setting_text(const Node& value);
-/// "key=value" of each, as --set takes them.
+/// "key=value" for each setting, in the form of --set.
 std::vector<std::string> override_texts(const Settings& settings);
 
-/// What an axis goes through: settings that come together, and their name among people.
+/// One step of an axis: settings that change together, and their name for users.
 struct GridStep {
   std::string name;
   Settings settings;
 };
 using GridAxis = std::vector<GridStep>;
 
-/// A key and its values as they were written, one per step, each named "key=value".
+/// An axis of one key: one step per value, each named "key=value".
 GridAxis grid_axis(const std::string& key, const std::vector<std::string>& values);
-/// The same of whole numbers.
+/// The same for whole numbers.
 template <class T>
 GridAxis grid_axis(const std::string& key, const std::vector<T>& values) {
   std::vector<std::string> texts;
@@ -38,26 +38,25 @@ GridAxis grid_axis(const std::string& key, const std::vector<T>& values) {
 
 /// One member of a grid.
 struct GridMember {
-  std::string name;  ///< of its steps, with blanks between
+  std::string name;  ///< names of its steps, separated by blanks
   Settings settings;
-  std::vector<std::size_t> at;  ///< the step of each axis
+  std::vector<std::size_t> at;  ///< index of the step on each axis
 };
 
-/// Every combination of the axes' steps, the last axis fastest; one member without axes. Throws
+/// All combinations of the axes' steps, the last axis fastest; one member without axes. Throws
 /// Error(bad_input), "where: makes more than MOST runs".
 std::vector<GridMember> grid_members(const std::vector<GridAxis>& axes, std::size_t most,
                                      const std::string& where);
 
-/// Values of "a,b,c": commas inside [], {} and quotes do not separate.
+/// Values of "a,b,c"; commas inside [], {} and quotes are not separators.
 std::vector<std::string> listed_values(const std::string& text);
 
-/// Of one value as it was written: FIRST:LAST:COUNT becomes its numbers in equal steps, both ends
-/// included, with at most 15 digits; anything else stays. Throws Error(bad_input), "WHERE: ...",
-/// for what begins like a range and is none.
+/// Expands FIRST:LAST:COUNT to equidistant numbers with both ends, with at most 15 digits; other
+/// values are returned unchanged. Throws Error(bad_input), "WHERE: ...", for an invalid range.
 std::vector<std::string> range_values(const std::string& where, const std::string& text);
 
-/// Numbers of "V1,V2,..." or FIRST:LAST:COUNT (in equal ratios), rounded or required to be whole
-/// where `whole`. Throws Error(bad_input), "values of KEY: ...".
+/// Numbers of "V1,V2,..." or FIRST:LAST:COUNT (a geometric sequence). `whole`: the former must be
+/// whole, the latter are rounded. Throws Error(bad_input), "values of KEY: ...".
 std::vector<double> numbers_listed(const std::string& key, const std::string& text, bool whole);
 
 }  // namespace pbf::inline campaign_module

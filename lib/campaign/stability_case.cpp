@@ -35,7 +35,7 @@ Scene scene_of(const StabilityCase& c, const StabilityOptions& o, const std::str
 
 std::string number(double v) { return format("%.3g", v); }
 
-/// "speed <= 5 m/s, energy <= 3 %": what the row must fulfil, for people.
+/// "speed <= 5 m/s, energy <= 3 %": the requirements of the row, for users.
 std::string must_text(const Criteria& m) {
   if (m.error) return format("error %d", *m.error) + (m.says.empty() ? "" : ": " + m.says);
   if (!m.guard.empty() && m.guard != "allowed") return "guard: " + m.guard;
@@ -58,7 +58,7 @@ std::string must_text(const Criteria& m) {
   return out;
 }
 
-/// Share of the height above the floor, along gravity, that the centre of mass has lost.
+/// Relative loss of height of the center of mass above the floor, along gravity.
 double height_lost(const Course& c, const Scene& s) {
   const double after = energy_of_height(c.last, s, 1, 1);
   const double before = energy_of_height(c.first, s, 1, 1);
@@ -68,13 +68,13 @@ double height_lost(const Course& c, const Scene& s) {
 double momentum_drift(const Course& c, double mass) {
   double drift = 0;
   for (int a = 0; a < 3; ++a) drift += std::pow(c.last.momentum[a] - c.first.momentum[a], 2);
-  // sqrt(2 M E): what the momenta add up to when all have the same speed.
+  // sqrt(2 M E): the sum of the particles' momenta (in magnitude) if all have the same speed.
   const double all = std::sqrt(2 * mass * std::max(c.first.kinetic_energy, c.last.kinetic_energy));
   return all > 0 ? std::sqrt(drift) / all : 0;
 }
 
-/// |sum of loads - (M g - dP/dt)| over M |g|, means over the run: what a fluid that only walls and
-/// obstacles push must have. Not so with tank_motion, damping, a speed limit or confinement.
+/// |sum of loads - (M g - dP/dt)| / (M |g|), as means over the run; 0 if only walls and obstacles
+/// act on the fluid. Not valid with tank_motion, damping, a speed limit or confinement.
 double load_imbalance(const Course& c, const Scene& s, double mass) {
   double off = 0, weight = 0;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -118,7 +118,7 @@ void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s
         format(", %ld changes of the step, %ld times back", c.steps->changes, c.steps->repeats);
 }
 
-/// False when o.stop() said so.
+/// Returns false if o.stop() ended the run.
 bool run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
   const std::string dir = std::filesystem::path(c.scene).parent_path().string();
   const Scene s = scene_of(c, o, dir);

@@ -9,7 +9,7 @@
 namespace pbf::inline campaign_module {
 namespace {
 
-/// kg, the largest of what has gone through the flow gauges since the start.
+/// Largest mass that has passed a flow gauge since the start, kg.
 double most_through(const Scene& scene, Solver& solver) {
   if (scene.gauges.empty()) return 0;
   const std::vector<double> readings = solver.gauges(Interval::goes_on);
@@ -40,7 +40,7 @@ std::optional<Course> run_course(Start start, const std::function<bool()>& stop,
       c.released = released_energy(m, scene, plan) / (c.scale > 0 ? c.scale : 1);
     }
     const double rise = total_energy(m) - total_energy(c.first);
-    // Without gravity and at rest there is no scale: any rise counts in full.
+    // Without gravity and at rest there is no scale; the rise itself is used.
     c.energy_rise = std::max(c.energy_rise, c.scale > 0 ? rise / c.scale : rise);
     c.speed_max = std::max(c.speed_max, m.speed_max);
     c.penetration = std::max(c.penetration, m.penetration);
@@ -56,7 +56,7 @@ std::optional<Course> run_course(Start start, const std::function<bool()>& stop,
                       stopped = stop && stop();
                       return stopped ? Now::stop : Now::go_on;
                     });
-  // Calls of a second, so that nobody waits longer for a stop.
+  // Calls of at most a second, so that a stop does not wait longer.
   Session(*solver, {&watch, &watch.choosing(), &stopping}, 1).run(make_schedule(scene).updates);
   if (stopped) return std::nullopt;
   c.last = watch.last();
@@ -80,7 +80,7 @@ double nearest_distance(const std::vector<double>& x) {
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return x[3 * a] < x[3 * b]; });
   double best = std::numeric_limits<double>::infinity();
-  // Only those within the best distance along x can be nearer.
+  // Sorted by x, only particles within the best distance along x can be closer.
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i + 1; j < n; ++j) {
       const double *a = &x[3 * order[i]], *b = &x[3 * order[j]];

@@ -1,4 +1,4 @@
-// Suite files: YAML in, cases out.
+// Reads suite files (YAML) into cases.
 #include <algorithm>
 #include <filesystem>
 #include <set>
@@ -34,7 +34,7 @@ class SuiteReader : StrictReader {
   Read word(std::string& out) {
     return [this, &out](const Node& n) { text(n, "", out); };
   }
-  /// A number not below 0, into a double or an optional.
+  /// Reads a number that is not negative into a double or an optional.
   template <class Out>
   Read number(Out& out) {
     return [this, &out](const Node& n) {
@@ -44,7 +44,7 @@ class SuiteReader : StrictReader {
       out = v;
     };
   }
-  /// An exit code.
+  /// Reads an exit code.
   Read exit_code(std::optional<int>& out) {
     return [this, &out](const Node& n) {
       std::int64_t v = 0;

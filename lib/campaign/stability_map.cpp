@@ -27,7 +27,7 @@ Scene scene_with(const std::string& path, const StabilityOptions& run,
   return loaded.scene;
 }
 
-/// The scene's field of a number key; of vectors the whole.
+/// The scene's field of a numeric key; a vector is one field.
 Field field_of(Scene& s, const std::string& key) {
   const Key* k = scene_table().find_key(key);
   if (k == nullptr || key.find("[]") != std::string::npos)
@@ -36,7 +36,7 @@ Field field_of(Scene& s, const std::string& key) {
   return k->field(object(s));
 }
 
-/// Present value; 0 where the scene leaves it to be chosen.
+/// Present value; 0 if the scene leaves it to the program.
 double value_of(Scene& s, const std::string& key) {
   const Field f = field_of(s, key);
   if (const auto* v = std::get_if<double*>(&f)) return **v;
@@ -46,8 +46,8 @@ double value_of(Scene& s, const std::string& key) {
   bad_input("--map", key + " is not a number");
 }
 
-/// The key's values for the scene reader; of a vector, its length in its own direction, else
-/// downwards.
+/// The values in the form of a scene file; for a vector, `value` is its length, and its direction
+/// is kept (downwards if it is 0).
 GridAxis axis_of(Scene& s, const std::string& key, const std::vector<double>& values) {
   const Field f = field_of(s, key);
   std::vector<std::string> texts;
@@ -104,7 +104,7 @@ std::optional<MapCell> run_map_cell(const StabilityMap& m, MapCell c) {
   s.time.end = std::max(s.time.end, s.time.step);
   prepare(s, m.run);
   if (!s.guard) s.guard.emplace();
-  // Some hundred measures of every run, however many updates it takes.
+  // About 200 measurements per run, however many updates it makes.
   s.measure_every = std::max(1, int(s.time.end / s.time.step / 200));
   c.scene = s.name;
   c.dt_hat = relative_step(s);

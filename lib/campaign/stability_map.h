@@ -8,41 +8,41 @@
 
 namespace pbf::inline campaign_module {
 
-/// stable: ran to the end below the limit on compression; degraded: above it; stopped: by the
+/// stable: ran to the end below the limit on compression; degraded: ran above it; stopped: by the
 /// guard.
 enum class MapClass { stable, degraded, stopped };
 constexpr const char* kMapClassNames[] = {"stable", "degraded", "stopped"};
 
 struct StabilityMap {
   std::string scene;         ///< path
-  std::string x_key, y_key;  ///< number keys of a scene; of a vector, its length is meant
+  std::string x_key, y_key;  ///< numeric keys of a scene; for a vector, its length is varied
   std::vector<double> x, y;
   std::vector<int> iterations{1, 2, 4, 8, 16};
-  double limit = 0.01;  ///< mean compression of the settled part: above it a run is degraded
+  double limit = 0.01;  ///< mean compression of the settled part above which a run is degraded
   StabilityOptions run;
 };
 
 struct MapCell : Figures {
   double x = 0, y = 0;
   int iterations = 0;
-  std::vector<std::string> settings;  ///< that make the cell, KEY=VALUE
+  std::vector<std::string> settings;  ///< KEY=VALUE, the settings of the cell
   std::string scene;                  ///< its name
   MapClass verdict = MapClass::stable;
   double dt_hat = 0;        ///< relative_step(), lib/scene/auto_step.h
   std::string stopped_for;  ///< the guard's alarm
 };
 
-/// Values of an axis from text: V1,V2,... or FIRST:LAST:COUNT (in equal ratios); empty: the scene's
-/// own value times 1/4, 1/2, 1, 2, 4, 8. Throws Error(bad_input).
+/// Values of an axis from text: V1,V2,... or FIRST:LAST:COUNT (a geometric sequence); empty: the
+/// value of the scene times 1/4, 1/2, 1, 2, 4, 8. Throws Error(bad_input).
 std::vector<double> map_values(const std::string& scene, const StabilityOptions& run,
                                const std::string& key, const std::string& text);
 
-/// The grid, not run yet.
+/// The cells of the grid, before they are run.
 std::vector<MapCell> map_cells(const StabilityMap& map);
 
-/// Runs one cell. Where gravity changes, the time simulated changes with sqrt(h/g), so that all
-/// cells see the same dimensionless time. Empty when map.run.stop() said so. Throws
-/// Error(bad_input) for a scene that is none.
+/// Runs one cell. If gravity changes, the simulated time scales with sqrt(h/g), so that all cells
+/// cover the same dimensionless time. Empty if map.run.stop() ended it. Throws Error(bad_input) for
+/// an invalid scene.
 std::optional<MapCell> run_map_cell(const StabilityMap& map, MapCell cell);
 
 }  // namespace pbf::inline campaign_module

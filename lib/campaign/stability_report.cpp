@@ -14,7 +14,7 @@ std::string cut(const std::string& text, std::size_t width) {
 }  // namespace
 
 std::string stability_text(const StabilityRow& r) {
-  // By how much: the criterion nearest to its limit, as a share of the limit.
+  // The criterion nearest to its limit, as a share of the limit.
   const std::string margin =
       r.used > 0 ? format("%3.0f %% of %s", 100 * r.used, r.tightest.c_str()) : std::string();
   return format("%-24s %-4s  %-16s must  %s\n%49s %s", r.name.c_str(), r.good ? "ok" : "FAIL",

@@ -10,13 +10,13 @@
 
 namespace pbf::inline campaign_module {
 
-/// Two lines for people: the verdict, what the case must do, and what it did.
+/// Two lines for users: the verdict, the requirements of the case, and what happened.
 std::string stability_text(const StabilityRow& r);
 
-/// A row per case.
+/// One row per case.
 Table stability_table(const std::vector<StabilityRow>& rows, const StabilityOptions& o);
 
-/// A row per run of a map.
+/// One row per run of a map.
 Table map_table(const std::vector<MapCell>& cells, const StabilityMap& map);
 
 /// JUnit XML with a test case per case. seconds: of the whole suite, wall time.

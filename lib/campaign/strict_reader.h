@@ -13,7 +13,7 @@
 
 namespace pbf::inline campaign_module {
 
-/// Gathers what is wrong, each with file, line, column and key.
+/// Collects problems, each with file, line, column and key.
 class StrictReader {
  public:
   explicit StrictReader(const std::string& path) : path_(path) {}
@@ -22,12 +22,12 @@ class StrictReader {
   void bad(const Node& at, const std::string& key, const std::string& what) {
     problems_.add(at.place(), key, what);
   }
-  /// The map's entries by the function of their key; other keys are problems, with the path
-  /// "block.key", and so is a key that comes again. Returns the keys that are there.
+  /// Calls the function of each key with its value. Unknown and repeated keys are problems, with
+  /// the path "block.key". Returns the keys that are present.
   using Entries = std::vector<std::pair<std::string, std::function<void(const Node&)>>>;
   std::set<std::string> read_map(const Node& map, const std::string& block, const Entries& entries);
   void text(const Node& n, const std::string& key, std::string& out);
-  /// A path, taken from the folder of the file that is read.
+  /// A path relative to the folder of the file that is read.
   std::string file(const Node& n, const std::string& key);
   Settings settings(const Node& n, const std::string& key);
 

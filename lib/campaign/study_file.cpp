@@ -1,4 +1,4 @@
-// Study files: YAML in, members out.
+// Reads study files (YAML).
 #include <algorithm>
 #include <filesystem>
 

@@ -1,4 +1,4 @@
-// A study's variants and grid, and the runs that they make.
+// Variants and grid of a study, and the runs that follow from them.
 #include <algorithm>
 
 #include "lib/campaign/study_reader.h"
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMostMembers = 10000;
 
-/// Variants and keys of a grid are looked for among each other.
+/// Limited because the search for duplicates is quadratic.
 bool too_many(const Node& n) { return n.items.size() > kMostMembers; }
 
 std::string too_many_text(const Node& n) {

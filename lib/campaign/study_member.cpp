@@ -14,12 +14,12 @@
 namespace pbf::inline campaign_module {
 namespace {
 
-/// s, by the clock of the study.
+/// Seconds by the clock that the study selects.
 double seconds_of(const Session& session, const Study& study) {
   return study.cpu_clock ? session.seconds().cpu : session.seconds().wall;
 }
 
-/// Adds a row to the columns; whether the run may go on.
+/// Adds a row to the columns; returns whether the run may continue.
 bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, WorkTrack& work,
              MemberResult& out) {
   LogRow row;
@@ -78,7 +78,7 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
   Start start = prepare(scene, study.scene_dir);
   const Plan& plan = start.plan;
   out.particles = plan.particles;
-  // A short repeat is a tenth of the run, but no fewer than 20 updates.
+  // A short repeat is a tenth of the run, but at least 20 updates.
   const std::int64_t early = std::min(out.updates, std::max<std::int64_t>(20, out.updates / 10));
   double early_seconds = 0;
   bool stopped = false;

@@ -1,4 +1,4 @@
-// The reader of study files: study_file.cpp reads the keys, study_grid.cpp makes the runs.
+// Reader of study files: study_file.cpp reads the keys, study_grid.cpp makes the runs.
 #pragma once
 
 #include <optional>
@@ -34,7 +34,7 @@ class StudyReader : StrictReader {
   Settings base_, reference_;
   bool has_reference_ = false;
   GridAxis variants_;
-  std::vector<std::optional<double>> limits_;  ///< energy_limit of each variant
+  std::vector<std::optional<double>> limits_;  ///< energy_limit per variant
   std::vector<GridAxis> axes_;
 };
 

@@ -1,4 +1,4 @@
-// Results of members on disk: what makes two runs the same, and JSON both ways.
+// Stores results of members: the key that identifies a run, and JSON in both directions.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -23,7 +23,7 @@
 namespace pbf::inline campaign_module {
 namespace {
 
-/// Names the program: version and commit, and where these do not, its bytes.
+/// Identifies the program: version and commit or, if these are not exact, a hash of its file.
 std::string program_text() {
   const BuildInfo build = build_info();
   const std::string text = build.version + " " + build.commit;
@@ -32,7 +32,7 @@ std::string program_text() {
   return text + sha256(std::string(std::istreambuf_iterator<char>(in), {}));
 }
 
-/// Of the members of a result: one list for both directions.
+/// The members of a result, for reading and writing.
 template <class Result, class F>
 void for_each_member(Result& r, F&& f) {
   f("status", r.status);
@@ -58,11 +58,11 @@ void read(const Json& value, const std::string& key, std::string& out) {
 }
 
 void read(const Json& value, const std::string& key, std::int64_t& out) {
-  out = value.is_number_integer() ? value.get<std::int64_t>() : -1;  // -1: beyond it, too
+  out = value.is_number_integer() ? value.get<std::int64_t>() : -1;  // -1 also if it is too large
   expect(out >= 0, value, key, "a whole number not below 0");
 }
 
-/// null is NaN: a measure that is not defined.
+/// null is NaN: an undefined measure.
 void read(const Json& value, const std::string& key, double& out) {
   expect(value.is_null() || value.is_number(), value, key, "a number");
   out = value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
@@ -73,7 +73,7 @@ void read(const Json& value, const std::string& key, std::vector<double>& out) {
   for (const Json& item : value) read(item, key, out.emplace_back());
 }
 
-/// The log has every column that run_member() writes, of one length, and a row at least.
+/// Checks that the log has all columns of run_member(), of equal length, and at least one row.
 void check_log(const MemberResult& r) {
   for (const auto& c : run_layout::log_columns())
     if (std::find(r.names.begin(), r.names.end(), c.name) == r.names.end())
@@ -94,7 +94,7 @@ std::string member_key(const Study& study, const StudyMember& m) {
   Scene scene = m.scene;
   scene.name.clear();
   read_motions(scene, study.scene_dir);
-  const Json key{"2",  // of the format below
+  const Json key{"2",  // version of the format below
                  program,
                  about(m.scene.backend).on_device ? cuda_device_report() : cpu_model(),
                  usable_threads(),
@@ -132,7 +132,7 @@ std::optional<MemberResult> read_member(const std::string& path) {
     }
     check_log(r);
     return r;
-  } catch (const std::exception& e) {  // the library's and those above
+  } catch (const std::exception& e) {  // of the library, and those above
     bad(path + ": " + e.what());
   }
 }

@@ -11,7 +11,7 @@
 namespace pbf::inline campaign_module {
 namespace {
 
-/// Those of the table of diagnostics that a study sums up.
+/// The diagnostics that a study averages.
 std::vector<Diagnostic> study_diagnostics() {
   std::vector<Diagnostic> all = diagnostics();
   std::erase_if(all, [](const Diagnostic& d) { return d.over == Over::none; });
@@ -28,14 +28,14 @@ double over_window(const MemberResult& r, const Diagnostic& m, double from) {
     largest = std::max(largest, values[k]);
     ++n;
   }
-  if (n == 0) return NAN;  // ended before the window
+  if (n == 0) return NAN;  // the run ended before the window
   if (m.over == Over::mean) return sum / double(n);
   if (m.over == Over::rms) return std::sqrt(sum / double(n));
   if (m.over == Over::max) return std::isnan(sum) ? NAN : largest;
   return values.back();
 }
 
-/// Linear in time; NaN beyond the last sample.
+/// Linear interpolation in time; NaN after the last sample.
 double at_time(const std::vector<double>& time, const std::vector<double>& values, double t) {
   const auto next = std::lower_bound(time.begin(), time.end(), t - 1e-9 * std::fabs(t));
   if (next == time.end()) return NAN;
@@ -45,7 +45,7 @@ double at_time(const std::vector<double>& time, const std::vector<double>& value
   return values[i - 1] + part * (values[i] - values[i - 1]);
 }
 
-/// RMS over time of the distance between the centres of mass, in units of `length` (m).
+/// RMS over time of the distance between the centers of mass, in units of `length` (m).
 double reference_distance(const MemberResult& r, const MemberResult& reference, double length) {
   double squares = 0;
   const auto &time = r.series("time"), &there = reference.series("time");
@@ -62,7 +62,7 @@ std::size_t index_of(const Study& study, const std::string& name) {
   return std::size_t(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-/// A value as written in the study file: a number where it is one.
+/// A value as written in the study file; a number if it is one.
 Cell cell_of(const std::string& text) {
   double v = 0;
   std::int64_t i = 0;
@@ -71,7 +71,7 @@ Cell cell_of(const std::string& text) {
   return text;
 }
 
-/// Keys with a column of their own in every table.
+/// Keys that always have their own column.
 bool has_own_column(const std::string& key) {
   return key == "backend" || key == "precision" || key == "threads";
 }
@@ -114,7 +114,7 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
   row.status = result.status;
   row.message = result.message;
   const auto names = study_error_measures(study);
-  if (result.columns.empty()) {  // never ran
+  if (result.columns.empty()) {  // it never ran
     row.measures.assign(names.size(), NAN);
     row.result.seconds = NAN;
     return row;
@@ -124,7 +124,7 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
   row.measures.push_back(std::fabs(1 - row.measures[index_of(study, "height_kept")]));
   const Scene& s = member.scene;
   if (study.reference) {
-    // The edge of a cube, or of a square, that holds the fluid.
+    // Edge of a cube (in 2-D a square) with the volume of the fluid.
     const double cells =
         double(result.particles) * s.particle_mass() / (s.fluid.rest_density * s.cell_volume());
     const double length = s.fluid.spacing * std::pow(cells, 1.0 / s.dimensions);

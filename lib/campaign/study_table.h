@@ -1,4 +1,4 @@
-// The results of a study as a table: measures over the window, Pareto front, cheapest settings.
+// The results of a study as tables: measures over the window, Pareto front, cheapest settings.
 #pragma once
 
 #include <string>
@@ -9,39 +9,39 @@
 
 namespace pbf::inline campaign_module {
 
-/// What a result counts as. Only finished rows are on the front or a cheapest setting.
+/// Status of a result. Only finished rows can be on the front or a cheapest setting.
 ///   finished     ran to its end, energy_rise within the limit
-///   energy_rose  ran to its end, but made more energy than energy_limit: its errors are no verdict
-///   diverged     stopped by the guard
-///   unavailable  backend, device or memory not there
+///   energy_rose  ran to its end, but gained more energy than energy_limit: errors not valid
+///   diverged     particles became not finite or left the box
+///   unavailable  backend, device or memory is missing
 struct StudyRow {
   const StudyMember* member = nullptr;
   std::string status, message;
-  MemberResult result;            ///< `seconds`: NaN where it never ran
+  MemberResult result;            ///< `seconds`: NaN if it never ran
   std::vector<double> measures;   ///< by study_error_measures(); NaN: not defined
   std::vector<FrontCurve> front;  ///< one, or none
   bool pareto = false;
 };
 
-/// The row of a result. `reference`: that of Study::reference, null without.
+/// The row of a result. `reference`: result of Study::reference, or null.
 StudyRow study_row(const Study& study, const StudyMember& member, const MemberResult& result,
                    const MemberResult* reference);
 
 double measure_of(const Study& study, const StudyRow& row, const std::string& name);
 
-/// Marks the rows that no other one beats in both seconds_median and error.
+/// Marks the rows that no other row beats in both seconds_median and error.
 void mark_front(const Study& study, std::vector<StudyRow>& rows);
 
-/// Rows, and for every moment of the fronts, as tables (CSV and JSON).
+/// Tables (CSV and JSON) of the rows, and of the fronts at all times.
 Table study_table(const Study& study, const std::vector<StudyRow>& rows);
 Table front_table(const Study& study, const std::vector<StudyRow>& rows);
 
-/// The setting with the smallest seconds_median of those with an error of at most `target`, by
-/// variant ("" : of all). Null when there is none.
+/// The setting with the smallest seconds_median among those with an error of at most `target`, for
+/// one variant ("": all). Null if there is none.
 const StudyRow* cheapest(const Study& study, const std::vector<StudyRow>& rows, double target,
                          const std::string& variant);
 
-/// The table for a terminal, * marking the Pareto front, with the cheapest settings below.
+/// The table for a terminal; * marks the Pareto front. The cheapest settings follow.
 std::string study_text(const Study& study, const std::vector<StudyRow>& rows);
 
 /// Everything as one JSON object.

@@ -1,4 +1,4 @@
-// A study's table for people, and all of it as JSON.
+// The table of a study as text, and all of it as JSON.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>

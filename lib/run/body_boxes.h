@@ -11,7 +11,7 @@
 
 namespace pbf::inline run_module {
 
-/// m
+/// Edges parallel to the axes, m.
 struct Box {
   Double3 low, high;
   bool holds(const Double3& x, double margin) const {
@@ -19,7 +19,7 @@ struct Box {
       if (!(x[a] >= low[a] - margin && x[a] <= high[a] + margin)) return false;
     return true;
   }
-  /// Whether they overlap where each side is moved out by half of `margin` (in, below 0).
+  /// Whether the boxes overlap when each is enlarged by half of `margin` (may be negative).
   bool near(const Box& other, double margin) const {
     for (int a = 0; a < 3; ++a)
       if (high[a] + margin <= other.low[a] || other.high[a] + margin <= low[a]) return false;
@@ -27,21 +27,21 @@ struct Box {
   }
 };
 
-/// As body_box().
+/// The bounding box of a body, as in body_box().
 inline Box box_of(const Body& b) {
   const BodyBox box = body_box(b);
   return {box.low, box.high};
 }
 
-/// f(i, j) for every pair of boxes that are near(), each once, until it returns true; whether it
-/// did.
+/// Calls f(i, j) once for every pair of boxes that are near(), until it returns true. Returns
+/// whether a call returned true.
 template <class F>
 bool any_near_pair(const std::vector<Box>& boxes, double margin, F&& f) {
   Double3 extent{};
   for (const Box& b : boxes)
     for (std::size_t a = 0; a < 3; ++a)
       extent[a] = std::max(extent[a], std::fabs(b.low[a] - boxes[0].low[a]));
-  // In order along the axis on which they are spread most, a box can be near to the next few only.
+  // Sorted along the axis of largest extent, a box can be near only to the next few boxes.
   const auto axis = std::size_t(std::max_element(extent.begin(), extent.end()) - extent.begin());
   std::vector<std::size_t> order(boxes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

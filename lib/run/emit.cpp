@@ -13,19 +13,19 @@
 namespace pbf::inline run_module {
 namespace {
 
-/// "scene.yaml:4:30: bodies[0]", for messages about its particles.
+/// "scene.yaml:4:30: bodies[0]", for messages about the particles of this body.
 std::string name_of(const Scene& scene, std::size_t body) {
   const std::string& place = scene.bodies[body].place.text;
   return (place.empty() ? "" : place + ": ") + "bodies[" + std::to_string(body) + "]";
 }
 
-/// Refuses particles outside the domain. What lies outside by rounding only (a sphere that touches
-/// a wall) is put on the wall. In two dimensions everything is put on the plane.
+/// Refuses particles outside the domain. A particle that is outside only by rounding (a sphere that
+/// touches a wall) is put on the wall. In two dimensions every particle is put on the plane.
 void hold_inside(const Scene& scene, std::size_t body, std::size_t first, std::vector<Double3>& x) {
   const Domain& domain = scene.domain;
   const std::optional<double> plane = scene.plane();
   for (std::size_t i = first; i < x.size(); ++i) {
-    // Only a file has a y of its own.
+    // Only particles from a file have a y of their own.
     if (plane && scene.bodies[body].shape != Shape::file) x[i][1] = *plane;
     for (int a = 0; a < 3; ++a) {
       const double slack = 1e-9 * (domain.max[a] - domain.min[a]);
@@ -43,8 +43,8 @@ void hold_inside(const Scene& scene, std::size_t body, std::size_t first, std::v
   }
 }
 
-/// Puts the particles from `first` on that are nearer to a wall than solver.wall_margin on it;
-/// refuses what would have to go farther than half a spacing, for layers would meet there.
+/// Moves particles from index `first` on that are nearer to a wall than solver.wall_margin to that
+/// distance. Refuses moves of more than half a spacing, because layers of particles would coincide.
 void hold_off_walls(const Scene& s, std::size_t body, std::size_t first, Particles& all) {
   const double margin = s.solver.wall_margin, d = s.fluid.spacing;
   if (!(margin > 0)) return;
@@ -59,7 +59,7 @@ void hold_off_walls(const Scene& s, std::size_t body, std::size_t first, Particl
       if (x > high && !s.domain.is_open(a, true)) x = high;
       way = std::max(way, std::fabs(x - before));
     }
-    if (way > 1e-6 * d) ++all.put_on_margin;  // the rest is rounding
+    if (way > 1e-6 * d) ++all.put_on_margin;  // less is rounding
     if (way > 0.5 * d * (1 + 1e-6)) ++too_far;
     farthest = std::max(farthest, way);
   }
@@ -72,7 +72,7 @@ void hold_off_walls(const Scene& s, std::size_t body, std::size_t first, Particl
                   " m; move the body away from the walls or lower solver.wall_margin");
 }
 
-/// In two dimensions nothing leaves the plane. A body's own velocity is checked with the scene.
+/// In two dimensions the y of a velocity must be 0. body.velocity is checked with the scene.
 void refuse_velocity_along_y(const Scene& scene, std::size_t body, const std::vector<Double3>& v) {
   for (std::size_t i = 0; i < v.size(); ++i)
     if (v[i][1] != 0)
@@ -83,7 +83,7 @@ void refuse_velocity_along_y(const Scene& scene, std::size_t body, const std::ve
                       "give dimensions: 3");
 }
 
-/// What of a start obstacles leave: not what is in them, or nearer than 0.4 spacings to one.
+/// Positions that obstacles leave free: at least 0.4 spacings away from every obstacle.
 class FreePlaces {
  public:
   explicit FreePlaces(const Scene& scene)
@@ -109,7 +109,7 @@ class FreePlaces {
   double h_, least_;
 };
 
-/// Drops the particles from `first` on that are in obstacles; how many.
+/// Removes the particles from `first` on that are in obstacles and returns their number.
 std::size_t drop_inside(const FreePlaces& free, std::size_t first, Particles& all) {
   std::size_t to = first;
   for (std::size_t i = first; i < all.size(); ++i) {

@@ -13,18 +13,18 @@
 
 namespace pbf::inline run_module {
 
-/// Path of a file body's file.
+/// The path of a file body's file; `scene_dir` anchors a relative path.
 std::string resolved_path(const Body& body, const std::string& scene_dir);
 
-/// The particles of a scene in the order of their ids, before any check of them. The file of a body
-/// is opened here, once, and its particles are kept: whoever takes them sees the same ones.
+/// The particles of a scene in the order of their ids, before any check. The file of a body is
+/// opened only here, once, and its particles are kept, so that all users see the same particles.
 class StartPoints {
  public:
-  /// `scene` must outlive this, `scene_dir` anchors relative paths. What is wrong with a file is
-  /// told with the place in the scene that names it; else throws as read_particle_file(), and
-  /// Error(bad_input) for one without particles.
+  /// `scene` must outlive this object; `scene_dir` anchors relative paths. Throws what
+  /// read_particle_file() throws, and Error(bad_input) for a file without particles. Messages name
+  /// the place in the scene that names the file.
   StartPoints(const Scene& scene, const std::string& scene_dir);
-  /// f(index of the body, place in m). In two dimensions every place is on the plane.
+  /// Calls f(index of the body, position in m). In two dimensions every position is on the plane.
   template <class F>
   void for_each(F&& f) const {
     const std::optional<double> plane = scene_.plane();
@@ -41,30 +41,30 @@ class StartPoints {
   }
   const Scene& scene() const { return scene_; }
   const Particles& of_file(std::size_t body) const { return of_files_[body]; }
-  /// No longer kept.
+  /// Moves the particles of a file out of this object.
   Particles take_file(std::size_t body) { return std::move(of_files_[body]); }
-  /// Of bodies and motions, in their order, as they were read.
+  /// The files of bodies and motions, in this order, as they were read.
   const std::vector<SceneFile>& files() const { return files_; }
 
  private:
   const Scene& scene_;
-  std::vector<Particles> of_files_;  // empty for other bodies
+  std::vector<Particles> of_files_;  // empty for bodies that are not files
   std::vector<SceneFile> files_;
 };
 
-/// Number of particles the scene's bodies make, without making them. Throws Error(bad_input) when
-/// the number is 0 or above 2^31 - 1.
+/// Number of particles of the scene's bodies; creates none. Throws Error(bad_input) if the number
+/// is 0 or above 2^31 - 1.
 std::int64_t count_particles(const StartPoints& points);
 
-/// Makes the particles of every body in order of the list. Lets go of those of files as
-/// it goes. Block: lattice points min + (i + 1/2) d for every cell of edge d that fits (to
-/// rounding); sphere: points of the lattice through its centre with |x - c| <= radius; random_box:
-/// SplitMix64 seeded by `seed`, three draws per particle (x, y, z), 53-bit mantissa, the same on
-/// every machine. In two dimensions each of them is its cut with the plane: square lattice, disc,
-/// two draws (x, z); particles of a file within the slab are put on it. Particles nearer to a wall
-/// than solver.wall_margin are put on that distance, by up to half a spacing: the first update
-/// would clamp them, and take the way for a velocity. Throws Error(bad_input) for a particle
-/// outside the domain or farther behind the margin.
+/// Creates the particles of every body in the order of the list, and frees those of files on the
+/// way. Block: lattice points min + (i + 1/2) d for every cell of edge d that fits (to rounding);
+/// sphere: points of the lattice through its center with |x - c| <= radius; random_box: SplitMix64
+/// seeded by `seed`, three draws per particle (x, y, z), 53-bit mantissa, the same on every
+/// machine. In two dimensions each shape is cut with the plane: square lattice, disc, two draws (x,
+/// z); particles of a file within the slab are put on the plane. Particles nearer to a wall than
+/// solver.wall_margin are moved to that distance, by up to half a spacing: the first update would
+/// clamp them and turn the move into a velocity. Throws Error(bad_input) for a particle outside the
+/// domain, or if a larger move is needed.
 Particles emit_particles(StartPoints points);
 
 inline std::int64_t count_particles(const Scene& scene, const std::string& scene_dir) {

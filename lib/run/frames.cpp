@@ -27,7 +27,7 @@ void Frames::start(std::int64_t u, bool last) {
   bool write = run_.schedule.frame_every > 0 && (last || run_.schedule.writes(u)) && last_ < u;
   bool draw = !last && run_.schedule.draws(u);
 #ifndef PBF_HAS_RENDER
-  draw = false;  // refused before the run began
+  draw = false;  // a scene with pictures was refused before the run began
 #endif
   if (write) last_ = u;
   if (write && run_.schedule.frames_until(u) <= run_.from.frames) write = false;

@@ -12,23 +12,23 @@ namespace {
 
 double mass_of(const Plan& plan) { return plan.mass * double(plan.particles); }
 
-constexpr double kMayGain = 0.1;  // of the energy scale, that a run may gain
+constexpr double kMayGain = 0.1;  // share of the energy scale that a run may gain
 
-/// h, of the domain.
+/// Longest edge of the domain, h.
 double longest_edge(const Scene& s) {
   double edge = 0;
   for (std::size_t a = 0; a < 3; ++a) edge = std::max(edge, s.domain.max[a] - s.domain.min[a]);
   return edge / s.h();
 }
 
-/// m/s, that prescribed motions may give the fluid.
+/// Bound on the speed that prescribed motions can give the fluid, m/s.
 double motion_speed(const Scene& s) {
   const double pull =
       greatest_pull(s, 0, s.time.end) - std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
   return 2 * fastest_obstacle(s, 0, s.time.end) + std::sqrt(2 * pull * longest_edge(s) * s.h());
 }
 
-/// m/s, of a move by h in a step of level 0.
+/// The speed of a particle that moves by h in a substep of level 0, m/s.
 double h_per_step(const Scene& s) { return s.h() / s.time.step * s.solver.substeps; }
 
 }  // namespace
@@ -97,7 +97,7 @@ Guard::Guard(const Scene& scene, const Plan& plan, Solver& solver, const Diagnos
 }
 
 bool Guard::came_apart(const Diagnostics& m) const {
-  // A two-sided fluid is never without compression: what it releases is that of its surface.
+  // A two-sided fluid is never without compression: it releases the compression of its surface.
   return m.compression_mean <= kApart || scene_.solver.constraint == ConstraintMode::two_sided;
 }
 
@@ -113,7 +113,7 @@ double Guard::energy_limit(const Diagnostics& m) const {
   return limits_.energy + released + kMayGain * std::max(now - first, 0.0);
 }
 
-/// That of the last good measure at most: the energy that has come since widens the limit of `m`.
+/// At most the limit of the last good measurement: later gains of energy would raise it.
 double Guard::event_limit(const Diagnostics& m) const {
   return std::min(energy_limit(good_), energy_limit(m));
 }
@@ -131,7 +131,7 @@ void Guard::follow_release(const Diagnostics& m) {
 std::optional<Alarm> Guard::alarm(const Diagnostics& m) const {
   if (m.non_finite > 0) return Alarm::non_finite;
   if (m.outside > 0) return Alarm::outside;
-  // With a speed limit the count is that of particles slowed down, which the scene asked for.
+  // With a speed limit, `fast` counts the particles that were slowed down, as the scene asked.
   if (m.speed_max > limits_.speed || (scene_.solver.speed_limit == 0 && m.fast > good_.fast))
     return Alarm::speed;
   if (m.neighbors_max > limits_.neighbors) return Alarm::neighbors;
@@ -151,14 +151,14 @@ GuardEvent Guard::locate(Alarm alarm, const Diagnostics& m, const StepOptions& o
   e.measure = m;
   const double h = scene_.h(), to_internal = 1 / (plan_.mass * h * h);
   const double energy = event_limit(m);
-  // A stage sums up what is there, with the work that motions have done.
+  // Stages do not know the work of motions, so it is added to their limit.
   const StageLimits limits{limits_.speed / h, (energy + m.work) * to_internal, limits_.neighbors};
   e.last_good = solver_.state(Which::kept);
   solver_.set_state(e.last_good);
   while (!e.stage && solver_.updates() < e.measure.update)
     e.stage = solver_.inspection()->step_checked(limits, options);
   if (e.stage) {
-    e.alarm = e.stage->alarm;  // what came first: a speed, say, before it ended as a NaN
+    e.alarm = e.stage->alarm;  // the first fault, for example a speed that later became a NaN
     for (std::size_t a = 0; a < 3; ++a) {
       e.position[a] = scene_.origin()[a] + h * e.stage->position[a];
       e.velocity[a] = h * e.stage->velocity[a];

@@ -1,4 +1,4 @@
-// What the guard says about an alarm, and how it is repeated.
+// Texts of the guard, and the scene that repeats an alarm.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@
 namespace pbf::inline run_module {
 namespace {
 
-/// What each alarm is about: words for it, unit with a blank before it, its key, and what helps.
+/// Texts for each alarm: what is wrong, unit with a leading blank, key of the limit, remedy.
 struct Words {
   const char *what, *unit, *limit_key, *help;
 };
@@ -59,7 +59,7 @@ std::string Guard::text(const GuardEvent& e) const {
   return out + format("; seen at t = %.6g s. To help: %s", e.measure.time, remedy(e).c_str());
 }
 
-/// The keys that help, by what there is to blame.
+/// The keys to change, depending on the cause.
 std::string Guard::remedy(const GuardEvent& e) const {
   if (e.stage && !e.stage->remedy.empty()) return e.stage->remedy;
   const bool shaken = e.alarm == Alarm::speed || e.alarm == Alarm::energy;
@@ -79,10 +79,10 @@ std::string Guard::remedy(const GuardEvent& e) const {
 }
 
 Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const {
-  const int level = finest_level(scene_);  // a coarser one would not have ended the run
+  const int level = finest_level(scene_);  // at a coarser level the run would have continued
   Scene s = scene_at_level(scene_, level);
   s.time.adaptive.reset();
-  s.solver.prestabilize = false;  // it goes on from a state
+  s.solver.prestabilize = false;  // it starts from a state of the run
   s.name += "_event";
   Body body;
   body.shape = Shape::file;
@@ -93,13 +93,13 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
   s.measure_every = 1;
   const std::int64_t updates = (e.measure.update - e.last_good.updates) << level;
   s.time.end = s.time.step * double(std::max<std::int64_t>(updates, 1) + 2);
-  if (has_motion(s)) {  // they go on, and tables may end with the run
+  if (has_motion(s)) {  // motions continue, and tables may end with the run
     const double done = double(e.last_good.updates) * scene_.time.step;
     s.time.motion_begin += done;
     s.time.end = std::max(std::min(s.time.end, scene_.time.end - done), s.time.step);
     make_paths_absolute(s);
   }
-  // The same limits, though the run starts elsewhere.
+  // Keep the limits of the original run, although this one starts elsewhere.
   s.guard->speed = limits_.speed;
   s.guard->neighbors = limits_.neighbors;
   const double scale = energy_scale(good_, s, plan_.mass, plan_.particles);

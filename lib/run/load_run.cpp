@@ -41,7 +41,7 @@ std::string folder_of_files(const Scene& scene, const std::string& run_file,
 LoadedScene load_scene_or_run(const std::string& given, const std::vector<std::string>& overrides,
                               const std::string& base_folder) {
   std::error_code error;
-  const bool folder = fs::is_directory(given, error);  // of a run: what is in it is no scene file
+  const bool folder = fs::is_directory(given, error);  // a run folder; it is no scene file
   const std::string path = folder ? only_run_path(given) : given;
   if (!folder && !is_hdf5_file(path)) {
     LoadedScene loaded = load_scene(path, overrides, base_folder);

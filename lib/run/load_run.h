@@ -9,24 +9,23 @@
 
 namespace pbf::inline run_module {
 
-/// load_scene() of a scene file, `base_folder` as there; of a run file (told by its first bytes),
-/// or of the folder that it is in (lib/io/run_path.h), the scene that it holds, with every default
-/// as it was then, and the overrides of this time on top. Paths in it are those of the scene file
-/// that the run was begun with, or, where its files are not there any more, of the run file's
-/// folder; the tables of its motions are read. Throws as load_scene() and RunReader do;
-/// Error(bad_input) for a run file whose scene has been changed since, or whose files are in
-/// neither folder.
+/// For a scene file: load_scene(), with the same `base_folder`. For a run file (recognized by its
+/// first bytes) or its folder (lib/io/run_path.h): the stored scene, with the defaults of that time
+/// and the present overrides. Its paths are relative to the folder of the original scene file or,
+/// if the files are no longer there, to that of the run file; the tables of its motions are read.
+/// Throws what load_scene() and RunReader throw; Error(bad_input) if the scene of a run file has
+/// been changed since, or if its files are in neither folder.
 LoadedScene load_scene_or_run(const std::string& given, const std::vector<std::string>& overrides,
                               const std::string& base_folder = {});
 
-/// The folder from which all files of a run file's scene can be reached: that of its scene file, or
-/// the run file's. Error(bad_input) where it is neither.
+/// The folder that anchors the paths of a run file's scene: that of its scene file, or that of the
+/// run file. Throws Error(bad_input) if the files are in neither.
 std::string folder_of_files(const Scene& scene, const std::string& run_file,
                             const std::string& scene_path);
 
-/// Keeps what was read of the scene's files, for the run to come. Of a scene from a run file they
-/// must be those of that run: Error(bad_input) names the one that has changed; that an older run
-/// file says nothing of them goes to `notes`. Files that --set names now are new.
+/// Stores in `loaded` which files were read, for the run. For a scene from a run file they must be
+/// the files of that run: Error(bad_input) names one that has changed. If an older run file has no
+/// record of them, a line is added to `notes`. Files that --set names are not compared.
 void take_files(LoadedScene& loaded, const std::vector<SceneFile>& read,
                 std::vector<std::string>& notes);
 

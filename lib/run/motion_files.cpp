@@ -19,7 +19,7 @@ std::string file_of(const std::string& path, const std::string& dir) {
   return fs::path(path).is_absolute() ? path : (fs::path(dir) / path).string();
 }
 
-/// f(motion, key) of every motion by a file. Scene may be const.
+/// Calls f(motion, key) for every motion that is read from a file. Scene may be const.
 template <class AnyScene, class F>
 void for_each_file(AnyScene& s, F&& f) {
   for (std::size_t k = 0; k < s.obstacles.size(); ++k)
@@ -31,11 +31,11 @@ void for_each_file(AnyScene& s, F&& f) {
 
 class Reader {
  public:
-  /// `key`: with the place where it stands.
+  /// `key`: the key with its place in the scene file.
   Reader(const Scene& scene, std::string key, std::string file)
       : s_(scene), key_(std::move(key)), file_(std::move(file)) {}
 
-  /// headers: those that are allowed.
+  /// `headers`: the allowed ones.
   MotionTable read(const std::vector<std::string>& headers) {
     MotionTable t;
     const std::vector<CsvRow> rows = all_rows(t.sha256);
@@ -88,7 +88,7 @@ class Reader {
     if (read_number(row.cells[c], out) != NumberError::none || !std::isfinite(out))
       fail(row.where, name + ": \"" + row.cells[c].substr(0, 40) + "\" is not a number");
   }
-  /// Only x, z and turns about y are left in the plane.
+  /// In two dimensions only x, z and rotation about y may differ from 0.
   void must_lie_flat(const CsvRow& header, const CsvRow& row,
                      const std::array<double, 6>& values) const {
     for (const char* name : {"y", "ay", "rx", "rz"})

@@ -10,18 +10,18 @@
 namespace pbf::inline run_module {
 
 /// Reads the tables of the scene's motions. `dir` anchors relative paths. Throws Error(bad_input)
-/// naming key, file and line for what is no such table, for times that do not grow, and where the
-/// table does not last from time.motion_begin for time.end; Error(io). `auto_step`: time.step was
-/// left to be chosen, and is, now that the motions are known (choose_step_of_motions()).
+/// with key, file and line for an invalid table, for times that do not increase, and for a table
+/// that ends before time.motion_begin + time.end; Error(io). `auto_step`: time.step was auto and is
+/// now chosen from the motions (choose_step_of_motions()).
 void read_motions(Scene& scene, const std::string& dir, bool auto_step = false);
 
-/// The paths of these files, as the scene has them.
+/// The paths of these files, as written in the scene.
 std::vector<std::string> motion_paths(const Scene& scene);
 
-/// The files, as read_motions() has read them.
+/// The files as read by read_motions().
 std::vector<SceneFile> motion_files(const Scene& scene);
 
-/// Their paths replaced by what read_motions() found there, so that the scene may lie anywhere.
+/// Makes their paths absolute, as read_motions() found them, so that the scene may be moved.
 void make_paths_absolute(Scene& scene);
 
 }  // namespace pbf::inline run_module

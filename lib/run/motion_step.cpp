@@ -11,8 +11,8 @@
 namespace pbf::inline run_module {
 namespace {
 
-/// The largest f(from, to) of a motion, over the time in which it grows and a period, or over its
-/// table; s since the start.
+/// The largest f(from, to) of a motion, over its ramp and one period, or over its table; s since
+/// the start.
 template <class F>
 double largest(const Scene& s, const Swing& swing, bool swings, const MotionTable& table, F&& f) {
   const double begin = s.time.motion_begin;
@@ -20,21 +20,21 @@ double largest(const Scene& s, const Swing& swing, bool swings, const MotionTabl
   return swings ? f(0.0, std::max(0.0, swing.ramp - begin) + swing.period) : f(0.0, 0.0);
 }
 
-/// The step with which speeds and accelerations are looked at, s: over a long one, what swings is
-/// where it was. The mean of a short one is what the motion has.
+/// The time step for sampling speeds and accelerations, s. It is short, because an oscillation
+/// averages out over a long step.
 double fine_step(const Scene& s, const Swing& swing, bool swings, const MotionTable& table) {
   double step = s.time.step;
   if (swings) step = std::min(step, swing.period / 256);
   if (swings && swing.ramp > 0) step = std::min(step, swing.ramp / 256);
   for (std::size_t k = 1; k < table.time.size(); ++k)
     step = std::min(step, (table.time[k] - table.time[k - 1]) / 16);
-  return std::max(step, 1e-4 * s.time.step);  // below that differences are rounding
+  return std::max(step, 1e-4 * s.time.step);  // below this, differences are rounding
 }
 
-/// m/s
+/// Greatest speed of an obstacle at any time, m/s.
 double fastest_ever(const Scene& s) {
   double most = 0;
-  Scene one = s;  // each has a period of its own
+  Scene one = s;  // obstacles have different periods
   for (const Obstacle& o : s.obstacles) {
     if (!o.motion) continue;
     const bool swings = o.motion->kind == MotionKind::sine;
@@ -46,7 +46,7 @@ double fastest_ever(const Scene& s) {
   return most;
 }
 
-/// m/s^2
+/// Greatest acceleration that a particle at rest feels in the tank at any time, m/s^2.
 double greatest_pull_ever(const Scene& s) {
   if (!s.tank_motion) return greatest_pull(s, 0, 0);
   const TankMotion& m = *s.tank_motion;
@@ -71,7 +71,7 @@ double longest_of(const Scene& s) {
 
 void choose_step_of_motions(Scene& scene) {
   if (!has_motion(scene)) return;
-  // Speeds and accelerations are those over a step: a shorter one may show larger ones.
+  // Speeds and accelerations are means over a step, so a shorter step may show larger ones.
   for (int k = 0; k < 8; ++k) {
     const double before = scene.time.step, step = fitted_step(scene, longest_of(scene));
     if (step == 0)

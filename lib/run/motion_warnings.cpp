@@ -16,7 +16,7 @@ namespace {
 
 // -------------------------------------------------------------------------------------- walls
 
-/// Of an obstacle and a wall, in m: how far its far side is behind the wall, and its near side.
+/// Distances behind a wall, m, of an obstacle's far side and of its near side.
 struct Behind {
   double far, near;
 };
@@ -28,14 +28,14 @@ Behind behind(const Scene& s, const Solid<double>& solid, int face) {
   return {-e.low * h, -e.high * h};
 }
 
-/// The wall that is above: gravity points away from it. -1: there is none.
+/// The wall above, that is, opposite to gravity; -1 without gravity.
 int top_of(const Scene& s) {
   const int axis = level_axis(s);
   const double g = s.gravity[std::size_t(axis)];
   return g == 0 ? -1 : 2 * axis + (g < 0 ? 1 : 0);
 }
 
-/// Whether what turns in place has its pivot at the wall.
+/// Whether an obstacle that only rotates has its pivot at the wall.
 bool is_hinged(const Scene& s, const Obstacle& o, int face) {
   const Motion& m = *o.motion;
   const bool turns = m.kind == MotionKind::sine       ? m.axis.has_value()
@@ -48,7 +48,7 @@ bool is_hinged(const Scene& s, const Obstacle& o, int face) {
   return (face % 2 == 1 ? wall - at : at - wall) <= s.fluid.spacing;
 }
 
-/// The first time from `bad` back to `good` at which f holds; s.
+/// Bisection between `good` and `bad`: the first time at which f holds; s.
 template <class F>
 double onset(double good, double bad, F&& f) {
   for (int k = 0; k < 30; ++k) {
@@ -59,8 +59,8 @@ double onset(double good, double bad, F&& f) {
 }
 
 struct Crossing {
-  bool leaves = false;                 ///< it is behind the wall as a whole
-  double by = 0, worst = 0, from = 0;  ///< m; s: when it is farthest behind, and when it begins
+  bool leaves = false;                 ///< the whole obstacle is behind the wall
+  double by = 0, worst = 0, from = 0;  ///< m; s: time of the maximum, and of the onset
 };
 
 std::optional<Crossing> crossing(const Scene& s, const Obstacle& o, const Track& track, int face) {
@@ -78,13 +78,13 @@ std::optional<Crossing> crossing(const Scene& s, const Obstacle& o, const Track&
     };
     std::size_t k = 0;
     while (behind(s, track.solid[k], face).far <= limit) ++k;
-    // Back to where it was still before the wall.
+    // Go back to the last time before it reached the wall.
     std::size_t before = k;
     while (before > 0 && is_behind(track.time[before])) --before;
     c.from = onset(track.time[before], track.time[std::min(before + 1, k)], is_behind);
     return c;
   }
-  if (behind(s, track.solid[0], face).near > 0) return std::nullopt;  // it comes from there
+  if (behind(s, track.solid[0], face).near > 0) return std::nullopt;  // it comes in from outside
   const auto is_out = [&](double t) { return behind(s, solid_at(s, o, t), face).near > 0; };
   for (std::size_t k = 0; k < track.time.size(); ++k) {
     const double near = behind(s, track.solid[k], face).near;

@@ -1,4 +1,4 @@
-// Warnings about where obstacles go. Parts of scene_warnings(). `tracks`: tracks_of() the scene.
+// Warnings about paths of obstacles. Parts of scene_warnings(). `tracks`: of tracks_of().
 #pragma once
 
 #include <string>
@@ -11,22 +11,22 @@ namespace pbf::inline run_module {
 
 /// "obstacles[0] (gate)"
 std::string named(const Scene& scene, std::size_t obstacle);
-/// Up to three of them, and how many more.
+/// The first three texts, and the number of the others.
 std::string listed(const std::vector<std::string>& texts);
 
-/// Kind "table": the curve of a table swings beyond the rows on both sides where no smooth motion
-/// turns back, by more than a tenth of a spacing; or its first row puts the obstacle elsewhere, as
-/// a table of places does in the place of displacements.
+/// Kind "table": the curve of a table overshoots the rows on both sides by more than a tenth of a
+/// spacing where no smooth motion turns back; or its first row displaces the obstacle, as in a
+/// table of positions instead of displacements.
 void add_tables(const Scene& scene, std::vector<Warning>& list);
 
 /// Kind "wall": a motion carries an obstacle through a wall by more than a spacing, or out of the
-/// tank. What cuts a wall from the start (a paddle that goes on behind it) may go to and fro in it;
-/// what turns about a hinge at a wall may dip into that; and nothing is said of the wall against
-/// gravity, through which gates are lifted, nor of planes, nor of what begins outside and comes in.
+/// tank. An obstacle that cuts a wall from the start (a paddle that extends behind it) may move in
+/// it, and one that rotates about a hinge at a wall may dip into it. Not checked: the wall opposite
+/// to gravity, through which gates are lifted; planes; obstacles that come in from outside.
 void add_walls(const Scene& scene, const std::vector<Track>& tracks, std::vector<Warning>& list);
 
-/// Kind "collision": two obstacles share a place in the domain, at the start or later, that is
-/// thicker than half a spacing. A plane with something set into it from the start is a floor.
+/// Kind "collision": two obstacles overlap in the domain, at the start or later, by more than half
+/// a spacing. A plane that overlaps another obstacle from the start is taken for a floor.
 void add_collisions(const Scene& scene, const std::vector<Track>& tracks,
                     std::vector<Warning>& list);
 

@@ -12,7 +12,7 @@
 namespace pbf::inline run_module {
 namespace {
 
-/// The scene with this obstacle alone: only its pose is made.
+/// A scene with only this obstacle, enough to compute its pose.
 Scene scene_of(const Scene& s, const Obstacle& o) {
   Scene one;
   one.dimensions = s.dimensions;
@@ -23,7 +23,7 @@ Scene scene_of(const Scene& s, const Obstacle& o) {
   return one;
 }
 
-/// Those of speeds and accelerations, and where a table's curve turns back.
+/// Times at which speeds and accelerations are sampled, and turning points of a table's curve.
 std::vector<double> times_of(const Scene& s, const Motion& m) {
   std::vector<double> times = telling_times(s, m, 0, s.time.end);
   const double begin = s.time.motion_begin;
@@ -37,7 +37,7 @@ std::vector<double> times_of(const Scene& s, const Motion& m) {
   return times;
 }
 
-/// Every so many of them, for a table with more rows than anyone needs; ends included.
+/// Every n-th of the times and the last one, for tables with very many rows.
 std::vector<double> thinned(const std::vector<double>& times, std::size_t most) {
   const std::size_t stride = times.size() / most + 1;
   std::vector<double> out;
@@ -46,8 +46,8 @@ std::vector<double> thinned(const std::vector<double>& times, std::size_t most) 
   return out;
 }
 
-/// The same with others in between, so many that it goes by no more than a spacing from one to the
-/// next, and no more than `most`.
+/// Adds times in between, so that the obstacle moves by at most a spacing from one to the next;
+/// adds about `most` times at most.
 std::vector<double> filled(const Scene& one, const std::vector<double>& times, int most) {
   std::vector<double> parts(times.size(), 1);
   double all = 0;
@@ -69,8 +69,8 @@ double distance_of(const Solid<double>& o, const Vec3<double>& x, bool flat) {
   return flat ? distance<2>(o, x) : distance<3>(o, x);
 }
 
-/// Minimises the larger of the distances of two solids in a box by the method of ellipsoids
-/// (Shor 1977): each cut through the middle throws away the half without the minimum.
+/// Minimizes the larger of the distances of two solids in a box by the ellipsoid method (Shor
+/// 1977): each cut through the center discards the half that cannot contain the minimum.
 class Deepest {
  public:
   Deepest(const Solid<double>& a, const Solid<double>& b, const Extents& box, bool flat)
@@ -82,7 +82,7 @@ class Deepest {
       spread_[k][k] = n_ * half * half;
     }
   }
-  /// Below 0: they share that place. Given up where it is above `enough` everywhere.
+  /// The minimum; negative if the solids overlap. Stops early if it is known to exceed `enough`.
   double run(double enough) {
     double best = std::numeric_limits<double>::infinity();
     for (int step = 0; step < 200; ++step) {
@@ -101,7 +101,7 @@ class Deepest {
   Vec3<double> place(const double* at) const {
     return flat_ ? Vec3<double>{at[0], 0, at[1]} : Vec3<double>{at[0], at[1], at[2]};
   }
-  /// How far the middle is out of the box; 0 in it.
+  /// How far the center is outside the box; 0 inside.
   double outside(double* slope) const {
     double worst = 0;
     for (int k = 0; k < n_; ++k) slope[k] = 0;
@@ -123,7 +123,7 @@ class Deepest {
     slope[0] = n.x, slope[1] = flat_ ? n.z : n.y, slope[2] = n.z;
     return std::max(of_a, of_b);
   }
-  /// Keeps the half of the ellipsoid that is downhill; how much lower it may be there.
+  /// Keeps the half in the direction of descent. Returns a bound on the decrease in it.
   double cut(const double* slope) {
     double along[3] = {}, square = 0;
     for (int k = 0; k < n_; ++k)
@@ -146,7 +146,7 @@ class Deepest {
   double middle_[3] = {}, spread_[3][3] = {};
 };
 
-/// `most`: times, besides those of the motion itself.
+/// `most`: number of times in addition to those of the motion itself.
 Track track_of(const Scene& s, const Obstacle& o, int most) {
   const Scene one = scene_of(s, o);
   Track track;

@@ -1,4 +1,4 @@
-// Where an obstacle goes in the course of a run, and how far two of them reach into each other.
+// The path of an obstacle during a run, and how far two obstacles overlap.
 #pragma once
 
 #include <array>
@@ -9,35 +9,35 @@
 
 namespace pbf::inline run_module {
 
-/// Lengths in h from the scene's origin, along its axes.
+/// Interval along an axis of the scene, in h from its origin.
 struct Extent {
   double low, high;
   bool meets(const Extent& other) const { return low <= other.high && other.low <= high; }
 };
 using Extents = std::array<Extent, 3>;
 
-/// From where to where it reaches along the axes; a plane everywhere.
+/// Extents along the axes; infinite for a plane.
 Extents extents_of(const Solid<double>& solid);
 
-/// The domain, as an obstacle's extents.
+/// The domain in the same form.
 Extents extents_of(const Scene& scene);
 
-/// An obstacle at some times of the run. In between it goes on by no more than a spacing, unless it
-/// goes farther than kLongestTrack of them, and all its extremes are among them.
+/// Poses of an obstacle at times of the run, which include all extremes of its motion. Between two
+/// times it moves by at most a spacing, unless that takes more than kLongestTrack times.
 struct Track {
-  std::vector<double> time;  ///< s since the start, from 0 to time.end; of one that stands 0
+  std::vector<double> time;  ///< s since the start, from 0 to time.end; only 0 if it is fixed
   std::vector<Solid<double>> solid;
-  Extents swept;  ///< of all of them together
+  Extents swept;  ///< union over all times
 };
 inline constexpr int kLongestTrack = 4096;
-/// Of every obstacle. Where there are very many, they are looked at less often.
+/// The tracks of all obstacles. With very many obstacles, each has fewer times.
 std::vector<Track> tracks_of(const Scene& scene);
 
-/// The obstacle as it is at a time.
+/// The obstacle at a time, s since the start.
 Solid<double> solid_at(const Scene& scene, const Obstacle& obstacle, double time);
 
-/// How thick what two solids share in the domain is, h: the diameter of the largest ball in it. 0
-/// where that is less than `least`. They are convex, so the way to its middle is downhill.
+/// Thickness of the overlap of two solids in the domain, h: the diameter of its largest inscribed
+/// ball; 0 if below `least`. The solids are convex, so descent finds the center of this ball.
 double shared_thickness(const Scene& scene, const Solid<double>& a, const Solid<double>& b,
                         double least);
 

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::int64_t kMostDistances = 200000000;
 
-/// By more than rounding. Bodies that touch have their particles half a spacing outside of each
-/// other.
+/// Whether x is inside by more than rounding. If bodies only touch, the particles of one are half a
+/// spacing outside the other.
 bool inside(const Body& b, const Double3& x, double d) {
   if (b.shape == Shape::file) return false;
   if (b.shape == Shape::cylinder) {
@@ -50,7 +50,7 @@ std::vector<Box> boxes_of(const Scene& s, const StartPoints& points) {
   return boxes;
 }
 
-/// Of each body those whose boxes are within `reach`.
+/// For each body, the bodies whose boxes are within `reach`.
 using Near = std::vector<std::vector<std::size_t>>;
 
 Near near_bodies(const std::vector<Box>& boxes, double reach) {
@@ -63,7 +63,7 @@ Near near_bodies(const std::vector<Box>& boxes, double reach) {
   return near;
 }
 
-/// From the bodies' shapes, before a look at any particle.
+/// Decides from the shapes of the bodies alone, without their particles.
 bool may_be_near(const Scene& s, double reach) {
   std::vector<Box> boxes;
   for (const Body& b : s.bodies) boxes.push_back(box_of(b));
@@ -96,7 +96,7 @@ Overlap find_overlap(const StartPoints& points) {
   const bool file = std::any_of(s.bodies.begin(), s.bodies.end(),
                                 [](const Body& b) { return b.shape == Shape::file; });
   if (s.bodies.size() < 2 && !file) return found;
-  // By more than rounding: bodies that touch on one lattice are a spacing apart, no less.
+  // Less by more than rounding: bodies that touch on one lattice are a full spacing apart.
   const double reach = 0.5 * s.fluid.spacing * (1 - 1e-6);
   if (!file && !may_be_near(s, reach)) return found;
   const std::vector<Box> boxes = boxes_of(s, points);
@@ -129,7 +129,7 @@ Overlap find_overlap(const StartPoints& points) {
       bodies(a.body, b.body);
     }
   };
-  // Half of the cells around one: every pair is met once.
+  // Visits half of the adjacent cells, so that each pair is met once.
   for (std::size_t i = 0; i < list.size(); ++i) {
     for (std::size_t j = i + 1; j < list.size() && list[j].cell == list[i].cell; ++j)
       if (look(list[i], list[j]); distances >= kMostDistances) return found.more = true, found;

@@ -11,14 +11,14 @@
 namespace pbf::inline run_module {
 namespace {
 
-constexpr int kRound = 8;              // steps of one round, at most
-constexpr int kMostIterations = 2048;  // in all; 32 steps at least
-constexpr int kPatience = 64;  // iterations before anything is called hopeless; 4 steps at least
-constexpr double kHarmless = 1e-5;  // of the energy scale
-constexpr double kProgress = 0.75;  // of the kick that twice the steps may leave
-constexpr double kStill = 1e-6;     // h, a move that counts for nothing where all is at rest
+constexpr int kRound = 8;              // steps of a round, at most
+constexpr int kMostIterations = 2048;  // in total; but at least 32 steps
+constexpr int kPatience = 64;          // iterations before giving up; at least 4 steps
+constexpr double kHarmless = 1e-5;     // share of the energy scale
+constexpr double kProgress = 0.75;     // largest useful ratio of the kicks after 2n and n steps
+constexpr double kStill = 1e-6;        // h, a negligible move if all is at rest
 
-/// How far the particles went from `a` to `b`, h.
+/// Displacements from `a` to `b`, h.
 struct Moves {
   double squares = 0, farthest = 0;
   Moves(const std::vector<double>& a, const std::vector<double>& b) {
@@ -32,13 +32,13 @@ struct Moves {
   }
 };
 
-/// The kick after so many steps.
+/// The kick after a number of steps.
 struct Point {
   int steps;
   double kick;
 };
 
-/// Whether the last half of the steps did little: what is left has no room to go to.
+/// Whether the second half of the steps achieved little: there is no room to relieve the rest.
 bool hopeless(const std::vector<Point>& course) {
   const Point now = course.back();
   const auto half = std::find_if(course.rbegin(), course.rend(),
@@ -56,14 +56,14 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   p.compression_before = p.compression_after = before.compression_mean;
   p.most_before = p.most_after = before.compression_max;
   const double dt = std::ldexp(s.time.step / plan.substeps, -finest_level(s));
-  const double speed = s.h() / dt;  // m/s, of a move by h
-  // J for a sum of squares of moves in h.
+  const double speed = s.h() / dt;  // m/s, for a move by h
+  // Energy in J for a sum of squared displacements in h^2.
   const auto energy = [&](double squares) { return 0.5 * plan.mass * squares * speed * speed; };
   const double n = double(plan.particles), noise = n * std::pow(position_rounding(s), 2);
   const double scale = energy_scale(before, s, plan.mass, plan.particles);
   p.harmless = scale > 0 ? std::max(kHarmless * scale, energy(noise))
                          : energy(std::max(noise, n * kStill * kStill));
-  // A step moves particles by about c h. Twice that is no less than any scene has shown.
+  // A step moves particles by about c h, with c the compression; twice that is an upper estimate.
   p.kick = energy(n * std::pow(2 * before.compression_rms, 2));
   if (p.relieved() || before.non_finite > 0) return p;
   std::vector<double> from = solver.state(Which::positions).position;
@@ -78,7 +78,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
     const Moves moves(from, to);
     from = std::move(to);
     p.moved += moves.farthest * s.fluid.smoothing_ratio;
-    p.kick = energy(moves.squares / (round * round));  // of the mean step of the round
+    p.kick = energy(moves.squares / (round * round));  // for the mean step of the round
     if (progress)
       progress(
           format("start: %d steps without time; one more would give the particles %.2g J, "
@@ -87,7 +87,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
     course.push_back({p.steps, p.kick});
     if (p.relieved() || (p.steps >= patience && hopeless(course))) break;
   }
-  double diagonal = 0;  // the moves of the rounds add up to more than anyone has gone
+  double diagonal = 0;  // the sum over rounds may exceed any real displacement
   for (std::size_t a = 0; a < 3; ++a)
     diagonal = std::hypot(diagonal, s.domain.max[a] - s.domain.min[a]);
   if (s.domain.open.empty()) p.moved = std::min(p.moved, diagonal / s.fluid.spacing);
@@ -99,7 +99,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
 
 std::string prestabilized_text(const Prestabilized& p) {
   if (p.steps == 0) return {};
-  // Edges of bodies: a step takes most of it from the few, and leaves their neighbours some.
+  // At edges of bodies a step relieves the worst particles and compresses their neighbors.
   const bool spread = p.compression_after > p.compression_before && p.most_after < p.most_before;
   std::string text = format(
       "start: compression mean %.3g %%, largest %.3g %%; after %d step%s without time "

@@ -8,12 +8,12 @@
 namespace pbf::inline run_module {
 namespace {
 
-/// Splashes of a few particles are in any lively flow.
-constexpr double kMuch = 1e-3;     // of particles times steps
+/// Any lively flow has splashes of a few particles.
+constexpr double kMuch = 1e-3;     // share of particles times steps
 constexpr double kInSolid = 0.01;  // h, far beyond rounding
 
 std::string passed_through_text(const Scene& s, const Diagnostics& m, double share) {
-  // With time.adaptive the longest way may be that of a step much shorter than time.step.
+  // With time.adaptive the longest move may belong to a step much shorter than time.step.
   const std::string remedy =
       s.time.adaptive
           ? std::string("lower time.adaptive.cfl")
@@ -85,7 +85,7 @@ void Reporter::count_outside(std::size_t n, const Coordinate& coordinate) {
       const double x = coordinate(i, a);
       const double beyond =
           face.ends_with("min") ? run_.scene.domain.min[a] - x : x - run_.scene.domain.max[a];
-      // By more than what a float in m may be off.
+      // More than the rounding of a float in m.
       if (!(beyond > 1e-3 * run_.scene.fluid.spacing)) continue;
       out = true;
       ++through[f];

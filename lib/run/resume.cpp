@@ -18,10 +18,10 @@
 namespace pbf::inline run_module {
 namespace {
 
-/// Runs of such scenes give the same bits with one program, whatever the machine.
+/// Runs of such scenes give the same bits with one version of the program on every machine.
 bool exact(const Scene& s) { return about(s.backend).exact || s.solver.reproducible; }
 
-/// How many of the values stand where the schedule has them, from the first on.
+/// The number of leading values that agree with the schedule.
 template <class Values, class Expected>
 std::int64_t prefix(const Values& values, std::int64_t last, const Expected& expected) {
   std::int64_t k = 0;
@@ -46,7 +46,7 @@ class Finder {
     if (!folder_.has(kResolvedScene)) {
       if (folder_.holds_other_files())
         bad("holds no run to resume, but other files; give another folder with --out");
-      return {};  // killed before it had begun
+      return {};  // killed before it began
     }
     const LoadedScene record = load_stored_scene(folder_.file(kResolvedScene));
     const Scene& before = record.scene;
@@ -98,7 +98,7 @@ class Finder {
   [[noreturn]] void bad(const std::string& what) const {
     throw Error(ExitCode::bad_input, folder_.path() + ": " + what);
   }
-  /// That a file of the folder is of this scene and its files.
+  /// Refuses a file of the folder that belongs to another scene or to other files.
   void refuse_other(const std::string& name, const std::string& scene,
                     const std::string& files) const {
     const std::string difference = difference_of_runs(
@@ -110,7 +110,7 @@ class Finder {
                 (name.empty() ? folder_.path() : folder_.file(name)) + ": cannot resume: " +
                     (name.empty() ? "" : "it is of another scene: ") + difference + kSame);
   }
-  /// What it costs that there is no checkpoint.
+  /// Note on the work that is lost without a checkpoint.
   std::string from_the_start(const Scene& before, std::int64_t done) const {
     const bool prolonged = folder_.has("DONE") && schedule_.updates > done;
     std::string text = "there is no checkpoint: the run starts again from its first update";
@@ -128,7 +128,7 @@ class Finder {
     point_.notes.push_back(folder_.path() + ": " + why);
     point_.finished = true;
   }
-  /// A run that was stopped beyond the end which the scene now has: what it asks for is there.
+  /// The run was stopped after the present time.end, so all requested results are there.
   void leave_as_it_is() {
     const auto reached = point_.saved->state.updates;
     const std::string at = format("%.6g s (update %ld)", double(reached) * scene_.time.step,
@@ -182,7 +182,7 @@ class Finder {
     }
     if (file->frames() == 0) return forget("");
     refuse_older_log(*file, info);
-    refuse_other(kRunFile, info.resolved_scene, info.scene_files);  // no files in older ones
+    refuse_other(kRunFile, info.resolved_scene, info.scene_files);  // older files have none
     point_.keep_file = true;
     add_earlier(file->sessions());
     const std::int64_t u = point_.update();
@@ -193,7 +193,7 @@ class Finder {
         point_.rows.gauges = prefix(file->gauge("update"), u,
                                     [&](std::int64_t k) { return schedule_.update_of_gauges(k); });
     }
-    // Frames behind the checkpoint stay when the run to come writes the same.
+    // Frames after the checkpoint stay if the resumed run would write the same.
     const bool same = exact(before) && exact(scene_) && info.commit == commit_;
     const std::vector<std::int64_t> frames = file->updates();
     beyond_ = std::ranges::count_if(frames, [&](auto f) { return f > schedule_.updates; });
@@ -213,7 +213,7 @@ class Finder {
       if (began && ended) earlier.seconds += std::max(0.0, *ended - *began);
     }
   }
-  /// A log without one of today's columns cannot go on, and the results would be others.
+  /// A log that lacks a present column cannot continue; results differ between versions.
   void refuse_older_log(const RunReader& file, const RunInfo& info) const {
     const std::vector<std::string> there = file.log_columns();
     for (const auto& column : run_layout::log_columns())
@@ -222,7 +222,7 @@ class Finder {
             info.commit + "), whose log has no column " + column.name +
             " and whose results are others" + kOtherwise);
   }
-  /// Without what came before it in run.vtkhdf a checkpoint is of no use.
+  /// A checkpoint is useless without the earlier results in run.vtkhdf.
   void forget(const std::string& why) {
     if (point_.saved && !why.empty())
       point_.notes.push_back(why + ": the checkpoint is not used");
@@ -245,7 +245,7 @@ class Finder {
   Schedule schedule_;
   ResumePoint point_;
   bool damaged_ = false;
-  std::int64_t beyond_ = 0;  // frames of run.vtkhdf after the end
+  std::int64_t beyond_ = 0;  // frames of run.vtkhdf after time.end
 };
 
 }  // namespace

@@ -41,7 +41,7 @@ void Rows::take(Diagnostics& m, double dt) {
   if (!run_.json) return;
   const std::int64_t frames = writer ? writer->frames_written() : 0;
   const std::string line = measure_json(m, run_.wall.seconds(), frames, since) + "\n";
-  // A reader that has gone is no error, as on stdout.
+  // A closed pipe is no error, as for stdout.
   if ((std::fwrite(line.data(), 1, line.size(), run_.json) != line.size() ||
        std::fflush(run_.json) != 0) &&
       errno != EPIPE)

@@ -54,8 +54,12 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   return info;
 }
 
+<<<<<<< HEAD
 }  // namespace
 
+=======
+/// Opens the run file and the folder of the pictures, if the scene asks for them.
+>>>>>>> wt-c3
 void open_files(RunParts& run, const std::string& started) {
   if (const auto& output = run.scene.output) {
     const std::string path = run.folder.file(kRunFile);
@@ -70,9 +74,13 @@ void open_files(RunParts& run, const std::string& started) {
 #endif
 }
 
+<<<<<<< HEAD
 namespace {
 
 /// Saves the last good state and a scene that goes on from it, and ends the run.
+=======
+/// Saves the last good state and a scene that continues from it, and ends the run with an error.
+>>>>>>> wt-c3
 [[noreturn]] void report_alarm(const Watch& watch, const Scene& scene, const RunFolder& folder) {
   const GuardEvent& e = *watch.event();
   const Guard& guard = *watch.guard();
@@ -110,7 +118,7 @@ File open_json(const std::string& path, bool append) {
   return file;
 }
 
-/// Everything from the made folder on, so that its log.txt also gets the error that ends it.
+/// Everything after the folder is made, so that log.txt also gets the error that ends the run.
 RunResult simulate(RunParts& run) {
   const ResumePoint& from = run.from;
   Log& log = run.log;
@@ -135,7 +143,7 @@ RunResult simulate(RunParts& run) {
         prestabilize(run.solver, run.scene, run.plan,
                      [&log](const std::string& line) { log.progress("pbf: " + line); }));
     if (!done.empty()) note(done);
-    run.clock.begin();  // the solver has booked its steps
+    run.clock.begin();  // the solver has recorded its own steps
   }
   open_files(run, started);
   run.clock.mark("init");
@@ -173,14 +181,14 @@ void run_session(RunParts& run) {
   Saving saving(run, frames, *rows, watch, reporter);
   const auto& saved = run.from.saved;
   if (saved) rows->follow(watch.go_on_from(*saved));
-  // A signal waits for a quarter of a second at most, or for one update.
+  // A signal waits for at most a quarter of a second, or for one update.
   Session session(run.solver, {&handing, &watch, &frames, &watch.choosing(), &reporter, &saving},
                   0.25);
   session.use(watch.options());
   session.run(run.schedule.updates, saved ? run.from.update() : -1);
   run.loop_seconds = loop.seconds();
   run.log.result(run_summary(run, watch, rows->stages()));
-  if (!run.control.strict)  // else all are in the error
+  if (!run.control.strict)  // a strict run has all of them in its error
     for (const Warning& w : reporter.untold()) run.log.warning(w.text);
   if (watch.event()) report_alarm(watch, run.scene, run.folder);
   if (run.control.strict && !reporter.warnings().empty())
@@ -216,13 +224,13 @@ RunResult run(Start start, const RunPlace& place, Control& control) {
   double solver_init = 0;  // the solver reports its own part of "init"
   for (const StageTime& s : solver->info().stages) solver_init += s.name == "init" ? s.seconds : 0;
 #ifdef PBF_HAS_RENDER
-  std::unique_ptr<RenderThread> pictures;  // here, for not every machine has what draws them
+  std::unique_ptr<RenderThread> pictures;  // made first, as not every machine can draw
   if (start.scene().render)
     pictures = std::make_unique<RenderThread>(view_of(start.scene(), start.plan.particles));
 #endif
   clock.add("init", control.wall.seconds() - solver_init);
   clock.begin();
-  // A new folder comes last: a scene that cannot run leaves nothing behind.
+  // Make a new folder last, so that a scene that cannot run leaves nothing behind.
   if (!folder) folder = std::make_unique<RunFolder>(place.folder, place.existing);
   log.open(folder->file("log.txt"), from.started);
   try {
@@ -234,7 +242,7 @@ RunResult run(Start start, const RunPlace& place, Control& control) {
   } catch (const std::exception& e) {
     try {
       log.file_only(std::string("pbf: error: ") + e.what());
-    } catch (const Error&) {  // a full disk: the first error is the one to tell
+    } catch (const Error&) {  // for example a full disk; the first error is reported
     }
     throw;
   }

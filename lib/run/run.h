@@ -18,18 +18,18 @@
 
 namespace pbf::inline run_module {
 
-/// A run: what it is made of, where it writes to, and what its observers find out.
+/// A run: its parts, its output, and the findings of its observers.
 struct RunParts {
   const Start& start;
   Solver& solver;
   Control& control;
   StageClock& clock;
   const RunFolder& folder;
-  const ResumePoint& from;              ///< the solver has its state
-  std::FILE* json = nullptr;            ///< one line per measure, null: none; owned by the caller
+  const ResumePoint& from;              ///< the solver already has its state
+  std::FILE* json = nullptr;            ///< one line per measurement; null: none; not owned
   std::unique_ptr<RunWriter> writer{};  ///< null: none
 #ifdef PBF_HAS_RENDER
-  std::unique_ptr<RenderThread> pictures{};  ///< the same; the caller's, made before the folder
+  std::unique_ptr<RenderThread> pictures{};  ///< null: none; made by the caller before the folder
 #endif
   const LoadedScene& loaded = start.loaded;
   const Scene& scene = loaded.scene;
@@ -38,32 +38,32 @@ struct RunParts {
   const Stopwatch& wall = control.wall;
   Schedule schedule = make_schedule(scene);
 
-  double loop_seconds = 0;     ///< s, the updates with their output
-  double drawing_seconds = 0;  ///< s, spent drawing beside the run
-  double compression_max = 0;  ///< largest over all measures
+  double loop_seconds = 0;     ///< s, updates with their output
+  double drawing_seconds = 0;  ///< s, spent drawing in parallel with the run
+  double compression_max = 0;  ///< largest over all measurements
   std::int64_t frames_written = 0, pictures_drawn = 0, bytes = 0;
   std::string status{};       ///< as in run.vtkhdf: finished, stopped, diverged
   std::string stop_reason{};  ///< "SIGTERM", ...
 };
 
-/// Warnings of a run, told as they come up, and its progress.
+/// Reports progress, and warnings of a run when they arise.
 class Reporter : public Observer {
  public:
   Reporter(RunParts& run, const Watch& watch);
   std::int64_t next(std::int64_t /*u*/) const override { return kEveryCall; }
-  /// Each kind of warning once: at the end the whole run's figures are told.
+  /// Reports each kind of warning once; the end has the figures of the whole run.
   Now at(Session& session) override;
   void end(Session& session) override;
-  /// To be given every measure that is due, in order.
+  /// Must be given every scheduled measurement, in order.
   void follow(const Diagnostics& due);
   /// Counts the particles beyond open faces.
   void look_outside(const Snapshot& snapshot);
-  /// Updates so far whose next measure found a mean compression above kNoLiquid.
+  /// Updates so far whose next measurement showed a mean compression above kNoLiquid.
   std::int64_t compressed_updates() const { return compressed_; }
   bool has_told() const { return !told_.empty(); }
   /// After the end: the warnings of the scene and of the whole run.
   const std::vector<Warning>& warnings() const { return all_; }
-  /// What has not been told on the way, and what has become of the rest.
+  /// Warnings not reported during the run, and those whose text has changed since.
   std::vector<Warning> untold() const;
 
  private:
@@ -78,21 +78,21 @@ class Reporter : public Observer {
   std::vector<Warning> all_;
   std::int64_t compressed_ = 0, left_ = 0;
   double farthest_ = 0;  // m
-  std::string faces_;    // through which they left
+  std::string faces_;    // open faces through which particles left
 };
 
-/// What is written down of the measures: rows of the log, lines of JSON, what a checkpoint holds.
+/// Records measurements: rows of the log, lines of JSON, contents of a checkpoint.
 class Rows {
  public:
   Rows(RunParts& run, Reporter& reporter);
-  /// Fills in what the energy's track knows. Error(io) where the JSON cannot be written.
+  /// Fills in the values from the energy track. Throws Error(io) if the JSON cannot be written.
   void take(Diagnostics& m, double dt);
-  /// The same for a measure whose row is there.
+  /// The same for a measurement that already has a row.
   void follow(Diagnostics& m) const { EnergyTrack(energy_).follow(m); }
-  /// As of the last measure that is due, without a state.
+  /// As of the last scheduled measurement, without a state.
   const SavedRun& due() const { return due_; }
-  /// Seconds per stage. The names of the whole run from the start, so that every row of the log has
-  /// the same columns.
+  /// Seconds per stage. The names are complete from the start, so that all rows of the log have the
+  /// same columns.
   std::vector<StageTime> stages() const;
 
  private:
@@ -105,8 +105,8 @@ class Rows {
   SavedRun due_;
 };
 
-/// Copies frames and pictures from the solver where they are due, and hands them over; the last
-/// frame, too.
+/// Copies frames, including the last one, and data for pictures from the solver when they are due,
+/// and hands them over.
 class Frames : public Observer {
  public:
   Frames(RunParts& run, Reporter& reporter);
@@ -114,8 +114,8 @@ class Frames : public Observer {
   Now at(Session& session) override;
   void end(Session& session) override;
   void close() noexcept override;
-  /// Gives the copy that is under way, if any, to the writer and the pictures. On a device it runs
-  /// beside the updates of a call of Solver::step(), after which this is due.
+  /// Gives a pending copy to the writer and the pictures. On a device the copy runs in parallel
+  /// with the updates of one call of Solver::step(); call this after that call.
   void hand_over();
 
  private:
@@ -125,14 +125,14 @@ class Frames : public Observer {
   Reporter& reporter_;
   std::vector<std::string> fields_;  // downloaded
   std::string extra_;                // downloaded for the pictures, not written
-  std::int64_t last_ = -1;           // update of the last one
+  std::int64_t last_ = -1;           // update of the last frame
   std::future<Snapshot> copy_;
-  bool write_ = false, draw_ = false;  // what is under way
-  std::int64_t picture_ = 0;           // its number, as in the name
+  bool write_ = false, draw_ = false;  // uses of the pending copy
+  std::int64_t picture_ = 0;           // number in the file name
 };
 
-/// Makes a run safe, and stops it on signals, at the wall-time limit and, a strict one, for a
-/// warning. To be placed last.
+/// Writes checkpoints, and stops the run on signals, at the wall-time limit and, if it is strict,
+/// for a warning. Must be the last observer.
 class Saving : public Observer {
  public:
   Saving(RunParts& run, Frames& frames, const Rows& rows, Watch& watch, const Reporter& reporter)
@@ -157,13 +157,13 @@ class Saving : public Observer {
 void open_files(RunParts& run, const std::string& started);
 
 /// Runs to the end, a signal, the wall-time limit or an alarm of the guard, writes the last frame,
-/// closes every file, and tells the summary. Throws Error(guard) after an alarm, whose last good
-/// state and a scene that goes on from it are saved; Error(difference) for the warnings of a strict
+/// closes all files and reports the summary. Throws Error(guard) after an alarm, with the last good
+/// state and a scene that continues from it saved; Error(difference) for the warnings of a strict
 /// run; what writing and drawing throw.
 void run_session(RunParts& run);
 
-/// What there is to say at the end, in plain words: what each number is and what is good. With the
-/// seconds per group of stages, in percent of the wall time; what no stage booked is "other".
+/// The report at the end, in plain words: each number with its meaning and what is good; seconds
+/// per group of stages, in percent of the wall time. Time of no stage is "other".
 std::string run_summary(const RunParts& run, const Watch& watch,
                         const std::vector<StageTime>& stages);
 

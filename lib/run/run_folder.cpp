@@ -55,7 +55,7 @@ bool own_file(const std::string& name) {
          std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
 }
 
-/// The first letters of a regular file; nothing of a link, a folder or a file that is not there.
+/// The first letters of a regular file; empty for a link, a folder or a missing file.
 std::optional<std::string> start_of(const fs::path& path) {
   std::error_code error;
   if (!fs::is_regular_file(fs::symlink_status(path, error))) return {};
@@ -66,8 +66,8 @@ std::optional<std::string> start_of(const fs::path& path) {
   return text;
 }
 
-/// A file that has the name of one of a run, and stands where no run has been: somebody's own.
-/// Links are left out, for to replace one harms nobody.
+/// A foreign file: it has the name of a run's file, but is in a folder without a run. Links are
+/// ignored, since replacing one harms nobody.
 std::optional<fs::path> others_file(const fs::path& folder) {
   const auto log = start_of(folder / "log.txt");
   if (log && *log == "pbf") return {};  // the log of a run begins with the name of the program
@@ -81,7 +81,7 @@ std::optional<fs::path> others_file(const fs::path& folder) {
     return found;
   };
   const std::set<fs::path> found = all_in(folder, own_file);
-  // A run whose log was removed has the record of its scene, and something beside it.
+  // A run whose log was removed still has the record of its scene and another file.
   if (found.contains(folder / kResolvedScene) && found.size() > 1) return {};
   if (!found.empty()) return *found.begin();
   const fs::path frames = folder / RunFolder::kPictures;
@@ -90,9 +90,9 @@ std::optional<fs::path> others_file(const fs::path& folder) {
   return pictures.empty() ? std::nullopt : std::optional(*pictures.begin());
 }
 
-/// File descriptors of the locks that this process holds.
+/// File descriptors of all locks of this process.
 struct Locks {
-  std::mutex mutex;  // of `all`, also while a process is copied
+  std::mutex mutex;  // for `all`, also locked during fork
   std::set<int> all;
 };
 
@@ -108,7 +108,7 @@ bool RunFolder::check(const std::string& path, ExistingFolder existing) {
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
   if (status.type() == fs::file_type::not_found) return false;
-  if (status.type() == fs::file_type::none)  // below a regular file, or no right to look
+  if (status.type() == fs::file_type::none)  // below a regular file, or no permission
     fail(folder, "the output folder cannot be used", error.message());
   if (!fs::is_directory(status))
     fail(folder, "the output folder cannot be used", "it is not a folder");
@@ -136,7 +136,7 @@ RunFolder::RunFolder(const std::string& path, ExistingFolder existing) : path_(p
     fs::create_directories(path_.parent_path(), error);
     if (error) fail(path_, "the output folder cannot be made", error.message());
   }
-  // One mkdir decides: of two runs started at the same time only one gets the folder.
+  // A single mkdir decides which of two simultaneous runs gets the folder.
   const bool made = fs::create_directory(path_, error);
   if (error) fail(path_, "the output folder cannot be made", error.message());
   if (!made && existing == ExistingFolder::refuse)
@@ -152,12 +152,12 @@ RunFolder::~RunFolder() {
   if (lock_ < 0) return;
   const std::lock_guard alone(locks().mutex);
   locks().all.erase(lock_);
-  ::unlink(file(".lock").c_str());  // while it is held: the next one makes a new file
+  ::unlink(file(".lock").c_str());  // while locked: the next run makes a new file
   ::close(lock_);
 }
 
-/// The system drops the lock with the process, however that ends. A process that this one makes to
-/// try a file in would hold it too, and outlive a SIGKILL of this one: it closes its copy at once.
+/// The system releases the lock when the process ends, in any way. A forked child (which tests a
+/// file) would inherit the lock and keep it after a SIGKILL of this process: it closes its copy.
 void RunFolder::lock() {
   static const int closed_in_children =
       pthread_atfork([] { locks().mutex.lock(); }, [] { locks().mutex.unlock(); },
@@ -182,7 +182,7 @@ void RunFolder::lock() {
                       (size > 0 ? " (" + std::string(who) + ")" : std::string()) +
                       "; wait for its end, stop it, or give another folder with --out");
     }
-    // The one before may have unlinked it between our open and our lock.
+    // Another run may have unlinked the file between our open and our lock.
     struct stat mine {
     }, there{};
     if (::fstat(lock_, &mine) == 0 && ::stat(file(".lock").c_str(), &there) == 0 &&
@@ -196,7 +196,7 @@ void RunFolder::lock() {
   const std::string who = "process " + std::to_string(getpid()) + " on " + host;
   if (::ftruncate(lock_, 0) != 0 ||
       ::pwrite(lock_, who.data(), who.size(), 0) != static_cast<ssize_t>(who.size()))
-    errno = 0;  // only what a second run would be told; a full disk is noticed soon enough
+    errno = 0;  // failure only costs the message to a second run; a full disk shows soon enough
 }
 
 void RunFolder::refuse_overwrite(const std::string& path) {
@@ -221,8 +221,8 @@ bool RunFolder::owns(const std::string& folder, const std::string& path) {
   return inside && (own_file(name) || name == ".lock" || name == kPictures);
 }
 
-/// Nobody but pbf has business with these names, and to follow a link or wait for a FIFO among them
-/// would harm others. A folder that is reached by way of a link is fine.
+/// These names belong to pbf. Following a link or waiting for a FIFO of such a name could harm
+/// others. The folder itself may be reached through a link.
 void RunFolder::refuse_special_files() const {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(path_, error)) {
@@ -272,7 +272,7 @@ void RunFolder::remove_own_files() const {
   if (fs::exists(frames) && !fs::is_directory(frames)) remove(path_ / kPictures);
   if (!fs::is_directory(frames)) return;
   remove_in(path_ / kPictures, own_picture);
-  fs::remove(path_ / kPictures, error);  // only when nothing foreign is left in it
+  fs::remove(path_ / kPictures, error);  // fails if it holds foreign files, as intended
 }
 
 void RunFolder::write_text(const std::string& name, const std::string& text) const {

@@ -1,5 +1,5 @@
 // The folder of one run: run.vtkhdf, checkpoints, scene.resolved.yaml, log.txt, frames/, and DONE,
-// which is written last. A process that writes there holds the lock .lock.
+// which is written last. The process that writes there holds the lock .lock.
 #pragma once
 
 #include <filesystem>
@@ -7,36 +7,36 @@
 
 namespace pbf::inline run_module {
 
-/// What to do with a folder that is there already.
+/// What to do with an existing folder.
 enum class ExistingFolder { refuse, overwrite, resume };
 
 class RunFolder {
  public:
-  static constexpr const char* kPictures = "frames";  ///< the folder of the pictures in it
+  static constexpr const char* kPictures = "frames";  ///< subfolder of the pictures
 
-  /// Whether the folder is there, before any work is done and without touching anything. Throws
-  /// Error(bad_input) for an existing one when `refuse`; Error(io) for something that is no folder.
+  /// Whether the folder exists; changes nothing. Throws Error(bad_input) if it exists and
+  /// `existing` is refuse; Error(io) if the path is no folder.
   static bool check(const std::string& path, ExistingFolder existing);
 
-  /// Makes or opens the folder, after the same checks, and locks it: Error(bad_input) when another
-  /// run writes there, Error(io) when a link or a FIFO has the name of a file of the run.
-  /// `overwrite` removes the files that pbf itself writes and leaves everything else. Throws
-  /// Error(io) when it cannot be made or written.
+  /// Makes or opens the folder, after the same checks, and locks it. Throws Error(bad_input) if
+  /// another run writes there; Error(io) if a link or a FIFO has the name of a file of the run, or
+  /// if the folder cannot be made or written. `overwrite` removes only files that pbf itself
+  /// writes.
   RunFolder(const std::string& path, ExistingFolder existing);
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
 
-  /// Error(bad_input) when `overwrite` would remove a file there that this command has read.
+  /// Throws Error(bad_input) if `overwrite` would remove a file there that this command has read.
   static void refuse_overwrite(const std::string& path);
-  /// Whether `path` is a file that a run in `folder` writes itself, be it there or not.
+  /// Whether `path` is a file that a run in `folder` writes itself; it need not exist.
   static bool owns(const std::string& folder, const std::string& path);
 
   std::string file(const std::string& name) const { return (path_ / name).string(); }
   std::string path() const { return path_.string(); }
   bool has(const std::string& name) const;
-  /// Whether there is anything in it that pbf did not write.
+  /// Whether the folder holds files that pbf did not write.
   bool holds_other_files() const;
-  /// Writes a text file, which nobody sees half written. Throws Error(io).
+  /// Writes a text file atomically. Throws Error(io).
   void write_text(const std::string& name, const std::string& text) const;
   void remove(const std::string& name) const;
 

@@ -59,7 +59,7 @@ std::string why_not_finished(const std::string& folder, const Scene& scene) {
     try_run_file(path);
     const RunReader file(path);
     if (file.status() != "finished") return "run.vtkhdf is of a run that is " + file.status();
-    // The last frame is that of the end. The log is not asked: one of an earlier version will do.
+    // The last frame is at the end. The log is not checked: that of an earlier version is fine.
     const std::vector<std::int64_t> frames = file.updates();
     const std::int64_t end = make_schedule(scene).updates,
                        last = frames.empty() ? 0 : frames.back();

@@ -16,16 +16,16 @@
 namespace pbf::inline run_module {
 namespace {
 
-constexpr double kAtRest = 1e-3;  // of the energy of the pool at rest, what moves may have
+constexpr double kAtRest = 1e-3;  // kinetic energy, as a share of a resting pool's energy
 
-/// Whether the fluid has come to rest: it hardly moves, and had the time to.
+/// Whether the fluid has come to rest: it hardly moves, and had time to settle.
 bool has_come_to_rest(const Diagnostics& m, const Scene& s, double mass) {
   const double at_rest = (m.energy - m.kinetic_energy) / m.height_kept;  // M g H0/2, J
   const double g = length(s.gravity), depth = 2 * at_rest / (mass * g);
   return m.kinetic_energy < kAtRest * at_rest && m.time > 2 * std::sqrt(depth / g);
 }
 
-/// Nothing when the scene does not define the measure, and of fluid that is still moving.
+/// Empty if the scene does not define this measurement or the fluid still moves.
 std::string pool_line(const Diagnostics& m, const Scene& s, double mass) {
   if (std::isnan(m.height_kept) || !has_come_to_rest(m, s, mass)) return {};
   return format(
@@ -34,7 +34,7 @@ std::string pool_line(const Diagnostics& m, const Scene& s, double mass) {
       m.height_kept, 100 * m.hydrostatic_deviation);
 }
 
-/// Changes of the step, and how long it was.
+/// Number of changes of the step, and its lengths.
 std::string step_lines(const StepHistory& s, double step, std::int64_t all) {
   double updates = 0, steps = 0, shortest = step;
   std::string shares;
@@ -58,8 +58,7 @@ std::string step_lines(const StepHistory& s, double step, std::int64_t all) {
   return out;
 }
 
-/// "grid 1.107, neighbors 3.849": the stages of a group, with their seconds where there are
-/// several.
+/// "grid 1.107, neighbors 3.849": the stages of a group with their seconds. Adds them to `sum`.
 std::string stages_of(StageGroup group, const std::vector<StageTime>& stages, double& sum) {
   std::vector<std::string> parts;
   for (const Stage& stage : kStages)
@@ -71,7 +70,7 @@ std::string stages_of(StageGroup group, const std::vector<StageTime>& stages, do
   return joined(parts, ", ");
 }
 
-/// Seconds per group of stages, and of each stage in it.
+/// Seconds per group of stages, and per stage.
 std::string time_table(const std::vector<StageTime>& stages, double wall, bool fused) {
   std::string out = "time                        seconds  of the wall time, and by stage\n";
   const auto row = [&](const char* name, double seconds, const std::string& of) {
@@ -92,7 +91,7 @@ std::string time_table(const std::vector<StageTime>& stages, double wall, bool f
   return out;
 }
 
-/// The error of the run, and what is good.
+/// The error of the run, and which values are good.
 std::string error_lines(const Diagnostics& last, double max_of_run) {
   return format(
       "compression         of the fluid beyond its rest density, the error of the run: a mean "
@@ -108,7 +107,7 @@ std::string error_lines(const Diagnostics& last, double max_of_run) {
       100 * max_of_run);
 }
 
-/// What takes energy, where some is lost. Walls and obstacles have no friction.
+/// Possible causes of a loss of energy. Walls and obstacles have no friction.
 std::string losses(const Scene& s, double drift) {
   if (drift >= 0) return "";
   std::vector<std::string> more;
@@ -134,7 +133,7 @@ std::string energy_lines(const Diagnostics& first, const Diagnostics& last, cons
   return out;
 }
 
-/// Updates and wall time: of the run, and of this session where it went on with the run.
+/// Updates and wall time: of the run and, if it was resumed, of this session.
 std::string progress_lines(const RunParts& run, double wall) {
   const std::int64_t updates = run.solver.updates(), before = run.from.update();
   const std::string loop =
@@ -204,7 +203,7 @@ std::string run_summary(const RunParts& run, const Watch& watch,
 
 namespace {
 
-/// With nine digits, which tell any two floats apart.
+/// Nine digits, which distinguish any two floats.
 double short_number(double value) { return std::strtod(format("%.9g", value).c_str(), nullptr); }
 
 }  // namespace
@@ -219,7 +218,7 @@ std::string measure_json(const Diagnostics& m, double wall, std::int64_t frames,
     const std::string name = d.name;
     const Json value = d.number ? Json(short_number(d.number(m))) : Json(d.integer(m));
     if (name.ends_with("_x") || name.ends_with("_y") || name.ends_with("_z"))
-      out[name.substr(0, name.size() - 2)].push_back(value);  // the vector's next component
+      out[name.substr(0, name.size() - 2)].push_back(value);  // next component of the vector
     else
       out[name] = value;
   }

@@ -10,10 +10,10 @@
 
 namespace pbf::inline run_module {
 
-/// 0 of nothing.
+/// Percentage of `part` in `whole`; 0 if `whole` is 0.
 inline double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
 
-/// One JSON object on one line: the measures, wall-clock seconds, frames that are safe on the disk,
+/// One JSON object on one line: measurements, wall-clock seconds, frames that are safely on disk,
 /// seconds per stage.
 std::string measure_json(const Diagnostics& measures, double wall, std::int64_t frames,
                          const std::vector<StageTime>& stages);

@@ -7,12 +7,12 @@ Now Saving::at(Session& session) {
   const auto& checkpoint = run_.scene.checkpoint;
   const bool due = checkpoint && since_save_.seconds() >= checkpoint->every;
   if ((run_.control.stop.take_save() || due) && !save()) return Now::stop;
-  // A run that alarms take back goes on to its first measure or frame, so that it gains something.
+  // A run that can go back continues to its first measurement or frame, to gain something.
   const bool goes_back = watch_.goes_back();
   if (goes_back && watch_.guard()->last_good().update <= run_.from.update()) return Now::go_on;
   run_.stop_reason = why_stop();
   if (run_.stop_reason.empty()) return Now::go_on;
-  if (goes_back) watch_.go_back();  // nothing beyond the last good state is in the files
+  if (goes_back) watch_.go_back();  // the files hold nothing after the last good state
   save();
   return Now::stop;
 }
@@ -25,8 +25,8 @@ std::string Saving::why_stop() const {
   return control.strict && reporter_.has_told() ? "--strict" : "";
 }
 
-/// All that comes before the state is on the disk before the checkpoint is. A state that the guard
-/// objects to is not saved: no run could go on from it; false.
+/// Writes all earlier output to disk before the checkpoint. Returns false, and saves nothing, if
+/// the guard rejects the state, since no run could continue from it.
 bool Saving::save() {
   frames_.hand_over();
   if (!watch_.state_is_good()) return false;

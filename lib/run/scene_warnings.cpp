@@ -15,18 +15,18 @@
 namespace pbf::inline run_module {
 namespace {
 
-/// Steps by so many times the rule of time.step: auto are warned of.
+/// Ratio of a step to that of time.step: auto above which a warning is given.
 constexpr double kFarAbove = 10;
 
 double length(const Double3& v) { return std::hypot(v[0], v[1], v[2]); }
 
-/// s, the longest step of gravity that time.adaptive allows; more than time.step: it has no say.
+/// The longest step that time.adaptive allows for gravity, s; above time.step if it has no limit.
 double adaptive_step(const Scene& s) {
   const double g = length(s.gravity);
   return s.time.adaptive && g > 0 ? s.time.adaptive->force * std::sqrt(s.h() / g) : 2 * s.time.step;
 }
 
-/// s, the longest substep that the scene allows itself.
+/// The longest substep of the scene, s.
 double longest_step(const Scene& s) {
   return std::min(s.time.step, adaptive_step(s)) / s.solver.substeps;
 }
@@ -38,14 +38,14 @@ int most_iterations(const Scene& s) {
 
 bool closed_box(const Scene& s) { return s.domain.open.empty(); }
 
-/// m^3
+/// Volume of the fluid, m^3.
 double volume(const Scene& s, double particles) {
   return particles * s.particle_mass() / s.fluid.rest_density;
 }
 
-/// For fluid in a box that is too shallow for its compression at rest to tell.
+/// For fluid that is too shallow for its compression at rest to reveal a long step.
 void add_coarse_step(const Scene& s, std::vector<Warning>& list) {
-  // The compression goes as dt^2 over the iterations, of which the rule takes the default number.
+  // Compression is proportional to dt^2 / iterations; the rule assumes the default number.
   const double far = kFarAbove * std::sqrt(std::max(1.0, most_iterations(s) / 4.0));
   const double safe = step_rule(s).gravity, times = longest_step(s) / safe;
   if (s.time.adaptive || !(times > far)) return;
@@ -62,7 +62,7 @@ void add_step(const Scene& s, std::int64_t particles, std::vector<Warning>& list
   const bool by_force = adaptive_step(s) < s.time.step;
   const double value = by_force ? s.time.adaptive->force : s.time.step;
   const std::string key = by_force ? "time.adaptive.force" : "time.step";
-  // Beyond the reach of the formula the compression is larger.
+  // The formula holds up to this compression; beyond, the real one is larger.
   std::string text = key +
                      format(
                          " %g makes steps %.2g times the longest that is safe here: at rest the "
@@ -76,16 +76,16 @@ void add_step(const Scene& s, std::int64_t particles, std::vector<Warning>& list
 }
 
 void add_speed(const Scene& s, std::vector<Warning>& list) {
-  if (s.time.adaptive) return;  // it follows speeds
-  // Two velocities are apart by no more than both are from the mean. Those far from it come first,
-  // so that few pairs are left to look at.
+  if (s.time.adaptive) return;  // it adapts to speeds
+  // Two velocities differ by at most the sum of their deviations from the mean. Sorted by
+  // deviation, only a few pairs need to be examined.
   Double3 mean{};
   for (const Body& b : s.bodies)
     for (int a = 0; a < 3; ++a) mean[a] += b.velocity[a] / double(s.bodies.size());
   const auto apart = [](const Double3& v, const Double3& w) {
     return length({v[0] - w[0], v[1] - w[1], v[2] - w[2]});
   };
-  std::vector<std::pair<double, std::size_t>> off;  // from the mean, and whose
+  std::vector<std::pair<double, std::size_t>> off;  // deviation from the mean, and body
   for (std::size_t i = 0; i < s.bodies.size(); ++i)
     off.push_back({apart(s.bodies[i].velocity, mean), i});
   std::stable_sort(off.begin(), off.end(),
@@ -111,7 +111,7 @@ void add_speed(const Scene& s, std::vector<Warning>& list) {
 }
 
 void add_motion(const Scene& s, std::vector<Warning>& list) {
-  if (s.time.adaptive) return;  // it follows them
+  if (s.time.adaptive) return;  // it adapts to motions
   const double way = fastest_obstacle(s, 0, s.time.end) * longest_step(s) / s.h();
   if (way <= kResolvedWay) return;
   list.push_back({"motion", format("an obstacle moves by %.3g h in a step, more than %g h: what it "
@@ -120,7 +120,7 @@ void add_motion(const Scene& s, std::vector<Warning>& list) {
                                    way, kResolvedWay, s.time.step * kResolvedWay / way)});
 }
 
-/// Whether it lies beyond a face of the domain, by more than walls and obstacles reach.
+/// Whether it lies outside the domain, farther than walls and obstacles act.
 bool out_of_reach(const Scene& s, const Solid<double>& o) {
   if (!is_bounded(o)) {
     double size[3];
@@ -139,7 +139,7 @@ bool out_of_reach(const Scene& s, const Solid<double>& o) {
 }
 
 void add_obstacles(const Scene& s, const std::vector<Track>& tracks, std::vector<Warning>& list) {
-  if (!closed_box(s)) return;  // fluid goes on beyond
+  if (!closed_box(s)) return;  // fluid can leave the domain
   for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
     if (!std::ranges::all_of(tracks[k].solid, [&](const auto& o) { return out_of_reach(s, o); }))
       continue;
@@ -162,7 +162,7 @@ void add_overlap(const StartPoints& points, std::vector<Warning>& list) {
         "bodies[%zu] and bodies[%zu] overlap: %ld particles start inside another body, "
         "%s%ld pairs of two bodies are closer than half of fluid.spacing; ",
         o.first, o.second, o.inside, least, o.pairs);
-  else if (o.within > 0 && 100 * o.within > o.of_files)  // some pairs are so near in any flow
+  else if (o.within > 0 && 100 * o.within > o.of_files)  // any flow has some close pairs
     text = format(
         "bodies[%zu]: %s%ld pairs of the file's particles are closer than half of "
         "fluid.spacing; ",
@@ -230,10 +230,10 @@ double compression_at_rest(const Scene& s, std::int64_t particles) {
   const double g = length(s.gravity), h = s.h();
   const int iterations = most_iterations(s);
   if (g == 0 || iterations == 0) return 0;
-  int down = 0;  // the axis along which the fluid lies on a wall
+  int down = 0;  // axis along which the fluid rests on a wall
   for (int a = 1; a < 3; ++a)
     if (std::abs(s.gravity[a]) > std::abs(s.gravity[down])) down = a;
-  // Without a wall below or at a side the fluid does not stay.
+  // Without walls below and at the sides the fluid does not stay.
   const std::string ceiling =
       std::string(1, char('x' + down)) + (s.gravity[down] < 0 ? "_max" : "_min");
   for (const std::string& face : s.domain.open)

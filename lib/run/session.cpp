@@ -34,7 +34,7 @@ void Session::ask(std::int64_t u) {
   for (const Observer* o : observers_) next_.push_back(o->next(u));
 }
 
-/// Whether the session goes on.
+/// Returns whether the session continues.
 bool Session::tell() {
   for (std::size_t k = 0; k < observers_.size(); ++k)
     if (next_[k] <= update() && observers_[k]->at(*this) == Now::stop) return false;
@@ -45,7 +45,7 @@ void Session::step(std::int64_t end) {
   const std::int64_t u = update();
   for (const std::int64_t next : next_)
     if (next > u) end = std::min(end, next);
-  // Few calls where an update takes microseconds; the first finds out.
+  // Few calls if an update takes microseconds; the first call measures this.
   const double most = std::clamp(longest_call_ / per_update_, 1.0, double(1 << 20));
   const int n = int(std::min(end - u, std::int64_t(most)));
   const Stopwatch watch;

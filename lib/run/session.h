@@ -13,27 +13,27 @@ namespace pbf::inline run_module {
 
 class Session;
 
-/// What an observer makes of the session.
+/// An observer's decision about the session.
 enum class Now { go_on, stop };
 
-/// Answers of Observer::next() that are no update.
+/// Special values of Observer::next().
 inline constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 inline constexpr std::int64_t kEveryCall = -1;  ///< after every call of Solver::step()
-inline constexpr std::int64_t kAlways = -2;     ///< then, and before the first one
+inline constexpr std::int64_t kAlways = -2;     ///< the same, and before the first call
 
-/// Whoever has something to do between updates. May throw.
+/// Does work between updates. Functions may throw.
 class Observer {
  public:
   virtual ~Observer() = default;
-  /// When next: the first update after `u` (-1: the start is to come) at which at() is wanted.
+  /// The first update after `u` at which at() is wanted; u = -1: before the start.
   virtual std::int64_t next(std::int64_t u) const = 0;
-  /// What now, at Session::update(). To go back it gives the solver an earlier state: the updates
-  /// since come again, and the observers behind it that wanted the later one are not called. Where
-  /// one stops the session, none behind it is called.
+  /// Called at Session::update(). May give the solver an earlier state: the updates since then are
+  /// repeated, and the later observers of the list are not called if they wanted the later update.
+  /// If an observer stops the session, later observers are not called.
   virtual Now at(Session& session) = 0;
-  /// Once, after the last update.
+  /// Called once, after the last update.
   virtual void end(Session& /*session*/) {}
-  /// Last of all, also where something was thrown.
+  /// Called last in all cases, also after an exception.
   virtual void close() noexcept {}
 };
 
@@ -50,28 +50,28 @@ class Callback : public Observer {
   std::function<Now(Session&)> at_;
 };
 
-/// s, within Solver::step(); cpu: of all threads of this process.
+/// Seconds in Solver::step(); cpu: of all threads of this process.
 struct StepSeconds {
   double wall = 0, cpu = 0;
 };
 
 class Session {
  public:
-  /// A call of Solver::step() takes `longest_call` s at most, or one update: so long may a signal
-  /// have to wait. Without observers that need more, a call goes on to the next update that is
-  /// asked for. Observers are called in their order, and must live as long as this.
+  /// A call of Solver::step() takes at most about `longest_call` s, or one update; a signal waits
+  /// this long. Otherwise a call runs to the next update that an observer wants. Observers are
+  /// called in the order of the list and must outlive this object.
   explicit Session(Solver& solver, std::vector<Observer*> observers = {},
                    double longest_call = std::numeric_limits<double>::max())
       : solver_(solver), observers_(std::move(observers)), longest_call_(longest_call) {}
 
-  /// Runs until update `end` or until an observer stops it. What was due until update `seen` is not
-  /// done again: the update of a state that a run goes on from, -1 for a run from its start.
+  /// Runs until update `end` or until an observer stops it. Work due up to update `seen` is not
+  /// repeated: the update of a resumed state, -1 for a run from its start.
   void run(std::int64_t end, std::int64_t seen = -1);
 
   Solver& solver() const { return solver_; }
   std::int64_t update() const { return solver_.updates(); }
   const StepSeconds& seconds() const { return seconds_; }
-  /// How the updates to come are made.
+  /// Sets the options of the following updates.
   void use(const StepOptions& options);
 
  private:
@@ -81,13 +81,13 @@ class Session {
 
   Solver& solver_;
   std::vector<Observer*> observers_;
-  std::vector<std::int64_t> next_;        ///< of each observer
-  double longest_call_, per_update_ = 1;  ///< s; the latter of the last call
+  std::vector<std::int64_t> next_;        ///< per observer
+  double longest_call_, per_update_ = 1;  ///< s; the second is measured in the last call
   StepSeconds seconds_;
   StepOptions options_;
 };
 
-/// `updates` more without observers.
+/// Makes `updates` updates without observers.
 inline void advance(Solver& solver, std::int64_t updates) {
   Session(solver).run(solver.updates() + updates);
 }

@@ -10,7 +10,7 @@ constexpr std::sig_atomic_t kOneStop = 3;  // s
 volatile std::sig_atomic_t seen_at = 0;
 constinit StopToken token;
 
-// All that it calls is async-signal-safe.
+// Calls only async-signal-safe functions.
 extern "C" void pbf_on_stop(int number) {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
@@ -30,7 +30,7 @@ extern "C" void pbf_on_save(int) { token.ask_save(); }
 void watch(int signal, void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
-  action.sa_flags = SA_RESTART;  // a write that is under way goes on
+  action.sa_flags = SA_RESTART;  // interrupted writes continue
   sigaction(signal, &action, nullptr);
 }
 

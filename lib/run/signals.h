@@ -8,16 +8,16 @@
 namespace pbf::inline run_module {
 
 /// From now on SIGTERM or SIGINT asks signal_token() to stop; a second one ends the program at
-/// once. A SIGTERM less than 3 s after the first signal is none: Slurm and systemd send theirs to
-/// every process, and the run of a batch gets it from the batch once more. SIGUSR1 asks it to save.
-/// Signals that HeldSignals kept waiting arrive now.
+/// once. A SIGTERM less than 3 s after the first signal is ignored, because Slurm and systemd
+/// signal every process and a batch forwards the signal to its runs. SIGUSR1 asks it to save.
+/// Signals that HeldSignals blocked arrive now.
 void watch_signals();
 
-/// The one token of the process, for a signal is the process's.
+/// The token of the process; signals are per process.
 StopToken& signal_token();
 
-/// While one lives, SIGTERM, SIGINT and SIGUSR1 wait, also in a process that is started then, until
-/// that calls watch_signals(): a run is not killed by a signal that comes before it can listen.
+/// Blocks SIGTERM, SIGINT and SIGUSR1 during its lifetime, also in processes started then, until
+/// these call watch_signals(): no signal kills a run before its handlers are installed.
 class HeldSignals {
  public:
   HeldSignals();
@@ -29,8 +29,8 @@ class HeldSignals {
   sigset_t before_;
 };
 
-/// Writing to a pipe whose reader has gone, or beyond the limit of a file's size (ulimit -f), gives
-/// an error instead of ending the program.
+/// Writing to a closed pipe, or beyond the file size limit (ulimit -f), returns an error instead of
+/// ending the program.
 void see_failed_writes();
 
 }  // namespace pbf::inline run_module

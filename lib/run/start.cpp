@@ -39,7 +39,7 @@ Start prepare(LoadedScene loaded, const PrepareOptions& options) {
     start.plan = make_plan(scene, particles, std::move(neighbors));
     if (options.fits) refuse_if_too_large(scene, start.plan);
   };
-  if (options.fits) plan({});  // before a look at every particle
+  if (options.fits) plan({});  // before particles are examined
   plan(start_neighbors(points, particles));
   if (options.warnings) start.warnings = scene_warnings(points, particles);
   if (options.strict && !start.warnings.empty())

@@ -1,5 +1,5 @@
-// The one way into a run. prepare() reads a scene's files and plans it; solver_of() makes a solver
-// at the start, for whoever advances it; run() does all that `pbf run` does.
+// The one way into a run. prepare() reads the files of a scene and plans it; solver_of() makes a
+// solver at its start, for commands that advance it themselves; run() does all that `pbf run` does.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,12 @@
 
 namespace pbf::inline run_module {
 
-/// How far prepare() goes.
+/// The work that prepare() does.
 struct PrepareOptions {
-  bool fits = true;       ///< refuse what the memory of this machine cannot hold
-  bool warnings = false;  ///< of the scene
-  bool strict = false;    ///< they are an error
-  bool particles = true;  ///< are made
+  bool fits = true;       ///< refuse a scene that does not fit into the memory of this machine
+  bool warnings = false;  ///< find warnings of the scene
+  bool strict = false;    ///< warnings are an error
+  bool particles = true;  ///< create the particles
 };
 
 struct Start {
@@ -31,49 +31,49 @@ struct Start {
   Plan plan{};
   Particles particles{};
   std::vector<Warning> warnings{};
-  std::vector<std::string> notes{};  ///< what was done to the particles, for people
+  std::vector<std::string> notes{};  ///< changes to the particles, for the log
   const Scene& scene() const { return loaded.scene; }
 };
 
-/// Opens each particle file of the scene once. Its motions have been read (read_motions()). Throws,
-/// in this order, what StartPoints, count_particles() and make_plan() throw, Error(unavailable) as
-/// refuse_if_too_large(), Error(difference) for warnings where they are errors, and what
+/// Opens each particle file of the scene once. Motions must have been read (read_motions()).
+/// Throws, in this order, what StartPoints, count_particles() and make_plan() throw,
+/// Error(unavailable) as refuse_if_too_large(), Error(difference) if warnings are errors, and what
 /// emit_particles() throws.
 Start prepare(LoadedScene loaded, const PrepareOptions& options = {});
-/// The same of a scene that no file holds; `folder` anchors relative paths.
+/// The same for a scene without a file; `folder` anchors relative paths.
 Start prepare(const Scene& scene, const std::string& folder, const PrepareOptions& options = {});
-/// The same particles under another scene with the same bodies, spacing and domain.
+/// The same particles with another scene that has the same bodies, spacing and domain.
 Start with_scene(const Start& start, const Scene& scene);
 
-/// A solver before its first update. The particles move into it, and prestabilize() is done.
+/// A solver before its first update, after prestabilize(). The particles are moved into it.
 std::unique_ptr<Solver> solver_of(Start& start);
 
-/// Where a run writes.
+/// The output folder of a run.
 struct RunPlace {
   std::string folder;
   ExistingFolder existing = ExistingFolder::refuse;
 };
 
-/// What a run is told from outside.
+/// External control of a run.
 struct Control {
   StopToken& stop;
   Log& log;
-  std::string log_json{};   ///< path of a file that gets a line of JSON per measure; empty: none
+  std::string log_json{};   ///< file that gets a line of JSON per measurement; empty: none
   double max_walltime = 0;  ///< s, 0: none
-  bool strict = false;      ///< a warning ends it
+  bool strict = false;      ///< a warning ends the run
   Stopwatch wall{};         ///< since the command began
 };
 
-/// How a run ended, where nothing was thrown.
+/// How a run ended, if nothing was thrown.
 struct RunResult {
-  std::string stop_reason;   ///< "SIGTERM", "--max-walltime"; empty: it is finished
-  std::int64_t updates = 0;  ///< that are done
+  std::string stop_reason;   ///< "SIGTERM", "--max-walltime"; empty: finished
+  std::int64_t updates = 0;  ///< done
 };
 
-/// Runs into a folder, or goes on with the run there. Its lines go to control.log and the folder's
-/// log.txt, an error that ends it to log.txt. A scene that cannot run leaves no folder behind.
-/// Several runs may be under way in one process, each with a folder, a token and a log of its own.
-/// Throws as run_session(), RunFolder, find_resume_point(), take_files() and make_solver() do.
+/// Runs into a folder, or resumes the run there. Messages go to control.log and to the folder's
+/// log.txt, an error that ends the run to log.txt. A scene that cannot run leaves no folder behind.
+/// Several runs may be active in one process, each with its own folder, token and log. Throws what
+/// run_session(), RunFolder, find_resume_point(), take_files() and make_solver() throw.
 RunResult run(Start start, const RunPlace& place, Control& control);
 
 }  // namespace pbf::inline run_module

@@ -21,7 +21,7 @@ bool may_be_crowded(const Scene& s) {
   return any_near_pair(boxes, -rounding, [](std::size_t, std::size_t) { return true; });
 }
 
-/// The sampled particles, found by cells of edge h: each stands in its own and those around it.
+/// Sampled particles in a hash of cells of edge h; each is in its own cell and the adjacent ones.
 class Sample {
  public:
   explicit Sample(double h) : h_(h) {}
@@ -34,7 +34,7 @@ class Sample {
         for (std::int64_t k = -1; k <= 1; ++k)
           near_[key({c[0] + i, c[1] + j, c[2] + k})].push_back(mine);
   }
-  /// Counts x as a neighbour of those that it is near to.
+  /// Counts x as a neighbor of each sampled particle within h.
   void count(const Double3& x, std::vector<int>& neighbors) const {
     const auto found = near_.find(key(cell(x, h_)));
     if (found == near_.end()) return;
@@ -45,7 +45,7 @@ class Sample {
     }
   }
   std::size_t size() const { return at_.size(); }
-  /// Of the counts in one bin of the solver, an eighth of a cell, for each of its particles.
+  /// Per sample: the standard error of the mean count in its solver bin (an eighth of a cell).
   std::vector<double> scatter(const std::vector<int>& neighbors) const {
     struct Sums {
       double n = 0, sum = 0, squares = 0;
@@ -71,8 +71,8 @@ class Sample {
     for (int a = 0; a < 3; ++a) c[a] = static_cast<std::int64_t>(std::floor(x[a] / edge));
     return c;
   }
-  /// Two cells with the same key cost time, no wrong count: distances decide. But where two of the
-  /// 27 cells around one particle share a key, it is found twice; 2^21 cells along an axis do not.
+  /// Cells that share a key cost only time, since distances decide. A particle would be counted
+  /// twice if two of the 27 cells around it shared a key; with 2^21 cells per axis they do not.
   static std::uint64_t key(const std::array<std::int64_t, 3>& c) {
     std::uint64_t k = 0;
     for (const std::int64_t i : c) k = k << 21 | (std::uint64_t(i) & 0x1FFFFF);
@@ -89,11 +89,11 @@ class Sample {
 StartNeighbors start_neighbors(const StartPoints& points, std::int64_t particles) {
   const Scene& s = points.scene();
   if (!may_be_crowded(s)) return {};
-  // Fewer where there are many, for in one clump every particle is looked at for every one of them.
+  // Fewer samples for many particles: in one clump every particle is tested with every sample.
   const std::int64_t wanted =
       std::min(particles, std::clamp<std::int64_t>(400000000 / particles, 256, 4096));
-  // One of each of `wanted` runs of ids, at a random place in it: at equal distances all could lie
-  // on one face of a lattice.
+  // One particle from each of `wanted` ranges of ids, at a random index: with equal strides all
+  // could lie on one face of a lattice.
   SplitMix64 random(1);
   Sample sample(s.h());
   const auto first_of = [&](std::int64_t k) { return k * particles / wanted; };

@@ -1,4 +1,4 @@
-// Estimates how crowded an initial state is, before its particles are created.
+// Estimates the numbers of neighbors of an initial state, before its particles are created.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace pbf::inline run_module {
 
-/// Empty where no place can be denser than fluid at rest: blocks and spheres that do not overlap.
-/// Takes time in proportion to `particles`, of count_particles(), and memory for the sample alone.
-/// The same sample for the same scene. Places outside the domain are no error here.
+/// Empty if no place can be denser than fluid at rest: blocks and spheres without overlap. Takes
+/// time proportional to `particles` (count_particles()), and memory only for the sample. The sample
+/// of a scene is always the same. Positions outside the domain are no error here.
 StartNeighbors start_neighbors(const StartPoints& points, std::int64_t particles);
 
 }  // namespace pbf::inline run_module

@@ -10,7 +10,7 @@
 namespace pbf::inline run_module {
 namespace {
 
-constexpr std::int64_t kEarly = 8, kLongestHold = std::int64_t(1) << 30;  // due measures
+constexpr std::int64_t kEarly = 8, kLongestHold = std::int64_t(1) << 30;  // scheduled measurements
 
 }  // namespace
 
@@ -38,7 +38,7 @@ AdaptiveStep::AdaptiveStep(const Scene& scene, const StepHistory& before)
 double AdaptiveStep::step(int level) const { return std::ldexp(scene_.time.step, -level); }
 
 std::optional<std::string> AdaptiveStep::follow(const Diagnostics& m) {
-  // What moves by itself is known until the next choice.
+  // Prescribed motions are known up to the next choice.
   const double next = m.time + scene_.measure_every * scene_.time.step;
   double acceleration = greatest_pull(scene_, m.time, next);
   const double speed = std::max(m.speed_max, fastest_obstacle(scene_, m.time, next));
@@ -50,7 +50,7 @@ std::optional<std::string> AdaptiveStep::follow(const Diagnostics& m) {
   if (h_.coarse >= 0) ++h_.coarse;
   const double before = step(level());
   double longest = longest_step(scene_, speed, acceleration);
-  // Neighbours that moved too far past each other: half the step, and again while they do.
+  // Neighbors moved too far past each other: halve the step, repeatedly if needed.
   const bool unresolved = m.unresolved > h_.unresolved;
   if (unresolved) longest = std::min(longest, before / 2);
   h_.unresolved = m.unresolved;

@@ -5,19 +5,19 @@
 
 namespace pbf::inline run_module {
 
-/// Of one run, or shared by several. Any thread may call every function, a signal handler too.
+/// Of one run, or shared by several. All functions may be called by any thread and signal handler.
 class StopToken {
  public:
-  /// To stop. `why` is a literal ("SIGTERM"); the first one stays.
+  /// Asks to stop. `why` is a string literal ("SIGTERM"); the first one is kept.
   void ask(const char* why) noexcept {
     const char* none = nullptr;
     why_.compare_exchange_strong(none, why);
   }
-  /// To save, and go on.
+  /// Asks to save and continue.
   void ask_save() noexcept { save_ = true; }
-  /// Null: nobody has asked to stop.
+  /// The reason to stop; null if nobody has asked.
   const char* why() const noexcept { return why_; }
-  /// Whether somebody has asked to save since the last call.
+  /// Whether a save was requested since the last call.
   bool take_save() noexcept { return save_.exchange(false); }
 
  private:

@@ -13,15 +13,15 @@ namespace pbf::inline run_module {
 namespace {
 
 struct Swinging {
-  double beyond = 0;  ///< of the rows, in the column's unit
-  double metres = 0;  ///< the same as a length, to be compared
+  double beyond = 0;  ///< overshoot, in the column's unit
+  double metres = 0;  ///< the same as a length, for comparison
   double time = 0;    ///< s, of the table
-  double row = 0;     ///< the value that it swings beyond
+  double row = 0;     ///< the value of the overshot row
   std::size_t piece = 0, column = 0;
 };
 
-/// Whether a motion sampled at these rows turns back between them: it leaves both with slopes the
-/// other way, not slower at the row that is farther from the turn. At rest on one side it does not.
+/// Whether the sampled motion itself may turn back between these rows: the slopes have opposite
+/// signs, and the one farther from the turn is not much smaller (near a stop it is).
 bool is_crest(const CurvePiece& p, bool up) {
   if (!(p.slope0 * p.slope1 < 0)) return false;
   const bool first = up ? p.y0 >= p.y1 : p.y0 <= p.y1;
@@ -30,7 +30,7 @@ bool is_crest(const CurvePiece& p, bool up) {
   return far >= 0.5 * near;
 }
 
-/// The farthest that the curves swing beyond their rows. `lengths`: m per unit of each column.
+/// The largest overshoot of the curves beyond their rows. `lengths`: m per unit of each column.
 Swinging farthest_swing(const MotionTable& table, double from, double to,
                         const std::vector<double>& lengths) {
   Swinging worst;
@@ -39,7 +39,7 @@ Swinging farthest_swing(const MotionTable& table, double from, double to,
     for (std::size_t c = 0; c < lengths.size(); ++c) {
       const CurvePiece p = curve_piece(table, c, k);
       std::vector<double> times = p.turns();
-      // It may end on its way there.
+      // The run may end before the turn.
       if (!times.empty() && k == last && to > p.begin) times.push_back(to);
       for (const double t : times) {
         if (t < from || t > to) continue;
@@ -61,7 +61,7 @@ std::string rows_text(const MotionTable& t, std::size_t piece) {
   return format("%s, lines %ld and %ld", file.c_str(), t.line[piece], t.line[piece + 1]);
 }
 
-/// A table of places where displacements are meant: its first row is far from 0.
+/// Detects a table of positions instead of displacements: its first row is far from 0.
 std::string displaced_text(const Scene& s, std::size_t k) {
   const MotionTable& table = s.obstacles[k].motion->table;
   if (table.values.empty() || s.time.motion_begin != 0) return "";

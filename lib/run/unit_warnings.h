@@ -1,4 +1,4 @@
-// Values that look as if they were not in SI units.
+// Finds values that look as if they were not in SI units.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace pbf::inline run_module {
 
-/// What to say of gravity above 200 or below 0.01 m/s^2, of a rest density that no liquid has, of a
-/// body faster than 500 m/s, of viscosity.xsph above 1, and of a domain longer than 100 m in which
-/// gravity moves nothing by a tenth of that during the run; empty: nothing. Allowed they all are:
-/// tests go far on purpose, and so may others.
+/// Text about gravity above 200 or below 0.01 m/s^2, a rest density that no liquid has, a body
+/// faster than 500 m/s, viscosity.xsph above 1, and a domain longer than 100 m in which gravity
+/// moves nothing by a tenth of its length during the run; empty if there is none. All these values
+/// are allowed.
 std::string units_text(const Scene& scene);
 
 }  // namespace pbf::inline run_module

@@ -10,26 +10,26 @@
 namespace pbf::inline run_module {
 
 /// `kind`: units, step, speed, motion, table, obstacles, wall, collision, overlap, crowded, output
-/// (of a scene); compressed, passed_through, closed_in, left (of a run). At most one of each kind
-/// in a list.
+/// (of a scene); compressed, passed_through, closed_in, left (of a run). A list has at most one
+/// warning of each kind.
 struct Warning {
   std::string kind, text;
 };
 
-/// Their texts, as an error tells them.
+/// Their texts, as lines of an error message.
 std::string warning_lines(const std::vector<Warning>& warnings);
 
-/// Mean compression from which on a fluid is not a liquid, 1.
+/// Mean compression above which a fluid is not a liquid (ratio).
 constexpr double kNoLiquid = 0.05;
 
-/// Mean compression of the scene's fluid at rest in its box, as time.step and the iterations leave
-/// it: 2/3 (g dt^2/h) (H/h) / iterations, with dt of a substep and the depth H of the fluid spread
-/// over the box's floor. Within a factor of 2 for pools of 6 to 48 layers (lib/solver/
-/// DIAGNOSTICS.md, "Compression at rest"). 0: no gravity, no floor, no iterations.
+/// Mean compression of the fluid at rest in its box, from time.step and the iterations: 2/3 (g
+/// dt^2/h) (H/h) / iterations, with dt of a substep and the depth H of the fluid spread over the
+/// floor. Within a factor of 2 for pools of 6 to 48 layers (lib/solver/DIAGNOSTICS.md, "Compression
+/// at rest"). 0: no gravity, no floor, no iterations.
 double compression_at_rest(const Scene& scene, std::int64_t particles);
 
-/// Of a scene, before anything is run. `particles`: of count_particles(). Takes time in proportion
-/// to the particles that may overlap.
+/// Warnings of a scene, before it is run. `particles`: of count_particles(). Takes time
+/// proportional to the number of particles that may overlap.
 std::vector<Warning> scene_warnings(const StartPoints& points, std::int64_t particles);
 
 }  // namespace pbf::inline run_module

@@ -52,7 +52,7 @@ Now Watch::at(Session& session) {
   return event_ ? Now::stop : Now::go_on;
 }
 
-/// Stopped between two measures; what it has gone back to is known to be good.
+/// Stopped between two measurements; a state that it went back to is known to be good.
 void Watch::end(Session& session) {
   if (!event_ && taken_ != session.update()) measure(!goes_back());
 }
@@ -75,7 +75,7 @@ bool Watch::state_is_good() {
   return !event_;
 }
 
-/// What they read where they are to be read, before a state is kept, as loads are.
+/// Reads the gauges if they are due, before a state is kept, as for loads.
 std::optional<GaugeRow> Watch::gauges() {
   const std::int64_t u = solver_.updates();
   if (!take_gauges_ || !schedule_.reads_gauges(u)) return std::nullopt;
@@ -90,11 +90,11 @@ Diagnostics Watch::measured() {
   return m;
 }
 
-/// Whether the measure stays: false where the session goes back.
+/// Returns whether the measurement stays: false if the session goes back.
 bool Watch::measure(bool judged) {
   Diagnostics m = measured();
-  // Before a state is kept, so that going back does not bring them again. A row between two
-  // measures, which a longer run does not have, ends no interval.
+  // Read loads before a state is kept, so that going back does not repeat them. A row between two
+  // regular measurements, which a longer run would not have, ends no interval.
   const bool regular = m.update % schedule_.measure_every == 0;
   m.loads = solver_.loads(regular ? Interval::ends : Interval::goes_on);
   const bool first = !begun_;
@@ -109,14 +109,14 @@ bool Watch::measure(bool judged) {
   return true;
 }
 
-/// Whether the measure stays: false where the session goes back.
+/// Returns whether the measurement stays: false if the session goes back.
 bool Watch::look(const Diagnostics& m) {
   bool stays = true;
   if (guard_) booked([&] { stays = judge(m); });
   return stays;
 }
 
-/// Where alarms take a run back, a state is kept before anything of it is written down.
+/// If alarms take a run back, its state is kept before any of it is written.
 bool Watch::judge(const Diagnostics& m) {
   const std::optional<Alarm> alarm = guard_->alarm(m);
   if (!alarm) {
@@ -124,7 +124,7 @@ bool Watch::judge(const Diagnostics& m) {
     return true;
   }
   const std::int64_t back = guard_->last_good().update;
-  // What is wrong at the start is wrong with any step.
+  // A fault at the start does not depend on the step.
   if (step_ && back < m.update) {
     const int before = step_->level();
     if (const auto change = step_->refine(kAlarmNames[static_cast<int>(*alarm)], m, back)) {
@@ -137,7 +137,7 @@ bool Watch::judge(const Diagnostics& m) {
   return true;
 }
 
-/// Books what `action` takes, but for what the solver books itself.
+/// Records the time of `action`, except that which the solver records itself.
 void Watch::booked(const std::function<void()>& action) {
   const auto solver_seconds = [&] {
     double sum = 0;
@@ -173,13 +173,11 @@ void Watch::take(const std::string& change, int level_before) {
   note_(change + (finer > 0 ? prestabilize(finer) : std::string()));
 }
 
-/// A step of dt holds up the fluid with a compression in proportion to dt^2. Left to a step 2^k
-/// times shorter, it pushes with 4^k times the weight of the fluid and throws it up: with one
-/// iteration and dt sqrt(g/h) = 0.2 a pool of 12 layers, gone back to a mean compression of 39 %,
-/// gained 7 times its energy with a step 64 times shorter. So the compression is first taken down
-/// by 4^k, in steps without time (Macklin et al. 2014, Unified particle physics for real-time
-/// applications, ACM TOG 33(4), part contacts that are there at the start so), and what lifting the
-/// fluid adds to its energy is taken from its motion.
+/// A step of dt supports the fluid by a compression proportional to dt^2. After a change to a step
+/// 2^k times shorter, the same compression pushes with 4^k times the weight of the fluid and throws
+/// it up. So steps without time first reduce the compression by 4^k (Macklin et al. 2014, Unified
+/// particle physics for real-time applications, ACM TOG 33(4), treat initial contacts in this way),
+/// and the energy gained by lifting the fluid is taken from its kinetic energy.
 std::string Watch::prestabilize(int levels) {
   constexpr int kMost = 64, kAtOnce = 4;
   constexpr double kHarmless = 1e-3;

@@ -16,47 +16,47 @@
 
 namespace pbf::inline run_module {
 
-/// Diagnostics where it is due. Where the guard objects, the session goes back to the last good
-/// state and repeats the updates since with half the step, or it ends; the solver has gone back,
+/// Measures when it is due. If the guard raises an alarm, the session goes back to the last good
+/// state and repeats the updates with half the step, or it ends; then the solver has gone back,
 /// too.
 class Watch : public Observer {
  public:
-  /// Gets every measure but those that the session goes back from; dt: of the steps before, s.
+  /// Gets every measurement except those from which the session goes back; dt: preceding step, s.
   using Take = std::function<void(Diagnostics& m, double dt)>;
-  /// `note` gets a line for every change of the step, `clock` what the guard takes, as "guard".
+  /// `note` gets a line per change of the step; `clock` gets the time of the guard, as "guard".
   Watch(
       const Scene& scene, const Plan& plan, Solver& solver, Take take,
       std::function<void(const std::string&)> note = [](const std::string&) {},
       StageClock* clock = nullptr);
-  /// `take` gets every reading of the gauges but those that the session goes back from.
+  /// `take` gets every gauge reading except those from which the session goes back.
   void read_gauges(std::function<void(const GaugeRow&)> take) { take_gauges_ = std::move(take); }
-  /// Before the session: the solver has the state already. last() is its measure, to be completed.
+  /// Call before the session, with the state in the solver. Returns last(), to be completed.
   Diagnostics& go_on_from(const SavedRun& saved);
 
   std::int64_t next(std::int64_t u) const override;
   Now at(Session& session) override;
   void end(Session& session) override;
-  /// Chooses the step of the updates to come, behind the observers that need the state as it was
-  /// measured. A measure at the end of a run alone chooses nothing: a longer run would not have it.
+  /// Chooses the step of the following updates, after the observers that need the measured state. A
+  /// measurement only for the end of a run chooses nothing: a longer run would lack it.
   Observer& choosing() { return choosing_; }
 
-  /// Whether the guard leaves the state of a run that has no way back as it is; measured if need
-  /// be.
+  /// Whether the guard accepts the present state, in a run that cannot go back; measures if
+  /// necessary.
   bool state_is_good();
   /// Whether an alarm may take the run back. Then a checkpoint holds the last good state, not the
-  /// present one: what happens after it does not depend on when it was written.
+  /// present one, so that the results do not depend on when it was written.
   bool goes_back() const { return guard_ && step_; }
-  /// Takes the solver back to the last good state, where it is not there already.
+  /// Takes the solver back to the last good state, unless it is there.
   void go_back();
 
-  /// What the session's updates are to be made with; it is told when they change.
+  /// Options for the session's updates; the session is told when they change.
   StepOptions options() const;
-  /// Null without guard, and before the first measure.
+  /// Null without guard, and before the first measurement.
   const Guard* guard() const { return guard_ ? &*guard_ : nullptr; }
-  /// With time.adaptive: what was chosen; its `updates` up to `update`, or as a checkpoint has
-  /// them.
+  /// With time.adaptive: the history of the step, with `updates` counted up to `update`, or as
+  /// stored in a checkpoint.
   std::optional<StepHistory> steps(std::optional<std::int64_t> update = {}) const;
-  /// What the guard stopped the session for; null unless it did.
+  /// The event for which the guard stopped the session; null if it did not.
   const GuardEvent* event() const { return event_ ? &*event_ : nullptr; }
   const Diagnostics& first() const { return first_; }
   const Diagnostics& last() const { return last_; }
@@ -89,7 +89,7 @@ class Watch : public Observer {
   std::optional<GuardEvent> event_;
   Diagnostics first_, last_;
   WorkTrack work_;
-  std::int64_t taken_ = -1;  // update of the last measure that was taken
+  std::int64_t taken_ = -1;  // update of the last recorded measurement
   bool begun_ = false;
 };
 

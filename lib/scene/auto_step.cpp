@@ -10,7 +10,7 @@
 namespace pbf::inline scene_module {
 namespace {
 
-/// Cut off after two digits: 0.00428 is 0.0042.
+/// Truncates to two digits: 0.00428 becomes 0.0042.
 double two_digits(double x) {
   const std::string text = format("%.15e", x);
   double cut = x;
@@ -38,7 +38,7 @@ StepRule step_rule(const Scene& s) {
 double fitted_step(const Scene& s, double longest) {
   if (!std::isfinite(longest)) return 0;
   if (!s.output) return two_digits(longest);
-  // A whole number but for rounding is one.
+  // A ratio that is whole up to rounding counts as whole.
   return s.output->every / std::ceil(s.output->every / longest * (1 - 1e-9));
 }
 

@@ -7,31 +7,31 @@
 
 namespace pbf::inline scene_module {
 
-/// s, the longest step of the rules, before it is fitted to the frames.
+/// The longest steps allowed by the rules, s, before the step is fitted to the frames.
 struct StepRule {
   double gravity;  ///< kSafeStep sqrt(h/g); infinite without gravity
-  double speed;    ///< that moves the fastest body by kSafeWay h; infinite where all rest
+  double speed;    ///< moves the fastest body by kSafeWay h; infinite if all rest
   double longest() const { return gravity < speed ? gravity : speed; }
 };
 
 /// dt sqrt(g/h): the mean compression of a pool of 12 layers stays below 0.1 % with 4 iterations
 /// (configs/README.md).
 inline constexpr double kSafeStep = 0.03;
-/// dt sqrt(|g|/h), time.step without dimension; 0 without gravity. In one update fluid at rest
-/// falls by its square in h: it decides how far a pool is compressed, whatever its size.
+/// dt sqrt(|g|/h), the dimensionless time step; 0 without gravity. Fluid at rest falls by its
+/// square, in h, per update, which determines the compression of a pool, whatever its size.
 double relative_step(const Scene& scene);
-/// Way of a body in a step, in h: fluid that moves past other fluid by 0.4 h may pass through it
-/// (kernels/relative_motion.h), and what falls gains speed.
+/// Largest move of a body in a step, h. Fluid that moves past other fluid by 0.4 h may pass through
+/// it (kernels/relative_motion.h), and falling fluid accelerates.
 inline constexpr double kSafeWay = 0.2;
 
 StepRule step_rule(const Scene& scene);
 
-/// s: the longest up to `longest` of which output.every is a whole number; without output with two
-/// digits. A run may be made longer with --resume: time.end has no say. 0: `longest` is infinite.
+/// The longest step, s, up to `longest` that divides output.every; without output, `longest` cut to
+/// two digits. Independent of time.end, which --resume may change. 0 if `longest` is infinite.
 double fitted_step(const Scene& scene, double longest);
 
-/// s, by gravity and the velocities of bodies. What motions ask for is not known before their
-/// tables are read: choose_step_of_motions() (lib/run/motion_step.h). 0: nothing moves the fluid.
+/// The step from gravity and the velocities of bodies, s; 0 if nothing moves the fluid. For
+/// motions, whose tables are read later, see choose_step_of_motions() (lib/run/motion_step.h).
 double auto_step(const Scene& scene);
 
 }  // namespace pbf::inline scene_module

@@ -1,5 +1,5 @@
-// Where a simulation runs, and with which numbers. These tables are the only lists of them: keys,
-// options, messages, the plan and comparisons read them.
+// Backends and precisions. These tables are the only lists of them: keys, options, messages, the
+// plan and comparisons read them.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ enum class Backend { cpu, cuda };
 struct PrecisionInfo {
   const char* word;  ///< in scenes, tables and messages
   int bytes;         ///< of a number
-  double roundoff;   ///< relative, largest of one operation
+  double roundoff;   ///< largest relative error of one operation
 };
 struct BackendInfo {
   const char* word;
-  bool on_device;  ///< its arrays lie in a device's memory; else on the host, with `threads`
-  bool exact;      ///< its bits are those of every backend with solver.reproducible, without it too
+  bool on_device;  ///< arrays are in device memory; otherwise on the host, with `threads`
+  bool exact;      ///< always has the bits that every backend has with solver.reproducible
 };
 /// In the order of the enums.
 inline constexpr PrecisionInfo kPrecisions[] = {{"float", 4, 0x1p-24}, {"double", 8, 0x1p-53}};
@@ -28,7 +28,7 @@ inline constexpr BackendInfo kBackends[] = {{"cpu", false, true}, {"cuda", true,
 
 constexpr const PrecisionInfo& about(Precision p) { return kPrecisions[static_cast<int>(p)]; }
 constexpr const BackendInfo& about(Backend b) { return kBackends[static_cast<int>(b)]; }
-/// That of a C++ type.
+/// The precision of a C++ type.
 template <class Real>
 constexpr Precision precision_of = sizeof(Real) == 8 ? Precision::dbl : Precision::single;
 constexpr const auto& table_of(Precision) { return kPrecisions; }
@@ -46,14 +46,14 @@ std::vector<std::string> words_of() {
   for (const auto& row : table_of(E{})) out.push_back(row.word);
   return out;
 }
-/// All of them.
+/// All values of the enum.
 template <class E>
 std::vector<E> all_of() {
   std::vector<E> out;
   for (std::size_t k = 0; k < std::size(table_of(E{})); ++k) out.push_back(static_cast<E>(k));
   return out;
 }
-/// The one with this word.
+/// The value with this word.
 template <class E>
 std::optional<E> named(const std::string& text) {
   for (const E e : all_of<E>())

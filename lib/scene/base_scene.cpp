@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Links followed; what is not there yet keeps its name, and a pipe the one it was called by.
+/// Resolves links. A missing file keeps its name, and a pipe the name that it was given by.
 fs::path real(const fs::path& path) {
   std::error_code error;
   const fs::path whole = fs::absolute(path.empty() ? "." : path);
@@ -38,7 +38,7 @@ class Chain {
     if (!base_folder.empty()) trees_.push_back(real(base_folder));
   }
 
-  /// `over`: of the last file.
+  /// `over`: the tree of the last file.
   Node build(Node over) {
     if (over.kind != Node::Kind::map) return over;
     const Node* named = over.find(kBaseKey);
@@ -48,7 +48,7 @@ class Chain {
     const std::string word = word_of(at);
     const fs::path beside = fs::path(files_.back().path).parent_path();
     Node tree = build(tree_of(at, (beside / word).string()));
-    take_out(tree, "name");  // of that file's runs: two scenes on one base must not share a folder
+    take_out(tree, "name");  // of the base's runs: scenes on one base must not share a folder
     make_relative(tree, fs::path(word).parent_path());
     lay_over(tree, over);
     return tree;
@@ -58,7 +58,7 @@ class Chain {
   struct File {
     std::string path;
     fs::path real;
-    std::string included;  ///< as Origin has it
+    std::string included;  ///< as in Origin
   };
 
   [[noreturn]] static void bad(const Node& at, const std::string& what) {
@@ -138,14 +138,14 @@ class Chain {
     return one_line(text + file.path, 1000);
   }
 
-  /// Files that the base names are meant from its own folder.
+  /// Paths of files in a base are relative to its own folder; makes them relative to the scene's.
   static void make_relative(Node& tree, const fs::path& way) {
     if (way.empty()) return;
     for (const Key& key : scene_table().keys)
       if (key.names_file)
         visit(tree, key.path, [&](Node& value, Node&) {
           if (value.kind == Node::Kind::scalar && !value.text.empty())
-            value.text = (way / value.text).string();  // an absolute one stays
+            value.text = (way / value.text).string();  // an absolute path stays
         });
   }
 

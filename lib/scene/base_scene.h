@@ -1,5 +1,4 @@
-// `base: other.yaml` at the top of a scene file: the scene is that file's, with the keys of this
-// one laid over it.
+// `base: other.yaml` at the top of a scene file: the keys of this file override those of the other.
 #pragma once
 
 #include <string>
@@ -10,8 +9,8 @@
 
 namespace pbf::inline scene_module {
 
-/// No member of a Scene: whoever loads a file puts the base under it. This is its one name, and
-/// its text for the pages of keys and the schema.
+/// Not a member of Scene: loading merges the base into the tree. The only definition of the key's
+/// name, and of its text for the pages of keys and the schema.
 inline constexpr const char* kBaseKey = "base";
 inline constexpr const char* kBaseHelp =
     "Another scene file, from the folder of this one: the scene is that file's, with the keys of "
@@ -19,14 +18,14 @@ inline constexpr const char* kBaseHelp =
     "gauges) and values are replaced, and off takes a block away. A base may have a base. It lies "
     "in the tree of the first file's folder, or in that of --base-folder.";
 
-/// Files of a chain, the first scene among them.
+/// Largest number of files in a chain, with the first scene.
 inline constexpr std::size_t kMostBases = 16;
 
-/// The scene's tree without `base`, laid over those that it names, without their names. `path`: of
-/// its file; relative paths of files in a base (bodies[].path) are made relative to the folder of
-/// `path`. A base lies in the tree of that folder, or in that of `base_folder` (empty: no other),
-/// links followed. What was read is added to `read`. Errors of a base name its place and the files
-/// that led there. Throws Error(bad_input).
+/// The scene's tree without `base`, merged over the trees of its bases, whose names are dropped.
+/// `path`: of its file; relative paths of files in a base (bodies[].path) are made relative to the
+/// folder of `path`. A base must lie below that folder or below `base_folder` (empty: none), after
+/// links are resolved. Files that were read are added to `read`. Error messages name the place in a
+/// base and the files that led there. Throws Error(bad_input).
 Node with_bases(Node root, const std::string& path, const std::string& base_folder,
                 std::vector<SceneFile>& read);
 

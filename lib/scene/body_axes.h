@@ -1,4 +1,4 @@
-// The axes of a body from what scenes say of it. Header only.
+// The axes of a body from its keys in a scene. Header only.
 #pragma once
 
 #include <algorithm>
@@ -10,19 +10,19 @@ namespace pbf::inline scene_module {
 using Matrix3 = std::array<Double3, 3>;  ///< rows
 inline constexpr Matrix3 kUnit3{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-/// As unit(), of any size: scaled first, so that no square overflows.
+/// As unit(), for any length: scaled first, so that no square overflows.
 inline Double3 direction(const Double3& v) {
   const double most = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
   const double size = most * std::hypot(v[0] / most, v[1] / most, v[2] / most);
   return {v[0] / size, v[1] / size, v[2] / size};
 }
 
-/// Rows: the axes of a body that was turned about `axis`.
+/// Rows: the axes of a body that was rotated about `axis`.
 inline Matrix3 axes_turned(const Double3& axis, double degrees) {
   if (degrees == 0) return kUnit3;
   const Double3 u = direction(axis);
   const double quarter = degrees / 90;
-  // Quarters exactly, so that faces at right angles stay so.
+  // Multiples of 90 degrees are exact, so that right angles stay exact.
   const bool whole = quarter == std::round(quarter);
   const int turns = int(std::fmod(std::fmod(std::round(quarter), 4) + 4, 4));
   const double angle = degrees * 3.14159265358979323846 / 180;
@@ -33,7 +33,7 @@ inline Matrix3 axes_turned(const Double3& axis, double degrees) {
   return rows;
 }
 
-/// Rows: a right-handed frame with `axis` as its last one, and along a coordinate where that is.
+/// Rows: a right-handed frame whose last row is `axis`; aligned with coordinates if `axis` is.
 inline Matrix3 frame_along(const Double3& axis) {
   const Double3 z = direction(axis);
   std::size_t least = 0;

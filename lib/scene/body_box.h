@@ -9,12 +9,12 @@
 
 namespace pbf::inline scene_module {
 
-/// m
+/// Corners, m.
 struct BodyBox {
   Double3 low, high;
 };
 
-/// Around a block, random box, sphere or cylinder; of a file there is none before it is read.
+/// Of a block, random box, sphere or cylinder; a file has none before it is read.
 inline BodyBox body_box(const Body& b) {
   BodyBox box{b.min, b.max};
   if (b.shape == Shape::sphere) {

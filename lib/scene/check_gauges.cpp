@@ -1,4 +1,4 @@
-// What holds of gauges.
+// Rules for gauges.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@
 namespace pbf::inline scene_module {
 namespace {
 
-/// Names in /pbf/gauges that are no gauge's, and the names of the faces' axes.
+/// Reserved names: other members of /pbf/gauges, and the names of the faces' axes.
 constexpr const char* kTaken[] = {"time", "update", "total", "peak"};
 constexpr std::size_t kMostFlows = 32;
 
@@ -133,7 +133,7 @@ class GaugeChecker : public SceneRules {
     return good(o.shape) &&
            std::visit(
                [&]<class Shape>(const Shape& keys) {
-                 const Matrix3 axes = keys.axes();  // not a number of what has no direction
+                 const Matrix3 axes = keys.axes();  // NaN if a direction has length 0
                  return std::isfinite(axes[0][0]) &&
                         std::apply([&](const auto&... key) { return good(keys.*key.member...); },
                                    Shape::keys());

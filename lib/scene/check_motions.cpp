@@ -1,4 +1,4 @@
-// What holds of prescribed motions.
+// Rules for prescribed motions.
 #include "lib/scene/scene_rules.h"
 
 namespace pbf::inline scene_module {
@@ -38,7 +38,7 @@ class MotionChecker : public SceneRules {
   void check_path(const std::string& path) {
     if (good(path) && path.empty()) add(path, "names no file; give that of a CSV table");
   }
-  /// `swings`: needs a direction or an axis; else there may be an axis.
+  /// `swings`: requires a direction or an axis; otherwise an axis is optional.
   void check_swing(const Swing& m, const auto& kind, bool swings) {
     if (!good(m.axis) || (swings && !good(m.direction))) return;
     if (swings && bool(m.direction) == bool(m.axis)) {

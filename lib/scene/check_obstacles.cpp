@@ -1,4 +1,4 @@
-// What holds of obstacles.
+// Rules for obstacles.
 #include <algorithm>
 
 #include "lib/base/text.h"
@@ -8,7 +8,7 @@
 namespace pbf::inline scene_module {
 namespace {
 
-/// What the checks of a shape are written with.
+/// The interface for the checks of a shape.
 class ShapeRules : public SceneRules {
  public:
   using SceneRules::above, SceneRules::add, SceneRules::flat, SceneRules::good, SceneRules::name;
@@ -21,7 +21,7 @@ class ShapeRules : public SceneRules {
   bool good_h(const double& member) const {
     return good(member, s_.fluid.spacing, s_.fluid.smoothing_ratio);
   }
-  /// Rounding puts particles on the other side of what is thinner.
+  /// Refuses a solid so thin that rounding could put particles on its other side.
   void check_thickness(const Double3& end, double thick) {
     if (!good(s_.domain.min, s_.domain.max, s_.dimensions, s_.precision, s_.fluid.spacing,
               s_.fluid.smoothing_ratio))

@@ -1,5 +1,5 @@
-// What holds between the keys of a scene. Keys are named by their members here: their paths are the
-// table's.
+// Rules between the keys of a scene. Keys are named by their members; their paths come from the
+// table.
 #include <algorithm>
 #include <cmath>
 
@@ -35,7 +35,7 @@ class Checker : public SceneRules {
   }
 
  private:
-  /// It becomes a folder of out/, also where the scene comes from a stranger's run file.
+  /// The name becomes a folder of out/, also for a scene from somebody else's run file.
   void check_name() {
     if (good(s_.name) && !is_file_name(s_.name))
       add(s_.name,
@@ -43,7 +43,7 @@ class Checker : public SceneRules {
               "\", and runs are kept in out/<name>; give a word without slashes, not . or ..");
   }
 
-  /// What a scene in two dimensions must not have along y.
+  /// Refuses a scene in two dimensions that has anything along y.
   void check_plane(bool domain) {
     const double thick = s_.domain.max[1] - s_.domain.min[1];
     if (domain && good(s_.fluid.spacing, s_.fluid.smoothing_ratio) && thick > s_.h() * (1 + 1e-9))
@@ -100,8 +100,8 @@ class Checker : public SceneRules {
                                      to_text(thinnest / 2) + " m); lower it");
   }
 
-  /// Whether numbers of the precision can tell where a particle is, and where it is after a step.
-  /// Nothing else limits the size of a domain: the grid's cells grow with it (lib/program).
+  /// Checks that the precision resolves the positions of particles and their moves in a step.
+  /// Nothing else limits the size of a domain: the cells of the grid grow with it (lib/program).
   void check_rounding() {
     if (!good(s_.fluid.spacing, s_.fluid.smoothing_ratio, s_.precision, s_.dimensions, s_.gravity,
               s_.bodies, s_.time.step, s_.time.end, s_.solver.substeps))
@@ -165,7 +165,7 @@ class Checker : public SceneRules {
     return false;
   }
 
-  /// Box, sphere or cylinder well formed and inside the domain; with a plane, cut by it.
+  /// Checks that a body is well formed and inside the domain and, in 2-D, that the plane cuts it.
   bool check_place(const Body& body, const std::string& key, bool domain) {
     if (!good(body.shape)) return false;
     const bool round = body.shape == Shape::sphere || body.shape == Shape::cylinder;

@@ -1,5 +1,5 @@
-// What colours the particles of a picture. This table is the only list: keys, options, memory,
-// downloads and pictures read it.
+// Quantities that color the particles of a picture. This table is the only list: keys, options,
+// memory, downloads and pictures read it.
 #pragma once
 
 #include "lib/scene/backend.h"
@@ -9,9 +9,9 @@ namespace pbf::inline scene_module {
 enum class ColorBy { speed, density, compression, id };
 
 struct ColoringInfo {
-  const char* word;   ///< in scenes and options, and over the colour bar
-  const char* field;  ///< of a snapshot that it reads; "": the row number
-  int components;     ///< of the field: the length of 3, 0 without a field
+  const char* word;   ///< in scenes and options, and above the color bar
+  const char* field;  ///< of a snapshot, which it reads; "": the row number
+  int components;     ///< of the field: 3 for the length of a vector, 0 without a field
 };
 /// In the order of the enum.
 inline constexpr ColoringInfo kColorings[] = {{"speed", "velocity", 3},

@@ -24,8 +24,8 @@ class Changes {
   std::vector<std::string> all_;
 };
 
-/// Of the keys of a list's entries, or of a block in them; there are as many entries. What only one
-/// of two kinds has goes with the kind.
+/// Compares the keys of a list's entries, or of a block in them; both lists have the same length.
+/// Keys that only one of two kinds has are skipped, since the kind itself is reported.
 void add_entries(const Block& block, const Object& before, const Object& now, Effect least,
                  Changes& out) {
   const std::vector<Holder> was = block.holders(before), is = block.holders(now);

@@ -12,7 +12,7 @@ namespace {
 
 struct FileKind {
   const char *name, *command;
-  std::vector<const char*> keys;  ///< of the top level that only it has; one tells it
+  std::vector<const char*> keys;  ///< top-level keys, each of which only this kind has
 };
 
 const std::vector<FileKind>& kinds() {

@@ -1,4 +1,4 @@
-// Gravity by its magnitude: a number is straight down, a mapping may tilt it.
+// Gravity by its magnitude: a number points straight down, a mapping may tilt it.
 #include <cmath>
 
 #include "lib/scene/key_rows.h"
@@ -19,7 +19,7 @@ struct Tilted {
   Side toward = Side::x_max;
 };
 
-/// As it stands in a scene, so that messages have its paths.
+/// Has the paths of the keys in a scene, for messages.
 struct Form {
   Tilted gravity;
 };
@@ -46,7 +46,7 @@ Double3 vector_of(const Tilted& g) {
   const bool high = static_cast<int>(g.toward) % 2 == 1;
   Double3 out{};
   out[std::size_t(axis)] = (high ? 1 : -1) * g.magnitude * std::sin(angle);
-  // Of a right angle nothing is left: the cosine of the nearest double is not 0.
+  // At exactly 90 degrees the component is 0, although the computed cosine is not.
   out[2] = g.tilt == 90 ? 0 : 0 - g.magnitude * std::cos(angle);
   return out;
 }
@@ -69,7 +69,7 @@ bool write_out_gravity(Node& root, Problems& problems) {
       return false;
     }
     double g = 0;
-    if (read_number(node->text, g) != NumberError::none) return true;  // its reader says more
+    if (read_number(node->text, g) != NumberError::none) return true;  // reported when it is read
     if (g < 0) {
       problems.add(node->place(), "gravity",
                    "is " + node->text + ", and one number is its magnitude, straight down; write " +

@@ -9,7 +9,7 @@
 namespace pbf::inline scene_module {
 namespace {
 
-/// A cell of a table ends at a bar.
+/// Escapes bars, which would end the cell of a table.
 std::string cell(const std::string& text) {
   std::string out;
   for (const char c : text) {

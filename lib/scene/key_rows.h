@@ -9,17 +9,17 @@
 
 namespace pbf::inline scene_module {
 
-/// The first arguments of a row, the path of a member and how to get at it: MEMBER(Scene,
-/// output->every) is "output.every".
+/// The first two arguments of a row, the path of a member and its accessor: MEMBER(Scene,
+/// output->every) has the path "output.every".
 #define MEMBER(Struct, member) \
 #member, +[](const Object& o) -> auto& { return std::any_cast<Struct*>(o)->member; }
-/// The same in an entry of a list: MEMBER_OF(bodies, Body, min) is "bodies[].min".
+/// The same for an entry of a list: MEMBER_OF(bodies, Body, min) is "bodies[].min".
 #define MEMBER_OF(list, Struct, member) #list "[]." MEMBER(Struct, member)
 
 /// "a->b" is "a.b" in the file.
 std::string path_of(std::string member);
 
-/// The row of a member by its type. `values`: number(), one_of() (enums, lists of words) or plain.
+/// The row of a member, by its type. `values`: number(), one_of() (enums, lists of words) or plain.
 template <class Member>
 Key key(const char* member, Member& (*get)(const Object&), auto values, const char* help,
         auto... traits) {
@@ -39,11 +39,11 @@ Key key(const char* member, Member& (*get)(const Object&), auto values, const ch
 inline auto number(const char* unit, Range range) {
   return [=](Key& row) { row.unit = std::string(unit), row.range = range; };
 }
-/// One number, or a list of up to so many, as the rest of the entry says.
+/// One number or a list of up to `most`, depending on the other keys of the entry.
 inline auto numbers(const char* unit, Range range, std::size_t most) {
   return [=](Key& row) { number(unit, range)(row), row.most = most; };
 }
-/// The words of an enum in its order, or those that a list may hold.
+/// The words of an enum in its order, or the words that a list may hold.
 inline auto one_of(std::vector<std::string> words) {
   return [=](Key& row) { row.choices = words; };
 }
@@ -52,15 +52,15 @@ inline void plain(Key&) {}
 inline void required(Key& row) { row.required = true; }
 inline void automatic(Key& row) { row.automatic = true; }
 inline void is_kind(Key& row) { row.is_kind = true; }
-/// Of entries of these kinds only.
+/// Only entries of these kinds have the key.
 auto of(auto... kinds) {
   return [=](Key& row) { row.kinds = ((1u << static_cast<unsigned>(kinds)) | ...); };
 }
-/// `y` of two numbers with dimensions: 2.
+/// With dimensions: 2, the y of a vector that is given by two numbers.
 inline auto flat(FlatY y) {
   return [=](Key& row) { row.flat = y; };
 }
-/// A corner of a box: beside `min` and `max` there are `center` and `size`.
+/// A corner of a box, which may also be given by `center` and `size`.
 inline void by_center(Key& row) { row.by_center = true; }
 /// The path of a file, relative to the scene file.
 inline void names_file(Key& row) { row.names_file = true; }
@@ -75,21 +75,21 @@ inline auto scaled(double (*at_level)(double, int)) {
 }
 inline double linear(double x, int level) { return std::ldexp(x, -level); }
 inline double quadratic(double x, int level) { return std::ldexp(x, -2 * level); }
-/// Of a factor that each step applies.
+/// For a factor that each step applies.
 inline double root(double x, int level) { return std::pow(x, std::ldexp(1, -level)); }
-/// Of a key or a block.
+/// For a key or a block.
 inline auto effect(Effect effect) {
   return [=](auto& row) { row.effect = effect; };
 }
-/// Of a key or a block whose numbers are not rounded at random: why not.
+/// For a key or a block whose numbers are not rounded at random: the reason.
 inline auto exact(const char* why) {
   return [=](auto& row) { row.exact = why; };
 }
-/// What it is in a scene file that does not have it.
+/// The value in a scene file without the key, in words.
 inline auto usually(const char* what) {
   return [=](Key& row) { row.usually = what; };
 }
-/// This value turns what the key is for off, and is not rounded.
+/// This value turns the feature off, and is not rounded.
 inline auto off_at(double value) {
   return [=](Key& row) { row.off = value; };
 }
@@ -112,7 +112,7 @@ Block optional_block(const char* member, Member& (*get)(const Object&), const ch
 }
 inline void on_by_default(Block& block) { block.on_by_default = true; }
 
-/// A block that is a std::vector of structs. `list`: what List says in words.
+/// A block that is a std::vector of structs. `list`: the texts of List.
 template <class Entry>
 Block list_block(const char* member, std::vector<Entry>& (*get)(const Object&), const char* help,
                  List list, auto... traits) {

@@ -1,4 +1,4 @@
-// What the table of keys says about itself in words.
+// Texts about the rows of the table of keys.
 #include "lib/base/text.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/number.h"
@@ -16,7 +16,7 @@ std::string bound_text(const Key& key, double bound) {
                      std::holds_alternative<std::uint64_t*>(field) ||
                      std::holds_alternative<std::array<int, 2>*>(field);
   if (!whole) return to_text(bound);
-  // The largest is read as 2^63, which a double can be.
+  // The largest bound is read as 2^63, which a double can represent.
   const bool largest = bound >= 0x1p63;
   return std::to_string(largest ? std::numeric_limits<std::int64_t>::max() : std::int64_t(bound));
 }

@@ -1,4 +1,4 @@
-// What a key says of its numbers.
+// Properties of a key's numbers.
 #pragma once
 
 #include <limits>
@@ -13,18 +13,18 @@ struct Range {
   bool below_max = false;  ///< max itself is not allowed
 };
 
-// Bounds that hold off overflow in float arithmetic and nothing that anyone simulates: boxes from
-// 1e-6 m to 1e6 m, up to a million box lengths from the origin.
+// Bounds that only prevent overflow in float arithmetic: boxes from 1e-6 m to 1e6 m, up to a
+// million box lengths from the origin.
 inline constexpr Range kCoordinate{-1e12, 1e12};
 inline constexpr Range kLength{1e-9, 1e9};
 inline constexpr Range kSeconds{1e-12, 1e9};
 inline constexpr Range kRate{-1e12, 1e12};
 
-/// With `dimensions: 2` a vector may be given by x and z; what its y is then.
+/// The y of a vector that is given by x and z only (`dimensions: 2`).
 enum class FlatY {
-  none,    ///< it needs three numbers
-  bottom,  ///< that of the domain: 0 ...
-  top,     ///< ... and a spacing above
+  none,    ///< three numbers are required
+  bottom,  ///< defines the lower y of the domain: 0
+  top,     ///< defines its upper y: a spacing above the lower
   low,     ///< the domain's lower y
   high,    ///< the domain's upper y
   middle,  ///< the plane

@@ -1,4 +1,4 @@
-// Keys of gauges: what is written down of one place.
+// Keys of gauges, which record values at one place.
 #include "lib/scene/key_rows.h"
 
 namespace pbf::inline scene_module {

@@ -1,4 +1,4 @@
-// Keys of what moves the particles: gravity, time, solver, forces.
+// Keys that determine the motion of particles: gravity, time, solver, forces.
 #include "lib/scene/key_rows.h"
 #include "lib/scene/shorthand.h"
 

@@ -1,4 +1,4 @@
-// Keys of obstacles: those of every one, and those of their shapes.
+// Keys of obstacles: common ones, and those of their shapes.
 #include "lib/scene/key_rows.h"
 
 namespace pbf::inline scene_module {
@@ -7,7 +7,7 @@ namespace {
 #define KEY(member) MEMBER(Scene, member)
 #define OBSTACLE(member) MEMBER_OF(obstacles, Obstacle, member)
 
-/// The key that decides about the others.
+/// The key that decides which other keys an obstacle has.
 Key shape_row() {
   Key row{"obstacles[].shape",
           "Shape of the obstacle; decides which keys it has. With dimensions: 2 y does not count, "
@@ -28,8 +28,8 @@ Key shape_row() {
   return row;
 }
 
-/// The row of a shape's key. An obstacle of another shape has none: what is read there is the
-/// default, and what is written there is lost.
+/// The row of a shape's key. For an obstacle of another shape, reads give the default and writes
+/// are lost.
 template <class Shape, class Member, class Holder>
 Key row_of(const ShapeKey<Member, Holder>& key, unsigned kind) {
   Key row{std::string("obstacles[].") + key.name, key.help,
@@ -46,7 +46,7 @@ Key row_of(const ShapeKey<Member, Holder>& key, unsigned kind) {
   return row;
 }
 
-/// Keys of the same name are one row: of whichever shape an obstacle has.
+/// Shapes with a key of the same name share one row.
 void add_row(std::vector<Key>& rows, Key row) {
   const auto there = std::ranges::find(rows, row.path, &Key::path);
   if (there == rows.end()) return rows.push_back(std::move(row));
@@ -60,7 +60,7 @@ void add_row(std::vector<Key>& rows, Key row) {
 
 std::vector<Key> shape_rows() {
   std::vector<Key> rows;
-  for (const bool bounded : {true, false}) {  // pages tell of bodies before planes
+  for (const bool bounded : {true, false}) {  // pages list bounded shapes before planes
     unsigned kind = 1;
     for_each_shape([&]<class Shape>(const Shape& keys) {
       if ((size_of_shape<double>(keys.make(1)) < kEndless) == bounded)

@@ -1,4 +1,4 @@
-// Keys of a run: measures, guard, files, pictures, machine.
+// Keys of a run: measurements, guard, files, pictures, machine.
 #include "lib/scene/key_rows.h"
 
 namespace pbf::inline scene_module {

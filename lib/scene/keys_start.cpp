@@ -1,4 +1,4 @@
-// Keys of what there is at the start: box, fluid, bodies.
+// Keys of the initial state: box, fluid, bodies.
 #include "lib/scene/key_rows.h"
 
 namespace pbf::inline scene_module {

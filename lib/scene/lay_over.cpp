@@ -9,7 +9,7 @@
 namespace pbf::inline scene_module {
 namespace {
 
-/// Of a block; every one is looked for among the others.
+/// Largest number of keys in a block; the search for duplicates is quadratic.
 constexpr std::size_t kMostLaid = 10000;
 
 Node* key_node(Node& map, const Node* value) {
@@ -21,7 +21,7 @@ void append_pair(Node& map, const Node& key, const Node& value) {
   map.items.push_back(value);
 }
 
-/// "solver.iterations: 4" of a base goes into its block, where there is one or `made` asks for one.
+/// Moves "solver.iterations: 4" of a base into its block, if there is one or `made` asks for one.
 void gather_words(Node& base, const std::string& name, bool made) {
   const std::string start = name + ".";
   for (std::size_t i = 0; i < base.keys.size();) {
@@ -32,7 +32,7 @@ void gather_words(Node& base, const std::string& name, bool made) {
     Node key = base.keys[i], value = base.items[i];
     base.keys.erase(base.keys.begin() + std::ptrdiff_t(i));
     base.items.erase(base.items.begin() + std::ptrdiff_t(i));
-    if (!made) continue;  // what replaces the block replaces its keys
+    if (!made) continue;  // a value that replaces the block replaces its keys
     Node* block = base.find(name);
     if (block == nullptr) {
       Node word = key;
@@ -40,14 +40,14 @@ void gather_words(Node& base, const std::string& name, bool made) {
       append_pair(base, word,
                   {Node::Kind::map, "", false, {}, {}, key.origin, key.line, key.column});
       block = &base.items.back();
-      i = 0;  // it stands at the end
+      i = 0;  // the block is now at the end
     }
     key.text = key.text.substr(start.size());
     if (block->kind == Node::Kind::map) append_pair(*block, key, value);
   }
 }
 
-/// Gravity by its magnitude can be tilted; a vector says nothing of the two.
+/// Makes a number for gravity a mapping that can be tilted; a vector needs a new magnitude.
 void take_magnitude(Node& there, const Node& over) {
   double g = 0;
   if (there.kind == Node::Kind::scalar && read_number(there.text, g) == NumberError::none) {
@@ -62,7 +62,7 @@ void take_magnitude(Node& there, const Node& over) {
                   ", of which no part can be changed; give the magnitude here too, or a vector");
 }
 
-/// Whether the word that decides which keys the block has is another one now.
+/// Whether the word that decides which keys the block has changes.
 bool is_other_kind(const std::string& path, const Node& there, const Node& over) {
   const Block* block = scene_table().find_block(path);
   if (block == nullptr || block->kind == nullptr) return false;

@@ -14,7 +14,7 @@ bool is_of_key(char c) {
   return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)) || c == '.';
 }
 
-/// The key that a text begins with; empty where it begins with none.
+/// The key at the beginning of a text; empty if there is none.
 std::string first_key(const std::string& text) {
   if (text.empty() || !is_letter(text[0])) return "";
   return {text.begin(), std::find_if_not(text.begin(), text.end(), is_of_key)};
@@ -26,7 +26,7 @@ std::string colon_missing(const std::string& key) {
 
 std::string on_line(std::size_t number) { return " on line " + std::to_string(number + 1); }
 
-/// f(i) for every character of a line outside quotes. Returns where its comment begins.
+/// Calls f(i) for every character of a line outside quotes. Returns where its comment begins.
 template <class F>
 std::size_t visit_plain(const std::string& line, F f) {
   char quote = 0;
@@ -45,7 +45,7 @@ std::size_t visit_plain(const std::string& line, F f) {
   return line.size();
 }
 
-/// The lines up to this one, as they stand.
+/// The unchanged lines up to line `last`.
 std::vector<std::string> raw_lines(const std::string& text, int last) {
   std::vector<std::string> lines;
   for (std::size_t start = 0; start < text.size() && int(lines.size()) <= last;) {
@@ -56,14 +56,14 @@ std::vector<std::string> raw_lines(const std::string& text, int last) {
   return lines;
 }
 
-/// A line of a file: its indentation and what stands there.
+/// A line of a file.
 struct Line {
   std::size_t indent;
-  std::string text;    ///< without the comment and blanks around it
+  std::string text;    ///< without the comment and surrounding blanks
   std::size_t number;  ///< from 0
 };
 
-/// Lines of blocks: without empty ones, and those within brackets that opened before.
+/// Lines outside brackets, without empty ones.
 std::vector<Line> block_lines(const std::vector<std::string>& raw) {
   std::vector<Line> lines;
   int depth = 0;
@@ -82,7 +82,7 @@ std::vector<Line> block_lines(const std::vector<std::string>& raw) {
   return lines;
 }
 
-/// "step: 0.002": a key that has its value on its line.
+/// "step: 0.002": a key with its value on the same line.
 bool has_value(const std::string& line) {
   const std::size_t colon = line.find(": ");
   return colon != line.npos && is_letter(line[0]) && line.find_first_of("\"'{[") > colon;
@@ -92,7 +92,7 @@ bool is_key(const std::string& line) {
 }
 
 std::string indentation_remedy(const std::vector<Line>& lines) {
-  std::vector<std::size_t> levels;  // of the lines around
+  std::vector<std::size_t> levels;  // indentations of the enclosing blocks
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const Line& line = lines[i];
     const std::string place = "line " + std::to_string(line.number + 1);
@@ -108,7 +108,7 @@ std::string indentation_remedy(const std::vector<Line>& lines) {
              " is indented like no line above it: keys of one block begin in the "
              "same column";
     if (levels.empty() || levels.back() < line.indent) levels.push_back(line.indent);
-    // What follows a dash begins a block of its own.
+    // The text after a dash begins a block of its own.
     if (line.text.size() > 2 && line.text[0] == '-' && line.text[1] == ' ')
       levels.push_back(line.indent + line.text.find_first_not_of(' ', 1));
   }
@@ -129,7 +129,7 @@ std::string missing_space_before_bracket(const std::string& line) {
   return found;
 }
 
-/// "domain {min: ...}", and "output" above lines that are indented deeper.
+/// "domain {min: ...}", or "output" above a line that is indented more.
 std::string missing_colon_of_block(const std::vector<Line>& lines) {
   const std::size_t n = lines.size();
   for (std::size_t k = n; k-- > (n < 2 ? 0 : n - 2);) {
@@ -147,9 +147,9 @@ std::string missing_colon_of_block(const std::vector<Line>& lines) {
   return "";
 }
 
-/// For a list or a block in brackets that yaml-cpp finds no end of.
+/// For a list or a block in brackets whose end yaml-cpp does not find.
 std::string missing_bracket(const std::vector<std::string>& lines) {
-  std::vector<std::pair<char, std::size_t>> open;  // brackets, and the lines that they are on
+  std::vector<std::pair<char, std::size_t>> open;  // brackets and their lines
   for (std::size_t k = 0; k + 1 < lines.size(); ++k)
     visit_plain(lines[k], [&](std::size_t i) {
       const char c = lines[k][i];
@@ -181,7 +181,7 @@ std::string missing_colon(const std::string& text) {
 std::string layout_remedy(const std::string& text, int line, const std::string& reason) {
   const std::vector<std::string> raw = raw_lines(text, line);
   const std::vector<Line> lines = block_lines(raw);
-  // YAML complains of the line behind, for a text may go on there.
+  // YAML reports the line after the mistake, since a text may continue there.
   for (std::size_t back = 0; back < std::min<std::size_t>(2, lines.size()); ++back) {
     const Line& l = lines[lines.size() - 1 - back];
     if (l.text.size() > 1 && l.text[0] == '-' &&

@@ -33,7 +33,7 @@ LoadedScene loaded_from(const std::string& path) {
   return loaded;
 }
 
-/// What a file builds on is read with the file, before anything is set.
+/// A base is read with its file; an override cannot set it.
 void refuse_base(Node& root, Problems& problems) {
   const Node* base = root.find(kBaseKey);
   if (base == nullptr) return;
@@ -43,7 +43,7 @@ void refuse_base(Node& root, Problems& problems) {
   root.erase(kBaseKey);
 }
 
-/// time.step: auto.
+/// Chooses time.step if it is auto.
 void choose_step(PlacedScene& placed, Problems& problems) {
   double& step = placed.scene.time.step;
   if (placed.bad.empty()) {
@@ -51,7 +51,7 @@ void choose_step(PlacedScene& placed, Problems& problems) {
     if (step > 0) return;
     const Scene& s = placed.scene;
     if (s.tank_motion || std::ranges::any_of(s.obstacles, [](auto& o) { return bool(o.motion); })) {
-      step = s.output ? s.output->every : s.time.end;  // until their tables are read
+      step = s.output ? s.output->every : s.time.end;  // until the tables are read
       return;
     }
     problems.add(placed.place("time.step"), "time.step",
@@ -62,7 +62,7 @@ void choose_step(PlacedScene& placed, Problems& problems) {
   step = Time{}.step;
 }
 
-/// Where the files are named that are read later.
+/// Keeps the places of paths whose files are read later.
 void keep_places(PlacedScene& placed) {
   Scene& s = placed.scene;
   for (std::size_t k = 0; k < s.bodies.size(); ++k)

@@ -11,8 +11,8 @@ namespace pbf::inline scene_module {
 
 using Double3 = std::array<double, 3>;
 
-/// Where a scene file names another one, "scene.yaml:9:30", for messages; empty in a scene that was
-/// not read. No part of what the scene says: two that differ in it are equal.
+/// Where a scene file names another file, "scene.yaml:9:30", for messages; empty if the scene was
+/// not read from a file. Ignored in comparisons of scenes.
 struct Place {
   std::string text;
   bool operator==(const Place&) const { return true; }
@@ -21,30 +21,30 @@ struct Place {
 enum class MotionKind { sine, velocity, file };
 enum class TankMotionKind { sine, file };
 
-/// To and fro: amplitude * ramp(t) * sin(2 pi t/period + phase).
+/// Oscillation: amplitude * ramp(t) * sin(2 pi t/period + phase).
 struct Swing {
-  std::optional<Double3> direction;  ///< along it, amplitude in m; or ...
-  std::optional<Double3> axis;       ///< ... about it, through `pivot`, amplitude in degrees
-  std::optional<Double3> pivot;      ///< m; absent: the middle of what moves
+  std::optional<Double3> direction;  ///< of a displacement, amplitude in m; or ...
+  std::optional<Double3> axis;       ///< ... of a rotation through `pivot`, amplitude in degrees
+  std::optional<Double3> pivot;      ///< m; absent: center of the moving object
   double amplitude = 0;              ///< m or degrees
   double period = 1;                 ///< s
   double phase = 0;                  ///< degrees
-  double ramp = 0;                   ///< s, in which the amplitude grows by (1 - cos)/2
+  double ramp = 0;                   ///< s, time in which the amplitude grows as (1 - cos)/2
   bool operator==(const Swing&) const = default;
 };
 
-/// The table of a file: `columns` numbers in each row, at times that grow. No key of a scene: who
-/// loads one fills it in (lib/run/motion_files.h).
+/// The table of a file: `columns` numbers per row, at increasing times. Not a key of a scene:
+/// loading fills it in (lib/run/motion_files.h).
 struct MotionTable {
-  std::string file, sha256;  ///< where it was read, and its bytes
+  std::string file, sha256;  ///< where it was read, and the hash of its bytes
   int columns = 0;
   std::vector<double> time;                   ///< s
   std::vector<std::array<double, 6>> values;  ///< x y z rx ry rz; angle; ax ay az
-  std::vector<std::int64_t> line{};           ///< of the file
+  std::vector<std::int64_t> line{};           ///< line in the file
   bool operator==(const MotionTable&) const = default;
 };
 
-/// Of an obstacle, from where the scene puts it. Which members count depends on `kind`.
+/// Motion of an obstacle from its place in the scene. `kind` decides which members are used.
 struct Motion : Swing {
   MotionKind kind = MotionKind::sine;
   Double3 velocity{}, angular{};  ///< velocity: m/s, degrees/s
@@ -54,7 +54,7 @@ struct Motion : Swing {
   bool operator==(const Motion&) const = default;
 };
 
-/// Of the domain, in which everything else is told.
+/// Motion of the domain; all coordinates are relative to the domain.
 struct TankMotion : Swing {
   TankMotionKind kind = TankMotionKind::sine;
   std::string path;  ///< file: CSV t,angle or t,ax,ay,az

@@ -22,7 +22,7 @@ bool names_non_finite(std::string s) {
 std::string to_text(double value) {
   char buffer[40];
   const double size = std::fabs(value);
-  const bool fixed = size >= 1e-4 && size < 1e7;  // as people write them; else whatever is shorter
+  const bool fixed = size >= 1e-4 && size < 1e7;  // plain digits; otherwise the shorter form
   const auto end =
       fixed ? std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed).ptr
             : std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
@@ -37,7 +37,7 @@ std::string to_text(const Double3& v) {
 }
 
 NumberError read_number(const std::string& text, double& value) {
-  // Nothing that from_chars takes beside decimal numbers, and a plus, which it does not take.
+  // Excludes the other forms that from_chars accepts, and allows a plus, which it rejects.
   const bool decimal = !text.empty() && text.find_first_not_of("+-.0123456789eE") == text.npos;
   const char* first = text.data() + (decimal && text[0] == '+' && text[1] != '-' ? 1 : 0);
   const char* last = text.data() + text.size();
@@ -45,7 +45,7 @@ NumberError read_number(const std::string& text, double& value) {
   if (!decimal || result.ec == std::errc::invalid_argument || result.ptr != last)
     return names_non_finite(text) ? NumberError::not_finite : NumberError::not_a_number;
   if (result.ec == std::errc::result_out_of_range) {
-    // from_chars does not say which end was left; a number in magnitude above 1 has its digits so.
+    // from_chars does not tell overflow from underflow; the sign of the exponent does.
     const std::size_t e = text.find_first_of("eE");
     const bool tiny = e != std::string::npos && e + 1 < text.size() && text[e + 1] == '-';
     return tiny ? NumberError::too_small : NumberError::too_large;

@@ -23,11 +23,11 @@ using Any = std::variant<PBF_SHAPES>;
 struct Obstacle {
   std::string name;
   obstacle_keys::Any shape = obstacle_keys::Box{};
-  bool loads = false;            ///< the force on it is summed and written down
-  std::optional<Motion> motion;  ///< absent: it stands
+  bool loads = false;            ///< the fluid's force on it is recorded
+  std::optional<Motion> motion;  ///< absent: it is fixed
   bool operator==(const Obstacle&) const = default;
 
-  /// The keys of a shape; the obstacle has it.
+  /// The keys of its shape, which must be `Shape`.
   template <class Shape>
   Shape& as() {
     return std::get<Shape>(shape);
@@ -36,19 +36,19 @@ struct Obstacle {
   const Shape& as() const {
     return std::get<Shape>(shape);
   }
-  /// m, where its other keys put it: the middle of a body, and a point of a plane.
+  /// Its position in the scene, m: the center of a body, or a point of a plane.
   Double3 middle() const {
     return std::visit([](const auto& keys) { return keys.middle(); }, shape);
   }
 };
 
-/// The address that stands for the word of a shape in names of keys; where the variant begins there
-/// is a key of the shape.
+/// The address that stands for the key `shape` in names of keys. It is not that of the variant,
+/// which is also the address of a key of the shape.
 inline const void* address_of_word(const obstacle_keys::Any& shape) {
   return reinterpret_cast<const char*>(&shape) + 1;
 }
 
-/// f of the keys of each shape, all defaults, in the order of the list.
+/// Calls f with the keys of each shape, all defaults, in the order of the list.
 template <class F>
 void for_each_shape(F&& f) {
   [&]<class... Shape>(const std::variant<Shape...>*) {

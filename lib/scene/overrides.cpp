@@ -7,10 +7,10 @@
 namespace pbf::inline scene_module {
 namespace {
 
-/// Of a block that settings add to; every one of them is looked for among the others.
+/// Largest number of keys in a block that settings extend; searches are linear.
 constexpr std::size_t kMostKeys = 10000;
 
-/// "bodies[0].count" -> bodies, 0, count. Empty when a segment is.
+/// "bodies[0].count" -> bodies, 0, count. Empty if a segment is empty.
 std::vector<std::string> segments(const std::string& path) {
   std::string dotted;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -38,7 +38,7 @@ Node made(const Node& like, Node::Kind kind, const std::string& text) {
   return {kind, text, false, {}, {}, like.origin, like.line, like.column};
 }
 
-/// Child of `at` named by `segment`, made when a block lacks it; nullptr with the reason in `why`.
+/// Child of `at` named by `segment`, made if a block lacks it; nullptr with the reason in `why`.
 Node* child(Node& at, const std::string& segment, const Node& value, const std::string& so_far,
             std::string& why) {
   const std::string here = so_far.empty() ? "the scene" : so_far;
@@ -52,7 +52,7 @@ Node* child(Node& at, const std::string& segment, const Node& value, const std::
           "\" is no index of it (the first is 0)";
     return nullptr;
   }
-  // A block may stand for nothing, or for the words that turn it off, or on as it is.
+  // An empty block, or one that is only a word (on, off), becomes a mapping.
   if (at.kind == Node::Kind::null || at.is_word({"off", "false", "on", "true"}))
     at = made(value, Node::Kind::map, "");
   if (at.kind != Node::Kind::map) {

@@ -13,10 +13,10 @@ namespace pbf::inline scene_module {
 struct Particles {
   std::vector<Double3> position;            ///< m
   std::vector<Double3> velocity;            ///< m/s
-  std::size_t put_on_margin = 0;            ///< that were nearer to a wall than solver.wall_margin
-  double farthest_put = 0;                  ///< m, by how much at most
-  std::vector<std::size_t> in_obstacles{};  ///< of each body, left out; empty: there are none
-  std::vector<SceneFile> files;  ///< that were read, in the order of the bodies, then of motions
+  std::size_t put_on_margin = 0;            ///< moved to solver.wall_margin from a wall
+  double farthest_put = 0;                  ///< m, the longest of these moves
+  std::vector<std::size_t> in_obstacles{};  ///< removed per body; empty: no obstacles
+  std::vector<SceneFile> files;  ///< that were read: of bodies in their order, then of motions
   std::size_t size() const { return position.size(); }
 };
 

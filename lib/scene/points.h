@@ -1,5 +1,5 @@
-// Visits the positions of a body's particles in the order of their ids, before any check of them.
-// Header only. particle_file.h reads the bodies of files.
+// Visits the positions of a body's particles in the order of their ids, before any check. Header
+// only. particle_file.h reads bodies that are files.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +14,11 @@
 
 namespace pbf::inline scene_module {
 
-/// Of a cylinder: two directions across its axis, and along it. Those of the scene where the axis
-/// is one of them, so that its lattice is that of blocks.
+/// Of a cylinder: two directions normal to its axis, and the axis. Parallel to the axes of the
+/// scene if the cylinder's axis is, so that its lattice is that of blocks.
 inline std::array<Double3, 3> cylinder_frame(const Body& body) {
   const Double3 axis = unit(body.to - body.from);
-  // Across from the direction of the scene that is least along the axis.
+  // Start from the axis of the scene with the smallest component along the cylinder's axis.
   std::size_t least = 0;
   for (std::size_t a = 1; a < 3; ++a)
     if (std::fabs(axis[a]) < std::fabs(axis[least])) least = a;
@@ -28,8 +28,8 @@ inline std::array<Double3, 3> cylinder_frame(const Body& body) {
   return {first, cross(axis, first), axis};
 }
 
-/// put(point in m) for every particle of a block, sphere, cylinder or random box. d: spacing of the
-/// lattice; plane: of Scene::plane(), along y what lies off it is left as it is.
+/// Calls put(position in m) for every particle of a block, sphere, cylinder or random box. d:
+/// spacing of the lattice; plane: Scene::plane(); the caller moves the y of particles onto it.
 template <class Put>
 void for_each_point(const Body& body, double d, std::optional<double> plane, Put&& put) {
   if (body.shape == Shape::block) {
@@ -75,7 +75,7 @@ void for_each_point(const Body& body, double d, std::optional<double> plane, Put
     for (std::int64_t i = 0; i < body.count; ++i) {
       Double3 x{};
       for (int a = 0; a < 3; a += plane ? 2 : 1)
-        // min(): rounding of the product may reach past the upper face
+        // min(): rounding may put the product above the upper face
         x[a] = std::min(body.min[a] + random.uniform() * (body.max[a] - body.min[a]), body.max[a]);
       put(x);
     }

@@ -1,4 +1,4 @@
-// Collects all problems of a scene, so that one attempt shows everything.
+// Collects all problems of a scene, so that one attempt shows all of them.
 #pragma once
 
 #include <string>
@@ -12,18 +12,18 @@ namespace pbf::inline scene_module {
 
 class Problems {
  public:
-  /// One line: "place: key: what"; `key` may be empty. Said once: the runs of a study share places.
+  /// Adds "place: key: what"; `key` may be empty. Duplicates, as from runs of a study, are dropped.
   void add(const std::string& place, const std::string& key, const std::string& what) {
     const std::string line = place + ": " + (key.empty() ? "" : key + ": ") + what;
     if (known_.insert(line).second && !full()) lines_.push_back(line);
   }
 
   bool empty() const { return lines_.empty(); }
-  /// Whether further problems would not be shown: no need to think long about them.
+  /// Whether further problems would not be shown, so that their texts can be short.
   bool full() const { return lines_.size() >= kShown; }
 
-  /// Throws Error(bad_input) with one line per problem, if there is any; at most kShown lines, for
-  /// a file that is no scene at all would fill the terminal.
+  /// Throws Error(bad_input) with one line per problem, if there is any; at most kShown lines,
+  /// because a file that is no scene at all would fill the terminal.
   void raise() const {
     if (lines_.empty()) return;
     std::string text = joined(lines_, "\n");
@@ -35,7 +35,7 @@ class Problems {
  private:
   static constexpr std::size_t kShown = 100;
   std::unordered_set<std::string> known_;
-  std::vector<std::string> lines_;  ///< the first of them, to be shown
+  std::vector<std::string> lines_;  ///< the first ones, to be shown
 };
 
 }  // namespace pbf::inline scene_module

@@ -1,4 +1,4 @@
-// The generator behind random bodies: the same numbers on every machine and compiler.
+// The random number generator of bodies: the same numbers on every machine and compiler.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How the fluid of a picture is drawn. This table is the only list.
+// The styles in which a picture shows the fluid. This table is the only list.
 #pragma once
 
 #include "lib/scene/backend.h"
@@ -9,13 +9,12 @@ enum class RenderStyle { spheres, surface };
 
 struct RenderStyleInfo {
   const char* word;     ///< in scenes and options
-  int bytes_per_pixel;  ///< of what it draws into beside the scene's samples and the picture
+  int bytes_per_pixel;  ///< of its own buffers, in addition to samples and picture
 };
 /// In the order of the enum. Surface: two pairs of floats, depth, thickness and the scene below.
 inline constexpr RenderStyleInfo kRenderStyles[] = {{"spheres", 0}, {"surface", 8 + 8 + 4 + 2 + 4}};
 
-/// Texels of the shadow map along its longer side, 4 bytes each; scenes in two dimensions have
-/// none.
+/// Texels of the shadow map along its longer side, 4 bytes each; not in two dimensions.
 inline constexpr int kShadowTexels = 512;
 
 constexpr const RenderStyleInfo& about(RenderStyle s) { return kRenderStyles[static_cast<int>(s)]; }

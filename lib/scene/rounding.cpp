@@ -6,7 +6,7 @@
 namespace pbf::inline scene_module {
 namespace {
 
-/// Distance of neighbouring numbers as large as x, with so many digits after the first.
+/// Distance between adjacent floating-point numbers near x, with `digits` fraction bits.
 double number_spacing(double x, int digits) { return std::ldexp(1.0, std::ilogb(x) - digits); }
 
 int digits_of(const Scene& s) { return s.precision == Precision::dbl ? 52 : 23; }

@@ -1,4 +1,4 @@
-// A scene as plain data: everything a run depends on, in SI units, with defaults.
+// A scene as plain data: all input of a run, in SI units, with defaults.
 // The table of keys (keys_*.cpp) maps every field below to its YAML key, range and help text.
 #pragma once
 
@@ -21,12 +21,12 @@ enum class Shape { block, sphere, random_box, file, cylinder };
 enum class KernelMode { consistent, paper };         ///< density kernel and gradient kernel
 enum class ConstraintMode { one_sided, two_sided };  ///< C = max(rho/rho0 - 1, 0) or rho/rho0 - 1
 enum class BoundaryMode { density, clamp };          ///< walls with a density contribution, or bare
-enum class SolverMethod { jacobi, chebyshev };  ///< omega of an iteration: constant, or a sequence
+enum class SolverMethod { jacobi, chebyshev };       ///< omega: constant, or a Chebyshev sequence
 /// Corrections over grids coarser than h (kernels/README.md, "Levels"); automatic: in deep fluid.
 enum class LevelsMode { off, automatic, on };
 enum class Compression { none, gzip };
 
-/// A body of fluid. Which members count depends on `shape`; the loader refuses the others.
+/// A body of fluid. `shape` decides which members are used; the loader refuses the others.
 struct Body {
   Shape shape = Shape::block;
   Double3 min{}, max{};    ///< m, block (lattice of the spacing) and random_box
@@ -42,19 +42,19 @@ struct Body {
   bool operator==(const Body&) const = default;
 };
 
-/// What is written down of one place while a run goes on.
+/// The quantity that a gauge records.
 enum class GaugeKind { level, velocity, flow, pressure };
 inline constexpr std::array<const char*, 4> kGaugeKinds = {"level", "velocity", "flow", "pressure"};
 
-/// A gauge. Which members count depends on `kind`; the loader refuses the others.
+/// A gauge. `kind` decides which members are used; the loader refuses the others.
 struct Gauge {
   std::string name;
   GaugeKind kind = GaugeKind::level;
-  std::vector<double> at;    ///< m; level: where the line crosses the other axes; else a place
+  std::vector<double> at;    ///< m; level: coordinates across the line; else a position
   std::string on;            ///< pressure: an obstacle, or a wall of the domain
   double radius = 0;         ///< m, pressure: of the disc
   Double3 center{};          ///< m, flow: middle of the rectangle
-  Double3 normal{1, 0, 0};   ///< flow: the way that counts as positive
+  Double3 normal{1, 0, 0};   ///< flow: the positive direction
   std::vector<double> size;  ///< m, flow: level edge and the other; in two dimensions one length
   bool operator==(const Gauge&) const = default;
 };
@@ -66,7 +66,7 @@ inline constexpr std::array<const char*, 6> kFaceNames = {"x_min", "x_max", "y_m
 struct Domain {
   Double3 min{}, max{1, 1, 1};    ///< m
   std::vector<std::string> open;  ///< faces without a wall: x_min x_max y_min y_max z_min z_max
-  bool loads = false;             ///< the forces on the walls are summed and written down
+  bool loads = false;             ///< the fluid's forces on the walls are recorded
   bool operator==(const Domain&) const = default;
   bool is_open(int axis, bool high) const {
     return std::find(open.begin(), open.end(), kFaceNames[std::size_t(2 * axis + high)]) !=
@@ -74,14 +74,14 @@ struct Domain {
   }
 };
 
-/// Smallest fluid.smoothing_ratio with fluid.mass: auto. Below it the density sum holds little but
-/// the nearest neighbours, and counts the many of a close packing like the few of the lattice
-/// farther out: a pool sinks into the packing without being compressed (lib/program/calibrate.h).
+/// Smallest fluid.smoothing_ratio with fluid.mass: auto. Below it the density sum contains little
+/// but the nearest neighbors, so close packing counts like the rest lattice, which has fewer but
+/// farther ones: a pool sinks into that packing without compression (lib/program/calibrate.h).
 constexpr double least_smoothing_ratio(int dimensions) { return dimensions == 2 ? 1.5 : 1.6; }
 
 struct Fluid {
   double rest_density = 1000;  ///< kg/m^3, rho0
-  double spacing = 0.02;       ///< m, d: edge of the rest lattice's cell
+  double spacing = 0.02;       ///< m, d: lattice constant at rest
   double smoothing_ratio = 2;  ///< h/d
   std::optional<double> mass;  ///< kg per particle; absent: rho0 d^3 (rho0 d^2 times the thickness
                                ///< in two dimensions), density sum calibrated so that the rest
@@ -89,27 +89,27 @@ struct Fluid {
   bool operator==(const Fluid&) const = default;
 };
 
-/// A step that follows the flow: lib/run/step_control.h.
+/// A step that adapts to the flow: lib/run/step_control.h.
 struct AdaptiveTime {
-  std::optional<double> step_min;  ///< s, no step is shorter; absent: time.step/64
+  std::optional<double> step_min;  ///< s, lower bound of the step; absent: time.step/64
   double cfl = 0.4;                ///< fastest particle: v dt <= cfl h
   double force = 0.25;             ///< greatest acceleration: dt <= force sqrt(h/a)
   bool operator==(const AdaptiveTime&) const = default;
 };
 
 struct Time {
-  double step = 0.002;                   ///< s, dt of one update; never auto once it is loaded
+  double step = 0.002;                   ///< s, dt of one update; a number once the scene is loaded
   double end = 1;                        ///< s, rounded to whole updates
   std::optional<AdaptiveTime> adaptive;  ///< absent: an update is one step
-  double motion_begin = 0;               ///< s, time of the motions at the start
+  double motion_begin = 0;               ///< s, time of the motions when the run starts
   bool operator==(const Time&) const = default;
 };
 
 struct SolverSettings {
-  int iterations = 4;  ///< iterations over the constraints per substep; at least, with a tolerance
-  double tolerance = 0;     ///< mean compression above which more iterations follow; 0: none do
-  int max_iterations = 32;  ///< iterations per substep at most, with a tolerance
-  int substeps = 1;  ///< time steps of time.step/substeps that share one update's neighbour lists
+  int iterations = 4;       ///< constraint iterations per substep; the minimum, with a tolerance
+  double tolerance = 0;     ///< mean compression above which more iterations follow; 0: none
+  int max_iterations = 32;  ///< maximum per substep, with a tolerance
+  int substeps = 1;  ///< time steps of time.step/substeps that share one update's neighbor lists
   SolverMethod method = SolverMethod::jacobi;
   LevelsMode levels = LevelsMode::off;
   KernelMode kernels = KernelMode::consistent;
@@ -120,10 +120,10 @@ struct SolverSettings {
   BoundaryMode boundary = BoundaryMode::density;
   double wall_margin = 0;       ///< m, distance to a wall at which particles are clamped
   double velocity_damping = 1;  ///< factor on the velocity, once per update
-  double speed_limit = 0;       ///< h per time.step, faster particles are slowed down; 0: no limit
-  bool prestabilize = true;     ///< take the compression out of the start, lib/run/prestabilize.h
-  bool fused = true;            ///< density and lambda in one loop over the neighbours
-  bool reproducible = false;    ///< cuda: the CPU's bits, at a price (kernels/README.md, "Bits")
+  double speed_limit = 0;       ///< h per time.step, limit for particles; 0: none
+  bool prestabilize = true;     ///< remove compression from the start, lib/run/prestabilize.h
+  bool fused = true;            ///< density and lambda in one loop over the neighbors
+  bool reproducible = false;    ///< cuda: the bits of the CPU, slower (kernels/README.md, "Bits")
   bool operator==(const SolverSettings&) const = default;
 };
 
@@ -147,25 +147,25 @@ struct Vorticity {
   bool operator==(const Vorticity&) const = default;
 };
 
-/// What stops a run before it wastes time on nonsense; lib/run/guard.h says how it is told.
+/// Limits at which a run is stopped early; lib/run/guard.h describes them.
 struct GuardSettings {
   std::optional<double> speed;   ///< m/s; absent: from the scene and the start
   std::optional<double> energy;  ///< growth, as a share of the energy at the start; absent: 0.1 and
-                                 ///< what a start may release while it comes apart
+                                 ///< energy that a start may release while it relaxes
   std::int64_t neighbors = 0;    ///< of one particle; 0: from the start
   bool operator==(const GuardSettings&) const = default;
 };
 
 struct Output {
   double every = 0.02;                 ///< s between frames, rounded to whole updates
-  std::optional<double> gauges_every;  ///< s, the same of gauges; absent: with the measures
+  std::optional<double> gauges_every;  ///< s, the same for gauges; absent: as for measurements
   std::vector<std::string> fields{"velocity", "density"};  ///< besides position and id
   Precision precision = Precision::single;                 ///< of floating-point fields on disk
   Compression compression = Compression::none;             ///< gzip: shuffle + deflate 1
   bool operator==(const Output&) const = default;
 };
 
-/// Checkpoints besides those that a stopped run leaves behind in any case.
+/// Periodic checkpoints; a run that is stopped always writes one.
 struct Checkpoint {
   double every = 60;  ///< s of wall time
   bool operator==(const Checkpoint&) const = default;
@@ -174,7 +174,7 @@ struct Checkpoint {
 struct Camera {
   std::optional<Double3> position;  ///< m; absent: seen from outside the longest side
                                     ///< or, in two dimensions, straight at the plane
-  std::optional<Double3> target;    ///< m; absent: centre of the domain
+  std::optional<Double3> target;    ///< m; absent: center of the domain
   double fov = 35;                  ///< degrees, vertical
   double orbit = 0;                 ///< degrees per second of simulated time about `up`
   bool operator==(const Camera&) const = default;
@@ -185,14 +185,14 @@ struct Render {
   std::array<int, 2> size{1280, 720};
   RenderStyle style = RenderStyle::spheres;
   ColorBy color = ColorBy::speed;
-  std::optional<std::array<double, 2>> range;  ///< of the colour bar; absent: from the scene
+  std::optional<std::array<double, 2>> range;  ///< of the color bar; absent: from the scene
   double radius = 0;  ///< m, drawn radius of a particle; 0: half the spacing
   Camera camera;
   bool operator==(const Render&) const = default;
 };
 
 struct Scene {
-  std::string name = "scene";  ///< of one from a file without a name: lib/scene/scene_name.h
+  std::string name = "scene";  ///< if no file gives one: lib/scene/scene_name.h
   int dimensions = 3;  ///< 2: the x-z plane in the middle of the domain's y, which is its thickness
   Domain domain;
   Fluid fluid;
@@ -206,31 +206,30 @@ struct Scene {
   std::optional<Tensile> tensile;
   std::optional<Viscosity> viscosity;
   std::optional<Vorticity> vorticity;
-  int measure_every = 10;  ///< updates between measures
+  int measure_every = 10;  ///< updates between measurements
   std::optional<GuardSettings> guard = GuardSettings{};
   std::optional<Output> output;
   std::optional<Checkpoint> checkpoint;
   std::optional<Render> render;
   Backend backend = Backend::cpu;
   Precision precision = Precision::single;
-  int threads = 0;  ///< CPU threads; 0: by the number of particles (lib/program/threads.h)
+  int threads = 0;  ///< CPU threads; 0: from the number of particles (lib/program/threads.h)
 
   double h() const { return fluid.spacing * fluid.smoothing_ratio; }  ///< m, smoothing length
-  /// m, y of the plane that holds all particles of a scene in two dimensions; else nothing.
+  /// y of the plane that holds all particles of a scene in two dimensions, m; empty in 3-D.
   std::optional<double> plane() const {
     if (dimensions != 2) return std::nullopt;
     return 0.5 * (domain.min[1] + domain.max[1]);
   }
-  /// m, where the coordinates of a step (kernels/README.md, "Frame") are 0.
+  /// Origin of the coordinates used in a step (kernels/README.md, "Frame"), m.
   Double3 origin() const { return {domain.min[0], plane().value_or(domain.min[1]), domain.min[2]}; }
-  /// m^3, what one particle of the rest lattice fills: d^3, in two dimensions d^2 times the
-  /// thickness.
+  /// Volume per particle of the rest lattice, m^3: d^3, in two dimensions d^2 times the thickness.
   double cell_volume() const {
-    // Products, for pow() may differ in the last bit from one C library to the next.
+    // Products, because the last bit of pow() differs between C libraries.
     if (dimensions == 3) return fluid.spacing * fluid.spacing * fluid.spacing;
     return fluid.spacing * fluid.spacing * (domain.max[1] - domain.min[1]);
   }
-  /// kg, mass of one particle.
+  /// Mass of one particle, kg.
   double particle_mass() const { return fluid.mass.value_or(fluid.rest_density * cell_volume()); }
   bool operator==(const Scene&) const = default;
 };

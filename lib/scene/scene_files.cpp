@@ -8,7 +8,7 @@
 namespace pbf::inline scene_module {
 namespace {
 
-/// sha256sum's way: a path with such characters has them escaped, and a backslash before the
+/// As sha256sum does: special characters of the path are escaped, and a backslash precedes the
 /// digest.
 std::string line_of(const SceneFile& file) {
   std::string path;

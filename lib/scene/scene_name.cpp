@@ -20,7 +20,7 @@ std::string plain_name(const std::string& text) {
 
 bool name_by_file(Node& root, const std::string& path) {
   if (root.kind != Node::Kind::map || root.find("name") != nullptr) return false;
-  // Nor of /dev/stdin where that is a file.
+  // /dev/stdin may be a regular file, but is no name either.
   const std::string whole = std::filesystem::absolute(path).lexically_normal().string();
   std::error_code error;
   if (whole.starts_with("/dev/") || whole.starts_with("/proc/") ||

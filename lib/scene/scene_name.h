@@ -1,4 +1,4 @@
-// The name of a scene that says none.
+// The name of a scene that has none.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace pbf::inline scene_module {
 
-/// Letters, digits and ".-=_" of a text, with one "-" for others in between: what may stand in the
-/// name of a folder on any system. Empty where nothing is left; up to 150 bytes.
+/// Keeps letters, digits and ".-=_", and replaces other characters by single "-", for names of
+/// folders on any system. At most 150 bytes; may be empty.
 std::string plain_name(const std::string& text);
 
-/// Gives a scene without a name that of its file without .yaml, made plain; true if it did. Not of
-/// a pipe or another file that is read once, and not where that leaves nothing or a hidden name.
+/// Names a scene without a name after its file (plain_name() without .yaml); returns whether it
+/// did. Not for a pipe or another special file, and not if the name would be empty or hidden.
 bool name_by_file(Node& root, const std::string& path);
 
 }  // namespace pbf::inline scene_module

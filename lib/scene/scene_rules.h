@@ -1,5 +1,5 @@
-// What rules between keys are written with. Keys are named by their members: their paths are the
-// table's.
+// Base class of the rules between keys. Keys are named by their members; their paths come from the
+// table.
 #pragma once
 
 #include <map>
@@ -32,7 +32,7 @@ class SceneRules {
     problems_.add(p_.place(path), path, what);
   }
   void add(const auto& member, const std::string& what) { add_at(name(member), what); }
-  /// "is 2, below time.step (3 s)" and the rest.
+  /// "is 2, below time.step (3 s)", followed by `rest`.
   void add_below(const auto& member, const auto& other, const std::string& rest) {
     const std::string& unit = scene_table().find_key(name(other))->unit;
     add(member, "is " + to_text(member) + ", below " + name(other) + " (" + to_text(other) +
@@ -40,7 +40,7 @@ class SceneRules {
   }
   bool flat() const { return good(s_.dimensions) && s_.dimensions == 2; }
 
-  /// max > min along every axis.
+  /// Whether max > min along every axis; otherwise adds a problem.
   bool above(const Double3& min, const Double3& max) {
     bool ok = true;
     for (int a = 0; a < 3; ++a)
@@ -61,7 +61,7 @@ class SceneRules {
   Problems& problems_;
 };
 
-/// A part of check_scene().
+/// Parts of check_scene().
 void check_obstacles(const PlacedScene& placed, Problems& problems);
 void check_motions(const PlacedScene& placed, Problems& problems);
 void check_gauges(const PlacedScene& placed, Problems& problems);

@@ -19,7 +19,7 @@ namespace pbf::inline scene_module {
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{4} << 20;     // of a scene or a study
-constexpr std::size_t kMaxResult = std::size_t{256} << 20;  // of what pbf itself wrote
+constexpr std::size_t kMaxResult = std::size_t{256} << 20;  // of a file that pbf itself wrote
 
 std::size_t limit_of(const std::string& what) {
   return what == "scene" || what == "study" ? kMaxBytes : kMaxResult;
@@ -40,7 +40,7 @@ void check_text(const std::string& text, const Origin& origin, const std::string
                   " in YAML");
 }
 
-/// For a file that is not there: the nearest name in its folder, or what comes with the program.
+/// For a missing file: the nearest name in its folder, or a file that comes with the program.
 std::string nearest_file(const std::string& path) {
   namespace fs = std::filesystem;
   const fs::path file(path), folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
@@ -73,8 +73,8 @@ std::string text_of_file(const Origin& file, const std::string& what) {
     const std::string reason = std::strerror(errno);
     bad_input(file.shown(), "cannot be opened: " + reason + nearest_file(file.name));
   }
-  // A block at a time: the text stays as long as the run does, and its room with it. One byte more
-  // than allowed tells a file that is too large, without reading all of it.
+  // Read in blocks, because the text is kept for the whole run with its capacity. One byte more
+  // than the limit is enough to detect a file that is too large.
   const std::size_t most = limit_of(what) + 1;
   std::string text;
   std::array<char, 16384> block;

@@ -1,4 +1,4 @@
-// Files of YAML: their text, and the tree that it is.
+// YAML files: their text and their tree.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace pbf::inline scene_module {
 
-/// The text of a file. `what` it should be, for messages and its largest size: "scene". Throws
-/// Error(bad_input) where it cannot be read or is a folder. One byte more than may be is read.
+/// The text of a file. `what`: its kind, for messages and the limit of its size: "scene". Reads at
+/// most one byte more than the limit. Throws Error(bad_input) for an unreadable file or a folder.
 std::string text_of_file(const Origin& file, const std::string& what);
 
-/// The tree of a text. Throws Error(bad_input) for what is no text, too large, empty, another kind
-/// of file (a study) or no YAML.
+/// The tree of a text. Throws Error(bad_input) if it is not text, too large, empty, another kind of
+/// file (a study) or not YAML.
 Node tree_of_text(const std::string& text, const Origin& origin, const std::string& what);
 
 }  // namespace pbf::inline scene_module

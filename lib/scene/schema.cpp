@@ -1,4 +1,4 @@
-// JSON Schema of a scene file, for editors that complete and check while one types.
+// JSON Schema of a scene file, for completion and checks in editors.
 #include <nlohmann/json.hpp>
 
 #include "lib/base/json.h"
@@ -66,7 +66,7 @@ Json default_value(const Key& key, const Field& field) {
   if (const auto* text = std::get_if<std::string*>(&field)) return **text;
   const std::string text = format_field(key, field);
   const bool word = text == "auto" || !(is_numeric(field) || std::holds_alternative<bool*>(field));
-  return word ? Json(text) : Json::parse(text);  // the YAML of numbers is JSON
+  return word ? Json(text) : Json::parse(text);  // numbers in YAML are JSON
 }
 
 Json form_schema(const Key& key);
@@ -86,25 +86,25 @@ Json key_schema(const Key& key) {
   return out;
 }
 
-/// Whether an object must have all that is required, or may be a part: over a base.
+/// Whether required keys must be present, or may come from a base.
 enum class Extent { whole, part };
 
-/// Object with the keys and blocks that stand directly in `block`. kind < 0: of no kind.
+/// Object with the keys and blocks directly in `block`. kind < 0: the block has no kinds.
 Json object_schema(const KeyTable& table, const Block& block, int kind, Extent extent);
 
-/// Of the mapping that may stand in a key's place.
+/// Schema of the mapping that may replace a key's value.
 Json form_schema(const Key& key) {
   const KeyTable& table = key.form();
   return object_schema(table, *table.find_block(key.leaf()), -1, Extent::whole);
 }
 
-/// Of each kind where there are kinds, or else of all.
+/// One schema per kind, or a single one without kinds.
 Json kinds_schema(const KeyTable& table, const Block& block, Extent extent) {
   Json kinds = Json::array();
   for (int k = 0; block.kind != nullptr && k < int(block.kind->choices.size()); ++k)
     kinds.push_back(object_schema(table, block, k, extent));
   if (kinds.empty()) return object_schema(table, block, -1, extent);
-  return {{extent == Extent::whole ? "oneOf" : "anyOf", kinds}};  // a part may be of several
+  return {{extent == Extent::whole ? "oneOf" : "anyOf", kinds}};  // a part may match several
 }
 
 Json block_schema(const KeyTable& table, const Block& block, Extent extent) {
@@ -154,7 +154,7 @@ Json object_schema(const KeyTable& table, const Block& block, int kind, Extent e
   return out;
 }
 
-/// What a mapping that stands alone must have besides: what Extent::part leaves out.
+/// The requirements that Extent::part leaves out, for a scene without a base.
 Json required_schema(const KeyTable& table, const Block& block) {
   Json children = Json::object(), blocks = Json::array(), kinds = Json::array();
   for (const Block& child : table.blocks) {

@@ -27,7 +27,7 @@ void append(Node& map, const std::string& key, const Node& like, const Node& val
   map.items.push_back(value);
 }
 
-/// The entry's bit in Key::kinds; of one without kinds all, of an unknown word none.
+/// The entry's bit in Key::kinds; all bits without kinds, none for an unknown word.
 unsigned kind_of(Node& entry, const Key& key) {
   const Key* kind = key.block->kind;
   if (kind == nullptr) return ~0u;
@@ -39,7 +39,7 @@ unsigned kind_of(Node& entry, const Key& key) {
 /// Whether the entry is of a kind that has this key.
 bool has_key(Node& entry, const Key& key) { return (key.kinds & kind_of(entry, key)) != 0; }
 
-/// Numbers of one of the two lists, two or three; empty, with what is wrong in `problems`.
+/// The two or three numbers of `node`; empty, with an entry in `problems`, if they are wrong.
 std::vector<double> numbers(const Key& like, const Node& node, const std::string& path, bool flat,
                             bool lengths, Problems& problems) {
   Key key = like;
@@ -55,7 +55,7 @@ std::vector<double> numbers(const Key& like, const Node& node, const std::string
   return {};
 }
 
-/// One box: center and size, where they are given, become min and max.
+/// Replaces center and size of a box, if given, by min and max.
 bool write_out_box(const Key& min, Node& entry, const std::string& path, bool flat,
                    Problems& problems) {
   Node *center = entry.find("center"), *size = entry.find("size");
@@ -93,7 +93,7 @@ bool write_out_box(const Key& min, Node& entry, const std::string& path, bool fl
   return true;
 }
 
-/// In the place of a box that cannot be told.
+/// Puts a placeholder in the place of a box that cannot be determined.
 void put_any_box(Node& entry) {
   entry.erase("center");
   entry.erase("size");
@@ -136,14 +136,14 @@ void write_out_plane(const KeyTable& table, Node& root) {
   if (!is_flat(root)) return;
   const double thickness = number_at(root, "fluid.spacing", 1);
   double low = 0, high = thickness;
-  // In the order of the table: the domain comes first.
+  // In the order of the table, where the domain comes first.
   for (const Key& key : table.keys) {
     if (key.flat == FlatY::none) continue;
     visit(root, key.path, [&](Node& value, Node& entry) {
       if (value.kind != Node::Kind::list || !has_key(entry, key)) return;
       FlatY rule = key.flat;
       if (key.in_plane & kind_of(entry, key)) rule = FlatY::middle;
-      // Of a list with fewer numbers than a place: what a level gauge has.
+      // A level gauge has fewer coordinates than a position.
       const bool level = key.most > 0 && entry.find("kind") && entry.find("kind")->text == "level";
       if (value.items.size() == 2 && !level) {
         const double y = rule == FlatY::zero                           ? 0

@@ -10,7 +10,7 @@
 namespace pbf::inline scene_module {
 namespace {
 
-/// Without what people and programs vary: "Time-Step", "timeStep" and "time_step" are "timestep".
+/// Normalizes spelling: "Time-Step", "timeStep" and "time_step" become "timestep".
 std::string bare(const std::string& word) {
   std::string out;
   for (const char c : word)
@@ -19,7 +19,7 @@ std::string bare(const std::string& word) {
   return out;
 }
 
-/// Edit distance with transpositions of neighbours (optimal string alignment).
+/// Edit distance with transpositions of neighbors (optimal string alignment).
 std::size_t distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
@@ -36,14 +36,13 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return last[b.size()];
 }
 
-/// Mistakes that a word of so many letters may have and still be known.
+/// Number of errors up to which a word of so many letters is recognized.
 std::size_t allowed(std::size_t letters) {
   return letters < 3 ? 0 : letters < 6 ? 1 : letters < 9 ? 2 : 3;
 }
 
-/// Of a short word every letter counts: whoever writes "gpu" or "wind" means no "cpu" and no
-/// "kind". Letters in the wrong order, too many or too few are slips; another one at an end is
-/// another word.
+/// Stricter for short words: "gpu" and "wind" do not mean "cpu" and "kind". Swapped, missing and
+/// extra letters count as typing errors; a different first or last letter makes another word.
 bool is_near(const std::string& a, const std::string& b, std::size_t mistakes) {
   const std::size_t letters = std::max(a.size(), b.size());
   if (mistakes == 0) return true;
@@ -59,7 +58,7 @@ std::string block_of(const std::string& path) {
   return dot == std::string::npos ? "" : path.substr(0, dot);
 }
 
-/// Those of `paths` in the block; if there are none, all, unless they are too many to be a hint.
+/// The `paths` in the block; if there are none, all, unless they are too many for a hint.
 std::vector<std::string> preferred(const std::vector<std::string>& paths,
                                    const std::string& block) {
   constexpr std::size_t kMost = 3;
@@ -82,7 +81,7 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   std::string best;
   if (word.size() > 100) return best;
   const std::string wrong = bare(word);
-  std::size_t least = allowed(wrong.size()) + 1;  // an exact one counts of any length
+  std::size_t least = allowed(wrong.size()) + 1;  // exact matches count at any length
   for (const std::string& candidate : words) {
     const std::string right = bare(candidate);
     const std::size_t d = distance(wrong, right);
@@ -107,14 +106,14 @@ std::string nearest_choice(const std::string& word, const std::vector<std::strin
 Suggestion suggest_key(const KeyTable& table, const std::string& path) {
   std::vector<std::string> paths, siblings, leaves;
   const std::string in = block_of(path), wrong = leaf_of(path);
-  // Who is in a block means nothing that is around it: {solver: {sovler: 4}}.
+  // Do not suggest the block that the key is in, or one around it: {solver: {sovler: 4}}.
   for (const Block& block : table.blocks)
     if (block.parent != nullptr)
       if (const std::string name = join(block.parent->path, block.leaf()); !is_around(name, in))
         paths.push_back(name);
   for (const Key& key : table.keys) paths.push_back(key.path);
   if (in.empty() && &table == &scene_table()) paths.push_back(kBaseKey);
-  // First among the block's own keys: `solver.step` is near solver.sor, not time.step.
+  // Keys of the same block come first: `solver.step` is near solver.sor, not time.step.
   for (const std::string& p : paths) {
     if (block_of(p) == in) siblings.push_back(leaf_of(p));
     leaves.push_back(leaf_of(p));
@@ -128,7 +127,7 @@ Suggestion suggest_key(const KeyTable& table, const std::string& path) {
     std::vector<std::string> known;
     for (const std::string& key : s.keys)
       if (std::ranges::count(paths, key)) known.push_back(key);
-    if (known.empty() && !s.keys.empty()) continue;  // of another table
+    if (known.empty() && !s.keys.empty()) continue;  // a synonym of another table
     known = preferred(known, in);
     if (s.own_block && !known.empty() && block_of(known[0]) != in) continue;
     if (known.empty() && !s.keys.empty()) continue;
@@ -137,11 +136,11 @@ Suggestion suggest_key(const KeyTable& table, const std::string& path) {
   }
   if (const std::string sibling = nearest_word(wrong, siblings); !sibling.empty())
     return {{join(in, sibling)}, ""};
-  // Then what another program calls so, and a key of this name or nearly so that lives elsewhere.
+  // Then names in other programs, and similar keys in other blocks.
   if (!of_synonym.keys.empty() || !of_synonym.note.empty()) return of_synonym;
   std::vector<std::string> elsewhere;
   const std::string leaf = nearest_word(wrong, leaves);
-  // Who writes an entry of a list means what it may have, no key of the scene around it.
+  // In an entry of a list, suggest only keys of that list.
   const std::string list = in.substr(0, in.find("[]") == in.npos ? 0 : in.find("[]") + 2);
   for (std::size_t i = 0; i < paths.size(); ++i)
     if (!leaf.empty() && leaves[i] == leaf && paths[i].rfind(list, 0) == 0)

@@ -1,5 +1,5 @@
-// What someone may have meant who wrote a key or a word that is not known: the nearest spelling, or
-// what other programs call it. Where nothing is near, nothing is guessed.
+// Suggestions for an unknown key or word: the nearest spelling, or our name for the word of another
+// program. Without a good match there is none.
 #pragma once
 
 #include <string>
@@ -9,19 +9,19 @@ namespace pbf::inline scene_module {
 
 struct KeyTable;
 
-/// Nearest of `words`, or empty when nothing is near. Capitals, "_" and "-" do not count.
+/// The nearest of `words`; empty if none is near. Ignores case, "_" and "-".
 std::string nearest_word(const std::string& word, const std::vector<std::string>& words);
-/// The one of `choices` that is written like this elsewhere ("gpu": cuda), or the nearest; empty
-/// when there is none.
+/// The one of `choices` that another program calls `word` ("gpu": cuda), or the nearest; empty if
+/// there is none.
 std::string nearest_choice(const std::string& word, const std::vector<std::string>& choices);
 
 /// For an unknown key.
 struct Suggestion {
-  std::vector<std::string> keys;  ///< paths of the table that may have been meant, the best first
-  std::string note;               ///< what else is to be known; alone where no key does it
+  std::vector<std::string> keys;  ///< suggested paths of the table, the best first
+  std::string note;               ///< further advice; alone if no key fits
 };
 
-/// `path`: of the unknown key as the table would have it, "bodies[].mni".
+/// `path`: of the unknown key, in the form of the table: "bodies[].mni".
 Suggestion suggest_key(const KeyTable& table, const std::string& path);
 
 }  // namespace pbf::inline scene_module

@@ -1,4 +1,4 @@
-// Places on the surfaces of a scene's obstacles and walls, in SI units.
+// Points on the surfaces of a scene's obstacles and walls, in SI units.
 #pragma once
 
 #include <optional>
@@ -9,37 +9,37 @@
 
 namespace pbf::inline scene_module {
 
-/// The place of a surface that is nearest to another one. With dimensions: 2 in the plane.
+/// The point of a surface nearest to a given position. With dimensions: 2 it is in the plane.
 struct SurfacePlace {
   Double3 point{};      ///< m
-  Double3 normal{};     ///< of length 1, into the fluid
-  double distance = 0;  ///< m, of the other place; below 0 in the solid
+  Double3 normal{};     ///< unit vector into the fluid
+  double distance = 0;  ///< m, of the given position; negative in the solid
 };
 
-/// The obstacle where its keys put it, m.
+/// The obstacle at its position in the scene, m.
 Solid<double> solid_in_metres(const Obstacle& obstacle, const Scene& scene);
 
 SurfacePlace nearest_place(const Obstacle& obstacle, const Scene& scene, Double3 at);
-/// Of a face of the domain, by its number in kFaceNames.
+/// For a face of the domain, by its index in kFaceNames.
 SurfacePlace nearest_place(int face, const Scene& scene, Double3 at);
 
-/// The round side of an obstacle that is nearest to a place, m.
+/// The round side of an obstacle that is nearest to a position, m.
 RoundSide<double> round_side(const Obstacle& obstacle, const Scene& scene, const Double3& at);
-/// Whether a surface without such a side is bent.
+/// Whether a surface without a round side is curved.
 bool is_bent(const Obstacle& obstacle);
 
-/// What a name stands for: face 0 to 5, or 6 and the number of the obstacle; nothing for others.
+/// The surface of a name: 0 to 5 for a face, 6 + index for an obstacle; empty if unknown.
 std::optional<int> surface_named(const Scene& scene, const std::string& name);
 /// Whether the scene has a pressure gauge on a wall of the domain.
 bool has_pressure_on_wall(const Scene& scene);
 SurfacePlace nearest_place_on(int surface, const Scene& scene, const Double3& at);
 
-/// Whether fluid may be at a place: in the domain, to `slack` (m), and in no obstacle.
+/// Whether a position can be in fluid: in the domain, up to `slack` (m), and in no obstacle.
 bool is_free(const Scene& scene, const Double3& at, double slack = 0);
 
-/// The axis that levels are read along: that of gravity's largest component, z where there is none.
+/// The axis of levels: that of gravity's largest component; z without gravity.
 int level_axis(const Scene& scene);
-/// The others in their order; in two dimensions one of them.
+/// The other axes in their order; a single one in two dimensions.
 std::vector<int> axes_across_level(const Scene& scene);
 
 }  // namespace pbf::inline scene_module

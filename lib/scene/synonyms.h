@@ -1,5 +1,5 @@
-// What users of other programs write for keys and words of ours: the contents of synonyms.yaml,
-// which says what its entries mean.
+// Names in other programs for our keys and words: the contents of synonyms.yaml, which explains its
+// entries.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ struct Synonyms {
   std::vector<WordSynonym> words;
 };
 
-/// Reads the text when it is asked for the first time.
+/// Parses the text on first use.
 const Synonyms& synonyms();
 
 extern const char* const kSynonymText;  ///< lib/scene/synonyms.yaml, made by .cmake/synonyms.cmake

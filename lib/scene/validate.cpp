@@ -12,13 +12,13 @@
 namespace pbf::inline scene_module {
 namespace {
 
-/// What a key stands in: "bodies[0].min", "bodies[0]", "bodies", "".
+/// The parent of a path: "bodies[0].min" -> "bodies[0]" -> "bodies" -> "".
 std::string around(const std::string& path) {
   const std::size_t end = path.find_last_of(".[");
   return end == std::string::npos ? "" : path.substr(0, end);
 }
 
-/// `off`, or a null that is written: nothing at all, in a file, is a block whose keys were
+/// `off` or an explicit null. In a file, a missing value is not `off`: the keys of the block were
 /// forgotten or commented out.
 bool turns_off(const Node& node) {
   if (node.kind == Node::Kind::null) return node.line < 0 || !node.text.empty();
@@ -27,7 +27,7 @@ bool turns_off(const Node& node) {
 
 bool turns_on(const Node& node) { return !node.quoted && node.is_word({"on", "true"}); }
 
-/// "at least one body"; "gauges" of a list that may be empty.
+/// "at least one body"; just "gauges" for a list that may be empty.
 std::string least_text(const Block& list) {
   const List& l = *list.list;
   if (l.least == 0) return list.leaf();
@@ -51,7 +51,7 @@ class Validator {
   }
 
  private:
-  /// Blocks of the top level, to show what a scene looks like.
+  /// The first blocks of the top level, as examples in a message.
   std::string examples() const {
     std::string text;
     for (std::size_t i = 1; i < std::min<std::size_t>(4, table_.blocks.size()); ++i)
@@ -65,10 +65,10 @@ class Validator {
   }
 
   /// Reads a map as a block or entry called `shown` ("bodies[0]") into the members of `holder`.
-  /// `kind`: bit of an entry's kind, 0 where that is missing or wrong.
+  /// `kind`: bit of an entry's kind, 0 if it is missing or wrong.
   void read_block(const Block& block, const std::string& shown, const Node& node,
                   const Object& holder, unsigned kind) {
-    std::map<std::string, std::size_t> seen;  // every key and which of the node's it is first
+    std::map<std::string, std::size_t> seen;  // every key and its first index in the node
     for (std::size_t i = 0; i < node.keys.size(); ++i) {
       const Node& name = node.keys[i];
       if (name.kind != Node::Kind::scalar) {
@@ -81,7 +81,7 @@ class Validator {
                "given twice, first at " + node.keys[first->second].place() + "; remove one");
         continue;
       }
-      // Also as a path in one word: solver.iterations beside solver: {iterations: ...}.
+      // A path in one word counts too: solver.iterations beside solver: {iterations: ...}.
       const auto [before, fresh] = out_.places.try_emplace(path, node.items[i].place());
       if (!fresh) {
         report(name.place(), path, "given twice, first at " + before->second + "; remove one");
@@ -102,18 +102,18 @@ class Validator {
     if (key == nullptr) {
       if (const Key* now = table_.find_renamed(table))
         return report(name.place(), path, "is called " + now->path + " now; rename it");
-      // The box of an entry whose kind is not known: what is wrong is said of the kind.
+      // Box of an entry of unknown kind: only the kind is reported.
       if (kind == 0 && name.text == "size" && std::ranges::any_of(in.keys, &Key::by_center)) return;
       std::string what = "unknown key";
       if (!problems_.full()) what += slip(name, value);
       if (!problems_.full() && what == "unknown key") what += suggestion(in, path, name);
-      // The name may be anything: no line breaks in a message, no page of text.
+      // The name may be any text: keep it short and on one line.
       std::string clean = name.shown();
       clean = clean.substr(1, clean.size() - 2);
       const std::string parent = path.substr(0, path.size() - name.text.size());
       return report(name.place(), parent + clean, what);
     }
-    // A path in one word reaches into blocks that are there.
+    // A path in one word reaches only into blocks that are present.
     if (const Block& own = *key->block; &own != &in && (own.list || !own.is_present(object_)))
       return report(name.place(), path,
                     "belongs into " +
@@ -130,7 +130,7 @@ class Validator {
     if (!problem.empty()) report(value.place(), path, problem);
   }
 
-  /// What makes a key of something else, in braces: {cfm: 1,5}, {step:0.002} and {step 0.002}.
+  /// Recognizes slips in braces: {cfm: 1,5}, {step:0.002} and {step 0.002}.
   static std::string slip(const Node& name, const Node& value) {
     if (value.kind == Node::Kind::null && !name.text.empty() &&
         name.text.find_first_not_of("0123456789") == std::string::npos)
@@ -139,11 +139,11 @@ class Validator {
     return space.empty() ? missing_colon(name.text) : space;
   }
 
-  /// ", did you mean bodies[1].max?", and what else is to be said; empty: nothing is near.
+  /// ", did you mean bodies[1].max?", with further advice; empty if nothing is near.
   std::string suggestion(const Block& in, const std::string& path, const Node& name) const {
     Suggestion found = suggest_key(table_, join(in.path, name.text));
     for (std::string& key : found.keys)
-      if (!in.path.empty() && key.rfind(in.path + ".", 0) == 0)  // which entry of a list
+      if (!in.path.empty() && key.rfind(in.path + ".", 0) == 0)  // put the index of the entry back
         key = path.substr(0, path.size() - name.text.size() - 1) + key.substr(in.path.size());
     std::string text;
     if (!found.keys.empty()) text = ", did you mean " + joined(found.keys, " or ") + "?";
@@ -177,8 +177,8 @@ class Validator {
     report(value.place(), path, what);
   }
 
-  /// "viscosity: {xsph: 0.1} (Factor c; ...)" for a number in the place of a block that can be on
-  /// and has its strength as its first key; else empty.
+  /// "viscosity: {xsph: 0.1} (Factor c; ...)" for a number instead of an optional block whose first
+  /// key is its strength; otherwise empty.
   std::string in_block(const Block& block, const Node& value) const {
     double number = 0;
     if (!block.optional || table_.has_required(block) || block.keys.empty() ||
@@ -191,8 +191,8 @@ class Validator {
            first.help.substr(0, first.help.find_last_not_of('.') + 1) + ")";
   }
 
-  /// "motion: {kind: file, path: gate.csv}" for a file's name in the place of a block that may name
-  /// one, "motion: {kind: sine, ...}" for a word of its kinds; else empty.
+  /// "motion: {kind: file, path: gate.csv}" for a file name instead of a block that can name a
+  /// file, "motion: {kind: sine, ...}" for a word of its kinds; otherwise empty.
   static std::string file_in_block(const Block& block, const Node& value) {
     if (block.kind == nullptr || value.kind != Node::Kind::scalar) return "";
     if (const std::string kind = nearest_choice(value.text, block.kind->choices); !kind.empty())
@@ -227,8 +227,8 @@ class Validator {
     }
   }
 
-  /// As Block::kind_of, or 0 when the word is missing or wrong (reported with the other keys).
-  /// Read before them, for it decides which they are.
+  /// As Block::kind_of(), or 0 if the word is missing or wrong (reported with the other keys). Read
+  /// first, because it decides which other keys there are.
   unsigned read_kind(const Block& block, const std::string& shown, const Node& node,
                      const Object& entry) {
     if (const Key* kind = block.kind) {
@@ -241,10 +241,10 @@ class Validator {
     return block.kind_of(entry);
   }
 
-  /// Whether `in` is on without being mentioned, in `around`: each of its required keys is missing.
+  /// Whether `in` (inside `around`) is on but not mentioned: its required keys are missing.
   bool is_on_unseen(const Block& in, const Block& around,
                     const std::map<std::string, std::size_t>& seen) const {
-    if (in.parent == nullptr || in.list_around()) return false;  // absent where not mentioned
+    if (in.parent == nullptr || in.list_around()) return false;  // absent unless mentioned
     const bool inside =
         in.parent == &around ? !seen.count(in.leaf()) : is_on_unseen(*in.parent, around, seen);
     return inside && in.size(object_) > 0;

@@ -1,4 +1,4 @@
-// One value between YAML and a field of the scene.
+// Conversion of a value between YAML and a field of the scene.
 #pragma once
 
 #include <string>
@@ -11,20 +11,20 @@ namespace pbf::inline scene_module {
 /// Whether the field is a number or a group of numbers.
 bool is_numeric(const Field& field);
 
-/// Whether the key may have this number.
+/// Whether this number is in the key's range.
 bool in_range(const Key& key, double v);
 
-/// Whether "" is a value of the key, which holds text: "" is its default, and none is required.
+/// Whether "" is a valid text of the key: it is the default, and the key is not required.
 bool may_be_empty(const Key& key);
 
-/// Reads `node` into `field`, checking type, choices and range of `key`. Returns what is wrong,
-/// with the remedy, or an empty string. The field is unchanged when something is wrong.
+/// Reads `node` into `field`, checking type, choices and range of `key`. Returns an error with a
+/// remedy, and leaves the field unchanged, or returns an empty string.
 std::string read_field(const Key& key, const Node& node, const Field& field);
 
 /// The field as YAML; read_field reads it back to the same value.
 std::string format_field(const Key& key, const Field& field);
 
-/// Text as a YAML scalar that reads back as this text: bare where that is safe, else in quotes.
+/// A YAML scalar that reads back as this text: plain if that is safe, otherwise in quotes.
 std::string yaml_text(const std::string& text);
 
 }  // namespace pbf::inline scene_module

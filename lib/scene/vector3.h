@@ -1,4 +1,4 @@
-// The little vector algebra that cameras and obstacles need, in double.
+// Vector algebra in double, for cameras and obstacles.
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,7 @@ inline Double3 cross(const Double3& a, const Double3& b) {
 }
 inline double length(const Double3& a) { return std::sqrt(dot(a, a)); }
 inline Double3 unit(const Double3& a) { return (1 / length(a)) * a; }
-/// `v` turned about the unit axis by an angle of cosine c and sine s (Rodrigues).
+/// `v` rotated about the unit axis by an angle of cosine c and sine s (Rodrigues).
 inline Double3 turned(const Double3& v, const Double3& axis, double c, double s) {
   return c * v + s * cross(axis, v) + (1 - c) * dot(axis, v) * axis;
 }

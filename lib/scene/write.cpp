@@ -69,7 +69,7 @@ class Writer {
     if (entry.list_around()) return;  // written with its entries
     const std::string leaf = entry.leaf();
     const std::string indent = indent_of(entry).substr(2);
-    if (!entry.is_present(object_)) {  // children of an absent block say nothing
+    if (!entry.is_present(object_)) {  // skip children of an absent block
       if (!entry.optional || !entry.parent->is_present(object_)) return;
       if (comments_) {
         out_ += comment(entry.help + how_it_is_off(entry), indent);
@@ -139,7 +139,7 @@ class Writer {
   std::string out_;
 };
 
-/// A small dam break with everything on but motions, which runs as it is.
+/// A small dam break with every block except motions, which runs as it is.
 Scene example_scene() {
   Scene s = parse_scene(
       "{name: reference, domain: {min: [0, 0, 0], max: [1.6, 0.4, 0.8]}, fluid: {spacing: 0.02}, "
@@ -149,7 +149,7 @@ Scene example_scene() {
       "time: {step: 0.002, end: 1}}",
       "reference", {});
   scene_table().make_all_present(object(s));
-  s.tank_motion.reset();  // a tank that stands
+  s.tank_motion.reset();  // a fixed tank
   return s;
 }
 

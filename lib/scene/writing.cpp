@@ -15,7 +15,7 @@ namespace {
 const char* const kDigits = "0123456789";
 
 struct Unit {
-  const char *written, *of;  ///< the unit that keys have instead
+  const char *written, *of;  ///< what was written, and the unit of our keys
   double factor;
 };
 constexpr Unit kUnits[] = {
@@ -57,7 +57,7 @@ bool is_number(const std::string& text, double& value) {
   return read_number(text, value) == NumberError::none;
 }
 
-/// "2 ms": 2 and "ms". Empty where it is no number with letters behind it.
+/// "2 ms": 2 and "ms". Empty unless it is a number followed by letters.
 std::string unit_behind(const std::string& text, double& value) {
   std::size_t at = text.find_first_not_of("+-.0123456789");
   // 1e-3m: the exponent belongs to the number.
@@ -72,7 +72,7 @@ std::string unit_behind(const std::string& text, double& value) {
   if (begin == text.npos) return "";
   const std::string unit = text.substr(begin);
   const auto c = static_cast<unsigned char>(unit[0]);
-  // 0x10, 0b1 and 0o7 are numbers of other languages; a unit has at most an exponent as a digit.
+  // 0x10, 0b1 and 0o7 are numbers of other languages, not units.
   if (!(std::isalpha(c) || c == '%' || c >= 0x80) || unit.size() > 12) return "";
   if (std::string("xXbBoO").find(unit[0]) != std::string::npos && unit.size() > 1 &&
       std::isdigit(static_cast<unsigned char>(unit[1])))
@@ -80,7 +80,7 @@ std::string unit_behind(const std::string& text, double& value) {
   return unit;
 }
 
-/// Whether a key of "m or degrees" takes such a number.
+/// Whether a key of "m or degrees" accepts the unit `one`.
 bool is_of(const std::string& one, const std::string& unit) {
   const std::size_t rest = unit.find(" or ");
   return one == unit ||

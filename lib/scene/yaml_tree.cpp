@@ -19,14 +19,14 @@ struct Refused {
   std::string what;
 };
 
-/// Where each line of a text begins; behind a byte order mark.
+/// Offsets of the lines of a text; the first is after a byte order mark.
 std::vector<std::size_t> line_starts(const std::string& text) {
   std::vector<std::size_t> starts{text.rfind("\xEF\xBB\xBF", 0) == 0 ? std::size_t{3} : 0};
   for (std::size_t at = 0; (at = text.find('\n', at)) != text.npos;) starts.push_back(++at);
   return starts;
 }
 
-/// Builds the tree from the parser's events; throws Refused for what scene files may not hold.
+/// Builds the tree from the parser's events; throws Refused for features that scenes may not use.
 class TreeBuilder : public YAML::EventHandler {
  public:
   TreeBuilder(const std::string& text, const Origin& origin, bool lines)
@@ -41,7 +41,7 @@ class TreeBuilder : public YAML::EventHandler {
     if (documents_++ == 0) return;
     if (line_of(mark).rfind("---", 0) == 0)
       throw Refused{mark, "a second document starts here; a scene file holds one"};
-    // A text ends at a comment: what follows "name:demo  # about" is no part of it.
+    // A comment ends a text, so "name:demo  # about" makes the next line a new document.
     const std::string remedy = lines_ ? layout_remedy(text_, mark.line) : "";
     throw Refused{mark, "not valid YAML: the lines above end before this one" + remedy};
   }
@@ -59,7 +59,7 @@ class TreeBuilder : public YAML::EventHandler {
                 const std::string& value) override {
     refuse_anchor(mark, anchor);
     refuse_tag(mark, tag);
-    if (const auto bad = find_bad_text(value))  // the file is text: "\e"
+    if (const auto bad = find_bad_text(value))  // an escape ("\e") can make any character
       throw Refused{mark, "an escape makes " + bad->what + "; leave it out"};
     Node node = make(mark, Node::Kind::scalar);
     node.text = value;
@@ -81,7 +81,7 @@ class TreeBuilder : public YAML::EventHandler {
   Node make(const YAML::Mark& mark, Node::Kind kind) const {
     return {kind, "", false, {}, {}, origin_, lines_ ? mark.line : -1, lines_ ? mark.column : -1};
   }
-  /// yaml-cpp calls a value that is not there and one that is written "null" alike.
+  /// yaml-cpp does not distinguish a missing value from a written "null"; this does.
   std::string null_word(const YAML::Mark& mark) const {
     if (mark.line < 0 || std::size_t(mark.line) >= starts_.size()) return "";
     const std::size_t at = starts_[std::size_t(mark.line)] + std::size_t(mark.column);
@@ -109,7 +109,7 @@ class TreeBuilder : public YAML::EventHandler {
             Node::Kind kind) {
     refuse_anchor(mark, anchor);
     refuse_tag(mark, tag);
-    // Thrown while the parser descends: this bounds its recursion as well as ours.
+    // Thrown while the parser descends, which bounds its recursion as well as ours.
     if (open_.size() >= kMaxYamlDepth)
       throw Refused{mark, "nested deeper than " + std::to_string(kMaxYamlDepth) + " levels"};
     open_.push_back(make(mark, kind));
@@ -144,12 +144,12 @@ std::string place_of(const Origin& origin, bool lines, int line, int column) {
          origin.included;
 }
 
-/// YAML forbids tabs as indentation; yaml-cpp's words for it do not say so.
+/// YAML forbids tabs for indentation, but the message of yaml-cpp does not say so.
 void refuse_tabs(const std::string& text, const Origin& origin, bool lines) {
   int number = 0;
   for (std::size_t start = 0; start < text.size(); ++number) {
     const std::size_t end = std::min(text.find('\n', start), text.size());
-    // The line alone is searched: up to the end of the text is a page for every line of it.
+    // Search only this line: a search to the end of the text makes the loop quadratic.
     const std::string_view line = std::string_view(text).substr(start, end - start);
     const std::size_t first = line.find_first_not_of(" \t\r"), tab = line.find('\t');
     if (first != line.npos && tab < first && line[first] != '#')
@@ -195,7 +195,7 @@ Node parse_yaml(const std::string& text, const Origin& origin, bool lines) {
   refuse_tabs(text, origin, lines);
   TreeBuilder builder(text, origin, lines);
   try {
-    // Without the blank end: behind it yaml-cpp 0.7 does not miss the closing quote of a text.
+    // Trim the end: with trailing blanks yaml-cpp 0.7 does not detect a missing closing quote.
     std::istringstream in(text.substr(0, text.find_last_not_of(" \t\r\n") + 1));
     YAML::Parser parser(in);
     while (parser.HandleNextDocument(builder)) {
@@ -212,7 +212,7 @@ Node parse_yaml(const std::string& text, const Origin& origin, bool lines) {
 
 void visit(Node& at, const std::string& path, const std::function<void(Node&, Node&)>& f) {
   if (at.kind != Node::Kind::map) return;
-  if (Node* value = at.find(path)) f(*value, at);  // also of a path in one word
+  if (Node* value = at.find(path)) f(*value, at);  // also for a path in one word
   const std::size_t dot = path.find('.');
   if (dot == path.npos) return;
   const std::string first = path.substr(0, dot), rest = path.substr(dot + 1);

@@ -1,4 +1,4 @@
-// YAML text -> a plain tree that knows where everything stood. yaml-cpp is used behind this only.
+// Parses YAML text into a plain tree with the place of every value. Only this uses yaml-cpp.
 #pragma once
 
 #include <functional>
@@ -9,11 +9,11 @@
 
 namespace pbf::inline scene_module {
 
-/// Where a tree was read.
+/// The source of a tree.
 struct Origin {
   std::string name;      ///< file name, or the --set argument
-  std::string included;  ///< " (included from my.yaml:1)", of what another file names; else empty
-  // One word names most origins.
+  std::string included;  ///< " (included from my.yaml:1)" for a base; else empty
+  // Most origins are only a name.
   Origin(const char* file) : name(file) {}
   Origin(std::string file, std::string from = {})
       : name(std::move(file)), included(std::move(from)) {}
@@ -24,20 +24,20 @@ struct Origin {
 struct Node {
   enum class Kind { null, scalar, list, map };
   Kind kind = Kind::null;
-  std::string text;         ///< scalar; of a null the word that was written, empty: nothing was
+  std::string text;         ///< of a scalar; of a null the written word, if any
   bool quoted = false;      ///< scalar in quotes: text, never a number
   std::vector<Node> keys;   ///< map: keys[i] belongs to items[i], in the order of the file
   std::vector<Node> items;  ///< map and list
   std::shared_ptr<const Origin> origin;
-  int line = -1, column = -1;  ///< from 0; -1: the origin alone is the place
+  int line = -1, column = -1;  ///< from 0; -1: unknown
 
   /// "scene.yaml:12:5", or the origin alone.
   std::string place() const;
-  /// Child of a map (the first of that name), or nullptr.
+  /// The first child of a map with this key, or nullptr.
   Node* find(const std::string& key);
-  /// Takes the first of that name out of a map.
+  /// Removes the first child with this key from a map.
   void erase(const std::string& key);
-  /// Whether it is one of these words; in quotes too.
+  /// Whether it is one of these words, quoted or not.
   bool is_word(std::initializer_list<const char*> words) const;
   /// For messages: "4", "a list", "a block", "nothing".
   std::string shown() const;
@@ -45,18 +45,18 @@ struct Node {
 
 inline constexpr int kMaxYamlDepth = 32;
 
-/// What is wrong with a text as YAML.
+/// An error of the YAML syntax.
 struct YamlError {
   std::string place, what;
 };
 
-/// Parses one document. Anchors, aliases (and with them documents that multiply when expanded),
-/// tags and further documents are refused. `lines`: places carry line and column, else the origin
-/// alone. Throws YamlError.
+/// Parses one document. Refuses anchors and aliases (which could make a document explode when
+/// expanded), tags and further documents. `lines`: places have line and column, otherwise only the
+/// origin. Throws YamlError.
 Node parse_yaml(const std::string& text, const Origin& origin, bool lines);
 
-/// f(value, around) for every value at a path of keys ("bodies[].path", each entry's), `around` the
-/// map that it is in; also where a part of the path stands in one word ("camera.fov").
+/// Calls f(value, parent map) for every value at a path of keys (for "bodies[].path", of each
+/// entry), also if part of the path is written in one word ("camera.fov").
 void visit(Node& at, const std::string& path, const std::function<void(Node&, Node&)>& f);
 
 }  // namespace pbf::inline scene_module

@@ -15,7 +15,7 @@ Clusters::Clusters(const std::vector<double>& position, double edge) {
     std::array<double, 3> at{};
     for (std::size_t k = 0; k < 3; ++k) {
       at[k] = std::floor(position[3 * i + k] / edge);
-      if (std::isnan(at[k])) at[k] = HUGE_VAL;  // ordered
+      if (std::isnan(at[k])) at[k] = HUGE_VAL;  // NaN has no order
     }
     cell_[i] = number.try_emplace(at, number.size()).first->second;
   }

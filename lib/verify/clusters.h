@@ -1,4 +1,4 @@
-// Particles that move together are not independent samples: estimates the effective number.
+// Estimates the effective number of independent samples of particles that move together.
 #pragma once
 
 #include <vector>
@@ -7,23 +7,23 @@
 
 namespace pbf::inline verify_module {
 
-/// Particles by the cell of a grid that they lie in.
+/// Particles grouped by cells of a grid.
 class Clusters {
  public:
-  /// `position`: 3 coordinates each, m; `edge` of a cell, m; 0: every particle by itself.
+  /// `position`: 3 coordinates per particle, m; `edge` of a cell, m; 0: all particles independent.
   Clusters(const std::vector<double>& position, double edge);
 
-  /// By how much the variance of a mean exceeds that of independent particles (Kish's design
-  /// effect): sum over the cells of (sum of r)^2 over sum of r^2, r = value - mean; at least 1.
+  /// Ratio of the variance of a mean to that for independent particles (Kish's design effect): sum
+  /// over cells of (sum of r)^2 over sum of r^2, with r = value - mean; at least 1.
   double design_effect(const std::vector<double>& values) const;
 
-  /// The largest design effect of the shares of particles below five quantiles of `values`;
-  /// `sorted`: the same, NaN last.
+  /// The largest design effect of the fractions of particles below five quantiles of `values`;
+  /// `sorted`: the same values sorted, NaN last.
   double design_effect_of_shares(const std::vector<double>& values,
                                  const std::vector<double>& sorted) const;
 
  private:
-  std::vector<std::size_t> cell_;  // of each particle; empty: every particle by itself
+  std::vector<std::size_t> cell_;  // per particle; empty: all particles independent
   std::size_t cells_ = 0;
 };
 

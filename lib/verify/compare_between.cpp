@@ -41,16 +41,16 @@ void round_to_float(SolverState& s) {
     for (double& x : *v) x = double(float(x));
 }
 
-/// The scene with its constants rounded at random: an error that is the same for all particles and
-/// does not average out.
+/// The scene with randomly rounded constants: an error that is the same for all particles and does
+/// not average out.
 Scene rounded(const Scene& scene, double u, std::uint64_t seed) {
   Scene s = scene;
   round_at_random(scene_table(), object(s), u, seed);
   return s;
 }
 
-/// What a frozen step starts from: nothing summed for loads and gauges, and what the side of lower
-/// precision can hold.
+/// The start of a frozen step: empty sums of loads and gauges, and values that the side of lower
+/// precision can represent.
 SolverState start_from(Solver& a, const Comparison& c) {
   c.take(a, 1);
   SolverState s = a.state();
@@ -58,7 +58,7 @@ SolverState start_from(Solver& a, const Comparison& c) {
   return s;
 }
 
-/// Scenes that differ on purpose may have different loads and gauges.
+/// Scenes that differ deliberately may have different loads and gauges.
 void note_one_sided(const Comparison& c, CompareResult& result) {
   const std::vector<Reading> a = c.take(*c.a, 1), b = c.take(*c.b, 1);
   std::vector<std::string> found;
@@ -99,7 +99,7 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   const std::unique_ptr<Solver> a = make(start_a, settings.a.variant);
   const std::unique_ptr<Solver> b = make(start_b, settings.b.variant);
   Scene plain = on(scene_a, {Backend::cpu, Precision::dbl, 0, false});
-  plain.solver.fused = false;  // a stored density can be rounded; its bits are the same
+  plain.solver.fused = false;  // a stored density can be rounded; the bits are the same
   const std::unique_ptr<Solver> reference = make(with_scene(start_a, plain), false);
 
   Comparison c{&settings, &start_a.plan, &on_a,   &start_b.plan,
@@ -124,7 +124,7 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   if (scene_a.time.adaptive || scene_b.time.adaptive)
     result.notes.push_back("time.adaptive is left out: every update is one step");
   note_one_sided(c, result);
-  // The others take over A's state.
+  // The other solvers take over A's state.
   const std::string relieved = prestabilized_text(prestabilize(*a, on_a, start_a.plan));
   if (!relieved.empty()) result.notes.push_back(relieved);
   if (progress) progress(format("%d updates of warm-up on %s", settings.warmup, result.a.c_str()));
@@ -135,7 +135,7 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   std::int64_t failure = -1;
   for (auto& part : compare_course(c, start, result, failure))
     result.parts.push_back(std::move(part));
-  // The frozen step missed it: others, from A's state just before it showed and from the last one.
+  // Without a finding in the frozen step, try later ones: just before the failure, and the last.
   for (const std::int64_t after : {failure - 1, std::int64_t(settings.updates)}) {
     if (!result.stage.empty() || failure < 1) break;
     a->set_state(start);

@@ -1,4 +1,4 @@
-// The updates after the frozen step: how far particles drift apart, and what stays the same.
+// The updates after the frozen step: distances between particles, and statistics.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,10 +11,10 @@
 namespace pbf::inline verify_module {
 namespace {
 
-/// By id, h.
+/// In order of ids, h.
 std::vector<double> positions(Solver& solver) { return solver.state(Which::positions).position; }
 
-/// Infinite where a position is not finite, on both sides too.
+/// Infinite if a position is not finite, also on both sides.
 Distance strict_distance(const std::vector<double>& x, const std::vector<double>& y) {
   const Distance d = distance(x, y, [](double a, double b) { return a - b; });
   return std::isnan(d.rms) ? Distance{HUGE_VAL, HUGE_VAL} : d;
@@ -37,11 +37,11 @@ class Samples {
   }
   std::int64_t first_failure = -1;  ///< update of the first sample outside a tolerance
 
-  /// `update`: counted from the frozen step on.
+  /// `update`: counted from the frozen step.
   void take(std::int64_t update) {
     update_ = update;
-    // Random roundings average out over the particles; real ones may all go the same way, as where
-    // a slow particle's step is less than the last place of its position: in every substep.
+    // Random rounding averages out over the particles, but real rounding may be biased, e.g. if a
+    // slow particle moves by less than the last place of its position in every substep.
     const double roundings = 4 + double(update * c_.plan->substeps);
     const FrameStatistics a = of(*c_.a), b = of(*c_.b);
     FrameStatistics r;
@@ -64,7 +64,7 @@ class Samples {
       for (const auto& m : members)
         spread =
             std::max(spread, ks_distance(m.distributions[k].values, r.distributions[k].values));
-      // The resolution of the distance is one particle.
+      // The distance changes in steps of one particle.
       const double one = 1 / double(a.distributions[k].values.size());
       take("distribution of " + a.distributions[k].name, "KS distance",
            ks_distance(a.distributions[k].values, b.distributions[k].values), 0, spread, 2 * one);
@@ -90,7 +90,7 @@ class Samples {
     return frame_statistics(s.download({"velocity", "density"}, ScalarType::f64).get(),
                             c_.scene->domain.min, c_.scene->gravity, c_.scene->fluid.rest_density);
   }
-  /// Of the interval since the last sample.
+  /// Readings over the interval since the last sample.
   void take_loads_and_gauges(double roundings) {
     const int updates = int(update_ - last_);
     last_ = update_;
@@ -152,7 +152,7 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
       advance(*c.reference, 1);
       const std::vector<double> r = positions(*c.reference);
       for (std::size_t m = 0; m < c.members.size(); ++m) {
-        // Every update its own roundings.
+        // Different random rounding in every update.
         c.members[m]->inspection()->trace(
             {c.u, c.settings->seed + 1000 * std::uint64_t(t) + m, nullptr});
         now = std::max(now, strict_distance(positions(*c.members[m]), r).rms);
@@ -164,7 +164,7 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
     chaos.x.push_back(t), chaos.y.push_back(now);
     if (result.horizon < 0 && d.rms > apart) result.horizon = t;
     const double tolerance = c.same_bits ? 0 : c.sides * kNoiseFactor * spread;
-    // Past the horizon particles are as far apart as any two: the third part judges that.
+    // After the horizon, distances are those of unrelated particles: the third part applies.
     if (result.horizon < 0 || t == 1 || first_failure >= 0) {
       const double s = share_of(d.rms, tolerance);
       if (s > share) share = s, row.error = d.rms, row.rms = d.rms, row.tolerance = tolerance;
@@ -183,7 +183,7 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
                         "%g x the largest rms distance so far of %zu references, rounded at random "
                         "in every update, from the one that is not",
                         kNoiseFactor, c.members.size());
-  // The first updates are rounding, not growth; from a hundredth of h on growth saturates.
+  // Skip the first updates, which are rounding, and stop at 0.01 h, where growth saturates.
   std::vector<double> x(rms.x.begin() + std::min<std::ptrdiff_t>(5, updates), rms.x.end());
   std::vector<double> y(rms.y.begin() + std::min<std::ptrdiff_t>(5, updates), rms.y.end());
   result.e_folding = e_folding(x, y, 0.01);

@@ -1,4 +1,4 @@
-// How much of a run each of two files holds: status, end, frames, fields, rows of the log.
+// The extent of two run files: status, end, frames, fields, rows of the log.
 #include <algorithm>
 #include <cmath>
 
@@ -29,7 +29,7 @@ std::string one_sided(const char* of, const char* none, const std::vector<double
                 times.size() == 1 ? "its" : "their", times.front());
 }
 
-/// Names of `x` that `y` lacks.
+/// Names in `x` that are missing in `y`.
 std::vector<std::string> missing(const std::vector<std::string>& x,
                                  const std::vector<std::string>& y) {
   std::vector<std::string> out;

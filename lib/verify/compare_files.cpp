@@ -1,4 +1,4 @@
-// Two run files: what they say about themselves, then frame by frame.
+// Compares two run files: their metadata, then frame by frame.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -21,24 +21,24 @@ std::string side_of(const ComparedRun& o) {
                 o.times.size(), o.end_text().c_str());
 }
 
-/// The scene without what does not touch the physics.
+/// The scene without keys that do not affect the physics.
 Scene physics_of(Scene s) {
   s.name.clear();
   s.backend = Backend::cpu;
   s.precision = Precision::dbl;
   s.threads = 0;
-  if (!s.time.adaptive) s.measure_every = 1;  // a measure there chooses the step
+  if (!s.time.adaptive) s.measure_every = 1;  // otherwise measurements choose the step
   s.output.reset();
   s.render.reset();
   s.checkpoint.reset();
-  s.time.end = 1;  // no difference here: the extent is a part of its own
+  s.time.end = 1;  // ignored here: the extent is compared separately
   s.solver.fused = true;
   return s;
 }
 
 bool is_nested(const Node& n) { return n.kind == Node::Kind::map || n.kind == Node::Kind::list; }
 
-/// Keys with their blocks and their values: "solver.iterations: 4", "bodies[0].min: [0, 0, 0]".
+/// Paths and values: "solver.iterations: 4", "bodies[0].min: [0, 0, 0]".
 void flatten(const Node& node, const std::string& path, std::map<std::string, std::string>& out) {
   if (node.kind == Node::Kind::map) {
     for (std::size_t k = 0; k < node.items.size(); ++k)
@@ -55,7 +55,7 @@ void flatten(const Node& node, const std::string& path, std::map<std::string, st
   }
 }
 
-/// The keys whose values differ, each with its block, or that one scene has alone.
+/// The paths whose values differ, or that only one scene has.
 std::string key_differences(const Scene& a, const Scene& b) {
   const auto keys = [](const Scene& s) {
     std::map<std::string, std::string> out;
@@ -84,7 +84,7 @@ ComparePart compare_scenes(const ComparedRun& a, const ComparedRun& b) {
   return p;
 }
 
-/// The same bits are promised: CPU, one precision, one build.
+/// Whether identical bits are promised: CPU, same precision, same build.
 bool same_bits(const RunInfo& a, const RunInfo& b) {
   return a.solver.backend == "cpu" && b.solver.backend == "cpu" &&
          a.solver.precision == b.solver.precision && a.commit == b.commit &&

@@ -1,4 +1,4 @@
-// Two run files frame by frame: particles where they are comparable, samples everywhere.
+// Compares two run files frame by frame: particles while they are comparable, samples always.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -11,17 +11,17 @@
 namespace pbf::inline verify_module {
 namespace {
 
-constexpr double kAlpha = 1e-6;  // of a false alarm of one Kolmogorov-Smirnov test
+constexpr double kAlpha = 1e-6;  // false alarm rate of one Kolmogorov-Smirnov test
 
-/// Differences up to so many roundings are none: what an update rounds on both sides, as a sum of
-/// density has tens of terms.
+/// Differences up to this many roundings are ignored: both sides round in every update, and a
+/// density sum has tens of terms.
 constexpr double kRoundings = 16;
 
-/// What a front is known to, spacings. A pool's uppermost layer is flatter than any sample that its
-/// order statistics are of.
+/// Resolution of a front, spacings. The top layer of a pool is flatter than a random sample, so
+/// order statistics underestimate its uncertainty.
 constexpr double kFront = 0.01;
 
-/// Edge of the cells whose particles may move as one, h: what reaches each other.
+/// Edge of the cells whose particles may move together, h: the range of interaction.
 constexpr double kCluster = 2;
 
 double largest_of(const FieldArray* f) {
@@ -32,7 +32,7 @@ double largest_of(const FieldArray* f) {
   return largest;
 }
 
-/// The same bits; where one file holds float and the other double, those of float.
+/// Whether the bits are the same, after conversion to float if only one file holds double.
 bool same_numbers(const FieldArray& f, const FieldArray& g) {
   if (f.type == g.type) return f.bytes == g.bytes;
   const std::vector<double> x = numbers_of(f), y = numbers_of(g);
@@ -51,8 +51,8 @@ double unit_roundoff(bool single) {
   return about(single ? Precision::single : Precision::dbl).roundoff;
 }
 
-/// What rounding makes of two runs. Positions are lengths of the box's extent, velocities ways over
-/// a step, densities sums over distances in units of h.
+/// Differences from rounding in two runs. Positions scale with the extent of the box, velocities
+/// with moves per step, densities with sums over distances in h.
 Resolution computed(const ComparedRun& a, const ComparedRun& b) {
   const double u =
       unit_roundoff(a.info.solver.precision == "float" || b.info.solver.precision == "float");
@@ -70,7 +70,7 @@ Resolution computed(const ComparedRun& a, const ComparedRun& b) {
           kCluster * std::max(a.scene.h(), b.scene.h())};
 }
 
-/// That, and what it makes of the values as they are stored.
+/// Adds the rounding of the stored values.
 Resolution resolution_of(const Resolution& computed, const Snapshot& x, const Snapshot& y,
                          double rest_density) {
   const auto stored = [&](const char* name) {
@@ -103,7 +103,7 @@ void compare_samples(ComparePart& p, const FrameStatistics& a, const FrameStatis
              ks_critical(kAlpha, x.samples, y.samples));
 }
 
-/// Values that are not finite, by field: as many in both.
+/// Compares the numbers of values that are not finite, by field.
 void compare_not_finite(ComparePart& p, const Snapshot& a, const Snapshot& b) {
   const auto count = [](const FieldArray& f) {
     double n = 0;
@@ -159,8 +159,7 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
         note(near, "initial positions", "m", e.worst, largest_of(&x.fields[0]),
              exact ? 0 : resolution.length);
     }
-    // Up to the horizon the particles of both sides are the same ones, behind it they are samples
-    // of a flow.
+    // Before the horizon both sides have the same particles; after it they are samples of a flow.
     if (paired && result.horizon < 0) resolution.cluster = 0;
     compare_not_finite(far, x, y);
     const auto statistics = [&](const ComparedRun& o, const Snapshot& s) {
@@ -189,7 +188,7 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
           "initial positions: %g roundings; later distances are not judged, since files "
           "hold no ensemble (pbf compare SCENE --between makes one)",
           kRoundings);
-      // Steps without time that part what overlaps multiply roundings like any others.
+      // Steps without time that separate overlaps amplify rounding, as all steps do.
       const bool relieved = a.scene.solver.prestabilize && b.scene.solver.prestabilize;
       if (near.verdict == Verdict::differs && relieved) {
         near.verdict = near.rows[0].verdict = Verdict::not_judged;

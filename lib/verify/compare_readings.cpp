@@ -9,9 +9,9 @@
 namespace pbf::inline verify_module {
 namespace {
 
-/// N: a unit of displacement for every time that each particle may be booked on one wall in an
-/// update: where the prediction ends, and in each iteration where walls push, where they stop and
-/// where levels push.
+/// Bound on the rounding of a force to whole units, N: one unit of displacement for each
+/// contribution of a particle to a wall in an update. A particle contributes after the prediction
+/// and, per iteration, by the pushes of walls and levels and by the stop at walls.
 double force_grain(const Scene& s, const Plan& plan) {
   const double dt = s.time.step / plan.substeps;
   const double bookings =
@@ -25,19 +25,19 @@ void add_loads(std::vector<Reading>& out, Solver& solver, const Scene& s, const 
   const double grain = force_grain(s, plan);
   for (const WallLoad& l : solver.loads(Interval::ends))
     for (const LoadNumber& n : load_numbers()) {
-      // Moments are summed about the domain's corner in units of up to twice its longest edge.
+      // Torques are about the domain's corner, in units of up to twice its longest edge.
       const double lever = std::string(n.unit) == "N m" ? arm : 1;
       out.push_back({"loads", "loads: " + l.wall + " " + n.name, n.unit, n.value(l), lever * l.peak,
                      (lever == arm ? 3 * arm : 1) * grain});
     }
 }
 
-/// Of a gauge's own number, and of the further one that some have.
+/// For a gauge's own number, and for the second one of some gauges.
 struct Grains {
   double own = 0, further = 0;
 };
 Grains gauge_grains(const Gauge& g, double area, const Scene& s, const Plan& plan, double time) {
-  // Particles within h of a place: as many as a cube of 2 h holds.
+  // Particles within h of a point: at most as in a cube of edge 2 h.
   const double around = std::pow(2 * s.h() / s.fluid.spacing, s.dimensions);
   switch (g.kind) {
     case GaugeKind::level:
@@ -62,7 +62,7 @@ void add_gauges(std::vector<Reading>& out, Solver& solver, const Scene& s, const
     const bool pressure = s.gauges[k].kind == GaugeKind::pressure;
     const Grains grains =
         gauge_grains(s.gauges[k], pressure ? plan.gauges.areas[patch++] : 1, s, plan, time);
-    double scale = 0;  // of a vector: its length; of a pressure: the peak
+    double scale = 0;  // length of a vector; peak of a pressure
     for (int c = 0; c < d.numbers() && (d.components == 3 || pressure); ++c)
       scale = std::hypot(scale, values[at + std::size_t(c)]);
     for (int c = 0; c < d.numbers(); ++c) {

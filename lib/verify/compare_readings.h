@@ -13,18 +13,18 @@ struct Reading {
   const char* stage = "";  ///< "loads" or "gauges"
   std::string what, unit;
   double value = 0;
-  double scale = 0;  ///< what rounding is relative to where that is more than |value|
-  /// What is added up are whole numbers (kLoadUnits, kProbeUnits, particles): by so much sums may
-  /// differ of terms that differ by nothing but their last bits.
+  double scale = 0;  ///< reference for rounding if it is more than |value|
+  /// Sums are of whole numbers (kLoadUnits, kProbeUnits, particles). They may differ by this much
+  /// if terms differ only in their last bits.
   double grain = 0;
 };
 
-/// Of the last `updates` updates, since this was called or a state was set whose sums are empty.
-/// None where the scene has neither loads nor gauges.
+/// Readings of the last `updates` updates, since the last call or since a state with empty sums was
+/// set. Empty if the scene has neither loads nor gauges.
 std::vector<Reading> take_readings(Solver& solver, const Scene& scene, const Plan& plan,
                                    int updates);
 
-/// The one of that name; null where there is none.
+/// The reading of this name; null if there is none.
 const Reading* find_reading(const std::vector<Reading>& readings, const std::string& what);
 
 }  // namespace pbf::inline verify_module

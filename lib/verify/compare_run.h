@@ -12,7 +12,7 @@
 
 namespace pbf::inline verify_module {
 
-/// A run file with what is asked of it more than once.
+/// A run file with values that are needed several times.
 struct ComparedRun {
   std::string path;
   RunReader reader;
@@ -20,28 +20,27 @@ struct ComparedRun {
   Scene scene;
   std::vector<double> times;  ///< of frames, s
   std::string status;
-  /// Throws Error(io) for a file that cannot be read, Error(bad_input) for a scene in it that
-  /// cannot.
+  /// Throws Error(io) if the file cannot be read, Error(bad_input) if its scene cannot.
   explicit ComparedRun(const std::string& path);
-  /// Frame k. Throws Error(io) where its arrays have not the shape of a frame.
+  /// Frame k. Throws Error(io) if its arrays do not have the shape of a frame.
   Snapshot frame(std::int64_t k) const;
-  /// The status, with the reason where the session gives another one.
+  /// The status, with the reason if the session gives one.
   std::string end_text() const;
 };
 
-/// Frames of A and B at the same time, to half an update, and the others.
+/// Frames of A and B at the same time, within half an update, and the unpaired ones.
 struct FramePairs {
   std::vector<std::pair<std::int64_t, std::int64_t>> common;
   std::vector<double> only_a, only_b;  ///< s
 };
 FramePairs pair_frames(const ComparedRun& a, const ComparedRun& b);
 
-/// What the files say about themselves: status, end, frames, fields, rows of the log. What only one
-/// of them holds is a difference.
+/// Compares metadata: status, end, frames, fields, rows of the log. Anything in only one of the
+/// files is a difference.
 ComparePart compare_extents(const ComparedRun& a, const ComparedRun& b, const FramePairs& frames);
 
-/// Parts "particles" and "distributions" over the common frames. `exact`: both sides promise the
-/// same bits.
+/// Parts "particles" and "distributions" over the common frames. `exact`: both sides promise
+/// identical bits.
 std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun& b,
                                         const FramePairs& frames, bool exact,
                                         CompareResult& result);

@@ -1,6 +1,6 @@
-// One frozen step: two solvers, one state, one update, every array that the passes leave behind.
-// Each stage of B starts from what the stage before left on A, so that no error is inherited. Where
-// one pass is two stages, what the second inherits is taken out of it.
+// One frozen step: two solvers, one state, one update, all arrays that passes store. Each stage of
+// B starts from A's results of the previous stage, so that errors do not propagate. For a pass with
+// two stages, the propagated error is subtracted.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -12,7 +12,7 @@
 namespace pbf::inline verify_module {
 namespace {
 
-/// What a difference of two arrays amounts to; NaN against a number is infinite.
+/// Size of the difference of two arrays; NaN against a number is infinite.
 struct Size {
   double worst = 0, rms = 0, scale = 0;
 };
@@ -38,7 +38,7 @@ bool same_kind(const TraceArray& x, const TraceArray& y) {
   return x.stage == y.stage && x.iteration == y.iteration && x.quantity == y.quantity;
 }
 
-/// Terms of the sums of a stage: rounding within them is not in the ensemble.
+/// Number of terms in the sums of a stage, whose rounding the ensemble does not have.
 double most_terms(const StepTrace& trace) {
   std::int64_t most = 0;
   for (std::size_t i = 0; i + 1 < trace.neighbor_begin.size(); ++i)
@@ -50,12 +50,12 @@ double terms_of(const TraceArray& t, const StepTrace& trace) {
   return most_terms(trace);
 }
 
-/// Of every array, and of every reading behind the step.
+/// Noise of every array, and of every reading after the step.
 struct Noise {
   std::vector<double> arrays, readings;
 };
 
-/// Largest change of each over the ensemble, each stage alone from the values of `a`.
+/// Largest change over the ensemble, with each stage starting from the values of `a`.
 Noise noise_floor(const Comparison& c, const SolverState& start, const StepTrace& a,
                   StepTrace& reference) {
   c.reference->set_state(start);
@@ -73,11 +73,9 @@ Noise noise_floor(const Comparison& c, const SolverState& start, const StepTrace
   return noise;
 }
 
-/// A pass of B that makes an array and uses it at once, as a fused one the density, has not started
-/// from A's: what it makes of the difference says nothing of its second half, and lambda, of
-/// density
-/// - 1, shows it undiminished. Takes out of `b` what the reference makes of that difference.
-/// reference: of the values of `a`.
+/// A fused pass of B computes an array (the density) and uses it at once, so its second half does
+/// not start from A's values, and the error propagates into its result (lambda). Subtracts from `b`
+/// the effect that this error has in the reference. reference: its trace from the values of `a`.
 void take_out_inherited(const Comparison& c, const SolverState& start, const StepTrace& a,
                         const StepTrace& reference, StepTrace& b) {
   StepTrace mixed = a;
@@ -95,9 +93,9 @@ void take_out_inherited(const Comparison& c, const SolverState& start, const Ste
       b.arrays[k].values[i] -= own.arrays[k].values[i] - reference.arrays[k].values[i];
 }
 
-/// Bins may differ where a coordinate is within rounding of a border: borders lie half a cell apart
-/// along every axis that has bins. The largest distance from a border of a particle whose bins
-/// differ.
+/// Bins may differ if a coordinate is within rounding of a border; borders are half a cell apart
+/// along every axis with bins. Returns the largest distance from a border among particles whose
+/// bins differ.
 Size bin_difference(const TraceArray& a, const TraceArray& b, const std::vector<double>& position,
                     double border, int dimensions) {
   Size s;
@@ -113,8 +111,8 @@ Size bin_difference(const TraceArray& a, const TraceArray& b, const std::vector<
   return s;
 }
 
-/// Sets of neighbours may differ in pairs whose distance is within rounding of h. The largest
-/// |distance - h| of a pair that only one side has; rms: the number of such pairs.
+/// Sets of neighbors may differ in pairs whose distance is within rounding of h. Returns the
+/// largest |distance - h| of a pair that only one side has; rms: the number of such pairs.
 Size set_difference(const StepTrace& a, const StepTrace& b, const std::vector<double>& position) {
   Size s;
   s.scale = 1;
@@ -220,7 +218,7 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
     part.rows.push_back(r);
     if (result.stage.empty()) result.stage = t.iteration > 0 ? "iterations" : t.stage;
   }
-  // What loads and gauges sum follows from the values of A too.
+  // Loads and gauges are also summed from the values of A.
   for (std::size_t i = 0; i < read_a.size(); ++i) {
     const Reading& x = read_a[i];
     const Reading* y = find_reading(read_b, x.what);

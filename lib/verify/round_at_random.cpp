@@ -1,17 +1,17 @@
-// The constants of a scene, rounded as a solver of lower precision rounds them.
+// Rounds the constants of a scene at random, as a solver of lower precision would round them.
 #include "lib/scene/random.h"
 #include "lib/verify/compare_parts.h"
 
 namespace pbf::inline verify_module {
 namespace {
 
-/// Every key has random numbers of its own, so that a new key leaves those of the others alone.
+/// Every key has its own random numbers, so that a new key does not change those of others.
 SplitMix64 random_of(const Key& key, std::uint64_t seed) {
   for (const char c : key.path) seed = SplitMix64(seed + static_cast<unsigned char>(c)).next();
   return SplitMix64(seed);
 }
 
-/// Rounds the real numbers of a field that are there.
+/// Rounds the real numbers of a field, if present.
 struct Round {
   double off;
   double u;

@@ -9,10 +9,10 @@
 namespace pbf::inline verify_module {
 namespace {
 
-/// NaN behind everything, so that the order is total.
+/// Sorts NaN last, so that the order is total.
 bool before(double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; }
 
-/// `effect`: how many particles move as one.
+/// `effect`: number of particles that move together.
 Statistic mean(const std::string& name, const std::string& unit, const std::vector<double>& v,
                double effect = 1) {
   double sum = 0, squares = 0;
@@ -22,7 +22,7 @@ Statistic mean(const std::string& name, const std::string& unit, const std::vect
   return {name, unit, m, kSigmas * std::sqrt(effect * squares / n / n), 0};
 }
 
-/// `v` sorted. The value at ceil(p n), counted from 1.
+/// `v` is sorted. The value at index ceil(p n), counted from 1.
 double at(const std::vector<double>& v, double p) {
   const double k = std::ceil(std::clamp(p, 0.0, 1.0) * double(v.size()));
   return v[std::size_t(std::max(k, 1.0)) - 1];
@@ -61,7 +61,7 @@ FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const
         {name, unit, std::move(sorted), resolution_of_it, double(v.size()) / effect});
     return &out.distributions.back();
   };
-  // Positions are no less independent than lattice points, which are more even than any sample.
+  // Positions need no correction: particles are spread more evenly than a random sample.
   const Clusters together(x, resolution.cluster);
   const auto add = [&](Statistic number, double resolution_of_it) {
     number.resolution = resolution_of_it;
@@ -123,8 +123,8 @@ FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const
 
 namespace {
 
-/// By how much the share of `a` up to some value exceeds that of `b` up to `rounding` above it. The
-/// first grows at the values of `a` alone.
+/// Largest excess of the fraction of `a` up to x over the fraction of `b` up to x + rounding. It is
+/// enough to test the values x in `a`.
 double excess(const std::vector<double>& a, const std::vector<double>& b, double rounding) {
   double largest = 0;
   for (std::size_t i = 0, k = 0; i < a.size();) {

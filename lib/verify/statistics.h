@@ -1,4 +1,4 @@
-// Particles as samples: quantities that chaos does not change, and distances of distributions.
+// Statistics of particles that chaos does not change, and distances of distributions.
 #pragma once
 
 #include <string>
@@ -13,40 +13,40 @@ namespace pbf::inline verify_module {
 struct Statistic {
   std::string name, unit;
   double value = 0;
-  /// What the choice of the particles leaves open, at kSigmas standard errors: of a mean
-  /// std/sqrt(n), of a quantile the order statistics at p +- kSigmas sqrt(p (1 - p)/n); twice the
-  /// lower one where the sample ends before the upper.
+  /// Sampling uncertainty, kSigmas standard errors: for a mean std/sqrt(n), for a quantile the
+  /// order statistics at p +- kSigmas sqrt(p (1 - p)/n), or twice the lower difference if the
+  /// sample ends before the upper one.
   double uncertainty = 0;
-  /// What rounding is relative to where that is more than |value|: for the mean of one component of
-  /// a vector, the mean length, because a rotation of the axes changes no particle's rounding.
+  /// Reference for rounding if it is more than |value|: for the mean of a component of a vector the
+  /// mean length, because rounding does not depend on the orientation of the axes.
   double scale = 0;
-  double resolution = 0;  ///< differences up to this are none, of a caller's Resolution
+  double resolution = 0;  ///< smaller differences are ignored, from a caller's Resolution
 };
 
 /// Five standard errors: one false alarm in 1.7 million for a mean.
 inline constexpr double kSigmas = 5;
 
-/// One quantity of every particle, sorted.
+/// A quantity of all particles, sorted.
 struct Distribution {
   std::string name, unit;
   std::vector<double> values;
-  double resolution = 0;  ///< as of a Statistic
-  double samples = 0;     ///< independent ones that `values` are worth
+  double resolution = 0;  ///< as in Statistic
+  double samples = 0;     ///< effective number of independent samples
 };
 
-/// What is too small to tell two frames apart: how far rounding alone may move one particle's
-/// values.
+/// Differences between frames that are too small to count: how far rounding alone can change the
+/// values of a particle.
 struct Resolution {
-  double length = 0;   ///< m, of a coordinate
-  double speed = 0;    ///< m/s, of a component of the velocity
-  double density = 0;  ///< of rho/rho0
-  double front = 0;    ///< m, of a front besides: it is the place of one particle
-  /// m: particles nearer than that share velocity and density, so that they count as one sample as
-  /// far as the frame shows that they do (Clusters); 0: all are independent.
+  double length = 0;   ///< m, for a coordinate
+  double speed = 0;    ///< m/s, for a component of the velocity
+  double density = 0;  ///< for rho/rho0
+  double front = 0;    ///< m, added for a front, which is the position of one particle
+  /// m: particles closer than this share velocity and density; they count as one sample if the
+  /// frame shows that they do (Clusters); 0: all are independent.
   double cluster = 0;
 };
 
-/// Of a field of floating-point numbers.
+/// Values of a floating-point field.
 std::vector<double> numbers_of(const FieldArray& f);
 
 struct FrameStatistics {
@@ -54,23 +54,23 @@ struct FrameStatistics {
   std::vector<Distribution> distributions;
 };
 
-/// Of a snapshot with at least "position"; what needs velocity or density is left out where these
-/// are missing. Lengths are from `origin`. Per mass: energies in J/kg, momentum in m/s.
+/// Of a snapshot with at least "position"; statistics of missing fields are left out. Positions are
+/// relative to `origin`. Per mass: energies in J/kg, momentum in m/s.
 FrameStatistics frame_statistics(const Snapshot& snapshot, const Double3& origin,
                                  const Double3& gravity, double rest_density,
                                  const Resolution& resolution = {});
 
 /// Largest distance of the empirical distribution functions of two sorted samples, 0..1
-/// (Kolmogorov-Smirnov). NaN counts as the largest value. The smallest such distance of samples
-/// whose values are moved by up to `rounding` in all: values not further apart count as equal.
+/// (Kolmogorov-Smirnov). NaN counts as the largest value. Values that differ by at most `rounding`
+/// count as equal: the result is the smallest distance after such changes.
 double ks_distance(const std::vector<double>& a, const std::vector<double>& b, double rounding = 0);
 
-/// The distance that two samples of sizes n and m of one distribution exceed with probability
+/// The distance that two samples of sizes n and m from one distribution exceed with probability
 /// alpha: sqrt(-ln(alpha/2)/2 (n + m)/(n m)) (Smirnov 1948).
 double ks_critical(double alpha, double n, double m);
 
-/// Least squares of ln y = c + x/e over the points with 0 < y < upper; e, or 0 where there are
-/// fewer than 3 points or less than 1 % of growth.
+/// Least-squares fit of ln y = c + x/e to the points with 0 < y < upper. Returns e, or 0 with fewer
+/// than 3 points or less than 1 % of growth.
 double e_folding(const std::vector<double>& x, const std::vector<double>& y, double upper);
 
 }  // namespace pbf::inline verify_module

@@ -1,4 +1,4 @@
-// A box, and how it is turned.
+// A box, which may be rotated.
 #pragma once
 
 #include "lib/scene/shapes/keys.h"
@@ -9,9 +9,9 @@ namespace obstacle_keys {
 struct Box {
   static constexpr const char* word = "box";
   using Body = shape::Box<double>;
-  Double3 min{}, max{};        ///< m, before it is turned
-  Double3 turn_axis{0, 0, 1};  ///< the axis through its middle that it is turned about ...
-  double turn_angle = 0;       ///< degrees, ... by the right-hand rule
+  Double3 min{}, max{};        ///< m, before the rotation
+  Double3 turn_axis{0, 0, 1};  ///< axis of rotation through its center
+  double turn_angle = 0;       ///< degrees, by the right-hand rule
   bool operator==(const Box&) const = default;
 
   static auto keys() {

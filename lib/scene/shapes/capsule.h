@@ -1,4 +1,4 @@
-// A capsule: all that is within a radius of a line.
+// A capsule: all points within a radius of a line segment.
 #pragma once
 
 #include "lib/scene/shapes/keys.h"

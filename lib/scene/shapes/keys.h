@@ -1,11 +1,10 @@
-// What the keys of an obstacle's shape are written with. A shape is a struct with its keys as
-// members (m) and
-//   word                   of scenes
-//   Body                   the kernels' shape
-//   keys()                 its rows in the table: ShapeKey's, in the order of pages
-//   check(rules)           what holds between them, by SceneRules
-//   middle(), axes()       where the body is, m, and its axes as rows
-//   make(h)                the body, lengths over h
+// The parts of a shape of obstacles in scenes. A shape is a struct with its keys as members (m) and
+//   word                   its name in scenes
+//   Body                   its type in the kernels
+//   keys()                 its rows in the table of keys (ShapeKey), in the order of pages
+//   check(rules)           checks rules between its keys, by SceneRules
+//   middle(), axes()       position of the body, m, and its axes as rows
+//   make(h)                the body, with lengths divided by h
 #pragma once
 
 #include <tuple>
@@ -17,7 +16,7 @@
 
 namespace pbf::inline scene_module {
 
-/// A key. Shapes may share one: of the same name it is the same row of the table.
+/// A key. Shapes with keys of the same name share a row of the table.
 template <class Member, class Holder>
 struct ShapeKey {
   Member Holder::*member;
@@ -26,7 +25,7 @@ struct ShapeKey {
   const char* help;
   bool required = true;
   FlatY flat = FlatY::none;
-  bool by_center = false;  ///< a corner of a box that center and size may give as well
+  bool by_center = false;  ///< a corner of a box, which center and size may give as well
 };
 
 namespace obstacle_keys {
@@ -34,7 +33,7 @@ namespace obstacle_keys {
 inline constexpr const char* kRadiusHelp =
     "Radius; of cylinders, capsules and discs at least the smoothing length.";
 
-/// The surface's curvature must be seen by the fluid.
+/// The fluid resolves curvature only down to the smoothing length.
 void check_radius(auto& rules, const double& radius) {
   if (!rules.good_h(radius) || radius >= rules.h()) return;
   rules.add(radius, "is " + rules.text(radius) + ", below the smoothing length (" +
@@ -44,7 +43,7 @@ void check_radius(auto& rules, const double& radius) {
                         rules.text(radius / rules.smoothing_ratio()));
 }
 
-/// About an axis between two places.
+/// A body around an axis between two points.
 struct Tube {
   Double3 from{}, to{};  ///< m, ends of the axis
   double radius = 0;     ///< m
@@ -56,7 +55,7 @@ struct Tube {
         ShapeKey{&Tube::from, "from", "m", kCoordinate, "One end of the axis.", true, from},
         ShapeKey{&Tube::to, "to", "m", kCoordinate, "The other end.", true, to}};
   }
-  /// `flat`: what is wrong with the axis with dimensions: 2; null: nothing.
+  /// `flat`: the error of the axis with dimensions: 2; null: none.
   void check_axis(auto& rules, const char* flat) const {
     if (rules.good(from, to)) {
       if (from == to)

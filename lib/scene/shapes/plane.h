@@ -1,4 +1,4 @@
-// A plane: the solid is all that is behind it.
+// A plane: the half space behind it is solid.
 #pragma once
 
 #include "lib/scene/shapes/keys.h"
@@ -9,8 +9,8 @@ namespace obstacle_keys {
 struct Plane {
   static constexpr const char* word = "plane";
   using Body = shape::Plane<double>;
-  Double3 point{};          ///< m, of its face
-  Double3 normal{0, 0, 1};  ///< the way out of the solid
+  Double3 point{};          ///< m, of the surface
+  Double3 normal{0, 0, 1};  ///< points out of the solid
   bool operator==(const Plane&) const = default;
 
   static auto keys() {
