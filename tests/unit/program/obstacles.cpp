@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "kernels/boundary/box.h"
 #include "lib/scene/vector3.h"
 #include "tests/support/catch.h"
 #include "tests/support/obstacle_shapes.h"
