@@ -1,4 +1,4 @@
-// Sums, counts and maxima that many threads raise at once: of whole numbers, so in any order.
+// Atomic sums, counts and maxima, whose results do not depend on the order of the threads.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ PBF_HD void count_one(unsigned long long* count) {
 #endif
 }
 
-/// *at = max(*at, value) for values that are not negative: their bits are in the order of integers.
+/// *at = max(*at, value) for non-negative values, whose bits compare like integers.
 PBF_HD void raise_to(float* at, float value) {
 #if defined(__CUDA_ARCH__)
   atomicMax(reinterpret_cast<unsigned*>(at), __float_as_uint(value));
@@ -36,10 +36,10 @@ PBF_HD void raise_to(float* at, float value) {
 #endif
 }
 
-/// A place behind the *count that are taken, which is taken then.
+/// Reserves and returns the next free place; *count places were taken before.
 PBF_HD int take_place(int* count) {
 #if defined(__CUDA_ARCH__)
-  // One atomic for all threads that are here together.
+  // One atomic operation for all active threads of the warp.
   const unsigned together = __activemask();
   const int lane = int(threadIdx.x % 32), first = __ffs(int(together)) - 1;
   int begin = 0;

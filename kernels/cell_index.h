@@ -1,15 +1,15 @@
-// Cells of the uniform grid, linear order with x fastest. D: dimensions of the scene; with 2 there
-// is one layer of cells, y is 0.
+// Cells of the uniform grid, in linear order with x fastest. D: dimensions of the scene; in two
+// dimensions there is one layer of cells along y.
 #pragma once
 
 #include "kernels/params.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Cell coordinate of x along one axis; NaN goes to 0. The grid is mirrored at its ends, again and
-/// again: that keeps the search exact for particles outside of it, since neighbouring cells stay
-/// the same or neighbours, and spreads them over the grid. (In the cells of the rim, particles that
-/// have left through an open face would find each other by looking at all pairs.)
+/// Cell coordinate of x along one axis; 0 for NaN. Beyond its ends the grid is mirrored repeatedly.
+/// The search stays exact for particles outside, because mirrored cells of neighbors are equal or
+/// adjacent. It also spreads these particles over the grid; in the outermost cells, those that left
+/// through an open face would form pairs with all others.
 template <class Real>
 PBF_HD int cell_coordinate(Real x, Real inv_cell, int cells) {
   constexpr int kFarthest = 1 << 30;
@@ -21,9 +21,8 @@ PBF_HD int cell_coordinate(Real x, Real inv_cell, int cells) {
   return c < cells ? c : 2 * cells - 1 - c;
 }
 
-/// x counts half cells: the runs of candidates below are then 2.5 cells long, not 3. z is counted
-/// from the first layer that is here: a slab of the grid has the bins of the whole one, from the
-/// first of its layers on.
+/// x counts half cells, so the runs of candidates below are 2.5 cells long instead of 3. z counts
+/// from the first layer of this slab of the grid (Params::first_layer), and so do its bins.
 struct GridCell {
   int x, y, z;
 };
@@ -36,8 +35,8 @@ PBF_HD GridCell cell_of(Vec3<Real> x, const Params<Real>& p) {
 }
 
 /// Bins of a half cell: the quarters of its y-z face, in two dimensions the halves of its z edge.
-/// Particles are sorted by bin, so that those next to each other in memory are about half a cell
-/// apart and share most of their neighbours.
+/// Particles are sorted by bin, so particles adjacent in memory are about half a cell apart and
+/// share most of their neighbors.
 constexpr int bins_per_cell(int dimensions) { return dimensions == 2 ? 2 : 4; }
 
 template <int D, class Real>
@@ -58,10 +57,10 @@ PBF_HD int bin_count(const Params<Real>& p) {
   return p.cells_x * p.cells_y * p.layers * bins_per_cell(p.dimensions);
 }
 
-/// Calls f(begin, end) for the up to nine (three in two dimensions) runs of particles (rows of half
-/// cells along x, from two before x_low to two after x_high) that hold every particle within one
-/// cell edge of a particle in the cells (x_low..x_high, y, z). `bin_start`: first particle of each
-/// bin, and the particle count as last entry. Order: z, then y, then x: canonical.
+/// Calls f(begin, end) for up to nine runs of particles (three in two dimensions) that contain
+/// every particle within one cell edge of a particle in the cells (x_low..x_high, y, z). A run is a
+/// row of half cells from x_low - 2 to x_high + 2. Order: z, y, x. `bin_start`: first particle of
+/// each bin; its last entry is the particle count.
 template <int D, class Real, class F>
 PBF_HD void for_each_run(int x_low, int x_high, int y, int z, const int* bin_start,
                          const Params<Real>& p, F&& f) {
@@ -77,7 +76,7 @@ PBF_HD void for_each_run(int x_low, int x_high, int y, int z, const int* bin_sta
     }
 }
 
-/// The runs of one particle.
+/// The runs for a particle at x.
 template <int D, class Real, class F>
 PBF_HD void for_each_run(Vec3<Real> x, const int* bin_start, const Params<Real>& p, F&& f) {
   const GridCell c = cell_of<D>(x, p);

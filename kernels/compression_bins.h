@@ -1,5 +1,5 @@
-// The fixed logarithmic histogram of compression, from which a run takes its 99th percentile.
-// Integers only, so the same on every backend and for any number of threads.
+// The fixed logarithmic histogram of compression, from which a run computes its 99th percentile. It
+// counts integers, so it is the same on every backend and for any number of threads.
 #pragma once
 
 #include <string.h>
@@ -10,10 +10,10 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// 32 bins per factor of 2, from 2^-24 (6e-8) to 2^8; what is larger counts in the last one.
+/// 32 bins per factor of 2, from 2^-24 (6e-8) to 2^8; larger values count in the last bin.
 constexpr int kCompressionBins = 1024;
-constexpr int kBinShift = 18;               ///< of a float's bits: exponent and 5 digits stay
-constexpr int kFirstBin = (127 - 24) * 32;  ///< those bits of 2^-24
+constexpr int kBinShift = 18;               ///< dropped bits of a float; exponent and 5 bits remain
+constexpr int kFirstBin = (127 - 24) * 32;  ///< the remaining bits of 2^-24
 constexpr double kLowestBinned = 0x1p-24;
 
 /// Bin of c = max(rho/rho0 - 1, 0); -1 below the first bin, which counts as no compression.

@@ -1,4 +1,4 @@
-// Sums that do not depend on the order of their terms: integers, in a unit common to all of them.
+// Sums that do not depend on the order of their terms: integers in a common unit.
 #pragma once
 
 #include <string.h>
@@ -10,9 +10,9 @@
 
 namespace pbf {
 
-/// The sum of up to 2^31 terms t of |t| <= 2^62: their upper parts t >> 31 and their lower 31 bits,
-/// each added by itself. An upper part is at most 2^31 in size, a lower one less, so neither sum
-/// leaves 64 bits (2^31 * 2^31 = 2^62), whatever the terms are, and no carry is ever needed.
+/// The sum of up to 2^31 terms t with |t| <= 2^62. The upper parts t >> 31 and the lower 31 bits
+/// are summed separately. Each is at most 2^31 in magnitude, so neither sum exceeds 2^62 or
+/// overflows 64 bits, and no carry is needed.
 struct FixedSum {
   std::int64_t high = 0, low = 0;
   PBF_HD void add(const FixedSum& o) {
@@ -21,8 +21,8 @@ struct FixedSum {
   }
 };
 
-/// e with magnitude < 2^e, and at least 2^(e - 1) for what lies between 2^-1000 and 2^1000; e stays
-/// within these bounds, so that 2^e and 2^-e are normal numbers.
+/// The exponent e with 2^(e - 1) <= magnitude < 2^e, limited to |e| <= 1000 so that 2^e and 2^-e
+/// are normal numbers.
 PBF_HD int exponent_above(double magnitude) {
   std::uint64_t bits;
   memcpy(&bits, &magnitude, sizeof bits);
@@ -38,14 +38,14 @@ PBF_HD double power_of_two(int e) {
   return x;
 }
 
-/// A term of |x| <= 1 in units of 2^-62, cut off towards zero: exact down to 2^-10, for a double
-/// has 53 bits. What is larger counts as 1.
+/// x, limited to [-1, 1], in units of 2^-62, truncated towards zero; exact for |x| >= 2^-10,
+/// because a double has 53 bits.
 PBF_HD FixedSum fixed_term(double x) {
   const std::int64_t t = std::int64_t((x < -1 ? -1 : x > 1 ? 1 : x) * 0x1p62);
   return {t >> 31, t & 0x7fffffff};
 }
 
-/// The sum as a number, rounded once, where x = 1 stood for 2^e.
+/// The sum, rounded once, where fixed_term(1) stands for 2^e.
 inline double value_of(const FixedSum& s, int e) {
   __extension__ typedef __int128 Wide;
   return std::ldexp(double(Wide(s.high) * (Wide(1) << 31) + s.low), e - 62);

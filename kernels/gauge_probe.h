@@ -1,6 +1,6 @@
-// Sums over the particles around places: what level and velocity gauges read. Whole numbers, so
-// neither order nor threads change a sum. Every particle looks for itself: no cells are asked, so
-// that a reading needs no sort.
+// Sums over the particles around points, for level and velocity gauges. The sums are integers, so
+// order and threads do not matter. Every particle adds its own terms without cells, so a reading
+// needs no sort.
 #pragma once
 
 #include <cstdint>
@@ -10,20 +10,20 @@
 
 namespace pbf {
 
-/// Places in a row along an axis, h, in the internal frame.
+/// A row of points along an axis, in h, in the internal frame.
 struct Probe {
-  double from[3] = {0, 0, 0};  ///< the first
-  double step = 1;             ///< from one to the next
+  double from[3] = {0, 0, 0};  ///< the first point
+  double step = 1;             ///< spacing of the points
   int axis = 2, count = 1;
-  int first = 0;        ///< its place's number among all probes'
+  int first = 0;        ///< number of its first point among those of all probes
   bool moving = false;  ///< velocities are summed too
 };
 
-/// Of 1, or of h, in ProbeSums.
+/// Units per 1, or per h, in ProbeSums.
 inline constexpr std::int64_t kProbeUnits = std::int64_t(1) << 32;
 
-/// Of one place: the sum of (1 - q^2)^3, Poly6's shape, and of that times v dt, in units of
-/// 1/kProbeUnits and h/kProbeUnits, dt that of an update.
+/// Of one point: the sum of (1 - q^2)^3 (the shape of Poly6) in units of 1/kProbeUnits, and the sum
+/// of this times v dt in units of h/kProbeUnits, with dt of an update.
 struct ProbeSums {
   std::int64_t weight = 0, way[3] = {0, 0, 0};
 };
@@ -44,21 +44,21 @@ struct ProbePass {
     const Vec4<Real> at = position[i];
     for (int k = 0; k < probes; ++k) {
       const Probe& p = probe[k];
-      // Most are beyond reach along the first axis that they are asked about.
+      // Most particles are out of range along the first axis that is tested.
       const double a = p.axis == 0 ? double(at.y) - p.from[1] : double(at.x) - p.from[0];
       if (a < 1 && a > -1) around(p, i, at, a);
     }
   }
 
  private:
-  /// a: h, from the row of places along the first axis across it.
+  /// a: h, distance from the row of points along the first axis across it.
   PBF_HD void around(const Probe& p, int i, const Vec4<Real>& at, double a) const {
     const double b = p.axis == 2 ? double(at.y) - p.from[1] : double(at.z) - p.from[2];
     const double along = p.axis == 0   ? double(at.x) - p.from[0]
                          : p.axis == 1 ? double(at.y) - p.from[1]
                                        : double(at.z) - p.from[2];
     const double across = a * a + b * b;
-    // Also for what is no number.
+    // Also true for NaN.
     if (!(across < 1) || !(along > -1) || !(along < p.step * (p.count - 1) + 1)) return;
     const double reach = square_root(1 - across);
     const int low = int((along - reach) / p.step), high = int((along + reach) / p.step) + 1;
@@ -75,7 +75,7 @@ struct ProbePass {
     add_whole(&sums[place].way[1], whole(weight * bounded(update_dt * double(v.y))));
     add_whole(&sums[place].way[2], whole(weight * bounded(update_dt * double(v.z))));
   }
-  /// h in an update; what is faster, or no number, is for the guard to find.
+  /// Limited to 4096 h per update. The guard detects faster and non-finite particles.
   PBF_HD static double bounded(double way) { return max2(min2(way, 4096.0), -4096.0); }
   PBF_HD static std::int64_t whole(double x) {
     const double u = x * double(kProbeUnits);

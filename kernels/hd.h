@@ -1,5 +1,5 @@
-// What lets one source compile for the host and, under nvcc, for the device; and more than once
-// into one program.
+// Macros with which one source compiles for the host, under nvcc also for the device, and several
+// times into one program.
 #pragma once
 
 #if defined(__CUDACC__)
@@ -11,19 +11,19 @@
 #define PBF_HD_APART __attribute__((noinline))
 #define PBF_HD_RARE PBF_HD_APART
 #endif
-// PBF_HD_APART: large, and only for the few particles at an obstacle. PBF_HD_RARE: small, and for
-// these few alone: inlined where a call costs every thread registers. Everything else is inlined
-// into every pass.
+// PBF_HD_APART: large functions for the few particles at an obstacle. PBF_HD_RARE: small functions
+// for these particles, inlined on the device, where a call would cost every thread registers. All
+// other functions are inlined into every pass.
 
-// Everything that holds arithmetic on particles lives in this inline namespace. A second
-// compilation under another name (with other floating-point options, say) can then be linked beside
-// the first: its types and functions are different ones.
+// All arithmetic on particles is in this inline namespace. A second compilation under another name,
+// for example with other floating-point options, can be linked beside the first, because its types
+// and functions are distinct.
 #ifndef PBF_VARIANT
 #define PBF_VARIANT plain
 #endif
 
 // The variant `pinned` (PBF_PINNED, compiled without contraction) gives the host's bits on the
-// device. Otherwise the device takes its fast root and fused products.
+// device. Otherwise the device uses its fast root and fused products.
 #if defined(__CUDA_ARCH__) && !defined(PBF_PINNED)
 #define PBF_FAST_DEVICE 1
 #endif

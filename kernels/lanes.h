@@ -1,7 +1,7 @@
-// Several particles side by side in one vector register: the pair formulas of the passes, written
-// for one Real, hold for Lanes too. Every lane does what one particle does alone, in the same
-// order, so the bits are the same. GCC's and clang's vector types: a width that the machine's
-// registers do not have is taken apart by the compiler, on any processor.
+// Several particles side by side in one vector register. The pair formulas of the passes, written
+// for one Real, also work for Lanes. Every lane does the operations of a single particle in the
+// same order, so the bits are the same. With the vector types of GCC and clang, the compiler splits
+// vectors that are wider than the registers of the processor.
 #pragma once
 
 #include <string.h>
@@ -12,16 +12,16 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// W numbers; a plain number stands for W times the same.
+/// W numbers; a plain number is converted to W equal ones.
 template <class Real, int W>
 struct Lanes {
   typedef Real Vector __attribute__((vector_size(W * sizeof(Real))));
   Vector v;
 
-  Lanes() = default;  ///< value-initialised to zero, as Real is
-  /// The sum, since compilers make one addition and a broadcast of it, where they insert W times
-  /// for a plain copy if this is inlined into a function for wider registers. It turns -0 into 0,
-  /// which no sum over neighbours can tell.
+  Lanes() = default;  ///< value-initialized to zero, as Real is
+  /// Written as a sum, which compilers turn into one addition and a broadcast. A plain copy becomes
+  /// W insertions if this is inlined into a function for wider registers. The sum turns -0 into 0,
+  /// which changes no sum over neighbors.
   PBF_HD Lanes(Real x) : v(Vector{} + x) {}
   PBF_HD Lanes(const Vector& x) : v(x) {}
   /// from[0] .. from[W - 1], at any address.
@@ -46,7 +46,7 @@ template <class Real, int W>
 PBF_HD Lanes<Real, W> max2(const Lanes<Real, W>& a, const Lanes<Real, W>& b) {
   return typename Lanes<Real, W>::Vector(a.v > b.v ? a.v : b.v);
 }
-/// A loop that the compiler turns into the one instruction.
+/// The compiler turns the loop into one instruction.
 template <class Real, int W>
 PBF_HD Lanes<Real, W> square_root(const Lanes<Real, W>& a) {
   typename Lanes<Real, W>::Vector r;
@@ -54,21 +54,21 @@ PBF_HD Lanes<Real, W> square_root(const Lanes<Real, W>& a) {
   return r;
 }
 
-/// The particles first .. first + W - 1; the array must reach that far.
+/// The particles first .. first + W - 1; the array must contain all of them.
 template <int W>
 struct Adjacent {
   int first;
   PBF_HD int operator[](int lane) const { return first + lane; }
 };
-/// W particles anywhere.
+/// W arbitrary particles.
 template <int W>
 struct Scattered {
   const int* index;
   PBF_HD int operator[](int lane) const { return index[lane]; }
 };
 
-/// The rows of W particles (x, y, z, w) turned into a vector of each component: one load per
-/// particle, then shuffles of whole registers, which is cheaper than four gathers.
+/// Transposes the rows (x, y, z, w) of W particles into one vector per component: one load per
+/// particle and shuffles of whole registers, which is cheaper than four gathers.
 template <class Real, int W, class Index>
 PBF_HD Vec4<Lanes<Real, W>> transposed(const Vec4<Real>* a, Index i) {
   using Vector = typename Lanes<Real, W>::Vector;
@@ -79,7 +79,7 @@ PBF_HD Vec4<Lanes<Real, W>> transposed(const Vec4<Real>* a, Index i) {
       r.x.v[l] = from.x, r.y.v[l] = from.y, r.z.v[l] = from.z, r.w.v[l] = from.w;
     }
   } else {
-    // row[k]: particles k, k + 4, k + 8, ... one behind the other.
+    // row[k]: particles k, k + 4, k + 8, ... one after the other.
     const auto one = [&](int l) __attribute__((always_inline)) {
       return Lanes<Real, 4>::at(&a[i[l]].x).v;
     };
@@ -97,7 +97,7 @@ PBF_HD Vec4<Lanes<Real, W>> transposed(const Vec4<Real>* a, Index i) {
             5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
       }
     }
-    // Every block of 4 x 4 by itself: pairs of rows into xy and zw, then pairs of those.
+    // Every block of 4 x 4 separately: pairs of rows into xy and zw, then pairs of those.
     const auto shuffle =
         [](const Vector& b, const Vector& c, auto pattern) __attribute__((always_inline)) {
       return [&]<int... l>(std::integer_sequence<int, l...>) __attribute__((always_inline)) {
@@ -132,12 +132,12 @@ PBF_HD Vec4<Lanes<Real, W>> load(GatheredRows<Vec4<Real>> a, Scattered<W> i) {
   return transposed<Real, W>(a.rows(), i);
 }
 
-/// A number of each of W adjacent rows; the array must reach that far.
+/// The numbers of W adjacent rows; the array must contain all of them.
 template <class Real, int W>
 PBF_HD Lanes<Real, W> adjacent(const Real* a, Adjacent<W> i) {
   return Lanes<Real, W>::at(a + i.first);
 }
-/// Whether a <= b in every lane; not where one is no number.
+/// Whether a <= b in every lane; false if one of them is NaN.
 template <class Real, int W>
 PBF_HD bool all_at_most(const Lanes<Real, W>& a, const Lanes<Real, W>& b) {
   const auto within = a.v <= b.v;
@@ -146,8 +146,8 @@ PBF_HD bool all_at_most(const Lanes<Real, W>& a, const Lanes<Real, W>& b) {
   return all != 0;
 }
 
-/// What comes after the sums is short and has branches: one particle at a time. part: component c
-/// of lane l is at [c W + l].
+/// Finishes the particles one at a time, because this part is short and has branches. part:
+/// component c of lane l is at [c W + l].
 template <int W, class Pass, class Real>
 PBF_HD void finish_lanes(const Pass& pass, int i, int end, const Real* part) {
   constexpr int parts = sizeof(typename Pass::Sum) / sizeof(Real);
@@ -159,14 +159,14 @@ PBF_HD void finish_lanes(const Pass& pass, int i, int end, const Real* part) {
     pass.finish(i + l, pass.own(i + l), one);
   }
 }
-/// Where some of them may be near solids.
+/// For groups in which particles may be near solids.
 template <int W, class Pass, class Real>
 PBF_HD_APART void finish_each(const Pass& pass, int i, int end, const Real* part) {
   finish_lanes<W>(pass, i, end, part);
 }
 
-/// The neighbour sums of W adjacent particles, the first of them a multiple of W, as many of them
-/// as there are before `end`. The lists are groups of W, filled up with the far particle.
+/// The neighbor sums of those of the particles i .. i + W - 1 that are below `end`; W divides i.
+/// The lists of such a group are padded to equal length with the far particle.
 template <class Real, int W, class Pass>
 PBF_HD void sum_over_neighbors_by_lanes(const Pass& pass, int i, int end) {
   using V = Lanes<Real, W>;

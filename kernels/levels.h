@@ -1,7 +1,7 @@
 // A hierarchy of grids over the box, for corrections that reach farther than h (kernels/README.md,
-// "Levels"). The cells of level 0 are 2 x 2 x 2 cells of the search grid (4 x 2 x 2 with its half
-// cells along x), the last one of an axis longer or shorter, so that its end is the wall. Nodes are
-// the corners; every level has every other node of the one before.
+// "Levels"). A cell of level 0 is 2 x 2 x 2 cells of the search grid (4 half cells along x). The
+// last cell of an axis is longer or shorter, so that it ends at the wall. Nodes are the corners of
+// cells; every coarser level has every other node of the level before.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace pbf {
 
-/// Numbers of a node or a cell along x, y, z.
+/// Indices of a node or a cell along x, y, z.
 struct GridPlace {
   int k[3];
   PBF_HD int operator[](int axis) const { return k[axis]; }
@@ -19,25 +19,25 @@ PBF_HD GridPlace place_of(int n, const int (&of)[3]) {
   return {{n % of[0], n / of[0] % of[1], n / of[0] / of[1]}};
 }
 
-/// One level: where its nodes stand in arrays that hold those of all levels, and how many. A single
-/// one along an axis lies under a hat that is constant.
+/// One level: the index of its first node in arrays over the nodes of all levels, and its numbers
+/// of nodes. With one node along an axis, its hat is constant along that axis.
 struct LevelShape {
   int first = 0;
   int nodes[3] = {1, 1, 1};
 
   PBF_HD int size() const { return nodes[0] * nodes[1] * nodes[2]; }
   PBF_HD int at(int x, int y, int z) const { return first + (z * nodes[1] + y) * nodes[0] + x; }
-  /// Of the n-th node of this level.
+  /// Indices of the n-th node of this level.
   PBF_HD GridPlace place(int n) const { return place_of(n, nodes); }
 };
 
-/// Cells of the finest level, and what they hold at rest. Lengths in h.
+/// Cells of the finest level, and how many particles they hold at rest. Lengths in h.
 struct LevelCells {
   int cells[3] = {1, 1, 1};
   double edge = 2;              ///< of a cell
   double last[3] = {2, 2, 2};   ///< of the last one along each axis
-  double share[3] = {1, 1, 1};  ///< the same over `edge`
-  double half_full = 32;        ///< particles in half a cell of edge^3 (edge^2) at rest
+  double share[3] = {1, 1, 1};  ///< last/edge
+  double half_full = 32;        ///< particles in half a cell of edge^3 (2-D: edge^2) at rest
 
   PBF_HD int size() const { return cells[0] * cells[1] * cells[2]; }
   PBF_HD GridPlace place(int c) const { return place_of(c, cells); }
@@ -46,17 +46,17 @@ struct LevelCells {
     return c[0] < cells[0] && c[1] < cells[1] && c[2] < cells[2];
   }
   PBF_HD double length(int axis, int i) const { return i + 1 == cells[axis] ? last[axis] : edge; }
-  /// Bricks of 4 x 4 x 4 cells, the last ones reach beyond the box.
+  /// Bricks of 4 x 4 x 4 cells; the last ones may extend beyond the box.
   PBF_HD int bricks(int axis) const { return (cells[axis] + 3) / 4; }
   PBF_HD int bricks() const { return bricks(0) * bricks(1) * bricks(2); }
   /// Rows of the search grid along y or z: two for a cell, up to three for the last one.
   PBF_HD int rows(int axis) const { return 2 * cells[axis] + 1; }
-  /// Of particles that stand side by side: those of a cell and a row. Behind those of a row is
-  /// their end.
+  /// Number of entries for runs. A run is the particles of one cell in one row, adjacent in memory.
+  /// One more entry per row marks its end.
   PBF_HD int runs(int dimensions) const {
     return (dimensions == 2 ? 1 : rows(1)) * rows(2) * (cells[0] + 1);
   }
-  /// Particles in half of that cell at rest.
+  /// Half the number of particles that this cell holds at rest.
   PBF_HD double half(GridPlace at) const {
     double n = half_full;
     for (int k = 0; k < 3; ++k) n *= at[k] + 1 == cells[k] ? share[k] : 1;
@@ -70,24 +70,24 @@ struct LevelHierarchy {
   int count = 0;
   LevelShape level[most];
 
-  /// The level of a node of all.
+  /// The level of a node, from its index over all levels.
   PBF_HD int of(int node) const {
     int l = 0;
     while (l + 1 < count && node >= level[l + 1].first) ++l;
     return l;
   }
-  /// Ends of an axis that the hat of its i-th node on level l lies over: 1 the low, 2 the high one.
+  /// Ends of an axis that the hat of its i-th node on level l reaches, as bits: 1 low, 2 high.
   PBF_HD unsigned ends(int l, int axis, int i) const {
-    const int last = level[0].nodes[axis] - 1;  // 0: the axis that a plane has not
+    const int last = level[0].nodes[axis] - 1;  // 0: the missing axis in two dimensions
     return last == 0 ? 0u : (i == 0 ? 1u : 0u) | (last < (i + 1) << l ? 2u : 0u);
   }
 };
 
-/// f(x, y, z) for the places from `low` to before `end`, until it is true: those of the lane-th of
-/// `of` threads, which share rows first.
+/// Calls f(x, y, z) for the places of a box, `end` excluded, until it returns true: the share of
+/// thread `lane` of `of` threads, which are spread along x first.
 template <class F>
 PBF_HD void for_box(GridPlace low, GridPlace end, int lane, int of, F&& f) {
-  int bits = 0;  // 2^bits side by side
+  int bits = 0;  // 2^bits threads along x
   while (1 << bits < of && 1 << bits < end[0] - low[0]) ++bits;
   int z = low[2];
   for (int y = low[1] + (lane >> bits);; y += of >> bits) {
@@ -98,7 +98,7 @@ PBF_HD void for_box(GridPlace low, GridPlace end, int lane, int of, F&& f) {
   }
 }
 
-/// The places of a box by number, without a division for each.
+/// The n-th place of a box, without divisions.
 struct BoxPlaces {
   GridPlace low;
   unsigned wide, high, by_wide, by_high;
@@ -118,38 +118,38 @@ struct BoxPlaces {
   }
 
  private:
-  /// n / by for n < 2^31: the product is at most 1 below it.
+  /// n / by for n < 2^31; the product with the inverse is at most 1 too small.
   PBF_HD static unsigned over(unsigned n, unsigned by, unsigned inverse) {
     const auto q = unsigned(std::uint64_t(n) * inverse >> 32);
     return q + (n - q * by >= by ? 1u : 0u);
   }
 };
 
-/// What lies under a hat along an axis, and its weights.
+/// The cells or corners under a hat along one axis, and their weights.
 struct HatSpan {
-  static constexpr int bits = 6;  ///< behind the point of a weight: exact up to 64 bricks
+  static constexpr int bits = 6;  ///< fractional bits of a weight; exact up to 64 bricks
 
   int first, end;
   bool cells;
   int middle, top;
-  unsigned slope;  ///< 2^-24
+  unsigned slope;  ///< in units of 2^-24
 
-  /// Places count twice: cell i is at 2 i + 1, the two corners of bricks at a node are at one.
+  /// In doubled coordinates, cell i is at 2 i + 1; the two brick corners at a node coincide.
   PBF_HD int weight(int i) const {
     const int away = (cells ? 2 * i + 1 : (i + 1) / 2 * 2) - middle;
     return top - int(unsigned(away < 0 ? -away : away) * slope >> 24);
   }
 };
 
-/// What the sums at nodes are made of: the cells for levels 0 and 1, for the coarser ones, whose
-/// hats are linear in a brick, what the cells of bricks give to their 8 corners.
+/// The terms of the sums at nodes: cells for levels 0 and 1; for coarser levels, whose hats are
+/// linear within a brick, the sums that the cells of a brick give to its 8 corners.
 struct LevelSource {
-  LevelShape grid;  ///< the cells, or the corners, 2 for each brick along an axis
+  LevelShape grid;  ///< the cells, or the corners: 2 per brick along an axis
   bool cells;
   const std::int64_t* value;
 
-  /// Under the hat of node i of level l: over corners the linear one, over cells the sum of those
-  /// at their two ends. One is 2^bits.
+  /// What is under the hat of node i of level l. The weight of a corner is the hat there, that of a
+  /// cell the sum of the hat at its two ends. 2^bits stands for 1.
   PBF_HD HatSpan under(const LevelShape& level, int l, int axis, int i) const {
     const bool one = level.nodes[axis] == 1;
     const int wide = cells ? l : l - 2, edge = 1 << wide, middle = i << wide;
@@ -164,13 +164,12 @@ struct LevelSource {
   }
 };
 
-/// Sums over cells and nodes are whole numbers, so that no order of summation shows: of clipped C
-/// in these units, of particles in the other. 2^33 particles fit, 10 000 a cell at
-/// the clip.
+/// Units of the sums over cells and nodes: of clipped C, and of particle counts. The sums are
+/// integers, so their order does not matter. 2^33 particles fit, and 10 000 at the clip in a cell.
 inline constexpr double kExcessUnit = 1.0 / (1 << 30), kCountUnit = 1.0 / (1 << 20);
 
-/// Sums at the nodes of all levels. Its items are those nodes, the coarsest first: they have most
-/// to add, so many threads share them.
+/// Sums at the nodes of all levels. Items are the nodes, the coarsest first: these have the most
+/// terms, so many threads share one.
 struct LevelSums {
   LevelHierarchy all;
   LevelSource cells, corners;
@@ -178,18 +177,18 @@ struct LevelSums {
   PBF_HD int items() const { return all.level[all.count - 1].first + size(0); }
   PBF_HD int node(int item) const { return items() - 1 - item; }
 
-  /// Groups of items that the same number of threads share.
+  /// Groups of items, one per level; equally many threads share each item of a group.
   PBF_HD int groups() const { return all.count; }
   PBF_HD int size(int group) const { return all.level[all.count - 1 - group].size(); }
-  /// 8 and 64 cells; 8, 216, 2744, ... corners. many: all that can add up together.
+  /// Terms by level: 8, 64 cells; 8, 216, ... corners. many: the most threads that can add up.
   PBF_HD int lanes(int group, int many) const {
     const int l = all.count - 1 - group;
     if (l == 1) return size(group) < 1 << 14 ? 8 : 4;
     return l < 3 ? 1 : l < 5 ? 32 : many;
   }
 
-  /// f(value, weight) for what lies under the hat of a node, until it is true: the share of the
-  /// lane-th thread.
+  /// Calls f(value, weight) for what is under the hat of a node, until it returns true: the share
+  /// of thread `lane` of `of` threads.
   template <class F>
   PBF_HD void for_terms(int node, int lane, int of, F&& f) const {
     const int l = all.of(node);
@@ -221,7 +220,7 @@ struct LevelSums {
     }
   }
 
-  static constexpr int at_once = 8;  ///< loads that need not wait for each other
+  static constexpr int at_once = 8;  ///< loads that are issued together
 
   /// The same for a node of level 0.
   template <class F>
@@ -237,13 +236,13 @@ struct LevelSums {
     }
     for (int m = 0; m < 8; ++m) f(value[m], weight);
   }
-  /// Rounded for each term, so that it does not matter who adds it.
+  /// Rounded per term, so it does not matter which thread adds it.
   PBF_HD static std::int64_t term(std::int64_t value, int weight) {
     return value * weight >> 3 * HatSpan::bits;
   }
 };
 
-/// What threads add up together.
+/// A partial sum: numbers are added, bits combined by or.
 struct LevelPart {
   std::int64_t number, bits;
 
@@ -254,12 +253,12 @@ struct LevelPart {
   }
 };
 
-/// Passes over bricks: what each cell finds goes to the corners of its brick too. lanes: threads
-/// that share a cell.
+/// Base of passes over bricks, which also give the value of each cell to the corners of its brick.
+/// lanes: threads that share a cell.
 template <int D>
 struct LevelBrickPass {
   LevelCells grid;
-  std::int64_t* corner;  ///< out, as LevelSource has them
+  std::int64_t* corner;  ///< out, laid out as in LevelSource
 
   static constexpr int lanes = 4, brick_cells = D == 2 ? 16 : 64, brick_corners = 8;
 
@@ -272,10 +271,10 @@ struct LevelBrickPass {
     const GridPlace in = inside(k);
     return {{4 * b[0] + in[0], 4 * b[1] + in[1], 4 * b[2] + in[2]}};
   }
-  /// What that gives to a corner.
+  /// What the k-th cell gives to a corner.
   PBF_HD LevelPart share(int which, int k, std::int64_t value) const {
     const GridPlace in = inside(k);
-    int weight = 1;  // 16 of 128 for an eighth of the brick
+    int weight = 1;  // per axis in units of 1/128, so 16 is an eighth
     for (int a = 0; a < 3; ++a) weight *= 16 * (which >> a & 1 ? 2 * in[a] + 1 : 7 - 2 * in[a]);
     return {LevelSums::term(value, weight), value};
   }

@@ -1,7 +1,7 @@
-// What a measure finds out about all particles, in double on every backend and in both precisions,
-// and the share of one particle in it.
-// Nothing here depends on the order of the particles, on threads, blocks or backends: maxima and
-// counts come first, then sums of integers (fixed_sum.h) in units that follow from the maxima.
+// A measurement over all particles, and the share of one particle in it; in double on every backend
+// and in both precisions. Its results do not depend on the order of particles, on threads, blocks
+// or backends: maxima and counts come first, then sums of integers (fixed_sum.h) in units that
+// follow from the maxima.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace pbf {
 
-/// Where all the fluid would rest: on the wall that gravity points at, between
-/// walls on all four sides. axis -1: there is no such place.
+/// The pool in which all the fluid would rest: on the wall that gravity points at, between walls on
+/// all four sides. axis -1: the scene has no such pool.
 struct RestPool {
   int axis = -1;
   double floor = 0, up = 1;  ///< h, coordinate of the floor; +1 or -1, away from it
@@ -21,7 +21,7 @@ struct RestPool {
   double spacing = 0;        ///< h, of the rest lattice
 };
 
-/// What a measure takes from the scene, in the internal frame.
+/// What a measurement needs from the scene, in the internal frame.
 struct MeasureConstants {
   RestPool rest;
 };
@@ -74,9 +74,9 @@ struct MeasureUnits {
   }
 };
 
-/// The sums, in these units; the squares of compressions in the square of theirs.
+/// The sums in these units; squares of compressions in the square of their unit.
 struct MeasureTerms {
-  /// Particles below the eighths of the depth at rest (RestPool), each one spread over a spacing.
+  /// Particles below each eighth of the depth at rest (RestPool), each spread over a spacing.
   static constexpr int levels = 8;
   FixedSum compression, compression_squared, speed_squared, x[3], v[3], below[levels];
 
@@ -92,7 +92,7 @@ struct MeasureTerms {
   }
 };
 
-/// All of it as numbers; lib/solver/diagnostics.cpp turns them into SI units.
+/// All results as numbers; lib/solver/diagnostics.cpp converts them to SI units.
 struct MeasureSums : MeasureCounts {
   static constexpr int levels = MeasureTerms::levels;
   double compression = 0, compression_squared = 0, speed_squared = 0;
@@ -145,7 +145,7 @@ struct MeasurePass {
     s.compression_max = a.compression;
     s.speed_squared_max = a.speed_squared;
     for (int k = 0; k < 3; ++k) {
-      s.front[k] = a.x[k] + 0.0;  // one zero: the larger of two must not depend on their order
+      s.front[k] = a.x[k] + 0.0;  // turns -0 into 0, so that maxima do not depend on the order
       s.x_size[k] = a.x[k] < 0 ? -a.x[k] : a.x[k];
       s.v_size[k] = a.v[k] < 0 ? -a.v[k] : a.v[k];
     }

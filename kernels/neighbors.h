@@ -1,6 +1,6 @@
-// Neighbour lists. The pairs of an update are those with |x*_i - x*_j| < h when the lists are made,
-// on every backend; a list leaves out the particle itself and is in ascending order of the sorted
-// index, so every sum over it has one order.
+// Neighbor lists. The pairs of an update are those with |x*_i - x*_j| < h when the lists are made,
+// on every backend. A list does not contain the particle itself and is in ascending order of the
+// sorted index, so every sum over it has one order.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Neighbour policy of the CPU. `width` = 2^width_bits adjacent particles make a group, whose lists
-/// are interleaved: entry k of its particle l stands at group[k width + l]. Shorter lists of a
-/// group are filled up with index `far`, a particle whose share of every sum is zero. Groups lie
-/// one behind the other in chunks of 1024 particles.
+/// Neighbor lists of the CPU. `width` = 2^width_bits adjacent particles form a group, whose lists
+/// are interleaved: entry k of particle l of the group is at group[k width + l]. Shorter lists of a
+/// group are padded with index `far`, a particle that contributes zero to every sum. Groups are
+/// stored one after the other in chunks of 1024 particles.
 struct ChunkedLists {
   static constexpr int chunk_bits = 10;
-  static constexpr bool skip_inactive = true;  ///< a branch per pair pays for one particle alone
+  static constexpr bool skip_inactive = true;  ///< a branch per pair pays off for single particles
   struct Group {
     std::uint32_t begin, rounds;  ///< first entry within the chunk; length of the longest list
   };
@@ -24,7 +24,7 @@ struct ChunkedLists {
   const Group* groups;      ///< per group
   int width_bits, far;
 
-  /// f(j) for every neighbour j of i.
+  /// f(j) for every neighbor j of i.
   template <class F>
   PBF_HD void for_each(int i, F&& f) const {
     const int width = 1 << width_bits;
@@ -38,7 +38,7 @@ struct ChunkedLists {
     return n;
   }
 
-  /// The lists of the group that i begins, and how many entries each has.
+  /// The lists of the group of i, and the number of entries of each.
   PBF_HD const int* group(int i) const {
     return chunk[i >> chunk_bits] + groups[i >> width_bits].begin;
   }

@@ -1,16 +1,16 @@
-// The shape of every pass that sums over neighbours, so that an executor may choose how the sums
-// are shared among threads (one particle each, two particles each, several lanes for one).
+// The interface of every pass that sums over neighbors. An executor may choose how threads share
+// the sums (one particle each, two particles each, several lanes for one).
 //
 // Such a pass has
 //   D                                  dimensions of the scene
-//   own(i) const                       what particle i brings: position, lambda, ...
-//   other(j) const                     what is gathered from a neighbour
-//   SumOf<V> (value-initialised to 0)  and each(f): f(V&) for every member
-//   add(SumOf<V>&, own, other) const   one neighbour's share
+//   own(i) const                       data of particle i: position, lambda, ...
+//   other(j) const                     data gathered from a neighbor
+//   SumOf<V> (value-initialized to 0)  and each(f): f(V&) for every member
+//   add(SumOf<V>&, own, other) const   adds the term of one neighbor
 //   finish(i, Own, Sum) const          writes the result
 //   stays_far, far_bound               if it moves particles: boundary/near_split.h
-// where V is Real for one particle, Lanes for several at once (kernels/lanes.h), and Own, Sum are
-// those of one particle.
+// V is Real for one particle and Lanes for several at once (kernels/lanes.h). Own and Sum are the
+// types for one particle.
 #pragma once
 
 #include "kernels/neighbors.h"
@@ -53,7 +53,7 @@ struct VectorSum {
   }
 };
 
-/// What the two sides bring to a sum over velocity differences.
+/// Data of the particle and of a neighbor in a sum over velocity differences.
 template <class V, int dimensions>
 struct MovingOwn {
   Vec<V, dimensions> x, v;

@@ -13,17 +13,17 @@ namespace pbf::inline PBF_VARIANT {
 
 template <class Real>
 struct Params {
-  int dimensions = 3;               ///< 2: every y is 0, and v_y
+  int dimensions = 3;               ///< 2: y and v_y are 0
   Real dt = 0, inv_dt = 0;          ///< s, 1/s
   Vec3<Real> gravity;               ///< h/s^2
   Real damping = 1;                 ///< factor on the velocity, once per update
   Real speed_squared = Real(1e30);  ///< (h/s)^2, faster particles are counted ...
   bool limit_speed = false;         ///< ... and slowed down to it
-  /// (h/s)^2, faster ones look how they pass their neighbours in the first iteration.
+  /// (h/s)^2; faster particles are checked against their neighbors in the first iteration.
   Real passing_squared = Real(1e30);
   Box<Real> boundary;
   int cells_x = 1, cells_y = 1, cells_z = 1;  ///< cells_x counts half cells; in 2-D cells_y = 1
-  int first_layer = 0, layers = 1;            ///< of cells along z: those that have bins here
+  int first_layer = 0, layers = 1;            ///< layers of cells along z that have bins here
   Real inv_cell = 1;                          ///< 1/h, one over the edge of a cell (>= h)
   Real vol = 1;                               ///< m/(rho0 h^3), weight of one particle
   bool two_sided = false;                     ///< C = rho - 1 instead of max(rho - 1, 0)
@@ -35,7 +35,7 @@ struct Params {
   int tensile_n = 4;
   Real xsph = 0;       ///< c
   Real vorticity = 0;  ///< 1/s, epsilon
-  Real update_dt = 0;  ///< s, of all substeps together: confinement acts once for them
+  Real update_dt = 0;  ///< s, sum of all substeps; confinement acts once per update
 };
 
 }  // namespace pbf::inline PBF_VARIANT

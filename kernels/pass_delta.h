@@ -11,7 +11,7 @@ namespace pbf::inline PBF_VARIANT {
 /// x^n for a small positive integer n, by squaring: the same operations on every backend.
 template <class Real>
 PBF_HD Real power(Real x, int n) {
-  if (n == 4) {  // the paper's; the loop below gives the same bits, in more instructions
+  if (n == 4) {  // the paper's exponent; the loop below gives the same bits with more instructions
     x = x * x;
     return x * x;
   }
@@ -24,8 +24,8 @@ PBF_HD Real power(Real x, int n) {
 }
 
 /// dx_i = omega [ sum_j (lambda_i + lambda_j + s_corr) grad W_ij vol + lambda_i grad wall ].
-/// The velocity takes dx/dt at once: after the last iteration it is (x* - x)/dt, without the
-/// cancellation of that difference.
+/// dx/dt is added to the velocity at once. After the last iteration the velocity equals
+/// (x* - x)/dt, without the cancellation of that difference.
 template <class Real, class Lists, Smoothing S, bool tensile, class Coarse, class Boundary>
 struct DeltaPass {
   Params<Real> p;
@@ -33,10 +33,10 @@ struct DeltaPass {
   Lists lists;
   GatheredRows<Vec4<Real>> position;  ///< w = lambda
   OwnRows<const Real> density;
-  GatheredRows<int> id;              ///< of each row
-  OwnRows<Vec4<Real>> position_out;  ///< out; w = 1/density
-  OwnRows<Vec4<Real>> velocity;      ///< in/out, h/s
-  StepCounts* moves_on;              ///< not null: on to the next substep's x* and velocity at once
+  GatheredRows<int> id;                   ///< of each row
+  OwnRows<Vec4<Real>> position_out;       ///< out; w = 1/density
+  OwnRows<Vec4<Real>> velocity;           ///< in/out, h/s
+  StepCounts* moves_on;                   ///< not null: this pass also predicts the next substep
   [[no_unique_address]] Coarse coarse{};  ///< LevelMove or NoLevelMove
 
   static constexpr int D = dimensions_of(S);
@@ -44,7 +44,7 @@ struct DeltaPass {
   template <class V>
   struct SumOf {
     Vec<V, D> move;
-    V closeness{};  ///< sum of 1/q: beyond any other sum where a neighbour is in the same place
+    V closeness{};  ///< sum of 1/q; above coincident() only with a coincident neighbor
     template <class F>
     PBF_HD constexpr void each(F&& f) {
       each_component(move, f);
@@ -79,7 +79,7 @@ struct DeltaPass {
     s.move = s.move + (weight(x, y, q2, t) * t * t * root.inverse) * d;
     s.closeness += root.inverse;
   }
-  /// Of the first launch (boundary/near_split.h).
+  /// For the first launch (boundary/near_split.h).
   PBF_HD bool stays_far(int i, const Own& own, const Sum& s) const {
     const Vec3<Real> x = xyz(own), free = free_move(i, own, s);
     if (boundary.leaves(i, x, free)) return false;
@@ -88,7 +88,7 @@ struct DeltaPass {
     const Vec3<Real> next = predict(inside, new_velocity(i, free, target, inside), p, boundary).x;
     return !boundary.comes_near(inside, next);
   }
-  /// Beyond every way where it says nothing. Nothing is known of the levels.
+  /// Larger than any allowed move if no bound is known. There is no bound with levels.
   template <class V>
   PBF_HD V far_bound(const Vec4<V>& own, const SumOf<V>& s) const requires(!Coarse::on) {
     if (moves_on) return V(coincident());
@@ -100,7 +100,7 @@ struct DeltaPass {
                                  Vec3<Real> inside) const {
     return xyz(velocity[i]) + p.inv_dt * (free + (inside - target));
   }
-  /// dx_i as if nothing were in the way.
+  /// dx_i before walls and solids limit it.
   PBF_HD Vec3<Real> free_move(int i, const Own& own, const Sum& s) const {
     const Vec3<Real> pairs = in_space(s.move);
     const Vec3<Real> move = s.closeness > coincident() ? pairs + separate(i, own) : pairs;
@@ -128,11 +128,11 @@ struct DeltaPass {
     velocity[i] = with_w(v, Real(0));
   }
   PBF_HD Real pair_factor() const { return p.vol * Spiky<Real, D>::gradient_norm; }
-  /// More than all sums of 1/q but those of neighbours in the same place.
+  /// More than any sum of 1/q without coincident neighbors.
   static PBF_HD Real coincident() { return Real(0.5e12); }
 
-  /// The share of the neighbours in the same place, whose zero distance vectors left no direction:
-  /// a loop of its own, so that the pair loop need not choose.
+  /// The displacement by coincident neighbors, whose zero distance vectors have no direction. A
+  /// separate loop, so that the pair loop needs no branch.
   PBF_HD Vec3<Real> separate(int i, const Own& own) const {
     Vec3<Real> sum;
     lists.for_each(i, [&](Neighbor j) {

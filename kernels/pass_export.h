@@ -1,4 +1,4 @@
-// Internal frame -> SI units and the scene's axes, in id order: what leaves the solver.
+// Converts results to SI units and the scene's axes, in the order of ids.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// position (3), and where the pointers are set velocity (3) and density (1); row = id.
+/// Writes position (3), velocity (3) and density (1) to those pointers that are set; row = id.
 template <class Real, class Out>
 struct ExportPass {
   double h, rest_density, origin[3];  ///< origin: in internal axes
@@ -16,7 +16,7 @@ struct ExportPass {
   const Vec4<Real>*position, *velocity;
   const Real* density;
   const int* id;
-  Out *position_out, *velocity_out, *density_out;  ///< null: not asked for
+  Out *position_out, *velocity_out, *density_out;  ///< null: not needed
 
   PBF_HD void operator()(int i) const {
     const std::size_t row = std::size_t(id[i]);

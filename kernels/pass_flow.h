@@ -1,4 +1,4 @@
-// Flow through rectangles: which particles have changed sides in an update.
+// Flow through rectangles: counts the particles that change sides in an update.
 #pragma once
 
 #include <cstdint>
@@ -8,28 +8,28 @@
 
 namespace pbf {
 
-/// A rectangle, h, in the internal frame; the axes of its edges have length 1.
+/// A rectangle in the internal frame, lengths in h; `normal` and `edge` are unit vectors.
 struct FlowGate {
   double normal[3] = {1, 0, 0};
   double edge[2][3] = {{0, 1, 0}, {0, 0, 1}};
-  double middle[3] = {0, 0, 0};  ///< where it is along the normal and the edges
-  double half[2] = {0, 0};       ///< of the edges
+  double middle[3] = {0, 0, 0};  ///< coordinates along the normal and the edges
+  double half[2] = {0, 0};       ///< half lengths of the edges
 };
 
-/// Particles that went through, those along the normal less those against it.
+/// Particles that crossed the rectangle: along the normal minus against it.
 struct FlowCount {
   std::int64_t total = 0;  ///< since the start
-  std::int64_t since = 0;  ///< since it was asked last
-  double time = 0;         ///< s, the same
+  std::int64_t since = 0;  ///< since the last reading
+  double time = 0;         ///< s, since the last reading
 };
 
 }  // namespace pbf
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Bits say on which side of each gate a particle is, in the order of ids. They follow from the
-/// positions alone, so they are no part of a state. With `count` what has changed since they were
-/// taken last counts, where the particle is within the rectangle now.
+/// One bit per particle and gate says on which side of the gate the particle is. The bits follow
+/// from positions alone, so they are not part of a state. With `count`, a particle counts if its
+/// side has changed since the last call and it is within the rectangle now.
 template <class Real>
 struct FlowPass {
   const FlowGate* gate;
@@ -37,7 +37,7 @@ struct FlowPass {
   OwnRows<const Vec4<Real>> position;
   OwnRows<const int> id;
   int* sides;        ///< in/out, by id
-  FlowCount* count;  ///< null: the sides are taken for the first time
+  FlowCount* count;  ///< null: only stores the sides
   double update_dt;  ///< s
 
   PBF_HD void operator()(int i) const {
@@ -60,7 +60,7 @@ struct FlowPass {
   }
 
  private:
-  /// The same bits wherever it is compiled in: the sides of one pass are compared with another's.
+  /// Uses mul_add() for equal bits in all kernels, because sides from two passes are compared.
   PBF_HD static bool beyond(const FlowGate& g, Vec3<Real> x) {
     const double along =
         mul_add(g.normal[0], double(x.x),

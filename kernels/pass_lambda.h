@@ -50,18 +50,17 @@ struct DensityPass {
 };
 
 /// C from the density: one-sided by default (only compression is corrected). NaN stays NaN, so that
-/// it is seen.
+/// it is detected.
 template <class Real>
 PBF_HD Real constraint(Real density, const Params<Real>& p) {
   const Real c = density - Real(1);
   return !p.two_sided && c < Real(0) ? Real(0) : c;
 }
 
-/// What lambda is divided by where the scene leaves the step length to the program: 1 + 3 C above
-/// the rest density, at most 2. As omega falls with the number of neighbours at rest
-/// (lib/program/plan.h), so it falls here with their number where there are too many, for Jacobi
-/// iterations overshoot with them. At most 2: with 1 + 3 C without end, or rho^3, a pool under
-/// large steps collapsed.
+/// Divisor of lambda if the scene leaves the step length to the program: 1 + 3 C above the rest
+/// density, at most 2. Jacobi iterations overshoot if there are many neighbors. The default of
+/// omega depends on their number at rest (lib/program/plan.h), this divisor on the excess. Without
+/// the limit of 2, or with rho^3, a pool collapsed under large steps.
 template <class Real>
 PBF_HD Real under_relaxation(Real density, const Params<Real>& p) {
   if (!p.under_relax || !(density > Real(1))) return Real(1);
@@ -78,7 +77,7 @@ struct LambdaPass {
   GatheredRows<Vec4<Real>> position;
   OwnRows<Vec4<Real>> position_out;  ///< out: the same position with w = lambda
   OwnRows<std::conditional_t<with_density, Real, const Real>> density;  ///< out, or in
-  GatheredRows<Vec4<Real>> velocity;  ///< of the neighbours of marked particles, for a count alone
+  GatheredRows<Vec4<Real>> velocity;  ///< for count_unresolved() alone
   StepCounts* counts;
 
   static constexpr int D = dimensions_of(S);
@@ -111,7 +110,7 @@ struct LambdaPass {
     const V t = Spiky<Real>::t(root.q), t2 = t * t;
     if constexpr (with_density) s.shape += density_shape<Real, S>(q2, t);
     s.squares += t2 * t2;
-    // A coincident pair has no direction, d = 0: its gradients cancel in the mean over directions.
+    // A coincident pair (d = 0) adds no gradient, which is the mean over all directions.
     s.gradient = s.gradient + (t2 * root.inverse) * d;
   }
   PBF_HD void finish(int i, const Own& x, const Sum& s) const {
@@ -127,11 +126,11 @@ struct LambdaPass {
     const Vec3<Real> own_gradient = a * in_space(s.gradient) + wall.gradient;
     const Real c = constraint(rho, p);
     const Real denominator = a * a * s.squares + dot(own_gradient, own_gradient) + p.cfm;
-    // No neighbour, no wall and no cfm: nothing to move along.
+    // The denominator is 0 without neighbors, walls and cfm.
     const Real lambda =
         denominator > Real(0) ? -c / (under_relaxation(rho, p) * denominator) : Real(0);
     position_out[i] = with_w(in_space(x), lambda);
-    // Last, where nothing else is held in registers.
+    // At the end, where few registers are in use.
     if (load(position, i).w < Real(0)) count_unresolved(i, p, lists, velocity, counts);
   }
 };

@@ -1,9 +1,9 @@
-// Levels: what is made with the lists and lasts as long as they do. Who is in which cell, which
-// nodes are on and how strongly they answer, where walls hold the fluid. kernels/README.md,
-// "Levels".
+// Levels: quantities that are computed with the neighbor lists and stay valid as long as these: the
+// cell of each particle, the nodes that are on and their response, and where walls hold the fluid.
+// kernels/README.md, "Levels".
 //
-// Passes with a type Part are shared by several threads where there are many: each adds up a part
-// of the terms, whole numbers or bits, so that it does not matter who adds what.
+// Several threads may share an item of a pass with a type Part: each adds some of the terms. These
+// are integers or bits, so it does not matter which thread adds which.
 #pragma once
 
 #include "kernels/boundary/surroundings.h"
@@ -12,8 +12,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// f(y, z, run) for the runs of a cell's particles and the rows of the search grid that they lie
-/// in.
+/// Calls f(y, z, run) for the runs of a cell's particles; y, z: their row of the search grid.
 template <int D, class F>
 PBF_HD void for_runs(const LevelCells& grid, GridPlace cell, F&& f) {
   const auto end = [&](int axis) {
@@ -25,18 +24,18 @@ PBF_HD void for_runs(const LevelCells& grid, GridPlace cell, F&& f) {
       f(y, z, (D == 2 ? z : z * grid.rows(1) + y) * (grid.cells[0] + 1) + cell[0]);
 }
 
-/// The cell of each particle, and how many there are in it.
+/// The cell of each particle, and the number of particles in each cell.
 template <class Real, int D>
 struct LevelHomePass : LevelBrickPass<D> {
   using LevelBrickPass<D>::grid;
   Params<Real> p;
   const int* bin_start;
-  const Vec4<Real>* position;        ///< null where no face is open; those beyond are in no cell
+  const Vec4<Real>* position;        ///< null if no face is open; particles beyond are in no cell
   const Surroundings<Real>* around;  ///< with the obstacles; null: there are none
   int* run_start;                    ///< out, LevelCells::runs
   int* home;                         ///< out; -1: in no cell
   int* count;                        ///< out, of each cell
-  /// Out: the same in kCountUnit, -1 where it is not half full, or an obstacle may reach into it.
+  /// Out: the count in kCountUnit; -1 if less than half full, or if an obstacle may reach into it.
   std::int64_t* full;
 
   using Part = int;
@@ -72,7 +71,7 @@ struct LevelHomePass : LevelBrickPass<D> {
   }
 
  private:
-  /// Into the sphere around the cell.
+  /// Whether an obstacle reaches into the sphere around the cell.
   PBF_HD bool obstacle_reaches(GridPlace cell) const {
     Real middle[3] = {}, squares = 0;
     for (int k = 0; k < 3; ++k) {
@@ -89,14 +88,14 @@ struct LevelHomePass : LevelBrickPass<D> {
   }
 };
 
-/// What a node makes of the sum of C around it while the lists last: multiplier = answer * sum. Off
-/// (0) where a cell under its hat is not half full, or an open face: no hat may reach into the air.
+/// The response of each node, valid as long as the lists: multiplier = answer * sum of C around it.
+/// 0 (off) if a cell under its hat is less than half full or the hat reaches an open face.
 template <class Real>
 struct LevelNodePass : LevelSums {
   unsigned closed;   ///< Box::walls
   double stiffness;  ///< of level 0; four times as large on each coarser one
   Real* answer;      ///< out
-  int* walls;        ///< out: WallBits of those under its hat; none where it is off
+  int* walls;        ///< out: WallBits of the walls under its hat; 0 if it is off
 
   using Part = LevelPart;
   PBF_HD Part part(int item, int lane, int of) const {
@@ -104,7 +103,7 @@ struct LevelNodePass : LevelSums {
     for_terms(node(item), lane, of, [&](std::int64_t value, int weight) {
       sum.number += term(value, weight);
       sum.bits |= value;
-      return sum.bits < 0;  // off, whatever else is there
+      return sum.bits < 0;  // off; further terms cannot change that
     });
     return sum;
   }
@@ -129,8 +128,8 @@ struct LevelNodePass : LevelSums {
   }
 };
 
-/// WallBits of the nodes of level `from` in the box, of the next coarser ones whose hats overlap
-/// with theirs, and so on before level `to`, for which the box is widened: the share of a thread.
+/// The share of a thread in the WallBits of the nodes of level `from` in a box, of the next coarser
+/// nodes whose hats overlap with these, and so on below level `to`. Widens the box for level `to`.
 PBF_HD int walls_around(const LevelHierarchy& all, const int* walls, int from, int to,
                         GridPlace& low, GridPlace& end, int lane, int of) {
   int found = 0;
@@ -153,8 +152,8 @@ PBF_HD int walls_around(const LevelHierarchy& all, const int* walls, int from, i
   return found;
 }
 
-/// Of nodes of level 2 the walls that they, those beside them and the coarser ones around these
-/// know.
+/// For each node of level 2: the walls of this node, of the adjacent nodes, and of the coarser
+/// nodes whose hats overlap with these.
 struct LevelReachPass {
   static constexpr int level = 2;
   LevelHierarchy all;
@@ -176,11 +175,11 @@ struct LevelReachPass {
   PBF_HD void finish(int n, const Part& found) const { reach[n] = int(found.bits); }
 };
 
-/// What a cell makes of the slope of the multipliers in its middle, per cell: the displacement is
-/// -gamma times their gradient. Along an axis without a wall that could take it, the fluid must not
-/// get momentum: there cells with fewer particles move them farther, so that what a hat does adds
-/// up to 0. The walls are those of the cell's corners, of the next coarser nodes whose hats overlap
-/// with the corners', and so on.
+/// Factors from the slope of the multipliers in the middle of a cell, per cell length, to the
+/// displacement -gamma times their gradient. Along an axis without a wall that holds the fluid,
+/// levels must not add momentum: there the factor contains the number of particles at rest over the
+/// actual number, so that the effects of a hat add up to 0. The walls are those of the cell's
+/// corners, of the next coarser nodes whose hats overlap with these, and so on.
 template <class Real>
 struct LevelFactorPass {
   LevelHierarchy all;
@@ -189,7 +188,7 @@ struct LevelFactorPass {
   const int* count;            ///< of each cell
   const int* walls;            ///< of each node
   const int* reach;            ///< LevelReachPass
-  Vec4<Real>* factor;          ///< out, 1/h; 0 where nobody is; w: those walls, as WallBits
+  Vec4<Real>* factor;          ///< out, 1/h; 0 in empty cells; w: these walls, as WallBits
 
   PBF_HD void operator()(int c) const {
     const GridPlace at = grid.place(c);
@@ -205,7 +204,7 @@ struct LevelFactorPass {
   }
 
  private:
-  /// On level 2 the nodes around the cell's are those around one or two of them, along each axis.
+  /// On level 2, the nodes to consider surround one or two nodes along each axis (`reach`).
   PBF_HD unsigned walls_of(GridPlace at) const {
     constexpr int coarse = LevelReachPass::level;
     GridPlace low = at, end = at, last = at;

@@ -1,4 +1,4 @@
-// What the levels do to the walls, where loads are asked for. kernels/README.md, "Levels".
+// Loads on walls from the levels. kernels/README.md, "Loads".
 #pragma once
 
 #include "kernels/boundary/loads.h"
@@ -6,10 +6,10 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Over the nodes of level 0. The multiplier of a node, that of all levels together, pushes the
-/// cells on its two sides apart. On a wall there is one side only: that push is the pressure on the
-/// wall. Elsewhere what is left over, because the cells hold different numbers of particles, is
-/// booked on the wall that the fluid stands against, the nearer one of two.
+/// Over the nodes of level 0. The multiplier of a node, summed over all levels, pushes the cells on
+/// its two sides apart. On a wall there is only one side, and this push is the pressure on the
+/// wall. Inside, a difference remains if the cells hold different numbers of particles. It is
+/// booked on the wall that holds the fluid along this axis, on the nearer one if there are two.
 template <class Real>
 struct LevelLoadPass {
   LevelHierarchy all;
@@ -37,7 +37,7 @@ struct LevelLoadPass {
 
  private:
   PBF_HD void push(int n, GridPlace at, GridPlace low, GridPlace end, int axis, double k) const {
-    double way = 0;  // of all particles around it together
+    double way = 0;  // sum over all particles around the node
     unsigned against = 0;
     for_box(low, end, 0, 1, [&](int x, int y, int z) {
       const int c = (z * grid.cells[1] + y) * grid.cells[0] + x;
@@ -47,7 +47,7 @@ struct LevelLoadPass {
       against |= unsigned(factor[c].w) >> 2 * axis & 3;
       return false;
     });
-    if (against == 0) return;  // nothing is left over
+    if (against == 0) return;  // the pushes add up to 0
     for (int a = 0; a < 3; ++a)
       if (a != axis && all.level[0].nodes[a] > 1) way /= 2;
     const int last = all.level[0].nodes[axis] - 1;
@@ -59,7 +59,7 @@ struct LevelLoadPass {
     loads.add(2 * axis + high, n, x,
               {axis == 0 ? w : none, axis == 1 ? w : none, axis == 2 ? w : none});
   }
-  /// Linearly between the nodes of level l, where the node `at` of level 0 is.
+  /// The multiplier of level l at node `at` of level 0, interpolated linearly.
   PBF_HD Real multiplier_at(int l, GridPlace at) const {
     const LevelShape& level = all.level[l];
     Real sum(0);

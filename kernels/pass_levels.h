@@ -6,8 +6,8 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// C counts up to here in the mean of a cell: else a few particles in one place would push all
-/// those around them.
+/// Upper limit of C in the mean of a cell. Without it, a few particles in one place would push
+/// their whole neighborhood.
 inline constexpr double kLevelClip = 0.05;
 
 /// Sums of C, signed and clipped, over the cells.
@@ -41,14 +41,14 @@ struct LevelSumPass : LevelBrickPass<D> {
   }
 
  private:
-  /// What is no number counts as the clip: the guard looks for it elsewhere.
+  /// NaN counts as the clip; the guard detects it elsewhere.
   PBF_HD static int excess(Real rho) {
     const Real c = max2(min2(rho - Real(1), Real(kLevelClip)), Real(-1));
     return int(c * Real(1 << 30));
   }
 };
 
-/// The sums around the nodes that are on, and the multipliers that follow: they only push.
+/// The sums around the nodes that are on, and the multipliers, which are never negative.
 template <class Real>
 struct LevelMultiplierPass : LevelSums {
   const Real* answer;
@@ -70,8 +70,8 @@ struct LevelMultiplierPass : LevelSums {
   }
 };
 
-/// The displacement that the particles of a cell share, from the slope in its middle of the
-/// multipliers of all levels, each linear between its nodes.
+/// The common displacement of the particles of a cell, from the slope of the multipliers in its
+/// middle: the sum over all levels, each interpolated linearly between its nodes.
 template <class Real>
 struct LevelMovePass {
   LevelHierarchy all;
@@ -90,12 +90,12 @@ struct LevelMovePass {
 
  private:
   PBF_HD static Real between(Real a, Real b, Real share) { return a + share * (b - a); }
-  /// Of level l, per cell.
+  /// The slope of level l, per cell length.
   PBF_HD Vec3<Real> slope_of(int l, GridPlace at) const {
     const LevelShape& level = all.level[l];
     const Real cell = Real(1) / Real(1 << l);
     const GridPlace low{{at[0] >> l, at[1] >> l, at[2] >> l}};
-    Real share[3];  // of the nodes behind; a single node has itself there
+    Real share[3];  // weights of the upper nodes; a single node is its own upper one
     for (int k = 0; k < 3; ++k) share[k] = (Real(at[k] - (low[k] << l)) + Real(0.5)) * cell;
     const int x = level.nodes[0] > 1 ? 1 : 0, y = level.nodes[1] > 1 ? level.nodes[0] : 0;
     const Real* k = multiplier + level.at(low[0], low[1], low[2]);
@@ -112,7 +112,7 @@ struct LevelMovePass {
   }
 };
 
-/// What a particle is moved by.
+/// The displacement of a particle by the levels.
 template <class Real>
 struct LevelMove {
   static constexpr bool on = true;
@@ -123,7 +123,7 @@ struct LevelMove {
     return home[i] >= 0 ? xyz(move[home[i]]) : Vec3<Real>{};
   }
 };
-/// No levels: nothing to move, nothing to carry.
+/// Without levels.
 template <class Real>
 struct NoLevelMove {
   static constexpr bool on = false;

@@ -1,26 +1,26 @@
-// The start of a step where solids move, or the tank: what of the table is this step's.
+// The start of a step in which solids or the tank move: takes this step's row of the table.
 #pragma once
 
 #include "kernels/boundary/surroundings.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-/// What becomes of a moving solid in a step.
+/// The motion of a solid in a step.
 template <class Real>
 struct SolidStep {
   int solid = 0;          ///< which one
-  PlacedSolid<Real> now;  ///< at the end of the step; its bounds hold the whole way
+  PlacedSolid<Real> now;  ///< at the end of the step; its bounds cover the whole path
   Solid<Real> before;     ///< at the start
   SolidVelocity mean;     ///< of the update that the step is part of
 };
 
-/// Row *row of the table, and on to the next one: a recorded step need not know which it is.
+/// Copies row *row of the table and advances *row, so a recorded step needs no row number.
 template <class Real>
 struct MoveSolidsPass {
   int* row;                                 ///< in/out
-  const FrameStep<Real>* frames = nullptr;  ///< of each step; null: the tank stands
-  const SolidStep<Real>* steps = nullptr;   ///< of each step `moving`
-  int moving = 0;                           ///< solids
+  const FrameStep<Real>* frames = nullptr;  ///< of each step; null: the tank is at rest
+  const SolidStep<Real>* steps = nullptr;   ///< `moving` rows for each step
+  int moving = 0;                           ///< number of moving solids
   FrameStep<Real>* frame = nullptr;         ///< out: of this step
   PlacedSolid<Real>* placed = nullptr;      ///< out: of all solids
   Solid<Real>* before = nullptr;            ///< the same

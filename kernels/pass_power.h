@@ -1,4 +1,4 @@
-// What the motion of the tank does to the fluid per time.
+// The power of the tank's motion on the fluid.
 #pragma once
 
 #include "kernels/boundary/moving.h"
@@ -6,9 +6,9 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Sums v . f over the particles, f (h/s^2) by how much the motion of the tank changes what they
-/// feel beside gravity, without Coriolis' force, which does no work. It stands where a measure has
-/// the sum of x.
+/// Sums v . f over the particles. f (h/s^2) is the acceleration by the motion of the tank in
+/// addition to gravity, without the Coriolis term, which does no work. The sum is returned
+/// as x[0] of a measurement.
 template <class Real>
 struct PowerPass {
   FrameStep<double> frame;  ///< of a step of `dt`

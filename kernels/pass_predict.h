@@ -1,5 +1,5 @@
-// predict: v += dt g, x* = x + dt v, and the bin of x*. Macklin & Mueller 2013, algorithm 1, l.
-// 1-4.
+// predict: v += dt g, x* = x + dt v, and the bin of x*. Macklin & Mueller 2013, algorithm 1,
+// lines 1-4.
 #pragma once
 
 #include "kernels/boundary/far_box.h"
@@ -10,11 +10,11 @@ namespace pbf::inline PBF_VARIANT {
 template <class Real>
 struct Moving {
   Vec3<Real> x, v;  ///< h, h/s
-  bool fast;        ///< faster than the speed that is watched, before it was limited
-  Real mark = 1;    ///< -1: so fast that it may pass a neighbour (relative_motion.h), else 1
+  bool fast;        ///< above Params::speed_squared, before it was limited
+  Real mark = 1;    ///< -1: so fast that it may pass a neighbor (relative_motion.h), else 1
 };
 
-/// The velocity with what gravity, or the tank's motion, and damping make of it in a step.
+/// The velocity after gravity, or the tank's motion, and damping of a step.
 template <class Real, class Boundary>
 PBF_HD Vec3<Real> accelerated(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
                               const Boundary& boundary) {
@@ -24,9 +24,9 @@ PBF_HD Vec3<Real> accelerated(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
   return mul_add(p.damping, v, p.dt * p.gravity);
 }
 
-/// v: accelerated. Position is clamped to the walls, and the velocity follows what the clamp did: a
-/// particle never enters the constraint solve from behind a wall, also when there are no
-/// iterations. path_end(from, to): of the boundary.
+/// v: already accelerated. The position is clamped to the walls, and the velocity follows the
+/// clamp, so that no particle is behind a wall after `predict`, with or without iterations.
+/// path_end(from, to): that of the boundary.
 template <class Real, class End>
 PBF_HD Moving<Real> predicted(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p, End&& path_end) {
   const Real speed_squared = dot(v, v);
@@ -38,7 +38,7 @@ PBF_HD Moving<Real> predicted(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
   const Real mark = speed_squared > p.passing_squared ? Real(-1) : Real(1);
   return {x, mul_add(p.inv_dt, x - free, v), fast, mark};
 }
-/// With plain walls.
+/// The same with plain walls only.
 template <class Real, class Boundary>
 PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
                             const Boundary& boundary) {
@@ -46,7 +46,7 @@ PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
   return predicted(x, accelerated(x, v, p, boundary), p,
                    [&](auto from, auto to) { return walls.path_end(from, to); });
 }
-/// Of particle i, with solids; what they do to it is booked.
+/// The same for particle i with solids; books loads of walls and solids.
 template <class Real, class Boundary>
 PBF_HD_APART Moving<Real> predict_at_solids(int i, Vec3<Real> x, Vec3<Real> v,
                                             const Params<Real>& p, const Boundary& boundary) {
@@ -54,7 +54,7 @@ PBF_HD_APART Moving<Real> predict_at_solids(int i, Vec3<Real> x, Vec3<Real> v,
     return boundary.path_end(boundary.booked, true, i, from, to);
   });
 }
-/// Of particle i, wherever it has come to since the last sort; booked.
+/// The same for particle i, wherever it has moved since the last sort; books loads.
 template <class Real, class Boundary>
 PBF_HD Moving<Real> predict_anywhere(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
                                      const Boundary& boundary) {
@@ -64,7 +64,7 @@ PBF_HD Moving<Real> predict_anywhere(int i, Vec3<Real> x, Vec3<Real> v, const Pa
     return predict(x, v, p, boundary);
 }
 
-/// Writes x* of particle i and the velocity that goes with it.
+/// Writes x* of particle i and the matching velocity.
 template <class Real>
 PBF_HD void put(int i, const Moving<Real>& m, OwnRows<Vec4<Real>> position,
                 OwnRows<Vec4<Real>> velocity, StepCounts* counts) {
@@ -82,7 +82,7 @@ PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
   put(i, m, position, velocity, counts);
 }
 
-/// The bin of x* of row i, or -1 where NearPredictPass finds it.
+/// The bin of x* of row i, or -1 if NearPredictPass computes it.
 template <int D, class Real, class Boundary>
 PBF_HD int predicted_bin(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
                          const Boundary& boundary) {
@@ -107,7 +107,7 @@ struct PredictPass {
   }
 };
 
-/// The near rows, in place: x* with the mark, the velocity that goes with it, and the bin.
+/// Predicts the near rows in place: x* with the mark, the matching velocity, and the bin.
 template <class Real, int D>
 struct NearPredictPass {
   Params<Real> p;
@@ -124,8 +124,7 @@ struct NearPredictPass {
   }
 };
 
-/// x* and the velocity that goes with it, in place: for further substeps, and for
-/// looking at this step alone.
+/// x* and the matching velocity, in place: for further substeps, and for examining this step alone.
 template <class Real, class Boundary>
 struct MovePass {
   Params<Real> p;
@@ -135,7 +134,7 @@ struct MovePass {
   PBF_HD void operator()(int i) const {
     const Vec3<Real> x = xyz(position[i]), v = xyz(velocity[i]);
     if constexpr (Boundary::books) {
-      // Most go where plain walls let them; so the solids are asked for the others alone.
+      // Most paths meet at most plain walls; solids are evaluated for the others alone.
       const Moving<Real> m = predict(x, v, p, boundary);
       if (!may_meet_solids(boundary, x, m.x)) return put(i, m, position, velocity, counts);
     }
@@ -143,7 +142,7 @@ struct MovePass {
   }
 };
 
-/// The bin of x as it is: for the state before the first update.
+/// The bin of the present position, for the state before the first update.
 template <class Real, int D>
 struct BinPass {
   Params<Real> p;
@@ -152,9 +151,9 @@ struct BinPass {
   PBF_HD void operator()(int i) const { bin[i] = bin_of<D>(xyz(position[i]), p); }
 };
 
-/// Puts the particles in the order of bins; with `moving`, as predicted: then position's w = 1
-/// (1/density, until an iteration replaces it), or -1 as a mark for the first iteration. Otherwise
-/// w comes along.
+/// Copies the particles into the order of bins. With `moving` they are predicted; w of the position
+/// is then 1 (1/density, until an iteration replaces it), or -1 as a mark for the first iteration.
+/// Otherwise w is copied.
 template <class Real, class Boundary, bool moving>
 struct GatherPass {
   Params<Real> p;

@@ -9,10 +9,10 @@
 namespace pbf::inline PBF_VARIANT {
 
 constexpr double kResidualUnit = 0x1p-32;  ///< of one particle's compression
-constexpr double kResidualMax = 8;         ///< more counts as this: 2^31 particles fit 64 bits
+constexpr double kResidualMax = 8;         ///< upper limit: 2^31 particles then fit 64 bits
 
-/// Compression max(rho - 1, 0) in units of kResidualUnit, rounded down. A density that is no number
-/// counts as the most, so that a spoilt state is never taken for a solved one.
+/// Compression max(rho - 1, 0) in units of kResidualUnit, rounded down. NaN counts as kResidualMax,
+/// so that a broken state never passes for a converged one.
 template <class Real>
 struct ResidualPass {
   const Real* density;  ///< rho0, of the last iteration, before it moved the particles

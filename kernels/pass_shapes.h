@@ -1,4 +1,4 @@
-// The shapes of passes. An executor has a launch of its own for each (lib/solver/executor.h), so a
+// The shapes of passes. An executor has one launch function for each (lib/solver/executor.h), so a
 // backend that lacks one does not compile.
 #pragma once
 
@@ -16,7 +16,7 @@ concept ItemPass = requires(const P p, int i) {
   p(i);
 };
 
-/// A sum over the neighbours of every particle (kernels/pair_sum.h).
+/// A sum over the neighbors of every particle (kernels/pair_sum.h).
 template <class P>
 concept PairPass = requires(const P p, int i, const typename P::Own own, typename P::Sum sum) {
   { P::D } -> std::convertible_to<int>;
@@ -26,8 +26,8 @@ concept PairPass = requires(const P p, int i, const typename P::Own own, typenam
   p.finish(i, own, sum);
 };
 
-/// Several threads may share an item: each makes part(item, lane, of) of it, lane 0 .. of - 1. The
-/// parts are whole numbers or bits, which add up in any order; finish(item, sum) takes their sum.
+/// Several threads may share an item: each computes part(item, lane, of), lane 0 .. of - 1. Parts
+/// are integers or bits, whose sum does not depend on order; finish(item, sum) receives it.
 template <class P, class Item = int>
 concept InParts = requires(const P p, Item item, typename P::Part part) {
   { p.part(item, 0, 1) } -> std::convertible_to<typename P::Part>;
@@ -35,14 +35,14 @@ concept InParts = requires(const P p, Item item, typename P::Part part) {
   p.finish(item, part);
 };
 
-/// `lanes` threads for every item, where there are many.
+/// `lanes` threads share an item on a device with many threads.
 template <class P>
 concept SharedPass = InParts<P> && requires {
   { P::lanes } -> std::convertible_to<int>;
 };
 
-/// Items in groups(), size(group) in each; lanes(group, many) threads share an item of it: a power
-/// of two up to 32, or `many`, all that can add up together.
+/// groups() groups of size(group) items. lanes(group, many) threads share an item: a power of two
+/// up to 32, or `many`, the most threads that can add together.
 template <class P>
 concept TeamPass = InParts<P> && requires(const P p) {
   { p.items() } -> std::convertible_to<int>;
@@ -58,8 +58,8 @@ using CellOf = decltype(std::declval<const P&>().cell(std::declval<BrickOf<P>>()
 template <class P>
 using ShareOf = decltype(std::declval<const P&>().share(0, 0, std::int64_t(0)));
 
-/// Over the cells of bricks, `lanes` threads for each: finish(cell, sum) gives a number of a cell,
-/// finish_corner(brick, which, sum) takes what the cells give to a corner (kernels/levels.h).
+/// Over the cells of bricks, `lanes` threads per cell: finish(cell, sum) returns a cell's value,
+/// finish_corner(brick, which, sum) receives the sum for a corner (kernels/levels.h).
 template <class P>
 concept BrickPass = InParts<P, CellOf<P>> &&
     requires(const P p, BrickOf<P> brick, CellOf<P> cell, typename P::Part part, ShareOf<P> sum) {
@@ -73,8 +73,8 @@ concept BrickPass = InParts<P, CellOf<P>> &&
   p.finish_corner(brick, 0, sum);
 };
 
-/// A measure: maxima and counts of particle i, then its terms of the sums, in units that these
-/// decide.
+/// A measurement: maxima and counts of particle i, then its terms of the sums, in units that follow
+/// from the maxima.
 template <class P>
 concept ReducePass = requires(const P p, int i, MeasureUnits unit) {
   { p.counts(i) } -> std::same_as<MeasureCounts>;

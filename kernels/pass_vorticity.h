@@ -1,4 +1,4 @@
-// Vorticity confinement, bounded by what the flow around a particle loses.
+// Vorticity confinement, bounded by the energy loss of the flow around a particle.
 // Macklin & Mueller 2013, eq. 15 and 16, in the form of kernels/README.md (13).
 #pragma once
 
@@ -15,10 +15,9 @@ PBF_HD Vec<V, D> weighted_gradient(Vec<V, D> d, V inv_rho_j, const Params<Real>&
   return (p.vol * Spiky<Real, D>::gradient_norm * t * t * root.inverse * inv_rho_j) * d;
 }
 
-/// omega_i = sum_j m/rho_j grad W_ij x (v_j - v_i), 1/s, and the share of it that the particle's
-/// confinement may put back, by the rate at which its neighbours approach: the iterations take
-/// their energy from approach, and there is none in a rigid motion. In two dimensions only y is
-/// summed.
+/// omega_i = sum_j m/rho_j grad W_ij x (v_j - v_i), 1/s, times the gain of confinement. The gain is
+/// limited by the rate at which neighbors approach: the iterations take energy only from approach,
+/// and in a rigid motion there is none. In two dimensions only y is summed.
 template <class Real, class Lists, int dimensions>
 struct CurlPass {
   Params<Real> p;
@@ -32,7 +31,7 @@ struct CurlPass {
   template <class V>
   struct SumOf {
     decltype(cross(Vec<V, D>{}, Vec<V, D>{})) v{};
-    V approach{};  ///< 1/s^2, sum_j m/rho_j W_ij (rate of approach/r)^2 over what approaches
+    V approach{};  ///< 1/s^2, sum_j m/rho_j W_ij (rate of approach/r)^2 over approaching neighbors
     template <class F>
     PBF_HD void each(F&& f) {
       each_component(v, f);
@@ -65,7 +64,7 @@ struct CurlPass {
   }
 };
 
-/// What the two sides bring to the gradient of |omega|; x.w = 1/density.
+/// Data of the particle and of a neighbor for the gradient of |omega|; x.w = 1/density.
 template <class V>
 struct CurlOwn {
   Vec4<V> x, curl;
@@ -84,10 +83,10 @@ PBF_HD CurlOther<V> curl_other(const Vec4<V>& x, V magnitude) {
   return {x, magnitude};
 }
 
-/// v += h N x (gain omega), N = eta/(|eta| + 0.1 |omega|/h + tiny), eta = grad |omega|; the gain is
-/// CurlPass's. Left out where the density of the last iteration is below rho0: the iterations do
-/// not act there, so nothing is lost, and at the surface eta is the gradient of missing neighbours.
-/// N is no longer a unit vector where |omega| is flat, so it is defined at eta = 0.
+/// v += h N x (gain omega), N = eta/(|eta| + 0.1 |omega|/h + tiny), eta = grad |omega|; gain:
+/// CurlPass. Only where the density of the last iteration is at least rho0: elsewhere the
+/// iterations lose no energy, and at the surface eta shows missing neighbors. N is shorter than 1
+/// where |omega| is nearly constant, so it is defined for eta = 0.
 template <class Real, class Lists, int dimensions>
 struct VorticityPass {
   Params<Real> p;

@@ -1,5 +1,5 @@
-// XSPH viscosity. Schechter & Bridson 2012, eq. 6; Macklin & Mueller 2013, eq. 17; with one weight
-// for both particles of a pair, as Monaghan 1989 has it.
+// XSPH viscosity. Schechter & Bridson 2012, eq. 6; Macklin & Mueller 2013, eq. 17; with the same
+// weight for both particles of a pair, as in Monaghan 1989.
 #pragma once
 
 #include "kernels/pair_sum.h"
@@ -7,7 +7,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// What a particle brings to its viscosity; w = 1/density.
+/// Data of the particle itself; w = 1/density.
 template <class V, int dimensions>
 struct XsphOwn {
   Vec<V, dimensions> x, v;
@@ -19,8 +19,8 @@ PBF_HD XsphOwn<V, dimensions> xsph_own(const Vec4<V>& x, const Vec4<V>& v) {
 }
 
 /// v_i += c sum_j (m/rho_i + m/rho_j)/2 (v_j - v_i) W_ij, with the density of the last iteration.
-/// What i takes from j, j takes from i: momentum is kept to rounding. It also gives the particle
-/// its bin in the next update, where one follows: that update's `predict`.
+/// The weight is symmetric, so momentum is kept to rounding. If an update follows, this pass also
+/// computes the particle's bin for it, in place of that update's `predict`.
 template <class Real, class Lists, Smoothing S, class Boundary>
 struct XsphPass {
   Params<Real> p;

@@ -1,4 +1,4 @@
-// Whether a step resolves how neighbours move past each other.
+// Whether a step resolves how neighbors move past each other.
 #pragma once
 
 #include "kernels/neighbors.h"
@@ -11,10 +11,9 @@ namespace pbf::inline PBF_VARIANT {
 /// (kernels/README.md, "Fast fluid").
 constexpr double kResolvedWay = 0.4;
 
-/// Counts particle i if it moves by more than kResolvedWay relative to a neighbour in this step,
-/// and keeps the largest such way. Of two that part so fast one moves by more than half of it: such
-/// particles are marked when they are predicted, and no other needs to look. velocity: as
-/// predicted, h/s.
+/// Counts particle i if it moves by more than kResolvedWay relative to a neighbor in this step, and
+/// records the largest such distance. In such a pair, at least one particle moves by more than half
+/// of it. `predict` marks these particles, and only they are checked. velocity: as predicted, h/s.
 template <class Real, class Lists>
 PBF_HD void count_unresolved(int i, const Params<Real>& p, const Lists& lists,
                              GatheredRows<Vec4<Real>> velocity, StepCounts* counts) {
@@ -22,7 +21,7 @@ PBF_HD void count_unresolved(int i, const Params<Real>& p, const Lists& lists,
   const Vec3<Real> way = p.dt * xyz(velocity[i]);
   Real longest(0);
   lists.for_each(i, [&](Neighbor j) {
-    if (j.row >= lists.far) return;  // what fills up a list
+    if (j.row >= lists.far) return;  // padding of the list
     const Vec3<Real> d = way - p.dt * xyz(velocity[j]);
     longest = max2(longest, dot(d, d));
   });

@@ -1,18 +1,18 @@
-// Typed rows of an array: what a pass may reach through each of its members. A pass is called for
-// row i (an int); a list gives rows of others (Neighbor). In machine code both are one pointer or
-// one number.
+// Typed access to the rows of an array: which rows a pass may access through a member. A pass is
+// called for row i (an int); lists give rows of other particles (Neighbor). The types compile to
+// plain pointers and numbers.
 #pragma once
 
 #include "kernels/hd.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-/// The row of another particle, as a neighbor list gives it. No number becomes one by itself.
+/// The row of another particle, from a neighbor list. An int does not convert to it.
 struct Neighbor {
   int row;
 };
 
-/// An array of which a pass reaches the row that it is called for. T const: it only reads.
+/// An array of which a pass accesses only the row that it is called for. T const: read-only.
 template <class T>
 class OwnRows {
  public:
@@ -25,7 +25,7 @@ class OwnRows {
   T* rows_ = nullptr;
 };
 
-/// An array of which it also reads rows of neighbors.
+/// A read-only array of which a pass also reads rows of neighbors.
 template <class T>
 class GatheredRows : public OwnRows<const T> {
  public:

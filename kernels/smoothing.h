@@ -10,8 +10,8 @@ namespace pbf::inline PBF_VARIANT {
 
 /// Which pair of functions a scene uses; a template argument of the pair loops.
 /// consistent: Spiky for the density and, as its derivative, for the gradient;
-/// paper: Poly6 for the density, Spiky for the gradient (Macklin & Mueller 2013); in space and in
-/// the plane.
+/// paper: Poly6 for the density, Spiky for the gradient (Macklin & Mueller 2013). Each exists in
+/// three and in two dimensions.
 enum class Smoothing { consistent, paper, consistent_2d, paper_2d };
 constexpr bool is_paper(Smoothing s) { return s == Smoothing::paper || s == Smoothing::paper_2d; }
 constexpr int dimensions_of(Smoothing s) {
@@ -47,23 +47,23 @@ PBF_HD Real density_norm() {
   return is_paper(S) ? Poly6<Real, dimensions_of(S)>::norm : Spiky<Real, dimensions_of(S)>::norm;
 }
 
-/// The density kernel's shape from what a pair loop has at hand: q^2 and t = 1 - q (clamped).
+/// The shape of the density kernel, from the q^2 and t = max(1 - q, 0) of a pair loop.
 template <class Real, Smoothing S, class V>
 PBF_HD V density_shape(V q_squared, V t) {
   if constexpr (is_paper(S)) return Poly6<Real>::shape(q_squared);
   return t * t * t;
 }
 
-/// Squared distance (in h^2) below which two particles count as coincident: their direction is
-/// then chosen, not computed. Far above the smallest normal number of float.
+/// Squared distance (in h^2) below which two particles count as coincident: their direction is then
+/// chosen, not computed. It is far above the smallest normal float.
 template <class Real>
 PBF_HD Real coincident_q_squared() {
   return Real(1e-24);
 }
 
-/// A unit vector for the coincident pair of ids (i, j), the same for both but for the sign, from a
-/// small integer hash: the pair separates in the same way in every run, on every backend and in any
-/// order of rows. In two dimensions it lies in the plane.
+/// A unit vector for a coincident pair with ids i and j, from an integer hash; exchanging i and j
+/// changes its sign. The pair separates in the same way in every run, on every backend and in any
+/// order of rows. In two dimensions the vector lies in the plane.
 template <class Real, int dimensions = 3>
 PBF_HD Vec3<Real> separation(int i, int j) {
   unsigned a = unsigned(i < j ? i : j), b = unsigned(i < j ? j : i);
@@ -71,8 +71,8 @@ PBF_HD Vec3<Real> separation(int i, int j) {
   k ^= k >> 15;
   k *= 2654435761u;
   k ^= k >> 13;
-  // A point of the unit sphere: z uniform, the angle through a rational parametrisation, so that
-  // no trigonometric function (differing between libraries) is needed.
+  // A point of the unit sphere: z uniform, the angle by a rational parametrization, because
+  // trigonometric functions differ between libraries.
   Real z = Real(k & 1023u) * Real(2.0 / 1023.0) - Real(1);
   Real u = Real((k >> 10) & 1023u) * Real(2.0 / 1023.0) - Real(1);
   Real s = square_root(max2(Real(1) - z * z, Real(0)));

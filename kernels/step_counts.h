@@ -1,4 +1,4 @@
-// What a run counts on the way, one of each.
+// Counters of a run.
 #pragma once
 
 #include "kernels/atomics.h"
@@ -9,7 +9,7 @@ struct StepCounts {
   unsigned long long fast = 0;     ///< particle-updates above the watched speed (Params)
   unsigned long long repeats = 0;  ///< repeats of the iterations beyond the first of every substep
   unsigned long long unresolved = 0;  ///< particles times steps (relative_motion.h)
-  float way_squared = 0;              ///< h^2, of the longest way of these relative to a neighbour
+  float way_squared = 0;              ///< h^2, largest squared motion relative to a neighbor
 };
 
 }  // namespace pbf::inline PBF_VARIANT

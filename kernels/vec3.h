@@ -15,17 +15,17 @@ struct Vec3 {
   Real x{}, y{}, z{};
 };
 
-/// A vector of the x-z plane, in which scenes of two dimensions lie.
+/// A vector of the x-z plane, for scenes of two dimensions.
 template <class Real>
 struct Vec2 {
   Real x{}, z{};
 };
 
-/// What a pair loop calculates with: no component more than the scene has dimensions.
+/// The vector of pair loops, with as many components as the scene has dimensions.
 template <class Real, int dimensions>
 using Vec = std::conditional_t<dimensions == 2, Vec2<Real>, Vec3<Real>>;
 
-/// Four scalars moved by one 16- or 32-byte access; what w holds is said where it is used.
+/// Four scalars moved by one 16- or 32-byte access; w is documented where it is used.
 template <class Real>
 struct alignas(4 * sizeof(Real)) Vec4 {
   Real x, y, z, w;
@@ -58,7 +58,7 @@ PBF_HD Vec<R, dimensions> point(const Vec4<R>& a) {
   else
     return xyz(a);
 }
-/// The same vector with all three components; of a cross product in the plane, the number is y.
+/// The same vector with three components; a number (a cross product in the plane) becomes y.
 template <class R>
 PBF_HD Vec3<R> in_space(Vec2<R> a) {
   return {a.x, R(0), a.z};
@@ -75,8 +75,8 @@ PBF_HD Vec3<R> in_space(R y) {
 PBF_HD float square_root(float x) { return sqrtf(x); }
 PBF_HD double square_root(double x) { return sqrt(x); }
 
-/// a b + c, for what two kernels must compute alike: the device's compiler may fuse a product and a
-/// sum in one kernel and not in the other. Elsewhere rounded twice.
+/// a b + c for values that two kernels must compute with the same bits: the device's compiler may
+/// fuse a product and a sum in one kernel but not in the other. Elsewhere rounded twice.
 template <class Real>
 PBF_HD Real mul_add(Real a, Real b, Real c) {
 #if defined(PBF_FAST_DEVICE)
@@ -94,8 +94,8 @@ PBF_HD Vec3<Real> mul_add(Real a, Vec3<Real> b, Vec3<Real> c) {
 }
 
 /// q and 1/q from q^2 for a pair loop; q^2 below 1e-30 counts as 1e-30, so that a coincident pair
-/// gives q = 1e-15 and, with its zero distance vector, a zero gradient instead of 0/0.
-/// Fast device code takes the hardware's reciprocal root (2 ulp in float) and one multiplication.
+/// gives q = 1e-15 and, with its zero distance vector, a zero gradient instead of 0/0. Fast device
+/// code uses the hardware's reciprocal root (2 ulp in float) and one multiplication.
 template <class Real>
 struct Root {
   Real q, inverse;
@@ -117,8 +117,8 @@ PBF_HD Root<Real> root_of(Real q_squared) {
 #endif
 }
 
-/// a[i] for an array that the present pass does not write: on the device through the read-only
-/// path, 16 bytes at a time.
+/// a[i] of an array that the current pass does not write: on the device through the read-only path,
+/// 16 bytes at a time.
 template <class Real>
 PBF_HD Vec4<Real> load(const Vec4<Real>* a, int i) {
 #if defined(__CUDA_ARCH__)

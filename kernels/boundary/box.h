@@ -7,31 +7,30 @@ namespace pbf::inline PBF_VARIANT {
 
 enum WallBit : unsigned { x_min = 1, x_max = 2, y_min = 4, y_max = 8, z_min = 16, z_max = 32 };
 
-/// What a boundary adds at a place: density in units of rho0 and gradient in rho0/h.
+/// What a boundary adds at a point: density in units of rho0 and gradient in rho0/h.
 template <class Real>
 struct BoundaryTerm {
   Real density = 0;
   Vec3<Real> gradient;
 };
 
-/// A boundary answers three questions: what it adds to the density and its gradient, where a path
-/// during a step ends, and how far a particle is behind it. Passes ask nothing else.
+/// A boundary gives passes three things: its contribution to the density and the gradient, the end
+/// of a path within a step, and the distance of a particle behind it.
 template <class Real>
 struct Box {
-  static constexpr bool books = false;     ///< loads on the walls: solids.h
-  static constexpr bool far_only = false;  ///< leaves rows near solids alone: far_box.h
+  static constexpr bool books = false;     ///< whether loads are booked: solids.h
+  static constexpr bool far_only = false;  ///< whether it skips near rows: far_box.h
   Vec3<Real> extent;                       ///< h, of the domain
   Real margin = 0;                         ///< h, distance to a wall at which particles are clamped
   unsigned walls = 63;                     ///< WallBit mask of the faces that are walls
-  bool adds_density = true;                ///< boundary: density
+  bool adds_density = true;                ///< the scene has `boundary: density`
   Real scale = 1;      ///< amplitude of that contribution, kernels/README.md (9)
   Real inv_range = 1;  ///< h over the range of that contribution
 
-  /// Each wall adds A D(q/kappa), with amplitude A = `scale` and range kappa = 1/inv_range
-  /// from lib/program/calibrate.h. The walls' union is taken by inclusion-exclusion,
-  /// 1 - prod(1 - A D_k): exact for one wall, an approximation where two half spaces overlap (its
-  /// error: tests/oracle). In `paper` the density's D is Poly6's, the gradient's Spiky's, as for
-  /// particles.
+  /// Each wall adds A D(q/kappa), with amplitude A = `scale` and range kappa = 1/inv_range from
+  /// lib/program/calibrate.h. Walls are combined by inclusion and exclusion, 1 - prod(1 - A D_k):
+  /// exact for one wall, an approximation where two half spaces overlap (its error: tests/oracle).
+  /// With `paper`, the density uses D of Poly6 and the gradient D of Spiky, as for particles.
   template <Smoothing S>
   PBF_HD BoundaryTerm<Real> term(Vec3<Real> x) const;
 
@@ -41,18 +40,17 @@ struct Box {
     return x.x < one || x.y < one || x.z < one || x.x > extent.x - one || x.y > extent.y - one ||
            x.z > extent.z - one;
   }
-  /// What each wall contributes to the gradient, along its axis; false where none does.
+  /// The contribution of each wall to the gradient, along its axis; false if there is none.
   template <Smoothing S>
   PBF_HD bool slopes(Vec3<Real> x, Real (&of_wall)[6]) const;
 
-  /// Where the way from a place inside to `to` ends: at the nearest place inside, for walls are
-  /// planes without another side.
+  /// The end of a path from a point inside to `to`: the point inside that is nearest to `to`.
   PBF_HD Vec3<Real> path_end(Vec3<Real>, Vec3<Real> to) const {
     return {clamped(to.x, extent.x, x_min), clamped(to.y, extent.y, y_min),
             clamped(to.z, extent.z, z_min)};
   }
 
-  /// h, the largest distance of x behind a place where particles are clamped; 0: behind none.
+  /// h, the largest distance of x behind a plane at which particles are clamped; 0 if none.
   PBF_HD double penetration(const double (&x)[3]) const {
     const double high[3] = {extent.x, extent.y, extent.z}, clamp = margin;
     double deepest = 0;

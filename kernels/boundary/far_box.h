@@ -1,5 +1,5 @@
-// How passes over all particles deal with solids: they leave what is near to a second launch, and
-// see plain walls.
+// The boundary in passes over all particles: plain walls only. Particles near solids are left to a
+// second launch.
 #pragma once
 
 #include "kernels/boundary/solids.h"
@@ -7,12 +7,12 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// The boundary of the first launch. What is far from all solids has to do with plain walls alone;
-/// of a near row a pass keeps the sums over its neighbours and goes on.
+/// The boundary of the first launch. Particles far from all solids meet plain walls only. For near
+/// rows, a pass only stores the sums over their neighbors.
 template <class Real>
 struct FarBox : Box<Real> {
   static constexpr bool far_only = true;
-  Bounds<Real> bounds{}, clear{};  ///< as those of Solids
+  Bounds<Real> bounds{}, clear{};  ///< as in Solids
   bool obstacles = false, loaded = false;
   const FrameStep<Real>* frame = nullptr;
   NearRows<Real> near{};
@@ -26,15 +26,15 @@ struct FarBox : Box<Real> {
         frame(s.frame),
         near(s.near) {}
 
-  /// Whether row i, in the order of the last sort, starts the step with a speed at which it sees
-  /// nothing but plain walls; else it is near from now on.
+  /// Whether row i, in the order of the last sort, is too slow to meet anything but plain walls in
+  /// this step. Otherwise it becomes near.
   PBF_HD bool stays_far(int i, Real speed_squared) const {
     if (!near.way_left_squared || near.may_go(i, speed_squared)) return true;
     if (!near.near(i)) near.mark_near(i);
     return false;
   }
 
-  /// Whether a way may lead to a solid, or end near one.
+  /// Whether a path may meet a solid or end near one.
   PBF_HD_RARE bool comes_near(Vec3<Real> from, Vec3<Real> to) const {
     return may_meet_solids(*this, from, to);
   }
@@ -42,13 +42,13 @@ struct FarBox : Box<Real> {
   PBF_HD bool leaves(int i, Vec3<Real> from, Vec3<Real> move) const {
     return !(dot(move, move) <= near.way_left_squared[i]) && comes_near(from, from + move);
   }
-  /// At least the largest gradient of the walls' density, 1/h: of a half space it is below 1.6 over
-  /// the range, and three pairs of walls may be near.
+  /// An upper bound of the gradient of the walls' density, 1/h: for one half space it is below 1.6
+  /// over the range, and up to three pairs of walls are within range.
   PBF_HD Real steepest() const { return Real(6) * this->scale * this->inv_range; }
 };
 
-/// Which rows are near, once the lists are made; of all rows, or of those in the half cells that
-/// something can be near in. Before, all are far.
+/// Marks the near rows after the lists are made: among all rows, or only among those in the half
+/// cells where this is possible. All rows are far before.
 template <class Real>
 struct FindNearPass {
   Solids<Real> solids;
@@ -63,7 +63,7 @@ struct FindNearPass {
   }
 };
 
-/// Makes the rows of the list far again.
+/// Marks the listed rows as far.
 template <class Real>
 struct ForgetNearPass {
   NearRows<Real> near;
@@ -74,7 +74,7 @@ struct ClearNearPass {
   NearRows<Real> near;
   PBF_HD void operator()(int) const { *near.count = 0; }
 };
-/// Where nothing is known of the n rows all of them are near.
+/// Marks all n rows as near, for when nothing is known about them.
 template <class Real>
 struct AllNearPass {
   NearRows<Real> near;

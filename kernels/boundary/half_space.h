@@ -1,5 +1,5 @@
-// What the half space behind a plane wall, filled with fluid at rest, adds to the density, in
-// closed form. q = distance/h from the wall.
+// The density of the half space behind a plane wall, filled with fluid at rest, in closed form.
+// q = distance/h from the wall.
 #pragma once
 
 #include "kernels/smoothing.h"
@@ -35,9 +35,9 @@ PBF_HD HalfSpace<Real> half_space_poly6(Real q) {
   return {max2(Real(0.5) - a * q * p, Real(0)), -a * u2 * u2};
 }
 
-/// In two dimensions D = (1-q)^m P(q), P = 1/2 + c1 q + c2 q^2 + c3 q^3 + c4 q^4, fitted to the
-/// integral over the half plane, which holds arc functions (how near: kernels/README.md (9)); the
-/// slope is this polynomial's own derivative, (1-q)^(m-1) ((1-q) P' - m P).
+/// In two dimensions D = (1-q)^m P(q), P = 1/2 + c1 q + c2 q^2 + c3 q^3 + c4 q^4, is fitted to the
+/// integral over the half plane, which has no simple form (accuracy: kernels/README.md (9)). The
+/// slope is the derivative of D, (1-q)^(m-1) ((1-q) P' - m P).
 template <int m, class Real>
 PBF_HD HalfSpace<Real> half_plane(Real q, Real c1, Real c2, Real c3, Real c4) {
   static_assert(m == 4 || m == 5);
@@ -57,7 +57,7 @@ PBF_HD HalfSpace<Real> half_plane_poly6(Real q) {
   return half_plane<4>(q, Real(0.83646), Real(0.31849), Real(-0.09827), Real(-0.75489));
 }
 
-/// The half space of the density kernel, and of the gradient's, with the dimensions of S.
+/// The half space for the kernel of the gradient, and for that of the density.
 template <class Real, Smoothing S>
 PBF_HD HalfSpace<Real> gradient_half_space(Real q) {
   if constexpr (dimensions_of(S) == 2) return half_plane_spiky(q);

@@ -1,4 +1,4 @@
-// Where a path ends that meets a solid obstacle.
+// The end of a path that meets a solid obstacle.
 #pragma once
 
 #include "kernels/boundary/obstacle.h"
@@ -9,17 +9,17 @@ template <class Real>
 struct PathEnd {
   Vec3<Real> x;
   bool hit = false;
-  bool again = false;  ///< x is inside: the same solid must be asked once more
+  bool again = false;  ///< x is still inside: evaluate the same solid once more
 };
 
-/// The way out of a shape, in its coordinates.
+/// The displacement out of a shape, in body coordinates.
 template <class Real>
 struct WayOut {
   Vec3<Real> normal;
-  Real depth = 0;  ///< h, 0: none is needed
+  Real depth = 0;  ///< h, along the normal; 0: none is needed
   bool again = false;
 };
-/// Of what goes from a to b. `frame`: where the body is.
+/// For a path from a to b. `frame`: the pose of the body.
 template <int D, class Shape, class Real>
 PBF_HD WayOut<Real> way_out(const Shape& s, const BodyFrame<Real>& frame, Vec3<Real> a,
                             Vec3<Real> b) {
@@ -43,13 +43,13 @@ PBF_HD WayOut<Real> way_out(const Shape& s, const BodyFrame<Real>& frame, Vec3<R
   return out;
 }
 
-/// Where the way from `from` to `to` (h) ends: at `to` where it meets no solid, bit for bit.
-/// Otherwise what is left of it behind the first place of the surface that it meets goes on along
-/// the plane that touches the solid there. Of a convex shape it so ends outside, and on the side
-/// where it met the solid, however thin that is and however long the way. A path that starts
-/// inside, as by rounding or because the solid came there, starts at the nearest place of the
-/// surface instead. `before`: where the solid was when the way began; seen from the solid the way
-/// is straight, so that a solid sweeps all that is in its way.
+/// The end of a path from `from` to `to` (h): `to`, bit for bit, if it meets no solid. Otherwise
+/// the rest of the path behind the first point of contact continues along the tangent plane there.
+/// If the shape is convex, the path ends outside, on the side where it met the solid, for any
+/// thickness of the solid and any length of the path. A path that starts inside, because of
+/// rounding or because the solid moved there, starts at the nearest point of the surface instead.
+/// `before`: the solid at the start of the path. The path is straight in the frame of the solid, so
+/// a moving solid sweeps away what is in its path.
 template <int D, class Real>
 PBF_HD_APART PathEnd<Real> keep_out(const Solid<Real>& before, const Solid<Real>& o,
                                     Vec3<Real> from, Vec3<Real> to) {
@@ -58,7 +58,7 @@ PBF_HD_APART PathEnd<Real> keep_out(const Solid<Real>& before, const Solid<Real>
   if (!(out.depth > Real(0))) return {to, out.again, out.again};
   return {to + out.depth * turned_back<D>(o, out.normal), true, out.again};
 }
-/// Of a solid that stands.
+/// The same for a solid at rest.
 template <int D, class Real>
 PBF_HD PathEnd<Real> keep_out(const Solid<Real>& o, Vec3<Real> from, Vec3<Real> to) {
   return keep_out<D>(o, o, from, to);

@@ -1,5 +1,5 @@
-// What the fluid does to the walls around it: every displacement that a wall gives a particle is
-// booked on that wall, in whole numbers, so that neither order nor threads change a sum.
+// Loads on walls: every displacement that a wall gives to a particle is booked on that wall. The
+// sums are integers, so order and threads do not matter.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,27 @@
 
 namespace pbf {
 
-/// A wall's sum lies in so many parts, which different threads write.
+/// Number of partial sums per wall, which different threads write.
 inline constexpr int kLoadParts = 64;
 
-/// Displacements are booked in so many parts of h.
+/// Units of booked displacements per h.
 inline constexpr std::int64_t kLoadUnits = std::int64_t(1) << 36;
 
-/// What one wall got within an update, or a gauge on one: then way[0] alone, into the wall.
-/// Displacements in units of h/kLoadUnits, with the sign of what the wall feels; moments about the
-/// domain's lower corner in the same units times a power of two above the longest edge of the box.
+/// Booked on one wall within an update: displacements in units of h/kLoadUnits, with the sign of
+/// the force on the wall, and moments about the domain's lower corner in these units times
+/// 1/moment_scale. Of a pressure gauge only way[0] is used, positive into the wall.
 struct LoadSums {
   std::int64_t way[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
 };
 
-/// What one wall got since it was asked last, per mass of a particle, in the internal frame.
+/// Load of one wall since the last reading, per mass of a particle, in the internal frame.
 struct Load {
   double impulse[3] = {0, 0, 0};  ///< h/s
-  /// h^2/s, about the domain's lower corner; of an obstacle that moves, about its middle.
+  /// h^2/s, about the domain's lower corner; for a moving obstacle about its center.
   double moment[3] = {0, 0, 0};
   double peak = 0;  ///< h/s^2, largest mean force of one update
   double time = 0;  ///< s
-  double work = 0;  ///< h^2/s^2, that an obstacle that moves has done
+  double work = 0;  ///< h^2/s^2, done by a moving obstacle
 };
 
 }  // namespace pbf
@@ -45,18 +45,18 @@ struct LoadBook {
   Real moment_scale = 1;         ///< 2^-e, 2^e above the longest edge of the box, h
   const Patch* patch = nullptr;  ///< pressure gauges
   int patches = 0;
-  /// Bit of each wall whose own sums are wanted; those beyond the last bit have them.
+  /// Bit k: wall k has sums of its own. Walls beyond the last bit always have them.
   std::uint64_t summed = ~std::uint64_t(0);
 
-  /// Whether those of the domain's walls are wanted, by themselves or by gauges.
+  /// Whether loads of the domain's walls are needed, for their own sums or for gauges.
   PBF_HD bool of_walls() const { return (summed & 63) != 0 || patches > 0; }
 
-  /// Wall `wall` has moved particle i, which is at x, by `way` (h).
+  /// Books that wall `wall` has moved particle i, which is at x, by `way` (h).
   PBF_HD void add(int wall, int i, Vec3<Real> x, Vec3<Real> way) const {
 #if defined(__CUDA_ARCH__)
-    const int part = i % kLoadParts;  // threads side by side write side by side
+    const int part = i % kLoadParts;  // adjacent threads write to different parts
 #else
-    const int part = (i >> 8) % kLoadParts;  // a thread has some 256 particles in a row
+    const int part = (i >> 8) % kLoadParts;  // a thread has about 256 adjacent particles
 #endif
     if (wall > 63 || summed >> wall & 1) {
       LoadSums& to = sums[wall * kLoadParts + part];
@@ -76,7 +76,7 @@ struct LoadBook {
   PBF_HD static void add_units(std::int64_t* to, Real x) {
     if (x != Real(0)) add_whole(to, units(-x));
   }
-  /// Beyond 2^10 h, and what is no number, is for the guard to find.
+  /// Limited to 2^10 h. The guard detects larger and non-finite displacements.
   PBF_HD static std::int64_t units(Real x) {
     constexpr Real most(std::int64_t(1) << 46);
     const Real u = max2(min2(x * Real(kLoadUnits), most), -most);
@@ -84,7 +84,7 @@ struct LoadBook {
   }
 };
 
-/// The end of an update: adds what was booked to each wall's load and clears it.
+/// At the end of an update: adds the booked sums to the load of each wall and clears them.
 struct LoadPass {
   LoadSums* sums;
   Load* load;                               ///< in/out

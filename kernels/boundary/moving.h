@@ -1,5 +1,5 @@
-// What changes from step to step where solids move, or the tank: lies in device memory, a row for
-// each step of a batch, so that recorded steps find what is theirs.
+// Data that changes from step to step if solids or the tank move. It is in device memory, with a
+// row for each step of a batch, so that recorded steps find it.
 #pragma once
 
 #include "kernels/boundary/obstacle.h"
@@ -7,13 +7,13 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// How a velocity changes in a step of a tank that moves, apart from damping:
+/// The change of a velocity in a step of a moving tank, apart from damping:
 ///   v + turn v + pull (x - pivot) + push.
-/// It is the step x(n+1) = 2 x(n) - x(n-1) + g dt^2 of a frame at rest, seen from the tank. So a
-/// free particle goes straight in that frame, to rounding, and nothing pumps energy: turn + 1 is
-/// the rotation by which the tank's turn in two steps is taken back (Coriolis), pull what
-/// differences of second order make of the tank's turn (Euler and centrifugal), push gravity,
-/// turned, without the acceleration of the pivot.
+/// It is the step x(n+1) = 2 x(n) - x(n-1) + g dt^2 of the inertial frame, in the frame of the
+/// tank. A free particle therefore moves in a straight line to rounding and gains no energy.
+/// turn + 1 is the inverse of the tank's rotation over two steps (Coriolis), pull follows from the
+/// second difference of its rotation (Euler and centrifugal), and push is the rotated gravity
+/// without the acceleration of the pivot.
 template <class Real>
 struct FrameStep {
   Real turn[3][3] = {}, pull[3][3] = {};  ///< 1, 1/s
@@ -33,13 +33,13 @@ struct FrameStep {
   }
 };
 
-/// How the points of a solid move in an update: linear + angular x x, x from the domain's lower
-/// corner.
+/// The velocity of a point x of a solid in an update: linear + angular x x, with x from the
+/// domain's lower corner.
 struct SolidVelocity {
   bool moves = false;             ///< else all is 0
   double linear[3] = {0, 0, 0};   ///< h/s
   double angular[3] = {0, 0, 0};  ///< 1/s
-  double middle[3] = {0, 0, 0};   ///< h: where it is in the middle of the update
+  double middle[3] = {0, 0, 0};   ///< h, its position halfway through the update
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -1,5 +1,5 @@
-// A pass over neighbours where there are solids: two launches. The first, over all rows, sees plain
-// walls; of a near row it keeps the sum over its neighbours and goes on. The second finishes those.
+// With solids, a pass over neighbors has two launches. The first, over all rows, uses plain walls
+// and only stores the sums of near rows. The second finishes the near rows.
 #pragma once
 
 #include "kernels/hd.h"
@@ -14,8 +14,8 @@ constexpr int numbers_of() {
   return count;
 }
 
-/// Keeps the sum of near row i: four numbers among the near rows, a fifth in the density, which the
-/// second launch writes.
+/// Stores the sum of near row i: four numbers in NearRows::sums, a fifth in the density, which the
+/// second launch overwrites.
 template <class Pass>
 PBF_HD void keep_sum(const Pass& pass, int i, typename Pass::Sum sum) {
   decltype(Pass::p.dt) number[5] = {};
@@ -36,8 +36,8 @@ PBF_HD typename Pass::Sum kept_sum(const Pass& pass, int i) {
 }
 
 /// The first launch; Pass has the boundary FarBox. A pass that moves rows has
-///   stays_far(i, own, sum)  whether row i, which was far, is so at the end
-///   far_bound(own, sum)     at least the square of its move, h^2; optional: it is for lanes
+///   stays_far(i, own, sum)  whether row i, which was far, is still far afterwards
+///   far_bound(own, sum)     upper bound of the square of its move, h^2; optional, for lanes
 template <class Pass>
 struct FarHalf : Pass {
   using typename Pass::Own;
@@ -47,7 +47,7 @@ struct FarHalf : Pass {
     if (!is_far(i, own, sum)) return leave(i, sum);
     Pass::finish(i, own, sum);
   }
-  /// Whether all rows of a group are far, by a bound: then it is for plain() to finish them.
+  /// Whether all rows of a group certainly stay far; plain() then finishes them.
   template <class Rows, class OwnRows, class SumRows>
   PBF_HD bool all_far(Rows rows, const OwnRows& own, const SumRows& sum) const {
     auto left = adjacent(this->boundary.near.way_left_squared, rows);

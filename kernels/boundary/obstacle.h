@@ -1,19 +1,19 @@
-// A solid: a shape, and where it is.
+// A solid: a shape and its pose.
 #pragma once
 
 #include "kernels/shapes/shapes.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Where a body is. Lengths in h, in the internal frame.
+/// The pose of a body. Lengths in h, in the internal frame.
 template <class Real>
 struct BodyFrame {
   Vec3<Real> center;
   Real turn[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  ///< body coordinates: turn * (x - center)
 };
 
-/// Plain data: it is passed in device memory. In two dimensions (D = 2) y counts nowhere: bodies
-/// are cut by the plane of the scene.
+/// Plain data, stored in device memory. In two dimensions (D = 2) y is ignored: bodies are cut by
+/// the plane of the scene.
 template <class Real>
 struct Solid : BodyFrame<Real> {
   SomeShape<Real> shape;
@@ -27,7 +27,7 @@ PBF_HD Vec3<Real> body_point(const BodyFrame<Real>& o, Vec3<Real> x) {
           o.turn[1][0] * d.x + o.turn[1][1] * d.y + o.turn[1][2] * d.z,
           o.turn[2][0] * d.x + o.turn[2][1] * d.y + o.turn[2][2] * d.z};
 }
-/// A direction of the body in the frame of the domain.
+/// A direction in body coordinates, in the frame of the domain.
 template <int D, class Real>
 PBF_HD Vec3<Real> turned_back(const BodyFrame<Real>& o, Vec3<Real> d) {
   const Vec3<Real> back{o.turn[0][0] * d.x + o.turn[1][0] * d.y + o.turn[2][0] * d.z,
@@ -37,7 +37,7 @@ PBF_HD Vec3<Real> turned_back(const BodyFrame<Real>& o, Vec3<Real> d) {
   return back;
 }
 
-/// A normal where all those across the body's z are as good; in two dimensions one of the plane.
+/// A normal across the body's z where none is unique; in two dimensions it lies in the plane.
 template <int D, class Real>
 PBF_HD Vec3<Real> any_across(const BodyFrame<Real>& o) {
   const Real off = o.turn[0][1] < Real(0) ? -o.turn[0][1] : o.turn[0][1];
@@ -45,13 +45,13 @@ PBF_HD Vec3<Real> any_across(const BodyFrame<Real>& o) {
   return {Real(1), Real(0), Real(0)};
 }
 
-/// Distance of x from the surface, h; below 0 inside. Exact on both sides.
+/// Distance of x from the surface, h; negative inside. Exact inside and outside.
 template <int D = 3, class Real>
 PBF_HD_APART Real distance(const Solid<Real>& o, Vec3<Real> x) {
   const Vec3<Real> p = body_point<D>(o, x);
   return o.shape.with([&](const auto& s) { return s.template distance<D>(p); });
 }
-/// Of length 1, out of the solid at the place of its surface that is nearest to x.
+/// Outward unit normal at the point of the surface nearest to x.
 template <int D = 3, class Real>
 PBF_HD_APART Vec3<Real> normal(const Solid<Real>& o, Vec3<Real> x) {
   const Vec3<Real> p = body_point<D>(o, x);
@@ -59,7 +59,7 @@ PBF_HD_APART Vec3<Real> normal(const Solid<Real>& o, Vec3<Real> x) {
   return turned_back<D>(o, dot(n, n) > Real(0) ? n : any_across<D>(o));
 }
 
-/// Whether the solid goes on behind a wall at an end that lies that way from its centre.
+/// Whether the solid continues behind a wall at its end in direction d from the center.
 template <class Shape, class Real>
 PBF_HD bool goes_on(const Shape& shape, Vec3<Real> d) {
   if constexpr (requires { shape.through; }) {
@@ -70,8 +70,8 @@ PBF_HD bool goes_on(const Shape& shape, Vec3<Real> d) {
   }
   return false;
 }
-/// h: how far the body goes from its centre along a direction of the domain, of length 1.
-/// `through`: with what goes on behind walls.
+/// h: extent of the body from its center along d, a unit vector in the frame of the domain.
+/// `through`: includes parts that continue behind walls.
 template <class Real>
 PBF_HD_APART Real reach_along(const Solid<Real>& o, Vec3<Real> d, bool through) {
   const Vec3<Real> in_body{o.turn[0][0] * d.x + o.turn[0][1] * d.y + o.turn[0][2] * d.z,
@@ -81,7 +81,7 @@ PBF_HD_APART Real reach_along(const Solid<Real>& o, Vec3<Real> d, bool through) 
     return through && goes_on(s, in_body) ? Real(kEndless) : reach_of(s, in_body);
   });
 }
-/// h: how far the body goes from its centre at most, without what goes on behind walls.
+/// h: largest extent of the body from its center, without parts that continue behind walls.
 template <class Real>
 PBF_HD_APART Real size_of(const Solid<Real>& o) {
   return o.shape.with([](const auto& s) { return size_of_shape<Real>(s); });

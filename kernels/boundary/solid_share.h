@@ -6,8 +6,8 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// A half space at signed distance q, and its derivative by q. `of_density`: of the density's
-/// kernel, else the gradient's.
+/// A half space at signed distance q, and its derivative by q. `of_density`: with the kernel of the
+/// density, otherwise that of the gradient.
 template <Smoothing S, bool of_density, class Real>
 PBF_HD HalfSpace<Real> half_space_share(Real q) {
   const Real a = q < Real(0) ? -q : q;
@@ -20,9 +20,9 @@ PBF_HD HalfSpace<Real> half_space_share(Real q) {
   return g;
 }
 
-/// What lies between two parallel planes, `above` the upper and `below` the lower one (signed
-/// distances); derivative upwards. Taken from the nearer plane, so that nothing small is a
-/// difference from 1.
+/// The share between two parallel planes, at signed distances `above` (upper) and `below` (lower);
+/// derivative upwards. Computed from the nearer plane, so that a small share is not a difference of
+/// numbers near 1.
 template <Smoothing S, bool of_density, class Real>
 PBF_HD HalfSpace<Real> slab_share(Real above, Real below) {
   const bool up = above > below;
@@ -32,10 +32,10 @@ PBF_HD HalfSpace<Real> slab_share(Real above, Real below) {
   return {near.density - far.density, up ? slope : -slope};
 }
 
-/// m(q), what curvature takes away: for a surface with the principal curvatures k1 and k2 the share
-/// is S(q) - (k1 + k2)/2 m(q) to first order, m = pi int_|q|^1 (r^2 - q^2) W r dr. In the plane
-/// S(q) - k m(q), m = int_|q|^1 sqrt(r^2 - q^2) W r dr; of Spiky that has a logarithm, and taken is
-/// a polynomial within 7e-5 of it (its derivative within 4e-4).
+/// m(q), the effect of curvature: for a surface with principal curvatures k1 and k2, the share is
+/// S(q) - (k1 + k2)/2 m(q) to first order, m = pi int_|q|^1 (r^2 - q^2) W r dr. In the plane
+/// S(q) - k m(q), m = int_|q|^1 sqrt(r^2 - q^2) W r dr; for Spiky this contains a logarithm, and a
+/// polynomial within 7e-5 of it is used (its derivative within 4e-4).
 template <Smoothing S, bool of_density, class Real>
 PBF_HD HalfSpace<Real> curvature_moment(Real q) {
   const Real a = q < Real(0) ? -q : q, t = Real(1) - a;
@@ -50,7 +50,7 @@ PBF_HD HalfSpace<Real> curvature_moment(Real q) {
       m = Real(63.0 / 512.0) * w4 * w, dm = Real(-630.0 / 512.0) * a * w4;
     }
   } else if constexpr (dimensions_of(S) == 2) {
-    // t^4 P(a), P'(0) = 4 P(0): even in q, as the integral is.
+    // t^4 P(a) with P'(0) = 4 P(0), so that it is even in q like the integral.
     constexpr Real c0(0.053018), c2(0.117286), c3(-0.269259);
     const Real t3 = t * t * t, p = c0 + a * (Real(4) * c0 + a * (c2 + a * c3));
     const Real dp = Real(4) * c0 + a * (Real(2) * c2 + a * (Real(3) * c3));
@@ -63,18 +63,18 @@ PBF_HD HalfSpace<Real> curvature_moment(Real q) {
   return {m, q < Real(0) ? -dm : dm};
 }
 
-/// A round surface, and what it answers to a change of its bending.
+/// The share of a round body, and its derivatives.
 template <class Real>
 struct RoundShare {
-  Real share = 0, slope = 0;  ///< and derivative by q
-  Real by_bend = 0;           ///< derivative by `bend`
+  Real share = 0, slope = 0;  ///< and its derivative by q
+  Real by_bend = 0;           ///< its derivative by `bend`
 };
 
-/// A surface of radius R that is bent along one direction of its tangent plane fully and along the
-/// other by `bend`, 0 (cylinder) to 1 (sphere); in the plane, where there is only the other: 0
-/// (straight) to 1 (disc). The share is S(q) - k m(q)/(R + b q), with k and b such that the sphere
-/// is exact (beyond the reach of its far side) and cylinder and disc are of second order: S -
-/// m/(2R) (1 - 3q/(4R)). For R >= 1/0.7; of thinner bodies it is an estimate, never below 0.
+/// A surface with radius R along one direction of its tangent plane; along the other, `bend` goes
+/// from 0 (cylinder) to 1 (sphere). In the plane, where only the other direction exists: from 0
+/// (straight) to 1 (disc). The share is S(q) - k m(q)/(R + b q). k and b make the sphere exact
+/// (beyond the reach of its far side) and cylinder and disc of second order:
+/// S - m/(2R) (1 - 3q/(4R)). For R >= 1/0.7; for thinner bodies an estimate, never below 0.
 template <Smoothing S, bool of_density, class Real>
 PBF_HD RoundShare<Real> round_share(Real q, Real radius, Real bend) {
   constexpr bool flat = dimensions_of(S) == 2;
@@ -83,7 +83,7 @@ PBF_HD RoundShare<Real> round_share(Real q, Real radius, Real bend) {
   const HalfSpace<Real> s = half_space_share<S, of_density>(q);
   const HalfSpace<Real> m = curvature_moment<S, of_density>(q);
   const Real least = max2(Real(0.25) * radius, Real(1e-3)), r = radius + b * q;
-  const bool bounded = !(r > least);  // near the centre of thin bodies alone
+  const bool bounded = !(r > least);  // only near the center of thin bodies
   const Real inv = Real(1) / (bounded ? least : r), f = k * m.density * inv;
   if (!(s.density > f)) return {};
   const Real by_r = bounded ? Real(0) : f * inv;
@@ -91,11 +91,11 @@ PBF_HD RoundShare<Real> round_share(Real q, Real radius, Real bend) {
           db * q * by_r - dk * m.density * inv};
 }
 
-/// A ball of radius R whose centre is at distance c, and its derivative by c; exact for every R. Of
-/// a sphere of radius r about the place the share (R - r + c)(R + r - c)/(4 r c) lies in the ball,
-/// so that the integral over r is that of a polynomial of degree 6 (Spiky) or 9 (Poly6), which
-/// Gauss' rule with 5 nodes gives exactly. Distances r = R + v; v and the width of the interval are
-/// divided by c before anything is subtracted, so the centre needs no case of its own.
+/// A ball of radius R with its center at distance c, and its derivative by c; exact for every R. Of
+/// a sphere of radius r about the point, (R - r + c)(R + r - c)/(4 r c) lies in the ball. The
+/// integral over r is that of a polynomial of degree 6 (Spiky) or 9 (Poly6), exact with Gauss' rule
+/// of 5 nodes. Distances are r = R + v; v and the width of the interval are divided by c before
+/// anything is subtracted, so the center needs no special case.
 template <Smoothing S, bool of_density, class Real>
 PBF_HD HalfSpace<Real> ball_share(Real c, Real radius) {
   constexpr bool poly6 = of_density && is_paper(S);
@@ -108,7 +108,7 @@ PBF_HD HalfSpace<Real> ball_share(Real c, Real radius) {
   const bool within = s < Real(0);
   HalfSpace<Real> all;
   if (!(nearest < one)) return {within ? one : Real(0), Real(0)};
-  if (within) {  // the ball about the place that is wholly solid
+  if (within) {  // the ball about the point that is entirely solid
     const Real r = nearest, r2 = r * r;
     if constexpr (poly6)
       all.density = Real(315.0 / 16.0) * r * r2 *

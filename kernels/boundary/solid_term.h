@@ -1,13 +1,13 @@
-// What a solid obstacle adds at a place: the share of the kernel that lies in it.
+// The contribution of a solid obstacle: the share of the kernel that lies in it.
 #pragma once
 
 #include "kernels/boundary/obstacle.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-/// What the obstacle adds at x; inv_range: h over the range of the walls. 0 beyond the range, 1
-/// deep inside. The gradient is the derivative of the share with the consistent kernels; with the
-/// paper's the share is Poly6's and the gradient Spiky's, as of walls.
+/// The contribution of the obstacle at x: 0 beyond the range, 1 deep inside. inv_range: h over the
+/// range of the walls. The gradient is the derivative of the share with the consistent kernels;
+/// with those of the paper the share uses Poly6 and the gradient Spiky, as for walls.
 template <Smoothing S, class Real>
 PBF_HD_APART SolidTerm<Real> solid_term(const Solid<Real>& o, Vec3<Real> x, Real inv_range) {
   constexpr int D = dimensions_of(S);

@@ -6,26 +6,26 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Answers as a box does, and asks the surroundings where there is more.
+/// A box that also evaluates the surroundings where there are any.
 template <class Real>
 struct Solids : Box<Real> {
   static constexpr bool books = true;
   const Surroundings<Real>* around = nullptr;
   Bounds<Real> bounds{};                   ///< of all obstacles
-  Bounds<Real> clear{};                    ///< far from every wall
-  bool obstacles = false;                  ///< there are any
-  bool loaded = false;                     ///< loads on walls are asked for
-  bool booked = false;                     ///< and booked: in steps with time
-  const FrameStep<Real>* frame = nullptr;  ///< of the step; null: the tank stands
-  NearRows<Real> near{};                   ///< without obstacles and loads none is known
+  Bounds<Real> clear{};                    ///< far from all walls
+  bool obstacles = false;                  ///< whether there are any
+  bool loaded = false;                     ///< whether walls have loads
+  bool booked = false;                     ///< whether loads are booked: in steps with time
+  const FrameStep<Real>* frame = nullptr;  ///< of the step; null: the tank is at rest
+  NearRows<Real> near{};                   ///< empty without obstacles and loads
 
   template <Smoothing S>
   PBF_HD BoundaryTerm<Real> term(Vec3<Real> x) const {
     if (obstacles && bounds.has(x)) return surroundings_term<S>(*around, x);
     return Box<Real>::template term<S>(x);
   }
-  /// Where the way of particle i ends; what solids do to it is booked with `book`. `start`: it
-  /// begins with the step.
+  /// The end of a path of particle i. `book`: loads of walls and solids are booked. `start`: the
+  /// path begins with the step.
   PBF_HD Vec3<Real> path_end(bool book, bool start, int i, Vec3<Real> from, Vec3<Real> to) const {
     const Vec3<Real> in = Box<Real>::path_end(from, to);
     const bool free = in.x == to.x && in.y == to.y && in.z == to.z;
@@ -35,18 +35,18 @@ struct Solids : Box<Real> {
   PBF_HD Vec3<Real> path_end_booked(int i, Vec3<Real> from, Vec3<Real> to) const {
     return path_end(booked, false, i, from, to);
   }
-  /// Particle i, at x, was moved by factor * the gradient of term().
+  /// Books that particle i, at x, was moved by factor * the gradient of term().
   template <Smoothing S>
   PBF_HD void book_push(int i, Vec3<Real> x, Real factor) const {
     if (!booked || factor == Real(0)) return;
     if ((loaded && this->near_wall(x)) || (obstacles && bounds.has(x)))
       pbf::book_push<S>(*around, i, x, factor);
   }
-  /// Whether a particle at x has to do with an obstacle, or with a wall where that has a load.
+  /// Whether x is near an obstacle, or near a wall if walls have loads.
   PBF_HD bool is_near(Vec3<Real> x) const {
     return (loaded && !clear.has(x)) || (obstacles && bounds.has(x) && near_obstacle(*around, x));
   }
-  /// The way of row i, while the lists hold, ended at x.
+  /// Marks row i as near if x, its position after a move with the present lists, is near.
   PBF_HD void came_to(int i, Vec3<Real> x) const {
     if (near.way_left_squared && !near.near(i) && is_near(x)) near.mark_near(i);
   }
@@ -64,7 +64,7 @@ struct Solids : Box<Real> {
   }
 };
 
-/// Whether a way may lead to a solid, or end near one; of Solids or FarBox.
+/// Whether a path may meet a solid or end near one; for Solids and FarBox.
 template <class Boundary, class Real>
 PBF_HD bool may_meet_solids(const Boundary& b, Vec3<Real> from, Vec3<Real> to) {
   return (b.loaded && !b.clear.has(to)) || (b.obstacles && b.bounds.meets(from, to));

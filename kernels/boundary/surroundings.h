@@ -1,5 +1,5 @@
-// What a scene has around its fluid besides plain walls: obstacles, and loads on all of them. Only
-// the few particles there come here, so these functions are not inlined into the passes.
+// Obstacles, and loads on them and on walls. Only few particles need these functions, so they are
+// not inlined into the passes.
 #pragma once
 
 #include "kernels/boundary/box.h"
@@ -10,27 +10,27 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// An obstacle, and how far around it a particle counts as near.
+/// An obstacle, and the distance up to which a particle counts as near.
 template <class Real>
 struct PlacedSolid {
   Solid<Real> solid;
   Real reach = 0;       ///< h, from the surface
-  Bounds<Real> bounds;  ///< of all that is nearer
+  Bounds<Real> bounds;  ///< of all points within `reach`
 };
 
-/// Lies where the particles lie. Loads are those of the walls, 0 to 5 as WallBit's bits, and of the
-/// obstacles from 6 on.
+/// In the same memory as the particles. Loads 0 to 5 are those of the walls, in the order of
+/// WallBit; from 6 on those of the obstacles.
 template <class Real>
 struct Surroundings {
   Box<Real> walls;
   const PlacedSolid<Real>* solid = nullptr;
-  const Solid<Real>* before = nullptr;  ///< where each was at the start of the step; null: there
+  const Solid<Real>* before = nullptr;  ///< poses at the start of the step; null: as `solid`
   int solids = 0;
   bool flat = false;  ///< two dimensions
   LoadBook<Real> loads{};
 };
 
-/// `start`: the way begins with the step, at which solids that move stood elsewhere.
+/// `start`: the path begins with the step, when moving solids were at Surroundings::before.
 template <class Real>
 PBF_HD PathEnd<Real> keep_out(const Surroundings<Real>& s, bool start, int k, Vec3<Real> from,
                               Vec3<Real> to) {
@@ -41,7 +41,7 @@ PBF_HD PathEnd<Real> keep_out(const Surroundings<Real>& s, bool start, int k, Ve
                 : keep_out<3>(before, placed.solid, from, to);
 }
 
-/// Where solid k takes a place that moves with it.
+/// Where solid k carries the point `from`, clamped to the walls.
 template <class Real>
 PBF_HD Vec3<Real> carried(const Surroundings<Real>& s, int k, Vec3<Real> from) {
   const Solid<Real>& o = s.solid[k].solid;
@@ -50,7 +50,7 @@ PBF_HD Vec3<Real> carried(const Surroundings<Real>& s, int k, Vec3<Real> from) {
   return s.walls.path_end(from, x);
 }
 
-/// Whether x is nearer to an obstacle than its bounds are.
+/// Whether x is within the reach of an obstacle.
 template <class Real>
 PBF_HD_APART bool near_obstacle(const Surroundings<Real>& s, Vec3<Real> x) {
   for (int k = 0; k < s.solids; ++k) {
@@ -61,26 +61,26 @@ PBF_HD_APART bool near_obstacle(const Surroundings<Real>& s, Vec3<Real> x) {
   return false;
 }
 
-/// Whether a way back to the surface is no longer than rounding makes it: what slides along a face
-/// is behind it by that, again and again.
+/// Whether a path back to the surface is within rounding: particles that slide along a face are
+/// repeatedly behind it by that much.
 template <class Real>
 PBF_HD bool within_rounding(Vec3<Real> way, Vec3<Real> x, Vec3<Real> center) {
   const auto size = [](Vec3<Real> v) {
     return max2(v.x, -v.x) + max2(v.y, -v.y) + max2(v.z, -v.z);
   };
-  constexpr Real few(sizeof(Real) == 4 ? 1e-6 : 2e-15);  // some 8 of the last bits
+  constexpr Real few(sizeof(Real) == 4 ? 1e-6 : 2e-15);  // about 8 units in the last place
   const Real most = few * (Real(1) + size(x) + size(center));
   return dot(way, way) <= most * most;
 }
 
-/// f(k, solid_term) of the obstacles around x.
+/// Calls f(k, solid_term) for the obstacles near x.
 template <Smoothing S, class Real, class F>
 PBF_HD void for_solids_at(const Surroundings<Real>& s, Vec3<Real> x, F&& f) {
   for (int k = 0; k < s.solids; ++k)
     if (s.solid[k].bounds.has(x)) f(k, solid_term<S>(s.solid[k].solid, x, s.walls.inv_range));
 }
 
-/// Solids share the space with the walls by inclusion and exclusion, and do not overlap each other:
+/// Solids are combined with the walls by inclusion and exclusion and do not overlap each other:
 /// A [1 - (1 - w/A)(1 - sum o_k)].
 template <Smoothing S, class Real>
 PBF_HD_APART BoundaryTerm<Real> surroundings_term(const Surroundings<Real>& s, Vec3<Real> x) {
@@ -91,7 +91,7 @@ PBF_HD_APART BoundaryTerm<Real> surroundings_term(const Surroundings<Real>& s, V
     o.share += one.share;
     o.gradient = o.gradient + one.gradient;
   });
-  // Bit for bit what plain walls give: so nothing depends on which particles were asked about.
+  // Bit for bit as with plain walls, so it does not matter which particles count as near.
   if (o.share == Real(0)) return w;
   const Real free = max2(Real(1) - o.share, Real(0)), left = s.walls.scale - w.density;
   const Real still = o.share < Real(1) ? left : Real(0);
@@ -100,8 +100,8 @@ PBF_HD_APART BoundaryTerm<Real> surroundings_term(const Surroundings<Real>& s, V
   return w;
 }
 
-/// Where the way of particle i ends. `booked`: what walls and obstacles do to it becomes load.
-/// `start`: as of keep_out().
+/// The end of a path of particle i. `booked`: displacements by walls and obstacles become loads.
+/// `start`: see keep_out().
 template <class Real>
 PBF_HD_APART Vec3<Real> surroundings_path_end(const Surroundings<Real>& s, bool booked, bool start,
                                               int i, Vec3<Real> from, Vec3<Real> to) {
@@ -117,8 +117,8 @@ PBF_HD_APART Vec3<Real> surroundings_path_end(const Surroundings<Real>& s, bool 
     return in;
   };
   to = inside_walls(to);
-  // What slides along one obstacle may come to another, or to a wall. Where there is no way out
-  // after some rounds the particle stays where it was, or goes with the solid that moves.
+  // A path along one obstacle may meet another one or a wall. If there is no way out after some
+  // rounds, the particle stays where it was, or moves with the solid.
   constexpr int rounds = 3;
   for (int round = 0; round <= rounds; ++round) {
     bool moved = false;
@@ -138,7 +138,7 @@ PBF_HD_APART Vec3<Real> surroundings_path_end(const Surroundings<Real>& s, bool 
   return to;
 }
 
-/// Particle i, at x, was moved by factor * the gradient of surroundings_term(): books it.
+/// Books that particle i, at x, was moved by factor * the gradient of surroundings_term().
 template <Smoothing S, class Real>
 PBF_HD_APART void book_push(const Surroundings<Real>& s, int i, Vec3<Real> x, Real factor) {
   Real of_wall[6], share(0);

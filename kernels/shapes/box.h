@@ -1,4 +1,4 @@
-// A cuboid; in two dimensions a rectangle, whose body's y is that of the domain.
+// A cuboid; in two dimensions a rectangle, with the body's y along that of the domain.
 #pragma once
 
 #include "kernels/shapes/faces.h"
@@ -9,8 +9,8 @@ namespace shape {
 template <class Real>
 struct Box {
   static constexpr bool convex = true;
-  Vec3<Real> half;       ///< edges
-  unsigned through = 0;  ///< faces that there are not: Span
+  Vec3<Real> half;       ///< half lengths of the edges
+  unsigned through = 0;  ///< faces that do not exist: see Span
 
   template <class To>
   PBF_HD Box<To> scaled(double by) const {
@@ -54,8 +54,8 @@ struct Box {
     return stay;
   }
 
-  /// The product of its slabs, exact before faces and for plates of any thickness. Outside at edges
-  /// and corners within 0.0014, of plates 0.0019; in the plane 0.003, Poly6's 0.005.
+  /// The product of its slabs; exact in front of faces, for plates of any thickness. Error outside
+  /// at edges and corners 0.0014, of plates 0.0019; in two dimensions 0.003, with Poly6 0.005.
   template <Smoothing S, bool of_density>
   PBF_HD SolidTerm<Real> share(Vec3<Real> p, Real inv_range) const {
     const Real one(1), at[3] = {p.x, p.y, p.z};

@@ -1,4 +1,4 @@
-// All that is within a radius of a line along the body's z.
+// All points within a radius of a segment of the body's z axis.
 #pragma once
 
 #include "kernels/shapes/round.h"
@@ -6,8 +6,8 @@
 namespace pbf::inline PBF_VARIANT {
 namespace shape {
 
-/// 0 to 1 across the place where a capsule's tube meets its end, over 0.44 ranges on either side:
-/// C2, step(-z) = 1 - step(z). The exact step depends on the distance too; this one is within 0.03.
+/// A step from 0 to 1 where the tube of a capsule meets its end, over 0.44 ranges on either side;
+/// C2, step(-z) = 1 - step(z). The exact step also depends on the distance; error 0.03.
 template <class Real>
 PBF_HD HalfSpace<Real> capsule_step(Real z) {
   constexpr Real per(1 / 0.88);
@@ -22,7 +22,7 @@ template <class Real>
 struct Capsule {
   static constexpr bool convex = true;
   Real radius = 0, half = 0;  ///< half the length of the axis, without the ends
-  unsigned through = 0;       ///< ends that there are not: Span
+  unsigned through = 0;       ///< ends that do not exist: see Span
 
   template <class To>
   PBF_HD Capsule<To> scaled(double by) const {
@@ -31,7 +31,7 @@ struct Capsule {
   PBF_HD Vec3<Real> ends() const { return {Real(0), Real(0), half}; }
   PBF_HD Span<Real> span() const { return span_of(half, through, 2); }
 
-  /// The height on the axis that is nearest to z.
+  /// The height of the point of the axis nearest to z.
   PBF_HD Real on_axis(Real z) const {
     const Span<Real> axis = span();
     return max2(min2(z, axis.high), axis.low);
@@ -58,7 +58,7 @@ struct Capsule {
     const Stay<Real> tube =
         stay_near(Vec3<Real>{a.x, a.y, Real(0)}, {way.x, way.y, Real(0)}, radius);
     if (!(tube.enter < tube.leave)) return {};
-    // What is beyond its axis is in the ball at the end.
+    // Beyond the ends of the axis, the surface is that of the ball at the end.
     const auto at_end = [&](Real t) {
       const Real z = a.z + t * way.z, end = on_axis(z);
       return end == z ? Stay<Real>{t, t} : stay_near(Vec3<Real>{a.x, a.y, a.z - end}, way, radius);

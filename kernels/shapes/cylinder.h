@@ -1,4 +1,4 @@
-// A cylinder about the body's z; in two dimensions it stands on the plane and is a disc.
+// A cylinder about the body's z axis; in two dimensions it is a disc.
 #pragma once
 
 #include "kernels/shapes/round.h"
@@ -10,7 +10,7 @@ template <class Real>
 struct Cylinder {
   static constexpr bool convex = true;
   Real radius = 0, half = 0;  ///< half the length of the axis
-  unsigned through = 0;       ///< ends that there are not: Span
+  unsigned through = 0;       ///< ends that do not exist: see Span
 
   template <class To>
   PBF_HD Cylinder<To> scaled(double by) const {

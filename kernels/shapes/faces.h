@@ -1,12 +1,12 @@
-// Faces at right angles to the axes of a body, some of which there are not.
+// Faces perpendicular to the axes of a body; some of them may not exist.
 #pragma once
 
 #include "kernels/shapes/shape.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Where a body ends along an axis; beyond everything where it goes on. `through`: faces (bits as
-/// WallBit) behind which the solid goes on, as where it stands against a wall of the domain.
+/// The ends of a body along an axis; +-kEndless where it continues. `through`: faces (bits as
+/// WallBit) behind which the solid continues, for example behind a wall of the domain.
 template <class Real>
 struct Span {
   Real low, high;
@@ -17,8 +17,8 @@ PBF_HD Span<Real> span_of(Real half, unsigned through, int axis) {
   return {through & (1u << (2 * axis)) ? -far : -half, through & (2u << (2 * axis)) ? far : half};
 }
 
-/// The distance from faces at right angles: inside the nearest one counts, outside all that the
-/// place is beyond.
+/// The distance from perpendicular faces: inside, from the nearest one; outside, from all faces
+/// that the point is beyond.
 template <class Real>
 struct FaceDistance {
   Real nearest = Real(-4e9), outside = 0;
@@ -31,7 +31,7 @@ struct FaceDistance {
   PBF_HD Real value() const { return nearest > Real(0) ? square_root(outside) : nearest; }
 };
 
-/// The face of an axis of the body, on the upper or the lower side.
+/// The upper or lower face of the body on an axis.
 template <class Real>
 PBF_HD Tangent<Real> face_of(Span<Real> s, int axis, bool upper) {
   const Real n(upper ? 1 : -1);
@@ -39,7 +39,7 @@ PBF_HD Tangent<Real> face_of(Span<Real> s, int axis, bool upper) {
           upper ? s.high : -s.low};
 }
 
-/// The nearest of the faces seen from inside.
+/// The nearest face of a point inside.
 template <class Real>
 struct NearestFace {
   Tangent<Real> best;
@@ -56,7 +56,7 @@ template <class Real>
 PBF_HD Real beyond(Real at, Span<Real> s) {
   return max2(at - s.high, Real(0)) - max2(s.low - at, Real(0));
 }
-/// The tangent plane at the place of a convex surface that is d away from p.
+/// The tangent plane of a convex surface at p - d, its point nearest to p.
 template <class Real>
 PBF_HD Tangent<Real> tangent_towards(Vec3<Real> p, Vec3<Real> d) {
   const Real away = square_root(dot(d, d));
@@ -68,7 +68,7 @@ template <class Real>
 PBF_HD Stay<Real> both(Stay<Real> a, Stay<Real> b) {
   return {max2(a.enter, b.enter), min2(a.leave, b.leave)};
 }
-/// The stay of a coordinate inside a span.
+/// The part of the line a + t d whose coordinate is inside a span.
 template <class Real>
 PBF_HD Stay<Real> stay_between(Real a, Real d, Span<Real> s) {
   constexpr Real ever(1e30);
@@ -76,7 +76,7 @@ PBF_HD Stay<Real> stay_between(Real a, Real d, Span<Real> s) {
   const Real t = (s.low - a) / d, u = (s.high - a) / d;
   return t < u ? Stay<Real>{t, u} : Stay<Real>{u, t};
 }
-/// What is left of a stay between the faces of an axis, and the face where it enters.
+/// Intersects `stay` with the slab of an axis; `entry`: the face where the rest enters.
 template <class Real>
 PBF_HD void cut_stay(Stay<Real>& stay, Tangent<Real>& entry, Real at, Real way, Span<Real> s,
                      int axis) {

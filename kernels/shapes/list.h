@@ -1,6 +1,6 @@
-// The shapes of solids, in the order of their words in scenes: an include and a name each. Included
-// twice, for a shape has two files: kernels/shapes/NAME.h, and lib/scene/shapes/NAME.h for what
-// scenes say of it. PBF_SHAPE_FILE(name) tells which.
+// The shapes of solids, in the order of their names in scenes; an include and a name each. Included
+// twice, because a shape has two files: kernels/shapes/NAME.h, and lib/scene/shapes/NAME.h for its
+// description in scenes. PBF_SHAPE_FILE(name) selects one.
 #include PBF_SHAPE_FILE(plane)
 #include PBF_SHAPE_FILE(box)
 #include PBF_SHAPE_FILE(sphere)

@@ -37,7 +37,7 @@ struct Plane {
     constexpr Real far(kEndless);
     return {{-far, -far, -far}, {far, far, Real(0)}};
   }
-  /// Along its normal it ends at its face.
+  /// It is endless except along its normal, where it ends at its face.
   PBF_HD Real reach(Vec3<Real> d) const { return d.z == Real(1) ? Real(0) : Real(kEndless); }
 };
 

@@ -1,12 +1,11 @@
-// What shapes with a round side have in common: they are told by the distance from a centre or an
-// axis.
+// Common parts of shapes with a round side, which is at a fixed distance from a center or an axis.
 #pragma once
 
 #include "kernels/shapes/faces.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-/// The stay within a distance of the origin.
+/// The part of the line a + t d within `radius` of the origin.
 template <class Real>
 PBF_HD Stay<Real> stay_near(Vec3<Real> a, Vec3<Real> d, Real radius) {
   constexpr Real ever(1e30);
@@ -21,14 +20,14 @@ PBF_HD Stay<Real> stay_near(Vec3<Real> a, Vec3<Real> d, Real radius) {
   return {middle - half, middle + half};
 }
 
-/// The tangent plane at the direction d from a centre or an axis.
+/// The tangent plane in direction d from a center or an axis.
 template <class Real>
 PBF_HD Tangent<Real> round_tangent(Vec3<Real> d, Real level) {
   const Real length = square_root(dot(d, d));
   return {length > Real(1e-15) ? (Real(1) / length) * d : Vec3<Real>{}, level};
 }
 
-/// Where a place is from a centre or an axis, in ranges.
+/// The position of a point relative to a center or an axis, in ranges.
 template <class Real>
 struct RoundPlace {
   Vec3<Real> away;
@@ -46,8 +45,8 @@ PBF_HD RoundPlace<Real> round_place(Vec3<Real> away, Real radius, Real inv_range
   return {d, radius, c, one / max2(c, Real(1e-20)), false};
 }
 
-/// A side that is bent along its second direction by `bend`, between the planes of `slab`; both
-/// with their derivatives along the body's z.
+/// The term of a round side with `bend` along its second direction (RoundShare), between the planes
+/// of `slab`; both come with their derivatives along the body's z.
 template <Smoothing S, bool of_density, class Real>
 PBF_HD SolidTerm<Real> round_term(const RoundPlace<Real>& p, HalfSpace<Real> bend,
                                   HalfSpace<Real> slab) {

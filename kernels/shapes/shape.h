@@ -1,5 +1,5 @@
-// What the kernels ask of a solid's shape, and what follows from its distance alone where a shape
-// does not give a closed form.
+// The interface of a solid's shape, and what follows from the distance alone for shapes without
+// closed forms.
 #pragma once
 
 #include <concepts>
@@ -8,10 +8,10 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// h: what has no end is this long. Its square is a float too.
+/// h: the length of what has no end. Its square still fits a float.
 constexpr double kEndless = 1e9;
 
-/// Edges along the axes, h.
+/// An axis-aligned box, h.
 template <class Real>
 struct Bounds {
   Vec3<Real> low, high;
@@ -20,7 +20,7 @@ struct Bounds {
     return x.z <= high.z && x.z >= low.z && x.x <= high.x && x.x >= low.x && x.y <= high.y &&
            x.y >= low.y;
   }
-  /// Whether a straight way may come through.
+  /// Whether a straight path may pass through it.
   PBF_HD bool meets(Vec3<Real> from, Vec3<Real> to) const {
     return !(from.z > high.z && to.z > high.z) && !(from.z < low.z && to.z < low.z) &&
            !(from.x > high.x && to.x > high.x) && !(from.x < low.x && to.x < low.x) &&
@@ -36,39 +36,39 @@ struct SolidTerm {
   Vec3<Real> gradient;
 };
 
-/// A tangent plane of a shape, where normal . p = level. Where all normals across the body's z are
-/// as good (on an axis, in a centre) the normal is 0.
+/// A tangent plane of a shape: normal . p = level. The normal is 0 where it is not unique (on an
+/// axis, at a center).
 template <class Real>
 struct Tangent {
   Vec3<Real> normal;
   Real level = 0;
 };
 
-/// The part of a line a + t way between two values of t; none where enter >= leave.
+/// The part of a line a + t way with enter < t < leave; empty where enter >= leave.
 template <class Real>
 struct Stay {
   Real enter = 1, leave = 0;
 };
 
-/// A solid in coordinates of its own, lengths in h. With D = 2 the body's section by the plane of
-/// the scene, in which p lies. Plain data. Beside these a shape has a curvature or a share:
-///   curvature<D>(p)                  1/h, mean curvature of the surface at the place nearest to p
+/// A solid in its own coordinates, lengths in h. Plain data. With D = 2, its section by the plane
+/// of the scene, in which p lies. In addition to these, a shape has a curvature or a share:
+///   curvature<D>(p)                  1/h, mean curvature of the surface at the point nearest to p
 ///   share<S, of_density>(p, 1/range) the kernel's share in it, as SolidTerm per range
-/// and where they are known in closed form:
-///   tangent<D>(p)          the tangent plane at the place of the surface that is nearest to p
-///   stay<D>(a, way, entry) the part of a line that is inside, and the tangent plane where it
-///   enters reach(d)               how far it goes from its origin along a direction of length 1
-///   size()                 how far it goes from its origin at most
-///   round<D>(p)            the round side that is nearest to p: RoundSide
-///   ends(), `through`      half lengths along its axes, and which of these ends there are not, as
-///                          bits of WallBit: the solid goes on behind a wall
+/// and, where closed forms are known:
+///   tangent<D>(p)          the tangent plane at the point of the surface nearest to p
+///   stay<D>(a, way, entry) the part of a line that is inside, and the tangent plane at its entry
+///   reach(d)               its extent from its origin along a direction of length 1
+///   size()                 its largest extent from its origin
+///   round<D>(p)            the round side nearest to p: RoundSide
+///   ends(), `through`      half lengths along its axes, and which of these ends do not exist (bits
+///                          as WallBit), because the solid continues behind a wall
 template <class Shape, class Real>
 concept SolidShape = requires(const Shape& s, Vec3<Real> p) {
   { s.template distance<3>(p) } -> std::same_as<Real>;      // from the surface; below 0 inside
   { s.template normal<3>(p) } -> std::same_as<Vec3<Real>>;  // its gradient
   { s.bounds() } -> std::same_as<Bounds<Real>>;
-  {s.template scaled<float>(1.0)};  // the same, so many times as large, of other numbers
-  { Shape::convex } -> std::convertible_to<bool>;  // then the distance is a convex function
+  {s.template scaled<float>(1.0)};                 // scaled, with another number type
+  { Shape::convex } -> std::convertible_to<bool>;  // true: the distance is a convex function
 };
 
 template <class To, class Real>
@@ -86,14 +86,14 @@ PBF_HD Tangent<Real> tangent_of(const Shape& s, Vec3<Real> p) {
   }
 }
 
-/// h, less than what rounding does to a distance.
+/// h, the tolerance of a contact, in the order of the rounding of distances.
 template <class Real>
 constexpr Real kTouching = Real(sizeof(Real) == 4 ? 2e-6 : 1e-13);
 
-/// By steps of the distance. Along a line the distance from a convex body is a convex function, so
-/// that Newton's steps come no farther than the surface, and soon. Of another shape a part thinner
-/// than an eighth of the way may be passed; what comes inside goes back. It begins outside; where
-/// it leaves is not asked for.
+/// Finds where a line that starts outside enters, from distances alone; `leave` is not computed.
+/// Along a line, the distance from a convex body is a convex function, so Newton's steps converge
+/// without passing the surface. For other bodies a step is the distance, and at least an eighth of
+/// the way: thinner parts may be passed. What comes inside goes back.
 template <int D, class Shape, class Real>
 PBF_HD Stay<Real> stay_by_steps(const Shape& s, Vec3<Real> a, Vec3<Real> way,
                                 Tangent<Real>& entry) {
@@ -126,9 +126,9 @@ PBF_HD Stay<Real> stay_of(const Shape& s, Vec3<Real> a, Vec3<Real> way, Tangent<
     return stay_by_steps<D>(s, a, way, entry);
 }
 
-/// Of a smooth surface, to first order in its mean curvature H (per range): S - H m/(1 + H q). In
-/// the plane, where H is that of the section, the same. Within 0.004 where no radius of curvature
-/// is below 0.5 h; an estimate of thinner bodies, never below 0.
+/// The share of a smooth body to first order in its mean curvature H (per range):
+/// S - H m/(1 + H q). In two dimensions, H is that of the section. Error 0.004 if no radius of
+/// curvature is below 0.5 h; for thinner bodies an estimate, never below 0.
 template <Smoothing S, bool of_density, class Shape, class Real>
 PBF_HD SolidTerm<Real> smooth_share(const Shape& s, Vec3<Real> p, Real inv_range) {
   constexpr int D = dimensions_of(S);
@@ -152,7 +152,7 @@ PBF_HD SolidTerm<Real> share_of(const Shape& s, Vec3<Real> p, Real inv_range) {
     return smooth_share<S, of_density>(s, p, inv_range);
 }
 
-/// Of a shape with a closed form, else of its bounds, which hold no less.
+/// From the closed form of a shape, otherwise from its bounds, which are no smaller.
 template <class Shape, class Real>
 PBF_HD Real reach_of(const Shape& s, Vec3<Real> d) {
   if constexpr (requires { s.reach(d); }) {
@@ -175,8 +175,8 @@ PBF_HD Real size_of_shape(const Shape& s) {
   }
 }
 
-/// The side at a distance of `radius` from the body's z between two heights, or from its origin
-/// where both are 0. radius 0: the surface is not round there, or not of one radius.
+/// A side at distance `radius` from the body's z axis between two heights, or from its origin if
+/// both are 0. radius 0: the surface there does not have one radius.
 template <class Real>
 struct RoundSide {
   Real radius = 0, low = 0, high = 0;

@@ -12,7 +12,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// One of these shapes: its place in the list, and its bytes.
+/// One of these shapes: its index in the list, and its bytes.
 template <class... S>
 struct AnyShape {
   int tag = 0;
@@ -31,7 +31,7 @@ struct AnyShape {
     memcpy(&shape, bytes, sizeof(Shape));
     return shape;
   }
-  /// f(the shape): the one place that tells shapes apart.
+  /// Returns f(shape); the only function that distinguishes shapes.
   template <class F>
   PBF_HD auto with(F&& f) const {
     return with_one<0, F, S...>(f);
@@ -58,7 +58,7 @@ struct List {
 using All = List<PBF_SHAPES>;
 }  // namespace shape
 
-/// A shape of the program.
+/// Any shape of the list.
 template <class Real>
 using SomeShape = shape::All::Any<Real>;
 

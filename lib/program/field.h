@@ -30,7 +30,7 @@ enum class Type { real, int32, int64 };  ///< of a component; real: of the scene
 /// How long the contents count: until the next pass that writes them, as long as the lists, within
 /// an update (empty between two), or as part of the state, which is saved, kept, and carried along
 /// by the sort.
-enum class Life { pass, lists, update, state };
+enum class Life { pass, lists, update, rows, state };
 
 /// What those see who look at an update pass by pass.
 struct Shown {

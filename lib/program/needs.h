@@ -112,7 +112,7 @@ struct Flips {
 using UsesLists = Looks<field::lists>;
 using MakesLists = Writes<field::lists>;
 
-/// Joined per field, in the order of first mention.
+/// Joined per field, in the order of first mention; w: as it is written last.
 std::vector<AccessInfo> joined(const std::vector<AccessInfo>& all);
 
 template <class A, class B>

@@ -47,9 +47,10 @@ std::vector<AccessInfo> joined(const std::vector<AccessInfo>& all) {
     const auto at = std::find_if(out.begin(), out.end(), same);
     if (at == out.end()) {
       out.push_back(a);
+      if (!(a.how & kWriting)) out.back().w = W::any;
     } else {
       at->how |= a.how;
-      if (a.w != W::any) at->w = a.w;
+      if (a.how & kWriting) at->w = a.w;
       if (a.when == When::always) at->when = When::always;
     }
   }

@@ -33,8 +33,8 @@ struct Written {
 };
 
 struct PassInfo : PassText {
-  std::vector<AccessInfo> needs;  ///< joined(): each field once
-  std::vector<AccessInfo> steps;  ///< as declared: what is done with w, in order
+  std::vector<AccessInfo> needs;     ///< each field once; w: what the pass leaves there
+  std::vector<AccessInfo> declared;  ///< the same in order, as the pass says it
   std::vector<const FieldInfo*> flips;
   std::vector<Written> written;
   int stored = -1;  ///< of `written`: what a fault that is no number is put into; -1: velocity
@@ -78,12 +78,6 @@ struct PassList {
     int found = -1;
     ((fuses<Ps>(a, b) ? void(found = index_of<Ps>()) : void()), ...);
     return found;
-  }
-  /// f.template operator()<P>() of pass `index`.
-  template <class F>
-  static void with(int index, F&& f) {
-    int k = 0;
-    ((k++ == index ? void(f.template operator()<Ps>()) : void()), ...);
   }
 
  private:

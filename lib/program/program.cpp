@@ -126,7 +126,7 @@ struct Fourth {
   void after(const PassInfo& pass, int iteration, bool has_iterations) {
     for (const FieldInfo* f : pass.flips)
       if (f == &field::position) std::swap(first, second);
-    for (const AccessInfo& a : pass.steps) {
+    for (const AccessInfo& a : pass.declared) {
       if (&a.field->primary() != &field::position || (a.how & kWriting) || a.w == W::any ||
           (a.when == When::first_iteration && iteration > 0) || of(*a.field) == a.w)
         continue;
@@ -134,12 +134,12 @@ struct Fourth {
                   format("pass '%s' asks for %s in w of %s, which holds '%s'", pass.name, word(a.w),
                          name_of(*a.field).c_str(), word(of(*a.field))));
     }
-    for (const AccessInfo& a : pass.steps) {
+    for (const AccessInfo& a : pass.declared) {
       if (&a.field->primary() != &field::position || !(a.how & (kWrites | kPlaces))) continue;
       // The sort carries w along. Without iterations nothing is marked: all are 1.
       const bool carried = (a.how & kPlaces) && a.w == W::any;
       const W w = carried ? of(other<field::position>) : a.w;
-      if (w != W::any) of(*a.field) = w == W::mark && !has_iterations ? W::inverse_density : w;
+      of(*a.field) = w == W::mark && !has_iterations ? W::inverse_density : w;
     }
   }
 };
@@ -256,9 +256,9 @@ std::string writes_text(const PassInfo& pass) {
                [](const AccessInfo& a) { return a.how & kWriting ? name_of(*a.field) : ""; });
 }
 std::string gathers_text(const PassInfo& pass) {
-  return names(pass.needs, [](const AccessInfo& a) -> std::string {
-    if (!(a.how & kGathers)) return "";
-    const bool place = a.field->primary().name == field::position.name;
+  return names(pass.declared, [](const AccessInfo& a) -> std::string {
+    if (!(a.how & kGathers) || a.when != When::always) return "";
+    const bool place = &a.field->primary() == &field::position;
     return place && a.w != W::any ? std::string("position ") + word(a.w) : a.field->name;
   });
 }

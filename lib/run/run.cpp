@@ -54,12 +54,8 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   return info;
 }
 
-<<<<<<< HEAD
 }  // namespace
 
-=======
-/// Opens the run file and the folder of the pictures, if the scene asks for them.
->>>>>>> wt-c3
 void open_files(RunParts& run, const std::string& started) {
   if (const auto& output = run.scene.output) {
     const std::string path = run.folder.file(kRunFile);
@@ -74,13 +70,9 @@ void open_files(RunParts& run, const std::string& started) {
 #endif
 }
 
-<<<<<<< HEAD
 namespace {
 
-/// Saves the last good state and a scene that goes on from it, and ends the run.
-=======
 /// Saves the last good state and a scene that continues from it, and ends the run with an error.
->>>>>>> wt-c3
 [[noreturn]] void report_alarm(const Watch& watch, const Scene& scene, const RunFolder& folder) {
   const GuardEvent& e = *watch.event();
   const Guard& guard = *watch.guard();

@@ -18,12 +18,12 @@ T row_of(const Plain<T, count, Word>&);
 template <class Field, class Real>
 using RowOf = decltype(row_of<Real>(std::declval<const Field&>()));
 
-/// Running sums: nothing else can be done with them before all have added.
+/// Running sums. Only passes of whole numbers get their address, to add to them.
 template <class T>
 class Sums {
  public:
   explicit Sums(T* sums) : sums_(sums) {}
-  T* sums() const { return sums_; }  ///< for passes, which add with add_whole() and raise_to()
+  T* sums() const { return sums_; }
 
  private:
   T* sums_;

@@ -85,9 +85,15 @@ class PageExec : public CpuExec {
     now.sa_flags = SA_SIGINFO;
     sigaction(SIGSEGV, &now, &before);
     for (const FieldMemory& a : arrays) mprotect(a.begin, a.bytes, PROT_NONE);
+    const struct Opened {  // also when the launch throws
+      const std::vector<FieldMemory>& arrays;
+      const struct sigaction& before;
+      ~Opened() {
+        for (const FieldMemory& a : arrays) mprotect(a.begin, a.bytes, PROT_READ | PROT_WRITE);
+        sigaction(SIGSEGV, &before, nullptr);
+      }
+    } opened{arrays, before};
     launch();
-    for (const FieldMemory& a : arrays) mprotect(a.begin, a.bytes, PROT_READ | PROT_WRITE);
-    sigaction(SIGSEGV, &before, nullptr);
   }
 
  private:

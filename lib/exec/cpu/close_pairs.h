@@ -14,8 +14,8 @@ namespace pbf::inline PBF_VARIANT {
 
 constexpr float kCutoffSquared = 1;  ///< h^2
 
-/// Candidates in ascending order of their index; `count` is a multiple of 16, what fills up has NaN
-/// for x and is near to nothing.
+/// Candidates in ascending order of their index; `count` is a multiple of 16. Padding has NaN for x
+/// and is close to no particle.
 template <class Real, int D>
 struct Candidates {
   static constexpr int block = 16;
@@ -31,7 +31,7 @@ struct CandidateCopy {
   int* index;
 };
 
-/// Particles b..e-1 of n, side by side; writes up to W - 1 entries more.
+/// Copies particles b..e-1 of n to adjacent memory; may write up to W - 1 entries more.
 template <int W, class Real, int D>
 PBF_HD void copy_run_by_lanes(const Vec4<Real>* position, int b, int e, int n,
                               const CandidateCopy<Real, D>& to) {
@@ -76,8 +76,8 @@ PBF_HD Lanes<Real, W> squared_distances(const Candidates<Real, D>& c, int k, Vec
   return dot(away, away);
 }
 
-/// Writes the indices of all candidates but `self` closer than h to x, in their order, and returns
-/// the end of them; up to 16 entries beyond that end are overwritten.
+/// Writes the indices of all candidates but `self` that are closer than h to x, in their order, and
+/// returns the end of them; may overwrite up to 16 entries beyond that end.
 template <class Real, int D>
 int* close_to(const Candidates<Real, D>& c, Vec3<Real> x, int self, int* out) {
   constexpr int block = Candidates<Real, D>::block;
@@ -100,7 +100,7 @@ int* close_to(const Candidates<Real, D>& c, Vec3<Real> x, int self, int* out) {
 }
 
 #ifdef PBF_HAS_AVX
-/// Row b: the places of the bits set in b, ascending.
+/// Row b: the positions of the bits set in b, ascending.
 struct SetBits {
   std::uint8_t place[256][8];
   constexpr SetBits() : place{} {

@@ -9,8 +9,8 @@ namespace pbf::inline PBF_VARIANT {
 
 namespace {
 
-/// Puts order[first..last-1], whole bins in order, into the order of ids within each bin. They
-/// nearly are: rows were in that order before they moved.
+/// Sorts order[first..last-1], whole bins in order, by id within each bin. Insertion sort: the rows
+/// are nearly in that order, because they were before they moved.
 void sort_within_bins(const int* bin, const int* id, int first, int last, int* order) {
   int bin_before = -1, id_before = 0;  // of the row at k - 1
   for (int k = first; k < last; ++k) {
@@ -30,9 +30,9 @@ void sort_within_bins(const int* bin, const int* id, int first, int last, int* o
 }  // namespace
 
 void CpuExec::sort(const int* bin, const int* id, int n, int bins, int* order, int* start) {
-  // Every thread counts and places the particles of its own range of bins, in order, and `start`
-  // is all the room it takes. Particles are nearly in the order of the last sort, so bins
-  // met at equal distances divide the work about equally. At most 4 threads, since each looks at
+  // Every thread counts and places the particles of its own range of bins, in order; only `start`
+  // is needed as memory. Particles are nearly in the order of the last sort, so the bins at equal
+  // distances among them divide the work about equally. At most 4 threads, since each looks at
   // every particle; the sort is a small part of an update.
   const int threads = n > 16384 ? std::min(threads_, 4) : 1;
   int low[5] = {0}, placed[4] = {0};
@@ -57,7 +57,7 @@ void CpuExec::sort(const int* bin, const int* id, int n, int bins, int* order, i
     for (int i = 0; i < n; ++i)
       if (unsigned(bin[i] - low[t]) < size) order[start[bin[i]]++] = i;
     sort_within_bins(bin, id, first, first + placed[t], order);
-    // Every start has moved to that of the next bin.
+    // Every entry of `start` is now the start of the next bin.
     std::copy_backward(start + low[t], start + low[t + 1] - 1, start + low[t + 1]);
     start[low[t]] = first;
   }

@@ -23,16 +23,15 @@ namespace pbf::inline PBF_VARIANT {
 class CpuExec {
  public:
   using Lists = ChunkedLists;
-  /// Rows that the lanes of the last group may read; the lists are filled up with the first of
-  /// them.
+  /// Extra rows, which the lanes of the last group may read; the first of them pads the lists.
   static constexpr std::size_t padding = 16;
-  /// The order of a sort may stand where its gather writes the ids: each is read before.
+  /// The order of a sort may be stored where its gather writes the ids: each entry is read first.
   static constexpr bool order_in_place = true;
   static constexpr bool lists_overflow = false;  ///< they grow as they are made
   template <class T>
   using Buffer = HostBuffer<T>;
 
-  /// threads >= 1. list_entries: room per particle for its neighbours, at first
+  /// threads >= 1. list_entries: room per particle for its neighbors, at first
   /// (lib/program/memory.h); pages that stay empty are never touched.
   explicit CpuExec(int threads, int list_entries = 37, Simd simd = chosen_simd())
       : threads_(threads),
@@ -46,7 +45,7 @@ class CpuExec {
   std::vector<StageTime> stages(double) const { return clock_.entries(); }
   void describe(SolverInfo& info) const;
 
-  /// A download: what write(pointers) fills is on the host at once.
+  /// A download: write(pointers) writes directly to the arrays on the host.
   template <class Out, class Write>
   void start_copy(const std::vector<CopyTarget>& to, const Write& write) {
     std::vector<Out*> rows;
@@ -75,8 +74,7 @@ class CpuExec {
     if (n) std::memcpy(host, from, n * sizeof(T));
   }
 
-  // Passes by their shapes (kernels/pass_shapes.h). Of what threads could share, one makes the
-  // whole.
+  // Passes by their shapes (kernels/pass_shapes.h). Here one thread computes a whole item.
   template <ItemPass Pass>
   void items(int n, const Pass& pass) {
     in_pieces<1>(n, [&](int first, int last) {
@@ -107,7 +105,7 @@ class CpuExec {
     items(*count, pass);
   }
 
-  /// A measure: its maxima and counts, then the sums in units that these decide.
+  /// A measurement: maxima and counts, then the sums in units that follow from the maxima.
   template <ReducePass Pass>
   MeasureSums reduce(int n, const Pass& pass) {
     const auto counts = sum<MeasureCounts>(n, [&](int i) { return pass.counts(i); });
@@ -131,7 +129,7 @@ class CpuExec {
     }
   }
 
-  /// How many particles pass(i) puts into each of `bins` bins; none for a negative bin.
+  /// The number of particles that pass(i) puts into each of `bins` bins; none if it is negative.
   template <class Pass>
   const std::vector<std::int64_t>& count_in_bins(int n, int bins, const Pass& pass) {
     in_bins_.assign(std::size_t(bins), 0);
@@ -147,10 +145,10 @@ class CpuExec {
     return in_bins_;
   }
 
-  /// first(i) for every particle, which writes first.bin[i], or leaves it to `near`; a counting
-  /// sort by bin, within a bin by id (start[b] = first place of bin b, start[bins] = n);
-  /// gather(from, to) for every particle. So the order of rows follows from the positions alone,
-  /// not from the rows before. Marks `stage` after `first`.
+  /// Calls first(i) for every particle, which writes first.bin[i] or leaves this to `near`; sorts
+  /// by bin and, within a bin, by id (start[b] = first place of bin b, start[bins] = n); calls
+  /// gather(from, to) for every particle. The order of rows therefore follows from the positions
+  /// alone. Marks `stage` after `first`.
   template <class First, class Listed, class Gather>
   void sort_by_bin(const char* stage, const First& first, const Listed& near, int n, int bins,
                    const int* id, int* order, int* start, const Gather& gather) {
@@ -168,8 +166,8 @@ class CpuExec {
   /// order[k] = row of the k-th particle by (bin, id).
   void sort(const int* bin, const int* id, int n, int bins, int* order, int* start);
 
-  /// Exact lists of all pairs of n particles closer than h; grows as it must (std::bad_alloc when
-  /// it cannot). far: the row that fills up lists.
+  /// Lists of exactly the pairs of n particles closer than h. Memory grows as needed (throws
+  /// std::bad_alloc). far: the row that pads lists.
   template <class Real>
   Lists build_lists(int n, int far, const Vec4<Real>* position, const int* bin_start,
                     const Params<Real>& p) {
@@ -189,11 +187,11 @@ class CpuExec {
               ? make_lists<2>(simd_, position, bin_start, p, first, last, far, groups, scratch)
               : make_lists<3>(simd_, position, bin_start, p, first, last, far, groups, scratch);
       HostBuffer<int>& mine = chunks_[std::size_t(c)];
-      // Grow with some air, shrink only when far too large: sizes change little between updates.
+      // Grow with a reserve, shrink only if far too large: sizes change little between updates.
       const std::size_t room = std::size_t(std::min(kChunk, n - c * kChunk) * list_entries_);
       if (mine.size() < used || mine.size() > 2 * std::max(used, room))
         mine.resize(used > room ? used + used / 16 : room);
-      std::copy_n(scratch.found.data(), used, mine.data());  // of none: both may be null
+      std::copy_n(scratch.found.data(), used, mine.data());  // if used is 0, both may be null
       pointers_[std::size_t(c)] = mine.data();
     }
     return {pointers_.data(), groups_.data(), bits, far};
@@ -202,9 +200,9 @@ class CpuExec {
   std::size_t bytes() const;
 
  private:
-  /// f(first, last) for pieces of 0..n-1; an item is the work of `share` particles. Dynamic:
-  /// particles at the surface have fewer neighbours, and another program may take a core for a
-  /// while.
+  /// Calls f(first, last) for pieces of 0..n-1; an item is as much work as `share` particles.
+  /// Dynamic scheduling: particles at the surface have fewer neighbors, and another program may
+  /// occupy a core for a while.
   template <int share, class F>
   void in_pieces(int n, const F& f) {
     constexpr int piece = kPiece / share;
@@ -233,7 +231,7 @@ class CpuExec {
       pass.finish_corner(brick, which, sum);
     }
   }
-  /// Of term(i), whose additions have no order.
+  /// The sum of term(i), which does not depend on the order of terms.
   template <class Sum, class Term>
   Sum sum(int n, const Term& term) {
     Sum total;
@@ -249,7 +247,7 @@ class CpuExec {
   }
 
   static constexpr int kChunk = 1 << ChunkedLists::chunk_bits;
-  static constexpr int kShare = 16;   ///< of what threads could share, in particles
+  static constexpr int kShare = 16;   ///< work of an item that threads may share, in particles
   static constexpr int kPiece = 256;  ///< of a pass: whole groups of lists, a few microseconds
   int threads_, list_entries_;
   Simd simd_;

@@ -1,4 +1,4 @@
-// A 64-byte aligned array on the host, not initialised: the first pass that writes it touches it.
+// A 64-byte aligned array on the host. Not initialized: the first pass that writes it touches it.
 #pragma once
 
 #include <cstdlib>

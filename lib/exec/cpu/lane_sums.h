@@ -1,4 +1,4 @@
-// Runs a pass over neighbours for a range of particles, for each set of vector instructions.
+// Runs a pass over neighbors for a range of particles, for each set of vector instructions.
 #pragma once
 
 #include "kernels/lanes.h"

@@ -1,4 +1,4 @@
-// Makes the neighbour lists of one chunk of particles, with the working memory of one thread.
+// Makes the neighbor lists of one chunk of particles, with the working memory of one thread.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ void make_room(std::vector<T>& v, std::size_t n) {
   if (v.size() < n) v.resize(n + n / 4);
 }
 
-/// The particles around one half cell, side by side: those of a half cell have the same candidates.
+/// The particles around a half cell, copied to adjacent memory: the candidates of its particles.
 template <class Real, int D>
 class NearbyParticles {
  public:
@@ -30,7 +30,7 @@ class NearbyParticles {
     std::size_t n = 0;
     for_each_run<D>(x, bin_start, p, [&](int b, int e) { n += std::size_t(e - b); });
     const std::size_t padded = (n + block - 1) / block * block;
-    for (auto* v : {&x_, &z_}) make_room(*v, padded + block);  // copies overrun
+    for (auto* v : {&x_, &z_}) make_room(*v, padded + block);  // copies may overrun
     if constexpr (D == 3) make_room(y_, padded + block);
     make_room(index_, padded + block);
     std::size_t k = 0;
@@ -55,20 +55,20 @@ class NearbyParticles {
   Candidates<Real, D> candidates_{};  ///< of `cell_`
 };
 
-/// One thread's room.
+/// The working memory of one thread.
 struct ListScratch {
-  /// To begin with; `entries` of one list (cpu_scratch_entries).
+  /// Initial sizes; `entries`: of one list (cpu_scratch_entries).
   void reserve(int entries) {
     single.resize(std::max(single.size(), 32 * std::size_t(entries)));
     found.resize(std::max(found.size(), 1024 * std::size_t(entries)));
   }
-  std::vector<int> single;  ///< lists of one group, one behind the other
+  std::vector<int> single;  ///< lists of one group, one after the other
   std::vector<int> found;   ///< interleaved lists of a chunk
   std::size_t bytes() const { return (single.capacity() + found.capacity()) * sizeof(int); }
 };
 
-/// The lists of particles first..last-1, of one chunk, into `room.found`; returns how many entries
-/// that are, padding included. groups: those of the chunk's particles. D: dimensions.
+/// Writes the lists of particles first..last-1 of one chunk to `room.found` and returns the number
+/// of entries, with padding. groups: those of the chunk's particles. D: dimensions.
 template <int D, class Real>
 std::size_t make_lists(Simd simd, const Vec4<Real>* position, const int* bin_start,
                        const Params<Real>& p, int first, int last, int far,

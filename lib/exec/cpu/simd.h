@@ -8,7 +8,7 @@
 
 #include "kernels/hd.h"
 
-// Functions compiled for more than the program's baseline. What they call is inlined into them.
+// Attributes of functions for more than the program's baseline; what they call is inlined.
 #if defined(__x86_64__)
 #define PBF_HAS_AVX 1
 #define PBF_AVX2 __attribute__((target("avx2,popcnt")))
@@ -17,17 +17,17 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// scalar: one particle at a time. baseline: vectors of 16 bytes, SSE2 on x86-64, what the compiler
-/// makes of them elsewhere.
+/// scalar: one particle at a time. baseline: vectors of 16 bytes, SSE2 on x86-64, elsewhere
+/// whatever the compiler generates.
 enum class Simd { scalar, baseline, avx2, avx512 };
 
 const char* simd_name(Simd simd);
 
-/// All that this processor and this build have, the widest last.
+/// All that this processor and this build support, the widest last.
 std::vector<Simd> usable_simd();
 
-/// The widest one, or what the environment variable PBF_SIMD names (scalar, baseline, avx2,
-/// avx512). Throws Error(bad_input) for another word, Error(unavailable) for what is not usable.
+/// The widest one, or that named by the environment variable PBF_SIMD (scalar, baseline, avx2,
+/// avx512). Throws Error(bad_input) for an unknown name, Error(unavailable) if it is not usable.
 Simd chosen_simd();
 
 /// Particles that one vector holds, for scalars of `bytes` bytes, as a power of 2.

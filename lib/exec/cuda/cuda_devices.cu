@@ -1,4 +1,4 @@
-// What CUDA devices this machine has.
+// Lists the CUDA devices of this machine.
 #include <cuda_runtime.h>
 
 #include <cstdio>

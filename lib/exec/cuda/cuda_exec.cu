@@ -116,11 +116,11 @@ bool CudaExec::grow_lists(int n) {
   PBF_CUDA_CHECK(cudaMemcpyAsync(list_state_host_.data(), list_state_.data(), sizeof(ListState),
                                  cudaMemcpyDeviceToHost, stream_));
   synchronize();
-  const ListState& short_of = *list_state_host_.data();  // since it was cleared
+  const ListState& short_of = *list_state_host_.data();  // since the last clear_overflow()
   if (short_of.wanted == 0 && short_of.longest == 0) return false;
   capacity_ = larger_list_capacity(capacity_, std::max(short_of.used, short_of.wanted),
                                    short_of.longest, n);
-  words_.resize(0);  // first, so that the old and the new lists need not fit together
+  words_.resize(0);  // first, because old and new lists may not fit together
   overflows_.resize(0);
   allocate_lists(n);
   clear_overflow();

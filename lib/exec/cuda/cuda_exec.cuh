@@ -1,4 +1,4 @@
-// The CUDA executor: one stream; a thread per particle, or several for a neighbour sum where there
+// The CUDA executor: one stream; a thread per particle, or several for a neighbor sum where there
 // are few particles.
 #pragma once
 
@@ -33,9 +33,9 @@ class CudaExec {
   template <class T>
   using Buffer = DeviceBuffer<T>;
 
-  /// capacity: for the lists at first. Lists that outgrow it: the build records by how much,
-  /// nothing is written beyond the capacity, and grow_lists() gives more. total: particles of the
-  /// whole scene, for the number of threads of a sum.
+  /// capacity: of the lists at first. If a list is longer, the build records its length and writes
+  /// nothing beyond the capacity; grow_lists() enlarges it. total: particles of the whole scene,
+  /// from which the number of threads of a sum follows.
   CudaExec(ListCapacity capacity, std::int64_t total);
   ~CudaExec();
   CudaExec(const CudaExec&) = delete;
@@ -43,12 +43,12 @@ class CudaExec {
 
   void synchronize() { PBF_CUDA_CHECK(cudaStreamSynchronize(stream_)); }
 
-  // Stage times: of sampled updates, from events on the stream.
+  // Stage times of sampled updates, from events on the stream.
   void begin();
   void mark(const char* stage);
   void forget_stages() {}  // nothing is sampled before the first update
-  /// The stages of the sampled updates, which are not recorded and so take longer, share the
-  /// `seconds` that all updates took.
+  /// Divides the `seconds` of all updates in proportion to the stages of the sampled ones, which
+  /// take longer because they are not recorded.
   std::vector<StageTime> stages(double seconds) const;
   void describe(SolverInfo& info) const;
 
@@ -58,8 +58,8 @@ class CudaExec {
   }
   void finish_copy(const std::vector<CopyTarget>& to) { copy_.finish(to); }
 
-  /// Updates by replay of what was recorded; one in a while is timed stage by stage, outside the
-  /// recorded ones, and stands for the others.
+  /// Replays recorded updates. From time to time one update runs unrecorded and is timed stage by
+  /// stage, as a sample for the others.
   template <class Updates>
   void repeat(int updates, Updates& u) {
     const int every = u.size() < 100000 ? 1024 : 64;
@@ -94,12 +94,11 @@ class CudaExec {
   void items(int n, const Pass& pass) {
     launch(item_kernel<Pass>, n, kBlock, 0, n, pass);
   }
-  /// The threads of a neighbour sum shape its tree, so their number follows from the particles of
-  /// the whole scene, not from those here.
+  /// The number of threads determines the tree of a neighbor sum, so it follows from the particles
+  /// of the whole scene, not from those here.
   template <PairPass Pass>
   void pairs(int n, const Pass& pass) {
-    // In two dimensions a list has a third of the words: half as many threads have something to
-    // do.
+    // In two dimensions a list has a third of the words, enough for half as many threads.
     constexpr bool space = Pass::D == 3;
     if (launch_lanes < 16, space ? kSixteenLanes : 0 > (n, pass)) return;
     if (launch_lanes < space ? 8 : 4, kEightLanes > (n, pass)) return;
@@ -121,7 +120,7 @@ class CudaExec {
   void bricks(const Pass& pass) {
     launch(brick_kernel<Pass>, pass.grid.bricks() * kBrickBlock<Pass>, kBrickBlock<Pass>, 0, pass);
   }
-  /// See CpuExec. How many they are is known on the device alone.
+  /// See CpuExec. Their number is known on the device alone.
   template <ItemPass Pass>
   void listed(const int* count, int most, const Pass& pass) {
     launch(listed_kernel<Pass>, std::min(most, kBlock * kListedBlocks), kBlock, 0, count, pass);
@@ -159,8 +158,8 @@ class CudaExec {
     return counted_;
   }
 
-  /// See CpuExec. While a graph is captured the body becomes part of it, and the device repeats it
-  /// without asking the host; else the host waits for every sum.
+  /// See CpuExec. If a graph is captured, the body becomes part of it, and the device repeats it
+  /// without the host; otherwise the host waits for every sum.
   template <class Pass, class Body>
   void repeat_while(const char* stage, int n, int times, const Pass& pass, std::uint64_t limit,
                     unsigned long long* repeats, const Body& body) {
@@ -186,7 +185,7 @@ class CudaExec {
     }
   }
 
-  /// See CpuExec; `order` is memory for the arrivals.
+  /// See CpuExec; `order` holds the order of arrival within bins.
   template <class First, class Listed, class Gather>
   void sort_by_bin(const char* stage, const First& first, const Listed& near, int n, int bins,
                    const int* id, int* order, int* start, const Gather& gather) {
@@ -251,8 +250,8 @@ class CudaExec {
     else
       items(n, pass);
   }
-  /// A device-wide algorithm of CUB: call(scratch, bytes) says how many bytes it needs where
-  /// `scratch` is null, else runs.
+  /// Runs a device-wide algorithm of CUB: call(scratch, bytes) returns the bytes that it needs if
+  /// `scratch` is null, and runs otherwise.
   template <class Call>
   static void with_scratch(DeviceBuffer<char>& scratch, const Call& call) {
     std::size_t bytes = 0;
@@ -267,7 +266,7 @@ class CudaExec {
     start_kernel(stream_, overlap_ && !after_condition_, kernel, threads, block, shared, args...);
     after_condition_ = false;
   }
-  /// Where the scene has at most `most` particles.
+  /// Launches `lanes` threads per particle if the scene has at most `most`; returns whether it did.
   template <int lanes, int most, class Pass>
   bool launch_lanes(int n, const Pass& pass) {
     if constexpr (most > 0) {
@@ -300,11 +299,11 @@ class CudaExec {
   }
   void allocate_lists(int n);
   void clear_overflow();
-  /// Books the marks since begin(), waiting for them; `scale` updates count as this one.
+  /// Waits for the marks since begin() and books their times, multiplied by `scale`.
   void book(double scale);
-  /// Makes a condition in the graph that is being captured; false where none is.
+  /// Makes a condition in the graph that is being captured; false if none is.
   bool new_condition(cudaGraphConditionalHandle& handle);
-  /// What is launched in between is captured as the body that the condition repeats.
+  /// Launches between these two are captured as the body that the condition repeats.
   void begin_repeated(cudaGraphConditionalHandle handle);
   void end_repeated();
   bool asked_to_repeat();
@@ -314,8 +313,8 @@ class CudaExec {
   std::string device_, driver_;  ///< names
   cudaStream_t stream_ = nullptr;
   cudaStream_t other_stream_ = nullptr;  ///< while a repeated body is captured: that of the graph
-  bool overlap_ = false;                 ///< the device knows programmatic dependent launch
-  bool after_condition_ = false;         ///< ... which is for kernels behind kernels
+  bool overlap_ = false;                 ///< the device has programmatic dependent launch
+  bool after_condition_ = false;         ///< ... which works only from kernel to kernel
   ListCapacity capacity_;
   std::int64_t total_;
   bool profiling_ = false;
@@ -334,7 +333,7 @@ class CudaExec {
   DeviceBuffer<int> count_, overflow_of_, counts_, slot_;
   DeviceBuffer<ListState> list_state_;
   PinnedBuffer<ListState> list_state_host_;
-  DeviceBuffer<char> scan_;  ///< apart from other scratch: recorded updates hold its address
+  DeviceBuffer<char> scan_;  ///< separate, because recorded updates hold its address
   DeviceBuffer<RepeatState> repeat_;
 };
 

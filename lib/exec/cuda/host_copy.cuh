@@ -1,4 +1,4 @@
-// Downloads beside the updates: a stream of its own from staging on the device to pinned memory.
+// Downloads during updates: a second stream copies from a staging buffer to pinned memory.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class HostCopy {
     cudaStreamDestroy(stream_);
   }
 
-  /// write(pointers) fills the staging, on `stream`.
+  /// write(pointers) fills the staging buffer, on `stream`.
   template <class Out, class Write>
   void start(const std::vector<CopyTarget>& to, const Write& write, cudaStream_t stream) {
     std::size_t bytes = 0;

@@ -1,4 +1,4 @@
-// How every kernel is launched, and what it begins with.
+// The launch of every kernel, and its first statement.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -12,18 +12,18 @@ namespace pbf::inline PBF_VARIANT {
 
 constexpr int kBlock = 128;
 
-/// First statement of every kernel: it is set up while the kernel before it ends, and waits here
+/// First statement of every kernel. A kernel is set up while the previous one ends, and waits here
 /// until that one is done (programmatic dependent launch, from sm_90 on). An explicit early trigger
-/// would let its blocks take the places of blocks still to run: measured 28 % slower at 131 k
-/// particles.
+/// is slower: its blocks would occupy places that blocks of the previous kernel need
+/// (kernels/PERFORMANCE.md).
 __device__ __forceinline__ void wait_for_previous() {
 #if __CUDA_ARCH__ >= 900
   cudaGridDependencySynchronize();
 #endif
 }
 
-/// Enough blocks of `block` threads for `threads` > 0. overlap: with programmatic dependent launch,
-/// which hides most of the time between two kernels.
+/// Launches enough blocks of `block` threads for `threads` > 0. overlap: with programmatic
+/// dependent launch, which hides most of the time between two kernels.
 template <class... P, class... A>
 void start_kernel(cudaStream_t stream, bool overlap, void (*kernel)(P...), int threads, int block,
                   std::size_t shared, const A&... args) {

@@ -10,8 +10,8 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Up to how many particles so many threads share a neighbour sum, and up to how many eight share
-/// the making of a list (of which no bit depends on it): measured on an H200
+/// Largest numbers of particles for which 16, 8, 4 and 2 threads share a neighbor sum, and for
+/// which several share the making of a list (which changes no bit). Measured on an H200
 /// (kernels/PERFORMANCE.md).
 #ifdef PBF_PINNED
 constexpr int kSixteenLanes = 6000, kEightLanes = 24000, kFourLanes = 0, kTwoLanes = 0;
@@ -36,7 +36,7 @@ __global__ void __launch_bounds__(kBlock) pair_kernel(int n, Pass pass) {
   if (i < n) sum_over_neighbors(pass, i);
 }
 
-/// For as many items as *count says.
+/// For items 0 .. *count - 1.
 template <class Pass>
 __global__ void __launch_bounds__(kBlock)
     listed_kernel(const int* count, const __grid_constant__ Pass pass) {
@@ -45,7 +45,7 @@ __global__ void __launch_bounds__(kBlock)
   for (int k = blockIdx.x * kBlock + threadIdx.x; k < n; k += gridDim.x * kBlock) pass(k);
 }
 
-/// A neighbour sum by several threads per particle.
+/// A neighbor sum by several threads per particle.
 template <int lanes, class Pass>
 __global__ void __launch_bounds__(kBlock) lanes_kernel(int n, Pass pass) {
   wait_for_previous();

@@ -1,4 +1,4 @@
-// Making the neighbour lists: exact, without a branch per candidate. The hits of up to 32
+// Making the neighbor lists: exact, without a branch per candidate. The hits of up to 32
 // candidates are collected as bits, then taken out in order.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// The sign bit of x as the lowest bit of `mask`, the others one place up.
+/// Shifts `mask` left by one place and puts the sign bit of x into its lowest bit.
 __device__ __forceinline__ unsigned push_sign(float x, unsigned mask) {
   return __funnelshift_l(__float_as_uint(x), mask, 1);
 }
@@ -17,11 +17,11 @@ __device__ __forceinline__ unsigned push_sign(double x, unsigned mask) {
   return __funnelshift_l(unsigned(__double2hiint(x)), mask, 1);
 }
 
-/// What the making of lists tells the host, on the device.
+/// What the making of lists reports to the host; on the device.
 struct ListState {
   int used;     ///< overflows taken in this update
   int wanted;   ///< overflows asked for in any update that had too few
-  int longest;  ///< list that did not fit in any update, with its overflow
+  int longest;  ///< longest list that did not fit, in any update
 };
 
 /// D: dimensions of the scene.
@@ -37,9 +37,9 @@ struct ListPass {
   ListState* state;
   ListCapacity capacity;
   int stride;
-  int n, far;  ///< particles, and the row that fills up lists
+  int n, far;  ///< particles, and the row that pads lists
 
-  /// hits(first, bits): bit 31 - k set where candidate first + k is a neighbour of i.
+  /// hits(first, bits): bit 31 - k set where candidate first + k is a neighbor of i.
   template <class F>
   __device__ __forceinline__ void scan(int i, Vec<Real, D> xi, int begin, int end, F&& hits) const {
     for (int first = begin; first < end; first += 32) {
@@ -50,7 +50,7 @@ struct ListPass {
         const Vec<Real, D> d = xi - point<D>(load(position, first + k));
         bits = push_sign(dot(d, d) - Real(1), bits);
       }
-      bits <<= 32 - n;  // the first candidate on top
+      bits <<= 32 - n;  // the first candidate at bit 31
       if (unsigned(i - first) < unsigned(n)) bits &= ~(0x80000000u >> (i - first));
       hits(first, bits);
     }
@@ -90,8 +90,8 @@ struct ListPass {
     finish(i, all, limit);
   }
 
-  /// Eight threads make it, or two: a row of candidates each (the last one two), counted first,
-  /// then written in order. For few particles.
+  /// For few particles: eight threads make a list (two in two dimensions). Each has a row of
+  /// candidates (the last one two rows), which it first counts, then writes in order.
   __device__ void by_lanes(int thread) const {
     const int i = thread / lanes, lane = thread % lanes;
     const bool valid = i < n;
@@ -103,7 +103,7 @@ struct ListPass {
     count_row(i, xi, b);
     const int mine = a.found + b.found;
     using LaneScan = cub::WarpScan<int, lanes>;
-    __shared__ typename LaneScan::TempStorage shared;  // empty: it shuffles
+    __shared__ typename LaneScan::TempStorage shared;  // empty: the scan uses shuffles
     int place, all;
     LaneScan(shared).ExclusiveSum(mine, place, all);
     int4* overflow = nullptr;
@@ -118,7 +118,7 @@ struct ListPass {
   }
 
  private:
-  /// One of the rows around a cell (for_each_run's order), and its hits where they fit a word.
+  /// A row around a cell, in the order of for_each_run(), and its hits if they fit into a word.
   struct Row {
     int begin = 0, end = 0, found = 0;
     unsigned bits = 0;
@@ -136,7 +136,7 @@ struct ListPass {
       r.bits = bits;
     });
   }
-  /// Where the words of a list are; overflow is null where it needs none or gets none.
+  /// The memory of a list; overflow is null if it needs none or none is left.
   struct List {
     int4 *words, *overflow;
   };
@@ -174,7 +174,7 @@ struct ListPass {
     overflow_of[i] = mine;
     return overflows + std::size_t(mine) * capacity.overflow;
   }
-  /// limit: words that were kept.
+  /// limit: words that fit.
   __device__ __forceinline__ void finish(int i, int all, int limit) const {
     count[i] = min(all, 4 * limit);
     if (all > capacity.longest()) atomicMax(&state->longest, all);

@@ -1,4 +1,4 @@
-// What is checked before a CUDA solver is made: a device, and enough of its memory.
+// Makes a CUDA solver, after checks for a device and enough of its memory.
 #include <utility>
 
 #include "lib/exec/cuda/check.h"
@@ -9,7 +9,7 @@
 namespace pbf::inline exec_module {
 namespace {
 
-/// By the plan's count of the arrays; the context is there already, so it is not counted.
+/// Uses the plan's size of the arrays. The CUDA context is already allocated, so it is not counted.
 void refuse_if_device_too_small(const Scene& scene, const Plan& plan) {
   std::size_t free = 0, total = 0;
   PBF_CUDA_CHECK(cudaMemGetInfo(&free, &total));

@@ -17,7 +17,7 @@ class RecordedUpdates {
   RecordedUpdates& operator=(const RecordedUpdates&) = delete;
   ~RecordedUpdates() { drop(); }
 
-  /// Makes them with u.step(updates) while the stream is captured, where they are not there yet.
+  /// Runs `left` updates. Missing graphs are recorded: u.step(updates) with the stream captured.
   template <class Updates>
   void repeat(int left, Updates& u, cudaStream_t stream) {
     for (const int size : {0, 1, 2})
@@ -34,12 +34,12 @@ class RecordedUpdates {
       if (graph) cudaGraphExecDestroy(graph);
     graph_.clear();
   }
-  /// Kernels and fills of one step; 0 before one was recorded.
+  /// Kernels and fills of one update; 0 before the first recording.
   double launches() const { return launches_; }
 
  private:
-  /// Buffers trade places in an update, so what can be replayed holds an even number of them, and
-  /// there is one for each placement. Long ones spare the gaps between graphs.
+  /// Updates per graph. An update swaps buffers, so a graph has an even number of updates, and each
+  /// placement of buffers has its own graphs. Long graphs avoid gaps between graphs.
   static constexpr int kUpdates[3] = {64, 8, 2};
 
   template <class Updates>

@@ -1,4 +1,4 @@
-// The maxima, counts and sums of a measure on the device.
+// The maxima, counts and sums of a measurement on the device.
 #pragma once
 
 #include "kernels/measure.h"
@@ -28,10 +28,10 @@ struct TermsOf {
 template <class Sum>
 struct Reduction {
   Sum *of_block, *total;
-  unsigned* blocks_done;  ///< 0 at first, and left so
+  unsigned* blocks_done;  ///< 0 before and after a reduction
 };
 
-/// part[0] becomes the sum of what the threads of the block bring.
+/// part[0] becomes the sum of `mine` over the threads of the block.
 template <class Sum>
 __device__ __forceinline__ void add_in_block(Sum* part, const Sum& mine) {
   __syncthreads();
@@ -73,7 +73,7 @@ __global__ void __launch_bounds__(kBlock)
   }
 }
 
-/// The memory of a measure's two reductions.
+/// The memory of the two reductions of a measurement.
 class MeasureSpace {
  public:
   struct Totals {
@@ -81,7 +81,7 @@ class MeasureSpace {
     MeasureTerms terms;
   };
 
-  /// For n particles, from now on always as many.
+  /// Allocates for n particles at the first call; n must be the same in later calls.
   void make(int n, cudaStream_t stream) {
     if (totals_.size()) return;
     counts_.resize(std::size_t(reduce_blocks(n)));
@@ -97,7 +97,7 @@ class MeasureSpace {
   Reduction<MeasureTerms> terms() {
     return {terms_.data(), &totals_.data()->terms, blocks_done_.data()};
   }
-  /// Waits.
+  /// Waits for the device.
   MeasureSums result(cudaStream_t stream) {
     PBF_CUDA_CHECK(cudaMemcpyAsync(host_.data(), totals_.data(), sizeof(Totals),
                                    cudaMemcpyDeviceToHost, stream));

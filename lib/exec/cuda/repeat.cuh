@@ -14,15 +14,15 @@ struct RepeatState {
   unsigned long long sum;
   unsigned blocks_done;
   unsigned left;  ///< repetitions that are still allowed
-  unsigned go;    ///< what was decided last
+  unsigned go;    ///< the last decision
 };
 
 struct Repetition {
-  RepeatState* state;  ///< all 0 at first; left so again, but for `left` and `go`
+  RepeatState* state;  ///< all 0 at first; each decision clears all but `left` and `go`
   unsigned long long* repeats;
   std::uint64_t limit;
   unsigned times;
-  bool first;  ///< of its sequence
+  bool first;  ///< the first decision of a sequence
   bool in_graph;
   cudaGraphConditionalHandle handle;  ///< of the node that repeats, in a graph
 };

@@ -1,5 +1,5 @@
-// Passes whose items several threads share: each makes a part, and parts of whole numbers add up in
-// any order (kernels/pass_level_cells.h).
+// Passes whose items are shared by several threads: each computes a part. Parts are integers, so
+// they can be added in any order (kernels/pass_shapes.h).
 #pragma once
 
 #include <cub/block/block_reduce.cuh>
@@ -18,7 +18,7 @@ struct AddParts {
   }
 };
 
-/// The sum over `lanes` <= 32 threads side by side, in the first of them.
+/// The sum over `lanes` <= 32 adjacent threads, in the first of them.
 template <int lanes, class Part>
 __device__ __forceinline__ Part sum_of_lanes(const Part& mine) {
   using LaneSum = cub::WarpReduce<Part, lanes>;
@@ -38,7 +38,7 @@ __global__ void __launch_bounds__(kBlock) shared_kernel(int n, const __grid_cons
   if (i < n && lane == 0) pass.finish(i, mine);
 }
 
-/// A block of a brick (kernels/levels.h).
+/// One block per brick (kernels/levels.h).
 template <class Pass>
 constexpr int kBrickBlock = Pass::brick_cells* Pass::lanes;
 template <class Pass>
@@ -73,15 +73,15 @@ __device__ __forceinline__ Part sum_of_block(const Part& mine) {
   return BlockSum(shared).Reduce(mine, AddParts{});
 }
 
-/// sum_of_lanes where only the program that runs knows how many: 1, or one of `widths`.
+/// sum_of_lanes() for a number of lanes known at run time: 1, or one of `widths`.
 template <class Part, int... widths>
 __device__ __forceinline__ void sum_of_some_lanes(Part& mine, int lanes,
                                                   std::integer_sequence<int, widths...>) {
   ((lanes == widths ? void(mine = sum_of_lanes<widths>(mine)) : void()), ...);
 }
 
-/// Groups of items, of which each is shared by a power of two up to 32 threads, or by a block. A
-/// block is of one group.
+/// Groups of items, each shared by a power of two up to 32 threads or by a block. All items of a
+/// block are of one group.
 constexpr int kTeam = 512;
 template <class Pass>
 __host__ __device__ int team_blocks(const Pass& pass, int group) {

@@ -8,8 +8,8 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// The pass that gives a particle its bin, then its place among those of the bin in order of
-/// arrival.
+/// Runs `First`, which gives a particle its bin, and then stores the particle's number in that bin
+/// in order of arrival.
 template <class First>
 struct CountPass : First {
   int *count, *arrival;
@@ -22,7 +22,7 @@ struct CountPass : First {
     First::finish(i, own, sum);
     arrive(i);
   }
-  /// Of a pass over listed rows.
+  /// For a pass over listed rows.
   template <class Pass>
   __device__ static auto row_of(const Pass& pass, int k, int) -> decltype(pass.row(k)) {
     return pass.row(k);
@@ -37,7 +37,7 @@ struct CountPass : First {
     arrival[i] = atomicAdd(&count[bin], 1);
   }
 };
-/// Also clears the counters for the next sort, and the use of the lists' overflows.
+/// Sorts rows by bin. Also clears the counters for the next sort and the number of used overflows.
 struct PlacePass {
   const int *bin, *start, *arrival;
   int *slot, *count;
@@ -49,8 +49,8 @@ struct PlacePass {
     if (i == 0) lists->used = 0;
   }
 };
-/// Moves the particles of a bin in the order of their ids, so that the order of rows follows from
-/// the positions alone: each one counts those of its bin that come before it.
+/// Moves the particles of a bin to the order of their ids, so that the order of rows follows from
+/// the positions alone: each thread counts the particles of the bin with smaller ids.
 template <class Gather>
 struct OrderPass {
   const int *bin, *id, *start, *slot;
@@ -66,8 +66,8 @@ struct OrderPass {
 
 static_assert((kSortBins + 32) * sizeof(int) <= 48 * 1024, "count and warp_sum in one block");
 
-/// One block sorts few particles (kSortParticles, kSortBins). Runs `first` (see CountPass) as well,
-/// and gathers.
+/// One block runs `first` (see CountPass), sorts and gathers. For few particles (kSortParticles,
+/// kSortBins).
 template <class First, class Gather>
 __global__ void __launch_bounds__(kSortThreads)
     small_sort_kernel(First first_pass, int n, int bins, int* arrival, int* slot, int* start,
@@ -84,9 +84,9 @@ __global__ void __launch_bounds__(kSortThreads)
     arrival[i] = atomicAdd(&count[bin[i]], 1);
   }
   __syncthreads();
-  // Exclusive scan: a run of bins per thread (an odd number, against bank conflicts), then the
-  // threads' sums within warps, then the warps'. By hand: cub::BlockScan made an update of 1000
-  // particles 2 % slower.
+  // Exclusive scan: a run of bins per thread (an odd number, against bank conflicts), then the sums
+  // of threads within warps, then those of warps. cub::BlockScan is slower here
+  // (kernels/PERFORMANCE.md, "Libraries").
   const int run = ((bins + kSortThreads - 1) / kSortThreads) | 1;
   const int first = min(t * run, bins), last = min(first + run, bins);
   int sum = 0;
@@ -123,7 +123,7 @@ __global__ void __launch_bounds__(kSortThreads)
   __syncthreads();
   for (int k = t; k < n; k += kSortThreads) place(k);
 }
-/// For particles that have their bin already.
+/// For particles that already have their bin.
 struct NothingFirst {
   __device__ void operator()(int) const {}
 };

@@ -1,7 +1,6 @@
-// Neighbour lists for coalesced reading: word k of 4 entries of particle i lies at
-// words[k stride + i], so the lanes of a warp read adjacent 16-byte words. Few lists are longer
-// than most, so there is one capacity for all, and a list that outgrows it takes an overflow block
-// of its own from a common pool.
+// Neighbor lists for coalesced reading: word k of 4 entries of particle i is at
+// words[k stride + i], so the lanes of a warp read adjacent 16-byte words. All lists have the same
+// capacity; the few longer ones also take an overflow block from a common pool.
 #pragma once
 
 #include <type_traits>
@@ -11,8 +10,8 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// A word that this pass reads once and no pass reads soon: it takes no room in L1 from the
-/// positions.
+/// Loads a word that is read once and by no pass soon, without displacing positions from the L1
+/// cache.
 __device__ __forceinline__ int4 load_once(const int4* word) {
   int4 w;
   asm("ld.global.nc.L1::no_allocate.v4.s32 {%0, %1, %2, %3}, [%4];"
@@ -21,18 +20,18 @@ __device__ __forceinline__ int4 load_once(const int4* word) {
   return w;
 }
 
-/// Neighbour policy. Unused entries of the last word name the far particle (index n), whose
-/// contribution to every sum is zero: no test per entry.
+/// Neighbor lists of the GPU. Unused entries of the last word are the far particle (index n), which
+/// contributes zero to every sum, so entries need no test.
 struct TransposedLists {
   static constexpr bool skip_inactive = false;  ///< a branch per pair costs more than the pair
   const int4 *words = nullptr, *overflows = nullptr;
-  const int* count = nullptr;        ///< neighbours stored for each particle
-  const int* overflow_of = nullptr;  ///< which overflow, where count is above 4 first
+  const int* count = nullptr;        ///< neighbors stored for each particle
+  const int* overflow_of = nullptr;  ///< number of its overflow, if count is above 4 first
   int stride = 0;                    ///< words between word k and k + 1 of one particle
   int first = 0, overflow = 0;       ///< see ListCapacity
-  int far = 0;                       ///< the row that fills up lists
+  int far = 0;                       ///< the row that pads lists
 
-  /// f(j) for every neighbour j of i, or for the share of one of `lanes` threads.
+  /// f(j) for every neighbor j of i, or for the share of one of `lanes` threads.
   template <class F>
   __device__ __forceinline__ void for_each(int i, F&& f, int lane = 0, int lanes = 1) const {
     const int n = (count[i] + 3) >> 2;
@@ -58,7 +57,7 @@ struct TransposedLists {
   __device__ __forceinline__ int size(int i) const { return count[i]; }
 };
 
-/// Several threads share the neighbours of one particle: for few particles, where a pass waits for
+/// Several threads share the neighbors of one particle: for few particles, where a pass waits for
 /// memory rather than for arithmetic. Their sums are added in a tree of fixed shape.
 template <int lanes, class Pass>
 __device__ __forceinline__ void sum_over_neighbors_by_lanes(const Pass& pass, int thread, int n) {
@@ -78,8 +77,8 @@ __device__ __forceinline__ void sum_over_neighbors_by_lanes(const Pass& pass, in
   if (valid && lane == 0) pass.finish(i, own, sum);
 }
 
-/// The same with the bits of one thread's sum: the threads compute the terms, 4 lanes of them at a
-/// time, and leave them in shared memory; then each adds one component in the order of the list.
+/// The same with the bits of a sum by one thread. The threads compute 4 * lanes terms at a time and
+/// store them in shared memory; then each adds one component in the order of the list.
 template <int lanes, int block, class Pass>
 __device__ __forceinline__ void sum_in_order_by_lanes(const Pass& pass, int thread, int n) {
   using Real = std::remove_cv_t<decltype(pass.p.dt)>;

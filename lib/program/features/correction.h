@@ -40,7 +40,7 @@ struct Delta {
       pbf::Needs<Gathers<other<field::position>, W::lambda>, UsesLists, Gathers<field::id>,
                  Reads<field::density>, Writes<field::position, W::inverse_density>,
                  Updates<field::velocity>, If<has_levels, LevelMoveNeeds>, MoveNeeds,
-                 If<has_solids, Updates<other<field::velocity>>>>;
+                 If<has_solids, Looks<field::near_row>, Places<other<field::velocity>>>>;
   template <class G>
   static void launch(const G& c) {
     launch_delta(c, nullptr);

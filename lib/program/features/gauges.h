@@ -11,7 +11,7 @@
 namespace pbf::inline program_module::field {
 /// Of each particle, in the order of ids: bits say on which side of each flow gauge it is.
 inline constexpr struct FlowSides : Plain<int> {
-} flow_sides{{"flow sides", per_particle, Life::lists}};
+} flow_sides{{"flow sides", per_particle, Life::rows}};
 }  // namespace pbf::inline program_module::field
 
 namespace pbf::inline PBF_VARIANT {

@@ -20,10 +20,10 @@ inline bool has_obstacles(const Scene& s) { return !s.obstacles.empty(); }
 /// Of a pass over neighbors that leaves near rows to a second launch. Their sums over neighbors lie
 /// in the other array of velocities.
 using NearNeeds = If<has_obstacles, Reads<field::near_room>, Looks<field::near_row>>;
-using NearSumNeeds = If<has_obstacles, Updates<other<field::velocity>>>;
+using NearSumNeeds = If<has_obstacles, Places<other<field::velocity>>>;
 /// Of a pass that moves particles: rows come near, and what solids do to them is booked.
 using MoveNeeds = Needs<
-    If<has_solids, Updates<field::near_room>, Looks<field::near_row>, Places<field::near_row>>,
+    If<has_solids, Updates<field::near_room>, Places<field::near_row>>,
     BookNeeds>;
 
 /// Of the present state: arrays are flipped, walls may be those of steps without time.
@@ -74,7 +74,7 @@ void each_then_near(const G& c, Make&& make) {
 struct FindNear {
   static constexpr PassText text{"near solids", "neighbors"};
   using Needs =
-      pbf::Needs<Reads<field::position>, Looks<field::bin_start>, Updates<field::near_room>,
+      pbf::Needs<Reads<field::position>, Looks<field::bin_start>, Places<field::near_room>,
                  Looks<field::near_row>, Places<field::near_row>>;
   template <class G>
   static void launch(const G& c) {
