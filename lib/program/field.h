@@ -27,9 +27,9 @@ constexpr std::int64_t per_wall(const Sizes& n) { return n.walls; }
 
 enum class Type { real, int32, int64 };  ///< of a component; real: of the scene's precision
 
-/// How long the contents count: until the next pass that writes them, as long as the lists, within
-/// an update (empty between two), or as part of the state, which is saved, kept, and carried along
-/// by the sort.
+/// How long the contents count: until the next pass that writes them; as long as the lists; within
+/// an update, empty between two; along with the particles (rows); or as part of the state, which is
+/// also saved and kept.
 enum class Life { pass, lists, update, rows, state };
 
 /// What those see who look at an update pass by pass.

@@ -29,7 +29,8 @@ struct PlacedScene : KeyPlaces {
 
 /// Reads every key of the table into the object; reports unknown, misplaced, duplicate and missing
 /// keys, wrong types and values out of range. Paths in lists have the form "bodies[0].min".
-KeyPlaces read_tree(const KeyTable& table, const Node& root, const Object& object, Problems& problems);
+KeyPlaces read_tree(const KeyTable& table, const Node& root, const Object& object,
+                    Problems& problems);
 /// Replaces the old names of renamed keys, in a tree that an earlier version wrote.
 void use_new_names(const KeyTable& table, Node& node, const std::string& block = "");
 

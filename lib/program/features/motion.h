@@ -105,7 +105,8 @@ struct Sort {
 
 /// The near rows are predicted in place, before the others.
 using SortPredictedNeeds =
-    Needs<Looks<other<field::position>>, If<has_solids, Looks<field::near_row>, Places<other<field::position>>>,
+    Needs<Looks<other<field::position>>,
+          If<has_solids, Looks<field::near_row>, Places<other<field::position>>>,
           Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, MoveNeeds>;
 
 /// x* is computed for its bin, and once more where the particles are gathered, which is cheaper

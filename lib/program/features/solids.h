@@ -22,9 +22,8 @@ inline bool has_obstacles(const Scene& s) { return !s.obstacles.empty(); }
 using NearNeeds = If<has_obstacles, Reads<field::near_room>, Looks<field::near_row>>;
 using NearSumNeeds = If<has_obstacles, Places<other<field::velocity>>>;
 /// Of a pass that moves particles: rows come near, and what solids do to them is booked.
-using MoveNeeds = Needs<
-    If<has_solids, Updates<field::near_room>, Places<field::near_row>>,
-    BookNeeds>;
+using MoveNeeds =
+    Needs<If<has_solids, Updates<field::near_room>, Places<field::near_row>>, BookNeeds>;
 
 /// Of the present state: arrays are flipped, walls may be those of steps without time.
 template <class C>
