@@ -173,13 +173,9 @@ void Watch::take(const std::string& change, int level_before) {
   note_(change + (finer > 0 ? prestabilize(finer) : std::string()));
 }
 
-/// A step of dt holds up the fluid with a compression in proportion to dt^2. Left to a step 2^k
-/// times shorter, it pushes with 4^k times the weight of the fluid and throws it up: with one
-/// iteration and dt sqrt(g/h) = 0.2 a pool of 12 layers, gone back to a mean compression of 39 %,
-/// gained 7 times its energy with a step 64 times shorter. So the compression is first taken down
-/// by 4^k, in steps without time (Macklin et al. 2014, Unified particle physics for real-time
-/// applications, ACM TOG 33(4), part contacts that are there at the start so), and what lifting the
-/// fluid adds to its energy is taken from its motion.
+/// Reduces the compression by 4^levels before shorter steps begin, which would turn it into energy
+/// (lib/solver/DIAGNOSTICS.md, "Compression at rest"): first steps without time, then a damping of
+/// the velocities that takes away the energy by which these steps lifted the fluid.
 std::string Watch::prestabilize(int levels) {
   constexpr int kMost = 64, kAtOnce = 4;
   constexpr double kHarmless = 1e-3;
