@@ -47,9 +47,10 @@ struct Plan {
   int substeps = 1;
   int lists_per_update = 1;  ///< substeps share lists (substep_lists.h)
   int finest_level = 0;      ///< of time.adaptive: an update is up to 2^finest_level steps
-  double tolerance = 0;      ///< mean compression above which the iterations are repeated; 0: never
-  int repeats = 0;           ///< maximum number of these repetitions
-  double mass = 0;           ///< kg, of one particle
+  double tolerance =
+      0;            ///< mean compression above which the iterations are repeated; 0: they are not
+  int repeats = 0;  ///< maximum number of these repetitions
+  double mass = 0;  ///< kg, of one particle
   LevelPlan levels;
   std::vector<Solid<double>> solids;  ///< of obstacles, in internal axes; lib/program/obstacles.h
   GaugePlan gauges;
