@@ -27,7 +27,7 @@ std::vector<std::string> inputs() {
   return {paths().begin(), paths().end()};
 }
 
-// Looked up anew each time: the inode of a file that is gone may have become another's.
+// Looks up every inode again: the system may have given the inode of a deleted file to another one.
 std::string input_at(const std::string& path) {
   struct stat there {
   }, input{};

@@ -6,14 +6,14 @@
 
 namespace pbf::inline base_module {
 
-/// Called by whoever reads a file that the user has named, on the command line or in another file.
+/// Call this for every file that the user named (on the command line or in another file) and that
+/// is read.
 void note_input(const std::string& path);
 
-/// All of them, in alphabetical order.
+/// The noted files, in alphabetical order.
 std::vector<std::string> inputs();
-
-/// Which of them is the same file (device and inode) as `path`; empty: none. Pipes and devices may
-/// be read and written.
+/// The noted file that is the same (device and inode) as `path`; empty if there is none. Pipes and
+/// devices never match: a command may read and write them.
 std::string input_at(const std::string& path);
 
 }  // namespace pbf::inline base_module

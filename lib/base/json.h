@@ -9,9 +9,9 @@ namespace pbf::inline base_module {
 
 using Json = nlohmann::ordered_json;
 
-/// The text of a value, on one line or with `indent` more blanks for each level. Pure ASCII
-/// whatever the strings hold: a byte that is not UTF-8 becomes the characters \x9b (plain_text.h).
-/// NaN and infinity, which JSON lacks, become null.
+/// The text of a value, on one line or with `indent` more blanks for each level. Always ASCII: a
+/// byte that is not UTF-8 becomes an escape such as \x9b (plain_text.h). NaN and infinity, which
+/// JSON lacks, become null.
 std::string json_text(Json value, int indent = -1);
 
 }  // namespace pbf::inline base_module

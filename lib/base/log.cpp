@@ -33,7 +33,7 @@ Log::~Log() {
 
 void Log::open(const std::string& path, bool append) {
   path_ = path;
-  // A new one is a new file: not the one that another name may still stand for.
+  // Do not truncate the old file: it may have another name (a hard link).
   if (!append) require_own_file(path), ::unlink(path.c_str());
   const int how = append ? O_APPEND : O_EXCL;
   file_ = ::fdopen(open_own_file(path, O_WRONLY | O_CREAT | how), append ? "a" : "w");
@@ -124,7 +124,7 @@ void Progress::update(const ProgressState& state) {
 }
 
 void hold_standard_streams() {
-  // Opened the wrong way round, so that using them fails as if they were closed.
+  // Opened in the wrong direction, so that using them fails as if they were closed.
   for (const int fd : {0, 1, 2})
     if (::fcntl(fd, F_GETFD) < 0 && errno == EBADF)
       (void)::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);

@@ -11,13 +11,12 @@
 
 namespace pbf::inline base_module {
 
-/// Notes and progress go to stderr, results to stdout, all of it to the log file once one is open.
-/// What is no text (a stranger's file name, say) is written out, see escaped() in plain_text.h.
-/// A closed pipe on either side is no error; finish_stdout() reports every other lost write.
+/// Notes and progress go to stderr, results to stdout, and everything to the log file once it is
+/// open. Bytes that are not valid text are escaped (escaped() in plain_text.h). A closed pipe is no
+/// error; finish_stdout() reports other failed writes.
 class Log {
  public:
-  /// quiet: nothing but results, warnings and errors on the terminal. The file still gets
-  /// everything.
+  /// quiet: the terminal gets only results, warnings and errors. The file still gets everything.
   explicit Log(bool quiet);
   /// Lines go to `sink`, with their newlines, in place of stdout and stderr.
   explicit Log(std::function<void(const std::string&)> sink) : sink_(std::move(sink)) {}
@@ -25,8 +24,8 @@ class Log {
   Log(const Log&) = delete;
   Log& operator=(const Log&) = delete;
 
-  /// Creates (or empties, or with `append` goes on with) the log file. Throws Error(io) with the
-  /// system's reason.
+  /// Creates the log file and removes an old one; with `append` continues the old one. Throws
+  /// Error(io) with the system's reason.
   void open(const std::string& path, bool append = false);
   /// Lines to stderr and the file. `text` ends without a newline.
   void note(const std::string& text);
@@ -36,7 +35,7 @@ class Log {
   void result(const std::string& text);
   /// A line that the next one overwrites on a terminal; the file does not get it.
   void transient(const std::string& text);
-  /// A line of progress: on a terminal twice a second as transient(), else every 10 s as note().
+  /// A progress line: on a terminal twice a second as transient(), otherwise every 10 s as note().
   void progress(const std::string& text);
   /// A line for the file alone.
   void file_only(const std::string& text);
@@ -58,20 +57,21 @@ class Log {
 
 /// Where a run stands, for one line of progress.
 struct ProgressState {
-  std::int64_t update = 0, updates = 0;  ///< done, and in all
+  std::int64_t update = 0, updates = 0;  ///< done; total
   std::int64_t particles = 0;
   double time = 0;                                   ///< s, simulated
-  double compression_mean = 0, compression_max = 0;  ///< of the last measure, 1
-  std::int64_t first_update = 0;  ///< those before it were done by another process
+  double compression_mean = 0, compression_max = 0;  ///< of the last measurement, 1
+  std::int64_t first_update = 0;                     ///< earlier ones were done by another process
 };
 
 /// "  42 %  update 420/1000 ..." with particle-updates per second since the last line and the time
-/// left at the mean speed so far. Pure: `wall` and `wall_since`, `updates_since` are given.
+/// left at the mean speed so far. Seconds: `wall` since the start, `wall_since` since the last
+/// line.
 std::string progress_line(const ProgressState& s, double wall, double wall_since,
                           std::int64_t updates_since);
 
-/// Decides when a line is due: on a terminal twice a second, rewritten; else a plain line every
-/// 10 s or 5 % of the updates, whichever comes first, but not more than one a second.
+/// Decides when a line is due. On a terminal, a line is rewritten twice a second. Otherwise there
+/// is a plain line every 10 s or 5 % of the updates, whichever comes first, at most one per second.
 class Progress {
  public:
   explicit Progress(Log& log) : log_(log) {}
@@ -86,8 +86,8 @@ class Progress {
   std::int64_t last_update_ = 0, line_update_ = 0;
 };
 
-/// To be called before any file is opened: one that got the number of a standard stream that is
-/// closed would also get what is written there.
+/// Call this before any file is opened. Otherwise a file could get the descriptor of a closed
+/// standard stream, and with it the output to that stream.
 void hold_standard_streams();
 
 /// Flushes stdout at the end of the program. Throws Error(io) when results were lost (disk full);

@@ -16,7 +16,7 @@ bool read_number(const std::string& path, std::size_t& value) {
   return static_cast<bool>(in >> value);
 }
 
-/// What stands behind the colon of the line "name: ..."; empty when there is none.
+/// The text after the colon in the line "name: ..."; empty when there is no such line.
 std::string value_of(const char* file, const std::string& name) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);)
@@ -41,13 +41,13 @@ int usable_threads() {
   cpu_set_t set;
   CPU_ZERO(&set);
   if (sched_getaffinity(0, sizeof set, &set) == 0) return std::max(1, CPU_COUNT(&set));
-  return static_cast<int>(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));  // over 1024 CPUs
+  return static_cast<int>(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));  // more than 1024 CPUs
 }
 
 std::size_t available_memory() {
   std::size_t free = memory_line("/proc/meminfo", "MemAvailable:");
-  // Version 2 of control groups, as seen from inside a container; a batch job nested deeper is not
-  // covered, there the allocation itself fails or the system ends the job.
+  // Version 2 of control groups, as seen inside a container. Limits of a more deeply nested batch
+  // job are not seen: there the allocation fails or the system ends the job.
   std::size_t limit = 0, used = 0;
   if (read_number("/sys/fs/cgroup/memory.max", limit) &&
       read_number("/sys/fs/cgroup/memory.current", used)) {

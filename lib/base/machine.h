@@ -1,4 +1,4 @@
-// What this machine offers to run on.
+// Properties of this machine: CPU, threads, memory.
 #pragma once
 
 #include <cstddef>
@@ -6,18 +6,18 @@
 
 namespace pbf::inline base_module {
 
-/// Model name of the CPU, "unknown CPU" when the system does not tell.
+/// Model name of the CPU, or "unknown CPU".
 std::string cpu_model();
 
 /// Threads that this process may use (its affinity mask, as a batch system sets it), at least 1.
 int usable_threads();
 
-/// Bytes of memory that can still be allocated without swapping: the machine's, or what is left
-/// of the control group's limit when that is smaller. 0 when the system does not tell.
+/// Bytes of memory that can still be allocated without swapping: of the machine, or of the control
+/// group if its limit leaves less. 0 if unknown.
 std::size_t available_memory();
 
-/// Bytes of memory that this process has held at most (VmHWM). Not getrusage's figure, which starts
-/// with what the program that started this one held.
+/// Peak memory of this process in bytes (VmHWM). The value of getrusage() is not used: it also
+/// counts the memory of the program that started this one.
 std::size_t peak_memory();
 
 }  // namespace pbf::inline base_module

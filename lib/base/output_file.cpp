@@ -20,7 +20,7 @@ namespace pbf::inline base_module {
 namespace fs = std::filesystem;
 namespace {
 
-/// A name that no other process takes, and that is never too long.
+/// A random name, which is never too long.
 std::string temporary_name(const std::string& folder) {
   static thread_local std::random_device random;
   return folder + format("/%s%08x", kTemporaryPrefix, random());
@@ -38,7 +38,7 @@ OutputFile::OutputFile(const std::string& path, Naming naming) : path_(path) {
   target_ = t.path;
   folder_ = t.folder();
   require_writable(t, path);
-  // Without a name nothing is left behind, however the program ends. Not every file system can.
+  // A file without a name vanishes however the program ends. Not every file system supports it.
   if (::access("/proc/self/fd", X_OK) == 0)
     fd_ = ::open(folder_.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   nameless_ = fd_ >= 0;
@@ -50,7 +50,7 @@ OutputFile::OutputFile(const std::string& path, Naming naming) : path_(path) {
     fail("create the file", errno);
   }
   if (fd_ < 0) fail("create the file", EEXIST);
-  if (t.there) ::fchmod(fd_, t.status.st_mode & 0777);  // who may read it stays as it was
+  if (t.there) ::fchmod(fd_, t.status.st_mode & 0777);  // keeps the permissions
 }
 
 OutputFile::~OutputFile() {
@@ -67,7 +67,7 @@ void OutputFile::write(std::string_view bytes) {
     const ssize_t n = ::write(fd_, bytes.data(), bytes.size());
     if (n >= 0) {
       bytes.remove_prefix(static_cast<std::size_t>(n));
-    } else if (errno == EAGAIN) {  // a descriptor that was handed to us, full for now
+    } else if (errno == EAGAIN) {  // an inherited non-blocking descriptor, full for now
       pollfd ready{fd_, POLLOUT, 0};
       ::poll(&ready, 1, -1);
     } else if (straight_ && errno == EPIPE) {
@@ -92,7 +92,7 @@ void OutputFile::give_name() {
 }
 
 void OutputFile::finish(bool stored) {
-  // EINVAL: what is no file has nothing to store.
+  // EINVAL: this kind of file cannot be synchronized.
   if (stored && !straight_ && ::fsync(fd_) != 0 && errno != EINVAL) fail("write the file", errno);
   if (nameless_) give_name();
   if (::close(std::exchange(fd_, -1)) != 0) fail("write the file", errno);

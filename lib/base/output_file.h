@@ -7,7 +7,7 @@
 
 namespace pbf::inline base_module {
 
-/// How the names begin under which files wait for their place.
+/// Prefix of the names of unfinished files.
 inline constexpr const char* kTemporaryPrefix = ".pbf-";
 
 /// Who chose the name of a file.
@@ -16,22 +16,22 @@ enum class Naming {
   own     ///< the program, in a folder of results: only a regular file may be there
 };
 
-/// A file that nobody sees half written: its bytes gather in a file without a name, which takes the
-/// place of what is there at the end. Pipes, FIFOs with a reader, devices and descriptors of this
-/// process (/dev/stdout, /dev/fd/N) get them straight.
+/// A file that is never visible half written. Bytes go to a file without a name, which replaces the
+/// old file at the end. Pipes, FIFOs with a reader, devices and descriptors of this process
+/// (/dev/stdout, /dev/fd/N) are written directly.
 class OutputFile {
  public:
-  /// Throws Error(io) when it cannot be made, Error(bad_input) for a file that the command reads.
+  /// Throws Error(io) if it cannot be created, Error(bad_input) for a file that the command reads.
   OutputFile(const std::string& path, Naming naming);
-  ~OutputFile();  ///< without finish() what was there stays
+  ~OutputFile();  ///< without finish() the old file stays
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// For writers that need one; it stays this object's.
+  /// For writers that need a descriptor. This object closes it.
   int descriptor() const { return fd_; }
-  /// A pipe whose reader has gone takes no more, which is no error. Else Error(io).
+  /// Throws Error(io). If the reader of a pipe has gone, the bytes are dropped without an error.
   void write(std::string_view bytes);
-  /// Puts the file into its place; `stored`: after the disk has it. Error(io).
+  /// Moves the file into place; with `stored` only once it is on the disk. Throws Error(io).
   void finish(bool stored);
 
  private:
@@ -43,23 +43,23 @@ class OutputFile {
   bool straight_ = false, nameless_ = false;
 };
 
-/// Writes a text file in this way and waits for the disk.
+/// Writes a text file as an OutputFile and waits until it is on the disk.
 void write_text_file(const std::string& path, const std::string& text,
                      Naming naming = Naming::given);
 
-/// Opens a file that grows line by line, with the same meaning of links, pipes and devices; a
-/// regular file is emptied, or with `append` continued. The descriptor is the caller's. Throws
+/// Opens a file that grows line by line; links, pipes and devices are treated as by OutputFile. A
+/// regular file is emptied, or continued with `append`. The caller closes the descriptor. Throws
 /// Error(io), and Error(bad_input) for a file that the command reads.
 int open_output_stream(const std::string& path, bool append);
 
-/// Whether what is written there cannot be replaced: a pipe, a FIFO, a device, a descriptor.
+/// Whether the path is a pipe, a FIFO, a device or a descriptor, which is written directly.
 bool is_stream(const std::string& path);
 
-/// Before the work, for the file given with `option` (none: an empty path): Error(bad_input) when
-/// the command reads it, Error(io) when it could not be written at the end.
+/// Checks the file given with `option` before the work starts; does nothing for an empty path.
+/// Throws Error(bad_input) if the command reads it, Error(io) if it could not be written.
 void check_output(const std::string& option, const std::string& path);
 
-/// Whether two paths, of which neither need exist, name one file.
+/// Whether two paths name the same file. The files need not exist.
 bool same_output(const std::string& a, const std::string& b);
 
 }  // namespace pbf::inline base_module

@@ -21,7 +21,7 @@ namespace {
   throw Error(ExitCode::io, path + ": " + what);
 }
 
-/// The number in /proc/self/fd/N, by whatever name; -1 for any other link.
+/// N if the link is /proc/self/fd/N under any name; -1 for any other link.
 int own_descriptor(const fs::path& link) {
   std::error_code error;
   const fs::path folder = fs::canonical(link.parent_path(), error);
@@ -33,7 +33,7 @@ int own_descriptor(const fs::path& link) {
 }
 
 OutputTarget follow(const std::string& path) {
-  constexpr int kMostLinks = 40;  // as the system's
+  constexpr int kMostLinks = 40;  // the limit of Linux
   OutputTarget t;
   t.path = path;
   for (int links = 0; links <= kMostLinks; ++links) {
@@ -46,7 +46,7 @@ OutputTarget follow(const std::string& path) {
       t.there = ::fstat(t.descriptor, &t.status) == 0;
       return t;
     }
-    // Links of the system itself have texts that are no paths, "pipe:[7]".
+    // The text of a link in /proc need not be a path: "pipe:[7]".
     struct stat end {};
     if (::stat(t.path.c_str(), &end) == 0 && !S_ISREG(end.st_mode)) {
       t.status = end;
@@ -102,7 +102,7 @@ void require_writable(const OutputTarget& t, const std::string& path) {
 }
 
 int open_stream(const OutputTarget& target, const std::string& path) {
-  // A FIFO without a reader would be waited for; and only the opening must not wait.
+  // O_NONBLOCK, because open() would wait for the reader of a FIFO. It is cleared below for writes.
   const int fd = target.descriptor >= 0
                      ? ::fcntl(target.descriptor, F_DUPFD_CLOEXEC, 0)
                      : ::open(target.path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);

@@ -32,7 +32,7 @@ void require_own_file(const std::string& path) {
 }
 
 int open_own_file(const std::string& path, int flags) {
-  // Without O_NONBLOCK a FIFO that nobody reads would be waited for.
+  // Without O_NONBLOCK, open() would wait for the reader of a FIFO.
   const int fd = ::open(path.c_str(), flags | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC | O_NOCTTY, 0666);
   if (fd < 0) {
     const int reason = errno;

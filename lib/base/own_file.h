@@ -1,16 +1,16 @@
-// Files in a folder of results that the program names itself: never links, FIFOs or devices.
+// Files that the program names itself, in a folder of results: never links, FIFOs or devices.
 #pragma once
 
 #include <string>
 
 namespace pbf::inline base_module {
 
-/// For files that the program names itself, in a folder of results. Throws Error(io) when something
-/// else than a regular file is there; a link too, for its target is nobody's result.
+/// Throws Error(io) if the path exists and is not a regular file. Links are refused because their
+/// target may lie outside of the folder.
 void require_own_file(const std::string& path);
 
-/// Opens such a file, without following a link and without waiting. `flags`: O_WRONLY | O_CREAT ...
-/// The descriptor is the caller's. Throws Error(io).
+/// Opens such a file without following a link and without waiting. `flags`: O_WRONLY | O_CREAT ...
+/// The caller closes the descriptor. Throws Error(io).
 int open_own_file(const std::string& path, int flags);
 
 }  // namespace pbf::inline base_module

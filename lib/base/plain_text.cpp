@@ -7,7 +7,7 @@
 namespace pbf::inline base_module {
 namespace {
 
-/// A character at the start of a text; `code` is -1 where a byte begins none.
+/// The first character of a text; `code` is -1 if the first byte does not begin a valid one.
 struct Character {
   long code;
   std::size_t bytes;
@@ -31,8 +31,8 @@ Character first_character(std::string_view text) {
 
 bool is_control(long code) { return (code >= 0 && code < 0x20) || (code >= 0x7F && code < 0xA0); }
 
-/// Of the first character of a text: a tab, or what ends a line. A carriage return within a line
-/// makes a terminal write over it.
+/// Whether the first character of a text is a tab or part of a line end. A carriage return within a
+/// line is neither: it makes a terminal overwrite the line.
 bool is_blank(std::string_view text) {
   const char c = text[0];
   return c == '\t' || c == '\n' || (c == '\r' && (text.size() == 1 || text[1] == '\n'));
@@ -40,7 +40,7 @@ bool is_blank(std::string_view text) {
 
 enum class Form { lines, one_line, utf8 };
 
-/// How the first character of a text stands in a message.
+/// The form in which a message shows the first character of a text.
 std::string shown(std::string_view text, const Character& c, Form form) {
   if (c.code < 0) return format("\\x%02x", static_cast<unsigned char>(text[0]));
   if (!is_control(c.code) || form == Form::utf8 || (form == Form::lines && is_blank(text)))

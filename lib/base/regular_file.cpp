@@ -34,7 +34,7 @@ RegularFile::RegularFile(const std::string& path, const std::string& expected,
                   path + ": is " + kind + ", expected " + expected + "; give a regular file");
   };
   refuse(not_regular(path));
-  // It may have become a pipe since: that must not wait.
+  // O_NONBLOCK: the file may have been replaced by a pipe meanwhile, and open() must not wait.
   fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd_ < 0) {
     const int reason = errno;

@@ -1,4 +1,4 @@
-// Opens files that must be regular: a pipe would wait for its writer, a device may never end.
+// Opens files that must be regular: a pipe would block until it is written, a device may never end.
 #pragma once
 
 #include <sys/types.h>
@@ -11,20 +11,20 @@ namespace pbf::inline base_module {
 /// "a link", "a FIFO", "a folder" ..., from st_mode.
 std::string file_kind(mode_t mode);
 
-/// The kind of what a path leads to, without opening it; empty for a regular file and for what is
-/// not there or cannot be looked at.
+/// The kind of the file at the end of a path's links; empty for a regular file, a missing one and
+/// one without permission.
 std::string not_regular(const std::string& path);
 
 /// A regular file open for reading.
 class RegularFile {
  public:
-  /// Error(io) when it cannot be opened or is no regular file; `expected` says what was ("a
-  /// particle file"), `missing` is added where the file is not there.
+  /// Throws Error(io) if it cannot be opened or is no regular file. `expected` ("a particle file")
+  /// is part of the message; `missing` is added to it if the file does not exist.
   RegularFile(const std::string& path, const std::string& expected, const std::string& missing);
   ~RegularFile();
   RegularFile(const RegularFile&) = delete;
   RegularFile& operator=(const RegularFile&) = delete;
-  /// The next bytes, `size` at most; 0 at the end. Error(io).
+  /// Reads at most `size` bytes and returns their number; 0 at the end. Throws Error(io).
   std::size_t read(char* bytes, std::size_t size);
   /// Back to the first byte.
   void rewind();

@@ -60,7 +60,7 @@ void Sha256::add(std::string_view bytes) {
 }
 
 std::string Sha256::text() const {
-  Sha256 end = *this;  // padding: a one, zeros, the number of bits
+  Sha256 end = *this;  // padding: a one bit, zeros, the length in bits
   std::string padding(1 + (119 - size_ % 64) % 64, '\0');
   padding[0] = '\x80';
   for (int k = 7; k >= 0; --k) padding += static_cast<char>(size_ * 8 >> 8 * k);

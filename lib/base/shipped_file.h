@@ -5,9 +5,9 @@
 
 namespace pbf::inline base_module {
 
-/// "configs/stability.yaml" where it is found first: in the working directory, beside the program
-/// (a bundle), in the folder above it (build/pbf), in share/pbf there (an installation). The name
-/// itself where it is nowhere, so that whoever opens it says what is missing.
+/// The path of a file such as "configs/stability.yaml". Searched in this order: the working
+/// directory, the folder of the program (a bundle), the folder above it (build/pbf), share/pbf in
+/// that folder (an installation). If it is nowhere, the name itself: opening it gives the error.
 std::string shipped_file(const std::string& name);
 
 }  // namespace pbf::inline base_module

@@ -9,7 +9,7 @@
 
 namespace pbf::inline base_module {
 
-/// Seconds since it was made or last reset, on the monotonic clock.
+/// Measures seconds since its construction or last reset, on the monotonic clock.
 class Stopwatch {
  public:
   Stopwatch() : start_(std::chrono::steady_clock::now()) {}
@@ -32,14 +32,14 @@ class Stopwatch {
 struct StageTime {
   std::string name;
   double seconds = 0;      ///< s
-  std::int64_t calls = 0;  ///< marks
+  std::int64_t calls = 0;  ///< number of marks
 };
 
-/// Books wall-clock time to named stages: begin(), then mark("grid") books what has passed since
-/// begin() or the last mark. Entries keep the order of their first mark. For one thread.
+/// Books wall-clock time to named stages: after begin(), mark("grid") books the time since begin()
+/// or the last mark. Entries are in the order of their first mark. For one thread.
 class StageClock {
  public:
-  /// Time before this call belongs to nobody.
+  /// Time before this call is not booked.
   void begin() { watch_.reset(); }
 
   /// Books the time since begin() or the last mark to `stage`.
@@ -52,7 +52,7 @@ class StageClock {
     e.calls += calls;
   }
 
-  /// The entry of `stage`, made with zero seconds when new (so that names and order are fixed).
+  /// The entry of `stage`; a new one has zero seconds. Also used to fix the order of entries.
   StageTime& entry(std::string_view stage) {
     for (StageTime& e : entries_)
       if (e.name == stage) return e;

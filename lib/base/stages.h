@@ -1,11 +1,11 @@
 // The stages of a run: one name everywhere, in timers, run.vtkhdf, `pbf plan`, `pbf bench` and
-// plots. This is the only list: tools/pbf_tools/data/stages.json is written by
-// `pbf config --stages`, and tests hold that file and the table of app/README.md against it.
+// plots. This is the only list: `pbf config --stages` writes tools/pbf_tools/data/stages.json, and
+// tests compare that file and the table of app/README.md with this list.
 #pragma once
 
 namespace pbf::inline base_module {
 
-/// What the summary of a run adds up: an index of kStageGroups.
+/// Groups of stages whose times the summary of a run adds up. An index of kStageGroups.
 enum class StageGroup { init, grid, density, lambda, delta, move, output };
 
 struct StageGroupInfo {
@@ -21,7 +21,7 @@ inline constexpr StageGroupInfo kStageGroups[] = {
 struct Stage {
   const char* name;
   StageGroup group;
-  bool of_update;  ///< of an update, not around it: a column of `pbf bench`
+  bool of_update;  ///< part of an update, and thus a column of `pbf bench`
   const char* color;
 };
 

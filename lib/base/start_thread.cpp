@@ -22,7 +22,7 @@ int reason_against_threads(int threads) {
   std::vector<std::thread> all;
   int reason = 0;
   {
-    const std::lock_guard closed(gate);  // none ends before the last has begun
+    const std::lock_guard closed(gate);  // no thread ends before the last has started
     try {
       for (int k = 1; k < threads; ++k)
         all.emplace_back([&gate] { const std::lock_guard open(gate); });

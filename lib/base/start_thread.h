@@ -1,4 +1,4 @@
-// Starts threads, with a clear error when the system refuses more.
+// Starts threads, with a clear error if the system refuses.
 #pragma once
 
 #include <system_error>
@@ -7,7 +7,7 @@
 
 namespace pbf::inline base_module {
 
-/// Throws Error(unavailable) that names the limit and the remedy.
+/// Throws Error(unavailable), which names the limit and the remedy. reason: an errno.
 [[noreturn]] void refuse_threads(int reason, int wanted);
 
 /// A thread that runs `work`. Throws Error(unavailable).
@@ -20,11 +20,11 @@ std::thread start_thread(Work&& work) {
   }
 }
 
-/// 0 when so many threads, the calling one among them, can run at once; else the system's reason.
+/// 0 if this number of threads, including the calling one, can run at once; otherwise the errno.
 int reason_against_threads(int threads);
 
-/// Throws Error(unavailable) when so many threads, the calling one among them, cannot run at once.
-/// To be asked before OpenMP starts a team: its runtime ends the program.
+/// Throws Error(unavailable) if this number of threads, including the calling one, cannot run at
+/// once. Call it before OpenMP starts a team: its runtime would end the program.
 void require_threads(int threads);
 
 }  // namespace pbf::inline base_module

@@ -23,13 +23,13 @@ std::string bytes_text(double bytes);
 /// Seconds for people: "0.4 s", "12 s", "3 min 20 s", "2 h 05 min".
 std::string duration_text(double seconds);
 
-/// Whether it can name a file or folder in another one: not empty, no "." or "..", no slash, no
-/// line break, nothing that is no text (plain_text.h), at most 200 bytes.
+/// Whether the text can be the name of a file within a folder: not empty, not "." or "..", no
+/// slash, tab or line break, valid text (plain_text.h), at most 200 bytes.
 bool is_file_name(std::string_view text);
 
-/// Now, UTC, ISO 8601: "2024-05-01T12:00:00Z".
+/// The present time, UTC, ISO 8601: "2024-05-01T12:00:00Z".
 std::string utc_now();
-/// The same in seconds, to take the difference of two; nothing for a text of another form.
+/// Such a text in seconds, for differences of times; nothing for a text of another form.
 std::optional<double> utc_seconds(const std::string& text);
 
 }  // namespace pbf::inline base_module

@@ -1,6 +1,6 @@
 #include "lib/base/version.h"
 
-#include "pbf_build_info.h"  // the only source that sees it: a new commit recompiles this alone
+#include "pbf_build_info.h"  // included only here: a new commit recompiles only this file
 
 namespace pbf::inline base_module {
 

@@ -9,7 +9,7 @@ namespace pbf::inline base_module {
 
 struct BuildInfo {
   std::string version;   ///< of the program, "0.1.0"
-  std::string commit;    ///< "+changes" when the sources differ from it, "unknown" without git
+  std::string commit;    ///< ends in "+changes" if the sources differ; "unknown" without git
   std::string type;      ///< Release, RelWithDebInfo, Debug
   std::string compiler;  ///< name and version
   std::string flags;     ///< of the C++ compiler

@@ -10,19 +10,19 @@
 
 namespace pbf::inline base_module {
 
-/// Does jobs on a thread of its own, in their order, until one throws; those behind it are dropped.
-/// For one user at a time.
+/// Runs jobs in order on its own thread until one throws; later jobs are dropped. Its functions
+/// must not be called by several threads at a time.
 class Worker {
  public:
-  /// Holds at most `most` large jobs, the one at work among them. Throws Error(unavailable).
+  /// Holds at most `most` large jobs, including the running one. Throws Error(unavailable).
   explicit Worker(int most);
   ~Worker() { join(); }
-  /// False when a job has thrown. A large one waits for room.
+  /// Adds a job; waits for room if it is large. False if a job has thrown.
   bool push(std::function<void()> job, bool large);
   void wait();  ///< until all jobs are done, or one has thrown
   void join();  ///< the same, and ends the thread
   bool ended() const { return !thread_.joinable(); }
-  std::exception_ptr failure();  ///< what a job has thrown
+  std::exception_ptr failure();  ///< the exception of a job, or null
 
  private:
   struct Job {
@@ -32,13 +32,13 @@ class Worker {
   void work();
 
   const int most_;
-  std::mutex mutex_;  // of everything below
+  std::mutex mutex_;  // protects everything below
   std::condition_variable changed_;
-  std::deque<Job> jobs_;  // the first one may be at work
+  std::deque<Job> jobs_;  // the first one may be running
   int large_ = 0;
   bool ending_ = false;
   std::exception_ptr failure_;
-  std::thread thread_;  // last: starts when the rest is there
+  std::thread thread_;  // last: it uses the other members
 };
 
 }  // namespace pbf::inline base_module

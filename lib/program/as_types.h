@@ -8,7 +8,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Calls f with the scene's choices as types, so that no pair loop tests them.
+// These call f with choices of the scene as types, so that pair loops need not test them.
 template <class F>
 void with_dimensions(int dimensions, F&& f) {
   dimensions == 2 ? f(std::integral_constant<int, 2>{}) : f(std::integral_constant<int, 3>{});

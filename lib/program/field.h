@@ -1,5 +1,5 @@
-// Arrays of a step, by name. Each field is an object of a type of its own, so that the compiler
-// finds it among what a pass declares (needs.h).
+// Arrays of a step, by name. Each field is an object of its own type, so that the compiler can find
+// it in the declarations of a pass (needs.h).
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace pbf::inline program_module {
 
-/// How many there are of all that fields have rows for. padding: rows behind the last particle that
+/// Numbers that determine how many rows a field has. padding: rows after the last particle, which
 /// the lists of an executor may read. cells, runs, bricks, nodes: of the grids of solver.levels.
-/// walls: whose loads are summed.
+/// walls: those whose loads are summed.
 struct Sizes {
   std::int64_t particles = 0, padding = 0, bins = 0, cells = 0, runs = 0, bricks = 0, nodes = 0,
                walls = 0;
 };
 constexpr std::int64_t per_particle(const Sizes& n) { return n.particles; }
-/// For fields that passes read of neighbours.
+/// For fields of which passes read the rows of neighbors.
 constexpr std::int64_t per_padded_row(const Sizes& n) { return n.particles + n.padding; }
 constexpr std::int64_t per_bin(const Sizes& n) { return n.bins + 1; }
 constexpr std::int64_t per_cell(const Sizes& n) { return n.cells; }
@@ -32,28 +32,28 @@ enum class Type { real, int32, int64 };  ///< of a component; real: of the scene
 /// also saved and kept.
 enum class Life { pass, lists, update, rows, state };
 
-/// What those see who look at an update pass by pass.
+/// How a trace of an update, pass by pass, shows the field.
 struct Shown {
-  const char* quantity = "";  ///< "position"; empty: nothing
+  const char* quantity = "";  ///< "position"; empty: not shown
   const char* unit = "1";     ///< of the internal frame
-  const char* stage = "";    ///< shown as of this stage, whatever pass writes it; empty: the pass's
-  bool sum = false;          ///< over neighbours: carries the rounding of its terms
-  bool axial = false;        ///< a cross product: its sign depends on the hand of the axes
-  bool before_sort = false;  ///< its rows are in the order before the sort
-  const struct FieldInfo* row = nullptr;  ///< not null: it names each particle's row, -1: none
-  double grain = 0;                       ///< in `unit`: finer steps than this it cannot make
+  const char* stage = "";     ///< shown under this stage; empty: under that of the writing pass
+  bool sum = false;           ///< a sum over neighbors, with the rounding errors of its terms
+  bool axial = false;         ///< a cross product: its sign depends on the handedness of the axes
+  bool before_sort = false;   ///< its rows are in the order before the sort
+  const struct FieldInfo* row = nullptr;  ///< not null: field with each particle's row, -1: none
+  double grain = 0;                       ///< resolution of the values, in `unit`
 };
 
 struct FieldInfo {
   const char* name;
   std::int64_t (*rows)(const Sizes&);
   Life life;
-  bool pair = false;  ///< two arrays: a pass that reorders or overwrites writes into the other
+  bool pair = false;  ///< two arrays: a pass that reorders rows writes into the other one
   Shown shown{};
-  // From the type of the field.
+  // Set by the derived types.
   Type type = Type::real;
   int components = 1;
-  const FieldInfo* first = nullptr;  ///< of the second array of a pair: the field of the first
+  const FieldInfo* first = nullptr;  ///< for the second array of a pair: the field of the first
 
   const FieldInfo& primary() const { return first ? *first : *this; }
 };
@@ -70,7 +70,7 @@ struct Numbers : FieldInfo {
   template <class... Args>
   constexpr Numbers(Args... args) : FieldInfo{args...} {}
 };
-/// Rows of `count` T, which consist of whole numbers of the type `Word`.
+/// Rows of `count` objects T, which consist of integers of type `Word`.
 template <class T, int count = 1, class Word = T>
 struct Plain : FieldInfo {
   template <class... Args>
@@ -81,8 +81,8 @@ struct Plain : FieldInfo {
   }
 };
 
-/// The second array of a pair, a field like any other. It belongs to those passes that write it: a
-/// pass that declares Flips finds its results in the first.
+/// The second array of a pair. Passes declare it like any other field. After a flip (Flips in
+/// needs.h) it is the first.
 template <auto& F>
 struct Other : std::remove_cvref_t<decltype(F)> {
   constexpr Other() : std::remove_cvref_t<decltype(F)>(F) {
@@ -93,8 +93,8 @@ struct Other : std::remove_cvref_t<decltype(F)> {
 template <auto& F>
 inline constexpr Other<F> other{};
 
-/// Those that every solver has: positions in h (w: needs.h), velocities in h/s, densities in rho0.
-/// Row k belongs to particle id[k], in the order of the last sort.
+/// Fields of every solver: positions in h (w: needs.h), velocities in h/s, densities in rho0. Rows
+/// are in the order of the last sort; row k belongs to particle id[k].
 namespace field {
 inline constexpr struct Position : Vectors {
 } position{{"position", per_padded_row, Life::state, true, Shown{"position", "h"}}};
@@ -106,14 +106,14 @@ inline constexpr struct Id : Plain<int> {
 } id{{"id", per_particle, Life::state, true}};
 inline constexpr struct Bin : Plain<int> {
 } bin{{"bin", per_particle, Life::pass, false, Shown{.quantity = "bin", .before_sort = true}}};
-/// Order of a sort. Executors may let it stand in the array of ids instead.
+/// Order of a sort. Executors may store it in the array of ids instead.
 inline constexpr struct Order : Plain<int> {
 } order{{"order", per_particle, Life::pass}};
 inline constexpr struct BinStart : Plain<int> {
 } bin_start{{"bin_start", per_bin, Life::lists}};
 }  // namespace field
 
-/// What has its memory elsewhere: the neighbor lists in the executor, what moves in the boundary.
+/// Fields with their memory elsewhere: in the executor (lists) and in the boundary (moving solids).
 namespace field {
 inline constexpr FieldInfo no_memory(const char* name, Life life) { return {name, nullptr, life}; }
 inline constexpr struct NeighborLists : FieldInfo {
@@ -122,7 +122,7 @@ inline constexpr struct MovingParts : FieldInfo {
 } motion{no_memory("motion", Life::pass)};
 }  // namespace field
 
-/// "position'"
+/// "position", or "position'" for the second array.
 inline std::string name_of(const FieldInfo& f) {
   return std::string(f.name) + (f.first ? "'" : "");
 }

@@ -12,7 +12,7 @@
 namespace pbf::inline program_module {
 namespace {
 
-constexpr int kPerH = 8;  ///< places of a level gauge
+constexpr int kPerH = 8;  ///< sample points of a level gauge per h
 
 /// From SI units and the scene's axes to the internal frame.
 class Frame {
@@ -34,7 +34,7 @@ class Frame {
   const Axes& axes_;
 };
 
-/// Walls with the share of the whole kernel that lies behind them.
+/// The walls with scale and range 1, so that term() gives the share of the kernel behind them.
 Box<double> whole_kernel_walls(const Scene& s, const Axes& axes) {
   Box<double> box;
   double extent[3];
@@ -101,7 +101,7 @@ Probe level_probe(const Gauge& g, const Scene& s, const Axes& axes, const Frame&
 FlowGate flow_gate(const Gauge& g, const Scene& s, const Frame& frame) {
   FlowGate gate;
   const Double3 n = unit(g.normal);
-  // Level, whatever gravity says: across z; where the normal is along z, along x.
+  // The first edge is horizontal (perpendicular to z); for a normal along z it is along x.
   const double level = std::hypot(n[0], n[1]);
   const Double3 first = s.dimensions == 2 ? Double3{-n[2], 0, n[0]}
                         : level > 1e-9    ? unit({-n[1], n[0], 0})
@@ -127,8 +127,8 @@ Double3 axis_of(const Obstacle& o) {
   return std::visit([](const auto& keys) { return keys.axes()[2]; }, o.shape);
 }
 
-/// Where the round side of an obstacle is before its centre or axis, seen from x; also beyond the
-/// ends of a cylinder, where there is no surface.
+/// The point of the round side between x and the center or axis of the obstacle. Beyond the ends of
+/// a cylinder it is a point without surface.
 Double3 on_round_side(const Obstacle& o, const RoundSide<double>& side, const Double3& x,
                       bool flat) {
   const Double3 axis = axis_of(o);
@@ -138,7 +138,7 @@ Double3 on_round_side(const Obstacle& o, const RoundSide<double>& side, const Do
   return foot + side.radius * unit(x - foot);
 }
 
-/// Of the disc's share the part where fluid can be before the surface.
+/// m^2: the integral of patch_share() over the part of the surface that fluid can touch.
 double wetted_area(const Patch& patch, int surface, const SurfacePlace& there, const Scene& s) {
   constexpr int kCells = 400;
   const double h = s.h(), reach = (patch.radius + patch.soft) * h, cell = 2 * reach / kCells;
@@ -164,7 +164,7 @@ double wetted_area(const Patch& patch, int surface, const SurfacePlace& there, c
       if (bent) x = nearest_place(*o, s, x).point;
       const SurfacePlace near = nearest_place_on(surface, s, x);
       if (std::fabs(near.distance) > tiny) continue;  // beyond the face
-      // What stands on a surface touches it.
+      // Obstacles that stand on the surface cover it.
       if (is_free(s, x, tiny) && is_free(s, x + (1000 * tiny) * near.normal, tiny)) sum += share;
     }
   const double thick = s.domain.max[1] - s.domain.min[1];

@@ -12,30 +12,29 @@
 
 namespace pbf::inline program_module {
 
-/// Between two places of a level gauge.
+/// The interval between two sample points of a level gauge.
 struct LevelPiece {
-  double from = 0, to = 1;  ///< the part of it that is in no obstacle
+  double from = 0, to = 1;  ///< the part of it outside of obstacles, as fractions
 };
 
-/// What says how much of the line is wet (lib/solver/gauge_readings.h).
+/// Where fluid can be along a level gauge (lib/solver/gauge_readings.h).
 struct LevelLine {
-  std::vector<double> room;  ///< at each place, the share of the kernel in walls and obstacles
-                             ///< taken from 1
-  std::vector<LevelPiece> pieces;  ///< one less
+  std::vector<double> room;        ///< at each point, the share of the kernel outside of solids
+  std::vector<LevelPiece> pieces;  ///< between the points
 };
 
 /// Each list in the order of its gauges in the scene.
 struct GaugePlan {
-  std::vector<Probe> probes;     ///< of level and velocity
-  std::vector<LevelLine> lines;  ///< of levels
+  std::vector<Probe> probes;     ///< of level and velocity gauges
+  std::vector<LevelLine> lines;  ///< of level gauges
   std::vector<FlowGate> gates;
   std::vector<Patch> patches;
-  std::vector<double> areas;  ///< m^2, of each patch what lies on the surface, by patch_share()
-  int places = 0;             ///< of all probes
-  double weight = 0;          ///< what makes of ProbeSums::weight the share of space that is fluid
+  std::vector<double> areas;  ///< m^2, integral of patch_share() over the surface of each patch
+  int places = 0;             ///< sample points of all probes
+  double weight = 0;          ///< ProbeSums::weight times this is the volume fraction of fluid
 };
 
-/// `solids`: Plan::solids; `mass`: of a particle, kg.
+/// `solids`: Plan::solids; `mass`: kg, of one particle.
 GaugePlan plan_gauges(const Scene& scene, const Axes& axes,
                       const std::vector<Solid<double>>& solids, double mass);
 

@@ -10,9 +10,9 @@
 namespace pbf::inline program_module {
 namespace {
 
-constexpr double kDeep = 64;  ///< layers; why_no_levels() names it
+constexpr double kDeep = 64;  ///< layers; also in a text of why_no_levels()
 
-/// Of the bodies' bounding box along gravity, in layers; bodies from files count as nothing.
+/// Depth of the bodies' common bounding box along gravity, in layers, without bodies from files.
 double layers(const Scene& s) {
   double deepest = 0;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -6,27 +6,27 @@
 
 namespace pbf::inline program_module {
 
-/// Capacity of the neighbour lists on the device, in words of 4 entries.
+/// Capacity of the neighbor lists on the device, in words of 4 entries.
 struct ListCapacity {
-  int first = 0;      ///< words every list has
+  int first = 0;      ///< words of every list
   int overflow = 0;   ///< words of one overflow block
   int overflows = 0;  ///< overflow blocks in the pool
   constexpr int longest() const { return 4 * (first + overflow); }
 };
 
-/// Capacity at first for lists that hold `rest_neighbors` at rest: a seventh more for all, and an
-/// eighth of the lists may be up to 32 entries longer. first_entries > 0: that many for all
-/// instead.
+/// Initial capacity: every list has 1.15 times the entries of fluid at rest (`rest_neighbors`), or
+/// `first_entries` if that is above 0. One list in eight may have up to 32 more.
 inline ListCapacity first_list_capacity(double rest_neighbors, std::int64_t n,
                                         int first_entries = 0) {
   const int first = first_entries > 0 ? first_entries : int(rest_neighbors * 1.15);
   return {(first + 3) / 4, 8, int(n / 8) + 32};
 }
 
-/// More of it, with air for what may come, where `overflows` lists outgrew the first words and the
-/// longest holds `longest` entries (0: none is too long): longer lists for all while many outgrow
-/// theirs, or more overflow blocks; and longer ones, but then no more of them than are in use, for
-/// one very long list (a clump of thousands of particles) must not cost every block its length.
+/// A larger capacity with some reserve, after `overflows` lists outgrew their first words and the
+/// longest one has `longest` entries (0: none is too long). If many lists overflow, all become
+/// longer. Otherwise there are more overflow blocks, and longer ones if needed. Their number
+/// follows `overflows`, because one very long list (a dense clump) determines the length of every
+/// block.
 inline ListCapacity larger_list_capacity(ListCapacity capacity, std::int64_t overflows, int longest,
                                          std::int64_t n) {
   if (overflows > n / 8 + 32 && capacity.first < 96) {
@@ -39,14 +39,14 @@ inline ListCapacity larger_list_capacity(ListCapacity capacity, std::int64_t ove
   return capacity;
 }
 
-/// Words between word k and k + 1 of one particle: whole warps.
+/// Distance from word k to word k + 1 of a list, in words: n rounded up to whole warps.
 constexpr int list_stride(int n) { return (n + 31) / 32 * 32; }
 
-/// Blocks of 128 threads that share a measure's sums.
+/// Number of blocks (128 threads each) in the sums of a measurement.
 constexpr int reduce_blocks(std::int64_t n) { return int(n < 65536 ? (n + 127) / 128 : 512); }
 
-/// Up to so many particles and bins one block sorts them. The counters and a scan over the threads
-/// share 48 KiB of memory, which every device has.
+/// A single block sorts up to this many particles and bins. Its counters and a scan over its
+/// threads fit in 48 KiB of shared memory, which every device has.
 constexpr int kSortThreads = 1024, kSortParticles = 3000, kSortBins = 12 * 1024 - 64;
 
 }  // namespace pbf::inline program_module

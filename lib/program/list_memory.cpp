@@ -17,11 +17,11 @@ bool has_random_places(const Scene& s) {
                      [](const Body& b) { return b.shape == Shape::random_box; });
 }
 
-/// The largest of 8 or 16 random numbers is 1.42 or 1.77 standard deviations above their mean.
+/// Mean of the largest of 8 or 16 normally distributed numbers, in standard deviations.
 double deviations_of_longest(const Scene& s) { return s.precision == Precision::dbl ? 1.42 : 1.77; }
 
-/// Entries of one list, what fills up its group included: of the longest, and on average. 0 where
-/// the start was not counted.
+/// Entries of one list, including padding to the longest of its group: mean and maximum. 0 if the
+/// start was not counted.
 struct StartEntries {
   double mean = 0, most = 0;
 };
@@ -30,8 +30,8 @@ StartEntries start_entries(const Scene& s, const Plan& plan) {
   const bool random = has_random_places(s);
   const double n = double(plan.start.count.size()), deviations = deviations_of_longest(s);
   for (std::size_t i = 0; i < plan.start.count.size(); ++i) {
-    // Random places scatter like Poisson's numbers at least, others by a fifth, from the surface of
-    // a body to its inside.
+    // At random positions the counts scatter at least like a Poisson distribution. Otherwise they
+    // differ by up to a fifth between the surface and the inside of a body.
     const double m = plan.start.count[i], poisson = deviations * std::sqrt(m);
     const double entries = m + std::max(random ? poisson : std::min(poisson, 0.2 * m),
                                         deviations * plan.start.scatter[i]);
@@ -41,7 +41,7 @@ StartEntries start_entries(const Scene& s, const Plan& plan) {
   return e;
 }
 
-/// At first, and grown to the start's lists as the solver does.
+/// The capacity after it has grown for the lists of the start, as in the solver.
 ListCapacity list_capacity(const Scene& s, const Plan& plan) {
   const std::int64_t n = plan.particles;
   ListCapacity capacity = first_list_capacity(rest_neighbors(s), n);
@@ -69,7 +69,7 @@ void add_cpu_lists(const Scene& s, const Plan& plan, const Adder& add) {
   add("table of lists", "int64", 3, chunks);
   add("neighbours found by each thread", "int32", 1,
       std::min<std::int64_t>(threads, chunks) *
-          std::max(cpu_scratch_entries(entries),  // grows by a quarter more than it must
+          std::max(cpu_scratch_entries(entries),  // grows with a reserve of a quarter
                    std::int64_t(1.25 * double(std::min<std::int64_t>(n, 1024)) * start.most)));
 }
 

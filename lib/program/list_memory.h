@@ -1,4 +1,4 @@
-// The memory of the executors' neighbour lists, as a part of the memory plan.
+// The memory of the executors' neighbor lists, as a part of the memory plan.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ inline std::int64_t size_of(const std::string& type) {
   return type == "double" || type == "int64" ? 8 : 4;
 }
 
-/// Adds arrays to a plan, one kind of lifetime and place at a time.
+/// Adds arrays of one lifetime and one place to a plan.
 struct Adder {
   MemoryPlan& memory;
   bool on_device;

@@ -13,23 +13,23 @@ inline std::int64_t pressure_gauges(const Scene& scene) {
 }
 inline bool has_pressure_gauges(const Scene& scene) { return pressure_gauges(scene) > 0; }
 
-/// Also for the gauges that take their share of a surface's.
+/// Whether any loads are summed. Pressure gauges need them: they use a share of a surface's load.
 inline bool has_loads(const Scene& scene) {
-  // What moves does work, which is known from its load.
+  // The work of a moving obstacle is computed from its load.
   const auto wanted = [](const Obstacle& o) { return o.loads || o.motion; };
   return scene.domain.loads || has_pressure_gauges(scene) ||
          std::any_of(scene.obstacles.begin(), scene.obstacles.end(), wanted);
 }
 
-/// Those of walls are asked for, too: whoever comes to a wall has to be booked.
+/// Whether loads on walls are needed. If so, particles near walls are treated as near solids.
 inline bool has_wall_loads(const Scene& scene) {
   return scene.domain.loads || has_pressure_on_wall(scene);
 }
 
-/// There is more around the fluid than plain walls.
+/// Whether the boundary is more than plain walls.
 inline bool has_solids(const Scene& scene) { return !scene.obstacles.empty() || has_loads(scene); }
 
-/// As LoadBook::summed. What moves does work, which is known from its load.
+/// The bits of LoadBook::summed. Includes moving obstacles, whose work is computed from their load.
 inline std::uint64_t summed_walls(const Scene& scene) {
   std::uint64_t bits = scene.domain.loads ? 63 : 0;
   for (std::size_t k = 0; k < scene.obstacles.size() && k + kFaceNames.size() < 64; ++k)
@@ -38,12 +38,12 @@ inline std::uint64_t summed_walls(const Scene& scene) {
   return bits;
 }
 
-/// The rows of sums before those of the gauges: the walls, of which those of open faces stay 0, and
-/// all obstacles.
+/// The first of the gauges' rows of sums. Before them are the rows of the six faces (0 for open
+/// ones) and of all obstacles.
 inline std::int64_t first_gauge_row(const Scene& scene) {
   return std::int64_t(kFaceNames.size() + scene.obstacles.size());
 }
-/// How many have sums.
+/// Number of rows of sums.
 inline std::int64_t load_walls(const Scene& scene) {
   return has_loads(scene) ? first_gauge_row(scene) + pressure_gauges(scene) : 0;
 }

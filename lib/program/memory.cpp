@@ -31,7 +31,7 @@ bool has_field(const Scene& s, const char* name) {
   return s.render && std::string(name) == about(s.render->color).field;
 }
 
-/// Scalars of one particle that a download brings, the id apart.
+/// Scalars per particle of a download, without the id.
 int downloaded_scalars(const Scene& s) {
   if (!s.output && !s.render) return 0;
   return 3 + (has_field(s, "velocity") ? 3 : 0) + (has_field(s, "density") ? 1 : 0);
@@ -39,7 +39,7 @@ int downloaded_scalars(const Scene& s) {
 
 void add_state(const Scene& s, const Plan& plan, std::int64_t bins, const std::string& real,
                const Adder& add) {
-  // The lists name one particle more, far away, and lanes read further (padding of the executors).
+  // The lists contain one distant row after the last particle, and vector lanes read beyond it.
   const std::int64_t n = plan.particles, padding = add.on_device ? 1 : 16;
   const auto type_name = [&](const FieldInfo& f) -> std::string {
     return f.type == Type::real ? real : f.type == Type::int64 ? "int64" : "int32";
@@ -53,14 +53,14 @@ void add_state(const Scene& s, const Plan& plan, std::int64_t bins, const std::s
                      plan.levels.nodes(),
                      load_walls(s)};
   for (const FieldInfo* f : plan.program.fields) {
-    if (f == &field::order && !add.on_device) continue;  // it stands in id'
+    if (f == &field::order && !add.on_device) continue;  // stored in id'
     for (const char* which : {"", "'"})
       if (*which == '\0' || f->pair)
         add((std::string(f->name) + which).c_str(), type_name(*f), f->components, f->rows(counts));
   }
   for (const FieldInfo* f : plan.program.fields) {
     if (f->life != Life::state) continue;
-    // The last good state; and a batch of updates is done again when a list outgrows its capacity.
+    // The last good state of the guard, and the state from which a batch of updates is repeated.
     const std::pair<bool, const char*> copies[] = {{bool(s.guard), "kept "},
                                                    {add.on_device, "saved "}};
     for (const auto& [is_there, copy] : copies)
@@ -75,7 +75,7 @@ void add_state(const Scene& s, const Plan& plan, std::int64_t bins, const std::s
         std::min<std::int64_t>(n / 6000, 396) + 1);
 }
 
-/// While the solver is made. Emission and conversion let go of each array as soon as it is used.
+/// While the solver is created. Emission and conversion free each array as soon as it was used.
 std::int64_t add_start(const Scene& s, const Plan& plan, const std::string& real,
                        MemoryPlan& memory) {
   const std::int64_t n = plan.particles, r = size_of(real);
@@ -87,24 +87,24 @@ std::int64_t add_start(const Scene& s, const Plan& plan, const std::string& real
   add("initial id", "int32", 1, n);
   std::int64_t peak = n * std::max(48 + 4 * r, 24 + 8 * r + 4);
   for (const Body& b : s.bodies)
-    if (b.shape == Shape::file) peak = n * 96;  // a file's particles, and those of all bodies
+    if (b.shape == Shape::file) peak = n * 96;  // particles of the file and of all bodies
   return peak;
 }
 
-/// While the compression is taken out of the start (lib/run/prestabilize.h): what that takes
-/// beside the solver, which keeps no good state yet.
+/// Additional memory beside the solver while the start is relieved of compression
+/// (lib/run/prestabilize.h). The solver has no kept state yet.
 std::int64_t add_prestabilize(const Scene& s, const Plan& plan, const std::string& real,
                               MemoryPlan& memory) {
   if (!s.solver.prestabilize || s.solver.iterations == 0) return 0;
-  // One body on its lattice has no compression to take out.
+  // A single body on its lattice has no compression.
   if (plan.start.empty() && s.bodies.size() == 1 && s.obstacles.empty()) return 0;
   const std::int64_t n = plan.particles, kept = n * (8 * size_of(real) + 4);
   Adder{memory, false, Held::start}("positions around steps without time", "double", 3, 2 * n);
   return 48 * n - (s.guard && !about(s.backend).on_device ? kept : 0);
 }
 
-/// What frames and pictures take: on the host beside the solver, and the staging on the device.
-/// Returns what stays between them.
+/// Memory of frames and pictures: on the host beside the solver, and staging on the device. Returns
+/// the bytes that stay allocated between them.
 std::int64_t add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   const int scalars = downloaded_scalars(s);
   if (scalars == 0) return 0;
@@ -115,13 +115,13 @@ std::int64_t add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
     Adder{memory, true, Held::solver}("staging of a download", real, scalars, n);
     Adder{memory, false, Held::solver}("pinned copy of a download", real, scalars, n);
   }
-  // Updates on a device outrun the writer, which lets two frames wait; those of a CPU do not.
+  // A device is faster than the writer, whose queue holds two frames; a CPU is slower.
   const int frames = on_device ? 3 : 1;
   const Adder add{memory, false, Held::output};
   add("frames under way", real, scalars, frames * n);
   add("ids of frames under way", "int32", 1, frames * n);
   if (s.output) add("vertex numbers of the first frame", "int64", 1, n);
-  // Chunks of several fields and sizes, before and after: malloc keeps as much again as is in use.
+  // Chunks before and after, of several sizes; malloc holds as much unused memory as is in use.
   if (s.output && s.output->compression == Compression::gzip)
     add("chunks before and after compression", real, 3, 4 * std::min<std::int64_t>(n, 1 << 22));
   if (!s.render) return 0;
@@ -136,13 +136,13 @@ std::int64_t add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
     add("shadow map, at most", "byte", 4, std::int64_t(kShadowTexels) * kShadowTexels);
   if (const int bytes = about(s.render->style).bytes_per_pixel)
     add("depth and thickness of the surface", "byte", bytes, pixels);
-  // llvmpipe's lists of what covers each tile, which it draws and empties when they have this size:
-  // measured from 3 500 to 460 000 particles.
+  // llvmpipe keeps a list of primitives per tile and empties it at this size. Measured with 3 500
+  // to 460 000 particles.
   add("tiles of the software rasteriser", "byte", 1, std::min<std::int64_t>(700 * n, 28 << 20));
   return sum(memory, false, Held::output) - before;
 }
 
-/// A checkpoint: the state as io/checkpoint.h has it, and the chunk that gets its checksum.
+/// A checkpoint: the state in the form of io/checkpoint.h, and a chunk with its checksum.
 void add_checkpoint(const Scene& s, const Plan& plan, const std::string& real, MemoryPlan& memory) {
   if (!s.checkpoint) return;
   const Adder add{memory, false, Held::checkpoint};
@@ -162,14 +162,14 @@ void add_fixed(const Scene& s, MemoryPlan& memory) {
 #endif
   memory.fixed.push_back({"program and libraries", mb(program)});
   if (s.output || s.checkpoint) memory.fixed.push_back({"HDF5", mb(4.5), false, true});
-  if (s.output)  // two nodes, their keys and what HDF5 keeps of each
+  if (s.output)  // per dataset two nodes with keys, and HDF5's data about each
     memory.fixed.push_back(
         {"indices of the run file", mb(0.068 * run_file_datasets(s)), false, true});
   if (s.output && s.output->compression == Compression::gzip)
     memory.fixed.push_back({"zlib", mb(0.8), false, true});
   if (s.render) {
-    // Of Mesa 22.3: OSMesa takes 5 MB less than EGL, and both some 9 less, with a surface 12, where
-    // Mesa has kept the shaders of an earlier run on disk. This lies in the upper half.
+    // Mesa 22.3 takes 9 MB less (with a surface 12 MB) if it finds the shaders of an earlier run on
+    // disk, and OSMesa 5 MB less than EGL. The value is in the upper half of this range.
     memory.fixed.push_back({"OpenGL and LLVM in software", mb(91.3), false, true});
     if (s.render->style == RenderStyle::surface)
       memory.fixed.push_back({"shaders of the surface", mb(6), false, true});

@@ -1,6 +1,6 @@
 // Every array of a run and its peak memory, computed from the scene before anything is allocated.
-// `pbf plan` prints it, a run that does not fit is refused by it, and tests compare it with the
-// solvers' own count.
+// `pbf plan` prints it, a run that does not fit is refused, and tests compare it with the memory
+// that solvers report.
 #pragma once
 
 #include <cstdint>
@@ -13,69 +13,69 @@ namespace pbf::inline program_module {
 
 struct Plan;
 
-/// How long an array lives: while the solver is made, as long as the solver, while a frame or a
-/// picture is under way, while a checkpoint is written.
+/// Lifetime of an array: while the solver is created, as long as the solver, while a frame or
+/// picture is written, while a checkpoint is written.
 enum class Held { start, solver, output, checkpoint };
 const char* held_name(Held held);
 
-/// One array, or one kind of array where threads or frames have one each.
+/// One array, or all arrays of a kind if each thread or frame has one.
 struct PlanArray {
   std::string name;  ///< "position", "lists"
-  std::string type;  ///< of a component: float, double, int32, uint32, int64, byte
+  std::string type;  ///< type of a component: float, double, int32, uint32, int64, byte
   int components = 1;
   std::int64_t elements = 0, bytes = 0;
   bool on_device = false;
   Held held = Held::solver;
 };
 
-/// Memory that does not grow with the scene: measured, not computed.
+/// Memory that does not grow with the scene: a measured constant.
 struct FixedMemory {
   std::string name;
   std::int64_t bytes = 0;
   bool on_device = false;
-  bool after_start = false;  ///< not there yet while the solver is made
+  bool after_start = false;  ///< allocated only after the solver was created
 };
 
 struct MemoryPlan {
   std::vector<PlanArray> arrays;
   std::vector<FixedMemory> fixed;
-  /// Peaks less the fixed memory. Host: what is resident, pages that are never touched left out;
-  /// arrays of the start lie where fixed memory comes later, and only what exceeds it counts.
+  /// Peaks without the fixed memory. On the host, resident memory: pages that are never touched do
+  /// not count, and arrays of the start count only as far as they exceed later fixed memory.
   std::int64_t host_arrays = 0, device_arrays = 0;
 
-  /// What the solver holds where it runs: SolverInfo.bytes after a measure and a download.
+  /// Memory of the solver on its device: SolverInfo.bytes after a measurement and a download.
   std::int64_t solver_bytes() const;
   std::int64_t host_peak() const { return host_arrays + fixed_bytes(false); }
   std::int64_t device_peak() const { return device_arrays + fixed_bytes(true); }
   std::int64_t fixed_bytes(bool on_device) const;
 };
 
-/// Neighbours of a particle in fluid at rest, itself included: the ball of radius h holds
-/// (4/3) pi (h/d)^3 particles of spacing d, the disc pi (h/d)^2.
+/// Neighbors of a particle in fluid at rest, itself included: (4/3) pi (h/d)^3, which is the number
+/// of particles of spacing d in a ball of radius h; in two dimensions pi (h/d)^2.
 double rest_neighbors(const Scene& scene);
 
-/// Room of one list on the CPU: `rest_neighbors`, and what fills up groups of up to 16 lists to the
-/// longest: a tenth, and more where particles start at random places, whose numbers of neighbours
-/// scatter like Poisson's. Lists of 1024 particles share their room, so it is the mean that counts;
-/// where the fluid is denser the executor takes more.
+/// Entries planned for one list on the CPU: `rest_neighbors` plus the padding of a group of up to
+/// 16 lists to its longest. The padding is a tenth, or more if particles start at random positions,
+/// because their numbers of neighbors have a Poisson distribution. Lists of 1024 particles share
+/// memory, so only the mean matters. The executor allocates more where the fluid is denser.
 int cpu_list_entries(const Scene& scene);
-/// Mean number of neighbours at the start, and whether that, not fluid at rest, decides the size of
-/// the lists. Later the fluid may crowd more than it did at the start; that is not foreseen.
+/// The mean number of neighbors at the start, and whether it, rather than fluid at rest, determines
+/// the size of the lists. Denser fluid at later times is not considered.
 struct StartCrowd {
   double neighbors = 0;  ///< 0: not counted (Plan::start)
   bool decides = false;
 };
 StartCrowd start_crowd(const Scene& scene, const Plan& plan);
-/// What to change where the memory does not suffice, for the end of a message.
+/// The end of a message about insufficient memory: what to change in the scene.
 std::string memory_remedy(const Scene& scene, const Plan& plan);
 
-/// Room for the lists that one thread makes: those of 1024 particles, and of one group.
+/// Entries of the scratch memory of one thread: lists of 1024 particles and of one group.
 constexpr std::int64_t cpu_scratch_entries(int list_entries) {
   return (1024 + 32) * std::int64_t(list_entries);
 }
 
-/// For the scene's backend and precision (change them in a copy for the others). Pure but for the
-/// number of CPU threads, which depends on this machine where the scene leaves it open.
+/// For the scene's backend and precision (for others, change them in a copy). Pure, except that the
+/// number of CPU threads depends on this machine if the scene does not set it.
 MemoryPlan plan_memory(const Scene& scene, const Plan& plan);
 
 /// The memory of the scene on a backend, in a precision.

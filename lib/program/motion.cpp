@@ -23,7 +23,7 @@ Matrix3 product(const Matrix3& a, const Matrix3& b) {
       for (std::size_t k = 0; k < 3; ++k) c[i][j] += a[i][k] * b[k][j];
   return c;
 }
-/// Turns by so many radians about an axis of any length but 0.
+/// Rotation by `angle` (radians) about an axis of any length above 0.
 Matrix3 turn_about(const Double3& axis, double angle) {
   if (angle == 0) return kUnit3;
   const Double3 u = unit(axis);
@@ -35,7 +35,7 @@ Matrix3 turn_about(const Double3& axis, double angle) {
   return m;
 }
 
-/// amplitude * ramp * sine; before the motions' time 0 without ramp as after it, with one at rest.
+/// amplitude * ramp * sine. At t < 0 a motion with a ramp is at rest; without one it is the sine.
 double swing(const Swing& s, double t) {
   const double grown = s.ramp <= 0 || t >= s.ramp ? 1
                        : t <= 0                   ? 0
@@ -139,7 +139,7 @@ FrameStep<double> frame_step(const Scene& s, const Axes& axes, double time, doub
       out.pull[k][l] = pull[i][j];
     }
   }
-  if (s.plane()) at[1] = 0;  // no y counts there
+  if (s.plane()) at[1] = 0;  // two dimensions ignore y
   out.pivot = {at[0], at[1], at[2]};
   out.push = {by[0], by[1], by[2]};
   return out;
@@ -153,7 +153,7 @@ double fastest_obstacle(const Scene& s, double from, double to) {
     for (const double t : telling_times(s, *o.motion, from, to)) {
       const Pose a = pose_of(s, o, t), b = pose_of(s, o, t + dt);
       const Double3 middle = o.middle();
-      double turned = 0;  // of the ends of the axes of a unit frame; the turn is a part of it
+      double turned = 0;  // squared displacement of the ends of three unit axes
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j) turned += std::pow(b.turn[i][j] - a.turn[i][j], 2);
       fastest = std::max(

@@ -1,5 +1,5 @@
 // Prescribed motions as functions of time: positions of obstacles, and the effect of the tank's
-// motion on its fluid. Nothing is stored, so a run can continue or go back without extra state.
+// motion on the fluid. They have no state, so a run can resume or go back to an earlier time.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace pbf::inline program_module {
 
-/// Where a body has gone: x -> pivot + turn (x - pivot) + shift, m, along the scene's axes.
+/// The displacement of a body: x -> pivot + turn (x - pivot) + shift; m, along the scene's axes.
 struct Pose {
   Matrix3 turn = kUnit3;
   Double3 pivot{}, shift{};
@@ -21,34 +21,34 @@ struct Pose {
 
 /// Whether an obstacle of the scene moves.
 bool has_moving_obstacles(const Scene& scene);
-/// Whether that or the tank does.
+/// Whether an obstacle or the tank moves.
 inline bool has_motion(const Scene& scene) {
   return scene.tank_motion || has_moving_obstacles(scene);
 }
 
-/// Of an obstacle at `time` (s since the start). Error(internal) for a file that was not read.
+/// At `time` (s since the start). Throws Error(internal) if the file of the motion was not read.
 Pose pose_of(const Scene& scene, const Obstacle& obstacle, double time);
-/// m: how far what it holds is from its middle at most, no more than the domain is long.
+/// m: largest distance of a point of the obstacle from its middle, at most the domain's diagonal.
 double size_of(const Scene& scene, const Obstacle& obstacle);
 
-/// How the tank stands: turned about its axis, and how far it has gone (m).
+/// Rotation of the tank about its axis, and its displacement (m).
 struct TankPose {
   double angle = 0;  ///< radians
   Double3 shift{};
 };
-/// scene.tank_motion must be there. Of a table of accelerations all 0.
+/// Needs scene.tank_motion. All 0 for a table of accelerations.
 TankPose tank_pose(const Scene& scene, double time);
 
-/// What the motion of the tank does within a step of `dt` from `time` on (s since the start), in
-/// the internal frame. Unmoved without scene.tank_motion.
+/// The effect of the tank's motion in a step of length `dt` from `time` on (s since the start), in
+/// the internal frame. Without scene.tank_motion, gravity alone.
 FrameStep<double> frame_step(const Scene& scene, const Axes& axes, double time, double dt);
 
-/// m/s: how fast a place of a moving obstacle is at most, where it is in the domain, between two
-/// times (s since the start). 0: nothing moves.
+/// m/s: upper bound of the speed of the points of moving obstacles within the domain, between two
+/// times (s since the start). 0 if no obstacle moves.
 double fastest_obstacle(const Scene& scene, double from, double to);
-/// m/s^2: what a particle at rest feels at most, gravity included, between two times.
+/// m/s^2: largest acceleration of a particle at rest, including gravity, between two times.
 double greatest_pull(const Scene& scene, double from, double to);
-/// m/s^2: by how much that differs from gravity at most, in the middle of the domain.
+/// m/s^2: largest difference of this acceleration from gravity, in the middle of the domain.
 double greatest_sway(const Scene& scene, double from, double to);
 
 }  // namespace pbf::inline program_module

@@ -21,7 +21,7 @@ double slope_at(const MotionTable& table, std::size_t c, std::size_t k) {
   return std::clamp((rise(k - 1) * behind + rise(k) * before) / (before + behind), -most, most);
 }
 
-/// The slope of a piece as a polynomial of u = 0 .. 1: a u^2 + b u + c, times the width.
+/// The slope of a piece times its width, as a polynomial of u = 0 .. 1: a u^2 + b u + c.
 struct SlopeOf {
   double a, b, c;
   explicit SlopeOf(const CurvePiece& p)
@@ -40,7 +40,7 @@ std::vector<double> CurvePiece::turns() const {
   };
   const double inside = s.b * s.b - 4 * s.a * s.c;
   if (inside < 0) return at;
-  // Without a difference of like numbers, also where it is hardly a parabola.
+  // The form of the roots without cancellation, also for a small.
   const double q = -0.5 * (s.b + std::copysign(std::sqrt(inside), s.b));
   if (s.a != 0) add(q / s.a);
   if (q != 0) add(s.c / q);

@@ -9,12 +9,12 @@
 
 namespace pbf::inline program_module {
 
-/// Column c at a time: cubic between rows, by slopes of second order; beyond the table straight on.
-/// A slope takes the longer of the two ways beside its row no farther than 1.5 times what the
-/// larger of the two rises is, which no smooth motion does. So a jump between two rows close
-/// together, with long ones around, swings beyond the table by less than a quarter of itself.
+/// Column c at time t: cubic between rows, with slopes of second order; beyond the table straight.
+/// A slope times the longer interval beside its row is at most 1.5 times the larger change over the
+/// two intervals; smooth motions stay below this limit. Around a jump between two close rows, the
+/// curve thus leaves the range of the table by less than a quarter of the jump.
 double cubic(const MotionTable& table, std::size_t c, double t);
-/// The same straight between rows, and beyond them as at the ends.
+/// The same with straight lines between rows; constant beyond the table.
 double straight(const MotionTable& table, std::size_t c, double t);
 
 /// The cubic between two rows.
@@ -22,15 +22,15 @@ struct CurvePiece {
   double begin = 0, width = 0;  ///< s, of the table
   double y0 = 0, y1 = 0;        ///< at the rows
   double slope0 = 0, slope1 = 0;
-  /// Times strictly between the rows at which it turns back.
+  /// Times of extremes, strictly between the rows.
   std::vector<double> turns() const;
-  /// The time strictly between the rows at which its slope has an extreme.
+  /// The time of the extreme slope, if it is strictly between the rows.
   std::optional<double> steepest() const;
 };
 
-/// From `row` to the next one.
+/// The piece from `row` to the next row.
 CurvePiece curve_piece(const MotionTable& table, std::size_t c, std::size_t row);
-/// The row at which the piece of this time begins; of a time beyond the table the first or last.
+/// The row at which the piece of time t begins; beyond the table that of the first or last piece.
 std::size_t piece_at(const MotionTable& table, double t);
 
 }  // namespace pbf::inline program_module

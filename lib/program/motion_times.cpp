@@ -8,7 +8,7 @@
 namespace pbf::inline program_module {
 namespace {
 
-/// Of a motion's own time, which is time.motion_begin at the start.
+/// Collects times of a motion's own clock, which shows time.motion_begin at the start of the run.
 class Times {
  public:
   Times(double begin, double from, double to)
@@ -29,10 +29,10 @@ class Times {
   std::vector<double> all_;
 };
 
-constexpr int kParts = 32;  // of a period or a ramp: a sine is known to 0.5 % between them
+constexpr int kParts = 32;  // per period or ramp: between samples, a sine differs by 0.5 % at most
 
-/// While the amplitude grows. A ramp of very many periods hardly grows within one, so that the last
-/// period of each of its parts tells all of them.
+/// Samples of the ramp. A ramp of very many periods hardly grows within one period, so the last
+/// period of each of its 64 parts is sampled.
 void add_ramp(Times& times, const Swing& s) {
   const double begin = std::max(0.0, times.first()), end = std::min(s.ramp, times.last());
   if (!(begin < end)) return;
@@ -48,7 +48,7 @@ void add_ramp(Times& times, const Swing& s) {
   }
 }
 
-/// One period from where the amplitude has grown, by parts that have its extremes among them.
+/// One period at full amplitude, with samples that include its extremes.
 void add_period(Times& times, const Swing& s) {
   const double from = s.ramp > 0 ? std::max(times.first(), s.ramp) : times.first();
   times.add(from);
@@ -57,7 +57,7 @@ void add_period(Times& times, const Swing& s) {
   for (int k = 0; k <= kParts; ++k) times.add(((first + k) / kParts - shift) * s.period);
 }
 
-/// The rows, and the middle and the steepest places of the pieces between them.
+/// The rows, and the middle and the point of extreme slope of each piece between them.
 void add_curve(Times& times, const MotionTable& table, double beside) {
   if (table.time.size() < 2) return;
   const std::size_t last = piece_at(table, times.last());
@@ -82,8 +82,8 @@ std::vector<double> telling_times(const Scene& s, const Motion& m, double from, 
 std::vector<double> telling_times(const Scene& s, const TankMotion& m, double from, double to) {
   Times times(s.time.motion_begin, from, to);
   if (m.kind == TankMotionKind::sine) add_ramp(times, m), add_period(times, m);
-  // Accelerations are those of steps, and jump at the rows of a curve. Tables of accelerations are
-  // straight between their rows.
+  // Accelerations are second differences of steps and jump at the rows of a curve, so samples lie
+  // one step beside the rows. Tables of accelerations are linear between rows.
   if (m.kind == TankMotionKind::file && m.table.columns == 1)
     add_curve(times, m.table, s.time.step);
   if (m.kind == TankMotionKind::file && m.table.columns == 3)

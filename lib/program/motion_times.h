@@ -1,4 +1,4 @@
-// Times at which to look at a prescribed motion, so that nothing of it is missed.
+// Sample times of a prescribed motion that do not miss its largest speed and acceleration.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace pbf::inline program_module {
 
-/// Rising times from `from` to `to` (s since the start), both included, so close together where
-/// the motion changes that its speed and its acceleration are nowhere larger than at one of them
-/// by more than 1 %: the rows of a table and the steepest places between them, the extremes of a
-/// sine, the whole of a ramp however short it is. What is periodic is looked at for one period.
+/// Ascending times between `from` and `to` (s since the start), both included. The largest speed
+/// and acceleration at these times are within 1 % of those of the motion. The times are the rows of
+/// a table and the points of largest slope between them, the extremes of a sine in one period, and
+/// points throughout a ramp.
 std::vector<double> telling_times(const Scene& scene, const Motion& motion, double from, double to);
 std::vector<double> telling_times(const Scene& scene, const TankMotion& motion, double from,
                                   double to);

@@ -1,5 +1,5 @@
-// What a pass declares of every array that it touches. Memory, plan, trace, exchanges between ranks
-// and the launch itself (granted.h) follow from it.
+// The declarations of a pass about every array that it touches. Memory, plan, trace and the launch
+// itself (granted.h) follow from them.
 #pragma once
 
 #include <type_traits>
@@ -10,24 +10,24 @@
 
 namespace pbf::inline program_module {
 
-/// What a pass does with a field. A pass that consists of several launches may do more than one.
+/// What a pass does with a field. A pass with several launches may combine these.
 enum How : unsigned {
-  kReads = 1,    ///< its own row
-  kGathers = 2,  ///< rows of neighbors, and its own
-  kLooks = 4,    ///< any row of a table
-  kWrites = 8,   ///< its own row, all of it
-  kPlaces = 16,  ///< rows anywhere, each once; may then read what it has placed
-  kAdds = 32,    ///< adds whole numbers anywhere, in any order
+  kReads = 1,    ///< reads its own row
+  kGathers = 2,  ///< reads rows of neighbors and its own
+  kLooks = 4,    ///< reads any row
+  kWrites = 8,   ///< writes its own row completely
+  kPlaces = 16,  ///< writes any row, each once; later launches of the pass may read them
+  kAdds = 32,    ///< adds integers to any row, in any order
   kUpdates = kReads | kWrites,
   kReading = kReads | kGathers | kLooks,
   kWriting = kWrites | kPlaces | kAdds
 };
 
-/// What the fourth component of a position holds. mark: -1 where a particle is so fast that it may
-/// pass a neighbor (kernels/relative_motion.h), else 1.
+/// Contents of the fourth component of a position. mark: -1 if the particle is so fast that it may
+/// move through a neighbor (kernels/relative_motion.h), otherwise 1.
 enum class W { any, mark, lambda, inverse_density };
 
-/// always, or in the first iteration of a substep alone.
+/// When a pass needs the field.
 enum class When { always, first_iteration };
 
 struct AccessInfo {
@@ -73,7 +73,7 @@ struct Needs {
     return (0u | ... | As::template how_of<Asked>());
   }
 };
-/// Declarations that hold in scenes of which `on` is true.
+/// Declarations for scenes for which on(scene) is true.
 template <bool (*on)(const Scene&), class... As>
 struct If {
   static void list(const Scene& scene, std::vector<AccessInfo>& to) {
@@ -84,8 +84,8 @@ struct If {
     return (0u | ... | As::template how_of<Asked>());
   }
 };
-/// Of one launch that does the work of A and then of B, row by row. What A writes and B reads of
-/// the same row is no need of both.
+/// Declarations of a fused pass, which does the work of A and then of B for each row. If A writes a
+/// row and B reads the same row, the fused pass need not read it.
 template <class A, class B>
 struct Then {
   static void list(const Scene& scene, std::vector<AccessInfo>& to);
@@ -98,7 +98,7 @@ struct Then {
   }
 };
 
-/// Before the pass is launched the two arrays trade places.
+/// The two arrays of these fields are swapped before the pass is launched.
 template <auto&... Fs>
 struct Flips {
   template <class C>
@@ -128,7 +128,7 @@ void Then<A, B>::list(const Scene& scene, std::vector<AccessInfo>& to) {
   }
 }
 
-/// What a pass that declares P::Needs does with a field; 0: nothing.
+/// The flags that pass P declares for a field; 0: none.
 template <class P, class Field>
 constexpr unsigned how_of = P::Needs::template how_of<Field>();
 

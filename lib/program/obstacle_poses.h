@@ -10,11 +10,11 @@ namespace pbf::inline program_module {
 
 struct ObstaclePose {
   std::string name;
-  Double3 middle{};               ///< m: of the body, which the scene's keys put elsewhere
-  std::array<Double3, 3> turn{};  ///< rows of the rotation since then
+  Double3 middle{};               ///< m: present position of the body's middle
+  std::array<Double3, 3> turn{};  ///< rows of the rotation from the pose in the scene file
 };
 
-/// Of those that move, `time` s after the start.
+/// Poses of the moving obstacles, `time` s after the start.
 std::vector<ObstaclePose> obstacle_poses(const Scene& scene, double time);
 
 }  // namespace pbf::inline program_module

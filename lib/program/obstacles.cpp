@@ -9,7 +9,7 @@
 namespace pbf::inline program_module {
 namespace {
 
-/// Where ends of the body along its axes lie on walls or behind them. `ends`: m; 0: there is none.
+/// Bits of the body's ends that lie on or behind walls. `ends`: half lengths in m; 0: no end.
 unsigned behind_walls(const Scene& s, const Matrix3& rows, const Double3& center,
                       const Vec3<double>& ends) {
   const double half[3] = {ends.x, ends.y, ends.z};
@@ -38,7 +38,7 @@ Solid<double> solid_of(const Obstacle& o, const Scene& s, double time) {
     for (Double3& axis : rows)
       axis = {dot(pose.turn[0], axis), dot(pose.turn[1], axis), dot(pose.turn[2], axis)};
   }
-  if (s.plane()) center[1] = *s.plane();  // no y counts there
+  if (s.plane()) center[1] = *s.plane();  // two dimensions ignore y
   const double h = s.h();
   const Double3 from = s.origin();
   Solid<double> out;

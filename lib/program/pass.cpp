@@ -6,7 +6,7 @@
 namespace pbf::inline program_module {
 namespace {
 
-/// What is shown of an array that a pass has written.
+/// Adds what a trace shows of an array that a pass has written.
 void show(const AccessInfo& a, const PassText& text, std::vector<Written>& to) {
   const FieldInfo& f = *a.field;
   const Shown& s = f.shown;
@@ -17,14 +17,14 @@ void show(const AccessInfo& a, const PassText& text, std::vector<Written>& to) {
                     s.unit,
                     elsewhere ? s.stage : nullptr,
                     s.sum};
-  // Into the second array of a pair a pass copies what it does not change.
+  // Passes copy unchanged values into the second array of a pair. These are not shown.
   if (*s.quantity && !f.first) to.push_back(all);
   if (a.w == W::lambda) to.push_back({&f, Written::fourth, "lambda", "h^2", nullptr, true});
   if (a.w == W::inverse_density)
     to.push_back({&f, Written::fourth, "1/density", "1/rho0", nullptr});
 }
 
-/// What a pass is for, where that is a number of each particle.
+/// The main result of a pass, if it is one number per particle; otherwise -1.
 int stored_in(const std::vector<Written>& written) {
   for (std::size_t k = 0; k < written.size(); ++k)
     if (written[k].part == Written::fourth && written[k].field->first) return int(k);

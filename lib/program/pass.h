@@ -2,9 +2,9 @@
 //   static constexpr PassText text{name, stage, remedy};
 //   using Needs = pbf::Needs<...>;                       // needs.h
 //   template <class G> static void launch(const G& c);   // c: granted.h
-// A pass that writes into the other array of a pair and leaves it as the first one also has
-// `using Flips = pbf::Flips<...>`; its Needs call it by the name that it has then. A pass that does
-// the work of two successive ones has `using Fuses = Pair<First, Second>`.
+// A pass that swaps the two arrays of a pair before its launch also has
+// `using Flips = pbf::Flips<...>`; its Needs name the arrays as they are after the swap. A pass
+// that does the work of two successive ones has `using Fuses = Pair<First, Second>`.
 #pragma once
 
 #include <array>
@@ -17,19 +17,19 @@ namespace pbf::inline program_module {
 
 struct PassText {
   const char* name;         ///< in `pbf plan`
-  const char* stage;        ///< a row of lib/base/stages.h: where its time is booked
-  const char* remedy = "";  ///< "lower viscosity.xsph", where particles go wrong here; empty: none
-                            ///< of its own, but those of the whole step
+  const char* stage;        ///< the row of lib/base/stages.h to which its time is booked
+  const char* remedy = "";  ///< advice if particles become invalid in this pass, "lower
+                            ///< viscosity.xsph"; empty: the general advice
 };
 
-/// What a pass leaves behind in a field, as those see it who look at an update pass by pass.
+/// A result of a pass in a field, as a trace of an update shows it.
 struct Written {
   enum Part { vector, fourth, scalar, pairs };
   const FieldInfo* field;
   Part part;
   const char *quantity, *unit;
-  const char* stage;  ///< not null: shown as that of another stage than the pass's
-  bool sum = false;   ///< over neighbors: carries the rounding of its terms
+  const char* stage;  ///< not null: shown under this stage instead of the stage of the pass
+  bool sum = false;   ///< a sum over neighbors, with the rounding errors of its terms
 };
 
 struct PassInfo : PassText {
@@ -37,17 +37,17 @@ struct PassInfo : PassText {
   std::vector<AccessInfo> declared;  ///< the same in order, as the pass says it
   std::vector<const FieldInfo*> flips;
   std::vector<Written> written;
-  int stored = -1;  ///< of `written`: what a fault that is no number is put into; -1: velocity
+  int stored = -1;  ///< index in `written`: where tests inject a non-finite value; -1: velocity
 
   bool makes_lists() const;
   bool over_pairs() const;  ///< uses the lists
 };
 
-/// With what follows from the declarations.
+/// The description of a pass, with everything that follows from its declarations.
 PassInfo described(const PassText& text, std::vector<AccessInfo> declared,
                    std::vector<const FieldInfo*> flips);
 
-/// Of pass P in a scene.
+/// The description of pass P in a scene.
 template <class P>
 PassInfo info_of(const Scene& scene) {
   std::vector<AccessInfo> declared;
@@ -73,7 +73,7 @@ struct PassList {
   }
   static std::vector<PassInfo> infos(const Scene& scene) { return {info_of<Ps>(scene)...}; }
   static constexpr std::array<PassText, sizeof...(Ps)> texts{Ps::text...};
-  /// The one that does the work of passes a and b, or -1.
+  /// The index of the pass that does the work of passes a and b, or -1.
   static int fused(int a, int b) {
     int found = -1;
     ((fuses<Ps>(a, b) ? void(found = index_of<Ps>()) : void()), ...);
@@ -94,7 +94,7 @@ struct PassList {
   }
 };
 
-/// The passes of several features one behind the other.
+/// The concatenated pass lists of several features.
 template <class... Lists>
 struct Joined;
 template <class... Ps>

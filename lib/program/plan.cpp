@@ -16,15 +16,15 @@
 namespace pbf::inline program_module {
 namespace {
 
-/// Cells of one h where their number is in proportion to the particles, else larger ones: a nearly
-/// empty box must not cost more memory than its fluid. So no box has too many (that positions can
-/// be told apart in it is a matter of the scene's checks).
+/// The edge of cells is h if their number is in proportion to the particles, and larger otherwise:
+/// a nearly empty box must not need more memory than its fluid. This also bounds the number of
+/// cells.
 void plan_grid(Plan& plan, const Scene& scene) {
   plan.axes = internal_axes(scene);
   const Scene s = in_internal_axes(scene, plan.axes);
   double box[3];
   for (std::size_t k = 0; k < 3; ++k) box[k] = (s.domain.max[k] - s.domain.min[k]) / s.h();
-  if (s.dimensions == 2) box[1] = 0;  // one layer, also of a slab as thick as h
+  if (s.dimensions == 2) box[1] = 0;  // one layer, even if the slab is thicker than h
   const auto number = [&](double edge) {
     return (std::floor(2 * box[0] / edge) + 1) / 2 * (std::floor(box[1] / edge) + 1) *
            (std::floor(box[2] / edge) + 1);
@@ -39,15 +39,10 @@ void plan_grid(Plan& plan, const Scene& scene) {
   for (int k = 1; k < 3; ++k) plan.cells[k] = int(box[k] / plan.cell_edge) + 1;
 }
 
-/// 2/((b + a) + (b - a) cos((2 m - 1) pi/2K)), m = 1..K: the steps of the first-order Richardson
-/// iteration whose error polynomial is Chebyshev's on [a, b] = [1/2, 3/2] (Young 1954, On
-/// Richardson's method). Large and small ones alternate, because each alone may amplify; the
-/// smallest comes late, because it smooths. Measured (column of 48 layers and dam break, h = 2 d):
-/// against omega = 1, mean compression x 0.77 and 0.68 with 2 iterations, 0.79 and 0.62 with 4,
-/// 0.74 and 0.50 with 8, and energy rises no more; from a = 0.4 on down the column heats with 2 or
-/// 3 iterations. In two dimensions (column of 24 layers, dam break, h = 2 d): x 0.86 and 0.80 with
-/// 2 iterations, 0.85 and 0.82 with 4, 0.85 and 0.84 with 8; a = 0.4 takes another eighth off, with
-/// a = 0.3 the dam break gains twice its energy.
+/// The steps of a Richardson iteration with the Chebyshev polynomial on [a, b] as error polynomial:
+/// 2/((b + a) + (b - a) cos((2 m - 1) pi/2K)), m = 1..K (Young 1954, On Richardson's method). Large
+/// and small steps alternate, because a large step alone may amplify errors; the smallest comes
+/// late, because it smooths. Choice of a and b: kernels/README.md, "Step length".
 std::vector<double> chebyshev_factors(int iterations) {
   constexpr double a = 0.5, b = 1.5;
   std::vector<double> rising, out;
@@ -102,9 +97,9 @@ void plan_left_out(Plan& plan, const Scene& s) {
       "solver.reproducible is false");
 }
 
-constexpr double kOtherDatasets = 48;  // of run.vtkhdf, beside the columns of log and gauges
+constexpr double kOtherDatasets = 48;  // of run.vtkhdf, without the columns of log and gauges
 
-/// Of the log: measures and stages; the load on a wall or an obstacle; the pose of one that moves.
+/// Columns of the log: diagnostics and stages; loads on walls and obstacles; poses of moving ones.
 double log_columns(const Scene& s) {
   double columns = s.domain.loads ? 46 + 6 * 7 : 46;
   for (const Obstacle& o : s.obstacles) columns += (o.loads ? 7 : 0) + (o.motion ? 12 : 0);
@@ -118,8 +113,8 @@ double gauge_columns(const Scene& s) {
   return columns;
 }
 
-/// Of a table of run.vtkhdf with `rows` rows of 8 bytes in each column: an index, and whole chunks
-/// of 1024 rows. 23 kB for the first chunk of each and its index, measured over 10 scenes.
+/// Bytes of a table of run.vtkhdf with columns of 8 bytes per row, in whole chunks of 1024 rows.
+/// The first chunk of a column and its index take 23 kB (measured in 10 scenes).
 double table_bytes(double columns, double rows) {
   return columns * (2.3e4 + std::floor(rows / 1024) * 1024 * 8);
 }
@@ -140,8 +135,8 @@ void plan_files(Plan& plan, const Scene& s) {
     double row = 3 * scalar;  // position
     for (const auto& f : s.output->fields) row += (f == "velocity" ? 3 : 1) * scalar;
     const double frames = double(schedule.frames_until(all));
-    // Ids and the numbers of the vertices once; the ends of a frame's chunks, which fill pages
-    // where they are large. gzip: 1.45 times smaller. Measured.
+    // Ids and vertex numbers are stored once. Large chunks of a frame fill whole pages. gzip makes
+    // the data 1.45 times smaller (measured).
     const double bytes =
         (frames * row + 12) * n / (s.output->compression == Compression::gzip ? 1.45 : 1) +
         frames * std::min(5 * n, 9e3) + table_bytes(kOtherDatasets, 0) +

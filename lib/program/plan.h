@@ -1,5 +1,5 @@
-// What a scene needs, computed before anything is allocated: program, arrays, grid, files, and what
-// is left out. It depends only on the scene; all later code follows it.
+// Everything that a run needs, computed from the scene before anything is allocated: program,
+// arrays, grid and files. The plan depends only on the scene and the number of particles.
 #pragma once
 
 #include <cstdint>
@@ -17,48 +17,40 @@
 
 namespace pbf::inline program_module {
 
-/// Of a sample of the scene's particles, spread evenly over their ids.
+/// Neighbors of a sample of the initial particles, spread evenly over their ids.
 struct StartNeighbors {
   std::vector<int> count;       ///< particles within h, the particle itself included
-  std::vector<double> scatter;  ///< standard deviation of the counts around it; 0: too few sampled
+  std::vector<double> scatter;  ///< standard deviation of the counts nearby; 0: sample too small
   bool empty() const { return count.empty(); }
 };
 
-/// Files of one kind that the run leaves behind, with their estimated size.
+/// Output files of one kind, with their estimated size.
 struct PlanFile {
   std::string name;                    ///< "run.vtkhdf", "frames/frame_*.png"
-  std::int64_t number = 1, bytes = 0;  ///< of all of them
+  std::int64_t number = 1, bytes = 0;  ///< bytes: total of all files
   std::string note;                    ///< "101 frames"
 };
 
 struct Plan {
   std::int64_t particles = 0;
   StartNeighbors start;      ///< lib/run/start_neighbors.h
-  double cell_edge = 1;      ///< in h, >= 1: larger only where the box would need too many cells
+  double cell_edge = 1;      ///< in h, >= 1: larger only if the box would need too many cells
   Axes axes;                 ///< of the internal frame; lib/program/axes.h
-  int cells[3] = {1, 1, 1};  ///< of the grid, in internal axes; along x half cells
+  int cells[3] = {1, 1, 1};  ///< of the grid, along the internal axes; half cells along x
   double vol = 1;            ///< m/(rho0 h^3), in 2-D m/(rho0 h^2 thickness); calibrate.h
   double wall_scale = 1, wall_range = 1;  ///< amplitude; range in h
-  /// omega. By default min(1, (2.5 d/h)^2): one Jacobi iteration moves every particle for all its
-  /// neighbours' constraints at once, so its stable step falls with their number. Measured on a
-  /// column of 24 layers: 1 is stable at h = 2.5 d and throws particles up at 3 d, 0.7 is stable at
-  /// 3 d and 0.3 at 4 d. In two dimensions min(1, (3 d/h)^(4/3)), the same power of the number of
-  /// neighbours: measured on a column of 24 squares, 1 is stable at h = 3 d, gains 1.5 % of energy
-  /// at 4 d and throws particles up at 5 d, 0.7 is stable at 4 d and 0.5 at 5 d. Unless the scene
-  /// sets it, it falls further where the density is above rho0 (kernels/pass_lambda.h): a closed
-  /// box with 1.3 times its particles boiled with 58 times the energy of its start, and now comes
-  /// to rest. With levels 2 d/h and 2.4 d/h in place of 2.5 and 3: they need more damping of what
-  /// is short; kernels/README.md, "Levels".
+  /// omega, the step length of the iterations: the key solver.sor, or a default that depends on h/d
+  /// and on levels (kernels/README.md, "Step length").
   double sor = 1;
-  /// Factors on omega, one per iteration of a substep; empty: 1 in all (solver.method: jacobi).
+  /// Factors on omega, one per iteration of a substep; empty: all are 1 (solver.method: jacobi).
   std::vector<double> sor_factors;
   int substeps = 1;
   int lists_per_update = 1;  ///< substeps share lists (substep_lists.h)
   int finest_level = 0;      ///< of time.adaptive: an update is up to 2^finest_level steps
   double tolerance =
       0;            ///< mean compression above which the iterations are repeated; 0: they are not
-  int repeats = 0;  ///< at most so many, besides the first
-  double mass = 0;  ///< kg, of one particle as reported
+  int repeats = 0;  ///< maximum number of these repetitions
+  double mass = 0;  ///< kg, of one particle
   LevelPlan levels;
   std::vector<Solid<double>> solids;  ///< of obstacles, in internal axes; lib/program/obstacles.h
   GaugePlan gauges;
@@ -71,30 +63,30 @@ struct Plan {
   UpdateShape shape() const;
 };
 
-/// Datasets of run.vtkhdf, each with an index: the columns of log and gauges among them.
+/// Number of datasets of run.vtkhdf, including the columns of log and gauges. Each has an index.
 double run_file_datasets(const Scene& scene);
 
-/// Pure: touches no file and no device. `particles` from count_particles(). `start`: of
-/// start_neighbors(), for the memory of a crowded start; without it the start counts as fluid at
-/// rest. Throws Error(bad_input) where the grid of the scene cannot be numbered.
+/// Pure: touches no file and no device. `particles`: from count_particles(). `start`: from
+/// start_neighbors(), for the memory of a crowded start; without it, the start is planned as fluid
+/// at rest.
 Plan make_plan(const Scene& scene, std::int64_t particles, StartNeighbors start = {});
 
-/// What a run comes to, as one number each.
+/// The plan in a few numbers.
 struct PlanTotals {
   std::int64_t updates = 0;
   double end = 0;  ///< s, simulated: whole updates
-  /// Peaks of all that the run holds, with program and libraries; device: 0 where there is none.
+  /// Peak memory of the run, including program and libraries; device: 0 on the CPU.
   std::int64_t host_bytes = 0, device_bytes = 0;
   std::int64_t disk_bytes = 0;  ///< of all files
 };
 PlanTotals plan_totals(const Plan& plan, const Scene& scene);
 
-// The plan for people, in parts.
+// The plan as text, in parts.
 
-/// What is asked first, in five lines: particles, time, run time, memory, disk. `run_time`: what
-/// its line says; empty: there is none.
+/// The most important facts in five lines: particles, time, run time, memory, disk. `run_time`: the
+/// text of its line; empty: no such line.
 std::string plan_summary(const Plan& plan, const Scene& scene, const std::string& run_time);
-/// Files, memory by backend and precision, grid, passes, what is left out because of which key.
+/// Files, memory by backend and precision, grid, passes, and what is left out with the reasons.
 std::string plan_details(const Plan& plan, const Scene& scene);
 /// Every array with its type, life, place and size, and the memory that is fixed.
 std::string plan_arrays(const Plan& plan, const Scene& scene);

@@ -1,4 +1,4 @@
-// What a plan comes to: one number for each question, and the five lines that say them.
+// The totals of a plan, and its five-line summary.
 #include <algorithm>
 
 #include "lib/base/text.h"
@@ -27,7 +27,7 @@ std::string memory_line(const Plan& plan, const Scene& s, const PlanTotals& tota
   return out + (on_device ? "" : ", " + threads_text(s, plan.particles));
 }
 
-/// The sum, and the files that make it.
+/// The total and the files that contribute to it.
 std::string disk_line(const Plan& plan, const PlanTotals& totals) {
   std::string parts;
   for (const PlanFile& f : plan.files)

@@ -1,4 +1,4 @@
-// The plan as text, but for its first lines (plan_summary.cpp).
+// The plan as text, without its summary (plan_summary.cpp).
 #include <algorithm>
 
 #include "lib/base/text.h"

@@ -15,17 +15,17 @@ ProgramStep step_of() {
   return step_of(Passes::index_of<P>());
 }
 
-/// What features say of a scene.
+/// Collects the passes that features add for a scene.
 struct Builder {
   Steps at_start, with_lists, with_all_lists, in_iteration, behind, at_end;
   std::vector<LeftOut> without;
 
-  /// Before each substep.
+  /// The pass runs before each substep.
   template <class P>
   void start() {
     at_start.push_back(step_of<P>());
   }
-  /// Whenever lists are made; with `updates_alone` not for a measure.
+  /// The pass runs whenever lists are made; with `updates_alone` not for a measurement.
   template <class P>
   void lists(bool updates_alone = false) {
     with_lists.push_back(step_of<P>());
@@ -39,7 +39,7 @@ struct Builder {
   void after() {
     behind.push_back(step_of<P>());
   }
-  /// Behind all others, with lists or without.
+  /// The pass runs after all others, with or without lists.
   template <class P>
   void end() {
     at_end.push_back(step_of<P>());
@@ -47,8 +47,8 @@ struct Builder {
   void left_out(const char* what, const char* because) { without.push_back({what, because}); }
 };
 
-/// Joins b to the end of `steps`, where one pass does the work of both: false where none does.
-/// The last of several iterations is then one by itself.
+/// Fuses pass b with the last pass of `steps`. False if no pass does the work of both. If the last
+/// pass belongs to iterations, the last iteration becomes a step of its own.
 bool join(Steps& steps, int b) {
   if (steps.empty()) return false;
   ProgramStep& last = steps.back();
@@ -67,16 +67,16 @@ bool join(Steps& steps, int b) {
   return true;
 }
 
-/// With every pair of passes joined that can be.
+/// The steps with all possible fusions.
 Steps joined(const Steps& steps) {
   Steps out;
   for (const ProgramStep& s : steps)
     if (s.kind != ProgramStep::pass || !join(out, s.index)) out.push_back(s);
-  // A pass that does the work of two may itself be joined to the one before.
+  // A fused pass may itself be fused with the one before.
   return out.size() < steps.size() ? joined(out) : out;
 }
 
-/// One range of substeps that share lists.
+/// Adds a range of substeps that share lists.
 void add_substeps(Steps& to, const Builder& b, int iterations, int repeats, int substeps) {
   for (int s = 0; s < substeps; ++s) {
     to.insert(to.end(), b.at_start.begin(), b.at_start.end());
@@ -104,7 +104,7 @@ void collect_fields(const Steps& steps, Program& p) {
   }
 }
 
-/// The sum between the rounds of `until`.
+/// The sum that decides whether `until` repeats its body.
 const PassInfo& residual() {
   static const PassInfo info =
       described({"mean compression", "residual"}, {{&field::density, kReads}}, {});
@@ -116,13 +116,13 @@ const char* word(W w) {
   return words[int(w)];
 }
 
-/// What the fourth component of each of the two arrays of positions holds.
+/// The contents of the fourth component w in each of the two arrays of positions.
 struct Fourth {
   W first = W::any, second = W::any;
 
   W& of(const FieldInfo& f) { return f.first ? second : first; }
-  /// A pass in that iteration of a substep. Throws Error(internal) where it asks for what is not
-  /// there.
+  /// Applies a pass in that iteration of a substep. Throws Error(internal) if w does not hold what
+  /// the pass declares.
   void after(const PassInfo& pass, int iteration, bool has_iterations) {
     for (const FieldInfo* f : pass.flips)
       if (f == &field::position) std::swap(first, second);
@@ -136,7 +136,7 @@ struct Fourth {
     }
     for (const AccessInfo& a : pass.declared) {
       if (&a.field->primary() != &field::position || !(a.how & (kWrites | kPlaces))) continue;
-      // The sort carries w along. Without iterations nothing is marked: all are 1.
+      // The sort copies w. Without iterations no particle is marked: w is 1.
       const bool carried = (a.how & kPlaces) && a.w == W::any;
       const W w = carried ? of(other<field::position>) : a.w;
       of(*a.field) = w == W::mark && !has_iterations ? W::inverse_density : w;
@@ -148,15 +148,15 @@ void follow(const Program& p, const Steps& steps, int iteration, Fourth& w) {
   for (const ProgramStep& s : steps) {
     if (s.kind == ProgramStep::pass)
       w.after(p.passes[std::size_t(s.index)], iteration, p.has_iterations);
-    // The second iteration stands for all that follow.
+    // All later iterations are like the second.
     for (int k = s.first; s.kind == ProgramStep::iterate && k < s.first + std::min(s.times, 2); ++k)
       follow(p, s.body, iteration + k, w);
     if (s.kind == ProgramStep::until) follow(p, s.body, 1, w);
   }
 }
 
-/// Every pass finds in w what it asks for, pass by pass and with passes joined, in the first update
-/// and in those behind it.
+/// Checks that w holds what every pass declares, with and without fused passes, in the first update
+/// and in later ones.
 void check_fourth(const Program& p) {
   Fourth seen, fast;
   for (int updates = 0; updates < 2; ++updates) follow(p, p.update, 0, seen);
@@ -210,7 +210,7 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
       middle.push_back(step_of<Predict>());
     }
   } else {
-    // The ranges are as equal as can be.
+    // The ranges are as equal as possible.
     for (int r = 0, from = 0; r < shape.lists_per_update; ++r) {
       const int to = int(std::int64_t(shape.substeps) * (r + 1) / shape.lists_per_update);
       add_substeps(middle, b, scene.solver.iterations, shape.repeats, to - from);
@@ -219,8 +219,8 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
   }
   const Steps end = b.behind + b.at_end;
   p.update = middle + end;
-  // An update begins with the passes up to its first lists, which may follow on the one before.
-  const std::size_t order = b.at_start.size() + 1;  // where the sort is
+  // The passes up to the first sort may be fused with the end of the previous update.
+  const std::size_t order = b.at_start.size() + 1;  // index of the sort
   const bool pairs =
       p.update.size() > order + 1 && p.update[order].index == Passes::index_of<Sort>();
   const auto begin = middle.begin() + (pairs ? std::ptrdiff_t(order + 1) : 0);

@@ -10,12 +10,12 @@
 
 namespace pbf::inline program_module {
 
-/// A pass, or passes that are repeated.
+/// A pass, or a repeated group of steps.
 struct ProgramStep {
   enum Kind {
     pass,
     iterate,  ///< `body` for iterations first ... first + times - 1 of a substep
-    until     ///< `body` at most `times` times, while the mean compression is above the tolerance
+    until     ///< `body` while the mean compression is above the tolerance, at most `times` times
   };
   Kind kind = pass;
   int index = -1;  ///< of the pass in Passes (features.h)
@@ -29,47 +29,47 @@ struct LeftOut {
 };
 
 struct Program {
-  /// An update pass by pass, as it is observed.
+  /// An update without fused passes, for traces and checks.
   Steps update;
-  /// The same with passes joined that can be: n updates are first, rest, (next, rest) n - 1 times,
-  /// last, to the same bits.
+  /// Updates with fused passes: n updates are first, rest, n - 1 times (next, rest), last. They
+  /// give the same bits.
   Steps first, rest, next, last;
-  /// Makes lists at the present positions, for a measure.
+  /// Makes lists at the present positions, for a measurement.
   Steps lists;
   bool has_iterations = false;
-  /// What the passes declare in this scene, by index in Passes.
+  /// The declarations of all passes in this scene, by index in Passes.
   std::vector<PassInfo> passes;
-  /// Every field of the passes, and those that a solver has in any case; of a pair the first.
+  /// All fields of the passes and those that every solver has; of a pair only the first array.
   std::vector<const FieldInfo*> fields;
-  std::vector<LeftOut> left_out;  ///< the features that the scene does without
+  std::vector<LeftOut> left_out;  ///< features that the scene does not use
 
-  bool has_pairs() const { return !first.empty(); }  ///< else particles only move
+  bool has_pairs() const { return !first.empty(); }  ///< otherwise particles move freely
 };
 
-/// A pass, and how often it comes; at most, where a tolerance decides.
+/// A pass and how often it runs (with a tolerance: at most).
 struct PassCount {
   const PassInfo* pass;
   int times;
 };
 std::vector<PassCount> count_passes(const Program& program, const Steps& steps);
-/// Those of an update in the middle of a run.
+/// The same for an update in the middle of a run.
 std::vector<PassCount> count_passes(const Program& program);
 
-/// How an update is divided, and what may be repeated.
+/// The division of an update, and how often its iterations may be repeated.
 struct UpdateShape {
   int substeps = 1, lists_per_update = 1, repeats = 0;
 };
 
-/// The update of a scene, or its step without time.
+/// The update of a scene, or its step without time (StepOptions::without_time in lib/solver).
 Program make_program(const Scene& scene, const UpdateShape& shape, bool without_time = false);
 
 /// Name, stage and remedy of every pass, by index in Passes.
 std::span<const PassText> pass_texts();
 
-/// "position velocity'", of the fields that a pass reads, or leaves something in.
+/// "position velocity'": the fields that a pass reads, and those that it writes.
 std::string reads_text(const PassInfo& pass);
 std::string writes_text(const PassInfo& pass);
-/// "position lambda", of what it reads of the neighbors' rows.
+/// "position lambda": the fields of which it reads the rows of neighbors.
 std::string gathers_text(const PassInfo& pass);
 
 }  // namespace pbf::inline program_module

@@ -10,7 +10,7 @@
 
 namespace pbf::inline program_module {
 
-/// The first multiple of `every` after u (-1: the start is to come).
+/// The first multiple of `every` after u (u = -1: before the start).
 inline std::int64_t next_multiple(std::int64_t u, std::int64_t every) {
   return (u + every) / every * every;
 }
@@ -35,23 +35,23 @@ struct Schedule {
     return due(u, measure_every) || due(u, frame_every) || due(u, picture_every) ||
            due(u, gauge_every);
   }
-  /// Numbers of measures, frames and pictures up to update u, the one after which a run that goes
-  /// on does no more of them for u.
+  /// Numbers of measurements, frames, pictures and readings up to update u, including those that
+  /// are due at u.
   std::int64_t measures_until(std::int64_t u) const { return count(u, measure_every, true); }
   std::int64_t frames_until(std::int64_t u) const { return count(u, frame_every, true); }
   std::int64_t pictures_until(std::int64_t u) const { return count(u, picture_every, false); }
   std::int64_t gauges_until(std::int64_t u) const { return count(u, gauge_every, true); }
-  /// In the name of the picture of update u: the frame of run.vtkhdf, or the picture where no
-  /// frames are written.
+  /// The number in the name of the picture of update u: that of the frame in run.vtkhdf, or of the
+  /// picture if no frames are written.
   std::int64_t picture_number(std::int64_t u) const {
     return u / (frame_every > 0 ? frame_every : picture_every);
   }
-  /// The update of the k-th measure, frame and reading (from 0).
+  /// The update of the k-th measurement, frame and reading (from 0).
   std::int64_t update_of_measure(std::int64_t k) const { return at(k, measure_every); }
   std::int64_t update_of_frame(std::int64_t k) const { return at(k, frame_every); }
   std::int64_t update_of_gauges(std::int64_t k) const { return at(k, gauge_every); }
-  /// The first update after u (-1: the start is to come) at which there is a measure, a frame or
-  /// picture, a reading, or any; at most the last one.
+  /// The first update after u (u = -1: before the start) with a measurement, with a frame or
+  /// picture, with a reading, or with any of them; at most the last update.
   std::int64_t next_measure(std::int64_t u) const { return next(u, measure_every); }
   std::int64_t next_output(std::int64_t u) const {
     return std::min(next(u, frame_every), next(u, picture_every));
@@ -75,11 +75,11 @@ struct Schedule {
   static bool due(std::int64_t u, std::int64_t every) { return every > 0 && u % every == 0; }
 };
 
-/// Rounds the scene's times to whole updates, at least 1; those of pictures to whole frames where
-/// frames are written.
+/// Rounds the times of the scene to whole updates, at least 1. If frames are written, the times of
+/// pictures are rounded to whole frames.
 Schedule make_schedule(const Scene& scene);
 
-/// A sentence for each time of the scene that this has changed.
+/// A sentence for each time that make_schedule() changes by rounding.
 std::vector<std::string> rounded_times(const Scene& scene);
 
 }  // namespace pbf::inline program_module

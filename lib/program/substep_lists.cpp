@@ -8,10 +8,10 @@
 namespace pbf::inline program_module {
 namespace {
 
-/// n (u n dt)/h at most; energy rose in no run below 10 (kernels/README.md, "Substeps").
+/// Limit of n (u n dt)/h; below 10 no run gained energy (kernels/README.md, "Substeps").
 constexpr double kMotionOnOneList = 8;
 
-/// On one list where velocities come from a file: 8 on one list gained nothing at 0.9 h of way.
+/// Substeps on one list if velocities come from a file. 8 gained no energy with motions of 0.9 h.
 constexpr double kSubstepsOfUnknown = 8;
 
 }  // namespace
@@ -39,7 +39,7 @@ int lists_per_update(const Scene& s) {
   const double way = way_per_update(s);
   // With k lists: (substeps/k) (way/k) <= kMotionOnOneList.
   const double lists = std::ceil(std::sqrt(substeps * way / kMotionOnOneList));
-  // What a file's particles do is not known here.
+  // The velocities of particles from files are not known here.
   const bool unknown = std::any_of(s.bodies.begin(), s.bodies.end(),
                                    [](const Body& b) { return b.shape == Shape::file; });
   const double least = unknown ? std::ceil(substeps / kSubstepsOfUnknown) : 1.0;

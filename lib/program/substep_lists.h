@@ -1,22 +1,21 @@
-// How often an update with substeps makes neighbour lists.
+// How often an update with substeps makes neighbor lists.
 #pragma once
 
 #include "lib/scene/scene.h"
 
 namespace pbf::inline program_module {
 
-/// m/s: the fastest fall from one side of the domain to the other; through an open face, until the
-/// end of the run.
+/// m/s: largest speed after a fall through the domain; with open faces, after a fall until the end
+/// of the run in addition.
 double fall_speed(const Scene& scene);
 
-/// h: how far a particle goes in one update at most, by fall_speed() and the fastest body.
+/// h: largest displacement of a particle in one update, from fall_speed() and the fastest body.
 double way_per_update(const Scene& scene);
 
-/// Lists of one update, 1 ... substeps. Substeps that share lists miss the pairs that come within h
-/// of each other since. The next lists find them too near and part them within one substep, with a
-/// speed of (what they have approached)/(one substep). For a fluid of speed u and n substeps of dt
-/// on one list this is n u at most, and so has a bound only where n (u n dt)/h has one
-/// (kernels/README.md, "Substeps"). u dt: way_per_update()/substeps. With bodies of files, whose
+/// Number of lists per update, 1 ... substeps. Substeps that share lists miss pairs that come
+/// within h of each other after the lists were made, and can thus gain energy. The number keeps n
+/// (u n dt)/h below a limit, for n substeps of dt on one list and fluid of speed u, where u dt =
+/// way_per_update()/substeps (kernels/README.md, "Substeps"). With bodies from files, whose
 /// velocities are not known here, at most 8 substeps share lists.
 int lists_per_update(const Scene& scene);
 

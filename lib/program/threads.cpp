@@ -9,17 +9,16 @@
 namespace pbf::inline program_module {
 namespace {
 
-// Measured (lib/solver/README.md): on idle cores two threads pay from 2000 particles on; beside
-// another busy process they cost where an update is short. 1024 particles share one piece of the
-// lists' making, so more threads than pieces find no work there.
+// lib/solver/README.md has the measurements behind kOneThreadBelow. Lists are made in pieces of
+// 1024 particles, so more threads than pieces would be idle.
 constexpr std::int64_t kOneThreadBelow = 4096, kParticlesPerThread = 1024;
 
-// A waiting thread looks for work a little while (some 50 us, about what waking it would take),
-// then sleeps. By default GCC's OpenMP runtime looks a hundred times longer: on a machine whose
-// cores are shared the waiting threads then keep the cores from those with work. The runtime reads
-// its environment in a constructor of its own. It is linked statically (.cmake/dependencies.cmake),
-// so that this one, of the first priority a program may have, runs before; clang's runtime reads it
-// when the first loop begins. Whoever sets either variable has their way.
+// A waiting thread checks for work for about 50 us, the time that waking it would take, then
+// sleeps. By default, threads of GCC's OpenMP runtime check for longer and occupy cores that others
+// could use (lib/solver/README.md). The runtime reads its environment in a constructor. It is
+// linked statically (.cmake/dependencies.cmake), so that this constructor, which has the first
+// priority open to programs, runs earlier. clang's runtime reads the environment at the first loop.
+// Variables that the user has set are not changed.
 [[gnu::constructor(101)]] void wait_without_spinning() {
   if (std::getenv("OMP_WAIT_POLICY")) return;
   setenv("GOMP_SPINCOUNT", "1000", 0);

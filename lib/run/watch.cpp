@@ -173,11 +173,9 @@ void Watch::take(const std::string& change, int level_before) {
   note_(change + (finer > 0 ? prestabilize(finer) : std::string()));
 }
 
-/// A step of dt supports the fluid by a compression proportional to dt^2. After a change to a step
-/// 2^k times shorter, the same compression pushes with 4^k times the weight of the fluid and throws
-/// it up. So steps without time first reduce the compression by 4^k (Macklin et al. 2014, Unified
-/// particle physics for real-time applications, ACM TOG 33(4), treat initial contacts in this way),
-/// and the energy gained by lifting the fluid is taken from its kinetic energy.
+/// Reduces the compression by 4^levels before shorter steps begin, which would turn it into energy
+/// (lib/solver/DIAGNOSTICS.md, "Compression at rest"): first steps without time, then a damping of
+/// the velocities that takes away the energy by which these steps lifted the fluid.
 std::string Watch::prestabilize(int levels) {
   constexpr int kMost = 64, kAtOnce = 4;
   constexpr double kHarmless = 1e-3;

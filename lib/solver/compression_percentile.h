@@ -7,8 +7,8 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// The compression that at least `count` of n particles do not exceed: the upper end of its bin, at
-/// most 1/32 too large, and no more than the maximum.
+/// A compression that at least `count` of n particles do not exceed: the upper end of a bin of the
+/// histogram, thus at most 1/32 too large, and at most the maximum.
 inline double compression_percentile(const std::vector<std::int64_t>& in_bin, std::int64_t count,
                                      std::int64_t n, double max) {
   std::int64_t above = 0;

@@ -30,7 +30,7 @@ RestPool rest_pool(const Scene& scene, const Plan& plan) {
   if (along != 1 || !scene.obstacles.empty() || scene.tank_motion) return pool;
   const bool points_up = s.gravity[std::size_t(axis)] > 0;
   for (int k = 0; k < 3; ++k) {
-    const bool wall = k != 1 || s.dimensions == 3;  // the slab's faces hold the fluid by themselves
+    const bool wall = k != 1 || s.dimensions == 3;  // a slab needs no walls at its two faces
     const unsigned low = 1u << (2 * k), needed = k == axis ? (points_up ? 2 * low : low) : 3 * low;
     if (wall && (walls & needed) != needed) return pool;
     if (k != axis) area *= extent[k];
@@ -43,7 +43,7 @@ RestPool rest_pool(const Scene& scene, const Plan& plan) {
   return pool;
 }
 
-/// Volume kept and distance to the hydrostatic profile; lib/solver/DIAGNOSTICS.md has the formulas.
+/// Height kept and distance to the hydrostatic profile (formulas: lib/solver/DIAGNOSTICS.md).
 void measure_pool(const MeasureSums& s, const RestPool& pool, double counted, Diagnostics& m) {
   m.height_kept = m.hydrostatic_deviation = std::numeric_limits<double>::quiet_NaN();
   if (pool.axis < 0 || counted == 0) return;
@@ -77,14 +77,14 @@ Diagnostics to_diagnostics(const MeasureSums& s, const MeasureConstants& given, 
   m.compression_max = s.compression_max;
   m.share_above_1 = double(s.above_1) / n;
   m.share_above_10 = double(s.above_10) / n;
-  // A solid that fills the box has no face left in it.
+  // If a solid fills the box, its surface may be arbitrarily far away: at most the diagonal.
   const Double3 box = scene.domain.max - scene.domain.min;
   m.penetration = std::min(h * s.penetration, std::hypot(box[0], box[1], box[2]));
   m.kinetic_energy = 0.5 * mass * h * h * s.speed_squared;
   for (int k = 0; k < 3; ++k) {
     const auto axis = std::size_t(plan.axes.of[k]);
     m.potential_energy -= mass * scene.gravity[axis] * h * s.x[k];
-    // The lowest corner of the box: where gravity would carry a particle.
+    // The reference of the energy is the lowest corner of the box, into which gravity points.
     const double extent = scene.domain.max[axis] - scene.domain.min[axis];
     m.energy += mass * std::max(scene.gravity[axis], 0.0) * extent * counted;
     m.momentum[axis] = mass * h * s.v[k];
@@ -166,7 +166,7 @@ const std::vector<Diagnostic>& diagnostics() {
 std::string diagnostics_help() {
   std::string text;
   for (const Diagnostic& d : diagnostics()) {
-    if (*d.help == '\0') continue;  // a further component
+    if (*d.help == '\0') continue;  // second and third component of a vector
     std::string name = d.name;
     if (name.ends_with("_x")) name += ", _y, _z";
     text += format("  %-24s %s [%s]\n", name.c_str(), d.help, d.unit);

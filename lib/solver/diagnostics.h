@@ -15,8 +15,8 @@
 
 namespace pbf::inline solver_module {
 
-/// SI units. Compression of a particle: c = max(rho/rho0 - 1, 0), walls' contribution included.
-/// NaN: the scene does not define the measure.
+/// SI units. Compression of a particle: c = max(rho/rho0 - 1, 0); rho includes the walls'
+/// contribution. NaN: not defined in this scene.
 struct Diagnostics {
   double time = 0;  ///< s
   std::int64_t update = 0;
@@ -24,58 +24,58 @@ struct Diagnostics {
   double compression_rms = 0;            ///< 1
   double compression_p99 = 0;            ///< 1, 99 % of the particles are at or below it
   double compression_max = 0;            ///< 1
-  double share_above_1 = 0;              ///< 1, of the particles compressed by more than 1 %
+  double share_above_1 = 0;              ///< 1, particles compressed by more than 1 %
   double share_above_10 = 0;             ///< 1, by more than 10 %
-  double height_kept = 0;                ///< 1, twice the height of the centre over the rest depth
-  double hydrostatic_deviation = 0;      ///< 1, of the weight above eight levels, RMS
+  double height_kept = 0;                ///< 1, twice the height of the center over the rest depth
+  double hydrostatic_deviation = 0;      ///< 1, RMS error of the weight above eight levels
   double kinetic_energy = 0;             ///< J
   double potential_energy = 0;           ///< J, -m g.x relative to the domain's lower corner
   double energy = 0;                     ///< J, kinetic and potential above the box's lowest corner
   double energy_drift = 0;               ///< 1, (E - W - E0)/E0, W the work; EnergyTrack
-  double energy_rise = 0;                ///< 1, largest rise over any earlier E - W, over E0
+  double energy_rise = 0;                ///< 1, largest rise of E - W above an earlier value, / E0
   double momentum[3] = {0, 0, 0};        ///< kg m/s
   double center_of_mass[3] = {0, 0, 0};  ///< m
   double speed_max = 0;                  ///< m/s
   double front[3] = {0, 0, 0};           ///< m, largest coordinate along each axis
-  double penetration = 0;                ///< m, farthest that a particle is behind its clamp
+  double penetration = 0;                ///< m, largest distance of a particle behind its clamp
   double neighbors_mean = 0;             ///< without the particle itself
   std::int64_t neighbors_max = 0;
   std::int64_t outside = 0;     ///< particles beyond a wall
   std::int64_t non_finite = 0;  ///< particles with a non-finite position or velocity
-  /// Particles times updates, since the start, above solver.speed_limit (which were slowed down to
-  /// it), or without one above guard.speed.
+  /// Number of times since the start that a particle was above solver.speed_limit in an update and
+  /// was slowed down; without this key, above guard.speed.
   std::int64_t fast = 0;
-  std::int64_t iterations_done = 0;  ///< over the constraints since the start
-  /// Particles times steps, since the start, that moved by more than kResolvedWay relative to a
-  /// neighbour (kernels/relative_motion.h): there fluid may pass through fluid.
+  std::int64_t iterations_done = 0;  ///< solver iterations since the start
+  /// Number of times since the start that a particle moved by more than kResolvedWay relative to a
+  /// neighbor in a step (kernels/relative_motion.h), so that fluid may pass through fluid.
   std::int64_t unresolved = 0;
-  double relative_way_max = 0;  ///< h, the longest such way in a step; 0: there was none
-  bool moved = false;           ///< something moves by itself
-  double power = 0;             ///< W, of what the motion of the tank adds to gravity
-  double solid_work = 0;        ///< J, of moving obstacles since their loads were taken last
-  double work = 0;              ///< J, of both since the start; WorkTrack
-  /// Since the row before; filled by who writes rows.
+  double relative_way_max = 0;  ///< h, the longest such displacement in a step; 0: none
+  bool moved = false;           ///< obstacles or the tank have a prescribed motion
+  double power = 0;             ///< W, of the inertial forces by the tank's motion
+  double solid_work = 0;        ///< J, of moving obstacles in the current interval of loads
+  double work = 0;              ///< J, of obstacles and tank since the start; WorkTrack
+  /// Means since the previous row. The writer of rows fills them in.
   std::vector<WallLoad> loads{};
 };
 
-/// What an EnergyTrack knows: enough to go on from a checkpoint. J, rise 1.
+/// The state of an EnergyTrack and a WorkTrack, as a checkpoint stores it. J; rise: 1.
 struct EnergyHistory {
   bool started = false;
   double first = 0, lowest = 0, largest = 0, rise = 0;
-  double work = 0, power = 0, time = 0;  ///< of the last measure: WorkTrack; s
+  double work = 0, power = 0, time = 0;  ///< at the last measurement: WorkTrack; s
 };
 
-/// Follows the work of prescribed motions: that of obstacles, which each update books, and that of
-/// the tank, whose power is measured, straight between two measures.
+/// Follows the work of prescribed motions. Updates book the work of obstacles; the power of the
+/// tank's motion is measured and assumed linear between two measurements.
 class WorkTrack {
  public:
   explicit WorkTrack(const EnergyHistory& before = {})
       : work_(before.work), power_(before.power), time_(before.time) {}
-  /// J, at a measure since the last one that was taken.
+  /// J, the work up to measurement m.
   double until(const Diagnostics& m) const {
     return work_ + m.solid_work + 0.5 * (power_ + m.power) * (m.time - time_);
   }
-  /// A measure with which the interval of the loads ends.
+  /// To be called with each measurement at which the interval of the loads ends.
   void take(const Diagnostics& m) {
     work_ = until(m);
     power_ = m.power;
@@ -86,17 +86,17 @@ class WorkTrack {
   double work_, power_, time_;
 };
 
-/// Follows the energy of one simulation from its first measure on, less the work of what moves by
-/// itself: so whatever rises was made by the method. A start without energy (E0 at most 1e-12 of
-/// the largest so far) is no scale; the largest so far is one then, and a rise of 1 says that all
-/// of it was made by the method. Never infinite.
+/// Follows E - W from the first measurement on: the energy without the work of prescribed motions,
+/// so only the numerical method can make it rise. If the start has no energy (E0 at most 1e-12 of
+/// the largest E so far), drift and rise are relative to the largest E so far. A rise of 1 then
+/// means that the method created all of it. The results are always finite.
 class EnergyTrack {
  public:
   explicit EnergyTrack(const EnergyHistory& before = {}) : h_(before) {
     h_.largest = std::max({h_.largest, h_.first, h_.lowest});
-    if (!std::isfinite(h_.rise)) h_.rise = 1;  // of a checkpoint from before this rule
+    if (!std::isfinite(h_.rise)) h_.rise = 1;  // older checkpoints may contain infinity
   }
-  /// Fills m.energy_drift and m.energy_rise. To be called with every measure, in order.
+  /// Fills m.energy_drift and m.energy_rise. To be called with every measurement, in order.
   void follow(Diagnostics& m) {
     const double own = m.energy - m.work;
     if (!h_.started) h_.first = h_.lowest = h_.largest = own;
@@ -121,22 +121,22 @@ class EnergyTrack {
 
 MeasureConstants measure_constants(const Scene& scene, const Plan& plan);
 
-/// Sums in the internal frame, after so many updates and steps -> Diagnostics in SI units and the
-/// scene's axes (lib/solver/DIAGNOSTICS.md).
+/// Converts sums in the internal frame to diagnostics in SI units along the scene's axes
+/// (DIAGNOSTICS.md). update, steps: done so far.
 Diagnostics to_diagnostics(const MeasureSums& sums, const MeasureConstants& given,
                            const Scene& scene, const Plan& plan, std::int64_t update,
                            std::int64_t steps);
 
-/// How a study sums a measure up over its window.
+/// How a study combines the measurements of its window into one value.
 enum class Over { none, mean, rms, max, last };
 
 struct Diagnostic {
   const char* name;  ///< of the column; the components of a vector end in _x, _y, _z
-  const char* unit;  ///< "1": none
+  const char* unit;  ///< "1": dimensionless
   const char* help;  ///< a phrase; empty for the further components of a vector
   Over over;         ///< none: not in a study's table
   bool summary;      ///< a column of a batch's summary.csv
-  double (*number)(const Diagnostics&);  ///< null for a whole number
+  double (*number)(const Diagnostics&);  ///< null for an integer
   std::int64_t (*integer)(const Diagnostics&) = nullptr;
 
   double value(const Diagnostics& m) const { return number ? number(m) : double(integer(m)); }

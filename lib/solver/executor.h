@@ -1,6 +1,6 @@
-// What a backend supplies to the step. A step is a list of passes (lib/program). An executor
-// defines how a pass is launched, particles are sorted, lists made, sums reduced, updates repeated
-// and results copied. It contains no physics.
+// The interface of a backend to the step. A step is a list of passes (lib/program). An executor
+// launches passes, sorts particles, makes lists, reduces sums, repeats updates and copies results.
+// It contains no physics.
 #pragma once
 
 #include <concepts>
@@ -16,13 +16,13 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Rows of a download on the host, and how many bytes they take.
+/// Host memory for the rows of a download, and its size.
 struct CopyTarget {
   void* host;
   std::size_t bytes;
 };
 
-/// Stand-ins for what an executor is called with.
+/// Minimal arguments, with which the concept calls an executor.
 namespace archetype {
 struct Item {
   PBF_HD void operator()(int) const {}
@@ -100,13 +100,13 @@ template <class E>
 concept Executor = requires(E e, const E c, int* ints, unsigned long long* count, Params<float> p,
                             const Vec4<float>* rows, std::vector<CopyTarget> targets,
                             archetype::Updates updates, SolverInfo info) {
-  typename E::Lists;                 // the neighbour policy of the pair passes
-  typename E::template Buffer<int>;  // memory that passes reach: resize, data, size, bytes
-  { E::padding } -> std::convertible_to<std::size_t>;  // rows behind the last that passes may read
-  { E::order_in_place } -> std::convertible_to<bool>;  // a sort's order may stand in the next ids
-  { E::lists_overflow } -> std::convertible_to<bool>;  // lists may outgrow their room in an update
-  // Stage times: from begin() on, mark() books to a stage. `seconds`: of all steps, where only some
-  // are timed.
+  typename E::Lists;                 // neighbor lists, as pair passes use them
+  typename E::template Buffer<int>;  // memory that passes can access: resize, data, size, bytes
+  { E::padding } -> std::convertible_to<std::size_t>;  // rows after the last that passes may read
+  { E::order_in_place } -> std::convertible_to<bool>;  // a sort may store its order in the new ids
+  { E::lists_overflow } -> std::convertible_to<bool>;  // lists may overflow during an update
+  // Stage times: after begin(), mark() books the time to a stage. stages(seconds): `seconds` is the
+  // time of all steps, for executors that time only some of them.
   e.begin();
   e.mark("stage");
   e.forget_stages();
@@ -114,30 +114,30 @@ concept Executor = requires(E e, const E c, int* ints, unsigned long long* count
   // Copies between the host and the executor's memory.
   e.to_device(ints, std::size_t(1), ints);
   e.to_host(ints, std::size_t(1), ints);
-  // A download: write(pointers) fills memory of the executor for each target; it is on the host
-  // after finish_copy().
+  // A download: write(pointers) fills memory of the executor for each target. finish_copy() waits
+  // until the data is on the host.
   e.template start_copy<float>(targets, archetype::Write{});
   e.finish_copy(targets);
-  // A launch for each shape of passes, for so many items or particles.
+  // A launch for each shape of passes; the integers are numbers of items or particles.
   e.items(1, archetype::Item{});
   e.pairs(1, archetype::Pair{});
   e.shared(1, archetype::Shared{});
   e.teams(archetype::Team{});
   e.bricks(archetype::Brick{});
-  e.listed(ints, 1, archetype::Item{});  // for as many as *ints says, at most 1
+  e.listed(ints, 1, archetype::Item{});  // for *ints items, at most 1
   { e.reduce(1, archetype::Reduce{}) } -> std::same_as<MeasureSums>;
   { e.count_in_bins(1, 1, archetype::Bin{}) } -> std::convertible_to<std::vector<std::int64_t>>;
-  // body() while the sum of a pass is above a limit.
+  // Repeats body() while the sum of a pass is above a limit.
   e.repeat_while("stage", 1, 1, archetype::Residual{}, std::uint64_t(0), count, archetype::Body{});
-  // Order by bin, then id; lists of the pairs closer than h.
+  // Sorts by bin, then id; makes lists of the pairs closer than h.
   e.sort_by_bin("stage", archetype::Sorted{ints}, NothingListed{}, 1, 1, ints, ints, ints,
                 archetype::Gather{});
   { e.build_lists(1, 1, rows, ints, p) } -> std::same_as<typename E::Lists>;
-  // Repeats updates, recorded ones where it can; forget_recorded() when their parameters changed.
+  // Repeats updates, from a recording if possible; forget_recorded() after parameters have changed.
   e.repeat(1, updates);
   e.forget_recorded();
   { e.largest_batch(1) } -> std::convertible_to<int>;
-  // Gives lists that did not fit more room; false where all did.
+  // Enlarges the memory of lists if some did not fit; false if all did.
   { e.grow_lists(1) } -> std::same_as<bool>;
   { c.bytes() } -> std::convertible_to<std::size_t>;
   c.describe(info);  // device, driver, threads, launches

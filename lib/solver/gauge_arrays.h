@@ -7,7 +7,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Sums of one reading. Flows and loads of those gauges, in the order of the scene.
+/// Sums of one reading, in the order of the scene's gauges.
 struct GaugeSums {
   std::vector<ProbeSums> places;
   std::vector<FlowCount> flows;
@@ -19,9 +19,9 @@ struct GaugeArrays {
   template <class T>
   using Buffer = typename Exec::template Buffer<T>;
   Buffer<Probe> probe;
-  Buffer<ProbeSums> sums;  ///< of all places
+  Buffer<ProbeSums> sums;  ///< of all sample points
   Buffer<FlowGate> gate;
-  Buffer<FlowCount> flow;  ///< state
+  Buffer<FlowCount> flow;  ///< part of the state
   Buffer<Patch> patch;
 
   void make(Exec& exec, const GaugePlan& plan) {
@@ -36,7 +36,7 @@ struct GaugeArrays {
     fill(patch, plan.patches);
   }
 
-  /// Sums over the particles around the places of all probes.
+  /// Sums over the particles around the sample points of all probes.
   template <class C>
   std::vector<ProbeSums> at_places(C& c, double update_dt) {
     std::vector<ProbeSums> all(sums.size());

@@ -34,9 +34,9 @@ std::string place_of(const Gauge& g, const Scene& s) {
   return out;
 }
 
-/// The part of a piece where `a` + (`b` - `a`) t > 0 and that no obstacle has, as a share of it.
-/// Of fluid that fills half of the room for it a place counts as wet: at a surface, also beside
-/// walls.
+/// The fraction of a piece that is wet and outside of obstacles. `a`, `b`: at its two ends, fluid
+/// fraction minus half of the free space; linear between them, wet where positive. So the surface
+/// is where fluid fills half of the free space, also beside walls.
 double wet_part(double a, double b, const LevelPiece& free) {
   double from = 0, to = 1;
   if (!(a > 0) && !(b > 0)) return 0;

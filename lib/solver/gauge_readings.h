@@ -9,7 +9,7 @@
 
 namespace pbf::inline solver_module {
 
-/// A gauge's data: one number or a vector per reading, and for some another number.
+/// The data of a gauge: one number or vector per reading; some kinds have a further number.
 struct GaugeData {
   std::string name, kind, place;  ///< "P1", "pressure", "container at (0.82, 0.47, 0.02) m, ..."
   const char* unit = "m";
@@ -29,10 +29,10 @@ struct GaugeSumsOf {
   const std::vector<Load>& patches;
 };
 
-/// The numbers of all gauges, one behind the other: GaugeData::numbers() of each. Level: m.
-/// Velocity: m/s along the scene's axes, nan where no particle is within h. Flow: kg/s, the mean
-/// since the last reading, and kg since the start. Pressure: Pa, the mean since the last reading
-/// and the largest mean of an update. Means without time are 0.
+/// The concatenated numbers of all gauges, GaugeData::numbers() of each. Level: m. Velocity: m/s
+/// along the scene's axes, NaN if no particle is within h. Flow: kg/s, mean since the last reading,
+/// and kg since the start. Pressure: Pa, mean since the last reading and largest mean of an update.
+/// A mean over an interval of length 0 is 0.
 std::vector<double> gauge_readings(const GaugeSumsOf& sums, const Scene& scene, const Plan& plan);
 
 }  // namespace pbf::inline solver_module

@@ -1,5 +1,5 @@
-// What launch() of a pass gets: the arrays that the pass declares, as it declares them, and ways to
-// launch kernels over them.
+// The argument of a pass's launch(): the arrays that the pass declares, with the declared access,
+// and functions that launch kernels.
 #pragma once
 
 #include "kernels/rows.h"
@@ -8,7 +8,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// A row of a field.
+/// The type of a row of a field.
 template <class Real>
 Vec4<Real> row_of(const Vectors&);
 template <class Real>
@@ -44,7 +44,7 @@ class Granted {
   const Params<Real>& p;
   const Scene& scene;  ///< along the internal axes, with the present step, SI units
 
-  /// Null where the scene of an If<> has no such array.
+  /// The array of a field. Null if the field is declared in an If<> that is false for the scene.
   template <class Field>
   requires DeclaredBy<Field, P>
   auto operator[](const Field& f) const {
@@ -99,7 +99,7 @@ class Granted {
     c_.with_smoothing(f);
   }
   int rows() const { return c_.rows(); }
-  /// Has no fields yet: solids, what moves, gauges, counts.
+  /// For parts of the step that are no fields: solids, motion, gauges, counts.
   C& context() const { return c_; }
 
  private:
@@ -110,7 +110,7 @@ template <class P, class C>
 void launch_one(C& c) {
   if constexpr (requires { typename P::Flips; }) P::Flips::flip(c);
   const auto launch = [&] { P::launch(Granted<C, P>(c)); };
-  // Only an executor of tests looks at what a pass touches.
+  // Only the executor of a test watches the memory that a pass accesses.
   if constexpr (requires { c.exec.watched(P::text.name, c.arrays(), launch); })
     c.exec.watched(P::text.name, c.arrays(), launch);
   else

@@ -14,7 +14,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Steps that a table holds, unless one update has more of them.
+/// Number of steps in a table, or the number of steps of an update if that is larger.
 constexpr int kMotionRows = 256;
 
 template <class Real>
@@ -23,9 +23,9 @@ struct MotionRows {
   std::vector<SolidStep<Real>> steps;
 };
 
-/// Of the points of a solid that goes from a to b in dt.
+/// The velocity of a solid that moves from a to b in dt.
 inline SolidVelocity velocity_between(const Solid<double>& a, const Solid<double>& b, double dt) {
-  // The turn takes directions of the body from a to b; its axial part is sin(angle) times the axis.
+  // `turn` rotates the body's axes from a to b; its axial vector is sin(angle) times the axis.
   double turn[3][3];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
@@ -43,7 +43,7 @@ inline SolidVelocity velocity_between(const Solid<double>& a, const Solid<double
   return {true, {go.x, go.y, go.z}, {spin.x, spin.y, spin.z}, {middle.x, middle.y, middle.z}};
 }
 
-/// h: how far from its centre a body reaches where it is in the domain.
+/// h: largest distance of a point of the body from its center, at most twice the domain's diagonal.
 template <class Real>
 double radius_of(const Solid<double>& o, const Box<Real>& walls) {
   const double all =
@@ -53,14 +53,14 @@ double radius_of(const Solid<double>& o, const Box<Real>& walls) {
   };
   return o.shape.with(endless) ? 2 * all : std::min(2 * all, size_of(o));
 }
-/// 2 sin of half the angle by which a body turns from a to b.
+/// 2 sin(angle/2), for the angle by which a body turns from a to b.
 inline double chord(const Solid<double>& a, const Solid<double>& b) {
   double squares = 0;
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k) squares += std::pow(b.turn[i][k] - a.turn[i][k], 2);
   return std::sqrt(squares / 2);
 }
-/// h: how far a place of the body goes at most.
+/// h: upper bound of the displacement of a point of the body.
 template <class Real>
 double way_between(const Solid<double>& a, const Solid<double>& b, const Box<Real>& walls) {
   const Vec3<double> d = b.center - a.center;
@@ -73,7 +73,7 @@ Bounds<Real> wider(const Bounds<Real>& b, double by) {
   const Vec3<Real> v{more, more, more};
   return {b.low - v, b.high + v};
 }
-/// Where a solid stands that goes on to `next`: what may meet it on that way is near, too.
+/// A solid before its step to `next`. Reach and bounds include its path: what it may meet is near.
 template <class Real>
 PlacedSolid<Real> placed_before(const Solid<double>& now, const Solid<double>& next,
                                 const Box<Real>& walls) {
@@ -83,7 +83,7 @@ PlacedSolid<Real> placed_before(const Solid<double>& now, const Solid<double>& n
   out.bounds = wider(out.bounds, way);
   return out;
 }
-/// All solids at a time, s since the start, before a step.
+/// All solids before a step that begins at `time` (s since the start).
 template <class Real>
 std::vector<PlacedSolid<Real>> placed_at(const Scene& scene, const Plan& plan,
                                          const Box<Real>& walls, double time) {
@@ -95,7 +95,7 @@ std::vector<PlacedSolid<Real>> placed_at(const Scene& scene, const Plan& plan,
   return all;
 }
 
-/// The steps `first` to first + count - 1 since the start, of dt each. An update has so many steps.
+/// The rows of `count` steps of length dt from step `first` on (counted from the start).
 template <class Real>
 MotionRows<Real> motion_rows(const Scene& scene, const Plan& plan, const Box<Real>& walls,
                              std::int64_t first, int count, int steps_per_update, double dt) {
@@ -127,7 +127,7 @@ MotionRows<Real> motion_rows(const Scene& scene, const Plan& plan, const Box<Rea
       step.now = placed_before(to[s], next[s], walls);
       const PlacedSolid<Real> was = placed(from[s], walls);
       step.before = was.solid;
-      // On the way places leave the straight line by less than 1 - cos of half the angle.
+      // Points of a turning body leave their chord by less than radius (1 - cos(angle/2)).
       const double turn = chord(from[s], to[s]), bulge = turn * turn / 4;
       step.now.bounds =
           wider(around_both(step.now.bounds, was.bounds), bulge * radius_of(from[s], walls));
@@ -138,12 +138,12 @@ MotionRows<Real> motion_rows(const Scene& scene, const Plan& plan, const Box<Rea
   return rows;
 }
 
-/// What solids come near in the whole run.
+/// The space that solids come near to during the run.
 template <class Real>
 struct RunBounds {
   Bounds<Real> all;
-  std::vector<Bounds<Real>> moving;     ///< of each that moves
-  std::vector<Solid<double>> standing;  ///< the others
+  std::vector<Bounds<Real>> moving;     ///< of each moving solid
+  std::vector<Solid<double>> standing;  ///< solids at rest
 };
 
 template <class Real>
@@ -155,7 +155,7 @@ RunBounds<Real> bounds_of_run(const Scene& scene, const Plan& plan, const Box<Re
     scene.obstacles[k].motion ? moving.push_back(k) : run.standing.push_back(plan.solids[k]);
   if (!moving.empty()) {
     constexpr int samples = 512;
-    // Between two samples, and in the step behind the last one, nothing goes farther than this.
+    // Upper bound of a displacement between two samples and in the step after the last one.
     const double fastest = fastest_obstacle(scene, 0, scene.time.end) / scene.h();
     const double way = 1.1 * fastest * (scene.time.end / samples + scene.time.step);
     for (int t = 1; t <= samples; ++t) {
@@ -190,14 +190,14 @@ class MovingParts {
     const std::vector<SolidVelocity> at_rest(scene.obstacles.size());
     exec.to_device(at_rest.data(), at_rest.size(), velocity_.data());
   }
-  /// The table of the steps to come.
+  /// Uploads the table for the next steps.
   void set(Exec& exec, const MotionRows<Real>& rows) {
     const int first = 0;
     exec.to_device(&first, 1, row_.data());
     exec.to_device(rows.frames.data(), rows.frames.size(), frames_.data());
     exec.to_device(rows.steps.data(), rows.steps.size(), steps_.data());
   }
-  /// All solids stand where they are.
+  /// Sets the positions at the beginning of the next step to those of `placed`.
   void stand(Exec& exec, const std::vector<PlacedSolid<Real>>& placed) {
     if (moving_ == 0) return;
     std::vector<Solid<Real>> solids;
@@ -210,7 +210,7 @@ class MovingParts {
             frame_.data(),  placed,
             before_.data(), velocity_.data()};
   }
-  // Null where there is none.
+  // Null if the scene has none.
   const FrameStep<Real>* frame() { return frame_.bytes() ? frame_.data() : nullptr; }
   const Solid<Real>* before() { return moving_ ? before_.data() : nullptr; }
   const SolidVelocity* velocity() { return moving_ ? velocity_.data() : nullptr; }

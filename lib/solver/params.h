@@ -1,4 +1,4 @@
-// Scene (SI units, its own axes) -> Params (internal frame).
+// Converts a scene (SI units, its own axes) to Params (internal frame).
 #pragma once
 
 #include <algorithm>
@@ -24,13 +24,13 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   p.gravity = {Real(s.gravity[0] / h), Real(s.gravity[1] / h), Real(s.gravity[2] / h)};
   p.damping = Real(plan.substeps == 1 ? s.solver.velocity_damping
                                       : std::pow(s.solver.velocity_damping, 1.0 / plan.substeps));
-  // The guard's limit depends on the first measure, so it comes later (StepOptions).
+  // The guard's limit depends on the first measurement and is set later (StepOptions).
   if (s.solver.speed_limit > 0) {
     p.limit_speed = true;
     const double limit = s.solver.speed_limit / s.time.step;
     p.speed_squared = Real(limit * limit);
   }
-  if (s.solver.iterations > 0) {  // of two that part by kResolvedWay one goes half of it
+  if (s.solver.iterations > 0) {  // one of two particles does at least half of their relative move
     const double speed = kResolvedWay / 2 / dt;
     p.passing_squared = Real(std::min(speed * speed, 1e30));
   }
@@ -68,9 +68,9 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   return p;
 }
 
-/// A step without time: velocities take the factor `damping`, and the iterations part what is too
-/// near without changing them. One-sided: what pulls a free surface in is no overlap, and without
-/// the artificial pressure that goes with it the particles would draw together in clusters.
+/// A step without time: velocities are multiplied by `damping`, and iterations separate particles
+/// without changing velocities. The constraint is one-sided: low density at a free surface is no
+/// overlap, and attraction without artificial pressure would form clusters.
 template <class Real>
 Params<Real> without_time(Params<Real> p, double damping) {
   p.dt = p.inv_dt = 0;

@@ -1,4 +1,4 @@
-// Obstacles with bounding boxes, which tell a pass the particles that they cannot affect.
+// Obstacles with bounding boxes. Passes use the boxes to skip particles that are far away.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// With the box, h, beyond which it is not near: farther than it is met or felt.
+/// With a bounding box in h. Particles outside of it neither touch the solid nor feel its density.
 template <class Real>
 PlacedSolid<Real> placed(const Solid<double>& s, const Box<Real>& walls) {
   PlacedSolid<Real> out;
@@ -41,7 +41,7 @@ std::vector<PlacedSolid<Real>> placed_solids(const std::vector<Solid<double>>& s
   return all;
 }
 
-/// What is far from all walls.
+/// The region that is far from all walls.
 template <class Real>
 Bounds<Real> clear_of(const Box<Real>& walls) {
   const Real reach = Real(1) / walls.inv_range + walls.margin + Real(kNearRoom), open(1e30);
@@ -58,7 +58,7 @@ Bounds<Real> around_both(const Bounds<Real>& a, const Bounds<Real>& b) {
   return {{min2(a.low.x, b.low.x), min2(a.low.y, b.low.y), min2(a.low.z, b.low.z)},
           {max2(a.high.x, b.high.x), max2(a.high.y, b.high.y), max2(a.high.z, b.high.z)}};
 }
-/// Around all of them.
+/// The bounding box of all solids.
 template <class Real>
 Bounds<Real> bounds_of(const std::vector<PlacedSolid<Real>>& all) {
   Bounds<Real> out;
@@ -67,9 +67,9 @@ Bounds<Real> bounds_of(const std::vector<PlacedSolid<Real>>& all) {
   return out;
 }
 
-/// The half cells of the grid that something near solids can be in, in the order of their bins.
-/// swept: what others come near in the run.
-/// None where particles outside of the grid have cells in it, too: open faces.
+/// The half cells of the grid in which particles can be near solids, in the order of their bins.
+/// solids: those at rest; swept: bounds of the moving ones in the run. Empty (no restriction) with
+/// open faces, because particles outside of the grid then share cells with those inside.
 template <class Real>
 std::vector<int> half_cells_near_solids(const Scene& scene,
                                         const std::vector<Solid<double>>& solids,
@@ -80,7 +80,7 @@ std::vector<int> half_cells_near_solids(const Scene& scene,
   if (!scene.domain.open.empty()) return cells;
   const bool flat = p.dimensions == 2;
   const double edge = 1 / double(p.inv_cell), rounding = 1e-3;
-  // From the middle of a half cell to its corners.
+  // Half the edges of a half cell.
   const double half[3] = {edge / 4, flat ? 0 : edge / 2, edge / 2};
   const double reach = 1 / double(p.boundary.inv_range) + kNearRoom + rounding +
                        std::hypot(half[0], half[1], half[2]);

@@ -24,37 +24,37 @@ struct Plan;
 
 namespace pbf::inline solver_module {
 
-/// What ran where; goes into the run file.
+/// Properties of a solver and its machine, as stored in the run file.
 struct SolverInfo {
   std::string backend;    ///< cpu, cuda
   std::string precision;  ///< float, double
   std::string device;     ///< CPU model or GPU name
-  std::string driver;     ///< of the GPU; on the CPU the vector instructions (lib/exec/cpu/simd.h)
+  std::string driver;     ///< GPU driver; on the CPU the vector instructions (lib/exec/cpu/simd.h)
   int threads = 0;
   double vol = 0;         ///< m/(rho0 h^3) with the calibrated mass: the weight of one particle
   double wall_scale = 0;  ///< factor on the walls' density, from the calibration
-  std::size_t bytes = 0;  ///< of the arrays held now (device memory on cuda)
+  std::size_t bytes = 0;  ///< of the present arrays (device memory on cuda)
   double launches = 0;    ///< cuda: kernels and fills of one step; 0 before one was recorded
-  std::vector<StageTime> stages{};  ///< since it was made
+  std::vector<StageTime> stages{};  ///< since the solver was created
 };
 
-/// How the updates of one call are made.
+/// Options for the updates of one call.
 struct StepOptions {
   int level = 0;  ///< an update is 2^level steps (lib/run/step_control.h)
-  /// m/s: particles faster than this are counted in Diagnostics::fast. Without effect where the
-  /// scene has a solver.speed_limit: then those above it are counted.
+  /// m/s: particles faster than this are counted in Diagnostics::fast. Ignored if the scene has a
+  /// solver.speed_limit: then particles above that limit are counted.
   double watched_speed = std::numeric_limits<double>::infinity();
-  /// Steps without time instead of updates: new lists and iterations, which part what is too near
-  /// and draw nothing together (one-sided, whatever the scene's constraint), while velocities
-  /// change by this factor per step alone. No update is counted, and the level does not matter.
+  /// Steps without time instead of updates. Such a step makes new lists and does the iterations
+  /// with a one-sided constraint, which only separate particles. Velocities are multiplied by this
+  /// factor and do not change otherwise. No update is counted; `level` is ignored.
   std::optional<double> without_time{};
   bool operator==(const StepOptions&) const = default;
 };
 
-/// Which state is asked for: the present one, its positions alone, or the copy that keep() made.
+/// The state to return: the present one, only its positions, or the copy that keep() made.
 enum class Which { now, positions, kept };
 
-/// Whether the interval of loads that is looked at goes on, or ends and a new one begins.
+/// Whether the interval over which loads are averaged continues or ends with this reading.
 enum class Interval { goes_on, ends };
 
 class Inspection;
@@ -65,48 +65,48 @@ class Solver {
   virtual ~Solver() = default;
   /// Advances by `updates` times time.step.
   virtual void step(int updates, const StepOptions& options = {}) = 0;
-  /// Copies the fields asked for (velocity, density; position and id always) to the host, in id
-  /// order, SI units, positions and floating-point fields as f32 or f64 as `type` says. Updates may
-  /// run while the copy is under way: get() waits for it, not for them. At most one at a time.
+  /// Copies position, id and the given fields (velocity, density) to the host: in the order of ids,
+  /// in SI units, floating-point fields as `type`. Updates may run during the copy: get() waits
+  /// only for the copy. At most one download at a time.
   virtual std::future<Snapshot> download(const std::vector<std::string>& fields,
                                          ScalarType type) = 0;
   virtual Diagnostics measure() = 0;
-  /// Of the walls whose loads are summed, means since the start or since they were taken last.
+  /// Loads of the walls that sum them: means since the start or the last call with Interval::ends.
   virtual std::vector<WallLoad> loads(Interval interval) = 0;
-  /// What the gauges read: gauge_readings() (lib/solver/gauge_readings.h). Means since the start or
-  /// since they were read last with Interval::ends.
+  /// Readings of the gauges, see gauge_readings() (lib/solver/gauge_readings.h). Means since the
+  /// start or the last call with Interval::ends.
   virtual std::vector<double> gauges(Interval interval) = 0;
-  /// set_state() of the state, in this or in another solver of the same scene and precision,
-  /// continues to the last bit. Positions and velocities of a double are rounded where they go into
-  /// a solver of float. Error(internal) when the number of particles differs or the ids are not
-  /// 0..n-1 in some order; and for the kept state where nothing was kept.
+  /// After set_state(), this or another solver of the same scene and precision continues with the
+  /// same bits. A solver of float rounds the state of a solver of double. Throws Error(internal) if
+  /// the number of particles differs, if the ids are not a permutation of 0..n-1, or for
+  /// Which::kept without keep().
   virtual SolverState state(Which which = Which::now) = 0;
   virtual void set_state(const SolverState& state) = 0;
-  /// Keeps a copy of the state where the solver's arrays are, in place of the one before: cheap
-  /// enough for every measure.
+  /// Keeps a copy of the state in the memory of the solver and replaces the previous copy. Cheap
+  /// enough for every measurement.
   virtual void keep() = 0;
   virtual SolverInfo info() const = 0;
   virtual std::int64_t updates() const = 0;  ///< done so far
-  /// What verification needs; null where a solver has none.
+  /// Access for verification; null if the solver has none.
   virtual Inspection* inspection() { return nullptr; }
 };
 
-/// Looks at what every pass of an update leaves behind: some ten times slower than step(1), whose
-/// bits it gives.
+/// Examines the results of every pass of an update. About ten times slower than step(1), with the
+/// same bits.
 class Inspection {
  public:
   virtual ~Inspection() = default;
-  /// One update, with what each pass left behind, on the host; other bits than those of step(1)
-  /// where `options` ask for them.
+  /// One update with the results of each pass, on the host. The bits are those of step(1) unless
+  /// `options` change them.
   virtual StepTrace trace(const TraceOptions& options = {}) = 0;
-  /// One update like step(1, options), looking for the first stage that went beyond the limits.
+  /// One update like step(1, options). Returns the first stage that exceeded the limits.
   virtual std::optional<StageEvent> step_checked(const StageLimits& limits,
                                                  const StepOptions& options = {}) = 0;
-  /// For tests: updates from now on put this fault in when its time comes, also repeated ones.
+  /// For tests: later updates, including repeated ones, inject this fault at its update and stage.
   virtual void inject(const Fault& fault) = 0;
 };
 
-/// Throws Error(internal) for a state that a solver of n particles cannot take over.
+/// Throws Error(internal) for a state that does not fit a solver of n particles.
 void check_state(const SolverState& state, std::int64_t n);
 
 }  // namespace pbf::inline solver_module

@@ -1,5 +1,5 @@
 // Checks the results of every stage of one update on the host. Slow, because it copies the whole
-// state after each stage; for updates that the guard repeats, and for tests with injected faults.
+// state after each stage. Used for updates that the guard repeats and for tests that inject faults.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace pbf::inline PBF_VARIANT {
 template <class Real, class Exec>
 class StageCheck {
  public:
-  /// limits or fault may be null: then nothing is looked at, or nothing put in.
+  /// Null for `limits`: no checks. Null for `fault`: nothing is injected.
   StageCheck(StepContext<Real, Exec>& c, const Axes& axes, std::int64_t update,
              const StageLimits* limits, const Fault* fault)
       : c_(c), p_(c.p), axes_(axes), update_(update), limits_(limits), fault_(fault) {}
@@ -34,12 +34,12 @@ class StageCheck {
   const std::optional<StageEvent>& event() const { return event_; }
 
  private:
-  /// Where to look behind a pass.
+  /// The arrays to check after a pass.
   struct Arrays {
-    Vec4<Real>* position;            ///< w: what the pass put there (lambda, 1/density)
-    Real* density = nullptr;         ///< null: not what the pass is for
-    bool stores_fourth = false;      ///< what the pass is for is the position's w
-    const int* neighbors = nullptr;  ///< null: the lists are not new
+    Vec4<Real>* position;            ///< w: a result of the pass (lambda, 1/density)
+    Real* density = nullptr;         ///< null: not the main result of the pass
+    bool stores_fourth = false;      ///< whether the main result is w of the position
+    const int* neighbors = nullptr;  ///< lengths of new lists; null: the lists are not new
   };
   Arrays arrays(const PassInfo& pass) {
     Arrays a{c_.position()};
@@ -50,7 +50,7 @@ class StageCheck {
       if (a.stores_fourth) a.position = c_.template data<Vec4<Real>>(*w.field);
     }
     if (pass.makes_lists()) {
-      int* free = c_.template data<int>(other<field::id>);  // until the next sort
+      int* free = c_.template data<int>(other<field::id>);  // unused until the next sort
       c_.items(ListSizePass<typename Exec::Lists>{c_.lists, free});
       a.neighbors = free;
     }
@@ -109,7 +109,7 @@ class StageCheck {
       }
       const double speed =
           std::sqrt(values[4] * values[4] + values[5] * values[5] + values[6] * values[6]);
-      // A measure takes a speed whose square overflows for no number as well.
+      // As in a measurement, a speed whose square overflows counts as not finite.
       if (finite && !is_finite(dot(xyz(v[k]), xyz(v[k]))))
         found(Alarm::non_finite, k, speed), finite = false;
       if (!finite) continue;

@@ -1,4 +1,4 @@
-// The faults that the guard looks for in each stage, and what it finds. Lengths are in h from the
+// The faults that the guard looks for in each stage, and its findings. Lengths are in h from the
 // domain's lower corner, velocities in h/s along the scene's axes, sums per particle mass.
 #pragma once
 
@@ -8,19 +8,19 @@
 
 namespace pbf::inline solver_module {
 
-/// Why a run is stopped. The words of kAlarmNames stand in messages and in suite files.
+/// Why a run is stopped. Messages and suite files use the words of kAlarmNames.
 enum class Alarm { non_finite, outside, speed, energy, neighbors };
 constexpr const char* kAlarmNames[] = {"non_finite", "outside", "speed", "energy", "neighbors"};
 
-/// Beyond these a stage is at fault; infinite: not looked at.
+/// Limits for the results of a stage; infinite: no check.
 struct StageLimits {
   double speed = std::numeric_limits<double>::infinity();   ///< h/s, of one particle
   double energy = std::numeric_limits<double>::infinity();  ///< (h/s)^2, sum of v^2/2 - g.x
   std::int64_t neighbors = std::numeric_limits<std::int64_t>::max();
 };
 
-/// The first stage that left something beyond the limits behind, and the particle: the one with
-/// the smallest id, or the fastest one where no particle alone is to blame (energy).
+/// The first stage whose results exceed the limits, and a particle: of those beyond the limit the
+/// one with the smallest id; for the energy, which belongs to no particle, the fastest one.
 struct StageEvent {
   Alarm alarm = Alarm::non_finite;
   std::int64_t update = 0;  ///< the first update is 1
@@ -29,12 +29,12 @@ struct StageEvent {
   int iteration = 0;        ///< 1, 2, ... within the iterations, 0 outside them
   int id = 0;
   double position[3] = {0, 0, 0}, velocity[3] = {0, 0, 0};
-  double value = 0;  ///< speed, energy or number of neighbours; else the value that is wrong
+  double value = 0;  ///< speed, energy or number of neighbors; otherwise the non-finite value
 };
 
-/// For tests: what `stage` of an update leaves behind of one particle is replaced. A finite value
-/// goes into the velocity along x; others into what the stage stores: lambda, the density, else
-/// the velocity along x.
+/// For tests: replaces a result of `stage` for one particle. A finite value replaces the velocity
+/// along x. A non-finite value replaces the main result of the stage (lambda, density), or the
+/// velocity along x if there is none.
 struct Fault {
   std::int64_t update = 1;
   std::string stage;

@@ -14,19 +14,19 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// What the state of n particles consists of, in memory that the executor's copies reach.
+/// The arrays of the state of n particles, in memory that the executor can copy.
 template <class Real>
 struct StateArrays {
   Vec4<Real>*position, *velocity;
   int* id;
   StepCounts* counts;  ///< one
   Load* load;
-  int walls;  ///< that have a load
+  int walls;  ///< number of loads
   FlowCount* flow;
   int flows;  ///< flow gauges
 };
 
-/// A copy in one pass: a guarded run of few particles makes one at every measure.
+/// Copies a state in one pass, because a run with a guard does so at every measurement.
 template <class Real>
 struct CopyStatePass {
   StateArrays<Real> from, to;
@@ -41,8 +41,8 @@ struct CopyStatePass {
   }
 };
 
-/// Vectors of n rows in the order of ids, along the scene's axes: 3 numbers each. They come in
-/// parts, and take no more memory than the result.
+/// Downloads n vectors: 3 numbers each, in the order of ids, along the scene's axes. The copy is
+/// done in parts to save memory.
 template <class Real, class Exec>
 std::vector<double> rows_by_id(Exec& exec, const Axes& axes, std::size_t n, const Vec4<Real>* rows,
                                const int* id) {
@@ -63,7 +63,7 @@ std::vector<double> rows_by_id(Exec& exec, const Axes& axes, std::size_t n, cons
   return out;
 }
 
-/// In the order of ids: the order of rows is no part of a state.
+/// Downloads a state, in the order of ids: the order of rows is not part of a state.
 template <class Real, class Exec>
 SolverState download_state(Exec& exec, std::size_t n, const Axes& axes,
                            const StateArrays<Real>& from, std::int64_t updates,

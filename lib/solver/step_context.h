@@ -1,4 +1,4 @@
-// The context of a launch: the arrays of the step by name, its parameters, the executor.
+// The context of launches: the arrays of a step by name, the parameters, the executor.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// An array of a field; second: the other one of a pair.
+/// An array of a field; second: the second one of a pair.
 struct FieldMemory {
   const FieldInfo* field;
   bool second;
@@ -48,15 +48,15 @@ struct StepContext {
   const LevelPlan& levels;
   Lists lists{};
   bool lists_are_current = false;
-  const char* booked_as = nullptr;  ///< instead of the passes' own stages
+  const char* booked_as = nullptr;  ///< stage for the times of passes; null: their own stages
   int iteration = 0;                ///< of the substep
   int iterations = 0;               ///< since the lists were made
   bool iterating = false;
   std::vector<Real> factors{};  ///< omega of each iteration
-  GaugeArrays<Exec> gauges{};   ///< to be made before make()
+  GaugeArrays<Exec> gauges{};   ///< to be created before make()
 
-  // What passes use.
-  int rows() const { return rows_; }  ///< in use
+  // For passes.
+  int rows() const { return rows_; }  ///< number of particles
   // Launches by the shape of a pass (kernels/pass_shapes.h), over all rows or n items.
   template <class Pass>
   void items(const Pass& pass) {
@@ -102,13 +102,13 @@ struct StepContext {
     iterations = 0;
   }
 
-  /// Rows of a field; null where the scene does without it.
+  /// Rows of a field; null if the program does not use it.
   template <class T>
   T* data(const FieldInfo& f) {
     Slot* s = slot(f);
     return s ? reinterpret_cast<T*>(s->rows[s->now ^ (f.first ? 1 : 0)].data()) : nullptr;
   }
-  /// Where all fields lie now.
+  /// The present memory of all fields.
   std::vector<FieldMemory> arrays() {
     std::vector<FieldMemory> all;
     for (Slot& s : slots_)
@@ -116,29 +116,29 @@ struct StepContext {
         all.push_back({s.info, k == 1, s.rows[s.now ^ k].data(), s.rows[s.now ^ k].bytes()});
     return all;
   }
-  /// The second of its two arrays becomes the first.
+  /// Swaps the two arrays of a field.
   void flip(const FieldInfo& f) { slot(f)->now ^= 1; }
   Vec4<Real>* position() { return data<Vec4<Real>>(field::position); }
   Vec4<Real>* velocity() { return data<Vec4<Real>>(field::velocity); }
   Real* density() { return data<Real>(field::density); }
   int* ids() { return data<int>(field::id); }
-  /// rows() numbers: the order of a sort, in a pass that flips the ids.
+  /// Memory for the order of a sort (rows() integers), in a pass that flips the ids.
   int* sort_order() {
     return Exec::order_in_place ? data<int>(field::id) : data<int>(field::order);
   }
   StepCounts* counts() { return counts_.data(); }
-  /// For with_boundary() (features/solids.h); its walls are not set.
+  /// For with_boundary() (features/solids.h), which sets its walls.
   const Solids<Real>& solids() const { return solids_; }
-  /// Where something can be near solids, by (layer, row, half cell); empty: anywhere.
+  /// The half cells in which particles can be near solids, in the order of bins; empty: all.
   Buffer<int>& near_half_cells() { return near_half_cells_; }
   MovingParts<Real, Exec>& moving() { return moving_; }
   PlacedSolid<Real>* placed() { return placed_.data(); }
-  /// All solids stand there, until a step moves them.
+  /// Sets the positions of all solids. They stay there until a step moves them.
   void place(const std::vector<PlacedSolid<Real>>& all) {
     exec.to_device(all.data(), all.size(), placed_.data());
     moving_.stand(exec, all);
   }
-  /// One for each wall that has any.
+  /// One load per row of sums (program/loads.h).
   Load* loads() { return loads_.data(); }
   StateArrays<Real> state() {
     return {position(),
@@ -151,13 +151,13 @@ struct StepContext {
             int(gauges.flow.size())};
   }
 
-  /// Positions came from elsewhere: until the lists are made all rows count as near solids.
+  /// To be called after positions were set: all rows count as near solids until lists are made.
   void forget_near() {
     if (solids_.near.way_left_squared) items(AllNearPass<Real>{solids_.near, rows_});
   }
 
-  /// Which of the two arrays each field lies in, as bits: updates that were recorded hold for one
-  /// such placement.
+  /// Bits that tell which of its two arrays is the first for each pair. Recorded updates are valid
+  /// for one such placement.
   int placement() const {
     int bits = 0, bit = 1;
     for (const Slot& s : slots_)
@@ -165,8 +165,8 @@ struct StepContext {
     return bits;
   }
 
-  /// Makes the arrays of n particles and takes over their state, whose vectors are empty then.
-  /// moves: of a particle in the iterations of a substep, at most.
+  /// Creates the arrays of n particles and uploads their state. Frees the vectors of the state.
+  /// moves: largest number of displacements of a particle in the iterations of a substep.
   void make(const std::vector<const FieldInfo*>& fields, std::vector<Vec4<Real>>& first_position,
             std::vector<Vec4<Real>>& first_velocity, std::vector<int>& first_id,
             const Scene& in_its_axes, const Plan& plan, int moves);
@@ -190,7 +190,7 @@ struct StepContext {
   }
 
   int rows_ = 0, capacity_ = 0;
-  std::vector<Slot> slots_;  ///< a dozen: a linear search beats a map
+  std::vector<Slot> slots_;  ///< about a dozen: a linear search is faster than a map
   Buffer<StepCounts> counts_;
   Buffer<Load> loads_;
   Buffer<PlacedSolid<Real>> placed_;
@@ -199,7 +199,7 @@ struct StepContext {
   Solids<Real> solids_;
   MovingParts<Real, Exec> moving_;
 
-  /// The boundary of scenes that have more than walls. Behind make(): it knows where sums are.
+  /// Creates the boundary of scenes with more than plain walls. Needs the fields (load sums).
   void make_solids(const Scene& in_its_axes, const Plan& plan, int moves);
 };
 
@@ -230,7 +230,7 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
     for (int k = 0; k < (f->pair ? 2 : 1); ++k) {
       slots_.back().rows[k].resize(count * row);
       if (f->rows != per_padded_row || f->components != 4) continue;
-      // Behind the last row: infinitely far away for any kernel, and at rest.
+      // Padding after the last row: outside of the range of any kernel, and at rest.
       const Real far = f == &field::position ? Real(1e9) : Real(0);
       const std::vector<Vec4<Real>> rows(Exec::padding,
                                          {far, far, far, Real(f == &field::position ? 1 : 0)});
@@ -253,7 +253,7 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
   exec.to_device(first_position.data(), n, position());
   exec.to_device(first_velocity.data(), n, velocity());
   exec.to_device(first_id.data(), n, ids());
-  release(first_position);  // before the lists are made
+  release(first_position);  // before lists are made, which need memory
   release(first_velocity);
   release(first_id);
 }
@@ -292,7 +292,7 @@ void StepContext<Real, Exec>::make_solids(const Scene& in_its_axes, const Plan& 
   exec.to_device(cells.data(), cells.size(), near_half_cells_.data());
 }
 
-/// A copy of the state, from which the updates since can be repeated.
+/// A copy of the state, from which later updates can be repeated.
 template <class Real, class Exec>
 struct SavedState {
   template <class T>

@@ -19,8 +19,8 @@
 
 namespace pbf::inline solver_module {
 
-/// An empty snapshot of n particles with every array allocated and the ids filled in; position and
-/// id always, velocity and density where `fields` names them. Error(bad_input) for another name.
+/// A snapshot of n particles with allocated arrays and filled ids. It has position and id, and
+/// velocity and density if `fields` names them. Throws Error(bad_input) for another name.
 Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type, std::size_t n,
                         std::int64_t update, double time);
 
@@ -35,8 +35,8 @@ struct InternalState {
   std::vector<int> id;
 };
 
-/// Takes the particles, and lets go of each of their arrays as soon as it is converted: while a
-/// solver is made no more memory is held than it needs later.
+/// Converts the particles and frees each of their arrays as soon as it is converted, to keep the
+/// peak of memory low.
 template <class Real>
 InternalState<Real> to_internal(const Scene& s, const Axes& axes, Particles particles) {
   const std::size_t n = particles.size();
@@ -63,15 +63,15 @@ InternalState<Real> to_internal(const Scene& s, const Axes& axes, Particles part
   return out;
 }
 
-/// Updates after which the host looks whether a list outgrew its room, where lists can: few at
-/// first and after lists grew, for lists that grow once often do so again, and what is done again
-/// then is short.
+/// Number of updates before the host first checks for lists that overflowed, on executors where
+/// lists can overflow. It is small at the start and after an overflow, because overflows often come
+/// in a row and all updates since the last check are then repeated.
 constexpr int kFirstBatch = 8;
 
 template <class Real, Executor Exec>
 class StepSolver final : public Solver, public Inspection {
  public:
-  /// `executor`: what the executor is made of.
+  /// `executor`: arguments of the executor's constructor.
   template <class... Args>
   StepSolver(const Scene& scene, const Plan& plan, Particles particles, Args&&... executor)
       : scene_(scene),
@@ -87,7 +87,7 @@ class StepSolver final : public Solver, public Inspection {
     stepper_ = std::make_unique<Stepper<Real, Exec>>(exec_, scene_, plan_, std::move(s.position),
                                                      std::move(s.velocity), std::move(s.id));
     while (exec_.grow_lists(n_)) stepper_->relist();
-    exec_.forget_stages();  // sorting the first state is part of init, not of the updates
+    exec_.forget_stages();  // sorting the initial state belongs to init, not to the updates
     init_seconds_ = watch.seconds();
   }
 
@@ -187,7 +187,7 @@ class StepSolver final : public Solver, public Inspection {
   void inject(const Fault& fault) override { fault_ = fault; }
 
  private:
-  /// So many steps, in pieces after which lists that outgrew their room are looked for.
+  /// Does `left` steps in batches and checks for lists that overflowed after each batch.
   void advance(std::int64_t left) {
     const bool moves = has_motion(scene_) && !options_.without_time;
     const std::int64_t most = moves ? std::max(1, kMotionRows / plan_.substeps) : left;
@@ -204,8 +204,8 @@ class StepSolver final : public Solver, public Inspection {
       batch_ = int(std::min<std::int64_t>(2 * std::int64_t(batch_), exec_.largest_batch(n_)));
     }
   }
-  /// What `work` does to the state is done again, with more room for the lists, as long as one of
-  /// them did not fit: nothing is lost. Calls again() before each repetition.
+  /// Runs `work`. While a list did not fit, restores the state before it, enlarges the lists, calls
+  /// again() and repeats `work`.
   template <class Work, class Again>
   void until_lists_fit(const Work& work, const Again& again) {
     if constexpr (Exec::lists_overflow) stepper_->save(saved_);
@@ -219,7 +219,7 @@ class StepSolver final : public Solver, public Inspection {
     }
   }
 
-  /// Of so many steps, at the present level, behind `done` of them since the last counted update.
+  /// Uploads the motion of the next steps. done: steps since the last counted update.
   void set_motion(std::int64_t done, int steps) {
     if (!has_motion(scene_)) return;
     const int n = plan_.substeps;
@@ -250,7 +250,7 @@ class StepSolver final : public Solver, public Inspection {
     options.without_time
         ? stepper_->use(scene, without_time(p, *options.without_time), without_time_)
         : stepper_->use(scene, p, plan_.program);
-    exec_.forget_recorded();  // it holds the parameters
+    exec_.forget_recorded();  // recordings contain the parameters
     if (has_moving_obstacles(scene_)) stepper_->forget_near();
   }
   void count(int updates) {

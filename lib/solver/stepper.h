@@ -1,4 +1,4 @@
-// Executes programs: updates at full speed, updates pass by pass, and sums over a state.
+// Executes programs: updates at full speed, updates pass by pass, and measurements of a state.
 #pragma once
 
 #include <string>
@@ -27,8 +27,8 @@ class Stepper {
   using Saved = SavedState<Real, Exec>;
   using Context = StepContext<Real, Exec>;
 
-  /// Positions and velocities are in the internal frame, in the order of ids 0..n-1. What comes out
-  /// is along the scene's axes.
+  /// The initial positions and velocities are in the internal frame, in the order of ids 0..n-1.
+  /// States and traces that the stepper returns are along the scene's axes.
   Stepper(Exec& exec, const Scene& scene, const Plan& plan, std::vector<Vec4<Real>> position,
           std::vector<Vec4<Real>> velocity, std::vector<int> id)
       : plan_(plan),
@@ -45,8 +45,8 @@ class Stepper {
     sum_density();
   }
 
-  /// Updates (kernels/README.md, "The step"). What an update ends with and the next one begins with
-  /// is one pass where the program joins them.
+  /// Updates (kernels/README.md, "The step"). The program may fuse the last pass of an update with
+  /// the first of the next one.
   void step(int updates) {
     if (updates <= 0) return;
     c_.exec.begin();
@@ -60,15 +60,15 @@ class Stepper {
     moved();
   }
 
-  /// One update, with what each stage left behind.
+  /// One update with the results of each stage.
   StepTrace trace(const TraceOptions& options) {
     Tracer<Real, Exec> t(c_, plan_.axes, options);
     step_seen([&](const PassInfo& pass, int number) { t.record(pass, number); });
     return t.result();
   }
 
-  /// One update, looking at what each stage left behind and putting a fault in, where these are not
-  /// null. `update`: its number, the first is 1.
+  /// One update. Checks the results of each stage against `limits` and injects `fault`, unless
+  /// these are null. `update`: its number; the first is 1.
   std::optional<StageEvent> step_checked(std::int64_t update, const StageLimits* limits,
                                          const Fault* fault) {
     StageCheck<Real, Exec> check(c_, plan_.axes, update, limits, fault);
@@ -79,23 +79,23 @@ class Stepper {
   int size() const { return c_.rows(); }
   int placement() const { return c_.placement(); }
 
-  /// From now on steps of `scene`, with parameters p, by that program.
+  /// Later steps use this scene, these parameters and this program.
   void use(const Scene& scene, const Params<Real>& p, const Program& program) {
     c_.scene = in_internal_axes(scene, plan_.axes);
     c_.p = p;
     program_ = &program;
   }
 
-  /// What moves does so in the steps to come.
+  /// Uploads the prescribed motion of the next steps.
   void set_motion(const MotionRows<Real>& rows) { c_.moving().set(c_.exec, rows); }
-  /// Obstacles stand where they are at a time until a step moves them.
+  /// Places the obstacles at their positions at `time`, until a step moves them.
   void place(const Scene& scene, double time) {
     c_.place(placed_at(scene, plan_, c_.p.boundary, time));
   }
-  /// Steps of another length may take obstacles farther than they are known to go.
+  /// To be called when the length of steps changes: obstacles may then move farther in one step.
   void forget_near() { c_.forget_near(); }
   const Box<Real>& walls() const { return c_.p.boundary; }
-  /// h^2/s^3, of the particles' velocities with what the motion of the tank adds to gravity.
+  /// h^2/s^3: power, per particle mass, of the inertial forces by the tank's motion.
   double power(const FrameStep<double>& frame, double dt) {
     const Vec3<Real>& g = c_.p.gravity;
     return c_
@@ -104,13 +104,13 @@ class Stepper {
         .x[0];
   }
 
-  /// What each wall got since this was called with Interval::ends.
+  /// The load of each wall since the last call with Interval::ends.
   std::vector<Load> loads(Interval interval) {
     return loads(0, c_.state().walls - int(c_.gauges.patch.size()), interval);
   }
 
-  /// Before steps, also before they are done again: what flow counts from. Steps without time do
-  /// not count.
+  /// To be called before steps, also before repeated ones: computes the sides from which flow
+  /// gauges count. Steps without time are not counted.
   void begin_flow() {
     if (c_.gauges.gate.size() == 0) return;
     if (!(c_.p.dt > 0)) sides_are_current_ = false;
@@ -119,7 +119,7 @@ class Stepper {
     sides_are_current_ = true;
   }
 
-  /// Of the present positions and velocities, and since this was called with Interval::ends.
+  /// Sums of the present positions and velocities, and since the last call with Interval::ends.
   GaugeSums gauges(double update_dt, Interval interval) {
     c_.exec.begin();
     GaugeSums sums;
@@ -137,7 +137,7 @@ class Stepper {
     return sums;
   }
 
-  /// The rest of the state stays empty.
+  /// A state with positions only.
   SolverState positions() {
     SolverState s;
     s.position = rows_by_id(c_.exec, plan_.axes, std::size_t(size()), c_.position(), c_.ids());
@@ -149,7 +149,7 @@ class Stepper {
   SolverState state(Saved& s, std::int64_t updates, std::int64_t steps) {
     return downloaded(s.state(), updates, steps);
   }
-  /// Takes over a state of as many particles, in any order.
+  /// Sets a state of the same number of particles, in any order.
   void set_state(const SolverState& s) {
     upload_state<Real>(c_.exec, plan_.axes, s, c_.state());
     c_.forget_near();
@@ -164,10 +164,10 @@ class Stepper {
     moved();
   }
 
-  /// Makes lists at the present positions, where there are none, and says so. Those of the last
-  /// update do not do: they name the pairs of its predicted positions, and a density summed over
-  /// them misses every pair that has come nearer since. Rows are in the order of bin and id, so
-  /// this sort changes no bit of the updates that follow.
+  /// Makes lists at the present positions unless there are some; true if it made them. The lists of
+  /// the last update belong to its predicted positions, so a density summed over them would miss
+  /// pairs that have come closer since. Rows are in the order of bin and id, so the additional sort
+  /// changes no bit of later updates.
   bool find_pairs() {
     if (c_.lists_are_current) return false;
     c_.exec.begin();
@@ -176,14 +176,14 @@ class Stepper {
     c_.booked_as = nullptr;
     return true;
   }
-  /// New lists at the present positions, after the executor has been given more room for them.
+  /// Makes new lists at the present positions after the executor has enlarged their memory.
   void relist() {
     c_.make_lists();
     density_is_current_ = false;
     sum_density();
   }
 
-  /// Sums at the present positions, after find_pairs().
+  /// Sums at the present positions. Call find_pairs() first.
   MeasureSums measure(const MeasureConstants& given) {
     c_.exec.begin();
     sum_density();
@@ -201,8 +201,8 @@ class Stepper {
     return sums;
   }
 
-  /// SI units, the scene's axes, id order, into device-visible buffers; null where not asked for.
-  /// Densities after find_pairs().
+  /// Writes fields in SI units, along the scene's axes and in the order of ids to memory of the
+  /// executor; null: not wanted. Densities need find_pairs() first.
   template <class Out>
   void export_to(double h, double rest_density, const Double3& origin, Out* position, Out* velocity,
                  Out* density) {
@@ -223,8 +223,8 @@ class Stepper {
     c_.exec.mark("download");
   }
 
-  /// The particles have moved, also by a replay of recorded updates (an even number of them):
-  /// nothing that was summed or listed before holds.
+  /// To be called after particles have moved, also by recorded updates (an even number of them):
+  /// densities and lists are no longer current.
   void moved() { density_is_current_ = c_.lists_are_current = false; }
 
   std::size_t bytes() const { return c_.bytes() + c_.exec.bytes(); }
@@ -246,7 +246,7 @@ class Stepper {
   void run(const Steps& steps) {
     run(steps, [](int) {});
   }
-  /// `seen(pass)` may look at what each pass left behind.
+  /// Calls seen(pass) after each pass, which may examine its results.
   template <class Seen>
   void run(const Steps& steps, const Seen& seen) {
     for (const ProgramStep& s : steps) switch (s.kind) {
@@ -270,8 +270,8 @@ class Stepper {
       }
   }
 
-  /// One update, one pass after the other: the bits of step(1). `seen(pass, number)`: of the
-  /// substep, of the iteration since the lists were made, or 0 behind the substeps.
+  /// One update without fused passes, with the bits of step(1). Calls seen(pass, number): number of
+  /// the iteration since the lists were made, or else of the substep; 0 after the substeps.
   template <class Seen>
   void step_seen(const Seen& seen) {
     c_.exec.begin();
@@ -299,7 +299,7 @@ class Stepper {
   std::uint64_t residual_limit_;
   const Program* program_;
   bool density_is_current_ = false;
-  bool sides_are_current_ = false;  ///< those that flow counts from
+  bool sides_are_current_ = false;  ///< of particles at flow gauges
 };
 
 }  // namespace pbf::inline PBF_VARIANT

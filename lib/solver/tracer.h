@@ -1,5 +1,5 @@
-// Copies the results of the passes of one update to the host; on request it rounds them at random
-// or replaces them.
+// Copies the results of the passes of one update to the host. Options round these results at random
+// or replace them.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Number of neighbours of each particle.
+/// Number of neighbors of each particle.
 template <class Lists>
 struct ListSizePass {
   Lists lists;
@@ -25,7 +25,7 @@ struct ListSizePass {
   PBF_HD void operator()(int i) const { size[i] = lists.size(i); }
 };
 
-/// The lists one behind the other, without what pads them.
+/// The concatenated lists without padding.
 template <class Lists>
 struct FlatListPass {
   Lists lists;
@@ -46,7 +46,7 @@ class Tracer {
   Tracer(StepContext<Real, Exec>& c, const Axes& axes, const TraceOptions& options)
       : c_(c), n_(std::size_t(c.rows())), axes_(axes), options_(options), random_(options.seed) {}
 
-  /// Records what a pass has left behind.
+  /// Records the results of a pass.
   void record(const PassInfo& pass, int number) {
     for (const Written& w : pass.written) {
       stage_ = w.stage ? w.stage : pass.stage;
@@ -111,12 +111,12 @@ class Tracer {
     c_.exec.to_host(from, n, v.data());
     return v;
   }
-  /// Of a field whose rows particles name.
+  /// Number of rows of a field with one row per cell or node.
   std::size_t rows_named(const FieldInfo& f) const {
     return std::size_t(f.rows({.cells = c_.levels.cells(), .nodes = c_.levels.nodes()}));
   }
-  /// Records n rows of `components` scalars, component(row, c) of what lies at `from`; rounds them
-  /// and puts the values to follow in their place, where asked to. sign: of the scene's vector.
+  /// Records n rows of `components` scalars, component(from[row], c), and rounds or replaces them
+  /// as the options say. sign: factor for the scene's axes.
   template <class T, class Component>
   void array(const Written& w, int components, T* from, const Component& component, int sign = 1) {
     const Shown& shown = w.field->shown;
@@ -154,7 +154,7 @@ class Tracer {
     else
       c_.exec.to_device(v.data(), n_, from);
   }
-  /// The array of the other trace that belongs to the present one.
+  /// The array of the other trace that corresponds to `mine`, or null.
   const TraceArray* followed(const TraceArray& mine) {
     const std::size_t at = trace_.arrays.size() - 1;
     if (!options_.follow) return nullptr;
@@ -194,7 +194,7 @@ class Tracer {
   std::string stage_;
   int iteration_ = 0;
   double amplitude_ = 0, grain_ = 0;
-  double most_terms_ = 0;  ///< of the longest sum over neighbours, once lists() has seen them
+  double most_terms_ = 0;  ///< of the longest sum over neighbors; set by lists()
   std::vector<int> id_;
   StepTrace trace_;
 };

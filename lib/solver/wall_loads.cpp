@@ -23,7 +23,7 @@ std::vector<WallLoad> wall_loads(const std::vector<Load>& loads, const Scene& sc
   std::vector<WallLoad> out;
   if (loads.empty()) return out;
   const auto& of = plan.axes.of;
-  // A cross product turns its sign where the axes change hands.
+  // A cross product changes its sign if the axes have the other handedness.
   const double hand = (of[1] - of[0] + 3) % 3 == 1 ? 1 : -1, h = scene.h();
   const auto add = [&](const std::string& name, const Load& load, const double(&middle)[3]) {
     WallLoad l{name};
@@ -49,7 +49,7 @@ std::vector<WallLoad> wall_loads(const std::vector<Load>& loads, const Scene& sc
   }
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
     if (!scene.obstacles[k].loads) continue;
-    // Of what moves the moment is about its middle already.
+    // The moment of a moving obstacle is already about its middle.
     const Vec3<double> center = scene.obstacles[k].motion ? Vec3<double>{} : plan.solids[k].center;
     add(scene.obstacles[k].name, loads[kFaceNames.size() + k], {center.x, center.y, center.z});
   }

@@ -1,5 +1,5 @@
-// Loads on walls in SI units, and the table of their numbers, from which the columns of the log are
-// made.
+// Loads on walls in SI units, and the table of their numbers, which defines their columns in the
+// log.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace pbf::inline solver_module {
 
-/// What the fluid did to a wall or an obstacle in an interval, along the scene's axes. Without time
-/// all is 0.
+/// Forces of the fluid on a wall or an obstacle in an interval, along the scene's axes. All 0 for
+/// an interval of length 0.
 struct WallLoad {
   std::string wall;              ///< "z_min", or the name of an obstacle
   double force[3] = {0, 0, 0};   ///< N, mean
-  double torque[3] = {0, 0, 0};  ///< N m, mean, about the middle of it, where that is
+  double torque[3] = {0, 0, 0};  ///< N m, mean, about its present middle
   double peak = 0;               ///< N, largest mean force of an update
 };
 
@@ -25,7 +25,7 @@ struct LoadNumber {
 };
 const std::vector<LoadNumber>& load_numbers();
 
-/// Of every wall of a scene with loads, in the order x_min, x_max ...; none where it has none.
+/// Loads of the walls in the order x_min, x_max ..., then of obstacles; empty without loads.
 std::vector<WallLoad> wall_loads(const std::vector<Load>& loads, const Scene& scene,
                                  const Plan& plan);
 

@@ -7,7 +7,7 @@
 #include "lib/program/pass.h"
 
 namespace pbf::inline program_module::field {
-/// 1/s, curl times its gain; w = its magnitude without it.
+/// x, y, z: curl times its gain, 1/s; w: magnitude of the curl without the gain.
 inline constexpr struct CurlRows : Vectors {
 } curl{{"curl", per_padded_row, Life::pass, false,
         Shown{.quantity = "curl times its gain", .unit = "1/s", .sum = true, .axial = true}}};

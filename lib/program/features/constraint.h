@@ -23,8 +23,8 @@ struct Density {
   }
 };
 
-/// Velocities are those of the neighbors of marked particles, which are counted before anything
-/// else has moved.
+/// Velocities of neighbors are needed for marked particles, which the first iteration counts before
+/// it moves anything.
 using LambdaNeeds = Needs<Gathers<field::position>, UsesLists,
                           Reads<field::position, W::mark, When::first_iteration>,
                           Gathers<field::velocity, W::any, When::first_iteration>, NearNeeds,

@@ -47,7 +47,7 @@ struct Delta {
   }
 };
 
-/// Takes the particles to the next substep as well: the same arithmetic in one launch less.
+/// Delta and the prediction of the next substep: the same arithmetic with one launch less.
 struct DeltaPredict {
   using Fuses = Pair<Delta, Predict>;
   static constexpr PassText text{"delta+predict", "delta"};

@@ -9,14 +9,14 @@
 #include "lib/scene/scene.h"
 
 namespace pbf::inline program_module::field {
-/// Of each particle, in the order of ids: bits say on which side of each flow gauge it is.
+/// Per particle, in the order of ids: bit k tells on which side of flow gauge k it is.
 inline constexpr struct FlowSides : Plain<int> {
 } flow_sides{{"flow sides", per_particle, Life::rows}};
 }  // namespace pbf::inline program_module::field
 
 namespace pbf::inline PBF_VARIANT {
 
-/// `count`: what has changed sides counts.
+/// Updates the sides of all particles; `count`: also counts the particles that changed sides.
 template <class G>
 void take_sides(const G& c, bool count) {
   auto& g = c.context().gauges;

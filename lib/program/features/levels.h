@@ -11,25 +11,25 @@
 #include "lib/program/pass.h"
 
 namespace pbf::inline program_module::field {
-/// Of each particle the cell that it was in when the lists were made.
+/// Per particle: its cell when the lists were made.
 inline constexpr struct LevelHome : Plain<int> {
 } level_home{{"level home", per_particle, Life::lists, false, Shown{"level cell"}}};
-/// Of each run, its first particle.
+/// Per run: its first particle.
 inline constexpr struct RunStart : Plain<int> {
 } run_start{{"level run start", per_run, Life::lists}};
-/// Of each cell: particles; sums, of particles while the lists are made, of C in iterations; what
-/// LevelFactorPass names, 1/h.
+/// Per cell: number of particles; sum (of particles while lists are made, of C in iterations); the
+/// factors of LevelFactorPass, 1/h.
 inline constexpr struct CellCount : Plain<int> {
 } cell_count{{"level cell count", per_cell, Life::lists}};
 inline constexpr struct CellSum : Plain<std::int64_t> {
 } cell_sum{{"level cell sum", per_cell, Life::pass}};
 inline constexpr struct CellFactor : Vectors {
 } cell_factor{{"level factor", per_cell, Life::lists}};
-/// Of each brick's corners: shares of the sums.
+/// Per brick: the shares of its 8 corners in the sums of its cells.
 inline constexpr struct CornerSum : Plain<std::int64_t, 8> {
 } corner_sum{{"level corner sum", per_brick, Life::pass}};
-/// Of each node: WallBits of the walls under its hat; those and what coarser ones around it know;
-/// what it makes of the sum of C, the multiplier (h^2).
+/// Per node: WallBits of the walls below its hat; the same including those of coarser nodes around;
+/// the factor from the sum of C to the multiplier; the multiplier (h^2).
 inline constexpr struct NodeWalls : Plain<int> {
 } node_walls{{"level walls", per_node, Life::lists}};
 inline constexpr struct NodeReach : Plain<int> {
@@ -38,7 +38,7 @@ inline constexpr struct NodeAnswer : Numbers {
 } node_answer{{"level answer", per_node, Life::lists}};
 inline constexpr struct Multiplier : Numbers {
 } multiplier{{"level multiplier", per_node, Life::pass}};
-/// Of each cell, h. Its grain is kExcessUnit of one particle among those around a node.
+/// Per cell, h. The grain is the effect of one kExcessUnit in the sum around a node.
 inline constexpr struct LevelMoves : Vectors {
 } level_move{
     {"level move", per_cell, Life::pass, false,
@@ -51,7 +51,7 @@ inline bool has_levels(const Scene& s) { return why_no_levels(s) == nullptr; }
 inline bool has_open_faces(const Scene& s) { return !s.domain.open.empty(); }
 
 using LevelMoveNeeds = Needs<Reads<field::level_home>, Looks<field::level_move>>;
-/// f(LevelMove or NoLevelMove) of the scene.
+/// Calls f with the LevelMove of the scene, or with NoLevelMove.
 template <class G, class F>
 void with_level_move(const G& c, F&& f) {
   using Real = typename G::Real;
@@ -59,7 +59,7 @@ void with_level_move(const G& c, F&& f) {
   f(LevelMove<Real>{c[field::level_home], c[field::level_move]});
 }
 
-/// Over cells and bricks, and what lies at their corners.
+/// The sums per cell and per corner of a brick, in the form that kernels use.
 inline LevelSums level_sums(const LevelPlan& l, std::int64_t* cell_sum, std::int64_t* corner_sum) {
   LevelSums sums{l.all, {{}, true, cell_sum}, {{}, false, corner_sum}};
   for (int k = 0; k < 3; ++k) {
@@ -69,8 +69,8 @@ inline LevelSums level_sums(const LevelPlan& l, std::int64_t* cell_sum, std::int
   return sums;
 }
 
-/// Which cell holds which particles, and what each node makes of the sums around it. Holds as long
-/// as the lists.
+/// Assigns particles to cells and computes the factors of nodes and cells. The results are valid as
+/// long as the lists.
 struct LevelCellsAndNodes {
   static constexpr PassText text{"level cells", "levels"};
   using Needs =
@@ -142,7 +142,7 @@ struct LevelMultipliers {
   }
 };
 
-/// Behind the multipliers, where loads are asked for.
+/// Runs after the multipliers if the scene has loads on walls.
 struct BookLevels {
   static constexpr PassText text{"loads of the levels", "measure"};
   using Needs = pbf::Needs<Looks<field::multiplier>, Looks<field::cell_factor>,

@@ -11,7 +11,7 @@
 #include "lib/program/pass.h"
 
 namespace pbf::inline program_module::field {
-/// Of each wall kLoadParts times LoadSums; 0 between two updates.
+/// Per wall: kLoadParts times LoadSums; 0 between two updates.
 inline constexpr struct LoadRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 } load_sums{{"load sums", per_wall, Life::update}};
 }  // namespace pbf::inline program_module::field
@@ -26,10 +26,10 @@ double moment_unit(const Box<Real>& box) {
   return std::exp2(std::ceil(std::log2(longest)));
 }
 
-/// Of a pass that books loads.
+/// The needs of a pass that books loads.
 using BookNeeds = If<has_loads, Adds<field::load_sums>>;
 
-/// sums: null, or those of the scene.
+/// sums: the rows of field::load_sums, or null.
 template <class C>
 LoadBook<typename C::Real> load_book(C& c, LoadSums* sums) {
   return {sums, typename C::Real(1 / moment_unit(c.p.boundary)), c.gauges.patch.data(),

@@ -9,7 +9,7 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Where what moves goes in the step to come; of scenes in which something does.
+/// Puts moving obstacles and the tank at their places for the step. Only in scenes with motion.
 struct MoveSolids {
   static constexpr PassText text{"motion", "predict"};
   using Needs = pbf::Needs<Writes<field::motion>>;
@@ -20,7 +20,7 @@ struct MoveSolids {
   }
 };
 
-/// x* and the velocity that goes with it, in place.
+/// Computes x* and the predicted velocity, in place.
 struct Predict {
   static constexpr PassText text{"predict", "predict"};
   using Needs = pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>, MoveNeeds>;
@@ -34,13 +34,13 @@ struct Predict {
   }
 };
 
-/// What a sort does besides with positions. Rows as they were are in the second arrays. Where its
-/// order stands is the executor's choice.
+/// The needs of a sort apart from positions. The second arrays hold the rows before the sort. The
+/// executor decides which array holds the order.
 using GatherNeeds = Needs<Writes<field::bin>, Places<field::order>, Places<field::bin_start>,
                           Looks<other<field::id>>, Places<field::id>, Places<field::velocity>>;
 
-/// Runs `first`, the pass that gives every particle its bin, and `listed`, which gives it to those
-/// that the first leaves out; then puts the particles in the order of bins.
+/// Runs `first`, which computes the bin of each particle, and `listed`, which does it for particles
+/// that `first` leaves out. Then `gather` puts the particles into the order of bins.
 template <class G, class First, class Gather, class Listed>
 void sort_rows(const G& c, const char* stage, const First& first, const Gather& gather,
                const Listed& listed) {
@@ -48,7 +48,7 @@ void sort_rows(const G& c, const char* stage, const First& first, const Gather& 
   parts.exec.sort_by_bin(parts.booked(stage), first, listed, c.rows(), bin_count(c.p),
                          c[other<field::id>], parts.sort_order(), c[field::bin_start], gather);
 }
-/// velocity, velocity_out: the arrays that it gathers from and into.
+/// velocity, velocity_out: the arrays from which and into which the pass gathers.
 template <bool moving, class G, class Boundary, class Vectors>
 auto gather_pass(const G& c, const Boundary& boundary, const Vectors* velocity,
                  Vectors* velocity_out) {
@@ -62,7 +62,7 @@ auto gather_pass(const G& c, const Boundary& boundary, const Vectors* velocity,
                                                         c[field::id],
                                                         c.context().counts()};
 }
-/// With particles as predicted from where they are.
+/// Predicts the particles and sorts them by the bins of x*.
 template <class G, class First, class Vectors>
 void sort_predicted(const G& c, const char* stage, const First& first, Vectors* velocity,
                     Vectors* velocity_out) {
@@ -83,7 +83,7 @@ void sort_predicted(const G& c, const char* stage, const First& first, Vectors* 
     sort_rows(c, stage, first, gather, NothingListed{});
 }
 
-/// The positions as they are.
+/// Sorts by the bins of the present positions.
 struct Sort {
   static constexpr PassText text{"sort", "grid"};
   using Flips = pbf::Flips<field::position, field::velocity, field::id>;
@@ -103,14 +103,14 @@ struct Sort {
   }
 };
 
-/// The near rows are predicted in place, before the others.
+/// Rows near solids are predicted in place, before the others.
 using SortPredictedNeeds =
     Needs<Looks<other<field::position>>,
           If<has_solids, Looks<field::near_row>, Places<other<field::position>>>,
           Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, MoveNeeds>;
 
-/// x* is computed for its bin, and once more where the particles are gathered, which is cheaper
-/// than writing and reading it.
+/// Computes x* twice, for the bin and when the particles are gathered. This is cheaper than storing
+/// x* and reading it again.
 struct PredictSort {
   using Fuses = Pair<Predict, Sort>;
   static constexpr PassText text{"predict+sort", "grid"};
@@ -143,7 +143,7 @@ struct MakeLists {
   }
 };
 
-/// Where they stand in an update is the program's own matter (program.cpp).
+/// make_program() (program.cpp) itself adds Predict, Sort and MakeLists to an update.
 struct Motion {
   using Passes = PassList<MoveSolids, Predict, Sort, PredictSort, MakeLists>;
   template <class B>

@@ -1,5 +1,5 @@
-// Obstacles, and walls with loads: their own boundary, and a second launch of the passes over
-// neighbours for the few particles near them.
+// Obstacles, and walls with loads: their boundary, and a second launch of the passes over neighbors
+// for the few particles near them.
 #pragma once
 
 #include "kernels/boundary/far_box.h"
@@ -17,15 +17,15 @@ inline constexpr struct NearRow : Plain<int> {
 namespace pbf::inline PBF_VARIANT {
 
 inline bool has_obstacles(const Scene& s) { return !s.obstacles.empty(); }
-/// Of a pass over neighbors that leaves near rows to a second launch. Their sums over neighbors lie
-/// in the other array of velocities.
+/// The needs of a pass over neighbors that leaves near rows to a second launch. The sums of these
+/// rows are stored in the second array of velocities.
 using NearNeeds = If<has_obstacles, Reads<field::near_room>, Looks<field::near_row>>;
 using NearSumNeeds = If<has_obstacles, Places<other<field::velocity>>>;
 /// Of a pass that moves particles: rows come near, and what solids do to them is booked.
 using MoveNeeds =
     Needs<If<has_solids, Updates<field::near_room>, Places<field::near_row>>, BookNeeds>;
 
-/// Of the present state: arrays are flipped, walls may be those of steps without time.
+/// The boundary for one launch. It is not stored because flips and steps without time change it.
 template <class C>
 Solids<typename C::Real> solids_of(C& c) {
   Solids<typename C::Real> solids = c.solids();
@@ -34,29 +34,29 @@ Solids<typename C::Real> solids_of(C& c) {
   solids.booked = has_loads(c.scene) && c.p.dt > 0;
   solids.near.sums = c.template data<Vec4<typename C::Real>>(other<field::velocity>);
   if (!(c.p.dt > 0)) solids.frame = nullptr;
-  // A far row is farther from what it can meet than the range of the walls' density.
+  // A far row is farther from all solids than the range of the walls' density.
   const auto way = c.p.dt * c.p.boundary.inv_range;
   solids.near.per_speed = way * way * solids.near.far_way_squared;
   return solids;
 }
 
-/// f(the boundary of the scene): its box, or a box with obstacles or loads. Steps without time move
-/// nothing that a wall would feel.
+/// Calls f with the boundary of the scene: its box, or a box with obstacles or loads. Steps without
+/// time book no loads.
 template <class C, class F>
 void with_boundary(C& c, F&& f) {
   c.solids().around ? f(solids_of(c)) : f(c.p.boundary);
 }
 
-/// The same for passes that leave what is near solids to another launch.
+/// The same for passes that leave particles near solids to a second launch.
 template <class C, class F>
 void with_far_boundary(C& c, F&& f) {
   using Real = typename C::Real;
   c.solids().around ? f(FarBox<Real>(solids_of(c))) : f(c.p.boundary);
 }
 
-/// Launches make(boundary), a pass over neighbours: once for all particles, and where there is more
-/// than plain walls once more for those near it. moves: the pass moves particles, so that loads are
-/// booked in it.
+/// Launches make(boundary), a pass over neighbors: once for all particles, and in scenes with
+/// solids a second time for the particles near them. moves: the pass moves particles, so near walls
+/// with loads need the second launch too.
 template <bool moves, class G, class Make>
 void each_then_near(const G& c, Make&& make) {
   using Real = typename G::Real;

@@ -8,8 +8,8 @@ namespace pbf::inline PBF_VARIANT {
 
 inline constexpr const char* kLessXsph = "lower viscosity.xsph";
 
-/// use(the pass from velocities into others). bin: null, or where the particles' bins in the next
-/// update go.
+/// Calls use() with the pass that reads `velocity` and writes `velocity_out`. bin: array for the
+/// particles' bins in the next update, or null.
 template <class G, class Rows, class Use>
 void with_xsph(const G& c, GatheredRows<Rows> position, GatheredRows<Rows> velocity,
                OwnRows<Rows> velocity_out, int* bin, const Use& use) {
@@ -34,7 +34,7 @@ struct Xsph {
   }
 };
 
-/// The velocities go into the other array, and the sort takes them back.
+/// Xsph writes the velocities into the second array, and the sort gathers them back into the first.
 struct XsphPredictSort {
   using Fuses = Pair<Xsph, PredictSort>;
   static constexpr PassText text{"xsph+predict+sort", "xsph", kLessXsph};

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "lib/run/emit.h"
+#include "lib/run/motion_files.h"
 #include "lib/scene/load.h"
 #include "lib/solver/step_solver.h"
 #include "tests/support/catch.h"
@@ -58,7 +59,8 @@ void run(const Scenario& of, Seen& seen) {
   const std::string file = std::string(PBF_SOURCE_DIR) + "/" + of.scene + ".yaml";
   std::vector<std::string> set = of.set;
   set.insert(set.end(), {"precision=float", "output=off", "render=off"});
-  const Scene scene = load_scene(file, set).scene;
+  Scene scene = load_scene(file, set).scene;
+  read_motions(scene, std::filesystem::path(file).parent_path().string());
   Particles particles = emit_particles(scene, std::filesystem::path(file).parent_path().string());
   for (std::size_t k = 0; k < particles.size(); k += 2) particles.velocity[k][0] += of.fast;
   const Plan plan = make_plan(scene, std::int64_t(particles.size()));
