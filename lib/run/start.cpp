@@ -58,13 +58,6 @@ Start prepare(const Scene& scene, const std::string& folder, const PrepareOption
   return prepare(std::move(loaded), options);
 }
 
-Start with_scene(const Start& start, const Scene& scene) {
-  Start other = start;
-  other.loaded.scene = scene;
-  other.plan = make_plan(scene, start.plan.particles, start.plan.start);
-  return other;
-}
-
 std::unique_ptr<Solver> solver_of(Start& start) {
   auto solver = make_solver(start.scene(), start.plan, std::move(start.particles));
   prestabilize(*solver, start.scene(), start.plan);

@@ -42,8 +42,6 @@ struct Start {
 Start prepare(LoadedScene loaded, const PrepareOptions& options = {});
 /// The same of a scene that no file holds; `folder` anchors relative paths.
 Start prepare(const Scene& scene, const std::string& folder, const PrepareOptions& options = {});
-/// The same particles under another scene with the same bodies, spacing and domain.
-Start with_scene(const Start& start, const Scene& scene);
 
 /// A solver before its first update. The particles move into it, and prestabilize() is done.
 std::unique_ptr<Solver> solver_of(Start& start);
