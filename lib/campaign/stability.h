@@ -86,7 +86,7 @@ struct StabilityOptions {
 };
 
 /// Without output, and where and with what the options say.
-void prepare(Scene& scene, const StabilityOptions& o);
+void without_files(Scene& scene, const StabilityOptions& o);
 
 /// Runs one case and judges it, but for `like`. Throws Error(unavailable) where the backend is not
 /// there; every other error of the case is judged. Empty when o.stop() said so.
