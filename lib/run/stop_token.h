@@ -5,7 +5,8 @@
 
 namespace pbf::inline run_module {
 
-/// Of one run, or shared by several. Any thread may call every function, a signal handler too.
+/// Of one run. Several may share it to be stopped, but only one of them learns that it is to save.
+/// Any thread may call every function, a signal handler too.
 class StopToken {
  public:
   /// To stop. `why` is a literal ("SIGTERM"); the first one stays.
