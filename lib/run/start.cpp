@@ -37,6 +37,7 @@ Start prepare(LoadedScene loaded, const PrepareOptions& options) {
   const std::size_t available = available_memory();  // without the particles, which the plan counts
   StartPoints points(scene, start.loaded.folder);
   const std::int64_t particles = count_particles(points);
+  if (options.when_read) options.when_read();
   const auto plan = [&](StartNeighbors neighbors) {
     start.plan = make_plan(scene, particles, std::move(neighbors));
     if (options.fits) refuse_if_too_large(scene, start.plan, available);

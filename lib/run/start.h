@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,10 +21,11 @@ namespace pbf::inline run_module {
 
 /// How far prepare() goes.
 struct PrepareOptions {
-  bool fits = true;       ///< refuse what the memory of this machine cannot hold
-  bool warnings = false;  ///< of the scene
-  bool strict = false;    ///< they are an error
-  bool particles = true;  ///< are made
+  bool fits = true;                   ///< refuse what the memory of this machine cannot hold
+  bool warnings = false;              ///< of the scene
+  bool strict = false;                ///< they are an error
+  bool particles = true;              ///< are made
+  std::function<void()> when_read{};  ///< called before what takes long
 };
 
 struct Start {
@@ -36,9 +38,9 @@ struct Start {
 };
 
 /// Opens each particle file of the scene once. Its motions have been read (read_motions()). Throws,
-/// in this order, what StartPoints, count_particles() and make_plan() throw, Error(unavailable) as
-/// refuse_if_too_large(), Error(difference) for warnings where they are errors, and what
-/// emit_particles() throws.
+/// in this order, what StartPoints, count_particles(), `when_read` and make_plan() throw,
+/// Error(unavailable) as refuse_if_too_large(), Error(difference) for warnings where they are
+/// errors, and what emit_particles() throws.
 Start prepare(LoadedScene loaded, const PrepareOptions& options = {});
 /// The same of a scene that no file holds; `folder` anchors relative paths.
 Start prepare(const Scene& scene, const std::string& folder, const PrepareOptions& options = {});
@@ -59,7 +61,7 @@ struct Control {
   std::string log_json{};   ///< path of a file that gets a line of JSON per measure; empty: none
   double max_walltime = 0;  ///< s, 0: none
   bool strict = false;      ///< a warning ends it
-  Stopwatch wall{};         ///< since the command began
+  Stopwatch wall{};         ///< since this was made
 };
 
 /// How a run ended, where nothing was thrown.
@@ -68,9 +70,13 @@ struct RunResult {
   std::int64_t updates = 0;  ///< that are done
 };
 
+/// Throws Error(unavailable) for a scene with pictures in a build that draws none, as run() does:
+/// to be asked before prepare() takes its time.
+void refuse_pictures(const Scene& scene);
 /// Runs into a folder, or goes on with the run there. Its lines go to control.log and the folder's
 /// log.txt, an error that ends it to log.txt. A scene that cannot run leaves no folder behind.
-/// Several runs may be under way in one process, each with a folder, a token and a log of its own.
+/// Several runs may be under way in one process, each with a folder, a token and a log of its own;
+/// inputs() (lib/base/inputs.h) are those of all of them.
 /// Throws as run_session(), RunFolder, find_resume_point(), take_files() and make_solver() do.
 RunResult run(Start start, const RunPlace& place, Control& control);
 
