@@ -36,7 +36,8 @@ class Log {
   void result(const std::string& text);
   /// A line that the next one overwrites on a terminal; the file does not get it.
   void transient(const std::string& text);
-  /// A line of progress: on a terminal twice a second as transient(), else every 10 s as note().
+  /// A line of progress: every 10 s as note(), on a terminal twice a second as transient() instead,
+  /// and every 10 s for the file.
   void progress(const std::string& text);
   /// A line for the file alone.
   void file_only(const std::string& text);
@@ -53,7 +54,7 @@ class Log {
   std::function<void(const std::string&)> sink_;
   std::string path_;
   std::FILE* file_ = nullptr;
-  Stopwatch since_progress_;
+  Stopwatch since_progress_, since_transient_;
 };
 
 /// Where a run stands, for one line of progress.
