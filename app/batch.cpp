@@ -92,13 +92,15 @@ std::string list_text(const std::vector<BatchMember>& members) {
   return text;
 }
 
+/// CPU threads of each run; 0: as its scene says.
+int threads_of_run(const BatchOptions& o) {
+  return o.threads == 0 && o.jobs > 1 ? std::max(1, usable_threads() / o.jobs) : o.threads;
+}
+
 class Batch {
  public:
   Batch(const BatchOptions& o, std::vector<BatchMember> members, const std::string& out, Log& log)
-      : o_(o), members_(std::move(members)), out_(out), log_(log) {
-    threads_ = o.threads;
-    if (threads_ == 0 && o.jobs > 1) threads_ = std::max(1, usable_threads() / o.jobs);
-  }
+      : o_(o), members_(std::move(members)), out_(out), log_(log), threads_(threads_of_run(o)) {}
 
   void run() {
     const auto stop = [this] { return signal_token().why() || time_is_up(); };
@@ -196,7 +198,7 @@ class Batch {
   std::string out_;
   Log& log_;
   Stopwatch wall_;
-  int threads_ = 0;
+  int threads_;
   std::map<std::string, JobEnd> ends_;
 };
 
@@ -217,8 +219,12 @@ int command_batch(const BatchOptions& o) {
   if (o.only >= std::int64_t(members.size()))
     throw Error(ExitCode::bad_input, format("--only %ld: the runs are counted from 0 to %zu",
                                             o.only, members.size() - 1));
-  const bool one = o.only >= 0;  // a task of an array: no summary, as other tasks write too
-  if (!one && !o.collect) check_members(members, o.overrides, o.base_folder, true);
+  const bool one = o.only >= 0;  // a task of an array: no summary, others write beside it
+  if (!one && !o.collect) {
+    std::vector<std::string> overrides = o.overrides;
+    if (const int n = threads_of_run(o)) overrides.push_back("threads=" + std::to_string(n));
+    check_members(members, overrides, o.base_folder, true);
+  }
   std::error_code error;
   fs::create_directories(out, error);
   if (error) throw Error(ExitCode::io, out + ": the folder cannot be made: " + error.message());

@@ -102,15 +102,19 @@ int command_run(const RunOptions& options) {
   Control control{signal_token(), log, options.log_json, options.max_walltime, options.strict};
   LoadedScene loaded =
       load_scene_or_run(options.scene, all_overrides(options), options.base_folder);
+  refuse_pictures(loaded.scene);
   const RunPlace place{run_place(loaded, options.out, options.resume),
                        options.overwrite ? ExistingFolder::overwrite
                        : options.resume  ? ExistingFolder::resume
                                          : ExistingFolder::refuse};
   if (place.existing == ExistingFolder::refuse) refuse_own_folder(loaded, place.folder);
   const bool there = RunFolder::check(place.folder, place.existing);
-  Start start = prepare(std::move(loaded), {.warnings = true, .strict = options.strict});
-  check_log_json(options.log_json, place.folder);  // after all inputs are read
-  if (there && options.overwrite) RunFolder::refuse_overwrite(place.folder);
+  const auto check_outputs = [&] {  // against what has been read
+    check_log_json(options.log_json, place.folder);
+    if (there && options.overwrite) RunFolder::refuse_overwrite(place.folder);
+  };
+  Start start = prepare(std::move(loaded),
+                        {.warnings = true, .strict = options.strict, .when_read = check_outputs});
   if (options.resume && !there)
     log.note("pbf: " + not_there_note(start.loaded, place.folder, !options.out.empty()));
   const RunResult result = run(std::move(start), place, control);

@@ -72,8 +72,12 @@ void Log::transient(const std::string& text) {
 }
 
 void Log::progress(const std::string& text) {
-  if (since_progress_.seconds() < (terminal_ ? 0.5 : 10)) return;
-  terminal_ ? transient(text) : note(text);
+  if (terminal_ && since_transient_.seconds() >= 0.5) {
+    transient(text);
+    since_transient_ = Stopwatch();
+  }
+  if (since_progress_.seconds() < 10) return;
+  terminal_ ? file_only(text) : note(text);
   since_progress_ = Stopwatch();
 }
 

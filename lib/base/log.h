@@ -35,7 +35,8 @@ class Log {
   void result(const std::string& text);
   /// A line that the next one overwrites on a terminal; the file does not get it.
   void transient(const std::string& text);
-  /// A progress line: on a terminal twice a second as transient(), otherwise every 10 s as note().
+  /// A line of progress: every 10 s as note(), on a terminal twice a second as transient() instead,
+  /// and every 10 s for the file.
   void progress(const std::string& text);
   /// A line for the file alone.
   void file_only(const std::string& text);
@@ -52,7 +53,7 @@ class Log {
   std::function<void(const std::string&)> sink_;
   std::string path_;
   std::FILE* file_ = nullptr;
-  Stopwatch since_progress_;
+  Stopwatch since_progress_, since_transient_;
 };
 
 /// Where a run stands, for one line of progress.

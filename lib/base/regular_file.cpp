@@ -57,6 +57,13 @@ std::size_t RegularFile::read(char* bytes, std::size_t size) {
   return static_cast<std::size_t>(n);
 }
 
+std::pair<std::size_t, std::int64_t> RegularFile::stamp() const {
+  struct stat state {};
+  if (::fstat(fd_, &state) != 0)
+    throw Error(ExitCode::io, path_ + ": reading failed: " + std::strerror(errno));
+  return {state.st_size, state.st_mtim.tv_sec * std::int64_t{1000000000} + state.st_mtim.tv_nsec};
+}
+
 void RegularFile::rewind() {
   if (::lseek(fd_, 0, SEEK_SET) < 0)
     throw Error(ExitCode::io, path_ + ": reading failed: " + std::strerror(errno));

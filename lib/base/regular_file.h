@@ -4,7 +4,9 @@
 #include <sys/types.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <utility>
 
 namespace pbf::inline base_module {
 
@@ -26,6 +28,9 @@ class RegularFile {
   RegularFile& operator=(const RegularFile&) = delete;
   /// Reads at most `size` bytes and returns their number; 0 at the end. Throws Error(io).
   std::size_t read(char* bytes, std::size_t size);
+  /// Size in bytes and time of the last change in ns, of this file whatever its path leads to now.
+  /// Error(io).
+  std::pair<std::size_t, std::int64_t> stamp() const;
   /// Back to the first byte.
   void rewind();
 

@@ -85,8 +85,8 @@ struct StabilityOptions {
   std::function<bool()> stop;          ///< called between updates; true stops the runs
 };
 
-/// Removes output and applies the options to the scene.
-void prepare(Scene& scene, const StabilityOptions& o);
+/// Without output, and where and with what the options say.
+void without_files(Scene& scene, const StabilityOptions& o);
 
 /// Runs one case and judges it, except for `like`. Throws Error(unavailable) if the backend is
 /// missing; any other error counts for the verdict. Empty if o.stop() ended it.

@@ -29,7 +29,7 @@ Scene scene_of(const StabilityCase& c, const StabilityOptions& o, const std::str
     s.domain.loads = true;
     for (Obstacle& obstacle : s.obstacles) obstacle.loads = true;
   }
-  prepare(s, o);
+  without_files(s, o);
   return s;
 }
 
@@ -128,7 +128,8 @@ bool run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
     const auto x = snap.fields[0].as<double>();
     row.nearest = nearest_distance({x.begin(), x.end()}) / s.fluid.spacing;
   };
-  Start start = prepare(s, dir, {.warnings = !c.must.warns.empty()});
+  // What other cases hold at this time is no property of this one: none is refused for it.
+  Start start = prepare(s, dir, {.fits = false, .warnings = !c.must.warns.empty()});
   const bool warned = std::ranges::any_of(start.warnings, [&](const Warning& w) {
     return w.text.find(c.must.warns) != std::string::npos;
   });
@@ -156,7 +157,7 @@ bool run(StabilityRow& row, const StabilityCase& c, const StabilityOptions& o) {
 
 }  // namespace
 
-void prepare(Scene& s, const StabilityOptions& o) {
+void without_files(Scene& s, const StabilityOptions& o) {
   s.output.reset();
   s.render.reset();
   s.backend = o.backend;

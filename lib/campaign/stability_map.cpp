@@ -102,14 +102,14 @@ std::optional<MapCell> run_map_cell(const StabilityMap& m, MapCell c) {
   const double g0 = length(base.gravity), g = length(s.gravity);
   if (g0 > 0 && g > 0) s.time.end *= std::sqrt(g0 / base.h() / (g / s.h()));
   s.time.end = std::max(s.time.end, s.time.step);
-  prepare(s, m.run);
+  without_files(s, m.run);
   if (!s.guard) s.guard.emplace();
   // About 200 measurements per run, however many updates it makes.
   s.measure_every = std::max(1, int(s.time.end / s.time.step / 200));
   c.scene = s.name;
   c.dt_hat = relative_step(s);
-  const auto ran =
-      run_course(prepare(s, std::filesystem::path(m.scene).parent_path().string()), m.run.stop);
+  const std::string dir = std::filesystem::path(m.scene).parent_path().string();
+  const auto ran = run_course(prepare(s, dir, {.fits = false}), m.run.stop);
   if (!ran) return std::nullopt;
   const Course& course = *ran;
   static_cast<Figures&>(c) = course;

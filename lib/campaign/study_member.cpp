@@ -76,9 +76,9 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
   MemberResult out;
   out.updates = schedule.updates;
   Start start = prepare(scene, study.scene_dir);
-  const Plan& plan = start.plan;
-  out.particles = plan.particles;
-  // A short repeat is a tenth of the run, but at least 20 updates.
+  const std::string files = files_text(start.particles.files);
+  out.particles = start.plan.particles;
+  // A short repeat is a tenth of the run, but no fewer than 20 updates.
   const std::int64_t early = std::min(out.updates, std::max<std::int64_t>(20, out.updates / 10));
   double early_seconds = 0;
   bool stopped = false;
@@ -112,7 +112,9 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
   if (out.status != "finished") return out;
   for (int r = 1; r < study.repeats && early > 0; ++r) {
     if (stop()) return std::nullopt;
-    start = prepare(scene, study.scene_dir);
+    start = prepare(scene, study.scene_dir, {.fits = false});  // it did
+    const std::string changed = files_difference(files, start.particles.files);
+    if (!changed.empty()) throw Error(ExitCode::bad_input, "study: while it ran, " + changed);
     const std::unique_ptr<Solver> solver = solver_of(start);
     Session again(*solver);
     again.run(early);

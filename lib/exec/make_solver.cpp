@@ -6,22 +6,21 @@
 #ifdef PBF_HAS_CUDA
 #include "lib/exec/cuda/cuda_solver.h"
 #endif
-#include "lib/base/machine.h"
 #include "lib/exec/make_solver.h"
 #include "lib/program/plan.h"
 #include "lib/solver/solver.h"
 
 namespace pbf::inline exec_module {
 
-void refuse_if_too_large(const Scene& scene, const Plan& plan) {
-  const auto needed = double(plan.memory.host_peak()), available = double(available_memory());
-  if (available > 0 && needed > available)
+void refuse_if_too_large(const Scene& scene, const Plan& plan, std::size_t available) {
+  const auto needed = double(plan.memory.host_peak());
+  if (available > 0 && needed > double(available))
     throw Error(ExitCode::unavailable,
                 format("scene %s needs about %s of memory for %lld particles, %s are available; "
                        "%s, or use a machine with more memory",
                        scene.name.c_str(), bytes_text(needed).c_str(),
-                       static_cast<long long>(plan.particles), bytes_text(available).c_str(),
-                       memory_remedy(scene, plan).c_str()));
+                       static_cast<long long>(plan.particles),
+                       bytes_text(double(available)).c_str(), memory_remedy(scene, plan).c_str()));
 }
 
 std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles) {

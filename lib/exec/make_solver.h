@@ -1,6 +1,7 @@
 // Creates a solver for the backend of a scene.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "lib/program/plan.h"
@@ -10,10 +11,11 @@
 
 namespace pbf::inline exec_module {
 
-/// Throws Error(unavailable) if the plan's peak of host memory exceeds what is available: an
-/// allocation that the system cannot back succeeds at first, and the process is killed later
-/// without a message. make_solver() checks the memory of a device.
-void refuse_if_too_large(const Scene& scene, const Plan& plan);
+/// Throws Error(unavailable) when the plan's peak of host memory is more than the bytes that are
+/// available, which are to be asked for before any particle is read, for the peak includes them (0:
+/// not known). An allocation that the system cannot back succeeds at first, and the process is
+/// killed later without a word. The memory of a device is checked by make_solver.
+void refuse_if_too_large(const Scene& scene, const Plan& plan, std::size_t available);
 
 /// Throws Error(unavailable) if the backend, a device or memory is missing. Takes the particles and
 /// frees them during the construction. It does not prestabilize them: code that runs a scene from

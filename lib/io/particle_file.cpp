@@ -1,8 +1,7 @@
 #include "lib/io/particle_file.h"
 
+#include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <utility>
 #include <vector>
 
 #include "lib/base/error.h"
@@ -17,11 +16,19 @@
 #include "lib/io/particle_csv.h"
 
 namespace pbf::inline io_module {
-namespace fs = std::filesystem;
 namespace {
 
+/// `room`: bytes of memory that are available.
+void must_fit(const std::string& what, std::size_t bytes, std::size_t room) {
+  if (bytes > room)
+    throw Error(ExitCode::unavailable, what + ": needs " + bytes_text(double(bytes)) +
+                                           " of memory, " + bytes_text(double(room)) +
+                                           " are available; use a machine with more memory");
+}
+
 /// Rows of dataset `name`, which must be (N, 3) numbers.
-std::vector<Double3> read_rows(hid_t file, const std::string& path, const char* name) {
+std::vector<Double3> read_rows(hid_t file, const std::string& path, const char* name,
+                               std::size_t room) {
   const std::string where = path + ": dataset " + name;
   const h5::Dataset data = h5::open_dataset(file, name);
   const h5::Type type(H5Dget_type(data));
@@ -34,6 +41,7 @@ std::vector<Double3> read_rows(hid_t file, const std::string& path, const char* 
   if (dims[0] > 2147483647u)
     bad_input(where, "has " + std::to_string(dims[0]) + " rows; at most 2147483647 particles fit");
   h5::claimed(data, dims, sizeof(double));
+  must_fit(where, 2 * dims[0] * sizeof(Double3), room);  // positions and velocities
   std::vector<Double3> out(dims[0]);
   if (dims[0] > 0)
     h5::check(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()));
@@ -43,14 +51,14 @@ std::vector<Double3> read_rows(hid_t file, const std::string& path, const char* 
   return out;
 }
 
-Particles read_hdf5(const std::string& path, const std::string& bytes) {
+Particles read_hdf5(const std::string& path, const std::string& bytes, std::size_t room) {
   try {
     const h5::Reading file(path, bytes);
     Particles p;
     if (!h5::has_link(file, "position"))
       bad_input(path + ": dataset position", "is missing; a particle file needs position (N, 3)");
-    p.position = read_rows(file, path, "position");
-    if (h5::has_link(file, "velocity")) p.velocity = read_rows(file, path, "velocity");
+    p.position = read_rows(file, path, "position", room);
+    if (h5::has_link(file, "velocity")) p.velocity = read_rows(file, path, "velocity", room);
     if (!h5::has_link(file, "velocity")) p.velocity.resize(p.size());
     if (p.velocity.size() != p.size())
       bad_input(path, "position has " + std::to_string(p.size()) + " rows, velocity " +
@@ -61,17 +69,11 @@ Particles read_hdf5(const std::string& path, const std::string& bytes) {
   }
 }
 
-/// Size and time of the last change, of what is at the path.
-std::pair<std::int64_t, std::int64_t> stamp_of(const std::string& path) {
-  std::error_code error;
-  const auto size = std::int64_t(fs::file_size(path, error));
-  return {size, fs::last_write_time(path, error).time_since_epoch().count()};
-}
-
 /// All bytes from the present one on.
-std::string bytes_of(RegularFile& file) {
+std::string bytes_of(RegularFile& file, std::size_t expected) {
   constexpr std::size_t kBlock = std::size_t{1} << 18;
   std::string bytes;
+  bytes.reserve(expected + kBlock);  // to grow takes twice the bytes for a moment
   for (std::size_t n = 1, at = 0; n > 0; at += n) {
     bytes.resize(at + kBlock);
     n = file.read(bytes.data() + at, kBlock);
@@ -86,28 +88,27 @@ Particles read_particle_file(const std::string& path, std::string* sha256) {
   note_input(path);
   RegularFile file(path, "a particle file (CSV or HDF5)",
                    "; paths of file bodies are relative to the folder of the scene file");
-  const auto stamp = stamp_of(path);
-  if (const auto memory = double(available_memory());
-      memory > 0 && double(stamp.first) > memory / 2)
-    throw Error(ExitCode::unavailable,
-                path + ": holds " + bytes_text(double(stamp.first)) + ", too much for the " +
-                    bytes_text(memory) +
-                    " of memory that are available; use a machine with more memory");
+  const auto stamp = file.stamp();
+  const std::size_t size = stamp.first, memory = available_memory();
+  const std::size_t room = memory > 0 ? memory : ~std::size_t{0};
   char head[8];
   const std::size_t n = file.read(head, sizeof head);
   file.rewind();
   Sha256 hash;
   Particles p;
   if (h5::is_signature({head, n})) {
-    const std::string bytes = bytes_of(file);
-    if (stamp_of(path) != stamp)
+    must_fit(path, size, room);
+    const std::string bytes = bytes_of(file, size);
+    if (file.stamp() != stamp)
       throw Error(ExitCode::io, path +
                                     ": cannot be read as a particle file: it was written to while "
                                     "it was read; wait until it is whole");
     if (sha256) hash.add(bytes);
-    h5::trial(path, [&] { read_hdf5(path, bytes); });
-    p = read_hdf5(path, bytes);
+    const auto read = [&] { return read_hdf5(path, bytes, room - std::min(room, bytes.size())); };
+    h5::trial(path, read);
+    p = read();
   } else {
+    must_fit(path, 2 * size, room);
     p = read_particle_csv(file, path, sha256 ? &hash : nullptr);
   }
   if (sha256) *sha256 = hash.text();

@@ -18,7 +18,7 @@ namespace pbf::inline io_module {
 /// Throws Error(io) when the file cannot be read, is no regular file, was written to meanwhile
 /// (HDF5), crashes HDF5, or leads into other files; Error(bad_input) naming file and line (CSV) or
 /// dataset and row (HDF5) when it cannot be understood or a value is not finite; Error(unavailable)
-/// when it is larger than half of the memory that is available.
+/// when the memory that is available does not hold an HDF5 file and its particles, or twice a CSV.
 Particles read_particle_file(const std::string& path, std::string* sha256 = nullptr);
 
 }  // namespace pbf::inline io_module

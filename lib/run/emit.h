@@ -43,7 +43,7 @@ class StartPoints {
   const Particles& of_file(std::size_t body) const { return of_files_[body]; }
   /// Moves the particles of a file out of this object.
   Particles take_file(std::size_t body) { return std::move(of_files_[body]); }
-  /// The files of bodies and motions, in this order, as they were read.
+  /// Those of bodies, which were opened here, then those of motions, which read_motions() has read.
   const std::vector<SceneFile>& files() const { return files_; }
 
  private:

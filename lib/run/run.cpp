@@ -191,13 +191,17 @@ void run_session(RunParts& run) {
                            run.folder.path().c_str(), run.solver.updates(), run.schedule.updates));
 }
 
-RunResult run(Start start, const RunPlace& place, Control& control) {
+void refuse_pictures([[maybe_unused]] const Scene& scene) {
 #ifndef PBF_HAS_RENDER
-  if (start.scene().render)
+  if (scene.render)
     throw Error(ExitCode::unavailable,
                 "render: this build draws no pictures; remove the key, or build with "
                 "-DPBF_RENDER=ON");
 #endif
+}
+
+RunResult run(Start start, const RunPlace& place, Control& control) {
+  refuse_pictures(start.scene());
   Log& log = control.log;
   StageClock clock;
   std::unique_ptr<RunFolder> folder;

@@ -75,14 +75,18 @@ std::optional<fs::path> others_file(const fs::path& folder) {
   const auto all_in = [](const fs::path& where, bool (*own)(const std::string&)) {
     std::set<fs::path> found;
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(where, error))
-      if (own(entry.path().filename().string()) && start_of(entry.path()).value_or("") != "")
+    for (const auto& entry : fs::directory_iterator(where, error)) {
+      const std::string name = entry.path().filename().string();
+      if (own(name) && !name.starts_with(kTemporaryPrefix) &&
+          start_of(entry.path()).value_or("") != "")
         found.insert(entry.path());
+    }
     return found;
   };
   const std::set<fs::path> found = all_in(folder, own_file);
-  // A run whose log was removed still has the record of its scene and another file.
-  if (found.contains(folder / kResolvedScene) && found.size() > 1) return {};
+  // A run whose log was removed has the record of its scene, and something beside it; one that was
+  // killed before its first line has an empty log.
+  if (found.contains(folder / kResolvedScene) && (found.size() > 1 || log)) return {};
   if (!found.empty()) return *found.begin();
   const fs::path frames = folder / RunFolder::kPictures;
   if (fs::is_symlink(frames)) return {};

@@ -15,7 +15,7 @@ extern "C" void pbf_on_stop(int number) {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
   const auto second = static_cast<std::sig_atomic_t>(now.tv_sec);
-  if (!token.why()) {
+  if (seen_at == 0) {  // somebody else may have asked the token
     seen_at = second;
     token.ask(number == SIGTERM ? "SIGTERM" : "SIGINT");
     std::signal(SIGINT, SIG_DFL);

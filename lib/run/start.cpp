@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "lib/base/error.h"
+#include "lib/base/machine.h"
 #include "lib/base/text.h"
 #include "lib/exec/make_solver.h"
 #include "lib/run/emit.h"
@@ -33,11 +34,13 @@ std::vector<std::string> notes_of(const Particles& p, const Scene& scene) {
 Start prepare(LoadedScene loaded, const PrepareOptions& options) {
   Start start{std::move(loaded)};
   const Scene& scene = start.scene();
+  const std::size_t available = available_memory();  // without the particles, which the plan counts
   StartPoints points(scene, start.loaded.folder);
   const std::int64_t particles = count_particles(points);
+  if (options.when_read) options.when_read();
   const auto plan = [&](StartNeighbors neighbors) {
     start.plan = make_plan(scene, particles, std::move(neighbors));
-    if (options.fits) refuse_if_too_large(scene, start.plan);
+    if (options.fits) refuse_if_too_large(scene, start.plan, available);
   };
   if (options.fits) plan({});  // before particles are examined
   plan(start_neighbors(points, particles));
@@ -54,13 +57,6 @@ Start prepare(const Scene& scene, const std::string& folder, const PrepareOption
   loaded.scene = scene;
   loaded.folder = folder;
   return prepare(std::move(loaded), options);
-}
-
-Start with_scene(const Start& start, const Scene& scene) {
-  Start other = start;
-  other.loaded.scene = scene;
-  other.plan = make_plan(scene, start.plan.particles, start.plan.start);
-  return other;
 }
 
 std::unique_ptr<Solver> solver_of(Start& start) {

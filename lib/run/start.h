@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,10 +21,11 @@ namespace pbf::inline run_module {
 
 /// The work that prepare() does.
 struct PrepareOptions {
-  bool fits = true;       ///< refuse a scene that does not fit into the memory of this machine
-  bool warnings = false;  ///< find warnings of the scene
-  bool strict = false;    ///< warnings are an error
-  bool particles = true;  ///< create the particles
+  bool fits = true;                   ///< refuse what the memory of this machine cannot hold
+  bool warnings = false;              ///< of the scene
+  bool strict = false;                ///< they are an error
+  bool particles = true;              ///< are made
+  std::function<void()> when_read{};  ///< called before what takes long
 };
 
 struct Start {
@@ -35,15 +37,13 @@ struct Start {
   const Scene& scene() const { return loaded.scene; }
 };
 
-/// Opens each particle file of the scene once. Motions must have been read (read_motions()).
-/// Throws, in this order, what StartPoints, count_particles() and make_plan() throw,
-/// Error(unavailable) as refuse_if_too_large(), Error(difference) if warnings are errors, and what
-/// emit_particles() throws.
+/// Opens each particle file of the scene once. Its motions have been read (read_motions()). Throws,
+/// in this order, what StartPoints, count_particles(), `when_read` and make_plan() throw,
+/// Error(unavailable) as refuse_if_too_large(), Error(difference) for warnings where they are
+/// errors, and what emit_particles() throws.
 Start prepare(LoadedScene loaded, const PrepareOptions& options = {});
 /// The same for a scene without a file; `folder` anchors relative paths.
 Start prepare(const Scene& scene, const std::string& folder, const PrepareOptions& options = {});
-/// The same particles with another scene that has the same bodies, spacing and domain.
-Start with_scene(const Start& start, const Scene& scene);
 
 /// A solver before its first update, after prestabilize(). The particles are moved into it.
 std::unique_ptr<Solver> solver_of(Start& start);
@@ -60,8 +60,8 @@ struct Control {
   Log& log;
   std::string log_json{};   ///< file that gets a line of JSON per measurement; empty: none
   double max_walltime = 0;  ///< s, 0: none
-  bool strict = false;      ///< a warning ends the run
-  Stopwatch wall{};         ///< since the command began
+  bool strict = false;      ///< a warning ends it
+  Stopwatch wall{};         ///< since this was made
 };
 
 /// How a run ended, if nothing was thrown.
@@ -70,10 +70,14 @@ struct RunResult {
   std::int64_t updates = 0;  ///< done
 };
 
-/// Runs into a folder, or resumes the run there. Messages go to control.log and to the folder's
-/// log.txt, an error that ends the run to log.txt. A scene that cannot run leaves no folder behind.
-/// Several runs may be active in one process, each with its own folder, token and log. Throws what
-/// run_session(), RunFolder, find_resume_point(), take_files() and make_solver() throw.
+/// Throws Error(unavailable) for a scene with pictures in a build that draws none, as run() does:
+/// to be asked before prepare() takes its time.
+void refuse_pictures(const Scene& scene);
+/// Runs into a folder, or goes on with the run there. Its lines go to control.log and the folder's
+/// log.txt, an error that ends it to log.txt. A scene that cannot run leaves no folder behind.
+/// Several runs may be under way in one process, each with a folder, a token and a log of its own;
+/// inputs() (lib/base/inputs.h) are those of all of them.
+/// Throws as run_session(), RunFolder, find_resume_point(), take_files() and make_solver() do.
 RunResult run(Start start, const RunPlace& place, Control& control);
 
 }  // namespace pbf::inline run_module

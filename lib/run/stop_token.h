@@ -5,7 +5,8 @@
 
 namespace pbf::inline run_module {
 
-/// Of one run, or shared by several. All functions may be called by any thread and signal handler.
+/// Of one run. Several may share it to be stopped, but only one of them learns that it is to save.
+/// Any thread may call every function, a signal handler too.
 class StopToken {
  public:
   /// Asks to stop. `why` is a string literal ("SIGTERM"); the first one is kept.

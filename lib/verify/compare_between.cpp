@@ -22,18 +22,22 @@ namespace {
 
 Scene on(const Scene& scene, const CompareSide& side) {
   Scene s = scene;
+  s.output.reset();  // nothing is written, so that is nothing to hold memory for
+  s.render.reset();
+  s.checkpoint.reset();
   s.backend = side.backend;
   s.precision = side.precision;
   if (side.threads > 0) s.threads = side.threads;
   return s;
 }
 
-std::unique_ptr<Solver> make(const Start& start, bool variant) {
+std::unique_ptr<Solver> make(const Scene& scene, const Plan& plan, const Particles& particles,
+                             bool variant = false) {
 #ifdef PBF_HAS_DEFECT
-  if (variant) return defect::make_cpu_solver(start.scene(), start.plan, start.particles);
+  if (variant) return defect::make_cpu_solver(scene, plan, particles);
 #endif
   if (variant) throw Error(ExitCode::unavailable, "cpu+defect is not in this build");
-  return make_solver(start.scene(), start.plan, start.particles);
+  return make_solver(scene, plan, particles);
 }
 
 void round_to_float(SolverState& s) {
@@ -94,16 +98,19 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
                 "fluid.smoothing_ratio and domain.min must stay; give these to both with --set, or "
                 "compare two run files");
   const Start start_a = prepare(on(scene_a, settings.a), dir);
-  const Start start_b = with_scene(start_a, on(scene_b, settings.b));
-  const Scene &on_a = start_a.scene(), &on_b = start_b.scene();
-  const std::unique_ptr<Solver> a = make(start_a, settings.a.variant);
-  const std::unique_ptr<Solver> b = make(start_b, settings.b.variant);
+  const auto plan_of = [&](const Scene& s) {
+    return make_plan(s, start_a.plan.particles, start_a.plan.start);
+  };
+  const Particles& particles = start_a.particles;
+  const Scene &on_a = start_a.scene(), on_b = on(scene_b, settings.b);
+  const Plan &plan_a = start_a.plan, plan_b = plan_of(on_b);
+  const std::unique_ptr<Solver> a = make(on_a, plan_a, particles, settings.a.variant);
+  const std::unique_ptr<Solver> b = make(on_b, plan_b, particles, settings.b.variant);
   Scene plain = on(scene_a, {Backend::cpu, Precision::dbl, 0, false});
-  plain.solver.fused = false;  // a stored density can be rounded; the bits are the same
-  const std::unique_ptr<Solver> reference = make(with_scene(start_a, plain), false);
+  plain.solver.fused = false;  // a stored density can be rounded; its bits are the same
+  const std::unique_ptr<Solver> reference = make(plain, plan_of(plain), particles);
 
-  Comparison c{&settings, &start_a.plan, &on_a,   &start_b.plan,
-               &on_b,     a.get(),       b.get(), reference.get()};
+  Comparison c{&settings, &plan_a, &on_a, &plan_b, &on_b, a.get(), b.get(), reference.get()};
   c.u = std::max(about(settings.a.precision).roundoff, about(settings.b.precision).roundoff);
   c.sides = settings.a.precision == settings.b.precision ? 2 : 1;
   const bool promised = settings.a.backend == settings.b.backend ||
@@ -111,21 +118,22 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   c.same_bits = promised && c.sides == 2 && !settings.a.variant && !settings.b.variant;
   c.progress = progress;
   if (!c.same_bits)
-    for (int m = 0; m < settings.members; ++m)
-      c.members.push_back(
-          make(with_scene(start_a, rounded(plain, c.u, settings.seed + std::uint64_t(m))), false));
+    for (int m = 0; m < settings.members; ++m) {
+      const Scene member = rounded(plain, c.u, settings.seed + std::uint64_t(m));
+      c.members.push_back(make(member, plan_of(member), particles));
+    }
 
   CompareResult result;
   result.a = settings.a.name();
   result.b = settings.b.name();
   result.notes.push_back(
       format("scene \"%s\", %ld particles, %d updates on %s before the frozen step",
-             scene_a.name.c_str(), start_a.plan.particles, settings.warmup, result.a.c_str()));
+             scene_a.name.c_str(), plan_a.particles, settings.warmup, result.a.c_str()));
   if (scene_a.time.adaptive || scene_b.time.adaptive)
     result.notes.push_back("time.adaptive is left out: every update is one step");
   note_one_sided(c, result);
-  // The other solvers take over A's state.
-  const std::string relieved = prestabilized_text(prestabilize(*a, on_a, start_a.plan));
+  // The others take over A's state.
+  const std::string relieved = prestabilized_text(prestabilize(*a, on_a, plan_a));
   if (!relieved.empty()) result.notes.push_back(relieved);
   if (progress) progress(format("%d updates of warm-up on %s", settings.warmup, result.a.c_str()));
   advance(*a, settings.warmup);

@@ -166,6 +166,23 @@ TEST_CASE("option --overwrite replaces a run whose log was removed") {
   CHECK(fs::exists(folder / "o/log.txt"));
 }
 
+TEST_CASE("a run that was killed before the first line of its log is taken up and replaced") {
+  for (const char* how : {"--overwrite", "--resume"})
+    for (const char* left : {"scene.resolved.yaml", ".pbf-half"}) {
+      CAPTURE(how, left);
+      const Scratch folder;
+      const std::string scene = folder.write("tiny.yaml", tiny_scene());
+      REQUIRE(pbf::test::pbf({"run", scene, "--out", "full"}, folder.path()).code == 0);
+      fs::create_directory(folder / "o");
+      folder.write("o/log.txt", "");
+      folder.write(std::string("o/") + left, read_text(folder / "full/scene.resolved.yaml"));
+      const Outcome o = pbf::test::pbf({"run", scene, "--out", "o", how}, folder.path());
+      CAPTURE(o.err);
+      CHECK(o.code == 0);
+      CHECK(fs::exists(folder / "o/DONE"));
+    }
+}
+
 TEST_CASE("option --resume leaves a finished run untouched and starts one that is not there") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());

@@ -100,7 +100,14 @@ TEST_CASE("a strict run refuses a scene that warns before anything is made") {
   const Outcome o = run(folder, {"s.yaml", "--out", "a", "--strict"});
   CHECK(o.code == 6);
   CHECK(has(o.err, "pbf: error: --strict: time.step 0.04 makes"));
+  // What is wrong with the command comes first.
+  CHECK(run(folder, {"s.yaml", "--out", "a", "--strict", "--log-json", "none/x"}).code == 5);
   CHECK(!fs::exists(folder / "a"));
+  fs::create_directory(folder / "b");
+  folder.write("b/guard_scene.yaml", squeezed());
+  folder.write("b/log.txt", "pbf");
+  const Args replaced{"b/guard_scene.yaml", "--out", "b", "--strict", "--overwrite"};
+  CHECK(run(folder, replaced).code == 2);
 }
 
 TEST_CASE("a strict run ends where it begins to warn, and without it the run goes on") {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "lib/base/regular_file.h"
 #include "lib/io/particle_file.h"
 #include "lib/run/emit.h"
 #include "tests/support/catch.h"
@@ -197,6 +198,19 @@ TEST_CASE("particle files: missing ones and what is no regular file are I/O erro
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
   CHECK(contains(read_error(pipe), "5 " + pipe + ": is a FIFO, expected a particle"));
   CHECK(contains(read_error("/dev/zero"), "5 /dev/zero: is a device"));
+}
+
+TEST_CASE("an open file tells what is written to it, and not of another one that takes its name") {
+  const Folder folder;
+  const std::string path = folder.write("p.csv", "x,y,z\n"), other = folder.write("q.csv", "x");
+  const RegularFile file(path, "a table", "");
+  const auto stamp = file.stamp();
+  CHECK(stamp.first == 6);
+  std::filesystem::rename(other, path);
+  CHECK(file.stamp() == stamp);
+  const RegularFile renamed(path, "a table", "");
+  folder.write("p.csv", "x,y");
+  CHECK(renamed.stamp().first == 3);
 }
 
 TEST_CASE("file body: path relative to the scene file, velocity added, domain enforced") {

@@ -112,7 +112,9 @@ TEST_CASE("the plan counts the bytes that the CPU solver holds for crowded start
 
 TEST_CASE("a start too crowded for the memory is refused with the number of neighbours") {
   const Scene s = crowd(random_box(3000000, 0.02));
-  CHECK(scene_test::error_of([&] { refuse_if_too_large(s, make_plan(s, 3000000)); }) == "no error");
+  constexpr std::size_t kAvailable = std::size_t{64} << 30;
+  CHECK(scene_test::error_of([&] { refuse_if_too_large(s, make_plan(s, 3000000), kAvailable); }) ==
+        "no error");
   const Plan plan =
       make_plan(s, 3000000, {std::vector<int>(256, 3000000), std::vector<double>(256)});
   for (const bool cuda : {false, true}) {
@@ -121,7 +123,7 @@ TEST_CASE("a start too crowded for the memory is refused with the number of neig
     const MemoryPlan m = plan_memory(on, plan);
     CHECK(double(cuda ? m.device_peak() : m.host_peak()) > 9e12 * 4);
   }
-  const std::string error = scene_test::error_of([&] { refuse_if_too_large(s, plan); });
+  const std::string error = scene_test::error_of([&] { refuse_if_too_large(s, plan, kAvailable); });
   CAPTURE(error);
   CHECK(error.rfind("4 ", 0) == 0);
   for (const char* part : {"3000000 neighbours", "rest has 34", "bodies[].count"})

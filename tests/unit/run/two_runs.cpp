@@ -1,8 +1,12 @@
 // Two runs in two threads of one process share nothing that one of them could stop, save or spoil.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <filesystem>
 #include <mutex>
 #include <thread>
 
+#include "lib/run/signals.h"
 #include "lib/run/start.h"
 #include "tests/support/catch.h"
 #include "tests/support/process.h"
@@ -88,6 +92,19 @@ TEST_CASE(
   CHECK_FALSE(fs::exists(folder / "bad"));
   CHECK(good.error == "");
   CHECK(good.result.updates == 10);
+}
+
+TEST_CASE("the first signal ends no process whose token somebody else has asked to stop") {
+  const pid_t child = fork();
+  if (child == 0) {
+    watch_signals();
+    signal_token().ask("the test");
+    raise(SIGTERM);
+    _exit(0);
+  }
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK(WIFEXITED(status));
 }
 
 }  // namespace pbf::scene_test
