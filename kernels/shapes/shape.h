@@ -60,6 +60,7 @@ struct Stay {
 ///   enters reach(d)               how far it goes from its origin along a direction of length 1
 ///   size()                 how far it goes from its origin at most
 ///   round<D>(p)            the round side that is nearest to p: RoundSide
+///   endless                true for a shape without end on some side, like a plane
 ///   ends(), `through`      half lengths along its axes, and which of these ends there are not, as
 ///                          bits of WallBit: the solid goes on behind a wall
 template <class Shape, class Real>

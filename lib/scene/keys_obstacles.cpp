@@ -62,8 +62,8 @@ std::vector<Key> shape_rows() {
   std::vector<Key> rows;
   for (const bool bounded : {true, false}) {  // pages tell of bodies before planes
     unsigned kind = 1;
-    for_each_shape([&]<class Shape>(const Shape& keys) {
-      if ((size_of_shape<double>(keys.make(1)) < kEndless) == bounded)
+    for_each_shape([&]<class Shape>(const Shape&) {
+      if (requires { Shape::Body::endless; } != bounded)
         std::apply([&](const auto&... key) { (add_row(rows, row_of<Shape>(key, kind)), ...); },
                    Shape::keys());
       kind *= 2;
