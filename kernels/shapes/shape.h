@@ -57,7 +57,8 @@ struct Stay {
 /// and where they are known in closed form:
 ///   tangent<D>(p)          the tangent plane at the place of the surface that is nearest to p
 ///   stay<D>(a, way, entry) the part of a line that is inside, and the tangent plane where it
-///   enters reach(d)               how far it goes from its origin along a direction of length 1
+///                          enters
+///   reach(d)               how far it goes from its origin along a direction of length 1
 ///   size()                 how far it goes from its origin at most
 ///   round<D>(p)            the round side that is nearest to p: RoundSide
 ///   endless                true for a shape without end on some side, like a plane
