@@ -86,9 +86,12 @@ template <class Real>
 PBF_HD_APART Real size_of(const Solid<Real>& o) {
   return o.shape.with([](const auto& s) { return size_of_shape<Real>(s); });
 }
+/// However large it is.
 template <class Real>
 PBF_HD bool is_bounded(const Solid<Real>& o) {
-  return size_of(o) < Real(kEndless);
+  return o.shape.with([](const auto& s) {
+    return !requires { s.endless; };
+  });
 }
 
 }  // namespace pbf::inline PBF_VARIANT

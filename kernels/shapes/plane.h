@@ -8,7 +8,7 @@ namespace shape {
 
 template <class Real>
 struct Plane {
-  static constexpr bool convex = true;
+  static constexpr bool convex = true, endless = true;
 
   template <class To>
   PBF_HD Plane<To> scaled(double) const {

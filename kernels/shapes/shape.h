@@ -1,5 +1,6 @@
-// The interface of a solid's shape, and what follows from the distance alone for shapes without
-// closed forms.
+// What the kernels ask of a solid's shape, and what follows from its distance alone where a shape
+// does not give a closed form. stay_by_steps() and smooth_share() are for such shapes: the list has
+// none yet, and the tests use shapes of their own (tests/support/test_shapes.h).
 #pragma once
 
 #include <concepts>
@@ -54,14 +55,16 @@ struct Stay {
 /// of the scene, in which p lies. In addition to these, a shape has a curvature or a share:
 ///   curvature<D>(p)                  1/h, mean curvature of the surface at the point nearest to p
 ///   share<S, of_density>(p, 1/range) the kernel's share in it, as SolidTerm per range
-/// and, where closed forms are known:
-///   tangent<D>(p)          the tangent plane at the point of the surface nearest to p
-///   stay<D>(a, way, entry) the part of a line that is inside, and the tangent plane at its entry
-///   reach(d)               its extent from its origin along a direction of length 1
-///   size()                 its largest extent from its origin
-///   round<D>(p)            the round side nearest to p: RoundSide
-///   ends(), `through`      half lengths along its axes, and which of these ends do not exist (bits
-///                          as WallBit), because the solid continues behind a wall
+/// and where they are known in closed form:
+///   tangent<D>(p)          the tangent plane at the place of the surface that is nearest to p
+///   stay<D>(a, way, entry) the part of a line that is inside, and the tangent plane where it
+///                          enters
+///   reach(d)               how far it goes from its origin along a direction of length 1
+///   size()                 how far it goes from its origin at most
+///   round<D>(p)            the round side that is nearest to p: RoundSide
+///   endless                true for a shape without end on some side, like a plane
+///   ends(), `through`      half lengths along its axes, and which of these ends there are not, as
+///                          bits of WallBit: the solid goes on behind a wall
 template <class Shape, class Real>
 concept SolidShape = requires(const Shape& s, Vec3<Real> p) {
   { s.template distance<3>(p) } -> std::same_as<Real>;      // from the surface; below 0 inside

@@ -123,15 +123,11 @@ FlowGate flow_gate(const Gauge& g, const Scene& s, const Frame& frame) {
   return gate;
 }
 
-Double3 axis_of(const Obstacle& o) {
-  return std::visit([](const auto& keys) { return keys.axes()[2]; }, o.shape);
-}
-
-/// The point of the round side between x and the center or axis of the obstacle. Beyond the ends of
-/// a cylinder it is a point without surface.
+/// Where the round side of an obstacle is before its centre or axis, seen from x; also beyond the
+/// ends of a cylinder, where there is no surface.
 Double3 on_round_side(const Obstacle& o, const RoundSide<double>& side, const Double3& x,
                       bool flat) {
-  const Double3 axis = axis_of(o);
+  const Double3 axis = o.axes()[2];
   Double3 foot = o.middle();
   foot = foot + std::clamp(dot(x - foot, axis), side.low, side.high) * axis;
   if (flat) foot[1] = x[1];
@@ -185,7 +181,7 @@ Patch patch_of(const Gauge& g, int surface, const SurfacePlace& there, const Sce
   if (const RoundSide<double> side = round_side(o, s, there.point); side.radius > 0) {
     p.bend = side.radius / s.h();
     frame.place(o.middle(), p.middle);
-    if (side.high > side.low) frame.direction(axis_of(o), p.axis);
+    if (side.high > side.low) frame.direction(o.axes()[2], p.axis);
     p.low = side.low / s.h(), p.high = side.high / s.h();
   }
   return p;

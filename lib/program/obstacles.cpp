@@ -30,7 +30,7 @@ unsigned behind_walls(const Scene& s, const Matrix3& rows, const Double3& center
 }
 
 Solid<double> solid_of(const Obstacle& o, const Scene& s, double time) {
-  Matrix3 rows = std::visit([](const auto& keys) { return keys.axes(); }, o.shape);
+  Matrix3 rows = o.axes();
   Double3 center = o.middle();
   if (o.motion) {
     const Pose pose = pose_of(s, o, time);

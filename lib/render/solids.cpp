@@ -149,7 +149,8 @@ void add_faces(Body& body, const shape::Cylinder<double>& s) {
 void add_faces(Body& body, const shape::Capsule<double>& s) {
   body.add_capsule(s.radius, body.half(2, s.half));
 }
-/// Of any other shape: where its distance is 0, in the tetrahedra of a lattice.
+/// Of a shape without faces of its own, of which the list has none yet: where its distance is 0, in
+/// the tetrahedra of a lattice.
 void add_faces(Body& body, const auto& shape) {
   for (const Triangle& t : zero_surface(shape)) {
     Polygon polygon;

@@ -110,6 +110,11 @@ Block optional_block(const char* member, Member& (*get)(const Object&), const ch
   (traits(block), ...);
   return block;
 }
+/// Adds the row of a key of some shapes of obstacles. One of that path becomes the row of their
+/// shapes too, and reads whichever shape an obstacle has. y of two numbers may be that of the plane
+/// for the later shapes alone; Error(internal) where they differ in anything else.
+void add_shape_row(std::vector<Key>& rows, Key row);
+
 inline void on_by_default(Block& block) { block.on_by_default = true; }
 
 /// A block that is a std::vector of structs. `list`: the texts of List.

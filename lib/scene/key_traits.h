@@ -11,6 +11,7 @@ struct Range {
   double max = std::numeric_limits<double>::infinity();
   bool above_min = false;  ///< min itself is not allowed
   bool below_max = false;  ///< max itself is not allowed
+  bool operator==(const Range&) const = default;
 };
 
 // Bounds that only prevent overflow in float arithmetic: boxes from 1e-6 m to 1e6 m, up to a

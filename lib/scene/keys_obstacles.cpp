@@ -1,4 +1,7 @@
-// Keys of obstacles: common ones, and those of their shapes.
+// Keys of obstacles: those of every one, and those of their shapes.
+#include <tuple>
+
+#include "lib/base/error.h"
 #include "lib/scene/key_rows.h"
 
 namespace pbf::inline scene_module {
@@ -46,26 +49,15 @@ Key row_of(const ShapeKey<Member, Holder>& key, unsigned kind) {
   return row;
 }
 
-/// Shapes with a key of the same name share one row.
-void add_row(std::vector<Key>& rows, Key row) {
-  const auto there = std::ranges::find(rows, row.path, &Key::path);
-  if (there == rows.end()) return rows.push_back(std::move(row));
-  if (row.flat == FlatY::middle && there->flat != row.flat) there->in_plane |= row.kinds;
-  there->field = [first = there->field, second = row.field, kind = row.kinds](const Object& o) {
-    const auto held = std::any_cast<Obstacle*>(o)->shape.index();
-    return kind >> held & 1 ? second(o) : first(o);
-  };
-  there->kinds |= row.kinds;
-}
-
 std::vector<Key> shape_rows() {
   std::vector<Key> rows;
   for (const bool bounded : {true, false}) {  // pages list bounded shapes before planes
     unsigned kind = 1;
-    for_each_shape([&]<class Shape>(const Shape& keys) {
-      if ((size_of_shape<double>(keys.make(1)) < kEndless) == bounded)
-        std::apply([&](const auto&... key) { (add_row(rows, row_of<Shape>(key, kind)), ...); },
-                   Shape::keys());
+    for_each_shape([&]<class Shape>(const Shape&) {
+      if (requires { Shape::Body::endless; } != bounded)
+        std::apply(
+            [&](const auto&... key) { (add_shape_row(rows, row_of<Shape>(key, kind)), ...); },
+            Shape::keys());
       kind *= 2;
     });
   }
@@ -73,6 +65,24 @@ std::vector<Key> shape_rows() {
 }
 
 }  // namespace
+
+void add_shape_row(std::vector<Key>& rows, Key row) {
+  const auto there = std::ranges::find(rows, row.path, &Key::path);
+  if (there == rows.end()) return rows.push_back(std::move(row));
+  const auto said = [](const Key& k) { return std::tie(k.help, k.unit, k.required, k.by_center); };
+  if (said(row) != said(*there) || row.range != there->range ||
+      (row.flat != there->flat && row.flat != FlatY::middle))
+    throw Error(ExitCode::internal, row.path +
+                                        ": two shapes have this key and differ in its help, "
+                                        "unit, range or traits; give them one text, or the "
+                                        "keys different names");
+  if (row.flat != there->flat) there->in_plane |= row.kinds;
+  there->field = [first = there->field, second = row.field, kind = row.kinds](const Object& o) {
+    const auto held = std::any_cast<Obstacle*>(o)->shape.index();
+    return kind >> held & 1 ? second(o) : first(o);
+  };
+  there->kinds |= row.kinds;
+}
 
 KeyRows obstacle_rows() {
   KeyRows all{

@@ -40,6 +40,10 @@ struct Obstacle {
   Double3 middle() const {
     return std::visit([](const auto& keys) { return keys.middle(); }, shape);
   }
+  /// The axes of its body as rows.
+  Matrix3 axes() const {
+    return std::visit([](const auto& keys) { return keys.axes(); }, shape);
+  }
 };
 
 /// The address that stands for the key `shape` in names of keys. It is not that of the variant,

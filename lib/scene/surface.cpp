@@ -11,14 +11,10 @@ Solid<double> solid_in_metres(const Obstacle& o, const Scene& scene) {
   if (const auto plane = scene.plane()) middle[1] = *plane;
   Solid<double> solid;
   solid.center = {middle[0], middle[1], middle[2]};
-  std::visit(
-      [&](const auto& keys) {
-        const Matrix3 axes = keys.axes();
-        for (std::size_t i = 0; i < 3; ++i)
-          for (std::size_t k = 0; k < 3; ++k) solid.turn[i][k] = axes[i][k];
-        solid.shape = keys.make(1);
-      },
-      o.shape);
+  const Matrix3 axes = o.axes();
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k) solid.turn[i][k] = axes[i][k];
+  solid.shape = std::visit([](const auto& k) -> SomeShape<double> { return k.make(1); }, o.shape);
   return solid;
 }
 

@@ -51,7 +51,7 @@ double radius_of(const Solid<double>& o, const Box<Real>& walls) {
   const auto endless = [](const auto& shape) {
     return goes_on(shape, Vec3<double>{1, 1, 1}) || goes_on(shape, Vec3<double>{-1, -1, -1});
   };
-  return o.shape.with(endless) ? 2 * all : std::min(2 * all, size_of(o));
+  return o.shape.with(endless) || !is_bounded(o) ? 2 * all : size_of(o);
 }
 /// 2 sin(angle/2), for the angle by which a body turns from a to b.
 inline double chord(const Solid<double>& a, const Solid<double>& b) {

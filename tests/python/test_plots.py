@@ -90,6 +90,19 @@ def test_stages_of_a_run_that_are_not_in_the_list_are_drawn_as_other(tools, mini
     assert len(after) == len(before) - 1  # two less, and other
 
 
+def test_stages_of_a_table_that_are_not_in_the_list_are_other(tools, tmp_path, monkeypatch):
+    assert "not know" not in tools("plot-stages", SEED, "-o", tmp_path / "a.png")[2]
+    rows = Table({"n_particles": np.array([10.0]), "ms_per_step_median": np.array([8.0]),
+                  "ms_min": np.array([7.0]), "ms_max": np.array([9.0]), "ms_warp": np.array([3.0]),
+                  "ms_weft": np.array([4.0]), "ms_note": np.array(["text"])})
+    assert plot_stages.stage_times(rows, 10) == ({"other": 8}, 8)
+    for name in ("grid", "neighbors"):
+        monkeypatch.delitem(style.STAGES, name)
+    code, _, err = tools("plot-stages", SEED, "-o", tmp_path / "b.png")
+    assert code == 0 and drawn(tmp_path / "b.png")
+    assert err.count("does not know the stages grid, neighbors; they are drawn as other") == 1
+
+
 def test_plots_of_a_run_file_are_drawn(tools, minimal, tmp_path):
     for command in ("plot-energy", "plot-stages"):
         assert tools(command, minimal, "-o", tmp_path / f"{command}.png")[0] == 0

@@ -43,10 +43,8 @@ class UnknownName(BadInput, KeyError):
     __str__ = Exception.__str__  # that of KeyError adds quotes
 
 
-class NotThere(UnknownName, FileError):
+class NotThere(FileError):
     """A run, a batch or a scene whose file is not there; the message has what is beside it."""
-
-    exit_code = FileError.exit_code
 
 
 class PbfError(ToolError):

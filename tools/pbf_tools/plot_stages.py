@@ -7,6 +7,7 @@ Takes tables of pbf bench, or runs: then each has a bar, with the shares of its 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -31,22 +32,41 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     style.add_output(parser, "stages.png")
 
 
+def stage_columns(rows: Table) -> dict[str, np.ndarray]:
+    """The columns of stages by their names, without stages that the scenes do not have."""
+    return {name[3:]: column for name, column in rows.columns.items()
+            if name.startswith("ms_") and name not in bench.COLUMNS
+            and column.dtype.kind == "f" and not np.all(np.isnan(column))}
+
+
 def stage_times(rows: Table, n: float) -> tuple[dict[str, float], float]:
     """Milliseconds per update of each stage at n particles, and of the update; `other` is what no
-    stage booked. Stages that the scene does not have are left out."""
+    stage of style.STAGES booked."""
     here = rows.where(rows["n_particles"] == n)
     total = float(np.median(here[bench.TIME]))
-    stages = {}
-    for name in style.STAGES:
-        column = here.columns.get(f"ms_{name}")
-        if column is not None and not np.all(np.isnan(column)):
-            stages[name] = float(np.nanmedian(column))
+    stages = {name: float(np.nanmedian(column)) for name, column in stage_columns(here).items()}
     if not stages:
         raise BadInput(f"no times of stages at {n:g} particles")
-    other = total - sum(stages.values())
-    if other > 1e-3 * total:
-        stages["other"] = other
-    return stages, total
+    rest = total - sum(stages.values())
+    if rest > 1e-3 * total:
+        stages["other"] = stages.get("other", 0) + rest
+    return with_other(stages), total
+
+
+def tell_unknown(path: str, names: Iterable[str]) -> None:
+    """A note of the stages of another version, which `with_other` folds."""
+    unknown = sorted(name for name in names if name not in style.STAGES)
+    if unknown:
+        note(f"{path}: this pbf_tools does not know the stages {', '.join(unknown)}; they are "
+             "drawn as other")
+
+
+def with_other(stages: dict[str, float]) -> dict[str, float]:
+    out: dict[str, float] = {}
+    for name, time in stages.items():
+        name = name if name in style.STAGES else "other"
+        out[name] = out.get(name, 0) + time
+    return out
 
 
 def grouped(stages: dict[str, float]) -> dict[str, float]:
@@ -92,6 +112,7 @@ def run(args: argparse.Namespace) -> int:
     if any(map(is_run, args.csv)):
         return _runs(args)
     table = bench.read_bench(args.csv, args.state)
+    tell_unknown(", ".join(args.csv), stage_columns(table))
     scenes = bench.pick_scenes(table, args.scene)
     setups = [bench.Setup.parse(text) for text in args.setup] if args.setup else _setups(table)
     rows = [[s.rows(table).where(s.rows(table)["scene"] == scene) for s in setups]
@@ -131,12 +152,8 @@ def _runs(args: argparse.Namespace) -> int:
                   if name.startswith("stage/")}
         if not stages or not sum(stages.values()):
             raise BadInput(f"{path}: the log has no times of stages yet")
-        unknown = {name for name in stages if name not in style.STAGES}  # of another version
-        if unknown:
-            note(f"{path}: this pbf_tools does not know the stages {', '.join(sorted(unknown))}; they "
-                 "are drawn as other")
-            stages["other"] = sum(stages.pop(name) for name in unknown)
-        parts.append((stages, sum(stages.values())))
+        tell_unknown(path, stages)
+        parts.append((with_other(stages), sum(stages.values())))
     names = labels(args.csv, [run_file.name for run_file in runs])
     below = [f"{name}\n{run_file.info['particles']} particles"
              for name, run_file in zip(names, runs)]

@@ -153,9 +153,7 @@ def scene_path(scene: Any) -> Path:
     if isinstance(scene, str | os.PathLike):
         path = run_path(scene)
         if not path.exists():
-            problem = NotThere(f"{path}: no such {'run' if is_run(path) else 'scene'}{beside(path)}")
-            problem.exit_code = BadInput.exit_code  # as the program has it of its argument
-            raise problem
+            raise NotThere(f"{path}: no such {'run' if is_run(path) else 'scene'}{beside(path)}")
         return path
     several = "; batch takes several" if isinstance(scene, list | tuple) else ""
     raise BadInput(f"expected a scene: a path or a dict, got {scene!r}{several}")

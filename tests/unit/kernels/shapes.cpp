@@ -283,6 +283,18 @@ TEST_CASE("shapes: bounds and reach hold all that is inside, and end at it") {
   });
 }
 
+TEST_CASE("shapes: a plane alone has no end, however large a body is") {
+  Solid<double> s;
+  for (const double half : {1.0, 1e9, 1e12}) {
+    s.shape = shape::Box<double>{{half, half, half}};
+    CHECK(is_bounded(s));
+    s.shape = shape::Sphere<double>{half};
+    CHECK(is_bounded(s));
+  }
+  s.shape = shape::Plane<double>{};
+  CHECK(!is_bounded(s));
+}
+
 TEST_CASE("shapes: what is drawn of a distance lies on the surface and closes around the body") {
   const Ellipsoid<double> e{{1.2, 0.9, 0.7}};
   double volume = 0;

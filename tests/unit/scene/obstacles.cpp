@@ -3,6 +3,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "lib/scene/key_rows.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_samples.h"
 
@@ -25,6 +26,37 @@ std::string tube(const std::string& shape, const std::string& from, const std::s
 }
 
 }  // namespace
+
+TEST_CASE("obstacles: shapes share a key only where they say the same of it") {
+  const auto row = [](unsigned kind) {
+    Key k{"obstacles[].end", "One end.", [](const Object&) { return Field{}; }};
+    k.unit = "m", k.range = {0, 1}, k.required = true, k.kinds = 1u << kind, k.flat = FlatY::low;
+    return k;
+  };
+  std::vector<Key> rows;
+  add_shape_row(rows, row(1));
+  add_shape_row(rows, row(2));
+  Key middle = row(3);
+  middle.flat = FlatY::middle;
+  add_shape_row(rows, middle);
+  REQUIRE(rows.size() == 1);
+  CHECK(rows[0].kinds == 14);
+  CHECK(rows[0].in_plane == 8);
+  CHECK(rows[0].flat == FlatY::low);
+  void (*const changes[])(Key&) = {[](Key& k) { k.unit = "s"; },
+                                   [](Key& k) { k.help = "The end."; },
+                                   [](Key& k) { k.required = false; },
+                                   [](Key& k) { k.by_center = true; },
+                                   [](Key& k) { k.range.above_min = true; },
+                                   [](Key& k) { k.flat = FlatY::high; }};
+  for (const auto change : changes) {
+    Key other = row(4);
+    change(other);
+    CHECK_THROWS_WITH(add_shape_row(rows, other), Catch::Contains("obstacles[].end: two shapes"));
+  }
+  std::vector<Key> turned{middle};  // another order of the list of shapes
+  CHECK_THROWS_WITH(add_shape_row(turned, row(1)), Catch::Contains("differ"));
+}
 
 TEST_CASE("obstacles: every shape with its keys is read, what is not given has its default") {
   const Scene s =
