@@ -25,8 +25,8 @@ SurfacePlace nearest_place(int face, const Scene& scene, Double3 at);
 
 /// The round side of an obstacle that is nearest to a position, m.
 RoundSide<double> round_side(const Obstacle& obstacle, const Scene& scene, const Double3& at);
-/// Whether a surface without such a side is bent: of shapes that give `curvature`. The list has none
-/// yet.
+/// Whether a surface without such a side is bent: of shapes that give `curvature`. The list has
+/// none yet.
 bool is_bent(const Obstacle& obstacle);
 
 /// The surface of a name: 0 to 5 for a face, 6 + index for an obstacle; empty if unknown.
