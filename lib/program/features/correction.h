@@ -8,8 +8,9 @@
 
 namespace pbf::inline PBF_VARIANT {
 
+/// density: of the pass that leaves 1/density; null with moves_on.
 template <class G>
-void launch_delta(const G& c, StepCounts* moves_on) {
+void launch_delta(const G& c, OwnRows<const typename G::Real> density, StepCounts* moves_on) {
   auto p = c.p;
   p.sor = c.context().sor();
   c.with_smoothing([&](auto s) {
@@ -18,32 +19,27 @@ void launch_delta(const G& c, StepCounts* moves_on) {
         each_then_near<true>(c, [&](const auto& boundary) {
           return DeltaPass<typename G::Real, typename G::Lists, decltype(s)::value,
                            decltype(tensile)::value, std::decay_t<decltype(coarse)>,
-                           std::decay_t<decltype(boundary)>>{p,
-                                                             boundary,
-                                                             c.lists(),
-                                                             c[other<field::position>],
-                                                             c[field::density],
-                                                             c[field::id],
-                                                             c[field::position],
-                                                             c[field::velocity],
-                                                             moves_on,
-                                                             coarse};
+                           std::decay_t<decltype(boundary)>>{
+              p,        boundary,     c.lists(),          c[other<field::position>],
+              density,  c[field::id], c[field::position], c[field::velocity],
+              moves_on, coarse};
         });
       });
     });
   });
 }
 
+using DeltaNeeds = Needs<Gathers<other<field::position>, W::lambda>, UsesLists, Gathers<field::id>,
+                         Updates<field::velocity>, If<has_levels, LevelMoveNeeds>, MoveNeeds,
+                         If<has_solids, Looks<field::near_row>, Places<other<field::velocity>>>>;
+
 struct Delta {
   static constexpr PassText text{"delta", "delta"};
   using Needs =
-      pbf::Needs<Gathers<other<field::position>, W::lambda>, UsesLists, Gathers<field::id>,
-                 Reads<field::density>, Writes<field::position, W::inverse_density>,
-                 Updates<field::velocity>, If<has_levels, LevelMoveNeeds>, MoveNeeds,
-                 If<has_solids, Looks<field::near_row>, Places<other<field::velocity>>>>;
+      pbf::Needs<Writes<field::position, W::inverse_density>, Reads<field::density>, DeltaNeeds>;
   template <class G>
   static void launch(const G& c) {
-    launch_delta(c, nullptr);
+    launch_delta(c, c[field::density], nullptr);
   }
 };
 
@@ -51,10 +47,10 @@ struct Delta {
 struct DeltaPredict {
   using Fuses = Pair<Delta, Predict>;
   static constexpr PassText text{"delta+predict", "delta"};
-  using Needs = Then<Delta::Needs, Predict::Needs>;
+  using Needs = Then<pbf::Needs<Writes<field::position>, DeltaNeeds>, Predict::Needs>;
   template <class G>
   static void launch(const G& c) {
-    launch_delta(c, c.context().counts());
+    launch_delta(c, OwnRows<const typename G::Real>(), c.context().counts());
   }
 };
 

@@ -37,7 +37,7 @@ struct Xsph {
 /// Xsph writes the velocities into the second array, and the sort gathers them back into the first.
 struct XsphPredictSort {
   using Fuses = Pair<Xsph, PredictSort>;
-  static constexpr PassText text{"xsph+predict+sort", "xsph", kLessXsph};
+  static constexpr PassText text{"xsph+predict+sort", "grid", kLessXsph};
   using Flips = pbf::Flips<field::position, field::id>;
   using Needs = pbf::Needs<Gathers<other<field::position>, W::inverse_density>, SortPredictedNeeds,
                            Gathers<field::velocity>, UsesLists, Places<other<field::velocity>>>;
