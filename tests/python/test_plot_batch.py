@@ -131,7 +131,7 @@ def test_a_summary_without_finished_runs_or_a_folder_without_one_says_so(tools, 
     code, _, err = tools("plot-batch", tmp_path, "-o", tmp_path / "a.png")
     assert code == 5 and "no summary.csv in this folder" in err
     code, _, err = tools("plot-batch", tmp_path / "none.csv", "-o", tmp_path / "a.png")
-    assert code == 5 and "No such file" in err
+    assert code == 5 and "no such batch; name the folder" in err
 
 
 def test_rows_that_an_axis_cannot_show_are_counted(tools, tmp_path):
