@@ -21,7 +21,7 @@ inline bool has_obstacles(const Scene& s) { return !s.obstacles.empty(); }
 /// rows are stored in the second array of velocities.
 using NearNeeds = If<has_obstacles, Reads<field::near_room>, Looks<field::near_row>>;
 using NearSumNeeds = If<has_obstacles, Places<other<field::velocity>>>;
-/// Of a pass that moves particles: rows come near, and what solids do to them is booked.
+/// The needs of a pass that moves particles: rows may become near, and loads are booked.
 using MoveNeeds =
     Needs<If<has_solids, Updates<field::near_room>, Places<field::near_row>>, BookNeeds>;
 
