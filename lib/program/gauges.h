@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "kernels/axes.h"
+#include "kernels/boundary/loads.h"
 #include "kernels/boundary/obstacle.h"
 #include "kernels/boundary/patch.h"
 #include "kernels/gauge_probe.h"
@@ -32,6 +33,13 @@ struct GaugePlan {
   std::vector<double> areas;  ///< m^2, integral of patch_share() over the surface of each patch
   int places = 0;             ///< sample points of all probes
   double weight = 0;          ///< ProbeSums::weight times this is the volume fraction of fluid
+};
+
+/// Sums of one reading, in the order of the scene's gauges.
+struct GaugeSums {
+  std::vector<ProbeSums> places;
+  std::vector<FlowCount> flows;
+  std::vector<Load> patches;
 };
 
 /// `solids`: Plan::solids; `mass`: kg, of one particle.

@@ -83,7 +83,7 @@ std::vector<GaugeData> gauge_data(const Scene& scene) {
   return all;
 }
 
-std::vector<double> gauge_readings(const GaugeSumsOf& sums, const Scene& scene, const Plan& plan) {
+std::vector<double> gauge_readings(const GaugeSums& sums, const Scene& scene, const Plan& plan) {
   const GaugePlan& g = plan.gauges;
   const double h = scene.h();
   std::size_t probe = 0, line = 0, flow = 0, patch = 0;

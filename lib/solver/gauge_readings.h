@@ -23,16 +23,10 @@ struct GaugeData {
 /// In the order of the scene.
 std::vector<GaugeData> gauge_data(const Scene& scene);
 
-struct GaugeSumsOf {
-  const std::vector<ProbeSums>& places;
-  const std::vector<FlowCount>& flows;
-  const std::vector<Load>& patches;
-};
-
 /// The concatenated numbers of all gauges, GaugeData::numbers() of each. Level: m. Velocity: m/s
 /// along the scene's axes, NaN if no particle is within h. Flow: kg/s, mean since the last reading,
 /// and kg since the start. Pressure: Pa, mean since the last reading and largest mean of an update.
 /// A mean over an interval of length 0 is 0.
-std::vector<double> gauge_readings(const GaugeSumsOf& sums, const Scene& scene, const Plan& plan);
+std::vector<double> gauge_readings(const GaugeSums& sums, const Scene& scene, const Plan& plan);
 
 }  // namespace pbf::inline solver_module

@@ -28,7 +28,7 @@ struct Density {
 using LambdaNeeds = Needs<Gathers<field::position>, UsesLists,
                           Reads<field::position, W::mark, When::first_iteration>,
                           Gathers<field::velocity, W::any, When::first_iteration>, NearNeeds,
-                          NearSumNeeds, Writes<other<field::position>, W::lambda>>;
+                          NearSumNeeds, Writes<other<field::position>, W::lambda>, Adds<field::counts>>;
 
 template <bool with_density, class G>
 void launch_lambda(const G& c) {
@@ -42,7 +42,7 @@ void launch_lambda(const G& c) {
                                                           c[other<field::position>],
                                                           c[field::density],
                                                           c[field::velocity],
-                                                          c.context().counts()};
+                                                          c[field::counts].sums()};
     });
   });
 }
