@@ -36,6 +36,8 @@ struct FeatureList {
   }
   template <class Real>
   using Memory = std::tuple<MemoryOf<Fs, Real>...>;
+  template <class... More>
+  using With = FeatureList<Fs..., More...>;
 };
 
 using Features = FeatureList<Motion, NearSolids, Constraint, Levels, Correction, XsphViscosity,

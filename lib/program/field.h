@@ -70,6 +70,8 @@ struct FieldInfo {
   int bytes(Precision p) const { return row_bytes[std::size_t(p)]; }
   /// Its rows are those of the particles, in their order.
   bool is_per_particle() const { return rows == per_particle || rows == per_padded_row; }
+  /// Rows without padding.
+  std::int64_t kept_rows(const Sizes& n) const { return is_per_particle() ? n.particles : rows(n); }
   /// One of two arrays that every sort reorders like the particles.
   constexpr bool is_carried() const {
     return pair && !first && (life == Life::rows || life == Life::state);

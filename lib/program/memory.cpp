@@ -40,23 +40,23 @@ int downloaded_scalars(const Scene& s) {
 void add_fields(const Scene& s, const Plan& plan, std::int64_t bins, const Adder& add) {
   const BackendInfo& backend = about(s.backend);
   const Sizes sizes{s, plan, plan.particles, backend.padding, bins};
-  const auto add_field = [&](const std::string& name, const FieldInfo& f) {
+  const auto add_field = [&](const std::string& name, const FieldInfo& f, std::int64_t rows) {
     const int row = f.bytes(s.precision);
     const char* type = f.type == Type::real    ? word(s.precision)
                        : f.type == Type::int64 ? "int64"
                        : f.type == Type::int32 ? "int32"
                                                : "byte";
-    add(name.c_str(), type, f.type == Type::object ? row : f.components, f.rows(sizes));
+    add(name.c_str(), type, f.type == Type::object ? row : f.components, rows);
   };
   for (const FieldInfo* f : plan.program.fields) {
     if (f == &field::order && backend.order_in_place) continue;
-    add_field(f->name, *f);
-    if (f->pair) add_field(f->name + std::string("'"), *f);
+    add_field(f->name, *f, f->rows(sizes));
+    if (f->pair) add_field(f->name + std::string("'"), *f, f->rows(sizes));
   }
   // The last good state of the guard, and the state from which a batch of updates is repeated.
   for (const FieldInfo* f : plan.program.state) {
-    if (s.guard) add_field("kept " + std::string(f->name), *f);
-    if (add.on_device) add_field("saved " + std::string(f->name), *f);
+    if (s.guard) add_field("kept " + std::string(f->name), *f, f->kept_rows(sizes));
+    if (add.on_device) add_field("saved " + std::string(f->name), *f, f->kept_rows(sizes));
   }
   const std::int64_t n = plan.particles;
   if (add.on_device)

@@ -46,7 +46,7 @@ class Granted {
     Row* rows = c_.data(f);
     if constexpr (how == kAdds)
       return Sums<Row>(rows);
-    else if constexpr ((how & kPlaces) != 0)
+    else if constexpr ((how & (kPlaces | kAdds)) != 0)
       return rows;
     else if constexpr ((how & kWrites) != 0)
       return OwnRows<Row>(rows);

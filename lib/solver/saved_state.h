@@ -28,7 +28,7 @@ class SavedState {
     const auto& state = c.plan.program.state;
     copies_.resize(state.size());
     for (std::size_t k = 0; k < state.size(); ++k)
-      copies_[k].resize(std::size_t(c.rows_of(*state[k]) * state[k]->bytes(C::precision)));
+      copies_[k].resize(c.kept_rows(*state[k]) * std::size_t(state[k]->bytes(C::precision)));
     copy(c, [&](const FieldInfo& f, auto& saved) -> CopyPass::Part {
       return {c.bytes_of(f), saved.data(), std::int64_t(saved.bytes())};
     });

@@ -17,6 +17,7 @@ struct StoredField {
   int numbers = 1;   ///< of a row; vectors are along the scene's axes
   /// In the order of rows; those of particles are in the order of SolverState::id.
   std::vector<double> values{};
+  bool operator==(const StoredField&) const = default;
 };
 
 /// A state: positions in h from Scene::origin(), velocities in h/s, along the scene's axes. A

@@ -48,7 +48,7 @@ constexpr std::size_t kTransferRows = 1 << 16;  ///< copied at a time, to save m
 template <class C>
 std::vector<double> downloaded(C& c, const FieldInfo& f, const char* from, const int* id) {
   const RowForm<typename C::Real> form(f, c.plan.axes);
-  const std::size_t n = f.is_per_particle() ? std::size_t(c.rows()) : std::size_t(c.rows_of(f));
+  const std::size_t n = c.kept_rows(f);
   const std::size_t part = std::min(n, kTransferRows), row = std::size_t(f.bytes(C::precision));
   const std::size_t numbers = std::size_t(f.numbers);
   std::vector<int> ids(id ? part : 0);
@@ -123,10 +123,8 @@ void upload_state(C& c, const SolverState& s) {
   upload(c, field::position, s.position);
   upload(c, field::velocity, s.velocity);
   c.put(field::id, s.id);
-  for (const FieldInfo* f : c.plan.program.state) {
-    const std::size_t rows = f->is_per_particle() ? s.id.size() : std::size_t(c.rows_of(*f));
-    if (!field::is_basic(*f)) upload(c, *f, values_of(s, *f, rows));
-  }
+  for (const FieldInfo* f : c.plan.program.state)
+    if (!field::is_basic(*f)) upload(c, *f, values_of(s, *f, c.kept_rows(*f)));
 }
 
 }  // namespace pbf::inline PBF_VARIANT

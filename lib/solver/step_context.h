@@ -75,6 +75,7 @@ struct StepContext {
     return s ? s->rows[s->now ^ (f.first ? 1 : 0)].data() : nullptr;
   }
   std::int64_t rows_of(const FieldInfo& f) const { return f.rows(sizes()); }
+  std::size_t kept_rows(const FieldInfo& f) const { return std::size_t(f.kept_rows(sizes())); }
   /// Copies the first rows of a field to the memory of the executor. Without the field, there must
   /// be none.
   template <class Field>
@@ -142,9 +143,6 @@ struct StepContext {
     rows_ = int(first_position.size());
     for (const FieldInfo* f : plan.program.fields)
       if (f != &field::order || !order_in_place) add(*f);
-    for_features([&](auto& memory) { memory.make(*this); });
-    for_features([&](auto& memory) { memory.stand(*this, 0); });
-    for_features([&](auto& memory) { memory.forget(*this); });
     const auto upload = [&](const auto& f, auto& rows) {
       put(f, rows);
       release(rows);  // before lists are made, which need memory
@@ -152,6 +150,9 @@ struct StepContext {
     upload(field::position, first_position);
     upload(field::velocity, first_velocity);
     upload(field::id, first_id);
+    for_features([&](auto& memory) { memory.make(*this); });
+    for_features([&](auto& memory) { memory.stand(*this, 0); });
+    for_features([&](auto& memory) { memory.forget(*this); });
   }
 
   std::size_t bytes() const {

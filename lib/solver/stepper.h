@@ -128,7 +128,7 @@ class Stepper {
     sums.places.resize(std::size_t(plan_.gauges.places));
     if (!sums.places.empty()) {
       c_.put(field::probe_sums, sums.places);
-      ReadProbes::launch(c_.template granted<ReadProbes>());
+      launch_one<ReadProbes>(c_);
       c_.exec.to_host(c_.data(field::probe_sums), sums.places.size(), sums.places.data());
     }
     const int patches = int(plan_.gauges.patches.size());

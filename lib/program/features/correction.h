@@ -43,11 +43,14 @@ struct Delta {
   }
 };
 
-/// Delta and the prediction of the next substep: the same arithmetic with one launch less.
+/// Delta and the prediction of the next substep: the same arithmetic with one launch less. Never
+/// with motion, whose pass runs between the two.
 struct DeltaPredict {
   using Fuses = Pair<Delta, Predict>;
   static constexpr PassText text{"delta+predict", "delta"};
-  using Needs = Then<pbf::Needs<Writes<field::position>, DeltaNeeds>, Predict::Needs>;
+  using Needs =
+      Then<pbf::Needs<Writes<field::position>, DeltaNeeds>,
+           pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>, StepNeeds>>;
   template <class G>
   static void launch(const G& c) {
     launch_delta(c, OwnRows<const typename G::Real>(), c[field::counts].sums());

@@ -9,10 +9,13 @@
 #include "lib/program/plan.h"
 
 namespace pbf::inline program_module {
-inline bool has_flow_gauges(const Scene& s) {
+template <GaugeKind kind>
+bool has_gauges(const Scene& s) {
   return std::any_of(s.gauges.begin(), s.gauges.end(),
-                     [](const Gauge& g) { return g.kind == GaugeKind::flow; });
+                     [](const Gauge& g) { return g.kind == kind; });
 }
+inline bool has_flow_gauges(const Scene& s) { return has_gauges<GaugeKind::flow>(s); }
+inline bool has_velocity_gauges(const Scene& s) { return has_gauges<GaugeKind::velocity>(s); }
 inline std::int64_t per_gate(const Sizes& n) { return std::int64_t(n.plan.gauges.gates.size()); }
 inline std::int64_t per_probe(const Sizes& n) { return std::int64_t(n.plan.gauges.probes.size()); }
 inline std::int64_t per_place(const Sizes& n) { return n.plan.gauges.places; }
@@ -40,7 +43,7 @@ template <class G>
 void take_sides(const G& c, bool count) {
   c.items(FlowPass<typename G::Real>{c[field::gates], int(c.plan.gauges.gates.size()),
                                      c[field::position], c[field::id], c[field::flow_sides],
-                                     count ? c[field::flows].sums() : nullptr,
+                                     count ? c[field::flows] : nullptr,
                                      double(c.p.update_dt)});
 }
 
@@ -48,7 +51,8 @@ struct CountFlow {
   static constexpr PassText text{"flow", "measure"};
   using Needs =
       pbf::Needs<Reads<field::position>, Reads<field::id>, Looks<field::gates>,
-                 Reads<field::flow_sides>, Places<field::flow_sides>, Adds<field::flows>>;
+                 Reads<field::flow_sides>, Places<field::flow_sides>, Looks<field::flows>,
+                 Adds<field::flows>>;
   template <class G>
   static void launch(const G& c) {
     take_sides(c, true);
@@ -60,8 +64,8 @@ struct Gauges;
 /// Adds what level and velocity gauges sum over the particles.
 struct ReadProbes {
   static constexpr PassText text{"probes", "measure"};
-  using Needs = pbf::Needs<Reads<field::position>, Reads<field::velocity>, Looks<field::probes>,
-                           Adds<field::probe_sums>>;
+  using Needs = pbf::Needs<Reads<field::position>, If<has_velocity_gauges, Reads<field::velocity>>,
+                           Looks<field::probes>, Adds<field::probe_sums>>;
   template <class G>
   static void launch(const G& c) {
     c.items(ProbePass<typename G::Real>{
@@ -77,7 +81,8 @@ struct Gauges {
   static void add(const Scene& s, B& b) {
     if (s.gauges.empty()) return b.left_out("gauges", "no key gauges");
     if (has_flow_gauges(s)) b.template end<CountFlow>();
-    if (std::any_of(s.gauges.begin(), s.gauges.end(), is_probe)) b.template reading<ReadProbes>();
+    if (has_gauges<GaugeKind::level>(s) || has_velocity_gauges(s))
+      b.template reading<ReadProbes>();
   }
 
   template <class Real>
@@ -105,11 +110,6 @@ struct Gauges {
       sides_are_current = timed;
     }
   };
-
- private:
-  static bool is_probe(const Gauge& g) {
-    return g.kind == GaugeKind::level || g.kind == GaugeKind::velocity;
-  }
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -97,7 +97,7 @@ struct LevelCellsAndNodes {
           c.p,
           c[field::bin_start],
           has_open_faces(c.scene) ? c[field::position].rows() : nullptr,
-          c[field::surroundings],
+          has_obstacles(c.scene) ? c[field::surroundings] : nullptr,
           c[field::run_start],
           c[field::level_home],
           count,

@@ -52,8 +52,8 @@ struct MoveSolids {
 /// Computes x* and the predicted velocity, in place.
 struct Predict {
   static constexpr PassText text{"predict", "predict"};
-  using Needs = pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>, MoveNeeds,
-                           StepNeeds>;
+  using Needs = pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>, StepNeeds,
+                           FrameNeeds>;
   template <class G>
   static void launch(const G& c) {
     with_boundary(c, [&](const auto& boundary) {
@@ -140,8 +140,8 @@ struct Sort {
 using SortPredictedNeeds =
     Needs<Looks<other<field::position>>,
           If<has_solids, Looks<field::near_row>, Looks<field::near_count>, Places<other<field::position>>>,
-          Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, MoveNeeds,
-          StepNeeds>;
+          Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, StepNeeds,
+          FrameNeeds>;
 
 /// Computes x* twice, for the bin and when the particles are gathered. This is cheaper than storing
 /// x* and reading it again.

@@ -51,9 +51,10 @@ using NearSumNeeds = If<has_obstacles, Places<other<field::velocity>>>;
 using MoveNeeds = Needs<If<has_solids, Updates<field::near_room>, Places<field::near_row>,
                            Places<field::near_count>, Looks<field::surroundings>>,
                         If<has_obstacles, Looks<field::solids>>, BookNeeds>;
-/// The needs of a pass in which particles move with the flow through a step.
-using StepNeeds = Needs<If<has_moving_obstacles, Looks<field::solids_before>>,
-                        If<has_tank_motion, Looks<field::frame>>, Adds<field::counts>>;
+/// The needs of a pass in which particles begin a step. Those of a moving tank need the frame, too.
+using StepNeeds = Needs<MoveNeeds, If<has_moving_obstacles, Looks<field::solids_before>>,
+                        Adds<field::counts>>;
+using FrameNeeds = If<has_tank_motion, Looks<field::frame>>;
 
 struct NearSolids;
 
