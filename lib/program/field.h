@@ -56,6 +56,10 @@ struct FieldInfo {
   const FieldInfo* first = nullptr;  ///< for the second array of a pair: the field of the first
 
   const FieldInfo& primary() const { return first ? *first : *this; }
+  /// real: bytes of a real number.
+  std::int64_t row_bytes(std::int64_t real) const {
+    return components * (type == Type::real ? real : type == Type::int64 ? 8 : 4);
+  }
 };
 
 /// Rows of x, y, z, w.

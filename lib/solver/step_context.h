@@ -222,10 +222,7 @@ void StepContext<Real, Exec>::make(const std::vector<const FieldInfo*>& fields,
   for (const FieldInfo* f : fields) {
     if (f == &field::order && Exec::order_in_place) continue;
     const auto count = std::size_t(f->rows(sizes));
-    const std::size_t row =
-        std::size_t(f->components) * (f->type == Type::real    ? sizeof(Real)
-                                      : f->type == Type::int64 ? sizeof(std::int64_t)
-                                                               : sizeof(int));
+    const auto row = std::size_t(f->row_bytes(sizeof(Real)));
     slots_.push_back({f, {}, 0});
     for (int k = 0; k < (f->pair ? 2 : 1); ++k) {
       slots_.back().rows[k].resize(count * row);
