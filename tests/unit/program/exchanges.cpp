@@ -160,6 +160,12 @@ TEST_CASE("exchanges: ghosts are stale after any pass that writes, sums after on
     CHECK(before(place, kGathers) == 0);
   }
   CHECK(before(&other<field::position>, kGathers) == 1);  // an array of its own
+  // After a sort the ghosts are other particles: only what went along with them is known.
+  CHECK(before(&field::density, kGathers) == 1);
+  before(field_of(p, "id"), kPlaces);
+  CHECK(before(place, kGathers) == 0);
+  CHECK(before(&other<field::position>, kGathers) == 1);
+  CHECK(before(&field::density, kGathers) == 1);
   for (const unsigned how : {unsigned(kLooks), unsigned(kReads), unsigned(kUpdates)}) {
     CHECK(before(sums, kAdds) == 0);
     CHECK(before(sums, kAdds) == 0);
