@@ -17,7 +17,7 @@ enum How : unsigned {
   kLooks = 4,    ///< reads any row
   kWrites = 8,   ///< writes its own row completely
   kPlaces = 16,  ///< writes any row, each once; later launches of the pass may read them
-  kAdds = 32,    ///< adds integers to any row, in any order
+  kAdds = 32,    ///< adds integers to any row, in any order; with kPlaces: see Totals
   kUpdates = kReads | kWrites,
   kReading = kReads | kGathers | kLooks,
   kWriting = kWrites | kPlaces | kAdds
@@ -72,6 +72,9 @@ template <auto& F, W w = W::any>
 using Places = Access<F, kPlaces, w>;
 template <auto& F>
 using Adds = Access<F, kAdds>;
+/// Places sums over particles, which later launches of the pass read.
+template <auto& F>
+using Totals = Access<F, kPlaces | kAdds>;
 
 /// A group of declarations, which may hold further groups.
 template <class... As>

@@ -81,8 +81,8 @@ struct LevelCellsAndNodes {
   static constexpr PassText text{"level cells", "levels"};
   using Needs =
       pbf::Needs<If<has_open_faces, Reads<field::position>>, Looks<field::bin_start>, SolidNeeds,
-                 Places<field::level_home>, Places<field::run_start>, Places<field::cell_count>,
-                 Places<field::cell_sum>, Places<field::cell_factor>, Places<field::corner_sum>,
+                 Places<field::level_home>, Places<field::run_start>, Totals<field::cell_count>,
+                 Totals<field::cell_sum>, Places<field::cell_factor>, Totals<field::corner_sum>,
                  Places<field::node_walls>, Places<field::node_reach>, Places<field::node_answer>>;
   template <class G>
   static void launch(const G& c) {
@@ -125,7 +125,7 @@ struct LevelMultipliers {
   using Needs =
       pbf::Needs<Reads<field::density>, Looks<field::run_start>,
                  If<has_open_faces, Reads<field::level_home>>, Looks<field::node_answer>,
-                 Looks<field::cell_factor>, Places<field::cell_sum>, Places<field::corner_sum>,
+                 Looks<field::cell_factor>, Totals<field::cell_sum>, Totals<field::corner_sum>,
                  Places<field::multiplier>, Places<field::level_move>>;
   template <class G>
   static void launch(const G& c) {
