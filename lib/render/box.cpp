@@ -9,17 +9,13 @@
 namespace pbf::inline render_module {
 namespace {
 
-constexpr std::array<std::uint8_t, 4> kEdge{92, 102, 116, 0}, kFloor{218, 224, 230, 0};
+constexpr Rgb kEdge{92, 102, 116}, kFloor{218, 224, 230};
 
 // The floor is farther by this one: obstacles that lie on it win.
 constexpr double kFarther = 1.0003;
 
-FlatVertex vertex(const Double3& v, std::array<std::uint8_t, 4> color, double u = 0, double w = 0) {
-  return {static_cast<float>(v[0]),
-          static_cast<float>(v[1]),
-          static_cast<float>(v[2]),
-          color,
-          {static_cast<float>(u), static_cast<float>(w)}};
+FlatVertex vertex(const Double3& v, Rgb color) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), color};
 }
 
 void add_quad(const std::array<FlatVertex, 4>& q, std::vector<FlatVertex>& out) {
@@ -28,8 +24,8 @@ void add_quad(const std::array<FlatVertex, 4>& q, std::vector<FlatVertex>& out) 
 
 }  // namespace
 
-void add_line(Double3 a, Double3 b, std::array<std::uint8_t, 4> color, const Projection& projection,
-              double width, double near_depth, std::vector<FlatVertex>& out, double nearer) {
+void add_line(Double3 a, Double3 b, Rgb color, const Projection& projection, double width,
+              double near_depth, std::vector<FlatVertex>& out, double nearer) {
   if (a[2] > b[2]) std::swap(a, b);
   if (b[2] <= near_depth) return;
   if (a[2] < near_depth) a = a + (near_depth - a[2]) / (b[2] - a[2]) * (b - a);

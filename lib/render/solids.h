@@ -10,7 +10,7 @@
 
 namespace pbf::inline render_module {
 
-inline constexpr std::array<std::uint8_t, 4> kCrease{118, 104, 90, 0};  ///< colour of creases
+inline constexpr Rgb kCrease{118, 104, 90};  ///< colour of creases
 
 inline constexpr std::array<double, 3> kClay{190, 176, 160};  ///< of 255: neither the cool greys
                                                               ///< of the box nor viridis
