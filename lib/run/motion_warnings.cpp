@@ -22,10 +22,10 @@ struct Behind {
 };
 Behind behind(const Scene& s, const Solid<double>& solid, int face) {
   const auto axis = std::size_t(face / 2);
-  const Extent e = extents_of(solid)[axis];
-  const double size = extents_of(s)[axis].high, h = s.h();
-  if (face % 2 == 1) return {(e.high - size) * h, (e.low - size) * h};
-  return {-e.low * h, -e.high * h};
+  const BodyBox e = extents_of(s, solid);
+  const double size = extents_of(s).high[axis], h = s.h();
+  if (face % 2 == 1) return {(e.high[axis] - size) * h, (e.low[axis] - size) * h};
+  return {-e.low[axis] * h, -e.high[axis] * h};
 }
 
 /// The wall above, that is, opposite to gravity; -1 without gravity.
@@ -147,9 +147,7 @@ class Meetings {
       : s_(s), tracks_(tracks), least_(0.5 * s.fluid.spacing / s.h()) {}
 
   std::optional<Meeting> of(std::size_t a, std::size_t b) const {
-    for (std::size_t k = 0; k < 3; ++k)
-      if (!(s_.plane() && k == 1) && !tracks_[a].swept[k].meets(tracks_[b].swept[k]))
-        return std::nullopt;
+    if (!tracks_[a].swept.meets(tracks_[b].swept, 0)) return std::nullopt;
     Meeting m;
     if (shared(a, b, 0) > 0) {
       if (!is_bounded(tracks_[a].solid[0]) || !is_bounded(tracks_[b].solid[0])) return std::nullopt;

@@ -14,22 +14,6 @@ namespace {
 
 constexpr std::int64_t kMostDistances = 200000000;
 
-/// Whether x is inside by more than rounding. If bodies only touch, the particles of one are half a
-/// spacing outside the other.
-bool inside(const Body& b, const Double3& x, double d) {
-  if (b.shape == Shape::file) return false;
-  if (b.shape == Shape::cylinder) {
-    const Double3 axis = unit(b.to - b.from), off = x - b.from;
-    const double along = dot(off, axis), across2 = dot(off, off) - along * along;
-    return along > 1e-6 * d && along < length(b.to - b.from) - 1e-6 * d &&
-           across2 < b.radius * b.radius * (1 - 1e-6);
-  }
-  if (b.shape != Shape::sphere) return Box{b.min, b.max}.holds(x, -1e-6 * d);
-  double r2 = 0;
-  for (int a = 0; a < 3; ++a) r2 += (x[a] - b.center[a]) * (x[a] - b.center[a]);
-  return r2 < b.radius * b.radius * (1 - 1e-6);
-}
-
 using Cell = std::array<std::int64_t, 3>;
 
 struct Candidate {
@@ -38,22 +22,17 @@ struct Candidate {
   Double3 x;
 };
 
-std::vector<Box> boxes_of(const Scene& s, const StartPoints& points) {
+std::vector<BodyBox> boxes_of(const Scene& s, const StartPoints& points) {
   constexpr double far = std::numeric_limits<double>::infinity();
-  std::vector<Box> boxes(s.bodies.size(), {{far, far, far}, {-far, -far, -far}});
-  points.for_each([&](std::size_t b, const Double3& x) {
-    for (int a = 0; a < 3; ++a) {
-      boxes[b].low[a] = std::min(boxes[b].low[a], x[a]);
-      boxes[b].high[a] = std::max(boxes[b].high[a], x[a]);
-    }
-  });
+  std::vector<BodyBox> boxes(s.bodies.size(), {{far, far, far}, {-far, -far, -far}});
+  points.for_each([&](std::size_t b, const Double3& x) { boxes[b].add({x, x}); });
   return boxes;
 }
 
 /// For each body, the bodies whose boxes are within `reach`.
 using Near = std::vector<std::vector<std::size_t>>;
 
-Near near_bodies(const std::vector<Box>& boxes, double reach) {
+Near near_bodies(const std::vector<BodyBox>& boxes, double reach) {
   Near near(boxes.size());
   any_near_pair(boxes, reach * (1 + 1e-6), [&](std::size_t i, std::size_t j) {
     near[i].push_back(j);
@@ -63,15 +42,9 @@ Near near_bodies(const std::vector<Box>& boxes, double reach) {
   return near;
 }
 
-/// Decides from the shapes of the bodies alone, without their particles.
-bool may_be_near(const Scene& s, double reach) {
-  std::vector<Box> boxes;
-  for (const Body& b : s.bodies) boxes.push_back(box_of(b));
-  return any_near_pair(boxes, reach, [](std::size_t, std::size_t) { return true; });
-}
-
 std::vector<Candidate> candidates(const Scene& s, const StartPoints& points,
-                                  const std::vector<Box>& boxes, const Near& others, double reach) {
+                                  const std::vector<BodyBox>& boxes, const Near& others,
+                                  double reach) {
   std::vector<Candidate> out;
   points.for_each([&](std::size_t b, const Double3& x) {
     const bool near = s.bodies[b].shape == Shape::file ||
@@ -98,8 +71,8 @@ Overlap find_overlap(const StartPoints& points) {
   if (s.bodies.size() < 2 && !file) return found;
   // Less by more than rounding: bodies that touch on one lattice are a full spacing apart.
   const double reach = 0.5 * s.fluid.spacing * (1 - 1e-6);
-  if (!file && !may_be_near(s, reach)) return found;
-  const std::vector<Box> boxes = boxes_of(s, points);
+  if (!file && !any_near_bodies(s, reach)) return found;  // by their shapes alone
+  const std::vector<BodyBox> boxes = boxes_of(s, points);
   const Near others = near_bodies(boxes, reach);
   const std::vector<Candidate> list = candidates(s, points, boxes, others, reach);
   for (const Candidate& c : list) found.of_files += s.bodies[c.body].shape == Shape::file;
@@ -110,7 +83,9 @@ Overlap find_overlap(const StartPoints& points) {
   };
   for (const Candidate& c : list)
     for (const std::size_t k : others[c.body])
-      if (inside(s.bodies[k], c.x, s.fluid.spacing)) {
+      // By more than rounding. If bodies only touch, the particles of one are half a spacing
+      // outside the other.
+      if (is_in(s.bodies[k], c.x, -1e-6 * s.fluid.spacing)) {
         ++found.inside;
         bodies(k, c.body);
         break;
