@@ -6,6 +6,7 @@
 #include "lib/program/motion.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/time_levels.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -16,15 +17,13 @@ constexpr double kMayGain = 0.1;  // share of the energy scale that a run may ga
 
 /// Longest edge of the domain, h.
 double longest_edge(const Scene& s) {
-  double edge = 0;
-  for (std::size_t a = 0; a < 3; ++a) edge = std::max(edge, s.domain.max[a] - s.domain.min[a]);
-  return edge / s.h();
+  const Double3 box = s.domain.max - s.domain.min;
+  return std::max({box[0], box[1], box[2]}) / s.h();
 }
 
 /// Bound on the speed that prescribed motions can give the fluid, m/s.
 double motion_speed(const Scene& s) {
-  const double pull =
-      greatest_pull(s, 0, s.time.end) - std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
+  const double pull = greatest_pull(s, 0, s.time.end) - length(s.gravity);
   return 2 * fastest_obstacle(s, 0, s.time.end) + std::sqrt(2 * pull * longest_edge(s) * s.h());
 }
 
@@ -66,8 +65,7 @@ double position_rounding(const Scene& s) { return longest_edge(s) * about(s.prec
 
 GuardLimits guard_limits(const Scene& s, const Plan& plan, const Diagnostics& first) {
   const GuardSettings& g = *s.guard;
-  const double per_step = h_per_step(s), mass = mass_of(plan),
-               gravity = std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
+  const double per_step = h_per_step(s), mass = mass_of(plan), gravity = length(s.gravity);
   const double scale = energy_scale(first, s, plan.mass, plan.particles);
   double slack = 0.5 * mass * std::pow(0.01 * per_step, 2);
   if (gravity > 0) slack = std::min(slack, kMayGain * mass * gravity * s.h());

@@ -7,6 +7,7 @@
 #include "lib/base/text.h"
 #include "lib/program/time_levels.h"
 #include "lib/run/guard.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -87,10 +88,8 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
     course.push_back({p.steps, p.kick});
     if (p.relieved() || (p.steps >= patience && hopeless(course))) break;
   }
-  double diagonal = 0;  // the sum over rounds may exceed any real displacement
-  for (std::size_t a = 0; a < 3; ++a)
-    diagonal = std::hypot(diagonal, s.domain.max[a] - s.domain.min[a]);
-  if (s.domain.open.empty()) p.moved = std::min(p.moved, diagonal / s.fluid.spacing);
+  if (s.domain.open.empty())  // the sum over rounds may exceed any real displacement
+    p.moved = std::min(p.moved, length(s.domain.max - s.domain.min) / s.fluid.spacing);
   const Diagnostics after = solver.measure();
   p.compression_after = after.compression_mean;
   p.most_after = after.compression_max;
