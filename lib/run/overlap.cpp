@@ -104,21 +104,20 @@ Overlap find_overlap(const StartPoints& points) {
       bodies(a.body, b.body);
     }
   };
-  // Visits half of the adjacent cells, so that each pair is met once.
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    for (std::size_t j = i + 1; j < list.size() && list[j].cell == list[i].cell; ++j)
-      if (look(list[i], list[j]); distances >= kMostDistances) return found.more = true, found;
+  // Visits the own cell from this particle on and half of the adjacent ones: each pair once.
+  const auto first_in = [&](const Cell& c) {
+    return std::lower_bound(list.begin(), list.end(), c,
+                            [](const Candidate& a, const Cell& cell) { return a.cell < cell; });
+  };
+  for (auto i = list.begin(); i != list.end(); ++i)
     for (int dx = 0; dx <= 1; ++dx)
-      for (int dy = dx == 0 ? 0 : -1; dy <= 1; ++dy)
-        for (int dz = dx == 0 && dy == 0 ? 1 : -1; dz <= 1; ++dz) {
-          const Cell c{list[i].cell[0] + dx, list[i].cell[1] + dy, list[i].cell[2] + dz};
-          for (auto j = std::lower_bound(
-                   list.begin(), list.end(), c,
-                   [](const Candidate&a, const Cell&cell) { return a.cell < cell; });
-               j != list.end() && j->cell == c; ++j)
-            if (look(list[i], *j); distances >= kMostDistances) return found.more = true, found;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dz = -1; dz <= 1; ++dz) {
+          if (Cell{dx, dy, dz} < Cell{}) continue;
+          const Cell c{i->cell[0] + dx, i->cell[1] + dy, i->cell[2] + dz};
+          for (auto j = c == i->cell ? i + 1 : first_in(c); j != list.end() && j->cell == c; ++j)
+            if (look(*i, *j); distances >= kMostDistances) return found.more = true, found;
         }
-  }
   return found;
 }
 
