@@ -103,7 +103,7 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
   // Keep the limits of the original run, although this one starts elsewhere.
   s.guard->speed = limits_.speed;
   s.guard->neighbors = limits_.neighbors;
-  const double scale = energy_scale(good_, s, plan_.mass, plan_.particles);
+  const double scale = energy_scale(good_, s, plan_);
   if (scale > 0)
     s.guard->energy = std::max((event_limit(e.measure) - total_energy(good_)) / scale, 1e-12);
   return s;
