@@ -8,7 +8,6 @@
 #include "lib/run/motion_warnings.h"
 #include "lib/run/obstacle_track.h"
 #include "lib/run/overlap.h"
-#include "lib/run/unit_warnings.h"
 #include "lib/run/warnings.h"
 #include "lib/scene/auto_step.h"
 

@@ -1,10 +1,10 @@
-#include "lib/run/unit_warnings.h"
-
+// Finds values that look as if they were not in SI units.
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "lib/base/text.h"
+#include "lib/run/warnings.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline run_module {
