@@ -14,10 +14,6 @@ constexpr Rgb kEdge{92, 102, 116}, kFloor{218, 224, 230};
 // The floor is farther by this one: obstacles that lie on it win.
 constexpr double kFarther = 1.0003;
 
-FlatVertex vertex(const Double3& v, Rgb color) {
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), color};
-}
-
 void add_quad(const std::array<FlatVertex, 4>& q, std::vector<FlatVertex>& out) {
   for (std::size_t i : {0, 1, 2, 2, 1, 3}) out.push_back(q[i]);
 }
@@ -41,7 +37,7 @@ void add_line(Double3 a, Double3 b, Rgb color, const Projection& projection, dou
     const double s = half * p[2];
     const Double3 place{p[0] + s * (along * dx - aside * dy), p[1] + s * (along * dy + aside * dx),
                         p[2]};
-    return vertex(nearer * place, color);
+    return FlatVertex{floats(nearer * place), color};
   };
   add_quad({moved(a, -1, -1), moved(a, -1, 1), moved(b, 1, -1), moved(b, 1, 1)}, out);
 }
@@ -78,7 +74,7 @@ void add_floor(const View& view, const Projection& projection, std::vector<FlatV
   for (unsigned i = 0; i < 4; ++i) {
     const unsigned bits =
         (i & 1) << u | (i >> 1) << w | static_cast<unsigned>(view.up[vertical] < 0) << vertical;
-    quad[i] = vertex(kFarther * projection.to_view(corner_of(view, bits)), kFloor);
+    quad[i] = {floats(kFarther * projection.to_view(corner_of(view, bits))), kFloor};
   }
   add_quad(quad, out);
 }

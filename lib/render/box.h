@@ -1,6 +1,7 @@
 // The box of the domain and its floor as triangles in view space.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "lib/render/camera.h"
@@ -9,7 +10,7 @@
 namespace pbf::inline render_module {
 
 struct FlatVertex {
-  float x, y, depth;  ///< view space, m
+  std::array<float, 3> place;  ///< view space: x, y, depth, m
   Rgb color;
 };
 

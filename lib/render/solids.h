@@ -16,7 +16,7 @@ inline constexpr std::array<double, 3> kClay{190, 176, 160};  ///< of 255: neith
                                                               ///< of the box nor viridis
 
 struct SolidVertex {
-  float x, y, depth;            ///< view space, m
+  std::array<float, 3> place;   ///< view space: x, y, depth, m
   std::array<float, 3> normal;  ///< out of the solid, of the smooth surface; view space
 };
 
