@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "lib/run/body_boxes.h"
-#include "lib/scene/vector3.h"
 
 namespace pbf::inline run_module {
 namespace {

@@ -10,6 +10,7 @@
 #include "lib/run/overlap.h"
 #include "lib/run/warnings.h"
 #include "lib/scene/auto_step.h"
+#include "lib/scene/surface.h"
 
 namespace pbf::inline run_module {
 namespace {
