@@ -7,28 +7,6 @@
 namespace pbf::inline base_module {
 namespace {
 
-/// The first character of a text; `code` is -1 if the first byte does not begin a valid one.
-struct Character {
-  long code;
-  std::size_t bytes;
-};
-
-Character first_character(std::string_view text) {
-  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned c = byte(0);
-  if (c < 0x80) return {static_cast<long>(c), 1};
-  const std::size_t bytes = c >= 0xC2 && c < 0xE0 ? 2 : c >= 0xE0 && c < 0xF0 ? 3 : 4;
-  if (c < 0xC2 || c > 0xF4 || text.size() < bytes) return {-1, 1};
-  long code = static_cast<long>(c & (0x7Fu >> bytes));
-  for (std::size_t k = 1; k < bytes; ++k) {
-    if ((byte(k) & 0xC0u) != 0x80u) return {-1, 1};
-    code = code * 64 + static_cast<long>(byte(k) & 0x3Fu);
-  }
-  const bool overlong = code < (bytes == 3 ? 0x800 : bytes == 4 ? 0x10000 : 0x80);
-  if (overlong || (code >= 0xD800 && code < 0xE000) || code > 0x10FFFF) return {-1, 1};
-  return {code, bytes};
-}
-
 bool is_control(long code) { return (code >= 0 && code < 0x20) || (code >= 0x7F && code < 0xA0); }
 
 /// Whether the first character of a text is a tab or part of a line end. A carriage return within a
@@ -62,6 +40,22 @@ std::string written(std::string_view text, Form form, std::size_t most = std::st
 }
 
 }  // namespace
+
+Character first_character(std::string_view text) {
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned c = byte(0);
+  if (c < 0x80) return {static_cast<long>(c), 1};
+  const std::size_t bytes = c >= 0xC2 && c < 0xE0 ? 2 : c >= 0xE0 && c < 0xF0 ? 3 : 4;
+  if (c < 0xC2 || c > 0xF4 || text.size() < bytes) return {-1, 1};
+  long code = static_cast<long>(c & (0x7Fu >> bytes));
+  for (std::size_t k = 1; k < bytes; ++k) {
+    if ((byte(k) & 0xC0u) != 0x80u) return {-1, 1};
+    code = code * 64 + static_cast<long>(byte(k) & 0x3Fu);
+  }
+  const bool overlong = code < (bytes == 3 ? 0x800 : bytes == 4 ? 0x10000 : 0x80);
+  if (overlong || (code >= 0xD800 && code < 0xE000) || code > 0x10FFFF) return {-1, 1};
+  return {code, bytes};
+}
 
 std::optional<BadText> find_bad_text(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include "lib/base/text.h"
 #include "lib/io/csv.h"
 #include "lib/io/table.h"
+#include "lib/scene/number.h"
 
 namespace pbf::inline campaign_module {
 namespace {
@@ -44,20 +44,16 @@ auto case_of(const StageCosts& c) {
   return std::tie(c.backend, c.precision, c.device, c.threads, c.particles);
 }
 
-template <class T>
-bool parse(const std::string& text, T& value) {
-  const char* end = text.data() + text.size();
-  const auto r = std::from_chars(text.data(), end, value);
-  return r.ec == std::errc() && r.ptr == end;
-}
-
 /// Adds a line to its case; false if the line is invalid.
 bool add_line(const std::vector<std::string>& cell, std::vector<StageCosts>& rows) {
   StageCosts row;
+  std::int64_t threads = 0;
   double ms = 0;
-  if (!parse(cell[2], row.threads) || !parse(cell[4], row.particles) || !parse(cell[6], ms) ||
-      row.threads < 0 || row.particles < 1 || !(ms >= 0))
+  constexpr NumberError none = NumberError::none;
+  if (read_number(cell[2], threads) != none || read_number(cell[4], row.particles) != none ||
+      read_number(cell[6], ms) != none || threads < 0 || row.particles < 1 || ms < 0)
     return false;
+  row.threads = int(threads);
   row.backend = cell[0], row.precision = cell[1], row.device = cell[3];
   const auto known = std::ranges::find(rows, case_of(row), case_of);
   StageCosts& into = known != rows.end() ? *known : rows.emplace_back(row);

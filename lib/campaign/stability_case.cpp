@@ -60,8 +60,8 @@ std::string must_text(const Criteria& m) {
 
 /// Relative loss of height of the center of mass above the floor, along gravity.
 double height_lost(const Course& c, const Scene& s) {
-  const double after = energy_of_height(c.last, s, 1, 1);
-  const double before = energy_of_height(c.first, s, 1, 1);
+  const double after = energy_of_height(c.last, s, 1);
+  const double before = energy_of_height(c.first, s, 1);
   return before > 0 ? 1 - after / before : 0;
 }
 

@@ -36,7 +36,7 @@ std::optional<Course> run_course(Start start, const std::function<bool()>& stop,
   Watch watch(scene, plan, *solver, [&](const Diagnostics& m, double) {
     if (compression.empty()) {
       c.first = m;
-      c.scale = energy_scale(m, scene, plan.mass, c.particles);
+      c.scale = energy_scale(m, scene, plan);
       c.released = released_energy(m, scene, plan) / (c.scale > 0 ? c.scale : 1);
     }
     const double rise = total_energy(m) - total_energy(c.first);

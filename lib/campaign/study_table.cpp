@@ -6,6 +6,7 @@
 
 #include "lib/base/text.h"
 #include "lib/scene/number.h"
+#include "lib/scene/vector3.h"
 #include "lib/solver/diagnostics.h"
 
 namespace pbf::inline campaign_module {
@@ -131,10 +132,9 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
     row.measures.push_back(reference ? reference_distance(result, *reference, length) : NAN);
   }
   if (study.front) {
-    const double g = std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
     const std::string column = std::string("front_") + "xyz"[study.front->axis];
-    row.front.push_back(front_curve(*study.front, g, s.fluid.spacing, result.series("time"),
-                                    result.series(column)));
+    row.front.push_back(front_curve(*study.front, length(s.gravity), s.fluid.spacing,
+                                    result.series("time"), result.series(column)));
     for (const FrontData& d : study.front->data)
       row.measures.push_back(front_deviation(row.front[0], d));
   }

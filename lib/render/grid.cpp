@@ -10,7 +10,7 @@
 namespace pbf::inline render_module {
 namespace {
 
-constexpr std::array<std::uint8_t, 4> kGridLine{188, 197, 207, 0};
+constexpr Rgb kGridLine{188, 197, 207};
 constexpr double kOnFloor = 0.9999;  // nearer by less than what lies on the floor is high
 
 constexpr std::size_t kHeights = 7;  // at most: a few say it

@@ -56,10 +56,6 @@ struct RenderThread::Impl {
 
 RenderThread::RenderThread(const View& view) : impl_(std::make_unique<Impl>(view)) {}
 
-RenderThread::RenderThread(const View& view, const std::string& dir) : RenderThread(view) {
-  into(dir);
-}
-
 void RenderThread::into(const std::string& dir) {
   std::error_code error;
   std::filesystem::create_directories(dir, error);

@@ -7,6 +7,7 @@
 #include "lib/program/time_levels.h"
 #include "lib/run/guard.h"
 #include "lib/run/motion_files.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -40,8 +41,8 @@ std::string Guard::text(const GuardEvent& e) const {
     out += format(
         ", particle %d at (%.6g, %.6g, %.6g) m, velocity (%.4g, %.4g, %.4g) m/s "
         "(%.4g m/s), %s",
-        e.stage->id, e.position[0], e.position[1], e.position[2], v[0], v[1], v[2],
-        std::hypot(v[0], v[1], v[2]), w.what);
+        e.stage->id, e.position[0], e.position[1], e.position[2], v[0], v[1], v[2], length(v),
+        w.what);
   } else if (e.last_good.updates == e.measure.update) {
     out += format("at the start, before the first update, a particle %s", w.what);
   } else {
@@ -102,7 +103,7 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
   // Keep the limits of the original run, although this one starts elsewhere.
   s.guard->speed = limits_.speed;
   s.guard->neighbors = limits_.neighbors;
-  const double scale = energy_scale(good_, s, plan_.mass, plan_.particles);
+  const double scale = energy_scale(good_, s, plan_);
   if (scale > 0)
     s.guard->energy = std::max((event_limit(e.measure) - total_energy(good_)) / scale, 1e-12);
   return s;

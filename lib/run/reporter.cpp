@@ -29,7 +29,7 @@ std::string passed_through_text(const Scene& s, const Diagnostics& m, double sha
 }  // namespace
 
 Reporter::Reporter(RunParts& run, const Watch& watch)
-    : run_(run), watch_(watch), progress_(run.log) {
+    : run_(run), watch_(watch), progress_(run.control.log) {
   for (const Warning& w : run.start.warnings) told_.emplace(w.kind, w.text);
   if (run.from.saved) compressed_ = run.from.saved->compressed_updates;
   progress_.start_at(run.from.update());
@@ -39,7 +39,7 @@ Now Reporter::at(Session& session) {
   const std::int64_t u = session.update(), updates = run_.schedule.updates;
   if (u < updates)
     for (const Warning& w : found(false))
-      if (told_.emplace(w.kind, w.text).second) run_.log.warning(w.text);
+      if (told_.emplace(w.kind, w.text).second) run_.control.log.warning(w.text);
   const Diagnostics& m = watch_.last();
   progress_.update({u, updates, run_.plan.particles, double(u) * run_.scene.time.step,
                     m.compression_mean, m.compression_max, run_.from.update()});

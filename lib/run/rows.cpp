@@ -17,7 +17,7 @@ Rows::Rows(RunParts& run, Reporter& reporter) : run_(run), reporter_(reporter) {
     due_.compressed_updates = saved->compressed_updates;
   }
   due_.scene = resolved_yaml(run.scene);
-  due_.files = run.loaded.files;
+  due_.files = run.start.loaded.files;
   due_.particles = run.plan.particles;
 }
 
@@ -40,7 +40,7 @@ void Rows::take(Diagnostics& m, double dt) {
   }
   if (!run_.json) return;
   const std::int64_t frames = writer ? writer->frames_written() : 0;
-  const std::string line = measure_json(m, run_.wall.seconds(), frames, since) + "\n";
+  const std::string line = measure_json(m, run_.control.wall.seconds(), frames, since) + "\n";
   // A closed pipe is no error, as for stdout.
   if ((std::fwrite(line.data(), 1, line.size(), run_.json) != line.size() ||
        std::fflush(run_.json) != 0) &&

@@ -21,7 +21,7 @@ namespace pbf::inline run_module {
 namespace {
 
 RunInfo run_info(const RunParts& run, const std::string& started) {
-  const LoadedScene& loaded = run.loaded;
+  const LoadedScene& loaded = run.start.loaded;
   const Scene& scene = run.scene;
   const BuildInfo build = build_info();
   char host[256] = "";
@@ -113,13 +113,13 @@ File open_json(const std::string& path, bool append) {
 /// Everything after the folder is made, so that log.txt also gets the error that ends the run.
 RunResult simulate(RunParts& run) {
   const ResumePoint& from = run.from;
-  Log& log = run.log;
+  Log& log = run.control.log;
   const std::string started = utc_now();
   const auto note = [&log](const std::string& text) { log.note("pbf: " + text); };
   const File json = open_json(run.control.log_json, from.started);
   run.json = json.get();
   if (from.started) prepare_resume(run.folder, from);
-  run.folder.write_text(kResolvedScene, scene_record(run.scene, run.loaded.files));
+  run.folder.write_text(kResolvedScene, scene_record(run.scene, run.start.loaded.files));
   log.note(banner(run));
   for (const Warning& w : run.start.warnings) log.warning(w.text);
   for (const std::string& text : from.notes) note(text);
@@ -159,7 +159,7 @@ void run_session(RunParts& run) {
   std::optional<Rows> rows;
   Watch watch(
       run.scene, run.plan, run.solver, [&](Diagnostics& m, double dt) { rows->take(m, dt); },
-      [&](const std::string& line) { run.log.note(line); }, &run.clock);
+      [&](const std::string& line) { run.control.log.note(line); }, &run.clock);
   if (run.schedule.gauge_every > 0 && run.writer)
     watch.read_gauges([&](const GaugeRow& row) { run.writer->gauges(row); });
   Reporter reporter(run, watch);
@@ -179,9 +179,9 @@ void run_session(RunParts& run) {
   session.use(watch.options());
   session.run(run.schedule.updates, saved ? run.from.update() : -1);
   run.loop_seconds = loop.seconds();
-  run.log.result(run_summary(run, watch, rows->stages()));
+  run.control.log.result(run_summary(run, watch, rows->stages()));
   if (!run.control.strict)  // a strict run has all of them in its error
-    for (const Warning& w : reporter.untold()) run.log.warning(w.text);
+    for (const Warning& w : reporter.untold()) run.control.log.warning(w.text);
   if (watch.event()) report_alarm(watch, run.scene, run.folder);
   if (run.control.strict && !reporter.warnings().empty())
     throw Error(ExitCode::difference,

@@ -159,7 +159,7 @@ std::string run_summary(const RunParts& run, const Watch& watch,
   const Plan& plan = run.plan;
   const Diagnostics &first = watch.first(), &last = watch.last();
   const std::int64_t updates = run.solver.updates();
-  const double wall = run.wall.seconds(), loop = run.loop_seconds;
+  const double wall = run.control.wall.seconds(), loop = run.loop_seconds;
   const auto own = double(updates - run.from.update());
   std::string out = format("particles           %ld\n", plan.particles);
   out += progress_lines(run, wall);

@@ -8,17 +8,15 @@
 #include "lib/run/motion_warnings.h"
 #include "lib/run/obstacle_track.h"
 #include "lib/run/overlap.h"
-#include "lib/run/unit_warnings.h"
 #include "lib/run/warnings.h"
 #include "lib/scene/auto_step.h"
+#include "lib/scene/surface.h"
 
 namespace pbf::inline run_module {
 namespace {
 
 /// Ratio of a step to that of time.step: auto above which a warning is given.
 constexpr double kFarAbove = 10;
-
-double length(const Double3& v) { return std::hypot(v[0], v[1], v[2]); }
 
 /// The longest step that time.adaptive allows for gravity, s; above time.step if it has no limit.
 double adaptive_step(const Scene& s) {
@@ -80,14 +78,10 @@ void add_speed(const Scene& s, std::vector<Warning>& list) {
   // Two velocities differ by at most the sum of their deviations from the mean. Sorted by
   // deviation, only a few pairs need to be examined.
   Double3 mean{};
-  for (const Body& b : s.bodies)
-    for (int a = 0; a < 3; ++a) mean[a] += b.velocity[a] / double(s.bodies.size());
-  const auto apart = [](const Double3& v, const Double3& w) {
-    return length({v[0] - w[0], v[1] - w[1], v[2] - w[2]});
-  };
+  for (const Body& b : s.bodies) mean = mean + (1.0 / double(s.bodies.size())) * b.velocity;
   std::vector<std::pair<double, std::size_t>> off;  // deviation from the mean, and body
   for (std::size_t i = 0; i < s.bodies.size(); ++i)
-    off.push_back({apart(s.bodies[i].velocity, mean), i});
+    off.push_back({length(s.bodies[i].velocity - mean), i});
   std::stable_sort(off.begin(), off.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   double fastest = 0;
@@ -95,7 +89,7 @@ void add_speed(const Scene& s, std::vector<Warning>& list) {
   for (std::size_t i = 1; i < off.size() && off[i].first + off[0].first > fastest; ++i)
     for (std::size_t j = 0; j < i && off[i].first + off[j].first > fastest; ++j)
       if (const double v =
-              apart(s.bodies[off[i].second].velocity, s.bodies[off[j].second].velocity);
+              length(s.bodies[off[i].second].velocity - s.bodies[off[j].second].velocity);
           v > fastest) {
         fastest = v;
         first = std::min(off[i].second, off[j].second);
@@ -123,19 +117,14 @@ void add_motion(const Scene& s, std::vector<Warning>& list) {
 /// Whether it lies outside the domain, farther than walls and obstacles act.
 bool out_of_reach(const Scene& s, const Solid<double>& o) {
   if (!is_bounded(o)) {
-    double size[3];
-    for (std::size_t k = 0; k < 3; ++k) size[k] = (s.domain.max[k] - s.domain.min[k]) / s.h();
+    const Double3 size = extents_of(s).high;
     for (int corner = 0; corner < 8; ++corner)
       if (distance<3>(o, {corner & 1 ? size[0] : 0, corner & 2 ? size[1] : 0,
                           corner & 4 ? size[2] : 0}) < 1)
         return false;
     return true;
   }
-  const Extents of_solid = extents_of(o), of_domain = extents_of(s);
-  for (std::size_t k = 0; k < 3; ++k)
-    if (!(s.plane() && k == 1) && !of_domain[k].meets({of_solid[k].low - 1, of_solid[k].high + 1}))
-      return true;
-  return false;
+  return !extents_of(s).meets(extents_of(s, o), 1);
 }
 
 void add_obstacles(const Scene& s, const std::vector<Track>& tracks, std::vector<Warning>& list) {
@@ -181,10 +170,9 @@ void add_crowded(const Scene& s, std::int64_t particles, std::vector<Warning>& l
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const Body& body = s.bodies[b];
     if (body.shape != Shape::random_box) continue;
-    double room = 1;
-    for (int a = 0; a < 3; ++a) room *= body.max[a] - body.min[a];
-    if (s.plane()) room *= (s.domain.max[1] - s.domain.min[1]) / (body.max[1] - body.min[1]);
-    const double fill = volume(s, double(body.count)) / room;
+    Double3 room = body.max - body.min;
+    if (s.plane()) room[1] = s.domain.max[1] - s.domain.min[1];
+    const double fill = volume(s, double(body.count)) / (room[0] * room[1] * room[2]);
     if (fill <= kTooMuch) continue;
     list.push_back(
         {"crowded", format("bodies[%zu] holds %.3g times the fluid that its box has room "
@@ -192,9 +180,8 @@ void add_crowded(const Scene& s, std::int64_t particles, std::vector<Warning>& l
                            b, fill, std::floor(body.count / fill * (1 + 1e-9)))});
     return;
   }
-  double box = 1;
-  for (int a = 0; a < 3; ++a) box *= s.domain.max[a] - s.domain.min[a];
-  const double fill = volume(s, double(particles)) / box;
+  const Double3 box = s.domain.max - s.domain.min;
+  const double fill = volume(s, double(particles)) / (box[0] * box[1] * box[2]);
   if (closed_box(s) && fill > kTooMuch)
     list.push_back({"crowded", format("the bodies hold %.3g times the fluid that the closed domain "
                                       "has room for; give fewer or smaller bodies",
@@ -230,19 +217,15 @@ double compression_at_rest(const Scene& s, std::int64_t particles) {
   const double g = length(s.gravity), h = s.h();
   const int iterations = most_iterations(s);
   if (g == 0 || iterations == 0) return 0;
-  int down = 0;  // axis along which the fluid rests on a wall
-  for (int a = 1; a < 3; ++a)
-    if (std::abs(s.gravity[a]) > std::abs(s.gravity[down])) down = a;
+  const int down = level_axis(s);  // along which the fluid rests on a wall
   // Without walls below and at the sides the fluid does not stay.
   const std::string ceiling =
       std::string(1, char('x' + down)) + (s.gravity[down] < 0 ? "_max" : "_min");
   for (const std::string& face : s.domain.open)
     if (face != ceiling) return 0;
-  double area = 1;
-  for (int a = 0; a < 3; ++a)
-    if (a != down) area *= s.domain.max[a] - s.domain.min[a];
-  const double depth =
-      std::min(volume(s, double(particles)) / area, s.domain.max[down] - s.domain.min[down]);
+  const Double3 box = s.domain.max - s.domain.min;
+  const double area = box[(down + 1) % 3] * box[(down + 2) % 3];
+  const double depth = std::min(volume(s, double(particles)) / area, box[down]);
   const double dt = longest_step(s);
   return 2.0 / 3 * g * dt * dt / h * (depth / h) / iterations;
 }

@@ -1,10 +1,10 @@
-#include "lib/run/unit_warnings.h"
-
+// Finds values that look as if they were not in SI units.
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "lib/base/text.h"
+#include "lib/run/warnings.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline run_module {
@@ -37,9 +37,8 @@ std::string speed_text(const Scene& s) {
 
 std::string length_text(const Scene& s) {
   const double g = length(s.gravity), fall = 0.5 * g * s.time.end * s.time.end;
-  double longest = 0;
-  for (std::size_t k = 0; k < 3; ++k)
-    longest = std::max(longest, s.domain.max[k] - s.domain.min[k]);
+  const Double3 box = s.domain.max - s.domain.min;
+  const double longest = std::max({box[0], box[1], box[2]});
   if (g == 0 || longest <= kLong || fall >= kHardlyFalls * longest) return "";
   return format(
       "domain is %.4g m long, and until time.end (%.4g s) things fall by %.3g m alone "

@@ -9,9 +9,10 @@
 namespace pbf::inline verify_module {
 namespace {
 
-TableOf<CompareRow> table_of(const std::vector<CompareRow>& rows) {
+/// `first`: name of the first column.
+TableOf<CompareRow> table_of(const std::vector<CompareRow>& rows, const char* first) {
   using R = const CompareRow&;
-  return TableOf<CompareRow>({{"", [](R r) { return r.what; }, -34},
+  return TableOf<CompareRow>({{first, [](R r) { return r.what; }, -34},
                               {"error", [](R r) { return r.error; }, 10, "%.3g"},
                               {"rms", [](R r) { return r.rms; }, 10, "%.3g"},
                               {"relative", [](R r) { return r.relative; }, 9, "%.2g"},
@@ -37,7 +38,7 @@ std::string compare_text(const CompareResult& r) {
   for (const ComparePart& p : r.parts) {
     out += "\n" + p.name + ": " + verdict_name(p.verdict) + "\n  " + p.finding +
            "\n  tolerance: " + p.tolerance_source + "\n";
-    if (!p.rows.empty()) out += table_of(p.rows).text("  ");
+    if (!p.rows.empty()) out += table_of(p.rows, "").text("  ");
   }
   return out + "\n" + conclusion(r);
 }
@@ -65,23 +66,12 @@ std::string compare_junit(const CompareResult& r, double seconds) {
 
 std::string compare_json(const CompareResult& r) {
   Json parts = Json::array(), curves = Json::array();
-  for (const ComparePart& p : r.parts) {
-    Json rows = Json::array();
-    for (const CompareRow& x : p.rows)
-      rows.push_back({{"what", x.what},
-                      {"unit", x.unit},
-                      {"error", x.error},
-                      {"rms", x.rms},
-                      {"relative", x.relative},
-                      {"ulps", x.ulps},
-                      {"tolerance", x.tolerance},
-                      {"verdict", verdict_name(x.verdict)}});
+  for (const ComparePart& p : r.parts)
     parts.push_back({{"part", p.name},
                      {"verdict", verdict_name(p.verdict)},
                      {"finding", p.finding},
                      {"tolerance_source", p.tolerance_source},
-                     {"rows", rows}});
-  }
+                     {"rows", table_of(p.rows, "what").json()}});
   for (const Diagram& d : r.diagrams)
     for (const Curve& c : d.curves)
       curves.push_back({{"diagram", d.title},

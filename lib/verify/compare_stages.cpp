@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "lib/base/text.h"
 #include "lib/verify/compare_parts.h"
@@ -184,15 +185,16 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
   const std::vector<double>& position = values_of(a, "grid", "position");
   double position_tolerance = 0;
   bool lists_done = false;
+  const auto add_lists = [&] {  // once, before what is summed over them
+    if (!std::exchange(lists_done, true))
+      add("neighbors: pairs", "h", set_difference(a, b, position),
+          c.same_bits ? 0 : 4 * position_tolerance + 8 * c.u, "neighbors");
+  };
   const std::size_t common = std::min(a.arrays.size(), b.arrays.size());
   std::size_t k = 0;
   for (; k < common && same_kind(a.arrays[k], b.arrays[k]); ++k) {
     const TraceArray &x = a.arrays[k], &y = b.arrays[k];
-    if (x.stage != "predict" && x.stage != "grid" && !lists_done) {
-      lists_done = true;
-      add("neighbors: pairs", "h", set_difference(a, b, position),
-          c.same_bits ? 0 : 4 * position_tolerance + 8 * c.u, "neighbors");
-    }
+    if (x.stage != "predict" && x.stage != "grid") add_lists();
     if (x.quantity == "bin") {
       add(name_of(x), "h",
           bin_difference(x, y, position, c.plan->cell_edge / 2, c.scene->dimensions),
@@ -207,9 +209,7 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
     if (x.quantity == "position" && !lists_done) position_tolerance = tolerance;
     add(name_of(x), x.unit, s, tolerance, x.stage);
   }
-  if (!lists_done)
-    add("neighbors: pairs", "h", set_difference(a, b, position),
-        c.same_bits ? 0 : 4 * position_tolerance + 8 * c.u, "neighbors");
+  add_lists();
   if (k < a.arrays.size() || k < b.arrays.size()) {
     const bool only_b = k >= a.arrays.size() || (k < b.arrays.size() && b.arrays[k].iteration > 0);
     const TraceArray& t = only_b ? b.arrays[k] : a.arrays[k];
