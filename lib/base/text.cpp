@@ -1,5 +1,6 @@
 #include "lib/base/text.h"
 
+#include <fmt/core.h>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -31,23 +32,23 @@ std::string si_number(double value) {
   const char* prefix[] = {"", " k", " M", " G", " T"};
   int i = 0;
   while (std::abs(value) >= 999.5 && i < 4) value /= 1000, ++i;
-  return format("%.3g", value) + prefix[i];
+  return fmt::format("{:.3g}{}", value, prefix[i]);
 }
 
 std::string bytes_text(double bytes) {
   const char* unit[] = {"B", "KiB", "MiB", "GiB", "TiB"};
   int i = 0;
   while (bytes >= 1023.5 && i < 4) bytes /= 1024, ++i;
-  return format(i == 0 || bytes >= 99.95 ? "%.0f %s" : "%.1f %s", bytes, unit[i]);
+  return fmt::format("{:.{}f} {}", bytes, i == 0 || bytes >= 99.95 ? 0 : 1, unit[i]);
 }
 
 std::string duration_text(double s) {
   if (!std::isfinite(s)) return "unknown";
-  if (s < 9.95) return format("%.1f s", s);
-  const auto whole = static_cast<long long>(std::llround(s));
-  if (whole < 60) return format("%lld s", whole);
-  if (whole < 3600) return format("%lld min %02lld s", whole / 60, whole % 60);
-  return format("%lld h %02lld min", whole / 3600, whole % 3600 / 60);
+  if (s < 9.95) return fmt::format("{:.1f} s", s);
+  const long long whole = std::llround(s);
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
 }
 
 bool is_file_name(std::string_view text) {

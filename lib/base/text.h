@@ -8,7 +8,7 @@
 
 namespace pbf::inline base_module {
 
-/// printf into a string.
+/// printf into a string; new code uses fmt::format.
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
 
 /// "a, b, c" with ", " as the separator.
