@@ -1,10 +1,10 @@
 #include "lib/run/prestabilize.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "lib/base/text.h"
 #include "lib/program/time_levels.h"
 #include "lib/run/guard.h"
 
@@ -81,9 +81,9 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
     p.kick = energy(moves.squares / (round * round));  // for the mean step of the round
     if (progress)
       progress(
-          format("start: %d steps without time; one more would give the particles %.2g J, "
-                 "%.2g J do no harm",
-                 p.steps, p.kick, p.harmless));
+          fmt::format("start: {} steps without time; one more would give the particles {:.2g} J, "
+                      "{:.2g} J do no harm",
+                      p.steps, p.kick, p.harmless));
     course.push_back({p.steps, p.kick});
     if (p.relieved() || (p.steps >= patience && hopeless(course))) break;
   }
@@ -101,16 +101,16 @@ std::string prestabilized_text(const Prestabilized& p) {
   if (p.steps == 0) return {};
   // At edges of bodies a step relieves the worst particles and compresses their neighbors.
   const bool spread = p.compression_after > p.compression_before && p.most_after < p.most_before;
-  std::string text = format(
-      "start: compression mean %.3g %%, largest %.3g %%; after %d step%s without time "
-      "(solver.prestabilize) mean %.3g %%%s, largest %.3g %%; no particle has moved by more than "
-      "%.2g spacings",
+  std::string text = fmt::format(
+      "start: compression mean {:.3g} %, largest {:.3g} %; after {} step{} without time "
+      "(solver.prestabilize) mean {:.3g} %{}, largest {:.3g} %; no particle has moved by more than "
+      "{:.2g} spacings",
       100 * p.compression_before, 100 * p.most_before, p.steps, p.steps == 1 ? "" : "s",
       100 * p.compression_after, spread ? " (spread over more particles now)" : "",
       100 * p.most_after, p.moved);
   if (!p.relieved())
-    text +=
-        format(". What is left did not go in these steps; one more would give them %.2g J", p.kick);
+    text += fmt::format(
+        ". What is left did not go in these steps; one more would give them {:.2g} J", p.kick);
   if (!p.relieved() && p.compression_after > 0.01)
     text += ": is there room for all of them? Is fluid.mass as meant?";
   return text;
