@@ -158,8 +158,7 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
   o.csv.empty() ? log.result(csv) : write_text_file(o.csv, csv);
   log.result(
       fmt::format("{} runs: {} stable, {} degraded (mean compression above {:g} %), {} stopped by "
-                  "the guard, "
-                  "{:.0f} s",
+                  "the guard, {:.0f} s",
                   cells.size(), count[0], count[1], 100 * map.limit, count[2], watch.seconds()));
   return code;
 }

@@ -95,8 +95,7 @@ std::optional<MemberResult> result_of(const Study& study, const StudyMember& mem
   write_member(path, *result);
   const std::vector<double>& mean = result->series("compression_mean");
   log.note(fmt::format(
-      "{}: {} in all; updates {:.4g} s (spread {:.2g} s), mean compression {:.3g} % at the "
-      "end{}",
+      "{}: {} in all; updates {:.4g} s (spread {:.2g} s), mean compression {:.3g} % at the end{}",
       name, duration_text(watch.seconds()), result->seconds_median(), result->seconds_spread(),
       100 * mean.back(), result->status == "finished" ? "" : ", " + result->status));
   return result;
@@ -135,10 +134,9 @@ int command_study(const StudyOptions& o) {
   watch_signals();
   const std::size_t n = study.members.size() + (study.reference ? 1 : 0);
   const auto stopped = [&](std::size_t done) {
-    log.note(
-        fmt::format("pbf: stopped early by {} with {} of {} runs done; the same command goes on "
-                    "from there",
-                    signal_token().why(), done, n));
+    log.note(fmt::format(
+        "pbf: stopped early by {} with {} of {} runs done; the same command goes on from there",
+        signal_token().why(), done, n));
     return static_cast<int>(ExitCode::resumable);
   };
   const auto name_of = [n](const StudyMember& member, std::size_t k) {

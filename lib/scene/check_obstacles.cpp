@@ -31,11 +31,11 @@ class ShapeRules : public SceneRules {
     const double apart = position_spacing(s_) * s_.h(), least = kThinnestSolid * apart;
     if (thick >= least) return;
     const bool single = s_.precision == Precision::single;
-    add(end, fmt::format("makes a plate {:.3g} m thick, and positions in {} are {:.3g} m apart at "
-                         "the far end of the domain: fluid would pass through it; give at least "
-                         "{:.2g} m{}",
-                         thick, word(s_.precision), apart, 1.05 * least,
-                         single ? ", or precision: double" : ""));
+    add(end,
+        fmt::format("makes a plate {:.3g} m thick, and positions in {} are {:.3g} m apart at the "
+                    "far end of the domain: fluid would pass through it; give at least {:.2g} m{}",
+                    thick, word(s_.precision), apart, 1.05 * least,
+                    single ? ", or precision: double" : ""));
   }
 };
 

@@ -126,8 +126,8 @@ class Checker : public SceneRules {
                    "positions are {} h apart, steps shorter than half of that are none",
                    precision, r.lost, r.distance, to_text(r.spacing))
              : fmt::format(
-                   "makes so many steps in a fall that rounding in {} would take {:.3g} % of "
-                   "its velocity",
+                   "makes so many steps in a fall that rounding in {} would take {:.3g} % of its "
+                   "velocity",
                    precision, 100 * r.slow);
     add(s_.time.step, what + "; " + remedy +
                           (s_.solver.substeps > 1 ? "raise time.step or lower solver.substeps"
