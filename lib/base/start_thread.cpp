@@ -10,12 +10,11 @@
 namespace pbf::inline base_module {
 
 void refuse_threads(int reason, int wanted) {
-  throw Error(
-      ExitCode::unavailable,
-      fmt::format("{} cannot be started: {}; raise the limit on processes (ulimit -u, or pids "
-                  "of a container), or use fewer --threads and --jobs",
-                  wanted > 1 ? fmt::format("{} threads", wanted) : "a thread",
-                  std::strerror(reason)));
+  throw Error(ExitCode::unavailable,
+              fmt::format("{} cannot be started: {}; raise the limit on processes (ulimit -u, or "
+                          "pids of a container), or use fewer --threads and --jobs",
+                          wanted > 1 ? fmt::format("{} threads", wanted) : "a thread",
+                          std::strerror(reason)));
 }
 
 int reason_against_threads(int threads) {

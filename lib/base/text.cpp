@@ -2,25 +2,11 @@
 
 #include <fmt/core.h>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <ctime>
 
 #include "lib/base/plain_text.h"
 
 namespace pbf::inline base_module {
-
-std::string format(const char* pattern, ...) {
-  va_list args, again;
-  va_start(args, pattern);
-  va_copy(again, args);
-  const int length = std::vsnprintf(nullptr, 0, pattern, args);
-  va_end(args);
-  std::string text(length > 0 ? static_cast<std::size_t>(length) : 0, '\0');
-  if (length > 0) std::vsnprintf(text.data(), text.size() + 1, pattern, again);
-  va_end(again);
-  return text;
-}
 
 std::string joined(const std::vector<std::string>& parts, const std::string& separator) {
   std::string text;
