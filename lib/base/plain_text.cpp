@@ -1,8 +1,7 @@
 #include "lib/base/plain_text.h"
 
+#include <fmt/core.h>
 #include <algorithm>
-
-#include "lib/base/text.h"
 
 namespace pbf::inline base_module {
 namespace {
@@ -20,13 +19,13 @@ enum class Form { lines, one_line, utf8 };
 
 /// The form in which a message shows the first character of a text.
 std::string shown(std::string_view text, const Character& c, Form form) {
-  if (c.code < 0) return format("\\x%02x", static_cast<unsigned char>(text[0]));
+  if (c.code < 0) return fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
   if (!is_control(c.code) || form == Form::utf8 || (form == Form::lines && is_blank(text)))
     return std::string(text.substr(0, c.bytes));
   if (c.code == '\n') return "\\n";
   if (c.code == '\r') return "\\r";
   if (c.code == '\t') return "\\t";
-  return format("\\u%04lx", static_cast<unsigned long>(c.code));
+  return fmt::format("\\u{:04x}", static_cast<unsigned long>(c.code));
 }
 
 std::string written(std::string_view text, Form form, std::size_t most = std::string::npos) {
@@ -69,10 +68,11 @@ std::optional<BadText> find_bad_text(std::string_view text) {
     bad.line = static_cast<int>(std::count(before.begin(), before.end(), '\n'));
     bad.column = static_cast<int>(at - (before.rfind('\n') + 1));  // npos + 1 is 0
     if (c.code < 0) {
-      bad.what = format("the byte 0x%02x is not UTF-8", static_cast<unsigned char>(text[at]));
+      bad.what =
+          fmt::format("the byte 0x{:02x} is not UTF-8", static_cast<unsigned char>(text[at]));
       bad.remedy = "save the text as UTF-8";
     } else {
-      bad.what = format("the control character U+%04lX", static_cast<unsigned long>(c.code));
+      bad.what = fmt::format("the control character U+{:04X}", static_cast<unsigned long>(c.code));
       bad.remedy = "remove it";
     }
     return bad;

@@ -1,6 +1,7 @@
 #include "lib/campaign/calibration.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -199,8 +200,9 @@ std::optional<RunTime> run_time(const Plan& plan, const Scene& s,
   out.rough = true;
   out.seconds = updates * double(plan.particles) * (passes / 9.0) * neighbors /
                 (kRoughRate * std::max(1, threads));
-  out.basis = format("a rule of thumb (%s particle-updates/s per CPU thread), maybe 3 times off",
-                     si_number(kRoughRate).c_str());
+  out.basis =
+      fmt::format("a rule of thumb ({} particle-updates/s per CPU thread), maybe 3 times off",
+                  si_number(kRoughRate));
   return out;
 }
 

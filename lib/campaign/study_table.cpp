@@ -1,10 +1,10 @@
 #include "lib/campaign/study_table.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "lib/base/text.h"
 #include "lib/scene/number.h"
 #include "lib/scene/vector3.h"
 #include "lib/solver/diagnostics.h"
@@ -141,8 +141,8 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
   const double rise = measure_of(study, row, "energy_rise");
   if (row.status == "finished" && !(rise <= member.energy_limit)) {
     row.status = "energy_rose";
-    row.message = format("by %.3g %% of its start, the limit is %.3g %%", 100 * rise,
-                         100 * member.energy_limit);
+    row.message = fmt::format("by {:.3g} % of its start, the limit is {:.3g} %", 100 * rise,
+                              100 * member.energy_limit);
   }
   return row;
 }

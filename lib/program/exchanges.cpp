@@ -1,12 +1,13 @@
 #include "lib/program/exchanges.h"
 
+#include <fmt/core.h>
+
 #include "lib/base/error.h"
-#include "lib/base/text.h"
 
 namespace pbf::inline program_module {
 namespace {
 
-bool per_row(const FieldInfo& f) { return f.rows == per_particle || f.rows == per_padded_row; }
+bool per_row(const FieldInfo& f) { return f.is_per_particle(); }
 
 /// The fields that go along with the particles.
 Exchange::Fields carried(const Program& program) {
@@ -68,8 +69,8 @@ Exchange RankState::before(const PassInfo& pass, bool first_iteration, const Pro
     if (a.how & kPlaces) e.sums_within.push_back(a.field);
     if (totals_.contains(array(a)))
       throw Error(ExitCode::internal,
-                  format("pass '%s' adds to %s, which was read and not set anew", pass.name,
-                         name_of(*a.field).c_str()));
+                  fmt::format("pass '{}' adds to {}, which was read and not set anew", pass.name,
+                              name_of(*a.field)));
     if (a.how == kAdds) parts_.insert(array(a));
   }
   if (e.rows.empty()) return e;

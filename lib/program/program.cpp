@@ -1,5 +1,6 @@
 #include "lib/program/program.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 
 #include "lib/base/error.h"
@@ -113,8 +114,8 @@ struct Fourth {
           (a.when == When::first_iteration && iteration > 0) || of(*a.field) == a.w)
         continue;
       throw Error(ExitCode::internal,
-                  format("pass '%s' asks for %s in w of %s, which holds '%s'", pass.name, word(a.w),
-                         name_of(*a.field).c_str(), word(of(*a.field))));
+                  fmt::format("pass '{}' asks for {} in w of {}, which holds '{}'", pass.name,
+                              word(a.w), name_of(*a.field), word(of(*a.field))));
     }
     for (const AccessInfo& a : pass.declared) {
       if (&a.field->primary() != &field::position || !(a.how & (kWrites | kPlaces))) continue;

@@ -1,11 +1,11 @@
 #include "lib/run/motion_files.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "lib/base/error.h"
-#include "lib/base/text.h"
 #include "lib/io/csv.h"
 #include "lib/scene/number.h"
 
@@ -59,9 +59,9 @@ class Reader {
     if (t.time.size() < 2) fail(file_, "needs at least two rows of numbers below the header");
     const double from = s_.time.motion_begin, to = from + s_.time.end, slack = 1e-9 * s_.time.end;
     if (t.time.front() > from + slack || t.time.back() < to - slack)
-      fail(file_, format("goes from %.6g to %.6g s, the run from %.6g to %.6g s; give a table that "
-                         "lasts as long, or another time.end",
-                         t.time.front(), t.time.back(), from, to));
+      fail(file_, fmt::format("goes from {:.6g} to {:.6g} s, the run from {:.6g} to {:.6g} s; give "
+                              "a table that lasts as long, or another time.end",
+                              t.time.front(), t.time.back(), from, to));
     return t;
   }
   [[noreturn]] void fail(const std::string& where, const std::string& what) const {

@@ -1,5 +1,6 @@
 #include "lib/run/motion_warnings.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -119,13 +120,17 @@ std::string wall_text(const Scene& s, std::size_t k, const Track& track) {
     const std::optional<Crossing> c = crossing(s, o, track, face);
     if (!c || c->by <= most) continue;
     most = c->by;
-    text = named(s, k) +
-           format(c->leaves ? " leaves the tank through the wall %s at %.4g s, and is up to %.2g m "
-                              "behind it (at %.4g s); "
-                            : " goes through the wall %s from %.4g s on, by up to %.2g m (at %.4g "
-                              "s); ",
-                  kFaceNames[std::size_t(face)], c->from, c->by, c->worst) +
-           motion_remedy(o, c->leaves);
+    const char* wall = kFaceNames[std::size_t(face)];
+    text =
+        named(s, k) +
+        (c->leaves
+             ? fmt::format(" leaves the tank through the wall {} at {:.4g} s, and is up to {:.2g} "
+                           "m behind it (at {:.4g} s); ",
+                           wall, c->from, c->by, c->worst)
+             : fmt::format(
+                   " goes through the wall {} from {:.4g} s on, by up to {:.2g} m (at {:.4g} s); ",
+                   wall, c->from, c->by, c->worst)) +
+        motion_remedy(o, c->leaves);
   }
   return text;
 }
@@ -189,7 +194,7 @@ class Meetings {
 }  // namespace
 
 std::string named(const Scene& s, std::size_t k) {
-  return format("obstacles[%zu] (%s)", k, s.obstacles[k].name.c_str());
+  return fmt::format("obstacles[{}] ({})", k, s.obstacles[k].name);
 }
 
 std::string listed(const std::vector<std::string>& texts) {
@@ -197,7 +202,7 @@ std::string listed(const std::vector<std::string>& texts) {
   const std::vector<std::string> shown(
       texts.begin(), texts.begin() + std::ptrdiff_t(std::min(kShown, texts.size())));
   return joined(shown, "; ") +
-         (texts.size() > kShown ? format("; and %zu more", texts.size() - kShown) : std::string());
+         (texts.size() > kShown ? fmt::format("; and {} more", texts.size() - kShown) : "");
 }
 
 void add_walls(const Scene& s, const std::vector<Track>& tracks, std::vector<Warning>& list) {
@@ -219,11 +224,13 @@ void add_collisions(const Scene& s, const std::vector<Track>& tracks, std::vecto
       if (!m) continue;
       const std::string both = named(s, a) + " and " + named(s, b);
       if (m->at_start)
-        at_start.push_back(both + format(" overlap by %.2g m at the start", m->thickness));
+        at_start.push_back(both + fmt::format(" overlap by {:.2g} m at the start", m->thickness));
       else
-        later.push_back(both + format(" run into each other at %.4g s and overlap by up to %.2g m "
-                                      "(at %.4g s)",
-                                      m->from, m->thickness, m->worst));
+        later.push_back(
+            both +
+            fmt::format(
+                " run into each other at {:.4g} s and overlap by up to {:.2g} m (at {:.4g} s)",
+                m->from, m->thickness, m->worst));
     }
   std::vector<std::string> texts = at_start;
   texts.insert(texts.end(), later.begin(), later.end());

@@ -1,10 +1,10 @@
 #include "lib/run/prestabilize.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "lib/base/text.h"
 #include "lib/program/time_levels.h"
 #include "lib/run/guard.h"
 #include "lib/scene/vector3.h"
@@ -80,9 +80,9 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
     p.kick = energy(moves.squares / (round * round));  // for the mean step of the round
     if (progress)
       progress(
-          format("start: %d steps without time; one more would give the particles %.2g J, "
-                 "%.2g J do no harm",
-                 p.steps, p.kick, p.harmless));
+          fmt::format("start: {} steps without time; one more would give the particles {:.2g} J, "
+                      "{:.2g} J do no harm",
+                      p.steps, p.kick, p.harmless));
     course.push_back({p.steps, p.kick});
     if (p.relieved() || (p.steps >= patience && hopeless(course))) break;
   }
@@ -98,16 +98,16 @@ std::string prestabilized_text(const Prestabilized& p) {
   const Diagnostics &a = p.before, &b = p.after;
   const bool spread =
       b.compression_mean > a.compression_mean && b.compression_max < a.compression_max;
-  std::string text = format(
-      "start: compression mean %.3g %%, largest %.3g %%; after %d step%s without time "
-      "(solver.prestabilize) mean %.3g %%%s, largest %.3g %%; no particle has moved by more than "
-      "%.2g spacings",
+  std::string text = fmt::format(
+      "start: compression mean {:.3g} %, largest {:.3g} %; after {} step{} without time "
+      "(solver.prestabilize) mean {:.3g} %{}, largest {:.3g} %; no particle has moved by more than "
+      "{:.2g} spacings",
       100 * a.compression_mean, 100 * a.compression_max, p.steps, p.steps == 1 ? "" : "s",
       100 * b.compression_mean, spread ? " (spread over more particles now)" : "",
       100 * b.compression_max, p.moved);
   if (!p.relieved())
-    text +=
-        format(". What is left did not go in these steps; one more would give them %.2g J", p.kick);
+    text += fmt::format(
+        ". What is left did not go in these steps; one more would give them {:.2g} J", p.kick);
   if (!p.relieved() && b.compression_mean > 0.01)
     text += ": is there room for all of them? Is fluid.mass as meant?";
   return text;

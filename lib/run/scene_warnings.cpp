@@ -1,9 +1,9 @@
 // Warnings that a scene gives before it is run.
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 
 #include "kernels/relative_motion.h"
-#include "lib/base/text.h"
 #include "lib/program/motion.h"
 #include "lib/run/motion_warnings.h"
 #include "lib/run/obstacle_track.h"
@@ -47,10 +47,11 @@ void add_coarse_step(const Scene& s, std::vector<Warning>& list) {
   const double far = kFarAbove * std::sqrt(std::max(1.0, most_iterations(s) / 4.0));
   const double safe = step_rule(s).gravity, times = longest_step(s) / safe;
   if (s.time.adaptive || !(times > far)) return;
-  list.push_back({"step", format("time.step %g makes steps of %.2g times 0.03 sqrt(h/g) (%.2g s), "
-                                 "which is safe: what falls moves far before it is stopped; give "
-                                 "%.2g or less, or auto",
-                                 s.time.step, times, safe, s.time.step * far / times)});
+  list.push_back(
+      {"step",
+       fmt::format("time.step {:g} makes steps of {:.2g} times 0.03 sqrt(h/g) ({:.2g} s), which is "
+                   "safe: what falls moves far before it is stopped; give {:.2g} or less, or auto",
+                   s.time.step, times, safe, s.time.step * far / times)});
 }
 
 void add_step(const Scene& s, std::int64_t particles, std::vector<Warning>& list) {
@@ -61,15 +62,14 @@ void add_step(const Scene& s, std::int64_t particles, std::vector<Warning>& list
   const double value = by_force ? s.time.adaptive->force : s.time.step;
   const std::string key = by_force ? "time.adaptive.force" : "time.step";
   // The formula holds up to this compression; beyond, the real one is larger.
-  std::string text = key +
-                     format(
-                         " %g makes steps %.2g times the longest that is safe here: at rest the "
-                         "fluid would have a mean compression of ",
-                         value, times) +
-                     (c > 0.2 ? std::string("more than 20 %") : format("about %.2g %%", 100 * c)) +
-                     format("; give %.2g or less", value / times);
+  std::string text = fmt::format(
+      "{} {:g} makes steps {:.2g} times the longest that is safe here: at rest the fluid would "
+      "have a mean compression of {}; give {:.2g} or less",
+      key, value, times, c > 0.2 ? "more than 20 %" : fmt::format("about {:.2g} %", 100 * c),
+      value / times);
   if (s.solver.tolerance == 0)
-    text += format(", or solver.iterations %.0f", std::ceil(s.solver.iterations * times * times));
+    text += fmt::format(", or solver.iterations {:.0f}",
+                        std::ceil(s.solver.iterations * times * times));
   list.push_back({"step", text});
 }
 
@@ -98,20 +98,22 @@ void add_speed(const Scene& s, std::vector<Warning>& list) {
   const double way = fastest * longest_step(s) / s.h();
   if (way <= kResolvedWay) return;
   list.push_back(
-      {"speed", format("bodies[%zu] and bodies[%zu] move past each other by %.3g h in a step, more "
-                       "than %g h: fluid may pass through fluid; give time.step %.2g or less, or "
-                       "time.adaptive",
-                       first, second, way, kResolvedWay, s.time.step * kResolvedWay / way)});
+      {"speed",
+       fmt::format(
+           "bodies[{}] and bodies[{}] move past each other by {:.3g} h in a step, more than {:g} "
+           "h: fluid may pass through fluid; give time.step {:.2g} or less, or time.adaptive",
+           first, second, way, kResolvedWay, s.time.step * kResolvedWay / way)});
 }
 
 void add_motion(const Scene& s, std::vector<Warning>& list) {
   if (s.time.adaptive) return;  // it adapts to motions
   const double way = fastest_obstacle(s, 0, s.time.end) * longest_step(s) / s.h();
   if (way <= kResolvedWay) return;
-  list.push_back({"motion", format("an obstacle moves by %.3g h in a step, more than %g h: what it "
-                                   "pushes may pass through fluid; give time.step %.2g or less, or "
-                                   "time.adaptive",
-                                   way, kResolvedWay, s.time.step * kResolvedWay / way)});
+  list.push_back(
+      {"motion",
+       fmt::format("an obstacle moves by {:.3g} h in a step, more than {:g} h: what it pushes may "
+                   "pass through fluid; give time.step {:.2g} or less, or time.adaptive",
+                   way, kResolvedWay, s.time.step * kResolvedWay / way)});
 }
 
 /// Whether it lies outside the domain, farther than walls and obstacles act.
@@ -133,11 +135,11 @@ void add_obstacles(const Scene& s, const std::vector<Track>& tracks, std::vector
     if (!std::ranges::all_of(tracks[k].solid, [&](const auto& o) { return out_of_reach(s, o); }))
       continue;
     list.push_back(
-        {"obstacles", format("obstacles[%zu] (%s) %s: no fluid will meet it; move it or "
-                             "remove it",
-                             k, s.obstacles[k].name.c_str(),
-                             s.obstacles[k].motion ? "stays outside the domain all the time"
-                                                   : "lies outside the domain")});
+        {"obstacles",
+         fmt::format("obstacles[{}] ({}) {}: no fluid will meet it; move it or remove it", k,
+                     s.obstacles[k].name,
+                     s.obstacles[k].motion ? "stays outside the domain all the time"
+                                           : "lies outside the domain")});
     return;
   }
 }
@@ -147,14 +149,13 @@ void add_overlap(const StartPoints& points, std::vector<Warning>& list) {
   const char* least = o.more ? "at least " : "";
   std::string text;
   if (o.inside + o.pairs > 0)
-    text = format(
-        "bodies[%zu] and bodies[%zu] overlap: %ld particles start inside another body, "
-        "%s%ld pairs of two bodies are closer than half of fluid.spacing; ",
+    text = fmt::format(
+        "bodies[{}] and bodies[{}] overlap: {} particles start inside another body, {}{} pairs of "
+        "two bodies are closer than half of fluid.spacing; ",
         o.first, o.second, o.inside, least, o.pairs);
   else if (o.within > 0 && 100 * o.within > o.of_files)  // any flow has some close pairs
-    text = format(
-        "bodies[%zu]: %s%ld pairs of the file's particles are closer than half of "
-        "fluid.spacing; ",
+    text = fmt::format(
+        "bodies[{}]: {}{} pairs of the file's particles are closer than half of fluid.spacing; ",
         o.file, least, o.within);
   if (text.empty()) return;
   const char* then = points.scene().solver.prestabilize
@@ -175,17 +176,17 @@ void add_crowded(const Scene& s, std::int64_t particles, std::vector<Warning>& l
     const double fill = volume(s, double(body.count)) / (room[0] * room[1] * room[2]);
     if (fill <= kTooMuch) continue;
     list.push_back(
-        {"crowded", format("bodies[%zu] holds %.3g times the fluid that its box has room "
-                           "for; give count %.0f or less, or a larger box",
-                           b, fill, std::floor(body.count / fill * (1 + 1e-9)))});
+        {"crowded", fmt::format("bodies[{}] holds {:.3g} times the fluid that its box has room "
+                                "for; give count {:.0f} or less, or a larger box",
+                                b, fill, std::floor(body.count / fill * (1 + 1e-9)))});
     return;
   }
   const Double3 box = s.domain.max - s.domain.min;
   const double fill = volume(s, double(particles)) / (box[0] * box[1] * box[2]);
   if (closed_box(s) && fill > kTooMuch)
-    list.push_back({"crowded", format("the bodies hold %.3g times the fluid that the closed domain "
-                                      "has room for; give fewer or smaller bodies",
-                                      fill)});
+    list.push_back({"crowded", fmt::format("the bodies hold {:.3g} times the fluid that the closed "
+                                           "domain has room for; give fewer or smaller bodies",
+                                           fill)});
 }
 
 void add_output(const Scene& s, std::vector<Warning>& list) {
@@ -194,8 +195,8 @@ void add_output(const Scene& s, std::vector<Warning>& list) {
   const auto add = [&](const char* key, double every, const std::string& what) {
     if (every <= run) return;
     text += (text.empty() ? "" : "; ") +
-            format("%s %g s is longer than the run (time.end %g s): ", key, every, s.time.end) +
-            what;
+            fmt::format("{} {:g} s is longer than the run (time.end {:g} s): {}", key, every,
+                        s.time.end, what);
   };
   if (s.output)
     add("output.every", s.output->every, "run.vtkhdf gets the first and the last frame");

@@ -1,11 +1,11 @@
 #include "lib/solver/diagnostics.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
-#include "lib/base/text.h"
 #include "lib/scene/vector3.h"
 #include "lib/solver/params.h"
 
@@ -169,7 +169,7 @@ std::string diagnostics_help() {
     if (*d.help == '\0') continue;  // second and third component of a vector
     std::string name = d.name;
     if (name.ends_with("_x")) name += ", _y, _z";
-    text += format("  %-24s %s [%s]\n", name.c_str(), d.help, d.unit);
+    text += fmt::format("  {:24} {} [{}]\n", name, d.help, d.unit);
   }
   return text;
 }

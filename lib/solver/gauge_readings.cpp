@@ -1,16 +1,18 @@
 #include "lib/solver/gauge_readings.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "lib/base/text.h"
 #include "lib/scene/surface.h"
 
 namespace pbf::inline solver_module {
 namespace {
 
-std::string text(const Double3& x) { return format("(%.6g, %.6g, %.6g)", x[0], x[1], x[2]); }
+std::string text(const Double3& x) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0], x[1], x[2]);
+}
 
 std::string place_of(const Gauge& g, const Scene& s) {
   const auto at = [&] { return text({g.at[0], g.at[1], g.at[2]}); };
@@ -19,17 +21,18 @@ std::string place_of(const Gauge& g, const Scene& s) {
     case GaugeKind::level: {
       const std::vector<int> across = axes_across_level(s);
       for (std::size_t k = 0; k < across.size(); ++k)
-        out += format("%s%c = %.6g m", out.empty() ? "" : ", ", 'x' + across[k], g.at[k]);
+        out +=
+            fmt::format("{}{} = {:.6g} m", out.empty() ? "" : ", ", char('x' + across[k]), g.at[k]);
       return out;
     }
     case GaugeKind::velocity:
       return at() + " m";
     case GaugeKind::flow: {
-      for (const double e : g.size) out += format("%s%.6g", out.empty() ? "" : " x ", e);
+      for (const double e : g.size) out += fmt::format("{}{:.6g}", out.empty() ? "" : " x ", e);
       return text(g.center) + " m, normal " + text(g.normal) + ", " + out + " m";
     }
     case GaugeKind::pressure:
-      return g.on + " at " + at() + format(" m, radius %.6g m", g.radius);
+      return g.on + " at " + at() + fmt::format(" m, radius {:.6g} m", g.radius);
   }
   return out;
 }

@@ -1,7 +1,7 @@
 // A comparison as text, JSON and JUnit XML.
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "lib/base/text.h"
 #include "lib/io/junit.h"
 #include "lib/io/table.h"
 #include "lib/verify/compare.h"
@@ -13,11 +13,11 @@ namespace {
 TableOf<CompareRow> table_of(const std::vector<CompareRow>& rows, const char* first) {
   using R = const CompareRow&;
   return TableOf<CompareRow>({{first, [](R r) { return r.what; }, -34},
-                              {"error", [](R r) { return r.error; }, 10, "%.3g"},
-                              {"rms", [](R r) { return r.rms; }, 10, "%.3g"},
-                              {"relative", [](R r) { return r.relative; }, 9, "%.2g"},
-                              {"ulps", [](R r) { return r.ulps; }, 9, "%.3g"},
-                              {"tolerance", [](R r) { return r.tolerance; }, 10, "%.3g"},
+                              {"error", [](R r) { return r.error; }, 10, "{:.3g}"},
+                              {"rms", [](R r) { return r.rms; }, 10, "{:.3g}"},
+                              {"relative", [](R r) { return r.relative; }, 9, "{:.2g}"},
+                              {"ulps", [](R r) { return r.ulps; }, 9, "{:.3g}"},
+                              {"tolerance", [](R r) { return r.tolerance; }, 10, "{:.3g}"},
                               {"unit", [](R r) { return r.unit; }, -11},
                               {"verdict", [](R r) { return verdict_name(r.verdict); }, -7}},
                              rows);
@@ -54,11 +54,12 @@ std::string compare_junit(const CompareResult& r, double seconds) {
     for (const CompareRow& x : p.rows) {
       JunitCase& row = suite.cases.emplace_back(JunitCase{p.name, x.what});
       row.skipped = x.verdict == Verdict::not_judged;
-      row.details = format("error %.6g, rms %.3g, relative %.3g, ulps %.3g, tolerance %.6g",
-                           x.error, x.rms, x.relative, x.ulps, x.tolerance);
+      row.details =
+          fmt::format("error {:.6g}, rms {:.3g}, relative {:.3g}, ulps {:.3g}, tolerance {:.6g}",
+                      x.error, x.rms, x.relative, x.ulps, x.tolerance);
       if (x.verdict == Verdict::differs)
-        row.failure = format("differs by %.6g, tolerance %.6g", x.error, x.tolerance) +
-                      (x.unit.empty() ? "" : format(" (%s)", x.unit.c_str()));
+        row.failure = fmt::format("differs by {:.6g}, tolerance {:.6g}{}", x.error, x.tolerance,
+                                  x.unit.empty() ? "" : fmt::format(" ({})", x.unit));
     }
   }
   return junit_xml(suite);
