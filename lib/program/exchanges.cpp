@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "lib/base/error.h"
 
 namespace pbf::inline program_module {
@@ -47,13 +49,18 @@ Exchange RankState::before(const PassInfo& pass, bool first_iteration, const Pro
   const auto array = [](const AccessInfo& a) {
     return Array{&a.field->primary(), a.field->first != nullptr};
   };
+  // A pass that adds to a field may read its own rank's part of it.
+  const auto adds_to = [&](const FieldInfo* f) {
+    return std::any_of(pass.declared.begin(), pass.declared.end(),
+                       [&](const AccessInfo& a) { return a.field == f && a.how == kAdds; });
+  };
   Exchange e;
   e.pass = &pass;
   bool adds = false, reads_rows = false;
   for (const AccessInfo& a : pass.declared) {
     if (a.when == When::first_iteration && !first_iteration) continue;
     if ((a.how & kGathers) && fresh_.insert(array(a)).second) e.ghosts.push_back(a.field);
-    if ((a.how & kReading) && parts_.erase(array(a))) {
+    if ((a.how & kReading) && !adds_to(a.field) && parts_.erase(array(a))) {
       e.sums.push_back(a.field);
       totals_.insert(array(a));
     }

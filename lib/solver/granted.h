@@ -75,7 +75,9 @@ class Granted {
   Real sor() const { return c_.factors[std::size_t(c_.iteration)]; }
   const char* booked(const char* stage) const { return c_.booked(stage); }
   int rows() const { return c_.rows(); }
-  void make_lists() const requires((how_of<P, field::NeighborLists> & kWrites) != 0) { c_.make_lists(); }
+  void make_lists() const requires((how_of<P, field::NeighborLists> & kWrites) != 0) {
+    c_.make_lists();
+  }
   int* sort_order() const requires DeclaredBy<field::Order, P> { return c_.sort_order(); }
   auto carried() const requires reorders<P> {
     if constexpr (C::Passes::further)

@@ -21,8 +21,8 @@ class StageCheck {
  public:
   using Real = typename Context::Real;
   /// Null for `limits`: no checks. Null for `fault`: nothing is injected.
-  StageCheck(Context& c, const Axes& axes, std::int64_t update,
-             const StageLimits* limits, const Fault* fault)
+  StageCheck(Context& c, const Axes& axes, std::int64_t update, const StageLimits* limits,
+             const Fault* fault)
       : c_(c), p_(c.p), axes_(axes), update_(update), limits_(limits), fault_(fault) {}
 
   void look(const PassInfo& pass, int iteration) {

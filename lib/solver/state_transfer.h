@@ -1,5 +1,5 @@
-// Copies a state between the fields of a step and the host: the particles in the order of ids, since
-// the order of rows is not part of a state.
+// Copies a state between the fields of a step and the host: the particles in the order of ids,
+// since the order of rows is not part of a state.
 #pragma once
 
 #include <algorithm>
@@ -43,8 +43,8 @@ class RowForm {
 
 constexpr std::size_t kTransferRows = 1 << 16;  ///< copied at a time, to save memory
 
-/// The numbers of all rows of a field. id: null, or the ids of the rows, whose order is then that of
-/// the result.
+/// The numbers of all rows of a field. id: null, or the ids of the rows, whose order is then that
+/// of the result.
 template <class C>
 std::vector<double> downloaded(C& c, const FieldInfo& f, const char* from, const int* id) {
   const RowForm<typename C::Real> form(f, c.plan.axes);

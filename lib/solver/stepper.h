@@ -14,6 +14,7 @@
 #include "lib/solver/executor.h"
 #include "lib/solver/granted.h"
 #include "lib/solver/params.h"
+#include "lib/solver/read_sums.h"
 #include "lib/solver/saved_state.h"
 #include "lib/solver/stage_check.h"
 #include "lib/solver/state_transfer.h"
@@ -117,33 +118,9 @@ class Stepper {
   }
 
   /// The load of each wall since the last call with Interval::ends.
-  std::vector<Load> loads(Interval interval) {
-    return loads(0, wall_rows() - int(plan_.gauges.patches.size()), interval);
-  }
-
+  std::vector<Load> loads(Interval interval) { return read_loads(c_, interval); }
   /// Sums of the present positions and velocities, and since the last call with Interval::ends.
-  GaugeSums gauges(Interval interval) {
-    c_.exec.begin();
-    GaugeSums sums;
-    sums.places.resize(std::size_t(plan_.gauges.places));
-    if (!sums.places.empty()) {
-      c_.put(field::probe_sums, sums.places);
-      launch_one<ReadProbes>(c_);
-      c_.exec.to_host(c_.data(field::probe_sums), sums.places.size(), sums.places.data());
-    }
-    const int patches = int(plan_.gauges.patches.size());
-    sums.patches = loads(wall_rows() - patches, patches, interval);
-    sums.flows.resize(plan_.gauges.gates.size());
-    if (!sums.flows.empty())
-      c_.exec.to_host(c_.data(field::flows), sums.flows.size(), sums.flows.data());
-    if (interval == Interval::ends) {
-      std::vector<FlowCount> next = sums.flows;
-      for (FlowCount& f : next) f.since = 0, f.time = 0;
-      c_.put(field::flows, next);
-    }
-    c_.exec.mark("measure");
-    return sums;
-  }
+  GaugeSums gauges(Interval interval) { return read_gauges(c_, interval); }
 
   /// A state with positions only.
   SolverState positions() {
@@ -218,16 +195,16 @@ class Stepper {
     if (density) sum_density();
     const auto from = [&](int k) { return origin[std::size_t(plan_.axes.of[k])]; };
     c_.exec.items(size(), ExportPass<Real, Out>{h,
-                                   rest_density,
-                                   {from(0), from(1), from(2)},
-                                   plan_.axes,
-                                   c_.position(),
-                                   c_.velocity(),
-                                   c_.density(),
-                                   c_.ids(),
-                                   position,
-                                   velocity,
-                                   density});
+                                                rest_density,
+                                                {from(0), from(1), from(2)},
+                                                plan_.axes,
+                                                c_.position(),
+                                                c_.velocity(),
+                                                c_.density(),
+                                                c_.ids(),
+                                                position,
+                                                velocity,
+                                                density});
     c_.exec.mark("download");
   }
 
@@ -238,17 +215,8 @@ class Stepper {
   std::size_t bytes() const { return c_.bytes() + c_.exec.bytes(); }
 
  private:
-  int wall_rows() const { return int(load_walls(c_.scene)); }
   void forget() {
     c_.for_features([&](auto& memory) { memory.forget(c_); });
-  }
-  std::vector<Load> loads(int first, int count, Interval interval) {
-    if (count <= 0) return {};
-    std::vector<Load> now(std::size_t(count), Load{}), none(now.size());
-    Load* from = c_.data(field::loads) + first;
-    c_.exec.to_host(from, now.size(), now.data());
-    if (interval == Interval::ends) c_.exec.to_device(none.data(), none.size(), from);
-    return now;
   }
   void launch(int pass) {
     launch_pass<Passes>(pass, c_);
@@ -277,7 +245,8 @@ class Stepper {
           break;
         case ProgramStep::until:
           c_.exec.repeat_while("residual", size(), s.times, ResidualPass<Real>{c_.density()},
-                               residual_limit_, &c_.data(field::counts)->repeats, [&] { run(s.body, seen); });
+                               residual_limit_, &c_.data(field::counts)->repeats,
+                               [&] { run(s.body, seen); });
           break;
       }
   }

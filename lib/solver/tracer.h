@@ -121,7 +121,8 @@ class Tracer {
     const Shown& shown = w.field->shown;
     const std::vector<int> named =
         shown.row ? host(c_.template data<int>(*shown.row)) : std::vector<int>{};
-    std::vector<T> all = shown.row ? host(from, std::size_t(c_.rows_of(*w.field))) : std::vector<T>{};
+    std::vector<T> all =
+        shown.row ? host(from, std::size_t(c_.rows_of(*w.field))) : std::vector<T>{};
     std::vector<T> v = shown.row ? std::vector<T>(n_) : host(from);
     for (std::size_t k = 0; k < named.size(); ++k)
       if (named[k] >= 0) v[k] = all[std::size_t(named[k])];

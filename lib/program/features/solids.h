@@ -11,8 +11,6 @@
 
 namespace pbf::inline program_module {
 inline bool has_solids_in_grid(const Scene& s) { return has_solids(s) && s.domain.open.empty(); }
-/// Whether the boundary is more than a box that stands still.
-inline bool has_more_than_walls(const Scene& s) { return has_solids(s) || has_motion(s); }
 /// Enough for all half cells of the grid.
 inline std::int64_t per_half_cell(const Sizes& n) {
   return n.bins / bins_per_cell(n.scene.dimensions);
@@ -43,17 +41,17 @@ Surroundings<Real> row_of(const field::SurroundingsRow&);
 using SolidNeeds = If<has_obstacles, Looks<field::surroundings>, Looks<field::solids>>;
 /// The needs of a pass over neighbors that leaves near rows to a second launch. The sums of these
 /// rows are stored in the second array of velocities.
-using NearNeeds = Needs<If<has_obstacles, Reads<field::near_room>, Looks<field::near_row>,
-                           Looks<field::near_count>>,
-                        SolidNeeds>;
+using NearNeeds = Needs<
+    If<has_obstacles, Reads<field::near_room>, Looks<field::near_row>, Looks<field::near_count>>,
+    SolidNeeds>;
 using NearSumNeeds = If<has_obstacles, Places<other<field::velocity>>>;
 /// The needs of a pass that moves particles: rows may become near, and loads are booked.
 using MoveNeeds = Needs<If<has_solids, Updates<field::near_room>, Places<field::near_row>,
                            Places<field::near_count>, Looks<field::surroundings>>,
                         If<has_obstacles, Looks<field::solids>>, BookNeeds>;
 /// The needs of a pass in which particles begin a step. Those of a moving tank need the frame, too.
-using StepNeeds = Needs<MoveNeeds, If<has_moving_obstacles, Looks<field::solids_before>>,
-                        Adds<field::counts>>;
+using StepNeeds =
+    Needs<MoveNeeds, If<has_moving_obstacles, Looks<field::solids_before>>, Adds<field::counts>>;
 using FrameNeeds = If<has_tank_motion, Looks<field::frame>>;
 
 struct NearSolids;
@@ -65,7 +63,6 @@ Solids<typename G::Real> solids_of(const G& c) {
   Solids<Real> solids = c.template memory<NearSolids>().solids;
   static_cast<Box<Real>&>(solids) = c.p.boundary;
   solids.around = c.declared(field::surroundings);
-  solids.loaded = has_wall_loads(c.scene);
   solids.booked = has_loads(c.scene) && c.p.dt > 0;
   solids.frame = c.p.dt > 0 ? c.declared(field::frame) : nullptr;
   NearRows<Real>& near = solids.near;
@@ -83,13 +80,14 @@ Solids<typename G::Real> solids_of(const G& c) {
 /// time book no loads.
 template <class G, class F>
 void with_boundary(const G& c, F&& f) {
-  has_more_than_walls(c.scene) ? f(solids_of(c)) : f(c.p.boundary);
+  c.template memory<NearSolids>().is_there ? f(solids_of(c)) : f(c.p.boundary);
 }
 
 /// The same for passes that leave particles near solids to a second launch.
 template <class G, class F>
 void with_far_boundary(const G& c, F&& f) {
-  has_more_than_walls(c.scene) ? f(FarBox<typename G::Real>(solids_of(c))) : f(c.p.boundary);
+  c.template memory<NearSolids>().is_there ? f(FarBox<typename G::Real>(solids_of(c)))
+                                           : f(c.p.boundary);
 }
 
 /// Launches make(boundary), a pass over neighbors: once for all particles, and in scenes with
@@ -97,8 +95,8 @@ void with_far_boundary(const G& c, F&& f) {
 /// with loads need the second launch too.
 template <bool moves, class G, class Make>
 void each_then_near(const G& c, Make&& make) {
-  if (!has_obstacles(c.scene) && !(moves && has_wall_loads(c.scene)))
-    return c.pairs(make(c.p.boundary));
+  const auto& memory = c.template memory<NearSolids>().solids;
+  if (!memory.obstacles && !(moves && memory.loaded)) return c.pairs(make(c.p.boundary));
   const auto solids = solids_of(c);
   const auto far = make(FarBox<typename G::Real>(solids));
   const auto near = make(solids);
@@ -137,12 +135,14 @@ struct NearSolids {
 
   template <class Real>
   struct Memory : NoMemory {
+    bool is_there = false;  ///< more than a box that stands still
     Solids<Real> solids{};  ///< without addresses
     int half_cells = 0;     ///< 0: particles anywhere may be near
 
     template <class C>
     void make(C& c) {
       const Scene& s = c.scene;
+      is_there = has_solids(s) || has_motion(s);
       if (!has_solids(s)) return;
       Surroundings<Real> around;
       around.walls = c.p.boundary;
@@ -154,6 +154,7 @@ struct NearSolids {
       c.put(field::surroundings, {around});
       const RunBounds<Real> run = bounds_of_run(s, c.plan, c.p.boundary);
       solids.obstacles = has_obstacles(s);
+      solids.loaded = has_wall_loads(s);
       solids.bounds = run.all;
       solids.clear = clear_of(c.p.boundary);
       // The way that a row may make in an iteration of its lists.
@@ -162,8 +163,8 @@ struct NearSolids {
       solids.near.far_way_squared = Real(move * move);
       c.exec.to_device(std::vector<Real>(C::padding, solids.near.far_way_squared).data(),
                        C::padding, c.data(field::near_room) + c.rows());
-      const std::vector<int> cells = half_cells_near_solids(
-          s, run.standing, run.moving, c.p, solids.clear, has_wall_loads(s));
+      const std::vector<int> cells =
+          half_cells_near_solids(s, run.standing, run.moving, c.p, solids.clear, solids.loaded);
       half_cells = int(cells.size());
       if (half_cells > 0) c.put(field::near_half_cells, cells);
     }
