@@ -7,7 +7,6 @@
 
 namespace pbf::inline program_module {
 
-
 /// Steps of length dt (s), `count` of them from step `first` on, counted from the start of the run.
 struct StepRange {
   std::int64_t first = 0;
@@ -15,10 +14,12 @@ struct StepRange {
   double dt = 0;
 };
 
-/// The hooks of a feature that needs none. A feature F with others has
+/// Hooks that do nothing. A feature that needs some has
 ///   template <class Real> struct Memory : NoMemory
-/// with some of these functions. c: lib/solver/step_context.h. Features are called in the order of
-/// their list.
+/// with its own version of these functions. c: the StepContext (lib/solver/step_context.h). When a
+/// solver is created, all features are called with make(), then all with stand(), then all with
+/// forget(); when a state is set with stand() and forget(); otherwise as the hooks say. The order
+/// of features is that of their list.
 struct NoMemory {
   /// Largest number of steps of one batch.
   template <class S, class P>
@@ -31,7 +32,8 @@ struct NoMemory {
   /// The state is now that of `time` (s since the start): at the start, and after a state was set.
   template <class C>
   void stand(C&, double) {}
-  /// What follows from earlier steps no longer holds: positions were set, or the step's length.
+  /// What follows from earlier steps no longer holds: positions were set or went back, or the
+  /// length of steps has changed.
   template <class C>
   void forget(C&) {}
   /// Tables of the steps to come. Called before each batch, also before a repeated one.

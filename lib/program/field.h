@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <type_traits>
 
@@ -35,8 +36,8 @@ constexpr std::int64_t per_bin(const Sizes& n) { return n.bins + 1; }
 enum class Type { real, int32, int64, object };  ///< of a component; real: of the scene's precision
 
 /// How long the contents count: until the next pass that writes them; as long as the lists; as long
-/// as the solver (run); within an update, 0 between two; along with the particles (rows); or as part
-/// of the state, which is also kept, saved and set. Those after `run` begin as zeros.
+/// as the solver (run); within an update, 0 between two; along with the particles (rows); or as
+/// part of the state, which is also kept, saved and set. Those after `run` begin as zeros.
 enum class Life { pass, lists, run, update, rows, state };
 
 /// How a trace of an update, pass by pass, shows the field.
@@ -59,16 +60,16 @@ struct FieldInfo {
   Shown shown{};
   // Set by the derived types.
   Type type = Type::real;
-  int components = 1;                 ///< 0: objects, whose size is that of a row
-  std::array<int, 2> row_bytes{};     ///< by Precision
-  const FieldInfo* first = nullptr;   ///< for the second array of a pair: the field of the first
-  int numbers = 0;                    ///< that a row has in a SolverState; 0: it cannot be there
+  int components = 1;                ///< 0: objects, whose size is that of a row
+  std::array<int, 2> row_bytes{};    ///< by Precision
+  const FieldInfo* first = nullptr;  ///< for the second array of a pair: the field of the first
+  int numbers = 0;                   ///< that a row has in a SolverState; 0: it cannot be there
   void (*to_numbers)(const void* row, double* numbers) = nullptr;    ///< null: its components
   void (*from_numbers)(const double* numbers, void* row) = nullptr;  ///< the same
 
   const FieldInfo& primary() const { return first ? *first : *this; }
   int bytes(Precision p) const { return row_bytes[std::size_t(p)]; }
-  /// Its rows are those of the particles, in their order.
+  /// Row k belongs to the particle of row k.
   bool is_per_particle() const { return rows == per_particle || rows == per_padded_row; }
   /// Rows without padding.
   std::int64_t kept_rows(const Sizes& n) const { return is_per_particle() ? n.particles : rows(n); }
@@ -78,7 +79,7 @@ struct FieldInfo {
   }
 };
 
-/// Rows of x, y, z, w. A state has no w: it is 0 in a state that is set.
+/// Rows of x, y, z, w. A state has no w: after a state was set it is 1 for positions, else 0.
 struct Vectors : FieldInfo {
   template <class... Args>
   constexpr Vectors(Args... args) : FieldInfo{args...} {
@@ -95,6 +96,15 @@ struct Numbers : FieldInfo {
     numbers = 1;
   }
 };
+/// The number of type T nearest to x; 0 if x is not a number.
+template <class T>
+T from_number(double x) {
+  if constexpr (std::is_floating_point_v<T>) return T(x);
+  constexpr T least = std::numeric_limits<T>::lowest(), most = std::numeric_limits<T>::max();
+  if (!(x > double(least))) return x <= double(least) ? least : T(0);
+  return x >= double(most) ? most : T(x);
+}
+
 /// Rows of `count` objects T of words of type `Word`. If T::each(t, f) calls f for every number of
 /// t, the field may be part of the state. The numbers must be exact as double.
 template <class T, int count = 1, class Word = T>
@@ -105,13 +115,16 @@ struct Plain : FieldInfo {
     type = Type::object;
     row_bytes = {int(count * sizeof(T)), int(count * sizeof(T))};
     if constexpr (std::is_integral_v<Word>) {
+      static_assert(sizeof(Word) == 4 || sizeof(Word) == 8);
       type = sizeof(Word) == 4 ? Type::int32 : Type::int64;
       components = int(count * sizeof(T) / sizeof(Word));
     }
     if constexpr (std::is_integral_v<T> && count == 1) {
       numbers = 1;
       to_numbers = [](const void* row, double* to) { *to = double(*static_cast<const T*>(row)); };
-      from_numbers = [](const double* from, void* row) { *static_cast<T*>(row) = T(*from); };
+      from_numbers = [](const double* from, void* row) {
+        *static_cast<T*>(row) = from_number<T>(*from);
+      };
     } else if constexpr (requires(T t) { T::each(t, [](auto&) {}); }) {
       T any{};
       T::each(any, [&](auto&) { ++numbers; });
@@ -120,12 +133,13 @@ struct Plain : FieldInfo {
       };
       from_numbers = [](const double* from, void* row) {
         T::each(*static_cast<T*>(row),
-                [&](auto& x) { x = static_cast<std::remove_reference_t<decltype(x)>>(*from++); });
+                [&](auto& x) { x = from_number<std::remove_reference_t<decltype(x)>>(*from++); });
       };
     }
   }
 };
-/// Rows of a type T<Real>. Its header says which: T<Real> row_of<Real>(const F&) (granted.h).
+/// Rows of a type T<Real>. Its header says which: T<Real> row_of<Real>(const F&)
+/// (lib/solver/row_of.h).
 struct Objects : FieldInfo {
   template <class... Args>
   constexpr Objects(std::array<int, 2> bytes, Args... args) : FieldInfo{args...} {

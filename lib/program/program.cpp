@@ -87,6 +87,22 @@ void carry_further(const std::vector<Carried>& all, Program& p) {
   }
 }
 
+/// Throws Error(internal) for fields that a sort would not carry, or a state could not hold.
+void check_state_fields(const Program& p) {
+  const auto wrong = [](const FieldInfo& f, const char* why) {
+    throw Error(ExitCode::internal, fmt::format("field '{}': {}", f.name, why));
+  };
+  for (const FieldInfo* f : p.fields) {
+    if (f->life < Life::rows) continue;
+    if (f->is_per_particle() && !f->pair)
+      wrong(*f, "rows of particles that sorts carry need a pair");
+    if (f->life == Life::state && f->numbers == 0) wrong(*f, "a state needs its numbers (each())");
+    if (f->bytes(Precision::single) % 4 != 0) wrong(*f, "a row is no multiple of 4 bytes");
+  }
+  if (p.further.size() > std::size_t(CarriedRows::most))
+    throw Error(ExitCode::internal, "sorts carry too many fields");
+}
+
 /// The sum that decides whether `until` repeats its body.
 const PassInfo& residual() {
   static const PassInfo info =
@@ -226,6 +242,7 @@ Program assembled(const Scene& scene, const UpdateShape& shape, PassSet b, bool 
   carry_further(b.further, p);
   p.left_out = std::move(b.without);
   check_fourth(p);
+  check_state_fields(p);
   return p;
 }
 

@@ -21,8 +21,7 @@ class Sums {
 
 /// A pass may touch only what it declares.
 template <class Field, class P>
-concept DeclaredBy = how_of<P, std::remove_cvref_t<Field>>
-!= 0;
+concept DeclaredBy = (how_of<P, std::remove_cvref_t<Field>> != 0);
 
 template <class C, class P>
 class Granted {

@@ -1,6 +1,7 @@
 // A copy of the state in the memory of an executor, from which later updates can be repeated.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "kernels/pass_copy.h"
@@ -49,6 +50,7 @@ class SavedState {
     const auto launch = [&] {
       c.exec.items(int((longest + CopyPass::unit - 1) / CopyPass::unit), pass);
       pass.parts = 0;
+      longest = 0;
     };
     for (std::size_t k = 0; k < copies_.size(); ++k) {
       pass.part[pass.parts++] = part_of(*c.plan.program.state[k], copies_[k]);

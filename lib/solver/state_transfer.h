@@ -101,15 +101,18 @@ SolverState download_state(C& c, const std::vector<const char*>& from) {
   return s;
 }
 
-/// The values of a field in a state, for so many rows. Zeros where an older state has none: for the
-/// whole field, or for the last numbers of each row. Throws Error(io) for more than that.
+/// The values of a field in a state, for so many rows. Zeros if the state has none, or other rows
+/// than one per particle (of another scene); and for the last numbers of a row that an older state
+/// lacks. Throws Error(io) for rows of particles in another number, and for more numbers.
 inline std::vector<double> values_of(const SolverState& s, const FieldInfo& f, std::size_t rows) {
   const std::size_t numbers = std::size_t(f.numbers);
   std::vector<double> values(rows * numbers);
   const StoredField* stored = s.find(f.name);
   if (!stored) return values;
   const std::size_t width = std::size_t(stored->numbers);
-  if (width > numbers || stored->values.size() != rows * width)
+  const bool fits = stored->values.size() == rows * width;
+  if (!fits && !f.is_per_particle()) return values;
+  if (!fits || width > numbers)
     throw Error(ExitCode::io, std::string("the field '") + f.name +
                                   "' of the state does not fit this scene and version");
   for (std::size_t k = 0; k < rows; ++k)
@@ -118,13 +121,17 @@ inline std::vector<double> values_of(const SolverState& s, const FieldInfo& f, s
   return values;
 }
 
+/// Throws as values_of(), before anything is uploaded.
 template <class C>
 void upload_state(C& c, const SolverState& s) {
+  std::vector<std::vector<double>> values;
+  for (const FieldInfo* f : c.plan.program.state)
+    values.push_back(field::is_basic(*f) ? std::vector<double>{}
+                                         : values_of(s, *f, c.kept_rows(*f)));
+  for (std::size_t k = 0; k < values.size(); ++k) upload(c, *c.plan.program.state[k], values[k]);
   upload(c, field::position, s.position);
   upload(c, field::velocity, s.velocity);
   c.put(field::id, s.id);
-  for (const FieldInfo* f : c.plan.program.state)
-    if (!field::is_basic(*f)) upload(c, *f, values_of(s, *f, c.kept_rows(*f)));
 }
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -1,6 +1,7 @@
 // The memory of a solver: the fields of a program, the parameters, and the memory of the features.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -198,7 +199,7 @@ struct StepContext {
   }
 
   int rows_ = 0;
-  std::vector<Slot> slots_;  ///< about a dozen: a linear search is faster than a map
+  std::vector<Slot> slots_;  ///< few: a linear search is faster than a map
   typename FeatureSet::template Memory<Real> features_;
 };
 

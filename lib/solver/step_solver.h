@@ -111,9 +111,9 @@ class StepSolver final : public Solver, public Inspection {
   }
   void set_state(const SolverState& s) override {
     check_state(s, n_);
+    stepper_->set_state(s, double(s.updates) * scene_.time.step);
     updates_ = s.updates;
     steps_ = s.steps;
-    stepper_->set_state(s, double(updates_) * scene_.time.step);
   }
   void keep() override {
     stepper_->save(kept_);

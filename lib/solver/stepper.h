@@ -1,6 +1,7 @@
 // Executes programs: updates at full speed, updates pass by pass, and measurements of a state.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <utility>

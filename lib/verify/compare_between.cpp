@@ -40,9 +40,17 @@ std::unique_ptr<Solver> make(const Scene& scene, const Plan& plan, const Particl
   return make_solver(scene, plan, particles);
 }
 
+/// Calls f(x) for every real number of a state.
+template <class F>
+void for_each_real(SolverState& s, F&& f) {
+  std::for_each(s.position.begin(), s.position.end(), f);
+  std::for_each(s.velocity.begin(), s.velocity.end(), f);
+  for (StoredField& field : s.fields)
+    if (field.real) std::for_each(field.values.begin(), field.values.end(), f);
+}
+
 void round_to_float(SolverState& s) {
-  for (auto* v : {&s.position, &s.velocity})
-    for (double& x : *v) x = double(float(x));
+  for_each_real(s, [](double& x) { x = double(float(x)); });
 }
 
 /// The scene with randomly rounded constants: an error that is the same for all particles and does
@@ -81,8 +89,7 @@ void note_one_sided(const Comparison& c, CompareResult& result) {
 SolverState rounded(const SolverState& s, double u, std::uint64_t seed) {
   SplitMix64 random(seed);
   SolverState out = s;
-  for (auto* v : {&out.position, &out.velocity})
-    for (double& x : *v) x *= 1 + u * (2 * random.uniform() - 1);
+  for_each_real(out, [&](double& x) { x *= 1 + u * (2 * random.uniform() - 1); });
   return out;
 }
 

@@ -16,15 +16,16 @@ bool has_gauges(const Scene& s) {
 }
 inline bool has_flow_gauges(const Scene& s) { return has_gauges<GaugeKind::flow>(s); }
 inline bool has_velocity_gauges(const Scene& s) { return has_gauges<GaugeKind::velocity>(s); }
+inline std::int64_t per_id(const Sizes& n) { return n.particles; }
 inline std::int64_t per_gate(const Sizes& n) { return std::int64_t(n.plan.gauges.gates.size()); }
 inline std::int64_t per_probe(const Sizes& n) { return std::int64_t(n.plan.gauges.probes.size()); }
 inline std::int64_t per_place(const Sizes& n) { return n.plan.gauges.places; }
 }  // namespace pbf::inline program_module
 
 namespace pbf::inline program_module::field {
-/// Per particle, in the order of ids: bit k tells on which side of flow gauge k it is.
+/// In the order of ids, not of rows: bit k tells on which side of flow gauge k it is.
 inline constexpr struct FlowSides : Plain<int> {
-} flow_sides{{"flow sides", per_particle, Life::rows}};
+} flow_sides{{"flow sides", per_id, Life::run}};
 inline constexpr struct Gates : Plain<FlowGate> {
 } gates{{"gates", per_gate, Life::run}};
 inline constexpr struct Flows : Plain<FlowCount> {
@@ -43,16 +44,14 @@ template <class G>
 void take_sides(const G& c, bool count) {
   c.items(FlowPass<typename G::Real>{c[field::gates], int(c.plan.gauges.gates.size()),
                                      c[field::position], c[field::id], c[field::flow_sides],
-                                     count ? c[field::flows] : nullptr,
-                                     double(c.p.update_dt)});
+                                     count ? c[field::flows] : nullptr, double(c.p.update_dt)});
 }
 
 struct CountFlow {
   static constexpr PassText text{"flow", "measure"};
-  using Needs =
-      pbf::Needs<Reads<field::position>, Reads<field::id>, Looks<field::gates>,
-                 Reads<field::flow_sides>, Places<field::flow_sides>, Looks<field::flows>,
-                 Adds<field::flows>>;
+  using Needs = pbf::Needs<Reads<field::position>, Reads<field::id>, Looks<field::gates>,
+                           Looks<field::flow_sides>, Places<field::flow_sides>, Looks<field::flows>,
+                           Adds<field::flows>>;
   template <class G>
   static void launch(const G& c) {
     take_sides(c, true);
@@ -68,10 +67,10 @@ struct ReadProbes {
                            Looks<field::probes>, Adds<field::probe_sums>>;
   template <class G>
   static void launch(const G& c) {
-    c.items(ProbePass<typename G::Real>{
-        c[field::probes], int(c.plan.gauges.probes.size()), c[field::position].rows(),
-        c[field::velocity].rows(), c.template memory<Gauges>().update_dt,
-        c[field::probe_sums].sums()});
+    c.items(ProbePass<typename G::Real>{c[field::probes], int(c.plan.gauges.probes.size()),
+                                        c[field::position].rows(), c[field::velocity].rows(),
+                                        c.template memory<Gauges>().update_dt,
+                                        c[field::probe_sums].sums()});
   }
 };
 
@@ -81,8 +80,7 @@ struct Gauges {
   static void add(const Scene& s, B& b) {
     if (s.gauges.empty()) return b.left_out("gauges", "no key gauges");
     if (has_flow_gauges(s)) b.template end<CountFlow>();
-    if (has_gauges<GaugeKind::level>(s) || has_velocity_gauges(s))
-      b.template reading<ReadProbes>();
+    if (has_gauges<GaugeKind::level>(s) || has_velocity_gauges(s)) b.template reading<ReadProbes>();
   }
 
   template <class Real>

@@ -35,11 +35,11 @@ SolidStep<Real> row_of(const field::SolidSteps&);
 /// Puts moving obstacles and the tank at their places for the step. Only in scenes with motion.
 struct MoveSolids {
   static constexpr PassText text{"motion", "predict"};
-  using Needs = pbf::Needs<Looks<field::step_row>, Places<field::step_row>,
-                           If<has_tank_motion, Looks<field::frame_steps>, Places<field::frame>>,
-                           If<has_moving_obstacles, Looks<field::solid_steps>,
-                              Places<field::solids>, Places<field::solids_before>,
-                              Places<field::solid_velocity>>>;
+  using Needs =
+      pbf::Needs<Looks<field::step_row>, Places<field::step_row>,
+                 If<has_tank_motion, Looks<field::frame_steps>, Places<field::frame>>,
+                 If<has_moving_obstacles, Looks<field::solid_steps>, Places<field::solids>,
+                    Places<field::solids_before>, Places<field::solid_velocity>>>;
   template <class G>
   static void launch(const G& c) {
     c.items(1, MoveSolidsPass<typename G::Real>{
@@ -68,7 +68,7 @@ struct Predict {
 using GatherNeeds = Needs<Writes<field::bin>, Places<field::order>, Places<field::bin_start>,
                           Looks<other<field::id>>, Places<field::id>, Places<field::velocity>>;
 
-/// `order` may be the array of the ids: c.sort_order(). Runs `first`, which computes the bin of each particle, and `listed`, which does it for particles
+/// Runs `first`, which computes the bin of each particle, and `listed`, which does it for particles
 /// that `first` leaves out. Then `gather` puts the particles into the order of bins.
 template <class G, class First, class Gather, class Listed>
 void sort_rows(const G& c, const char* stage, const First& first, const Gather& gather,
@@ -139,9 +139,9 @@ struct Sort {
 /// Rows near solids are predicted in place, before the others.
 using SortPredictedNeeds =
     Needs<Looks<other<field::position>>,
-          If<has_solids, Looks<field::near_row>, Looks<field::near_count>, Places<other<field::position>>>,
-          Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, StepNeeds,
-          FrameNeeds>;
+          If<has_solids, Looks<field::near_row>, Looks<field::near_count>,
+             Places<other<field::position>>>,
+          Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, StepNeeds, FrameNeeds>;
 
 /// Computes x* twice, for the bin and when the particles are gathered. This is cheaper than storing
 /// x* and reading it again.
@@ -191,14 +191,14 @@ struct Motion {
   template <class Real>
   struct Memory : NoMemory {
     static std::int64_t most_steps(const Scene& s, const Plan& plan) {
-      return has_motion(s) ? std::max(1, kMotionRows / plan.substeps) : NoMemory::most_steps(s, plan);
+      return has_motion(s) ? std::max(1, kMotionRows / plan.substeps)
+                           : NoMemory::most_steps(s, plan);
     }
     /// Puts the obstacles at their places at `time`, until a step moves them.
     template <class C>
     void stand(C& c, double time) {
       if (!has_obstacles(c.scene)) return;
-      const std::vector<PlacedSolid<Real>> all =
-          placed_at(c.scene, c.plan, c.p.boundary, time);
+      const std::vector<PlacedSolid<Real>> all = placed_at(c.scene, c.plan, c.p.boundary, time);
       c.put(field::solids, all);
       if (!has_moving_obstacles(c.scene)) return;
       std::vector<Solid<Real>> solids;

@@ -80,14 +80,14 @@ Solids<typename G::Real> solids_of(const G& c) {
 /// time book no loads.
 template <class G, class F>
 void with_boundary(const G& c, F&& f) {
-  c.template memory<NearSolids>().is_there ? f(solids_of(c)) : f(c.p.boundary);
+  c.template memory<NearSolids>().more_than_walls ? f(solids_of(c)) : f(c.p.boundary);
 }
 
 /// The same for passes that leave particles near solids to a second launch.
 template <class G, class F>
 void with_far_boundary(const G& c, F&& f) {
-  c.template memory<NearSolids>().is_there ? f(FarBox<typename G::Real>(solids_of(c)))
-                                           : f(c.p.boundary);
+  c.template memory<NearSolids>().more_than_walls ? f(FarBox<typename G::Real>(solids_of(c)))
+                                                  : f(c.p.boundary);
 }
 
 /// Launches make(boundary), a pass over neighbors: once for all particles, and in scenes with
@@ -135,14 +135,14 @@ struct NearSolids {
 
   template <class Real>
   struct Memory : NoMemory {
-    bool is_there = false;  ///< more than a box that stands still
-    Solids<Real> solids{};  ///< without addresses
-    int half_cells = 0;     ///< 0: particles anywhere may be near
+    bool more_than_walls = false;  ///< more than a box that stands still
+    Solids<Real> solids{};         ///< without addresses
+    int half_cells = 0;            ///< 0: particles anywhere may be near
 
     template <class C>
     void make(C& c) {
       const Scene& s = c.scene;
-      is_there = has_solids(s) || has_motion(s);
+      more_than_walls = has_solids(s) || has_motion(s);
       if (!has_solids(s)) return;
       Surroundings<Real> around;
       around.walls = c.p.boundary;

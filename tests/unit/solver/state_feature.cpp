@@ -127,7 +127,8 @@ TEST_CASE("a further field of the state begins as its feature says, and goes wit
   const SolverState later = s->state();
   CHECK(later.position != first.position);
   CHECK(spread(temperatures(later)) < 0.9 * spread(temperatures(first)));
-  // The mean is kept but for rounding, because pairs exchange; -1 would mark a row that lost its tag.
+  // The mean is kept but for rounding, because pairs exchange; -1 would mark a row that lost its
+  // tag.
   double sum = 0;
   for (const double t : temperatures(later)) {
     REQUIRE(t > 298);
@@ -177,6 +178,34 @@ TEMPLATE_TEST_CASE("a further field of the state is in a checkpoint, from which 
   CHECK(same(s->state(), resumed->state()));
 }
 
+TEST_CASE(
+    "values of a state: zeros for rows of another scene, an error for another number of "
+    "particles") {
+  const std::size_t numbers = 9;
+  SolverState s;
+  s.fields = {{"loads", false, 8, std::vector<double>(2 * 8, 1.5)},
+              {"temperature", true, 1, {1, 2}}};
+  const std::vector<double> loads = values_of(s, field::loads, 2);  // an older file
+  REQUIRE(loads.size() == 2 * numbers);
+  CHECK(loads[7] == 1.5);
+  CHECK(loads[8] == 0);
+  CHECK(loads[16] == 1.5);
+  CHECK(values_of(s, field::loads, 3) == std::vector<double>(3 * numbers));
+  CHECK(values_of(s, field::flows, 2) == std::vector<double>(6));
+  CHECK(values_of(s, field::temperature, 2) == std::vector<double>{1, 2});
+  CHECK_THROWS_AS(values_of(s, field::temperature, 3), Error);
+  s.fields[0] = {"loads", false, 10, std::vector<double>(20)};
+  CHECK_THROWS_AS(values_of(s, field::loads, 2), Error);
+}
+
+TEST_CASE("numbers of a file that an integer cannot hold become the nearest that it can") {
+  CHECK(from_number<unsigned long long>(-1) == 0);
+  CHECK(from_number<unsigned long long>(1e30) == std::numeric_limits<unsigned long long>::max());
+  CHECK(from_number<int>(std::nan("")) == 0);
+  CHECK(from_number<std::int64_t>(-1e30) == std::numeric_limits<std::int64_t>::min());
+  CHECK(from_number<int>(-7) == -7);
+}
+
 TEST_CASE("a further field is in the plan, in the memory of the solver, and in a trace") {
   const Warm warmed({"precision=float", "guard={}"});
   const auto s = warmed.solver<float>();
@@ -187,7 +216,8 @@ TEST_CASE("a further field is in the plan, in the memory of the solver, and in a
     arrays += a.name == "temperature" || a.name == "temperature'" || a.name == "kept temperature";
   CHECK(arrays == 3);
   bool shown = false;
-  for (const TraceArray& a : s->inspection()->trace({}).arrays) shown = shown || a.quantity == "temperature";
+  for (const TraceArray& a : s->inspection()->trace({}).arrays)
+    shown = shown || a.quantity == "temperature";
   CHECK(shown);
 }
 
