@@ -92,7 +92,7 @@ TEST_CASE("exchanges: an update in the middle of a run, feature by feature") {
       Row{"", {"domain.loads=true"}, loads + kSorted + kIterations},
       Row{kWaveMaker, {}, loads + kSorted + kIterations},
       // A particle takes along on which side of a gauge it is.
-      Row{kFlow, {}, "predict+sort{position, velocity, id, flow sides}" + kIterations},
+      Row{kFlow, {}, "predict+sort{position, velocity, id}" + kIterations},
       Row{"",
           {"solver.levels=on", "solver.iterations=2"},
           kSorted + cells + levels + delta + lambda + levels + delta},
