@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "kernels/pass_move_solids.h"
+#include "lib/program/feature.h"
 #include "lib/program/motion.h"
 #include "lib/program/obstacles.h"
-#include "lib/program/plan.h"
-#include "lib/program/feature.h"
 #include "lib/program/placed_solids.h"
+#include "lib/program/plan.h"
 
 namespace pbf::inline PBF_VARIANT {
 

@@ -27,7 +27,7 @@ struct BackendInfo {
 /// In the order of the enums.
 inline constexpr PrecisionInfo kPrecisions[] = {{"float", 4, 0x1p-24}, {"double", 8, 0x1p-53}};
 inline constexpr BackendInfo kBackends[] = {{"cpu", false, true, 16, true},
-                                           {"cuda", true, false, 1, false}};
+                                            {"cuda", true, false, 1, false}};
 
 constexpr const PrecisionInfo& about(Precision p) { return kPrecisions[static_cast<int>(p)]; }
 constexpr const BackendInfo& about(Backend b) { return kBackends[static_cast<int>(b)]; }

@@ -52,8 +52,7 @@ class CountingSolver : public Solver, public Inspection {
     SolverState s;
     s.updates = c.updates;
     s.steps = c.steps;
-    s.fields = {
-        {"sums", false, 3, {double(c.without_time), double(c.load), double(c.gauge)}}};
+    s.fields = {{"sums", false, 3, {double(c.without_time), double(c.load), double(c.gauge)}}};
     for (std::size_t k = 0; k < particles; ++k) {
       s.position.insert(s.position.end(), {double(c.steps), double(c.without_time), double(k)});
       s.id.push_back(std::int32_t(k));

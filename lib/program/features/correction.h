@@ -31,7 +31,8 @@ void launch_delta(const G& c, OwnRows<const typename G::Real> density, StepCount
 
 using DeltaNeeds = Needs<Gathers<other<field::position>, W::lambda>, UsesLists, Gathers<field::id>,
                          Updates<field::velocity>, If<has_levels, LevelMoveNeeds>, MoveNeeds,
-                         If<has_solids, Looks<field::near_row>, Looks<field::near_count>, Places<other<field::velocity>>>>;
+                         If<has_solids, Looks<field::near_row>, Looks<field::near_count>,
+                            Places<other<field::velocity>>>>;
 
 struct Delta {
   static constexpr PassText text{"delta", "delta"};

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "kernels/boundary/surroundings.h"
-#include "lib/program/motion.h"
 #include "lib/program/feature.h"
+#include "lib/program/motion.h"
 #include "lib/program/pass.h"
 
 namespace pbf::inline program_module {

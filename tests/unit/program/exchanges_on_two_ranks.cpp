@@ -27,9 +27,8 @@ class TwoRanks {
         good = good && of(*a.field).ghosts == of(*a.field).own;
       // A pass that adds may read the part that its own rank has added.
       const bool own_part =
-          std::any_of(pass.declared.begin(), pass.declared.end(), [&](const AccessInfo& b) {
-            return b.field == a.field && b.how == kAdds;
-          });
+          std::any_of(pass.declared.begin(), pass.declared.end(),
+                      [&](const AccessInfo& b) { return b.field == a.field && b.how == kAdds; });
       if ((a.how & kReading) && !own_part) good = good && is_total(sums_[a.field]);
     }
     if (name.find("sort") != std::string::npos) {  // rows change places and ranks
