@@ -17,7 +17,7 @@ std::string cut(const std::string& text, std::size_t width) {
 std::string stability_text(const StabilityRow& r) {
   // The criterion nearest to its limit, as a share of the limit.
   const std::string margin =
-      r.used > 0 ? fmt::format("{:3.0f} % of {}", 100 * r.used, r.tightest) : std::string();
+      r.used > 0 ? fmt::format("{:>3.0f} % of {}", 100 * r.used, r.tightest) : std::string();
   return fmt::format("{:24} {:4}  {:16} must  {}\n{:>49} {}", r.name, r.good ? "ok" : "FAIL",
                      margin, r.must, "did ", cut(r.happened, 150));
 }
