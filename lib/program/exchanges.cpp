@@ -9,13 +9,11 @@
 namespace pbf::inline program_module {
 namespace {
 
-bool per_row(const FieldInfo& f) { return f.is_per_particle(); }
-
 /// The fields that go along with the particles.
 Exchange::Fields carried(const Program& program) {
   Exchange::Fields out;
   for (const FieldInfo* f : program.fields)
-    if (per_row(*f) && (f->life == Life::rows || f->life == Life::state)) out.push_back(f);
+    if (f->is_per_particle() && (f->life == Life::rows || f->life == Life::state)) out.push_back(f);
   return out;
 }
 
@@ -65,7 +63,7 @@ Exchange RankState::before(const PassInfo& pass, bool first_iteration, const Pro
       totals_.insert(array(a));
     }
     adds = adds || a.how == kAdds;
-    reads_rows = reads_rows || ((a.how & kReading) && per_row(*a.field));
+    reads_rows = reads_rows || ((a.how & kReading) && a.field->is_per_particle());
   }
   e.on_one_rank = adds && !reads_rows;
   for (const AccessInfo& a : pass.declared) {
