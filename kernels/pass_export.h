@@ -8,18 +8,18 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Writes position (3), velocity (3) and density (1) to those pointers that are set; row = id.
+/// Writes position (3), velocity (3) and density (1) to those pointers that are set.
 template <class Real, class Out>
 struct ExportPass {
   double h, rest_density, origin[3];  ///< origin: in internal axes
   Axes axes;
   const Vec4<Real>*position, *velocity;
   const Real* density;
-  const int* id;
+  const int* place;                                ///< of each row
   Out *position_out, *velocity_out, *density_out;  ///< null: not needed
 
   PBF_HD void operator()(int i) const {
-    const std::size_t row = std::size_t(id[i]);
+    const std::size_t row = std::size_t(place[i]);
     const int x = axes.of[0], y = axes.of[1], z = axes.of[2];
     if (position_out) {
       Out* to = position_out + 3 * row;

@@ -24,7 +24,7 @@ struct ResidualPass {
 };
 
 /// The largest sum of n particles whose mean is at most `tolerance`.
-inline std::uint64_t residual_limit(double tolerance, int n) {
+PBF_HD std::uint64_t residual_limit(double tolerance, int n) {
   const double limit = tolerance / kResidualUnit * n;
   return limit < 0x1p63 ? std::uint64_t(limit) : std::uint64_t(1) << 63;
 }

@@ -36,6 +36,11 @@ struct NoMemory {
   /// length of steps has changed.
   template <class C>
   void forget(C&) {}
+  /// The most particles that these steps may add, for features with `changes_rows`.
+  template <class C>
+  std::int64_t new_rows(C&, const StepRange&) {
+    return 0;
+  }
   /// Tables of the steps to come. Called before each batch, also before a repeated one.
   template <class C>
   void before_steps(C&, const StepRange&) {}

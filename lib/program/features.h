@@ -34,6 +34,8 @@ struct FeatureList {
   static void add(const Scene& scene, B& b) {
     (Fs::add(scene, b), ...);
   }
+  /// Whether passes may add or remove particles (kernels/row_state.h).
+  static constexpr bool changes_rows = (false || ... || requires { Fs::changes_rows; });
   template <class Real>
   using Memory = std::tuple<MemoryOf<Fs, Real>...>;
   template <class... More>

@@ -8,6 +8,7 @@
 #include <string>
 #include <type_traits>
 
+#include "kernels/row_state.h"
 #include "kernels/step_counts.h"
 #include "kernels/vec3.h"
 #include "lib/scene/backend.h"
@@ -20,8 +21,8 @@ namespace pbf::inline program_module {
 
 struct Plan;
 
-/// What determines how many rows a field has. padding: rows after the last particle, which the
-/// lists of an executor may read.
+/// What determines how many rows a field has. particles: at most (Plan::capacity); padding: rows
+/// after those, which the lists of an executor may read.
 struct Sizes {
   const Scene& scene;
   const Plan& plan;
@@ -176,6 +177,9 @@ inline constexpr struct Id : Plain<int> {
 } id{{"id", per_particle, Life::state, true}};
 inline constexpr struct Counts : Plain<StepCounts> {
 } counts{{"counts", one_row, Life::state}};
+/// Where the number of particles changes.
+inline constexpr struct RowNumber : Plain<RowState> {
+} row_state{{"rows", one_row, Life::state}};
 inline constexpr struct Bin : Plain<int> {
 } bin{{"bin", per_particle, Life::pass, false, Shown{.quantity = "bin", .before_sort = true}}};
 /// Order of a sort. Executors may store it in the array of ids instead.

@@ -43,7 +43,7 @@ StartEntries start_entries(const Scene& s, const Plan& plan) {
 
 /// The capacity after it has grown for the lists of the start, as in the solver.
 ListCapacity list_capacity(const Scene& s, const Plan& plan) {
-  const std::int64_t n = plan.particles;
+  const std::int64_t n = plan.capacity;
   ListCapacity capacity = first_list_capacity(rest_neighbors(s), n);
   const std::vector<int>& sample = plan.start.count;
   if (sample.empty()) return capacity;
@@ -61,7 +61,7 @@ ListCapacity list_capacity(const Scene& s, const Plan& plan) {
 }  // namespace
 
 void add_cpu_lists(const Scene& s, const Plan& plan, const Adder& add) {
-  const std::int64_t n = plan.particles, chunks = (n + 1023) / 1024;
+  const std::int64_t n = plan.capacity, chunks = (n + 1023) / 1024;
   const int entries = cpu_list_entries(s), threads = solver_threads(s, n);
   const StartEntries start = start_entries(s, plan);
   add("lists", "int32", 1, std::int64_t(double(n) * std::max(double(entries), start.mean)));
@@ -74,7 +74,7 @@ void add_cpu_lists(const Scene& s, const Plan& plan, const Adder& add) {
 }
 
 void add_cuda_lists(const Scene& s, const Plan& plan, std::int64_t bins, const Adder& add) {
-  const std::int64_t n = plan.particles;
+  const std::int64_t n = plan.capacity;
   const ListCapacity capacity = list_capacity(s, plan);
   if (n > kSortParticles || bins > kSortBins) {
     add("particles of each bin", "int32", 1, bins + 1);

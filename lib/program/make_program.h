@@ -7,7 +7,7 @@ namespace pbf::inline program_module {
 
 /// The passes of a scene by their place in an update, and what is known of all passes.
 struct PassSet {
-  Steps at_start, with_lists, with_all_lists, in_iteration, behind, at_end, at_reading;
+  Steps at_start, before_sort, with_lists, with_all_lists, in_iteration, behind, at_end, at_reading;
   std::vector<LeftOut> without;
   std::vector<PassInfo> infos;
   int (*fused)(int a, int b) = nullptr;  ///< the pass that does the work of a and then b, or -1
@@ -27,6 +27,13 @@ struct Builder : PassSet {
   template <class P>
   void start() {
     at_start.push_back(step_of<P>());
+  }
+  /// The pass runs before each sort of an update. It may add rows behind the last one, and mark
+  /// rows that leave (kernels/row_state.h). Rows near solids: NearRows::mark_near() for each new
+  /// row.
+  template <class P>
+  void rows() {
+    before_sort.push_back(step_of<P>());
   }
   /// The pass runs whenever lists are made; with `updates_alone` not for a measurement.
   template <class P>

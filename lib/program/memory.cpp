@@ -39,7 +39,7 @@ int downloaded_scalars(const Scene& s) {
 
 void add_fields(const Scene& s, const Plan& plan, std::int64_t bins, const Adder& add) {
   const BackendInfo& backend = about(s.backend);
-  const Sizes sizes{s, plan, plan.particles, backend.padding, bins};
+  const Sizes sizes{s, plan, plan.capacity, backend.padding, bins};
   const auto add_field = [&](const std::string& name, const FieldInfo& f, std::int64_t rows) {
     const int row = f.bytes(s.precision);
     const char* type = f.type == Type::real    ? word(s.precision)
@@ -58,7 +58,8 @@ void add_fields(const Scene& s, const Plan& plan, std::int64_t bins, const Adder
     if (s.guard) add_field("kept " + std::string(f->name), *f, f->kept_rows(sizes));
     if (add.on_device) add_field("saved " + std::string(f->name), *f, f->kept_rows(sizes));
   }
-  const std::int64_t n = plan.particles;
+  const std::int64_t n = plan.capacity;
+  if (changes_rows(s)) add("order of ids", "int32", 1, n);
   if (add.on_device)
     add("sums of a measure by block", "int64",
         int((sizeof(MeasureCounts) + sizeof(MeasureTerms)) / 8), reduce_blocks(n) + 1);
@@ -71,7 +72,7 @@ void add_fields(const Scene& s, const Plan& plan, std::int64_t bins, const Adder
 /// While the solver is created. Emission and conversion free each array as soon as it was used.
 std::int64_t add_start(const Scene& s, const Plan& plan, const std::string& real,
                        MemoryPlan& memory) {
-  const std::int64_t n = plan.particles, r = size_of(real);
+  const std::int64_t n = plan.capacity, r = size_of(real);
   const Adder add{memory, false, Held::start};
   add("emitted position", "double", 3, n);
   add("emitted velocity", "double", 3, n);
@@ -91,7 +92,7 @@ std::int64_t add_prestabilize(const Scene& s, const Plan& plan, const std::strin
   if (!s.solver.prestabilize || s.solver.iterations == 0) return 0;
   // A single body on its lattice has no compression.
   if (plan.start.empty() && s.bodies.size() == 1 && s.obstacles.empty()) return 0;
-  const std::int64_t n = plan.particles, kept = n * (8 * size_of(real) + 4);
+  const std::int64_t n = plan.capacity, kept = n * (8 * size_of(real) + 4);
   Adder{memory, false, Held::start}("positions around steps without time", "double", 3, 2 * n);
   return 48 * n - (s.guard && !about(s.backend).on_device ? kept : 0);
 }
@@ -101,7 +102,7 @@ std::int64_t add_prestabilize(const Scene& s, const Plan& plan, const std::strin
 std::int64_t add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   const int scalars = downloaded_scalars(s);
   if (scalars == 0) return 0;
-  const std::int64_t n = plan.particles;
+  const std::int64_t n = plan.capacity;
   const bool on_device = about(s.backend).on_device;
   const std::string real = word(s.output ? s.output->precision : Precision::single);
   if (on_device) {
@@ -139,10 +140,10 @@ std::int64_t add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
 void add_checkpoint(const Scene& s, const Plan& plan, const std::string& real, MemoryPlan& memory) {
   if (!s.checkpoint) return;
   const Adder add{memory, false, Held::checkpoint};
-  add("state for a checkpoint", "double", 6, plan.particles);
-  add("ids for a checkpoint", "int32", 1, plan.particles);
+  add("state for a checkpoint", "double", 6, plan.capacity);
+  add("ids for a checkpoint", "int32", 1, plan.capacity);
   add("chunk before and after its checksum", real, 3,
-      2 * std::min<std::int64_t>(plan.particles, 1 << 18));
+      2 * std::min<std::int64_t>(plan.capacity, 1 << 18));
 }
 
 /// Measured: see tests/regression/lean_check and tests/regression/lean/README.md.

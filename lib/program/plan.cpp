@@ -164,6 +164,7 @@ UpdateShape Plan::shape() const { return {substeps, lists_per_update, repeats}; 
 Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   Plan plan;
   plan.particles = particles;
+  plan.capacity = std::max(particles, s.capacity);
   plan.start = std::move(start);
   plan.mass = s.particle_mass();
   if (s.fluid.mass) {

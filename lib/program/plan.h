@@ -32,12 +32,13 @@ struct PlanFile {
 };
 
 struct Plan {
-  std::int64_t particles = 0;
-  StartNeighbors start;      ///< lib/run/start_neighbors.h
-  double cell_edge = 1;      ///< in h, >= 1: larger only if the box would need too many cells
-  Axes axes;                 ///< of the internal frame; lib/program/axes.h
-  int cells[3] = {1, 1, 1};  ///< of the grid, along the internal axes; half cells along x
-  double vol = 1;            ///< m/(rho0 h^3), in 2-D m/(rho0 h^2 thickness); calibrate.h
+  std::int64_t particles = 0;  ///< at the start
+  std::int64_t capacity = 0;   ///< at most; the arrays have so many rows
+  StartNeighbors start;        ///< lib/run/start_neighbors.h
+  double cell_edge = 1;        ///< in h, >= 1: larger only if the box would need too many cells
+  Axes axes;                   ///< of the internal frame; lib/program/axes.h
+  int cells[3] = {1, 1, 1};    ///< of the grid, along the internal axes; half cells along x
+  double vol = 1;              ///< m/(rho0 h^3), in 2-D m/(rho0 h^2 thickness); calibrate.h
   double wall_scale = 1, wall_range = 1;  ///< amplitude; range in h
   /// omega, the step length of the iterations: the key solver.sor, or a default that depends on h/d
   /// and on levels (kernels/README.md, "Step length").

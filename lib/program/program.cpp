@@ -44,6 +44,7 @@ Steps joined(const Steps& steps, const PassSet& passes) {
 void add_substeps(Steps& to, const PassSet& b, int iterations, int repeats, int substeps) {
   for (int s = 0; s < substeps; ++s) {
     to.insert(to.end(), b.at_start.begin(), b.at_start.end());
+    if (s == 0) to.insert(to.end(), b.before_sort.begin(), b.before_sort.end());
     to.push_back(b.predict);
     if (s == 0) {
       to.insert(to.end(), {b.sort, b.make_lists});
@@ -203,7 +204,7 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
 Program assembled(const Scene& scene, const UpdateShape& shape, PassSet b, bool without_time) {
   Program p;
   p.has_iterations = !b.in_iteration.empty();
-  if (without_time) b.at_start.clear(), b.behind.clear(), b.at_end.clear();
+  if (without_time) b.at_start.clear(), b.before_sort.clear(), b.behind.clear(), b.at_end.clear();
   Steps middle;
   if (b.in_iteration.empty() && b.behind.empty()) {  // no pairs: particles only move
     for (int s = 0; s < shape.substeps; ++s) {
@@ -221,7 +222,7 @@ Program assembled(const Scene& scene, const UpdateShape& shape, PassSet b, bool 
   const Steps end = b.behind + b.at_end;
   p.update = middle + end;
   // The passes up to the first sort may be fused with the end of the previous update.
-  const std::size_t order = b.at_start.size() + 1;  // index of the sort
+  const std::size_t order = b.at_start.size() + b.before_sort.size() + 1;  // index of the sort
   const bool pairs = p.update.size() > order + 1 && p.update[order].index == b.sort.index;
   const auto begin = middle.begin() + (pairs ? std::ptrdiff_t(order + 1) : 0);
   const Steps head(middle.begin(), begin);
@@ -241,6 +242,8 @@ Program assembled(const Scene& scene, const UpdateShape& shape, PassSet b, bool 
     if (f->life == Life::state) p.state.push_back(f);
   carry_further(b.further, p);
   p.left_out = std::move(b.without);
+  if (!b.before_sort.empty() && !p.has_pairs())
+    throw Error(ExitCode::internal, "particles come or go in a program without a sort");
   check_fourth(p);
   check_state_fields(p);
   return p;

@@ -15,7 +15,7 @@ namespace {
 using M = const Diagnostics&;
 using enum Over;
 
-RestPool rest_pool(const Scene& scene, const Plan& plan) {
+RestPool rest_pool(const Scene& scene, const Plan& plan, std::int64_t particles) {
   const Scene s = in_internal_axes(scene, plan.axes);
   const unsigned walls = make_params<double>(scene, plan).boundary.walls;
   const double h = s.h();
@@ -38,7 +38,7 @@ RestPool rest_pool(const Scene& scene, const Plan& plan) {
   pool.axis = axis;
   pool.up = points_up ? -1 : 1;
   pool.floor = points_up ? extent[axis] : 0;
-  pool.depth = plan.mass * double(plan.particles) / (s.fluid.rest_density * h * h * h) / area;
+  pool.depth = plan.mass * double(particles) / (s.fluid.rest_density * h * h * h) / area;
   pool.spacing = s.fluid.spacing / h;
   return pool;
 }
@@ -59,15 +59,16 @@ void measure_pool(const MeasureSums& s, const RestPool& pool, double counted, Di
 
 }  // namespace
 
-MeasureConstants measure_constants(const Scene& scene, const Plan& plan) {
-  return {rest_pool(scene, plan)};
+MeasureConstants measure_constants(const Scene& scene, const Plan& plan, std::int64_t particles) {
+  return {rest_pool(scene, plan, particles)};
 }
 
-Diagnostics to_diagnostics(const MeasureSums& s, const MeasureConstants& given, const Scene& scene,
-                           const Plan& plan, std::int64_t update, std::int64_t steps) {
-  const double h = scene.h(), n = double(plan.particles), mass = plan.mass;
+Diagnostics to_diagnostics(const MeasureSums& s, std::int64_t particles,
+                           const MeasureConstants& given, const Scene& scene, const Plan& plan,
+                           std::int64_t update, std::int64_t steps) {
+  const double h = scene.h(), n = double(particles > 0 ? particles : 1), mass = plan.mass;
   const Double3 origin = scene.origin();
-  const double counted = double(plan.particles - s.non_finite);
+  const double counted = double(particles - s.non_finite);
   Diagnostics m;
   m.time = double(update) * scene.time.step;
   m.update = update;

@@ -119,13 +119,14 @@ class EnergyTrack {
   EnergyHistory h_;
 };
 
-MeasureConstants measure_constants(const Scene& scene, const Plan& plan);
+/// particles: their present number.
+MeasureConstants measure_constants(const Scene& scene, const Plan& plan, std::int64_t particles);
 
-/// Converts sums in the internal frame to diagnostics in SI units along the scene's axes
-/// (DIAGNOSTICS.md). update, steps: done so far.
-Diagnostics to_diagnostics(const MeasureSums& sums, const MeasureConstants& given,
-                           const Scene& scene, const Plan& plan, std::int64_t update,
-                           std::int64_t steps);
+/// Converts sums over the particles in the internal frame to diagnostics in SI units along the
+/// scene's axes (DIAGNOSTICS.md). update, steps: done so far.
+Diagnostics to_diagnostics(const MeasureSums& sums, std::int64_t particles,
+                           const MeasureConstants& given, const Scene& scene, const Plan& plan,
+                           std::int64_t update, std::int64_t steps);
 
 /// How a study combines the measurements of its window into one value.
 enum class Over { none, mean, rms, max, last };

@@ -6,12 +6,14 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "kernels/boundary/near_rows.h"
 #include "kernels/measure.h"
 #include "kernels/params.h"
 #include "kernels/pass_shapes.h"
+#include "kernels/row_state.h"
 #include "lib/solver/solver.h"
 
 namespace pbf::inline PBF_VARIANT {
@@ -89,17 +91,18 @@ struct Write {
 };
 /// Updates that can be recorded.
 struct Updates {
-  int size() const { return 0; }
+  int capacity() const { return 0; }
   void step(int) {}
   void moved() {}
-  int placement() const { return 0; }
+  std::pair<int, int> launch() const { return {}; }
 };
 }  // namespace archetype
 
 template <class E>
 concept Executor = requires(E e, const E c, int* ints, unsigned long long* count, Params<float> p,
                             const Vec4<float>* rows, std::vector<CopyTarget> targets,
-                            archetype::Updates updates, SolverInfo info) {
+                            const RowState* rows_of_run, archetype::Updates updates,
+                            SolverInfo info) {
   typename E::Lists;                 // neighbor lists, as pair passes use them
   typename E::template Buffer<int>;  // memory that passes can access: resize, data, size, bytes
   { E::backend } -> std::convertible_to<Backend>;
@@ -117,21 +120,31 @@ concept Executor = requires(E e, const E c, int* ints, unsigned long long* count
   // until the data is on the host.
   e.template start_copy<float>(targets, archetype::Write{});
   e.finish_copy(targets);
+  // The number of particles where it changes, in the form of launches; a pass has written it.
+  e.counted(rows_of_run, 1);
+  e.rows_changed();
   // A launch for each shape of passes; the integers are numbers of items or particles.
   e.items(1, archetype::Item{});
+  e.items(e.counted(rows_of_run, 1), archetype::Item{});
   e.pairs(1, archetype::Pair{});
+  e.pairs(e.counted(rows_of_run, 1), archetype::Pair{});
   e.shared(1, archetype::Shared{});
   e.teams(archetype::Team{});
   e.bricks(archetype::Brick{});
   e.listed(ints, 1, archetype::Item{});  // for *ints items, at most 1
   { e.reduce(1, archetype::Reduce{}) } -> std::same_as<MeasureSums>;
   { e.count_in_bins(1, 1, archetype::Bin{}) } -> std::convertible_to<std::vector<std::int64_t>>;
-  // Repeats body() while the sum of a pass is above a limit.
-  e.repeat_while("stage", 1, 1, archetype::Residual{}, std::uint64_t(0), count, archetype::Body{});
-  // Sorts by bin, then id; makes lists of the pairs closer than h.
-  e.sort_by_bin("stage", archetype::Sorted{ints}, NothingListed{}, 1, 1, ints, ints, ints,
-                archetype::Gather{});
+  // Repeats body() while the mean of a pass is above a tolerance.
+  e.repeat_while("stage", 1, 1, archetype::Residual{}, 0.5, count, archetype::Body{});
+  // Sorts by bin, then id, and leaves out rows with a negative id (true) or has none (false); makes
+  // lists of the pairs closer than h.
+  e.template sort_by_bin<false>("stage", archetype::Sorted{ints}, NothingListed{}, 1, 1, ints, ints,
+                                ints, archetype::Gather{});
+  e.template sort_by_bin<true>("stage", archetype::Sorted{ints}, NothingListed{}, 1, 1, ints, ints,
+                               ints, archetype::Gather{});
   { e.build_lists(1, 1, rows, ints, p) } -> std::same_as<typename E::Lists>;
+  // place[i]: how many of n different numbers are smaller than id[i].
+  e.rank(1, ints, ints);
   // Repeats updates, from a recording if possible; forget_recorded() after parameters have changed.
   e.repeat(1, updates);
   e.forget_recorded();

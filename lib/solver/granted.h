@@ -29,6 +29,7 @@ class Granted {
   using Real = typename C::Real;
   using Lists = typename C::Lists;
   using Exec = std::remove_reference_t<decltype(std::declval<C>().exec)>;
+  static constexpr bool changes_rows = C::changes_rows;
   explicit Granted(C& c) : p(c.p), scene(c.scene), plan(c.plan), exec(c.exec), c_(c) {}
 
   const Params<Real>& p;
@@ -73,7 +74,8 @@ class Granted {
   }
   Real sor() const { return c_.factors[std::size_t(c_.iteration)]; }
   const char* booked(const char* stage) const { return c_.booked(stage); }
-  int rows() const { return c_.rows(); }
+  auto rows() const { return c_.rows(); }  ///< the number of particles, for launches
+  int capacity() const { return c_.capacity(); }
   void make_lists() const requires((how_of<P, field::NeighborLists> & kWrites) != 0) {
     c_.make_lists();
   }
@@ -112,11 +114,11 @@ class Granted {
   }
   template <class Pass>
   void listed(const int* count, const Pass& pass) const {
-    exec.listed(count, rows(), pass);
+    exec.listed(count, capacity(), pass);
   }
   template <class Pass>
   MeasureSums reduce(const Pass& pass) const {
-    return exec.reduce(rows(), pass);
+    return exec.reduce(c_.host_rows(), pass);
   }
   template <class F>
   void with_smoothing(F&& f) const {
@@ -137,6 +139,8 @@ void launch_one(C& c) {
     c.exec.watched(P::text.name, c.arrays(), launch);
   else
     launch();
+  if constexpr (C::changes_rows && (how_of<P, field::RowNumber> & kWriting) != 0)
+    c.exec.rows_changed();
 }
 /// Launches pass `index` of a PassList.
 template <class Passes, class C>

@@ -106,7 +106,8 @@ class Inspection {
   virtual void inject(const Fault& fault) = 0;
 };
 
-/// Throws Error(internal) for a state that does not fit a solver of n particles.
-void check_state(const SolverState& state, std::int64_t n);
+/// Throws Error(internal) for a state that does not fit a solver of n particles, or of at most n if
+/// their number changes.
+void check_state(const SolverState& state, std::int64_t n, bool changes = false);
 
 }  // namespace pbf::inline solver_module

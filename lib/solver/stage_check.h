@@ -61,7 +61,7 @@ class StageCheck {
 
   template <class T>
   std::vector<T> host(const T* from) {
-    std::vector<T> v(std::size_t(c_.rows()));
+    std::vector<T> v(std::size_t(c_.host_rows()));
     if (from) c_.exec.to_host(from, v.size(), v.data());
     return v;
   }

@@ -43,24 +43,23 @@ class RowForm {
 
 constexpr std::size_t kTransferRows = 1 << 16;  ///< copied at a time, to save memory
 
-/// The numbers of all rows of a field. id: null, or the ids of the rows, whose order is then that
-/// of the result.
+/// The numbers of the first n rows of a field. place: null, or where each row is in the result.
 template <class C>
-std::vector<double> downloaded(C& c, const FieldInfo& f, const char* from, const int* id) {
+std::vector<double> downloaded(C& c, const FieldInfo& f, const char* from, std::size_t n,
+                               const int* place) {
   const RowForm<typename C::Real> form(f, c.plan.axes);
-  const std::size_t n = c.kept_rows(f);
   const std::size_t part = std::min(n, kTransferRows), row = std::size_t(f.bytes(C::precision));
   const std::size_t numbers = std::size_t(f.numbers);
-  std::vector<int> ids(id ? part : 0);
+  std::vector<int> places(place ? part : 0);
   std::vector<char> rows(part * row);
   std::vector<double> out(numbers * n);
   for (std::size_t first = 0; first < n; first += part) {
     const std::size_t count = std::min(part, n - first);
-    if (id) c.exec.to_host(id + first, count, ids.data());
+    if (place) c.exec.to_host(place + first, count, places.data());
     c.exec.to_host(from + first * row, count * row, rows.data());
     for (std::size_t k = 0; k < count; ++k)
       form.to_numbers(rows.data() + k * row,
-                      out.data() + numbers * (id ? std::size_t(ids[k]) : first + k));
+                      out.data() + numbers * (place ? std::size_t(places[k]) : first + k));
   }
   return out;
 }
@@ -88,16 +87,22 @@ SolverState download_state(C& c, const std::vector<const char*>& from) {
     return from[std::size_t(std::find(state.begin(), state.end(), &f) - state.begin())];
   };
   const int* id = reinterpret_cast<const int*>(at(field::id));
+  const int n = c.host_rows(
+      reinterpret_cast<const RowState*>(changes_rows(c.scene) ? at(field::row_state) : nullptr));
+  const int* place = c.order_of_ids(id, n);
+  const auto values = [&](const FieldInfo& f) {
+    const bool sorted = f.is_per_particle();
+    return downloaded(c, f, at(f), sorted ? std::size_t(n) : c.kept_rows(f),
+                      sorted ? place : nullptr);
+  };
   SolverState s;
   s.precision = C::precision;
-  s.position = downloaded(c, field::position, at(field::position), id);
-  s.velocity = downloaded(c, field::velocity, at(field::velocity), id);
-  s.id.resize(std::size_t(c.rows()));
-  std::iota(s.id.begin(), s.id.end(), 0);
+  s.position = values(field::position);
+  s.velocity = values(field::velocity);
+  s.id = c.ids_in_order(id, n);
   for (const FieldInfo* f : state)
     if (!field::is_basic(*f))
-      s.fields.push_back({f->name, f->type == Type::real, f->numbers,
-                          downloaded(c, *f, at(*f), f->is_per_particle() ? id : nullptr)});
+      s.fields.push_back({f->name, f->type == Type::real, f->numbers, values(*f)});
   return s;
 }
 
@@ -126,8 +131,9 @@ template <class C>
 void upload_state(C& c, const SolverState& s) {
   std::vector<std::vector<double>> values;
   for (const FieldInfo* f : c.plan.program.state)
-    values.push_back(field::is_basic(*f) ? std::vector<double>{}
-                                         : values_of(s, *f, c.kept_rows(*f)));
+    values.push_back(field::is_basic(*f)
+                         ? std::vector<double>{}
+                         : values_of(s, *f, f->is_per_particle() ? s.id.size() : c.kept_rows(*f)));
   for (std::size_t k = 0; k < values.size(); ++k) upload(c, *c.plan.program.state[k], values[k]);
   upload(c, field::position, s.position);
   upload(c, field::velocity, s.velocity);

@@ -1,7 +1,10 @@
 // The memory of a solver: the fields of a program, the parameters, and the memory of the features.
 #pragma once
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -39,6 +42,8 @@ struct StepContext {
   static constexpr std::size_t padding = std::size_t(about(Exec::backend).padding);
   static constexpr Precision precision = precision_of<Real>;
 
+  static constexpr bool changes_rows = FeatureSet::changes_rows;
+
   StepContext(Exec& executor, const Scene& of, const Plan& planned, const Params<Real>& parameters)
       : exec(executor), plan(planned), scene(of), p(parameters) {}
 
@@ -51,13 +56,51 @@ struct StepContext {
   const char* booked_as = nullptr;  ///< stage for the times of passes; null: their own stages
   int iteration = 0;                ///< of the substep
   int iterations = 0;               ///< since the lists were made
+  int launched = 0;                 ///< most particles until the host looks again
   bool iterating = false;
   std::vector<Real> factors{};  ///< omega of each iteration
 
-  int rows() const { return rows_; }  ///< number of particles
+  int capacity() const { return int(plan.capacity); }  ///< rows of the arrays of particles
+  /// The number of particles, for launches. Only some solvers have it in the executor's memory.
+  auto rows() {
+    if constexpr (changes_rows)
+      return exec.counted(data(field::row_state), launched);
+    else
+      return capacity();
+  }
+  /// The same for the host, which waits for it. Throws Error(guard) if there were too many.
+  int host_rows() { return host_rows(data(field::row_state)); }
+  int host_rows(const RowState* state) {
+    if (!pbf::changes_rows(scene)) return capacity();
+    RowState now;
+    exec.to_host(state, 1, &now);
+    if (now.refused > 0)
+      throw Error(ExitCode::guard,
+                  fmt::format("{} particles too many: there is memory for {} at a time",
+                              now.refused, capacity()));
+    return int(now.rows);
+  }
+  /// The place of each of n rows in the order of ids, in the memory of the executor.
+  const int* order_of_ids(const int* id, int n) {
+    if (!pbf::changes_rows(scene)) return id;  // they are 0 ... n - 1
+    place_.resize(std::size_t(capacity()));
+    exec.rank(n, id, place_.data());
+    return place_.data();
+  }
+  /// The ids of n rows, ascending.
+  std::vector<int> ids_in_order(const int* id, int n) {
+    std::vector<int> all(static_cast<std::size_t>(n));
+    if (pbf::changes_rows(scene)) {
+      exec.to_host(id, all.size(), all.data());
+      std::sort(all.begin(), all.end());
+    } else {
+      std::iota(all.begin(), all.end(), 0);
+    }
+    return all;
+  }
   const char* booked(const char* stage) const { return booked_as ? booked_as : stage; }
   void make_lists() {
-    lists = exec.build_lists(rows_, rows_, position(), data(field::bin_start), p);
+    lists = exec.build_lists(rows(), capacity(), position(), data(field::bin_start), p);
     lists_are_current = true;
     iterations = 0;
   }
@@ -103,7 +146,7 @@ struct StepContext {
   Vec4<Real>* velocity() { return data(field::velocity); }
   Real* density() { return data(field::density); }
   int* ids() { return data(field::id); }
-  /// Memory for the order of a sort (rows() integers), in a pass that flips the ids.
+  /// Memory for the order of a sort (capacity() integers), in a pass that flips the ids.
   int* sort_order() { return order_in_place ? data(field::id) : data(field::order); }
   /// What a sort copies besides position, velocity and id, after the flips.
   CarriedRows carried() {
@@ -138,12 +181,12 @@ struct StepContext {
     return bits;
   }
 
-  /// Creates the arrays of n particles and uploads their state. Frees the vectors of the state.
+  /// Creates the arrays and uploads the state of the first particles. Frees the vectors.
   void make(std::vector<Vec4<Real>>& first_position, std::vector<Vec4<Real>>& first_velocity,
             std::vector<int>& first_id) {
-    rows_ = int(first_position.size());
+    const auto n = std::int64_t(first_position.size());
     for (const FieldInfo* f : plan.program.fields)
-      if (f != &field::order || !order_in_place) add(*f);
+      if (f != &field::order || !order_in_place) add(*f, n);
     const auto upload = [&](const auto& f, auto& rows) {
       put(f, rows);
       release(rows);  // before lists are made, which need memory
@@ -151,6 +194,7 @@ struct StepContext {
     upload(field::position, first_position);
     upload(field::velocity, first_velocity);
     upload(field::id, first_id);
+    if (slot(field::row_state)) put(field::row_state, {RowState{n, n}});
     for_features([&](auto& memory) { memory.make(*this); });
     for_features([&](auto& memory) { memory.stand(*this, 0); });
     for_features([&](auto& memory) { memory.forget(*this); });
@@ -174,12 +218,13 @@ struct StepContext {
       if (s.info == &f.primary()) return &s;
     return nullptr;
   }
-  Sizes sizes() const { return {scene, plan, rows_, std::int64_t(padding), bin_count(p)}; }
-  void add(const FieldInfo& f) {
+  Sizes sizes() const { return {scene, plan, capacity(), std::int64_t(padding), bin_count(p)}; }
+  /// n: rows that are set soon.
+  void add(const FieldInfo& f, std::int64_t n) {
     slots_.push_back({&f, {}, 0});
     const std::size_t row = std::size_t(f.bytes(precision)), bytes = std::size_t(rows_of(f)) * row;
     const bool padded = f.rows == per_padded_row;
-    const std::size_t used = std::size_t(rows_) * row;
+    const std::size_t used = std::size_t(n) * row;
     for (int k = 0; k < (f.pair ? 2 : 1); ++k) {
       slots_.back().rows[k].resize(bytes);
       char* begin = slots_.back().rows[k].data();
@@ -189,7 +234,7 @@ struct StepContext {
       // Padding after the last row: outside of the range of any kernel.
       const Real far = Real(1e9);
       const std::vector<Vec4<Real>> rows(padding, {far, far, far, Real(1)});
-      exec.to_device(rows.data(), padding, reinterpret_cast<Vec4<Real>*>(begin) + rows_);
+      exec.to_device(rows.data(), padding, reinterpret_cast<Vec4<Real>*>(begin) + capacity());
     }
   }
   void clear(char* begin, std::size_t bytes) {
@@ -198,7 +243,7 @@ struct StepContext {
       exec.to_device(zeros.data(), std::min(zeros.size(), bytes - done), begin + done);
   }
 
-  int rows_ = 0;
+  Buffer<int> place_;
   std::vector<Slot> slots_;  ///< few: a linear search is faster than a map
   typename FeatureSet::template Memory<Real> features_;
 };

@@ -1,23 +1,32 @@
 #include "lib/solver/step_solver.h"
 
+#include <algorithm>
+
 #include "lib/base/error.h"
 
 namespace pbf::inline solver_module {
 
-void check_state(const SolverState& s, std::int64_t n) {
-  const std::size_t count = std::size_t(n);
-  std::vector<bool> seen(count, false);
-  bool good =
-      s.id.size() == count && s.position.size() == 3 * count && s.velocity.size() == 3 * count;
-  for (std::size_t k = 0; good && k < count; ++k) {
+void check_state(const SolverState& s, std::int64_t n, bool changes) {
+  const std::size_t most = std::size_t(n), count = s.id.size();
+  bool good = (changes ? count <= most : count == most) && s.position.size() == 3 * count &&
+              s.velocity.size() == 3 * count;
+  std::vector<bool> seen(good ? count : 0, false);
+  for (std::size_t k = 0; good && !changes && k < count; ++k) {
     const auto id = std::size_t(s.id[k]);
     good = s.id[k] >= 0 && id < count && !seen[id];
     if (good) seen[id] = true;
   }
+  if (changes) {
+    std::vector<std::int32_t> id = s.id;
+    std::sort(id.begin(), id.end());
+    good =
+        good && (id.empty() || id[0] >= 0) && std::adjacent_find(id.begin(), id.end()) == id.end();
+  }
   if (!good)
-    throw Error(ExitCode::internal, "a state of " + std::to_string(s.id.size()) +
-                                        " particles does not fit a solver of " + std::to_string(n) +
-                                        ", or its ids are not 0..n-1");
+    throw Error(ExitCode::internal,
+                "a state of " + std::to_string(s.id.size()) +
+                    " particles does not fit a solver of " + std::to_string(n) +
+                    (changes ? ", or its ids are not unique" : ", or its ids are not 0..n-1"));
 }
 
 Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type, std::size_t n,

@@ -1,6 +1,7 @@
 // The solver over any executor. Host side only.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -44,16 +45,15 @@ class StepSolver final : public Solver, public Inspection {
       : scene_(scene),
         plan_(plan),
         without_time_(make_program_of<Features>(scene, plan.shape(), true)),
-        n_(int(particles.size())),
         exec_(std::forward<Args>(executor)...) {
-    if (plan.particles != n_)
+    if (plan.particles != std::int64_t(particles.size()))
       throw Error(ExitCode::internal, "a plan of " + std::to_string(plan.particles) +
-                                          " particles for " + std::to_string(n_));
+                                          " particles for " + std::to_string(particles.size()));
     const Stopwatch watch;
     InternalState<Real> s = to_internal<Real>(scene, plan.axes, std::move(particles));
     stepper_ = std::make_unique<Stepping>(exec_, scene_, plan_, std::move(s.position),
                                           std::move(s.velocity), std::move(s.id));
-    while (exec_.grow_lists(n_)) stepper_->relist();
+    while (exec_.grow_lists(stepper_->capacity())) stepper_->relist();
     exec_.forget_stages();  // sorting the initial state belongs to init, not to the updates
     init_seconds_ = watch.seconds();
   }
@@ -73,8 +73,11 @@ class StepSolver final : public Solver, public Inspection {
   }
 
   std::future<Snapshot> download(const std::vector<std::string>& fields, ScalarType type) override {
-    auto snapshot = std::make_shared<Snapshot>(empty_snapshot(
-        fields, type, std::size_t(n_), updates_, double(updates_) * scene_.time.step));
+    auto snapshot =
+        std::make_shared<Snapshot>(empty_snapshot(fields, type, std::size_t(stepper_->rows()),
+                                                  updates_, double(updates_) * scene_.time.step));
+    if (changes_rows(scene_))
+      std::ranges::copy(stepper_->ids(), snapshot->fields.back().as<std::int32_t>().begin());
     if (snapshot->find("density")) find_pairs();
     type == ScalarType::f64 ? start_export<double>(*snapshot) : start_export<float>(*snapshot);
     return std::async(std::launch::deferred, [this, snapshot] {
@@ -85,9 +88,10 @@ class StepSolver final : public Solver, public Inspection {
 
   Diagnostics measure() override {
     find_pairs();
-    const MeasureConstants given = measure_constants(scene_, plan_);
+    const int n = stepper_->rows();
+    const MeasureConstants given = measure_constants(scene_, plan_, n);
     Diagnostics m =
-        to_diagnostics(stepper_->measure(given), given, scene_, plan_, updates_, steps_);
+        to_diagnostics(stepper_->measure(given), n, given, scene_, plan_, updates_, steps_);
     measure_motion(m);
     return m;
   }
@@ -110,7 +114,7 @@ class StepSolver final : public Solver, public Inspection {
     return s;
   }
   void set_state(const SolverState& s) override {
-    check_state(s, n_);
+    check_state(s, plan_.capacity, changes_rows(scene_));
     stepper_->set_state(s, double(s.updates) * scene_.time.step);
     updates_ = s.updates;
     steps_ = s.steps;
@@ -170,7 +174,8 @@ class StepSolver final : public Solver, public Inspection {
           [&] { batch = batch_ = std::min(batch, kFirstBatch); });
       left -= batch;
       done += batch;
-      batch_ = int(std::min<std::int64_t>(2 * std::int64_t(batch_), exec_.largest_batch(n_)));
+      batch_ = int(std::min<std::int64_t>(2 * std::int64_t(batch_),
+                                          exec_.largest_batch(stepper_->capacity())));
     }
   }
   /// Runs `work`. While a list did not fit, restores the state before it, enlarges the lists, calls
@@ -179,7 +184,7 @@ class StepSolver final : public Solver, public Inspection {
   void until_lists_fit(const Work& work, const Again& again) {
     if constexpr (Exec::lists_overflow) stepper_->save(saved_);
     work();
-    while (exec_.grow_lists(n_)) {
+    while (exec_.grow_lists(stepper_->capacity())) {
       stepper_->restore(saved_);
       again();
       work();
@@ -239,7 +244,7 @@ class StepSolver final : public Solver, public Inspection {
 
   void find_pairs() {
     if (!stepper_->find_pairs()) return;
-    while (exec_.grow_lists(n_)) stepper_->relist();
+    while (exec_.grow_lists(stepper_->capacity())) stepper_->relist();
   }
 
   static std::vector<CopyTarget> targets(Snapshot& s) {
@@ -260,7 +265,6 @@ class StepSolver final : public Solver, public Inspection {
   const Scene scene_;
   const Plan plan_;
   const Program without_time_;
-  const int n_;
   Exec exec_;
   std::unique_ptr<Stepping> stepper_;
   typename Stepping::Saved saved_, kept_;

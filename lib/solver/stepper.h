@@ -14,6 +14,7 @@
 #include "lib/solver/compression_percentile.h"
 #include "lib/solver/executor.h"
 #include "lib/solver/granted.h"
+#include "lib/solver/launched_rows.h"
 #include "lib/solver/params.h"
 #include "lib/solver/read_sums.h"
 #include "lib/solver/saved_state.h"
@@ -43,11 +44,11 @@ class Stepper {
           std::vector<Vec4<Real>> velocity, std::vector<int> id)
       : plan_(plan),
         c_(exec, scene, plan, make_params<Real>(scene, plan)),
-        residual_limit_(residual_limit(plan.tolerance, int(plan.particles))),
         program_(&plan.program) {
     for (int k = 0; k < scene.solver.iterations; ++k)
       c_.factors.push_back(
           Real(plan.sor * (plan.sor_factors.empty() ? 1 : plan.sor_factors[std::size_t(k)])));
+    c_.launched = int(position.size());
     c_.make(position, velocity, id);
     find_pairs();
     sum_density();
@@ -84,8 +85,11 @@ class Stepper {
     return check.event();
   }
 
-  int size() const { return c_.rows(); }
-  int placement() const { return c_.placement(); }
+  int capacity() const { return c_.capacity(); }
+  /// The present number of particles, for which the host waits if it changes.
+  int rows() { return c_.host_rows(); }
+  /// What the addresses and numbers of launches follow from: recorded updates are valid for it.
+  std::pair<int, int> launch() const { return {c_.placement(), c_.launched}; }
 
   /// Later steps use this scene, these parameters and this program.
   void use(const Scene& scene, const Params<Real>& p, const Program& program) {
@@ -96,6 +100,11 @@ class Stepper {
   }
   /// To be called before each batch of steps, also before a repeated one.
   void before_steps(const StepRange& steps) {
+    if constexpr (Context::changes_rows) {
+      std::int64_t most = c_.host_rows();
+      c_.for_features([&](auto& memory) { most += memory.new_rows(c_, steps); });
+      c_.launched = int(std::min<std::int64_t>(launched_rows(most), c_.capacity()));
+    }
     c_.for_features([&](auto& memory) { memory.before_steps(c_, steps); });
   }
   /// Largest number of steps between two such calls.
@@ -110,7 +119,7 @@ class Stepper {
   double power(const FrameStep<double>& frame, double dt) {
     const Vec3<Real>& g = c_.p.gravity;
     return c_.exec
-        .reduce(size(), PowerPass<Real>{frame,
+        .reduce(rows(), PowerPass<Real>{frame,
                                         1 / dt,
                                         {double(g.x), double(g.y), double(g.z)},
                                         c_.position(),
@@ -123,10 +132,13 @@ class Stepper {
   /// Sums of the present positions and velocities, and since the last call with Interval::ends.
   GaugeSums gauges(Interval interval) { return read_gauges(c_, interval); }
 
+  std::vector<int> ids() { return c_.ids_in_order(c_.ids(), rows()); }
   /// A state with positions only.
   SolverState positions() {
     SolverState s;
-    s.position = downloaded(c_, field::position, c_.bytes_of(field::position), c_.ids());
+    const int n = rows();
+    s.position = downloaded(c_, field::position, c_.bytes_of(field::position), std::size_t(n),
+                            c_.order_of_ids(c_.ids(), n));
     return s;
   }
   SolverState state() {
@@ -135,7 +147,7 @@ class Stepper {
     return download_state(c_, present);
   }
   SolverState state(const Saved& s) { return download_state(c_, s.arrays()); }
-  /// Sets a state of the same number of particles, in any order. time: s since the start.
+  /// Sets a state with particles in any order. time: s since the start.
   void set_state(const SolverState& s, double time) {
     upload_state(c_, s);
     c_.for_features([&](auto& memory) { memory.stand(c_, time); });
@@ -172,7 +184,7 @@ class Stepper {
   MeasureSums measure(const MeasureConstants& given) {
     c_.exec.begin();
     sum_density();
-    const int n = size();
+    const int n = rows();
     MeasureSums sums;
     const auto c = c_.template granted<Measure>();
     with_boundary(c, [&](const auto& boundary) {
@@ -195,17 +207,19 @@ class Stepper {
     c_.exec.begin();
     if (density) sum_density();
     const auto from = [&](int k) { return origin[std::size_t(plan_.axes.of[k])]; };
-    c_.exec.items(size(), ExportPass<Real, Out>{h,
-                                                rest_density,
-                                                {from(0), from(1), from(2)},
-                                                plan_.axes,
-                                                c_.position(),
-                                                c_.velocity(),
-                                                c_.density(),
-                                                c_.ids(),
-                                                position,
-                                                velocity,
-                                                density});
+    const int n = rows();
+    const int* place = c_.order_of_ids(c_.ids(), n);
+    c_.exec.items(n, ExportPass<Real, Out>{h,
+                                           rest_density,
+                                           {from(0), from(1), from(2)},
+                                           plan_.axes,
+                                           c_.position(),
+                                           c_.velocity(),
+                                           c_.density(),
+                                           place,
+                                           position,
+                                           velocity,
+                                           density});
     c_.exec.mark("download");
   }
 
@@ -245,8 +259,8 @@ class Stepper {
           c_.iterating = false;
           break;
         case ProgramStep::until:
-          c_.exec.repeat_while("residual", size(), s.times, ResidualPass<Real>{c_.density()},
-                               residual_limit_, &c_.data(field::counts)->repeats,
+          c_.exec.repeat_while("residual", c_.rows(), s.times, ResidualPass<Real>{c_.density()},
+                               plan_.tolerance, &c_.data(field::counts)->repeats,
                                [&] { run(s.body, seen); });
           break;
       }
@@ -275,7 +289,6 @@ class Stepper {
 
   const Plan& plan_;
   Context c_;
-  std::uint64_t residual_limit_;
   const Program* program_;
   bool density_is_current_ = false;
 };

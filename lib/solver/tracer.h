@@ -45,7 +45,15 @@ template <class Context>
 class Tracer {
  public:
   Tracer(Context& c, const Axes& axes, const TraceOptions& options)
-      : c_(c), n_(std::size_t(c.rows())), axes_(axes), options_(options), random_(options.seed) {}
+      : c_(c),
+        n_(std::size_t(c.capacity())),
+        axes_(axes),
+        options_(options),
+        random_(options.seed) {
+    if (changes_rows(c.scene))
+      throw Error(ExitCode::bad_input,
+                  "an update can be traced only where the number of particles is constant");
+  }
 
   /// Records the results of a pass.
   void record(const PassInfo& pass, int number) {

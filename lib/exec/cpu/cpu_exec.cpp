@@ -61,7 +61,24 @@ void CpuExec::sort(const int* bin, const int* id, int n, int bins, int* order, i
     std::copy_backward(start + low[t], start + low[t + 1] - 1, start + low[t + 1]);
     start[low[t]] = first;
   }
-  start[bins] = n;
+  start[bins] = std::accumulate(placed, placed + threads, 0);
+}
+
+void CpuExec::rank(int n, const int* id, int* place) {
+  // A radix sort by 11 bits at a time.
+  constexpr int bits = 11, digits = 1 << bits;
+  std::vector<int> rows(static_cast<std::size_t>(n)), sorted(rows.size());
+  std::iota(rows.begin(), rows.end(), 0);
+  const int most = n > 0 ? *std::max_element(id, id + n) : 0;
+  for (int shift = 0; shift < 31 && most >> shift; shift += bits) {
+    const auto digit = [&](int row) { return std::size_t(id[row] >> shift) % digits; };
+    std::size_t first[digits] = {};
+    for (const int row : rows) ++first[digit(row)];
+    std::exclusive_scan(first, first + digits, first, std::size_t(0));
+    for (const int row : rows) sorted[first[digit(row)]++] = row;
+    rows.swap(sorted);
+  }
+  for (int k = 0; k < n; ++k) place[rows[std::size_t(k)]] = k;
 }
 
 void CpuExec::describe(SolverInfo& info) const {

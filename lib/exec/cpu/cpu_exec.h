@@ -11,6 +11,7 @@
 
 #include "kernels/measure.h"
 #include "kernels/neighbors.h"
+#include "kernels/pass_residual.h"
 #include "lib/base/stage_clock.h"
 #include "lib/exec/cpu/host_buffer.h"
 #include "lib/exec/cpu/lane_sums.h"
@@ -71,6 +72,10 @@ class CpuExec {
     if (n) std::memcpy(host, from, n * sizeof(T));
   }
 
+  /// The present number of particles, for launches.
+  int counted(const RowState* state, int) const { return int(state->rows); }
+  void rows_changed() {}
+
   // Passes by their shapes (kernels/pass_shapes.h). Here one thread computes a whole item.
   template <ItemPass Pass>
   void items(int n, const Pass& pass) {
@@ -110,11 +115,12 @@ class CpuExec {
     return {counts, sum<MeasureTerms>(n, [&](int i) { return pass.terms(i, unit); })};
   }
 
-  /// Calls body() while the sum of pass(i) is above `limit`, at most `times` times, and counts the
-  /// calls in *repeats. Marks `stage` after every sum.
+  /// Calls body() while the mean of pass(i) is above `tolerance`, at most `times` times, and counts
+  /// the calls in *repeats. Marks `stage` after every sum.
   template <class Pass, class Body>
-  void repeat_while(const char* stage, int n, int times, const Pass& pass, std::uint64_t limit,
+  void repeat_while(const char* stage, int n, int times, const Pass& pass, double tolerance,
                     unsigned long long* repeats, const Body& body) {
+    const std::uint64_t limit = residual_limit(tolerance, n);
     for (int k = 0; k < times; ++k) {
       std::uint64_t sum = 0;
 #pragma omp parallel for schedule(static) reduction(+ : sum) num_threads(threads_) if (n > 4096)
@@ -145,8 +151,9 @@ class CpuExec {
   /// Calls first(i) for every particle, which writes first.bin[i] or leaves this to `near`; sorts
   /// by bin and, within a bin, by id (start[b] = first place of bin b, start[bins] = n); calls
   /// gather(from, to) for every particle. The order of rows therefore follows from the positions
-  /// alone. Marks `stage` after `first`.
-  template <class First, class Listed, class Gather>
+  /// alone. Marks `stage` after `first`. leave: rows with a negative id leave; n is the number of
+  /// all rows, start[bins] that of the others.
+  template <bool leave, class First, class Listed, class Gather>
   void sort_by_bin(const char* stage, const First& first, const Listed& near, int n, int bins,
                    const int* id, int* order, int* start, const Gather& gather) {
     if constexpr (PairPass<First>)
@@ -157,10 +164,13 @@ class CpuExec {
       if (near.count) listed(near.count, n, near.pass);
     }
     mark(stage);
+    if constexpr (leave)
+      for (int i = 0; i < n; ++i)
+        if (id[i] < 0) first.bin[i] = bins;
     sort(first.bin, id, n, bins, order, start);
-    items(n, [&](int k) { gather(order[k], k); });
+    items(leave ? start[bins] : n, [&](int k) { gather(order[k], k); });
   }
-  /// order[k] = row of the k-th particle by (bin, id).
+  /// order[k] = row of the k-th particle by (bin, id). Leaves out rows of bin `bins`.
   void sort(const int* bin, const int* id, int n, int bins, int* order, int* start);
 
   /// Lists of exactly the pairs of n particles closer than h. Memory grows as needed (throws
@@ -193,6 +203,9 @@ class CpuExec {
     }
     return {pointers_.data(), groups_.data(), bits, far};
   }
+
+  /// place[i]: how many of the n different numbers, none negative, are smaller than id[i].
+  void rank(int n, const int* id, int* place);
 
   std::size_t bytes() const;
 

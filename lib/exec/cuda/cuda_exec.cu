@@ -1,6 +1,20 @@
 #include "lib/exec/cuda/cuda_exec.cuh"
 
+#include <cub/device/device_radix_sort.cuh>
+
 namespace pbf::inline PBF_VARIANT {
+
+namespace {
+struct NumberPass {
+  int* row;
+  PBF_HD void operator()(int i) const { row[i] = i; }
+};
+struct InversePass {
+  const int* from;
+  int* place;
+  PBF_HD void operator()(int k) const { place[from[k]] = k; }
+};
+}  // namespace
 
 CudaExec::CudaExec(ListCapacity capacity, std::int64_t total) : capacity_(capacity), total_(total) {
   int device = 0, driver = 0;
@@ -58,6 +72,20 @@ void CudaExec::scan(int n, int* start) {
   });
 }
 
+void CudaExec::rank(int n, const int* id, int* place) {
+  const auto size = std::size_t(n);
+  DeviceBuffer<int> sorted, rows, by_id;
+  DeviceBuffer<char> scratch;
+  sorted.resize(size), rows.resize(size), by_id.resize(size);
+  items(n, NumberPass{rows.data()});
+  with_scratch(scratch, [&](void* memory, std::size_t& bytes) {
+    return cub::DeviceRadixSort::SortPairs(memory, bytes, id, sorted.data(), rows.data(),
+                                           by_id.data(), n, 0, 31, stream_);
+  });
+  items(n, InversePass{by_id.data(), place});
+  synchronize();
+}
+
 bool CudaExec::new_condition(cudaGraphConditionalHandle& handle) {
   cudaStreamCaptureStatus status;
   cudaGraph_t graph = nullptr;
@@ -87,7 +115,7 @@ void CudaExec::begin_repeated(cudaGraphConditionalHandle handle) {
   if (!other_stream_)
     PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&other_stream_, cudaStreamNonBlocking));
   std::swap(stream_, other_stream_);
-  after_condition_ = true;
+  alone_ = true;
   PBF_CUDA_CHECK(cudaStreamBeginCaptureToGraph(stream_, params.conditional.phGraph_out[0], nullptr,
                                                nullptr, 0, cudaStreamCaptureModeThreadLocal));
 }
@@ -96,7 +124,7 @@ void CudaExec::end_repeated() {
   cudaGraph_t body = nullptr;
   PBF_CUDA_CHECK(cudaStreamEndCapture(stream_, &body));
   std::swap(stream_, other_stream_);
-  after_condition_ = true;
+  alone_ = true;
 }
 
 bool CudaExec::asked_to_repeat() {

@@ -33,8 +33,8 @@ class CudaExec {
   using Buffer = DeviceBuffer<T>;
 
   /// capacity: of the lists at first. If a list is longer, the build records its length and writes
-  /// nothing beyond the capacity; grow_lists() enlarges it. total: particles of the whole scene,
-  /// from which the number of threads of a sum follows.
+  /// nothing beyond the capacity; grow_lists() enlarges it. total: most particles of the whole
+  /// scene, from which the number of threads of a sum follows.
   CudaExec(ListCapacity capacity, std::int64_t total);
   ~CudaExec();
   CudaExec(const CudaExec&) = delete;
@@ -61,7 +61,7 @@ class CudaExec {
   /// stage, as a sample for the others.
   template <class Updates>
   void repeat(int updates, Updates& u) {
-    const int every = u.size() < 100000 ? 1024 : 64;
+    const int every = u.capacity() < 100000 ? 1024 : 64;
     int left = updates;
     if (since_profile_ <= 0) {
       profiling_ = true;
@@ -89,21 +89,25 @@ class CudaExec {
     synchronize();
   }
 
-  template <ItemPass Pass>
-  void items(int n, const Pass& pass) {
-    launch(item_kernel<Pass>, n, kBlock, 0, n, pass);
+  CountedRows counted(const RowState* state, int most) const { return {state, most}; }
+  /// The next kernel starts after the last one has ended, so it sees the new number.
+  void rows_changed() { alone_ = true; }
+
+  template <class Rows, ItemPass Pass>
+  void items(const Rows& n, const Pass& pass) {
+    launch(item_kernel<Rows, Pass>, most(n), kBlock, 0, n, pass);
   }
   /// The number of threads determines the tree of a neighbor sum, so it follows from the particles
   /// of the whole scene, not from those here.
-  template <PairPass Pass>
-  void pairs(int n, const Pass& pass) {
+  template <class Rows, PairPass Pass>
+  void pairs(const Rows& n, const Pass& pass) {
     // In two dimensions a list has a third of the words, enough for half as many threads.
     constexpr bool space = Pass::D == 3;
     if (launch_lanes < 16, space ? kSixteenLanes : 0 > (n, pass)) return;
     if (launch_lanes < space ? 8 : 4, kEightLanes > (n, pass)) return;
     if (launch_lanes < space ? 4 : 2, kFourLanes > (n, pass)) return;
     if (launch_lanes < 2, space ? kTwoLanes : 0 > (n, pass)) return;
-    launch(pair_kernel<Pass>, n, kBlock, 0, n, pass);
+    launch(pair_kernel<Rows, Pass>, most(n), kBlock, 0, n, pass);
   }
   template <SharedPass Pass>
   void shared(int n, const Pass& pass) {
@@ -121,15 +125,15 @@ class CudaExec {
   }
   /// See CpuExec. Their number is known on the device alone.
   template <ItemPass Pass>
-  void listed(const int* count, int most, const Pass& pass) {
-    launch(listed_kernel<Pass>, std::min(most, kBlock * kListedBlocks), kBlock, 0, count, pass);
+  void listed(const int* count, int at_most, const Pass& pass) {
+    launch(listed_kernel<Pass>, std::min(at_most, kBlock * kListedBlocks), kBlock, 0, count, pass);
   }
 
   /// See CpuExec. The maxima stay on the device for the sums, so the host waits once.
   template <ReducePass Pass>
   MeasureSums reduce(int n, const Pass& pass) {
     if (n == 0) return {};
-    measure_.make(n, stream_);
+    measure_.make(std::max<std::int64_t>(n, total_), stream_);
     const int threads = kBlock * reduce_blocks(n);
     launch(reduce_kernel<CountsOf<Pass>>, threads, kBlock, 0, n, CountsOf<Pass>{pass},
            measure_.counts());
@@ -159,16 +163,17 @@ class CudaExec {
 
   /// See CpuExec. If a graph is captured, the body becomes part of it, and the device repeats it
   /// without the host; otherwise the host waits for every sum.
-  template <class Pass, class Body>
-  void repeat_while(const char* stage, int n, int times, const Pass& pass, std::uint64_t limit,
+  template <class Rows, class Pass, class Body>
+  void repeat_while(const char* stage, const Rows& n, int times, const Pass& pass, double tolerance,
                     unsigned long long* repeats, const Body& body) {
     if (repeat_.size() == 0) {
       repeat_.resize(1);
       PBF_CUDA_CHECK(cudaMemsetAsync(repeat_.data(), 0, repeat_.bytes(), stream_));
     }
-    Repetition r{repeat_.data(), repeats, limit, unsigned(times), true, false, {}};
+    Repetition r{repeat_.data(), repeats, tolerance, unsigned(times), true, false, {}};
     const auto decide = [&] {
-      launch(repeat_kernel<Pass>, std::min(n, kBlock * kRepeatBlocks), kBlock, 0, n, pass, r);
+      launch(repeat_kernel<Rows, Pass>, std::min(most(n), kBlock * kRepeatBlocks), kBlock, 0, n,
+             pass, r);
       mark(stage);
       r.first = false;
     };
@@ -185,22 +190,23 @@ class CudaExec {
   }
 
   /// See CpuExec; `order` holds the order of arrival within bins.
-  template <class First, class Listed, class Gather>
-  void sort_by_bin(const char* stage, const First& first, const Listed& near, int n, int bins,
-                   const int* id, int* order, int* start, const Gather& gather) {
+  template <bool leave, class Rows, class First, class Listed, class Gather>
+  void sort_by_bin(const char* stage, const First& first, const Listed& near, const Rows& n,
+                   int bins, const int* id, int* order, int* start, const Gather& gather) {
     constexpr bool leaves_rows = requires { near.pass; };
-    slot_.resize(std::size_t(n));
-    const OrderPass<Gather> in_order{first.bin, id, start, slot_.data(), gather};
-    if (n <= kSortParticles && bins <= kSortBins) {
+    const auto all = int(total_);
+    slot_.resize(std::size_t(all));
+    const OrderPass<leave, Gather> in_order{first.bin, id, start, slot_.data(), bins, gather};
+    if (all <= kSortParticles && bins <= kSortBins) {
       const auto sort = [&](const auto& before) {
-        launch(small_sort_kernel<std::decay_t<decltype(before)>, Gather>, kSortThreads,
-               kSortThreads, std::size_t(bins) * sizeof(int), before, n, bins, order, slot_.data(),
-               start, list_state_.data(), in_order);
+        launch(small_sort_kernel<leave, Rows, std::decay_t<decltype(before)>, Gather>, kSortThreads,
+               kSortThreads, std::size_t(bins + leave) * sizeof(int), n, before, bins, order,
+               slot_.data(), start, list_state_.data(), in_order);
       };
       if constexpr (leaves_rows || PairPass<First>) {
         items_or_pairs(n, first);
         if constexpr (leaves_rows) {
-          if (near.count) listed(near.count, n, near.pass);
+          if (near.count) listed(near.count, all, near.pass);
         }
         mark(stage);
         sort(NothingFirst{});
@@ -213,27 +219,31 @@ class CudaExec {
       counts_.resize(std::size_t(bins) + 1);
       PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), stream_));
     }
-    items_or_pairs(n, CountPass<First>{first, counts_.data(), order});
+    items_or_pairs(n, CountPass<leave, First>{first, counts_.data(), order, id, bins});
     if constexpr (leaves_rows) {
-      using Near = std::decay_t<decltype(near.pass)>;
-      if (near.count) listed(near.count, n, CountPass<Near>{near.pass, counts_.data(), order});
+      using Near = CountPass<leave, std::decay_t<decltype(near.pass)>>;
+      if (near.count) listed(near.count, all, Near{near.pass, counts_.data(), order, id, bins});
     }
     mark(stage);
     scan(bins + 1, start);
-    items(n, PlacePass{first.bin, start, order, slot_.data(), counts_.data(), list_state_.data(), n,
-                       bins + 1});
+    launch(place_kernel<Rows>, most(n), kBlock, 0, n,
+           PlacePass{first.bin, start, order, slot_.data(), counts_.data(), list_state_.data(),
+                     bins + 1});
     items(n, in_order);
   }
 
-  template <class Real>
-  Lists build_lists(int n, int far, const Vec4<Real>* position, const int* bin_start,
+  template <class Rows, class Real>
+  Lists build_lists(const Rows& n, int far, const Vec4<Real>* position, const int* bin_start,
                     const Params<Real>& p) {
-    allocate_lists(n);
+    allocate_lists(far);
     p.dimensions == 2 ? make_lists<2>(n, far, position, bin_start, p)
                       : make_lists<3>(n, far, position, bin_start, p);
-    return {words_.data(),  overflows_.data(), count_.data(),      overflow_of_.data(),
-            list_stride(n), capacity_.first,   capacity_.overflow, far};
+    return {words_.data(),    overflows_.data(), count_.data(),      overflow_of_.data(),
+            list_stride(far), capacity_.first,   capacity_.overflow, far};
   }
+
+  /// See CpuExec.
+  void rank(int n, const int* id, int* place);
 
   std::size_t bytes() const {
     return words_.bytes() + overflows_.bytes() + overflow_of_.bytes() + count_.bytes() +
@@ -242,8 +252,8 @@ class CudaExec {
   }
 
  private:
-  template <class Pass>
-  void items_or_pairs(int n, const Pass& pass) {
+  template <class Rows, class Pass>
+  void items_or_pairs(const Rows& n, const Pass& pass) {
     if constexpr (PairPass<Pass>)
       pairs(n, pass);
     else
@@ -262,22 +272,23 @@ class CudaExec {
   template <class... P, class... A>
   void launch(void (*kernel)(P...), int threads, int block, std::size_t shared, const A&... args) {
     if (threads == 0) return;
-    start_kernel(stream_, overlap_ && !after_condition_, kernel, threads, block, shared, args...);
-    after_condition_ = false;
+    start_kernel(stream_, overlap_ && !alone_, kernel, threads, block, shared, args...);
+    alone_ = false;
   }
-  /// Launches `lanes` threads per particle if the scene has at most `most`; returns whether it did.
-  template <int lanes, int most, class Pass>
-  bool launch_lanes(int n, const Pass& pass) {
-    if constexpr (most > 0) {
-      if (total_ <= most) {
-        launch(lanes_kernel<lanes, Pass>, lanes * n, kBlock, 0, n, pass);
+  /// Launches `lanes` threads per particle if the scene has at most `largest`; returns whether it
+  /// did.
+  template <int lanes, int largest, class Rows, class Pass>
+  bool launch_lanes(const Rows& n, const Pass& pass) {
+    if constexpr (largest > 0) {
+      if (total_ <= largest) {
+        launch(lanes_kernel<lanes, Rows, Pass>, lanes * most(n), kBlock, 0, n, pass);
         return true;
       }
     }
     return false;
   }
-  template <int D, class Real>
-  void make_lists(int n, int far, const Vec4<Real>* position, const int* bin_start,
+  template <int D, class Rows, class Real>
+  void make_lists(const Rows& n, int far, const Vec4<Real>* position, const int* bin_start,
                   const Params<Real>& p) {
     const ListPass<Real, D> pass{p,
                                  position,
@@ -288,11 +299,10 @@ class CudaExec {
                                  overflow_of_.data(),
                                  list_state_.data(),
                                  capacity_,
-                                 list_stride(n),
-                                 n,
+                                 list_stride(far),
                                  far};
-    if (n <= kListLanes)
-      launch(list_lanes_kernel<Real, D>, pass.lanes * n, kBlock, 0, pass);
+    if (far <= kListLanes)
+      launch(list_lanes_kernel<Rows, Real, D>, pass.lanes * most(n), kBlock, 0, n, pass);
     else
       items(n, pass);
   }
@@ -313,7 +323,8 @@ class CudaExec {
   cudaStream_t stream_ = nullptr;
   cudaStream_t other_stream_ = nullptr;  ///< while a repeated body is captured: that of the graph
   bool overlap_ = false;                 ///< the device has programmatic dependent launch
-  bool after_condition_ = false;         ///< ... which works only from kernel to kernel
+  bool alone_ =
+      false;  ///< ... which the next launch does without: rows_changed(); after a condition
   ListCapacity capacity_;
   std::int64_t total_;
   bool profiling_ = false;

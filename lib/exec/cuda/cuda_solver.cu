@@ -11,9 +11,9 @@ std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& pla
                                              Particles particles, ListCapacity capacity) {
   if (scene.precision == Precision::dbl)
     return std::make_unique<StepSolver<double, CudaExec>>(scene, plan, std::move(particles),
-                                                          capacity, plan.particles);
+                                                          capacity, plan.capacity);
   return std::make_unique<StepSolver<float, CudaExec>>(scene, plan, std::move(particles), capacity,
-                                                       plan.particles);
+                                                       plan.capacity);
 }
 
 }  // namespace pbf::inline PBF_VARIANT

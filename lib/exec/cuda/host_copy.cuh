@@ -30,8 +30,7 @@ class HostCopy {
       PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
       PBF_CUDA_CHECK(cudaEventCreateWithFlags(&written_, cudaEventDisableTiming));
     }
-    staging_.resize(bytes);
-    host_.resize(bytes);
+    if (staging_.size() < bytes) staging_.resize(bytes), host_.resize(bytes);
     std::vector<Out*> rows;
     for (char* at = staging_.data(); const CopyTarget& t : to) {
       rows.push_back(reinterpret_cast<Out*>(at));

@@ -22,15 +22,17 @@ constexpr int kListLanes = 40000;
 constexpr int kRepeatBlocks = 512;
 constexpr int kListedBlocks = 1024;
 
-template <class Pass>
-__global__ void __launch_bounds__(kBlock) item_kernel(int n, Pass pass) {
+template <class Rows, class Pass>
+__global__ void __launch_bounds__(kBlock) item_kernel(Rows rows, Pass pass) {
+  const int n = count_of(rows);
   wait_for_previous();
   const int i = blockIdx.x * kBlock + threadIdx.x;
   if (i < n) pass(i);
 }
 
-template <class Pass>
-__global__ void __launch_bounds__(kBlock) pair_kernel(int n, Pass pass) {
+template <class Rows, class Pass>
+__global__ void __launch_bounds__(kBlock) pair_kernel(Rows rows, Pass pass) {
+  const int n = count_of(rows);
   wait_for_previous();
   const int i = blockIdx.x * kBlock + threadIdx.x;
   if (i < n) sum_over_neighbors(pass, i);
@@ -46,8 +48,9 @@ __global__ void __launch_bounds__(kBlock)
 }
 
 /// A neighbor sum by several threads per particle.
-template <int lanes, class Pass>
-__global__ void __launch_bounds__(kBlock) lanes_kernel(int n, Pass pass) {
+template <int lanes, class Rows, class Pass>
+__global__ void __launch_bounds__(kBlock) lanes_kernel(Rows rows, Pass pass) {
+  const int n = count_of(rows);
   wait_for_previous();
 #ifdef PBF_PINNED
   sum_in_order_by_lanes<lanes, kBlock>(pass, blockIdx.x * kBlock + threadIdx.x, n);
@@ -55,10 +58,11 @@ __global__ void __launch_bounds__(kBlock) lanes_kernel(int n, Pass pass) {
   sum_over_neighbors_by_lanes<lanes>(pass, blockIdx.x * kBlock + threadIdx.x, n);
 #endif
 }
-template <class Real, int D>
-__global__ void __launch_bounds__(kBlock) list_lanes_kernel(ListPass<Real, D> pass) {
+template <class Rows, class Real, int D>
+__global__ void __launch_bounds__(kBlock) list_lanes_kernel(Rows rows, ListPass<Real, D> pass) {
+  const int n = count_of(rows);
   wait_for_previous();
-  pass.by_lanes(blockIdx.x * kBlock + threadIdx.x);
+  pass.by_lanes(blockIdx.x * kBlock + threadIdx.x, n);
 }
 
 }  // namespace pbf::inline PBF_VARIANT

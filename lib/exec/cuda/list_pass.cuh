@@ -37,7 +37,7 @@ struct ListPass {
   ListState* state;
   ListCapacity capacity;
   int stride;
-  int n, far;  ///< particles, and the row that pads lists
+  int far;  ///< the row that pads lists
 
   /// hits(first, bits): bit 31 - k set where candidate first + k is a neighbor of i.
   template <class F>
@@ -92,7 +92,7 @@ struct ListPass {
 
   /// For few particles: eight threads make a list (two in two dimensions). Each has a row of
   /// candidates (the last one two rows), which it first counts, then writes in order.
-  __device__ void by_lanes(int thread) const {
+  __device__ void by_lanes(int thread, int n) const {
     const int i = thread / lanes, lane = thread % lanes;
     const bool valid = i < n;
     const bool last = lane == lanes - 1;

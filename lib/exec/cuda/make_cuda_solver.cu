@@ -40,7 +40,7 @@ std::unique_ptr<Solver> make_cuda_solver(const Scene& scene, const Plan& plan, P
                     "); run with --backend cpu, or where `nvidia-smi` lists a device");
   refuse_if_device_too_small(scene, plan);
   const ListCapacity capacity =
-      first_list_capacity(rest_neighbors(scene), plan.particles, first_entries);
+      first_list_capacity(rest_neighbors(scene), plan.capacity, first_entries);
   return scene.solver.reproducible
              ? pinned::make_stepping_solver(scene, plan, std::move(particles), capacity)
              : plain::make_stepping_solver(scene, plan, std::move(particles), capacity);

@@ -22,7 +22,7 @@ class RecordedUpdates {
   void repeat(int left, Updates& u, cudaStream_t stream) {
     for (const int size : {0, 1, 2})
       for (; left >= kUpdates[size]; left -= kUpdates[size]) {
-        cudaGraphExec_t& graph = graph_[{size, u.placement()}];
+        cudaGraphExec_t& graph = graph_[{size, u.launch()}];
         if (!graph) record(graph, kUpdates[size], u, stream);
         PBF_CUDA_CHECK(cudaGraphLaunch(graph, stream));
         u.moved();
@@ -39,7 +39,8 @@ class RecordedUpdates {
 
  private:
   /// Updates per graph. An update swaps buffers, so a graph has an even number of updates, and each
-  /// placement of buffers has its own graphs. Long graphs avoid gaps between graphs.
+  /// placement of buffers and number of launched rows has its own graphs. Long graphs avoid gaps
+  /// between graphs.
   static constexpr int kUpdates[3] = {64, 8, 2};
 
   template <class Updates>
@@ -56,7 +57,7 @@ class RecordedUpdates {
     PBF_CUDA_CHECK(made);
   }
 
-  std::map<std::pair<int, int>, cudaGraphExec_t> graph_;  ///< by size and placement
+  std::map<std::pair<int, std::pair<int, int>>, cudaGraphExec_t> graph_;  ///< by size and launch()
   double launches_ = 0;
 };
 

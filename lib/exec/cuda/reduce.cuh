@@ -81,8 +81,8 @@ class MeasureSpace {
     MeasureTerms terms;
   };
 
-  /// Allocates for n particles at the first call; n must be the same in later calls.
-  void make(int n, cudaStream_t stream) {
+  /// Allocates for at most n particles at the first call.
+  void make(std::int64_t n, cudaStream_t stream) {
     if (totals_.size()) return;
     counts_.resize(std::size_t(reduce_blocks(n)));
     terms_.resize(std::size_t(reduce_blocks(n)));

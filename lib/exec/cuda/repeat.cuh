@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cub/block/block_reduce.cuh>
 
+#include "kernels/pass_residual.h"
 #include "lib/exec/cuda/kernel_start.cuh"
 
 namespace pbf::inline PBF_VARIANT {
@@ -20,16 +21,17 @@ struct RepeatState {
 struct Repetition {
   RepeatState* state;  ///< all 0 at first; each decision clears all but `left` and `go`
   unsigned long long* repeats;
-  std::uint64_t limit;
+  double tolerance;
   unsigned times;
   bool first;  ///< the first decision of a sequence
   bool in_graph;
   cudaGraphConditionalHandle handle;  ///< of the node that repeats, in a graph
 };
 
-/// Sums pass(i) of n particles; the block that is done last decides.
-template <class Pass>
-__global__ void __launch_bounds__(kBlock) repeat_kernel(int n, Pass pass, Repetition r) {
+/// Sums pass(i) of all particles; the block that is done last decides.
+template <class Rows, class Pass>
+__global__ void __launch_bounds__(kBlock) repeat_kernel(Rows rows, Pass pass, Repetition r) {
+  const int n = count_of(rows);
   wait_for_previous();
   unsigned long long sum = 0;
   for (std::int64_t i = blockIdx.x * kBlock + threadIdx.x; i < n;
@@ -45,7 +47,7 @@ __global__ void __launch_bounds__(kBlock) repeat_kernel(int n, Pass pass, Repeti
   if (atomicAdd(&s.blocks_done, 1u) != gridDim.x - 1) return;
   __threadfence();
   const unsigned left = r.first ? r.times : s.left;
-  const bool go = left > 0 && atomicAdd(&s.sum, 0ull) > r.limit;
+  const bool go = left > 0 && atomicAdd(&s.sum, 0ull) > residual_limit(r.tolerance, n);
   s.sum = 0;
   s.blocks_done = 0;
   s.left = go ? left - 1 : left;

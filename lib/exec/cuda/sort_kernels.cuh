@@ -8,11 +8,21 @@
 
 namespace pbf::inline PBF_VARIANT {
 
+/// Rows with a negative id leave: they get a bin behind all others.
+template <bool leave>
+__device__ __forceinline__ int bin_of_row(int* bin, const int* id, int bins, int i) {
+  if constexpr (leave)
+    if (id[i] < 0) bin[i] = bins;
+  return bin[i];
+}
+
 /// Runs `First`, which gives a particle its bin, and then stores the particle's number in that bin
 /// in order of arrival.
-template <class First>
+template <bool leave, class First>
 struct CountPass : First {
   int *count, *arrival;
+  const int* id;
+  int bins;
   __device__ void operator()(int i) const requires ItemPass<First> {
     First::operator()(i);
     arrive(row_of(static_cast<const First&>(*this), i, 0));
@@ -32,7 +42,7 @@ struct CountPass : First {
     return i;
   }
   __device__ void arrive(int i) const {
-    const int bin = First::bin[i];
+    const int bin = bin_of_row<leave>(First::bin, id, bins, i);
     if (bin < 0) return;  // left to a pass over listed rows
     arrival[i] = atomicAdd(&count[bin], 1);
   }
@@ -42,21 +52,31 @@ struct PlacePass {
   const int *bin, *start, *arrival;
   int *slot, *count;
   ListState* lists;
-  int n, bins;
-  __device__ void operator()(int i) const {
-    slot[start[bin[i]] + arrival[i]] = i;
-    for (int b = i; b < bins; b += n) count[b] = 0;
+  int bins;
+  __device__ void operator()(int i, int n) const {
+    if (i < n) slot[start[bin[i]] + arrival[i]] = i;
+    for (int b = i; b < bins; b += gridDim.x * kBlock) count[b] = 0;
     if (i == 0) lists->used = 0;
   }
 };
+template <class Rows>
+__global__ void __launch_bounds__(kBlock) place_kernel(Rows rows, PlacePass pass) {
+  const int n = count_of(rows);
+  wait_for_previous();
+  pass(blockIdx.x * kBlock + threadIdx.x, n);
+}
 /// Moves the particles of a bin to the order of their ids, so that the order of rows follows from
 /// the positions alone: each thread counts the particles of the bin with smaller ids.
-template <class Gather>
+template <bool leave, class Gather>
 struct OrderPass {
-  const int *bin, *id, *start, *slot;
+  int* bin;
+  const int *id, *start, *slot;
+  int bins;
   Gather gather;
   __device__ void operator()(int k) const {
-    const int i = slot[k], b = bin[i], mine = id[i], begin = start[b], end = start[b + 1];
+    const int i = slot[k], b = bin[i];
+    if (leave && b == bins) return;
+    const int mine = id[i], begin = start[b], end = start[b + 1];
     int place = begin;
     for (int m = begin; m < end; ++m)
       if (m != k) place += id[slot[m]] < mine ? 1 : 0;
@@ -64,24 +84,25 @@ struct OrderPass {
   }
 };
 
-static_assert((kSortBins + 32) * sizeof(int) <= 48 * 1024, "count and warp_sum in one block");
+static_assert((kSortBins + 1 + 32) * sizeof(int) <= 48 * 1024, "count and warp_sum in one block");
 
 /// One block runs `first` (see CountPass), sorts and gathers. For few particles (kSortParticles,
 /// kSortBins).
-template <class First, class Gather>
+template <bool leave, class Rows, class First, class Gather>
 __global__ void __launch_bounds__(kSortThreads)
-    small_sort_kernel(First first_pass, int n, int bins, int* arrival, int* slot, int* start,
-                      ListState* lists, OrderPass<Gather> place) {
+    small_sort_kernel(Rows rows, First first_pass, int bins, int* arrival, int* slot, int* start,
+                      ListState* lists, OrderPass<leave, Gather> place) {
+  const int n = count_of(rows);
   wait_for_previous();
-  extern __shared__ int count[];  // bins
+  extern __shared__ int count[];  // bins, and one for rows that leave
   __shared__ int warp_sum[32];
   const int t = threadIdx.x;
   const int* bin = place.bin;
-  for (int b = t; b < bins; b += kSortThreads) count[b] = 0;
+  for (int b = t; b < bins + leave; b += kSortThreads) count[b] = 0;
   __syncthreads();
   for (int i = t; i < n; i += kSortThreads) {
     first_pass(i);
-    arrival[i] = atomicAdd(&count[bin[i]], 1);
+    arrival[i] = atomicAdd(&count[bin_of_row<leave>(place.bin, place.id, bins, i)], 1);
   }
   __syncthreads();
   // Exclusive scan: a run of bins per thread (an odd number, against bank conflicts), then the sums
@@ -115,7 +136,9 @@ __global__ void __launch_bounds__(kSortThreads)
     before += mine;
   }
   if (t == 0) {
-    start[bins] = n;
+    const int kept = leave ? n - count[bins] : n;
+    if (leave) count[bins] = kept;
+    start[bins] = kept;
     lists->used = 0;
   }
   __syncthreads();

@@ -3,6 +3,7 @@
 
 #include "kernels/pass_move_solids.h"
 #include "kernels/pass_predict.h"
+#include "kernels/row_state.h"
 #include "lib/program/as_types.h"
 #include "lib/program/features/solids.h"
 #include "lib/program/motion.h"
@@ -66,15 +67,20 @@ struct Predict {
 /// The needs of a sort apart from positions. The second arrays hold the rows before the sort. The
 /// executor decides which array holds the order.
 using GatherNeeds = Needs<Writes<field::bin>, Places<field::order>, Places<field::bin_start>,
-                          Looks<other<field::id>>, Places<field::id>, Places<field::velocity>>;
+                          Looks<other<field::id>>, Places<field::id>, Places<field::velocity>,
+                          If<changes_rows, Looks<field::row_state>, Places<field::row_state>>>;
 
 /// Runs `first`, which computes the bin of each particle, and `listed`, which does it for particles
 /// that `first` leaves out. Then `gather` puts the particles into the order of bins.
 template <class G, class First, class Gather, class Listed>
 void sort_rows(const G& c, const char* stage, const First& first, const Gather& gather,
                const Listed& listed) {
-  c.exec.sort_by_bin(c.booked(stage), first, listed, c.rows(), bin_count(c.p), c[other<field::id>],
-                     c.sort_order(), c[field::bin_start], gather);
+  c.exec.template sort_by_bin<G::changes_rows>(c.booked(stage), first, listed, c.rows(),
+                                               bin_count(c.p), c[other<field::id>], c.sort_order(),
+                                               c[field::bin_start], gather);
+  if constexpr (G::changes_rows)
+    if (changes_rows(c.scene))
+      c.items(1, TakeRowsPass{c[field::bin_start] + bin_count(c.p), c[field::row_state]});
 }
 /// velocity, velocity_out: the arrays from which and into which the pass gathers. counts: null if
 /// particles do not move.

@@ -162,7 +162,7 @@ struct NearSolids {
       const double move = 0.8 * kNearRoom / moves;
       solids.near.far_way_squared = Real(move * move);
       c.exec.to_device(std::vector<Real>(C::padding, solids.near.far_way_squared).data(),
-                       C::padding, c.data(field::near_room) + c.rows());
+                       C::padding, c.data(field::near_room) + c.capacity());
       const std::vector<int> cells =
           half_cells_near_solids(s, run.standing, run.moving, c.p, solids.clear, solids.loaded);
       half_cells = int(cells.size());
@@ -173,7 +173,7 @@ struct NearSolids {
     void forget(C& c) {
       if (!has_solids(c.scene)) return;
       const auto granted = c.template granted<FindNear>();
-      granted.items(AllNearPass<Real>{solids_of(granted).near, c.rows()});
+      granted.items(AllNearPass<Real>{solids_of(granted).near, c.host_rows()});
     }
   };
 };

@@ -1,0 +1,45 @@
+// The number of particles of a scene in which particles come and go. It is in the memory of the
+// executor, so that no pass waits for the host.
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/hd.h"
+
+namespace pbf {
+
+/// Rows 0 ... rows - 1 are particles. A row with a negative id leaves in the next sort.
+struct RowState {
+  std::int64_t rows = 0;
+  std::int64_t next_id = 0;  ///< ids are never given out twice
+  std::int64_t gone = 0;     ///< particles that have left
+  std::int64_t refused = 0;  ///< particles for which there was no row
+
+  /// Calls f for every number, in the order of files.
+  template <class Self, class F>
+  static constexpr void each(Self& s, F&& f) {
+    f(s.rows), f(s.next_id), f(s.gone), f(s.refused);
+  }
+};
+
+/// A number of rows that is in the memory of the executor; at most `most`.
+struct CountedRows {
+  const RowState* state;
+  int most;
+};
+
+}  // namespace pbf
+
+namespace pbf::inline PBF_VARIANT {
+
+/// After a sort, which has left out the rows with a negative id. kept: the number of the others.
+struct TakeRowsPass {
+  const int* kept;
+  RowState* state;
+  PBF_HD void operator()(int) const {
+    state->gone += state->rows - *kept;
+    state->rows = *kept;
+  }
+};
+
+}  // namespace pbf::inline PBF_VARIANT

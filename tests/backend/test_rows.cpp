@@ -1,0 +1,187 @@
+// Particles that come and go: the shower and the drain of tests/support/emitting.h.
+#include <algorithm>
+#include <set>
+
+#include "lib/base/error.h"
+#include "lib/io/checkpoint.h"
+#include "lib/program/make_program.h"
+#include "lib/run/emit.h"
+#include "lib/solver/launched_rows.h"
+#include "tests/support/backend.h"
+#include "tests/support/emitting.h"
+#include "tests/support/folder.h"
+#include "tests/support/scene_samples.h"
+
+namespace rows_test {
+using namespace pbf;
+namespace {
+
+struct Emitting {
+  Scene scene;
+  Plan plan;
+  explicit Emitting(const std::vector<std::string>& set = {}, std::int64_t capacity = 6000) {
+    scene = scene_test::parse(
+        "domain: {min: [0, 0, 0], max: [1, 1, 1]}\n"
+        "fluid: {spacing: 0.05}\n"
+        "bodies: [{shape: block, min: [0, 0, 0], max: [0.4, 0.5, 0.4]}]\n"
+        "time: {step: 0.002, end: 1, adaptive: off}\n"
+        "solver: {reproducible: true}\n",
+        set);
+    scene.precision = backend_test::precision();
+    scene.backend = backend_test::backend();
+    scene.capacity = capacity;
+    plan = make_plan(scene, std::int64_t(particles().size()));
+    plan.program = make_program_of<EmittingFeatures>(scene, plan.shape());
+    plan.memory = plan_memory(scene, plan);
+  }
+  Particles particles() const { return emit_particles(scene, ""); }
+  std::unique_ptr<Solver> on_cpu(int threads) const {
+    return test::emitting_on_cpu(scene, plan, particles(), threads);
+  }
+  std::unique_ptr<Solver> here() const {
+#ifdef PBF_HAS_CUDA
+    if (scene.backend == Backend::cuda) return test::emitting_on_cuda(scene, plan, particles());
+#endif
+    return on_cpu(2);
+  }
+};
+
+bool same(const SolverState& a, const SolverState& b) {
+  return backend_test::same_particles(a, b) && a.fields == b.fields;
+}
+double number(const SolverState& s, std::size_t which) {
+  REQUIRE(s.find("rows"));
+  return s.find("rows")->values.at(which);
+}
+
+}  // namespace
+
+TEST_CASE("rows: new particles come behind the last, and those in the drain leave") {
+  const Emitting e;
+  const auto solver = e.here();
+  const double h = e.scene.h();
+  SolverState before = solver->state();
+  std::int64_t next = std::int64_t(before.id.size()), gone = 0;
+  for (int update = 0; update < 120; ++update) {
+    std::vector<int> expected;
+    for (std::size_t k = 0; k < before.id.size(); ++k) {
+      const double* x = &before.position[3 * k];
+      const double edge = e.scene.precision == Precision::single ? double(float(0.3 / h)) : 0.3 / h;
+      const bool in = x[0] < edge && x[1] < edge && x[2] < edge;
+      in ? void(++gone) : expected.push_back(before.id[k]);
+    }
+    for (int j = 0; j < shower::kPerSort; ++j) expected.push_back(int(next++));
+    solver->step(1);
+    before = solver->state();
+    REQUIRE(before.id == expected);
+    REQUIRE(number(before, 0) == double(expected.size()));
+    REQUIRE(number(before, 1) == double(next));
+    REQUIRE(number(before, 2) == double(gone));
+  }
+  CHECK(gone > 100);
+  CHECK(solver->measure().non_finite == 0);
+}
+
+TEST_CASE("rows: the bits do not depend on threads, on the backend, or on the size of a batch") {
+  const Emitting e({"solver.substeps=2"});
+  const auto reference = e.on_cpu(1);
+  reference->step(150);
+  const SolverState expected = reference->state();
+  CHECK(number(expected, 2) > 0);
+  for (const int threads : {2, 3, 8}) {
+    const auto other = e.on_cpu(threads);
+    other->step(150);
+    CHECK(same(other->state(), expected));
+  }
+  const auto here = e.here();
+  for (const int updates : {1, 2, 17, 130}) here->step(updates);
+  CHECK(same(here->state(), expected));
+}
+
+TEST_CASE("rows: a state is kept, goes back, and is in a checkpoint, from which a run resumes") {
+  const Emitting e;
+  const auto a = e.here();
+  a->step(70);
+  a->keep();
+  const SolverState kept = a->state();
+  a->step(50);
+  const SolverState later = a->state();
+  CHECK(later.id.size() != kept.id.size());
+  CHECK(same(a->state(Which::kept), kept));
+  a->set_state(kept);
+  CHECK(same(a->state(), kept));
+  a->step(50);
+  CHECK(same(a->state(), later));
+
+  test::TemporaryFolder folder;
+  SavedRun run;
+  run.state = kept;
+  run.particles = std::int64_t(kept.id.size());
+  write_checkpoint(folder.path, run);
+  std::vector<std::string> notes;
+  const auto read = read_checkpoint(folder.path, notes);
+  REQUIRE(read);
+  const auto resumed = e.here();
+  resumed->set_state(read->state);
+  resumed->step(50);
+  CHECK(same(resumed->state(), later));
+}
+
+TEST_CASE("rows: a download has the ids, ascending, and the rows of the state") {
+  const Emitting e;
+  const auto solver = e.here();
+  solver->step(80);
+  const SolverState s = solver->state();
+  const Snapshot shot = solver->download({"velocity", "density"}, ScalarType::f64).get();
+  REQUIRE(shot.count == s.id.size());
+  const auto* id = shot.find("id");
+  const auto* position = shot.find("position");
+  REQUIRE((id && position));
+  const double h = e.scene.h();
+  CHECK(s.id.back() != int(s.id.size()) - 1);  // there are gaps
+  for (std::size_t k = 0; k < s.id.size(); ++k) {
+    REQUIRE(id->as<std::int32_t>()[k] == s.id[k]);
+    for (std::size_t c = 0; c < 3; ++c)
+      REQUIRE(position->as<double>()[3 * k + c] == Approx(h * s.position[3 * k + c]));
+  }
+}
+
+TEST_CASE("rows: particles for which there is no memory stop the run, with their number") {
+  const Emitting e({}, 1300);
+  const auto solver = e.here();
+  try {
+    for (int k = 0; k < 400; ++k) solver->step(4);
+    solver->measure();
+    FAIL("no error");
+  } catch (const Error& error) {
+    CHECK(error.code() == ExitCode::guard);
+    CHECK(std::string(error.what()).find("memory for 1300 at a time") != std::string::npos);
+  }
+}
+
+TEST_CASE("rows: all particles may leave, and others come later") {
+  Emitting e;
+  e.scene.bodies[0].max = {0.25, 0.25, 0.25};
+  e.plan = make_plan(e.scene, std::int64_t(e.particles().size()));
+  e.plan.program = make_program_of<EmittingFeatures>(e.scene, e.plan.shape());
+  const auto solver = e.here();
+  const SolverState first = solver->state();
+  REQUIRE(first.id.size() > 50);
+  solver->step(1);
+  CHECK(solver->state().id.size() == std::size_t(shower::kPerSort));
+  CHECK(solver->state().id[0] == int(first.id.size()));
+  solver->step(40);
+  CHECK(solver->measure().non_finite == 0);
+}
+
+TEST_CASE("rows: the numbers of launched rows are few, and large enough") {
+  std::set<std::int64_t> all;
+  for (std::int64_t rows = 100'000; rows <= 200'000; rows += 7) {
+    REQUIRE(launched_rows(rows) >= rows);
+    REQUIRE(double(launched_rows(rows)) <= 1.126 * double(rows));
+    all.insert(launched_rows(rows));
+  }
+  CHECK(all.size() <= 9);
+}
+
+}  // namespace rows_test
