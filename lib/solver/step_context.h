@@ -1,8 +1,6 @@
 // The memory of a solver: the fields of a program, the parameters, and the memory of the features.
 #pragma once
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <numeric>
 #include <string>
@@ -75,9 +73,9 @@ struct StepContext {
     RowState now;
     exec.to_host(state, 1, &now);
     if (now.refused > 0)
-      throw Error(ExitCode::guard,
-                  fmt::format("{} particles too many: there is memory for {} at a time",
-                              now.refused, capacity()));
+      throw Error(ExitCode::guard, std::to_string(now.refused) +
+                                       " particles too many: there is memory for " +
+                                       std::to_string(capacity()) + " at a time");
     return int(now.rows);
   }
   /// The place of each of n rows in the order of ids, in the memory of the executor.
