@@ -35,6 +35,7 @@ struct SolverInfo {
   double wall_scale = 0;  ///< factor on the walls' density, from the calibration
   std::size_t bytes = 0;  ///< of the present arrays (device memory on cuda)
   double launches = 0;    ///< cuda: kernels and fills of one step; 0 before one was recorded
+  int recordings = 0;     ///< cuda: of updates, so far
   std::vector<StageTime> stages{};  ///< since the solver was created
 };
 

@@ -146,6 +146,21 @@ TEST_CASE("rows: a download has the ids, ascending, and the rows of the state") 
   }
 }
 
+TEST_CASE("rows: updates are recorded anew for few numbers of launched rows") {
+  const Emitting e;
+  const auto solver = e.here();
+  std::set<std::int64_t> launched;
+  const int before = solver->info().recordings;
+  for (int update = 0; update < 1000; update += 20) {
+    const auto rows = std::int64_t(solver->state().id.size());
+    solver->step(20);
+    for (int k = 0; k <= 20; ++k) launched.insert(launched_rows(rows + k * shower::kPerSort));
+  }
+  // Three lengths of recordings, two places of the arrays.
+  CHECK(solver->info().recordings - before <= 6 * int(launched.size()));
+  CHECK((solver->info().recordings > 0) == (e.scene.backend == Backend::cuda));
+}
+
 TEST_CASE("rows: particles for which there is no memory stop the run, with their number") {
   const Emitting e({}, 1300);
   const auto solver = e.here();

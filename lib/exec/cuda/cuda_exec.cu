@@ -174,6 +174,7 @@ void CudaExec::describe(SolverInfo& info) const {
   info.device = device_;
   info.driver = driver_;
   info.launches = recorded_.launches();
+  info.recordings = recorded_.recordings();
 }
 
 }  // namespace pbf::inline PBF_VARIANT

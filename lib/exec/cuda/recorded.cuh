@@ -36,6 +36,7 @@ class RecordedUpdates {
   }
   /// Kernels and fills of one update; 0 before the first recording.
   double launches() const { return launches_; }
+  int recordings() const { return recordings_; }
 
  private:
   /// Updates per graph. An update swaps buffers, so a graph has an even number of updates, and each
@@ -52,6 +53,7 @@ class RecordedUpdates {
     std::size_t nodes = 0;
     PBF_CUDA_CHECK(cudaGraphGetNodes(graph, nullptr, &nodes));
     launches_ = double(nodes) / updates;
+    ++recordings_;
     const cudaError_t made = cudaGraphInstantiate(&out, graph, 0);
     cudaGraphDestroy(graph);
     PBF_CUDA_CHECK(made);
@@ -59,6 +61,7 @@ class RecordedUpdates {
 
   std::map<std::pair<int, std::pair<int, int>>, cudaGraphExec_t> graph_;  ///< by size and launch()
   double launches_ = 0;
+  int recordings_ = 0;
 };
 
 }  // namespace pbf::inline exec_module
