@@ -2,6 +2,7 @@
 // all features run in scenes on an executor that sees every touch.
 #include <filesystem>
 
+#include "lib/exec/make_solver.h"
 #include "lib/run/emit.h"
 #include "lib/run/motion_files.h"
 #include "lib/scene/load.h"
@@ -59,35 +60,77 @@ const std::vector<Scenario> kScenarios = {
     {"tests/regression/frozen/obstacles_2d", {"solver.kernels=paper"}},
 };
 
+struct Prepared {
+  Scene scene;
+  Plan plan;
+  Particles particles;
+  Touches touches{};
+  explicit Prepared(const Scenario& of) {
+    const std::string file = std::string(PBF_SOURCE_DIR) + "/" + of.scene + ".yaml";
+    const std::string folder = std::filesystem::path(file).parent_path().string();
+    std::vector<std::string> set = of.set;
+    set.insert(set.end(), {"precision=float", "output=off", "render=off", "threads=1"});
+    scene = load_scene(file, set).scene;
+    read_motions(scene, folder);
+    particles = emit_particles(scene, folder);
+    for (std::size_t k = 0; k < particles.size(); k += 2) particles.velocity[k][0] += of.fast;
+    plan = make_plan(scene, std::int64_t(particles.size()));
+  }
+  /// A solver that sees what passes touch, and forgets what no declaration promises.
+  std::unique_ptr<Solver> watched() {
+    return std::make_unique<StepSolver<float, PageExec>>(scene, plan, particles, touches, plan);
+  }
+};
+
+StepOptions watching(const Scenario& of) {
+  StepOptions options;
+  if (of.fast > 0) options.watched_speed = of.fast / 2;
+  return options;
+}
+StepOptions without_time() {
+  StepOptions options;
+  options.without_time = 0.5;
+  return options;
+}
+
 /// Adds what the passes of a scene touched and what they declared.
 struct Seen {
   Touches touches;
   std::map<std::string, std::map<std::string, unsigned>> declared;
 };
 void run(const Scenario& of, Seen& seen) {
-  const std::string file = std::string(PBF_SOURCE_DIR) + "/" + of.scene + ".yaml";
-  std::vector<std::string> set = of.set;
-  set.insert(set.end(), {"precision=float", "output=off", "render=off"});
-  Scene scene = load_scene(file, set).scene;
-  read_motions(scene, std::filesystem::path(file).parent_path().string());
-  Particles particles = emit_particles(scene, std::filesystem::path(file).parent_path().string());
-  for (std::size_t k = 0; k < particles.size(); k += 2) particles.velocity[k][0] += of.fast;
-  const Plan plan = make_plan(scene, std::int64_t(particles.size()));
-  StepSolver<float, PageExec> solver(scene, plan, std::move(particles), seen.touches);
-  solver.measure();
-  StepOptions watched;
-  if (of.fast > 0) watched.watched_speed = of.fast / 2;
-  solver.step(3, watched);  // passes joined
-  solver.trace({});         // pass by pass
-  solver.gauges(Interval::goes_on);
-  StepOptions relieve;
-  relieve.without_time = 0.5;
-  solver.step(1, relieve);
-  solver.measure();
-  for (const PassInfo& p : plan.program.passes)
+  Prepared made(of);
+  const auto solver = made.watched();
+  solver->measure();
+  solver->step(3, watching(of));    // passes joined
+  solver->inspection()->trace({});  // pass by pass
+  solver->gauges(Interval::goes_on);
+  solver->step(1, without_time());
+  solver->measure();
+  seen.touches = made.touches;
+  for (const PassInfo& p : made.plan.program.passes)
     for (const AccessInfo& a : p.needs)
       if (a.field->rows && seen.touches.contains(p.name))
         seen.declared[p.name][name_of(*a.field)] |= a.how;
+}
+
+/// What a user sees of a solver: state, loads, gauges and diagnostics.
+struct Results {
+  SolverState state;
+  std::vector<double> numbers;
+  /// A number may be undefined in both.
+  bool same_numbers(const Results& other) const {
+    return std::equal(numbers.begin(), numbers.end(), other.numbers.begin(), other.numbers.end(),
+                      [](double a, double b) { return a == b || (a != a && b != b); });
+  }
+};
+Results results(Solver& s) {
+  Results r{s.state(), s.gauges(Interval::goes_on)};
+  for (const WallLoad& load : s.loads(Interval::goes_on))
+    for (const LoadNumber& number : load_numbers()) r.numbers.push_back(number.value(load));
+  const Diagnostics m = s.measure();
+  for (const auto& d : diagnostics()) r.numbers.push_back(d.value(m));
+  return r;
 }
 
 }  // namespace
@@ -125,6 +168,33 @@ TEST_CASE("passes touch what they declare, as they declare it, and declare nothi
   for (const PassText& pass : pass_texts()) {
     CAPTURE(pass.name);
     CHECK(all.touches.contains(pass.name));  // each pass has run
+  }
+}
+
+TEST_CASE(
+    "results stay when all is nonsense that no declaration promises: fields of passes after an "
+    "update, what a pass replaces, second arrays, new memory",
+    "[slow]") {
+  for (const Scenario& of : kScenarios) {
+    CAPTURE(of.scene, of.set);
+    Prepared made(of);
+    const auto right = make_solver(made.scene, made.plan, made.particles), watched = made.watched();
+    const auto both = [&](const char* when, const auto& work) {
+      CAPTURE(when);
+      work(*right), work(*watched);
+      const Results a = results(*right), b = results(*watched);
+      CHECK(a.state.position == b.state.position);
+      CHECK(a.state.velocity == b.state.velocity);
+      CHECK(a.state.fields == b.state.fields);
+      CHECK(a.same_numbers(b));
+    };
+    both("start", [](Solver&) {});
+    for (const int updates : {1, 1, 3, 2})
+      both("updates", [&](Solver& s) { s.step(updates, watching(of)); });
+    both("trace", [](Solver& s) { s.inspection()->trace({}); });
+    both("update after a trace", [](Solver& s) { s.step(1); });
+    both("keep", [](Solver& s) { s.keep(), s.step(2, without_time()); });
+    both("back", [](Solver& s) { s.set_state(s.state(Which::kept)), s.step(2); });
   }
 }
 
