@@ -4,10 +4,8 @@
 
 #include "lib/render/colormap.h"
 #include "lib/render/particles.h"
-#include "lib/render/shaders.h"
-#include "lib/render/shaders_shadow.h"
-#include "lib/render/shaders_surface.h"
 #include "lib/scene/vector3.h"
+#include "pbf_shaders.h"
 
 namespace pbf::inline render_module {
 namespace {
@@ -35,10 +33,10 @@ FluidSurface::FluidSurface(const gl::Table& gl, const View& view, int factor)
       low_(view.domain_min),
       high_(view.domain_max),
       radius_(drawn_radius(view)),
-      depth_program_(gl, shaders::kSphereVertex, shaders::kSurfaceDepthFragment, shaders::kWithin),
-      thickness_program_(gl, shaders::kSphereVertex, shaders::kThicknessFragment, shaders::kWithin),
-      smooth_program_(gl, shaders::kResolveVertex, shaders::kSmoothFragment),
-      water_program_(gl, shaders::kResolveVertex, shaders::kWaterFragment, shaders::kShadowed),
+      depth_program_(gl, shaders::sphere_vertex, shaders::surface_depth_fragment, shaders::within),
+      thickness_program_(gl, shaders::sphere_vertex, shaders::thickness_fragment, shaders::within),
+      smooth_program_(gl, shaders::resolve_vertex, shaders::smooth_fragment),
+      water_program_(gl, shaders::resolve_vertex, shaders::water_fragment, shaders::shadowed),
       nothing_(gl, 4, {}, 0),
       bar_(gl, kNoShare + 1, 1, gl::kColor8, bar_of(view.color).data()),
       depth_(gl, size_[0], size_[1], gl::kPair32, Depth::with),

@@ -16,11 +16,10 @@
 #include "lib/render/light.h"
 #include "lib/render/overlay.h"
 #include "lib/render/particles.h"
-#include "lib/render/shaders.h"
-#include "lib/render/shaders_shadow.h"
 #include "lib/render/shadow.h"
 #include "lib/render/solids.h"
 #include "lib/scene/vector3.h"
+#include "pbf_shaders.h"
 
 namespace pbf::inline render_module {
 namespace {
@@ -74,10 +73,10 @@ struct Pipeline {
       : gl(table),
         factor(samples_per_edge(table, view.size)),
         light(light_of(view)),
-        spheres(table, shaders::kSphereVertex, shaders::kSphereFragment),
-        solids(table, shaders::kSolidVertex, shaders::kSolidFragment),
-        flat(table, shaders::kFlatVertex, shaders::kFlatFragment),
-        resolve(table, shaders::kResolveVertex, shaders::kResolveFragment, shaders::kShadowed),
+        spheres(table, shaders::sphere_vertex, shaders::sphere_fragment),
+        solids(table, shaders::solid_vertex, shaders::solid_fragment),
+        flat(table, shaders::flat_vertex, shaders::flat_fragment),
+        resolve(table, shaders::resolve_vertex, shaders::resolve_fragment, shaders::shadowed),
         particle_buffer(table, sizeof(ParticleVertex),
                         {{3, gl::FLOAT, 0, offsetof(ParticleVertex, place)},
                          {4, gl::UNSIGNED_BYTE, 1, offsetof(ParticleVertex, color)}},

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/render/shaders.h"
-#include "lib/render/shaders_shadow.h"
 #include "lib/scene/vector3.h"
+#include "pbf_shaders.h"
 
 namespace pbf::inline render_module {
 namespace {
@@ -30,8 +29,8 @@ ShadowMap::ShadowMap(const gl::Table& gl, const View& view, const Light& light)
         return axes;
       }()),
       texels_(texels(axes_)),
-      spheres_(gl, shaders::kShadowSphereVertex, shaders::kShadowSphereFragment),
-      solids_(gl, shaders::kShadowSolidVertex, shaders::kShadowSolidFragment),
+      spheres_(gl, shaders::shadow_sphere_vertex, shaders::shadow_sphere_fragment),
+      solids_(gl, shaders::shadow_solid_vertex, shaders::shadow_solid_fragment),
       buffer_(gl, sizeof(SolidVertex), {{3, gl::FLOAT, 0, offsetof(SolidVertex, place)}}, 0),
       target_(gl, texels_[0], texels_[1], gl::kColor8, gl::Target::Depth::alone) {
   target_.depth().compare_linearly();

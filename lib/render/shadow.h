@@ -19,7 +19,7 @@ class ShadowMap {
   /// the sun (`casters`, three corners each).
   void draw(const Lens& lens, const gl::Buffer& particles, std::size_t count, double radius,
             const std::vector<SolidVertex>& casters);
-  /// Sets what kShadowed reads; `program` is in use. Without a `map` nothing is in shadow.
+  /// Sets what shadowed.glsl reads; `program` is in use. Without a `map` nothing is in shadow.
   static void use(const ShadowMap* map, const Lens& lens, const gl::Table& gl,
                   const gl::Program& program, gl::Uint unit);
 
