@@ -92,7 +92,7 @@ void Texture::compare_linearly() const {
 void Texture::bind(const Program& program, const char* name, Uint unit) const {
   gl_.ActiveTexture(TEXTURE0 + unit);
   gl_.BindTexture(TEXTURE_2D, name_);
-  gl_.Uniform1i(program.uniform(name), static_cast<Int>(unit));
+  program.set_int(name, static_cast<Int>(unit));
 }
 
 Target::Target(const Table& gl, Size width, Size height, const Format& color, Depth depth)

@@ -20,8 +20,8 @@ class ShadowMap {
   void draw(const Lens& lens, const gl::Buffer& particles, std::size_t count, double radius,
             const std::vector<SolidVertex>& casters);
   /// Sets what shadowed.glsl reads; `program` is in use. Without a `map` nothing is in shadow.
-  static void use(const ShadowMap* map, const Lens& lens, const gl::Table& gl,
-                  const gl::Program& program, gl::Uint unit);
+  static void use(const ShadowMap* map, const Lens& lens, const gl::Program& program,
+                  gl::Uint unit);
 
  private:
   /// An axis of the map: along it, a place is `unit` . (x - middle) / size + 1/2.
