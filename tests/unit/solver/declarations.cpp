@@ -57,6 +57,8 @@ const std::vector<Scenario> kScenarios = {
     {"tests/regression/frozen/motions", {}},
     {"tests/regression/frozen/motions", {}, 60},
     {"tests/regression/frozen/motions", {"solver.substeps=3", "viscosity.xsph=0.1"}, 20},
+    {"tests/regression/frozen/motions", {"tank_motion=off"}},
+    {"configs/sloshing_tank", {"fluid.spacing=0.04"}},
     {"tests/regression/frozen/obstacles_2d", {"solver.kernels=paper"}},
 };
 
