@@ -14,6 +14,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lib/exec/cpu/cpu_exec.h"
@@ -83,8 +84,10 @@ class PageExec : public CpuExec {
  public:
   template <class T>
   using Buffer = PageBuffer<T>;
-  /// plan: of the solver.
-  PageExec(Touches& touches, const Plan& plan) : CpuExec(1), touches_(touches), plan_(plan) {}
+  /// plan: of the solver. forgets: name of the one field whose contents become nonsense; empty:
+  /// all.
+  PageExec(Touches& touches, const Plan& plan, std::string forgets = "")
+      : CpuExec(1), touches_(touches), plan_(plan), forgets_(std::move(forgets)) {}
 
   /// Throws Error(internal) if a field of Life::update is not 0 between two updates.
   template <class Updates>
@@ -163,6 +166,7 @@ class PageExec : public CpuExec {
   }
   /// Not the rows after the last particle: they keep their contents from the start.
   void forget(const FieldMemory& a) const {
+    if (!forgets_.empty() && forgets_ != a.field->name) return;
     const std::size_t rows = std::size_t(plan_.particles);
     const std::size_t all = rows + std::size_t(about(backend).padding);
     fill_with_nonsense(a.begin, a.field->rows == per_padded_row ? a.bytes / all * rows : a.bytes);
@@ -176,6 +180,7 @@ class PageExec : public CpuExec {
 
   Touches& touches_;
   const Plan& plan_;
+  std::string forgets_;
   std::vector<FieldMemory> arrays_{};  ///< as of the last pass
 };
 
