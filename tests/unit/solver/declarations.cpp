@@ -226,7 +226,9 @@ TEST_CASE(
   for (const Scenario& of : kScenarios) {
     const std::string after = first_difference(of, "");
     std::string because_of;
-    if (!after.empty())
+    if (!after.empty() && !first_difference(of, "no field").empty())
+      because_of = "new memory, or another mistake";
+    else if (!after.empty())
       for (const FieldInfo* f : Prepared(of).plan.program.fields)
         if (!first_difference(of, f->name).empty()) because_of += std::string(f->name) + " ";
     CAPTURE(of.scene, of.set, after, because_of);
