@@ -1,28 +1,31 @@
-# PBF_DEFECT=NAME, for tests/regression/seeded_defects: a second CPU solver, `cpu+defect` of `pbf
-# compare`, compiled from copies of the sources with one of the changes in
-# tests/regression/defects/table.cmake. The sources themselves hold no trace of it.
-set(PBF_DEFECT "" CACHE STRING "Name of a seeded defect (tests/regression/defects/table.cmake)")
+# PBF_DEFECT=NAME, for tests/regression/seeded_defects. A defect of tests/regression/defects/table.cmake
+# gives a second CPU solver, `cpu+defect` of `pbf compare`, compiled from copies of the sources with
+# this change. A lie of lies.cmake there gives the target `lie`, one test compiled from such copies.
+# The sources themselves hold no trace of it.
+set(PBF_DEFECT "" CACHE STRING "Name of a seeded defect or lie (tests/regression/defects)")
 if(PBF_DEFECT)
   set(copy ${PROJECT_BINARY_DIR}/defect)
   set(defect_file "")
   function(seeded_defect name stage file old new)
     if(name STREQUAL PBF_DEFECT)
       set(defect_file "${file}" PARENT_SCOPE)
+      set(defect_stage "${stage}" PARENT_SCOPE)
       set(defect_old "${old}" PARENT_SCOPE)
       set(defect_new "${new}" PARENT_SCOPE)
     endif()
   endfunction()
-  set(defect_table ${PROJECT_SOURCE_DIR}/tests/regression/defects/table.cmake)
-  include(${defect_table})
-  include(${PROJECT_SOURCE_DIR}/tests/regression/defects/stands_once.cmake)
+  set(defect_tables ${PROJECT_SOURCE_DIR}/tests/regression/defects)
+  foreach(table table lies stands_once)
+    include(${defect_tables}/${table}.cmake)
+  endforeach()
   if(NOT defect_file)
-    message(FATAL_ERROR "PBF_DEFECT=${PBF_DEFECT}: no such entry in ${defect_table}")
+    message(FATAL_ERROR "PBF_DEFECT=${PBF_DEFECT}: no such entry in ${defect_tables}")
   endif()
   file(GLOB sources RELATIVE ${PROJECT_SOURCE_DIR} kernels/*.h kernels/boundary/*.h
        kernels/shapes/*.h
        lib/program/obstacle_motion.h lib/program/placed_solids.h
        lib/program/features/*.h lib/exec/cpu/*.h lib/exec/cpu/*.cpp
-       lib/solver/*.h)
+       lib/solver/*.h lib/program/field.h tests/unit/solver/*.cpp)
   foreach(source IN LISTS sources)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${source})
     file(READ ${PROJECT_SOURCE_DIR}/${source} text)
@@ -30,7 +33,7 @@ if(PBF_DEFECT)
       stands_once("${text}" "${defect_old}" once)
       if(NOT once)
         message(FATAL_ERROR "PBF_DEFECT=${PBF_DEFECT}: its text must stand in ${source} exactly "
-                            "once; bring ${defect_table} up to date")
+                            "once; bring ${defect_tables} up to date")
       endif()
       string(REPLACE "${defect_old}" "${defect_new}" text "${text}")
     endif()
@@ -42,6 +45,10 @@ if(PBF_DEFECT)
       file(WRITE ${copy}/${source} "${text}")
     endif()
   endforeach()
+  if(defect_stage IN_LIST lie_tests)
+    set(PBF_LIE ${copy}/tests/unit/solver/${defect_stage}.cpp)
+    return()
+  endif()
   file(GLOB copied ${copy}/lib/exec/cpu/*.cpp)
   add_library(pbf_defect OBJECT ${copied})
   target_include_directories(pbf_defect BEFORE PRIVATE ${copy})

@@ -62,8 +62,7 @@ struct Extent {
 /// one of the axes; sets the shift that centres it there.
 double fit(Projection& p, const std::vector<Projection>& axes, const View& view,
            const Double3& target) {
-  const double aspect = static_cast<double>(p.size[0]) / p.size[1];
-  const double half_x = p.tan_half * aspect, half_y = p.tan_half;
+  const double half_x = p.tan_half * p.aspect(), half_y = p.tan_half;
   const Corners frame = frame_of(view);
   const Room room = room_of(view);
   const auto extent = [&](double distance) {
@@ -109,10 +108,10 @@ Corners frame_of(const View& view) {
   return out;
 }
 
-Double3 Projection::to_view(const Double3& p) const {
-  const Double3 q = p - eye;
-  return {dot(q, right), dot(q, up), dot(q, forward)};
+Double3 Projection::direction(const Double3& d) const {
+  return {dot(d, right), dot(d, up), dot(d, forward)};
 }
+Double3 Projection::to_view(const Double3& p) const { return direction(p - eye); }
 
 std::array<double, 2> Projection::to_pixel(const Double3& p) const {
   const Double3 v = to_view(p);

@@ -18,10 +18,12 @@ struct Projection {
                                      ///< half heights: the default view centres what it shows
                                      ///< between labels and colour bar
 
+  Double3 direction(const Double3& d) const;               ///< of the scene, in view space
   Double3 to_view(const Double3& p) const;                 ///< computed in double, eye first
   std::array<double, 2> to_pixel(const Double3& p) const;  ///< of a point in front of the eye
   /// Size of a pixel on the plane at unit depth (m per m).
   double pixel() const { return 2 * tan_half / size[1]; }
+  double aspect() const { return static_cast<double>(size[0]) / size[1]; }
 };
 
 /// For the graphics card.

@@ -4,10 +4,8 @@
 
 #include "lib/render/colormap.h"
 #include "lib/render/particles.h"
-#include "lib/render/shaders.h"
-#include "lib/render/shaders_shadow.h"
-#include "lib/render/shaders_surface.h"
 #include "lib/scene/vector3.h"
+#include "pbf_shaders.h"
 
 namespace pbf::inline render_module {
 namespace {
@@ -35,10 +33,10 @@ FluidSurface::FluidSurface(const gl::Table& gl, const View& view, int factor)
       low_(view.domain_min),
       high_(view.domain_max),
       radius_(drawn_radius(view)),
-      depth_program_(gl, shaders::kSphereVertex, shaders::kSurfaceDepthFragment, shaders::kWithin),
-      thickness_program_(gl, shaders::kSphereVertex, shaders::kThicknessFragment, shaders::kWithin),
-      smooth_program_(gl, shaders::kResolveVertex, shaders::kSmoothFragment),
-      water_program_(gl, shaders::kResolveVertex, shaders::kWaterFragment, shaders::kShadowed),
+      depth_program_(gl, shaders::sphere_vertex, shaders::surface_depth_fragment, shaders::within),
+      thickness_program_(gl, shaders::sphere_vertex, shaders::thickness_fragment, shaders::within),
+      smooth_program_(gl, shaders::resolve_vertex, shaders::smooth_fragment),
+      water_program_(gl, shaders::resolve_vertex, shaders::water_fragment, shaders::shadowed),
       nothing_(gl, 4, {}, 0),
       bar_(gl, kNoShare + 1, 1, gl::kColor8, bar_of(view.color).data()),
       depth_(gl, size_[0], size_[1], gl::kPair32, Depth::with),
@@ -55,16 +53,16 @@ FluidSurface::FluidSurface(const gl::Table& gl, const View& view, int factor)
 /// For the spheres.
 void FluidSurface::use(const Lens& lens, const gl::Program& program) const {
   constexpr std::array<const char*, 3> kNames{"u_axis_x", "u_axis_y", "u_axis_z"};
-  lens.use(gl_, program, 1);
-  gl_.Uniform1f(program.uniform("u_radius"), static_cast<float>(radius_));
+  lens.use(program, 1);
+  program.set("u_radius", radius_);
   const Double3 eye = lens.projection.eye;
   for (std::size_t k = 0; k < 3; ++k) {
     Double3 axis{};
     axis[k] = 1;
-    set_uniform(gl_, program, kNames[k], lens.seen(axis));
+    program.set(kNames[k], lens.projection.direction(axis));
   }
-  set_uniform(gl_, program, "u_low", low_ - eye);
-  set_uniform(gl_, program, "u_high", high_ - eye);
+  program.set("u_low", low_ - eye);
+  program.set("u_high", high_ - eye);
 }
 
 void FluidSurface::draw_depth(const Lens& lens) {
@@ -82,7 +80,7 @@ void FluidSurface::draw_thickness(const Lens& lens, const gl::Texture& stored) {
   gl_.Enable(gl::BLEND);
   gl_.BlendFunc(gl::ONE, gl::ONE);
   use(lens, thickness_program_);
-  gl_.Uniform1i(thickness_program_.uniform("u_factor"), factor_);
+  thickness_program_.set_int("u_factor", factor_);
   stored.bind(thickness_program_, "u_stored", 0);
   gl_.DrawArraysInstanced(gl::TRIANGLE_STRIP, 0, 4, visible_);
   gl_.Disable(gl::BLEND);
@@ -94,12 +92,10 @@ void FluidSurface::smooth(const Lens& lens) {
   for (const double width : {1.0, 4.0, 1.5})
     for (const bool upright : {false, true}) {
       (upright ? depth_ : between_).draw_into();
-      lens.use(gl_, smooth_program_, 1);
+      lens.use(smooth_program_, 1);
       (upright ? between_ : depth_).color().bind(smooth_program_, "u_surface", 0);
-      gl_.Uniform2f(smooth_program_.uniform("u_along"), upright ? 0.0f : 1.0f,
-                    upright ? 1.0f : 0.0f);
-      gl_.Uniform2f(smooth_program_.uniform("u_width"), static_cast<float>(width * radius_),
-                    static_cast<float>(radius_));
+      smooth_program_.set("u_along", upright ? 0 : 1, upright ? 1 : 0);
+      smooth_program_.set("u_width", width * radius_, radius_);
       gl_.DrawArrays(gl::TRIANGLES, 0, 3);
     }
 }
@@ -114,20 +110,18 @@ void FluidSurface::draw(const Lens& lens, const gl::Buffer& particles, std::size
   smooth(lens);
 
   picture.draw_into();
-  lens.use(gl_, water_program_, 1);
+  lens.use(water_program_, 1);
   depth_.color().bind(water_program_, "u_surface", 0);
   thickness_.color().bind(water_program_, "u_thickness", 1);
   scene_.color().bind(water_program_, "u_scene", 2);
   stored.bind(water_program_, "u_stored", 3);
   bar_.bind(water_program_, "u_bar", 4);
-  ShadowMap::use(shadow, lens, gl_, water_program_, 5);
-  gl_.Uniform1i(water_program_.uniform("u_factor"), factor_);
-  gl_.Uniform2f(water_program_.uniform("u_size"), static_cast<float>(size_[0]),
-                static_cast<float>(size_[1]));
-  gl_.Uniform1f(water_program_.uniform("u_radius"), static_cast<float>(radius_));
+  ShadowMap::use(shadow, lens, water_program_, 5);
+  water_program_.set_int("u_factor", factor_);
+  water_program_.set("u_size", size_[0], size_[1]);
+  water_program_.set("u_radius", radius_);
   // Water of a plane is looked at along its thickness, which says nothing.
-  gl_.Uniform2f(water_program_.uniform("u_clear"), static_cast<float>(3 * radius_),
-                flat_ ? 0.0f : 0.4f);
+  water_program_.set("u_clear", 3 * radius_, flat_ ? 0 : 0.4);
   gl_.DrawArrays(gl::TRIANGLES, 0, 3);
 }
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "lib/base/error.h"
-#include "lib/render/shaders.h"
+#include "pbf_shaders.h"
 
 namespace pbf::inline render_module::gl {
 namespace {
@@ -22,7 +22,7 @@ void check_built(Uint name, Enum status, GetInt get, GetLog log, const char* wha
 
 Uint compiled(const Table& gl, Enum type, const char* library, const char* body) {
   const Uint shader = gl.CreateShader(type);
-  const std::array<const Char*, 3> text{shaders::kHead, library, body};
+  const std::array<const Char*, 3> text{shaders::head, library, body};
   gl.ShaderSource(shader, 3, text.data(), nullptr);
   gl.CompileShader(shader);
   check_built(shader, COMPILE_STATUS, gl.GetShaderiv, gl.GetShaderInfoLog, "a shader");
@@ -92,7 +92,7 @@ void Texture::compare_linearly() const {
 void Texture::bind(const Program& program, const char* name, Uint unit) const {
   gl_.ActiveTexture(TEXTURE0 + unit);
   gl_.BindTexture(TEXTURE_2D, name_);
-  gl_.Uniform1i(program.uniform(name), static_cast<Int>(unit));
+  program.set_int(name, static_cast<Int>(unit));
 }
 
 Target::Target(const Table& gl, Size width, Size height, const Format& color, Depth depth)

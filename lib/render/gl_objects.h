@@ -1,6 +1,7 @@
 // Owners of OpenGL objects. Made and destroyed while their context is current.
 #pragma once
 
+#include <array>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -18,9 +19,19 @@ class Program {
   ~Program() { gl_.DeleteProgram(name_); }
   Program(const Program&) = delete;
   void use() const { gl_.UseProgram(name_); }
-  Int uniform(const char* name) const { return gl_.GetUniformLocation(name_, name); }
+  // Uniforms of the program, which is in use.
+  void set_int(const char* name, Int i) const { gl_.Uniform1i(at(name), i); }
+  void set(const char* name, double x) const { gl_.Uniform1f(at(name), float(x)); }
+  void set(const char* name, double x, double y) const {
+    gl_.Uniform2f(at(name), float(x), float(y));
+  }
+  void set(const char* name, const std::array<double, 3>& v, double w = 0) const {
+    gl_.Uniform4f(at(name), float(v[0]), float(v[1]), float(v[2]), float(w));
+  }
 
  private:
+  Int at(const char* name) const { return gl_.GetUniformLocation(name_, name); }
+
   const Table& gl_;
   Uint name_;
 };
@@ -42,6 +53,12 @@ class Buffer {
   Buffer(const Buffer&) = delete;
   void fill(const void* data, std::size_t bytes) const;
   void bind() const { gl_.BindVertexArray(array_); }
+  /// Fills it with the rows of `corners`, three to a triangle, and draws them.
+  void draw_triangles(const auto& corners) const {
+    bind();
+    fill(corners.data(), corners.size() * sizeof(corners[0]));
+    gl_.DrawArrays(TRIANGLES, 0, static_cast<Size>(corners.size()));
+  }
 
  private:
   const Table& gl_;

@@ -45,22 +45,15 @@ std::unique_ptr<GlPlatform> open_osmesa(const std::vector<std::string>& librarie
                         load(library, platform->destroy_context, "OSMesaDestroyContext") &&
                         load(library, platform->make_context_current, "OSMesaMakeCurrent") &&
                         load(library, platform->get_proc, "OSMesaGetProcAddress");
-  constexpr std::array attributes{kOsmesaFormat,
-                                  static_cast<int>(gl::RGBA),
-                                  kOsmesaDepthBits,
-                                  0,
-                                  kOsmesaStencilBits,
-                                  0,
-                                  kOsmesaAccumBits,
-                                  0,
-                                  kOsmesaProfile,
-                                  kOsmesaCoreProfile,
-                                  kOsmesaMajor,
-                                  3,
-                                  kOsmesaMinor,
-                                  3,
-                                  0};
-  if (complete) platform->context = platform->create_context(attributes.data(), nullptr);
+  constexpr int attributes[][2] = {{kOsmesaFormat, int(gl::RGBA)},
+                                   {kOsmesaDepthBits, 0},
+                                   {kOsmesaStencilBits, 0},
+                                   {kOsmesaAccumBits, 0},
+                                   {kOsmesaProfile, kOsmesaCoreProfile},
+                                   {kOsmesaMajor, 3},
+                                   {kOsmesaMinor, 3},
+                                   {0, 0}};
+  if (complete) platform->context = platform->create_context(attributes[0], nullptr);
   if (platform->context) return platform;
   throw NoPlatform("\n  OSMesa: the library gives no OpenGL 3.3 core context");
 }

@@ -24,13 +24,7 @@ struct Lens {
 
   /// Uses `program` and sets the uniforms that stand in front of every shader. `samples`: per pixel
   /// and direction of the picture it draws.
-  void use(const gl::Table& gl, const gl::Program& program, int samples) const;
-  /// A direction of the scene in view space.
-  Double3 seen(const Double3& direction) const;
+  void use(const gl::Program& program, int samples) const;
 };
-
-/// A uniform of four floats.
-void set_uniform(const gl::Table& gl, const gl::Program& program, const char* name,
-                 const Double3& xyz, double w = 0);
 
 }  // namespace pbf::inline render_module

@@ -26,7 +26,7 @@ std::string raised(std::string unit) {
 void draw_bar(Image& image, Texts& texts, const View& view, const std::string& unit) {
   const auto ticks = ticks_of(view.range);
   const double size = text_size(view.size);
-  const BarPlace bar = bar_place(view.size, ticks);
+  const TextBox bar = bar_place(view.size, ticks);
   if (bar.y1 - bar.y0 < kLeastBar * size) return;  // no room
   const ColorMap map = color_map(view.color);
   const double line = std::max(1.0, std::round(0.07 * size));
@@ -97,7 +97,7 @@ double text_size(std::array<int, 2> picture) {
   return std::max(11.0, std::min(picture[1] / 38.0, picture[0] / 45.0));
 }
 
-BarPlace bar_place(std::array<int, 2> picture, const std::vector<Tick>& ticks) {
+TextBox bar_place(std::array<int, 2> picture, const std::vector<Tick>& ticks) {
   const double size = text_size(picture);
   double label = 0;
   for (const auto& tick : ticks) label = std::max(label, text_width(tick.label, size));
@@ -111,7 +111,7 @@ BarPlace bar_place(std::array<int, 2> picture, const std::vector<Tick>& ticks) {
 
 Room room_of(const View& view) {
   const double size = text_size(view.size), width = view.size[0], height = view.size[1];
-  const BarPlace bar = bar_place(view.size, ticks_of(view.range));
+  const TextBox bar = bar_place(view.size, ticks_of(view.range));
   const double column = std::max(width - bar.x0, text_width(about(view.color).word, size));
   Room room{5.8 * size / width,  // there the numbers of an axis
             (column + 4.2 * size) / width, (1.6 + 2 * kLine) * size / height, 2.6 * size / height};

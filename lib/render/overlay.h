@@ -9,7 +9,7 @@
 
 #include "lib/render/camera.h"
 #include "lib/render/colormap.h"
-#include "lib/render/renderer.h"
+#include "lib/render/texts.h"
 
 namespace pbf::inline render_module {
 
@@ -38,11 +38,8 @@ struct Room {
 };
 Room room_of(const View& view);
 
-/// Where the colour bar lies, in pixels.
-struct BarPlace {
-  double x0, y0, x1, y1;
-};
-BarPlace bar_place(std::array<int, 2> picture, const std::vector<Tick>& ticks);
+/// Where the colour bar lies.
+TextBox bar_place(std::array<int, 2> picture, const std::vector<Tick>& ticks);
 
 /// Draws all of it. `unit` of the colour bar, "" for none; "^2" and "^3" are raised. A text that
 /// does not fit the picture, or would overlap another one, is left out, and so is the bar of a tiny

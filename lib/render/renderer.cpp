@@ -16,11 +16,10 @@
 #include "lib/render/light.h"
 #include "lib/render/overlay.h"
 #include "lib/render/particles.h"
-#include "lib/render/shaders.h"
-#include "lib/render/shaders_shadow.h"
 #include "lib/render/shadow.h"
 #include "lib/render/solids.h"
 #include "lib/scene/vector3.h"
+#include "pbf_shaders.h"
 
 namespace pbf::inline render_module {
 namespace {
@@ -74,10 +73,10 @@ struct Pipeline {
       : gl(table),
         factor(samples_per_edge(table, view.size)),
         light(light_of(view)),
-        spheres(table, shaders::kSphereVertex, shaders::kSphereFragment),
-        solids(table, shaders::kSolidVertex, shaders::kSolidFragment),
-        flat(table, shaders::kFlatVertex, shaders::kFlatFragment),
-        resolve(table, shaders::kResolveVertex, shaders::kResolveFragment, shaders::kShadowed),
+        spheres(table, shaders::sphere_vertex, shaders::sphere_fragment),
+        solids(table, shaders::solid_vertex, shaders::solid_fragment),
+        flat(table, shaders::flat_vertex, shaders::flat_fragment),
+        resolve(table, shaders::resolve_vertex, shaders::resolve_fragment, shaders::shadowed),
         particle_buffer(table, sizeof(ParticleVertex),
                         {{3, gl::FLOAT, 0, offsetof(ParticleVertex, place)},
                          {4, gl::UNSIGNED_BYTE, 1, offsetof(ParticleVertex, color)}},
@@ -96,13 +95,6 @@ struct Pipeline {
         picture(table, view.size[0], view.size[1], gl::kColor8, gl::Target::Depth::without) {
     if (!view.flat) shadow.emplace(table, view, light);
     if (view.style == RenderStyle::surface) surface.emplace(table, view, factor);
-  }
-
-  template <class Vertex>
-  void draw_triangles(const gl::Buffer& buffer, const std::vector<Vertex>& corners) const {
-    buffer.bind();
-    buffer.fill(corners.data(), corners.size() * sizeof(Vertex));
-    gl.DrawArrays(gl::TRIANGLES, 0, static_cast<gl::Size>(corners.size()));
   }
 };
 
@@ -159,39 +151,38 @@ void Renderer::Impl::draw_scene(const Projection& projection) {
   gl.Enable(gl::DEPTH_TEST);
   gl.DepthFunc(gl::LEQUAL);
   gl.Clear(gl::COLOR_BUFFER_BIT | gl::DEPTH_BUFFER_BIT);
-  lens.use(gl, p.solids, p.factor);
-  set_uniform(gl, p.solids, "u_color", (1 / 255.0) * kClay);
-  p.draw_triangles(p.solid_buffer, solids.triangles);
-  lens.use(gl, p.flat, p.factor);
-  gl.Uniform1f(p.flat.uniform("u_share"), static_cast<float>(kFloorInShadow));
+  lens.use(p.solids, p.factor);
+  p.solids.set("u_color", (1 / 255.0) * kClay);
+  p.solid_buffer.draw_triangles(solids.triangles);
+  lens.use(p.flat, p.factor);
+  p.flat.set("u_share", kFloorInShadow);
   triangles.clear();
   add_floor(view, projection, triangles);
   add_floor_grid(view, projection, line, near, triangles);
-  p.draw_triangles(p.flat_buffer, triangles);
-  gl.Uniform1f(p.flat.uniform("u_share"), 0);
+  p.flat_buffer.draw_triangles(triangles);
+  p.flat.set("u_share", 0);
   triangles.clear();
   for (const auto& [from, to] : solids.creases)
     add_line(from, to, kCrease, projection, 1.2 * line, near, triangles);
   add_box_edges(view, projection, 1.6 * line, near, triangles);
-  p.draw_triangles(p.flat_buffer, triangles);
+  p.flat_buffer.draw_triangles(triangles);
   const bool as_spheres = particles.visible > 0 && !p.surface;
   if (as_spheres) {
-    lens.use(gl, p.spheres, p.factor);
-    gl.Uniform1f(p.spheres.uniform("u_radius"), static_cast<float>(view.radius));
+    lens.use(p.spheres, p.factor);
+    p.spheres.set("u_radius", view.radius);
     p.particle_buffer.bind();
     gl.DrawArraysInstanced(gl::TRIANGLE_STRIP, 0, 4, static_cast<gl::Size>(particles.visible));
   }
 
   (p.surface ? p.surface->scene() : p.picture).draw_into();
   gl.Disable(gl::DEPTH_TEST);
-  lens.use(gl, p.resolve, p.factor);
-  gl.Uniform1i(p.resolve.uniform("u_factor"), p.factor);
-  gl.Uniform2f(p.resolve.uniform("u_size"), static_cast<float>(view.size[0]),
-               static_cast<float>(view.size[1]));
-  gl.Uniform1f(p.resolve.uniform("u_radius"), static_cast<float>(view.radius));
+  lens.use(p.resolve, p.factor);
+  p.resolve.set_int("u_factor", p.factor);
+  p.resolve.set("u_size", view.size[0], view.size[1]);
+  p.resolve.set("u_radius", view.radius);
   p.samples.color().bind(p.resolve, "u_color", 0);
   p.samples.depth().bind(p.resolve, "u_stored", 1);
-  ShadowMap::use(shadow, lens, gl, p.resolve, 2);
+  ShadowMap::use(shadow, lens, p.resolve, 2);
   p.nothing.bind();
   gl.DrawArrays(gl::TRIANGLES, 0, 3);
   if (p.surface)

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/render/shaders.h"
-#include "lib/render/shaders_shadow.h"
 #include "lib/scene/vector3.h"
+#include "pbf_shaders.h"
 
 namespace pbf::inline render_module {
 namespace {
@@ -30,8 +29,8 @@ ShadowMap::ShadowMap(const gl::Table& gl, const View& view, const Light& light)
         return axes;
       }()),
       texels_(texels(axes_)),
-      spheres_(gl, shaders::kShadowSphereVertex, shaders::kShadowSphereFragment),
-      solids_(gl, shaders::kShadowSolidVertex, shaders::kShadowSolidFragment),
+      spheres_(gl, shaders::shadow_sphere_vertex, shaders::shadow_sphere_fragment),
+      solids_(gl, shaders::shadow_solid_vertex, shaders::shadow_solid_fragment),
       buffer_(gl, sizeof(SolidVertex), {{3, gl::FLOAT, 0, offsetof(SolidVertex, place)}}, 0),
       target_(gl, texels_[0], texels_[1], gl::kColor8, gl::Target::Depth::alone) {
   target_.depth().compare_linearly();
@@ -51,7 +50,7 @@ void ShadowMap::set_rows(const Lens& lens, const gl::Program& program) const {
   const Double3 eye = lens.projection.eye - middle_;
   for (std::size_t k = 0; k < 3; ++k) {
     const Axis& axis = axes_[k];
-    set_uniform(gl_, program, kNames[k], (1 / axis.size) * lens.seen(axis.unit),
+    program.set(kNames[k], (1 / axis.size) * lens.projection.direction(axis.unit),
                 dot(eye, axis.unit) / axis.size + 0.5);
   }
 }
@@ -65,9 +64,7 @@ void ShadowMap::draw(const Lens& lens, const gl::Buffer& particles, std::size_t 
   if (!casters.empty()) {
     solids_.use();
     set_rows(lens, solids_);
-    buffer_.bind();
-    buffer_.fill(casters.data(), casters.size() * sizeof(SolidVertex));
-    gl_.DrawArrays(gl::TRIANGLES, 0, static_cast<gl::Size>(casters.size()));
+    buffer_.draw_triangles(casters);
   }
   if (count == 0) return;
   spheres_.use();
@@ -76,22 +73,22 @@ void ShadowMap::draw(const Lens& lens, const gl::Buffer& particles, std::size_t 
   const auto half = [&](std::size_t k) {
     return std::max(radius / axes_[k].size, 0.7 / texels_[k]);
   };
-  set_uniform(gl_, spheres_, "u_ball", {half(0), half(1), radius / axes_[2].size});
+  spheres_.set("u_ball", {half(0), half(1), radius / axes_[2].size});
   particles.bind();
   gl_.DrawArraysInstanced(gl::TRIANGLE_STRIP, 0, 4, static_cast<gl::Size>(count));
 }
 
-void ShadowMap::use(const ShadowMap* map, const Lens& lens, const gl::Table& gl,
-                    const gl::Program& program, gl::Uint unit) {
+void ShadowMap::use(const ShadowMap* map, const Lens& lens, const gl::Program& program,
+                    gl::Uint unit) {
   // A unit of its own in any case: samplers of two kinds must not share one.
-  gl.Uniform1i(program.uniform("u_shadow"), static_cast<gl::Int>(unit));
-  set_uniform(gl, program, "u_soft", {0, 0, 0}, 0);
+  program.set_int("u_shadow", static_cast<gl::Int>(unit));
+  program.set("u_soft", {0, 0, 0}, 0);
   if (!map) return;
   map->set_rows(lens, program);
   map->target_.depth().bind(program, "u_shadow", unit);
   const auto& a = map->axes_;
   const double reach = kSoft * std::max(a[0].size / map->texels_[0], a[1].size / map->texels_[1]);
-  set_uniform(gl, program, "u_soft", {reach / a[0].size, reach / a[1].size, reach / a[2].size}, 1);
+  program.set("u_soft", {reach / a[0].size, reach / a[1].size, reach / a[2].size}, 1);
 }
 
 }  // namespace pbf::inline render_module

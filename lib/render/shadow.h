@@ -19,9 +19,9 @@ class ShadowMap {
   /// the sun (`casters`, three corners each).
   void draw(const Lens& lens, const gl::Buffer& particles, std::size_t count, double radius,
             const std::vector<SolidVertex>& casters);
-  /// Sets what kShadowed reads; `program` is in use. Without a `map` nothing is in shadow.
-  static void use(const ShadowMap* map, const Lens& lens, const gl::Table& gl,
-                  const gl::Program& program, gl::Uint unit);
+  /// Sets what shadowed.glsl reads; `program` is in use. Without a `map` nothing is in shadow.
+  static void use(const ShadowMap* map, const Lens& lens, const gl::Program& program,
+                  gl::Uint unit);
 
  private:
   /// An axis of the map: along it, a place is `unit` . (x - middle) / size + 1/2.

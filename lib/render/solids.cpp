@@ -225,10 +225,8 @@ std::vector<Face> faces_of(const View& view, const Solid<double>& solid) {
 SolidSurfaces surfaces_of(const View& view, const Projection& projection, const Double3& sun) {
   SolidSurfaces out;
   const auto seen = [&](const Corner& c) {
-    const Double3 n = unit(c.normal);
-    return SolidVertex{
-        floats(projection.to_view(c.place)),
-        floats({dot(n, projection.right), dot(n, projection.up), dot(n, projection.forward)})};
+    return SolidVertex{floats(projection.to_view(c.place)),
+                       floats(projection.direction(unit(c.normal)))};
   };
   const auto add = [&](const Polygon& polygon, std::vector<SolidVertex>& triangles) {
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)

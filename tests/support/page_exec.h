@@ -1,5 +1,6 @@
 // An executor that sees what passes touch: every array lies on pages of its own, and all of them
-// are closed before a pass. The first touch of each opens it, and is written down.
+// are closed before a pass. The first touch of each opens it, and is written down. Contents that no
+// declaration promises are replaced by nonsense.
 #pragma once
 
 #include <signal.h>
@@ -7,9 +8,13 @@
 #include <ucontext.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lib/exec/cpu/cpu_exec.h"
@@ -17,7 +22,13 @@
 
 namespace pbf {
 
-/// As HostBuffer, on pages of its own. New pages hold 0.
+/// Fills memory with numbers that are NaN as float and double, and as integers no index and no id.
+inline void fill_with_nonsense(char* begin, std::size_t bytes) {
+  constexpr std::uint32_t word = 0x7ff1f1f1;
+  for (std::size_t k = 0; k < bytes; ++k) begin[k] = char(word >> 8 * (k % sizeof(word)));
+}
+
+/// As HostBuffer, on pages of its own. New pages hold nonsense.
 template <class T>
 class PageBuffer {
  public:
@@ -39,6 +50,7 @@ class PageBuffer {
     data_ = static_cast<T*>(
         mmap(nullptr, mapped_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
     if (data_ == MAP_FAILED) throw std::bad_alloc();
+    fill_with_nonsense(reinterpret_cast<char*>(data_), mapped_);
   }
   T* data() { return data_; }
   const T* data() const { return data_; }
@@ -72,13 +84,29 @@ class PageExec : public CpuExec {
  public:
   template <class T>
   using Buffer = PageBuffer<T>;
-  explicit PageExec(Touches& touches) : CpuExec(1), touches_(touches) {}
+  /// plan: of the solver. forgets: name of the one field whose contents become nonsense; empty:
+  /// all.
+  PageExec(Touches& touches, const Plan& plan, std::string forgets = "")
+      : CpuExec(1), touches_(touches), plan_(plan), forgets_(std::move(forgets)) {}
+
+  /// Throws Error(internal) if a field of Life::update is not 0 between two updates.
+  template <class Updates>
+  void repeat(int updates, Updates& u) {
+    expect_zeros();
+    u.step(updates);
+    expect_zeros();
+    // What the state does not hold and no life promises: also the second arrays of pairs.
+    for (const FieldMemory& a : arrays_)
+      if (a.field->life == Life::pass || a.second) forget(a);
+  }
 
   /// Called around every pass of a program (lib/solver/granted.h).
   template <class Launch>
   void watched(const char* pass, const std::vector<FieldMemory>& arrays, const Launch& launch) {
     State& s = state();
-    s = {&touches_[pass], arrays};
+    s = {pass, &touches_[pass], arrays};
+    arrays_ = arrays;
+    forget_what_is_replaced(pass);
     struct sigaction now {
     }, before{};
     now.sa_sigaction = &fault;
@@ -98,6 +126,7 @@ class PageExec : public CpuExec {
 
  private:
   struct State {
+    const char* pass = "";
     std::map<std::string, Touch>* touched = nullptr;
     std::vector<FieldMemory> arrays{};
   };
@@ -109,18 +138,50 @@ class PageExec : public CpuExec {
     constexpr int error_register = 19, of_write = 2;  // REG_ERR, x86-64
     const auto* at = static_cast<const char*>(info->si_addr);
     const auto* machine = static_cast<const ucontext_t*>(context);
-    const bool write = machine->uc_mcontext.gregs[error_register] & of_write;
+    const bool writes = machine->uc_mcontext.gregs[error_register] & of_write;
     for (const FieldMemory& a : state().arrays) {
       const auto page = std::size_t(sysconf(_SC_PAGESIZE));
       if (at < a.begin || at >= a.begin + (a.bytes + page - 1) / page * page) continue;
       Touch& t = (*state().touched)[std::string(a.field->name) + (a.second ? "'" : "")];
-      (write ? t.written : t.read) = true;
-      mprotect(a.begin, a.bytes, write ? PROT_READ | PROT_WRITE : PROT_READ);
+      (writes ? t.written : t.read) = true;
+      mprotect(a.begin, a.bytes, writes ? PROT_READ | PROT_WRITE : PROT_READ);
       return;
     }
-    signal(SIGSEGV, SIG_DFL);  // a fault of another kind: it comes again
+    // Outside of all arrays: says in which pass. The fault comes again and ends the process.
+    for (const char* text : {"pass '", state().pass, "' leaves the arrays of its fields\n"})
+      if (write(STDERR_FILENO, text, std::strlen(text)) < 0) break;
+    signal(SIGSEGV, SIG_DFL);
   }
+
+  /// The former contents of what the pass writes completely, or places without reading it.
+  void forget_what_is_replaced(const std::string& pass) const {
+    for (const PassInfo& p : plan_.program.passes)
+      for (const AccessInfo& need : p.needs) {
+        const FieldInfo& f = *need.field;
+        const bool places = f.life == Life::pass && (need.how & kPlaces) && !(need.how & kReading);
+        if (p.name != pass || !(need.how == kWrites || places)) continue;
+        for (const FieldMemory& a : arrays_)
+          if (a.field == &f.primary() && a.second == (f.first != nullptr)) forget(a);
+      }
+  }
+  /// Not the rows after the last particle: they keep their contents from the start.
+  void forget(const FieldMemory& a) const {
+    if (!forgets_.empty() && forgets_ != a.field->name) return;
+    const std::size_t rows = std::size_t(plan_.particles);
+    const std::size_t all = rows + std::size_t(about(backend).padding);
+    fill_with_nonsense(a.begin, a.field->rows == per_padded_row ? a.bytes / all * rows : a.bytes);
+  }
+  void expect_zeros() const {
+    for (const FieldMemory& a : arrays_)
+      if (a.field->life == Life::update &&
+          std::any_of(a.begin, a.begin + a.bytes, [](char c) { return c != 0; }))
+        throw Error(ExitCode::internal, name_of(*a.field) + " is not 0 between two updates");
+  }
+
   Touches& touches_;
+  const Plan& plan_;
+  std::string forgets_;
+  std::vector<FieldMemory> arrays_{};  ///< as of the last pass
 };
 
 }  // namespace pbf

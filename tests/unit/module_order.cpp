@@ -39,7 +39,7 @@ std::vector<std::string> wrong_includes(const std::string& of, const std::string
   const std::regex include("#include \"([^\"]+)\"");
   for (std::sregex_iterator i(text.begin(), text.end(), include), end; i != end; ++i) {
     const std::string what = (*i)[1];
-    if (what == "pbf_build_info.h") continue;  // generated
+    if (what == "pbf_build_info.h" || what == "pbf_shaders.h") continue;  // generated
     const std::string from = module_of(of), to = module_of(what);
     // The kernels hold the physics alone, which knows of no program around it.
     const bool right = from == to || (place(to) >= 0 && place(to) < place(from) &&

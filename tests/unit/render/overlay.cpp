@@ -86,7 +86,7 @@ TEST_CASE("the colour bar runs from the low to the high end of viridis", "[rende
   const View view = bar_view({640, 360});
   Image image = white(640, 360);
   draw_overlay(image, view, projection_of(view, 0), "m/s", 1000, 0.52);
-  const BarPlace bar = bar_place(view.size, ticks_of(view.range));
+  const TextBox bar = bar_place(view.size, ticks_of(view.range));
   const int middle = static_cast<int>(0.5 * (bar.x0 + bar.x1));
   const double span = bar.y1 - bar.y0;
   for (double t : {0.02, 0.25, 0.5, 0.75, 0.98}) {
@@ -103,7 +103,7 @@ TEST_CASE("every tick has its number beside it, and title, unit, name and time a
     const auto ticks = ticks_of(view.range);
     Image image = white(size[0], size[1]);
     draw_overlay(image, view, projection_of(view, 0), "m/s", 1000, 0.52);
-    const BarPlace bar = bar_place(size, ticks);
+    const TextBox bar = bar_place(size, ticks);
     const double em = text_size(size), text = bar.x1 + 0.5 * em;
     INFO("picture " << size[0] << " x " << size[1]);
     for (const auto& tick : ticks) {
@@ -147,7 +147,7 @@ TEST_CASE("no text is cut by the edge of the picture, whatever its size and cont
           draw_overlay(image, view, projection_of(view, 0), "kg/m^3", 2147483647, 1234.5678);
           INFO(size[0] << " x " << size[1] << " " << name << " " << top << " " << eye[0]);
           int at_edge = 0;
-          const BarPlace bar = bar_place(size, ticks_of(view.range));
+          const TextBox bar = bar_place(size, ticks_of(view.range));
           for (int x = 0; x < size[0]; ++x)
             for (int y = 0; y < size[1]; ++y) {
               if (x > 0 && y > 0 && x < size[0] - 1 && y < size[1] - 1) {
@@ -183,7 +183,7 @@ TEST_CASE("the default camera keeps its frame clear of labels and colour bar", "
       view.flat = flat;
       if (flat) view.domain_max[1] = 0.01;
       const Projection p = projection_of(view, 0);
-      const BarPlace bar = bar_place(size, ticks_of(view.range));
+      const TextBox bar = bar_place(size, ticks_of(view.range));
       for (const Double3& corner : frame_of(view)) {
         const auto [x, y] = p.to_pixel(corner);
         CHECK(x < bar.x0);

@@ -2,6 +2,7 @@
 // all features run in scenes on an executor that sees every touch.
 #include <filesystem>
 
+#include "lib/exec/make_solver.h"
 #include "lib/run/emit.h"
 #include "lib/run/motion_files.h"
 #include "lib/scene/load.h"
@@ -56,8 +57,45 @@ const std::vector<Scenario> kScenarios = {
     {"tests/regression/frozen/motions", {}},
     {"tests/regression/frozen/motions", {}, 60},
     {"tests/regression/frozen/motions", {"solver.substeps=3", "viscosity.xsph=0.1"}, 20},
+    {"tests/regression/frozen/motions", {"tank_motion=off"}},
+    {"configs/sloshing_tank", {"fluid.spacing=0.04"}},
     {"tests/regression/frozen/obstacles_2d", {"solver.kernels=paper"}},
 };
+
+struct Prepared {
+  Scene scene;
+  Plan plan;
+  Particles particles;
+  Touches touches{};
+  explicit Prepared(const Scenario& of) {
+    const std::string file = std::string(PBF_SOURCE_DIR) + "/" + of.scene + ".yaml";
+    const std::string folder = std::filesystem::path(file).parent_path().string();
+    std::vector<std::string> set = of.set;
+    set.insert(set.end(), {"precision=float", "output=off", "render=off", "threads=1"});
+    scene = load_scene(file, set).scene;
+    read_motions(scene, folder);
+    particles = emit_particles(scene, folder);
+    for (std::size_t k = 0; k < particles.size(); k += 2) particles.velocity[k][0] += of.fast;
+    plan = make_plan(scene, std::int64_t(particles.size()));
+    plan.program = make_program_of<Features>(scene, plan.shape());
+  }
+  /// A solver that sees what passes touch, and forgets what no declaration promises.
+  std::unique_ptr<Solver> watched(const std::string& forgets = "") {
+    return std::make_unique<StepSolver<float, PageExec>>(scene, plan, particles, touches, plan,
+                                                         forgets);
+  }
+};
+
+StepOptions watching(const Scenario& of) {
+  StepOptions options;
+  if (of.fast > 0) options.watched_speed = of.fast / 2;
+  return options;
+}
+StepOptions without_time() {
+  StepOptions options;
+  options.without_time = 0.5;
+  return options;
+}
 
 /// Adds what the passes of a scene touched and what they declared.
 struct Seen {
@@ -65,32 +103,72 @@ struct Seen {
   std::map<std::string, std::map<std::string, unsigned>> declared;
 };
 void run(const Scenario& of, Seen& seen) {
-  const std::string file = std::string(PBF_SOURCE_DIR) + "/" + of.scene + ".yaml";
-  std::vector<std::string> set = of.set;
-  set.insert(set.end(), {"precision=float", "output=off", "render=off"});
-  Scene scene = load_scene(file, set).scene;
-  read_motions(scene, std::filesystem::path(file).parent_path().string());
-  Particles particles = emit_particles(scene, std::filesystem::path(file).parent_path().string());
-  for (std::size_t k = 0; k < particles.size(); k += 2) particles.velocity[k][0] += of.fast;
-  const Plan plan = make_plan(scene, std::int64_t(particles.size()));
-  StepSolver<float, PageExec> solver(scene, plan, std::move(particles), seen.touches);
-  solver.measure();
-  StepOptions watched;
-  if (of.fast > 0) watched.watched_speed = of.fast / 2;
-  solver.step(3, watched);  // passes joined
-  solver.trace({});         // pass by pass
-  solver.gauges(Interval::goes_on);
-  StepOptions relieve;
-  relieve.without_time = 0.5;
-  solver.step(1, relieve);
-  solver.measure();
-  for (const PassInfo& p : plan.program.passes)
+  Prepared made(of);
+  const auto solver = made.watched();
+  solver->measure();
+  solver->step(3, watching(of));    // passes joined
+  solver->inspection()->trace({});  // pass by pass
+  solver->gauges(Interval::goes_on);
+  solver->step(1, without_time());
+  solver->measure();
+  seen.touches = made.touches;
+  for (const PassInfo& p : made.plan.program.passes)
     for (const AccessInfo& a : p.needs)
       if (a.field->rows && seen.touches.contains(p.name))
         seen.declared[p.name][name_of(*a.field)] |= a.how;
 }
 
+/// What a user sees of a solver: state, loads, gauges and diagnostics.
+struct Results {
+  SolverState state;
+  std::vector<double> numbers;
+  bool operator==(const Results& o) const {
+    // A number may be undefined in both.
+    const auto same = [](double a, double b) { return a == b || (a != a && b != b); };
+    return state.position == o.state.position && state.velocity == o.state.velocity &&
+           state.fields == o.state.fields &&
+           std::equal(numbers.begin(), numbers.end(), o.numbers.begin(), o.numbers.end(), same);
+  }
+};
+Results results(Solver& s) {
+  Results r{s.state(), s.gauges(Interval::goes_on)};
+  for (const WallLoad& load : s.loads(Interval::goes_on))
+    for (const LoadNumber& number : load_numbers()) r.numbers.push_back(number.value(load));
+  const Diagnostics m = s.measure();
+  for (const auto& d : diagnostics()) r.numbers.push_back(d.value(m));
+  return r;
+}
+
+/// After which work the results differ from those of a solver that forgets nothing; empty: never.
+std::string first_difference(const Scenario& of, const std::string& forgets) {
+  Prepared made(of);
+  const auto right = make_solver(made.scene, made.plan, made.particles),
+             watched = made.watched(forgets);
+  std::string first;
+  const auto both = [&](const char* after, const auto& work) {
+    if (!first.empty()) return;
+    work(*right), work(*watched);
+    if (!(results(*right) == results(*watched))) first = after;
+  };
+  both("start", [](Solver&) {});
+  for (const int updates : {1, 1, 3, 2})
+    both("updates", [&](Solver& s) { s.step(updates, watching(of)); });
+  both("trace", [](Solver& s) { s.inspection()->trace({}); });
+  both("update after a trace", [](Solver& s) { s.step(1); });
+  both("keep", [](Solver& s) { s.keep(), s.step(2, without_time()); });
+  both("back", [](Solver& s) { s.set_state(s.state(Which::kept)), s.step(2); });
+  return first;
+}
+
 }  // namespace
+
+/// Fields that a pass may touch for some particles alone: fast ones, those at the same place, those
+/// near walls, solids or gauges.
+bool for_some(const std::string& field) {
+  static const std::set<std::string> all = {"counts",    "id",      "load sums",    "near count",
+                                            "near rows", "patches", "surroundings", "velocity"};
+  return all.contains(field);
+}
 
 TEST_CASE("passes touch what they declare, as they declare it, and declare nothing else",
           "[slow]") {
@@ -110,13 +188,26 @@ TEST_CASE("passes touch what they declare, as they declare it, and declare nothi
         sum.read |= touch.read, sum.written |= touch.written;
       }
     }
+    std::set<std::string> unused;  // by all passes of the scene; fields that If<> is to leave out
     for (const auto& [pass, fields] : seen.declared)
-      for (const auto& [field, how] : fields) all.declared[pass][field] |= how;
+      for (const auto& [field, how] : fields) unused.insert(field);
+    for (const auto& [pass, fields] : seen.declared)
+      for (const auto& [field, how] : fields) {
+        all.declared[pass][field] |= how;
+        const bool touched = seen.touches[pass].contains(field);
+        if (touched) unused.erase(field);
+        CAPTURE(pass, field);
+        CHECK((touched || for_some(field) || field == field::order.name));
+      }
+    // This executor has the order in the ids, and no particle may be fast or hit a patch.
+    for (const char* maybe : {field::order.name, field::counts.name, field::patches.name})
+      unused.erase(maybe);
+    CHECK(unused == std::set<std::string>{});
   }
   // Every declaration is needed in one scene at least.
   for (const auto& [pass, fields] : all.declared)
     for (const auto& [field, how] : fields) {
-      if (field == field::order.name) continue;  // this executor has it in the ids
+      if (field == field::order.name) continue;
       CAPTURE(pass, field);
       const Touch touch = all.touches[pass][field];
       CHECK((touch.read || !(how & kReading)));
@@ -125,6 +216,23 @@ TEST_CASE("passes touch what they declare, as they declare it, and declare nothi
   for (const PassText& pass : pass_texts()) {
     CAPTURE(pass.name);
     CHECK(all.touches.contains(pass.name));  // each pass has run
+  }
+}
+
+TEST_CASE(
+    "results stay when all is nonsense that no declaration promises: fields of passes after an "
+    "update, what a pass replaces, second arrays, new memory",
+    "[slow]") {
+  for (const Scenario& of : kScenarios) {
+    const std::string after = first_difference(of, "");
+    std::string because_of;
+    if (!after.empty() && !first_difference(of, "no field").empty())
+      because_of = "new memory, or another mistake";
+    else if (!after.empty())
+      for (const FieldInfo* f : Prepared(of).plan.program.fields)
+        if (!first_difference(of, f->name).empty()) because_of += std::string(f->name) + " ";
+    CAPTURE(of.scene, of.set, after, because_of);
+    CHECK(after.empty());
   }
 }
 

@@ -225,7 +225,7 @@ TEST_CASE("the passes of a further feature, and the sorts, touch what they decla
   const Warm warmed({"precision=float", "output=off"});
   Touches touches;
   StepSolver<float, PageExec, MoreFeatures> s(warmed.scene, warmed.plan, warmed.particles(),
-                                              touches);
+                                              touches, warmed.plan);
   s.step(3, {});
   s.trace({});
   for (const PassInfo& pass : warmed.plan.program.passes)

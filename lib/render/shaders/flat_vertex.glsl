@@ -1,0 +1,10 @@
+// Box lines and floor: triangles in view space.
+
+layout(location = 0) in vec3 a_place;
+layout(location = 1) in vec3 a_color;
+out vec3 f_color;
+void main() {
+  f_color = a_color;
+  gl_Position = vec4(a_place.xy * u_lens.xy - u_lens.zw * a_place.z,
+                     (2.0 * u_depth.x - 1.0) * a_place.z - 2.0 * u_depth.y, a_place.z);
+}
