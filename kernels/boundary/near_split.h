@@ -78,8 +78,9 @@ struct FarHalf : Pass {
 template <class Pass>
 struct NearHalf {
   Pass pass;
+  PBF_HD int row(int k) const { return pass.boundary.near.row[k]; }
   PBF_HD void operator()(int k) const {
-    const int i = pass.boundary.near.row[k];
+    const int i = row(k);
     pass.finish(i, pass.own(i), kept_sum(pass, i));
   }
 };

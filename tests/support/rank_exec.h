@@ -37,6 +37,15 @@ class RankExec : public CpuExec {
   void pairs(const Rows& rows, const Pass& pass) {
     for (int i = rows.first; i < rows.last; ++i) sum_over_neighbors(pass, i);
   }
+  /// Rows near solids are listed with those of ghosts.
+  template <ItemPass Pass>
+  void listed(const int* count, int, const Pass& pass) {
+    for (int k = 0; k < *count; ++k) {
+      if constexpr (requires { pass.row(k); })
+        if (pass.row(k) < first || pass.row(k) >= last) continue;
+      pass(k);
+    }
+  }
   template <bool leave, class First, class Near, class Gather>
   void sort_by_bin(const char* stage, const First& of, const Near& near, const Rows& rows, int bins,
                    const int* id, int* order, int* start, const Gather& gather) {
@@ -69,10 +78,14 @@ class TwoRanks {
       : scene_(scene),
         plan_(plan),
         forget_(std::move(forget)),
-        cut_(plan.cells[2] / 3),
         a_(exec_[0], scene_, plan_, make_params<Real>(scene, plan)),
         b_(exec_[1], scene_, plan_, make_params<Real>(scene, plan)) {
+    // Half of the particles begin in each slab.
     InternalState<Real> all = to_internal<Real>(scene, plan.axes, std::move(particles)), none;
+    std::vector<Vec4<Real>> places = all.position;
+    std::nth_element(places.begin(), places.begin() + std::ptrdiff_t(places.size() / 2),
+                     places.end(), [](const auto& x, const auto& y) { return x.z < y.z; });
+    cut_ = std::max(1, layer_of(places[places.size() / 2]));
     exec_[0].last = int(all.id.size());
     for (Context* c : both()) {
       for (int k = 0; k < scene.solver.iterations; ++k)
@@ -103,6 +116,13 @@ class TwoRanks {
       }
     return out;
   }
+  /// Of walls and obstacles, which each rank has.
+  std::vector<double> loads(int rank) {
+    Context& c = *both()[std::size_t(rank)];
+    if (!has_loads(scene_)) return {};
+    return downloaded(c, field::loads, c.bytes_of(field::loads), c.kept_rows(field::loads),
+                      nullptr);
+  }
   int ghosts_at_most = 0, own_at_least = 1 << 30, moved = 0;
 
  private:
@@ -116,15 +136,25 @@ class TwoRanks {
         run(s.body, first && k == 0);
         for (Context* c : both()) c->iterating = false;
       }
-      if (s.kind == ProgramStep::until) throw Error(ExitCode::internal, "not for two ranks");
+      for (int k = 0; s.kind == ProgramStep::until && k < s.times && compressed(); ++k)
+        run(s.body, false);
     }
+  }
+
+  /// One sum over all ranks decides.
+  bool compressed() {
+    std::uint64_t sum = 0;
+    for (Context* c : both())
+      for (int i = c->exec.first; i < c->exec.last; ++i) sum += ResidualPass<Real>{c->density()}(i);
+    return sum > residual_limit(plan_.tolerance, int(plan_.particles));
   }
 
   void launch(int index, bool first) {
     const PassInfo& pass = plan_.program.passes[std::size_t(index)];
     const Exchange e = state_.before(pass, first, plan_.program);
-    if (!e.sums.empty() || !e.sums_within.empty())
-      throw Error(ExitCode::internal, "sums of two ranks are not made here");
+    if (!e.sums_within.empty())
+      throw Error(ExitCode::internal, "a pass that adds and reads in one is not for two ranks");
+    for (const FieldInfo* f : e.sums) add_up(*f);
     flip(pass);  // fields are named as they are after the flips
     for (const FieldInfo* f : e.ghosts)
       if (std::string(f->name) != forget_) copy_ghosts(*f);
@@ -212,6 +242,13 @@ class TwoRanks {
       });
     }
   }
+  void add_up(const FieldInfo& f) {
+    if (f.type != Type::int64) throw Error(ExitCode::internal, "only whole numbers add up");
+    auto* mine = reinterpret_cast<std::int64_t*>(a_.bytes_of(f));
+    auto* theirs = reinterpret_cast<std::int64_t*>(b_.bytes_of(f));
+    for (std::size_t k = 0; k < std::size_t(a_.rows_of(f)) * row_bytes(f) / 8; ++k)
+      mine[k] = theirs[k] = mine[k] + theirs[k];
+  }
   template <class F>
   static void each_ghost(Context& c, const F& f) {
     const int all = int(c.data(field::row_state)->rows);
@@ -230,7 +267,7 @@ class TwoRanks {
   const Scene scene_;
   const Plan plan_;
   const std::string forget_;
-  const int cut_;  ///< first layer of the second rank
+  int cut_ = 0;  ///< first layer of the second rank
   RankExec exec_[2];
   Context a_, b_;
   RankState state_;
