@@ -16,26 +16,46 @@ struct InversePass {
 };
 }  // namespace
 
-CudaExec::CudaExec(ListCapacity capacity, std::int64_t total) : capacity_(capacity), total_(total) {
+void DeviceLists::allocate(int n) {
+  words_.resize(std::size_t(list_stride(n)) * std::size_t(capacity_.first));
+  overflows_.resize(std::size_t(capacity_.overflows) * std::size_t(capacity_.overflow));
+  count_.resize(std::size_t(n));
+  overflow_of_.resize(std::size_t(n));
+}
+
+bool DeviceLists::grow(int n, cudaStream_t stream) {
+  PBF_CUDA_CHECK(cudaMemcpyAsync(state_host_.data(), state_.data(), sizeof(ListState),
+                                 cudaMemcpyDeviceToHost, stream));
+  PBF_CUDA_CHECK(cudaStreamSynchronize(stream));
+  const ListState& short_of = *state_host_.data();
+  if (short_of.wanted == 0 && short_of.longest == 0) return false;
+  capacity_ = larger_list_capacity(capacity_, std::max(short_of.used, short_of.wanted),
+                                   short_of.longest, n);
+  words_.resize(0);  // first, because old and new lists may not fit together
+  overflows_.resize(0);
+  allocate(n);
+  clear_state(stream);
+  return true;
+}
+
+CudaExec::CudaExec(ListCapacity capacity, std::int64_t total) : lists_(capacity), total_(total) {
   int device = 0, driver = 0;
   cudaDeviceProp p{};
   PBF_CUDA_CHECK(cudaGetDevice(&device));
   PBF_CUDA_CHECK(cudaGetDeviceProperties(&p, device));
   PBF_CUDA_CHECK(cudaDriverGetVersion(&driver));
-  overlap_ = p.major >= 9;
+  launcher_.overlap = p.major >= 9;
   device_ = p.name;
   driver_ = "CUDA " + std::to_string(driver / 1000) + "." + std::to_string(driver % 100 / 10);
-  PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
-  list_state_.resize(1);
-  list_state_host_.resize(1);
-  clear_overflow();
+  PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&launcher_.stream, cudaStreamNonBlocking));
+  lists_.clear_state(launcher_.stream);
 }
 
 CudaExec::~CudaExec() {
-  if (stream_) cudaStreamSynchronize(stream_);
+  if (launcher_.stream) cudaStreamSynchronize(launcher_.stream);
   recorded_.drop();
   for (cudaEvent_t e : events_) cudaEventDestroy(e);
-  if (stream_) cudaStreamDestroy(stream_);
+  if (launcher_.stream) cudaStreamDestroy(launcher_.stream);
   if (other_stream_) cudaStreamDestroy(other_stream_);
 }
 
@@ -51,7 +71,7 @@ void CudaExec::mark(const char* stage) {
     events_.emplace_back();
     PBF_CUDA_CHECK(cudaEventCreate(&events_.back()));
   }
-  PBF_CUDA_CHECK(cudaEventRecord(events_[stages_.size()], stream_));
+  PBF_CUDA_CHECK(cudaEventRecord(events_[stages_.size()], launcher_.stream));
   stages_.push_back(stage);
 }
 
@@ -68,7 +88,8 @@ void CudaExec::book(double scale) {
 void CudaExec::scan(int n, int* start) {
   // The count behind the last bin is 0, so the scan ends with the number of particles.
   with_scratch(scan_, [&](void* scratch, std::size_t& bytes) {
-    return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts_.data(), start, n, stream_);
+    return cub::DeviceScan::ExclusiveSum(scratch, bytes, counts_.data(), start, n,
+                                         launcher_.stream);
   });
 }
 
@@ -80,7 +101,7 @@ void CudaExec::rank(int n, const int* id, int* place) {
   items(n, NumberPass{rows.data()});
   with_scratch(scratch, [&](void* memory, std::size_t& bytes) {
     return cub::DeviceRadixSort::SortPairs(memory, bytes, id, sorted.data(), rows.data(),
-                                           by_id.data(), n, 0, 31, stream_);
+                                           by_id.data(), n, 0, 31, launcher_.stream);
   });
   items(n, InversePass{by_id.data(), place});
   synchronize();
@@ -89,7 +110,7 @@ void CudaExec::rank(int n, const int* id, int* place) {
 bool CudaExec::new_condition(cudaGraphConditionalHandle& handle) {
   cudaStreamCaptureStatus status;
   cudaGraph_t graph = nullptr;
-  PBF_CUDA_CHECK(cudaStreamGetCaptureInfo(stream_, &status, nullptr, &graph));
+  PBF_CUDA_CHECK(cudaStreamGetCaptureInfo(launcher_.stream, &status, nullptr, &graph));
   if (status != cudaStreamCaptureStatusActive) return false;
   PBF_CUDA_CHECK(cudaGraphConditionalHandleCreate(&handle, graph));
   return true;
@@ -101,8 +122,8 @@ void CudaExec::begin_repeated(cudaGraphConditionalHandle handle) {
   const cudaGraphNode_t* before = nullptr;
   const cudaGraphEdgeData* edges = nullptr;
   std::size_t count = 0;
-  PBF_CUDA_CHECK(
-      cudaStreamGetCaptureInfo(stream_, &status, nullptr, &graph, &before, &edges, &count));
+  PBF_CUDA_CHECK(cudaStreamGetCaptureInfo(launcher_.stream, &status, nullptr, &graph, &before,
+                                          &edges, &count));
   cudaGraphNodeParams params{};
   params.type = cudaGraphNodeTypeConditional;
   params.conditional.handle = handle;
@@ -110,21 +131,22 @@ void CudaExec::begin_repeated(cudaGraphConditionalHandle handle) {
   params.conditional.size = 1;
   cudaGraphNode_t node = nullptr;
   PBF_CUDA_CHECK(cudaGraphAddNode(&node, graph, before, edges, count, &params));
-  PBF_CUDA_CHECK(cudaStreamUpdateCaptureDependencies(stream_, &node, nullptr, 1,
+  PBF_CUDA_CHECK(cudaStreamUpdateCaptureDependencies(launcher_.stream, &node, nullptr, 1,
                                                      cudaStreamSetCaptureDependencies));
   if (!other_stream_)
     PBF_CUDA_CHECK(cudaStreamCreateWithFlags(&other_stream_, cudaStreamNonBlocking));
-  std::swap(stream_, other_stream_);
-  alone_ = true;
-  PBF_CUDA_CHECK(cudaStreamBeginCaptureToGraph(stream_, params.conditional.phGraph_out[0], nullptr,
-                                               nullptr, 0, cudaStreamCaptureModeThreadLocal));
+  std::swap(launcher_.stream, other_stream_);
+  launcher_.alone = true;
+  PBF_CUDA_CHECK(cudaStreamBeginCaptureToGraph(launcher_.stream, params.conditional.phGraph_out[0],
+                                               nullptr, nullptr, 0,
+                                               cudaStreamCaptureModeThreadLocal));
 }
 
 void CudaExec::end_repeated() {
   cudaGraph_t body = nullptr;
-  PBF_CUDA_CHECK(cudaStreamEndCapture(stream_, &body));
-  std::swap(stream_, other_stream_);
-  alone_ = true;
+  PBF_CUDA_CHECK(cudaStreamEndCapture(launcher_.stream, &body));
+  std::swap(launcher_.stream, other_stream_);
+  launcher_.alone = true;
 }
 
 bool CudaExec::asked_to_repeat() {
@@ -133,31 +155,10 @@ bool CudaExec::asked_to_repeat() {
   return go != 0;
 }
 
-void CudaExec::allocate_lists(int n) {
-  words_.resize(std::size_t(list_stride(n)) * std::size_t(capacity_.first));
-  overflows_.resize(std::size_t(capacity_.overflows) * std::size_t(capacity_.overflow));
-  count_.resize(std::size_t(n));
-  overflow_of_.resize(std::size_t(n));
-}
-
 bool CudaExec::grow_lists(int n) {
-  PBF_CUDA_CHECK(cudaMemcpyAsync(list_state_host_.data(), list_state_.data(), sizeof(ListState),
-                                 cudaMemcpyDeviceToHost, stream_));
-  synchronize();
-  const ListState& short_of = *list_state_host_.data();  // since the last clear_overflow()
-  if (short_of.wanted == 0 && short_of.longest == 0) return false;
-  capacity_ = larger_list_capacity(capacity_, std::max(short_of.used, short_of.wanted),
-                                   short_of.longest, n);
-  words_.resize(0);  // first, because old and new lists may not fit together
-  overflows_.resize(0);
-  allocate_lists(n);
-  clear_overflow();
-  forget_recorded();  // it holds the old capacity
-  return true;
-}
-
-void CudaExec::clear_overflow() {
-  PBF_CUDA_CHECK(cudaMemsetAsync(list_state_.data(), 0, sizeof(ListState), stream_));
+  const bool grown = lists_.grow(n, launcher_.stream);
+  if (grown) forget_recorded();  // it holds the old addresses
+  return grown;
 }
 
 std::vector<StageTime> CudaExec::stages(double seconds) const {

@@ -2,17 +2,14 @@
 // are few particles.
 #pragma once
 
-#include <thrust/iterator/counting_iterator.h>
-#include <thrust/iterator/transform_iterator.h>
-
 #include <algorithm>
-#include <cub/device/device_histogram.cuh>
 #include <cub/device/device_scan.cuh>
 #include <string>
 #include <vector>
 
 #include "lib/base/stage_clock.h"
-#include "lib/exec/cuda/device_buffer.h"
+#include "lib/exec/cuda/bin_counts.cuh"
+#include "lib/exec/cuda/device_lists.cuh"
 #include "lib/exec/cuda/host_copy.cuh"
 #include "lib/exec/cuda/kernels.cuh"
 #include "lib/exec/cuda/recorded.cuh"
@@ -32,15 +29,14 @@ class CudaExec {
   template <class T>
   using Buffer = DeviceBuffer<T>;
 
-  /// capacity: of the lists at first. If a list is longer, the build records its length and writes
-  /// nothing beyond the capacity; grow_lists() enlarges it. total: most particles of the whole
+  /// capacity: of the lists at first; grow_lists() enlarges it. total: most particles of the whole
   /// scene, from which the number of threads of a sum follows.
   CudaExec(ListCapacity capacity, std::int64_t total);
   ~CudaExec();
   CudaExec(const CudaExec&) = delete;
   CudaExec& operator=(const CudaExec&) = delete;
 
-  void synchronize() { PBF_CUDA_CHECK(cudaStreamSynchronize(stream_)); }
+  void synchronize() { PBF_CUDA_CHECK(cudaStreamSynchronize(launcher_.stream)); }
 
   // Stage times of sampled updates, from events on the stream.
   void begin();
@@ -53,7 +49,7 @@ class CudaExec {
 
   template <class Out, class Write>
   void start_copy(const std::vector<CopyTarget>& to, const Write& write) {
-    copy_.start<Out>(to, write, stream_);
+    copy_.start<Out>(to, write, launcher_.stream);
   }
   void finish_copy(const std::vector<CopyTarget>& to) { copy_.finish(to); }
 
@@ -72,7 +68,7 @@ class CudaExec {
       --left;
     }
     since_profile_ -= updates;
-    recorded_.repeat(left, u, stream_);
+    recorded_.repeat(left, u, launcher_.stream);
   }
   void forget_recorded() { recorded_.drop(); }
   int largest_batch(int n) const { return n < 20000 ? 256 : n < 500000 ? 64 : 16; }
@@ -80,18 +76,20 @@ class CudaExec {
 
   template <class T>
   void to_device(const T* host, std::size_t n, T* to) {
-    PBF_CUDA_CHECK(cudaMemcpyAsync(to, host, n * sizeof(T), cudaMemcpyHostToDevice, stream_));
+    PBF_CUDA_CHECK(
+        cudaMemcpyAsync(to, host, n * sizeof(T), cudaMemcpyHostToDevice, launcher_.stream));
     synchronize();
   }
   template <class T>
   void to_host(const T* from, std::size_t n, T* host) {
-    PBF_CUDA_CHECK(cudaMemcpyAsync(host, from, n * sizeof(T), cudaMemcpyDeviceToHost, stream_));
+    PBF_CUDA_CHECK(
+        cudaMemcpyAsync(host, from, n * sizeof(T), cudaMemcpyDeviceToHost, launcher_.stream));
     synchronize();
   }
 
   CountedRows counted(const RowState* state, int most) const { return {state, most}; }
   /// The next kernel starts after the last one has ended, so it sees the new number.
-  void rows_changed() { alone_ = true; }
+  void rows_changed() { launcher_.alone = true; }
 
   template <class Rows, ItemPass Pass>
   void items(const Rows& n, const Pass& pass) {
@@ -133,32 +131,19 @@ class CudaExec {
   template <ReducePass Pass>
   MeasureSums reduce(int n, const Pass& pass) {
     if (n == 0) return {};
-    measure_.make(std::max<std::int64_t>(n, total_), stream_);
+    measure_.make(std::max<std::int64_t>(n, total_), launcher_.stream);
     const int threads = kBlock * reduce_blocks(n);
     launch(reduce_kernel<CountsOf<Pass>>, threads, kBlock, 0, n, CountsOf<Pass>{pass},
            measure_.counts());
     launch(reduce_kernel<TermsOf<Pass>>, threads, kBlock, 0, n,
            TermsOf<Pass>{pass, measure_.counts().total, {}}, measure_.terms());
-    return measure_.result(stream_);
+    return measure_.result(launcher_.stream);
   }
 
   /// See CpuExec.
   template <class Pass>
   const std::vector<std::int64_t>& count_in_bins(int n, int bins, const Pass& pass) {
-    in_bins_.resize(std::size_t(bins));
-    in_bins_host_.resize(std::size_t(bins));
-    PBF_CUDA_CHECK(cudaMemsetAsync(in_bins_.data(), 0, in_bins_.bytes(), stream_));
-    const auto bin = thrust::make_transform_iterator(thrust::counting_iterator<int>(0), pass);
-    if (n > 0)
-      with_scratch(in_bins_scratch_, [&](void* scratch, std::size_t& bytes) {
-        return cub::DeviceHistogram::HistogramEven(scratch, bytes, bin, in_bins_.data(), bins + 1,
-                                                   0, bins, n, stream_);
-      });
-    PBF_CUDA_CHECK(cudaMemcpyAsync(in_bins_host_.data(), in_bins_.data(), in_bins_.bytes(),
-                                   cudaMemcpyDeviceToHost, stream_));
-    synchronize();
-    counted_.assign(in_bins_host_.data(), in_bins_host_.data() + bins);
-    return counted_;
+    return bin_counts_.of(n, bins, pass, launcher_.stream);
   }
 
   /// See CpuExec. If a graph is captured, the body becomes part of it, and the device repeats it
@@ -168,7 +153,7 @@ class CudaExec {
                     unsigned long long* repeats, const Body& body) {
     if (repeat_.size() == 0) {
       repeat_.resize(1);
-      PBF_CUDA_CHECK(cudaMemsetAsync(repeat_.data(), 0, repeat_.bytes(), stream_));
+      PBF_CUDA_CHECK(cudaMemsetAsync(repeat_.data(), 0, repeat_.bytes(), launcher_.stream));
     }
     Repetition r{repeat_.data(), repeats, tolerance, unsigned(times), true, false, {}};
     const auto decide = [&] {
@@ -201,7 +186,7 @@ class CudaExec {
       const auto sort = [&](const auto& before) {
         launch(small_sort_kernel<leave, Rows, std::decay_t<decltype(before)>, Gather>, kSortThreads,
                kSortThreads, std::size_t(bins + leave) * sizeof(int), n, before, bins, order,
-               slot_.data(), start, list_state_.data(), in_order);
+               slot_.data(), start, lists_.state(), in_order);
       };
       if constexpr (leaves_rows || PairPass<First>) {
         items_or_pairs(n, first);
@@ -217,7 +202,7 @@ class CudaExec {
     }
     if (counts_.size() != std::size_t(bins) + 1) {
       counts_.resize(std::size_t(bins) + 1);
-      PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), stream_));
+      PBF_CUDA_CHECK(cudaMemsetAsync(counts_.data(), 0, counts_.bytes(), launcher_.stream));
     }
     items_or_pairs(n, CountPass<leave, First>{first, counts_.data(), order, id, bins});
     if constexpr (leaves_rows) {
@@ -226,29 +211,24 @@ class CudaExec {
     }
     mark(stage);
     scan(bins + 1, start);
-    launch(place_kernel<Rows>, most(n), kBlock, 0, n,
-           PlacePass{first.bin, start, order, slot_.data(), counts_.data(), list_state_.data(),
-                     bins + 1});
+    launch(
+        place_kernel<Rows>, most(n), kBlock, 0, n,
+        PlacePass{first.bin, start, order, slot_.data(), counts_.data(), lists_.state(), bins + 1});
     items(n, in_order);
   }
 
   template <class Rows, class Real>
   Lists build_lists(const Rows& n, int far, const Vec4<Real>* position, const int* bin_start,
                     const Params<Real>& p) {
-    allocate_lists(far);
-    p.dimensions == 2 ? make_lists<2>(n, far, position, bin_start, p)
-                      : make_lists<3>(n, far, position, bin_start, p);
-    return {words_.data(),    overflows_.data(), count_.data(),      overflow_of_.data(),
-            list_stride(far), capacity_.first,   capacity_.overflow, far};
+    return lists_.make(launcher_, n, far, position, bin_start, p);
   }
 
   /// See CpuExec.
   void rank(int n, const int* id, int* place);
 
   std::size_t bytes() const {
-    return words_.bytes() + overflows_.bytes() + overflow_of_.bytes() + count_.bytes() +
-           counts_.bytes() + slot_.bytes() + scan_.bytes() + measure_.bytes() + in_bins_.bytes() +
-           in_bins_scratch_.bytes() + repeat_.bytes() + copy_.bytes();
+    return lists_.bytes() + counts_.bytes() + slot_.bytes() + scan_.bytes() + measure_.bytes() +
+           bin_counts_.bytes() + repeat_.bytes() + copy_.bytes();
   }
 
  private:
@@ -259,21 +239,9 @@ class CudaExec {
     else
       items(n, pass);
   }
-  /// Runs a device-wide algorithm of CUB: call(scratch, bytes) returns the bytes that it needs if
-  /// `scratch` is null, and runs otherwise.
-  template <class Call>
-  static void with_scratch(DeviceBuffer<char>& scratch, const Call& call) {
-    std::size_t bytes = 0;
-    PBF_CUDA_CHECK(call(nullptr, bytes));
-    if (scratch.size() < bytes) scratch.resize(bytes);
-    PBF_CUDA_CHECK(call(scratch.data(), bytes));
-  }
-  /// Enough blocks of `block` threads for `threads`.
   template <class... P, class... A>
   void launch(void (*kernel)(P...), int threads, int block, std::size_t shared, const A&... args) {
-    if (threads == 0) return;
-    start_kernel(stream_, overlap_ && !alone_, kernel, threads, block, shared, args...);
-    alone_ = false;
+    launcher_.start(kernel, threads, block, shared, args...);
   }
   /// Launches `lanes` threads per particle if the scene has at most `largest`; returns whether it
   /// did.
@@ -287,27 +255,6 @@ class CudaExec {
     }
     return false;
   }
-  template <int D, class Rows, class Real>
-  void make_lists(const Rows& n, int far, const Vec4<Real>* position, const int* bin_start,
-                  const Params<Real>& p) {
-    const ListPass<Real, D> pass{p,
-                                 position,
-                                 bin_start,
-                                 words_.data(),
-                                 overflows_.data(),
-                                 count_.data(),
-                                 overflow_of_.data(),
-                                 list_state_.data(),
-                                 capacity_,
-                                 list_stride(far),
-                                 far};
-    if (far <= kListLanes)
-      launch(list_lanes_kernel<Rows, Real, D>, pass.lanes * most(n), kBlock, 0, n, pass);
-    else
-      items(n, pass);
-  }
-  void allocate_lists(int n);
-  void clear_overflow();
   /// Waits for the marks since begin() and books their times, multiplied by `scale`.
   void book(double scale);
   /// Makes a condition in the graph that is being captured; false if none is.
@@ -320,12 +267,9 @@ class CudaExec {
   void scan(int n, int* start);
 
   std::string device_, driver_;  ///< names
-  cudaStream_t stream_ = nullptr;
+  Launcher launcher_;
   cudaStream_t other_stream_ = nullptr;  ///< while a repeated body is captured: that of the graph
-  bool overlap_ = false;                 ///< the device has programmatic dependent launch
-  bool alone_ =
-      false;  ///< ... which the next launch does without: rows_changed(); after a condition
-  ListCapacity capacity_;
+  DeviceLists lists_;
   std::int64_t total_;
   bool profiling_ = false;
   int since_profile_ = 0;
@@ -335,14 +279,8 @@ class CudaExec {
   std::vector<cudaEvent_t> events_;
   std::vector<const char*> stages_;  ///< of the marks since begin()
   MeasureSpace measure_;
-  DeviceBuffer<unsigned long long> in_bins_;
-  DeviceBuffer<char> in_bins_scratch_;
-  PinnedBuffer<unsigned long long> in_bins_host_;
-  std::vector<std::int64_t> counted_;
-  DeviceBuffer<int4> words_, overflows_;
-  DeviceBuffer<int> count_, overflow_of_, counts_, slot_;
-  DeviceBuffer<ListState> list_state_;
-  PinnedBuffer<ListState> list_state_host_;
+  BinCounts bin_counts_;
+  DeviceBuffer<int> counts_, slot_;
   DeviceBuffer<char> scan_;  ///< separate, because recorded updates hold its address
   DeviceBuffer<RepeatState> repeat_;
 };

@@ -63,4 +63,14 @@ using DeviceBuffer = CudaBuffer<T>;
 template <class T>
 using PinnedBuffer = CudaBuffer<T, true>;
 
+/// Runs a device-wide algorithm of CUB: call(scratch, bytes) returns the bytes that it needs if
+/// `scratch` is null, and runs otherwise.
+template <class Call>
+void with_scratch(DeviceBuffer<char>& scratch, const Call& call) {
+  std::size_t bytes = 0;
+  PBF_CUDA_CHECK(call(nullptr, bytes));
+  if (scratch.size() < bytes) scratch.resize(bytes);
+  PBF_CUDA_CHECK(call(scratch.data(), bytes));
+}
+
 }  // namespace pbf::inline exec_module

@@ -30,22 +30,30 @@ __device__ __forceinline__ void wait_for_previous() {
 #endif
 }
 
-/// Launches enough blocks of `block` threads for `threads` > 0. overlap: with programmatic
-/// dependent launch, which hides most of the time between two kernels.
-template <class... P, class... A>
-void start_kernel(cudaStream_t stream, bool overlap, void (*kernel)(P...), int threads, int block,
-                  std::size_t shared, const A&... args) {
-  cudaLaunchConfig_t config{};
-  config.gridDim = dim3(unsigned((std::int64_t(threads) + block - 1) / block));
-  config.blockDim = dim3(unsigned(block));
-  config.dynamicSmemBytes = shared;
-  config.stream = stream;
-  cudaLaunchAttribute dependent{};
-  dependent.id = cudaLaunchAttributeProgrammaticStreamSerialization;
-  dependent.val.programmaticStreamSerializationAllowed = 1;
-  config.attrs = &dependent;
-  config.numAttrs = overlap ? 1 : 0;
-  PBF_CUDA_CHECK(cudaLaunchKernelEx(&config, kernel, P(args)...));
-}
+/// Launches kernels on a stream: one after the other, each with programmatic dependent launch, if
+/// the device has it, which hides most of the time between two kernels.
+struct Launcher {
+  cudaStream_t stream = nullptr;
+  bool overlap = false;  ///< the device has programmatic dependent launch
+  bool alone = false;    ///< the next launch does without
+
+  /// Enough blocks of `block` threads for `threads`.
+  template <class... P, class... A>
+  void start(void (*kernel)(P...), int threads, int block, std::size_t shared, const A&... args) {
+    if (threads == 0) return;
+    cudaLaunchConfig_t config{};
+    config.gridDim = dim3(unsigned((std::int64_t(threads) + block - 1) / block));
+    config.blockDim = dim3(unsigned(block));
+    config.dynamicSmemBytes = shared;
+    config.stream = stream;
+    cudaLaunchAttribute dependent{};
+    dependent.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+    dependent.val.programmaticStreamSerializationAllowed = 1;
+    config.attrs = &dependent;
+    config.numAttrs = overlap && !alone ? 1 : 0;
+    alone = false;
+    PBF_CUDA_CHECK(cudaLaunchKernelEx(&config, kernel, P(args)...));
+  }
+};
 
 }  // namespace pbf::inline PBF_VARIANT
