@@ -79,10 +79,8 @@ bool write_out_gravity(Node& root, Problems& problems) {
     form.gravity.magnitude = g;
     if (!in_range(*gravity_table().find_key("gravity.magnitude"), g)) return true;
   } else if (node->kind == Node::Kind::map) {
-    Node tree{Node::Kind::map, "", false, {}, {}, node->origin, node->line, node->column};
-    tree.keys.push_back(
-        {Node::Kind::scalar, "gravity", false, {}, {}, node->origin, node->line, node->column});
-    tree.items.push_back(*node);
+    Node tree = node->here(Node::Kind::map);
+    tree.append(node->here(Node::Kind::scalar, "gravity"), *node);
     Problems own;
     if (!read_tree(gravity_table(), tree, object(form), own).bad.empty()) {
       read_tree(gravity_table(), tree, object(form), problems);

@@ -16,11 +16,6 @@ Node* key_node(Node& map, const Node* value) {
   return &map.keys[std::size_t(value - map.items.data())];
 }
 
-void append_pair(Node& map, const Node& key, const Node& value) {
-  map.keys.push_back(key);
-  map.items.push_back(value);
-}
-
 /// Moves "solver.iterations: 4" of a base into its block, if there is one or `made` asks for one.
 void gather_words(Node& base, const std::string& name, bool made) {
   const std::string start = name + ".";
@@ -35,15 +30,12 @@ void gather_words(Node& base, const std::string& name, bool made) {
     if (!made) continue;  // a value that replaces the block replaces its keys
     Node* block = base.find(name);
     if (block == nullptr) {
-      Node word = key;
-      word.text = name;
-      append_pair(base, word,
-                  {Node::Kind::map, "", false, {}, {}, key.origin, key.line, key.column});
+      base.append(key.here(Node::Kind::scalar, name), key.here(Node::Kind::map));
       block = &base.items.back();
       i = 0;  // the block is now at the end
     }
     key.text = key.text.substr(start.size());
-    if (block->kind == Node::Kind::map) append_pair(*block, key, value);
+    if (block->kind == Node::Kind::map) block->append(key, value);
   }
 }
 
@@ -51,12 +43,11 @@ void gather_words(Node& base, const std::string& name, bool made) {
 void take_magnitude(Node& there, const Node& over) {
   double g = 0;
   if (there.kind == Node::Kind::scalar && read_number(there.text, g) == NumberError::none) {
-    Node key = there, value = there;
-    key.text = "magnitude";
-    there = {Node::Kind::map, "", false, {}, {}, there.origin, there.line, there.column};
-    return append_pair(there, key, value);
+    const Node value = there;
+    there = value.here(Node::Kind::map);
+    return there.append(value.here(Node::Kind::scalar, "magnitude"), value);
   }
-  if (there.kind == Node::Kind::list && const_cast<Node&>(over).find("magnitude") == nullptr)
+  if (there.kind == Node::Kind::list && over.find("magnitude") == nullptr)
     bad_input(over.place(),
               "gravity: is a vector at " + there.place() +
                   ", of which no part can be changed; give the magnitude here too, or a vector");
@@ -67,8 +58,8 @@ bool is_other_kind(const std::string& path, const Node& there, const Node& over)
   const Block* block = scene_table().find_block(path);
   if (block == nullptr || block->kind == nullptr) return false;
   const std::string leaf = block->kind->leaf();
-  const Node* before = const_cast<Node&>(there).find(leaf);
-  const Node* now = const_cast<Node&>(over).find(leaf);
+  const Node* before = there.find(leaf);
+  const Node* now = over.find(leaf);
   return before && now && before->text != now->text;
 }
 
@@ -88,7 +79,7 @@ void lay_value(Node& base, const Node& key, const Node& value, const std::string
   if (there == nullptr) {
     const std::size_t dot = key.text.find('.');
     Node* around = dot == std::string::npos ? nullptr : base.find(key.text.substr(0, dot));
-    if (around == nullptr || around->kind != Node::Kind::map) return append_pair(base, key, value);
+    if (around == nullptr || around->kind != Node::Kind::map) return base.append(key, value);
     Node rest = key;
     rest.text = key.text.substr(dot + 1);
     return lay_value(*around, rest, value, join(block, key.text.substr(0, dot)));
@@ -113,7 +104,7 @@ void lay(Node& base, const Node& over, const std::string& block) {
   for (std::size_t i = 0; i < over.keys.size(); ++i) {
     const Node& key = over.keys[i];
     if (key.kind != Node::Kind::scalar || !seen.insert(key.text).second)
-      append_pair(base, key, over.items[i]);
+      base.append(key, over.items[i]);
     else
       lay_value(base, key, over.items[i], block);
   }

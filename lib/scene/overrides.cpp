@@ -34,10 +34,6 @@ std::vector<std::string> segments(const std::string& path) {
   return parts;
 }
 
-Node made(const Node& like, Node::Kind kind, const std::string& text) {
-  return {kind, text, false, {}, {}, like.origin, like.line, like.column};
-}
-
 /// Child of `at` named by `segment`, made if a block lacks it; nullptr with the reason in `why`.
 Node* child(Node& at, const std::string& segment, const Node& value, const std::string& so_far,
             std::string& why) {
@@ -54,7 +50,7 @@ Node* child(Node& at, const std::string& segment, const Node& value, const std::
   }
   // An empty block, or one that is only a word (on, off), becomes a mapping.
   if (at.kind == Node::Kind::null || at.is_word({"off", "false", "on", "true"}))
-    at = made(value, Node::Kind::map, "");
+    at = value.here(Node::Kind::map);
   if (at.kind != Node::Kind::map) {
     why = here + " is no block, it has no key \"" + segment + "\"";
     return nullptr;
@@ -64,8 +60,7 @@ Node* child(Node& at, const std::string& segment, const Node& value, const std::
     why = here + " has more than " + std::to_string(kMostKeys) + " keys; leave some out";
     return nullptr;
   }
-  at.keys.push_back(made(value, Node::Kind::scalar, segment));
-  at.items.push_back(made(value, Node::Kind::null, ""));
+  at.append(value.here(Node::Kind::scalar, segment), value.here(Node::Kind::null));
   return &at.items.back();
 }
 

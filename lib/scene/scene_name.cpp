@@ -28,12 +28,9 @@ bool name_by_file(Node& root, const std::string& path) {
     return false;
   const std::string name = plain_name(std::filesystem::path(path).stem().string());
   if (name.empty() || name[0] == '.') return false;
-  const Node key{Node::Kind::scalar, "name", false, {}, {}, root.origin, root.line, root.column};
-  Node value = key;
-  value.text = name;
+  Node value = root.here(Node::Kind::scalar, name);
   value.quoted = true;
-  root.keys.push_back(key);
-  root.items.push_back(value);
+  root.append(root.here(Node::Kind::scalar, "name"), value);
   return true;
 }
 

@@ -8,10 +8,6 @@
 namespace pbf::inline scene_module {
 namespace {
 
-Node scalar_node(const Node& like, double value) {
-  return {Node::Kind::scalar, to_text(value), false, {}, {}, like.origin, like.line, like.column};
-}
-
 double number_at(Node& root, const std::string& path, double otherwise) {
   double found = otherwise;
   visit(root, path, [&](Node& value, Node&) {
@@ -22,9 +18,9 @@ double number_at(Node& root, const std::string& path, double otherwise) {
   return found;
 }
 
-void append(Node& map, const std::string& key, const Node& like, const Node& value) {
-  map.keys.push_back({Node::Kind::scalar, key, false, {}, {}, like.origin, like.line, like.column});
-  map.items.push_back(value);
+/// Adds a corner with the place of `like`.
+void append(Node& box, const char* corner, const Node& like, const std::vector<double>& numbers) {
+  box.append(like.here(Node::Kind::scalar, corner), list_node(like, numbers));
 }
 
 /// The entry's bit in Key::kinds; all bits without kinds, none for an unknown word.
@@ -88,8 +84,8 @@ bool write_out_box(const Key& min, Node& entry, const std::string& path, bool fl
   const Node at_center = *center, at_size = *size;
   entry.erase("center");
   entry.erase("size");
-  append(entry, "min", at_center, list_node(at_center, low));
-  append(entry, "max", at_size, list_node(at_size, high));
+  append(entry, "min", at_center, low);
+  append(entry, "max", at_size, high);
   return true;
 }
 
@@ -98,7 +94,7 @@ void put_any_box(Node& entry) {
   entry.erase("center");
   entry.erase("size");
   for (const char* corner : {"min", "max"})
-    if (entry.find(corner) == nullptr) append(entry, corner, entry, list_node(entry, {0, 0, 0}));
+    if (entry.find(corner) == nullptr) append(entry, corner, entry, {0, 0, 0});
 }
 
 }  // namespace
@@ -106,8 +102,8 @@ void put_any_box(Node& entry) {
 bool is_flat(Node& root) { return number_at(root, "dimensions", 3) == 2; }
 
 Node list_node(const Node& like, const std::vector<double>& numbers) {
-  Node list{Node::Kind::list, "", false, {}, {}, like.origin, like.line, like.column};
-  for (const double v : numbers) list.items.push_back(scalar_node(like, v));
+  Node list = like.here(Node::Kind::list);
+  for (const double v : numbers) list.items.push_back(like.here(Node::Kind::scalar, to_text(v)));
   return list;
 }
 
@@ -150,7 +146,8 @@ void write_out_plane(const KeyTable& table, Node& root) {
                          : rule == FlatY::low || rule == FlatY::bottom ? low
                          : rule == FlatY::high || rule == FlatY::top   ? high
                                                                        : 0.5 * (low + high);
-        value.items.insert(value.items.begin() + 1, scalar_node(value.items[0], y));
+        value.items.insert(value.items.begin() + 1,
+                           value.items[0].here(Node::Kind::scalar, to_text(y)));
       }
       double given = 0;
       if (value.items.size() != 3 || value.items[1].kind != Node::Kind::scalar ||

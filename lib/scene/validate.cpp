@@ -232,7 +232,7 @@ class Validator {
   unsigned read_kind(const Block& block, const std::string& shown, const Node& node,
                      const Object& entry) {
     if (const Key* kind = block.kind) {
-      const Node* word = const_cast<Node&>(node).find(kind->leaf());
+      const Node* word = node.find(kind->leaf());
       if (word == nullptr || !read_field(*kind, *word, kind->field(entry)).empty()) {
         out_.bad.insert(join(shown, kind->leaf()));
         return 0;

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pbf::inline scene_module {
@@ -33,8 +34,17 @@ struct Node {
 
   /// "scene.yaml:12:5", or the origin alone.
   std::string place() const;
+  /// A node with the place of this one.
+  Node here(Kind of, std::string word = {}) const {
+    return {of, std::move(word), false, {}, {}, origin, line, column};
+  }
   /// The first child of a map with this key, or nullptr.
   Node* find(const std::string& key);
+  const Node* find(const std::string& key) const { return const_cast<Node*>(this)->find(key); }
+  /// Adds a pair to a map.
+  void append(Node key, Node value) {
+    keys.push_back(std::move(key)), items.push_back(std::move(value));
+  }
   /// Removes the first child with this key from a map.
   void erase(const std::string& key);
   /// Whether it is one of these words, quoted or not.
