@@ -13,7 +13,7 @@ namespace pbf::inline scene_module {
 namespace {
 
 /// Reserved names: other members of /pbf/gauges, and the names of the faces' axes.
-constexpr const char* kTaken[] = {"time", "update", "total", "peak"};
+constexpr std::string_view kTaken[] = {"time", "update", "total", "peak"};
 constexpr std::size_t kMostFlows = 32;
 
 class GaugeChecker : public SceneRules {
@@ -22,11 +22,10 @@ class GaugeChecker : public SceneRules {
 
   void run() {
     if (!good(s_.gauges)) return;
-    std::map<std::string, std::size_t> seen;
+    check_names(s_.gauges, "gauges", "data of the run file", kTaken,
+                "a name that /pbf/gauges has already");
     std::size_t flows = 0;
-    for (std::size_t k = 0; k < s_.gauges.size(); ++k) {
-      const Gauge& g = s_.gauges[k];
-      if (good(g.name)) check_name(g.name, k, seen);
+    for (const Gauge& g : s_.gauges) {
       if (!good(g.kind)) continue;
       if (g.kind == GaugeKind::flow && ++flows > kMostFlows)
         add(g.kind, "is the 33rd flow gauge, at most 32 are possible; remove some");
@@ -35,16 +34,6 @@ class GaugeChecker : public SceneRules {
   }
 
  private:
-  void check_name(const std::string& is, std::size_t k, std::map<std::string, std::size_t>& seen) {
-    const std::string& at = s_.gauges[k].name;
-    if (is.find('/') != std::string::npos || is == "." || is == "..")
-      add(at, "\"" + is + "\" cannot name data of the run file; give a word without \"/\"");
-    else if (std::find(std::begin(kTaken), std::end(kTaken), is) != std::end(kTaken))
-      add(at, "is a name that /pbf/gauges has already; choose another");
-    else if (const auto [first, fresh] = seen.try_emplace(is, k); !fresh)
-      add(at, "is also the name of gauges[" + std::to_string(first->second) + "]; choose another");
-  }
-
   void check_gauge(const Gauge& g) {
     switch (g.kind) {
       case GaugeKind::level:
@@ -67,9 +56,8 @@ class GaugeChecker : public SceneRules {
     std::string wanted;
     for (const int a : across) wanted += (wanted.empty() ? "[" : ", ") + std::string(kAxes[a]);
     if (g.at.size() != across.size())
-      return add(g.at, "has " + count(g.at) + ", and a level is read along " +
-                           kAxes[level_axis(s_)] + ", the axis of gravity" +
-                           (flat() ? ", with dimensions: 2" : "") + "; give " + wanted + "]");
+      return add(g.at, "has {}, and a level is read along {}, the axis of gravity{}; give {}]",
+                 count(g.at), kAxes[level_axis(s_)], flat() ? ", with dimensions: 2" : "", wanted);
     Double3 at = s_.domain.min;
     for (std::size_t k = 0; k < across.size(); ++k) at[std::size_t(across[k])] = g.at[k];
     inside(g.at, at);
@@ -82,9 +70,9 @@ class GaugeChecker : public SceneRules {
       add(g.normal, "has a y component, with dimensions: 2 nothing flows along y; give 0 for y");
     const std::size_t edges = flat() ? 1 : 2;
     if (good(g.size) && g.size.size() != edges)
-      add(g.size, "has " + count(g.size) + ", expected " +
-                      (flat() ? "one, the length of a line in the x-z plane (dimensions: 2)"
-                              : "two, the edges of a rectangle"));
+      add(g.size, "has {}, expected {}", count(g.size),
+          flat() ? "one, the length of a line in the x-z plane (dimensions: 2)"
+                 : "two, the edges of a rectangle");
     if (good(g.center)) inside(g.center, g.center);
   }
 
@@ -92,42 +80,44 @@ class GaugeChecker : public SceneRules {
     const bool sizes = good(s_.fluid.spacing);
     if (good(g.radius) && sizes && g.radius < 2 * s_.fluid.spacing * (1 - 1e-9))
       add(g.radius,
-          "is " + to_text(g.radius) + ", below 2 fluid.spacing (" + to_text(2 * s_.fluid.spacing) +
-              " m): so few particles have no mean; enlarge it or lower fluid.spacing to " +
-              to_text(g.radius / 2));
+          "is {}, below 2 fluid.spacing ({} m): so few particles have no mean; enlarge it or lower "
+          "fluid.spacing to {}",
+          g.radius, 2 * s_.fluid.spacing, g.radius / 2);
     if (!good(g.on, s_.obstacles, s_.domain.open)) return;
     const std::optional<int> surface = surface_named(s_, g.on);
-    if (!surface) return add(g.on, unknown_surface(g.on));
+    if (!surface) return add(g.on, "{}", unknown_surface(g.on));
     const int faces = int(kFaceNames.size());
     if (*surface < faces) {
       if (flat() && *surface / 2 == 1)
-        return add(g.on, g.on + " is no wall with dimensions: 2; give another");
+        return add(g.on, "{} is no wall with dimensions: 2; give another", g.on);
       if (s_.domain.is_open(*surface / 2, *surface % 2 == 1))
-        return add(g.on, g.on + " is open, without a wall (domain.open); give another");
+        return add(g.on, "{} is open, without a wall (domain.open); give another", g.on);
     } else if (!good_obstacle(s_.obstacles[std::size_t(*surface - faces)])) {
       return;
     } else if (s_.obstacles[std::size_t(*surface - faces)].motion) {
-      return add(g.on, g.on +
-                           " moves, and a pressure gauge stays where it is; give it loads "
-                           "instead (obstacles[].loads), or put the gauge on what stands");
+      return add(g.on,
+                 "{} moves, and a pressure gauge stays where it is; give it loads instead "
+                 "(obstacles[].loads), or put the gauge on what stands",
+                 g.on);
     }
     if (!good(g.at) || !is_place(g.at) || !inside(g.at, place(g.at)) || !sizes) return;
     const SurfacePlace there = nearest_place_on(*surface, s_, place(g.at));
     const double d = s_.fluid.spacing;
     if (!(std::fabs(there.distance) <= 0.1 * d))
-      return add(g.at, "is " + to_text(rounded(std::fabs(there.distance))) +
-                           " m from the surface of " + g.on +
-                           "; a pressure gauge lies on it (nearest point " + text(there.point) +
-                           ")");
+      return add(g.at,
+                 "is {} m from the surface of {}; a pressure gauge lies on it (nearest point {})",
+                 rounded(std::fabs(there.distance)), g.on, text(there.point));
     if (!is_free(s_, there.point + (0.25 * d) * there.normal))
-      return add(g.at, "no fluid comes to this place of " + g.on +
-                           ": another obstacle or the end of the domain is before it; move it");
+      return add(g.at,
+                 "no fluid comes to this place of {}: another obstacle or the end of the domain is "
+                 "before it; move it",
+                 g.on);
     if (*surface < faces || !good(g.radius)) return;
     const double radius =
         round_side(s_.obstacles[std::size_t(*surface - faces)], s_, there.point).radius;
     if (radius > 0 && g.radius > radius - d)
-      add(g.radius, "is " + to_text(g.radius) + ", more than the radius of " + g.on +
-                        " less fluid.spacing (" + to_text(radius - d) + " m); lower it");
+      add(g.radius, "is {}, more than the radius of {} less fluid.spacing ({} m); lower it",
+          g.radius, g.on, radius - d);
   }
 
   bool good_obstacle(const Obstacle& o) const {
@@ -153,8 +143,8 @@ class GaugeChecker : public SceneRules {
 
   bool is_place(const std::vector<double>& at) {
     if (at.size() == 3) return true;
-    add(at, "has " + count(at) + ", expected a place, [x, y, z]" +
-                (flat() ? " (y does not count with dimensions: 2)" : ""));
+    add(at, "has {}, expected a place, [x, y, z]{}", count(at),
+        flat() ? " (y does not count with dimensions: 2)" : "");
     return false;
   }
   static Double3 place(const std::vector<double>& at) { return {at[0], at[1], at[2]}; }
@@ -171,9 +161,8 @@ class GaugeChecker : public SceneRules {
       if (flat() && k == 1) continue;
       const double min = s_.domain.min[k], max = s_.domain.max[k], slack = 1e-9 * (max - min);
       if (at[k] >= min - slack && at[k] <= max + slack) continue;
-      add(member, std::string(kAxes[k]) + " is " + to_text(at[k]) + ", outside the domain (" +
-                      kAxes[k] + " from " + to_text(min) + " to " + to_text(max) +
-                      " m); move the gauge");
+      add(member, "{0} is {1}, outside the domain ({0} from {2} to {3} m); move the gauge",
+          kAxes[k], at[k], min, max);
       return false;
     }
     return true;

@@ -14,7 +14,7 @@ class MotionChecker : public SceneRules {
       const Motion& m = *o.motion;
       if (m.kind == MotionKind::sine) check_swing(m, m.kind, true);
       if (m.kind == MotionKind::velocity) {
-        must_lie_flat(m.velocity);
+        must_lie_flat(m.velocity, m.velocity);
         if (good(m.angular) && flat() && (m.angular[0] != 0 || m.angular[2] != 0))
           add(m.angular, kAboutY);
       }
@@ -30,11 +30,6 @@ class MotionChecker : public SceneRules {
   static constexpr const char* kAboutY =
       "with dimensions: 2 nothing turns but about y; give [0, 1, 0] times a number";
 
-  void must_lie_flat(const Double3& v) {
-    if (good(v) && flat() && v[1] != 0)
-      add(v, "its y component is " + to_text(v[1]) +
-                 ", with dimensions: 2 nothing moves along y; give 0");
-  }
   void check_path(const std::string& path) {
     if (good(path) && path.empty()) add(path, "names no file; give that of a CSV table");
   }
@@ -43,24 +38,18 @@ class MotionChecker : public SceneRules {
     if (!good(m.axis) || (swings && !good(m.direction))) return;
     if (swings && bool(m.direction) == bool(m.axis)) {
       const std::string path = name(kind);
-      add_at(path.substr(0, path.rfind('.')),
-             std::string("a sine needs ") +
-                 (m.axis ? "direction or axis, not both; remove one"
-                         : "direction (amplitude in m) or axis (degrees); give one"));
+      add_at(path.substr(0, path.rfind('.')), "a sine needs {}",
+             m.axis ? "direction or axis, not both; remove one"
+                    : "direction (amplitude in m) or axis (degrees); give one");
       return;
     }
     const std::optional<Double3>& along = swings && m.direction ? m.direction : m.axis;
     if (along && (*along)[0] == 0 && (*along)[1] == 0 && (*along)[2] == 0)
       add(along, "has no direction; give one, [0, 1, 0] say");
-    if (swings && m.direction) must_lie_flat_if_there(m.direction);
+    if (swings && m.direction) must_lie_flat(m.direction, *m.direction);
     if (m.axis && flat() && ((*m.axis)[0] != 0 || (*m.axis)[2] != 0)) add(m.axis, kAboutY);
     if (m.pivot && good(m.pivot) && !m.axis)
       add(m.pivot, "is the point about which something turns, and there is no axis; remove it");
-  }
-  void must_lie_flat_if_there(const std::optional<Double3>& v) {
-    if (flat() && (*v)[1] != 0)
-      add(v, "its y component is " + to_text((*v)[1]) +
-                 ", with dimensions: 2 nothing moves along y; give 0");
   }
 };
 

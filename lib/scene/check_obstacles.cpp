@@ -14,7 +14,6 @@ class ShapeRules : public SceneRules {
   using SceneRules::above, SceneRules::add, SceneRules::flat, SceneRules::good, SceneRules::name;
   using SceneRules::SceneRules;
 
-  static std::string text(double value) { return to_text(value); }
   double h() const { return s_.h(); }
   double smoothing_ratio() const { return s_.fluid.smoothing_ratio; }
   /// Whether h and the member were read without a problem.
@@ -31,7 +30,7 @@ class ShapeRules : public SceneRules {
     const double apart = position_spacing(s_) * s_.h(), least = kThinnestSolid * apart;
     if (thick >= least) return;
     const bool single = s_.precision == Precision::single;
-    add(end,
+    add(end, "{}",
         fmt::format("makes a plate {:.3g} m thick, and positions in {} are {:.3g} m apart at the "
                     "far end of the domain: fluid would pass through it; give at least {:.2g} m{}",
                     thick, word(s_.precision), apart, 1.05 * least,
@@ -44,28 +43,11 @@ class ObstacleChecker : public ShapeRules {
   using ShapeRules::ShapeRules;
 
   void run() {
-    std::map<std::string, std::size_t> seen;
-    for (std::size_t k = 0; k < s_.obstacles.size(); ++k) {
-      const Obstacle& o = s_.obstacles[k];
-      if (good(o.name)) {
-        if (o.name.empty() || o.name.find('/') != std::string::npos || o.name == "." ||
-            o.name == "..")
-          add(o.name,
-              "\"" + o.name + "\" cannot name columns of the log; give a word without \"/\"");
-        else if (is_face(o.name))
-          add(o.name, "is the name of a wall of the domain; choose another");
-        else if (const auto [first, fresh] = seen.try_emplace(o.name, k); !fresh)
-          add(o.name, "is also the name of obstacles[" + std::to_string(first->second) +
-                          "]; choose another");
-      }
+    check_names(s_.obstacles, "obstacles", "columns of the log", kFaceNames,
+                "the name of a wall of the domain");
+    for (const Obstacle& o : s_.obstacles)
       if (good(o.shape))
         std::visit([&](const auto& keys) { keys.check(static_cast<ShapeRules&>(*this)); }, o.shape);
-    }
-  }
-
- private:
-  static bool is_face(const std::string& name) {
-    return std::find(kFaceNames.begin(), kFaceNames.end(), name) != kFaceNames.end();
   }
 };
 

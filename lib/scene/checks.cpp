@@ -40,8 +40,8 @@ class Checker : public SceneRules {
   void check_name() {
     if (good(s_.name) && !is_file_name(s_.name))
       add(s_.name,
-          "is \"" + one_line(s_.name, 60) +
-              "\", and runs are kept in out/<name>; give a word without slashes, not . or ..");
+          "is \"{}\", and runs are kept in out/<name>; give a word without slashes, not . or ..",
+          one_line(s_.name, 60));
   }
 
   /// Refuses a scene in two dimensions that has anything along y.
@@ -49,21 +49,16 @@ class Checker : public SceneRules {
     const double thick = s_.domain.max[1] - s_.domain.min[1];
     if (domain && good(s_.fluid.spacing, s_.fluid.smoothing_ratio) && thick > s_.h() * (1 + 1e-9))
       add(s_.domain.max,
-          "y makes a slab " + to_text(thick) +
-              " m thick, with dimensions: 2 it may be at most the smoothing length " +
-              to_text(s_.h()) + " m (one cell); give y = " +
-              to_text(s_.domain.min[1] + s_.fluid.spacing) + " for one spacing, or dimensions: 3");
+          "y makes a slab {} m thick, with dimensions: 2 it may be at most the smoothing length {} "
+          "m (one cell); give y = {} for one spacing, or dimensions: 3",
+          thick, s_.h(), s_.domain.min[1] + s_.fluid.spacing);
     if (good(s_.domain.open))
       for (const std::string& face : s_.domain.open)
         if (face[0] == 'y')
-          add(s_.domain.open, face + ": with dimensions: 2 there is no wall along y; remove it");
-    const auto must_lie_flat = [&](const Double3& v) {
-      if (good(v) && v[1] != 0)
-        add(v, "its y component is " + to_text(v[1]) +
-                   ", with dimensions: 2 nothing moves along y; give 0, or dimensions: 3");
-    };
-    must_lie_flat(s_.gravity);
-    for (const Body& body : s_.bodies) must_lie_flat(body.velocity);
+          add(s_.domain.open, "{}: with dimensions: 2 there is no wall along y; remove it", face);
+    constexpr const char* kInSpace = ", or dimensions: 3";
+    must_lie_flat(s_.gravity, s_.gravity, kInSpace);
+    for (const Body& body : s_.bodies) must_lie_flat(body.velocity, body.velocity, kInSpace);
   }
 
   void check_smoothing_ratio() {
@@ -71,11 +66,10 @@ class Checker : public SceneRules {
     const double least = least_smoothing_ratio(s_.dimensions);
     if (s_.fluid.smoothing_ratio < least)
       add(s_.fluid.smoothing_ratio,
-          "is " + to_text(s_.fluid.smoothing_ratio) +
-              ": with so few neighbours the density cannot tell the rest lattice from a closer "
-              "packing, and a pool loses volume; give at least " +
-              to_text(least) + (flat() ? "" : " (1.5 with dimensions: 2)") +
-              ", 2 is the default, or set fluid.mass");
+          "is {}: with so few neighbours the density cannot tell the rest lattice from a closer "
+          "packing, and a pool loses volume; give at least {}{}, 2 is the default, or set "
+          "fluid.mass",
+          s_.fluid.smoothing_ratio, least, flat() ? "" : " (1.5 with dimensions: 2)");
   }
 
   void check_solver() {
@@ -96,9 +90,9 @@ class Checker : public SceneRules {
     for (int a = flat() ? 2 : 1; a < 3; ++a)
       thinnest = std::min(thinnest, s_.domain.max[a] - s_.domain.min[a]);
     if (good(s_.solver.wall_margin) && !(2 * s_.solver.wall_margin < thinnest))
-      add(s_.solver.wall_margin, "is " + to_text(s_.solver.wall_margin) +
-                                     ", but must be below half the thinnest side of the domain (" +
-                                     to_text(thinnest / 2) + " m); lower it");
+      add(s_.solver.wall_margin,
+          "is {}, but must be below half the thinnest side of the domain ({} m); lower it",
+          s_.solver.wall_margin, thinnest / 2);
   }
 
   /// Checks that the precision resolves the positions of particles and their moves in a step.
@@ -112,12 +106,10 @@ class Checker : public SceneRules {
     const std::string precision = word(s_.precision);
     const std::string remedy = single ? "give precision: double, or " : "";
     if (r.spacing > kLargestSpacing)
-      return add(
-          s_.domain.max,
-          fmt::format(
-              "the box is so long that positions in {} are {} h apart at its far end (at most {}): "
-              "densities would be off; {}make the domain smaller or raise fluid.spacing",
-              precision, to_text(r.spacing), to_text(kLargestSpacing), remedy));
+      return add(s_.domain.max,
+                 "the box is so long that positions in {} are {} h apart at its far end (at most "
+                 "{}): densities would be off; {}make the domain smaller or raise fluid.spacing",
+                 precision, r.spacing, kLargestSpacing, remedy);
     const bool lost = r.lost > kLeastLoss;
     if (!lost && r.slow <= kLargestLoss) return;
     const std::string what =
@@ -129,9 +121,8 @@ class Checker : public SceneRules {
                    "makes so many steps in a fall that rounding in {} would take {:.3g} % of its "
                    "velocity",
                    precision, 100 * r.slow);
-    add(s_.time.step, what + "; " + remedy +
-                          (s_.solver.substeps > 1 ? "raise time.step or lower solver.substeps"
-                                                  : "raise time.step"));
+    add(s_.time.step, "{}; {}raise time.step{}", what, remedy,
+        s_.solver.substeps > 1 ? " or lower solver.substeps" : "");
   }
 
   void check_bodies(bool domain) {
@@ -147,11 +138,13 @@ class Checker : public SceneRules {
       if (!good(s_.fluid.spacing, body.count)) continue;
       const double n = lattice_count(body, s_.fluid.spacing, plane());
       if (n < 1)
-        add_at(key, "makes no particle: it is thinner than fluid.spacing (" +
-                        to_text(s_.fluid.spacing) + " m); enlarge it or lower fluid.spacing");
+        add_at(key,
+               "makes no particle: it is thinner than fluid.spacing ({} m); enlarge it or lower "
+               "fluid.spacing",
+               s_.fluid.spacing);
       sum += n;
     }
-    if (known && sum > kMaxParticles) add(s_.bodies, too_many_text(sum));
+    if (known && sum > kMaxParticles) add(s_.bodies, "{}", too_many_text(sum));
   }
 
   std::optional<double> plane() const {
@@ -161,7 +154,7 @@ class Checker : public SceneRules {
   bool check_axis(const Body& body) {
     if (!good(body.from, body.to, body.radius)) return false;
     if (body.from == body.to)
-      add(body.to, "is where the axis begins (" + name(body.from) + "); give the other end");
+      add(body.to, "is where the axis begins ({}); give the other end", name(body.from));
     else if (flat() && (body.from[0] != body.to[0] || body.from[2] != body.to[2]))
       add(body.to,
           "with dimensions: 2 a cylinder stands on the x-z plane, which makes a disc of it; give "
@@ -183,9 +176,10 @@ class Checker : public SceneRules {
     const std::optional<double> y = domain ? plane() : std::nullopt;
     if (y && !(low[1] <= *y && *y <= high[1])) {
       inside = false;
-      add_at(key, "its y goes from " + to_text(low[1]) + " to " + to_text(high[1]) +
-                      ", which leaves out the plane of the particles, y = " + to_text(*y) +
-                      " (dimensions: 2, the middle of the domain); move the body there");
+      add_at(key,
+             "its y goes from {} to {}, which leaves out the plane of the particles, y = {} "
+             "(dimensions: 2, the middle of the domain); move the body there",
+             low[1], high[1], *y);
     }
     for (int a = 0; a < 3 && domain; a += y ? 2 : 1) {
       const double min = s_.domain.min[a], max = s_.domain.max[a], slack = 1e-9 * (max - min);
@@ -193,9 +187,9 @@ class Checker : public SceneRules {
       if (!below && high[a] <= max + slack) continue;
       inside = false;
       add_at(round ? key : name(below ? body.min : body.max),
-             std::string("reaches ") + kAxes[a] + " = " + to_text(below ? low[a] : high[a]) +
-                 ", outside the domain (" + kAxes[a] + " from " + to_text(min) + " to " +
-                 to_text(max) + " m); move the body or enlarge the domain");
+             "reaches {0} = {1}, outside the domain ({0} from {2} to {3} m); move the body or "
+             "enlarge the domain",
+             kAxes[a], below ? low[a] : high[a], min, max);
     }
     return inside;
   }
@@ -207,38 +201,34 @@ class Checker : public SceneRules {
       if (time.end < time.step)
         add_below(time.end, time.step, ": no update would be done; raise it");
       else if (time.end / time.step > 2147483647.0)
-        add(time.end, "makes " + count_text(time.end / time.step) +
-                          " updates, at most 2147483647 are possible; raise time.step or lower "
-                          "time.end");
+        add(time.end,
+            "makes {} updates, at most 2147483647 are possible; raise time.step or lower time.end",
+            count_text(time.end / time.step));
     }
     if (time.adaptive && time.adaptive->step_min && good(time.adaptive->step_min)) {
       const double floor = *time.adaptive->step_min;
       if (floor > time.step)
-        add(time.adaptive->step_min,
-            "is " + to_text(floor) + ", above time.step (" + to_text(time.step) + " s); lower it");
+        add(time.adaptive->step_min, "is {}, above time.step ({} s); lower it", floor, time.step);
       else if (std::ldexp(floor, 20) < time.step)
-        add(time.adaptive->step_min, "is " + to_text(floor) + ", less than time.step/1048576 (" +
-                                         to_text(std::ldexp(time.step, -20)) + " s); raise it");
+        add(time.adaptive->step_min, "is {}, less than time.step/1048576 ({} s); raise it", floor,
+            std::ldexp(time.step, -20));
     }
-    const auto must_last_a_step = [&](const double& every) {
-      if (good(every) && every < time.step * (1 - 1e-9))
-        add_below(every, time.step, "; raise it to at least that");
+    const auto must_last_a_step = [&](const auto& member, double every) {
+      if (good(member) && every < time.step * (1 - 1e-9))
+        add_below(member, every, time.step, "; raise it to at least that");
     };
-    if (s_.output) must_last_a_step(s_.output->every);
-    if (s_.output && s_.output->gauges_every && good(s_.output->gauges_every) &&
-        *s_.output->gauges_every < time.step * (1 - 1e-9))
-      add(s_.output->gauges_every, "is " + to_text(*s_.output->gauges_every) +
-                                       ", below time.step (" + to_text(time.step) +
-                                       " s); raise it to at least that");
-    if (s_.render) must_last_a_step(s_.render->every);
+    if (s_.output) must_last_a_step(s_.output->every, s_.output->every);
+    if (s_.output && s_.output->gauges_every)
+      must_last_a_step(s_.output->gauges_every, *s_.output->gauges_every);
+    if (s_.render) must_last_a_step(s_.render->every, s_.render->every);
   }
 
   void check_render() {
     if (!s_.render) return;
     const Render& r = *s_.render;
     if (r.range && good(r.range) && !((*r.range)[0] < (*r.range)[1]))
-      add(r.range, "the lower end " + to_text((*r.range)[0]) + " is not below the upper end " +
-                       to_text((*r.range)[1]) + "; give [low, high] or auto");
+      add(r.range, "the lower end {} is not below the upper end {}; give [low, high] or auto",
+          (*r.range)[0], (*r.range)[1]);
     if (s_.output && good(r.every, s_.output->every) && r.every < s_.output->every * (1 - 1e-9))
       add_below(r.every, s_.output->every,
                 ": pictures are made of output frames; raise it or lower output.every");

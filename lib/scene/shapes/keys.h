@@ -36,11 +36,10 @@ inline constexpr const char* kRadiusHelp =
 /// The fluid resolves curvature only down to the smoothing length.
 void check_radius(auto& rules, const double& radius) {
   if (!rules.good_h(radius) || radius >= rules.h()) return;
-  rules.add(radius, "is " + rules.text(radius) + ", below the smoothing length (" +
-                        rules.text(rules.h()) +
-                        " m): the fluid could not see how the surface is "
-                        "curved; enlarge it or lower fluid.spacing to " +
-                        rules.text(radius / rules.smoothing_ratio()));
+  rules.add(radius,
+            "is {}, below the smoothing length ({} m): the fluid could not see how the surface is "
+            "curved; enlarge it or lower fluid.spacing to {}",
+            radius, rules.h(), radius / rules.smoothing_ratio());
 }
 
 /// A body around an axis between two points.
@@ -59,9 +58,9 @@ struct Tube {
   void check_axis(auto& rules, const char* flat) const {
     if (rules.good(from, to)) {
       if (from == to)
-        rules.add(to, "is where the axis begins (" + rules.name(from) + "); give the other end");
+        rules.add(to, "is where the axis begins ({}); give the other end", rules.name(from));
       else if (flat)
-        rules.add(to, flat);
+        rules.add(to, "{}", flat);
     }
     check_radius(rules, radius);
   }
