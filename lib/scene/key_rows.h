@@ -56,23 +56,20 @@ inline void is_kind(Key& row) { row.is_kind = true; }
 auto of(auto... kinds) {
   return [=](Key& row) { row.kinds = ((1u << static_cast<unsigned>(kinds)) | ...); };
 }
-/// With dimensions: 2, the y of a vector that is given by two numbers.
-inline auto flat(FlatY y) {
-  return [=](Key& row) { row.flat = y; };
+/// A trait with a value of the row.
+template <auto member>
+auto trait(auto value) {
+  return [=](Key& row) { row.*member = value; };
 }
+/// With dimensions: 2, the y of a vector that is given by two numbers.
+inline auto flat(FlatY y) { return trait<&Key::flat>(y); }
 /// A corner of a box, which may also be given by `center` and `size`.
 inline void by_center(Key& row) { row.by_center = true; }
 /// The path of a file, relative to the scene file.
 inline void names_file(Key& row) { row.names_file = true; }
-inline auto form(const KeyTable& (*table)()) {
-  return [=](Key& row) { row.form = table; };
-}
-inline auto renamed(const char* was) {
-  return [=](Key& row) { row.was = std::string(was); };
-}
-inline auto scaled(double (*at_level)(double, int)) {
-  return [=](Key& row) { row.at_level = at_level; };
-}
+inline auto form(const KeyTable& (*table)()) { return trait<&Key::form>(table); }
+inline auto renamed(const char* path) { return trait<&Key::was>(path); }
+inline auto scaled(double (*at_level)(double, int)) { return trait<&Key::at_level>(at_level); }
 inline double linear(double x, int level) { return std::ldexp(x, -level); }
 inline double quadratic(double x, int level) { return std::ldexp(x, -2 * level); }
 /// For a factor that each step applies.
@@ -86,13 +83,9 @@ inline auto exact(const char* why) {
   return [=](auto& row) { row.exact = why; };
 }
 /// The value in a scene file without the key, in words.
-inline auto usually(const char* what) {
-  return [=](Key& row) { row.usually = what; };
-}
+inline auto usually(const char* what) { return trait<&Key::usually>(what); }
 /// This value turns the feature off, and is not rounded.
-inline auto off_at(double value) {
-  return [=](Key& row) { row.off = value; };
-}
+inline auto off_at(double value) { return trait<&Key::off>(value); }
 
 /// A block that is a std::optional.
 template <class Member>
