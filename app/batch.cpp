@@ -29,15 +29,14 @@
 namespace pbf::inline app_module {
 namespace {
 
-struct BatchOptions {
-  std::string input;                         ///< folder, scene or list
-  std::string out;                           ///< folder of the runs; empty: out/batch_<name>
-  std::vector<std::string> grid, overrides;  ///< key=v1,v2; key.path=value
-  std::string base_folder;
-  int jobs = 1, threads = 0;     ///< at a time; CPU threads per run, 0: all / jobs
-  std::int64_t only = -1;        ///< index of the only run, from 0; -1: all
-  double max_walltime = 0;       ///< s, 0: none
-  std::string time = "1:00:00";  ///< per task of the Slurm script
+struct BatchOptions : SceneOptions {
+  std::string input;              ///< folder, scene or list
+  std::string out;                ///< folder of the runs; empty: out/batch_<name>
+  std::vector<std::string> grid;  ///< key=v1,v2
+  int jobs = 1, threads = 0;      ///< at a time; CPU threads per run, 0: all / jobs
+  std::int64_t only = -1;         ///< index of the only run, from 0; -1: all
+  double max_walltime = 0;        ///< s, 0: none
+  std::string time = "1:00:00";   ///< per task of the Slurm script
   bool list = false, slurm = false, collect = false, quiet = false;
   bool strict = false;  ///< for every run
 };
@@ -256,8 +255,7 @@ void add_batch(CLI::App& app, int& code) {
       "KEY=V1,V2,... or KEY=FIRST:LAST:COUNT in equal steps, both ends included (--x and --y of "
       "pbf stability take equal ratios): a run for every value; repeatable, then for every "
       "combination");
-  add_overrides(c, o.overrides);
-  add_base_folder(c, o.base_folder);
+  add_scene_options(c, o);
   c->add_option("--jobs", o.jobs, "Runs at a time")->transform(whole_number(1, 4096));
   c->add_option("--threads", o.threads, "CPU threads of a run; all, shared among --jobs")
       ->transform(whole_number(1, 4096));
@@ -273,7 +271,7 @@ void add_batch(CLI::App& app, int& code) {
   c->add_option("--time", o.time,
                 "Of a task of the Slurm script, e.g. 30, 4:00:00 or 1-12; 1:00:00")
       ->needs(slurm);
-  c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  add_quiet(c, o.quiet);
 }
 
 }  // namespace pbf::inline app_module

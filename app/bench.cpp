@@ -18,13 +18,11 @@
 namespace pbf::inline app_module {
 namespace {
 
-struct BenchOptions {
+struct BenchOptions : SceneOptions {
   std::vector<std::string> scenes;  ///< paths; empty: the built-in dam break
   std::vector<std::int64_t> particles{10000, 100000};
   std::vector<std::string> backends{"cpu"}, precisions{"float"};
   std::vector<int> threads{0};  ///< 0: as a run would choose
-  std::vector<std::string> overrides;
-  std::string base_folder;
   BenchSettings settings;
   std::string csv, json;   ///< paths, empty: none
   bool calibrate = false;  ///< store the costs of the stages for `pbf plan`
@@ -118,10 +116,7 @@ int command_bench(const BenchOptions& o) {
   if (o.calibrate && calibration_path().empty())
     throw Error(ExitCode::bad_input,
                 "no place for the calibration: set PBF_CALIBRATION to the path of a file");
-  check_output("--csv", o.csv);
-  check_output("--json", o.json);
-  if (!o.csv.empty() && !o.json.empty() && same_output(o.csv, o.json))
-    throw Error(ExitCode::bad_input, "--csv and --json name one file: " + o.csv);
+  check_outputs("--csv", o.csv, "--json", o.json);
   // Written after every row, so that an interrupted benchmark leaves its results. A pipe cannot be
   // rewritten, so it gets the table at the end.
   const auto store = [&](bool end) {
@@ -187,8 +182,7 @@ void add_bench(CLI::App& app, int& code) {
                 "Numbers of CPU threads; as a run would choose when not given")
       ->delimiter(',')
       ->transform(whole_number(1, 4096));
-  add_overrides(c, o.overrides);
-  add_base_folder(c, o.base_folder);
+  add_scene_options(c, o);
   c->add_option("--warmup", o.settings.warmup, "Updates before the state counts as late")
       ->transform(whole_number(0));
   c->add_option("--updates", o.settings.updates, "Updates of one repeat")

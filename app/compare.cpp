@@ -14,14 +14,13 @@
 namespace pbf::inline app_module {
 namespace {
 
-struct CompareOptions {
-  std::vector<std::string> inputs;                  ///< two run files, or one scene with `between`
-  std::vector<std::string> between;                 ///< two sides, BACKEND:PRECISION[@THREADS]
-  std::vector<std::string> overrides, overrides_b;  ///< for both sides; for B only
+struct CompareOptions : SceneOptions {
+  std::vector<std::string> inputs;       ///< two run files, or one scene with `between`
+  std::vector<std::string> between;      ///< two sides, BACKEND:PRECISION[@THREADS]
+  std::vector<std::string> overrides_b;  ///< for B only
   CompareSettings settings;
   std::string report;  ///< path of a .json; empty: none
   std::string junit;   ///< path; empty: none
-  std::string base_folder;
   bool quiet = false;
 };
 
@@ -50,12 +49,9 @@ void check_report(const std::string& path) {
                   "report are drawn by: python3 -m pbf_tools plot-compare REPORT.json");
 }
 
-/// Checks the paths of reports; called after the inputs are known.
+/// Called after the inputs are known.
 void check_reports(const CompareOptions& o) {
-  check_output("--report", o.report);
-  check_output("--junit", o.junit);
-  if (!o.report.empty() && !o.junit.empty() && same_output(o.report, o.junit))
-    throw Error(ExitCode::bad_input, "--report and --junit name one file: " + o.report);
+  check_outputs("--report", o.report, "--junit", o.junit);
 }
 
 CompareResult between(const CompareOptions& o, Log& log) {
@@ -117,8 +113,7 @@ void add_compare(CLI::App& app, int& code) {
   c->add_option("--between", o.between,
                 "A,B: two sides BACKEND:PRECISION or BACKEND:PRECISION@THREADS")
       ->delimiter(',');
-  add_overrides(c, o.overrides);
-  add_base_folder(c, o.base_folder);
+  add_scene_options(c, o);
   add_repeatable(c, "--set-b", o.overrides_b, "The same for B alone, to see what a key changes");
   c->add_option("--warmup", o.settings.warmup, "Updates on A before the frozen step")
       ->transform(whole_number(0, 1000000000));
@@ -132,7 +127,7 @@ void add_compare(CLI::App& app, int& code) {
   c->add_option("--report", o.report,
                 "Write the result to this .json file, which pbf_tools plot-compare draws");
   c->add_option("--junit", o.junit, "Write the verdicts to this file, as JUnit XML for CI systems");
-  c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  add_quiet(c, o.quiet);
 }
 
 }  // namespace pbf::inline app_module

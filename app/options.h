@@ -32,19 +32,33 @@ inline void add_repeatable(CLI::App* command, const char* name, std::vector<std:
   command->add_option(name, values, help)->take_all()->allow_extra_args(false);
 }
 
-inline void add_overrides(CLI::App* command, std::vector<std::string>& overrides) {
-  add_repeatable(command, "--set", overrides,
-                 "Replace one key of the scene, KEY.PATH=VALUE; repeatable");
-}
+/// What a command that reads scenes is told about them.
+struct SceneOptions {
+  std::vector<std::string> overrides;  ///< key.path=value
+  std::string base_folder;             ///< further folder below which bases may be
+};
 
-/// An additional folder below which bases of scenes may be.
-inline void add_base_folder(CLI::App* command, std::string& folder) {
+inline void add_scene_options(
+    CLI::App* command, SceneOptions& options,
+    const char* set = "Replace one key of the scene, KEY.PATH=VALUE; repeatable") {
+  add_repeatable(command, "--set", options.overrides, set);
   command
       ->add_option(
-          "--base-folder", folder,
+          "--base-folder", options.base_folder,
           "Bases of a scene (base: other.yaml) may lie in the tree of this folder too, not "
           "only in that of the scene's own")
       ->check(CLI::ExistingDirectory);
+}
+
+inline void add_backend(CLI::App* command, std::string& backend, std::string& precision) {
+  command->add_option("--backend", backend, "Where to run")
+      ->check(CLI::IsMember(words_of<Backend>()));
+  command->add_option("--precision", precision, "Of the computation")
+      ->check(CLI::IsMember(words_of<Precision>()));
+}
+
+inline void add_quiet(CLI::App* command, bool& quiet) {
+  command->add_flag("--quiet", quiet, "No progress on stderr");
 }
 
 /// For names of folders and files: "" usually comes from an unset variable in a script.

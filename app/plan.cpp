@@ -18,11 +18,9 @@
 namespace pbf::inline app_module {
 namespace {
 
-struct PlanOptions {
+struct PlanOptions : SceneOptions {
   std::string scene;
   int threads = 0;  ///< 0: as the scene says
-  std::vector<std::string> overrides;
-  std::string base_folder;
   bool resolved = false, json = false, arrays = false;
 };
 
@@ -106,8 +104,7 @@ void add_plan(CLI::App& app, int& code) {
       ->required();
   c->add_option("--threads", o.threads, "CPU threads of the run, which its memory depends on")
       ->transform(whole_number(1, 4096));
-  add_overrides(c, o.overrides);
-  add_base_folder(c, o.base_folder);
+  add_scene_options(c, o);
   CLI::Option* resolved =
       c->add_flag("--resolved", o.resolved, "Print the scene with every default filled in");
   CLI::Option* as_json =

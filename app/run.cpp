@@ -14,13 +14,11 @@ namespace pbf::inline app_module {
 namespace fs = std::filesystem;
 namespace {
 
-struct RunOptions {
-  std::string scene;                   ///< path
-  std::string out;                     ///< run folder; empty: out/<scene name>
-  std::string backend, precision;      ///< empty: as the scene says
-  int threads = 0;                     ///< 0: as the scene says
-  std::vector<std::string> overrides;  ///< key.path=value
-  std::string base_folder;
+struct RunOptions : SceneOptions {
+  std::string scene;               ///< path
+  std::string out;                 ///< run folder; empty: out/<scene name>
+  std::string backend, precision;  ///< empty: as the scene says
+  int threads = 0;                 ///< 0: as the scene says
   bool overwrite = false, resume = false, quiet = false;
   bool strict = false;      ///< warnings are errors
   std::string log_json;     ///< path, empty: none
@@ -134,12 +132,9 @@ void add_run(CLI::App& app, int& code) {
        "--out", o.out,
        "Run folder; out/<scene name> when not given, with --resume of a run the one that it is in")
       ->check(not_empty());
-  c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember(words_of<Backend>()));
-  c->add_option("--precision", o.precision, "Of the computation")
-      ->check(CLI::IsMember(words_of<Precision>()));
+  add_backend(c, o.backend, o.precision);
   c->add_option("--threads", o.threads, "CPU threads")->transform(whole_number(1, 4096));
-  add_overrides(c, o.overrides);
-  add_base_folder(c, o.base_folder);
+  add_scene_options(c, o);
   CLI::Option* overwrite =
       c->add_flag("--overwrite", o.overwrite, "Replace the run in an existing folder");
   c->add_flag(
@@ -147,7 +142,7 @@ void add_run(CLI::App& app, int& code) {
        "Go on from the last checkpoint; leave a run that has reached time.end as it is and exit "
        "0, or prolong it to a later time.end; start it when the folder is not there")
       ->excludes(overwrite);
-  c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  add_quiet(c, o.quiet);
   c->add_flag("--strict", o.strict,
               "A warning ends the run with exit 6: before it where the scene gives it, else after "
               "saving");

@@ -18,14 +18,12 @@
 namespace pbf::inline app_module {
 namespace {
 
-struct StabilityCommandOptions {
+struct StabilityCommandOptions : SceneOptions {
   std::vector<std::string> cases;  ///< names or groups, empty: all; with --map: path of the scene
   std::string suite;               ///< empty: the suite that comes with the program
   std::string backend = "cpu", precision = "float";
   bool reduced = false, quiet = false;
-  int jobs = 0;  ///< cases at a time; 0: number of threads, 1 on a device
-  std::vector<std::string> overrides;
-  std::string base_folder;
+  int jobs = 0;            ///< cases at a time; 0: number of threads, 1 on a device
   std::string csv, junit;  ///< paths, empty: none
   std::string map, x, y;   ///< X_KEY,Y_KEY and their values; empty: no map
   StabilityMap settings;   ///< of the map: iterations and limit
@@ -97,10 +95,7 @@ int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int
   Log log(o.quiet);
   const std::vector<StabilityCase> cases = chosen(o);
   for (const StabilityCase& c : cases) note_input(c.scene);  // so that outputs cannot replace it
-  check_output("--csv", o.csv);
-  check_output("--junit", o.junit);
-  if (!o.csv.empty() && !o.junit.empty() && same_output(o.csv, o.junit))
-    throw Error(ExitCode::bad_input, "--csv and --junit name one file: " + o.csv);
+  check_outputs("--csv", o.csv, "--junit", o.junit);
   const Stopwatch watch;
   int code = static_cast<int>(ExitCode::done);
   auto rows = finished(in_parallel<StabilityRow>(
@@ -190,19 +185,16 @@ void add_stability(CLI::App& app, int& code) {
   CLI::Option* suite = c->add_option(
       "--suite", o.suite,
       "Suite file; configs/stability.yaml that comes with the program when not given");
-  c->add_option("--backend", o.backend, "Where to run")->check(CLI::IsMember(words_of<Backend>()));
-  c->add_option("--precision", o.precision, "Of the computation")
-      ->check(CLI::IsMember(words_of<Precision>()));
+  add_backend(c, o.backend, o.precision);
   CLI::Option* reduced =
       c->add_flag("--reduced", o.reduced, "Fewer particles and updates, where the suite says so");
   c->add_option("--jobs", o.jobs, "Cases at once; all CPU threads when not given, 1 on cuda")
       ->transform(whole_number(1, 4096));
-  add_overrides(c, o.overrides);
-  add_base_folder(c, o.base_folder);
+  add_scene_options(c, o);
   c->add_option("--csv", o.csv, "Write the table to this file");
   CLI::Option* junit = c->add_option(
       "--junit", o.junit, "Write the verdicts to this file, as JUnit XML for CI systems");
-  c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  add_quiet(c, o.quiet);
   CLI::Option* map = c->add_option(
       "--map", o.map,
       "X_KEY,Y_KEY: run one scene over values of two of its keys and of solver.iterations, "

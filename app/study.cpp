@@ -16,12 +16,10 @@
 namespace pbf::inline app_module {
 namespace {
 
-struct StudyOptions {
-  std::string study;                   ///< path of the study file
-  std::string out;                     ///< folder; empty: out/study_<name>
-  std::vector<std::string> overrides;  ///< key.path=value, for every run
-  std::string base_folder;
-  int repeats = 0;  ///< 0: as the study says
+struct StudyOptions : SceneOptions {
+  std::string study;  ///< path of the study file
+  std::string out;    ///< folder; empty: out/study_<name>
+  int repeats = 0;    ///< 0: as the study says
   bool list = false, quiet = false;
 };
 
@@ -188,14 +186,14 @@ void add_study(CLI::App& app, int& code) {
   c->add_option("STUDY", o.study, "Study file (YAML)")->required();
   c->add_option("--out", o.out, "Folder of the tables; out/study_<name> when not given")
       ->check(not_empty());
-  add_repeatable(c, "--set", o.overrides,
-                 "Replace one key of the scene in every run, KEY.PATH=VALUE; the study's variants "
-                 "and grid come after it");
-  add_base_folder(c, o.base_folder);
+  add_scene_options(
+      c, o,
+      "Replace one key of the scene in every run, KEY.PATH=VALUE; the study's variants "
+      "and grid come after it");
   c->add_option("--repeats", o.repeats, "Repeats of the timing; as the study says when not given")
       ->transform(whole_number(1, 1000));
   c->add_flag("--list", o.list, "Print the runs and do nothing");
-  c->add_flag("--quiet", o.quiet, "No progress on stderr");
+  add_quiet(c, o.quiet);
 }
 
 }  // namespace pbf::inline app_module

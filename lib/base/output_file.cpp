@@ -138,4 +138,12 @@ bool same_output(const std::string& a, const std::string& b) {
   return !is_stream(a) && !is_stream(b) && place(a) == place(b);
 }
 
+void check_outputs(const std::string& option, const std::string& path, const std::string& other,
+                   const std::string& other_path) {
+  check_output(option, path);
+  check_output(other, other_path);
+  if (!path.empty() && !other_path.empty() && same_output(path, other_path))
+    throw Error(ExitCode::bad_input, option + " and " + other + " name one file: " + path);
+}
+
 }  // namespace pbf::inline base_module

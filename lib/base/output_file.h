@@ -62,4 +62,8 @@ void check_output(const std::string& option, const std::string& path);
 /// Whether two paths name the same file. The files need not exist.
 bool same_output(const std::string& a, const std::string& b);
 
+/// As check_output() for two files, which must not be one: else Error(bad_input).
+void check_outputs(const std::string& option, const std::string& path, const std::string& other,
+                   const std::string& other_path);
+
 }  // namespace pbf::inline base_module
