@@ -154,13 +154,15 @@ class Tracer {
           if (follow) x = rounded(Real(sign * follow->values[row]));
         }
       }
-    if (std::is_integral_v<Scalar> || (amplitude_ == 0 && !follow)) return;
-    for (std::size_t k = 0; k < named.size(); ++k)
-      if (named[k] >= 0) all[std::size_t(named[k])] = v[k];
-    if (shown.row)
-      c_.exec.to_device(all.data(), all.size(), from);
-    else
-      c_.exec.to_device(v.data(), n_, from);
+    if constexpr (!std::is_integral_v<Scalar>) {
+      if (amplitude_ == 0 && !follow) return;
+      for (std::size_t k = 0; k < named.size(); ++k)
+        if (named[k] >= 0) all[std::size_t(named[k])] = v[k];
+      if (shown.row)
+        c_.exec.to_device(all.data(), all.size(), from);
+      else
+        c_.exec.to_device(v.data(), n_, from);
+    }
   }
   /// The array of the other trace that corresponds to `mine`, or null.
   const TraceArray* followed(const TraceArray& mine) {
