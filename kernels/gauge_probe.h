@@ -83,4 +83,11 @@ struct ProbePass {
   }
 };
 
+/// The pass of gauges at a reading: overloads by the type of their sites.
+template <class Real>
+ProbePass<Real> gauge_pass(const Probe* probe, int probes, const Vec4<Real>* position,
+                           const Vec4<Real>* velocity, double update_dt, ProbeSums* sums) {
+  return {probe, probes, position, velocity, update_dt, sums};
+}
+
 }  // namespace pbf::inline PBF_VARIANT

@@ -1,41 +1,84 @@
-// The gauges of a scene in the form that the kernels use.
+// The gauges of a scene in the form that the kernels use. A kind of gauges (lib/program/gauges/) is
+// a struct made from its keys, with
+//   site            what the kernels know of it, plain data in the internal frame
+//   Sums, sums()    type and number of the sums behind a reading; how they are made follows from
+//   the
+//                   type: FlowCount at the end of updates, Load with the loads of walls, any other
+//                   at a reading by gauge_pass() (kernels/gauge_probe.h)
+//   finish()        the numbers of a reading from the sums, in SI units
+//   grains          of its columns
+//   place()         where it is, for readers of the run file
 #pragma once
 
+#include <type_traits>
+#include <variant>
 #include <vector>
 
-#include "kernels/axes.h"
-#include "kernels/boundary/obstacle.h"
-#include "kernels/boundary/patch.h"
-#include "kernels/gauge_probe.h"
-#include "kernels/pass_flow.h"
-#include "lib/scene/scene.h"
+// clang-format off
+#define PBF_GAUGE_FILE(name) PBF_GAUGE_TEXT(lib/program/gauges/name.h)
+// clang-format on
+#include "lib/scene/gauges/list.h"
 
 namespace pbf::inline program_module {
 
-/// The interval between two sample points of a level gauge.
-struct LevelPiece {
-  double from = 0, to = 1;  ///< the part of it outside of obstacles, as fractions
-};
+namespace gauge_kinds {
+using Any = std::variant<PBF_GAUGES>;
+}  // namespace gauge_kinds
 
-/// Where fluid can be along a level gauge (lib/solver/gauge_readings.h).
-struct LevelLine {
-  std::vector<double> room;        ///< at each point, the share of the kernel outside of solids
-  std::vector<LevelPiece> pieces;  ///< between the points
-};
+/// Whether sums are made by a pass over the particles at a reading.
+template <class Sums>
+inline constexpr bool is_probe = !std::is_same_v<Sums, FlowCount> && !std::is_same_v<Sums, Load>;
 
-/// Each list in the order of its gauges in the scene.
+/// In the order of the scene.
 struct GaugePlan {
-  std::vector<Probe> probes;     ///< of level and velocity gauges
-  std::vector<LevelLine> lines;  ///< of level gauges
-  std::vector<FlowGate> gates;
-  std::vector<Patch> patches;
-  std::vector<double> areas;  ///< m^2, integral of patch_share() over the surface of each patch
-  int places = 0;             ///< sample points of all probes
-  double weight = 0;          ///< ProbeSums::weight times this is the volume fraction of fluid
+  std::vector<gauge_kinds::Any> all;
+
+  /// Calls f(gauge, number) for those with sums of this type; number: of the first number of its
+  /// reading among those of all gauges, whose number is returned.
+  template <class Sums, class F>
+  std::size_t for_each(F&& f) const {
+    std::size_t number = 0;
+    for (const gauge_kinds::Any& any : all)
+      std::visit(
+          [&]<class Kind>(const Kind& gauge) {
+            if constexpr (std::is_same_v<typename Kind::Sums, Sums>) f(gauge, number);
+            for (const GaugeColumn& c : Kind::Keys::columns) number += std::size_t(c.components);
+          },
+          any);
+    return number;
+  }
+  /// Of a reading of all gauges.
+  std::size_t numbers() const {
+    return for_each<void>([](const auto&, std::size_t) {});
+  }
+  /// Of all gauges with the sums of this kind.
+  template <class Kind>
+  auto sites() const {
+    std::vector<decltype(Kind::site)> out;
+    for_each<typename Kind::Sums>(
+        [&](const auto& gauge, std::size_t) { out.push_back(gauge.site); });
+    return out;
+  }
+  /// Number of sums of a type.
+  template <class Sums>
+  int sums() const {
+    int n = 0;
+    for_each<Sums>([&](const auto& gauge, std::size_t) { n += gauge.sums(); });
+    return n;
+  }
+  /// Puts the numbers of the gauges with these sums to their places among the readings of all.
+  template <class Sums>
+  void finish(const std::vector<Sums>& sums, std::vector<double>& readings) const {
+    const Sums* next = sums.data();
+    for_each<Sums>([&](const auto& gauge, std::size_t number) {
+      gauge.finish(next, &readings[number]);
+      next += gauge.sums();
+    });
+  }
 };
 
-/// `solids`: Plan::solids; `mass`: kg, of one particle.
+/// `force_grain`: load_grain() (lib/program/loads.h).
 GaugePlan plan_gauges(const Scene& scene, const Axes& axes,
-                      const std::vector<Solid<double>>& solids, double mass);
+                      const std::vector<Solid<double>>& solids, double mass, double force_grain);
 
 }  // namespace pbf::inline program_module

@@ -209,7 +209,8 @@ double short_number(double value) { return std::strtod(format("%.9g", value).c_s
 }  // namespace
 
 std::string measure_json(const Diagnostics& m, double wall, std::int64_t frames,
-                         const std::vector<StageTime>& stages) {
+                         const std::vector<StageTime>& stages,
+                         const std::vector<ReadingColumn>& columns) {
   Json out{{"update", m.update},
            {"time", short_number(m.time)},
            {"wall", short_number(wall)},
@@ -222,9 +223,11 @@ std::string measure_json(const Diagnostics& m, double wall, std::int64_t frames,
     else
       out[name] = value;
   }
-  for (const WallLoad& l : m.loads)
-    for (const LoadNumber& n : load_numbers())
-      out["loads"][l.wall][n.name] = short_number(n.value(l));
+  for_each_number(columns, Series::measures,
+                  [&](const ReadingColumn& c, int component, std::size_t k) {
+                    out[c.kind + std::string("s")][c.of][number_name(c, component)] =
+                        short_number(m.readings[k]);
+                  });
   Json& times = out["stages"] = Json::object();
   for (const StageTime& s : stages) times[s.name] = short_number(s.seconds);
   return json_text(out);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -110,11 +111,6 @@ Block optional_block(const char* member, Member& (*get)(const Object&), const ch
   (traits(block), ...);
   return block;
 }
-/// Adds the row of a key of some shapes of obstacles. One of that path becomes the row of their
-/// shapes too, and reads whichever shape an obstacle has. y of two numbers may be that of the plane
-/// for the later shapes alone; Error(internal) where they differ in anything else.
-void add_shape_row(std::vector<Key>& rows, Key row);
-
 inline void on_by_default(Block& block) { block.on_by_default = true; }
 
 /// A block that is a std::vector of structs. `list`: the texts of List.
@@ -130,6 +126,67 @@ Block list_block(const char* member, std::vector<Entry>& (*get)(const Object&), 
   block.list = std::move(list);
   (traits(block), ...);
   return block;
+}
+
+// The rows of entries that are of one of several kinds; `held`: the variant (lib/scene/kinds.h).
+
+/// The row of the word that decides which other keys an entry has.
+template <class Entry, class Any>
+Key kind_row(const char* path, const std::string& help, Any Entry::*held) {
+  Key row{path, help, [held](const Object& holder) -> Field {
+            Any& kind = std::any_cast<Entry*>(holder)->*held;
+            return ChoiceField{address_of_word(kind), [&kind] { return int(kind.index()); },
+                               [&kind](int wanted) {
+                                 if (wanted == int(kind.index())) return;
+                                 int k = 0;
+                                 for_each_kind<Any>([&](const auto& keys) {
+                                   if (k++ == wanted) kind = keys;
+                                 });
+                               }};
+          }};
+  for_each_kind<Any>([&](const auto& keys) { row.choices.push_back(keys.word); });
+  required(row), is_kind(row);
+  return row;
+}
+
+/// The row of a key of the kind with this bit. For an entry of another kind, reads give the default
+/// and writes are lost.
+template <class Kind, class Entry, class Any, class Member, class Holder>
+Key row_of(const std::string& entry, Any Entry::*held, const KindKey<Member, Holder>& key,
+           unsigned bit) {
+  Key row{entry + "." + key.name, key.help,
+          [held, member = key.member](const Object& holder) -> Field {
+            if (Kind* kind = std::get_if<Kind>(&(std::any_cast<Entry*>(holder)->*held)))
+              return &(kind->*member);
+            static thread_local Kind standard;
+            standard = {};
+            return &(standard.*member);
+          }};
+  if constexpr (!std::is_same_v<Member, std::string>) number(key.unit, key.range)(row);
+  row.most = key.most, row.required = key.required, row.kinds = bit, row.flat = key.flat;
+  row.by_center = key.by_center;
+  return row;
+}
+
+/// Adds the row of a key of some kinds. One of that path becomes the row of their kinds too, and
+/// reads whichever kind an entry has (`index_of`: its index). y of two numbers may be that of the
+/// plane for the later kinds alone; Error(internal) where they differ in anything else.
+void add_kind_row(std::vector<Key>& rows, Key row,
+                  std::function<std::size_t(const Object&)> index_of);
+
+/// Adds the rows of all kinds for which wanted(kind).
+template <class Entry, class Any, class Wanted>
+void add_kind_rows(std::vector<Key>& rows, const std::string& entry, Any Entry::*held,
+                   const Wanted& wanted) {
+  unsigned bit = 1;
+  for_each_kind<Any>([&]<class Kind>(const Kind& kind) {
+    const auto add = [&](const auto& key) {
+      add_kind_row(rows, row_of<Kind>(entry, held, key, bit),
+                   [held](const Object& o) { return (std::any_cast<Entry*>(o)->*held).index(); });
+    };
+    if (wanted(kind)) std::apply([&](const auto&... key) { (add(key), ...); }, Kind::keys());
+    bit *= 2;
+  });
 }
 
 }  // namespace pbf::inline scene_module

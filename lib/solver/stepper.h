@@ -12,6 +12,7 @@
 #include "lib/program/plan.h"
 #include "lib/solver/compression_percentile.h"
 #include "lib/solver/executor.h"
+#include "lib/solver/gauge_probes.h"
 #include "lib/solver/granted.h"
 #include "lib/solver/params.h"
 #include "lib/solver/stage_check.h"
@@ -39,6 +40,7 @@ class Stepper {
       c_.factors.push_back(
           Real(plan.sor * (plan.sor_factors.empty() ? 1 : plan.sor_factors[std::size_t(k)])));
     c_.gauges.make(exec, plan.gauges);
+    probes_.make(exec, plan.gauges);
     c_.make(plan.program.fields, position, velocity, id, scene, plan,
             std::max(scene.solver.iterations, 1) * (1 + plan.shape().repeats));
     find_pairs();
@@ -119,22 +121,22 @@ class Stepper {
     sides_are_current_ = true;
   }
 
-  /// Sums of the present positions and velocities, and since the last call with Interval::ends.
-  GaugeSums gauges(double update_dt, Interval interval) {
+  /// Readings of the gauges; means since the last call with Interval::ends.
+  std::vector<double> gauges(double update_dt, Interval interval) {
     c_.exec.begin();
-    GaugeSums sums;
-    sums.places = c_.gauges.at_places(c_, update_dt);
+    std::vector<double> readings(plan_.gauges.numbers());
+    probes_.read(c_, plan_.gauges, update_dt, readings);
     const int patches = int(c_.gauges.patch.size());
-    sums.patches = loads(c_.state().walls - patches, patches, interval);
-    sums.flows.resize(c_.gauges.flow.size());
-    c_.exec.to_host(c_.gauges.flow.data(), sums.flows.size(), sums.flows.data());
+    plan_.gauges.finish(loads(c_.state().walls - patches, patches, interval), readings);
+    std::vector<FlowCount> flows(c_.gauges.flow.size());
+    c_.exec.to_host(c_.gauges.flow.data(), flows.size(), flows.data());
+    plan_.gauges.finish(flows, readings);
     if (interval == Interval::ends) {
-      std::vector<FlowCount> next = sums.flows;
-      for (FlowCount& f : next) f.since = 0, f.time = 0;
-      c_.exec.to_device(next.data(), next.size(), c_.gauges.flow.data());
+      for (FlowCount& f : flows) f.since = 0, f.time = 0;
+      c_.exec.to_device(flows.data(), flows.size(), c_.gauges.flow.data());
     }
     c_.exec.mark("measure");
-    return sums;
+    return readings;
   }
 
   /// A state with positions only.
@@ -296,6 +298,7 @@ class Stepper {
 
   const Plan& plan_;
   StepContext<Real, Exec> c_;
+  GaugeProbes<Exec> probes_;
   std::uint64_t residual_limit_;
   const Program* program_;
   bool density_is_current_ = false;

@@ -40,7 +40,7 @@ struct Gauges {
   template <class B>
   static void add(const Scene& s, B& b) {
     if (s.gauges.empty()) return b.left_out("gauges", "no key gauges");
-    const auto flow = [](const Gauge& g) { return g.kind == GaugeKind::flow; };
+    const auto flow = [](const Gauge& g) { return bool(std::get_if<gauge_keys::Flow>(&g.kind)); };
     if (std::any_of(s.gauges.begin(), s.gauges.end(), flow)) b.template end<CountFlow>();
   }
 };
