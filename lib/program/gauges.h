@@ -10,6 +10,7 @@
 //   place()         where it is, for readers of the run file
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
 #include <variant>
 #include <vector>
@@ -29,19 +30,30 @@ using Any = std::variant<PBF_GAUGES>;
 template <class Sums>
 inline constexpr bool is_probe = !std::is_same_v<Sums, FlowCount> && !std::is_same_v<Sums, Load>;
 
+/// Whether the scene has gauges with sums of a type.
+template <class Sums>
+bool has_gauges(const Scene& scene) {
+  return [&]<class... Kind>(const std::variant<Kind...>*) {
+    constexpr bool has[] = {std::is_same_v<typename Kind::Sums, Sums>...};
+    return std::ranges::any_of(scene.gauges, [&](const Gauge& g) { return has[g.kind.index()]; });
+  }(static_cast<const gauge_kinds::Any*>(nullptr));
+}
+
 /// In the order of the scene.
 struct GaugePlan {
   std::vector<gauge_kinds::Any> all;
 
-  /// Calls f(gauge, number) for those with sums of this type; number: of the first number of its
-  /// reading among those of all gauges, whose number is returned.
-  template <class Sums, class F>
+  /// Calls f(gauge, number) for those with sums or sites of this type; number: of the first number
+  /// of its reading among those of all gauges, whose number is returned.
+  template <class T, class F>
   std::size_t for_each(F&& f) const {
     std::size_t number = 0;
     for (const gauge_kinds::Any& any : all)
       std::visit(
           [&]<class Kind>(const Kind& gauge) {
-            if constexpr (std::is_same_v<typename Kind::Sums, Sums>) f(gauge, number);
+            if constexpr (std::is_same_v<typename Kind::Sums, T> ||
+                          std::is_same_v<decltype(Kind::site), T>)
+              f(gauge, number);
             for (const GaugeColumn& c : Kind::Keys::columns) number += std::size_t(c.components);
           },
           any);
@@ -51,12 +63,10 @@ struct GaugePlan {
   std::size_t numbers() const {
     return for_each<void>([](const auto&, std::size_t) {});
   }
-  /// Of all gauges with the sums of this kind.
-  template <class Kind>
-  auto sites() const {
-    std::vector<decltype(Kind::site)> out;
-    for_each<typename Kind::Sums>(
-        [&](const auto& gauge, std::size_t) { out.push_back(gauge.site); });
+  template <class Site>
+  std::vector<Site> sites() const {
+    std::vector<Site> out;
+    for_each<Site>([&](const auto& gauge, std::size_t) { out.push_back(gauge.site); });
     return out;
   }
   /// Number of sums of a type.

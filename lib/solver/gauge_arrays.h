@@ -20,9 +20,9 @@ struct GaugeArrays {
       buffer.resize(from.size());
       exec.to_device(from.data(), from.size(), buffer.data());
     };
-    fill(gate, plan.sites<gauge_kinds::Flow>());
+    fill(gate, plan.sites<FlowGate>());
     fill(flow, std::vector<FlowCount>(gate.size()));
-    fill(patch, plan.sites<gauge_kinds::Pressure>());
+    fill(patch, plan.sites<Patch>());
   }
 };
 

@@ -23,7 +23,7 @@ class GaugeProbes<Exec, std::variant<Kind...>> : KindProbes<Exec, Kind>... {
  public:
   void make(Exec& exec, const GaugePlan& plan) {
     for_each([&]<class K>(KindProbes<Exec, K>& k) {
-      const auto sites = plan.sites<K>();
+      const auto sites = plan.sites<decltype(K::site)>();
       k.site.resize(sites.size());
       exec.to_device(sites.data(), sites.size(), k.site.data());
       k.sums.resize(std::size_t(plan.sums<typename K::Sums>()));

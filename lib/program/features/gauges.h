@@ -1,10 +1,9 @@
 // Gauges: flow is counted at the end of each update. Pressure is computed with the loads; level and
-// velocity are computed only when they are read (lib/solver/gauge_arrays.h).
+// velocity are computed only when they are read (lib/solver/gauge_probes.h).
 #pragma once
 
-#include <algorithm>
-
 #include "kernels/pass_flow.h"
+#include "lib/program/gauges.h"
 #include "lib/program/pass.h"
 #include "lib/scene/scene.h"
 
@@ -40,8 +39,7 @@ struct Gauges {
   template <class B>
   static void add(const Scene& s, B& b) {
     if (s.gauges.empty()) return b.left_out("gauges", "no key gauges");
-    const auto flow = [](const Gauge& g) { return bool(std::get_if<gauge_keys::Flow>(&g.kind)); };
-    if (std::any_of(s.gauges.begin(), s.gauges.end(), flow)) b.template end<CountFlow>();
+    if (has_gauges<FlowCount>(s)) b.template end<CountFlow>();
   }
 };
 

@@ -5,8 +5,7 @@
 #include "lib/program/gauge_frame.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline program_module {
-namespace gauge_kinds {
+namespace pbf::inline program_module::gauge_kinds {
 
 struct Flow {
   using Keys = gauge_keys::Flow;
@@ -52,5 +51,4 @@ struct Flow {
   }
 };
 
-}  // namespace gauge_kinds
-}  // namespace pbf::inline program_module
+}  // namespace pbf::inline program_module::gauge_kinds

@@ -4,8 +4,7 @@
 #include "kernels/gauge_probe.h"
 #include "lib/program/gauge_frame.h"
 
-namespace pbf::inline program_module {
-namespace gauge_kinds {
+namespace pbf::inline program_module::gauge_kinds {
 
 struct Level {
   using Keys = gauge_keys::Level;
@@ -27,5 +26,4 @@ struct Level {
   void finish(const ProbeSums* sums, double* out) const;
 };
 
-}  // namespace gauge_kinds
-}  // namespace pbf::inline program_module
+}  // namespace pbf::inline program_module::gauge_kinds

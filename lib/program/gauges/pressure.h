@@ -4,8 +4,7 @@
 #include "kernels/boundary/loads.h"
 #include "lib/program/gauge_frame.h"
 
-namespace pbf::inline program_module {
-namespace gauge_kinds {
+namespace pbf::inline program_module::gauge_kinds {
 
 struct Pressure {
   using Keys = gauge_keys::Pressure;
@@ -27,5 +26,4 @@ struct Pressure {
   }
 };
 
-}  // namespace gauge_kinds
-}  // namespace pbf::inline program_module
+}  // namespace pbf::inline program_module::gauge_kinds

@@ -6,8 +6,7 @@
 #include "kernels/gauge_probe.h"
 #include "lib/program/gauge_frame.h"
 
-namespace pbf::inline program_module {
-namespace gauge_kinds {
+namespace pbf::inline program_module::gauge_kinds {
 
 struct Velocity {
   using Keys = gauge_keys::Velocity;
@@ -35,5 +34,4 @@ struct Velocity {
   }
 };
 
-}  // namespace gauge_kinds
-}  // namespace pbf::inline program_module
+}  // namespace pbf::inline program_module::gauge_kinds

@@ -3,8 +3,7 @@
 
 #include "lib/scene/gauges/keys.h"
 
-namespace pbf::inline scene_module {
-namespace gauge_keys {
+namespace pbf::inline scene_module::gauge_keys {
 
 struct Flow {
   static constexpr const char* word = "flow";
@@ -46,5 +45,4 @@ struct Flow {
   }
 };
 
-}  // namespace gauge_keys
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::inline scene_module::gauge_keys

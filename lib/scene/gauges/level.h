@@ -3,8 +3,7 @@
 
 #include "lib/scene/gauges/keys.h"
 
-namespace pbf::inline scene_module {
-namespace gauge_keys {
+namespace pbf::inline scene_module::gauge_keys {
 
 struct Level {
   static constexpr const char* word = "level";
@@ -33,5 +32,4 @@ struct Level {
   }
 };
 
-}  // namespace gauge_keys
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::inline scene_module::gauge_keys

@@ -3,8 +3,7 @@
 
 #include "lib/scene/gauges/keys.h"
 
-namespace pbf::inline scene_module {
-namespace gauge_keys {
+namespace pbf::inline scene_module::gauge_keys {
 
 struct Pressure {
   static constexpr const char* word = "pressure";
@@ -29,5 +28,4 @@ struct Pressure {
   void check(auto& rules) const { rules.check_disc(at, on, radius); }
 };
 
-}  // namespace gauge_keys
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::inline scene_module::gauge_keys

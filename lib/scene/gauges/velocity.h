@@ -3,8 +3,7 @@
 
 #include "lib/scene/gauges/keys.h"
 
-namespace pbf::inline scene_module {
-namespace gauge_keys {
+namespace pbf::inline scene_module::gauge_keys {
 
 struct Velocity {
   static constexpr const char* word = "velocity";
@@ -22,5 +21,4 @@ struct Velocity {
   }
 };
 
-}  // namespace gauge_keys
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::inline scene_module::gauge_keys
