@@ -5,6 +5,11 @@ find_package(HDF5 REQUIRED COMPONENTS C)
 find_package(yaml-cpp REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(fmt 9 QUIET)
+if(NOT fmt_FOUND)
+  message(FATAL_ERROR "{fmt} 9 or later, which formats the texts of the program, was not found: "
+                      "install libfmt-dev (tools/setup does), or pass -Dfmt_ROOT=FOLDER")
+endif()
 
 add_library(pbf_dependencies INTERFACE)
 if(TARGET yaml-cpp::yaml-cpp)  # 0.8 and later
@@ -39,6 +44,11 @@ else()
 endif()
 pbf_link(hdf5::hdf5 hdf5 sz aec z)
 pbf_link(${PBF_YAML} yaml-cpp)
+if(PBF_STATIC)  # Debian has no libfmt.a
+  target_link_libraries(pbf_dependencies INTERFACE fmt::fmt-header-only)
+else()
+  target_link_libraries(pbf_dependencies INTERFACE fmt::fmt)
+endif()
 if(PBF_RENDER)
   find_package(PNG REQUIRED)
   pbf_link(PNG::PNG png z)

@@ -2,7 +2,7 @@
 # The commit is looked up at build time; the header changes, and one source recompiles, only when
 # the commit does.
 find_package(Git QUIET)
-foreach(lib IN ITEMS HDF5 yaml-cpp CLI11 nlohmann_json PNG)
+foreach(lib IN ITEMS HDF5 yaml-cpp CLI11 nlohmann_json fmt PNG)
   string(MAKE_C_IDENTIFIER "PBF_VERSION_${lib}" var)
   set(${var} "${${lib}_VERSION}")
 endforeach()

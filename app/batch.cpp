@@ -1,5 +1,6 @@
 // pbf batch: many scenes, each in its own process and folder. Finished runs are skipped, stopped or
 // killed ones continue.
+#include <fmt/core.h>
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -14,7 +15,6 @@
 #include "lib/base/output_file.h"
 #include "lib/base/own_file.h"
 #include "lib/base/stage_clock.h"
-#include "lib/base/text.h"
 #include "lib/campaign/batch_check.h"
 #include "lib/campaign/batch_jobs.h"
 #include "lib/campaign/batch_list.h"
@@ -86,9 +86,9 @@ std::string script(const BatchOptions& o, const std::string& out,
 }
 
 std::string list_text(const std::vector<BatchMember>& members) {
-  std::string text = format("%zu runs", members.size());
+  std::string text = fmt::format("{} runs", members.size());
   for (std::size_t k = 0; k < members.size(); ++k)
-    text += format("\n  %3zu  ", k) + members[k].name + "  (" + members[k].scene + ")";
+    text += fmt::format("\n  {:3}  {}  ({})", k, members[k].name, members[k].scene);
   return text;
 }
 
@@ -128,8 +128,8 @@ class Batch {
       failed += end.code != 0 && !resumable(end.code);
     }
     const std::size_t open = members_.size() - finished - failed;
-    log_.result(format("%zu runs: %zu finished, %zu failed, %zu to go on with; %s/summary.csv",
-                       members_.size(), finished, failed, open, out_.c_str()));
+    log_.result(fmt::format("{} runs: {} finished, {} failed, {} to go on with; {}/summary.csv",
+                            members_.size(), finished, failed, open, out_));
     if (open > 0) log_.note("pbf: the same command goes on from there");
     return static_cast<int>(open > 0     ? ExitCode::resumable
                             : failed > 0 ? ExitCode::difference
@@ -177,15 +177,16 @@ class Batch {
     if (o_.strict) args.push_back("--strict");
     if (threads_ > 0) args.insert(args.end(), {"--threads", std::to_string(threads_)});
     if (o_.max_walltime > 0)
-      args.insert(args.end(), {"--max-walltime",
-                               format("%.3f", std::max(0.001, o_.max_walltime - wall_.seconds()))});
+      args.insert(args.end(),
+                  {"--max-walltime",
+                   fmt::format("{:.3f}", std::max(0.001, o_.max_walltime - wall_.seconds()))});
     return args;
   }
 
   void ended(const BatchMember& m, const JobEnd& end) {
     ends_[m.name] = end;
     std::string line =
-        format("[%zu/%zu] ", ends_.size(), members_.size()) + m.name + ": " + exit_reason(end.code);
+        fmt::format("[{}/{}] {}: {}", ends_.size(), members_.size(), m.name, exit_reason(end.code));
     if (!end.message.empty()) line += ": " + end.message;
     log_.note(line);
   }
@@ -217,8 +218,8 @@ int command_batch(const BatchOptions& o) {
     return 0;
   }
   if (o.only >= std::int64_t(members.size()))
-    throw Error(ExitCode::bad_input, format("--only %ld: the runs are counted from 0 to %zu",
-                                            o.only, members.size() - 1));
+    throw Error(ExitCode::bad_input, fmt::format("--only {}: the runs are counted from 0 to {}",
+                                                 o.only, members.size() - 1));
   const bool one = o.only >= 0;  // a task of an array: no summary, others write beside it
   if (!one && !o.collect) {
     std::vector<std::string> overrides = o.overrides;

@@ -1,10 +1,10 @@
 #include "app/batch_slurm.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <regex>
 
 #include "lib/base/error.h"
-#include "lib/base/text.h"
 
 namespace pbf::inline app_module {
 namespace {
@@ -38,18 +38,18 @@ long slurm_seconds(const std::string& text) {
 
 std::string slurm_script(const SlurmWishes& w) {
   const long lead = std::min(kLead, slurm_seconds(w.time) / 2);
-  return format(
+  return fmt::format(
              "#!/bin/bash\n"
              "#SBATCH --job-name=pbf\n"
-             "#SBATCH --array=0-%zu\n"
-             "#SBATCH --cpus-per-task=%d\n"
-             "#SBATCH --mem=%ldM\n"
-             "#SBATCH --time=%s\n"
-             "%s"
-             "#SBATCH --signal=TERM@%ld\n"
+             "#SBATCH --array=0-{}\n"
+             "#SBATCH --cpus-per-task={}\n"
+             "#SBATCH --mem={}M\n"
+             "#SBATCH --time={}\n"
+             "{}"
+             "#SBATCH --signal=TERM@{}\n"
              "#SBATCH --requeue\n"
              "#SBATCH --open-mode=append\n",
-             w.runs - 1, w.threads, memory(w.needs), w.time.c_str(),
+             w.runs - 1, w.threads, memory(w.needs), w.time,
              w.needs.device ? "#SBATCH --gres=gpu:1\n" : "", lead) +
          "# Add what your cluster needs (--partition, --account), then: bash FILE\n"
          "# It submits the array, and a job that writes the summary when all tasks have ended.\n"

@@ -1,4 +1,5 @@
 // pbf bench: time per update over sizes, backends, precisions and threads.
+#include <fmt/core.h>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -7,7 +8,6 @@
 #include "lib/base/error.h"
 #include "lib/base/log.h"
 #include "lib/base/stages.h"
-#include "lib/base/text.h"
 #include "lib/base/version.h"
 #include "lib/campaign/bench.h"
 #include "lib/campaign/calibration.h"
@@ -82,13 +82,13 @@ std::vector<Column<BenchRow>> columns() {
 }
 
 std::string line(const BenchRow& r) {
-  std::string out = format(
-      "%-12s %-4s %-6s %3d %10ld %-5s %10.4f ms (%.4f..%.4f) %8.4f us/particle", r.scene.c_str(),
-      r.solver.backend.c_str(), r.solver.precision.c_str(), r.solver.threads, r.particles,
-      r.state.c_str(), r.ms_median, r.ms_min, r.ms_max, r.ms_median * 1e3 / double(r.particles));
-  out += format("  nbrs %.1f/%ld  %.0f B/particle ", r.measures.neighbors_mean,
-                r.measures.neighbors_max, double(r.solver.bytes) / double(r.particles));
-  for (const StageTime& s : r.stages) out += format(" %s %.4f", s.name.c_str(), s.seconds * 1e3);
+  std::string out = fmt::format(
+      "{:12} {:4} {:6} {:3} {:10} {:5} {:10.4f} ms ({:.4f}..{:.4f}) {:8.4f} us/particle", r.scene,
+      r.solver.backend, r.solver.precision, r.solver.threads, r.particles, r.state, r.ms_median,
+      r.ms_min, r.ms_max, r.ms_median * 1e3 / double(r.particles));
+  out += fmt::format("  nbrs {:.1f}/{}  {:.0f} B/particle ", r.measures.neighbors_mean,
+                     r.measures.neighbors_max, double(r.solver.bytes) / double(r.particles));
+  for (const StageTime& s : r.stages) out += fmt::format(" {} {:.4f}", s.name, s.seconds * 1e3);
   return out;
 }
 
@@ -99,8 +99,8 @@ std::string forecast(const BenchOptions& o, std::size_t cases) {
   const auto most = *std::max_element(o.particles.begin(), o.particles.end());
   const double seconds = double(most) * updates / 2e6;
   if (seconds < 3) return "";
-  return format(
-      "pbf: %zu case%s of %d updates; the largest, %ld particles, takes about %.2g s at 2 million "
+  return fmt::format(
+      "pbf: {} case{} of {} updates; the largest, {} particles, takes about {:.2g} s at 2 million "
       "particles and updates a second (one CPU thread; GPUs are hundreds of times as fast)",
       cases, cases == 1 ? "" : "s", updates, most, seconds);
 }

@@ -1,6 +1,7 @@
 // Runs independent work on several threads, with progress, until a signal ends it.
 #pragma once
 
+#include <fmt/core.h>
 #include <atomic>
 #include <exception>
 #include <mutex>
@@ -37,9 +38,8 @@ std::vector<std::optional<Row>> in_parallel(std::size_t n, int jobs, Log& log, c
           next = n;
           return;
         }
-        log.progress(
-            format("%zu of %zu %s, %s", ++done, n, what, duration_text(watch.seconds()).c_str()) +
-            name(*row));
+        log.progress(fmt::format("{} of {} {}, {}{}", ++done, n, what,
+                                 duration_text(watch.seconds()), name(*row)));
         rows[k] = std::move(row);
       } catch (...) {
         const std::lock_guard lock(mutex);

@@ -1,4 +1,6 @@
 // pbf info: this build and this machine.
+#include <fmt/core.h>
+
 #include "app/commands.h"
 #include "lib/base/log.h"
 #include "lib/base/machine.h"
@@ -15,7 +17,7 @@ int command_info() {
   const BuildInfo b = build_info();
   std::string text = "pbf " + b.version + "\n";
   const auto line = [&](const std::string& name, const std::string& value) {
-    text += format("%-12s ", name.c_str()) + value + "\n";
+    text += fmt::format("{:12} {}\n", name, value);
   };
   std::string usable;
   for (const Simd simd : usable_simd()) usable.append(" ").append(simd_name(simd));

@@ -1,4 +1,5 @@
 // pbf render: pictures from the frames of a run file.
+#include <fmt/core.h>
 #include <filesystem>
 
 #include "app/commands.h"
@@ -8,7 +9,6 @@
 #include "lib/base/log.h"
 #include "lib/base/output_file.h"
 #include "lib/base/stage_clock.h"
-#include "lib/base/text.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_path.h"
 #include "lib/run/load_run.h"
@@ -40,9 +40,10 @@ std::string meaning(const View& view, std::array<double, 2> quantiles, const std
     case ColorBy::speed:
       return "speed in m/s, " + are;
     case ColorBy::density:
-      return format("density in kg/m^3, as far below as above the rest density %.6g; ",
-                    view.rest_density) +
-             are + format(" are %.6g and %.6g", quantiles[0], quantiles[1]);
+      return fmt::format(
+          "density in kg/m^3, as far below as above the rest density {:.6g}; {} are {:.6g} and "
+          "{:.6g}",
+          view.rest_density, are, quantiles[0], quantiles[1]);
     case ColorBy::compression:
       return "compression as a share (0.01 is 1 %), " + are;
     case ColorBy::id:
@@ -57,19 +58,19 @@ void take_quantiles(View& view, const RunReader& reader, const std::vector<std::
   QuantileRange values(view, particles * static_cast<std::int64_t>(frames.size()));
   for (const std::int64_t k : frames) values.add(reader.frame(k));
   const std::array<double, 2> quantiles = values.between(0.01, 0.99);
-  const std::string taken = values.stride() == 1 ? ""
-                                                 : format(", of every %ldth particle",
-                                                          static_cast<long>(values.stride()));
+  const std::string taken =
+      values.stride() == 1 ? "" : fmt::format(", of every {}th particle", values.stride());
   const BarRange bar = bar_range(view, quantiles);
   if (bar.ends[0] < bar.ends[1]) {
     view.range = bar.ends;
     log.note("range " + bar.text + ": " +
              meaning(view, quantiles,
-                     format("of %zu frame%s%s", frames.size(), frames.size() == 1 ? "" : "s",
-                            taken.c_str())));
+                     fmt::format("of {} frame{}{}", frames.size(), frames.size() == 1 ? "" : "s",
+                                 taken)));
   } else {
-    log.note(format("range %.9g,%.9g, the scene's own: all values of the frames chosen are %.9g%s",
-                    view.range[0], view.range[1], quantiles[0], taken.c_str()));
+    log.note(fmt::format(
+        "range {:.9g},{:.9g}, the scene's own: all values of the frames chosen are {:.9g}{}",
+        view.range[0], view.range[1], quantiles[0], taken));
   }
 }
 
@@ -96,15 +97,16 @@ int command_render(const RenderOptions& options) {
   View view = view_of(scene, info.particles);
   if (by_quantile(options)) take_quantiles(view, reader, frames, info.particles, log);
   Renderer renderer(view);
-  log.note(format("%zu picture%s of %dx%d with %s", frames.size(), frames.size() == 1 ? "" : "s",
-                  view.size[0], view.size[1], renderer.backend().c_str()));
+  log.note(fmt::format("{} picture{} of {}x{} with {}", frames.size(),
+                       frames.size() == 1 ? "" : "s", view.size[0], view.size[1],
+                       renderer.backend()));
   for (const std::int64_t k : frames) {
-    const std::string file = (folder / format("frame_%06ld.png", k)).string();
+    const std::string file = (folder / fmt::format("frame_{:06}.png", k)).string();
     check_output("--out", file);
     Stopwatch watch;
     const Snapshot snapshot = reader.frame(k);
     write_png(file, renderer.draw(snapshot));
-    log.result(format("%s  t = %.6g s  (%.2f s)", file.c_str(), snapshot.time, watch.seconds()));
+    log.result(fmt::format("{}  t = {:.6g} s  ({:.2f} s)", file, snapshot.time, watch.seconds()));
   }
   return 0;
 }

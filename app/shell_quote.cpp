@@ -1,8 +1,7 @@
 #include "app/shell_quote.h"
 
+#include <fmt/core.h>
 #include <algorithm>
-
-#include "lib/base/text.h"
 
 namespace pbf::inline app_module {
 
@@ -15,7 +14,7 @@ std::string shell_quoted(const std::string& text) {
   std::string out = escaped ? "$'" : "'";
   for (const char c : text) {
     if (control(c))
-      out += format("\\%03o", static_cast<unsigned>(static_cast<unsigned char>(c)));
+      out += fmt::format("\\{:03o}", static_cast<unsigned>(static_cast<unsigned char>(c)));
     else if (escaped && (c == '\'' || c == '\\'))
       out += std::string("\\") + c;
     else if (c == '\'')

@@ -1,4 +1,5 @@
 // pbf stability: the suite of stiff and extreme cases, and maps over two scene keys.
+#include <fmt/core.h>
 #include <algorithm>
 
 #include "app/commands.h"
@@ -9,7 +10,6 @@
 #include "lib/base/log.h"
 #include "lib/base/machine.h"
 #include "lib/base/shipped_file.h"
-#include "lib/base/text.h"
 #include "lib/campaign/stability.h"
 #include "lib/campaign/stability_map.h"
 #include "lib/campaign/stability_report.h"
@@ -87,7 +87,8 @@ std::vector<Row> finished(std::vector<std::optional<Row>> rows, const char* what
     if (row) out.push_back(*std::move(row));
   if (out.size() == rows.size()) return out;
   code = static_cast<int>(ExitCode::resumable);
-  log.note(format("pbf: stopped early by %s with %zu of %zu %s done; the same command starts anew",
+  log.note(
+      fmt::format("pbf: stopped early by {} with {} of {} {} done; the same command starts anew",
                   signal_token().why(), out.size(), rows.size(), what));
   return out;
 }
@@ -116,8 +117,8 @@ int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int
     log.result(stability_text(r));
     failed += r.good ? 0 : 1;
   }
-  log.result(format("%zu cases on %s %s%s: %ld failed, %.1f s", rows.size(), o.backend.c_str(),
-                    o.precision.c_str(), o.reduced ? ", reduced" : "", failed, watch.seconds()));
+  log.result(fmt::format("{} cases on {} {}{}: {} failed, {:.1f} s", rows.size(), o.backend,
+                         o.precision, o.reduced ? ", reduced" : "", failed, watch.seconds()));
   if (!o.csv.empty()) write_text_file(o.csv, stability_table(rows, run).csv());
   if (!o.junit.empty()) write_text_file(o.junit, stability_junit(rows, run, watch.seconds()));
   if (code == 0 && failed > 0) code = static_cast<int>(ExitCode::difference);
@@ -141,9 +142,9 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
   check_output("--csv", o.csv);
   Log log(o.quiet);
   const std::vector<MapCell> grid = map_cells(map);
-  log.note(format("pbf: %zu runs of %s: %zu values of %s, %zu of %s, %zu of solver.iterations",
-                  grid.size(), map.scene.c_str(), map.x.size(), map.x_key.c_str(), map.y.size(),
-                  map.y_key.c_str(), map.iterations.size()));
+  log.note(fmt::format("pbf: {} runs of {}: {} values of {}, {} of {}, {} of solver.iterations",
+                       grid.size(), map.scene, map.x.size(), map.x_key, map.y.size(), map.y_key,
+                       map.iterations.size()));
   const Stopwatch watch;
   int code = static_cast<int>(ExitCode::done);
   const auto cells = finished(
@@ -156,10 +157,9 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
   const std::string csv = map_table(cells, map).csv();
   o.csv.empty() ? log.result(csv) : write_text_file(o.csv, csv);
   log.result(
-      format("%zu runs: %ld stable, %ld degraded (mean compression above %g %%), %ld stopped by "
-             "the guard, "
-             "%.0f s",
-             cells.size(), count[0], count[1], 100 * map.limit, count[2], watch.seconds()));
+      fmt::format("{} runs: {} stable, {} degraded (mean compression above {:g} %), {} stopped by "
+                  "the guard, {:.0f} s",
+                  cells.size(), count[0], count[1], 100 * map.limit, count[2], watch.seconds()));
   return code;
 }
 

@@ -1,4 +1,5 @@
 // pbf study: many runs with some keys varied, error against run time.
+#include <fmt/core.h>
 #include <filesystem>
 #include <system_error>
 
@@ -85,20 +86,18 @@ std::optional<MemberResult> result_of(const Study& study, const StudyMember& mem
   const Stopwatch watch;
   const auto progress = [&](double share) {
     const double s = watch.seconds();
-    log.progress(name +
-                 format(": %.0f %%, %s left", 100 * share, duration_text(s / share - s).c_str()));
+    log.progress(
+        fmt::format("{}: {:.0f} %, {} left", name, 100 * share, duration_text(s / share - s)));
   };
   auto result = run_member(
       study, member, [] { return signal_token().why() != nullptr; }, progress);
   if (!result) return result;
   write_member(path, *result);
   const std::vector<double>& mean = result->series("compression_mean");
-  log.note(name +
-           format(": %s in all; updates %.4g s (spread %.2g s), mean compression %.3g %% at the "
-                  "end%s",
-                  duration_text(watch.seconds()).c_str(), result->seconds_median(),
-                  result->seconds_spread(), 100 * mean.back(),
-                  result->status == "finished" ? "" : (", " + result->status).c_str()));
+  log.note(fmt::format(
+      "{}: {} in all; updates {:.4g} s (spread {:.2g} s), mean compression {:.3g} % at the end{}",
+      name, duration_text(watch.seconds()), result->seconds_median(), result->seconds_spread(),
+      100 * mean.back(), result->status == "finished" ? "" : ", " + result->status));
   return result;
 }
 
@@ -112,7 +111,7 @@ void write_tables(const Study& study, const std::vector<StudyRow>& rows, const s
 }
 
 std::string list_text(const Study& study) {
-  std::string out = format("%s: %zu runs", study.name.c_str(), study.members.size());
+  std::string out = fmt::format("{}: {} runs", study.name, study.members.size());
   if (study.reference) out += " and the reference";
   for (const StudyMember& m : study.members) out += "\n  " + m.label;
   return out;
@@ -135,14 +134,13 @@ int command_study(const StudyOptions& o) {
   watch_signals();
   const std::size_t n = study.members.size() + (study.reference ? 1 : 0);
   const auto stopped = [&](std::size_t done) {
-    log.note(
-        format("pbf: stopped early by %s with %zu of %zu runs done; the same command goes on "
-               "from there",
-               signal_token().why(), done, n));
+    log.note(fmt::format(
+        "pbf: stopped early by {} with {} of {} runs done; the same command goes on from there",
+        signal_token().why(), done, n));
     return static_cast<int>(ExitCode::resumable);
   };
   const auto name_of = [n](const StudyMember& member, std::size_t k) {
-    return format("[%zu/%zu] %s", k, n, member.label.c_str());
+    return fmt::format("[{}/{}] {}", k, n, member.label);
   };
   std::size_t k = 0;
   std::optional<MemberResult> reference;
@@ -175,8 +173,9 @@ int command_study(const StudyOptions& o) {
   log.result(study_text(study, rows));
   log.note("tables in " + out + ": study.csv, study.json" + (study.front ? ", front.csv" : ""));
   if (unavailable > 0)
-    throw Error(ExitCode::unavailable,
-                format("%zu of %zu runs could not run here: their rows say why", unavailable, n));
+    throw Error(
+        ExitCode::unavailable,
+        fmt::format("{} of {} runs could not run here: their rows say why", unavailable, n));
   return 0;
 }
 

@@ -21,6 +21,19 @@ struct FlowCount {
   std::int64_t total = 0;  ///< since the start
   std::int64_t since = 0;  ///< since the last reading
   double time = 0;         ///< s, since the last reading
+
+  /// Calls f for every number, in the order of files.
+  template <class Self, class F>
+  static constexpr void each(Self& s, F&& f) {
+    f(s.total), f(s.since), f(s.time);
+  }
+};
+
+/// A tally (kernels/gauge_probe.h) that is made at the end of updates.
+struct FlowTally {
+  using Site = FlowGate;
+  using Sums = FlowCount;
+  static constexpr const char* sites = "gates";
 };
 
 }  // namespace pbf

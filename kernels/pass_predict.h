@@ -2,6 +2,9 @@
 // lines 1-4.
 #pragma once
 
+#include <cstdint>
+#include <cstring>
+
 #include "kernels/boundary/far_box.h"
 #include "kernels/step_counts.h"
 
@@ -151,11 +154,32 @@ struct BinPass {
   PBF_HD void operator()(int i) const { bin[i] = bin_of<D>(xyz(position[i]), p); }
 };
 
+/// Further arrays of particles that a sort copies, in words of 4 bytes.
+struct CarriedRows {
+  static constexpr int most = 8;
+  struct Part {
+    const std::uint32_t* from = nullptr;
+    std::uint32_t* to = nullptr;
+    int words = 0;  ///< of a row
+  };
+  Part part[most];
+  int parts = 0;
+  PBF_HD void carry(int from, int to) const {
+    for (int k = 0; k < parts; ++k)
+      for (int w = 0; w < part[k].words; ++w)
+        std::memcpy(part[k].to + std::int64_t(to) * part[k].words + w,
+                    part[k].from + std::int64_t(from) * part[k].words + w, 4);
+  }
+};
+struct NothingCarried {
+  PBF_HD void carry(int, int) const {}
+};
+
 /// Copies the particles into the order of bins. With `moving` they are predicted; w of the position
 /// is then 1 (1/density, until an iteration replaces it), or -1 as a mark for the first iteration.
 /// Otherwise w is copied.
-template <class Real, class Boundary, bool moving>
-struct GatherPass {
+template <class Real, class Boundary, bool moving, class Carried>
+struct GatherPass : Carried {
   Params<Real> p;
   Boundary boundary;
   const Vec4<Real>*position, *velocity;
@@ -174,6 +198,7 @@ struct GatherPass {
     position_out[to] = with_w(m.x, m.mark);
     velocity_out[to] = with_w(m.v, Real(0));
     id_out[to] = id[from];
+    this->carry(from, to);
   }
   PBF_HD bool is_predicted(int from) const {
     if constexpr (Boundary::far_only)

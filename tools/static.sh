@@ -117,8 +117,8 @@ cuda_toolkit() { "$(realpath "$1")" info | sed -n 's/^cudart *//p'; }
 copy_licenses() {
   local package folder=$1 toolkit=$2
   shift 2
-  for package in libhdf5-dev libaec-dev zlib1g-dev libyaml-cpp-dev libpng-dev libstb-dev \
-    libcli11-dev nlohmann-json3-dev "gcc-$(g++ -dumpversion)-base" "$@"; do
+  for package in libhdf5-dev libaec-dev zlib1g-dev libyaml-cpp-dev libfmt-dev libpng-dev \
+    libstb-dev libcli11-dev nlohmann-json3-dev "gcc-$(g++ -dumpversion)-base" "$@"; do
     [ -e /usr/share/doc/$package/copyright ] ||
       fail 1 "no /usr/share/doc/$package/copyright: what is linked in must come with its licence"
     cp -L /usr/share/doc/$package/copyright "$folder/$package.txt"

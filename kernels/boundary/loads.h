@@ -35,6 +35,21 @@ struct Load {
   double peak = 0;  ///< h/s^2, largest mean force of one update
   double time = 0;  ///< s
   double work = 0;  ///< h^2/s^2, done by a moving obstacle
+
+  /// Calls f for every number, in the order of files.
+  template <class Self, class F>
+  static constexpr void each(Self& s, F&& f) {
+    for (auto& x : s.impulse) f(x);
+    for (auto& x : s.moment) f(x);
+    f(s.peak), f(s.time), f(s.work);
+  }
+};
+
+/// A tally (kernels/gauge_probe.h) that is made with the loads of walls.
+struct PatchTally {
+  using Site = Patch;
+  using Sums = Load;
+  static constexpr const char* sites = "patches";
 };
 
 }  // namespace pbf

@@ -5,6 +5,19 @@
 #include "kernels/boundary/obstacle.h"
 #include "kernels/vec3.h"
 
+namespace pbf {
+
+/// The velocity of a point x of a solid in an update: linear + angular x x, with x from the
+/// domain's lower corner.
+struct SolidVelocity {
+  bool moves = false;             ///< else all is 0
+  double linear[3] = {0, 0, 0};   ///< h/s
+  double angular[3] = {0, 0, 0};  ///< 1/s
+  double middle[3] = {0, 0, 0};   ///< h, its position halfway through the update
+};
+
+}  // namespace pbf
+
 namespace pbf::inline PBF_VARIANT {
 
 /// The change of a velocity in a step of a moving tank, apart from damping:
@@ -31,15 +44,6 @@ struct FrameStep {
     };
     return {row(0, v.x, push.x), row(1, v.y, push.y), row(2, v.z, push.z)};
   }
-};
-
-/// The velocity of a point x of a solid in an update: linear + angular x x, with x from the
-/// domain's lower corner.
-struct SolidVelocity {
-  bool moves = false;             ///< else all is 0
-  double linear[3] = {0, 0, 0};   ///< h/s
-  double angular[3] = {0, 0, 0};  ///< 1/s
-  double middle[3] = {0, 0, 0};   ///< h, its position halfway through the update
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -1,6 +1,7 @@
 #include "lib/base/log.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -94,14 +95,13 @@ void Log::close() {
 std::string progress_line(const ProgressState& s, double wall, double wall_since,
                           std::int64_t updates_since) {
   const double part = s.updates > 0 ? double(s.update) / double(s.updates) : 1;
-  std::string line =
-      format("%3.0f %%  update %lld/%lld  %.4g s simulated", 100 * part,
-             static_cast<long long>(s.update), static_cast<long long>(s.updates), s.time);
+  std::string line = fmt::format("{:3.0f} %  update {}/{}  {:.4g} s simulated", 100 * part,
+                                 s.update, s.updates, s.time);
   if (wall_since > 0 && updates_since > 0)
-    line += "  " + si_number(double(updates_since) * double(s.particles) / wall_since) +
-            " particle-updates/s";
-  line += format("  compression mean %.2g %%, max %.2g %%", 100 * s.compression_mean,
-                 100 * s.compression_max);
+    line += fmt::format("  {} particle-updates/s",
+                        si_number(double(updates_since) * double(s.particles) / wall_since));
+  line += fmt::format("  compression mean {:.2g} %, max {:.2g} %", 100 * s.compression_mean,
+                      100 * s.compression_max);
   const std::int64_t own = s.update - s.first_update;
   if (own > 0 && part < 1)
     line += "  " + duration_text(wall * double(s.updates - s.update) / double(own)) + " to go";

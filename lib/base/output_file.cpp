@@ -1,6 +1,7 @@
 #include "lib/base/output_file.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -14,7 +15,6 @@
 
 #include "lib/base/error.h"
 #include "lib/base/output_target.h"
-#include "lib/base/text.h"
 
 namespace pbf::inline base_module {
 namespace fs = std::filesystem;
@@ -23,7 +23,7 @@ namespace {
 /// A random name, which is never too long.
 std::string temporary_name(const std::string& folder) {
   static thread_local std::random_device random;
-  return folder + format("/%s%08x", kTemporaryPrefix, random());
+  return fmt::format("{}/{}{:08x}", folder, kTemporaryPrefix, random());
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ void OutputFile::write(std::string_view bytes) {
 }
 
 void OutputFile::give_name() {
-  const std::string self = format("/proc/self/fd/%d", fd_);
+  const std::string self = fmt::format("/proc/self/fd/{}", fd_);
   for (int attempt = 0; attempt < 100; ++attempt) {
     const std::string name = temporary_name(folder_);
     if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {

@@ -1,17 +1,44 @@
 #include "lib/base/plain_text.h"
 
+#include <fmt/core.h>
 #include <algorithm>
-
-#include "lib/base/text.h"
 
 namespace pbf::inline base_module {
 namespace {
 
-/// The first character of a text; `code` is -1 if the first byte does not begin a valid one.
-struct Character {
-  long code;
-  std::size_t bytes;
-};
+bool is_control(long code) { return (code >= 0 && code < 0x20) || (code >= 0x7F && code < 0xA0); }
+
+/// Whether the first character of a text is a tab or part of a line end. A carriage return within a
+/// line is neither: it makes a terminal overwrite the line.
+bool is_blank(std::string_view text) {
+  const char c = text[0];
+  return c == '\t' || c == '\n' || (c == '\r' && (text.size() == 1 || text[1] == '\n'));
+}
+
+enum class Form { lines, one_line, utf8 };
+
+/// The form in which a message shows the first character of a text.
+std::string shown(std::string_view text, const Character& c, Form form) {
+  if (c.code < 0) return fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+  if (!is_control(c.code) || form == Form::utf8 || (form == Form::lines && is_blank(text)))
+    return std::string(text.substr(0, c.bytes));
+  if (c.code == '\n') return "\\n";
+  if (c.code == '\r') return "\\r";
+  if (c.code == '\t') return "\\t";
+  return fmt::format("\\u{:04x}", static_cast<unsigned long>(c.code));
+}
+
+std::string written(std::string_view text, Form form, std::size_t most = std::string::npos) {
+  std::string out;
+  for (Character c; !text.empty(); text.remove_prefix(c.bytes)) {
+    if (out.size() >= most) return out + "...";
+    c = first_character(text);
+    out += shown(text, c, form);
+  }
+  return out;
+}
+
+}  // namespace
 
 Character first_character(std::string_view text) {
   const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -29,40 +56,6 @@ Character first_character(std::string_view text) {
   return {code, bytes};
 }
 
-bool is_control(long code) { return (code >= 0 && code < 0x20) || (code >= 0x7F && code < 0xA0); }
-
-/// Whether the first character of a text is a tab or part of a line end. A carriage return within a
-/// line is neither: it makes a terminal overwrite the line.
-bool is_blank(std::string_view text) {
-  const char c = text[0];
-  return c == '\t' || c == '\n' || (c == '\r' && (text.size() == 1 || text[1] == '\n'));
-}
-
-enum class Form { lines, one_line, utf8 };
-
-/// The form in which a message shows the first character of a text.
-std::string shown(std::string_view text, const Character& c, Form form) {
-  if (c.code < 0) return format("\\x%02x", static_cast<unsigned char>(text[0]));
-  if (!is_control(c.code) || form == Form::utf8 || (form == Form::lines && is_blank(text)))
-    return std::string(text.substr(0, c.bytes));
-  if (c.code == '\n') return "\\n";
-  if (c.code == '\r') return "\\r";
-  if (c.code == '\t') return "\\t";
-  return format("\\u%04lx", static_cast<unsigned long>(c.code));
-}
-
-std::string written(std::string_view text, Form form, std::size_t most = std::string::npos) {
-  std::string out;
-  for (Character c; !text.empty(); text.remove_prefix(c.bytes)) {
-    if (out.size() >= most) return out + "...";
-    c = first_character(text);
-    out += shown(text, c, form);
-  }
-  return out;
-}
-
-}  // namespace
-
 std::optional<BadText> find_bad_text(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     const Character c = first_character(text.substr(at));
@@ -75,10 +68,11 @@ std::optional<BadText> find_bad_text(std::string_view text) {
     bad.line = static_cast<int>(std::count(before.begin(), before.end(), '\n'));
     bad.column = static_cast<int>(at - (before.rfind('\n') + 1));  // npos + 1 is 0
     if (c.code < 0) {
-      bad.what = format("the byte 0x%02x is not UTF-8", static_cast<unsigned char>(text[at]));
+      bad.what =
+          fmt::format("the byte 0x{:02x} is not UTF-8", static_cast<unsigned char>(text[at]));
       bad.remedy = "save the text as UTF-8";
     } else {
-      bad.what = format("the control character U+%04lX", static_cast<unsigned long>(c.code));
+      bad.what = fmt::format("the control character U+{:04X}", static_cast<unsigned long>(c.code));
       bad.remedy = "remove it";
     }
     return bad;

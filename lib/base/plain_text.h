@@ -7,6 +7,13 @@
 
 namespace pbf::inline base_module {
 
+/// The first character of a text; `code` is -1 if the first byte does not begin a valid one.
+struct Character {
+  long code;
+  std::size_t bytes;  ///< 1 for such a byte
+};
+Character first_character(std::string_view text);
+
 /// The first invalid byte or character of a text.
 struct BadText {
   int line = 0, column = 0;  ///< from 0; columns count bytes

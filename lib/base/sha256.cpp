@@ -1,10 +1,9 @@
 #include "lib/base/sha256.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <bit>
 #include <cstring>
-
-#include "lib/base/text.h"
 
 namespace pbf::inline base_module {
 namespace {
@@ -66,7 +65,7 @@ std::string Sha256::text() const {
   for (int k = 7; k >= 0; --k) padding += static_cast<char>(size_ * 8 >> 8 * k);
   end.add(padding);
   std::string text;
-  for (const std::uint32_t word : end.state_) text += format("%08x", word);
+  for (const std::uint32_t word : end.state_) text += fmt::format("{:08x}", word);
   return text;
 }
 

@@ -1,20 +1,20 @@
 #include "lib/base/start_thread.h"
 
+#include <fmt/core.h>
 #include <cstring>
 #include <mutex>
 #include <vector>
 
 #include "lib/base/error.h"
-#include "lib/base/text.h"
 
 namespace pbf::inline base_module {
 
 void refuse_threads(int reason, int wanted) {
   throw Error(ExitCode::unavailable,
-              format("%s cannot be started: %s; raise the limit on processes (ulimit -u, or pids "
-                     "of a container), or use fewer --threads and --jobs",
-                     wanted > 1 ? format("%d threads", wanted).c_str() : "a thread",
-                     std::strerror(reason)));
+              fmt::format("{} cannot be started: {}; raise the limit on processes (ulimit -u, or "
+                          "pids of a container), or use fewer --threads and --jobs",
+                          wanted > 1 ? fmt::format("{} threads", wanted) : "a thread",
+                          std::strerror(reason)));
 }
 
 int reason_against_threads(int threads) {

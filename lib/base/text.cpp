@@ -1,25 +1,12 @@
 #include "lib/base/text.h"
 
+#include <fmt/core.h>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <ctime>
 
 #include "lib/base/plain_text.h"
 
 namespace pbf::inline base_module {
-
-std::string format(const char* pattern, ...) {
-  va_list args, again;
-  va_start(args, pattern);
-  va_copy(again, args);
-  const int length = std::vsnprintf(nullptr, 0, pattern, args);
-  va_end(args);
-  std::string text(length > 0 ? static_cast<std::size_t>(length) : 0, '\0');
-  if (length > 0) std::vsnprintf(text.data(), text.size() + 1, pattern, again);
-  va_end(again);
-  return text;
-}
 
 std::string joined(const std::vector<std::string>& parts, const std::string& separator) {
   std::string text;
@@ -31,23 +18,23 @@ std::string si_number(double value) {
   const char* prefix[] = {"", " k", " M", " G", " T"};
   int i = 0;
   while (std::abs(value) >= 999.5 && i < 4) value /= 1000, ++i;
-  return format("%.3g", value) + prefix[i];
+  return fmt::format("{:.3g}{}", value, prefix[i]);
 }
 
 std::string bytes_text(double bytes) {
   const char* unit[] = {"B", "KiB", "MiB", "GiB", "TiB"};
   int i = 0;
   while (bytes >= 1023.5 && i < 4) bytes /= 1024, ++i;
-  return format(i == 0 || bytes >= 99.95 ? "%.0f %s" : "%.1f %s", bytes, unit[i]);
+  return fmt::format("{:.{}f} {}", bytes, i == 0 || bytes >= 99.95 ? 0 : 1, unit[i]);
 }
 
 std::string duration_text(double s) {
   if (!std::isfinite(s)) return "unknown";
-  if (s < 9.95) return format("%.1f s", s);
-  const auto whole = static_cast<long long>(std::llround(s));
-  if (whole < 60) return format("%lld s", whole);
-  if (whole < 3600) return format("%lld min %02lld s", whole / 60, whole % 60);
-  return format("%lld h %02lld min", whole / 3600, whole % 3600 / 60);
+  if (s < 9.95) return fmt::format("{:.1f} s", s);
+  const long long whole = std::llround(s);
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
 }
 
 bool is_file_name(std::string_view text) {

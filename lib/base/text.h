@@ -1,4 +1,4 @@
-// Small helpers for text: formatting, numbers and durations for people.
+// Small helpers for text: numbers and durations for people, names of files, times.
 #pragma once
 
 #include <optional>
@@ -7,9 +7,6 @@
 #include <vector>
 
 namespace pbf::inline base_module {
-
-/// printf into a string.
-[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
 
 /// "a, b, c" with ", " as the separator.
 std::string joined(const std::vector<std::string>& parts, const std::string& separator);

@@ -10,7 +10,8 @@ BuildInfo build_info() {
   info.libraries = {{"HDF5", PBF_VERSION_HDF5},
                     {"yaml-cpp", PBF_VERSION_YAML_CPP},
                     {"CLI11", PBF_VERSION_CLI11},
-                    {"nlohmann", PBF_VERSION_JSON}};
+                    {"nlohmann", PBF_VERSION_JSON},
+                    {"fmt", PBF_VERSION_FMT}};
   if (*PBF_VERSION_PNG) info.libraries.emplace_back("libpng", PBF_VERSION_PNG);
   if (*PBF_VERSION_CUDART) info.libraries.emplace_back("cudart", PBF_VERSION_CUDART);
   return info;

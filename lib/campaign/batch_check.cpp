@@ -1,10 +1,10 @@
 #include "lib/campaign/batch_check.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <optional>
 
 #include "lib/base/error.h"
-#include "lib/base/text.h"
 #include "lib/run/load_run.h"
 #include "lib/run/start.h"
 
@@ -38,10 +38,9 @@ BatchNeeds check_members(const std::vector<BatchMember>& members,
       if (++bad <= kMostTold) text += "\n  " + m.name + ": " + e.what();
     }
   if (!code) return needs;
-  if (bad > kMostTold) text += format("\n  and %zu more", bad - kMostTold);
-  throw Error(*code, format("batch: %zu of %zu runs cannot start, and none was started:", bad,
-                            members.size()) +
-                         text);
+  if (bad > kMostTold) text += fmt::format("\n  and {} more", bad - kMostTold);
+  throw Error(*code, fmt::format("batch: {} of {} runs cannot start, and none was started:{}", bad,
+                                 members.size(), text));
 }
 
 }  // namespace pbf::inline campaign_module

@@ -1,11 +1,11 @@
 #include "lib/campaign/calibration.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -15,6 +15,7 @@
 #include "lib/base/text.h"
 #include "lib/io/csv.h"
 #include "lib/io/table.h"
+#include "lib/scene/number.h"
 
 namespace pbf::inline campaign_module {
 namespace {
@@ -44,20 +45,16 @@ auto case_of(const StageCosts& c) {
   return std::tie(c.backend, c.precision, c.device, c.threads, c.particles);
 }
 
-template <class T>
-bool parse(const std::string& text, T& value) {
-  const char* end = text.data() + text.size();
-  const auto r = std::from_chars(text.data(), end, value);
-  return r.ec == std::errc() && r.ptr == end;
-}
-
 /// Adds a line to its case; false if the line is invalid.
 bool add_line(const std::vector<std::string>& cell, std::vector<StageCosts>& rows) {
   StageCosts row;
+  std::int64_t threads = 0;
   double ms = 0;
-  if (!parse(cell[2], row.threads) || !parse(cell[4], row.particles) || !parse(cell[6], ms) ||
-      row.threads < 0 || row.particles < 1 || !(ms >= 0))
+  constexpr NumberError none = NumberError::none;
+  if (read_number(cell[2], threads) != none || read_number(cell[4], row.particles) != none ||
+      read_number(cell[6], ms) != none || threads < 0 || row.particles < 1 || ms < 0)
     return false;
+  row.threads = int(threads);
   row.backend = cell[0], row.precision = cell[1], row.device = cell[3];
   const auto known = std::ranges::find(rows, case_of(row), case_of);
   StageCosts& into = known != rows.end() ? *known : rows.emplace_back(row);
@@ -203,8 +200,9 @@ std::optional<RunTime> run_time(const Plan& plan, const Scene& s,
   out.rough = true;
   out.seconds = updates * double(plan.particles) * (passes / 9.0) * neighbors /
                 (kRoughRate * std::max(1, threads));
-  out.basis = format("a rule of thumb (%s particle-updates/s per CPU thread), maybe 3 times off",
-                     si_number(kRoughRate).c_str());
+  out.basis =
+      fmt::format("a rule of thumb ({} particle-updates/s per CPU thread), maybe 3 times off",
+                  si_number(kRoughRate));
   return out;
 }
 

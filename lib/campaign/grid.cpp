@@ -1,9 +1,9 @@
 #include "lib/campaign/grid.h"
 
+#include <fmt/core.h>
 #include <cmath>
 
 #include "lib/base/error.h"
-#include "lib/base/text.h"
 #include "lib/scene/number.h"
 
 namespace pbf::inline campaign_module {
@@ -95,7 +95,7 @@ std::vector<std::string> range_values(const std::string& where, const std::strin
   std::vector<std::string> values;
   for (std::int64_t k = 0; k < count; ++k) {
     const double part = double(k) / double(count - 1);
-    values.push_back(format("%.15g", first * (1 - part) + last * part));
+    values.push_back(fmt::format("{:.15g}", first * (1 - part) + last * part));
   }
   return values;
 }

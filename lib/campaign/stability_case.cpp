@@ -1,10 +1,10 @@
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "lib/base/error.h"
 #include "lib/base/stage_clock.h"
-#include "lib/base/text.h"
 #include "lib/campaign/stability.h"
 #include "lib/run/motion_files.h"
 #include "lib/scene/auto_step.h"
@@ -33,11 +33,11 @@ Scene scene_of(const StabilityCase& c, const StabilityOptions& o, const std::str
   return s;
 }
 
-std::string number(double v) { return format("%.3g", v); }
+std::string number(double v) { return fmt::format("{:.3g}", v); }
 
 /// "speed <= 5 m/s, energy <= 3 %": the requirements of the row, for users.
 std::string must_text(const Criteria& m) {
-  if (m.error) return format("error %d", *m.error) + (m.says.empty() ? "" : ": " + m.says);
+  if (m.error) return fmt::format("error {}", *m.error) + (m.says.empty() ? "" : ": " + m.says);
   if (!m.guard.empty() && m.guard != "allowed") return "guard: " + m.guard;
   std::string out = "finite, inside";
   const auto add = [&out](const char* what, double limit) { out += what + number(limit); };
@@ -60,8 +60,8 @@ std::string must_text(const Criteria& m) {
 
 /// Relative loss of height of the center of mass above the floor, along gravity.
 double height_lost(const Course& c, const Scene& s) {
-  const double after = energy_of_height(c.last, s, 1, 1);
-  const double before = energy_of_height(c.first, s, 1, 1);
+  const double after = energy_of_height(c.last, s, 1);
+  const double before = energy_of_height(c.first, s, 1);
   return before > 0 ? 1 - after / before : 0;
 }
 
@@ -115,7 +115,7 @@ void judge(StabilityRow& row, const Criteria& m, const Course& c, const Scene& s
   }
   if (c.steps)
     row.happened +=
-        format(", %ld changes of the step, %ld times back", c.steps->changes, c.steps->repeats);
+        fmt::format(", {} changes of the step, {} times back", c.steps->changes, c.steps->repeats);
 }
 
 /// Returns false if o.stop() ended the run.
@@ -175,7 +175,7 @@ std::optional<StabilityRow> run_stability_case(const StabilityCase& c, const Sta
     if (!run(row, c, o)) return std::nullopt;
   } catch (const Error& e) {
     if (e.code() == ExitCode::unavailable && !c.must.error) throw;
-    row.happened = format("error %d: ", static_cast<int>(e.code())) + e.what();
+    row.happened = fmt::format("error {}: {}", static_cast<int>(e.code()), e.what());
     row.good = c.must.error == static_cast<int>(e.code()) &&
                row.happened.find(c.must.says) != std::string::npos;
   }

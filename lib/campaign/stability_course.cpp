@@ -32,7 +32,7 @@ std::optional<Course> run_course(Start start, const std::function<bool()>& stop,
   Watch watch(scene, plan, *solver, [&](const Diagnostics& m, double) {
     if (compression.empty()) {
       c.first = m;
-      c.scale = energy_scale(m, scene, plan.mass, c.particles);
+      c.scale = energy_scale(m, scene, plan);
       c.released = released_energy(m, scene, plan) / (c.scale > 0 ? c.scale : 1);
     }
     const double rise = total_energy(m) - total_energy(c.first);
@@ -43,7 +43,7 @@ std::optional<Course> run_course(Start start, const std::function<bool()>& stop,
     if (!scene.gauges.empty()) c.through = std::max(c.through, most_through(plan.columns, *solver));
     for_each_number(plan.columns, Series::measures,
                     [&](const ReadingColumn& load, int a, std::size_t k) {
-                      if (load.name == kForce)
+                      if (load.name == std::string("force"))
                         c.impulse[a] += m.readings[k] * (m.time - loads_since);
                     });
     loads_since = m.time;

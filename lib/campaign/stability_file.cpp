@@ -29,8 +29,6 @@ class SuiteReader : StrictReader {
   }
 
  private:
-  using Read = std::function<void(const Node&)>;
-
   Read word(std::string& out) {
     return [this, &out](const Node& n) { text(n, "", out); };
   }

@@ -10,13 +10,12 @@
 #include "lib/scene/keys.h"
 #include "lib/scene/load.h"
 #include "lib/scene/number.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline campaign_module {
 namespace {
 
 constexpr std::size_t kMostCells = 10000000;
-
-double length(const Double3& v) { return std::hypot(v[0], v[1], v[2]); }
 
 Scene scene_with(const std::string& path, const StabilityOptions& run,
                  const std::vector<std::string>& more) {
@@ -56,9 +55,7 @@ GridAxis axis_of(Scene& s, const std::string& key, const std::vector<double>& va
     if (std::holds_alternative<int*>(f)) texts.back() = std::to_string(std::llround(value));
     if (const auto* v = std::get_if<Double3*>(&f)) {
       const double l = length(**v);
-      Double3 direction = l > 0 ? **v : Double3{0, 0, -1};
-      for (double& x : direction) x *= value / (l > 0 ? l : 1);
-      texts.back() = to_text(direction);
+      texts.back() = to_text(l > 0 ? (value / l) * **v : Double3{0, 0, -value});
     }
   }
   return grid_axis(key, texts);

@@ -1,6 +1,7 @@
 #include "lib/campaign/stability_report.h"
 
-#include "lib/base/text.h"
+#include <fmt/core.h>
+
 #include "lib/io/junit.h"
 
 namespace pbf::inline campaign_module {
@@ -16,9 +17,9 @@ std::string cut(const std::string& text, std::size_t width) {
 std::string stability_text(const StabilityRow& r) {
   // The criterion nearest to its limit, as a share of the limit.
   const std::string margin =
-      r.used > 0 ? format("%3.0f %% of %s", 100 * r.used, r.tightest.c_str()) : std::string();
-  return format("%-24s %-4s  %-16s must  %s\n%49s %s", r.name.c_str(), r.good ? "ok" : "FAIL",
-                margin.c_str(), r.must.c_str(), "did ", cut(r.happened, 150).c_str());
+      r.used > 0 ? fmt::format("{:>3.0f} % of {}", 100 * r.used, r.tightest) : std::string();
+  return fmt::format("{:24} {:4}  {:16} must  {}\n{:>49} {}", r.name, r.good ? "ok" : "FAIL",
+                     margin, r.must, "did ", cut(r.happened, 150));
 }
 
 Table stability_table(const std::vector<StabilityRow>& rows, const StabilityOptions& o) {

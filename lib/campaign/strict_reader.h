@@ -24,7 +24,8 @@ class StrictReader {
   }
   /// Calls the function of each key with its value. Unknown and repeated keys are problems, with
   /// the path "block.key". Returns the keys that are present.
-  using Entries = std::vector<std::pair<std::string, std::function<void(const Node&)>>>;
+  using Read = std::function<void(const Node&)>;
+  using Entries = std::vector<std::pair<std::string, Read>>;
   std::set<std::string> read_map(const Node& map, const std::string& block, const Entries& entries);
   void text(const Node& n, const std::string& key, std::string& out);
   /// A path relative to the folder of the file that is read.

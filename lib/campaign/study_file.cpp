@@ -6,60 +6,43 @@
 #include "lib/base/text.h"
 #include "lib/campaign/study_reader.h"
 #include "lib/scene/load.h"
-#include "lib/scene/number.h"
 #include "lib/scene/suggest.h"
 
 namespace pbf::inline campaign_module {
 namespace fs = std::filesystem;
 using Kind = Node::Kind;
 
-template <class T>
-void StudyReader::number(const Node& n, const std::string& key, T low, T high, T& out) {
-  std::conditional_t<std::is_integral_v<T>, std::int64_t, double> v = 0;
-  const NumberError e = n.kind == Kind::scalar ? read_number(n.text, v) : NumberError::not_a_number;
-  if (e != NumberError::none)
-    bad(n, key, n.shown() + " " + describe(e));
-  else if (v < low || v > high)
-    bad(n, key, n.shown() + " is out of range, " + to_text(low) + " .. " + to_text(high));
-  else
-    out = T(v);
-}
-
-void StudyReader::energy_limit(const Node& n, const std::string& key, double& out) {
-  number(n, key, 0., 1e9, out);
-}
-
 void StudyReader::numbers(const Node& n, const std::string& key, double low,
                           std::vector<double>& out) {
   if (n.kind != Kind::list || n.items.empty())
     return bad(n, key, "is " + n.shown() + ", expected a list of numbers");
   out.assign(n.items.size(), 0);
-  for (std::size_t i = 0; i < n.items.size(); ++i) number(n.items[i], key, low, 1e9, out[i]);
+  for (std::size_t i = 0; i < n.items.size(); ++i) number(key, low, 1e9, out[i])(n.items[i]);
 }
 
 void StudyReader::front(const Node& n) {
   Front front;
-  read_map(
-      n, "front",
-      {{"axis",
-        [&](const Node& at) {
-          front.axis = at.text == "x" ? 0 : at.text == "y" ? 1 : at.text == "z" ? 2 : -1;
-          if (front.axis < 0) bad(at, "front.axis", "is " + at.shown() + ", expected x, y or z");
-        }},
-       {"origin", [&](const Node& at) { number(at, "front.origin", -1e12, 1e12, front.origin); }},
-       {"length", [&](const Node& at) { number(at, "front.length", 1e-9, 1e9, front.length); }},
-       {"factor", [&](const Node& at) { number(at, "front.factor", 1e-9, 1e9, front.factor); }},
-       {"data", [&](const Node& at) {
-          if (at.kind != Kind::list)
-            return bad(at, "front.data", "is " + at.shown() + ", expected a list of files");
-          for (const Node& item : at.items) {
-            try {
-              front.data.push_back(read_front_data(file(item, "front.data")));
-            } catch (const Error& e) {
-              bad(item, "front.data", e.what());
-            }
-          }
-        }}});
+  read_map(n, "front",
+           {{"axis",
+             [&](const Node& at) {
+               front.axis = at.text == "x" ? 0 : at.text == "y" ? 1 : at.text == "z" ? 2 : -1;
+               if (front.axis < 0)
+                 bad(at, "front.axis", "is " + at.shown() + ", expected x, y or z");
+             }},
+            {"origin", number("front.origin", -1e12, 1e12, front.origin)},
+            {"length", number("front.length", 1e-9, 1e9, front.length)},
+            {"factor", number("front.factor", 1e-9, 1e9, front.factor)},
+            {"data", [&](const Node& at) {
+               if (at.kind != Kind::list)
+                 return bad(at, "front.data", "is " + at.shown() + ", expected a list of files");
+               for (const Node& item : at.items) {
+                 try {
+                   front.data.push_back(read_front_data(file(item, "front.data")));
+                 } catch (const Error& e) {
+                   bad(item, "front.data", e.what());
+                 }
+               }
+             }}});
   if (front.length == 0) bad(n, "front.length", "is missing: the width of the column, m");
   study_.front = front;
 }
@@ -67,50 +50,41 @@ void StudyReader::front(const Node& n) {
 Study StudyReader::read(const std::vector<std::string>& overrides, const std::string& base_folder) {
   study_.path = path_;
   study_.name = fs::path(path_).stem().string();
-  bool has_scene = false;
   if (const Node* gone = root_.find("projection")) {
     bad(*gone, "projection",
         "studies no longer measure the distance from the exact projection; the page "
         "lib/solver/DIAGNOSTICS.md has it. Remove the key");
     problems_.raise();
   }
-  read_map(root_, "",
-           {{"name",
-             [&](const Node& n) {
-               text(n, "name", study_.name);
-               if (!is_file_name(study_.name))
-                 bad(n, "name",
-                     "is " + n.shown() +
-                         ", and tables are kept in out/study_<name>; give a word without "
-                         "slashes, not . or ..");
-             }},
-            {"scene",
-             [&](const Node& n) {
-               scene_path_ = file(n, "scene");
-               has_scene = true;
-             }},
-            {"set", [&](const Node& n) { base_ = settings(n, "set"); }},
-            {"variants", [&](const Node& n) { variants(n); }},
-            {"grid", [&](const Node& n) { grid(n); }},
-            {"repeats", [&](const Node& n) { number(n, "repeats", 1, 1000, study_.repeats); }},
-            {"clock",
-             [&](const Node& n) {
-               study_.cpu_clock = n.text == "cpu";
-               if (n.text != "cpu" && n.text != "wall")
-                 bad(n, "clock", "is " + n.shown() + ", expected wall or cpu");
-             }},
-            {"error", [&](const Node& n) { text(n, "error", study_.error); }},
-            {"targets", [&](const Node& n) { numbers(n, "targets", 0, study_.targets); }},
-            {"from", [&](const Node& n) { number(n, "from", 0., 1e9, study_.from); }},
-            {"energy_limit",
-             [&](const Node& n) { energy_limit(n, "energy_limit", study_.energy_limit); }},
-            {"reference",
-             [&](const Node& n) {
-               reference_ = settings(n, "reference");
-               has_reference_ = true;
-             }},
-            {"front", [&](const Node& n) { front(n); }}});
-  if (!has_scene)
+  const auto seen =
+      read_map(root_, "",
+               {{"name",
+                 [&](const Node& n) {
+                   text(n, "name", study_.name);
+                   if (!is_file_name(study_.name))
+                     bad(n, "name",
+                         "is " + n.shown() +
+                             ", and tables are kept in out/study_<name>; give a word without "
+                             "slashes, not . or ..");
+                 }},
+                {"scene", [&](const Node& n) { scene_path_ = file(n, "scene"); }},
+                {"set", [&](const Node& n) { base_ = settings(n, "set"); }},
+                {"variants", [&](const Node& n) { variants(n); }},
+                {"grid", [&](const Node& n) { grid(n); }},
+                {"repeats", number("repeats", 1, 1000, study_.repeats)},
+                {"clock",
+                 [&](const Node& n) {
+                   study_.cpu_clock = n.text == "cpu";
+                   if (n.text != "cpu" && n.text != "wall")
+                     bad(n, "clock", "is " + n.shown() + ", expected wall or cpu");
+                 }},
+                {"error", [&](const Node& n) { text(n, "error", study_.error); }},
+                {"targets", [&](const Node& n) { numbers(n, "targets", 0, study_.targets); }},
+                {"from", number("from", 0., 1e9, study_.from)},
+                {"energy_limit", number("energy_limit", 0., 1e9, study_.energy_limit)},
+                {"reference", [&](const Node& n) { reference_ = settings(n, "reference"); }},
+                {"front", [&](const Node& n) { front(n); }}});
+  if (!seen.contains("scene"))
     problems_.add(path_, "scene", "is missing: the scene to vary, a path from this file's folder");
   problems_.raise();
   study_.scene_dir = fs::path(scene_path_).parent_path().string();

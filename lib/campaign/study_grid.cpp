@@ -76,7 +76,7 @@ void StudyReader::variants(const Node& n) {
              {{"name", [&](const Node& at) { text(at, "variants.name", v.name); }},
               {"set", [&](const Node& at) { v.settings = settings(at, "variants.set"); }},
               {"energy_limit", [&](const Node& at) {
-                 energy_limit(at, "variants.energy_limit", limit.emplace());
+                 number("variants.energy_limit", 0., 1e9, limit.emplace())(at);
                }}});
     if (v.name.empty()) bad(entry, "variants", "has an entry without a name");
     for (const GridStep& other : variants_)
@@ -117,8 +117,8 @@ void StudyReader::make_members(const Node& scene, const std::vector<std::string>
     if (study_.cpu_clock && about(m.scene.backend).on_device)
       problems_.add(root_.find("clock")->place(), "clock",
                     "cpu does not count the time of a GPU (" + m.label + "); use wall");
-  if (has_reference_) {
-    study_.reference = member(base, reference_);
+  if (reference_) {
+    study_.reference = member(base, *reference_);
     study_.reference->label = "reference";
   }
 }

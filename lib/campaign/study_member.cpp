@@ -1,9 +1,9 @@
 #include "lib/campaign/study_member.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 
 #include "lib/base/error.h"
-#include "lib/base/text.h"
 #include "lib/io/run_layout.h"
 #include "lib/program/motion.h"
 #include "lib/program/schedule.h"
@@ -40,8 +40,8 @@ bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, WorkTrack&
   const Diagnostics& m = row.measures;
   if (m.non_finite == 0 && m.outside == 0) return true;
   out.status = "diverged";
-  out.message = format("at update %ld, t = %.4g s: %ld particles not finite, %ld outside", m.update,
-                       m.time, m.non_finite, m.outside);
+  out.message = fmt::format("at update {}, t = {:.4g} s: {} particles not finite, {} outside",
+                            m.update, m.time, m.non_finite, m.outside);
   return false;
 }
 

@@ -1,11 +1,12 @@
 #include "lib/campaign/study_table.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "lib/base/text.h"
 #include "lib/scene/number.h"
+#include "lib/scene/vector3.h"
 #include "lib/solver/diagnostics.h"
 
 namespace pbf::inline campaign_module {
@@ -131,18 +132,17 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
     row.measures.push_back(reference ? reference_distance(result, *reference, length) : NAN);
   }
   if (study.front) {
-    const double g = std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
     const std::string column = std::string("front_") + "xyz"[study.front->axis];
-    row.front.push_back(front_curve(*study.front, g, s.fluid.spacing, result.series("time"),
-                                    result.series(column)));
+    row.front.push_back(front_curve(*study.front, length(s.gravity), s.fluid.spacing,
+                                    result.series("time"), result.series(column)));
     for (const FrontData& d : study.front->data)
       row.measures.push_back(front_deviation(row.front[0], d));
   }
   const double rise = measure_of(study, row, "energy_rise");
   if (row.status == "finished" && !(rise <= member.energy_limit)) {
     row.status = "energy_rose";
-    row.message = format("by %.3g %% of its start, the limit is %.3g %%", 100 * rise,
-                         100 * member.energy_limit);
+    row.message = fmt::format("by {:.3g} % of its start, the limit is {:.3g} %", 100 * rise,
+                              100 * member.energy_limit);
   }
   return row;
 }

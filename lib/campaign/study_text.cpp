@@ -1,9 +1,9 @@
 // The table of a study as text, and all of it as JSON.
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "lib/base/text.h"
 #include "lib/base/version.h"
 #include "lib/campaign/study_table.h"
 
@@ -29,35 +29,36 @@ bool is_share(const std::string& measure) {
 
 std::string error_text(const std::string& measure, double value) {
   if (std::isnan(value)) return "-";
-  return is_share(measure) ? format("%.3g %%", 100 * value) : format("%.3g", value);
+  return is_share(measure) ? fmt::format("{:.3g} %", 100 * value) : fmt::format("{:.3g}", value);
 }
 
 /// "cheapest setting for compression_mean <= 1 %: ...", then the same per variant with the factor
 /// to the first variant that gets there.
 std::string cheapest_text(const Study& study, const std::vector<StudyRow>& rows, double target) {
-  std::string out = format("cheapest setting for %s <= %s: ", study.error.c_str(),
-                           error_text(study.error, target).c_str());
+  std::string out =
+      fmt::format("cheapest setting for {} <= {}: ", study.error, error_text(study.error, target));
   const StudyRow* best = cheapest(study, rows, target, "");
   if (!best) return out + "none of these\n";
   const auto seconds = [](const StudyRow& r) {
-    return format("%.4g s (spread %.2g s)", r.result.seconds_median(), r.result.seconds_spread());
+    return fmt::format("{:.4g} s (spread {:.2g} s)", r.result.seconds_median(),
+                       r.result.seconds_spread());
   };
-  out += setting(*best) + ", " + seconds(*best) + ", " +
-         error_text(study.error, measure_of(study, *best, study.error)) + "\n";
+  out += fmt::format("{}, {}, {}\n", setting(*best), seconds(*best),
+                     error_text(study.error, measure_of(study, *best, study.error)));
   if (!study.has_variants) return out;
   const StudyRow* first = nullptr;
   for (const std::string& name : variants_of(rows)) {
     const StudyRow* row = cheapest(study, rows, target, name);
-    out += format("  %-24s ", name.c_str());
+    out += fmt::format("  {:24} ", name);
     if (!row) {
       out += "does not get there\n";
       continue;
     }
     out += setting(*row) + ", " + seconds(*row);
     if (first)
-      out += format(", %.3g times the time of %s",
-                    row->result.seconds_median() / first->result.seconds_median(),
-                    first->member->variant.c_str());
+      out += fmt::format(", {:.3g} times the time of {}",
+                         row->result.seconds_median() / first->result.seconds_median(),
+                         first->member->variant);
     else
       first = row;
     out += "\n";
@@ -72,19 +73,20 @@ std::string study_text(const Study& study, const std::vector<StudyRow>& rows) {
   const auto share = [&](const char* name) {
     return [&study, name](R r) -> Cell {
       const double v = measure_of(study, r, name);
-      return std::isnan(v) ? Cell() : Cell(format("%.3g %%", 100 * v));
+      return std::isnan(v) ? Cell() : Cell(fmt::format("{:.3g} %", 100 * v));
     };
   };
   std::vector<Column<StudyRow>> columns{
       {"  setting", [](R r) { return (r.pareto ? "* " : "  ") + setting(r); }, -9},
       {"particles",
        [](R r) { return r.status == "unavailable" ? Cell() : Cell(r.result.particles); }, 9},
-      {"seconds", [](R r) { return known(r.result.seconds_median()); }, 12, "%.4g"},
-      {"spread", [](R r) { return known(r.result.seconds_spread()); }, 10, "%.2g"},
+      {"seconds", [](R r) { return known(r.result.seconds_median()); }, 12, "{:.4g}"},
+      {"spread", [](R r) { return known(r.result.seconds_spread()); }, 10, "{:.2g}"},
       {"compr.mean", share("compression_mean"), 11},
       {"compr.max", share("compression_max"), 11},
       {"energy rise", share("energy_rise"), 11},
-      {"height kept", [&](R r) { return known(measure_of(study, r, "height_kept")); }, 11, "%.4f"}};
+      {"height kept", [&](R r) { return known(measure_of(study, r, "height_kept")); }, 11,
+       "{:.4f}"}};
   if (study.error != "compression_mean")
     columns.push_back({study.error, [&](R r) {
                          return error_text(study.error, measure_of(study, r, study.error));
@@ -103,8 +105,8 @@ std::string study_text(const Study& study, const std::vector<StudyRow>& rows) {
         std::size_t points = 0;
         const FrontData& data = study.front->data[k];
         const double rms = front_deviation(row.front[0], data, &points);
-        out += format("front of %s against %s: RMS %.3g over %zu of %zu points\n",
-                      setting(row).c_str(), data.name.c_str(), rms, points, data.T.size());
+        out += fmt::format("front of {} against {}: RMS {:.3g} over {} of {} points\n",
+                           setting(row), data.name, rms, points, data.T.size());
       }
   out.pop_back();
   return out;

@@ -1,3 +1,4 @@
+#include <fmt/core.h>
 #include <utility>
 
 #include "lib/base/error.h"
@@ -16,11 +17,10 @@ void refuse_if_too_large(const Scene& scene, const Plan& plan, std::size_t avail
   const auto needed = double(plan.memory.host_peak());
   if (available > 0 && needed > double(available))
     throw Error(ExitCode::unavailable,
-                format("scene %s needs about %s of memory for %lld particles, %s are available; "
-                       "%s, or use a machine with more memory",
-                       scene.name.c_str(), bytes_text(needed).c_str(),
-                       static_cast<long long>(plan.particles),
-                       bytes_text(double(available)).c_str(), memory_remedy(scene, plan).c_str()));
+                fmt::format("scene {} needs about {} of memory for {} particles, {} are available; "
+                            "{}, or use a machine with more memory",
+                            scene.name, bytes_text(needed), plan.particles,
+                            bytes_text(double(available)), memory_remedy(scene, plan)));
 }
 
 std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles) {

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using h5::check;
 
-constexpr std::int64_t kFormat = 2;
+constexpr std::int64_t kFormat = 3, kOldestFormat = 2;
 constexpr hsize_t kChunkRows = hsize_t{1} << 18;
 
 /// Rows of `components` numbers, with a checksum per chunk (Fletcher 32).
@@ -58,9 +58,6 @@ void for_each_number(Saved& s, F&& f) {
   f("update", s.state.updates);
   f("steps", s.state.steps, newer);
   f("particles", s.particles);
-  f("fast", s.state.fast);
-  f("rounds", s.state.repeats);
-  f("unresolved", s.state.unresolved, newer);
   f("first_neighbors_max", s.first.neighbors_max);
   f("energy_started", s.energy.started);
   f("compressed_updates", s.compressed_updates, newer);
@@ -79,7 +76,6 @@ void for_each_number(Saved& s, F&& f) {
   f("energy_work", s.energy.work, newer);
   f("energy_power", s.energy.power, newer);
   f("energy_time", s.energy.time, newer);
-  f("way_squared", s.state.way_squared, newer);
   f("first_momentum_x", s.first.momentum[0], newer);
   f("first_momentum_y", s.first.momentum[1], newer);
   f("first_momentum_z", s.first.momentum[2], newer);
@@ -131,47 +127,34 @@ StepHistory read_steps(hid_t file) {
   return s;
 }
 
-constexpr std::size_t kLoadNumbers = sizeof(Load) / sizeof(double);
-
-void write_loads(hid_t file, const std::vector<Load>& loads) {
-  std::vector<double> numbers(loads.size() * kLoadNumbers);
-  std::memcpy(numbers.data(), loads.data(), loads.size() * sizeof(Load));
-  write_rows(file, "loads", "1", H5T_IEEE_F64LE, kLoadNumbers, numbers);
+/// Numbers of the precision if the solver's are, otherwise of 8 bytes.
+void write_field(hid_t file, const StoredField& f, hid_t real) {
+  write_rows(file, f.name.c_str(), "1", f.real ? real : H5T_IEEE_F64LE, hsize_t(f.numbers),
+             f.values);
 }
 
-std::vector<double> read_numbers(hid_t file, const char* name, std::size_t components) {
-  const auto rows = h5::shape(h5::open_dataset(file, name)).at(0);
-  std::vector<double> numbers;
-  read_rows(file, name, std::int64_t(rows), components, numbers);
-  return numbers;
+/// The rows of a field of the state besides the particles' places.
+StoredField read_field(hid_t file, const std::string& name) {
+  const std::vector<hsize_t> size = h5::shape(h5::open_dataset(file, name.c_str()));
+  if (size.size() != 2 || size[1] < 1 || size[1] > 1000)
+    throw h5::Failure("dataset " + name + " has the wrong size");
+  StoredField f{name, false, int(size[1])};
+  read_rows(file, name.c_str(), std::int64_t(size[0]), std::size_t(size[1]), f.values);
+  return f;
 }
 
-std::vector<Load> read_loads(hid_t file) {
-  // Older files have fewer columns.
-  const std::size_t columns = h5::shape(h5::open_dataset(file, "loads")).at(1);
-  if (columns > kLoadNumbers) throw h5::Failure("loads of a later version");
-  const std::vector<double> numbers = read_numbers(file, "loads", columns);
-  std::vector<Load> loads(numbers.size() / columns);
-  for (std::size_t k = 0; k < loads.size(); ++k)
-    std::memcpy(static_cast<void*>(&loads[k]), numbers.data() + k * columns,
-                columns * sizeof(double));
-  return loads;
-}
-
-/// Counts are below 2^53, so doubles hold them.
-void write_flows(hid_t file, const std::vector<FlowCount>& flows) {
-  std::vector<double> numbers;
-  for (const FlowCount& f : flows)
-    numbers.insert(numbers.end(), {double(f.total), double(f.since), f.time});
-  write_rows(file, "flows", "1", H5T_IEEE_F64LE, 3, numbers);
-}
-
-std::vector<FlowCount> read_flows(hid_t file) {
-  const std::vector<double> numbers = read_numbers(file, "flows", 3);
-  std::vector<FlowCount> flows;
-  for (std::size_t k = 0; k < numbers.size(); k += 3)
-    flows.push_back({std::int64_t(numbers[k]), std::int64_t(numbers[k + 1]), numbers[k + 2]});
-  return flows;
+/// Format 2 has the counts in attributes.
+StoredField counts_of_format_2(hid_t file) {
+  StoredField f{"counts", false, 4, std::vector<double>(4)};
+  const auto count = [&](const char* name) {
+    return double(h5::read_number<std::int64_t>(file, name));
+  };
+  f.values[0] = count("fast");
+  f.values[1] = count("rounds");
+  if (h5::has_attribute(file, "unresolved")) f.values[2] = count("unresolved");
+  if (h5::has_attribute(file, "way_squared"))
+    f.values[3] = h5::read_number<double>(file, "way_squared");
+  return f;
 }
 
 void write_file(const std::string& path, const SavedRun& s) {
@@ -184,8 +167,7 @@ void write_file(const std::string& path, const SavedRun& s) {
     write_rows(file, "position", "h", real, 3, s.state.position);
     write_rows(file, "velocity", "h/s", real, 3, s.state.velocity);
     write_rows(file, "id", "1", H5T_STD_I32LE, 1, s.state.id);
-    if (!s.state.loads.empty()) write_loads(file, s.state.loads);
-    if (!s.state.flows.empty()) write_flows(file, s.state.flows);
+    for (const StoredField& f : s.state.fields) write_field(file, f, real);
     h5::write_number(file, "format_version", kFormat);
     h5::write_text(file, "precision", word(s.state.precision));
     for_each_number(s, writing(file));
@@ -207,8 +189,9 @@ SavedRun read_file(const std::string& path) {
   require_own_file(path);
   const h5::Reading file(path);
   const auto format = h5::read_number<std::int64_t>(file, "format_version");
-  if (format != kFormat)
-    throw h5::Failure("format version " + std::to_string(format) + "; this program reads version " +
+  if (format < kOldestFormat || format > kFormat)
+    throw h5::Failure("format version " + std::to_string(format) +
+                      "; this program reads versions " + std::to_string(kOldestFormat) + " to " +
                       std::to_string(kFormat));
   SavedRun s;
   const std::string precision = h5::read_text(file, "precision");
@@ -231,8 +214,10 @@ SavedRun read_file(const std::string& path) {
   read_rows(file, "position", s.particles, 3, s.state.position);
   read_rows(file, "velocity", s.particles, 3, s.state.velocity);
   read_rows(file, "id", s.particles, 1, s.state.id);
-  if (h5::has_link(file, "loads")) s.state.loads = read_loads(file);
-  if (h5::has_link(file, "flows")) s.state.flows = read_flows(file);
+  for (const std::string& name : h5::children(file, H5O_TYPE_DATASET))
+    if (name != "position" && name != "velocity" && name != "id")
+      s.state.fields.push_back(read_field(file, name));
+  if (format == 2) s.state.fields.push_back(counts_of_format_2(file));
   std::vector<bool> seen(s.state.id.size());
   for (const std::int32_t id : s.state.id) {
     if (id < 0 || id >= s.particles || seen[static_cast<std::size_t>(id)])

@@ -8,7 +8,7 @@
 
 #include "lib/program/time_levels.h"
 #include "lib/solver/diagnostics.h"
-#include "lib/solver/step_trace.h"
+#include "lib/solver/solver_state.h"
 
 namespace pbf::inline io_module {
 

@@ -1,9 +1,9 @@
 #include "lib/io/junit.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 
 #include "lib/base/plain_text.h"
-#include "lib/base/text.h"
 
 namespace pbf::inline io_module {
 namespace {
@@ -29,7 +29,7 @@ std::string xml_text(const std::string& text, bool attribute) {
     } else if (c == '"') {
       out += "&quot;";
     } else if (c == '\r' || (attribute && (c == '\n' || c == '\t'))) {
-      out += format("&#%d;", int(c));
+      out += fmt::format("&#{};", int(c));
     } else {
       out += c;
     }
@@ -38,10 +38,10 @@ std::string xml_text(const std::string& text, bool attribute) {
 }
 
 std::string attribute_text(const char* name, const std::string& value) {
-  return format(" %s=\"%s\"", name, xml_text(value, true).c_str());
+  return fmt::format(" {}=\"{}\"", name, xml_text(value, true));
 }
 
-std::string seconds_text(double seconds) { return format("%.3f", std::max(0.0, seconds)); }
+std::string seconds_text(double seconds) { return fmt::format("{:.3f}", std::max(0.0, seconds)); }
 
 std::string xml_of(const JunitCase& c) {
   std::string out = "    <testcase" + attribute_text("classname", c.group) +

@@ -15,10 +15,10 @@ const std::vector<LogColumn>& log_columns() {
   using Row = const LogRow&;
   static const std::vector<LogColumn> columns = [] {
     std::vector<LogColumn> all = {
-        {kRowNumbers[0], "s", true, [](Row r) { return r.measures.time; }},
-        {kRowNumbers[1], "s", true, [](Row r) { return r.dt; }},
-        {kRowNumbers[2], "1", false, nullptr, [](Row r) { return r.measures.update; }},
-        {kRowNumbers[3], "1", false, nullptr, [](Row r) { return std::int64_t{r.iterations}; }}};
+        {"time", "s", true, [](Row r) { return r.measures.time; }},
+        {"dt", "s", true, [](Row r) { return r.dt; }},
+        {"update", "1", false, nullptr, [](Row r) { return r.measures.update; }},
+        {"iterations", "1", false, nullptr, [](Row r) { return std::int64_t{r.iterations}; }}};
     for (const Diagnostic& d : diagnostics())
       all.push_back({d.name, d.unit, d.number != nullptr, nullptr, nullptr, &d});
     return all;

@@ -1,5 +1,6 @@
 #include "lib/io/table.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -10,7 +11,6 @@
 
 #include "lib/base/error.h"
 #include "lib/base/plain_text.h"
-#include "lib/base/text.h"
 
 namespace pbf::inline io_module {
 namespace {
@@ -40,7 +40,7 @@ std::string csv_text(const std::string& text) {
 std::string word(const Cell& value, const char* number_format) {
   if (std::holds_alternative<std::monostate>(value)) return "-";
   const auto* d = std::get_if<double>(&value);
-  return d ? format(number_format, *d) : plain(value);
+  return d ? fmt::format(fmt::runtime(number_format), *d) : plain(value);
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ std::string word(const Cell& value, const char* number_format) {
 Cell known(double value) { return std::isnan(value) ? Cell() : Cell(value); }
 
 Table::Table(const std::vector<std::string>& columns) {
-  for (const std::string& name : columns) columns_.push_back({name, 0, "%g"});
+  for (const std::string& name : columns) columns_.push_back({name, 0, "{:g}"});
 }
 
 void Table::add(std::vector<Cell> row) {

@@ -24,8 +24,8 @@ template <class Row>
 struct Column {
   std::string name;
   std::function<Cell(const Row&)> value{};
-  int width = 0;              ///< at least; below 0: flush left
-  const char* number = "%g";  ///< printf of a double
+  int width = 0;                ///< at least; below 0: flush left
+  const char* number = "{:g}";  ///< format of a double
 };
 
 class Table {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "lib/scene/scene.h"
@@ -38,14 +37,10 @@ struct ReadingColumn {
   double lever = 0;
 };
 
-/// Name of the columns with the mean forces on walls and obstacles.
-inline constexpr std::string_view kForce = "force";
-
 /// Loads of the walls in the order x_min, x_max ..., then of obstacles, then gauges, then the poses
-/// of moving obstacles. Readings are
-/// the numbers of the columns of a series, one behind the other. Loads are along the scene's axes,
-/// a torque is about the present middle. A velocity is NaN if no particle is within h. A mean over
-/// an interval of length 0 is 0.
+/// of moving obstacles. Readings are the numbers of the columns of a series, one behind the other.
+/// Loads are along the scene's axes, a torque is about the present middle. A velocity is NaN if no
+/// particle is within h. A mean over an interval of length 0 is 0.
 std::vector<ReadingColumn> reading_columns(const Scene& scene, const Plan& plan);
 
 /// Calls f(column, component, number) for each number of a series in their order.

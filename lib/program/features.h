@@ -2,6 +2,8 @@
 // instantiates its passes, and programs are made from it.
 #pragma once
 
+#include <tuple>
+
 #include "lib/program/features/confinement.h"
 #include "lib/program/features/constraint.h"
 #include "lib/program/features/correction.h"
@@ -14,13 +16,28 @@
 
 namespace pbf::inline PBF_VARIANT {
 
+/// The memory of feature F in one solver.
+template <class F, class Real>
+struct MemoryOf : NoMemory {};
+template <class F, class Real>
+requires requires { typename F::template Memory<Real>; }
+struct MemoryOf<F, Real> : F::template Memory<Real> {};
+
 template <class... Fs>
 struct FeatureList {
   using Passes = typename Joined<typename Fs::Passes...>::type;
+  // The passes that make_program() and the stepper know.
+  using Predict = pbf::Predict;
+  using Sort = pbf::Sort;
+  using MakeLists = pbf::MakeLists;
   template <class B>
   static void add(const Scene& scene, B& b) {
     (Fs::add(scene, b), ...);
   }
+  template <class Real>
+  using Memory = std::tuple<MemoryOf<Fs, Real>...>;
+  template <class... More>
+  using With = FeatureList<Fs..., More...>;
 };
 
 using Features = FeatureList<Motion, NearSolids, Constraint, Levels, Correction, XsphViscosity,

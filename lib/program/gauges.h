@@ -1,94 +1,54 @@
-// The gauges of a scene in the form that the kernels use. A kind of gauges (lib/program/gauges/) is
-// a struct made from its keys, with
-//   site            what the kernels know of it, plain data in the internal frame
-//   Sums, sums()    type and number of the sums behind a reading; how they are made follows from
-//   the
-//                   type: FlowCount at the end of updates, Load with the loads of walls, any other
-//                   at a reading by gauge_pass() (kernels/gauge_probe.h)
-//   finish()        the numbers of a reading from the sums, in SI units
-//   grains          of its columns
-//   place()         where it is, for readers of the run file
+// The gauges of a scene in the form that the kernels use. A tally (kernels/gauge_probe.h) is a way
+// to make the sums behind readings; the kinds of gauges that share one are its gauges.
 #pragma once
 
 #include <algorithm>
+#include <functional>
+#include <tuple>
 #include <type_traits>
-#include <variant>
 #include <vector>
 
-// clang-format off
-#define PBF_GAUGE_FILE(name) PBF_GAUGE_TEXT(lib/program/gauges/name.h)
-// clang-format on
-#include "lib/scene/gauges/list.h"
+#include "lib/program/column.h"
 
 namespace pbf::inline program_module {
 
-namespace gauge_kinds {
-using Any = std::variant<PBF_GAUGES>;
-}  // namespace gauge_kinds
-
-/// Whether sums are made by a pass over the particles at a reading.
-template <class Sums>
-inline constexpr bool is_probe = !std::is_same_v<Sums, FlowCount> && !std::is_same_v<Sums, Load>;
-
-/// Whether the scene has gauges with sums of a type.
-template <class Sums>
-bool has_gauges(const Scene& scene) {
-  return [&]<class... Kind>(const std::variant<Kind...>*) {
-    constexpr bool has[] = {std::is_same_v<typename Kind::Sums, Sums>...};
-    return std::ranges::any_of(scene.gauges, [&](const Gauge& g) { return has[g.kind.index()]; });
-  }(static_cast<const gauge_kinds::Any*>(nullptr));
+/// Number of the scene's gauges of a tally.
+template <class Tally>
+int gauges_of(const Scene& scene) {
+  return int(std::ranges::count_if(scene.gauges, [](const Gauge& g) {
+    return std::visit(
+        []<class Keys>(const Keys&) { return std::is_same_v<typename Keys::Tally, Tally>; },
+        g.kind);
+  }));
 }
 
 /// In the order of the scene.
-struct GaugePlan {
-  std::vector<gauge_kinds::Any> all;
+template <class Tally>
+struct TalliedGauges {
+  std::vector<typename Tally::Site> sites;
+  int sums = 0;  ///< number of sums of all
+};
+template <class Tally>
+struct TallySums {
+  std::vector<typename Tally::Sums> rows;
+};
+/// The sums of one reading.
+using GaugeSums = gauge_keys::EachTally<TallySums>;
 
-  /// Calls f(gauge, number) for those with sums or sites of this type; number: of the first number
-  /// of its reading among those of all gauges, whose number is returned.
-  template <class T, class F>
-  std::size_t for_each(F&& f) const {
-    std::size_t number = 0;
-    for (const gauge_kinds::Any& any : all)
-      std::visit(
-          [&]<class Kind>(const Kind& gauge) {
-            if constexpr (std::is_same_v<typename Kind::Sums, T> ||
-                          std::is_same_v<decltype(Kind::site), T>)
-              f(gauge, number);
-            for (const GaugeColumn& c : Kind::Keys::columns) number += std::size_t(c.components);
-          },
-          any);
-    return number;
+struct GaugePlan {
+  gauge_keys::EachTally<TalliedGauges> tallies;
+  std::vector<ReadingColumn> columns;  ///< gauge after gauge
+  std::vector<std::function<std::vector<double>(const GaugeSums&)>> finish_each;  ///< by gauge
+
+  template <class Tally>
+  const TalliedGauges<Tally>& of() const {
+    return std::get<TalliedGauges<Tally>>(tallies);
   }
-  /// Of a reading of all gauges.
-  std::size_t numbers() const {
-    return for_each<void>([](const auto&, std::size_t) {});
-  }
-  template <class Site>
-  std::vector<Site> sites() const {
-    std::vector<Site> out;
-    for_each<Site>([&](const auto& gauge, std::size_t) { out.push_back(gauge.site); });
-    return out;
-  }
-  /// Number of sums of a type.
-  template <class Sums>
-  int sums() const {
-    int n = 0;
-    for_each<Sums>([&](const auto& gauge, std::size_t) { n += gauge.sums(); });
-    return n;
-  }
-  /// Puts the numbers of the gauges with these sums to their places among the readings of all.
-  template <class Sums>
-  void finish(const std::vector<Sums>& sums, std::vector<double>& readings) const {
-    const Sums* next = sums.data();
-    for_each<Sums>([&](const auto& gauge, std::size_t number) {
-      gauge.finish(next, &readings[number]);
-      next += gauge.sums();
-    });
-  }
+  /// The numbers of a reading in SI units.
+  std::vector<double> finish(const GaugeSums& sums) const;
 };
 
-/// `force_grain`: load_grain() (lib/program/loads.h).
-GaugePlan plan_gauges(const Scene& scene, const Axes& axes,
-                      const std::vector<Solid<double>>& solids, double mass, double force_grain);
+/// `plan`: with its axes, solids and mass.
+GaugePlan plan_gauges(const Scene& scene, const Plan& plan);
 
 }  // namespace pbf::inline program_module

@@ -1,10 +1,10 @@
 #include "lib/program/list_memory.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 
 #include "kernels/smoothing.h"
-#include "lib/base/text.h"
 #include "lib/program/list_capacity.h"
 #include "lib/program/plan.h"
 #include "lib/program/threads.h"
@@ -109,11 +109,10 @@ StartCrowd start_crowd(const Scene& s, const Plan& plan) {
 std::string memory_remedy(const Scene& s, const Plan& plan) {
   const StartCrowd crowd = start_crowd(s, plan);
   if (!crowd.decides) return "increase fluid.spacing";
-  return format(
-      "its particles start so close that each has about %.0f neighbours within h = %g m, where "
-      "fluid at rest has %.0f, and each takes room in a list: spread the bodies (bodies[].min, "
-      "max), "
-      "give fewer particles (bodies[].count)",
+  return fmt::format(
+      "its particles start so close that each has about {:.0f} neighbours within h = {:g} m, where "
+      "fluid at rest has {:.0f}, and each takes room in a list: spread the bodies (bodies[].min, "
+      "max), give fewer particles (bodies[].count)",
       crowd.neighbors, s.h(), rest_neighbors(s));
 }
 

@@ -4,16 +4,12 @@
 #include <algorithm>
 #include <vector>
 
-#include "kernels/axes.h"
-#include "kernels/boundary/loads.h"
+#include "lib/program/gauges.h"
 #include "lib/scene/surface.h"
 
 namespace pbf::inline program_module {
 
-inline std::int64_t pressure_gauges(const Scene& scene) {
-  return std::ranges::count_if(scene.gauges, [](const Gauge& g) { return g.on(); });
-}
-inline bool has_pressure_gauges(const Scene& scene) { return pressure_gauges(scene) > 0; }
+inline bool has_pressure_gauges(const Scene& scene) { return gauges_of<PatchTally>(scene) > 0; }
 
 /// Whether any loads are summed. Pressure gauges need them: they use a share of a surface's load.
 inline bool has_loads(const Scene& scene) {
@@ -46,7 +42,7 @@ inline int load_row_of_patch(const Scene& scene, int k) {
 }
 /// Number of rows.
 inline std::int64_t load_walls(const Scene& scene) {
-  return has_loads(scene) ? load_row_of_patch(scene, int(pressure_gauges(scene))) : 0;
+  return has_loads(scene) ? load_row_of_patch(scene, gauges_of<PatchTally>(scene)) : 0;
 }
 
 /// The bits of LoadBook::summed. Includes moving obstacles, whose work is computed from their load.

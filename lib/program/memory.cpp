@@ -37,35 +37,28 @@ int downloaded_scalars(const Scene& s) {
   return 3 + (has_field(s, "velocity") ? 3 : 0) + (has_field(s, "density") ? 1 : 0);
 }
 
-void add_state(const Scene& s, const Plan& plan, std::int64_t bins, const std::string& real,
-               const Adder& add) {
-  // The lists contain one distant row after the last particle, and vector lanes read beyond it.
-  const std::int64_t n = plan.particles, padding = add.on_device ? 1 : 16;
-  const auto type_name = [&](const FieldInfo& f) -> std::string {
-    return f.type == Type::real ? real : f.type == Type::int64 ? "int64" : "int32";
+void add_fields(const Scene& s, const Plan& plan, std::int64_t bins, const Adder& add) {
+  const BackendInfo& backend = about(s.backend);
+  const Sizes sizes{s, plan, plan.particles, backend.padding, bins};
+  const auto add_field = [&](const std::string& name, const FieldInfo& f, std::int64_t rows) {
+    const int row = f.bytes(s.precision);
+    const char* type = f.type == Type::real    ? word(s.precision)
+                       : f.type == Type::int64 ? "int64"
+                       : f.type == Type::int32 ? "int32"
+                                               : "byte";
+    add(name.c_str(), type, f.type == Type::object ? row : f.components, rows);
   };
-  const Sizes counts{n,
-                     padding,
-                     bins,
-                     plan.levels.cells(),
-                     plan.levels.runs(s.dimensions),
-                     plan.levels.bricks(),
-                     plan.levels.nodes(),
-                     load_walls(s)};
   for (const FieldInfo* f : plan.program.fields) {
-    if (f == &field::order && !add.on_device) continue;  // stored in id'
-    for (const char* which : {"", "'"})
-      if (*which == '\0' || f->pair)
-        add((std::string(f->name) + which).c_str(), type_name(*f), f->components, f->rows(counts));
+    if (f == &field::order && backend.order_in_place) continue;
+    add_field(f->name, *f, f->rows(sizes));
+    if (f->pair) add_field(f->name + std::string("'"), *f, f->rows(sizes));
   }
-  for (const FieldInfo* f : plan.program.fields) {
-    if (f->life != Life::state) continue;
-    // The last good state of the guard, and the state from which a batch of updates is repeated.
-    const std::pair<bool, const char*> copies[] = {{bool(s.guard), "kept "},
-                                                   {add.on_device, "saved "}};
-    for (const auto& [is_there, copy] : copies)
-      if (is_there) add((copy + std::string(f->name)).c_str(), type_name(*f), f->components, n);
+  // The last good state of the guard, and the state from which a batch of updates is repeated.
+  for (const FieldInfo* f : plan.program.state) {
+    if (s.guard) add_field("kept " + std::string(f->name), *f, f->kept_rows(sizes));
+    if (add.on_device) add_field("saved " + std::string(f->name), *f, f->kept_rows(sizes));
   }
+  const std::int64_t n = plan.particles;
   if (add.on_device)
     add("sums of a measure by block", "int64",
         int((sizeof(MeasureCounts) + sizeof(MeasureTerms)) / 8), reduce_blocks(n) + 1);
@@ -156,7 +149,7 @@ void add_checkpoint(const Scene& s, const Plan& plan, const std::string& real, M
 void add_fixed(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   const auto mb = [](double x) { return std::int64_t(x * 1e6); };
 #ifdef PBF_HAS_CUDA
-  const double program = 17.6;  // with the device's code
+  const double program = 16.5;  // the device's code is mapped, and read only by a run on a device
 #else
   const double program = 15.6;
 #endif
@@ -164,7 +157,7 @@ void add_fixed(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   if (s.output || s.checkpoint) memory.fixed.push_back({"HDF5", mb(4.5), false, true});
   if (s.output)  // per dataset two nodes with keys, and HDF5's data about each
     memory.fixed.push_back(
-        {"indices of the run file", mb(0.068 * run_file_datasets(s, plan)), false, true});
+        {"indices of the run file", mb(0.068 * run_file_datasets(plan)), false, true});
   if (s.output && s.output->compression == Compression::gzip)
     memory.fixed.push_back({"zlib", mb(0.8), false, true});
   if (s.render) {
@@ -217,7 +210,7 @@ MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
   const std::int64_t bins =
       std::int64_t(plan.cells[0]) * plan.cells[1] * plan.cells[2] * bins_per_cell(s.dimensions);
   const Adder solver{memory, about(s.backend).on_device, Held::solver};
-  add_state(s, plan, bins, real, solver);
+  add_fields(s, plan, bins, solver);
   if (solver.on_device)
     add_cuda_lists(s, plan, bins, solver);
   else

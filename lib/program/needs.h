@@ -17,7 +17,7 @@ enum How : unsigned {
   kLooks = 4,    ///< reads any row
   kWrites = 8,   ///< writes its own row completely
   kPlaces = 16,  ///< writes any row, each once; later launches of the pass may read them
-  kAdds = 32,    ///< adds integers to any row, in any order
+  kAdds = 32,    ///< adds integers to any row, in any order; with kPlaces: see Totals
   kUpdates = kReads | kWrites,
   kReading = kReads | kGathers | kLooks,
   kWriting = kWrites | kPlaces | kAdds
@@ -37,6 +37,11 @@ struct AccessInfo {
   When when = When::always;
 };
 
+/// The two arrays of a field that sorts carry along.
+struct Carried {
+  const FieldInfo *first, *second;
+};
+
 template <auto& F, unsigned how_, W w_ = W::any, When when_ = When::always>
 struct Access {
   using Field = std::remove_cvref_t<decltype(F)>;
@@ -47,6 +52,10 @@ struct Access {
   template <class Asked>
   static constexpr unsigned how_of() {
     return std::is_same_v<Asked, Field> ? how_ : 0;
+  }
+  static constexpr bool further = field::is_further(F);
+  static void list_further(std::vector<Carried>& to) {
+    if constexpr (further) to.push_back({&F, &other<F>});
   }
 };
 template <auto& F, W w = W::any, When when = When::always>
@@ -63,6 +72,9 @@ template <auto& F, W w = W::any>
 using Places = Access<F, kPlaces, w>;
 template <auto& F>
 using Adds = Access<F, kAdds>;
+/// Places sums over particles, which later launches of the pass read.
+template <auto& F>
+using Totals = Access<F, kPlaces | kAdds>;
 
 /// A group of declarations, which may hold further groups.
 template <class... As>
@@ -72,6 +84,8 @@ struct Needs {
   static constexpr unsigned how_of() {
     return (0u | ... | As::template how_of<Asked>());
   }
+  static constexpr bool further = (false || ... || As::further);
+  static void list_further(std::vector<Carried>& to) { (As::list_further(to), ...); }
 };
 /// Declarations for scenes for which on(scene) is true.
 template <bool (*on)(const Scene&), class... As>
@@ -83,6 +97,8 @@ struct If {
   static constexpr unsigned how_of() {
     return (0u | ... | As::template how_of<Asked>());
   }
+  static constexpr bool further = (false || ... || As::further);
+  static void list_further(std::vector<Carried>& to) { (As::list_further(to), ...); }
 };
 /// Declarations of a fused pass, which does the work of A and then of B for each row. If A writes a
 /// row and B reads the same row, the fused pass need not read it.
@@ -96,6 +112,8 @@ struct Then {
                   "one launch writes a field and gathers it: its threads would race");
     return a | b;
   }
+  static constexpr bool further = A::further || B::further;
+  static void list_further(std::vector<Carried>& to) { A::list_further(to), B::list_further(to); }
 };
 
 /// The two arrays of these fields are swapped before the pass is launched.

@@ -58,6 +58,7 @@ std::vector<AccessInfo> joined(const std::vector<AccessInfo>& all) {
 }
 
 bool PassInfo::makes_lists() const { return touches(needs, field::lists, kWriting); }
+bool PassInfo::reorders_rows() const { return touches(needs, field::id, kPlaces); }
 bool PassInfo::over_pairs() const { return touches(needs, field::lists, kReading); }
 
 PassInfo described(const PassText& text, std::vector<AccessInfo> declared,

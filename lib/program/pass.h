@@ -41,6 +41,7 @@ struct PassInfo : PassText {
 
   bool makes_lists() const;
   bool over_pairs() const;  ///< uses the lists
+  bool reorders_rows() const;
 };
 
 /// The description of a pass, with everything that follows from its declarations.
@@ -58,6 +59,10 @@ PassInfo info_of(const Scene& scene) {
     return described(P::text, std::move(declared), {});
 }
 
+/// Whether pass P puts the particles into another order. It then reorders all carried fields.
+template <class P>
+constexpr bool reorders = (how_of<P, field::Id> & kPlaces) != 0;
+
 template <class First, class Second>
 struct Pair {};
 
@@ -73,6 +78,13 @@ struct PassList {
   }
   static std::vector<PassInfo> infos(const Scene& scene) { return {info_of<Ps>(scene)...}; }
   static constexpr std::array<PassText, sizeof...(Ps)> texts{Ps::text...};
+  /// The carried fields of all passes besides position, velocity and id, in any scene.
+  static constexpr bool further = (false || ... || Ps::Needs::further);
+  static std::vector<Carried> further_fields() {
+    std::vector<Carried> all;
+    (Ps::Needs::list_further(all), ...);
+    return all;
+  }
   /// The index of the pass that does the work of passes a and b, or -1.
   static int fused(int a, int b) {
     int found = -1;

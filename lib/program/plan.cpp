@@ -8,9 +8,6 @@
 #include "lib/base/error.h"
 #include "lib/program/axes.h"
 #include "lib/program/calibrate.h"
-#include "lib/program/diagnostics.h"
-#include "lib/program/loads.h"
-#include "lib/program/motion.h"
 #include "lib/program/schedule.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/time_levels.h"
@@ -100,19 +97,21 @@ void plan_left_out(Plan& plan, const Scene& s) {
       "solver.reproducible is false");
 }
 
-/// Datasets of run.vtkhdf without the columns of log and gauges: a field has one for its values and
-/// one for where they begin in each frame.
-double other_datasets(const Scene& s) {
-  return 43 + (s.output ? 2 * double(s.output->fields.size()) : 0);
+constexpr double kOtherDatasets = 48;  // of run.vtkhdf, without the columns of log and gauges
+
+/// Columns of the log: diagnostics and stages; loads on walls and obstacles; poses of moving ones.
+double log_columns(const Plan& plan) {
+  double columns = 46;
+  for (const ReadingColumn& c : plan.columns)
+    if (c.series != Series::gauges) columns += c.components;
+  return columns;
 }
 
-/// Of the log: a column per number, one more of moving scenes, and the times of stages.
-double log_columns(const Scene& s, const Plan& plan) {
-  std::size_t columns = std::size(kRowNumbers) + diagnostics().size() +
-                        stage_names(s, plan).size() + (has_motion(s) ? 1 : 0);
-  for (const Series series : {Series::measures, Series::poses})
-    for_each_number(plan.columns, series, [&](auto&&...) { ++columns; });
-  return double(columns);
+double gauge_columns(const Plan& plan) {
+  double columns = 0;
+  for (const ReadingColumn& c : plan.columns)
+    if (c.series == Series::gauges) columns += c.components;
+  return columns > 0 ? 2 + columns : 0;
 }
 
 /// Bytes of a table of run.vtkhdf with columns of 8 bytes per row, in whole chunks of 1024 rows.
@@ -139,12 +138,11 @@ void plan_files(Plan& plan, const Scene& s) {
     const double frames = double(schedule.frames_until(all));
     // Ids and vertex numbers are stored once. Large chunks of a frame fill whole pages. gzip makes
     // the data 1.45 times smaller (measured).
-    const auto numbers = double(plan.gauges.numbers());  // besides time and update
     const double bytes =
         (frames * row + 12) * n / (s.output->compression == Compression::gzip ? 1.45 : 1) +
-        frames * std::min(5 * n, 9e3) + table_bytes(other_datasets(s), 0) +
-        table_bytes(log_columns(s, plan), double(schedule.measures_until(all))) +
-        table_bytes(numbers > 0 ? 2 + numbers : 0, double(schedule.gauges_until(all)));
+        frames * std::min(5 * n, 9e3) + table_bytes(kOtherDatasets, 0) +
+        table_bytes(log_columns(plan), double(schedule.measures_until(all))) +
+        table_bytes(gauge_columns(plan), double(schedule.gauges_until(all)));
     add("run.vtkhdf", 1, bytes, std::to_string(std::int64_t(frames)) + " frames");
   }
   if (s.render) {
@@ -158,24 +156,8 @@ void plan_files(Plan& plan, const Scene& s) {
 
 }  // namespace
 
-std::vector<const char*> stage_names(const Scene& s, const Plan& plan, bool writes) {
-  std::vector<const char*> names{"init"};
-  const auto add = [&](const char* name) {
-    if (std::ranges::find(names, std::string_view(name)) == names.end()) names.push_back(name);
-  };
-  for (const PassCount& c : count_passes(plan.program, plan.program.update)) add(c.pass->stage);
-  add("measure");
-  if (s.guard || s.time.adaptive) add("guard");
-  if (s.output || s.render) add("download");
-  if (s.output || writes) add("write");
-  if (s.render) add("render");
-  return names;
-}
-
-double run_file_datasets(const Scene& s, const Plan& plan) {
-  const auto gauges =
-      double(std::ranges::count(plan.columns, Series::gauges, &ReadingColumn::series));
-  return other_datasets(s) + log_columns(s, plan) + (gauges > 0 ? 2 + gauges : 0);
+double run_file_datasets(const Plan& plan) {
+  return kOtherDatasets + log_columns(plan) + gauge_columns(plan);
 }
 
 UpdateShape Plan::shape() const { return {substeps, lists_per_update, repeats}; }
@@ -208,7 +190,7 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   plan.program = make_program(s, plan.shape());
   plan_grid(plan, s);
   plan.solids = solids_of(s, plan.axes);
-  plan.gauges = plan_gauges(s, plan.axes, plan.solids, plan.mass, load_grain(s, plan));
+  plan.gauges = plan_gauges(s, plan);
   plan.columns = reading_columns(s, plan);
   if (has_levels(s))
     plan.levels = plan_levels(in_internal_axes(s, plan.axes), plan.cell_edge, plan.vol);

@@ -65,11 +65,8 @@ struct Plan {
   UpdateShape shape() const;
 };
 
-/// The stages whose times a run records, in their order. `writes`: it writes rows elsewhere, too.
-std::vector<const char*> stage_names(const Scene& scene, const Plan& plan, bool writes = false);
-
 /// Number of datasets of run.vtkhdf, including the columns of log and gauges. Each has an index.
-double run_file_datasets(const Scene& scene, const Plan& plan);
+double run_file_datasets(const Plan& plan);
 
 /// Pure: touches no file and no device. `particles`: from count_particles(). `start`: from
 /// start_neighbors(), for the memory of a crowded start; without it, the start is planned as fluid

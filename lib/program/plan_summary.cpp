@@ -1,4 +1,5 @@
 // The totals of a plan, and its five-line summary.
+#include <fmt/core.h>
 #include <algorithm>
 
 #include "lib/base/text.h"
@@ -12,10 +13,11 @@ namespace {
 
 std::string time_line(const Plan& plan, const Scene& s, const PlanTotals& totals) {
   std::string out =
-      format("%.6g s in %ld updates of %.6g s", totals.end, totals.updates, s.time.step);
-  if (plan.finest_level > 0) out += format(", each of 1 to %d steps", 1 << plan.finest_level);
+      fmt::format("{:.6g} s in {} updates of {:.6g} s", totals.end, totals.updates, s.time.step);
+  if (plan.finest_level > 0) out += fmt::format(", each of 1 to {} steps", 1 << plan.finest_level);
   if (const double step = relative_step(s); step > 0)
-    out += format("; dt sqrt(g/h) = %.3g (time.step: auto takes %g at most)", step, kSafeStep);
+    out += fmt::format("; dt sqrt(g/h) = {:.3g} (time.step: auto takes {:g} at most)", step,
+                       kSafeStep);
   return out;
 }
 
@@ -33,7 +35,7 @@ std::string disk_line(const Plan& plan, const PlanTotals& totals) {
   for (const PlanFile& f : plan.files)
     if (100 * f.bytes >= totals.disk_bytes)
       parts += (parts.empty() ? ": " : ", ") + f.name + " " + bytes_text(double(f.bytes)) +
-               (f.number > 1     ? format(" (%ld files)", f.number)
+               (f.number > 1     ? fmt::format(" ({} files)", f.number)
                 : f.note.empty() ? std::string()
                                  : " (" + f.note + ")");
   return bytes_text(double(totals.disk_bytes)) + parts;
@@ -53,8 +55,9 @@ PlanTotals plan_totals(const Plan& plan, const Scene& s) {
 
 std::string plan_summary(const Plan& plan, const Scene& s, const std::string& run_time) {
   const PlanTotals totals = plan_totals(plan, s);
-  std::string out = format("scene %s: %ld particles, spacing d = %g m, smoothing length h = %g m\n",
-                           s.name.c_str(), plan.particles, s.fluid.spacing, s.h());
+  std::string out =
+      fmt::format("scene {}: {} particles, spacing d = {:g} m, smoothing length h = {:g} m\n",
+                  s.name, plan.particles, s.fluid.spacing, s.h());
   out += "  time      " + time_line(plan, s, totals) + "\n";
   if (!run_time.empty()) out += "  run time  " + run_time + "\n";
   out += "  memory    " + memory_line(plan, s, totals) + "\n";

@@ -1,4 +1,5 @@
 // The plan as text, without its summary (plan_summary.cpp).
+#include <fmt/core.h>
 #include <algorithm>
 
 #include "lib/base/text.h"
@@ -19,10 +20,10 @@ std::string backend_text(Backend backend, Precision precision) {
 std::string files_part(const Plan& plan, const Scene& s) {
   std::string out = "files\n";
   for (const PlanFile& f : plan.files) {
-    const std::string each = f.number > 1 ? format("  %ld of ", f.number) +
+    const std::string each = f.number > 1 ? fmt::format("  {} of ", f.number) +
                                                 bytes_text(double(f.bytes) / double(f.number))
                                           : std::string();
-    out += format("  %-33s %10s", f.name.c_str(), bytes_text(double(f.bytes)).c_str()) + each +
+    out += fmt::format("  {:33} {:>10}", f.name, bytes_text(double(f.bytes))) + each +
            (f.note.empty() ? "\n" : "  (" + f.note + ")\n");
   }
   for (const std::string& note : rounded_times(s)) out += "  " + note + "\n";
@@ -31,16 +32,16 @@ std::string files_part(const Plan& plan, const Scene& s) {
 
 /// "151 MiB = 46.5 in arrays + 105 fixed".
 std::string peak_text(std::int64_t arrays, std::int64_t fixed) {
-  return format("%.0f MiB = %.1f in arrays + %.0f fixed", mib(arrays + fixed), mib(arrays),
-                mib(fixed));
+  return fmt::format("{:.0f} MiB = {:.1f} in arrays + {:.0f} fixed", mib(arrays + fixed),
+                     mib(arrays), mib(fixed));
 }
 
 std::string memory_part(const Plan& plan, const Scene& s) {
   std::string out = "peak memory by backend and precision; fixed: the program and its libraries\n";
   for (const MemoryChoice& c : memory_choices(s, plan)) {
     const MemoryPlan& m = c.memory;
-    out += format("  %-12s  host %s", backend_text(c.backend, c.precision).c_str(),
-                  peak_text(m.host_arrays, m.fixed_bytes(false)).c_str());
+    out += fmt::format("  {:12}  host {}", backend_text(c.backend, c.precision),
+                       peak_text(m.host_arrays, m.fixed_bytes(false)));
     if (m.device_peak() > 0) out += "; device " + peak_text(m.device_arrays, m.fixed_bytes(true));
     out += "\n";
   }
@@ -48,35 +49,36 @@ std::string memory_part(const Plan& plan, const Scene& s) {
 }
 
 std::string passes_part(const Plan& plan, const Scene& s) {
-  std::string out = plan.finest_level == 0
-                        ? "passes of one update\n"
-                        : format(
-                              "passes of one step; 2^k of them in an update at level k = 0 ... "
-                              "%d\n",
-                              plan.finest_level);
+  std::string out =
+      plan.finest_level == 0
+          ? "passes of one update\n"
+          : fmt::format("passes of one step; 2^k of them in an update at level k = 0 ... {}\n",
+                        plan.finest_level);
   for (const auto& [p, times] : count_passes(plan.program)) {
     const std::string gathers = gathers_text(*p);
-    out += format("  %-22s x%-3d stage %-10s reads %-34s writes %s", p->name, times, p->stage,
-                  reads_text(*p).c_str(), writes_text(*p).c_str()) +
+    out += fmt::format("  {:22} x{:<3} stage {:10} reads {:34} writes {}", p->name, times, p->stage,
+                       reads_text(*p), writes_text(*p)) +
            (gathers.empty() ? "\n" : "; of neighbours " + gathers + "\n");
   }
   if (plan.substeps > 1)
-    out += format("  %d substeps of %.4g s on %d list%s: at most %.3g h of way on one list\n",
-                  plan.substeps, s.time.step / plan.substeps, plan.lists_per_update,
-                  plan.lists_per_update == 1 ? "" : "s", way_per_update(s) / plan.lists_per_update);
+    out += fmt::format(
+        "  {} substeps of {:.4g} s on {} list{}: at most {:.3g} h of way on one list\n",
+        plan.substeps, s.time.step / plan.substeps, plan.lists_per_update,
+        plan.lists_per_update == 1 ? "" : "s", way_per_update(s) / plan.lists_per_update);
   return out;
 }
 
 std::string grid_part(const Plan& plan, const Scene& s) {
-  std::string out = format(
-      "grid %d (half) x %d x %d cells of edge %g h; internal axes x, y, z: %s of the scene\n",
-      plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge, axes_text(plan.axes).c_str());
+  std::string out = fmt::format(
+      "grid {} (half) x {} x {} cells of edge {:g} h; internal axes x, y, z: {} of the scene\n",
+      plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge, axes_text(plan.axes));
   if (const StartCrowd crowd = start_crowd(s, plan); crowd.neighbors > 0)
-    out += format("start: about %.0f neighbours of a particle, at rest %.0f%s\n", crowd.neighbors,
-                  rest_neighbors(s),
-                  crowd.decides ? "; they decide the size of the lists, and fluid that crowds more "
-                                  "later takes more"
-                                : "");
+    out += fmt::format("start: about {:.0f} neighbours of a particle, at rest {:.0f}{}\n",
+                       crowd.neighbors, rest_neighbors(s),
+                       crowd.decides
+                           ? "; they decide the size of the lists, and fluid that crowds more "
+                             "later takes more"
+                           : "");
   return out;
 }
 
@@ -93,19 +95,19 @@ std::string plan_details(const Plan& plan, const Scene& s) {
 std::string plan_arrays(const Plan& plan, const Scene& s) {
   std::string out = "arrays, " + backend_text(s.backend, s.precision) + "\n";
   const auto add = [&](const char* name, const std::string& what, std::int64_t bytes) {
-    out += format("  %-35s %-30s %11.3f MiB %8.1f B/particle\n", name, what.c_str(), mib(bytes),
-                  double(bytes) / double(plan.particles));
+    out += fmt::format("  {:35} {:30} {:11.3f} MiB {:8.1f} B/particle\n", name, what, mib(bytes),
+                       double(bytes) / double(plan.particles));
   };
   for (const PlanArray& a : plan.memory.arrays)
     add(a.name.c_str(),
-        format("%3d x %-6s  %-6s  %-6s", a.components, a.type.c_str(), held_name(a.held),
-               a.on_device ? "device" : "host"),
+        fmt::format("{:3} x {:6}  {:6}  {:6}", a.components, a.type, held_name(a.held),
+                    a.on_device ? "device" : "host"),
         a.bytes);
   add("held by the solver", "", plan.bytes());
   out += "fixed memory\n";
   for (const FixedMemory& f : plan.memory.fixed)
-    out += format("  %-35s %-6s %.0f MiB\n", f.name.c_str(), f.on_device ? "device" : "host",
-                  mib(f.bytes));
+    out += fmt::format("  {:35} {:6} {:.0f} MiB\n", f.name, f.on_device ? "device" : "host",
+                       mib(f.bytes));
   return out;
 }
 

@@ -1,59 +1,23 @@
 #include "lib/program/program.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 #include "lib/program/features.h"
+#include "lib/program/make_program.h"
 
 namespace pbf::inline program_module {
 namespace {
 
-ProgramStep step_of(int index) { return {ProgramStep::pass, index}; }
-template <class P>
-ProgramStep step_of() {
-  return step_of(Passes::index_of<P>());
-}
-
-/// Collects the passes that features add for a scene.
-struct Builder {
-  Steps at_start, with_lists, with_all_lists, in_iteration, behind, at_end;
-  std::vector<LeftOut> without;
-
-  /// The pass runs before each substep.
-  template <class P>
-  void start() {
-    at_start.push_back(step_of<P>());
-  }
-  /// The pass runs whenever lists are made; with `updates_alone` not for a measurement.
-  template <class P>
-  void lists(bool updates_alone = false) {
-    with_lists.push_back(step_of<P>());
-    if (!updates_alone) with_all_lists.push_back(step_of<P>());
-  }
-  template <class P>
-  void iteration() {
-    in_iteration.push_back(step_of<P>());
-  }
-  template <class P>
-  void after() {
-    behind.push_back(step_of<P>());
-  }
-  /// The pass runs after all others, with or without lists.
-  template <class P>
-  void end() {
-    at_end.push_back(step_of<P>());
-  }
-  void left_out(const char* what, const char* because) { without.push_back({what, because}); }
-};
-
 /// Fuses pass b with the last pass of `steps`. False if no pass does the work of both. If the last
 /// pass belongs to iterations, the last iteration becomes a step of its own.
-bool join(Steps& steps, int b) {
+bool join(Steps& steps, int b, const PassSet& passes) {
   if (steps.empty()) return false;
   ProgramStep& last = steps.back();
   if (last.kind == ProgramStep::pass) {
-    const int both = Passes::fused(last.index, b);
+    const int both = passes.fused(last.index, b);
     if (both >= 0) last.index = both;
     return both >= 0;
   }
@@ -61,28 +25,28 @@ bool join(Steps& steps, int b) {
   ProgramStep peeled = last;
   peeled.first += peeled.times - 1;
   peeled.times = 1;
-  if (!join(peeled.body, b)) return false;
+  if (!join(peeled.body, b, passes)) return false;
   if (--last.times == 0) steps.pop_back();
   steps.push_back(peeled);
   return true;
 }
 
 /// The steps with all possible fusions.
-Steps joined(const Steps& steps) {
+Steps joined(const Steps& steps, const PassSet& passes) {
   Steps out;
   for (const ProgramStep& s : steps)
-    if (s.kind != ProgramStep::pass || !join(out, s.index)) out.push_back(s);
+    if (s.kind != ProgramStep::pass || !join(out, s.index, passes)) out.push_back(s);
   // A fused pass may itself be fused with the one before.
-  return out.size() < steps.size() ? joined(out) : out;
+  return out.size() < steps.size() ? joined(out, passes) : out;
 }
 
 /// Adds a range of substeps that share lists.
-void add_substeps(Steps& to, const Builder& b, int iterations, int repeats, int substeps) {
+void add_substeps(Steps& to, const PassSet& b, int iterations, int repeats, int substeps) {
   for (int s = 0; s < substeps; ++s) {
     to.insert(to.end(), b.at_start.begin(), b.at_start.end());
-    to.push_back(step_of<Predict>());
+    to.push_back(b.predict);
     if (s == 0) {
-      to.insert(to.end(), {step_of<Sort>(), step_of<MakeLists>()});
+      to.insert(to.end(), {b.sort, b.make_lists});
       to.insert(to.end(), b.with_lists.begin(), b.with_lists.end());
     }
     if (b.in_iteration.empty()) continue;
@@ -102,6 +66,41 @@ void collect_fields(const Steps& steps, Program& p) {
         p.fields.push_back(f);
     }
   }
+}
+
+/// Adds the further fields of the program to what the passes that reorder rows declare.
+void carry_further(const std::vector<Carried>& all, Program& p) {
+  for (const Carried& c : all) {
+    const auto is = [&](const Carried& o) { return o.first == c.first; };
+    if (std::find(p.fields.begin(), p.fields.end(), c.first) == p.fields.end() ||
+        std::any_of(p.further.begin(), p.further.end(), is))
+      continue;
+    p.further.push_back(c);
+    for (PassInfo& pass : p.passes) {
+      if (!pass.reorders_rows()) continue;
+      std::vector<AccessInfo> declared = std::move(pass.declared);
+      declared.push_back({c.second, kLooks});
+      declared.push_back({c.first, kPlaces});
+      pass.flips.push_back(c.first);
+      pass = described(pass, std::move(declared), std::move(pass.flips));
+    }
+  }
+}
+
+/// Throws Error(internal) for fields that a sort would not carry, or a state could not hold.
+void check_state_fields(const Program& p) {
+  const auto wrong = [](const FieldInfo& f, const char* why) {
+    throw Error(ExitCode::internal, fmt::format("field '{}': {}", f.name, why));
+  };
+  for (const FieldInfo* f : p.fields) {
+    if (f->life < Life::rows) continue;
+    if (f->is_per_particle() && !f->pair)
+      wrong(*f, "rows of particles that sorts carry need a pair");
+    if (f->life == Life::state && f->numbers == 0) wrong(*f, "a state needs its numbers (each())");
+    if (f->bytes(Precision::single) % 4 != 0) wrong(*f, "a row is no multiple of 4 bytes");
+  }
+  if (p.further.size() > std::size_t(CarriedRows::most))
+    throw Error(ExitCode::internal, "sorts carry too many fields");
 }
 
 /// The sum that decides whether `until` repeats its body.
@@ -131,8 +130,8 @@ struct Fourth {
           (a.when == When::first_iteration && iteration > 0) || of(*a.field) == a.w)
         continue;
       throw Error(ExitCode::internal,
-                  format("pass '%s' asks for %s in w of %s, which holds '%s'", pass.name, word(a.w),
-                         name_of(*a.field).c_str(), word(of(*a.field))));
+                  fmt::format("pass '{}' asks for {} in w of {}, which holds '{}'", pass.name,
+                              word(a.w), name_of(*a.field), word(of(*a.field))));
     }
     for (const AccessInfo& a : pass.declared) {
       if (&a.field->primary() != &field::position || !(a.how & (kWrites | kPlaces))) continue;
@@ -198,8 +197,10 @@ Steps operator+(Steps a, const Steps& b) {
 std::span<const PassText> pass_texts() { return Passes::texts; }
 
 Program make_program(const Scene& scene, const UpdateShape& shape, bool without_time) {
-  Builder b;
-  Features::add(scene, b);
+  return make_program_of<Features>(scene, shape, without_time);
+}
+
+Program assembled(const Scene& scene, const UpdateShape& shape, PassSet b, bool without_time) {
   Program p;
   p.has_iterations = !b.in_iteration.empty();
   if (without_time) b.at_start.clear(), b.behind.clear(), b.at_end.clear();
@@ -207,7 +208,7 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
   if (b.in_iteration.empty() && b.behind.empty()) {  // no pairs: particles only move
     for (int s = 0; s < shape.substeps; ++s) {
       middle.insert(middle.end(), b.at_start.begin(), b.at_start.end());
-      middle.push_back(step_of<Predict>());
+      middle.push_back(b.predict);
     }
   } else {
     // The ranges are as equal as possible.
@@ -221,22 +222,27 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
   p.update = middle + end;
   // The passes up to the first sort may be fused with the end of the previous update.
   const std::size_t order = b.at_start.size() + 1;  // index of the sort
-  const bool pairs =
-      p.update.size() > order + 1 && p.update[order].index == Passes::index_of<Sort>();
+  const bool pairs = p.update.size() > order + 1 && p.update[order].index == b.sort.index;
   const auto begin = middle.begin() + (pairs ? std::ptrdiff_t(order + 1) : 0);
   const Steps head(middle.begin(), begin);
-  p.first = joined(head);
-  p.rest = joined(Steps(begin, middle.end()));
-  p.next = joined(end + head);
-  p.last = joined(end);
-  p.lists = Steps{step_of<Sort>(), step_of<MakeLists>()} + b.with_all_lists;
-  p.passes = Passes::infos(scene);
-  p.fields = {&field::position, &field::velocity, &field::density,  &field::id,
-              &field::bin,      &field::order,    &field::bin_start};
+  p.first = joined(head, b);
+  p.rest = joined(Steps(begin, middle.end()), b);
+  p.next = joined(end + head, b);
+  p.last = joined(end, b);
+  p.lists = Steps{b.sort, b.make_lists} + b.with_all_lists;
+  p.readings = b.at_reading;
+  p.passes = std::move(b.infos);
+  p.fields = {&field::position, &field::velocity, &field::density, &field::id,
+              &field::counts,   &field::bin,      &field::order,   &field::bin_start};
   collect_fields(p.update, p);
   collect_fields(p.lists, p);  // a measure makes lists in any case
-  p.left_out = b.without;
+  collect_fields(p.readings, p);
+  for (const FieldInfo* f : p.fields)
+    if (f->life == Life::state) p.state.push_back(f);
+  carry_further(b.further, p);
+  p.left_out = std::move(b.without);
   check_fourth(p);
+  check_state_fields(p);
   return p;
 }
 

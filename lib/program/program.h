@@ -36,11 +36,14 @@ struct Program {
   Steps first, rest, next, last;
   /// Makes lists at the present positions, for a measurement.
   Steps lists;
+  Steps readings;  ///< passes that features launch for their readings alone
   bool has_iterations = false;
   /// The declarations of all passes in this scene, by index in Passes.
   std::vector<PassInfo> passes;
   /// All fields of the passes and those that every solver has; of a pair only the first array.
   std::vector<const FieldInfo*> fields;
+  std::vector<const FieldInfo*> state;  ///< those of Life::state
+  std::vector<Carried> further;   ///< those that sorts carry besides position, velocity and id
   std::vector<LeftOut> left_out;  ///< features that the scene does not use
 
   bool has_pairs() const { return !first.empty(); }  ///< otherwise particles move freely

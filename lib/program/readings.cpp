@@ -20,46 +20,6 @@ std::vector<int> loaded_surfaces(const Scene& s) {
   return all;
 }
 
-void add_load_columns(const Scene& s, const Plan& plan, std::vector<ReadingColumn>& to) {
-  double arm =
-      0;  // m; torques are about the domain's corner, in units of up to twice its longest edge
-  for (std::size_t k = 0; k < 3; ++k) arm = std::hypot(arm, s.domain.max[k] - s.domain.min[k]);
-  const double grain = load_grain(s, plan);
-  for (const int surface : loaded_surfaces(s)) {
-    const auto add = [&](const char* name, const char* unit, Join join, int components,
-                         double of_force, double lever) {
-      to.push_back({"load",
-                    surface_name(s, surface),
-                    name,
-                    unit,
-                    "",
-                    join,
-                    components,
-                    Series::measures,
-                    {of_force * grain},
-                    lever});
-    };
-    add(kForce.data(), "N", Join::mean, 3, 1, 1);
-    add("torque", "N m", Join::mean, 3, 3 * arm, arm);
-    add("force_peak", "N", Join::peak, 1, 1, 1);
-  }
-}
-
-void add_gauge_columns(const Scene& s, const GaugePlan& plan, std::vector<ReadingColumn>& to) {
-  for (std::size_t k = 0; k < s.gauges.size(); ++k)
-    std::visit(
-        [&]<class Kind>(const Kind& gauge) {
-          using Keys = typename Kind::Keys;
-          const std::string place = Kind::place(std::get<Keys>(s.gauges[k].kind), s);
-          for (std::size_t c = 0; c < Keys::columns.size(); ++c) {
-            const GaugeColumn& is = Keys::columns[c];
-            to.push_back({Keys::word, s.gauges[k].name, is.name, is.unit, place, is.join,
-                          is.components, Series::gauges, gauge.grains[c]});
-          }
-        },
-        plan.all[k]);
-}
-
 }  // namespace
 
 double load_grain(const Scene& s, const Plan& plan) {
@@ -69,14 +29,25 @@ double load_grain(const Scene& s, const Plan& plan) {
   return plan.mass * s.h() / (dt * dt) * bookings / double(kLoadUnits);
 }
 
-std::vector<ReadingColumn> reading_columns(const Scene& scene, const Plan& plan) {
+std::vector<ReadingColumn> reading_columns(const Scene& s, const Plan& plan) {
+  using enum Join;
+  using enum Series;
   std::vector<ReadingColumn> all;
-  add_load_columns(scene, plan, all);
-  add_gauge_columns(scene, plan.gauges, all);
-  for (const Obstacle& o : scene.obstacles) {
+  const double grain = load_grain(s, plan);
+  double arm = 0;  // m; torques are about the domain's corner, in units of up to twice its edges
+  for (std::size_t k = 0; k < 3; ++k) arm = std::hypot(arm, s.domain.max[k] - s.domain.min[k]);
+  for (const int surface : loaded_surfaces(s)) {
+    const Obstacle* o = obstacle_of(s, surface);
+    const std::string of = o ? o->name : kFaceNames[std::size_t(surface)];
+    all.push_back({"load", of, "force", "N", "", mean, 3, measures, {grain}, 1});
+    all.push_back({"load", of, "torque", "N m", "", mean, 3, measures, {3 * arm * grain}, arm});
+    all.push_back({"load", of, "force_peak", "N", "", peak, 1, measures, {grain}, 1});
+  }
+  all.insert(all.end(), plan.gauges.columns.begin(), plan.gauges.columns.end());
+  for (const Obstacle& o : s.obstacles) {
     if (!o.motion) continue;
-    all.push_back({"pose", o.name, "", "m", "", Join::now, 3, Series::poses});
-    all.push_back({"pose", o.name, "turn", "1", "", Join::now, 9, Series::poses});
+    all.push_back({"pose", o.name, "", "m", "", now, 3, poses});
+    all.push_back({"pose", o.name, "turn", "1", "", now, 9, poses});
   }
   return all;
 }

@@ -1,9 +1,8 @@
 #include "lib/program/schedule.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
-
-#include "lib/base/text.h"
 
 namespace pbf::inline program_module {
 namespace {
@@ -35,8 +34,8 @@ std::vector<std::string> rounded_times(const Scene& s) {
   const auto compare = [&](const char* key, double given, std::int64_t updates) {
     const double got = double(updates) * s.time.step;
     if (std::fabs(got - given) > 1e-6 * given)
-      notes.push_back(format("%s: %.6g s becomes %.6g s, %ld update%s of %.6g s", key, given, got,
-                             updates, updates == 1 ? "" : "s", s.time.step));
+      notes.push_back(fmt::format("{}: {:.6g} s becomes {:.6g} s, {} update{} of {:.6g} s", key,
+                                  given, got, updates, updates == 1 ? "" : "s", s.time.step));
   };
   compare("time.end", s.time.end, used.updates);
   if (s.output) compare("output.every", s.output->every, used.frame_every);

@@ -1,10 +1,10 @@
 #include "lib/program/threads.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cstdlib>
 
 #include "lib/base/machine.h"
-#include "lib/base/text.h"
 
 namespace pbf::inline program_module {
 namespace {
@@ -35,11 +35,12 @@ int solver_threads(const Scene& scene, std::int64_t particles) {
 
 std::string threads_text(const Scene& scene, std::int64_t particles) {
   const int threads = solver_threads(scene, particles), usable = usable_threads();
-  std::string out = format("%d thread%s", threads, threads == 1 ? "" : "s");
+  std::string out = fmt::format("{} thread{}", threads, threads == 1 ? "" : "s");
   if (scene.threads > 0 || threads == usable) return out;
   if (particles < kOneThreadBelow)
-    return out + format(" (of %d: fewer than %d particles)", usable, int(kOneThreadBelow));
-  return out + format(" (of %d: one for every %d particles)", usable, int(kParticlesPerThread));
+    return out + fmt::format(" (of {}: fewer than {} particles)", usable, int(kOneThreadBelow));
+  return out +
+         fmt::format(" (of {}: one for every {} particles)", usable, int(kParticlesPerThread));
 }
 
 }  // namespace pbf::inline program_module

@@ -9,18 +9,10 @@
 namespace pbf::inline render_module {
 namespace {
 
-constexpr std::array<std::uint8_t, 4> kEdge{92, 102, 116, 0}, kFloor{218, 224, 230, 0};
+constexpr Rgb kEdge{92, 102, 116}, kFloor{218, 224, 230};
 
 // The floor is farther by this one: obstacles that lie on it win.
 constexpr double kFarther = 1.0003;
-
-FlatVertex vertex(const Double3& v, std::array<std::uint8_t, 4> color, double u = 0, double w = 0) {
-  return {static_cast<float>(v[0]),
-          static_cast<float>(v[1]),
-          static_cast<float>(v[2]),
-          color,
-          {static_cast<float>(u), static_cast<float>(w)}};
-}
 
 void add_quad(const std::array<FlatVertex, 4>& q, std::vector<FlatVertex>& out) {
   for (std::size_t i : {0, 1, 2, 2, 1, 3}) out.push_back(q[i]);
@@ -28,8 +20,8 @@ void add_quad(const std::array<FlatVertex, 4>& q, std::vector<FlatVertex>& out) 
 
 }  // namespace
 
-void add_line(Double3 a, Double3 b, std::array<std::uint8_t, 4> color, const Projection& projection,
-              double width, double near_depth, std::vector<FlatVertex>& out, double nearer) {
+void add_line(Double3 a, Double3 b, Rgb color, const Projection& projection, double width,
+              double near_depth, std::vector<FlatVertex>& out, double nearer) {
   if (a[2] > b[2]) std::swap(a, b);
   if (b[2] <= near_depth) return;
   if (a[2] < near_depth) a = a + (near_depth - a[2]) / (b[2] - a[2]) * (b - a);
@@ -45,7 +37,7 @@ void add_line(Double3 a, Double3 b, std::array<std::uint8_t, 4> color, const Pro
     const double s = half * p[2];
     const Double3 place{p[0] + s * (along * dx - aside * dy), p[1] + s * (along * dy + aside * dx),
                         p[2]};
-    return vertex(nearer * place, color);
+    return FlatVertex{floats(nearer * place), color};
   };
   add_quad({moved(a, -1, -1), moved(a, -1, 1), moved(b, 1, -1), moved(b, 1, 1)}, out);
 }
@@ -82,7 +74,7 @@ void add_floor(const View& view, const Projection& projection, std::vector<FlatV
   for (unsigned i = 0; i < 4; ++i) {
     const unsigned bits =
         (i & 1) << u | (i >> 1) << w | static_cast<unsigned>(view.up[vertical] < 0) << vertical;
-    quad[i] = vertex(kFarther * projection.to_view(corner_of(view, bits)), kFloor);
+    quad[i] = {floats(kFarther * projection.to_view(corner_of(view, bits))), kFloor};
   }
   add_quad(quad, out);
 }

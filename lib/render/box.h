@@ -2,17 +2,16 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "lib/render/camera.h"
+#include "lib/render/colormap.h"
 
 namespace pbf::inline render_module {
 
 struct FlatVertex {
-  float x, y, depth;                  ///< view space, m
-  std::array<std::uint8_t, 4> color;  ///< red, green, blue, strength of the grid lines
-  std::array<float, 2> grid;          ///< place on the floor in cells of its grid
+  std::array<float, 3> place;  ///< view space: x, y, depth, m
+  Rgb color;
 };
 
 /// Lines are drawn on the same lines of sight, nearer by this factor: they win over surfaces.
@@ -20,9 +19,8 @@ inline constexpr double kNearer = 0.999;
 
 /// Appends the line from a to b (view space, m), `width` pixels wide, as triangles that face the
 /// eye; what is nearer than `near_depth` (m) is cut off.
-void add_line(Double3 a, Double3 b, std::array<std::uint8_t, 4> color, const Projection& projection,
-              double width, double near_depth, std::vector<FlatVertex>& out,
-              double nearer = kNearer);
+void add_line(Double3 a, Double3 b, Rgb color, const Projection& projection, double width,
+              double near_depth, std::vector<FlatVertex>& out, double nearer = kNearer);
 
 /// Appends the 12 edges of the box as lines, in two dimensions those of the face before the plane.
 void add_box_edges(const View& view, const Projection& projection, double width, double near_depth,

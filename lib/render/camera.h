@@ -24,6 +24,11 @@ struct Projection {
   double pixel() const { return 2 * tan_half / size[1]; }
 };
 
+/// For the graphics card.
+inline std::array<float, 3> floats(const Double3& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
 /// The axis of the domain that is nearest to `up`.
 std::size_t vertical_axis(const Double3& up);
 

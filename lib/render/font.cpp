@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "lib/base/error.h"
+#include "lib/base/plain_text.h"
 #include "lib/render/font_data.h"
 
 #define STBTT_STATIC
@@ -33,24 +34,11 @@ bool has_glyph(char32_t c) {
   return latin_1 || c == kEllipsis || c == kMissing;
 }
 
-/// Reads the character at text[i] and goes behind it; kMissing for a byte that begins none.
+/// Reads the character at text[i] and goes behind it; kMissing where the font has no glyph.
 char32_t next_character(const std::string& text, std::size_t& i) {
-  const auto byte = [&](std::size_t k) {
-    return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u;
-  };
-  const unsigned first = byte(i);
-  const std::size_t more = first >= 0xf0 && first < 0xf8   ? 3
-                           : first >= 0xe0 && first < 0xf0 ? 2
-                           : first >= 0xc0 && first < 0xe0 ? 1
-                                                           : 0;
-  char32_t c = more == 0 ? first : first & (0x3fu >> more);
-  for (std::size_t k = 1; k <= more; ++k) {
-    if ((byte(i + k) & 0xc0) != 0x80) return ++i, kMissing;
-    c = c << 6 | (byte(i + k) & 0x3f);
-  }
-  i += more + 1;
-  const char32_t least[] = {0, 0x80, 0x800, 0x10000};
-  return c < least[more] || (more == 0 && first >= 0x80) ? kMissing : c;  // longer than it must be
+  const Character c = first_character(std::string_view(text).substr(i));
+  i += c.bytes;
+  return has_glyph(char32_t(c.code)) ? char32_t(c.code) : kMissing;
 }
 
 float scale_of(double size) {
@@ -93,10 +81,7 @@ void draw_glyph(Image& image, char32_t c, double x, double line, double size, Rg
 
 std::vector<char32_t> drawn_characters(const std::string& text) {
   std::vector<char32_t> out;
-  for (std::size_t i = 0; i < text.size();) {
-    const char32_t c = next_character(text, i);
-    out.push_back(has_glyph(c) ? c : kMissing);
-  }
+  for (std::size_t i = 0; i < text.size();) out.push_back(next_character(text, i));
   return out;
 }
 
@@ -119,8 +104,7 @@ std::string shortened(const std::string& text, double width, double size) {
   if (used > width) return "";
   std::size_t end = 0;
   for (std::size_t i = 0; i < text.size(); end = i) {
-    const char32_t c = next_character(text, i);
-    used += advance(has_glyph(c) ? c : kMissing, size);
+    used += advance(next_character(text, i), size);
     if (used > width) break;
   }
   return text.substr(0, end) + "\u2026";

@@ -1,11 +1,11 @@
 // EGL without a window: Mesa's surfaceless platform, or one of the devices that EGL lists (this is
 // how NVIDIA's driver renders on a node without a display).
+#include <fmt/core.h>
 #include <array>
 #include <cstdint>
 #include <string>
 
 #include "lib/base/error.h"
-#include "lib/base/text.h"
 #include "lib/render/gl_platform.h"
 
 namespace pbf::inline render_module {
@@ -78,7 +78,7 @@ std::unique_ptr<GlPlatform> context_on(const Egl& egl, Display display) {
   const auto require = [&egl](bool good, const char* what) {
     if (!good)
       throw NoPlatform(
-          format("%s failed (EGL error 0x%x)", what, static_cast<unsigned>(egl.GetError())));
+          fmt::format("{} failed (EGL error 0x{:x})", what, static_cast<unsigned>(egl.GetError())));
   };
   Int major = 0, minor = 0, configs = 0;
   require(display && egl.Initialize(display, &major, &minor), "eglInitialize");

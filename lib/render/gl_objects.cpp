@@ -1,9 +1,9 @@
 #include "lib/render/gl_objects.h"
 
+#include <fmt/core.h>
 #include <array>
 
 #include "lib/base/error.h"
-#include "lib/base/text.h"
 #include "lib/render/shaders.h"
 
 namespace pbf::inline render_module::gl {
@@ -112,10 +112,11 @@ Target::Target(const Table& gl, Size width, Size height, const Format& color, De
   if (depth != Depth::without) attach(depth_, kDepth32, DEPTH_ATTACHMENT);
   const Enum state = gl.CheckFramebufferStatus(FRAMEBUFFER);
   if (state != FRAMEBUFFER_COMPLETE || gl.GetError() != NO_ERROR)
-    throw Error(ExitCode::unavailable,
-                format("the OpenGL driver gives no picture of %d x %d samples; choose a smaller "
-                       "render.size",
-                       width, height));
+    throw Error(
+        ExitCode::unavailable,
+        fmt::format(
+            "the OpenGL driver gives no picture of {} x {} samples; choose a smaller render.size",
+            width, height));
 }
 
 Target::~Target() { gl_.DeleteFramebuffers(1, &frame_); }

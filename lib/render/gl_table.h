@@ -17,7 +17,7 @@ using Bool = std::uint8_t;
 using Char = char;
 using Ubyte = std::uint8_t;
 
-inline constexpr Enum VENDOR = 0x1F00, RENDERER = 0x1F01, VERSION = 0x1F02;
+inline constexpr Enum RENDERER = 0x1F01;
 inline constexpr Enum NO_ERROR = 0, OUT_OF_MEMORY = 0x0505;
 inline constexpr Enum TRIANGLES = 0x0004, TRIANGLE_STRIP = 0x0005;
 inline constexpr Bits DEPTH_BUFFER_BIT = 0x0100, COLOR_BUFFER_BIT = 0x4000;
@@ -26,7 +26,7 @@ inline constexpr Enum BLEND = 0x0BE2, ONE = 1, NONE = 0;
 inline constexpr Enum UNSIGNED_BYTE = 0x1401, FLOAT = 0x1406;
 inline constexpr Enum RGBA = 0x1908, RGBA8 = 0x8058, DEPTH_COMPONENT = 0x1902;
 inline constexpr Enum DEPTH_COMPONENT32F = 0x8CAC;
-inline constexpr Enum RED = 0x1903, RG = 0x8227, RG16F = 0x822F, RG32F = 0x8230;
+inline constexpr Enum RG = 0x8227, RG16F = 0x822F, RG32F = 0x8230;
 inline constexpr Enum PACK_ALIGNMENT = 0x0D05, MAX_TEXTURE_SIZE = 0x0D33;
 inline constexpr Enum MAX_VIEWPORT_DIMS = 0x0D3A;
 inline constexpr Enum TEXTURE_2D = 0x0DE1, TEXTURE0 = 0x84C0;

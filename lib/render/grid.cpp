@@ -1,16 +1,16 @@
 #include "lib/render/grid.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "lib/base/text.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline render_module {
 namespace {
 
-constexpr std::array<std::uint8_t, 4> kGridLine{188, 197, 207, 0};
+constexpr Rgb kGridLine{188, 197, 207};
 constexpr double kOnFloor = 0.9999;  // nearer by less than what lies on the floor is high
 
 constexpr std::size_t kHeights = 7;  // at most: a few say it
@@ -169,7 +169,7 @@ std::vector<EdgeLabels> length_labels(const View& view, const Projection& projec
       x[axis] = at;
       const int decimals =
           std::max(0, static_cast<int>(-std::floor(std::log10(step / unit.metres) + 1e-9)));
-      l.text = at == 0 ? "0" : format("%.*f", std::min(decimals, 12), at / unit.metres);
+      l.text = at == 0 ? "0" : fmt::format("{:.{}f}", at / unit.metres, std::min(decimals, 12));
       if (projection.to_view(x)[2] <= 1e-6 * length(box)) return LengthLabel{};
       l.place = projection.to_pixel(x);
       const auto further = projection.to_pixel(x - inwards);

@@ -1,9 +1,9 @@
 #include "lib/render/overlay.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 
-#include "lib/base/text.h"
 #include "lib/render/font.h"
 #include "lib/render/lengths.h"
 #include "lib/render/texts.h"
@@ -14,9 +14,7 @@ namespace {
 constexpr double kLine = 1.4;    // from one line of text to the next, in sizes of the text
 constexpr double kLeastBar = 4;  // height of a colour bar, in sizes of the text
 
-std::string number(const char* pattern, int digits, double value) {
-  return format(pattern, digits, value == 0 ? 0.0 : value);  // no "-0"
-}
+double without_minus_zero(double value) { return value == 0 ? 0.0 : value; }
 
 /// m/s, kg/m^3 -> kg/m³
 std::string raised(std::string unit) {
@@ -67,22 +65,22 @@ std::vector<Tick> ticks_of(std::array<double, 2> range) {
   const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
   std::vector<Tick> ticks;
   for (double i = std::ceil(range[0] / step - 1e-9); i * step <= range[1] + 1e-9 * span; ++i) {
-    const double value = i * step;
+    const double value = without_minus_zero(i * step);
     const bool plain = largest < 1e7 && decimals <= 4;
     const int digits = 1 + static_cast<int>(std::floor(std::log10(largest / step) + 1e-9));
-    ticks.push_back({value, plain ? number("%.*f", decimals, value)
-                                  : number("%.*e", std::max(0, digits - 1), value)});
+    ticks.push_back({value, plain ? fmt::format("{:.{}f}", value, decimals)
+                                  : fmt::format("{:.{}e}", value, std::max(0, digits - 1))});
   }
   return ticks;
 }
 
 std::string time_text(double seconds) {
-  if (seconds != 0 && std::abs(seconds) < 1e-3) return number("t = %.*e s", 2, seconds);
+  if (seconds != 0 && std::abs(seconds) < 1e-3) return fmt::format("t = {:.2e} s", seconds);
   int decimals = 2;
   for (double scaled = seconds * 100; decimals < 6 && std::abs(scaled - std::round(scaled)) > 0.005;
        scaled *= 10)
     ++decimals;
-  return number("t = %.*f s", decimals, seconds);
+  return fmt::format("t = {:.{}f} s", without_minus_zero(seconds), decimals);
 }
 
 std::string particles_text(std::int64_t count) {

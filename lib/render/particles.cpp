@@ -107,8 +107,7 @@ void collect(const Snapshot& snapshot, const View& view, const Projection& proje
     if (!is_seen(v)) continue;
     const double shown = shown_value(field, view, i);
     const double place = (shown - low) / span;
-    out.list.push_back({static_cast<float>(v[0]), static_cast<float>(v[1]),
-                        static_cast<float>(v[2]), color(place), share_of(place)});
+    out.list.push_back({floats(v), color(place), share_of(place)});
     out.nearest = std::min(out.nearest, v[2] - r);
     out.farthest = std::max(out.farthest, v[2] + r);
   }
@@ -117,8 +116,7 @@ void collect(const Snapshot& snapshot, const View& view, const Projection& proje
   for (std::size_t i = 0; i < snapshot.count; ++i) {
     const Double3 v = at(i);
     if (is_seen(v) || !(dot(v, v) < 1e30)) continue;
-    out.list.push_back({static_cast<float>(v[0]), static_cast<float>(v[1]),
-                        static_cast<float>(v[2]), Rgb{}, kNoShare});
+    out.list.push_back({floats(v), Rgb{}, kNoShare});
   }
 }
 

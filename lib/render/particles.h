@@ -1,6 +1,7 @@
 // The particles of a snapshot as the graphics card wants them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,7 +12,8 @@
 namespace pbf::inline render_module {
 
 struct ParticleVertex {
-  float x, y, depth;  ///< centre in view space, m: subtracted and turned in double before rounding
+  /// Centre in view space (x, y, depth), m: subtracted and turned in double before rounding.
+  std::array<float, 3> place;
   Rgb color;
   std::uint8_t share;  ///< where on the colour bar, 0 to 254; kNoShare without a value
 };

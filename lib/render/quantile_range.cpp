@@ -1,12 +1,12 @@
 #include "lib/render/quantile_range.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string>
 
 #include "lib/base/error.h"
-#include "lib/base/text.h"
 #include "lib/render/particles.h"
 
 namespace pbf::inline render_module {
@@ -49,15 +49,15 @@ std::array<double, 2> QuantileRange::between(double low, double high) {
 
 BarRange bar_range(const View& view, std::array<double, 2> quantiles) {
   BarRange bar{quantiles, ""};
-  const char* digits = "%.9g,%.9g";
+  int digits = 9;
   if (view.color == ColorBy::density) {
     const double rest = view.rest_density;
     double off = std::max(std::abs(quantiles[0] - rest), std::abs(quantiles[1] - rest));
-    off = std::strtod(format("%.6g", off).c_str(), nullptr);
+    off = std::strtod(fmt::format("{:.6g}", off).c_str(), nullptr);
     bar.ends = {rest - off, rest + off};
-    digits = "%.12g,%.12g";
+    digits = 12;
   }
-  bar.text = format(digits, bar.ends[0], bar.ends[1]);
+  bar.text = fmt::format("{0:.{2}g},{1:.{2}g}", bar.ends[0], bar.ends[1], digits);
   char* comma = nullptr;
   bar.ends[0] = std::strtod(bar.text.c_str(), &comma);
   bar.ends[1] = std::strtod(comma + 1, nullptr);

@@ -1,4 +1,5 @@
 // Pictures drawn beside the solver.
+#include <fmt/core.h>
 #include <atomic>
 #include <exception>
 #include <filesystem>
@@ -6,7 +7,6 @@
 
 #include "lib/base/error.h"
 #include "lib/base/stage_clock.h"
-#include "lib/base/text.h"
 #include "lib/base/worker.h"
 #include "lib/render/particles.h"
 #include "lib/render/renderer.h"
@@ -17,7 +17,7 @@ namespace {
 constexpr int kWaiting = 2;  // pictures; each holds a copy of its particles
 
 std::string frame_path(const std::string& dir, std::int64_t index) {
-  return std::filesystem::path(dir) / format("frame_%06lld.png", static_cast<long long>(index));
+  return std::filesystem::path(dir) / fmt::format("frame_{:06}.png", index);
 }
 
 /// The fields of a picture, without those that it does not read.
@@ -55,10 +55,6 @@ struct RenderThread::Impl {
 };
 
 RenderThread::RenderThread(const View& view) : impl_(std::make_unique<Impl>(view)) {}
-
-RenderThread::RenderThread(const View& view, const std::string& dir) : RenderThread(view) {
-  into(dir);
-}
 
 void RenderThread::into(const std::string& dir) {
   std::error_code error;

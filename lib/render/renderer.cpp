@@ -79,17 +79,16 @@ struct Pipeline {
         flat(table, shaders::kFlatVertex, shaders::kFlatFragment),
         resolve(table, shaders::kResolveVertex, shaders::kResolveFragment, shaders::kShadowed),
         particle_buffer(table, sizeof(ParticleVertex),
-                        {{3, gl::FLOAT, 0, offsetof(ParticleVertex, x)},
+                        {{3, gl::FLOAT, 0, offsetof(ParticleVertex, place)},
                          {4, gl::UNSIGNED_BYTE, 1, offsetof(ParticleVertex, color)}},
                         1),
         solid_buffer(table, sizeof(SolidVertex),
-                     {{3, gl::FLOAT, 0, offsetof(SolidVertex, x)},
+                     {{3, gl::FLOAT, 0, offsetof(SolidVertex, place)},
                       {3, gl::FLOAT, 0, offsetof(SolidVertex, normal)}},
                      0),
         flat_buffer(table, sizeof(FlatVertex),
-                    {{3, gl::FLOAT, 0, offsetof(FlatVertex, x)},
-                     {4, gl::UNSIGNED_BYTE, 1, offsetof(FlatVertex, color)},
-                     {2, gl::FLOAT, 0, offsetof(FlatVertex, grid)}},
+                    {{3, gl::FLOAT, 0, offsetof(FlatVertex, place)},
+                     {3, gl::UNSIGNED_BYTE, 1, offsetof(FlatVertex, color)}},
                     0),
         nothing(table, 4, {}, 0),
         samples(table, factor * view.size[0], factor * view.size[1], gl::kColor8,
@@ -141,8 +140,8 @@ void Renderer::Impl::draw_scene(const Projection& projection) {
   }
   const SolidSurfaces solids = surfaces_of(view, projection, p.light.sun);
   for (const SolidVertex& v : solids.triangles) {
-    near = std::min<double>(near, v.depth);
-    far = std::max<double>(far, v.depth);
+    near = std::min<double>(near, v.place[2]);
+    far = std::max<double>(far, v.place[2]);
   }
   near = std::max(0.99 * near, 1e-3 * diagonal);
   far = std::max(1.01 * far, 2 * near) + 0.01 * diagonal;

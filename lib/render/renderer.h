@@ -81,8 +81,6 @@ class RenderThread {
  public:
   /// Opens the GL library: throws Error(unavailable) at once. Before the first picture: into().
   explicit RenderThread(const View& view);
-  /// The same, and into().
-  RenderThread(const View& view, const std::string& dir);
   /// Makes the folder of the pictures. Throws Error(io).
   void into(const std::string& dir);
   /// Draws what is queued; an error that finish() would have thrown is lost.

@@ -100,31 +100,23 @@ void main() {
 }
 )";
 
-// Box lines and floor: triangles in view space. The floor carries its place in grid cells.
+// Box lines and floor: triangles in view space.
 inline constexpr const char* kFlatVertex = R"(
 layout(location = 0) in vec3 a_place;
-layout(location = 1) in vec4 a_color;
-layout(location = 2) in vec2 a_grid;
-out vec4 f_color;
-out vec2 f_grid;
+layout(location = 1) in vec3 a_color;
+out vec3 f_color;
 void main() {
   f_color = a_color;
-  f_grid = a_grid;
   gl_Position = vec4(a_place.xy * u_lens.xy - u_lens.zw * a_place.z,
                      (2.0 * u_depth.x - 1.0) * a_place.z - 2.0 * u_depth.y, a_place.z);
 }
 )";
 inline constexpr const char* kFlatFragment = R"(
-in vec4 f_color;  // a: strength of the grid lines, 0 for none
-in vec2 f_grid;
+in vec3 f_color;
 uniform float u_share;  // of the sun in the light, below 1
 out vec4 o_color;
 void main() {
-  vec2 width = fwidth(f_grid);
-  vec2 from_line = abs(f_grid - round(f_grid)) / max(width, vec2(1e-6));
-  vec2 cover = clamp(1.5 - from_line, 0.0, 1.0) * clamp(0.35 / max(width, vec2(1e-6)), 0.0, 1.0);
-  float line = f_color.a * max(cover.x, cover.y);
-  o_color = vec4(mix(f_color.rgb, vec3(0.55, 0.60, 0.66), line), 0.5 * u_share);
+  o_color = vec4(f_color, 0.5 * u_share);
 }
 )";
 

@@ -32,7 +32,7 @@ ShadowMap::ShadowMap(const gl::Table& gl, const View& view, const Light& light)
       texels_(texels(axes_)),
       spheres_(gl, shaders::kShadowSphereVertex, shaders::kShadowSphereFragment),
       solids_(gl, shaders::kShadowSolidVertex, shaders::kShadowSolidFragment),
-      buffer_(gl, sizeof(SolidVertex), {{3, gl::FLOAT, 0, offsetof(SolidVertex, x)}}, 0),
+      buffer_(gl, sizeof(SolidVertex), {{3, gl::FLOAT, 0, offsetof(SolidVertex, place)}}, 0),
       target_(gl, texels_[0], texels_[1], gl::kColor8, gl::Target::Depth::alone) {
   target_.depth().compare_linearly();
 }

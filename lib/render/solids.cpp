@@ -225,13 +225,10 @@ std::vector<Face> faces_of(const View& view, const Solid<double>& solid) {
 SolidSurfaces surfaces_of(const View& view, const Projection& projection, const Double3& sun) {
   SolidSurfaces out;
   const auto seen = [&](const Corner& c) {
-    const Double3 p = projection.to_view(c.place), n = unit(c.normal);
+    const Double3 n = unit(c.normal);
     return SolidVertex{
-        static_cast<float>(p[0]),
-        static_cast<float>(p[1]),
-        static_cast<float>(p[2]),
-        {static_cast<float>(dot(n, projection.right)), static_cast<float>(dot(n, projection.up)),
-         static_cast<float>(dot(n, projection.forward))}};
+        floats(projection.to_view(c.place)),
+        floats({dot(n, projection.right), dot(n, projection.up), dot(n, projection.forward)})};
   };
   const auto add = [&](const Polygon& polygon, std::vector<SolidVertex>& triangles) {
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)

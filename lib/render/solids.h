@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "lib/render/box.h"
@@ -10,13 +9,13 @@
 
 namespace pbf::inline render_module {
 
-inline constexpr std::array<std::uint8_t, 4> kCrease{118, 104, 90, 0};  ///< colour of creases
+inline constexpr Rgb kCrease{118, 104, 90};  ///< colour of creases
 
 inline constexpr std::array<double, 3> kClay{190, 176, 160};  ///< of 255: neither the cool greys
                                                               ///< of the box nor viridis
 
 struct SolidVertex {
-  float x, y, depth;            ///< view space, m
+  std::array<float, 3> place;   ///< view space: x, y, depth, m
   std::array<float, 3> normal;  ///< out of the solid, of the smooth surface; view space
 };
 

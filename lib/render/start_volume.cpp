@@ -14,15 +14,6 @@ constexpr int kCells = 48, kFlatCells = 128;  // along an axis
 constexpr int kSlices = 4;                    // of heights in a cell
 constexpr int kSamples = 24;                  // of a round body along an axis
 
-/// Whether a place of its box is in a round body.
-bool is_in(const scene_module::Body& body, const Double3& x) {
-  if (body.shape == Shape::sphere) return length(x - body.center) <= body.radius;
-  const Double3 axis = unit(body.to - body.from), way = x - body.from;
-  const double along = dot(way, axis);
-  return along >= 0 && along <= length(body.to - body.from) &&
-         length(way - along * axis) <= body.radius;
-}
-
 }  // namespace
 
 StartVolume::StartVolume(const Scene& scene, const Double3& up,
@@ -121,7 +112,7 @@ Parcel StartVolume::of_shape(const scene_module::Body& body) const {
       for (int i = 0; i < n[0]; ++i) {
         const Double3 x{low[0] + (i + 0.5) * edge[0], low[1] + (j + 0.5) * edge[1],
                         low[2] + (k + 0.5) * edge[2]};
-        if (!is_in(body, x) || !is_open(x)) continue;
+        if (!is_in(body, x, 0) || !is_open(x)) continue;
         const double height = dot(x, up_);
         out.volume += edge[0] * edge[1] * edge[2];
         moment += edge[0] * edge[1] * edge[2] * height;

@@ -11,34 +11,12 @@
 
 namespace pbf::inline run_module {
 
-/// Edges parallel to the axes, m.
-struct Box {
-  Double3 low, high;
-  bool holds(const Double3& x, double margin) const {
-    for (int a = 0; a < 3; ++a)
-      if (!(x[a] >= low[a] - margin && x[a] <= high[a] + margin)) return false;
-    return true;
-  }
-  /// Whether the boxes overlap when each is enlarged by half of `margin` (may be negative).
-  bool near(const Box& other, double margin) const {
-    for (int a = 0; a < 3; ++a)
-      if (high[a] + margin <= other.low[a] || other.high[a] + margin <= low[a]) return false;
-    return true;
-  }
-};
-
-/// The bounding box of a body, as in body_box().
-inline Box box_of(const Body& b) {
-  const BodyBox box = body_box(b);
-  return {box.low, box.high};
-}
-
-/// Calls f(i, j) once for every pair of boxes that are near(), until it returns true. Returns
-/// whether a call returned true.
+/// Calls f(i, j) once for every pair of boxes that meet(), until it returns true. Returns whether a
+/// call returned true.
 template <class F>
-bool any_near_pair(const std::vector<Box>& boxes, double margin, F&& f) {
+bool any_near_pair(const std::vector<BodyBox>& boxes, double margin, F&& f) {
   Double3 extent{};
-  for (const Box& b : boxes)
+  for (const BodyBox& b : boxes)
     for (std::size_t a = 0; a < 3; ++a)
       extent[a] = std::max(extent[a], std::fabs(b.low[a] - boxes[0].low[a]));
   // Sorted along the axis of largest extent, a box can be near only to the next few boxes.
@@ -48,14 +26,21 @@ bool any_near_pair(const std::vector<Box>& boxes, double margin, F&& f) {
   std::sort(order.begin(), order.end(),
             [&](std::size_t i, std::size_t j) { return boxes[i].low[axis] < boxes[j].low[axis]; });
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const Box& a = boxes[order[i]];
+    const BodyBox& a = boxes[order[i]];
     for (std::size_t j = i + 1; j < order.size(); ++j) {
-      const Box& b = boxes[order[j]];
+      const BodyBox& b = boxes[order[j]];
       if (!(b.low[axis] < a.high[axis] + margin)) break;
-      if (a.near(b, margin) && f(order[i], order[j])) return true;
+      if (a.meets(b, margin) && f(order[i], order[j])) return true;
     }
   }
   return false;
+}
+
+/// Whether two bodies that are given by shapes are near each other.
+inline bool any_near_bodies(const Scene& s, double margin) {
+  std::vector<BodyBox> boxes;
+  for (const Body& b : s.bodies) boxes.push_back(body_box(b));
+  return any_near_pair(boxes, margin, [](std::size_t, std::size_t) { return true; });
 }
 
 }  // namespace pbf::inline run_module

@@ -125,16 +125,11 @@ std::size_t drop_inside(const FreePlaces& free, std::size_t first, Particles& al
 
 }  // namespace
 
-std::string resolved_path(const Body& body, const std::string& scene_dir) {
-  const std::filesystem::path path(body.path);
-  return path.is_absolute() ? body.path : (std::filesystem::path(scene_dir) / path).string();
-}
-
 StartPoints::StartPoints(const Scene& scene, const std::string& scene_dir) : scene_(scene) {
   of_files_.resize(scene.bodies.size());
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) try {
       if (scene.bodies[b].shape != Shape::file) continue;
-      const std::string path = resolved_path(scene.bodies[b], scene_dir);
+      const std::string path = (std::filesystem::path(scene_dir) / scene.bodies[b].path).string();
       SceneFile& file = files_.emplace_back(SceneFile{scene.bodies[b].path, ""});
       of_files_[b] = read_particle_file(path, &file.sha256);
       if (of_files_[b].size() == 0) bad_input(path, "holds no particles");

@@ -13,9 +13,6 @@
 
 namespace pbf::inline run_module {
 
-/// The path of a file body's file; `scene_dir` anchors a relative path.
-std::string resolved_path(const Body& body, const std::string& scene_dir);
-
 /// The particles of a scene in the order of their ids, before any check. The file of a body is
 /// opened only here, once, and its particles are kept, so that all users see the same particles.
 class StartPoints {

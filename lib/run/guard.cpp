@@ -6,6 +6,7 @@
 #include "lib/program/motion.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/time_levels.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -16,15 +17,13 @@ constexpr double kMayGain = 0.1;  // share of the energy scale that a run may ga
 
 /// Longest edge of the domain, h.
 double longest_edge(const Scene& s) {
-  double edge = 0;
-  for (std::size_t a = 0; a < 3; ++a) edge = std::max(edge, s.domain.max[a] - s.domain.min[a]);
-  return edge / s.h();
+  const Double3 box = s.domain.max - s.domain.min;
+  return std::max({box[0], box[1], box[2]}) / s.h();
 }
 
 /// Bound on the speed that prescribed motions can give the fluid, m/s.
 double motion_speed(const Scene& s) {
-  const double pull =
-      greatest_pull(s, 0, s.time.end) - std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
+  const double pull = greatest_pull(s, 0, s.time.end) - length(s.gravity);
   return 2 * fastest_obstacle(s, 0, s.time.end) + std::sqrt(2 * pull * longest_edge(s) * s.h());
 }
 
@@ -35,19 +34,17 @@ double h_per_step(const Scene& s) { return s.h() / s.time.step * s.solver.subste
 
 double total_energy(const Diagnostics& m) { return m.kinetic_energy + m.potential_energy - m.work; }
 
-double energy_scale(const Diagnostics& m, const Scene& s, double mass, std::int64_t particles) {
-  const double all = mass * double(particles);
+double energy_scale(const Diagnostics& m, const Scene& s, const Plan& plan) {
   double together = 0;
-  for (const double p : m.momentum) together += p * p / (2 * all);
-  return std::max(m.kinetic_energy - together, 0.0) + energy_of_height(m, s, mass, particles);
+  for (const double p : m.momentum) together += p * p / (2 * mass_of(plan));
+  return std::max(m.kinetic_energy - together, 0.0) + energy_of_height(m, s, mass_of(plan));
 }
 
-double energy_of_height(const Diagnostics& m, const Scene& s, double mass, std::int64_t particles) {
-  const double all = mass * double(particles);
+double energy_of_height(const Diagnostics& m, const Scene& s, double mass) {
   double height = 0;
   for (std::size_t a = 0; a < 3; ++a) {
     const double g = s.gravity[a], x = m.center_of_mass[a];
-    height += all * std::fabs(g) * (g > 0 ? s.domain.max[a] - x : x - s.domain.min[a]);
+    height += mass * std::fabs(g) * (g > 0 ? s.domain.max[a] - x : x - s.domain.min[a]);
   }
   return height;
 }
@@ -66,9 +63,8 @@ double position_rounding(const Scene& s) { return longest_edge(s) * about(s.prec
 
 GuardLimits guard_limits(const Scene& s, const Plan& plan, const Diagnostics& first) {
   const GuardSettings& g = *s.guard;
-  const double per_step = h_per_step(s), mass = mass_of(plan),
-               gravity = std::hypot(s.gravity[0], s.gravity[1], s.gravity[2]);
-  const double scale = energy_scale(first, s, plan.mass, plan.particles);
+  const double per_step = h_per_step(s), mass = mass_of(plan), gravity = length(s.gravity);
+  const double scale = energy_scale(first, s, plan);
   double slack = 0.5 * mass * std::pow(0.01 * per_step, 2);
   if (gravity > 0) slack = std::min(slack, kMayGain * mass * gravity * s.h());
   const double rounded = 8 * position_rounding(s) * std::ldexp(per_step, finest_level(s));
@@ -103,8 +99,8 @@ bool Guard::came_apart(const Diagnostics& m) const {
 
 double Guard::energy_limit(const Diagnostics& m) const {
   if (scene_.guard->energy) return limits_.energy;
-  const double first = energy_scale(first_, scene_, plan_.mass, plan_.particles);
-  const double now = energy_scale(m, scene_, plan_.mass, plan_.particles);
+  const double first = energy_scale(first_, scene_, plan_);
+  const double now = energy_scale(m, scene_, plan_);
   double released = 0;
   if (released_)
     released = std::max(*released_ - total_energy(first_), 0.0);

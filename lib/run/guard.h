@@ -18,12 +18,11 @@ inline constexpr double kApart = 0.01;
 double total_energy(const Diagnostics& m);
 /// The scale for energy growth, J: the kinetic energy relative to the center of mass, which is the
 /// same for all observers in uniform motion, plus the potential energy above the face of the domain
-/// towards which gravity points. mass: of one particle, kg.
-double energy_scale(const Diagnostics& m, const Scene& scene, double mass, std::int64_t particles);
+/// towards which gravity points.
+double energy_scale(const Diagnostics& m, const Scene& scene, const Plan& plan);
 
-/// Only the potential energy of energy_scale(), J.
-double energy_of_height(const Diagnostics& m, const Scene& scene, double mass,
-                        std::int64_t particles);
+/// Only the potential energy of energy_scale(), J; mass: of all particles, kg.
+double energy_of_height(const Diagnostics& m, const Scene& scene, double mass);
 
 /// Energy that a start which was not relieved (lib/run/prestabilize.h) may release, J:
 /// (compression_mean - 1 %) M (h/dt)^2/2, because its particles move apart by up to h in a step of

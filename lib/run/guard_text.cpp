@@ -1,12 +1,13 @@
 // Texts of the guard, and the scene that repeats an alarm.
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 
-#include "lib/base/text.h"
 #include "lib/program/motion.h"
 #include "lib/program/time_levels.h"
 #include "lib/run/guard.h"
 #include "lib/run/motion_files.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -35,28 +36,28 @@ std::string Guard::text(const GuardEvent& e) const {
   std::string out = "stopped by the guard: ";
   if (e.stage) {
     const Double3& v = e.velocity;
-    out += format("at update %ld, in stage %s", e.stage->update, e.stage->stage.c_str());
-    if (e.stage->iteration > 0) out += format(" of iteration %d", e.stage->iteration);
-    out += format(
-        ", particle %d at (%.6g, %.6g, %.6g) m, velocity (%.4g, %.4g, %.4g) m/s "
-        "(%.4g m/s), %s",
-        e.stage->id, e.position[0], e.position[1], e.position[2], v[0], v[1], v[2],
-        std::hypot(v[0], v[1], v[2]), w.what);
+    out += fmt::format("at update {}, in stage {}", e.stage->update, e.stage->stage);
+    if (e.stage->iteration > 0) out += fmt::format(" of iteration {}", e.stage->iteration);
+    out += fmt::format(
+        ", particle {} at ({:.6g}, {:.6g}, {:.6g}) m, velocity ({:.4g}, {:.4g}, {:.4g}) m/s "
+        "({:.4g} m/s), {}",
+        e.stage->id, e.position[0], e.position[1], e.position[2], v[0], v[1], v[2], length(v),
+        w.what);
   } else if (e.last_good.updates == e.measure.update) {
-    out += format("at the start, before the first update, a particle %s", w.what);
+    out += fmt::format("at the start, before the first update, a particle {}", w.what);
   } else {
-    out += format(
-        "between the updates %ld and %ld (the repeated updates did not show it again) "
-        "a particle %s",
+    out += fmt::format(
+        "between the updates {} and {} (the repeated updates did not show it again) a particle {}",
         e.last_good.updates, e.measure.update, w.what);
   }
-  out += format(": %.6g%s", e.value, w.unit);
-  if (w.limit_key[0]) out += format(", limit %.6g%s (%s)", e.limit, w.unit, w.limit_key);
+  out += fmt::format(": {:.6g}{}", e.value, w.unit);
+  if (w.limit_key[0]) out += fmt::format(", limit {:.6g}{} ({})", e.limit, w.unit, w.limit_key);
   if (scene_.time.adaptive) {
     const Scene finest = scene_at_level(scene_, finest_level(scene_));
-    out += format("; with the shortest step, %.6g s (time.adaptive.step_min)", finest.time.step);
+    out += fmt::format("; with the shortest step, {:.6g} s (time.adaptive.step_min)",
+                       finest.time.step);
   }
-  return out + format("; seen at t = %.6g s. To help: %s", e.measure.time, remedy(e).c_str());
+  return out + fmt::format("; seen at t = {:.6g} s. To help: {}", e.measure.time, remedy(e));
 }
 
 /// The keys to change, depending on the cause.
@@ -65,7 +66,7 @@ std::string Guard::remedy(const GuardEvent& e) const {
   const bool shaken = e.alarm == Alarm::speed || e.alarm == Alarm::energy;
   if (first_.compression_mean > kApart && (e.alarm == Alarm::neighbors || shaken)) {
     std::string help =
-        format("the start is compressed by %.3g %% (mean)", 100 * first_.compression_mean);
+        fmt::format("the start is compressed by {:.3g} % (mean)", 100 * first_.compression_mean);
     if (!scene_.solver.prestabilize) help += "; leave solver.prestabilize on";
     help += "; spread the bodies, or give them room";
     if (scene_.fluid.mass) help += "; check fluid.mass";
@@ -102,7 +103,7 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
   // Keep the limits of the original run, although this one starts elsewhere.
   s.guard->speed = limits_.speed;
   s.guard->neighbors = limits_.neighbors;
-  const double scale = energy_scale(good_, s, plan_.mass, plan_.particles);
+  const double scale = energy_scale(good_, s, plan_);
   if (scale > 0)
     s.guard->energy = std::max((event_limit(e.measure) - total_energy(good_)) / scale, 1e-12);
   return s;

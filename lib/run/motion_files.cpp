@@ -1,23 +1,18 @@
 #include "lib/run/motion_files.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "lib/base/error.h"
-#include "lib/base/text.h"
 #include "lib/io/csv.h"
-#include "lib/run/motion_step.h"
 #include "lib/scene/number.h"
 
 namespace pbf::inline run_module {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string file_of(const std::string& path, const std::string& dir) {
-  return fs::path(path).is_absolute() ? path : (fs::path(dir) / path).string();
-}
 
 /// Calls f(motion, key) for every motion that is read from a file. Scene may be const.
 template <class AnyScene, class F>
@@ -64,9 +59,9 @@ class Reader {
     if (t.time.size() < 2) fail(file_, "needs at least two rows of numbers below the header");
     const double from = s_.time.motion_begin, to = from + s_.time.end, slack = 1e-9 * s_.time.end;
     if (t.time.front() > from + slack || t.time.back() < to - slack)
-      fail(file_, format("goes from %.6g to %.6g s, the run from %.6g to %.6g s; give a table that "
-                         "lasts as long, or another time.end",
-                         t.time.front(), t.time.back(), from, to));
+      fail(file_, fmt::format("goes from {:.6g} to {:.6g} s, the run from {:.6g} to {:.6g} s; give "
+                              "a table that lasts as long, or another time.end",
+                              t.time.front(), t.time.back(), from, to));
     return t;
   }
   [[noreturn]] void fail(const std::string& where, const std::string& what) const {
@@ -107,7 +102,7 @@ class Reader {
 void read_motions(Scene& scene, const std::string& dir, bool auto_step) {
   for_each_file(scene, [&](auto& m, const std::string& key) {
     const std::string place = m.place.text.empty() ? "" : m.place.text + ": ";
-    Reader reader(scene, place + key, file_of(m.path, dir));
+    Reader reader(scene, place + key, (fs::path(dir) / m.path).string());
     if constexpr (std::is_same_v<std::decay_t<decltype(m)>, Motion>) {
       m.table = reader.read({"t,x,y,z", "t,x,y,z,rx,ry,rz"});
     } else {

@@ -1,4 +1,4 @@
-// Reads the files of prescribed motions.
+// Reads the files of prescribed motions, and chooses the step of `time.step: auto` with them.
 #pragma once
 
 #include <string>
@@ -14,6 +14,12 @@ namespace pbf::inline run_module {
 /// that ends before time.motion_begin + time.end; Error(io). `auto_step`: time.step was auto and is
 /// now chosen from the motions (choose_step_of_motions()).
 void read_motions(Scene& scene, const std::string& dir, bool auto_step = false);
+
+/// Chooses time.step from gravity, bodies and motions, after the tables have been read: the fastest
+/// obstacle moves by at most kSafeWay h in a step, and the acceleration of a particle at rest in
+/// the tank takes the place of gravity. Covers a whole period or table, whatever time.end is.
+/// Throws Error(bad_input) if nothing moves, and if the scene violates a rule with this step.
+void choose_step_of_motions(Scene& scene);
 
 /// The paths of these files, as written in the scene.
 std::vector<std::string> motion_paths(const Scene& scene);

@@ -1,10 +1,10 @@
-#include "lib/run/motion_step.h"
-
+// The step of `time.step: auto` in scenes with prescribed motions.
 #include <algorithm>
 #include <cmath>
 
 #include "lib/base/error.h"
 #include "lib/program/motion.h"
+#include "lib/run/motion_files.h"
 #include "lib/scene/auto_step.h"
 #include "lib/scene/validate.h"
 

@@ -1,5 +1,6 @@
 #include "lib/run/motion_warnings.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,10 +23,10 @@ struct Behind {
 };
 Behind behind(const Scene& s, const Solid<double>& solid, int face) {
   const auto axis = std::size_t(face / 2);
-  const Extent e = extents_of(solid)[axis];
-  const double size = extents_of(s)[axis].high, h = s.h();
-  if (face % 2 == 1) return {(e.high - size) * h, (e.low - size) * h};
-  return {-e.low * h, -e.high * h};
+  const BodyBox e = extents_of(s, solid);
+  const double size = extents_of(s).high[axis], h = s.h();
+  if (face % 2 == 1) return {(e.high[axis] - size) * h, (e.low[axis] - size) * h};
+  return {-e.low[axis] * h, -e.high[axis] * h};
 }
 
 /// The wall above, that is, opposite to gravity; -1 without gravity.
@@ -63,36 +64,32 @@ struct Crossing {
   double by = 0, worst = 0, from = 0;  ///< m; s: time of the maximum, and of the onset
 };
 
+/// An obstacle that cuts the wall from the start may go on in it, and is told when all of it is
+/// behind the wall; any other when a part of it is.
 std::optional<Crossing> crossing(const Scene& s, const Obstacle& o, const Track& track, int face) {
-  const double slack = s.fluid.spacing, at_start = behind(s, track.solid[0], face).far;
+  const Behind at_start = behind(s, track.solid[0], face);
   Crossing c;
-  if (at_start <= slack) {
-    if (is_hinged(s, o, face)) return std::nullopt;
-    const double limit = slack + std::max(0.0, at_start);
-    for (std::size_t k = 0; k < track.time.size(); ++k)
-      if (const double far = behind(s, track.solid[k], face).far; far > c.by)
-        c.by = far, c.worst = track.time[k];
-    if (!(c.by > limit)) return std::nullopt;
-    const auto is_behind = [&](double t) {
-      return behind(s, solid_at(s, o, t), face).far > std::max(0.0, at_start) + 1e-6 * slack;
-    };
-    std::size_t k = 0;
-    while (behind(s, track.solid[k], face).far <= limit) ++k;
-    // Go back to the last time before it reached the wall.
-    std::size_t before = k;
-    while (before > 0 && is_behind(track.time[before])) --before;
-    c.from = onset(track.time[before], track.time[std::min(before + 1, k)], is_behind);
-    return c;
-  }
-  if (behind(s, track.solid[0], face).near > 0) return std::nullopt;  // it comes in from outside
-  const auto is_out = [&](double t) { return behind(s, solid_at(s, o, t), face).near > 0; };
-  for (std::size_t k = 0; k < track.time.size(); ++k) {
-    const double near = behind(s, track.solid[k], face).near;
-    if (near > c.by) c.by = near, c.worst = track.time[k];
-    if (near > 0 && !c.leaves)
-      c.leaves = true, c.from = onset(track.time[k - 1], track.time[k], is_out);
-  }
-  return c.leaves && c.by > slack ? std::optional(c) : std::nullopt;
+  c.leaves = at_start.far > s.fluid.spacing;
+  // A near side behind the wall: it comes in from outside.
+  if (c.leaves ? at_start.near > 0 : is_hinged(s, o, face)) return std::nullopt;
+  const auto depth = [&](const Solid<double>& solid) {
+    const Behind b = behind(s, solid, face);
+    return c.leaves ? b.near : b.far;
+  };
+  for (std::size_t k = 0; k < track.time.size(); ++k)
+    if (const double now = depth(track.solid[k]); now > c.by) c.by = now, c.worst = track.time[k];
+  const double from = c.leaves ? 0 : std::max(0.0, at_start.far), limit = from + s.fluid.spacing;
+  if (!(c.by > limit)) return std::nullopt;
+  const auto is_behind = [&](double t) {
+    return depth(solid_at(s, o, t)) > from + 1e-6 * s.fluid.spacing;
+  };
+  std::size_t k = 0;
+  while (depth(track.solid[k]) <= limit) ++k;
+  // Go back to the last time before it reached the wall.
+  std::size_t before = k;
+  while (before > 0 && is_behind(track.time[before])) --before;
+  c.from = onset(track.time[before], track.time[std::min(before + 1, k)], is_behind);
+  return c;
 }
 
 std::string motion_remedy(const Obstacle& o, bool leaves) {
@@ -123,13 +120,17 @@ std::string wall_text(const Scene& s, std::size_t k, const Track& track) {
     const std::optional<Crossing> c = crossing(s, o, track, face);
     if (!c || c->by <= most) continue;
     most = c->by;
-    text = named(s, k) +
-           format(c->leaves ? " leaves the tank through the wall %s at %.4g s, and is up to %.2g m "
-                              "behind it (at %.4g s); "
-                            : " goes through the wall %s from %.4g s on, by up to %.2g m (at %.4g "
-                              "s); ",
-                  kFaceNames[std::size_t(face)], c->from, c->by, c->worst) +
-           motion_remedy(o, c->leaves);
+    const char* wall = kFaceNames[std::size_t(face)];
+    text =
+        named(s, k) +
+        (c->leaves
+             ? fmt::format(" leaves the tank through the wall {} at {:.4g} s, and is up to {:.2g} "
+                           "m behind it (at {:.4g} s); ",
+                           wall, c->from, c->by, c->worst)
+             : fmt::format(
+                   " goes through the wall {} from {:.4g} s on, by up to {:.2g} m (at {:.4g} s); ",
+                   wall, c->from, c->by, c->worst)) +
+        motion_remedy(o, c->leaves);
   }
   return text;
 }
@@ -147,9 +148,7 @@ class Meetings {
       : s_(s), tracks_(tracks), least_(0.5 * s.fluid.spacing / s.h()) {}
 
   std::optional<Meeting> of(std::size_t a, std::size_t b) const {
-    for (std::size_t k = 0; k < 3; ++k)
-      if (!(s_.plane() && k == 1) && !tracks_[a].swept[k].meets(tracks_[b].swept[k]))
-        return std::nullopt;
+    if (!tracks_[a].swept.meets(tracks_[b].swept, 0)) return std::nullopt;
     Meeting m;
     if (shared(a, b, 0) > 0) {
       if (!is_bounded(tracks_[a].solid[0]) || !is_bounded(tracks_[b].solid[0])) return std::nullopt;
@@ -195,7 +194,7 @@ class Meetings {
 }  // namespace
 
 std::string named(const Scene& s, std::size_t k) {
-  return format("obstacles[%zu] (%s)", k, s.obstacles[k].name.c_str());
+  return fmt::format("obstacles[{}] ({})", k, s.obstacles[k].name);
 }
 
 std::string listed(const std::vector<std::string>& texts) {
@@ -203,7 +202,7 @@ std::string listed(const std::vector<std::string>& texts) {
   const std::vector<std::string> shown(
       texts.begin(), texts.begin() + std::ptrdiff_t(std::min(kShown, texts.size())));
   return joined(shown, "; ") +
-         (texts.size() > kShown ? format("; and %zu more", texts.size() - kShown) : std::string());
+         (texts.size() > kShown ? fmt::format("; and {} more", texts.size() - kShown) : "");
 }
 
 void add_walls(const Scene& s, const std::vector<Track>& tracks, std::vector<Warning>& list) {
@@ -225,11 +224,13 @@ void add_collisions(const Scene& s, const std::vector<Track>& tracks, std::vecto
       if (!m) continue;
       const std::string both = named(s, a) + " and " + named(s, b);
       if (m->at_start)
-        at_start.push_back(both + format(" overlap by %.2g m at the start", m->thickness));
+        at_start.push_back(both + fmt::format(" overlap by {:.2g} m at the start", m->thickness));
       else
-        later.push_back(both + format(" run into each other at %.4g s and overlap by up to %.2g m "
-                                      "(at %.4g s)",
-                                      m->from, m->thickness, m->worst));
+        later.push_back(
+            both +
+            fmt::format(
+                " run into each other at {:.4g} s and overlap by up to {:.2g} m (at {:.4g} s)",
+                m->from, m->thickness, m->worst));
     }
   std::vector<std::string> texts = at_start;
   texts.insert(texts.end(), later.begin(), later.end());

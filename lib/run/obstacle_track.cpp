@@ -65,28 +65,22 @@ std::vector<double> filled(const Scene& one, const std::vector<double>& times, i
   return out;
 }
 
-double distance_of(const Solid<double>& o, const Vec3<double>& x, bool flat) {
-  return flat ? distance<2>(o, x) : distance<3>(o, x);
-}
-
 /// Minimizes the larger of the distances of two solids in a box by the ellipsoid method (Shor
-/// 1977): each cut through the center discards the half that cannot contain the minimum.
+/// 1977): each cut through the center discards the half that cannot contain the minimum. In two
+/// dimensions nothing changes along y.
 class Deepest {
  public:
-  Deepest(const Solid<double>& a, const Solid<double>& b, const Extents& box, bool flat)
-      : a_(a), b_(b), box_(box), flat_(flat), n_(flat ? 2 : 3) {
-    for (int k = 0; k < n_; ++k) {
-      const Extent& e = box_[axis(k)];
-      middle_[k] = 0.5 * (e.low + e.high);
-      const double half = std::max(0.5 * (e.high - e.low), 1e-9);
-      spread_[k][k] = n_ * half * half;
-    }
+  Deepest(const Solid<double>& a, const Solid<double>& b, const BodyBox& box, bool flat)
+      : a_(a), b_(b), box_(box), flat_(flat), middle_(0.5 * (box.low + box.high)) {
+    for (std::size_t k = 0; k < 3; ++k)
+      spread_[k][k] = 3 * std::pow(std::max(0.5 * (box.high[k] - box.low[k]), 1e-9), 2);
   }
   /// The minimum; negative if the solids overlap. Stops early if it is known to exceed `enough`.
   double run(double enough) {
     double best = std::numeric_limits<double>::infinity();
     for (int step = 0; step < 200; ++step) {
-      double slope[3], value = outside(slope);
+      Double3 slope{};
+      double value = outside(slope);
       const bool in_box = value <= 0;
       if (in_box) best = std::min(best, value = deepest_here(slope));
       const double reach = cut(slope);
@@ -97,53 +91,42 @@ class Deepest {
   }
 
  private:
-  std::size_t axis(int k) const { return std::size_t(flat_ ? 2 * k : k); }
-  Vec3<double> place(const double* at) const {
-    return flat_ ? Vec3<double>{at[0], 0, at[1]} : Vec3<double>{at[0], at[1], at[2]};
-  }
   /// How far the center is outside the box; 0 inside.
-  double outside(double* slope) const {
+  double outside(Double3& slope) const {
     double worst = 0;
-    for (int k = 0; k < n_; ++k) slope[k] = 0;
-    for (int k = 0; k < n_; ++k) {
-      const Extent& e = box_[axis(k)];
-      const double below = e.low - middle_[k], above = middle_[k] - e.high;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double below = box_.low[k] - middle_[k], above = middle_[k] - box_.high[k];
       if (std::max(below, above) <= worst) continue;
       worst = std::max(below, above);
-      for (int l = 0; l < n_; ++l) slope[l] = 0;
+      slope = {};
       slope[k] = above > below ? 1 : -1;
     }
     return worst;
   }
-  double deepest_here(double* slope) const {
-    const Vec3<double> x = place(middle_);
-    const double of_a = distance_of(a_, x, flat_), of_b = distance_of(b_, x, flat_);
+  double deepest_here(Double3& slope) const {
+    const Vec3<double> x{middle_[0], middle_[1], middle_[2]};
+    const double of_a = flat_ ? distance<2>(a_, x) : distance<3>(a_, x),
+                 of_b = flat_ ? distance<2>(b_, x) : distance<3>(b_, x);
     const Solid<double>& o = of_a >= of_b ? a_ : b_;
     const Vec3<double> n = flat_ ? normal<2>(o, x) : normal<3>(o, x);
-    slope[0] = n.x, slope[1] = flat_ ? n.z : n.y, slope[2] = n.z;
+    slope = {n.x, n.y, n.z};
     return std::max(of_a, of_b);
   }
   /// Keeps the half in the direction of descent. Returns a bound on the decrease in it.
-  double cut(const double* slope) {
-    double along[3] = {}, square = 0;
-    for (int k = 0; k < n_; ++k)
-      for (int l = 0; l < n_; ++l) along[k] += spread_[k][l] * slope[l];
-    for (int k = 0; k < n_; ++k) square += slope[k] * along[k];
+  double cut(const Double3& slope) {
+    const Double3 along{dot(spread_[0], slope), dot(spread_[1], slope), dot(spread_[2], slope)};
+    const double square = dot(slope, along);
     if (!(square > 0)) return 0;
-    const double reach = std::sqrt(square), n = n_;
-    for (int k = 0; k < n_; ++k) middle_[k] -= along[k] / (reach * (n + 1));
-    for (int k = 0; k < n_; ++k)
-      for (int l = 0; l < n_; ++l)
-        spread_[k][l] =
-            n * n / (n * n - 1) * (spread_[k][l] - 2 / (n + 1) * along[k] * along[l] / square);
-    return reach;
+    middle_ = middle_ - (1 / (4 * std::sqrt(square))) * along;
+    for (std::size_t k = 0; k < 3; ++k)
+      spread_[k] = 9.0 / 8 * (spread_[k] - (along[k] / (2 * square)) * along);
+    return std::sqrt(square);
   }
 
   const Solid<double>&a_, &b_;
-  Extents box_;
+  BodyBox box_;
   bool flat_;
-  int n_;
-  double middle_[3] = {}, spread_[3][3] = {};
+  Double3 middle_, spread_[3] = {};
 };
 
 /// `most`: number of times in addition to those of the motion itself.
@@ -153,32 +136,28 @@ Track track_of(const Scene& s, const Obstacle& o, int most) {
   track.time = o.motion ? filled(one, thinned(times_of(s, *o.motion), 4 * kLongestTrack), most)
                         : std::vector<double>{0};
   for (const double t : track.time) track.solid.push_back(solids_of(one, t)[0]);
-  track.swept = extents_of(track.solid[0]);
-  for (const Solid<double>& solid : track.solid) {
-    const Extents e = extents_of(solid);
-    for (std::size_t k = 0; k < 3; ++k)
-      track.swept[k] = {std::min(track.swept[k].low, e[k].low),
-                        std::max(track.swept[k].high, e[k].high)};
-  }
+  track.swept = extents_of(s, track.solid[0]);
+  for (const Solid<double>& solid : track.solid) track.swept.add(extents_of(s, solid));
   return track;
 }
 
 }  // namespace
 
-Extents extents_of(const Solid<double>& o) {
+BodyBox extents_of(const Scene& s, const Solid<double>& o) {
   const double center[3] = {o.center.x, o.center.y, o.center.z};
-  Extents out;
+  BodyBox out{};
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3<double> up{double(k == 0), double(k == 1), double(k == 2)};
-    out[k] = {center[k] - reach_along(o, -1.0 * up, false), center[k] + reach_along(o, up, false)};
+    out.low[k] = center[k] - reach_along(o, -1.0 * up, false);
+    out.high[k] = center[k] + reach_along(o, up, false);
   }
+  if (s.plane()) out.low[1] = -kEndless, out.high[1] = kEndless;
   return out;
 }
 
-Extents extents_of(const Scene& s) {
-  Extents out;
-  for (std::size_t k = 0; k < 3; ++k) out[k] = {0, (s.domain.max[k] - s.domain.min[k]) / s.h()};
-  if (s.plane()) out[1] = {0, 0};
+BodyBox extents_of(const Scene& s) {
+  BodyBox out{{}, (1 / s.h()) * (s.domain.max - s.domain.min)};
+  if (s.plane()) out.high[1] = 0;
   return out;
 }
 
@@ -196,13 +175,12 @@ std::vector<Track> tracks_of(const Scene& s) {
 
 double shared_thickness(const Scene& s, const Solid<double>& a, const Solid<double>& b,
                         double least) {
-  const Extents of_a = extents_of(a), of_b = extents_of(b);
-  Extents box = extents_of(s);
+  const BodyBox of_a = extents_of(s, a), of_b = extents_of(s, b);
+  BodyBox box = extents_of(s);
   for (std::size_t k = 0; k < 3; ++k) {
-    if (s.plane() && k == 1) continue;
-    box[k] = {std::max({box[k].low, of_a[k].low, of_b[k].low}),
-              std::min({box[k].high, of_a[k].high, of_b[k].high})};
-    if (box[k].low > box[k].high) return 0;
+    box.low[k] = std::max({box.low[k], of_a.low[k], of_b.low[k]});
+    box.high[k] = std::min({box.high[k], of_a.high[k], of_b.high[k]});
+    if (box.low[k] > box.high[k]) return 0;
   }
   const double depth = Deepest(a, b, box, bool(s.plane())).run(-0.5 * least);
   return -2 * depth >= least ? -2 * depth : 0;

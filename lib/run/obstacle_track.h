@@ -1,33 +1,26 @@
 // The path of an obstacle during a run, and how far two obstacles overlap.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "kernels/boundary/obstacle.h"
-#include "lib/scene/scene.h"
+#include "lib/scene/body_box.h"
 
 namespace pbf::inline run_module {
 
-/// Interval along an axis of the scene, in h from its origin.
-struct Extent {
-  double low, high;
-  bool meets(const Extent& other) const { return low <= other.high && other.low <= high; }
-};
-using Extents = std::array<Extent, 3>;
-
-/// Extents along the axes; infinite for a plane.
-Extents extents_of(const Solid<double>& solid);
+/// The extents of a solid along the axes of the scene, in h from its origin; infinite for a plane,
+/// and along y of a scene in two dimensions.
+BodyBox extents_of(const Scene& scene, const Solid<double>& solid);
 
 /// The domain in the same form.
-Extents extents_of(const Scene& scene);
+BodyBox extents_of(const Scene& scene);
 
 /// Poses of an obstacle at times of the run, which include all extremes of its motion. Between two
 /// times it moves by at most a spacing, unless that takes more than kLongestTrack times.
 struct Track {
   std::vector<double> time;  ///< s since the start, from 0 to time.end; only 0 if it is fixed
   std::vector<Solid<double>> solid;
-  Extents swept;  ///< union over all times
+  BodyBox swept;  ///< union over all times
 };
 inline constexpr int kLongestTrack = 4096;
 /// The tracks of all obstacles. With very many obstacles, each has fewer times.

@@ -7,28 +7,11 @@
 #include <vector>
 
 #include "lib/run/body_boxes.h"
-#include "lib/scene/vector3.h"
 
 namespace pbf::inline run_module {
 namespace {
 
 constexpr std::int64_t kMostDistances = 200000000;
-
-/// Whether x is inside by more than rounding. If bodies only touch, the particles of one are half a
-/// spacing outside the other.
-bool inside(const Body& b, const Double3& x, double d) {
-  if (b.shape == Shape::file) return false;
-  if (b.shape == Shape::cylinder) {
-    const Double3 axis = unit(b.to - b.from), off = x - b.from;
-    const double along = dot(off, axis), across2 = dot(off, off) - along * along;
-    return along > 1e-6 * d && along < length(b.to - b.from) - 1e-6 * d &&
-           across2 < b.radius * b.radius * (1 - 1e-6);
-  }
-  if (b.shape != Shape::sphere) return Box{b.min, b.max}.holds(x, -1e-6 * d);
-  double r2 = 0;
-  for (int a = 0; a < 3; ++a) r2 += (x[a] - b.center[a]) * (x[a] - b.center[a]);
-  return r2 < b.radius * b.radius * (1 - 1e-6);
-}
 
 using Cell = std::array<std::int64_t, 3>;
 
@@ -38,22 +21,17 @@ struct Candidate {
   Double3 x;
 };
 
-std::vector<Box> boxes_of(const Scene& s, const StartPoints& points) {
+std::vector<BodyBox> boxes_of(const Scene& s, const StartPoints& points) {
   constexpr double far = std::numeric_limits<double>::infinity();
-  std::vector<Box> boxes(s.bodies.size(), {{far, far, far}, {-far, -far, -far}});
-  points.for_each([&](std::size_t b, const Double3& x) {
-    for (int a = 0; a < 3; ++a) {
-      boxes[b].low[a] = std::min(boxes[b].low[a], x[a]);
-      boxes[b].high[a] = std::max(boxes[b].high[a], x[a]);
-    }
-  });
+  std::vector<BodyBox> boxes(s.bodies.size(), {{far, far, far}, {-far, -far, -far}});
+  points.for_each([&](std::size_t b, const Double3& x) { boxes[b].add({x, x}); });
   return boxes;
 }
 
 /// For each body, the bodies whose boxes are within `reach`.
 using Near = std::vector<std::vector<std::size_t>>;
 
-Near near_bodies(const std::vector<Box>& boxes, double reach) {
+Near near_bodies(const std::vector<BodyBox>& boxes, double reach) {
   Near near(boxes.size());
   any_near_pair(boxes, reach * (1 + 1e-6), [&](std::size_t i, std::size_t j) {
     near[i].push_back(j);
@@ -63,15 +41,9 @@ Near near_bodies(const std::vector<Box>& boxes, double reach) {
   return near;
 }
 
-/// Decides from the shapes of the bodies alone, without their particles.
-bool may_be_near(const Scene& s, double reach) {
-  std::vector<Box> boxes;
-  for (const Body& b : s.bodies) boxes.push_back(box_of(b));
-  return any_near_pair(boxes, reach, [](std::size_t, std::size_t) { return true; });
-}
-
 std::vector<Candidate> candidates(const Scene& s, const StartPoints& points,
-                                  const std::vector<Box>& boxes, const Near& others, double reach) {
+                                  const std::vector<BodyBox>& boxes, const Near& others,
+                                  double reach) {
   std::vector<Candidate> out;
   points.for_each([&](std::size_t b, const Double3& x) {
     const bool near = s.bodies[b].shape == Shape::file ||
@@ -98,8 +70,8 @@ Overlap find_overlap(const StartPoints& points) {
   if (s.bodies.size() < 2 && !file) return found;
   // Less by more than rounding: bodies that touch on one lattice are a full spacing apart.
   const double reach = 0.5 * s.fluid.spacing * (1 - 1e-6);
-  if (!file && !may_be_near(s, reach)) return found;
-  const std::vector<Box> boxes = boxes_of(s, points);
+  if (!file && !any_near_bodies(s, reach)) return found;  // by their shapes alone
+  const std::vector<BodyBox> boxes = boxes_of(s, points);
   const Near others = near_bodies(boxes, reach);
   const std::vector<Candidate> list = candidates(s, points, boxes, others, reach);
   for (const Candidate& c : list) found.of_files += s.bodies[c.body].shape == Shape::file;
@@ -110,7 +82,9 @@ Overlap find_overlap(const StartPoints& points) {
   };
   for (const Candidate& c : list)
     for (const std::size_t k : others[c.body])
-      if (inside(s.bodies[k], c.x, s.fluid.spacing)) {
+      // By more than rounding. If bodies only touch, the particles of one are half a spacing
+      // outside the other.
+      if (is_in(s.bodies[k], c.x, -1e-6 * s.fluid.spacing)) {
         ++found.inside;
         bodies(k, c.body);
         break;
@@ -129,21 +103,20 @@ Overlap find_overlap(const StartPoints& points) {
       bodies(a.body, b.body);
     }
   };
-  // Visits half of the adjacent cells, so that each pair is met once.
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    for (std::size_t j = i + 1; j < list.size() && list[j].cell == list[i].cell; ++j)
-      if (look(list[i], list[j]); distances >= kMostDistances) return found.more = true, found;
+  // Visits the own cell from this particle on and half of the adjacent ones: each pair once.
+  const auto first_in = [&](const Cell& c) {
+    return std::lower_bound(list.begin(), list.end(), c,
+                            [](const Candidate& a, const Cell& cell) { return a.cell < cell; });
+  };
+  for (auto i = list.begin(); i != list.end(); ++i)
     for (int dx = 0; dx <= 1; ++dx)
-      for (int dy = dx == 0 ? 0 : -1; dy <= 1; ++dy)
-        for (int dz = dx == 0 && dy == 0 ? 1 : -1; dz <= 1; ++dz) {
-          const Cell c{list[i].cell[0] + dx, list[i].cell[1] + dy, list[i].cell[2] + dz};
-          for (auto j = std::lower_bound(
-                   list.begin(), list.end(), c,
-                   [](const Candidate&a, const Cell&cell) { return a.cell < cell; });
-               j != list.end() && j->cell == c; ++j)
-            if (look(list[i], *j); distances >= kMostDistances) return found.more = true, found;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dz = -1; dz <= 1; ++dz) {
+          if (Cell{dx, dy, dz} < Cell{}) continue;
+          const Cell c{i->cell[0] + dx, i->cell[1] + dy, i->cell[2] + dz};
+          for (auto j = c == i->cell ? i + 1 : first_in(c); j != list.end() && j->cell == c; ++j)
+            if (look(*i, *j); distances >= kMostDistances) return found.more = true, found;
         }
-  }
   return found;
 }
 

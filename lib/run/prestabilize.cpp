@@ -1,12 +1,13 @@
 #include "lib/run/prestabilize.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "lib/base/text.h"
 #include "lib/program/time_levels.h"
 #include "lib/run/guard.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::inline run_module {
 namespace {
@@ -52,20 +53,18 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
                            const std::function<void(const std::string&)>& progress) {
   Prestabilized p;
   if (!s.solver.prestabilize || s.solver.iterations == 0) return p;
-  const Diagnostics before = solver.measure();
-  p.compression_before = p.compression_after = before.compression_mean;
-  p.most_before = p.most_after = before.compression_max;
+  p.before = solver.measure();
   const double dt = std::ldexp(s.time.step / plan.substeps, -finest_level(s));
   const double speed = s.h() / dt;  // m/s, for a move by h
   // Energy in J for a sum of squared displacements in h^2.
   const auto energy = [&](double squares) { return 0.5 * plan.mass * squares * speed * speed; };
   const double n = double(plan.particles), noise = n * std::pow(position_rounding(s), 2);
-  const double scale = energy_scale(before, s, plan.mass, plan.particles);
+  const double scale = energy_scale(p.before, s, plan);
   p.harmless = scale > 0 ? std::max(kHarmless * scale, energy(noise))
                          : energy(std::max(noise, n * kStill * kStill));
   // A step moves particles by about c h, with c the compression; twice that is an upper estimate.
-  p.kick = energy(n * std::pow(2 * before.compression_rms, 2));
-  if (p.relieved() || before.non_finite > 0) return p;
+  p.kick = energy(n * std::pow(2 * p.before.compression_rms, 2));
+  if (p.relieved() || p.before.non_finite > 0) return p;
   std::vector<double> from = solver.state(Which::positions).position;
   std::vector<Point> course;
   const std::int64_t iterations = std::int64_t(s.solver.iterations) * plan.substeps;
@@ -81,37 +80,35 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
     p.kick = energy(moves.squares / (round * round));  // for the mean step of the round
     if (progress)
       progress(
-          format("start: %d steps without time; one more would give the particles %.2g J, "
-                 "%.2g J do no harm",
-                 p.steps, p.kick, p.harmless));
+          fmt::format("start: {} steps without time; one more would give the particles {:.2g} J, "
+                      "{:.2g} J do no harm",
+                      p.steps, p.kick, p.harmless));
     course.push_back({p.steps, p.kick});
     if (p.relieved() || (p.steps >= patience && hopeless(course))) break;
   }
-  double diagonal = 0;  // the sum over rounds may exceed any real displacement
-  for (std::size_t a = 0; a < 3; ++a)
-    diagonal = std::hypot(diagonal, s.domain.max[a] - s.domain.min[a]);
-  if (s.domain.open.empty()) p.moved = std::min(p.moved, diagonal / s.fluid.spacing);
-  const Diagnostics after = solver.measure();
-  p.compression_after = after.compression_mean;
-  p.most_after = after.compression_max;
+  if (s.domain.open.empty())  // the sum over rounds may exceed any real displacement
+    p.moved = std::min(p.moved, length(s.domain.max - s.domain.min) / s.fluid.spacing);
+  p.after = solver.measure();
   return p;
 }
 
 std::string prestabilized_text(const Prestabilized& p) {
   if (p.steps == 0) return {};
   // At edges of bodies a step relieves the worst particles and compresses their neighbors.
-  const bool spread = p.compression_after > p.compression_before && p.most_after < p.most_before;
-  std::string text = format(
-      "start: compression mean %.3g %%, largest %.3g %%; after %d step%s without time "
-      "(solver.prestabilize) mean %.3g %%%s, largest %.3g %%; no particle has moved by more than "
-      "%.2g spacings",
-      100 * p.compression_before, 100 * p.most_before, p.steps, p.steps == 1 ? "" : "s",
-      100 * p.compression_after, spread ? " (spread over more particles now)" : "",
-      100 * p.most_after, p.moved);
+  const Diagnostics &a = p.before, &b = p.after;
+  const bool spread =
+      b.compression_mean > a.compression_mean && b.compression_max < a.compression_max;
+  std::string text = fmt::format(
+      "start: compression mean {:.3g} %, largest {:.3g} %; after {} step{} without time "
+      "(solver.prestabilize) mean {:.3g} %{}, largest {:.3g} %; no particle has moved by more than "
+      "{:.2g} spacings",
+      100 * a.compression_mean, 100 * a.compression_max, p.steps, p.steps == 1 ? "" : "s",
+      100 * b.compression_mean, spread ? " (spread over more particles now)" : "",
+      100 * b.compression_max, p.moved);
   if (!p.relieved())
-    text +=
-        format(". What is left did not go in these steps; one more would give them %.2g J", p.kick);
-  if (!p.relieved() && p.compression_after > 0.01)
+    text += fmt::format(
+        ". What is left did not go in these steps; one more would give them {:.2g} J", p.kick);
+  if (!p.relieved() && b.compression_mean > 0.01)
     text += ": is there room for all of them? Is fluid.mass as meant?";
   return text;
 }

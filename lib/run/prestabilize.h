@@ -11,14 +11,11 @@ namespace pbf::inline run_module {
 
 /// What prestabilize() did.
 struct Prestabilized {
-  int steps = 0;                  ///< without time; 0: the start is unchanged
-  double compression_before = 0;  ///< mean, 1
-  double most_before = 0;         ///< 1, of the most compressed particle
-  double compression_after = 0;   ///< mean, 1
-  double most_after = 0;          ///< 1
-  double moved = 0;               ///< spacings, upper bound for every particle
-  double kick = 0;                ///< J, energy of the moves of one more step, over dt
-  double harmless = 0;            ///< J, the kick at which the steps end
+  int steps = 0;              ///< without time; 0: the start is unchanged
+  Diagnostics before, after;  ///< of the start; the second if there were steps
+  double moved = 0;           ///< spacings, upper bound for every particle
+  double kick = 0;            ///< J, energy of the moves of one more step, over dt
+  double harmless = 0;        ///< J, the kick at which the steps end
   bool relieved() const { return kick <= harmless; }
 };
 

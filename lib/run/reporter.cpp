@@ -1,7 +1,7 @@
+#include <fmt/core.h>
 #include <algorithm>
 
 #include "kernels/relative_motion.h"
-#include "lib/base/text.h"
 #include "lib/run/run.h"
 #include "lib/run/run_report.h"
 
@@ -14,22 +14,20 @@ constexpr double kInSolid = 0.01;  // h, far beyond rounding
 
 std::string passed_through_text(const Scene& s, const Diagnostics& m, double share) {
   // With time.adaptive the longest move may belong to a step much shorter than time.step.
-  const std::string remedy =
-      s.time.adaptive
-          ? std::string("lower time.adaptive.cfl")
-          : format("time.step %.2g s resolves it", s.time.step * kResolvedWay / m.relative_way_max);
-  return format(
-             "fluid may have passed through fluid: %ld times (%.2g %% of particles times steps) a "
-             "particle moved by more than %g h relative to a neighbour in a step, by up to %.3g "
-             "h; ",
-             m.unresolved, 100 * share, kResolvedWay, m.relative_way_max) +
-         remedy;
+  const std::string remedy = s.time.adaptive
+                                 ? "lower time.adaptive.cfl"
+                                 : fmt::format("time.step {:.2g} s resolves it",
+                                               s.time.step * kResolvedWay / m.relative_way_max);
+  return fmt::format(
+      "fluid may have passed through fluid: {} times ({:.2g} % of particles times steps) a "
+      "particle moved by more than {:g} h relative to a neighbour in a step, by up to {:.3g} h; {}",
+      m.unresolved, 100 * share, kResolvedWay, m.relative_way_max, remedy);
 }
 
 }  // namespace
 
 Reporter::Reporter(RunParts& run, const Watch& watch)
-    : run_(run), watch_(watch), progress_(run.log) {
+    : run_(run), watch_(watch), progress_(run.control.log) {
   for (const Warning& w : run.start.warnings) told_.emplace(w.kind, w.text);
   if (run.from.saved) compressed_ = run.from.saved->compressed_updates;
   progress_.start_at(run.from.update());
@@ -39,7 +37,7 @@ Now Reporter::at(Session& session) {
   const std::int64_t u = session.update(), updates = run_.schedule.updates;
   if (u < updates)
     for (const Warning& w : found(false))
-      if (told_.emplace(w.kind, w.text).second) run_.log.warning(w.text);
+      if (told_.emplace(w.kind, w.text).second) run_.control.log.warning(w.text);
   const Diagnostics& m = watch_.last();
   progress_.update({u, updates, run_.plan.particles, double(u) * run_.scene.time.step,
                     m.compression_mean, m.compression_max, run_.from.update()});
@@ -115,29 +113,29 @@ std::vector<Warning> Reporter::found(bool end) const {
   if ((long_time && compressed_ > 0) || at_end)
     list.push_back(
         {"compressed",
-         format(
-             "the fluid is compressed as no liquid is: mean compression above %g %% through %.3g "
-             "%% of the "
-             "updates, %.3g %% at %s; give a shorter time.step or more solver.iterations",
-             100 * kNoLiquid, percent(double(compressed_), double(run_.schedule.updates)),
-             100 * m.compression_mean, end ? "the end" : "present")});
+         fmt::format("the fluid is compressed as no liquid is: mean compression above {:g} % "
+                     "through {:.3g} % of the updates, {:.3g} % at {}; give a shorter time.step or "
+                     "more solver.iterations",
+                     100 * kNoLiquid, percent(double(compressed_), double(run_.schedule.updates)),
+                     100 * m.compression_mean, end ? "the end" : "present")});
   const double share =
       double(m.unresolved) /
       (double(run_.plan.particles) * double(run_.schedule.updates) * run_.scene.solver.substeps);
   if (m.unresolved > 0 && (share >= kMuch || m.relative_way_max >= 1))
     list.push_back({"passed_through", passed_through_text(run_.scene, m, share)});
   if (m.penetration > kInSolid * run_.scene.h())
-    list.push_back({"closed_in", format("%s leaves fluid no way out: a particle is %.2g m behind "
-                                        "its surface; move it elsewhere or more slowly",
-                                        run_.scene.obstacles.empty() ? "a wall" : "an obstacle",
-                                        m.penetration)});
+    list.push_back(
+        {"closed_in",
+         fmt::format("{} leaves fluid no way out: a particle is {:.2g} m behind its surface; move "
+                     "it elsewhere or more slowly",
+                     run_.scene.obstacles.empty() ? "a wall" : "an obstacle", m.penetration)});
   if (left_ > 0)
-    list.push_back({"left", format("%ld of %ld particles (%.2g %%) have left the domain through "
-                                   "an open face (%s), the farthest %.3g m beyond it; they are "
-                                   "simulated on",
-                                   left_, run_.plan.particles,
-                                   percent(double(left_), double(run_.plan.particles)),
-                                   faces_.c_str(), farthest_)});
+    list.push_back(
+        {"left",
+         fmt::format("{} of {} particles ({:.2g} %) have left the domain through an open face "
+                     "({}), the farthest {:.3g} m beyond it; they are simulated on",
+                     left_, run_.plan.particles,
+                     percent(double(left_), double(run_.plan.particles)), faces_, farthest_)});
   return list;
 }
 

@@ -1,5 +1,6 @@
 #include "lib/run/resume.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -68,9 +69,9 @@ class Finder {
       const std::string doubt = why_not_finished(folder_.path(), scene_);
       if (doubt.empty()) {
         finish(schedule_.updates < done
-                   ? format("the run is finished, up to %.6g s, beyond time.end, which is now %.6g "
-                            "s; nothing to do",
-                            double(done) * before.time.step, scene_.time.end)
+                   ? fmt::format("the run is finished, up to {:.6g} s, beyond time.end, which is "
+                                 "now {:.6g} s; nothing to do",
+                                 double(done) * before.time.step, scene_.time.end)
                    : "the run is finished (DONE is there); nothing to do");
         return point_;
       }
@@ -85,11 +86,11 @@ class Finder {
     }
     if (scene_.output) look_at_file(before);
     if (schedule_.updates < done)
-      point_.notes.push_back(
-          format("time.end is %.6g s now, %.6g s before: the run ends earlier", scene_.time.end,
-                 before.time.end) +
-          (beyond_ > 0 ? format("; %ld frames of run.vtkhdf beyond it are removed", beyond_)
-                       : std::string()));
+      point_.notes.push_back(fmt::format(
+          "time.end is {:.6g} s now, {:.6g} s before: the run ends earlier{}", scene_.time.end,
+          before.time.end,
+          beyond_ > 0 ? fmt::format("; {} frames of run.vtkhdf beyond it are removed", beyond_)
+                      : ""));
     if (!point_.saved) point_.notes.push_back(from_the_start(before, done));
     return point_;
   }
@@ -115,11 +116,12 @@ class Finder {
     const bool prolonged = folder_.has("DONE") && schedule_.updates > done;
     std::string text = "there is no checkpoint: the run starts again from its first update";
     if (prolonged)
-      text = format(
-          "the run is finished up to %.6g s, but has kept no checkpoint: to reach "
-          "time.end %.6g s it starts again from its first update",
+      text = fmt::format(
+          "the run is finished up to {:.6g} s, but has kept no checkpoint: to reach time.end "
+          "{:.6g} s it starts again from its first update",
           double(done) * before.time.step, scene_.time.end);
-    if (point_.frames > 0) text += format("; the %ld frames that are there stay", point_.frames);
+    if (point_.frames > 0)
+      text += fmt::format("; the {} frames that are there stay", point_.frames);
     if (prolonged && !scene_.checkpoint)
       text += ". With checkpoint: {every: 60} in the scene a finished run can be prolonged";
     return text;
@@ -131,9 +133,9 @@ class Finder {
   /// The run was stopped after the present time.end, so all requested results are there.
   void leave_as_it_is() {
     const auto reached = point_.saved->state.updates;
-    const std::string at = format("%.6g s (update %ld)", double(reached) * scene_.time.step,
-                                  reached),
-                      end = format("time.end, which is now %.6g s", scene_.time.end);
+    const std::string at = fmt::format("{:.6g} s (update {})", double(reached) * scene_.time.step,
+                                       reached),
+                      end = fmt::format("time.end, which is now {:.6g} s", scene_.time.end);
     std::string doubt;
     if (scene_.output) {
       if (!folder_.has(kRunFile)) bad("cannot resume: " + at + lost_file("is missing", end));

@@ -17,7 +17,7 @@ Rows::Rows(RunParts& run, Reporter& reporter) : run_(run), reporter_(reporter) {
     due_.compressed_updates = saved->compressed_updates;
   }
   due_.scene = resolved_yaml(run.scene);
-  due_.files = run.loaded.files;
+  due_.files = run.start.loaded.files;
   due_.particles = run.plan.particles;
 }
 
@@ -41,7 +41,7 @@ void Rows::take(Diagnostics& m, double dt) {
   if (!run_.json) return;
   const std::int64_t frames = writer ? writer->frames_written() : 0;
   const std::string line =
-      measure_json(m, run_.wall.seconds(), frames, since, run_.plan.columns) + "\n";
+      measure_json(m, run_.control.wall.seconds(), frames, since, run_.plan.columns) + "\n";
   // A closed pipe is no error, as for stdout.
   if ((std::fwrite(line.data(), 1, line.size(), run_.json) != line.size() ||
        std::fflush(run_.json) != 0) &&
@@ -52,8 +52,16 @@ void Rows::take(Diagnostics& m, double dt) {
 }
 
 std::vector<StageTime> Rows::stages() const {
+  const Scene& scene = run_.scene;
   StageClock sum;
-  for (const char* name : stage_names(run_.scene, run_.plan, run_.json)) sum.entry(name);
+  sum.entry("init");
+  for (const PassCount& c : count_passes(run_.plan.program, run_.plan.program.update))
+    sum.entry(c.pass->stage);
+  sum.entry("measure");
+  if (scene.guard || scene.time.adaptive) sum.entry("guard");
+  if (scene.output || scene.render) sum.entry("download");
+  if (scene.output || run_.json) sum.entry("write");
+  if (scene.render) sum.entry("render");
   for (const auto& times : {run_.solver.info().stages, run_.clock.entries()})
     for (const StageTime& s : times) sum.add(s.name, s.seconds, s.calls);
   return sum.entries();

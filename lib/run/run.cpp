@@ -1,5 +1,6 @@
 #include "lib/run/run.h"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -21,7 +22,7 @@ namespace pbf::inline run_module {
 namespace {
 
 RunInfo run_info(const RunParts& run, const std::string& started) {
-  const LoadedScene& loaded = run.loaded;
+  const LoadedScene& loaded = run.start.loaded;
   const Scene& scene = run.scene;
   const BuildInfo build = build_info();
   char host[256] = "";
@@ -78,12 +79,10 @@ namespace {
   const Guard& guard = *watch.guard();
   write_particle_file(folder.file("guard_state.h5"), to_particles(e.last_good, scene));
   folder.write_text("guard_scene.yaml", resolved_yaml(guard.repeating_scene(e, "guard_state.h5")));
-  throw Error(
-      ExitCode::guard,
-      guard.text(e) + format(". %s holds the run up to there, guard_state.h5 the last good state "
-                             "(update %ld); to repeat: pbf run %s",
-                             folder.path().c_str(), e.last_good.updates,
-                             folder.file("guard_scene.yaml").c_str()));
+  throw Error(ExitCode::guard, fmt::format("{}. {} holds the run up to there, guard_state.h5 the "
+                                           "last good state (update {}); to repeat: pbf run {}",
+                                           guard.text(e), folder.path(), e.last_good.updates,
+                                           folder.file("guard_scene.yaml")));
 }
 
 std::string banner(const RunParts& run) {
@@ -92,12 +91,11 @@ std::string banner(const RunParts& run) {
   const Scene& scene = run.scene;
   std::string where = i.backend + " " + i.precision;
   if (!about(scene.backend).on_device) where += ", " + threads_text(scene, run.plan.particles);
-  return format(
-      "pbf %s (%s)  scene %s: %ld particles, %ld updates of %.4g s\n%s on %s; the solver "
-      "holds %s; files in %s",
-      build.version.c_str(), build.commit.c_str(), scene.name.c_str(), run.plan.particles,
-      run.schedule.updates, scene.time.step, where.c_str(), i.device.c_str(),
-      bytes_text(double(i.bytes)).c_str(), run.folder.path().c_str());
+  return fmt::format(
+      "pbf {} ({})  scene {}: {} particles, {} updates of {:.4g} s\n{} on {}; the solver holds {}; "
+      "files in {}",
+      build.version, build.commit, scene.name, run.plan.particles, run.schedule.updates,
+      scene.time.step, where, i.device, bytes_text(double(i.bytes)), run.folder.path());
 }
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
@@ -113,13 +111,13 @@ File open_json(const std::string& path, bool append) {
 /// Everything after the folder is made, so that log.txt also gets the error that ends the run.
 RunResult simulate(RunParts& run) {
   const ResumePoint& from = run.from;
-  Log& log = run.log;
+  Log& log = run.control.log;
   const std::string started = utc_now();
   const auto note = [&log](const std::string& text) { log.note("pbf: " + text); };
   const File json = open_json(run.control.log_json, from.started);
   run.json = json.get();
   if (from.started) prepare_resume(run.folder, from);
-  run.folder.write_text(kResolvedScene, scene_record(run.scene, run.loaded.files));
+  run.folder.write_text(kResolvedScene, scene_record(run.scene, run.start.loaded.files));
   log.note(banner(run));
   for (const Warning& w : run.start.warnings) log.warning(w.text);
   for (const std::string& text : from.notes) note(text);
@@ -128,7 +126,7 @@ RunResult simulate(RunParts& run) {
   for (const std::string& text : rounded_times(run.scene)) note(text);
   if (from.saved) {
     run.solver.set_state(from.saved->state);
-    note(format("goes on from the checkpoint of update %ld", from.update()));
+    note(fmt::format("goes on from the checkpoint of update {}", from.update()));
   } else {
     run.clock.mark("init");
     const std::string done = prestabilized_text(
@@ -143,10 +141,9 @@ RunResult simulate(RunParts& run) {
   const RunResult result{run.stop_reason, run.solver.updates()};
   if (run.status == "stopped")
     note(
-        format("stopped early by %s after update %ld of %ld, after saving; the files in %s hold "
-               "the run up to there: the same command with --resume goes on",
-               result.stop_reason.c_str(), result.updates, run.schedule.updates,
-               run.folder.path().c_str()));
+        fmt::format("stopped early by {} after update {} of {}, after saving; the files in {} hold "
+                    "the run up to there: the same command with --resume goes on",
+                    result.stop_reason, result.updates, run.schedule.updates, run.folder.path()));
   log.close();
   if (run.status != "stopped") run.folder.write_text("DONE", "finished " + utc_now() + "\n");
   return result;
@@ -159,7 +156,7 @@ void run_session(RunParts& run) {
   std::optional<Rows> rows;
   Watch watch(
       run.scene, run.plan, run.solver, [&](Diagnostics& m, double dt) { rows->take(m, dt); },
-      [&](const std::string& line) { run.log.note(line); }, &run.clock);
+      [&](const std::string& line) { run.control.log.note(line); }, &run.clock);
   if (run.schedule.gauge_every > 0 && run.writer)
     watch.read_gauges([&](const GaugeRow& row) { run.writer->gauges(row); });
   Reporter reporter(run, watch);
@@ -179,16 +176,16 @@ void run_session(RunParts& run) {
   session.use(watch.options());
   session.run(run.schedule.updates, saved ? run.from.update() : -1);
   run.loop_seconds = loop.seconds();
-  run.log.result(run_summary(run, watch, rows->stages()));
+  run.control.log.result(run_summary(run, watch, rows->stages()));
   if (!run.control.strict)  // a strict run has all of them in its error
-    for (const Warning& w : reporter.untold()) run.log.warning(w.text);
+    for (const Warning& w : reporter.untold()) run.control.log.warning(w.text);
   if (watch.event()) report_alarm(watch, run.scene, run.folder);
   if (run.control.strict && !reporter.warnings().empty())
     throw Error(ExitCode::difference,
-                "--strict: " + warning_lines(reporter.warnings()) +
-                    format("\npbf: the files in %s hold the run up to update %ld of %ld; the same "
-                           "command with --resume and without --strict goes on",
-                           run.folder.path().c_str(), run.solver.updates(), run.schedule.updates));
+                fmt::format("--strict: {}\npbf: the files in {} hold the run up to update {} of "
+                            "{}; the same command with --resume and without --strict goes on",
+                            warning_lines(reporter.warnings()), run.folder.path(),
+                            run.solver.updates(), run.schedule.updates));
 }
 
 void refuse_pictures([[maybe_unused]] const Scene& scene) {

@@ -31,11 +31,8 @@ struct RunParts {
 #ifdef PBF_HAS_RENDER
   std::unique_ptr<RenderThread> pictures{};  ///< null: none; made by the caller before the folder
 #endif
-  const LoadedScene& loaded = start.loaded;
-  const Scene& scene = loaded.scene;
+  const Scene& scene = start.scene();
   const Plan& plan = start.plan;
-  Log& log = control.log;
-  const Stopwatch& wall = control.wall;
   Schedule schedule = make_schedule(scene);
 
   double loop_seconds = 0;     ///< s, updates with their output

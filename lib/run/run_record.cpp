@@ -1,10 +1,10 @@
 #include "lib/run/run_record.h"
 
+#include <fmt/core.h>
 #include <filesystem>
 #include <sstream>
 
 #include "lib/base/error.h"
-#include "lib/base/text.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
 #include "lib/program/schedule.h"
@@ -64,7 +64,7 @@ std::string why_not_finished(const std::string& folder, const Scene& scene) {
     const std::int64_t end = make_schedule(scene).updates,
                        last = frames.empty() ? 0 : frames.back();
     if (last < end)
-      return format("the frames of run.vtkhdf end at update %ld, the run at %ld", last, end);
+      return fmt::format("the frames of run.vtkhdf end at update {}, the run at {}", last, end);
   } catch (const Error& e) {
     return e.what();
   }

@@ -1,5 +1,6 @@
 #include "lib/run/run_report.h"
 
+#include <fmt/core.h>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -28,9 +29,9 @@ bool has_come_to_rest(const Diagnostics& m, const Scene& s, double mass) {
 /// Empty if the scene does not define this measurement or the fluid still moves.
 std::string pool_line(const Diagnostics& m, const Scene& s, double mass) {
   if (std::isnan(m.height_kept) || !has_come_to_rest(m, s, mass)) return {};
-  return format(
-      "pool at rest        height %.4f of what its volume gives, 1 is right; pressure %.2g %% off "
-      "the hydrostatic one, 0 is right\n",
+  return fmt::format(
+      "pool at rest        height {:.4f} of what its volume gives, 1 is right; pressure {:.2g} % "
+      "off the hydrostatic one, 0 is right\n",
       m.height_kept, 100 * m.hydrostatic_deviation);
 }
 
@@ -43,18 +44,19 @@ std::string step_lines(const StepHistory& s, double step, std::int64_t all) {
     shortest = std::ldexp(step, -int(k));
     updates += double(s.updates[k]);
     steps += std::ldexp(double(s.updates[k]), int(k));
-    shares += format("%s%.4g s in %.3g %%", shares.empty() ? "" : ", ", shortest,
-                     percent(double(s.updates[k]), double(all)));
+    shares += fmt::format("{}{:.4g} s in {:.3g} %", shares.empty() ? "" : ", ", shortest,
+                          percent(double(s.updates[k]), double(all)));
   }
-  std::string out = format("time step           %ld changes, shortest %.4g s, mean %.4g s\n",
-                           s.changes, shortest, steps > 0 ? step * updates / steps : 0);
+  std::string out =
+      fmt::format("time step           {} changes, shortest {:.4g} s, mean {:.4g} s\n", s.changes,
+                  shortest, steps > 0 ? step * updates / steps : 0);
   if (s.changes > 0) out += "                    " + shares + " of the updates\n";
   if (s.repeats > 0)
-    out += format("                    %ld times back to the last good state after an alarm\n",
-                  s.repeats);
+    out += fmt::format("                    {} times back to the last good state after an alarm\n",
+                       s.repeats);
   if (s.floor > 0)
-    out += format("                    %ld measures asked for less than time.adaptive.step_min\n",
-                  s.floor);
+    out += fmt::format(
+        "                    {} measures asked for less than time.adaptive.step_min\n", s.floor);
   return out;
 }
 
@@ -65,7 +67,7 @@ std::string stages_of(StageGroup group, const std::vector<StageTime>& stages, do
     for (const StageTime& s : stages)
       if (stage.group == group && s.name == stage.name) {
         sum += s.seconds;
-        parts.push_back(format("%s %.3f", s.name.c_str(), s.seconds));
+        parts.push_back(fmt::format("{} {:.3f}", s.name, s.seconds));
       }
   return joined(parts, ", ");
 }
@@ -74,8 +76,8 @@ std::string stages_of(StageGroup group, const std::vector<StageTime>& stages, do
 std::string time_table(const std::vector<StageTime>& stages, double wall, bool fused) {
   std::string out = "time                        seconds  of the wall time, and by stage\n";
   const auto row = [&](const char* name, double seconds, const std::string& of) {
-    out += format("  %-25s %8.3f  %5.1f %%", name, seconds, percent(seconds, wall)) +
-           (of.empty() ? "\n" : "  " + of + "\n");
+    out += fmt::format("  {:25} {:8.3f}  {:5.1f} %{}{}\n", name, seconds, percent(seconds, wall),
+                       of.empty() ? "" : "  ", of);
   };
   double rest = wall;
   for (std::size_t g = 0; g < std::size(kStageGroups); ++g) {
@@ -93,15 +95,13 @@ std::string time_table(const std::vector<StageTime>& stages, double wall, bool f
 
 /// The error of the run, and which values are good.
 std::string error_lines(const Diagnostics& last, double max_of_run) {
-  return format(
+  return fmt::format(
       "compression         of the fluid beyond its rest density, the error of the run: a mean "
-      "below "
-      "1 %% is good\n"
-      "  at the end        mean %.3g %%, RMS %.3g %%, largest %.3g %%; 99 %% of the particles "
-      "below "
-      "%.3g %%\n"
-      "                    %.3g %% of the particles above 1 %%, %.3g %% above 10 %%\n"
-      "  over the run      largest %.3g %%\n",
+      "below 1 % is good\n"
+      "  at the end        mean {:.3g} %, RMS {:.3g} %, largest {:.3g} %; 99 % of the particles "
+      "below {:.3g} %\n"
+      "                    {:.3g} % of the particles above 1 %, {:.3g} % above 10 %\n"
+      "  over the run      largest {:.3g} %\n",
       100 * last.compression_mean, 100 * last.compression_rms, 100 * last.compression_max,
       100 * last.compression_p99, 100 * last.share_above_1, 100 * last.share_above_10,
       100 * max_of_run);
@@ -120,15 +120,15 @@ std::string losses(const Scene& s, double drift) {
 }
 
 std::string energy_lines(const Diagnostics& first, const Diagnostics& last, const Scene& scene) {
-  std::string out = format(
-      "energy              %.6g J at the start, %.6g J at the end (%.3g J of it kinetic)\n"
-      "  drift             %+.3g %% from start to end%s\n"
-      "  largest rise      %.3g %% at any time: 0 is good, above 1 %% the method adds energy\n",
+  std::string out = fmt::format(
+      "energy              {:.6g} J at the start, {:.6g} J at the end ({:.3g} J of it kinetic)\n"
+      "  drift             {:+.3g} % from start to end{}\n"
+      "  largest rise      {:.3g} % at any time: 0 is good, above 1 % the method adds energy\n",
       first.energy, last.energy, last.kinetic_energy, 100 * last.energy_drift,
-      losses(scene, last.energy_drift).c_str(), 100 * last.energy_rise);
+      losses(scene, last.energy_drift), 100 * last.energy_rise);
   if (last.moved)
-    out += format(
-        "  work              %.6g J of what moves by itself; drift and rise are without it\n",
+    out += fmt::format(
+        "  work              {:.6g} J of what moves by itself; drift and rise are without it\n",
         last.work);
   return out;
 }
@@ -138,16 +138,18 @@ std::string progress_lines(const RunParts& run, double wall) {
   const std::int64_t updates = run.solver.updates(), before = run.from.update();
   const std::string loop =
       duration_text(run.loop_seconds) + " of it from the first update to the last, with output";
-  std::string out = format("updates             %ld (%.6g s simulated)", updates,
-                           double(updates) * run.scene.time.step);
-  if (before == 0) return out + "\nwall time           " + duration_text(wall) + ", " + loop + "\n";
-  out += format(", %ld of them in this session, which went on from update %ld\n", updates - before,
-                before);
-  out += "wall time           " + duration_text(wall) + " in this session, " + loop;
+  std::string out = fmt::format("updates             {} ({:.6g} s simulated)", updates,
+                                double(updates) * run.scene.time.step);
+  if (before == 0)
+    return fmt::format("{}\nwall time           {}, {}\n", out, duration_text(wall), loop);
+  out += fmt::format(
+      ", {} of them in this session, which went on from update {}\n"
+      "wall time           {} in this session, {}",
+      updates - before, before, duration_text(wall), loop);
   if (const auto& earlier = run.from.earlier)
-    out += format("\n                    %s %s in all %ld sessions",
-                  earlier->whole ? "about" : "at least",
-                  duration_text(wall + earlier->seconds).c_str(), earlier->sessions + 1);
+    out += fmt::format("\n                    {} {} in all {} sessions",
+                       earlier->whole ? "about" : "at least",
+                       duration_text(wall + earlier->seconds), earlier->sessions + 1);
   return out + "\n";
 }
 
@@ -159,52 +161,57 @@ std::string run_summary(const RunParts& run, const Watch& watch,
   const Plan& plan = run.plan;
   const Diagnostics &first = watch.first(), &last = watch.last();
   const std::int64_t updates = run.solver.updates();
-  const double wall = run.wall.seconds(), loop = run.loop_seconds;
+  const double wall = run.control.wall.seconds(), loop = run.loop_seconds;
   const auto own = double(updates - run.from.update());
-  std::string out = format("particles           %ld\n", plan.particles);
+  std::string out = fmt::format("particles           {}\n", plan.particles);
   out += progress_lines(run, wall);
-  out += "speed               " + si_number(loop > 0 ? double(plan.particles) * own / loop : 0) +
-         " particle-updates/s in these " + duration_text(loop) + "\n";
+  out += fmt::format("speed               {} particle-updates/s in these {}\n",
+                     si_number(loop > 0 ? double(plan.particles) * own / loop : 0),
+                     duration_text(loop));
   out += error_lines(last, run.compression_max) + energy_lines(first, last, scene);
   out += "peak memory         " + bytes_text(double(peak_memory())) + " on the host\n";
   out += pool_line(last, scene, plan.mass * double(plan.particles));
   if (last.non_finite > 0)
-    out += format("not finite          %ld particles at the end, left out of the figures above\n",
-                  last.non_finite);
+    out +=
+        fmt::format("not finite          {} particles at the end, left out of the figures above\n",
+                    last.non_finite);
   if (plan.tolerance > 0)
-    out += format(
-        "iterations          %.3g per substep on average, at most %d, for a tolerance of %.4g %%\n",
+    out += fmt::format(
+        "iterations          {:.3g} per substep on average, at most {}, for a tolerance of {:.4g} "
+        "%\n",
         double(last.iterations_done) / (double(updates) * plan.substeps),
         scene.solver.iterations * (1 + plan.repeats), 100 * plan.tolerance);
   if (last.unresolved > 0)
-    out += format(
-        "fast fluid          %ld times a particle moved by more than %g h past a neighbour in one "
-        "step, at most by %.3g h;\n"
+    out += fmt::format(
+        "fast fluid          {} times a particle moved by more than {:g} h past a neighbour in one "
+        "step, at most by {:.3g} h;\n"
         "                    harmless while rare, else fluid may pass through fluid\n",
         last.unresolved, kResolvedWay, last.relative_way_max);
   if (const auto steps = watch.steps(updates)) out += step_lines(*steps, scene.time.step, updates);
   if (scene.solver.speed_limit > 0)
-    out += format("speed limit         %ld times a particle was slowed down to %.4g m/s\n",
-                  last.fast, scene.solver.speed_limit * scene.h() / scene.time.step);
+    out += fmt::format("speed limit         {} times a particle was slowed down to {:.4g} m/s\n",
+                       last.fast, scene.solver.speed_limit * scene.h() / scene.time.step);
   out += time_table(stages, wall, scene.solver.fused);
   if (run.drawing_seconds > 0)
-    out += format(
-        "  drawing took %.3f s on a thread beside the run; render, above, is how long the run "
+    out += fmt::format(
+        "  drawing took {:.3f} s on a thread beside the run; render, above, is how long the run "
         "waited for it\n",
         run.drawing_seconds);
   out += "files in            " + run.folder.path();
   if (run.frames_written > 0)
-    out += format("\n  run.vtkhdf        %ld frames, %s", run.frames_written,
-                  bytes_text(double(run.bytes)).c_str());
+    out += fmt::format("\n  run.vtkhdf        {} frames, {}", run.frames_written,
+                       bytes_text(double(run.bytes)));
   if (run.pictures_drawn > 0)
-    out += format("\n  frames/           %ld pictures", run.pictures_drawn);
+    out += fmt::format("\n  frames/           {} pictures", run.pictures_drawn);
   return out;
 }
 
 namespace {
 
 /// Nine digits, which distinguish any two floats.
-double short_number(double value) { return std::strtod(format("%.9g", value).c_str(), nullptr); }
+double short_number(double value) {
+  return std::strtod(fmt::format("{:.9g}", value).c_str(), nullptr);
+}
 
 }  // namespace
 

@@ -1,24 +1,22 @@
 // Warnings that a scene gives before it is run.
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 
 #include "kernels/relative_motion.h"
-#include "lib/base/text.h"
 #include "lib/program/motion.h"
 #include "lib/run/motion_warnings.h"
 #include "lib/run/obstacle_track.h"
 #include "lib/run/overlap.h"
-#include "lib/run/unit_warnings.h"
 #include "lib/run/warnings.h"
 #include "lib/scene/auto_step.h"
+#include "lib/scene/surface.h"
 
 namespace pbf::inline run_module {
 namespace {
 
 /// Ratio of a step to that of time.step: auto above which a warning is given.
 constexpr double kFarAbove = 10;
-
-double length(const Double3& v) { return std::hypot(v[0], v[1], v[2]); }
 
 /// The longest step that time.adaptive allows for gravity, s; above time.step if it has no limit.
 double adaptive_step(const Scene& s) {
@@ -49,10 +47,11 @@ void add_coarse_step(const Scene& s, std::vector<Warning>& list) {
   const double far = kFarAbove * std::sqrt(std::max(1.0, most_iterations(s) / 4.0));
   const double safe = step_rule(s).gravity, times = longest_step(s) / safe;
   if (s.time.adaptive || !(times > far)) return;
-  list.push_back({"step", format("time.step %g makes steps of %.2g times 0.03 sqrt(h/g) (%.2g s), "
-                                 "which is safe: what falls moves far before it is stopped; give "
-                                 "%.2g or less, or auto",
-                                 s.time.step, times, safe, s.time.step * far / times)});
+  list.push_back(
+      {"step",
+       fmt::format("time.step {:g} makes steps of {:.2g} times 0.03 sqrt(h/g) ({:.2g} s), which is "
+                   "safe: what falls moves far before it is stopped; give {:.2g} or less, or auto",
+                   s.time.step, times, safe, s.time.step * far / times)});
 }
 
 void add_step(const Scene& s, std::int64_t particles, std::vector<Warning>& list) {
@@ -63,15 +62,14 @@ void add_step(const Scene& s, std::int64_t particles, std::vector<Warning>& list
   const double value = by_force ? s.time.adaptive->force : s.time.step;
   const std::string key = by_force ? "time.adaptive.force" : "time.step";
   // The formula holds up to this compression; beyond, the real one is larger.
-  std::string text = key +
-                     format(
-                         " %g makes steps %.2g times the longest that is safe here: at rest the "
-                         "fluid would have a mean compression of ",
-                         value, times) +
-                     (c > 0.2 ? std::string("more than 20 %") : format("about %.2g %%", 100 * c)) +
-                     format("; give %.2g or less", value / times);
+  std::string text = fmt::format(
+      "{} {:g} makes steps {:.2g} times the longest that is safe here: at rest the fluid would "
+      "have a mean compression of {}; give {:.2g} or less",
+      key, value, times, c > 0.2 ? "more than 20 %" : fmt::format("about {:.2g} %", 100 * c),
+      value / times);
   if (s.solver.tolerance == 0)
-    text += format(", or solver.iterations %.0f", std::ceil(s.solver.iterations * times * times));
+    text += fmt::format(", or solver.iterations {:.0f}",
+                        std::ceil(s.solver.iterations * times * times));
   list.push_back({"step", text});
 }
 
@@ -80,14 +78,10 @@ void add_speed(const Scene& s, std::vector<Warning>& list) {
   // Two velocities differ by at most the sum of their deviations from the mean. Sorted by
   // deviation, only a few pairs need to be examined.
   Double3 mean{};
-  for (const Body& b : s.bodies)
-    for (int a = 0; a < 3; ++a) mean[a] += b.velocity[a] / double(s.bodies.size());
-  const auto apart = [](const Double3& v, const Double3& w) {
-    return length({v[0] - w[0], v[1] - w[1], v[2] - w[2]});
-  };
+  for (const Body& b : s.bodies) mean = mean + (1.0 / double(s.bodies.size())) * b.velocity;
   std::vector<std::pair<double, std::size_t>> off;  // deviation from the mean, and body
   for (std::size_t i = 0; i < s.bodies.size(); ++i)
-    off.push_back({apart(s.bodies[i].velocity, mean), i});
+    off.push_back({length(s.bodies[i].velocity - mean), i});
   std::stable_sort(off.begin(), off.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   double fastest = 0;
@@ -95,7 +89,7 @@ void add_speed(const Scene& s, std::vector<Warning>& list) {
   for (std::size_t i = 1; i < off.size() && off[i].first + off[0].first > fastest; ++i)
     for (std::size_t j = 0; j < i && off[i].first + off[j].first > fastest; ++j)
       if (const double v =
-              apart(s.bodies[off[i].second].velocity, s.bodies[off[j].second].velocity);
+              length(s.bodies[off[i].second].velocity - s.bodies[off[j].second].velocity);
           v > fastest) {
         fastest = v;
         first = std::min(off[i].second, off[j].second);
@@ -104,38 +98,35 @@ void add_speed(const Scene& s, std::vector<Warning>& list) {
   const double way = fastest * longest_step(s) / s.h();
   if (way <= kResolvedWay) return;
   list.push_back(
-      {"speed", format("bodies[%zu] and bodies[%zu] move past each other by %.3g h in a step, more "
-                       "than %g h: fluid may pass through fluid; give time.step %.2g or less, or "
-                       "time.adaptive",
-                       first, second, way, kResolvedWay, s.time.step * kResolvedWay / way)});
+      {"speed",
+       fmt::format(
+           "bodies[{}] and bodies[{}] move past each other by {:.3g} h in a step, more than {:g} "
+           "h: fluid may pass through fluid; give time.step {:.2g} or less, or time.adaptive",
+           first, second, way, kResolvedWay, s.time.step * kResolvedWay / way)});
 }
 
 void add_motion(const Scene& s, std::vector<Warning>& list) {
   if (s.time.adaptive) return;  // it adapts to motions
   const double way = fastest_obstacle(s, 0, s.time.end) * longest_step(s) / s.h();
   if (way <= kResolvedWay) return;
-  list.push_back({"motion", format("an obstacle moves by %.3g h in a step, more than %g h: what it "
-                                   "pushes may pass through fluid; give time.step %.2g or less, or "
-                                   "time.adaptive",
-                                   way, kResolvedWay, s.time.step * kResolvedWay / way)});
+  list.push_back(
+      {"motion",
+       fmt::format("an obstacle moves by {:.3g} h in a step, more than {:g} h: what it pushes may "
+                   "pass through fluid; give time.step {:.2g} or less, or time.adaptive",
+                   way, kResolvedWay, s.time.step * kResolvedWay / way)});
 }
 
 /// Whether it lies outside the domain, farther than walls and obstacles act.
 bool out_of_reach(const Scene& s, const Solid<double>& o) {
   if (!is_bounded(o)) {
-    double size[3];
-    for (std::size_t k = 0; k < 3; ++k) size[k] = (s.domain.max[k] - s.domain.min[k]) / s.h();
+    const Double3 size = extents_of(s).high;
     for (int corner = 0; corner < 8; ++corner)
       if (distance<3>(o, {corner & 1 ? size[0] : 0, corner & 2 ? size[1] : 0,
                           corner & 4 ? size[2] : 0}) < 1)
         return false;
     return true;
   }
-  const Extents of_solid = extents_of(o), of_domain = extents_of(s);
-  for (std::size_t k = 0; k < 3; ++k)
-    if (!(s.plane() && k == 1) && !of_domain[k].meets({of_solid[k].low - 1, of_solid[k].high + 1}))
-      return true;
-  return false;
+  return !extents_of(s).meets(extents_of(s, o), 1);
 }
 
 void add_obstacles(const Scene& s, const std::vector<Track>& tracks, std::vector<Warning>& list) {
@@ -144,11 +135,11 @@ void add_obstacles(const Scene& s, const std::vector<Track>& tracks, std::vector
     if (!std::ranges::all_of(tracks[k].solid, [&](const auto& o) { return out_of_reach(s, o); }))
       continue;
     list.push_back(
-        {"obstacles", format("obstacles[%zu] (%s) %s: no fluid will meet it; move it or "
-                             "remove it",
-                             k, s.obstacles[k].name.c_str(),
-                             s.obstacles[k].motion ? "stays outside the domain all the time"
-                                                   : "lies outside the domain")});
+        {"obstacles",
+         fmt::format("obstacles[{}] ({}) {}: no fluid will meet it; move it or remove it", k,
+                     s.obstacles[k].name,
+                     s.obstacles[k].motion ? "stays outside the domain all the time"
+                                           : "lies outside the domain")});
     return;
   }
 }
@@ -158,14 +149,13 @@ void add_overlap(const StartPoints& points, std::vector<Warning>& list) {
   const char* least = o.more ? "at least " : "";
   std::string text;
   if (o.inside + o.pairs > 0)
-    text = format(
-        "bodies[%zu] and bodies[%zu] overlap: %ld particles start inside another body, "
-        "%s%ld pairs of two bodies are closer than half of fluid.spacing; ",
+    text = fmt::format(
+        "bodies[{}] and bodies[{}] overlap: {} particles start inside another body, {}{} pairs of "
+        "two bodies are closer than half of fluid.spacing; ",
         o.first, o.second, o.inside, least, o.pairs);
   else if (o.within > 0 && 100 * o.within > o.of_files)  // any flow has some close pairs
-    text = format(
-        "bodies[%zu]: %s%ld pairs of the file's particles are closer than half of "
-        "fluid.spacing; ",
+    text = fmt::format(
+        "bodies[{}]: {}{} pairs of the file's particles are closer than half of fluid.spacing; ",
         o.file, least, o.within);
   if (text.empty()) return;
   const char* then = points.scene().solver.prestabilize
@@ -181,24 +171,22 @@ void add_crowded(const Scene& s, std::int64_t particles, std::vector<Warning>& l
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const Body& body = s.bodies[b];
     if (body.shape != Shape::random_box) continue;
-    double room = 1;
-    for (int a = 0; a < 3; ++a) room *= body.max[a] - body.min[a];
-    if (s.plane()) room *= (s.domain.max[1] - s.domain.min[1]) / (body.max[1] - body.min[1]);
-    const double fill = volume(s, double(body.count)) / room;
+    Double3 room = body.max - body.min;
+    if (s.plane()) room[1] = s.domain.max[1] - s.domain.min[1];
+    const double fill = volume(s, double(body.count)) / (room[0] * room[1] * room[2]);
     if (fill <= kTooMuch) continue;
     list.push_back(
-        {"crowded", format("bodies[%zu] holds %.3g times the fluid that its box has room "
-                           "for; give count %.0f or less, or a larger box",
-                           b, fill, std::floor(body.count / fill * (1 + 1e-9)))});
+        {"crowded", fmt::format("bodies[{}] holds {:.3g} times the fluid that its box has room "
+                                "for; give count {:.0f} or less, or a larger box",
+                                b, fill, std::floor(body.count / fill * (1 + 1e-9)))});
     return;
   }
-  double box = 1;
-  for (int a = 0; a < 3; ++a) box *= s.domain.max[a] - s.domain.min[a];
-  const double fill = volume(s, double(particles)) / box;
+  const Double3 box = s.domain.max - s.domain.min;
+  const double fill = volume(s, double(particles)) / (box[0] * box[1] * box[2]);
   if (closed_box(s) && fill > kTooMuch)
-    list.push_back({"crowded", format("the bodies hold %.3g times the fluid that the closed domain "
-                                      "has room for; give fewer or smaller bodies",
-                                      fill)});
+    list.push_back({"crowded", fmt::format("the bodies hold {:.3g} times the fluid that the closed "
+                                           "domain has room for; give fewer or smaller bodies",
+                                           fill)});
 }
 
 void add_output(const Scene& s, std::vector<Warning>& list) {
@@ -207,8 +195,8 @@ void add_output(const Scene& s, std::vector<Warning>& list) {
   const auto add = [&](const char* key, double every, const std::string& what) {
     if (every <= run) return;
     text += (text.empty() ? "" : "; ") +
-            format("%s %g s is longer than the run (time.end %g s): ", key, every, s.time.end) +
-            what;
+            fmt::format("{} {:g} s is longer than the run (time.end {:g} s): {}", key, every,
+                        s.time.end, what);
   };
   if (s.output)
     add("output.every", s.output->every, "run.vtkhdf gets the first and the last frame");
@@ -230,19 +218,15 @@ double compression_at_rest(const Scene& s, std::int64_t particles) {
   const double g = length(s.gravity), h = s.h();
   const int iterations = most_iterations(s);
   if (g == 0 || iterations == 0) return 0;
-  int down = 0;  // axis along which the fluid rests on a wall
-  for (int a = 1; a < 3; ++a)
-    if (std::abs(s.gravity[a]) > std::abs(s.gravity[down])) down = a;
+  const int down = level_axis(s);  // along which the fluid rests on a wall
   // Without walls below and at the sides the fluid does not stay.
   const std::string ceiling =
       std::string(1, char('x' + down)) + (s.gravity[down] < 0 ? "_max" : "_min");
   for (const std::string& face : s.domain.open)
     if (face != ceiling) return 0;
-  double area = 1;
-  for (int a = 0; a < 3; ++a)
-    if (a != down) area *= s.domain.max[a] - s.domain.min[a];
-  const double depth =
-      std::min(volume(s, double(particles)) / area, s.domain.max[down] - s.domain.min[down]);
+  const Double3 box = s.domain.max - s.domain.min;
+  const double area = box[(down + 1) % 3] * box[(down + 2) % 3];
+  const double depth = std::min(volume(s, double(particles)) / area, box[down]);
   const double dt = longest_step(s);
   return 2.0 / 3 * g * dt * dt / h * (depth / h) / iterations;
 }

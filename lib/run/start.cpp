@@ -1,10 +1,10 @@
 #include "lib/run/start.h"
 
+#include <fmt/core.h>
 #include <utility>
 
 #include "lib/base/error.h"
 #include "lib/base/machine.h"
-#include "lib/base/text.h"
 #include "lib/exec/make_solver.h"
 #include "lib/run/emit.h"
 #include "lib/run/prestabilize.h"
@@ -17,15 +17,15 @@ std::vector<std::string> notes_of(const Particles& p, const Scene& scene) {
   std::vector<std::string> notes;
   if (p.put_on_margin > 0)
     notes.push_back(
-        format("%zu particles were nearer to a wall than solver.wall_margin (%.6g m), by up to "
-               "%.3g m; they start at that distance",
-               p.put_on_margin, scene.solver.wall_margin, p.farthest_put));
+        fmt::format("{} particles were nearer to a wall than solver.wall_margin ({:.6g} m), by up "
+                    "to {:.3g} m; they start at that distance",
+                    p.put_on_margin, scene.solver.wall_margin, p.farthest_put));
   for (std::size_t b = 0; b < p.in_obstacles.size(); ++b)
     if (p.in_obstacles[b] > 0)
       notes.push_back(
-          format("%zu particles of bodies[%zu] are in obstacles, or nearer to one than 0.4 "
-                 "spacings, and are left out",
-                 p.in_obstacles[b], b));
+          fmt::format("{} particles of bodies[{}] are in obstacles, or nearer to one than 0.4 "
+                      "spacings, and are left out",
+                      p.in_obstacles[b], b));
   return notes;
 }
 

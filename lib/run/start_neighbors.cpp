@@ -12,13 +12,9 @@ namespace pbf::inline run_module {
 namespace {
 
 bool may_be_crowded(const Scene& s) {
-  std::vector<Box> boxes;
-  for (const Body& b : s.bodies) {
+  for (const Body& b : s.bodies)
     if (b.shape == Shape::random_box || b.shape == Shape::file) return true;
-    boxes.push_back(box_of(b));
-  }
-  const double rounding = 1e-6 * s.fluid.spacing;
-  return any_near_pair(boxes, -rounding, [](std::size_t, std::size_t) { return true; });
+  return any_near_bodies(s, -1e-6 * s.fluid.spacing);  // by more than rounding
 }
 
 /// Sampled particles in a hash of cells of edge h; each is in its own cell and the adjacent ones.

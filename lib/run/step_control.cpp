@@ -1,10 +1,10 @@
 #include "lib/run/step_control.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "lib/base/text.h"
 #include "lib/program/motion.h"
 
 namespace pbf::inline run_module {
@@ -58,9 +58,9 @@ std::optional<std::string> AdaptiveStep::follow(const Diagnostics& m) {
   if (step(to) > longest) ++h_.floor;
   if (to == level()) return std::nullopt;
   const double h = scene_.h();
-  return format("update %ld, %.6g s: ", m.update, m.time) + change(to, m.update, false) +
-         format(": v_max dt %.3g h, dt sqrt(a/h) %.3g before", speed * before / h,
-                before * std::sqrt(acceleration / h)) +
+  return fmt::format("update {}, {:.6g} s: ", m.update, m.time) + change(to, m.update, false) +
+         fmt::format(": v_max dt {:.3g} h, dt sqrt(a/h) {:.3g} before", speed * before / h,
+                     before * std::sqrt(acceleration / h)) +
          (unresolved ? "; neighbours moved too far past each other" : "");
 }
 
@@ -68,8 +68,8 @@ std::optional<std::string> AdaptiveStep::refine(const std::string& alarm, const 
                                                 std::int64_t back) {
   if (level() == finest_) return std::nullopt;
   ++h_.repeats;
-  return format("update %ld, %.6g s: alarm of the guard (%s), back to update %ld: ", m.update,
-                m.time, alarm.c_str(), back) +
+  return fmt::format("update {}, {:.6g} s: alarm of the guard ({}), back to update {}: ", m.update,
+                     m.time, alarm, back) +
          change(level() + 1, back, true);
 }
 
@@ -87,7 +87,7 @@ std::string AdaptiveStep::change(int to, std::int64_t update, bool alarm) {
   h_.since = update;
   h_.level = to;
   ++h_.changes;
-  return format("step %.6g s (was %.6g)", step(to), before);
+  return fmt::format("step {:.6g} s (was {:.6g})", step(to), before);
 }
 
 std::vector<std::int64_t> AdaptiveStep::updates_at_levels(std::int64_t update) const {

@@ -1,9 +1,9 @@
 // Warnings about tables of motion.
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
-#include "lib/base/text.h"
 #include "lib/program/motion.h"
 #include "lib/program/motion_table.h"
 #include "lib/run/motion_warnings.h"
@@ -58,7 +58,7 @@ Swinging farthest_swing(const MotionTable& table, double from, double to,
 std::string rows_text(const MotionTable& t, std::size_t piece) {
   const std::string file = std::filesystem::path(t.file).filename().string();
   if (t.line.size() != t.time.size()) return file;
-  return format("%s, lines %ld and %ld", file.c_str(), t.line[piece], t.line[piece + 1]);
+  return fmt::format("{}, lines {} and {}", file, t.line[piece], t.line[piece + 1]);
 }
 
 /// Detects a table of positions instead of displacements: its first row is far from 0.
@@ -68,11 +68,10 @@ std::string displaced_text(const Scene& s, std::size_t k) {
   const std::array<double, 6>& v = table.values[0];
   const double away = std::hypot(v[0], v[1], v[2]);
   if (!(away > s.fluid.spacing)) return "";
-  return named(s, k) +
-         format(
-             " is %.3g m away from its place in the scene at the first row of its table (%s): x, "
-             "y, z there count from that place; begin with 0,0,0",
-             away, std::filesystem::path(table.file).filename().string().c_str());
+  return named(s, k) + fmt::format(
+                           " is {:.3g} m away from its place in the scene at the first row of its "
+                           "table ({}): x, y, z there count from that place; begin with 0,0,0",
+                           away, std::filesystem::path(table.file).filename().string());
 }
 
 std::string table_text(const std::string& who, const MotionTable& table,
@@ -84,12 +83,11 @@ std::string table_text(const std::string& who, const MotionTable& table,
   if (!(w.metres > 0.1 * s.fluid.spacing)) return "";
   const bool angle = names[w.column][0] == 'r' || names[w.column][0] == 'a';
   const char* unit = angle ? "degrees" : "m";
-  return who +
-         format(
-             ": its smooth curve swings beyond the rows of the table: %s goes to %.4g at %.4g s, "
-             "%.2g %s beyond the %.4g of the rows at %.4g and %.4g s (%s)",
-             names[w.column], cubic(table, w.column, w.time), w.time, w.beyond, unit, w.row,
-             table.time[w.piece], table.time[w.piece + 1], rows_text(table, w.piece).c_str());
+  return fmt::format(
+      "{}: its smooth curve swings beyond the rows of the table: {} goes to {:.4g} at {:.4g} s, "
+      "{:.2g} {} beyond the {:.4g} of the rows at {:.4g} and {:.4g} s ({})",
+      who, names[w.column], cubic(table, w.column, w.time), w.time, w.beyond, unit, w.row,
+      table.time[w.piece], table.time[w.piece + 1], rows_text(table, w.piece));
 }
 
 }  // namespace

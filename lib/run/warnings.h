@@ -28,6 +28,12 @@ constexpr double kNoLiquid = 0.05;
 /// at rest"). 0: no gravity, no floor, no iterations.
 double compression_at_rest(const Scene& scene, std::int64_t particles);
 
+/// Text about gravity above 200 or below 0.01 m/s^2, a rest density that no liquid has, a body
+/// faster than 500 m/s, viscosity.xsph above 1, and a domain longer than 100 m in which gravity
+/// moves nothing by a tenth of its length during the run; empty if there is none. All these values
+/// are allowed.
+std::string units_text(const Scene& scene);
+
 /// Warnings of a scene, before it is run. `particles`: of count_particles(). Takes time
 /// proportional to the number of particles that may overlap.
 std::vector<Warning> scene_warnings(const StartPoints& points, std::int64_t particles);

@@ -1,10 +1,9 @@
 #include "lib/run/watch.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include "lib/base/text.h"
 
 namespace pbf::inline run_module {
 
@@ -196,8 +195,8 @@ std::string Watch::prestabilize(int levels) {
     m = measured();
   }
   if (guard_) guard_->keep(m);
-  return format("; mean compression %.3g %%, %.3g %% after %d steps without time",
-                100 * compression, 100 * m.compression_mean, steps);
+  return fmt::format("; mean compression {:.3g} %, {:.3g} % after {} steps without time",
+                     100 * compression, 100 * m.compression_mean, steps);
 }
 
 }  // namespace pbf::inline run_module

@@ -1,10 +1,10 @@
 #include "lib/scene/auto_step.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "lib/base/text.h"
 #include "lib/scene/number.h"
 
 namespace pbf::inline scene_module {
@@ -12,7 +12,7 @@ namespace {
 
 /// Truncates to two digits: 0.00428 becomes 0.0042.
 double two_digits(double x) {
-  const std::string text = format("%.15e", x);
+  const std::string text = fmt::format("{:.15e}", x);
   double cut = x;
   read_number(text.substr(0, 3) + text.substr(text.find('e')), cut);
   return cut;

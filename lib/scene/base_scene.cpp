@@ -1,12 +1,12 @@
 #include "lib/scene/base_scene.h"
 
+#include <fmt/core.h>
 #include <filesystem>
 
 #include "lib/base/error.h"
 #include "lib/base/plain_text.h"
 #include "lib/base/regular_file.h"
 #include "lib/base/sha256.h"
-#include "lib/base/text.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/lay_over.h"
 #include "lib/scene/scene_text.h"
@@ -107,7 +107,7 @@ class Chain {
     const std::string& before = files_.back().included;
     const std::string rest =
         before.empty() ? ")" : ", " + before.substr(std::string(" (included ").size());
-    return format(" (included from %s:%d%s", files_.back().path.c_str(), at.line + 1, rest.c_str());
+    return fmt::format(" (included from {}:{}{}", files_.back().path, at.line + 1, rest);
   }
 
   void check(const Node& at, const File& file) const {
@@ -115,7 +115,7 @@ class Chain {
     for (const File& other : files_)
       if (other.real == file.real) bad(at, "comes back to where it began: " + chain_to(file));
     if (files_.size() >= kMostBases)
-      bad(at, format("the chain is longer than %zu files: %s", kMostBases, chain_to(file).c_str()));
+      bad(at, fmt::format("the chain is longer than {} files: {}", kMostBases, chain_to(file)));
     bool within = false;
     for (const fs::path& tree : trees_) within = within || is_within(file.real, tree);
     if (!within)

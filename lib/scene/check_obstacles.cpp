@@ -1,7 +1,7 @@
 // Rules for obstacles.
+#include <fmt/core.h>
 #include <algorithm>
 
-#include "lib/base/text.h"
 #include "lib/scene/rounding.h"
 #include "lib/scene/scene_rules.h"
 
@@ -31,11 +31,11 @@ class ShapeRules : public SceneRules {
     const double apart = position_spacing(s_) * s_.h(), least = kThinnestSolid * apart;
     if (thick >= least) return;
     const bool single = s_.precision == Precision::single;
-    add(end, "makes a plate " + format("%.3g", thick) + " m thick, and positions in " +
-                 word(s_.precision) + " are " + format("%.3g", apart) +
-                 " m apart at the far end of the domain: fluid would pass through it; give at "
-                 "least " +
-                 format("%.2g", 1.05 * least) + " m" + (single ? ", or precision: double" : ""));
+    add(end,
+        fmt::format("makes a plate {:.3g} m thick, and positions in {} are {:.3g} m apart at the "
+                    "far end of the domain: fluid would pass through it; give at least {:.2g} m{}",
+                    thick, word(s_.precision), apart, 1.05 * least,
+                    single ? ", or precision: double" : ""));
   }
 };
 

@@ -1,5 +1,6 @@
 // Rules between the keys of a scene. Keys are named by their members; their paths come from the
 // table.
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 
@@ -111,18 +112,23 @@ class Checker : public SceneRules {
     const std::string precision = word(s_.precision);
     const std::string remedy = single ? "give precision: double, or " : "";
     if (r.spacing > kLargestSpacing)
-      return add(s_.domain.max, "the box is so long that positions in " + precision + " are " +
-                                    to_text(r.spacing) + " h apart at its far end (at most " +
-                                    to_text(kLargestSpacing) + "): densities would be off; " +
-                                    remedy + "make the domain smaller or raise fluid.spacing");
+      return add(
+          s_.domain.max,
+          fmt::format(
+              "the box is so long that positions in {} are {} h apart at its far end (at most {}): "
+              "densities would be off; {}make the domain smaller or raise fluid.spacing",
+              precision, to_text(r.spacing), to_text(kLargestSpacing), remedy));
     const bool lost = r.lost > kLeastLoss;
     if (!lost && r.slow <= kLargestLoss) return;
     const std::string what =
-        lost ? "in " + precision + " up to " + format("%.3g", r.lost) + " h of a motion over " +
-                   format("%.3g", r.distance) + " h would be rounded away: positions are " +
-                   to_text(r.spacing) + " h apart, steps shorter than half of that are none"
-             : "makes so many steps in a fall that rounding in " + precision + " would take " +
-                   format("%.3g", 100 * r.slow) + " % of its velocity";
+        lost ? fmt::format(
+                   "in {} up to {:.3g} h of a motion over {:.3g} h would be rounded away: "
+                   "positions are {} h apart, steps shorter than half of that are none",
+                   precision, r.lost, r.distance, to_text(r.spacing))
+             : fmt::format(
+                   "makes so many steps in a fall that rounding in {} would take {:.3g} % of its "
+                   "velocity",
+                   precision, 100 * r.slow);
     add(s_.time.step, what + "; " + remedy +
                           (s_.solver.substeps > 1 ? "raise time.step or lower solver.substeps"
                                                   : "raise time.step"));

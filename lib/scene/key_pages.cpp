@@ -1,7 +1,7 @@
 // All keys of a scene as a page: configs/keys.md.
+#include <fmt/core.h>
 #include <algorithm>
 
-#include "lib/base/text.h"
 #include "lib/scene/base_scene.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/load.h"
@@ -19,20 +19,19 @@ std::string cell(const std::string& text) {
   return out;
 }
 std::string code(const std::string& text) {
-  return text.empty() ? text : format("`%s`", cell(text).c_str());
+  return text.empty() ? text : fmt::format("`{}`", cell(text));
 }
 
 std::string row(const Key& key) {
   const Key* kind = key.block->kind;
   std::string help = cell(key.help);
   if (kind != nullptr && kind != &key)
-    help = format("(%s) %s", cell(kind->kinds_text(key.kinds)).c_str(), help.c_str());
+    help = fmt::format("({}) {}", cell(kind->kinds_text(key.kinds)), help);
   const std::string standard = key.required  ? "required"
                                : key.usually ? default_text(key)
                                              : code(default_text(key));
-  return format("| %s | %s | %s | %s | %s |\n", code(key.leaf()).c_str(),
-                cell(unit_text(key)).c_str(), cell(range_text(key)).c_str(), standard.c_str(),
-                help.c_str());
+  return fmt::format("| {} | {} | {} | {} | {} |\n", code(key.leaf()), cell(unit_text(key)),
+                     cell(range_text(key)), standard, help);
 }
 
 std::string heading(const Block& block) {
@@ -60,7 +59,7 @@ std::string reference_markdown() {
     if (!block.help.empty()) out += block.help + (block.help.back() == '.' ? "\n\n" : ".\n\n");
     out += "| key | unit | values | default | meaning |\n|---|---|---|---|---|\n";
     if (block.path.empty())
-      out += format("| `%s` |  |  |  | %s |\n", kBaseKey, cell(kBaseHelp).c_str());
+      out += fmt::format("| `{}` |  |  |  | {} |\n", kBaseKey, cell(kBaseHelp));
     for (const Key* key : block.keys) out += row(*key);
   }
   return out;

@@ -1,6 +1,7 @@
 // Functions that write the rows of a table of keys. Only the files with rows include this header.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 #include <type_traits>
@@ -39,10 +40,6 @@ Key key(const char* member, Member& (*get)(const Object&), auto values, const ch
 
 inline auto number(const char* unit, Range range) {
   return [=](Key& row) { row.unit = std::string(unit), row.range = range; };
-}
-/// One number or a list of up to `most`, depending on the other keys of the entry.
-inline auto numbers(const char* unit, Range range, std::size_t most) {
-  return [=](Key& row) { number(unit, range)(row), row.most = most; };
 }
 /// The words of an enum in its order, or the words that a list may hold.
 inline auto one_of(std::vector<std::string> words) {
@@ -149,15 +146,15 @@ Key kind_row(const char* path, const std::string& help, Any Entry::*held) {
   return row;
 }
 
-/// The row of a key of the kind with this bit. For an entry of another kind, reads give the default
-/// and writes are lost.
+/// The row of a key of the kind with this bit. Entries of other kinds have the field `others`. If
+/// that is empty, reads give the default and writes are lost.
 template <class Kind, class Entry, class Any, class Member, class Holder>
-Key row_of(const std::string& entry, Any Entry::*held, const KindKey<Member, Holder>& key,
-           unsigned bit) {
-  Key row{entry + "." + key.name, key.help,
-          [held, member = key.member](const Object& holder) -> Field {
+Key row_of(const std::string& path, Any Entry::*held, const KindKey<Member, Holder>& key,
+           unsigned bit, std::function<Field(const Object&)> others) {
+  Key row{path, key.help, [=, member = key.member](const Object& holder) -> Field {
             if (Kind* kind = std::get_if<Kind>(&(std::any_cast<Entry*>(holder)->*held)))
               return &(kind->*member);
+            if (others) return others(holder);
             static thread_local Kind standard;
             standard = {};
             return &(standard.*member);
@@ -168,11 +165,10 @@ Key row_of(const std::string& entry, Any Entry::*held, const KindKey<Member, Hol
   return row;
 }
 
-/// Adds the row of a key of some kinds. One of that path becomes the row of their kinds too, and
-/// reads whichever kind an entry has (`index_of`: its index). y of two numbers may be that of the
-/// plane for the later kinds alone; Error(internal) where they differ in anything else.
-void add_kind_row(std::vector<Key>& rows, Key row,
-                  std::function<std::size_t(const Object&)> index_of);
+/// Adds the row of a key of some kinds. One of that path becomes the row of their kinds too, with
+/// the later field. y of two numbers may be that of the plane for the later kinds alone;
+/// Error(internal) where they differ in anything else.
+void add_kind_row(std::vector<Key>& rows, Key row);
 
 /// Adds the rows of all kinds for which wanted(kind).
 template <class Entry, class Any, class Wanted>
@@ -181,8 +177,10 @@ void add_kind_rows(std::vector<Key>& rows, const std::string& entry, Any Entry::
   unsigned bit = 1;
   for_each_kind<Any>([&]<class Kind>(const Kind& kind) {
     const auto add = [&](const auto& key) {
-      add_kind_row(rows, row_of<Kind>(entry, held, key, bit),
-                   [held](const Object& o) { return (std::any_cast<Entry*>(o)->*held).index(); });
+      const std::string path = entry + "." + key.name;
+      const auto there = std::ranges::find(rows, path, &Key::path);
+      add_kind_row(
+          rows, row_of<Kind>(path, held, key, bit, there == rows.end() ? nullptr : there->field));
     };
     if (wanted(kind)) std::apply([&](const auto&... key) { (add(key), ...); }, Kind::keys());
     bit *= 2;

@@ -33,18 +33,4 @@ enum class FlatY {
   zero,
 };
 
-/// A key of one of the kinds that the entries of a list have (lib/scene/kinds.h). Kinds with keys
-/// of the same name share a row of the table.
-template <class Member, class Holder>
-struct KindKey {
-  Member Holder::*member;
-  const char *name, *unit;
-  Range range;
-  const char* help;
-  bool required = true;
-  FlatY flat = FlatY::none;
-  bool by_center = false;  ///< a corner of a box, which center and size may give as well
-  std::size_t most = 0;    ///< largest length of a list of numbers
-};
-
 }  // namespace pbf::inline scene_module

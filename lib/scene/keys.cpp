@@ -38,8 +38,7 @@ std::string path_of(std::string member) {
   return member;
 }
 
-void add_kind_row(std::vector<Key>& rows, Key row,
-                  std::function<std::size_t(const Object&)> index_of) {
+void add_kind_row(std::vector<Key>& rows, Key row) {
   const auto there = std::ranges::find(rows, row.path, &Key::path);
   if (there == rows.end()) return rows.push_back(std::move(row));
   const auto said = [](const Key& k) {
@@ -52,10 +51,7 @@ void add_kind_row(std::vector<Key>& rows, Key row,
                                         "unit, range or traits; give them one text, or the "
                                         "keys different names");
   if (row.flat != there->flat) there->in_plane |= row.kinds;
-  there->field = [first = there->field, second = row.field, kind = row.kinds,
-                  index_of = std::move(index_of)](const Object& o) {
-    return kind >> index_of(o) & 1 ? second(o) : first(o);
-  };
+  there->field = std::move(row.field);
   there->kinds |= row.kinds;
 }
 

@@ -1,12 +1,11 @@
 #include "lib/scene/number.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
-
-#include "lib/base/text.h"
 
 namespace pbf::inline scene_module {
 namespace {
@@ -83,7 +82,9 @@ std::string describe(NumberError error) {
   return kTexts[static_cast<int>(error)];
 }
 
-std::string count_text(double count) { return format(count < 1e10 ? "%.0f" : "%.3g", count); }
+std::string count_text(double count) {
+  return count < 1e10 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
+}
 
 std::string too_many_text(double count) {
   return "the scene would have " + count_text(count) +

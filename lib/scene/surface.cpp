@@ -69,11 +69,6 @@ std::optional<int> surface_named(const Scene& scene, const std::string& name) {
   return std::nullopt;
 }
 
-std::string surface_name(const Scene& scene, int surface) {
-  const Obstacle* o = obstacle_of(scene, surface);
-  return o ? o->name : kFaceNames[std::size_t(surface)];
-}
-
 const Obstacle* obstacle_of(const Scene& scene, int surface) {
   const auto k = std::size_t(surface) - kFaceNames.size();
   return std::size_t(surface) < kFaceNames.size() ? nullptr : &scene.obstacles[k];
@@ -81,7 +76,8 @@ const Obstacle* obstacle_of(const Scene& scene, int surface) {
 
 bool has_pressure_on_wall(const Scene& scene) {
   return std::ranges::any_of(scene.gauges, [](const Gauge& g) {
-    return g.on() && std::ranges::find(kFaceNames, *g.on()) != kFaceNames.end();
+    const auto* keys = std::get_if<gauge_keys::Pressure>(&g.kind);
+    return keys && std::ranges::find(kFaceNames, keys->on) != kFaceNames.end();
   });
 }
 

@@ -1,4 +1,5 @@
 // A scene as YAML: the resolved scene and the documented reference.
+#include <fmt/core.h>
 #include <algorithm>
 #include <sstream>
 
@@ -84,7 +85,7 @@ class Writer {
   }
 
   std::string how_it_is_off(const Block& block) const {
-    const std::string off = format("`%s: off`", block.leaf().c_str());
+    const std::string off = fmt::format("`{}: off`", block.leaf());
     const bool on_with_defaults = !table_.has_required(block);
     if (!block.optional) return "";
     if (block.on_by_default)
@@ -168,7 +169,7 @@ std::string reference_yaml() {
          "# Only the keys marked `required` must be there. Try it: pbf run reference.yaml\n"
          "# Any key can be changed from the command line: --set solver.iterations=8,\n"
          "# --set bodies[0].velocity=[1,0,0], --set viscosity=off\n" +
-         comment(format("%s: %s [text; optional]", kBaseKey, kBaseHelp), "") + "\n" +
+         comment(fmt::format("{}: {} [text; optional]", kBaseKey, kBaseHelp), "") + "\n" +
          yaml_of(scene_table(), object(example_scene()), true);
 }
 

@@ -1,5 +1,6 @@
 #include "lib/scene/writing.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cctype>
 #include <sstream>
@@ -113,12 +114,12 @@ std::string number_remedy(const std::string& text, const std::string& unit) {
   if (const std::string other = unit_behind(text, value); !other.empty()) {
     const std::string in = unit.empty() || unit == "1" ? "" : ", the key is in " + unit;
     if (other == "Hz" && unit == "s" && value > 0)
-      return "; the key is a time in s, 1/frequency: " + format("%.12g", 1 / value);
+      return fmt::format("; the key is a time in s, 1/frequency: {:.12g}", 1 / value);
     double factor = is_of(other, unit) ? 1 : 0;
     for (const Unit& u : kUnits)
       if (other == u.written && is_of(u.of, unit)) factor = u.factor;
     return "; write the number without a unit" + in +
-           (factor > 0 ? ": " + format("%.12g", value * factor) : "");
+           (factor > 0 ? fmt::format(": {:.12g}", value * factor) : "");
   }
   const std::string digits = without(text, "_' ");
   if (digits != text && text.find_first_not_of("+-.0123456789_' ") == text.npos &&

@@ -102,8 +102,7 @@ concept Executor = requires(E e, const E c, int* ints, unsigned long long* count
                             archetype::Updates updates, SolverInfo info) {
   typename E::Lists;                 // neighbor lists, as pair passes use them
   typename E::template Buffer<int>;  // memory that passes can access: resize, data, size, bytes
-  { E::padding } -> std::convertible_to<std::size_t>;  // rows after the last that passes may read
-  { E::order_in_place } -> std::convertible_to<bool>;  // a sort may store its order in the new ids
+  { E::backend } -> std::convertible_to<Backend>;
   { E::lists_overflow } -> std::convertible_to<bool>;  // lists may overflow during an update
   // Stage times: after begin(), mark() books the time to a stage. stages(seconds): `seconds` is the
   // time of all steps, for executors that time only some of them.

@@ -8,16 +8,6 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-/// The type of a row of a field.
-template <class Real>
-Vec4<Real> row_of(const Vectors&);
-template <class Real>
-Real row_of(const Numbers&);
-template <class Real, class T, int count, class Word>
-T row_of(const Plain<T, count, Word>&);
-template <class Field, class Real>
-using RowOf = decltype(row_of<Real>(std::declval<const Field&>()));
-
 /// Running sums. Only passes of whole numbers get their address, to add to them.
 template <class T>
 class Sums {
@@ -31,18 +21,20 @@ class Sums {
 
 /// A pass may touch only what it declares.
 template <class Field, class P>
-concept DeclaredBy = how_of<P, std::remove_cvref_t<Field>>
-!= 0;
+concept DeclaredBy = (how_of<P, std::remove_cvref_t<Field>> != 0);
 
 template <class C, class P>
 class Granted {
  public:
   using Real = typename C::Real;
   using Lists = typename C::Lists;
-  explicit Granted(C& c) : p(c.p), scene(c.scene), c_(c) {}
+  using Exec = std::remove_reference_t<decltype(std::declval<C>().exec)>;
+  explicit Granted(C& c) : p(c.p), scene(c.scene), plan(c.plan), exec(c.exec), c_(c) {}
 
   const Params<Real>& p;
-  const Scene& scene;  ///< along the internal axes, with the present step, SI units
+  const Scene& scene;  ///< with the present step, SI units
+  const Plan& plan;
+  Exec& exec;
 
   /// The array of a field. Null if the field is declared in an If<> that is false for the scene.
   template <class Field>
@@ -50,10 +42,10 @@ class Granted {
   auto operator[](const Field& f) const {
     constexpr unsigned how = how_of<P, Field>;
     using Row = RowOf<Field, Real>;
-    Row* rows = c_.template data<Row>(f);
+    Row* rows = c_.data(f);
     if constexpr (how == kAdds)
       return Sums<Row>(rows);
-    else if constexpr ((how & kPlaces) != 0)
+    else if constexpr ((how & (kPlaces | kAdds)) != 0)
       return rows;
     else if constexpr ((how & kWrites) != 0)
       return OwnRows<Row>(rows);
@@ -64,43 +56,72 @@ class Granted {
     else
       return static_cast<const Row*>(rows);
   }
+  /// The same as an address, for structs that several passes share; null if the pass does not
+  /// declare the field.
+  template <class Field>
+  RowOf<Field, Real>* declared(const Field& f) const {
+    if constexpr (DeclaredBy<Field, P>)
+      return c_.data(f);
+    else
+      return nullptr;
+  }
   const Lists& lists() const requires DeclaredBy<decltype(field::lists), P> { return c_.lists; }
+  /// The memory of a feature (lib/program/feature.h).
+  template <class F>
+  const auto& memory() const {
+    return c_.template memory<F>();
+  }
+  Real sor() const { return c_.factors[std::size_t(c_.iteration)]; }
+  const char* booked(const char* stage) const { return c_.booked(stage); }
+  int rows() const { return c_.rows(); }
+  void make_lists() const requires((how_of<P, field::NeighborLists> & kWrites) != 0) {
+    c_.make_lists();
+  }
+  int* sort_order() const requires DeclaredBy<field::Order, P> { return c_.sort_order(); }
+  auto carried() const requires reorders<P> {
+    if constexpr (C::Passes::further)
+      return c_.carried();
+    else
+      return NothingCarried{};
+  }
+
   // Launches by the shape of a pass (kernels/pass_shapes.h), over all rows or n items.
   template <class Pass>
   void items(const Pass& pass) const {
-    c_.items(pass);
+    exec.items(rows(), pass);
   }
   template <class Pass>
   void items(int n, const Pass& pass) const {
-    c_.items(n, pass);
+    exec.items(n, pass);
   }
   template <class Pass>
   void pairs(const Pass& pass) const {
-    c_.pairs(pass);
+    exec.pairs(rows(), pass);
   }
   template <class Pass>
   void shared(int n, const Pass& pass) const {
-    c_.shared(n, pass);
+    exec.shared(n, pass);
   }
   template <class Pass>
   void teams(const Pass& pass) const {
-    c_.teams(pass);
+    exec.teams(pass);
   }
   template <class Pass>
   void bricks(const Pass& pass) const {
-    c_.bricks(pass);
+    exec.bricks(pass);
   }
   template <class Pass>
   void listed(const int* count, const Pass& pass) const {
-    c_.listed(count, pass);
+    exec.listed(count, rows(), pass);
+  }
+  template <class Pass>
+  MeasureSums reduce(const Pass& pass) const {
+    return exec.reduce(rows(), pass);
   }
   template <class F>
   void with_smoothing(F&& f) const {
-    c_.with_smoothing(f);
+    pbf::with_smoothing(scene.solver.kernels, scene.dimensions, f);
   }
-  int rows() const { return c_.rows(); }
-  /// For parts of the step that are no fields: solids, motion, gauges, counts.
-  C& context() const { return c_; }
 
  private:
   C& c_;
@@ -109,6 +130,7 @@ class Granted {
 template <class P, class C>
 void launch_one(C& c) {
   if constexpr (requires { typename P::Flips; }) P::Flips::flip(c);
+  if constexpr (C::Passes::further && reorders<P>) c.flip_carried();
   const auto launch = [&] { P::launch(Granted<C, P>(c)); };
   // Only the executor of a test watches the memory that a pass accesses.
   if constexpr (requires { c.exec.watched(P::text.name, c.arrays(), launch); })

@@ -15,12 +15,14 @@
 
 namespace pbf::inline PBF_VARIANT {
 
-template <class Real, class Exec>
+/// Context: a StepContext.
+template <class Context>
 class StageCheck {
  public:
+  using Real = typename Context::Real;
   /// Null for `limits`: no checks. Null for `fault`: nothing is injected.
-  StageCheck(StepContext<Real, Exec>& c, const Axes& axes, std::int64_t update,
-             const StageLimits* limits, const Fault* fault)
+  StageCheck(Context& c, const Axes& axes, std::int64_t update, const StageLimits* limits,
+             const Fault* fault)
       : c_(c), p_(c.p), axes_(axes), update_(update), limits_(limits), fault_(fault) {}
 
   void look(const PassInfo& pass, int iteration) {
@@ -51,7 +53,7 @@ class StageCheck {
     }
     if (pass.makes_lists()) {
       int* free = c_.template data<int>(other<field::id>);  // unused until the next sort
-      c_.items(ListSizePass<typename Exec::Lists>{c_.lists, free});
+      c_.exec.items(c_.rows(), ListSizePass<typename Context::Lists>{c_.lists, free});
       a.neighbors = free;
     }
     return a;
@@ -124,7 +126,7 @@ class StageCheck {
     if (!event_ && energy > limits_->energy) found(Alarm::energy, fast, energy);
   }
 
-  StepContext<Real, Exec>& c_;
+  Context& c_;
   const Params<Real>& p_;
   Axes axes_;
   std::int64_t update_;

@@ -1,4 +1,5 @@
-// Copies a state between the arrays of a step and the host.
+// Copies a state between the fields of a step and the host: the particles in the order of ids,
+// since the order of rows is not part of a state.
 #pragma once
 
 #include <algorithm>
@@ -6,115 +7,131 @@
 #include <vector>
 
 #include "kernels/axes.h"
-#include "kernels/boundary/loads.h"
-#include "kernels/pass_flow.h"
-#include "kernels/step_counts.h"
-#include "kernels/vec3.h"
-#include "lib/solver/step_trace.h"
+#include "lib/solver/solver_state.h"
+#include "lib/solver/step_context.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-/// The arrays of the state of n particles, in memory that the executor can copy.
+/// Moves the rows of one field between numbers on the host and a row in the field's own form.
+/// Vectors are along the scene's axes on the host.
 template <class Real>
-struct StateArrays {
-  Vec4<Real>*position, *velocity;
-  int* id;
-  StepCounts* counts;  ///< one
-  Load* load;
-  int walls;  ///< number of loads
-  FlowCount* flow;
-  int flows;  ///< flow gauges
-};
+class RowForm {
+ public:
+  RowForm(const FieldInfo& f, const Axes& axes)
+      : f_(f), axes_(axes), sign_(f.shown.axial ? axes.handedness() : 1) {}
 
-/// Copies a state in one pass, because a run with a guard does so at every measurement.
-template <class Real>
-struct CopyStatePass {
-  StateArrays<Real> from, to;
-  PBF_HD void operator()(int i) const {
-    to.position[i] = from.position[i];
-    to.velocity[i] = from.velocity[i];
-    to.id[i] = from.id[i];
-    if (i != 0) return;
-    *to.counts = *from.counts;
-    for (int wall = 0; wall < from.walls; ++wall) to.load[wall] = from.load[wall];
-    for (int gate = 0; gate < from.flows; ++gate) to.flow[gate] = from.flow[gate];
+  void to_numbers(const char* row, double* to) const {
+    if (f_.to_numbers) return f_.to_numbers(row, to);
+    const Real* from = reinterpret_cast<const Real*>(row);
+    if (f_.numbers == 1) return void(to[0] = double(from[0]));
+    for (int k = 0; k < 3; ++k) to[axes_.of[k]] = sign_ * double(from[k]);
   }
+  /// w of vectors: 1 for positions, else 0.
+  void from_numbers(const double* from, char* row) const {
+    if (f_.from_numbers) return f_.from_numbers(from, row);
+    Real* to = reinterpret_cast<Real*>(row);
+    if (f_.numbers == 1) return void(to[0] = Real(from[0]));
+    for (int k = 0; k < 3; ++k) to[k] = Real(sign_ * from[axes_.of[k]]);
+    to[3] = Real(&f_ == &field::position ? 1 : 0);
+  }
+
+ private:
+  const FieldInfo& f_;
+  const Axes& axes_;
+  int sign_;
 };
 
-/// Downloads n vectors: 3 numbers each, in the order of ids, along the scene's axes. The copy is
-/// done in parts to save memory.
-template <class Real, class Exec>
-std::vector<double> rows_by_id(Exec& exec, const Axes& axes, std::size_t n, const Vec4<Real>* rows,
-                               const int* id) {
-  const std::size_t part = std::min<std::size_t>(n, 1 << 16);
-  std::vector<int> ids(part);
-  std::vector<Vec4<Real>> vectors(part);
-  std::vector<double> out(3 * n);
+constexpr std::size_t kTransferRows = 1 << 16;  ///< copied at a time, to save memory
+
+/// The numbers of all rows of a field. id: null, or the ids of the rows, whose order is then that
+/// of the result.
+template <class C>
+std::vector<double> downloaded(C& c, const FieldInfo& f, const char* from, const int* id) {
+  const RowForm<typename C::Real> form(f, c.plan.axes);
+  const std::size_t n = c.kept_rows(f);
+  const std::size_t part = std::min(n, kTransferRows), row = std::size_t(f.bytes(C::precision));
+  const std::size_t numbers = std::size_t(f.numbers);
+  std::vector<int> ids(id ? part : 0);
+  std::vector<char> rows(part * row);
+  std::vector<double> out(numbers * n);
   for (std::size_t first = 0; first < n; first += part) {
     const std::size_t count = std::min(part, n - first);
-    exec.to_host(id + first, count, ids.data());
-    exec.to_host(rows + first, count, vectors.data());
-    for (std::size_t k = 0; k < count; ++k) {
-      double* to = out.data() + 3 * std::size_t(ids[k]);
-      const Vec4<Real>& v = vectors[k];
-      to[axes.of[0]] = v.x, to[axes.of[1]] = v.y, to[axes.of[2]] = v.z;
-    }
+    if (id) c.exec.to_host(id + first, count, ids.data());
+    c.exec.to_host(from + first * row, count * row, rows.data());
+    for (std::size_t k = 0; k < count; ++k)
+      form.to_numbers(rows.data() + k * row,
+                      out.data() + numbers * (id ? std::size_t(ids[k]) : first + k));
   }
   return out;
 }
 
-/// Downloads a state, in the order of ids: the order of rows is not part of a state.
-template <class Real, class Exec>
-SolverState download_state(Exec& exec, std::size_t n, const Axes& axes,
-                           const StateArrays<Real>& from, std::int64_t updates,
-                           std::int64_t steps) {
+/// The inverse: `values` become the first rows of the field.
+template <class C>
+void upload(C& c, const FieldInfo& f, const std::vector<double>& values) {
+  const RowForm<typename C::Real> form(f, c.plan.axes);
+  const std::size_t numbers = std::size_t(f.numbers), n = values.size() / numbers;
+  const std::size_t part = std::min(n, kTransferRows), row = std::size_t(f.bytes(C::precision));
+  std::vector<char> rows(part * row);
+  for (std::size_t first = 0; first < n; first += part) {
+    const std::size_t count = std::min(part, n - first);
+    for (std::size_t k = 0; k < count; ++k)
+      form.from_numbers(values.data() + numbers * (first + k), rows.data() + k * row);
+    c.exec.to_device(rows.data(), count * row, c.bytes_of(f) + first * row);
+  }
+}
+
+/// from: the arrays of Program::state, the present ones or a copy.
+template <class C>
+SolverState download_state(C& c, const std::vector<const char*>& from) {
+  const auto& state = c.plan.program.state;
+  const auto at = [&](const FieldInfo& f) {
+    return from[std::size_t(std::find(state.begin(), state.end(), &f) - state.begin())];
+  };
+  const int* id = reinterpret_cast<const int*>(at(field::id));
   SolverState s;
-  s.precision = precision_of<Real>;
-  s.updates = updates;
-  s.steps = steps;
-  s.position = rows_by_id(exec, axes, n, from.position, from.id);
-  s.velocity = rows_by_id(exec, axes, n, from.velocity, from.id);
-  s.id.resize(n);
+  s.precision = C::precision;
+  s.position = downloaded(c, field::position, at(field::position), id);
+  s.velocity = downloaded(c, field::velocity, at(field::velocity), id);
+  s.id.resize(std::size_t(c.rows()));
   std::iota(s.id.begin(), s.id.end(), 0);
-  StepCounts counts;
-  exec.to_host(from.counts, 1, &counts);
-  s.fast = std::int64_t(counts.fast);
-  s.repeats = std::int64_t(counts.repeats);
-  s.unresolved = std::int64_t(counts.unresolved);
-  s.way_squared = counts.way_squared;
-  s.loads.resize(std::size_t(from.walls));
-  exec.to_host(from.load, s.loads.size(), s.loads.data());
-  s.flows.resize(std::size_t(from.flows));
-  exec.to_host(from.flow, s.flows.size(), s.flows.data());
+  for (const FieldInfo* f : state)
+    if (!field::is_basic(*f))
+      s.fields.push_back({f->name, f->type == Type::real, f->numbers,
+                          downloaded(c, *f, at(*f), f->is_per_particle() ? id : nullptr)});
   return s;
 }
 
-template <class Real, class Exec>
-void upload_state(Exec& exec, const Axes& axes, const SolverState& s, const StateArrays<Real>& to) {
-  const std::size_t n = s.id.size();
-  const auto copy = [&](const std::vector<double>& from, Vec4<Real>* rows, Real w) {
-    std::vector<Vec4<Real>> host(n);
-    const double *x = from.data() + axes.of[0], *y = from.data() + axes.of[1],
-                 *z = from.data() + axes.of[2];
-    for (std::size_t k = 0; k < n; ++k)
-      host[k] = {Real(x[3 * k]), Real(y[3 * k]), Real(z[3 * k]), w};
-    exec.to_device(host.data(), n, rows);
-  };
-  copy(s.position, to.position, Real(1));
-  copy(s.velocity, to.velocity, Real(0));
-  exec.to_device(s.id.data(), n, to.id);
-  StepCounts counts;
-  counts.fast = std::uint64_t(s.fast);
-  counts.repeats = std::uint64_t(s.repeats);
-  counts.unresolved = std::uint64_t(s.unresolved);
-  counts.way_squared = float(s.way_squared);
-  exec.to_device(&counts, 1, to.counts);
-  std::vector<Load> loads(std::size_t(to.walls));
-  if (s.loads.size() == loads.size()) loads = s.loads;
-  exec.to_device(loads.data(), loads.size(), to.load);
-  std::vector<FlowCount> flows(std::size_t(to.flows));
-  if (s.flows.size() == flows.size()) flows = s.flows;
-  exec.to_device(flows.data(), flows.size(), to.flow);
+/// The values of a field in a state, for so many rows. Zeros if the state has none, or other rows
+/// than one per particle (of another scene); and for the last numbers of a row that an older state
+/// lacks. Throws Error(io) for rows of particles in another number, and for more numbers.
+inline std::vector<double> values_of(const SolverState& s, const FieldInfo& f, std::size_t rows) {
+  const std::size_t numbers = std::size_t(f.numbers);
+  std::vector<double> values(rows * numbers);
+  const StoredField* stored = s.find(f.name);
+  if (!stored) return values;
+  const std::size_t width = std::size_t(stored->numbers);
+  const bool fits = stored->values.size() == rows * width;
+  if (!fits && !f.is_per_particle()) return values;
+  if (!fits || width > numbers)
+    throw Error(ExitCode::io, std::string("the field '") + f.name +
+                                  "' of the state does not fit this scene and version");
+  for (std::size_t k = 0; k < rows; ++k)
+    std::copy_n(stored->values.begin() + std::ptrdiff_t(k * width), width,
+                values.begin() + std::ptrdiff_t(k * numbers));
+  return values;
+}
+
+/// Throws as values_of(), before anything is uploaded.
+template <class C>
+void upload_state(C& c, const SolverState& s) {
+  std::vector<std::vector<double>> values;
+  for (const FieldInfo* f : c.plan.program.state)
+    values.push_back(field::is_basic(*f) ? std::vector<double>{}
+                                         : values_of(s, *f, c.kept_rows(*f)));
+  for (std::size_t k = 0; k < values.size(); ++k) upload(c, *c.plan.program.state[k], values[k]);
+  upload(c, field::position, s.position);
+  upload(c, field::velocity, s.velocity);
+  c.put(field::id, s.id);
 }
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -3,15 +3,16 @@
 
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <utility>
 
 #include "lib/base/error.h"
 #include "lib/base/release.h"
 #include "lib/base/stage_clock.h"
+#include "lib/program/make_program.h"
 #include "lib/program/time_levels.h"
 #include "lib/solver/diagnostics.h"
 #include "lib/solver/executor.h"
+#include "lib/solver/internal_state.h"
 #include "lib/solver/params.h"
 #include "lib/solver/solver.h"
 #include "lib/solver/stepper.h"
@@ -27,47 +28,13 @@ Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type,
 
 namespace pbf::inline PBF_VARIANT {
 
-/// Positions and velocities of a scene in the internal frame, in the order of ids.
-template <class Real>
-struct InternalState {
-  std::vector<Vec4<Real>> position, velocity;
-  std::vector<int> id;
-};
-
-/// Converts the particles and frees each of their arrays as soon as it is converted, to keep the
-/// peak of memory low.
-template <class Real>
-InternalState<Real> to_internal(const Scene& s, const Axes& axes, Particles particles) {
-  const std::size_t n = particles.size();
-  const double h = s.h();
-  InternalState<Real> out;
-  const Double3 o = s.origin();
-  const std::size_t a[3] = {std::size_t(axes.of[0]), std::size_t(axes.of[1]),
-                            std::size_t(axes.of[2])};
-  out.position.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Double3& x = particles.position[i];
-    const auto at = [&](std::size_t k) { return Real((x[k] - o[k]) / h); };
-    out.position[i] = {at(a[0]), at(a[1]), at(a[2]), Real(1)};
-  }
-  release(particles.position);
-  out.velocity.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Double3& v = particles.velocity[i];
-    out.velocity[i] = {Real(v[a[0]] / h), Real(v[a[1]] / h), Real(v[a[2]] / h), Real(0)};
-  }
-  release(particles.velocity);
-  out.id.resize(n);
-  std::iota(out.id.begin(), out.id.end(), 0);
-  return out;
-}
-
 /// Number of updates before the host first checks for lists that overflowed, on executors where
 /// lists can overflow. It is small at the start and after an overflow, because overflows often come
 /// in a row and all updates since the last check are then repeated.
 constexpr int kFirstBatch = 8;
 
-template <class Real, Executor Exec>
+/// Features: those of plan.program.
+template <class Real, Executor Exec, class Features = pbf::Features>
 class StepSolver final : public Solver, public Inspection {
  public:
   /// `executor`: arguments of the executor's constructor.
@@ -75,7 +42,7 @@ class StepSolver final : public Solver, public Inspection {
   StepSolver(const Scene& scene, const Plan& plan, Particles particles, Args&&... executor)
       : scene_(scene),
         plan_(plan),
-        without_time_(make_program(scene, plan.shape(), true)),
+        without_time_(make_program_of<Features>(scene, plan.shape(), true)),
         n_(int(particles.size())),
         exec_(std::forward<Args>(executor)...) {
     if (plan.particles != n_)
@@ -83,8 +50,8 @@ class StepSolver final : public Solver, public Inspection {
                                           " particles for " + std::to_string(n_));
     const Stopwatch watch;
     InternalState<Real> s = to_internal<Real>(scene, plan.axes, std::move(particles));
-    stepper_ = std::make_unique<Stepper<Real, Exec>>(exec_, scene_, plan_, std::move(s.position),
-                                                     std::move(s.velocity), std::move(s.id));
+    stepper_ = std::make_unique<Stepping>(exec_, scene_, plan_, std::move(s.position),
+                                          std::move(s.velocity), std::move(s.id));
     while (exec_.grow_lists(n_)) stepper_->relist();
     exec_.forget_stages();  // sorting the initial state belongs to init, not to the updates
     init_seconds_ = watch.seconds();
@@ -125,22 +92,24 @@ class StepSolver final : public Solver, public Inspection {
   }
 
   std::vector<double> readings(Series series, Interval interval) override {
-    return series == Series::gauges ? stepper_->gauges(scene_.time.step, interval)
+    return series == Series::gauges ? stepper_->gauges(interval)
                                     : load_readings(stepper_->loads(interval), scene_, plan_);
   }
 
   SolverState state(Which which) override {
     if (which == Which::positions) return stepper_->positions();
-    if (which == Which::now) return stepper_->state(updates_, steps_);
-    if (kept_.empty()) throw Error(ExitCode::internal, "no state was kept");
-    return stepper_->state(kept_, kept_updates_, kept_steps_);
+    const bool kept = which == Which::kept;
+    if (kept && kept_.empty()) throw Error(ExitCode::internal, "no state was kept");
+    SolverState s = kept ? stepper_->state(kept_) : stepper_->state();
+    s.updates = kept ? kept_updates_ : updates_;
+    s.steps = kept ? kept_steps_ : steps_;
+    return s;
   }
   void set_state(const SolverState& s) override {
     check_state(s, n_);
-    stepper_->set_state(s);
+    stepper_->set_state(s, double(s.updates) * scene_.time.step);
     updates_ = s.updates;
     steps_ = s.steps;
-    if (has_moving_obstacles(scene_)) stepper_->place(scene_, double(updates_) * scene_.time.step);
   }
   void keep() override {
     stepper_->save(kept_);
@@ -167,7 +136,7 @@ class StepSolver final : public Solver, public Inspection {
     StepTrace t;
     until_lists_fit(
         [&] {
-          set_motion(0, 1);
+          before_steps(0, 1);
           t = stepper_->trace(options);
         },
         [] {});
@@ -182,15 +151,16 @@ class StepSolver final : public Solver, public Inspection {
   void inject(const Fault& fault) override { fault_ = fault; }
 
  private:
+  using Stepping = Stepper<Real, Exec, Features>;
+
   /// Does `left` steps in batches and checks for lists that overflowed after each batch.
   void advance(std::int64_t left) {
-    const bool moves = has_motion(scene_) && !options_.without_time;
-    const std::int64_t most = moves ? std::max(1, kMotionRows / plan_.substeps) : left;
+    const std::int64_t most = stepper_->most_steps();
     for (std::int64_t done = 0; left > 0;) {
       int batch = int(std::min({left, std::int64_t(batch_), most}));
       until_lists_fit(
           [&] {
-            if (moves) set_motion(done, batch);
+            before_steps(done, batch);
             exec_.repeat(batch, *stepper_);
           },
           [&] { batch = batch_ = std::min(batch, kFirstBatch); });
@@ -204,24 +174,19 @@ class StepSolver final : public Solver, public Inspection {
   template <class Work, class Again>
   void until_lists_fit(const Work& work, const Again& again) {
     if constexpr (Exec::lists_overflow) stepper_->save(saved_);
-    stepper_->begin_flow();
     work();
     while (exec_.grow_lists(n_)) {
       stepper_->restore(saved_);
-      stepper_->begin_flow();
       again();
       work();
     }
   }
 
-  /// Uploads the motion of the next steps. done: steps since the last counted update.
-  void set_motion(std::int64_t done, int steps) {
-    if (!has_motion(scene_)) return;
+  /// done: steps since the last counted update.
+  void before_steps(std::int64_t done, int steps) {
     const int n = plan_.substeps;
-    const double dt = scene_.time.step / double(std::int64_t(n) << options_.level);
-    const std::int64_t first = ((updates_ << options_.level) + done) * n;
-    stepper_->set_motion(
-        motion_rows<Real>(scene_, plan_, stepper_->walls(), first, steps * n, n, dt));
+    stepper_->before_steps({((updates_ << options_.level) + done) * n, steps * n,
+                            scene_.time.step / double(std::int64_t(n) << options_.level)});
   }
   void measure_motion(Diagnostics& m) {
     m.moved = has_motion(scene_);
@@ -246,7 +211,6 @@ class StepSolver final : public Solver, public Inspection {
         ? stepper_->use(scene, without_time(p, *options.without_time), without_time_)
         : stepper_->use(scene, p, plan_.program);
     exec_.forget_recorded();  // recordings contain the parameters
-    if (has_moving_obstacles(scene_)) stepper_->forget_near();
   }
   void count(int updates) {
     updates_ += updates;
@@ -259,7 +223,7 @@ class StepSolver final : public Solver, public Inspection {
     for (int s = 0; s < 1 << options_.level; ++s) {
       until_lists_fit(
           [&] {
-            set_motion(s, 1);
+            before_steps(s, 1);
             event = stepper_->step_checked(updates_ + 1, limits, fault_ ? &*fault_ : nullptr);
           },
           [] {});
@@ -294,8 +258,8 @@ class StepSolver final : public Solver, public Inspection {
   const Program without_time_;
   const int n_;
   Exec exec_;
-  std::unique_ptr<Stepper<Real, Exec>> stepper_;
-  typename Stepper<Real, Exec>::Saved saved_, kept_;
+  std::unique_ptr<Stepping> stepper_;
+  typename Stepping::Saved saved_, kept_;
   StepOptions options_;
   std::optional<Fault> fault_;
   int batch_ = Exec::lists_overflow ? kFirstBatch : 1 << 30;

@@ -1,33 +1,13 @@
-// A state that can be passed from one solver to another, and the results of every pass of one
-// update. `pbf compare` and its tests use them.
+// The results of every pass of one update. `pbf compare` and its tests use them.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "kernels/boundary/loads.h"
-#include "kernels/pass_flow.h"
-#include "lib/scene/scene.h"
+#include "lib/solver/solver_state.h"
 
 namespace pbf::inline solver_module {
-
-/// A state: positions in h from Scene::origin(), velocities in h/s, along the scene's axes. A
-/// solver returns it in the order of ids and accepts any order.
-struct SolverState {
-  Precision precision = Precision::dbl;  ///< of the solver that returned it
-  std::int64_t updates = 0;              ///< done so far
-  std::int64_t steps = 0;                ///< done so far: above level 0 more than updates
-  std::vector<double> position;          ///< 3n, h
-  std::vector<double> velocity;          ///< 3n, h/s
-  std::vector<std::int32_t> id;          ///< n
-  /// kernels/step_counts.h, so far.
-  std::int64_t fast = 0, repeats = 0, unresolved = 0;
-  double way_squared = 0;
-  /// One per row of sums, along the internal axes; empty: no loads were summed.
-  std::vector<Load> loads{};
-  std::vector<FlowCount> flows{};  ///< of each flow gauge
-};
 
 /// A result of a pass, along the scene's axes; row = particle id.
 struct TraceArray {

@@ -1,6 +1,8 @@
 // Executes programs: updates at full speed, updates pass by pass, and measurements of a state.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,41 +10,45 @@
 #include "kernels/measure.h"
 #include "kernels/pass_export.h"
 #include "kernels/pass_power.h"
-#include "lib/program/features.h"
 #include "lib/program/plan.h"
 #include "lib/solver/compression_percentile.h"
 #include "lib/solver/executor.h"
-#include "lib/solver/gauge_probes.h"
 #include "lib/solver/granted.h"
 #include "lib/solver/params.h"
+#include "lib/solver/read_sums.h"
+#include "lib/solver/saved_state.h"
 #include "lib/solver/stage_check.h"
-#include "lib/solver/step_context.h"
+#include "lib/solver/state_transfer.h"
 #include "lib/solver/tracer.h"
 
 namespace pbf::inline PBF_VARIANT {
 
-template <class Real, Executor Exec>
+/// What a measurement of the state touches.
+struct Measure {
+  using Needs = pbf::Needs<Reads<field::position>, Reads<field::velocity>, Reads<field::density>,
+                           Reads<field::counts>, SolidNeeds, UsesLists>;
+};
+
+template <class Real, Executor Exec, class Features>
 class Stepper {
  public:
   using Lists = typename Exec::Lists;
-  using Saved = SavedState<Real, Exec>;
-  using Context = StepContext<Real, Exec>;
+  using Saved = SavedState<Exec>;
+  using Context = StepContext<Real, Exec, Features>;
+  using Passes = typename Features::Passes;
 
   /// The initial positions and velocities are in the internal frame, in the order of ids 0..n-1.
   /// States and traces that the stepper returns are along the scene's axes.
   Stepper(Exec& exec, const Scene& scene, const Plan& plan, std::vector<Vec4<Real>> position,
           std::vector<Vec4<Real>> velocity, std::vector<int> id)
       : plan_(plan),
-        c_(exec, in_internal_axes(scene, plan.axes), make_params<Real>(scene, plan), plan.levels),
+        c_(exec, scene, plan, make_params<Real>(scene, plan)),
         residual_limit_(residual_limit(plan.tolerance, int(plan.particles))),
         program_(&plan.program) {
     for (int k = 0; k < scene.solver.iterations; ++k)
       c_.factors.push_back(
           Real(plan.sor * (plan.sor_factors.empty() ? 1 : plan.sor_factors[std::size_t(k)])));
-    c_.gauges.make(exec, plan.gauges);
-    probes_.make(exec, plan.gauges);
-    c_.make(plan.program.fields, position, velocity, id, scene, plan,
-            std::max(scene.solver.iterations, 1) * (1 + plan.shape().repeats));
+    c_.make(position, velocity, id);
     find_pairs();
     sum_density();
   }
@@ -64,7 +70,7 @@ class Stepper {
 
   /// One update with the results of each stage.
   StepTrace trace(const TraceOptions& options) {
-    Tracer<Real, Exec> t(c_, plan_.axes, options);
+    Tracer<Context> t(c_, plan_.axes, options);
     step_seen([&](const PassInfo& pass, int number) { t.record(pass, number); });
     return t.result();
   }
@@ -73,7 +79,7 @@ class Stepper {
   /// these are null. `update`: its number; the first is 1.
   std::optional<StageEvent> step_checked(std::int64_t update, const StageLimits* limits,
                                          const Fault* fault) {
-    StageCheck<Real, Exec> check(c_, plan_.axes, update, limits, fault);
+    StageCheck<Context> check(c_, plan_.axes, update, limits, fault);
     step_seen([&](const PassInfo& pass, int number) { check.look(pass, number); });
     return check.event();
   }
@@ -83,86 +89,63 @@ class Stepper {
 
   /// Later steps use this scene, these parameters and this program.
   void use(const Scene& scene, const Params<Real>& p, const Program& program) {
-    c_.scene = in_internal_axes(scene, plan_.axes);
+    c_.scene = scene;
     c_.p = p;
     program_ = &program;
+    forget();
+  }
+  /// To be called before each batch of steps, also before a repeated one.
+  void before_steps(const StepRange& steps) {
+    c_.for_features([&](auto& memory) { memory.before_steps(c_, steps); });
+  }
+  /// Largest number of steps between two such calls.
+  std::int64_t most_steps() {
+    std::int64_t most = std::numeric_limits<std::int64_t>::max();
+    c_.for_features(
+        [&](auto& memory) { most = std::min(most, memory.most_steps(c_.scene, plan_)); });
+    return most;
   }
 
-  /// Uploads the prescribed motion of the next steps.
-  void set_motion(const MotionRows<Real>& rows) { c_.moving().set(c_.exec, rows); }
-  /// Places the obstacles at their positions at `time`, until a step moves them.
-  void place(const Scene& scene, double time) {
-    c_.place(placed_at(scene, plan_, c_.p.boundary, time));
-  }
-  /// To be called when the length of steps changes: obstacles may then move farther in one step.
-  void forget_near() { c_.forget_near(); }
-  const Box<Real>& walls() const { return c_.p.boundary; }
   /// h^2/s^3: power, per particle mass, of the inertial forces by the tank's motion.
   double power(const FrameStep<double>& frame, double dt) {
     const Vec3<Real>& g = c_.p.gravity;
-    return c_
-        .reduce(PowerPass<Real>{
-            frame, 1 / dt, {double(g.x), double(g.y), double(g.z)}, c_.position(), c_.velocity()})
+    return c_.exec
+        .reduce(size(), PowerPass<Real>{frame,
+                                        1 / dt,
+                                        {double(g.x), double(g.y), double(g.z)},
+                                        c_.position(),
+                                        c_.velocity()})
         .x[0];
   }
 
   /// The load of each wall since the last call with Interval::ends.
-  std::vector<Load> loads(Interval interval) {
-    return loads(0, c_.state().walls - int(c_.gauges.patch.size()), interval);
-  }
-
-  /// To be called before steps, also before repeated ones: computes the sides from which flow
-  /// gauges count. Steps without time are not counted.
-  void begin_flow() {
-    if (c_.gauges.gate.size() == 0) return;
-    if (!(c_.p.dt > 0)) sides_are_current_ = false;
-    if (sides_are_current_ || !(c_.p.dt > 0)) return;
-    take_sides(Granted<Context, CountFlow>(c_), false);
-    sides_are_current_ = true;
-  }
-
+  std::vector<Load> loads(Interval interval) { return read_loads(c_, interval); }
   /// Readings of the gauges; means since the last call with Interval::ends.
-  std::vector<double> gauges(double update_dt, Interval interval) {
-    c_.exec.begin();
-    std::vector<double> readings(plan_.gauges.numbers());
-    probes_.read(c_, plan_.gauges, update_dt, readings);
-    const int patches = int(c_.gauges.patch.size());
-    plan_.gauges.finish(loads(c_.state().walls - patches, patches, interval), readings);
-    std::vector<FlowCount> flows(c_.gauges.flow.size());
-    c_.exec.to_host(c_.gauges.flow.data(), flows.size(), flows.data());
-    plan_.gauges.finish(flows, readings);
-    if (interval == Interval::ends) {
-      for (FlowCount& f : flows) f.since = 0, f.time = 0;
-      c_.exec.to_device(flows.data(), flows.size(), c_.gauges.flow.data());
-    }
-    c_.exec.mark("measure");
-    return readings;
-  }
+  std::vector<double> gauges(Interval interval) { return read_gauges(c_, interval); }
 
   /// A state with positions only.
   SolverState positions() {
     SolverState s;
-    s.position = rows_by_id(c_.exec, plan_.axes, std::size_t(size()), c_.position(), c_.ids());
+    s.position = downloaded(c_, field::position, c_.bytes_of(field::position), c_.ids());
     return s;
   }
-  SolverState state(std::int64_t updates, std::int64_t steps) {
-    return downloaded(c_.state(), updates, steps);
+  SolverState state() {
+    std::vector<const char*> present;
+    for (const FieldInfo* f : plan_.program.state) present.push_back(c_.bytes_of(*f));
+    return download_state(c_, present);
   }
-  SolverState state(Saved& s, std::int64_t updates, std::int64_t steps) {
-    return downloaded(s.state(), updates, steps);
-  }
-  /// Sets a state of the same number of particles, in any order.
-  void set_state(const SolverState& s) {
-    upload_state<Real>(c_.exec, plan_.axes, s, c_.state());
-    c_.forget_near();
-    sides_are_current_ = false;
+  SolverState state(const Saved& s) { return download_state(c_, s.arrays()); }
+  /// Sets a state of the same number of particles, in any order. time: s since the start.
+  void set_state(const SolverState& s, double time) {
+    upload_state(c_, s);
+    c_.for_features([&](auto& memory) { memory.stand(c_, time); });
+    forget();
     moved();
   }
   void save(Saved& s) { s.save(c_); }
   void restore(Saved& s) {
     s.restore(c_);
-    c_.forget_near();
-    sides_are_current_ = false;
+    forget();
     moved();
   }
 
@@ -191,10 +174,11 @@ class Stepper {
     sum_density();
     const int n = size();
     MeasureSums sums;
-    with_boundary(c_, [&](const auto& boundary) {
-      sums = c_.reduce(MeasurePass<Real, Lists, std::decay_t<decltype(boundary)>>{
-          c_.p, boundary, c_.lists, c_.position(), c_.velocity(), c_.density(), c_.counts(),
-          given});
+    const auto c = c_.template granted<Measure>();
+    with_boundary(c, [&](const auto& boundary) {
+      sums = c.reduce(MeasurePass<Real, Lists, std::decay_t<decltype(boundary)>>{
+          c.p, boundary, c.lists(), c[field::position].rows(), c[field::velocity].rows(),
+          c[field::density].rows(), c[field::counts].rows(), given});
     });
     sums.compression_p99 = compression_percentile(
         c_.exec.count_in_bins(n, kCompressionBins, CompressionBinPass<Real>{c_.density()}),
@@ -211,17 +195,17 @@ class Stepper {
     c_.exec.begin();
     if (density) sum_density();
     const auto from = [&](int k) { return origin[std::size_t(plan_.axes.of[k])]; };
-    c_.items(ExportPass<Real, Out>{h,
-                                   rest_density,
-                                   {from(0), from(1), from(2)},
-                                   plan_.axes,
-                                   c_.position(),
-                                   c_.velocity(),
-                                   c_.density(),
-                                   c_.ids(),
-                                   position,
-                                   velocity,
-                                   density});
+    c_.exec.items(size(), ExportPass<Real, Out>{h,
+                                                rest_density,
+                                                {from(0), from(1), from(2)},
+                                                plan_.axes,
+                                                c_.position(),
+                                                c_.velocity(),
+                                                c_.density(),
+                                                c_.ids(),
+                                                position,
+                                                velocity,
+                                                density});
     c_.exec.mark("download");
   }
 
@@ -232,13 +216,8 @@ class Stepper {
   std::size_t bytes() const { return c_.bytes() + c_.exec.bytes(); }
 
  private:
-  std::vector<Load> loads(int first, int count, Interval interval) {
-    if (count <= 0) return {};
-    std::vector<Load> now(std::size_t(count), Load{}), none(now.size());
-    Load* from = c_.loads() + first;
-    c_.exec.to_host(from, now.size(), now.data());
-    if (interval == Interval::ends) c_.exec.to_device(none.data(), none.size(), from);
-    return now;
+  void forget() {
+    c_.for_features([&](auto& memory) { memory.forget(c_); });
   }
   void launch(int pass) {
     launch_pass<Passes>(pass, c_);
@@ -267,7 +246,8 @@ class Stepper {
           break;
         case ProgramStep::until:
           c_.exec.repeat_while("residual", size(), s.times, ResidualPass<Real>{c_.density()},
-                               residual_limit_, &c_.counts()->repeats, [&] { run(s.body, seen); });
+                               residual_limit_, &c_.data(field::counts)->repeats,
+                               [&] { run(s.body, seen); });
           break;
       }
   }
@@ -279,9 +259,9 @@ class Stepper {
     c_.exec.begin();
     int substep = -1;
     run(program_->update, [&](int index) {
-      if (index == Passes::index_of<Predict>()) ++substep;
-      const bool start = index <= Passes::index_of<MakeLists>();
-      const int next = substep + (index == Passes::index_of<MoveSolids>());
+      if (index == Passes::template index_of<Predict>()) ++substep;
+      const bool start = index <= Passes::template index_of<MakeLists>();
+      const int next = substep + (index == Passes::template index_of<MoveSolids>());
       seen(program_->passes[std::size_t(index)], c_.iterating ? c_.iterations : start ? next : 0);
     });
     moved();
@@ -289,20 +269,15 @@ class Stepper {
 
   void sum_density() {
     if (density_is_current_) return;
-    launch_pass<Passes>(Passes::index_of<Density>(), c_);
+    launch_pass<Passes>(Passes::template index_of<Density>(), c_);
     density_is_current_ = true;
-  }
-  SolverState downloaded(const StateArrays<Real>& from, std::int64_t updates, std::int64_t steps) {
-    return download_state<Real>(c_.exec, std::size_t(size()), plan_.axes, from, updates, steps);
   }
 
   const Plan& plan_;
-  StepContext<Real, Exec> c_;
-  GaugeProbes<Exec> probes_;
+  Context c_;
   std::uint64_t residual_limit_;
   const Program* program_;
   bool density_is_current_ = false;
-  bool sides_are_current_ = false;  ///< of particles at flow gauges
 };
 
 }  // namespace pbf::inline PBF_VARIANT

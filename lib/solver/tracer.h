@@ -40,10 +40,11 @@ struct FlatListPass {
   }
 };
 
-template <class Real, class Exec>
+/// Context: a StepContext.
+template <class Context>
 class Tracer {
  public:
-  Tracer(StepContext<Real, Exec>& c, const Axes& axes, const TraceOptions& options)
+  Tracer(Context& c, const Axes& axes, const TraceOptions& options)
       : c_(c), n_(std::size_t(c.rows())), axes_(axes), options_(options), random_(options.seed) {}
 
   /// Records the results of a pass.
@@ -80,11 +81,13 @@ class Tracer {
   StepTrace result() { return std::move(trace_); }
 
  private:
+  using Real = typename Context::Real;
+
   void lists() {
-    using Lists = typename Exec::Lists;
+    using Lists = typename Context::Lists;
     const Lists& lists = c_.lists;
-    Exec& exec = c_.exec;
-    typename Exec::template Buffer<int> size, begin, flat;
+    auto& exec = c_.exec;
+    typename Context::template Buffer<int> size, begin, flat;
     size.resize(n_);
     exec.items(int(n_), ListSizePass<Lists>{lists, size.data()});
     std::vector<int> sizes = host(size.data()), starts(n_);
@@ -111,10 +114,6 @@ class Tracer {
     c_.exec.to_host(from, n, v.data());
     return v;
   }
-  /// Number of rows of a field with one row per cell or node.
-  std::size_t rows_named(const FieldInfo& f) const {
-    return std::size_t(f.rows({.cells = c_.levels.cells(), .nodes = c_.levels.nodes()}));
-  }
   /// Records n rows of `components` scalars, component(from[row], c), and rounds or replaces them
   /// as the options say. sign: factor for the scene's axes.
   template <class T, class Component>
@@ -122,7 +121,8 @@ class Tracer {
     const Shown& shown = w.field->shown;
     const std::vector<int> named =
         shown.row ? host(c_.template data<int>(*shown.row)) : std::vector<int>{};
-    std::vector<T> all = shown.row ? host(from, rows_named(*w.field)) : std::vector<T>{};
+    std::vector<T> all =
+        shown.row ? host(from, std::size_t(c_.rows_of(*w.field))) : std::vector<T>{};
     std::vector<T> v = shown.row ? std::vector<T>(n_) : host(from);
     for (std::size_t k = 0; k < named.size(); ++k)
       if (named[k] >= 0) v[k] = all[std::size_t(named[k])];
@@ -186,7 +186,7 @@ class Tracer {
     }
   }
 
-  StepContext<Real, Exec>& c_;
+  Context& c_;
   std::size_t n_;
   Axes axes_;
   TraceOptions options_;

@@ -1,8 +1,8 @@
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 
 #include "lib/base/error.h"
-#include "lib/base/text.h"
 #include "lib/exec/make_solver.h"
 #include "lib/run/prestabilize.h"
 #include "lib/run/session.h"
@@ -40,9 +40,17 @@ std::unique_ptr<Solver> make(const Scene& scene, const Plan& plan, const Particl
   return make_solver(scene, plan, particles);
 }
 
+/// Calls f(x) for every real number of a state.
+template <class F>
+void for_each_real(SolverState& s, F&& f) {
+  std::for_each(s.position.begin(), s.position.end(), f);
+  std::for_each(s.velocity.begin(), s.velocity.end(), f);
+  for (StoredField& field : s.fields)
+    if (field.real) std::for_each(field.values.begin(), field.values.end(), f);
+}
+
 void round_to_float(SolverState& s) {
-  for (auto* v : {&s.position, &s.velocity})
-    for (double& x : *v) x = double(float(x));
+  for_each_real(s, [](double& x) { x = double(float(x)); });
 }
 
 /// The scene with randomly rounded constants: an error that is the same for all particles and does
@@ -71,10 +79,9 @@ void note_one_sided(const Comparison& c, CompareResult& result) {
   for (const Reading& r : b)
     if (!find_reading(a, r.what)) found.push_back(r.what + " of B");
   if (!found.empty())
-    result.notes.push_back(
-        format("%zu loads and readings of gauges are on one side only and not compared, the first "
-               "is %s",
-               found.size(), found[0].c_str()));
+    result.notes.push_back(fmt::format(
+        "{} loads and readings of gauges are on one side only and not compared, the first is {}",
+        found.size(), found[0]));
 }
 
 }  // namespace
@@ -82,8 +89,7 @@ void note_one_sided(const Comparison& c, CompareResult& result) {
 SolverState rounded(const SolverState& s, double u, std::uint64_t seed) {
   SplitMix64 random(seed);
   SolverState out = s;
-  for (auto* v : {&out.position, &out.velocity})
-    for (double& x : *v) x *= 1 + u * (2 * random.uniform() - 1);
+  for_each_real(out, [&](double& x) { x *= 1 + u * (2 * random.uniform() - 1); });
   return out;
 }
 
@@ -127,15 +133,15 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   result.a = settings.a.name();
   result.b = settings.b.name();
   result.notes.push_back(
-      format("scene \"%s\", %ld particles, %d updates on %s before the frozen step",
-             scene_a.name.c_str(), plan_a.particles, settings.warmup, result.a.c_str()));
+      fmt::format("scene \"{}\", {} particles, {} updates on {} before the frozen step",
+                  scene_a.name, plan_a.particles, settings.warmup, result.a));
   if (scene_a.time.adaptive || scene_b.time.adaptive)
     result.notes.push_back("time.adaptive is left out: every update is one step");
   note_one_sided(c, result);
   // The others take over A's state.
   const std::string relieved = prestabilized_text(prestabilize(*a, on_a, plan_a));
   if (!relieved.empty()) result.notes.push_back(relieved);
-  if (progress) progress(format("%d updates of warm-up on %s", settings.warmup, result.a.c_str()));
+  if (progress) progress(fmt::format("{} updates of warm-up on {}", settings.warmup, result.a));
   advance(*a, settings.warmup);
   const SolverState start = start_from(*a, c);
   result.parts.push_back(compare_stages(c, start, result));
@@ -150,7 +156,7 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
     advance(*a, after);
     const SolverState later = start_from(*a, c);
     ComparePart part = compare_stages(c, later, result);
-    part.name = format("frozen step at update %lld", static_cast<long long>(later.updates));
+    part.name = fmt::format("frozen step at update {}", later.updates);
     result.parts.push_back(std::move(part));
   }
   return result;

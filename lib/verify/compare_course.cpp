@@ -1,9 +1,9 @@
 // The updates after the frozen step: distances between particles, and statistics.
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "lib/base/text.h"
 #include "lib/run/session.h"
 #include "lib/verify/compare_parts.h"
 #include "lib/verify/statistics.h"
@@ -26,14 +26,13 @@ class Samples {
     part_.name = "distributions";
     part_.verdict = Verdict::same;
     part_.tolerance_source =
-        c.same_bits
-            ? std::string("0: both sides promise the same bits")
-            : format(
-                  "%g x the largest change so far over the %zu randomly rounded references (what "
-                  "chaos alone makes), + (4 + steps) u |value| (of a momentum: of the mean "
-                  "speed; of a force: of the peak) or two particles; of loads and gauges what "
-                  "their whole numbers leave open",
-                  kSpreadFactor, c.members.size());
+        c.same_bits ? "0: both sides promise the same bits"
+                    : fmt::format(
+                          "{:g} x the largest change so far over the {} randomly rounded "
+                          "references (what chaos alone makes), + (4 + steps) u |value| (of a "
+                          "momentum: of the mean speed; of a force: of the peak) or two particles; "
+                          "of loads and gauges what their whole numbers leave open",
+                          kSpreadFactor, c.members.size());
   }
   std::int64_t first_failure = -1;  ///< update of the first sample outside a tolerance
 
@@ -81,7 +80,7 @@ class Samples {
         worst = share, name = row.what;
     p.finding = c_.same_bits
                     ? std::string(p.verdict == Verdict::same ? "all equal" : "not equal")
-                    : format("the largest share of a tolerance is %.2g (%s)", worst, name.c_str());
+                    : fmt::format("the largest share of a tolerance is {:.2g} ({})", worst, name);
     return p;
   }
 
@@ -172,38 +171,37 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
     }
     if (t % every == 0 || t == updates) samples.take(t);
     if (c.progress && t % every == 0)
-      c.progress(format("update %d/%d: particles %.2g h apart (rms)", t, updates, d.rms));
+      c.progress(fmt::format("update {}/{}: particles {:.2g} h apart (rms)", t, updates, d.rms));
   }
   row.verdict = near.verdict = first_failure < 0 ? Verdict::same : Verdict::differs;
   row.relative = row.error;
   near.rows.push_back(row);
-  near.tolerance_source =
-      c.same_bits ? std::string("0: both sides promise the same bits")
-                  : format(
-                        "%g x the largest rms distance so far of %zu references, rounded at random "
-                        "in every update, from the one that is not",
-                        kNoiseFactor, c.members.size());
+  near.tolerance_source = c.same_bits
+                              ? "0: both sides promise the same bits"
+                              : fmt::format(
+                                    "{:g} x the largest rms distance so far of {} references, "
+                                    "rounded at random in every update, from the one that is not",
+                                    kNoiseFactor, c.members.size());
   // Skip the first updates, which are rounding, and stop at 0.01 h, where growth saturates.
   std::vector<double> x(rms.x.begin() + std::min<std::ptrdiff_t>(5, updates), rms.x.end());
   std::vector<double> y(rms.y.begin() + std::min<std::ptrdiff_t>(5, updates), rms.y.end());
   result.e_folding = e_folding(x, y, 0.01);
   const double last = rms.y.empty() ? 0 : rms.y.back();
   if (last == 0)
-    near.finding = format("identical for %d updates", updates);
+    near.finding = fmt::format("identical for {} updates", updates);
   else
-    near.finding = format("%.2g h apart (rms) after %d updates", last, updates);
+    near.finding = fmt::format("{:.2g} h apart (rms) after {} updates", last, updates);
   if (result.e_folding > 0)
-    near.finding += format("; distances grow e-fold in %.3g updates", result.e_folding);
+    near.finding += fmt::format("; distances grow e-fold in {:.3g} updates", result.e_folding);
   if (result.horizon >= 0)
-    near.finding +=
-        format("; from update %g on, a tenth of the spacing apart, particles are not comparable",
-               result.horizon);
+    near.finding += fmt::format(
+        "; from update {:g} on, a tenth of the spacing apart, particles are not comparable",
+        result.horizon);
   else if (result.e_folding > 0 && last > 0)
-    near.finding += format("; not comparable past about update %.0f",
-                           updates + result.e_folding * std::log(apart / last));
+    near.finding += fmt::format("; not comparable past about update {:.0f}",
+                                updates + result.e_folding * std::log(apart / last));
   if (first_failure >= 0)
-    near.finding += format("; outside the tolerance from update %lld on",
-                           static_cast<long long>(first_failure));
+    near.finding += fmt::format("; outside the tolerance from update {} on", first_failure);
   if (first_failure < 0) first_failure = samples.first_failure;
   Diagram diagram{"Distance of each particle on A and on B", "update", "h", {rms, worst}};
   if (!c.same_bits) diagram.curves.push_back(chaos);

@@ -1,8 +1,8 @@
 // The extent of two run files: status, end, frames, fields, rows of the log.
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 
-#include "lib/base/text.h"
 #include "lib/verify/compare_run.h"
 
 namespace pbf::inline verify_module {
@@ -20,13 +20,14 @@ LogEnd log_end(const ComparedRun& r) {
 }
 
 std::string every_text(const Scene& s) {
-  return s.output ? format("%g s", s.output->every) : std::string("off");
+  return s.output ? fmt::format("{:g} s", s.output->every) : std::string("off");
 }
 
 std::string one_sided(const char* of, const char* none, const std::vector<double>& times) {
-  return format("%zu frame%s of %s %s no frame of %s at %s time, the first at %g s", times.size(),
-                times.size() == 1 ? "" : "s", of, times.size() == 1 ? "has" : "have", none,
-                times.size() == 1 ? "its" : "their", times.front());
+  return fmt::format("{} frame{} of {} {} no frame of {} at {} time, the first at {:g} s",
+                     times.size(), times.size() == 1 ? "" : "s", of,
+                     times.size() == 1 ? "has" : "have", none, times.size() == 1 ? "its" : "their",
+                     times.front());
 }
 
 /// Names in `x` that are missing in `y`.
@@ -44,7 +45,8 @@ ComparePart compare_extents(const ComparedRun& a, const ComparedRun& b, const Fr
   std::vector<std::string> found;
   if (a.status != b.status) found.push_back("A is " + a.end_text() + ", B is " + b.end_text());
   if (a.scene.time.end != b.scene.time.end)
-    found.push_back(format("time.end is %g s in A, %g s in B", a.scene.time.end, b.scene.time.end));
+    found.push_back(
+        fmt::format("time.end is {:g} s in A, {:g} s in B", a.scene.time.end, b.scene.time.end));
   if (!frames.only_a.empty()) found.push_back(one_sided("A", "B", frames.only_a));
   if (!frames.only_b.empty()) found.push_back(one_sided("B", "A", frames.only_b));
   if ((!frames.only_a.empty() || !frames.only_b.empty()) &&
@@ -54,12 +56,11 @@ ComparePart compare_extents(const ComparedRun& a, const ComparedRun& b, const Fr
   const LogEnd x = log_end(a), y = log_end(b);
   const double half = 0.5 * std::min(a.scene.time.step, b.scene.time.step);
   if (!(std::fabs(x.time - y.time) <= half) || (x.rows == 0) != (y.rows == 0))
-    found.push_back(
-        format("the log ends at %g s (update %g, row %zu) in A, %g s (update %g, row "
-               "%zu) in B",
-               x.time, x.update, x.rows, y.time, y.update, y.rows));
+    found.push_back(fmt::format(
+        "the log ends at {:g} s (update {:g}, row {}) in A, {:g} s (update {:g}, row {}) in B",
+        x.time, x.update, x.rows, y.time, y.update, y.rows));
   else if (x.rows != y.rows && a.scene.measure_every == b.scene.measure_every)
-    found.push_back(format("the log has %zu rows in A, %zu in B", x.rows, y.rows));
+    found.push_back(fmt::format("the log has {} rows in A, {} in B", x.rows, y.rows));
   const std::vector<std::string> in_a = a.reader.fields(), in_b = b.reader.fields();
   if (!a.times.empty() && !b.times.empty())
     for (const auto& [names, with, without] :
@@ -73,8 +74,8 @@ ComparePart compare_extents(const ComparedRun& a, const ComparedRun& b, const Fr
   p.verdict = found.empty() ? Verdict::same : Verdict::differs;
   for (const std::string& f : found) p.finding += (p.finding.empty() ? "" : "; ") + f;
   if (found.empty())
-    p.finding = format("both are %s, with %zu frames and %zu rows of the log to %g s",
-                       a.end_text().c_str(), a.times.size(), x.rows, x.time);
+    p.finding = fmt::format("both are {}, with {} frames and {} rows of the log to {:g} s",
+                            a.end_text(), a.times.size(), x.rows, x.time);
   return p;
 }
 

@@ -1,4 +1,5 @@
 // Compares two run files: their metadata, then frame by frame.
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,11 +15,10 @@ namespace pbf::inline verify_module {
 namespace {
 
 std::string side_of(const ComparedRun& o) {
-  std::string s = o.path + ": " + o.info.solver.backend + ":" + o.info.solver.precision;
-  if (o.info.solver.threads > 0) s += format("@%d", o.info.solver.threads);
-  return s + ", version " + o.info.program_version + " (" + o.info.commit + ")" +
-         format(", %lld particles, %zu frames, %s", static_cast<long long>(o.info.particles),
-                o.times.size(), o.end_text().c_str());
+  std::string s = fmt::format("{}: {}:{}", o.path, o.info.solver.backend, o.info.solver.precision);
+  if (o.info.solver.threads > 0) s += fmt::format("@{}", o.info.solver.threads);
+  return fmt::format("{}, version {} ({}), {} particles, {} frames, {}", s, o.info.program_version,
+                     o.info.commit, o.info.particles, o.times.size(), o.end_text());
 }
 
 /// The scene without keys that do not affect the physics.

@@ -1,9 +1,9 @@
 // Compares two run files frame by frame: particles while they are comparable, samples always.
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include "lib/base/text.h"
 #include "lib/verify/compare_parts.h"
 #include "lib/verify/compare_run.h"
 #include "lib/verify/statistics.h"
@@ -127,11 +127,11 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
   near.name = "particles";
   far.name = "distributions";
   far.verdict = Verdict::same;
-  far.tolerance_source = format(
-      "two samples: %g standard errors of means and quantiles, Kolmogorov-Smirnov at %g, where "
-      "values up to %g roundings apart are equal, fronts up to %g spacings; once particles are not "
-      "comparable, of as many samples as velocity and density are independent in cells of %g h; "
-      "the worst frame counts",
+  far.tolerance_source = fmt::format(
+      "two samples: {:g} standard errors of means and quantiles, Kolmogorov-Smirnov at {:g}, where "
+      "values up to {:g} roundings apart are equal, fronts up to {:g} spacings; once particles are "
+      "not comparable, of as many samples as velocity and density are independent in cells of {:g} "
+      "h; the worst frame counts",
       kSigmas, kAlpha, kRoundings, kFront, kCluster);
   Curve rms{"A to B, rms", {}, {}}, worst{"A to B, largest", {}, {}};
   const double h = a.scene.h(), d = a.scene.fluid.spacing;
@@ -143,9 +143,9 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
     Resolution resolution = resolution_of(own, x, y, a.scene.fluid.rest_density);
     if (paired && x.count != y.count) {
       paired = false;
-      near.finding =
-          format("A holds %zu particles at %g s, B %zu: no particle of one is one of the other",
-                 x.count, x.time, y.count);
+      near.finding = fmt::format(
+          "A holds {} particles at {:g} s, B {}: no particle of one is one of the other", x.count,
+          x.time, y.count);
     }
     if (paired) {
       const Distance e = distance(numbers_of(x.fields[0]), numbers_of(y.fields[0]));
@@ -173,20 +173,20 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
     near.tolerance_source = "the numbers of particles must be the same";
   } else {
     result.e_folding = e_folding(rms.x, rms.y, 0.01);
-    near.finding =
-        bytes ? format("the %zu common frames are the same to the last byte", frames.common.size())
-              : format("%.2g h apart (rms) at the last common frame", last);
+    near.finding = bytes ? fmt::format("the {} common frames are the same to the last byte",
+                                       frames.common.size())
+                         : fmt::format("{:.2g} h apart (rms) at the last common frame", last);
     if (result.e_folding > 0)
-      near.finding += format("; distances grow e-fold in %.3g updates", result.e_folding);
+      near.finding += fmt::format("; distances grow e-fold in {:.3g} updates", result.e_folding);
     if (result.horizon >= 0)
-      near.finding += format("; not comparable from update %g on", result.horizon);
+      near.finding += fmt::format("; not comparable from update {:g} on", result.horizon);
     if (exact) {
       near.tolerance_source = "0: both are the CPU in one precision and build, which promises it";
       near.verdict = bytes ? Verdict::same : Verdict::differs;
     } else {
-      near.tolerance_source = format(
-          "initial positions: %g roundings; later distances are not judged, since files "
-          "hold no ensemble (pbf compare SCENE --between makes one)",
+      near.tolerance_source = fmt::format(
+          "initial positions: {:g} roundings; later distances are not judged, since files hold no "
+          "ensemble (pbf compare SCENE --between makes one)",
           kRoundings);
       // Steps without time that separate overlaps amplify rounding, as all steps do.
       const bool relieved = a.scene.solver.prestabilize && b.scene.solver.prestabilize;

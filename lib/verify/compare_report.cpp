@@ -1,7 +1,7 @@
 // A comparison as text, JSON and JUnit XML.
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "lib/base/text.h"
 #include "lib/io/junit.h"
 #include "lib/io/table.h"
 #include "lib/verify/compare.h"
@@ -9,14 +9,15 @@
 namespace pbf::inline verify_module {
 namespace {
 
-TableOf<CompareRow> table_of(const std::vector<CompareRow>& rows) {
+/// `first`: name of the first column.
+TableOf<CompareRow> table_of(const std::vector<CompareRow>& rows, const char* first) {
   using R = const CompareRow&;
-  return TableOf<CompareRow>({{"", [](R r) { return r.what; }, -34},
-                              {"error", [](R r) { return r.error; }, 10, "%.3g"},
-                              {"rms", [](R r) { return r.rms; }, 10, "%.3g"},
-                              {"relative", [](R r) { return r.relative; }, 9, "%.2g"},
-                              {"ulps", [](R r) { return r.ulps; }, 9, "%.3g"},
-                              {"tolerance", [](R r) { return r.tolerance; }, 10, "%.3g"},
+  return TableOf<CompareRow>({{first, [](R r) { return r.what; }, -34},
+                              {"error", [](R r) { return r.error; }, 10, "{:.3g}"},
+                              {"rms", [](R r) { return r.rms; }, 10, "{:.3g}"},
+                              {"relative", [](R r) { return r.relative; }, 9, "{:.2g}"},
+                              {"ulps", [](R r) { return r.ulps; }, 9, "{:.3g}"},
+                              {"tolerance", [](R r) { return r.tolerance; }, 10, "{:.3g}"},
                               {"unit", [](R r) { return r.unit; }, -11},
                               {"verdict", [](R r) { return verdict_name(r.verdict); }, -7}},
                              rows);
@@ -37,7 +38,7 @@ std::string compare_text(const CompareResult& r) {
   for (const ComparePart& p : r.parts) {
     out += "\n" + p.name + ": " + verdict_name(p.verdict) + "\n  " + p.finding +
            "\n  tolerance: " + p.tolerance_source + "\n";
-    if (!p.rows.empty()) out += table_of(p.rows).text("  ");
+    if (!p.rows.empty()) out += table_of(p.rows, "").text("  ");
   }
   return out + "\n" + conclusion(r);
 }
@@ -53,11 +54,12 @@ std::string compare_junit(const CompareResult& r, double seconds) {
     for (const CompareRow& x : p.rows) {
       JunitCase& row = suite.cases.emplace_back(JunitCase{p.name, x.what});
       row.skipped = x.verdict == Verdict::not_judged;
-      row.details = format("error %.6g, rms %.3g, relative %.3g, ulps %.3g, tolerance %.6g",
-                           x.error, x.rms, x.relative, x.ulps, x.tolerance);
+      row.details =
+          fmt::format("error {:.6g}, rms {:.3g}, relative {:.3g}, ulps {:.3g}, tolerance {:.6g}",
+                      x.error, x.rms, x.relative, x.ulps, x.tolerance);
       if (x.verdict == Verdict::differs)
-        row.failure = format("differs by %.6g, tolerance %.6g", x.error, x.tolerance) +
-                      (x.unit.empty() ? "" : format(" (%s)", x.unit.c_str()));
+        row.failure = fmt::format("differs by {:.6g}, tolerance {:.6g}{}", x.error, x.tolerance,
+                                  x.unit.empty() ? "" : fmt::format(" ({})", x.unit));
     }
   }
   return junit_xml(suite);
@@ -65,23 +67,12 @@ std::string compare_junit(const CompareResult& r, double seconds) {
 
 std::string compare_json(const CompareResult& r) {
   Json parts = Json::array(), curves = Json::array();
-  for (const ComparePart& p : r.parts) {
-    Json rows = Json::array();
-    for (const CompareRow& x : p.rows)
-      rows.push_back({{"what", x.what},
-                      {"unit", x.unit},
-                      {"error", x.error},
-                      {"rms", x.rms},
-                      {"relative", x.relative},
-                      {"ulps", x.ulps},
-                      {"tolerance", x.tolerance},
-                      {"verdict", verdict_name(x.verdict)}});
+  for (const ComparePart& p : r.parts)
     parts.push_back({{"part", p.name},
                      {"verdict", verdict_name(p.verdict)},
                      {"finding", p.finding},
                      {"tolerance_source", p.tolerance_source},
-                     {"rows", rows}});
-  }
+                     {"rows", table_of(p.rows, "what").json()}});
   for (const Diagram& d : r.diagrams)
     for (const Curve& c : d.curves)
       curves.push_back({{"diagram", d.title},

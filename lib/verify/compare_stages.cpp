@@ -1,12 +1,13 @@
 // One frozen step: two solvers, one state, one update, all arrays that passes store. Each stage of
 // B starts from A's results of the previous stage, so that errors do not propagate. For a pass with
 // two stages, the propagated error is subtracted.
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
-#include "lib/base/text.h"
 #include "lib/verify/compare_parts.h"
 
 namespace pbf::inline verify_module {
@@ -30,8 +31,8 @@ Size difference(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 std::string name_of(const TraceArray& t) {
-  return t.iteration ? format("%s %d: %s", t.stage.c_str(), t.iteration, t.quantity.c_str())
-                     : format("%s: %s", t.stage.c_str(), t.quantity.c_str());
+  return t.iteration ? fmt::format("{} {}: {}", t.stage, t.iteration, t.quantity)
+                     : fmt::format("{}: {}", t.stage, t.quantity);
 }
 
 bool same_kind(const TraceArray& x, const TraceArray& y) {
@@ -160,15 +161,14 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
     take_out_inherited(c, start, a, reference, b);
   }
   part.tolerance_source =
-      c.same_bits
-          ? std::string("0: both sides promise the same bits")
-          : format(
-                "%g x the largest change over %zu references in double, whose constants, start "
-                "and every stored value are rounded at random to u = %.3g, + (terms of the stage's "
-                "sums) u max|value|%s; of loads and gauges besides what their whole numbers leave "
-                "open",
-                kNoiseFactor, c.members.size(), c.u,
-                c.sides > 1 ? "; twice that, since both sides round" : "");
+      c.same_bits ? "0: both sides promise the same bits"
+                  : fmt::format(
+                        "{:g} x the largest change over {} references in double, whose constants, "
+                        "start and every stored value are rounded at random to u = {:.3g}, + "
+                        "(terms of the stage's sums) u max|value|{}; of loads and gauges besides "
+                        "what their whole numbers leave open",
+                        kNoiseFactor, c.members.size(), c.u,
+                        c.sides > 1 ? "; twice that, since both sides round" : "");
   result.stage.clear();
   const auto add = [&](const std::string& what, const std::string& unit, const Size& s,
                        double tolerance, const std::string& stage) {
@@ -184,15 +184,16 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
   const std::vector<double>& position = values_of(a, "grid", "position");
   double position_tolerance = 0;
   bool lists_done = false;
+  const auto add_lists = [&] {  // once, before what is summed over them
+    if (!std::exchange(lists_done, true))
+      add("neighbors: pairs", "h", set_difference(a, b, position),
+          c.same_bits ? 0 : 4 * position_tolerance + 8 * c.u, "neighbors");
+  };
   const std::size_t common = std::min(a.arrays.size(), b.arrays.size());
   std::size_t k = 0;
   for (; k < common && same_kind(a.arrays[k], b.arrays[k]); ++k) {
     const TraceArray &x = a.arrays[k], &y = b.arrays[k];
-    if (x.stage != "predict" && x.stage != "grid" && !lists_done) {
-      lists_done = true;
-      add("neighbors: pairs", "h", set_difference(a, b, position),
-          c.same_bits ? 0 : 4 * position_tolerance + 8 * c.u, "neighbors");
-    }
+    if (x.stage != "predict" && x.stage != "grid") add_lists();
     if (x.quantity == "bin") {
       add(name_of(x), "h",
           bin_difference(x, y, position, c.plan->cell_edge / 2, c.scene->dimensions),
@@ -207,9 +208,7 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
     if (x.quantity == "position" && !lists_done) position_tolerance = tolerance;
     add(name_of(x), x.unit, s, tolerance, x.stage);
   }
-  if (!lists_done)
-    add("neighbors: pairs", "h", set_difference(a, b, position),
-        c.same_bits ? 0 : 4 * position_tolerance + 8 * c.u, "neighbors");
+  add_lists();
   if (k < a.arrays.size() || k < b.arrays.size()) {
     const bool only_b = k >= a.arrays.size() || (k < b.arrays.size() && b.arrays[k].iteration > 0);
     const TraceArray& t = only_b ? b.arrays[k] : a.arrays[k];

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "lib/program/loads.h"
 #include "tests/support/catch.h"
 #include "tests/support/obstacles.h"
 
@@ -316,8 +317,8 @@ TEST_CASE("a disc larger than its surface reads the surface's whole load over it
   const auto loads = loads_of(c, *solver);
   for (std::size_t g = 0; g < s.gauges.size(); ++g)
     for (const WallLoad& l : loads) {
-      if (l.wall != *s.gauges[g].on()) continue;
-      const double area = std::get<pbf::gauge_kinds::Pressure>(plan.gauges.all[g]).area;
+      if (l.wall != std::get<gauge_keys::Pressure>(s.gauges[g].kind).on) continue;
+      const double area = pbf::load_grain(s, plan) / plan.gauges.columns[2 * g].grain.value;
       const std::size_t axis = std::size_t(l.wall[0] - 'x');
       const double into = l.wall.substr(2) == "min" ? -l.force[axis] : l.force[axis];
       CHECK(into > 0);

@@ -43,7 +43,7 @@ inline std::vector<WallLoad> loads_of(const oracle_test::Case& c, pbf::Solver& s
   std::vector<WallLoad> loads;
   std::size_t k = 0;
   for (const auto& column : pbf::make_plan(c.scene, std::int64_t(c.particles.size())).columns)
-    if (column.name == pbf::kForce) {
+    if (column.name == std::string("force")) {
       loads.push_back({column.of,
                        {r.at(k), r.at(k + 1), r.at(k + 2)},
                        {r.at(k + 3), r.at(k + 4), r.at(k + 5)},

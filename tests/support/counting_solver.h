@@ -52,9 +52,7 @@ class CountingSolver : public Solver, public Inspection {
     SolverState s;
     s.updates = c.updates;
     s.steps = c.steps;
-    s.repeats = c.without_time;
-    s.fast = c.load;
-    s.unresolved = c.gauge;
+    s.fields = {{"sums", false, 3, {double(c.without_time), double(c.load), double(c.gauge)}}};
     for (std::size_t k = 0; k < particles; ++k) {
       s.position.insert(s.position.end(), {double(c.steps), double(c.without_time), double(k)});
       s.id.push_back(std::int32_t(k));
@@ -63,7 +61,10 @@ class CountingSolver : public Solver, public Inspection {
     return s;
   }
   void set_state(const SolverState& s) override {
-    now_ = {s.updates, s.steps, s.repeats, s.fast, s.unresolved};
+    const StoredField* stored = s.find("sums");
+    const std::vector<double> sums = stored ? stored->values : std::vector<double>(3);
+    now_ = {s.updates, s.steps, std::int64_t(sums[0]), std::int64_t(sums[1]),
+            std::int64_t(sums[2])};
   }
   void keep() override { kept_ = now_; }
   std::int64_t updates() const override { return now_.updates; }

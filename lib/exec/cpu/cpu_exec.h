@@ -23,10 +23,7 @@ namespace pbf::inline PBF_VARIANT {
 class CpuExec {
  public:
   using Lists = ChunkedLists;
-  /// Extra rows, which the lanes of the last group may read; the first of them pads the lists.
-  static constexpr std::size_t padding = 16;
-  /// The order of a sort may be stored where its gather writes the ids: each entry is read first.
-  static constexpr bool order_in_place = true;
+  static constexpr Backend backend = Backend::cpu;
   static constexpr bool lists_overflow = false;  ///< they grow as they are made
   template <class T>
   using Buffer = HostBuffer<T>;

@@ -27,8 +27,7 @@ namespace pbf::inline PBF_VARIANT {
 class CudaExec {
  public:
   using Lists = TransposedLists;
-  static constexpr std::size_t padding = 1;
-  static constexpr bool order_in_place = false;
+  static constexpr Backend backend = Backend::cuda;
   static constexpr bool lists_overflow = true;
   template <class T>
   using Buffer = DeviceBuffer<T>;

@@ -12,7 +12,7 @@ namespace pbf::inline PBF_VARIANT {
 template <class G>
 void launch_delta(const G& c, OwnRows<const typename G::Real> density, StepCounts* moves_on) {
   auto p = c.p;
-  p.sor = c.context().sor();
+  p.sor = c.sor();
   c.with_smoothing([&](auto s) {
     with_bool(c.scene.tensile && c.scene.tensile->k != 0, [&](auto tensile) {
       with_level_move(c, [&](const auto& coarse) {
@@ -31,7 +31,8 @@ void launch_delta(const G& c, OwnRows<const typename G::Real> density, StepCount
 
 using DeltaNeeds = Needs<Gathers<other<field::position>, W::lambda>, UsesLists, Gathers<field::id>,
                          Updates<field::velocity>, If<has_levels, LevelMoveNeeds>, MoveNeeds,
-                         If<has_solids, Looks<field::near_row>, Places<other<field::velocity>>>>;
+                         If<has_solids, Looks<field::near_row>, Looks<field::near_count>,
+                            Places<other<field::velocity>>>>;
 
 struct Delta {
   static constexpr PassText text{"delta", "delta"};
@@ -43,14 +44,17 @@ struct Delta {
   }
 };
 
-/// Delta and the prediction of the next substep: the same arithmetic with one launch less.
+/// Delta and the prediction of the next substep: the same arithmetic with one launch less. Never
+/// with motion, whose pass runs between the two.
 struct DeltaPredict {
   using Fuses = Pair<Delta, Predict>;
   static constexpr PassText text{"delta+predict", "delta"};
-  using Needs = Then<pbf::Needs<Writes<field::position>, DeltaNeeds>, Predict::Needs>;
+  using Needs =
+      Then<pbf::Needs<Writes<field::position>, DeltaNeeds>,
+           pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>, StepNeeds>>;
   template <class G>
   static void launch(const G& c) {
-    launch_delta(c, OwnRows<const typename G::Real>(), c.context().counts());
+    launch_delta(c, OwnRows<const typename G::Real>(), c[field::counts].sums());
   }
 };
 

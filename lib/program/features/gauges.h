@@ -1,16 +1,29 @@
-// Gauges: flow is counted at the end of each update. Pressure is computed with the loads; level and
-// velocity are computed only when they are read (lib/solver/gauge_probes.h).
+// Gauges: flow is counted at the end of each update. Pressure is computed with the loads; the
+// others are computed only when they are read.
 #pragma once
 
-#include "kernels/pass_flow.h"
-#include "lib/program/gauges.h"
-#include "lib/program/pass.h"
-#include "lib/scene/scene.h"
+#include "lib/program/features/loads.h"
+
+namespace pbf::inline program_module {
+inline std::int64_t per_id(const Sizes& n) { return n.particles; }
+template <class Tally>
+std::int64_t per_sum(const Sizes& n) {
+  return n.plan.gauges.of<Tally>().sums;
+}
+}  // namespace pbf::inline program_module
 
 namespace pbf::inline program_module::field {
-/// Per particle, in the order of ids: bit k tells on which side of flow gauge k it is.
+/// In the order of ids, not of rows: bit k tells on which side of flow gauge k it is.
 inline constexpr struct FlowSides : Plain<int> {
-} flow_sides{{"flow sides", per_particle, Life::rows}};
+} flow_sides{{"flow sides", per_id, Life::run}};
+inline constexpr auto& gates = gauge_sites<FlowTally>;
+inline constexpr struct Flows : Plain<FlowCount> {
+} flows{{"flows", per_sum<FlowTally>, Life::state}};
+/// Of a tally that is made at a reading.
+template <class Tally>
+struct GaugeSums : Plain<typename Tally::Sums, 1, std::int64_t> {};
+template <class Tally>
+inline constexpr GaugeSums<Tally> gauge_sums{{Tally::sums, per_sum<Tally>, Life::run}};
 }  // namespace pbf::inline program_module::field
 
 namespace pbf::inline PBF_VARIANT {
@@ -18,29 +31,91 @@ namespace pbf::inline PBF_VARIANT {
 /// Updates the sides of all particles; `count`: also counts the particles that changed sides.
 template <class G>
 void take_sides(const G& c, bool count) {
-  auto& g = c.context().gauges;
-  c.items(FlowPass<typename G::Real>{g.gate.data(), int(g.gate.size()), c[field::position],
-                                     c[field::id], c[field::flow_sides],
-                                     count ? g.flow.data() : nullptr, double(c.p.update_dt)});
+  c.items(FlowPass<typename G::Real>{c[field::gates], gauges_of<FlowTally>(c.scene),
+                                     c[field::position], c[field::id], c[field::flow_sides],
+                                     count ? c[field::flows] : nullptr, double(c.p.update_dt)});
 }
 
 struct CountFlow {
   static constexpr PassText text{"flow", "measure"};
-  using Needs = pbf::Needs<Reads<field::position>, Reads<field::id>, Reads<field::flow_sides>,
-                           Places<field::flow_sides>>;
+  using Needs = pbf::Needs<Reads<field::position>, Reads<field::id>, Looks<field::gates>,
+                           Looks<field::flow_sides>, Places<field::flow_sides>, Looks<field::flows>,
+                           Adds<field::flows>>;
   template <class G>
   static void launch(const G& c) {
     take_sides(c, true);
   }
 };
 
+struct Gauges;
+
+/// Adds what gauges sum over the particles at a reading.
+template <class Tally>
+struct ReadGauges {
+  static constexpr PassText text{Tally::sites, "measure"};
+  using Needs =
+      pbf::Needs<Reads<field::position>,
+                 std::conditional_t<Tally::reads_velocity, Reads<field::velocity>, pbf::Needs<>>,
+                 Looks<field::gauge_sites<Tally>>, Adds<field::gauge_sums<Tally>>>;
+  template <class G>
+  static void launch(const G& c) {
+    c.items(gauge_pass(c[field::gauge_sites<Tally>], gauges_of<Tally>(c.scene),
+                       c[field::position].rows(), c.declared(field::velocity),
+                       c.template memory<Gauges>().update_dt, c[field::gauge_sums<Tally>].sums()));
+  }
+};
+
+template <class Tally>
+constexpr bool is_read_by_pass = requires {
+  Tally::sums;
+};
+template <class... Tally>
+typename Joined<
+    PassList<CountFlow>,
+    std::conditional_t<is_read_by_pass<Tally>, PassList<ReadGauges<Tally>>, PassList<>>...>::type
+gauge_passes(const std::tuple<TalliedGauges<Tally>...>&);
+
 struct Gauges {
-  using Passes = PassList<CountFlow>;
+  using Passes = decltype(gauge_passes(std::declval<gauge_keys::EachTally<TalliedGauges>>()));
   template <class B>
   static void add(const Scene& s, B& b) {
     if (s.gauges.empty()) return b.left_out("gauges", "no key gauges");
-    if (has_gauges<FlowCount>(s)) b.template end<CountFlow>();
+    if (gauges_of<FlowTally>(s) > 0) b.template end<CountFlow>();
+    const auto add_pass = [&]<class Tally>(const TalliedGauges<Tally>&) {
+      if constexpr (is_read_by_pass<Tally>)
+        if (gauges_of<Tally>(s) > 0) b.template reading<ReadGauges<Tally>>();
+    };
+    std::apply([&](const auto&... tally) { (add_pass(tally), ...); },
+               gauge_keys::EachTally<TalliedGauges>());
   }
+
+  template <class Real>
+  struct Memory : NoMemory {
+    bool sides_are_current = false;  ///< of particles at flow gauges
+    double update_dt = 0;            ///< s
+
+    template <class C>
+    void make(C& c) {
+      update_dt = c.scene.time.step;
+      std::apply(
+          [&]<class... Tally>(const TalliedGauges<Tally>&... of) {
+            (c.put(field::gauge_sites<Tally>, of.sites), ...);
+          },
+          c.plan.gauges.tallies);
+    }
+    template <class C>
+    void forget(C&) {
+      sides_are_current = false;
+    }
+    /// Computes the sides from which flow gauges count. Steps without time are not counted.
+    template <class C>
+    void before_steps(C& c, const StepRange&) {
+      if (gauges_of<FlowTally>(c.scene) == 0) return;
+      const bool timed = c.p.dt > 0;
+      if (timed && !sides_are_current) take_sides(c.template granted<CountFlow>(), false);
+      sides_are_current = timed;
+    }
+  };
 };
 
 }  // namespace pbf::inline PBF_VARIANT

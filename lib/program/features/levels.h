@@ -6,9 +6,16 @@
 
 #include "kernels/pass_level_loads.h"
 #include "lib/program/as_types.h"
-#include "lib/program/features/loads.h"
+#include "lib/program/features/solids.h"
 #include "lib/program/levels.h"
 #include "lib/program/pass.h"
+
+namespace pbf::inline program_module {
+inline std::int64_t per_cell(const Sizes& n) { return n.plan.levels.cells(); }
+inline std::int64_t per_run(const Sizes& n) { return n.plan.levels.runs(n.scene.dimensions); }
+inline std::int64_t per_brick(const Sizes& n) { return n.plan.levels.bricks(); }
+inline std::int64_t per_node(const Sizes& n) { return n.plan.levels.nodes(); }
+}  // namespace pbf::inline program_module
 
 namespace pbf::inline program_module::field {
 /// Per particle: its cell when the lists were made.
@@ -47,7 +54,6 @@ inline constexpr struct LevelMoves : Vectors {
 
 namespace pbf::inline PBF_VARIANT {
 
-inline bool has_levels(const Scene& s) { return why_no_levels(s) == nullptr; }
 inline bool has_open_faces(const Scene& s) { return !s.domain.open.empty(); }
 
 using LevelMoveNeeds = Needs<Reads<field::level_home>, Looks<field::level_move>>;
@@ -55,7 +61,7 @@ using LevelMoveNeeds = Needs<Reads<field::level_home>, Looks<field::level_move>>
 template <class G, class F>
 void with_level_move(const G& c, F&& f) {
   using Real = typename G::Real;
-  if (c.context().levels.all.count == 0) return f(NoLevelMove<Real>{});
+  if (c.plan.levels.all.count == 0) return f(NoLevelMove<Real>{});
   f(LevelMove<Real>{c[field::level_home], c[field::level_move]});
 }
 
@@ -74,15 +80,14 @@ inline LevelSums level_sums(const LevelPlan& l, std::int64_t* cell_sum, std::int
 struct LevelCellsAndNodes {
   static constexpr PassText text{"level cells", "levels"};
   using Needs =
-      pbf::Needs<If<has_open_faces, Reads<field::position>>, Looks<field::bin_start>,
-                 Places<field::level_home>, Places<field::run_start>, Places<field::cell_count>,
-                 Places<field::cell_sum>, Places<field::cell_factor>, Places<field::corner_sum>,
+      pbf::Needs<If<has_open_faces, Reads<field::position>>, Looks<field::bin_start>, SolidNeeds,
+                 Places<field::level_home>, Places<field::run_start>, Totals<field::cell_count>,
+                 Totals<field::cell_sum>, Places<field::cell_factor>, Totals<field::corner_sum>,
                  Places<field::node_walls>, Places<field::node_reach>, Places<field::node_answer>>;
   template <class G>
   static void launch(const G& c) {
     using Real = typename G::Real;
-    auto& parts = c.context();
-    const LevelPlan& l = parts.levels;
+    const LevelPlan& l = c.plan.levels;
     int* walls = c[field::node_walls];
     int* reach = c[field::node_reach];
     int* count = c[field::cell_count];
@@ -92,7 +97,7 @@ struct LevelCellsAndNodes {
           c.p,
           c[field::bin_start],
           has_open_faces(c.scene) ? c[field::position].rows() : nullptr,
-          c.scene.obstacles.empty() ? nullptr : parts.solids().around,
+          has_obstacles(c.scene) ? c[field::surroundings] : nullptr,
           c[field::run_start],
           c[field::level_home],
           count,
@@ -120,12 +125,12 @@ struct LevelMultipliers {
   using Needs =
       pbf::Needs<Reads<field::density>, Looks<field::run_start>,
                  If<has_open_faces, Reads<field::level_home>>, Looks<field::node_answer>,
-                 Looks<field::cell_factor>, Places<field::cell_sum>, Places<field::corner_sum>,
+                 Looks<field::cell_factor>, Totals<field::cell_sum>, Totals<field::corner_sum>,
                  Places<field::multiplier>, Places<field::level_move>>;
   template <class G>
   static void launch(const G& c) {
     using Real = typename G::Real;
-    const LevelPlan& l = c.context().levels;
+    const LevelPlan& l = c.plan.levels;
     Real* multiplier = c[field::multiplier];
     with_dimensions(c.p.dimensions, [&](auto d) {
       c.bricks(LevelSumPass<Real, decltype(d)::value>{
@@ -146,17 +151,17 @@ struct LevelMultipliers {
 struct BookLevels {
   static constexpr PassText text{"loads of the levels", "measure"};
   using Needs = pbf::Needs<Looks<field::multiplier>, Looks<field::cell_factor>,
-                           Looks<field::cell_count>, Adds<field::load_sums>>;
+                           Looks<field::cell_count>, BookNeeds>;
   template <class G>
   static void launch(const G& c) {
     using Real = typename G::Real;
     if (!(c.p.dt > 0)) return;
-    auto& parts = c.context();
-    const LevelPlan& l = parts.levels;
+    const LevelPlan& l = c.plan.levels;
     c.items(l.all.level[0].size(),
-            LevelLoadPass<Real>{l.all, l.grid, c[field::multiplier], c[field::cell_factor],
-                                c[field::cell_count], c.p.boundary.extent,
-                                load_book(parts, c[field::load_sums].sums())});
+            LevelLoadPass<Real>{
+                l.all, l.grid, c[field::multiplier], c[field::cell_factor], c[field::cell_count],
+                c.p.boundary.extent,
+                load_book(c.scene, c.p.boundary, c[field::load_sums].sums(), c[field::patches])});
   }
 };
 

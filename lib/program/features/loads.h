@@ -7,13 +7,30 @@
 
 #include "kernels/boundary/solids.h"
 #include "kernels/params.h"
+#include "lib/program/features/poses.h"
 #include "lib/program/loads.h"
-#include "lib/program/pass.h"
+
+namespace pbf::inline program_module {
+inline std::int64_t per_wall(const Sizes& n) { return load_walls(n.scene); }
+template <class Tally>
+std::int64_t per_gauge(const Sizes& n) {
+  return gauges_of<Tally>(n.scene);
+}
+}  // namespace pbf::inline program_module
 
 namespace pbf::inline program_module::field {
 /// Per wall: kLoadParts times LoadSums; 0 between two updates.
 inline constexpr struct LoadRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 } load_sums{{"load sums", per_wall, Life::update}};
+/// Since the last reading; the rows are those of program/loads.h.
+inline constexpr struct WallLoads : Plain<Load> {
+} loads{{"loads", per_wall, Life::state}};
+/// What the kernels know of the gauges of a tally.
+template <class Tally>
+struct GaugeSites : Plain<typename Tally::Site> {};
+template <class Tally>
+inline constexpr GaugeSites<Tally> gauge_sites{{Tally::sites, per_gauge<Tally>, Life::run}};
+inline constexpr auto& patches = gauge_sites<PatchTally>;
 }  // namespace pbf::inline program_module::field
 
 namespace pbf::inline PBF_VARIANT {
@@ -27,24 +44,26 @@ double moment_unit(const Box<Real>& box) {
 }
 
 /// The needs of a pass that books loads.
-using BookNeeds = If<has_loads, Adds<field::load_sums>>;
+using BookNeeds =
+    Needs<If<has_loads, Adds<field::load_sums>>, If<has_pressure_gauges, Looks<field::patches>>>;
 
-/// sums: the rows of field::load_sums, or null.
-template <class C>
-LoadBook<typename C::Real> load_book(C& c, LoadSums* sums) {
-  return {sums, typename C::Real(1 / moment_unit(c.p.boundary)), c.gauges.patch.data(),
-          int(c.gauges.patch.size()), summed_walls(c.scene)};
+/// sums: the rows of field::load_sums, or null; patch: those of field::patches.
+template <class Real>
+LoadBook<Real> load_book(const Scene& scene, const Box<Real>& box, LoadSums* sums,
+                         const Patch* patch) {
+  return {sums, Real(1 / moment_unit(box)), patch, gauges_of<PatchTally>(scene),
+          summed_walls(scene)};
 }
 
 struct SumLoads {
   static constexpr PassText text{"loads", "measure"};
-  using Needs = pbf::Needs<Updates<field::load_sums>>;
+  using Needs = pbf::Needs<Updates<field::load_sums>, Updates<field::loads>,
+                           If<has_moving_obstacles, Looks<field::solid_velocity>>>;
   template <class G>
   static void launch(const G& c) {
-    auto& parts = c.context();
     c.items(int(load_walls(c.scene)),
-            LoadPass{c[field::load_sums].rows(), parts.loads(), double(c.p.inv_dt),
-                     double(c.p.update_dt), moment_unit(c.p.boundary), parts.moving().velocity(),
+            LoadPass{c[field::load_sums].rows(), c[field::loads].rows(), double(c.p.inv_dt),
+                     double(c.p.update_dt), moment_unit(c.p.boundary), c[field::solid_velocity],
                      int(c.scene.obstacles.size())});
   }
 };

@@ -1,35 +1,64 @@
 // Prediction, sort and lists: the start of every update with pairs.
 #pragma once
 
+#include "kernels/pass_move_solids.h"
 #include "kernels/pass_predict.h"
 #include "lib/program/as_types.h"
 #include "lib/program/features/solids.h"
 #include "lib/program/motion.h"
 #include "lib/program/pass.h"
 
+namespace pbf::inline program_module {
+inline std::int64_t per_table_row(const Sizes& n) { return motion_table_rows(n.plan); }
+inline std::int64_t per_solid_step(const Sizes& n) {
+  return motion_table_rows(n.plan) * moving_obstacles(n.scene);
+}
+}  // namespace pbf::inline program_module
+
+namespace pbf::inline program_module::field {
+/// Prescribed motion: the present row of the tables, and the tables of the steps to come.
+inline constexpr struct StepRow : Plain<int> {
+} step_row{{"step row", one_row, Life::run}};
+inline constexpr struct FrameSteps : Objects {
+} frame_steps{{kBytesOf<FrameStep>, "frame steps", per_table_row, Life::run}};
+inline constexpr struct SolidSteps : Objects {
+} solid_steps{{kBytesOf<SolidStep>, "solid steps", per_solid_step, Life::run}};
+}  // namespace pbf::inline program_module::field
+
 namespace pbf::inline PBF_VARIANT {
+
+template <class Real>
+FrameStep<Real> row_of(const field::FrameSteps&);
+template <class Real>
+SolidStep<Real> row_of(const field::SolidSteps&);
 
 /// Puts moving obstacles and the tank at their places for the step. Only in scenes with motion.
 struct MoveSolids {
   static constexpr PassText text{"motion", "predict"};
-  using Needs = pbf::Needs<Writes<field::motion>>;
+  using Needs =
+      pbf::Needs<Looks<field::step_row>, Places<field::step_row>,
+                 If<has_tank_motion, Looks<field::frame_steps>, Places<field::frame>>,
+                 If<has_moving_obstacles, Looks<field::solid_steps>, Places<field::solids>,
+                    Places<field::solids_before>, Places<field::solid_velocity>>>;
   template <class G>
   static void launch(const G& c) {
-    auto& parts = c.context();
-    c.items(1, parts.moving().pass(parts.placed()));
+    c.items(1, MoveSolidsPass<typename G::Real>{
+                   c[field::step_row], c[field::frame_steps], c[field::solid_steps],
+                   int(moving_obstacles(c.scene)), c[field::frame], c[field::solids],
+                   c[field::solids_before], c[field::solid_velocity]});
   }
 };
 
 /// Computes x* and the predicted velocity, in place.
 struct Predict {
   static constexpr PassText text{"predict", "predict"};
-  using Needs = pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>, MoveNeeds>;
+  using Needs = pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>, StepNeeds,
+                           FrameNeeds>;
   template <class G>
   static void launch(const G& c) {
-    auto& parts = c.context();
-    with_boundary(parts, [&](const auto& boundary) {
+    with_boundary(c, [&](const auto& boundary) {
       c.items(MovePass<typename G::Real, std::decay_t<decltype(boundary)>>{
-          c.p, boundary, c[field::position], c[field::velocity], parts.counts()});
+          c.p, boundary, c[field::position], c[field::velocity], c[field::counts].sums()});
     });
   }
 };
@@ -44,23 +73,26 @@ using GatherNeeds = Needs<Writes<field::bin>, Places<field::order>, Places<field
 template <class G, class First, class Gather, class Listed>
 void sort_rows(const G& c, const char* stage, const First& first, const Gather& gather,
                const Listed& listed) {
-  auto& parts = c.context();
-  parts.exec.sort_by_bin(parts.booked(stage), first, listed, c.rows(), bin_count(c.p),
-                         c[other<field::id>], parts.sort_order(), c[field::bin_start], gather);
+  c.exec.sort_by_bin(c.booked(stage), first, listed, c.rows(), bin_count(c.p), c[other<field::id>],
+                     c.sort_order(), c[field::bin_start], gather);
 }
-/// velocity, velocity_out: the arrays from which and into which the pass gathers.
+/// velocity, velocity_out: the arrays from which and into which the pass gathers. counts: null if
+/// particles do not move.
 template <bool moving, class G, class Boundary, class Vectors>
 auto gather_pass(const G& c, const Boundary& boundary, const Vectors* velocity,
-                 Vectors* velocity_out) {
-  return GatherPass<typename G::Real, Boundary, moving>{c.p,
-                                                        boundary,
-                                                        c[other<field::position>],
-                                                        velocity,
-                                                        c[other<field::id>],
-                                                        c[field::position],
-                                                        velocity_out,
-                                                        c[field::id],
-                                                        c.context().counts()};
+                 Vectors* velocity_out, StepCounts* counts) {
+  const auto carried = c.carried();
+  return GatherPass<typename G::Real, Boundary, moving, std::decay_t<decltype(carried)>>{
+      carried,
+      c.p,
+      boundary,
+      c[other<field::position>],
+      velocity,
+      c[other<field::id>],
+      c[field::position],
+      velocity_out,
+      c[field::id],
+      counts};
 }
 /// Predicts the particles and sorts them by the bins of x*.
 template <class G, class First, class Vectors>
@@ -68,16 +100,16 @@ void sort_predicted(const G& c, const char* stage, const First& first, Vectors* 
                     Vectors* velocity_out) {
   using Real = typename G::Real;
   using Rows = OwnRows<Vec4<Real>>;
-  const auto gather = gather_pass<true>(c, first.boundary, velocity, velocity_out);
+  StepCounts* counts = c[field::counts].sums();
+  const auto gather = gather_pass<true>(c, first.boundary, velocity, velocity_out, counts);
   if constexpr (First::leaves_rows)
     with_dimensions(c.p.dimensions, [&](auto d) {
-      auto& parts = c.context();
-      const Solids<Real> solids = solids_of(parts);
+      const Solids<Real> solids = solids_of(c);
       sort_rows(c, stage, first, gather,
                 Listed<NearPredictPass<Real, decltype(d)::value>>{
                     solids.near.way_left_squared ? solids.near.count : nullptr,
                     {c.p, solids, Rows(c[other<field::position>]), Rows(velocity),
-                     c[field::bin].rows(), parts.counts()}});
+                     c[field::bin].rows(), counts}});
     });
   else
     sort_rows(c, stage, first, gather, NothingListed{});
@@ -97,7 +129,8 @@ struct Sort {
           c, "predict",
           BinPass<Real, decltype(d)::value>{
               c.p, OwnRows<const Vec4<Real>>(c[other<field::position>]), c[field::bin].rows()},
-          gather_pass<false>(c, c.p.boundary, c[other<field::velocity>], c[field::velocity]),
+          gather_pass<false>(c, c.p.boundary, c[other<field::velocity>], c[field::velocity],
+                             nullptr),
           NothingListed{});
     });
   }
@@ -106,8 +139,9 @@ struct Sort {
 /// Rows near solids are predicted in place, before the others.
 using SortPredictedNeeds =
     Needs<Looks<other<field::position>>,
-          If<has_solids, Looks<field::near_row>, Places<other<field::position>>>,
-          Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, MoveNeeds>;
+          If<has_solids, Looks<field::near_row>, Looks<field::near_count>,
+             Places<other<field::position>>>,
+          Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, StepNeeds, FrameNeeds>;
 
 /// Computes x* twice, for the bin and when the particles are gathered. This is cheaper than storing
 /// x* and reading it again.
@@ -122,7 +156,7 @@ struct PredictSort {
     using Real = typename G::Real;
     using Rows = OwnRows<const Vec4<Real>>;
     with_dimensions(c.p.dimensions, [&](auto d) {
-      with_far_boundary(c.context(), [&](const auto& boundary) {
+      with_far_boundary(c, [&](const auto& boundary) {
         Vec4<Real>* velocity = c[other<field::velocity>];
         sort_predicted(c, "predict",
                        PredictPass<Real, std::decay_t<decltype(boundary)>, decltype(d)::value>{
@@ -139,7 +173,7 @@ struct MakeLists {
   using Needs = pbf::Needs<Gathers<field::position>, Looks<field::bin_start>, MakesLists>;
   template <class G>
   static void launch(const G& c) {
-    c.context().make_lists();
+    c.make_lists();
   }
 };
 
@@ -153,6 +187,36 @@ struct Motion {
       b.left_out("motion of obstacles", "no obstacle has motion");
     if (!s.tank_motion) b.left_out("motion of the tank", "no key tank_motion");
   }
+
+  template <class Real>
+  struct Memory : NoMemory {
+    static std::int64_t most_steps(const Scene& s, const Plan& plan) {
+      return has_motion(s) ? std::max(1, kMotionRows / plan.substeps)
+                           : NoMemory::most_steps(s, plan);
+    }
+    /// Puts the obstacles at their places at `time`, until a step moves them.
+    template <class C>
+    void stand(C& c, double time) {
+      if (!has_obstacles(c.scene)) return;
+      const std::vector<PlacedSolid<Real>> all = placed_at(c.scene, c.plan, c.p.boundary, time);
+      c.put(field::solids, all);
+      if (!has_moving_obstacles(c.scene)) return;
+      std::vector<Solid<Real>> solids;
+      for (const PlacedSolid<Real>& s : all) solids.push_back(s.solid);
+      c.put(field::solids_before, solids);
+      c.put(field::solid_velocity, std::vector<SolidVelocity>(all.size()));
+    }
+    /// The table of the steps to come.
+    template <class C>
+    void before_steps(C& c, const StepRange& steps) {
+      if (!has_motion(c.scene) || !(c.p.dt > 0)) return;
+      const MotionRows<Real> rows =
+          motion_rows<Real>(c.scene, c.plan, c.p.boundary, steps, c.plan.substeps);
+      c.put(field::step_row, std::vector<int>{0});
+      if (has_tank_motion(c.scene)) c.put(field::frame_steps, rows.frames);
+      if (has_moving_obstacles(c.scene)) c.put(field::solid_steps, rows.steps);
+    }
+  };
 };
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -2,9 +2,20 @@
 // for the few particles near them.
 #pragma once
 
+#include <vector>
+
 #include "kernels/boundary/far_box.h"
 #include "kernels/boundary/near_split.h"
 #include "lib/program/features/loads.h"
+#include "lib/program/obstacle_motion.h"
+
+namespace pbf::inline program_module {
+inline bool has_solids_in_grid(const Scene& s) { return has_solids(s) && s.domain.open.empty(); }
+/// Enough for all half cells of the grid.
+inline std::int64_t per_half_cell(const Sizes& n) {
+  return n.bins / bins_per_cell(n.scene.dimensions);
+}
+}  // namespace pbf::inline program_module
 
 namespace pbf::inline program_module::field {
 /// See kernels/boundary/near_rows.h.
@@ -12,46 +23,71 @@ inline constexpr struct NearRoom : Numbers {
 } near_room{{"room", per_padded_row, Life::lists}};
 inline constexpr struct NearRow : Plain<int> {
 } near_row{{"near rows", per_particle, Life::lists}};
+inline constexpr struct NearCount : Plain<int> {
+} near_count{{"near count", one_row, Life::lists}};
+/// The half cells in which particles can be near solids, in the order of bins.
+inline constexpr struct HalfCells : Plain<int> {
+} near_half_cells{{"near half cells", per_half_cell, Life::run}};
+inline constexpr struct SurroundingsRow : Objects {
+} surroundings{{kBytesOf<Surroundings>, "surroundings", one_row, Life::run}};
 }  // namespace pbf::inline program_module::field
 
 namespace pbf::inline PBF_VARIANT {
 
-inline bool has_obstacles(const Scene& s) { return !s.obstacles.empty(); }
+template <class Real>
+Surroundings<Real> row_of(const field::SurroundingsRow&);
+
+/// The needs of a pass that asks solids for their density or their distance.
+using SolidNeeds = If<has_obstacles, Looks<field::surroundings>, Looks<field::solids>>;
 /// The needs of a pass over neighbors that leaves near rows to a second launch. The sums of these
 /// rows are stored in the second array of velocities.
-using NearNeeds = If<has_obstacles, Reads<field::near_room>, Looks<field::near_row>>;
+using NearNeeds = Needs<
+    If<has_obstacles, Reads<field::near_room>, Looks<field::near_row>, Looks<field::near_count>>,
+    SolidNeeds>;
 using NearSumNeeds = If<has_obstacles, Places<other<field::velocity>>>;
 /// The needs of a pass that moves particles: rows may become near, and loads are booked.
-using MoveNeeds =
-    Needs<If<has_solids, Updates<field::near_room>, Places<field::near_row>>, BookNeeds>;
+using MoveNeeds = Needs<If<has_solids, Updates<field::near_room>, Places<field::near_row>,
+                           Places<field::near_count>, Looks<field::surroundings>>,
+                        If<has_obstacles, Looks<field::solids>>, BookNeeds>;
+/// The needs of a pass in which particles begin a step. Those of a moving tank need the frame, too.
+using StepNeeds =
+    Needs<MoveNeeds, If<has_moving_obstacles, Looks<field::solids_before>>, Adds<field::counts>>;
+using FrameNeeds = If<has_tank_motion, Looks<field::frame>>;
+
+struct NearSolids;
 
 /// The boundary for one launch. It is not stored because flips and steps without time change it.
-template <class C>
-Solids<typename C::Real> solids_of(C& c) {
-  Solids<typename C::Real> solids = c.solids();
-  static_cast<Box<typename C::Real>&>(solids) = c.p.boundary;
-  solids.loaded = has_wall_loads(c.scene);
+template <class G>
+Solids<typename G::Real> solids_of(const G& c) {
+  using Real = typename G::Real;
+  Solids<Real> solids = c.template memory<NearSolids>().solids;
+  static_cast<Box<Real>&>(solids) = c.p.boundary;
+  solids.around = c.declared(field::surroundings);
   solids.booked = has_loads(c.scene) && c.p.dt > 0;
-  solids.near.sums = c.template data<Vec4<typename C::Real>>(other<field::velocity>);
-  if (!(c.p.dt > 0)) solids.frame = nullptr;
+  solids.frame = c.p.dt > 0 ? c.declared(field::frame) : nullptr;
+  NearRows<Real>& near = solids.near;
+  near.way_left_squared = c.declared(field::near_room);
+  near.row = c.declared(field::near_row);
+  near.count = c.declared(field::near_count);
+  near.sums = c.declared(other<field::velocity>);
   // A far row is farther from all solids than the range of the walls' density.
   const auto way = c.p.dt * c.p.boundary.inv_range;
-  solids.near.per_speed = way * way * solids.near.far_way_squared;
+  near.per_speed = way * way * near.far_way_squared;
   return solids;
 }
 
 /// Calls f with the boundary of the scene: its box, or a box with obstacles or loads. Steps without
 /// time book no loads.
-template <class C, class F>
-void with_boundary(C& c, F&& f) {
-  c.solids().around ? f(solids_of(c)) : f(c.p.boundary);
+template <class G, class F>
+void with_boundary(const G& c, F&& f) {
+  c.template memory<NearSolids>().more_than_walls ? f(solids_of(c)) : f(c.p.boundary);
 }
 
 /// The same for passes that leave particles near solids to a second launch.
-template <class C, class F>
-void with_far_boundary(C& c, F&& f) {
-  using Real = typename C::Real;
-  c.solids().around ? f(FarBox<Real>(solids_of(c))) : f(c.p.boundary);
+template <class G, class F>
+void with_far_boundary(const G& c, F&& f) {
+  c.template memory<NearSolids>().more_than_walls ? f(FarBox<typename G::Real>(solids_of(c)))
+                                                  : f(c.p.boundary);
 }
 
 /// Launches make(boundary), a pass over neighbors: once for all particles, and in scenes with
@@ -59,12 +95,10 @@ void with_far_boundary(C& c, F&& f) {
 /// with loads need the second launch too.
 template <bool moves, class G, class Make>
 void each_then_near(const G& c, Make&& make) {
-  using Real = typename G::Real;
-  auto& parts = c.context();
-  if (!parts.solids().around) return c.pairs(make(c.p.boundary));
-  const Solids<Real> solids = solids_of(parts);
-  if (!solids.obstacles && !(moves && solids.loaded)) return c.pairs(make(c.p.boundary));
-  const auto far = make(FarBox<Real>(solids));
+  const auto& memory = c.template memory<NearSolids>().solids;
+  if (!memory.obstacles && !(moves && memory.loaded)) return c.pairs(make(c.p.boundary));
+  const auto solids = solids_of(c);
+  const auto far = make(FarBox<typename G::Real>(solids));
   const auto near = make(solids);
   c.pairs(FarHalf<std::decay_t<decltype(far)>>{far});
   c.listed(solids.near.count, NearHalf<std::decay_t<decltype(near)>>{near});
@@ -74,17 +108,18 @@ struct FindNear {
   static constexpr PassText text{"near solids", "neighbors"};
   using Needs =
       pbf::Needs<Reads<field::position>, Looks<field::bin_start>, Places<field::near_room>,
-                 Looks<field::near_row>, Places<field::near_row>>;
+                 Looks<field::near_row>, Places<field::near_row>, Looks<field::near_count>,
+                 Places<field::near_count>, SolidNeeds,
+                 If<has_solids_in_grid, Looks<field::near_half_cells>>>;
   template <class G>
   static void launch(const G& c) {
     using Real = typename G::Real;
-    auto& parts = c.context();
-    const Solids<Real> solids = solids_of(parts);
+    const Solids<Real> solids = solids_of(c);
     c.listed(solids.near.count, ForgetNearPass<Real>{solids.near});
     c.items(1, ClearNearPass<Real>{solids.near});
-    if (const auto& cells = parts.near_half_cells(); cells.size() > 0)
-      c.items(int(cells.size()),
-              FindNearPass<Real>{solids, c[field::position].rows(), cells.data(),
+    if (const int cells = c.template memory<NearSolids>().half_cells; cells > 0)
+      c.items(cells,
+              FindNearPass<Real>{solids, c[field::position].rows(), c[field::near_half_cells],
                                  c[field::bin_start], bins_per_cell(c.p.dimensions)});
     else
       c.items(FindNearPass<Real>{solids, c[field::position].rows()});
@@ -97,6 +132,50 @@ struct NearSolids {
   static void add(const Scene& s, B& b) {
     if (has_solids(s)) b.template lists<FindNear>();
   }
+
+  template <class Real>
+  struct Memory : NoMemory {
+    bool more_than_walls = false;  ///< more than a box that stands still
+    Solids<Real> solids{};         ///< without addresses
+    int half_cells = 0;            ///< 0: particles anywhere may be near
+
+    template <class C>
+    void make(C& c) {
+      const Scene& s = c.scene;
+      more_than_walls = has_solids(s) || has_motion(s);
+      if (!has_solids(s)) return;
+      Surroundings<Real> around;
+      around.walls = c.p.boundary;
+      around.solid = c.data(field::solids);
+      around.before = c.data(field::solids_before);
+      around.solids = int(s.obstacles.size());
+      around.flat = c.p.dimensions == 2;
+      around.loads = load_book(s, c.p.boundary, c.data(field::load_sums), c.data(field::patches));
+      c.put(field::surroundings, {around});
+      const RunBounds<Real> run = bounds_of_run(s, c.plan, c.p.boundary);
+      solids.obstacles = has_obstacles(s);
+      solids.loaded = has_wall_loads(s);
+      solids.bounds = run.all;
+      solids.clear = clear_of(c.p.boundary);
+      // The way that a row may make in an iteration of its lists.
+      const int moves = std::max(s.solver.iterations, 1) * (1 + c.plan.shape().repeats);
+      const double move = 0.8 * kNearRoom / moves;
+      solids.near.far_way_squared = Real(move * move);
+      c.exec.to_device(std::vector<Real>(C::padding, solids.near.far_way_squared).data(),
+                       C::padding, c.data(field::near_room) + c.rows());
+      const std::vector<int> cells =
+          half_cells_near_solids(s, run.standing, run.moving, c.p, solids.clear, solids.loaded);
+      half_cells = int(cells.size());
+      if (half_cells > 0) c.put(field::near_half_cells, cells);
+    }
+    /// All rows count as near until lists are made.
+    template <class C>
+    void forget(C& c) {
+      if (!has_solids(c.scene)) return;
+      const auto granted = c.template granted<FindNear>();
+      granted.items(AllNearPass<Real>{solids_of(granted).near, c.rows()});
+    }
+  };
 };
 
 }  // namespace pbf::inline PBF_VARIANT

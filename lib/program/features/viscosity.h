@@ -14,7 +14,7 @@ template <class G, class Rows, class Use>
 void with_xsph(const G& c, GatheredRows<Rows> position, GatheredRows<Rows> velocity,
                OwnRows<Rows> velocity_out, int* bin, const Use& use) {
   c.with_smoothing([&](auto s) {
-    with_far_boundary(c.context(), [&](const auto& boundary) {
+    with_far_boundary(c, [&](const auto& boundary) {
       use(XsphPass<typename G::Real, typename G::Lists, decltype(s)::value,
                    std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists(), position, velocity,
                                                      velocity_out, bin});

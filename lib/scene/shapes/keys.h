@@ -12,7 +12,7 @@
 #include "kernels/shapes/shapes.h"
 #include "lib/base/text.h"
 #include "lib/scene/body_axes.h"
-#include "lib/scene/key_traits.h"
+#include "lib/scene/kinds.h"
 
 namespace pbf::inline scene_module {
 

@@ -28,8 +28,8 @@ seeded_defect(last_cell_off_by_one neighbors kernels/cell_index.h
   [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 1;]]
   [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 2;]])
 seeded_defect(stale_grid neighbors lib/solver/step_context.h
-  [[exec.build_lists(rows_, capacity_, position(),]]
-  [[exec.build_lists(rows_, capacity_, other(field::position),]])
+  [[exec.build_lists(rows_, rows_, position(),]]
+  [[exec.build_lists(rows_, rows_, data(other<field::position>),]])
 seeded_defect(last_neighbour_skipped neighbors lib/exec/cpu/list_maker.h
   [[close_to(simd, c, x, i + l, out) - out);]]
   [[std::max<std::ptrdiff_t>(close_to(simd, c, x, i + l, out) - out, 1) - 1);]])
@@ -150,22 +150,22 @@ seeded_defect(solid_gradient_not_turned lambda kernels/boundary/solid_term.h
 seeded_defect(solid_beside_wall_added density kernels/boundary/surroundings.h
   [[w.density = s.walls.scale - left * free;]]
   [[w.density = w.density + s.walls.scale * o.share;]] solids)
-seeded_defect(solid_turn_transposed predict lib/solver/placed_solids.h
+seeded_defect(solid_turn_transposed predict lib/program/placed_solids.h
   [[out.solid.turn[axis][k] = Real(s.turn[axis][k]);]]
   [[out.solid.turn[axis][k] = Real(s.turn[k][axis]);]] solids)
-seeded_defect(solid_reach_zero density lib/solver/placed_solids.h
+seeded_defect(solid_reach_zero density lib/program/placed_solids.h
   [[out.reach = Real(range);]] [[out.reach = Real(0);]] solids)
 seeded_defect(solid_velocity_missing predict kernels/boundary/surroundings.h
   [[start && s.before ? s.before[k] : placed.solid;]] [[placed.solid;]] solids)
 seeded_defect(solid_pose_of_next_step predict lib/solver/step_solver.h
-  [[first = ((updates_ << options_.level) + done) * n;]]
-  [[first = ((updates_ << options_.level) + done) * n + 1;]] solids)
+  [[((updates_ << options_.level) + done) * n, steps * n,]]
+  [[((updates_ << options_.level) + done) * n + 1, steps * n,]] solids)
 seeded_defect(load_of_clamp_missing loads kernels/boundary/surroundings.h
   [[      move_by(6 + k, at - to);]] [[]] solids)
 seeded_defect(load_of_walls_share loads kernels/boundary/surroundings.h
   [[s.loads.add(6 + k, i, x, (factor * left) * one.gradient);]]
   [[s.loads.add(6 + k, i, x, factor * one.gradient);]] solids)
-seeded_defect(load_of_far_rows loads lib/solver/placed_solids.h
+seeded_defect(load_of_far_rows loads lib/program/placed_solids.h
   [[reach = Real(1) / walls.inv_range + walls.margin + Real(kNearRoom),]]
   [[reach = Real(0.5) / walls.inv_range + walls.margin,]] solids)
 seeded_defect(load_moment_sign loads kernels/boundary/loads.h
@@ -184,12 +184,12 @@ seeded_defect(level_gauge_weight gauges kernels/gauge_probe.h
   [[add(p, p.first + n, i, t * t * t);]] [[add(p, p.first + n, i, t * t);]] solids)
 seeded_defect(velocity_gauge_axis gauges kernels/gauge_probe.h
   [[bounded(update_dt * double(v.z))]] [[bounded(update_dt * double(v.y))]] solids)
-seeded_defect(tank_coriolis_sign predict lib/solver/moving_parts.h
+seeded_defect(tank_coriolis_sign predict lib/program/obstacle_motion.h
   [[out.turn[i][j] = Real(f.turn[i][j])]] [[out.turn[i][j] = Real(-f.turn[i][j])]] tank)
-seeded_defect(tank_euler_missing predict lib/solver/moving_parts.h
+seeded_defect(tank_euler_missing predict lib/program/obstacle_motion.h
   [[out.pull[i][j] = Real(f.pull[i][j]);]]
   [[out.pull[i][j] = Real((f.pull[i][j] + f.pull[j][i]) / 2);]] tank)
-seeded_defect(tank_pivot_missing predict lib/solver/moving_parts.h
+seeded_defect(tank_pivot_missing predict lib/program/obstacle_motion.h
   [[out.pivot = real(f.pivot);]] [[out.pivot = {};]] tank)
 
 # Other arithmetic, as another backend may have it.

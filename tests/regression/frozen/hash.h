@@ -2,11 +2,10 @@
 // against an adversary.
 #pragma once
 
+#include <fmt/core.h>
 #include <cstdint>
 #include <string>
 #include <string_view>
-
-#include "lib/base/text.h"
 
 namespace pbf::test {
 
@@ -18,7 +17,7 @@ class Hash {
     value_ = (value_ ^ 256u) * kPrime;
   }
   /// 16 hexadecimal digits.
-  std::string text() const { return format("%016llx", static_cast<unsigned long long>(value_)); }
+  std::string text() const { return fmt::format("{:016x}", value_); }
 
  private:
   static constexpr std::uint64_t kPrime = 1099511628211u;

@@ -51,7 +51,7 @@ TEST_CASE("a table for people is aligned, also where a word is wider than its co
     double share;
   };
   const TableOf<Row> table({{"name", [](const Row& r) { return r.name; }, -6},
-                            {"share", [](const Row& r) { return known(r.share); }, 8, "%.2f"},
+                            {"share", [](const Row& r) { return known(r.share); }, 8, "{:.2f}"},
                             {"", [](const Row& r) { return r.share > 1 ? "much" : ""; }, -1}},
                            {{"a", 0.5}, {"longer name", 2}, {"b", std::nan("")}});
   CHECK(table.text(" ") ==

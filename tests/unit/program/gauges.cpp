@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "lib/program/levels.h"
+#include "lib/program/loads.h"
 #include "lib/program/plan.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_samples.h"
@@ -23,8 +24,9 @@ double area(const std::string& on, const std::string& at, double radius,
       plan_of("obstacles: [" + obstacles + "]\ngauges: [{name: p, kind: pressure, on: " + on +
                   ", at: " + at + ", radius: " + std::to_string(radius) + "}]\n",
               set);
-  REQUIRE(p.gauges.all.size() == 1);
-  return std::get<gauge_kinds::Pressure>(p.gauges.all[0]).area;
+  REQUIRE(p.gauges.of<PatchTally>().sites.size() == 1);
+  // Pa per N
+  return load_grain(parse(kMinimal, set), p) / p.gauges.columns.at(0).grain.value;
 }
 /// Of a disc whose share falls from 1 at r - d to 0 at r + d.
 double disc(double r) { return kPi * (r * r + kSpacing * kSpacing / 3); }
@@ -61,8 +63,8 @@ TEST_CASE("gauges: the edges of a rectangle are level, then up") {
         plan_of("gauges: [{name: q, kind: flow, center: [0.5, 0.5, 0.5], normal: " + normal +
                     ", size: [" + (set.empty() ? "0.4, " : "") + "0.2]}]\n",
                 set);
-    REQUIRE(p.gauges.all.size() == 1);
-    return std::get<gauge_kinds::Flow>(p.gauges.all[0]).site;
+    REQUIRE(p.gauges.of<FlowTally>().sites.size() == 1);
+    return p.gauges.of<FlowTally>().sites[0];
   };
   const FlowGate x = gate("[2, 0, 0]"), z = gate("[0, 0, -1]");
   const Axes axes = plan_of("").axes;
@@ -94,7 +96,7 @@ TEST_CASE(
   CHECK(left_out(plan_of(""), "gauges") == "no key gauges");
   CHECK(left_out(plan_of(gauge), "gauges").empty());
   CHECK(left_out(plan_of(gauge), "loads on the walls").empty());
-  CHECK(plan_of("").gauges.numbers() == 0);
+  CHECK(plan_of("").gauges.of<ProbeTally>().sums == 0);
 }
 
 TEST_CASE("gauges: the columns of each say where it is, in which unit, and how they are read") {

@@ -85,8 +85,8 @@ TEST_CASE("program: the arrays are those of its passes, each once, and those of 
     std::string more;
     std::vector<std::string> set;
   };
-  const std::set<std::string> always{"position", "velocity", "density",  "id",
-                                     "bin",      "order",    "bin_start"};
+  const std::set<std::string> always{"position", "velocity", "density", "id",
+                                     "counts",   "bin",      "order",   "bin_start"};
   for (const char* iterations : {"solver.iterations=0", "solver.iterations=3"}) {
     std::set<std::string> names;
     const Program p = program_of("", {iterations});

@@ -95,11 +95,11 @@ TEST_CASE("what is not Latin-1, or not UTF-8, is one replacement character each"
   CHECK(drawn_characters("…") == U{0x2026});
   CHECK(drawn_characters("Ω") == U{0xfffd});
   CHECK(drawn_characters("\x01\t\x7f") == U{0xfffd, 0xfffd, 0xfffd});
-  CHECK(drawn_characters("\xc2\x85") == U{0xfffd});    // a control character
-  CHECK(drawn_characters("\xff") == U{0xfffd});        // no UTF-8
-  CHECK(drawn_characters("\xe4z") == U{0xfffd, 'z'});  // Latin-1 as it is
-  CHECK(drawn_characters("z\xc3") == U{'z', 0xfffd});  // cut off
-  CHECK(drawn_characters("\xc1\x81") == U{0xfffd});    // longer than it must be
+  CHECK(drawn_characters("\xc2\x85") == U{0xfffd});     // a control character
+  CHECK(drawn_characters("\xff") == U{0xfffd});         // no UTF-8
+  CHECK(drawn_characters("\xe4z") == U{0xfffd, 'z'});   // Latin-1 as it is
+  CHECK(drawn_characters("z\xc3") == U{'z', 0xfffd});   // cut off
+  CHECK(drawn_characters("\xc1\x81") == U(2, 0xfffd));  // longer than it must be
   CHECK(drawn_characters("\xf0\x80\x80") == U(3, 0xfffd));
   Image image = blank(30, 30), letter = blank(30, 30);
   draw_text(image, "水", 5, 5, 16, kBlack);

@@ -202,8 +202,9 @@ TEST_CASE("the lines lie on the floor, within a thousandth of the way to the eye
   add_floor_grid(view, p, 1, 1e-3, lines);
   REQUIRE(!lines.empty());
   for (const FlatVertex& v : lines) {
-    const Double3 x = p.eye + static_cast<double>(v.x) * p.right + static_cast<double>(v.y) * p.up +
-                      static_cast<double>(v.depth) * p.forward;
+    const auto [right, up, depth] = v.place;
+    const Double3 x = p.eye + static_cast<double>(right) * p.right +
+                      static_cast<double>(up) * p.up + static_cast<double>(depth) * p.forward;
     const double away = length(x - p.eye);
     CHECK(x[2] >= 5 - 2 * p.pixel() * away);  // half the width of a line
     CHECK(x[2] <= 5 + 2e-3 * away);

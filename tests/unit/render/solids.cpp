@@ -46,7 +46,7 @@ double met(const std::vector<SolidVertex>& triangles, const Double3& ray) {
   for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
     const auto at = [&](std::size_t k) {
       const SolidVertex& v = triangles[i + k];
-      return Double3{v.x, v.y, v.depth};
+      return Double3{v.place[0], v.place[1], v.place[2]};
     };
     const Double3 a = at(0), u = at(1) - a, w = at(2) - a, p = cross(ray, w);
     const double det = dot(u, p);
@@ -159,8 +159,8 @@ TEST_CASE("obstacles a million metres from the origin are the same", "[render]")
   REQUIRE(!here.empty());
   REQUIRE(there.size() == here.size());
   for (std::size_t i = 0; i < here.size(); ++i) {
-    CHECK(there[i].x == Approx(here[i].x).margin(1e-5));
-    CHECK(there[i].depth == Approx(here[i].depth).margin(1e-5));
+    CHECK(there[i].place[0] == Approx(here[i].place[0]).margin(1e-5));
+    CHECK(there[i].place[2] == Approx(here[i].place[2]).margin(1e-5));
   }
 }
 

@@ -41,7 +41,8 @@ TEST_CASE("the thread writes every picture under its number, as the renderer dra
   PBF_NEEDS_GL();
   const Folder dir("thread");
   {
-    RenderThread thread(front_view(), (dir.path / "frames").string());
+    RenderThread thread(front_view());
+    thread.into((dir.path / "frames").string());
     for (int i = 0; i < 6; ++i) {
       Snapshot s = at(i);
       thread.draw(s, 7 * i);
@@ -72,7 +73,8 @@ TEST_CASE("the thread draws a surface as the renderer does", "[render]") {
   const Folder dir("thread_surface");
   View view = front_view();
   view.style = RenderStyle::surface;
-  RenderThread thread(view, dir.path.string());
+  RenderThread thread(view);
+  thread.into(dir.path.string());
   for (int i = 0; i < 3; ++i) thread.draw(at(i), i);
   thread.finish();
   Renderer renderer(view);
@@ -86,7 +88,8 @@ TEST_CASE("the thread draws a surface as the renderer does", "[render]") {
 TEST_CASE("an error of the thread is thrown by the next call, once", "[render]") {
   PBF_NEEDS_GL();
   const Folder dir("thread_error");
-  RenderThread thread(front_view(), dir.path.string());
+  RenderThread thread(front_view());
+  thread.into(dir.path.string());
   fs::remove_all(dir.path);
   thread.draw(at(0), 0);
   const auto [code, text] = error_of([&] {
@@ -103,7 +106,8 @@ TEST_CASE("a missing field is refused by the call that brings it", "[render]") {
   const Folder dir("thread_field");
   View view = front_view();
   view.color = ColorBy::speed;
-  RenderThread thread(view, dir.path.string());
+  RenderThread thread(view);
+  thread.into(dir.path.string());
   CHECK(error_of([&] { thread.draw(at(0), 0); }).first == 2);
   CHECK_NOTHROW(thread.finish());
 }
@@ -111,8 +115,10 @@ TEST_CASE("a missing field is refused by the call that brings it", "[render]") {
 TEST_CASE("a folder that cannot be made is an error at once", "[render]") {
   const Folder dir("thread_folder");
   std::ofstream(dir.path) << "a file where the folder should be";
-  const auto [code, text] =
-      error_of([&] { RenderThread thread(front_view(), (dir.path / "frames").string()); });
+  const auto [code, text] = error_of([&] {
+    RenderThread thread(front_view());
+    thread.into((dir.path / "frames").string());
+  });
   CHECK(code == 5);
   CHECK(text.find("frames") != std::string::npos);
 }
@@ -120,6 +126,10 @@ TEST_CASE("a folder that cannot be made is an error at once", "[render]") {
 TEST_CASE("a thread that is never finished still writes what it was given", "[render]") {
   PBF_NEEDS_GL();
   const Folder dir("thread_drop");
-  { RenderThread(front_view(), dir.path.string()).draw(at(1), 3); }
+  {
+    RenderThread thread(front_view());
+    thread.into(dir.path.string());
+    thread.draw(at(1), 3);
+  }
   CHECK(fs::exists(dir.path / "frame_000003.png"));
 }

@@ -1,5 +1,5 @@
 // time.step: auto with obstacles and tanks that move, against formulas of their motions.
-#include "lib/run/motion_step.h"
+#include "lib/run/motion_files.h"
 
 #include <cmath>
 #include <cstdio>

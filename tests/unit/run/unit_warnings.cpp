@@ -1,5 +1,5 @@
 // Values that look as if they were not in SI units.
-#include "lib/run/unit_warnings.h"
+#include "lib/run/warnings.h"
 
 #include "lib/run/warnings.h"
 #include "tests/support/catch.h"

@@ -44,7 +44,7 @@ TEST_CASE("gauges: every kind with its keys is read") {
   CHECK(level_of(s).at == std::vector<double>{0.5, 0.25});
   CHECK(std::get<gauge_keys::Velocity>(s.gauges[1].kind).at == std::vector<double>{0.5, 0.5, 0.1});
   CHECK(std::get<gauge_keys::Flow>(s.gauges[2].kind).size == std::vector<double>{1, 0.2});
-  CHECK(*s.gauges[3].on() == "x_max");
+  CHECK(std::get<gauge_keys::Pressure>(s.gauges[3].kind).on == "x_max");
   CHECK(s.output->gauges_every == 0.05);
   CHECK(parse(kMinimal).gauges.empty());
   CHECK_FALSE(parse(kMinimal + "output: {}\n").output->gauges_every);

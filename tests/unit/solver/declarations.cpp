@@ -37,6 +37,11 @@ const std::vector<Scenario> kScenarios = {
     {"configs/stiff/column",
      {"fluid.spacing=0.025", "solver.levels=on", "solver.iterations=1", "solver.substeps=2",
       R"(obstacles=[{"name":"a","shape":"box","min":[0.05,0.05,0.5],"max":[0.1,0.1,0.6]}])"}},
+    {"configs/stiff/column",
+     {"fluid.spacing=0.025", "solver.iterations=1", "solver.substeps=2",
+      R"(gauges=[{"name":"p","kind":"pressure","on":"z_min","at":[0.05,0.05,0],"radius":0.05},)"
+      R"({"name":"v","kind":"velocity","at":[0.05,0.05,0.5]}])"},
+     60},
     {"tests/regression/frozen/obstacles", {}},
     {"tests/regression/frozen/obstacles", {"solver.fused=false", "domain.loads=false"}},
     {"tests/regression/frozen/obstacles",
@@ -70,8 +75,11 @@ void run(const Scenario& of, Seen& seen) {
   const Plan plan = make_plan(scene, std::int64_t(particles.size()));
   StepSolver<float, PageExec> solver(scene, plan, std::move(particles), seen.touches);
   solver.measure();
-  solver.step(3, {});  // passes joined
-  solver.trace({});    // pass by pass
+  StepOptions watched;
+  if (of.fast > 0) watched.watched_speed = of.fast / 2;
+  solver.step(3, watched);  // passes joined
+  solver.trace({});         // pass by pass
+  solver.readings(Series::gauges, Interval::goes_on);
   StepOptions relieve;
   relieve.without_time = 0.5;
   solver.step(1, relieve);
@@ -127,7 +135,7 @@ struct Sample {
   using Needs = pbf::Needs<Gathers<field::position>, Reads<field::velocity>, Writes<field::density>,
                            Adds<field::load_sums>>;
 };
-using Samples = Granted<StepContext<float, CpuExec>, Sample>;
+using Samples = Granted<StepContext<float, CpuExec, Features>, Sample>;
 template <class Field>
 using Handle = decltype(std::declval<const Samples&>()[std::declval<const Field&>()]);
 template <class Field>

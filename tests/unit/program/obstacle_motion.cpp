@@ -1,5 +1,5 @@
 // How far bodies go in a step.
-#include "lib/solver/moving_parts.h"
+#include "lib/program/obstacle_motion.h"
 
 #include "tests/support/catch.h"
 

@@ -1,5 +1,5 @@
-// Moving bodies in the memory of an executor: a table of the steps of a batch, and its row for the
-// present step.
+// The motion of obstacles and of the tank as kernels take it: a table with a row for each step of a
+// batch of steps.
 #pragma once
 
 #include <algorithm>
@@ -7,15 +7,23 @@
 #include <vector>
 
 #include "kernels/pass_move_solids.h"
+#include "lib/program/feature.h"
 #include "lib/program/motion.h"
 #include "lib/program/obstacles.h"
+#include "lib/program/placed_solids.h"
 #include "lib/program/plan.h"
-#include "lib/solver/placed_solids.h"
 
 namespace pbf::inline PBF_VARIANT {
 
 /// Number of steps in a table, or the number of steps of an update if that is larger.
 constexpr int kMotionRows = 256;
+inline std::int64_t motion_table_rows(const Plan& plan) {
+  return std::max(kMotionRows, plan.substeps);
+}
+inline std::int64_t moving_obstacles(const Scene& scene) {
+  return std::count_if(scene.obstacles.begin(), scene.obstacles.end(),
+                       [](const Obstacle& o) { return o.motion.has_value(); });
+}
 
 template <class Real>
 struct MotionRows {
@@ -95,10 +103,11 @@ std::vector<PlacedSolid<Real>> placed_at(const Scene& scene, const Plan& plan,
   return all;
 }
 
-/// The rows of `count` steps of length dt from step `first` on (counted from the start).
+/// The rows of these steps.
 template <class Real>
 MotionRows<Real> motion_rows(const Scene& scene, const Plan& plan, const Box<Real>& walls,
-                             std::int64_t first, int count, int steps_per_update, double dt) {
+                             const StepRange& steps, int steps_per_update) {
+  const auto [first, count, dt] = steps;
   MotionRows<Real> rows;
   const auto real = [](const Vec3<double>& v) {
     return Vec3<Real>{Real(v.x), Real(v.y), Real(v.z)};
@@ -170,63 +179,5 @@ RunBounds<Real> bounds_of_run(const Scene& scene, const Plan& plan, const Box<Re
   run.all = bounds_of(all);
   return run;
 }
-
-template <class Real, class Exec>
-class MovingParts {
- public:
-  template <class T>
-  using Buffer = typename Exec::template Buffer<T>;
-
-  void make(Exec& exec, const Scene& scene, int steps_per_update) {
-    if (!has_motion(scene)) return;
-    const auto rows = std::size_t(std::max(kMotionRows, steps_per_update));
-    row_.resize(1);
-    if (scene.tank_motion) frames_.resize(rows), frame_.resize(1);
-    for (const Obstacle& o : scene.obstacles) moving_ += o.motion.has_value();
-    if (moving_ == 0) return;
-    steps_.resize(rows * std::size_t(moving_));
-    before_.resize(scene.obstacles.size());
-    velocity_.resize(scene.obstacles.size());
-    const std::vector<SolidVelocity> at_rest(scene.obstacles.size());
-    exec.to_device(at_rest.data(), at_rest.size(), velocity_.data());
-  }
-  /// Uploads the table for the next steps.
-  void set(Exec& exec, const MotionRows<Real>& rows) {
-    const int first = 0;
-    exec.to_device(&first, 1, row_.data());
-    exec.to_device(rows.frames.data(), rows.frames.size(), frames_.data());
-    exec.to_device(rows.steps.data(), rows.steps.size(), steps_.data());
-  }
-  /// Sets the positions at the beginning of the next step to those of `placed`.
-  void stand(Exec& exec, const std::vector<PlacedSolid<Real>>& placed) {
-    if (moving_ == 0) return;
-    std::vector<Solid<Real>> solids;
-    for (const PlacedSolid<Real>& s : placed) solids.push_back(s.solid);
-    exec.to_device(solids.data(), solids.size(), before_.data());
-  }
-  MoveSolidsPass<Real> pass(PlacedSolid<Real>* placed) {
-    return {row_.data(),    frame_.bytes() ? frames_.data() : nullptr,
-            steps_.data(),  moving_,
-            frame_.data(),  placed,
-            before_.data(), velocity_.data()};
-  }
-  // Null if the scene has none.
-  const FrameStep<Real>* frame() { return frame_.bytes() ? frame_.data() : nullptr; }
-  const Solid<Real>* before() { return moving_ ? before_.data() : nullptr; }
-  const SolidVelocity* velocity() { return moving_ ? velocity_.data() : nullptr; }
-
-  std::size_t bytes() const {
-    return row_.bytes() + frames_.bytes() + frame_.bytes() + steps_.bytes() + before_.bytes() +
-           velocity_.bytes();
-  }
-
- private:
-  int moving_ = 0;
-  Buffer<int> row_;
-  Buffer<FrameStep<Real>> frames_, frame_;
-  Buffer<SolidStep<Real>> steps_;
-  Buffer<Solid<Real>> before_;
-  Buffer<SolidVelocity> velocity_;
-};
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -1,0 +1,44 @@
+// What a feature may have besides passes: memory on the host for one solver, with hooks. Its arrays
+// are fields (field.h), so they need no code here.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace pbf::inline program_module {
+
+/// Steps of length dt (s), `count` of them from step `first` on, counted from the start of the run.
+struct StepRange {
+  std::int64_t first = 0;
+  int count = 0;
+  double dt = 0;
+};
+
+/// Hooks that do nothing. A feature that needs some has
+///   template <class Real> struct Memory : NoMemory
+/// with its own version of these functions. c: the StepContext (lib/solver/step_context.h). When a
+/// solver is created, all features are called with make(), then all with stand(), then all with
+/// forget(); when a state is set with stand() and forget(); otherwise as the hooks say. The order
+/// of features is that of their list.
+struct NoMemory {
+  /// Largest number of steps of one batch.
+  template <class S, class P>
+  static std::int64_t most_steps(const S&, const P&) {
+    return std::numeric_limits<std::int64_t>::max();
+  }
+  /// Sets the first contents of the feature's fields: c.put(field, rows).
+  template <class C>
+  void make(C&) {}
+  /// The state is now that of `time` (s since the start): at the start, and after a state was set.
+  template <class C>
+  void stand(C&, double) {}
+  /// What follows from earlier steps no longer holds: positions were set or went back, or the
+  /// length of steps has changed.
+  template <class C>
+  void forget(C&) {}
+  /// Tables of the steps to come. Called before each batch, also before a repeated one.
+  template <class C>
+  void before_steps(C&, const StepRange&) {}
+};
+
+}  // namespace pbf::inline program_module

@@ -1,0 +1,73 @@
+// Makes a program of the passes that features add for a scene.
+#pragma once
+
+#include "lib/program/program.h"
+
+namespace pbf::inline program_module {
+
+/// The passes of a scene by their place in an update, and what is known of all passes.
+struct PassSet {
+  Steps at_start, with_lists, with_all_lists, in_iteration, behind, at_end, at_reading;
+  std::vector<LeftOut> without;
+  std::vector<PassInfo> infos;
+  int (*fused)(int a, int b) = nullptr;  ///< the pass that does the work of a and then b, or -1
+  ProgramStep predict, sort, make_lists;
+  std::vector<Carried> further;
+};
+Program assembled(const Scene& scene, const UpdateShape& shape, PassSet passes, bool without_time);
+
+/// Collects the passes that features add.
+template <class Passes>
+struct Builder : PassSet {
+  template <class P>
+  static ProgramStep step_of() {
+    return {ProgramStep::pass, Passes::template index_of<P>()};
+  }
+  /// The pass runs before each substep.
+  template <class P>
+  void start() {
+    at_start.push_back(step_of<P>());
+  }
+  /// The pass runs whenever lists are made; with `updates_alone` not for a measurement.
+  template <class P>
+  void lists(bool updates_alone = false) {
+    with_lists.push_back(step_of<P>());
+    if (!updates_alone) with_all_lists.push_back(step_of<P>());
+  }
+  template <class P>
+  void iteration() {
+    in_iteration.push_back(step_of<P>());
+  }
+  template <class P>
+  void after() {
+    behind.push_back(step_of<P>());
+  }
+  /// The pass runs after all others, with or without lists.
+  template <class P>
+  void end() {
+    at_end.push_back(step_of<P>());
+  }
+  /// The feature launches the pass itself when it is read.
+  template <class P>
+  void reading() {
+    at_reading.push_back(step_of<P>());
+  }
+  void left_out(const char* what, const char* because) { without.push_back({what, because}); }
+};
+
+/// The program of a list of features (FeatureList in features.h).
+template <class FeatureSet>
+Program make_program_of(const Scene& scene, const UpdateShape& shape, bool without_time = false) {
+  using Passes = typename FeatureSet::Passes;
+  Builder<Passes> b;
+  FeatureSet::add(scene, b);
+  b.infos = Passes::infos(scene);
+  b.fused = &Passes::fused;
+  b.predict = b.template step_of<typename FeatureSet::Predict>();
+  b.sort = b.template step_of<typename FeatureSet::Sort>();
+  b.make_lists = b.template step_of<typename FeatureSet::MakeLists>();
+  b.further = Passes::further_fields();
+  return assembled(scene, shape, std::move(b), without_time);
+}
+
+}  // namespace pbf::inline program_module

@@ -1,0 +1,58 @@
+// Reads what passes have summed for loads and gauges. With Interval::ends, means begin again.
+#pragma once
+
+#include <vector>
+
+#include "lib/solver/granted.h"
+#include "lib/solver/solver.h"
+
+namespace pbf::inline PBF_VARIANT {
+
+/// Rows first ... first + count - 1 of field::loads.
+template <class C>
+std::vector<Load> read_loads(C& c, std::int64_t first, std::int64_t count, Interval interval) {
+  if (count <= 0) return {};
+  std::vector<Load> now(std::size_t(count), Load{}), none(now.size());
+  Load* from = c.data(field::loads) + first;
+  c.exec.to_host(from, now.size(), now.data());
+  if (interval == Interval::ends) c.exec.to_device(none.data(), none.size(), from);
+  return now;
+}
+/// The loads of walls and obstacles, whose rows are the first.
+template <class C>
+std::vector<Load> read_loads(C& c, Interval interval) {
+  return read_loads(c, 0, load_walls(c.scene) - gauges_of<PatchTally>(c.scene), interval);
+}
+
+/// The sums of the gauges of a tally.
+template <class C, class Tally>
+void read_sums(C& c, std::vector<typename Tally::Sums>& rows, Interval interval) {
+  rows.resize(std::size_t(c.plan.gauges.template of<Tally>().sums));
+  if (rows.empty()) return;
+  if constexpr (std::is_same_v<Tally, PatchTally>) {
+    rows = read_loads(c, load_row_of_patch(c.scene, 0), std::int64_t(rows.size()), interval);
+  } else if constexpr (std::is_same_v<Tally, FlowTally>) {
+    c.exec.to_host(c.data(field::flows), rows.size(), rows.data());
+    std::vector<FlowCount> next = rows;
+    for (FlowCount& f : next) f.since = 0, f.time = 0;
+    if (interval == Interval::ends) c.put(field::flows, next);
+  } else {
+    c.put(field::gauge_sums<Tally>, rows);
+    launch_one<ReadGauges<Tally>>(c);
+    c.exec.to_host(c.data(field::gauge_sums<Tally>), rows.size(), rows.data());
+  }
+}
+
+/// The numbers of the columns of Series::gauges (lib/program/column.h).
+template <class C>
+std::vector<double> read_gauges(C& c, Interval interval) {
+  c.exec.begin();
+  GaugeSums sums;
+  std::apply([&]<class... Tally>(
+                 TallySums<Tally>&... of) { (read_sums<C, Tally>(c, of.rows, interval), ...); },
+             sums);
+  c.exec.mark("measure");
+  return c.plan.gauges.finish(sums);
+}
+
+}  // namespace pbf::inline PBF_VARIANT
