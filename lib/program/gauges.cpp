@@ -102,10 +102,10 @@ PlannedGauge<ProbeTally> planned(const gauge_keys::Velocity& g, const Frame& fra
   gauge.site.first = frame.first;
   const double unit = frame.s.h() / frame.s.time.step;  // m/s, of h per update
   gauge.grains = {{unit * frame.particles_around() / double(kProbeUnits)}};
-  gauge.finish = [unit, of = frame.plan.axes.of](const ProbeSums* s) -> std::vector<double> {
+  gauge.finish = [unit, axes = frame.plan.axes](const ProbeSums* s) -> std::vector<double> {
     std::vector<double> v(3, std::numeric_limits<double>::quiet_NaN());
     for (std::size_t k = 0; k < 3 && double(s->weight) / double(kProbeUnits) > 1e-6; ++k)
-      v[std::size_t(of[k])] = unit * double(s->way[k]) / double(s->weight);
+      v[std::size_t(axes.of[k])] = unit * double(s->way[k]) / double(s->weight);
     return v;
   };
   return gauge;
