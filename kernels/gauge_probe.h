@@ -28,6 +28,15 @@ struct ProbeSums {
   std::int64_t weight = 0, way[3] = {0, 0, 0};
 };
 
+/// A tally: a way to make the sums behind the readings of gauges. This one is made at a reading by
+/// gauge_pass().
+struct ProbeTally {
+  using Site = Probe;  ///< what the kernels know of a gauge
+  using Sums = ProbeSums;
+  static constexpr const char *sites = "probes", *sums = "probe sums";  ///< names of their arrays
+  static constexpr bool reads_velocity = true;
+};
+
 }  // namespace pbf
 
 namespace pbf::inline PBF_VARIANT {
@@ -82,5 +91,12 @@ struct ProbePass {
     return std::int64_t(u + (u < 0 ? -0.5 : 0.5));
   }
 };
+
+/// Adds to the sums of the gauges of a tally. An overload for each type of sites.
+template <class Real>
+ProbePass<Real> gauge_pass(const Probe* probe, int probes, const Vec4<Real>* position,
+                           const Vec4<Real>* velocity, double update_dt, ProbeSums* sums) {
+  return {probe, probes, position, velocity, update_dt, sums};
+}
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -29,6 +29,13 @@ struct FlowCount {
   }
 };
 
+/// A tally (kernels/gauge_probe.h) that is made at the end of updates.
+struct FlowTally {
+  using Site = FlowGate;
+  using Sums = FlowCount;
+  static constexpr const char* sites = "gates";
+};
+
 }  // namespace pbf
 
 namespace pbf::inline PBF_VARIANT {

@@ -14,6 +14,9 @@ namespace pbf {
 /// Number of partial sums per wall, which different threads write.
 inline constexpr int kLoadParts = 64;
 
+/// Row of a solid among the sums and loads: behind those of the six walls.
+PBF_HD constexpr int load_row_of_solid(int solid) { return 6 + solid; }
+
 /// Units of booked displacements per h.
 inline constexpr std::int64_t kLoadUnits = std::int64_t(1) << 36;
 
@@ -40,6 +43,13 @@ struct Load {
     for (auto& x : s.moment) f(x);
     f(s.peak), f(s.time), f(s.work);
   }
+};
+
+/// A tally (kernels/gauge_probe.h) that is made with the loads of walls.
+struct PatchTally {
+  using Site = Patch;
+  using Sums = Load;
+  static constexpr const char* sites = "patches";
 };
 
 }  // namespace pbf
@@ -117,8 +127,9 @@ struct LoadPass {
       impulse[k] = unit * double(all.way[k]);
       moment[k] = unit * moment_unit * double(all.moment[k]);
     }
-    if (velocity && wall >= 6 && wall < 6 + obstacles && velocity[wall - 6].moves) {
-      const SolidVelocity& v = velocity[wall - 6];
+    const int solid = wall - load_row_of_solid(0);
+    if (velocity && solid >= 0 && solid < obstacles && velocity[solid].moves) {
+      const SolidVelocity& v = velocity[solid];
       for (int k = 0; k < 3; ++k) to.work -= impulse[k] * v.linear[k] + moment[k] * v.angular[k];
       for (int k = 0; k < 3; ++k) {
         const int b = (k + 1) % 3, c = (k + 2) % 3;

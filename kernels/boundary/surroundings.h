@@ -128,7 +128,7 @@ PBF_HD_APART Vec3<Real> surroundings_path_end(const Surroundings<Real>& s, bool 
       const bool wedged = end.again || !within_rounding(end.x - to, to, s.solid[k].solid.center);
       const bool last = round == rounds && wedged;
       const Vec3<Real> at = !last ? end.x : start && s.before ? carried(s, k, from) : from;
-      move_by(6 + k, at - to);
+      move_by(load_row_of_solid(k), at - to);
       if (last) return at;
       to = inside_walls(at);
       moved = moved || wedged;
@@ -148,7 +148,7 @@ PBF_HD_APART void book_push(const Surroundings<Real>& s, int i, Vec3<Real> x, Re
   if (share > Real(0) && share < Real(1)) {
     const Real left = s.walls.scale - s.walls.template term<S>(x).density;
     for_solids_at<S>(s, x, [&](int k, const SolidTerm<Real>& one) {
-      s.loads.add(6 + k, i, x, (factor * left) * one.gradient);
+      s.loads.add(load_row_of_solid(k), i, x, (factor * left) * one.gradient);
     });
   }
   const Real free = factor * max2(Real(1) - share, Real(0));

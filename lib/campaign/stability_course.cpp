@@ -4,21 +4,17 @@
 #include <numeric>
 
 #include "lib/campaign/stability.h"
-#include "lib/solver/gauge_readings.h"
 
 namespace pbf::inline campaign_module {
 namespace {
 
-/// Largest mass that has passed a flow gauge since the start, kg.
-double most_through(const Scene& scene, Solver& solver) {
-  if (scene.gauges.empty()) return 0;
-  const std::vector<double> readings = solver.gauges(Interval::goes_on);
+/// Largest sum since the start of any gauge: of flow, kg.
+double most_through(const std::vector<ReadingColumn>& columns, Solver& solver) {
   double most = 0;
-  std::size_t at = 0;
-  for (const GaugeData& g : gauge_data(scene)) {
-    at += std::size_t(g.numbers());
-    if (g.further == std::string("total")) most = std::max(most, std::fabs(readings.at(at - 1)));
-  }
+  const std::vector<double> readings = solver.readings(Series::gauges, Interval::goes_on);
+  for_each_number(columns, Series::gauges, [&](const ReadingColumn& c, int, std::size_t k) {
+    if (c.join == Join::total) most = std::max(most, std::fabs(readings[k]));
+  });
   return most;
 }
 
@@ -44,9 +40,12 @@ std::optional<Course> run_course(Start start, const std::function<bool()>& stop,
     c.energy_rise = std::max(c.energy_rise, c.scale > 0 ? rise / c.scale : rise);
     c.speed_max = std::max(c.speed_max, m.speed_max);
     c.penetration = std::max(c.penetration, m.penetration);
-    c.through = std::max(c.through, most_through(scene, *solver));
-    for (const WallLoad& load : m.loads)
-      for (int a = 0; a < 3; ++a) c.impulse[a] += load.force[a] * (m.time - loads_since);
+    if (!scene.gauges.empty()) c.through = std::max(c.through, most_through(plan.columns, *solver));
+    for_each_number(plan.columns, Series::measures,
+                    [&](const ReadingColumn& load, int a, std::size_t k) {
+                      if (load.name == std::string("force"))
+                        c.impulse[a] += m.readings[k] * (m.time - loads_since);
+                    });
     loads_since = m.time;
     compression.push_back({m.compression_mean, m.compression_max});
   });

@@ -25,7 +25,7 @@ bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, WorkTrack&
   LogRow row;
   row.measures = solver.measure();
   row.measures.work = work.until(row.measures);
-  if (has_motion(scene)) solver.loads(Interval::ends), work.take(row.measures);
+  if (has_motion(scene)) solver.readings(Series::measures, Interval::ends), work.take(row.measures);
   energy.follow(row.measures);
   row.iterations = scene.solver.iterations;
   row.dt = scene.time.step;

@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "lib/program/obstacle_poses.h"
+#include "lib/program/column.h"
 #include "lib/scene/scene.h"
 #include "lib/solver/diagnostics.h"
-#include "lib/solver/gauge_readings.h"
 #include "lib/solver/snapshot.h"
 #include "lib/solver/solver.h"
 
@@ -47,8 +46,8 @@ struct RunInfo {
   Double3 domain_min{}, domain_max{};
   double spacing = 0, smoothing_length = 0, rest_density = 0;
   std::int64_t particles = 0;
-  std::int64_t first_update = 0;  ///< of this session
-  std::vector<GaugeData> gauges;  ///< is not read back
+  std::int64_t first_update = 0;       ///< of this session
+  std::vector<ReadingColumn> columns;  ///< of readings; is not read back
 };
 
 /// What is known when a run ends.
@@ -63,12 +62,12 @@ struct RunEnding {
 struct LogRow {
   Diagnostics measures;
   int iterations = 0;
-  double dt = 0;                      ///< s, of the steps of the update that the measure follows
-  std::vector<StageTime> stages;      ///< the same names in every row of a run
-  std::vector<ObstaclePose> poses{};  ///< of what moves; the same
+  double dt = 0;                  ///< s, of the steps of the update that the measure follows
+  std::vector<StageTime> stages;  ///< the same names in every row of a run
+  std::vector<double> poses{};    ///< of Series::poses
 };
 
-/// What the gauges read after an update: gauge_readings().
+/// The readings of Series::gauges after an update.
 struct GaugeRow {
   std::int64_t update = 0;
   double time = 0;  ///< s

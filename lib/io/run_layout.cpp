@@ -26,21 +26,19 @@ const std::vector<LogColumn>& log_columns() {
   return columns;
 }
 
-std::vector<FurtherNumber> further_numbers(const LogRow& row) {
+std::vector<FurtherNumber> further_numbers(const LogRow& row,
+                                           const std::vector<ReadingColumn>& columns) {
   std::vector<FurtherNumber> all;
   for (const StageTime& s : row.stages) all.push_back({"stage/" + s.name, "s", s.seconds});
-  for (const ObstaclePose& p : row.poses) {
-    const std::string name = "pose/" + p.name + "/";
-    for (std::size_t k = 0; k < 3; ++k)
-      all.push_back({name + std::string(1, "xyz"[k]), "m", p.middle[k]});
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t l = 0; l < 3; ++l)
-        all.push_back({name + "turn_" + "xyz"[k] + "xyz"[l], "1", p.turn[k][l]});
-  }
+  const auto add = [&](Series series, const std::vector<double>& numbers) {
+    for_each_number(columns, series, [&](const ReadingColumn& c, int component, std::size_t k) {
+      all.push_back({std::string(c.kind) + "/" + c.of + "/" + number_name(c, component), c.unit,
+                     numbers.at(k)});
+    });
+  };
+  add(Series::poses, row.poses);
   if (row.measures.moved) all.push_back({"work", "J", row.measures.work});
-  for (const WallLoad& l : row.measures.loads)
-    for (const LoadNumber& n : load_numbers())
-      all.push_back({"load/" + l.wall + "/" + n.name, n.unit, n.value(l)});
+  add(Series::measures, row.measures.readings);
   return all;
 }
 

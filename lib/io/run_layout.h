@@ -53,7 +53,9 @@ struct FurtherNumber {
 };
 /// In so many groups below the log.
 inline constexpr int log_groups = 2;
-std::vector<FurtherNumber> further_numbers(const LogRow& row);
+/// `columns`: of the run's readings.
+std::vector<FurtherNumber> further_numbers(const LogRow& row,
+                                           const std::vector<ReadingColumn>& columns);
 
 /// f(column name, value) for every text, and every integer, of a RunSession: one list for both
 /// directions.

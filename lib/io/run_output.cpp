@@ -36,7 +36,7 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip)
   pbf_ = h5::make_group(file_, "pbf");
   write_info(info);
   make_log(0, 0);
-  make_gauges(info.gauges, 0);
+  make_gauges(0);
   make_sessions();
   begin_session(info);
   sync();

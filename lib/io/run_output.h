@@ -59,7 +59,7 @@ class RunOutput {
   void make_tables(hsize_t frames);
   void make_ids(hsize_t frames, hsize_t rows);
   void make_log(hsize_t frames, hsize_t rows);
-  void make_gauges(const std::vector<GaugeData>& data, hsize_t rows);
+  void make_gauges(hsize_t rows);
   void write_gauges();
   void write_info(const RunInfo& info);
   void write_warnings(const std::vector<std::string>& warnings);
@@ -91,8 +91,8 @@ class RunOutput {
   std::vector<std::int64_t> parts_;  // particles of each part; frames of the same number share it
   std::vector<double> last_times_ = std::vector<double>(run_layout::step_rows);  ///< s, last chunk
   h5::Column times_, part_offsets_, part_counts_, point_offsets_, cell_offsets_, id_starts_;
-  std::vector<GaugeData> gauge_data_;
-  std::vector<h5::Column> gauges_;  ///< time, update, then those of the data
+  const std::vector<ReadingColumn> columns_;  ///< of readings
+  std::vector<h5::Column> gauges_;            ///< time, update, then those of the gauges
   std::vector<GaugeRow> waiting_gauges_;
   Stopwatch since_gauges_;
   std::vector<LogRow> waiting_;

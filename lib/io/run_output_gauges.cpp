@@ -8,23 +8,23 @@
 
 namespace pbf::inline io_module {
 
-void RunOutput::make_gauges(const std::vector<GaugeData>& data, hsize_t rows) {
-  gauge_data_ = data;
-  if (data.empty()) return;
+void RunOutput::make_gauges(hsize_t rows) {
   const auto make = [&](const std::string& path, hid_t type, const char* unit, int components) {
     gauges_.push_back(column(pbf_, run_layout::gauges + path, type,
                              {run_layout::log_rows, components > 1 ? components : 0, false, unit},
                              rows));
   };
-  make("time", H5T_IEEE_F64LE, "s", 1);
-  make("update", H5T_STD_I64LE, "1", 1);
-  for (const GaugeData& d : data) {
-    make(d.name, H5T_IEEE_F64LE, d.unit, d.components);
-    if (*d.further) make(std::string(d.further) + "/" + d.name, H5T_IEEE_F64LE, d.further_unit, 1);
-    if (opening_) continue;
-    const h5::Dataset dataset = h5::open_dataset(pbf_, run_layout::gauges + d.name);
-    h5::write_text(dataset, "kind", d.kind);
-    h5::write_text(dataset, "place", d.place);
+  for (const ReadingColumn& c : columns_) {
+    if (c.series != Series::gauges) continue;
+    if (gauges_.empty()) {
+      make("time", H5T_IEEE_F64LE, "s", 1);
+      make("update", H5T_STD_I64LE, "1", 1);
+    }
+    make(*c.name ? std::string(c.name) + "/" + c.of : c.of, H5T_IEEE_F64LE, c.unit, c.components);
+    if (opening_ || *c.name) continue;
+    const h5::Dataset dataset = h5::open_dataset(pbf_, run_layout::gauges + c.of);
+    h5::write_text(dataset, "kind", c.kind);
+    h5::write_text(dataset, "place", c.place);
   }
 }
 
@@ -49,16 +49,14 @@ void RunOutput::write_gauges() {
   gauges_[0].append(numbers);
   gauges_[1].append(updates);
   std::size_t next = 2, first = 0;
-  const auto append = [&](std::size_t components) {
+  for (const ReadingColumn& c : columns_) {
+    if (c.series != Series::gauges) continue;
+    const auto components = std::size_t(c.components);
     numbers.clear();
     for (const GaugeRow& row : waiting_gauges_)
       for (std::size_t k = 0; k < components; ++k) numbers.push_back(row.numbers.at(first + k));
     gauges_[next++].append(numbers);
     first += components;
-  };
-  for (const GaugeData& d : gauge_data_) {
-    append(std::size_t(d.components));
-    if (*d.further) append(1);
   }
   waiting_gauges_.clear();
 }

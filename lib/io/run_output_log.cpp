@@ -46,7 +46,7 @@ void RunOutput::write_further() {
   const hsize_t first = log_.at("time").rows() - waiting_.size();
   std::map<std::string, std::vector<double>> values;
   for (std::size_t k = 0; k < waiting_.size(); ++k)
-    for (const auto& n : run_layout::further_numbers(waiting_[k])) {
+    for (const auto& n : run_layout::further_numbers(waiting_[k], columns_)) {
       if (h5::Column& column = further_[n.column]; !column.open()) {
         column = h5::Column(pbf_, "log/" + n.column, H5T_IEEE_F64LE, {log_rows, 0, false, n.unit});
         column.append(std::vector<double>(first, 0.0));

@@ -52,7 +52,7 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, st
   open_steps(frames);
   make_log(static_cast<hsize_t>(frames), static_cast<hsize_t>(rows.log));
   open_further(static_cast<hsize_t>(rows.log));
-  make_gauges(info.gauges, static_cast<hsize_t>(rows.gauges));
+  make_gauges(static_cast<hsize_t>(rows.gauges));
   opening_ = false;
   sync();  // Values is never longer than NSteps
   set_steps(frames);

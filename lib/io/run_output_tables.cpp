@@ -16,7 +16,9 @@ constexpr hsize_t max_chunk_rows = hsize_t{1} << 22;  // 50 MB of float position
 }  // namespace
 
 RunOutput::RunOutput(const RunInfo& info, bool gzip)
-    : gzip_(gzip), expected_(static_cast<std::size_t>(std::max<std::int64_t>(0, info.particles))) {}
+    : gzip_(gzip),
+      expected_(static_cast<std::size_t>(std::max<std::int64_t>(0, info.particles))),
+      columns_(info.columns) {}
 
 h5::Column RunOutput::column(hid_t parent, const std::string& path, hid_t type,
                              const h5::Layout& layout, hsize_t rows) const {

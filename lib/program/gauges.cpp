@@ -1,105 +1,120 @@
 #include "lib/program/gauges.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "kernels/boundary/box.h"
-#include "kernels/boundary/solid_term.h"
+#include "lib/program/level_line.h"
 #include "lib/program/loads.h"
+#include "lib/program/plan.h"
 #include "lib/scene/surface.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::inline program_module {
 namespace {
 
-constexpr int kPerH = 8;  ///< sample points of a level gauge per h
+/// What gauges are made from besides their keys. Places and directions are converted from SI units
+/// and the scene's axes to the internal frame.
+struct Frame {
+  const Scene& s;
+  const Plan& plan;
+  int first = 0;  ///< number of the gauge's first sum among those of its tally
 
-/// From SI units and the scene's axes to the internal frame.
-class Frame {
- public:
-  Frame(const Scene& s, const Axes& axes) : s_(s), axes_(axes) {}
   void place(const Double3& x, double (&to)[3]) const {
-    const Double3 o = s_.origin();
+    const Double3 o = s.origin();
     for (int k = 0; k < 3; ++k) {
-      const auto a = std::size_t(axes_.of[k]);
-      to[k] = s_.dimensions == 2 && a == 1 ? 0 : (x[a] - o[a]) / s_.h();
+      const auto a = std::size_t(plan.axes.of[k]);
+      to[k] = s.dimensions == 2 && a == 1 ? 0 : (x[a] - o[a]) / s.h();
     }
   }
   void direction(const Double3& v, double (&to)[3]) const {
-    for (int k = 0; k < 3; ++k) to[k] = v[std::size_t(axes_.of[k])];
+    for (int k = 0; k < 3; ++k) to[k] = v[std::size_t(plan.axes.of[k])];
   }
-
- private:
-  const Scene& s_;
-  const Axes& axes_;
+  /// Bound on the number of particles within h of a point: those in a cube of edge 2 h.
+  double particles_around() const { return std::pow(2 * s.h() / s.fluid.spacing, s.dimensions); }
 };
 
-/// The walls with scale and range 1, so that term() gives the share of the kernel behind them.
-Box<double> whole_kernel_walls(const Scene& s, const Axes& axes) {
-  Box<double> box;
-  double extent[3];
-  box.walls = 0;
-  for (int k = 0; k < 3; ++k) {
-    const int a = axes.of[k];
-    extent[k] = (s.domain.max[std::size_t(a)] - s.domain.min[std::size_t(a)]) / s.h();
-    if (s.dimensions == 2 && a == 1) continue;
-    for (const int high : {0, 1})
-      if (!s.domain.is_open(a, high == 1)) box.walls |= 1u << (2 * k + high);
-  }
-  box.extent = {extent[0], extent[1], extent[2]};
-  return box;
+/// What a kind makes of the keys of a gauge.
+template <class Tally>
+struct PlannedGauge {
+  typename Tally::Site site{};
+  int sums = 1;                 ///< number of its sums
+  std::string place{};          ///< for readers of the run file
+  std::vector<Grain> grains{};  ///< of its columns
+  /// The numbers of a reading from its sums, in SI units, column by column.
+  std::function<std::vector<double>(const typename Tally::Sums*)> finish{};
+};
+
+/// x: three numbers.
+std::string text(const auto& x) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0], x[1], x[2]);
 }
 
-template <int D>
-LevelLine level_line(const Probe& p, const Box<double>& walls,
-                     const std::vector<Solid<double>>& solids) {
-  constexpr Smoothing poly6 = D == 2 ? Smoothing::paper_2d : Smoothing::paper;
-  const auto at = [&](double n) {
-    double x[3] = {p.from[0], p.from[1], p.from[2]};
-    x[p.axis] += n * p.step;
-    return Vec3<double>{x[0], x[1], x[2]};
-  };
-  const auto free = [&](double n) {
-    return std::none_of(solids.begin(), solids.end(),
-                        [&](const Solid<double>& o) { return distance<D>(o, at(n)) < 0; });
-  };
-  LevelLine line;
-  for (int n = 0; n < p.count; ++n) {
-    double share = 0;
-    for (const Solid<double>& o : solids) share += solid_term<poly6>(o, at(n), 1.0).share;
-    line.room.push_back((1 - walls.term<poly6>(at(n)).density) * std::max(1 - share, 0.0));
-  }
-  for (int n = 0; n + 1 < p.count; ++n) {
-    const bool here = free(n), there = free(n + 1);
-    LevelPiece piece;
-    if (!here && !there) piece.to = 0;
-    if (here != there) {
-      double a = 0, b = 1;  // the surface lies between
-      for (int k = 0; k < 40; ++k) (free(n + (a + b) / 2) == here ? a : b) = (a + b) / 2;
-      (here ? piece.to : piece.from) = a;
-    }
-    line.pieces.push_back(piece);
-  }
-  return line;
-}
+constexpr int kPerH = 8;  ///< sample points of a level gauge per h
 
-Probe level_probe(const Gauge& g, const Scene& s, const Axes& axes, const Frame& frame) {
-  Probe p;
+PlannedGauge<ProbeTally> planned(const gauge_keys::Level& g, const Frame& frame) {
+  PlannedGauge<ProbeTally> gauge;
+  const Scene& s = frame.s;
+  const bool flat = s.dimensions == 2;
+  Probe& p = gauge.site;
   Double3 from = s.domain.min;
   const std::vector<int> across = axes_across_level(s);
-  for (std::size_t k = 0; k < across.size(); ++k) from[std::size_t(across[k])] = g.at[k];
+  for (std::size_t k = 0; k < across.size(); ++k) {
+    from[std::size_t(across[k])] = g.at[k];
+    gauge.place += fmt::format("{}{} = {:.6g} m", k ? ", " : "", "xyz"[across[k]], g.at[k]);
+  }
   frame.place(from, p.from);
-  p.axis = axes.inside(level_axis(s));
+  p.axis = frame.plan.axes.inside(level_axis(s));
   const auto a = std::size_t(level_axis(s));
   const double length = (s.domain.max[a] - s.domain.min[a]) / s.h();
   const int pieces = int(std::min(std::ceil(length * kPerH), 1e6));
   p.step = length / pieces;
-  p.count = pieces + 1;
-  return p;
+  p.count = gauge.sums = pieces + 1;
+  p.first = frame.first;
+  const Box<double> walls = whole_kernel_walls(s, frame.plan.axes);
+  const double h = s.h(), third = flat ? s.domain.max[1] - s.domain.min[1] : h;
+  // ProbeSums::weight times this is the volume fraction of fluid.
+  const double weight = frame.plan.mass / (s.fluid.rest_density * h * h * third) *
+                        (flat ? Poly6<double, 2>::norm : Poly6<double>::norm) / double(kProbeUnits);
+  gauge.grains = {{h * weight * frame.particles_around()}};
+  gauge.finish = [line = flat ? level_line<2>(p, walls, frame.plan.solids)
+                              : level_line<3>(p, walls, frame.plan.solids),
+                  h, weight, step = p.step](const ProbeSums* sums) -> std::vector<double> {
+    const auto above = [&](std::size_t n) {
+      return weight * double(sums[n].weight) - 0.5 * line.room[n];
+    };
+    double wet = 0, here = above(0);
+    for (std::size_t n = 0; n < line.pieces.size(); ++n) {
+      const double next = above(n + 1);
+      wet += wet_part(here, next, line.pieces[n]);
+      here = next;
+    }
+    return {h * (wet * step)};
+  };
+  return gauge;
 }
 
-FlowGate flow_gate(const Gauge& g, const Scene& s, const Frame& frame) {
-  FlowGate gate;
+PlannedGauge<ProbeTally> planned(const gauge_keys::Velocity& g, const Frame& frame) {
+  PlannedGauge<ProbeTally> gauge{.place = text(g.at) + " m"};
+  frame.place({g.at[0], g.at[1], g.at[2]}, gauge.site.from);
+  gauge.site.moving = true;
+  gauge.site.first = frame.first;
+  const double unit = frame.s.h() / frame.s.time.step;  // m/s, of h per update
+  gauge.grains = {{unit * frame.particles_around() / double(kProbeUnits)}};
+  gauge.finish = [unit, axes = frame.plan.axes](const ProbeSums* s) -> std::vector<double> {
+    std::vector<double> v(3, std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t k = 0; k < 3 && double(s->weight) / double(kProbeUnits) > 1e-6; ++k)
+      v[std::size_t(axes.of[k])] = unit * double(s->way[k]) / double(s->weight);
+    return v;
+  };
+  return gauge;
+}
+
+PlannedGauge<FlowTally> planned(const gauge_keys::Flow& g, const Frame& frame) {
+  PlannedGauge<FlowTally> gauge;
+  const Scene& s = frame.s;
+  FlowGate& gate = gauge.site;
   const Double3 n = unit(g.normal);
   // The first edge is horizontal (perpendicular to z); for a normal along z it is along x.
   const double level = std::hypot(n[0], n[1]);
@@ -120,7 +135,14 @@ FlowGate flow_gate(const Gauge& g, const Scene& s, const Frame& frame) {
     const double edge = e < g.size.size() ? g.size[e] / s.h() : 1e9;
     gate.half[e] = edge / 2 + 1e-5 * (1 + edge);  // particles on a wall, rounded
   }
-  return gate;
+  std::string size;
+  for (const double e : g.size) size += fmt::format("{}{:.6g}", size.empty() ? "" : " x ", e);
+  gauge.place = text(g.center) + " m, normal " + text(g.normal) + ", " + size + " m";
+  gauge.grains = {{0, frame.plan.mass}, {frame.plan.mass}};
+  gauge.finish = [mass = frame.plan.mass](const FlowCount* c) -> std::vector<double> {
+    return {c->time > 0 ? mass * double(c->since) / c->time : 0, mass * double(c->total)};
+  };
+  return gauge;
 }
 
 /// Where the round side of an obstacle is before its centre or axis, seen from x; also beyond the
@@ -144,8 +166,7 @@ double wetted_area(const Patch& patch, int surface, const SurfacePlace& there, c
                                                  : cross(n, {0, 1, 0}));
   const Double3 v = cross(n, u);
   const double tiny = 1e-6 * h;
-  const std::size_t faces = kFaceNames.size();
-  const Obstacle* o = std::size_t(surface) < faces ? nullptr : &s.obstacles[surface - faces];
+  const Obstacle* o = obstacle_of(s, surface);
   const RoundSide<double> side = o ? round_side(*o, s, there.point) : RoundSide<double>{};
   const bool bent = o && side.radius == 0 && is_bent(*o);
   double sum = 0;
@@ -167,63 +188,70 @@ double wetted_area(const Patch& patch, int surface, const SurfacePlace& there, c
   return sum * cell * (rows == 1 ? thick : cell);
 }
 
-Patch patch_of(const Gauge& g, int surface, const SurfacePlace& there, const Scene& s,
-               const Axes& axes, const Frame& frame) {
-  Patch p;
-  const int faces = int(kFaceNames.size());
-  p.wall = surface < faces ? 2 * axes.inside(surface / 2) + surface % 2 : surface;
+PlannedGauge<PatchTally> planned(const gauge_keys::Pressure& g, const Frame& frame) {
+  PlannedGauge<PatchTally> gauge;
+  const Scene& s = frame.s;
+  const int surface = *surface_named(s, g.on);
+  const SurfacePlace there = nearest_place_on(surface, s, {g.at[0], g.at[1], g.at[2]});
+  Patch& p = gauge.site;
+  p.wall = load_row(surface, frame.plan.axes);
+  p.row = load_row_of_patch(s, frame.first);
   frame.place(there.point, p.center);
   frame.direction(there.normal, p.normal);
   p.radius = g.radius / s.h();
   p.soft = s.fluid.spacing / s.h();
-  if (surface < faces) return p;
-  const Obstacle& o = s.obstacles[std::size_t(surface - faces)];
-  if (const RoundSide<double> side = round_side(o, s, there.point); side.radius > 0) {
-    p.bend = side.radius / s.h();
-    frame.place(o.middle(), p.middle);
-    if (side.high > side.low) frame.direction(o.axes()[2], p.axis);
-    p.low = side.low / s.h(), p.high = side.high / s.h();
-  }
-  return p;
+  if (const Obstacle* o = obstacle_of(s, surface))
+    if (const RoundSide<double> side = round_side(*o, s, there.point); side.radius > 0) {
+      p.bend = side.radius / s.h();
+      frame.place(o->middle(), p.middle);
+      if (side.high > side.low) frame.direction(o->axes()[2], p.axis);
+      p.low = side.low / s.h(), p.high = side.high / s.h();
+    }
+  const double area = wetted_area(p, surface, there, s);
+  gauge.place = g.on + " at " + text(g.at) + fmt::format(" m, radius {:.6g} m", g.radius);
+  const Grain grain{load_grain(s, frame.plan) / area};
+  gauge.grains = {grain, grain};
+  gauge.finish = [unit = frame.plan.mass * s.h() / area](const Load* l) -> std::vector<double> {
+    return {l->time > 0 ? unit * l->impulse[0] / l->time : 0, unit * l->peak};
+  };
+  return gauge;
 }
 
 }  // namespace
 
-GaugePlan plan_gauges(const Scene& s, const Axes& axes, const std::vector<Solid<double>>& solids,
-                      double mass) {
-  GaugePlan plan;
-  const Frame frame(s, axes);
-  const Box<double> walls = whole_kernel_walls(s, axes);
-  const bool flat = s.dimensions == 2;
-  const double h = s.h(), third = flat ? s.domain.max[1] - s.domain.min[1] : h;
-  plan.weight = mass / (s.fluid.rest_density * h * h * third) *
-                (flat ? Poly6<double, 2>::norm : Poly6<double>::norm) / double(kProbeUnits);
-  for (const Gauge& g : s.gauges) {
-    const Double3 at = g.at.size() == 3 ? Double3{g.at[0], g.at[1], g.at[2]} : Double3{};
-    if (g.kind == GaugeKind::level || g.kind == GaugeKind::velocity) {
-      Probe p;
-      if (g.kind == GaugeKind::level) {
-        p = level_probe(g, s, axes, frame);
-        plan.lines.push_back(flat ? level_line<2>(p, walls, solids)
-                                  : level_line<3>(p, walls, solids));
-      } else {
-        frame.place(at, p.from);
-        p.moving = true;
-      }
-      p.first = plan.places;
-      plan.places += p.count;
-      plan.probes.push_back(p);
-    } else if (g.kind == GaugeKind::flow) {
-      plan.gates.push_back(flow_gate(g, s, frame));
-    } else {
-      const int surface = *surface_named(s, g.on);
-      const SurfacePlace there = nearest_place_on(surface, s, at);
-      plan.patches.push_back(patch_of(g, surface, there, s, axes, frame));
-      plan.patches.back().row = int(first_gauge_row(s)) + int(plan.areas.size());
-      plan.areas.push_back(wetted_area(plan.patches.back(), surface, there, s));
-    }
+GaugePlan plan_gauges(const Scene& scene, const Plan& plan) {
+  GaugePlan gauges;
+  Frame frame{scene, plan};
+  for (const Gauge& g : scene.gauges)
+    std::visit(
+        [&]<class Keys>(const Keys& keys) {
+          using Tally = typename Keys::Tally;
+          auto& of = std::get<TalliedGauges<Tally>>(gauges.tallies);
+          frame.first = of.sums;
+          const PlannedGauge<Tally> gauge = planned(keys, frame);
+          of.sites.push_back(gauge.site);
+          of.sums += gauge.sums;
+          for (std::size_t k = 0; k < Keys::columns.size(); ++k) {
+            const GaugeColumn& c = Keys::columns[k];
+            gauges.columns.push_back({Keys::word, g.name, c.name, c.unit, gauge.place, c.join,
+                                      c.components, Series::gauges, gauge.grains.at(k)});
+          }
+          gauges.finish_each.push_back(
+              [first = frame.first, finish = gauge.finish](const GaugeSums& sums) {
+                return finish(std::get<TallySums<Tally>>(sums).rows.data() + first);
+              });
+        },
+        g.kind);
+  return gauges;
+}
+
+std::vector<double> GaugePlan::finish(const GaugeSums& sums) const {
+  std::vector<double> out;
+  for (const auto& finish_one : finish_each) {
+    const std::vector<double> numbers = finish_one(sums);
+    out.insert(out.end(), numbers.begin(), numbers.end());
   }
-  return plan;
+  return out;
 }
 
 }  // namespace pbf::inline program_module

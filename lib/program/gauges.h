@@ -1,49 +1,54 @@
-// The gauges of a scene in the form that the kernels use.
+// The gauges of a scene in the form that the kernels use. A tally (kernels/gauge_probe.h) is a way
+// to make the sums behind readings; the kinds of gauges that share one are its gauges.
 #pragma once
 
+#include <algorithm>
+#include <functional>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
-#include "kernels/axes.h"
-#include "kernels/boundary/loads.h"
-#include "kernels/boundary/obstacle.h"
-#include "kernels/boundary/patch.h"
-#include "kernels/gauge_probe.h"
-#include "kernels/pass_flow.h"
-#include "lib/scene/scene.h"
+#include "lib/program/column.h"
 
 namespace pbf::inline program_module {
 
-/// The interval between two sample points of a level gauge.
-struct LevelPiece {
-  double from = 0, to = 1;  ///< the part of it outside of obstacles, as fractions
-};
+/// Number of the scene's gauges of a tally.
+template <class Tally>
+int gauges_of(const Scene& scene) {
+  return int(std::ranges::count_if(scene.gauges, [](const Gauge& g) {
+    return std::visit(
+        []<class Keys>(const Keys&) { return std::is_same_v<typename Keys::Tally, Tally>; },
+        g.kind);
+  }));
+}
 
-/// Where fluid can be along a level gauge (lib/solver/gauge_readings.h).
-struct LevelLine {
-  std::vector<double> room;        ///< at each point, the share of the kernel outside of solids
-  std::vector<LevelPiece> pieces;  ///< between the points
+/// In the order of the scene.
+template <class Tally>
+struct TalliedGauges {
+  std::vector<typename Tally::Site> sites;
+  int sums = 0;  ///< number of sums of all
 };
+template <class Tally>
+struct TallySums {
+  std::vector<typename Tally::Sums> rows;
+};
+/// The sums of one reading.
+using GaugeSums = gauge_keys::EachTally<TallySums>;
 
-/// Each list in the order of its gauges in the scene.
 struct GaugePlan {
-  std::vector<Probe> probes;     ///< of level and velocity gauges
-  std::vector<LevelLine> lines;  ///< of level gauges
-  std::vector<FlowGate> gates;
-  std::vector<Patch> patches;
-  std::vector<double> areas;  ///< m^2, integral of patch_share() over the surface of each patch
-  int places = 0;             ///< sample points of all probes
-  double weight = 0;          ///< ProbeSums::weight times this is the volume fraction of fluid
+  gauge_keys::EachTally<TalliedGauges> tallies;
+  std::vector<ReadingColumn> columns;  ///< gauge after gauge
+  std::vector<std::function<std::vector<double>(const GaugeSums&)>> finish_each;  ///< by gauge
+
+  template <class Tally>
+  const TalliedGauges<Tally>& of() const {
+    return std::get<TalliedGauges<Tally>>(tallies);
+  }
+  /// The numbers of a reading in SI units.
+  std::vector<double> finish(const GaugeSums& sums) const;
 };
 
-/// Sums of one reading, in the order of the scene's gauges.
-struct GaugeSums {
-  std::vector<ProbeSums> places;
-  std::vector<FlowCount> flows;
-  std::vector<Load> patches;
-};
-
-/// `solids`: Plan::solids; `mass`: kg, of one particle.
-GaugePlan plan_gauges(const Scene& scene, const Axes& axes,
-                      const std::vector<Solid<double>>& solids, double mass);
+/// `plan`: with its axes, solids and mass.
+GaugePlan plan_gauges(const Scene& scene, const Plan& plan);
 
 }  // namespace pbf::inline program_module

@@ -1,17 +1,15 @@
-// Selects the walls, and the gauges on them, whose loads are summed.
+// The walls, and the gauges on them, whose loads are summed: which, their rows, their readings.
 #pragma once
 
 #include <algorithm>
+#include <vector>
 
+#include "lib/program/gauges.h"
 #include "lib/scene/surface.h"
 
 namespace pbf::inline program_module {
 
-inline std::int64_t pressure_gauges(const Scene& scene) {
-  return std::count_if(scene.gauges.begin(), scene.gauges.end(),
-                       [](const Gauge& g) { return g.kind == GaugeKind::pressure; });
-}
-inline bool has_pressure_gauges(const Scene& scene) { return pressure_gauges(scene) > 0; }
+inline bool has_pressure_gauges(const Scene& scene) { return gauges_of<PatchTally>(scene) > 0; }
 
 /// Whether any loads are summed. Pressure gauges need them: they use a share of a surface's load.
 inline bool has_loads(const Scene& scene) {
@@ -29,23 +27,42 @@ inline bool has_wall_loads(const Scene& scene) {
 /// Whether the boundary is more than plain walls.
 inline bool has_solids(const Scene& scene) { return !scene.obstacles.empty() || has_loads(scene); }
 
+// Rows of sums and of loads: those of the six faces along the internal axes (0 for open ones), then
+// those of all obstacles, then those of the gauges on them.
+
+/// Of a surface (surface_named()).
+inline int load_row(int surface, const Axes& axes) {
+  const int faces = int(kFaceNames.size());
+  return surface < faces ? 2 * axes.inside(surface / 2) + surface % 2
+                         : load_row_of_solid(surface - faces);
+}
+/// Of the k-th gauge.
+inline int load_row_of_patch(const Scene& scene, int k) {
+  return load_row_of_solid(int(scene.obstacles.size())) + k;
+}
+/// Number of rows.
+inline std::int64_t load_walls(const Scene& scene) {
+  return has_loads(scene) ? load_row_of_patch(scene, gauges_of<PatchTally>(scene)) : 0;
+}
+
 /// The bits of LoadBook::summed. Includes moving obstacles, whose work is computed from their load.
 inline std::uint64_t summed_walls(const Scene& scene) {
   std::uint64_t bits = scene.domain.loads ? 63 : 0;
-  for (std::size_t k = 0; k < scene.obstacles.size() && k + kFaceNames.size() < 64; ++k)
-    if (scene.obstacles[k].loads || scene.obstacles[k].motion)
-      bits |= std::uint64_t(1) << (k + kFaceNames.size());
+  for (int k = 0; k < int(scene.obstacles.size()) && load_row_of_solid(k) < 64; ++k)
+    if (const Obstacle& o = scene.obstacles[std::size_t(k)]; o.loads || o.motion)
+      bits |= std::uint64_t(1) << load_row_of_solid(k);
   return bits;
 }
 
-/// The first of the gauges' rows of sums. Before them are the rows of the six faces (0 for open
-/// ones) and of all obstacles.
-inline std::int64_t first_gauge_row(const Scene& scene) {
-  return std::int64_t(kFaceNames.size() + scene.obstacles.size());
-}
-/// Number of rows of sums.
-inline std::int64_t load_walls(const Scene& scene) {
-  return has_loads(scene) ? first_gauge_row(scene) + pressure_gauges(scene) : 0;
-}
+struct Plan;
+
+/// Bound on the rounding of a force to whole units, N: one unit of displacement for each
+/// contribution of a particle to a wall in an update. A particle contributes after the prediction
+/// and, per iteration, by the pushes of walls and levels and by the stop at walls.
+double load_grain(const Scene& scene, const Plan& plan);
+
+/// The numbers of the columns of loads (lib/program/column.h) from the loads of all rows.
+std::vector<double> load_readings(const std::vector<Load>& loads, const Scene& scene,
+                                  const Plan& plan);
 
 }  // namespace pbf::inline program_module

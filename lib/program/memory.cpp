@@ -147,7 +147,7 @@ void add_checkpoint(const Scene& s, const Plan& plan, const std::string& real, M
 }
 
 /// Measured: see tests/regression/lean_check and tests/regression/lean/README.md.
-void add_fixed(const Scene& s, MemoryPlan& memory) {
+void add_fixed(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   const auto mb = [](double x) { return std::int64_t(x * 1e6); };
 #ifdef PBF_HAS_CUDA
   const double program = 16.5;  // the device's code is mapped, and read only by a run on a device
@@ -158,7 +158,7 @@ void add_fixed(const Scene& s, MemoryPlan& memory) {
   if (s.output || s.checkpoint) memory.fixed.push_back({"HDF5", mb(4.5), false, true});
   if (s.output)  // per dataset two nodes with keys, and HDF5's data about each
     memory.fixed.push_back(
-        {"indices of the run file", mb(0.068 * run_file_datasets(s)), false, true});
+        {"indices of the run file", mb(0.068 * run_file_datasets(plan)), false, true});
   if (s.output && s.output->compression == Compression::gzip)
     memory.fixed.push_back({"zlib", mb(0.8), false, true});
   if (s.render) {
@@ -220,7 +220,7 @@ MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
   add_checkpoint(s, plan, real, memory);
   const std::int64_t start = add_start(s, plan, real, memory);
   const std::int64_t relieved = add_prestabilize(s, plan, real, memory);
-  add_fixed(s, memory);
+  add_fixed(s, plan, memory);
   std::int64_t later = 0;
   for (const FixedMemory& f : memory.fixed) later += f.after_start ? f.bytes : 0;
   const std::int64_t beside =

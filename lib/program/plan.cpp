@@ -100,17 +100,18 @@ void plan_left_out(Plan& plan, const Scene& s) {
 constexpr double kOtherDatasets = 48;  // of run.vtkhdf, without the columns of log and gauges
 
 /// Columns of the log: diagnostics and stages; loads on walls and obstacles; poses of moving ones.
-double log_columns(const Scene& s) {
-  double columns = s.domain.loads ? 46 + 6 * 7 : 46;
-  for (const Obstacle& o : s.obstacles) columns += (o.loads ? 7 : 0) + (o.motion ? 12 : 0);
+double log_columns(const Plan& plan) {
+  double columns = 46;
+  for (const ReadingColumn& c : plan.columns)
+    if (c.series != Series::gauges) columns += c.components;
   return columns;
 }
 
-double gauge_columns(const Scene& s) {
-  double columns = s.gauges.empty() ? 0 : 2;
-  for (const Gauge& g : s.gauges)
-    columns += g.kind == GaugeKind::velocity ? 3 : g.kind == GaugeKind::level ? 1 : 2;
-  return columns;
+double gauge_columns(const Plan& plan) {
+  double columns = 0;
+  for (const ReadingColumn& c : plan.columns)
+    if (c.series == Series::gauges) columns += c.components;
+  return columns > 0 ? 2 + columns : 0;
 }
 
 /// Bytes of a table of run.vtkhdf with columns of 8 bytes per row, in whole chunks of 1024 rows.
@@ -140,8 +141,8 @@ void plan_files(Plan& plan, const Scene& s) {
     const double bytes =
         (frames * row + 12) * n / (s.output->compression == Compression::gzip ? 1.45 : 1) +
         frames * std::min(5 * n, 9e3) + table_bytes(kOtherDatasets, 0) +
-        table_bytes(log_columns(s), double(schedule.measures_until(all))) +
-        table_bytes(gauge_columns(s), double(schedule.gauges_until(all)));
+        table_bytes(log_columns(plan), double(schedule.measures_until(all))) +
+        table_bytes(gauge_columns(plan), double(schedule.gauges_until(all)));
     add("run.vtkhdf", 1, bytes, std::to_string(std::int64_t(frames)) + " frames");
   }
   if (s.render) {
@@ -155,8 +156,8 @@ void plan_files(Plan& plan, const Scene& s) {
 
 }  // namespace
 
-double run_file_datasets(const Scene& s) {
-  return kOtherDatasets + log_columns(s) + gauge_columns(s);
+double run_file_datasets(const Plan& plan) {
+  return kOtherDatasets + log_columns(plan) + gauge_columns(plan);
 }
 
 UpdateShape Plan::shape() const { return {substeps, lists_per_update, repeats}; }
@@ -190,7 +191,8 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   plan.program = make_program(s, plan.shape());
   plan_grid(plan, s);
   plan.solids = solids_of(s, plan.axes);
-  plan.gauges = plan_gauges(s, plan.axes, plan.solids, plan.mass);
+  plan.gauges = plan_gauges(s, plan);
+  plan.columns = reading_columns(s, plan);
   if (has_levels(s))
     plan.levels = plan_levels(in_internal_axes(s, plan.axes), plan.cell_edge, plan.vol);
   plan.memory = plan_memory(s, plan);

@@ -8,6 +8,7 @@
 
 #include "kernels/axes.h"
 #include "lib/base/json.h"
+#include "lib/program/column.h"
 #include "lib/program/gauges.h"
 #include "lib/program/levels.h"
 #include "lib/program/memory.h"
@@ -55,6 +56,7 @@ struct Plan {
   LevelPlan levels;
   std::vector<Solid<double>> solids;  ///< of obstacles, in internal axes; lib/program/obstacles.h
   GaugePlan gauges;
+  std::vector<ReadingColumn> columns;  ///< of readings: reading_columns()
   Program program;
   MemoryPlan memory;
   std::vector<LeftOut> left_out;
@@ -65,7 +67,7 @@ struct Plan {
 };
 
 /// Number of datasets of run.vtkhdf, including the columns of log and gauges. Each has an index.
-double run_file_datasets(const Scene& scene);
+double run_file_datasets(const Plan& plan);
 
 /// Pure: touches no file and no device. `particles`: from count_particles(). `start`: from
 /// start_neighbors(), for the memory of a crowded start; without it, the start is planned as fluid

@@ -35,12 +35,13 @@ void Rows::take(Diagnostics& m, double dt) {
   const auto& writer = run_.writer;
   run_.clock.begin();
   if (writer) {
-    writer->log({m, run_.scene.solver.iterations, dt, since, obstacle_poses(run_.scene, m.time)});
+    writer->log({m, run_.scene.solver.iterations, dt, since, pose_readings(run_.scene, m.time)});
     run_.clock.mark("write");
   }
   if (!run_.json) return;
   const std::int64_t frames = writer ? writer->frames_written() : 0;
-  const std::string line = measure_json(m, run_.control.wall.seconds(), frames, since) + "\n";
+  const std::string line =
+      measure_json(m, run_.control.wall.seconds(), frames, since, run_.plan.columns) + "\n";
   // A closed pipe is no error, as for stdout.
   if ((std::fwrite(line.data(), 1, line.size(), run_.json) != line.size() ||
        std::fflush(run_.json) != 0) &&

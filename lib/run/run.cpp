@@ -51,7 +51,7 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   info.rest_density = scene.fluid.rest_density;
   info.particles = run.plan.particles;
   info.first_update = run.from.update();
-  info.gauges = gauge_data(scene);
+  info.columns = run.plan.columns;
   return info;
 }
 

@@ -216,7 +216,8 @@ double short_number(double value) {
 }  // namespace
 
 std::string measure_json(const Diagnostics& m, double wall, std::int64_t frames,
-                         const std::vector<StageTime>& stages) {
+                         const std::vector<StageTime>& stages,
+                         const std::vector<ReadingColumn>& columns) {
   Json out{{"update", m.update},
            {"time", short_number(m.time)},
            {"wall", short_number(wall)},
@@ -229,9 +230,11 @@ std::string measure_json(const Diagnostics& m, double wall, std::int64_t frames,
     else
       out[name] = value;
   }
-  for (const WallLoad& l : m.loads)
-    for (const LoadNumber& n : load_numbers())
-      out["loads"][l.wall][n.name] = short_number(n.value(l));
+  for_each_number(columns, Series::measures,
+                  [&](const ReadingColumn& c, int component, std::size_t k) {
+                    out[c.kind + std::string("s")][c.of][number_name(c, component)] =
+                        short_number(m.readings[k]);
+                  });
   Json& times = out["stages"] = Json::object();
   for (const StageTime& s : stages) times[s.name] = short_number(s.seconds);
   return json_text(out);

@@ -14,8 +14,9 @@ namespace pbf::inline run_module {
 inline double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
 
 /// One JSON object on one line: measurements, wall-clock seconds, frames that are safely on disk,
-/// seconds per stage.
+/// seconds per stage. `columns`: of the run's readings.
 std::string measure_json(const Diagnostics& measures, double wall, std::int64_t frames,
-                         const std::vector<StageTime>& stages);
+                         const std::vector<StageTime>& stages,
+                         const std::vector<ReadingColumn>& columns);
 
 }  // namespace pbf::inline run_module

@@ -80,7 +80,7 @@ std::optional<GaugeRow> Watch::gauges() {
   if (!take_gauges_ || !schedule_.reads_gauges(u)) return std::nullopt;
   const bool regular = u % schedule_.gauge_every == 0;
   return GaugeRow{u, double(u) * scene_.time.step,
-                  solver_.gauges(regular ? Interval::ends : Interval::goes_on)};
+                  solver_.readings(Series::gauges, regular ? Interval::ends : Interval::goes_on)};
 }
 
 Diagnostics Watch::measured() {
@@ -92,10 +92,10 @@ Diagnostics Watch::measured() {
 /// Returns whether the measurement stays: false if the session goes back.
 bool Watch::measure(bool judged) {
   Diagnostics m = measured();
-  // Read loads before a state is kept, so that going back does not repeat them. A row between two
+  // Read them before a state is kept, so that going back does not repeat them. A row between two
   // regular measurements, which a longer run would not have, ends no interval.
   const bool regular = m.update % schedule_.measure_every == 0;
-  m.loads = solver_.loads(regular ? Interval::ends : Interval::goes_on);
+  m.readings = solver_.readings(Series::measures, regular ? Interval::ends : Interval::goes_on);
   const bool first = !begun_;
   if (first) first_ = m, begin(m, {}, {});
   const double dt = std::ldexp(scene_.time.step, -options().level);

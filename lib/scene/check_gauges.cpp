@@ -12,9 +12,17 @@
 namespace pbf::inline scene_module {
 namespace {
 
-/// Reserved names: other members of /pbf/gauges, and the names of the faces' axes.
-constexpr std::string_view kTaken[] = {"time", "update", "total", "peak"};
-constexpr std::size_t kMostFlows = 32;
+/// Names of other members of /pbf/gauges: the columns of all, and those of the kinds.
+std::vector<std::string> taken_names() {
+  std::vector<std::string> taken{"time", "update"};
+  for_each_kind<gauge_keys::Any>([&](const auto& kind) {
+    for (const GaugeColumn& c : kind.columns)
+      if (*c.name) taken.push_back(c.name);
+  });
+  return taken;
+}
+
+constexpr int kMostFlows = 32;  // bits of a side (kernels/pass_flow.h)
 
 class GaugeChecker : public SceneRules {
  public:
@@ -22,36 +30,21 @@ class GaugeChecker : public SceneRules {
 
   void run() {
     if (!good(s_.gauges)) return;
-    check_names(s_.gauges, "gauges", "data of the run file", kTaken,
+    check_names(s_.gauges, "gauges", "data of the run file", taken_names(),
                 "a name that /pbf/gauges has already");
-    std::size_t flows = 0;
+    int flows = 0;
     for (const Gauge& g : s_.gauges) {
       if (!good(g.kind)) continue;
-      if (g.kind == GaugeKind::flow && ++flows > kMostFlows)
+      if (std::get_if<gauge_keys::Flow>(&g.kind) && ++flows > kMostFlows)
         add(g.kind, "is the 33rd flow gauge, at most 32 are possible; remove some");
-      if (good(s_.dimensions, s_.domain.min, s_.domain.max, s_.gravity)) check_gauge(g);
+      if (good(s_.dimensions, s_.domain.min, s_.domain.max, s_.gravity))
+        std::visit([&](const auto& keys) { check(keys); }, g.kind);
     }
   }
 
  private:
-  void check_gauge(const Gauge& g) {
-    switch (g.kind) {
-      case GaugeKind::level:
-        if (good(g.at)) check_level(g);
-        break;
-      case GaugeKind::velocity:
-        if (good(g.at) && is_place(g.at)) inside(g.at, place(g.at));
-        break;
-      case GaugeKind::flow:
-        check_flow(g);
-        break;
-      case GaugeKind::pressure:
-        check_pressure(g);
-        break;
-    }
-  }
-
-  void check_level(const Gauge& g) {
+  void check(const gauge_keys::Level& g) {
+    if (!good(g.at)) return;
     const std::vector<int> across = axes_across_level(s_);
     std::string wanted;
     for (const int a : across) wanted += (wanted.empty() ? "[" : ", ") + std::string(kAxes[a]);
@@ -63,7 +56,11 @@ class GaugeChecker : public SceneRules {
     inside(g.at, at);
   }
 
-  void check_flow(const Gauge& g) {
+  void check(const gauge_keys::Velocity& g) {
+    if (good(g.at) && is_place(g.at)) inside(g.at, place(g.at));
+  }
+
+  void check(const gauge_keys::Flow& g) {
     if (good(g.normal) && dot(g.normal, g.normal) == 0)
       add(g.normal, "has no direction; give the way that counts as positive, [1, 0, 0] say");
     else if (good(g.normal) && flat() && g.normal[1] != 0)
@@ -76,7 +73,7 @@ class GaugeChecker : public SceneRules {
     if (good(g.center)) inside(g.center, g.center);
   }
 
-  void check_pressure(const Gauge& g) {
+  void check(const gauge_keys::Pressure& g) {
     const bool sizes = good(s_.fluid.spacing);
     if (good(g.radius) && sizes && g.radius < 2 * s_.fluid.spacing * (1 - 1e-9))
       add(g.radius,
@@ -86,15 +83,15 @@ class GaugeChecker : public SceneRules {
     if (!good(g.on, s_.obstacles, s_.domain.open)) return;
     const std::optional<int> surface = surface_named(s_, g.on);
     if (!surface) return add(g.on, "{}", unknown_surface(g.on));
-    const int faces = int(kFaceNames.size());
-    if (*surface < faces) {
+    const Obstacle* o = obstacle_of(s_, *surface);
+    if (!o) {
       if (flat() && *surface / 2 == 1)
         return add(g.on, "{} is no wall with dimensions: 2; give another", g.on);
       if (s_.domain.is_open(*surface / 2, *surface % 2 == 1))
         return add(g.on, "{} is open, without a wall (domain.open); give another", g.on);
-    } else if (!good_obstacle(s_.obstacles[std::size_t(*surface - faces)])) {
+    } else if (!good_obstacle(*o)) {
       return;
-    } else if (s_.obstacles[std::size_t(*surface - faces)].motion) {
+    } else if (o->motion) {
       return add(g.on,
                  "{} moves, and a pressure gauge stays where it is; give it loads instead "
                  "(obstacles[].loads), or put the gauge on what stands",
@@ -112,9 +109,8 @@ class GaugeChecker : public SceneRules {
                  "no fluid comes to this place of {}: another obstacle or the end of the domain is "
                  "before it; move it",
                  g.on);
-    if (*surface < faces || !good(g.radius)) return;
-    const double radius =
-        round_side(s_.obstacles[std::size_t(*surface - faces)], s_, there.point).radius;
+    if (!o || !good(g.radius)) return;
+    const double radius = round_side(*o, s_, there.point).radius;
     if (radius > 0 && g.radius > radius - d)
       add(g.radius, "is {}, more than the radius of {} less fluid.spacing ({} m); lower it",
           g.radius, g.on, radius - d);

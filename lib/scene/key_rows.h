@@ -1,7 +1,9 @@
 // Functions that write the rows of a table of keys. Only the files with rows include this header.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -38,10 +40,6 @@ Key key(const char* member, Member& (*get)(const Object&), auto values, const ch
 
 inline auto number(const char* unit, Range range) {
   return [=](Key& row) { row.unit = std::string(unit), row.range = range; };
-}
-/// One number or a list of up to `most`, depending on the other keys of the entry.
-inline auto numbers(const char* unit, Range range, std::size_t most) {
-  return [=](Key& row) { number(unit, range)(row), row.most = most; };
 }
 /// The words of an enum in its order, or the words that a list may hold.
 inline auto one_of(std::vector<std::string> words) {
@@ -103,11 +101,6 @@ Block optional_block(const char* member, Member& (*get)(const Object&), const ch
   (traits(block), ...);
   return block;
 }
-/// Adds the row of a key of some shapes of obstacles. One of that path becomes the row of their
-/// shapes too, and reads whichever shape an obstacle has. y of two numbers may be that of the plane
-/// for the later shapes alone; Error(internal) where they differ in anything else.
-void add_shape_row(std::vector<Key>& rows, Key row);
-
 inline void on_by_default(Block& block) { block.on_by_default = true; }
 
 /// A block that is a std::vector of structs. `list`: the texts of List.
@@ -123,6 +116,68 @@ Block list_block(const char* member, std::vector<Entry>& (*get)(const Object&), 
   block.list = std::move(list);
   (traits(block), ...);
   return block;
+}
+
+// The rows of entries that are of one of several kinds; `held`: the variant (lib/scene/kinds.h).
+
+/// The row of the word that decides which other keys an entry has.
+template <class Entry, class Any>
+Key kind_row(const char* path, const std::string& help, Any Entry::*held) {
+  Key row{path, help, [held](const Object& holder) -> Field {
+            Any& kind = std::any_cast<Entry*>(holder)->*held;
+            return ChoiceField{address_of_word(kind), [&kind] { return int(kind.index()); },
+                               [&kind](int wanted) {
+                                 if (wanted == int(kind.index())) return;
+                                 int k = 0;
+                                 for_each_kind<Any>([&](const auto& keys) {
+                                   if (k++ == wanted) kind = keys;
+                                 });
+                               }};
+          }};
+  for_each_kind<Any>([&](const auto& keys) { row.choices.push_back(keys.word); });
+  required(row), is_kind(row);
+  return row;
+}
+
+/// The row of a key of the kind with this bit. Entries of other kinds have the field `others`. If
+/// that is empty, reads give the default and writes are lost.
+template <class Kind, class Entry, class Any, class Member, class Holder>
+Key row_of(const std::string& path, Any Entry::*held, const KindKey<Member, Holder>& key,
+           unsigned bit, std::function<Field(const Object&)> others) {
+  Key row{path, key.help, [=, member = key.member](const Object& holder) -> Field {
+            if (Kind* kind = std::get_if<Kind>(&(std::any_cast<Entry*>(holder)->*held)))
+              return &(kind->*member);
+            if (others) return others(holder);
+            static thread_local Kind standard;
+            standard = {};
+            return &(standard.*member);
+          }};
+  if constexpr (!std::is_same_v<Member, std::string>) number(key.unit, key.range)(row);
+  row.most = key.most, row.required = key.required, row.kinds = bit, row.flat = key.flat;
+  row.by_center = key.by_center;
+  return row;
+}
+
+/// Adds the row of a key of some kinds. One of that path becomes the row of their kinds too, with
+/// the later field. y of two numbers may be that of the plane for the later kinds alone;
+/// Error(internal) where they differ in anything else.
+void add_kind_row(std::vector<Key>& rows, Key row);
+
+/// Adds the rows of all kinds for which wanted(kind).
+template <class Entry, class Any, class Wanted>
+void add_kind_rows(std::vector<Key>& rows, const std::string& entry, Any Entry::*held,
+                   const Wanted& wanted) {
+  unsigned bit = 1;
+  for_each_kind<Any>([&]<class Kind>(const Kind& kind) {
+    const auto add = [&](const auto& key) {
+      const std::string path = entry + "." + key.name;
+      const auto there = std::ranges::find(rows, path, &Key::path);
+      add_kind_row(
+          rows, row_of<Kind>(path, held, key, bit, there == rows.end() ? nullptr : there->field));
+    };
+    if (wanted(kind)) std::apply([&](const auto&... key) { (add(key), ...); }, Kind::keys());
+    bit *= 2;
+  });
 }
 
 }  // namespace pbf::inline scene_module

@@ -1,6 +1,7 @@
 // Properties of a key's numbers.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 
 namespace pbf::inline scene_module {

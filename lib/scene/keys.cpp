@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lib/base/error.h"
 #include "lib/scene/key_rows.h"
 
 namespace pbf::inline scene_module {
@@ -35,6 +36,23 @@ std::string path_of(std::string member) {
   std::erase(member, '-');
   std::replace(member.begin(), member.end(), '>', '.');
   return member;
+}
+
+void add_kind_row(std::vector<Key>& rows, Key row) {
+  const auto there = std::ranges::find(rows, row.path, &Key::path);
+  if (there == rows.end()) return rows.push_back(std::move(row));
+  const auto said = [](const Key& k) {
+    return std::tie(k.help, k.unit, k.most, k.required, k.by_center);
+  };
+  if (said(row) != said(*there) || row.range != there->range ||
+      (row.flat != there->flat && row.flat != FlatY::middle))
+    throw Error(ExitCode::internal, row.path +
+                                        ": two kinds have this key and differ in its help, "
+                                        "unit, range or traits; give them one text, or the "
+                                        "keys different names");
+  if (row.flat != there->flat) there->in_plane |= row.kinds;
+  there->field = std::move(row.field);
+  there->kinds |= row.kinds;
 }
 
 std::string join(const std::string& block, const std::string& leaf) {

@@ -3,9 +3,9 @@
 
 #include <optional>
 #include <string>
-#include <variant>
 
 #include "kernels/shapes/shapes.h"
+#include "lib/scene/kinds.h"
 #include "lib/scene/motion.h"
 
 // clang-format off
@@ -45,19 +45,5 @@ struct Obstacle {
     return std::visit([](const auto& keys) { return keys.axes(); }, shape);
   }
 };
-
-/// The address that stands for the key `shape` in names of keys. It is not that of the variant,
-/// which is also the address of a key of the shape.
-inline const void* address_of_word(const obstacle_keys::Any& shape) {
-  return reinterpret_cast<const char*>(&shape) + 1;
-}
-
-/// Calls f with the keys of each shape, all defaults, in the order of the list.
-template <class F>
-void for_each_shape(F&& f) {
-  [&]<class... Shape>(const std::variant<Shape...>*) {
-    (f(Shape{}), ...);
-  }(static_cast<const obstacle_keys::Any*>(nullptr));
-}
 
 }  // namespace pbf::inline scene_module

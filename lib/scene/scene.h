@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lib/scene/coloring.h"
+#include "lib/scene/gauge.h"
 #include "lib/scene/motion.h"
 #include "lib/scene/obstacle.h"
 #include "lib/scene/render_style.h"
@@ -40,23 +41,6 @@ struct Body {
   Place place{};           ///< of the path
   Double3 velocity{};      ///< m/s, added to every particle of the body
   bool operator==(const Body&) const = default;
-};
-
-/// The quantity that a gauge records.
-enum class GaugeKind { level, velocity, flow, pressure };
-inline constexpr std::array<const char*, 4> kGaugeKinds = {"level", "velocity", "flow", "pressure"};
-
-/// A gauge. `kind` decides which members are used; the loader refuses the others.
-struct Gauge {
-  std::string name;
-  GaugeKind kind = GaugeKind::level;
-  std::vector<double> at;    ///< m; level: coordinates across the line; else a position
-  std::string on;            ///< pressure: an obstacle, or a wall of the domain
-  double radius = 0;         ///< m, pressure: of the disc
-  Double3 center{};          ///< m, flow: middle of the rectangle
-  Double3 normal{1, 0, 0};   ///< flow: the positive direction
-  std::vector<double> size;  ///< m, flow: level edge and the other; in two dimensions one length
-  bool operator==(const Gauge&) const = default;
 };
 
 /// The faces of the domain in the order of WallBit's bits.

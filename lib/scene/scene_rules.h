@@ -35,8 +35,9 @@ class SceneRules {
 
  protected:
   const std::string& name(const auto& member) const { return names_.at(&member); }
-  const std::string& name(const obstacle_keys::Any& shape) const {
-    return names_.at(address_of_word(shape));
+  template <class... Kind>
+  const std::string& name(const std::variant<Kind...>& kind) const {
+    return names_.at(address_of_word(kind));
   }
   /// Whether all of these were read without a problem.
   bool good(const auto&... members) const { return p_.good({name(members)...}); }

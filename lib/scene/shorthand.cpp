@@ -134,14 +134,13 @@ void write_out_plane(const KeyTable& table, Node& root) {
   double low = 0, high = thickness;
   // In the order of the table, where the domain comes first.
   for (const Key& key : table.keys) {
-    if (key.flat == FlatY::none) continue;
+    if (key.flat == FlatY::none && !key.in_plane) continue;
     visit(root, key.path, [&](Node& value, Node& entry) {
       if (value.kind != Node::Kind::list || !has_key(entry, key)) return;
       FlatY rule = key.flat;
       if (key.in_plane & kind_of(entry, key)) rule = FlatY::middle;
-      // A level gauge has fewer coordinates than a position.
-      const bool level = key.most > 0 && entry.find("kind") && entry.find("kind")->text == "level";
-      if (value.items.size() == 2 && !level) {
+      if (rule == FlatY::none) return;
+      if (value.items.size() == 2) {
         const double y = rule == FlatY::zero                           ? 0
                          : rule == FlatY::low || rule == FlatY::bottom ? low
                          : rule == FlatY::high || rule == FlatY::top   ? high

@@ -69,17 +69,21 @@ std::optional<int> surface_named(const Scene& scene, const std::string& name) {
   return std::nullopt;
 }
 
+const Obstacle* obstacle_of(const Scene& scene, int surface) {
+  const auto k = std::size_t(surface) - kFaceNames.size();
+  return std::size_t(surface) < kFaceNames.size() ? nullptr : &scene.obstacles[k];
+}
+
 bool has_pressure_on_wall(const Scene& scene) {
-  return std::any_of(scene.gauges.begin(), scene.gauges.end(), [](const Gauge& g) {
-    return g.kind == GaugeKind::pressure &&
-           std::find(kFaceNames.begin(), kFaceNames.end(), g.on) != kFaceNames.end();
+  return std::ranges::any_of(scene.gauges, [](const Gauge& g) {
+    const auto* keys = std::get_if<gauge_keys::Pressure>(&g.kind);
+    return keys && std::ranges::find(kFaceNames, keys->on) != kFaceNames.end();
   });
 }
 
 SurfacePlace nearest_place_on(int surface, const Scene& scene, const Double3& at) {
-  const int faces = int(kFaceNames.size());
-  if (surface < faces) return nearest_place(surface, scene, at);
-  return nearest_place(scene.obstacles[std::size_t(surface - faces)], scene, at);
+  const Obstacle* o = obstacle_of(scene, surface);
+  return o ? nearest_place(*o, scene, at) : nearest_place(surface, scene, at);
 }
 
 bool is_free(const Scene& scene, const Double3& at, double slack) {

@@ -31,6 +31,8 @@ bool is_bent(const Obstacle& obstacle);
 
 /// The surface of a name: 0 to 5 for a face, 6 + index for an obstacle; empty if unknown.
 std::optional<int> surface_named(const Scene& scene, const std::string& name);
+/// Null for a face.
+const Obstacle* obstacle_of(const Scene& scene, int surface);
 /// Whether the scene has a pressure gauge on a wall of the domain.
 bool has_pressure_on_wall(const Scene& scene);
 SurfacePlace nearest_place_on(int surface, const Scene& scene, const Double3& at);

@@ -11,7 +11,6 @@
 
 #include "kernels/measure.h"
 #include "lib/program/plan.h"
-#include "lib/solver/wall_loads.h"
 
 namespace pbf::inline solver_module {
 
@@ -54,8 +53,8 @@ struct Diagnostics {
   double power = 0;             ///< W, of the inertial forces by the tank's motion
   double solid_work = 0;        ///< J, of moving obstacles in the current interval of loads
   double work = 0;              ///< J, of obstacles and tank since the start; WorkTrack
-  /// Means since the previous row. The writer of rows fills them in.
-  std::vector<WallLoad> loads{};
+  /// Of Series::measures (lib/program/column.h), since the previous row. Watch fills them in.
+  std::vector<double> readings{};
 };
 
 /// The state of an EnergyTrack and a WorkTrack, as a checkpoint stores it. J; rise: 1.

@@ -21,32 +21,38 @@ std::vector<Load> read_loads(C& c, std::int64_t first, std::int64_t count, Inter
 /// The loads of walls and obstacles, whose rows are the first.
 template <class C>
 std::vector<Load> read_loads(C& c, Interval interval) {
-  return read_loads(c, 0, load_walls(c.scene) - pressure_gauges(c.scene), interval);
+  return read_loads(c, 0, load_walls(c.scene) - gauges_of<PatchTally>(c.scene), interval);
 }
 
-template <class C>
-GaugeSums read_gauges(C& c, Interval interval) {
-  c.exec.begin();
-  const GaugePlan& plan = c.plan.gauges;
-  GaugeSums sums;
-  sums.places.resize(std::size_t(plan.places));
-  if (!sums.places.empty()) {
-    c.put(field::probe_sums, sums.places);
-    launch_one<ReadProbes>(c);
-    c.exec.to_host(c.data(field::probe_sums), sums.places.size(), sums.places.data());
-  }
-  if (has_pressure_gauges(c.scene))
-    sums.patches = read_loads(c, first_gauge_row(c.scene), pressure_gauges(c.scene), interval);
-  sums.flows.resize(plan.gates.size());
-  if (!sums.flows.empty())
-    c.exec.to_host(c.data(field::flows), sums.flows.size(), sums.flows.data());
-  if (interval == Interval::ends) {
-    std::vector<FlowCount> next = sums.flows;
+/// The sums of the gauges of a tally.
+template <class C, class Tally>
+void read_sums(C& c, std::vector<typename Tally::Sums>& rows, Interval interval) {
+  rows.resize(std::size_t(c.plan.gauges.template of<Tally>().sums));
+  if (rows.empty()) return;
+  if constexpr (std::is_same_v<Tally, PatchTally>) {
+    rows = read_loads(c, load_row_of_patch(c.scene, 0), std::int64_t(rows.size()), interval);
+  } else if constexpr (std::is_same_v<Tally, FlowTally>) {
+    c.exec.to_host(c.data(field::flows), rows.size(), rows.data());
+    std::vector<FlowCount> next = rows;
     for (FlowCount& f : next) f.since = 0, f.time = 0;
-    c.put(field::flows, next);
+    if (interval == Interval::ends) c.put(field::flows, next);
+  } else {
+    c.put(field::gauge_sums<Tally>, rows);
+    launch_one<ReadGauges<Tally>>(c);
+    c.exec.to_host(c.data(field::gauge_sums<Tally>), rows.size(), rows.data());
   }
+}
+
+/// The numbers of the columns of Series::gauges (lib/program/column.h).
+template <class C>
+std::vector<double> read_gauges(C& c, Interval interval) {
+  c.exec.begin();
+  GaugeSums sums;
+  std::apply([&]<class... Tally>(
+                 TallySums<Tally>&... of) { (read_sums<C, Tally>(c, of.rows, interval), ...); },
+             sums);
   c.exec.mark("measure");
-  return sums;
+  return c.plan.gauges.finish(sums);
 }
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "lib/base/stage_clock.h"
+#include "lib/program/column.h"
 #include "lib/scene/particles.h"
 #include "lib/scene/scene.h"
 #include "lib/solver/diagnostics.h"
 #include "lib/solver/snapshot.h"
 #include "lib/solver/stage_event.h"
 #include "lib/solver/step_trace.h"
-#include "lib/solver/wall_loads.h"
 
 namespace pbf::inline program_module {
 struct Plan;
@@ -55,7 +55,7 @@ struct StepOptions {
 /// The state to return: the present one, only its positions, or the copy that keep() made.
 enum class Which { now, positions, kept };
 
-/// Whether the interval over which loads are averaged continues or ends with this reading.
+/// Whether the interval over which readings are averaged continues or ends with this reading.
 enum class Interval { goes_on, ends };
 
 class Inspection;
@@ -72,11 +72,9 @@ class Solver {
   virtual std::future<Snapshot> download(const std::vector<std::string>& fields,
                                          ScalarType type) = 0;
   virtual Diagnostics measure() = 0;
-  /// Loads of the walls that sum them: means since the start or the last call with Interval::ends.
-  virtual std::vector<WallLoad> loads(Interval interval) = 0;
-  /// Readings of the gauges, see gauge_readings() (lib/solver/gauge_readings.h). Means since the
-  /// start or the last call with Interval::ends.
-  virtual std::vector<double> gauges(Interval interval) = 0;
+  /// The numbers of the columns of a series (lib/program/column.h). Means and peaks are those since
+  /// the start or the last call for this series with Interval::ends.
+  virtual std::vector<double> readings(Series series, Interval interval) = 0;
   /// After set_state(), this or another solver of the same scene and precision continues with the
   /// same bits. A solver of float rounds the state of a solver of double. Throws Error(internal) if
   /// the number of particles differs, if the ids are not a permutation of 0..n-1, or for

@@ -13,7 +13,6 @@
 #include "lib/program/time_levels.h"
 #include "lib/solver/diagnostics.h"
 #include "lib/solver/executor.h"
-#include "lib/solver/gauge_readings.h"
 #include "lib/solver/internal_state.h"
 #include "lib/solver/params.h"
 #include "lib/solver/solver.h"
@@ -96,12 +95,9 @@ class StepSolver final : public Solver, public Inspection {
     return m;
   }
 
-  std::vector<WallLoad> loads(Interval interval) override {
-    return wall_loads(stepper_->loads(interval), scene_, plan_);
-  }
-
-  std::vector<double> gauges(Interval interval) override {
-    return gauge_readings(stepper_->gauges(interval), scene_, plan_);
+  std::vector<double> readings(Series series, Interval interval) override {
+    return series == Series::gauges ? stepper_->gauges(interval)
+                                    : load_readings(stepper_->loads(interval), scene_, plan_);
   }
 
   SolverState state(Which which) override {

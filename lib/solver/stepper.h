@@ -129,8 +129,8 @@ class Stepper {
 
   /// The load of each wall since the last call with Interval::ends.
   std::vector<Load> loads(Interval interval) { return read_loads(c_, interval); }
-  /// Sums of the present positions and velocities, and since the last call with Interval::ends.
-  GaugeSums gauges(Interval interval) { return read_gauges(c_, interval); }
+  /// Readings of the gauges; means since the last call with Interval::ends.
+  std::vector<double> gauges(Interval interval) { return read_gauges(c_, interval); }
 
   std::vector<int> ids() { return c_.ids_in_order(c_.ids(), rows()); }
   /// A state with positions only.

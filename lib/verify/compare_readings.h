@@ -10,13 +10,11 @@
 namespace pbf::inline verify_module {
 
 struct Reading {
-  const char* stage = "";  ///< "loads" or "gauges"
+  std::string stage;  ///< "loads" or "gauges"
   std::string what, unit;
   double value = 0;
   double scale = 0;  ///< reference for rounding if it is more than |value|
-  /// Sums are of whole numbers (kLoadUnits, kProbeUnits, particles). They may differ by this much
-  /// if terms differ only in their last bits.
-  double grain = 0;
+  double grain = 0;  ///< ReadingColumn::grain, of this interval
 };
 
 /// Readings of the last `updates` updates, since the last call or since a state with empty sums was

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "lib/solver/gauge_readings.h"
+#include "lib/program/loads.h"
 #include "tests/support/catch.h"
 #include "tests/support/obstacles.h"
 
@@ -10,28 +10,25 @@ using namespace oracle_test;
 using namespace obstacle_test;
 using backend_test::here;
 using backend_test::is_double;
-using pbf::GaugeKind;
+using backend_test::loads_of;
+using backend_test::Series;
+using backend_test::WallLoad;
+namespace gauge_keys = pbf::gauge_keys;
 
 namespace {
 
-pbf::Gauge& add(pbf::Scene& s, GaugeKind kind, std::vector<double> at = {}) {
-  pbf::Gauge& g = s.gauges.emplace_back();
-  g.name = "g" + std::to_string(s.gauges.size());
-  g.kind = kind;
-  g.at = std::move(at);
-  return g;
+void add(pbf::Scene& s, gauge_keys::Any kind) {
+  s.gauges.push_back({"g" + std::to_string(s.gauges.size() + 1), std::move(kind)});
 }
+std::vector<double> list(const pbf::Double3& x) { return {x[0], x[1], x[2]}; }
 void add_pressure(pbf::Scene& s, const std::string& on, const pbf::Double3& at, double radius) {
-  pbf::Gauge& g = add(s, GaugeKind::pressure, {at[0], at[1], at[2]});
-  g.on = on;
-  g.radius = radius;
+  add(s, gauge_keys::Pressure{list(at), on, radius});
 }
 void add_flow(pbf::Scene& s, const pbf::Double3& center, const pbf::Double3& normal,
               std::vector<double> size) {
-  pbf::Gauge& g = add(s, GaugeKind::flow);
-  g.center = center, g.normal = normal;
-  g.size = std::move(size);
+  add(s, gauge_keys::Flow{center, normal, std::move(size)});
 }
+double plane_of(const pbf::Gauge& flow) { return std::get<gauge_keys::Flow>(flow.kind).center[0]; }
 
 /// A lattice that fills the floor of a box `depth` high, gravity along -`up`.
 Case tank(const pbf::Double3& size, double depth, std::size_t up = 2, bool flat = false) {
@@ -80,11 +77,11 @@ Case splash_among_gauges(bool flat) {
   pbf::Scene& t = c.scene;
   using List = std::vector<double>;
   if (flat)
-    add(t, GaugeKind::level, {at(x, 0, 0)[0]});
+    add(t, gauge_keys::Level{{at(x, 0, 0)[0]}});
   else
-    add(t, GaugeKind::level, {at(x, 0, 0)[0], at(0, 0.07, 0)[1]});
+    add(t, gauge_keys::Level{{at(x, 0, 0)[0], at(0, 0.07, 0)[1]}});
   const pbf::Double3 place = at(0.1, 0.07, 0.1), wall = at(0.1, 0.07, 0);
-  add(t, GaugeKind::velocity, {place[0], place[1], place[2]});
+  add(t, gauge_keys::Velocity{list(place)});
   add_flow(t, at(x, 0.075, 0.35), {1, 0, 0}, flat ? List{0.7} : List{0.15, 0.7});
   add_flow(t, at(0.1, 0.075, 0.1), {0, 0, -1}, flat ? List{0.2} : List{0.2, 0.1});
   add_pressure(t, "z_min", wall, 0.05);
@@ -94,7 +91,9 @@ Case splash_among_gauges(bool flat) {
   return c;
 }
 
-std::vector<double> readings(pbf::Solver& s) { return s.gauges(pbf::Interval::goes_on); }
+std::vector<double> readings(pbf::Solver& s) {
+  return s.readings(Series::gauges, pbf::Interval::goes_on);
+}
 /// Bit for bit, of what is no number too.
 bool same(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), 8 * a.size()) == 0;
@@ -118,7 +117,7 @@ TEST_CASE("the level of a resting lattice is right to a tenth of a spacing, wher
     for (const double b : {0.0, 0.43, 1.0}) {
       std::vector<double> place{at(across[0], a)};
       if (!flat) place.push_back(at(across[1], b));
-      add(c.scene, GaugeKind::level, place);
+      add(c.scene, gauge_keys::Level{place});
     }
   SECTION("a tank") {}
   SECTION("a tank without a floor") { c.scene.domain.open = {std::string(1, "xyz"[up]) + "_min"}; }
@@ -136,9 +135,9 @@ TEST_CASE("a level counts what is wet of the line: over a box, under a plate, no
   put.box({2, 0, 4}, {3.9, 5, 4.5}).name = "plate";  // from 0.16 to 0.18
   c = without_inner(here(c), 0.2);
   const double x = c.scene.domain.min[0], y = c.scene.domain.min[1], d = c.scene.fluid.spacing;
-  add(c.scene, GaugeKind::level, {x + 0.04, y + 0.1});
-  add(c.scene, GaugeKind::level, {x + 0.25, y + 0.1});
-  add(c.scene, GaugeKind::level, {x + 0.12, y + 0.1});
+  add(c.scene, gauge_keys::Level{{x + 0.04, y + 0.1}});
+  add(c.scene, gauge_keys::Level{{x + 0.25, y + 0.1}});
+  add(c.scene, gauge_keys::Level{{x + 0.12, y + 0.1}});
   const std::vector<double> level = readings(*make(c));
   CHECK(level[0] == Approx(0.24).margin(0.1 * d));
   CHECK(level[1] == Approx(0.24 - 0.08).margin(0.1 * d));
@@ -147,7 +146,7 @@ TEST_CASE("a level counts what is wet of the line: over a box, under a plate, no
   for (std::size_t k = 0; k < dry.particles.size(); ++k)
     dry.particles.position[k][0] = x + std::fmod(double(k) * 0.02, 0.1) + 0.01;
   for (const double a : {0.2, 0.39, 0.4})
-    for (const double b : {0.0, 0.1, 0.2}) add(dry.scene, GaugeKind::level, {x + a, y + b});
+    for (const double b : {0.0, 0.1, 0.2}) add(dry.scene, gauge_keys::Level{{x + a, y + b}});
   for (const double l : readings(*make(dry))) CHECK(l == 0);
 }
 
@@ -160,7 +159,7 @@ TEST_CASE("a velocity gauge is the mean of the particles within h, and nan where
   for (const double a : {0.02, 0.07, 0.11})
     places.push_back({low[0] + a, flat ? *c.scene.plane() : low[1] + 0.08, low[2] + 0.09});
   places.push_back({low[0] + 0.02, low[1], c.scene.domain.max[2]});  // dry
-  for (const pbf::Double3& p : places) add(c.scene, GaugeKind::velocity, {p[0], p[1], p[2]});
+  for (const pbf::Double3& p : places) add(c.scene, gauge_keys::Velocity{list(p)});
   auto solver = make(c);
   solver->step(3);
   const auto snap = solver->download({"velocity"}, pbf::ScalarType::f64).get();
@@ -195,7 +194,7 @@ TEST_CASE("flow through a rectangle across the channel balances the particles on
   SECTION("an update is a step") {}
   SECTION("substeps") { c.scene.solver.substeps = 2; }
   const int level = GENERATE(0, 1);
-  const double plane = c.scene.gauges[2].center[0];
+  const double plane = plane_of(c.scene.gauges[2]);
   auto solver = make(c);
   const auto beyond = [&] {
     const pbf::Snapshot snap = places_of(*solver);
@@ -209,7 +208,7 @@ TEST_CASE("flow through a rectangle across the channel balances the particles on
   for (int k = 0; k < 12; ++k) {
     solver->step(10, {.level = level});
     const std::int64_t now = beyond();
-    const std::vector<double> r = solver->gauges(pbf::Interval::ends);
+    const std::vector<double> r = solver->readings(Series::gauges, pbf::Interval::ends);
     CHECK(r[5] == Approx(mass * double(now - first)).epsilon(1e-12).margin(1e-9 * mass));
     CHECK(r[4] == Approx(mass * double(now - before) / (10 * c.scene.time.step))
                       .epsilon(1e-6)
@@ -239,7 +238,7 @@ TEST_CASE("flow counts what goes through the rectangle alone, with the sign of i
   auto solver = make(c);
   const double mass = pbf::make_plan(c.scene, std::int64_t(c.particles.size())).mass;
   solver->step(1);
-  const std::vector<double> r = solver->gauges(pbf::Interval::ends);
+  const std::vector<double> r = solver->readings(Series::gauges, pbf::Interval::ends);
   CHECK(r[1] == Approx(2 * mass));
   CHECK(r[3] == Approx(-6 * mass));
   CHECK(r[5] == Approx(9 * mass));
@@ -281,7 +280,7 @@ TEST_CASE("pressure gauges of a tank at rest read what hydrostatics says, also i
   add_pressure(c.scene, std::string(1, "xyz"[up]) + "_min", floor, 0.06);
   auto solver = make(c);
   solver->step(400);
-  solver->gauges(pbf::Interval::ends);
+  solver->readings(Series::gauges, pbf::Interval::ends);
   solver->step(800);
   const std::vector<double> r = readings(*solver);
   const pbf::Diagnostics m = solver->measure();
@@ -314,16 +313,17 @@ TEST_CASE("a disc larger than its surface reads the surface's whole load over it
   auto solver = make(c);
   solver->step(60);
   const std::vector<double> r = readings(*solver);
-  const auto areas = pbf::make_plan(s, std::int64_t(c.particles.size())).gauges.areas;
-  const auto loads = solver->loads(pbf::Interval::goes_on);
+  const auto plan = pbf::make_plan(s, std::int64_t(c.particles.size()));
+  const auto loads = loads_of(c, *solver);
   for (std::size_t g = 0; g < s.gauges.size(); ++g)
-    for (const pbf::WallLoad& l : loads) {
-      if (l.wall != s.gauges[g].on) continue;
+    for (const WallLoad& l : loads) {
+      if (l.wall != std::get<gauge_keys::Pressure>(s.gauges[g].kind).on) continue;
+      const double area = pbf::load_grain(s, plan) / plan.gauges.columns[2 * g].grain.value;
       const std::size_t axis = std::size_t(l.wall[0] - 'x');
       const double into = l.wall.substr(2) == "min" ? -l.force[axis] : l.force[axis];
       CHECK(into > 0);
-      CHECK(r[2 * g] * areas[g] == Approx(into).epsilon(1e-6));
-      CHECK(r[2 * g + 1] * areas[g] == Approx(l.peak).epsilon(1e-6));
+      CHECK(r[2 * g] * area == Approx(into).epsilon(1e-6));
+      CHECK(r[2 * g + 1] * area == Approx(l.peak).epsilon(1e-6));
     }
 }
 
@@ -331,7 +331,7 @@ TEST_CASE("gauges do not depend on threads, pass-by-pass updates, or being hande
   Case c = splash_among_gauges(GENERATE(false, true));
   auto a = make(c);
   a->step(20);
-  a->gauges(pbf::Interval::ends);
+  a->readings(Series::gauges, pbf::Interval::ends);
   a->step(40);
   const std::vector<double> expected = readings(*a);
   REQUIRE(expected[5] > 0);
@@ -340,14 +340,14 @@ TEST_CASE("gauges do not depend on threads, pass-by-pass updates, or being hande
     c.scene.threads = 1;
     auto b = make(c);
     b->step(20);
-    b->gauges(pbf::Interval::ends);
+    b->readings(Series::gauges, pbf::Interval::ends);
     b->step(40);
     CHECK(same(readings(*b), expected));
   }
   SECTION("pass by pass, and read and measured on the way") {
     auto b = make(c);
     b->step(20);
-    b->gauges(pbf::Interval::ends);
+    b->readings(Series::gauges, pbf::Interval::ends);
     for (int k = 0; k < 20; ++k) b->inspection()->trace();
     readings(*b);
     b->measure();
@@ -357,7 +357,7 @@ TEST_CASE("gauges do not depend on threads, pass-by-pass updates, or being hande
   SECTION("handed over in the middle") {
     auto first = make(c), second = make(c);
     first->step(20);
-    first->gauges(pbf::Interval::ends);
+    first->readings(Series::gauges, pbf::Interval::ends);
     first->step(17);
     second->set_state(first->state());
     second->step(23);
@@ -366,7 +366,7 @@ TEST_CASE("gauges do not depend on threads, pass-by-pass updates, or being hande
   SECTION("back to a kept state, and steps without time") {
     auto b = make(c);
     b->step(20);
-    b->gauges(pbf::Interval::ends);
+    b->readings(Series::gauges, pbf::Interval::ends);
     b->keep();
     b->step(17);
     b->set_state(b->state(pbf::Which::kept));
@@ -387,7 +387,7 @@ TEST_CASE("steps without time move particles through a rectangle without a count
   add_flow(c.scene, {c.scene.domain.min[0] + 0.112, 0.36, -1.9}, {1, 0, 0}, {1, 1});
   c.scene.gravity = {};
   c = here(c);
-  const double plane = c.scene.gauges[0].center[0];
+  const double plane = plane_of(c.scene.gauges[0]);
   auto solver = make(c);
   const auto beyond = [&] {
     const pbf::Snapshot snap = places_of(*solver);
@@ -410,7 +410,7 @@ TEST_CASE("steps without time move particles through a rectangle without a count
 TEST_CASE("gauges leave the particles' bits alone") {
   Case c = splash_among_gauges(false);
   auto with = make(c);
-  for (int k = 0; k < 4; ++k) with->step(10), with->gauges(pbf::Interval::ends);
+  for (int k = 0; k < 4; ++k) with->step(10), with->readings(Series::gauges, pbf::Interval::ends);
   const pbf::SolverState there = with->state();
   c.scene.gauges.clear();
   auto without = make(c);

@@ -7,6 +7,9 @@
 using namespace oracle_test;
 using backend_test::here;
 using backend_test::is_double;
+using backend_test::loads_of;
+using backend_test::Series;
+using backend_test::WallLoad;
 
 namespace {
 
@@ -44,7 +47,7 @@ Balance balance(const Case& c, int updates) {
   const pbf::Diagnostics after = solver->measure();
   Balance b;
   double sum[3] = {0, 0, 0}, weight = 0;
-  for (const pbf::WallLoad& l : solver->loads(pbf::Interval::goes_on)) {
+  for (const WallLoad& l : loads_of(c, *solver)) {
     for (int k = 0; k < 3; ++k) sum[k] += l.force[k];
     if (l.wall == "z_min") b.load = -l.force[2];
   }
@@ -123,9 +126,9 @@ TEST_CASE("the walls of a tank at rest bear what hydrostatics says, whatever the
   c = here(c);
   auto solver = make(c);
   solver->step(150, {});
-  solver->loads(pbf::Interval::ends);
+  solver->readings(Series::measures, pbf::Interval::ends);
   solver->step(350, {});
-  const auto loads = solver->loads(pbf::Interval::ends);
+  const auto loads = loads_of(c, *solver, pbf::Interval::ends);
   REQUIRE(loads.size() == 6);
   const double weight = rho * g * depth * size[(up + 1) % 3] * size[(up + 2) % 3];
   for (std::size_t wall = 0; wall < 6; ++wall) {
@@ -150,7 +153,7 @@ TEST_CASE("the walls of a tank at rest bear what hydrostatics says, whatever the
     CHECK(loads[wall].peak >= 0.99 * std::fabs(force[axis]));
   }
   // Nothing has happened since.
-  for (const pbf::WallLoad& l : solver->loads(pbf::Interval::goes_on)) CHECK(l.peak == 0);
+  for (const WallLoad& l : loads_of(c, *solver)) CHECK(l.peak == 0);
 }
 
 TEST_CASE("loads do not depend on threads, pass-by-pass updates, or being handed over") {
@@ -158,7 +161,7 @@ TEST_CASE("loads do not depend on threads, pass-by-pass updates, or being handed
   c.scene.solver.substeps = 2;
   auto a = make(c);
   a->step(40, {});
-  const auto expected = a->loads(pbf::Interval::goes_on);
+  const auto expected = a->readings(Series::measures, pbf::Interval::goes_on);
   SECTION("threads") {
     c.scene.threads = 1;
     auto b = make(c);

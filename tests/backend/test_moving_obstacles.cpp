@@ -13,7 +13,10 @@ using namespace obstacle_test;
 using backend_test::check_loads;
 using backend_test::here;
 using backend_test::is_double;
+using backend_test::loads_of;
 using backend_test::same_particles;
+using backend_test::Series;
+using backend_test::WallLoad;
 using pbf::Double3;
 using pbf::Motion;
 using pbf::MotionKind;
@@ -104,7 +107,7 @@ TEST_CASE("the torque on an obstacle that moves is about where its middle is the
   c = here(c);
   auto solver = make(c);
   solver->step(150);
-  const pbf::WallLoad l = solver->loads(pbf::Interval::goes_on)[0];
+  const WallLoad l = loads_of(c, *solver)[0];
   const double h = c.scene.h(), when = 2 * h / 0.4;
   CHECK(l.force[0] < 0);
   CHECK(l.torque[1] / l.force[0] == Approx(h - 0.2 * when).margin(1e-3));
@@ -161,7 +164,7 @@ TEST_CASE("nothing gets into a stirrer in 10000 updates, or what it may gain is 
     most = std::max(most, deepest_now(c, *solver));
     m = solver->measure();
     m.work = work.until(m);
-    solver->loads(pbf::Interval::ends);
+    solver->readings(Series::measures, pbf::Interval::ends);
     work.take(m);
     energy.follow(m);
   }
@@ -190,12 +193,12 @@ TEST_CASE(
   const double before = solver->measure().center_of_mass[2] - s.domain.min[2];
   for (int k = 0; k < 10; ++k) {
     const pbf::Diagnostics a = solver->measure();
-    solver->loads(pbf::Interval::ends);
+    solver->readings(Series::measures, pbf::Interval::ends);
     solver->step(100);
     const pbf::Diagnostics b = solver->measure();
     for (const int axis : {0, 2}) {
       double force = 0;
-      for (const pbf::WallLoad& l : solver->loads(pbf::Interval::goes_on)) force += l.force[axis];
+      for (const WallLoad& l : loads_of(c, *solver)) force += l.force[axis];
       const double want =
           mass * s.gravity[std::size_t(axis)] - (b.momentum[axis] - a.momentum[axis]) / 0.2;
       CHECK(force == Approx(want).margin((is_double() ? 1e-9 : 2e-4) * mass * 9.81));
@@ -228,7 +231,7 @@ TEST_CASE("obstacles in motion: the same bits by any batches, passes, threads an
   fresh->set_state(fresh->state(pbf::Which::kept));  // back
   fresh->step(100, {.level = level});
   CHECK(same_particles(one->state(), fresh->state()));
-  check_loads(*fresh, one->loads(pbf::Interval::goes_on));
+  check_loads(*fresh, one->readings(Series::measures, pbf::Interval::goes_on));
   CHECK(one->measure().solid_work == fresh->measure().solid_work);
   CHECK(one->measure().solid_work != 0);
   if (level > 0) return;
@@ -236,7 +239,7 @@ TEST_CASE("obstacles in motion: the same bits by any batches, passes, threads an
   fresh->inspection()->step_checked({1e30, 1e30, 1 << 30});
   one->step(2);
   CHECK(same_particles(one->state(), fresh->state()));
-  check_loads(*fresh, one->loads(pbf::Interval::goes_on));
+  check_loads(*fresh, one->readings(Series::measures, pbf::Interval::goes_on));
 }
 
 TEST_CASE("steps without time leave obstacles where they are, and do no work") {

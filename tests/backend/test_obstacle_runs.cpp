@@ -7,6 +7,9 @@ using namespace oracle_test;
 using namespace obstacle_test;
 using backend_test::here;
 using backend_test::is_double;
+using backend_test::loads_of;
+using backend_test::Series;
+using backend_test::WallLoad;
 using pbf_test::ObstacleShape;
 
 namespace {
@@ -55,7 +58,7 @@ void check_all_loads(const Case& c) {
   solver->step(100);
   const pbf::Diagnostics after = solver->measure();
   double sum[3] = {0, 0, 0}, weight = 0;
-  for (const pbf::WallLoad& l : solver->loads(pbf::Interval::goes_on)) {
+  for (const WallLoad& l : loads_of(c, *solver)) {
     for (int k = 0; k < 3; ++k) sum[k] += l.force[k];
     CAPTURE(l.wall);
     if (l.wall[0] == 'o') CHECK(l.peak > 0.01 * mass);
@@ -140,9 +143,9 @@ TEST_CASE("a submerged cube of 8 spacings is lifted by what it displaces, and no
   REQUIRE(c.particles.size() == 18 * 18 * 18 - 8 * 8 * 8);
   auto s = make(c);
   s->step(150);
-  s->loads(pbf::Interval::ends);
+  s->readings(Series::measures, pbf::Interval::ends);
   s->step(250);
-  const auto load = s->loads(pbf::Interval::ends);
+  const auto load = loads_of(c, *s, pbf::Interval::ends);
   REQUIRE(load.size() == 1);
   const double lift = 1000 * 9.81 * edge * edge * edge;
   CAPTURE(load[0].force[0] / lift, load[0].force[1] / lift, load[0].force[2] / lift);
@@ -169,9 +172,9 @@ TEST_CASE("a partition between two depths of water carries the difference of the
   REQUIRE(c.particles.size() == 10 * 4 * (20 + 10));
   auto solver = make(c);
   solver->step(500);
-  solver->loads(pbf::Interval::ends);
+  solver->readings(Series::measures, pbf::Interval::ends);
   solver->step(500);
-  const pbf::WallLoad load = solver->loads(pbf::Interval::ends).at(0);
+  const WallLoad load = loads_of(c, *solver, pbf::Interval::ends).at(0);
   const double thrust = 1000 * 9.81 * (0.4 * 0.4 - 0.2 * 0.2) / 2 * width;
   CAPTURE(load.force[0] / thrust, load.force[1] / thrust, load.force[2] / thrust);
   CHECK(load.force[0] == Approx(thrust).epsilon(0.01));
@@ -194,9 +197,9 @@ TEST_CASE("a box that stands on the floor is pressed down by what is above it, a
   REQUIRE(c.particles.size() == 22 * 22 * 16 - 12 * 12 * 8);
   auto solver = make(c);
   solver->step(300);
-  solver->loads(pbf::Interval::ends);
+  solver->readings(Series::measures, pbf::Interval::ends);
   solver->step(500);
-  const pbf::WallLoad load = solver->loads(pbf::Interval::ends).at(0);
+  const WallLoad load = loads_of(c, *solver, pbf::Interval::ends).at(0);
   const double weight = 1000 * 9.81 * (12 * d) * (12 * d) * (8 * d);
   CAPTURE(load.force[0] / weight, load.force[1] / weight, load.force[2] / weight);
   CHECK(-load.force[2] == Approx(weight).epsilon(0.01));

@@ -2,7 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/io/h5_read.h"
 #include "lib/io/run_file.h"
+#include "lib/program/plan.h"
+#include "lib/scene/load.h"
 #include "tests/support/catch.h"
 #include "tests/support/in_pieces.h"
 #include "tests/support/process.h"
@@ -67,6 +70,27 @@ TEST_CASE("a run with gauges writes their readings down when they are due") {
   const auto columns = reader.log_columns();  // no loads were asked for
   CHECK(std::none_of(columns.begin(), columns.end(),
                      [](const std::string& c) { return c.rfind("load/", 0) == 0; }));
+}
+
+TEST_CASE("the plan knows the datasets of a run file to six, whatever is read") {
+  const Scratch folder;
+  write_gauge_scene(folder);
+  const auto set = GENERATE(
+      std::vector<std::string>{}, std::vector<std::string>{"--set", "gauges=[]"},
+      std::vector<std::string>{"--set", "domain.loads=true", "--set", "domain.open=[z_max]",
+                               "--set", "obstacles[0].loads=true", "--set", "guard=off"},
+      std::vector<std::string>{"--set", "gauges=[]", "--set", "output.fields=[velocity]", "--set",
+                               "viscosity={}", "--set", "vorticity={}", "--set",
+                               "obstacles[0].motion={kind: velocity, velocity: [0.1, 0, 0]}"});
+  std::vector<std::string> words{"--set", "time.end=0.03"};
+  words.insert(words.end(), set.begin(), set.end());
+  REQUIRE(run_scene(folder, "a", words).code == 0);
+  const std::string path = (folder / "a/run.vtkhdf").string();
+  const pbf::RunInfo info = pbf::RunReader(path).info();
+  const pbf::Scene scene = pbf::parse_stored_scene(info.resolved_scene, "s", {});
+  const pbf::h5::Reading file(path);
+  CHECK(double(pbf::h5::datasets_below(file, 4).size()) ==
+        Approx(pbf::run_file_datasets(pbf::make_plan(scene, info.particles))).margin(6));
 }
 
 TEST_CASE("gauges are read with the measures by default, and at the end") {

@@ -100,10 +100,9 @@ class CountingSolver : public Solver, public Inspection {
     flow(m);
     return m;
   }
-  std::vector<WallLoad> loads(Interval interval) override {
-    return {{"z_min", {0, 0, read(now_.load, interval)}, {0, 0, 0}, 0}};
+  std::vector<double> readings(Series series, Interval interval) override {
+    return {read(series == Series::gauges ? now_.gauge : now_.load, interval)};
   }
-  std::vector<double> gauges(Interval interval) override { return {read(now_.gauge, interval)}; }
   SolverInfo info() const override { return {}; }
 
   Inspection* inspection() override { return this; }

@@ -68,7 +68,7 @@ struct WatchedSession {
   /// UpdateNumbers since the load was taken before, of each measure.
   UpdateNumbers loads() const {
     UpdateNumbers out;
-    for (const Diagnostics& m : taken) out.push_back(std::int64_t(m.loads.at(0).force[2]));
+    for (const Diagnostics& m : taken) out.push_back(std::int64_t(m.readings.at(0)));
     return out;
   }
   /// Of each call with time: from, to, level.

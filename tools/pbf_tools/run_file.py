@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -23,8 +23,9 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, repr=False)
 class Gauge:
-    """Readings of a gauge: `value` has shape (readings,), of a velocity (readings, 3). Pressures
-    also have the `peak` of single updates, flows the `total` since the start (kg).
+    """Readings of a gauge: `value` has shape (readings,), of a velocity (readings, 3). `further` has
+    what else its kind reads, by name, also as attributes: pressures have the `peak` of single
+    updates, flows the `total` since the start (kg); None where a gauge has none.
 
     >>> gauge = Gauge("H", "level", "x = 0 m", "m", np.array([0.0, 1.0]), np.array([0.5, 0.25]))
     >>> time, value = gauge
@@ -33,13 +34,19 @@ class Gauge:
     """
 
     name: str
-    kind: str  # level, velocity, flow, pressure
+    kind: str  # level, velocity, flow, pressure ...
     place: str
     unit: str
     time: np.ndarray
     value: np.ndarray
-    total: np.ndarray | None = None
-    peak: np.ndarray | None = None
+    further: dict[str, np.ndarray] = field(default_factory=dict)
+    further_units: dict[str, str] = field(default_factory=dict)
+
+    def __getattr__(self, name: str) -> np.ndarray | None:
+        further = self.__dict__.get("further", {})
+        if name not in further and name not in ("total", "peak"):
+            raise AttributeError(unknown("attribute", name, further))
+        return further.get(name)
 
     def __iter__(self) -> Iterator[np.ndarray]:
         return iter((self.time, self.value))
@@ -255,7 +262,7 @@ def _gauges(file: h5py.File) -> Gauges:
     group = file.get("pbf/gauges")
     if group is None:
         return Gauges()
-    more = {part: group[part] for part in ("total", "peak") if part in group}
+    more = {part: d for part, d in group.items() if isinstance(d, h5py.Group)}
     data = {name: d for name, d in group.items()
             if isinstance(d, h5py.Dataset) and name not in ("time", "update")}
     every = [group["time"], *data.values(), *(d for g in more.values() for d in g.values())]
@@ -266,8 +273,9 @@ def _gauges(file: h5py.File) -> Gauges:
         {name: Gauge(name, index._text(d.attrs.get("kind", "")),
                      index._text(d.attrs.get("place", "")), index._text(d.attrs.get("units", "1")),
                      time, d[:rows],
-                     *(more[part][name][:rows] if name in more.get(part, ()) else None
-                       for part in ("total", "peak")))
+                     {part: g[name][:rows] for part, g in more.items() if name in g},
+                     {part: index._text(g[name].attrs.get("units", "1"))
+                      for part, g in more.items() if name in g})
          for name, d in data.items()})
 
 

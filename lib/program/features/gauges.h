@@ -1,40 +1,29 @@
-// Gauges: flow is counted at the end of each update. Pressure is computed with the loads; level and
-// velocity are computed only when they are read.
+// Gauges: flow is counted at the end of each update. Pressure is computed with the loads; the
+// others are computed only when they are read.
 #pragma once
 
-#include <algorithm>
-#include <vector>
-
 #include "lib/program/features/loads.h"
-#include "lib/program/plan.h"
 
 namespace pbf::inline program_module {
-template <GaugeKind kind>
-bool has_gauges(const Scene& s) {
-  return std::any_of(s.gauges.begin(), s.gauges.end(),
-                     [](const Gauge& g) { return g.kind == kind; });
-}
-inline bool has_flow_gauges(const Scene& s) { return has_gauges<GaugeKind::flow>(s); }
-inline bool has_velocity_gauges(const Scene& s) { return has_gauges<GaugeKind::velocity>(s); }
 inline std::int64_t per_id(const Sizes& n) { return n.particles; }
-inline std::int64_t per_gate(const Sizes& n) { return std::int64_t(n.plan.gauges.gates.size()); }
-inline std::int64_t per_probe(const Sizes& n) { return std::int64_t(n.plan.gauges.probes.size()); }
-inline std::int64_t per_place(const Sizes& n) { return n.plan.gauges.places; }
+template <class Tally>
+std::int64_t per_sum(const Sizes& n) {
+  return n.plan.gauges.of<Tally>().sums;
+}
 }  // namespace pbf::inline program_module
 
 namespace pbf::inline program_module::field {
 /// In the order of ids, not of rows: bit k tells on which side of flow gauge k it is.
 inline constexpr struct FlowSides : Plain<int> {
 } flow_sides{{"flow sides", per_id, Life::run}};
-inline constexpr struct Gates : Plain<FlowGate> {
-} gates{{"gates", per_gate, Life::run}};
+inline constexpr auto& gates = gauge_sites<FlowTally>;
 inline constexpr struct Flows : Plain<FlowCount> {
-} flows{{"flows", per_gate, Life::state}};
-/// The probes of level and velocity gauges, and the sums at their sample points.
-inline constexpr struct Probes : Plain<Probe> {
-} probes{{"probes", per_probe, Life::run}};
-inline constexpr struct ProbeRows : Plain<ProbeSums, 1, std::int64_t> {
-} probe_sums{{"probe sums", per_place, Life::run}};
+} flows{{"flows", per_sum<FlowTally>, Life::state}};
+/// Of a tally that is made at a reading.
+template <class Tally>
+struct GaugeSums : Plain<typename Tally::Sums, 1, std::int64_t> {};
+template <class Tally>
+inline constexpr GaugeSums<Tally> gauge_sums{{Tally::sums, per_sum<Tally>, Life::run}};
 }  // namespace pbf::inline program_module::field
 
 namespace pbf::inline PBF_VARIANT {
@@ -42,7 +31,7 @@ namespace pbf::inline PBF_VARIANT {
 /// Updates the sides of all particles; `count`: also counts the particles that changed sides.
 template <class G>
 void take_sides(const G& c, bool count) {
-  c.items(FlowPass<typename G::Real>{c[field::gates], int(c.plan.gauges.gates.size()),
+  c.items(FlowPass<typename G::Real>{c[field::gates], gauges_of<FlowTally>(c.scene),
                                      c[field::position], c[field::id], c[field::flow_sides],
                                      count ? c[field::flows] : nullptr, double(c.p.update_dt)});
 }
@@ -60,27 +49,44 @@ struct CountFlow {
 
 struct Gauges;
 
-/// Adds what level and velocity gauges sum over the particles.
-struct ReadProbes {
-  static constexpr PassText text{"probes", "measure"};
-  using Needs = pbf::Needs<Reads<field::position>, If<has_velocity_gauges, Reads<field::velocity>>,
-                           Looks<field::probes>, Adds<field::probe_sums>>;
+/// Adds what gauges sum over the particles at a reading.
+template <class Tally>
+struct ReadGauges {
+  static constexpr PassText text{Tally::sites, "measure"};
+  using Needs =
+      pbf::Needs<Reads<field::position>,
+                 std::conditional_t<Tally::reads_velocity, Reads<field::velocity>, pbf::Needs<>>,
+                 Looks<field::gauge_sites<Tally>>, Adds<field::gauge_sums<Tally>>>;
   template <class G>
   static void launch(const G& c) {
-    c.items(ProbePass<typename G::Real>{c[field::probes], int(c.plan.gauges.probes.size()),
-                                        c[field::position].rows(), c[field::velocity].rows(),
-                                        c.template memory<Gauges>().update_dt,
-                                        c[field::probe_sums].sums()});
+    c.items(gauge_pass(c[field::gauge_sites<Tally>], gauges_of<Tally>(c.scene),
+                       c[field::position].rows(), c.declared(field::velocity),
+                       c.template memory<Gauges>().update_dt, c[field::gauge_sums<Tally>].sums()));
   }
 };
 
+template <class Tally>
+constexpr bool is_read_by_pass = requires {
+  Tally::sums;
+};
+template <class... Tally>
+typename Joined<
+    PassList<CountFlow>,
+    std::conditional_t<is_read_by_pass<Tally>, PassList<ReadGauges<Tally>>, PassList<>>...>::type
+gauge_passes(const std::tuple<TalliedGauges<Tally>...>&);
+
 struct Gauges {
-  using Passes = PassList<CountFlow, ReadProbes>;
+  using Passes = decltype(gauge_passes(std::declval<gauge_keys::EachTally<TalliedGauges>>()));
   template <class B>
   static void add(const Scene& s, B& b) {
     if (s.gauges.empty()) return b.left_out("gauges", "no key gauges");
-    if (has_flow_gauges(s)) b.template end<CountFlow>();
-    if (has_gauges<GaugeKind::level>(s) || has_velocity_gauges(s)) b.template reading<ReadProbes>();
+    if (gauges_of<FlowTally>(s) > 0) b.template end<CountFlow>();
+    const auto add_pass = [&]<class Tally>(const TalliedGauges<Tally>&) {
+      if constexpr (is_read_by_pass<Tally>)
+        if (gauges_of<Tally>(s) > 0) b.template reading<ReadGauges<Tally>>();
+    };
+    std::apply([&](const auto&... tally) { (add_pass(tally), ...); },
+               gauge_keys::EachTally<TalliedGauges>());
   }
 
   template <class Real>
@@ -91,9 +97,11 @@ struct Gauges {
     template <class C>
     void make(C& c) {
       update_dt = c.scene.time.step;
-      c.put(field::gates, c.plan.gauges.gates);
-      c.put(field::probes, c.plan.gauges.probes);
-      c.put(field::patches, c.plan.gauges.patches);
+      std::apply(
+          [&]<class... Tally>(const TalliedGauges<Tally>&... of) {
+            (c.put(field::gauge_sites<Tally>, of.sites), ...);
+          },
+          c.plan.gauges.tallies);
     }
     template <class C>
     void forget(C&) {
@@ -102,7 +110,7 @@ struct Gauges {
     /// Computes the sides from which flow gauges count. Steps without time are not counted.
     template <class C>
     void before_steps(C& c, const StepRange&) {
-      if (!has_flow_gauges(c.scene)) return;
+      if (gauges_of<FlowTally>(c.scene) == 0) return;
       const bool timed = c.p.dt > 0;
       if (timed && !sides_are_current) take_sides(c.template granted<CountFlow>(), false);
       sides_are_current = timed;

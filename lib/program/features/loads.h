@@ -12,7 +12,10 @@
 
 namespace pbf::inline program_module {
 inline std::int64_t per_wall(const Sizes& n) { return load_walls(n.scene); }
-inline std::int64_t per_patch(const Sizes& n) { return pressure_gauges(n.scene); }
+template <class Tally>
+std::int64_t per_gauge(const Sizes& n) {
+  return gauges_of<Tally>(n.scene);
+}
 }  // namespace pbf::inline program_module
 
 namespace pbf::inline program_module::field {
@@ -22,9 +25,12 @@ inline constexpr struct LoadRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 /// Since the last reading; the rows are those of program/loads.h.
 inline constexpr struct WallLoads : Plain<Load> {
 } loads{{"loads", per_wall, Life::state}};
-/// Pressure gauges.
-inline constexpr struct Patches : Plain<Patch> {
-} patches{{"patches", per_patch, Life::run}};
+/// What the kernels know of the gauges of a tally.
+template <class Tally>
+struct GaugeSites : Plain<typename Tally::Site> {};
+template <class Tally>
+inline constexpr GaugeSites<Tally> gauge_sites{{Tally::sites, per_gauge<Tally>, Life::run}};
+inline constexpr auto& patches = gauge_sites<PatchTally>;
 }  // namespace pbf::inline program_module::field
 
 namespace pbf::inline PBF_VARIANT {
@@ -45,7 +51,7 @@ using BookNeeds =
 template <class Real>
 LoadBook<Real> load_book(const Scene& scene, const Box<Real>& box, LoadSums* sums,
                          const Patch* patch) {
-  return {sums, Real(1 / moment_unit(box)), patch, int(pressure_gauges(scene)),
+  return {sums, Real(1 / moment_unit(box)), patch, gauges_of<PatchTally>(scene),
           summed_walls(scene)};
 }
 

@@ -16,18 +16,18 @@ struct Box {
 
   static auto keys() {
     return std::tuple{
-        ShapeKey{&Box::min, "min", "m", kCoordinate,
-                 "Lower corner of the box before it is turned. In place of min and max the box may "
-                 "have center, its middle, and size, its edges.",
-                 true, FlatY::low, true},
-        ShapeKey{&Box::max, "max", "m", kCoordinate, "Upper corner of the box before it is turned.",
-                 true, FlatY::high, true},
-        ShapeKey{&Box::turn_axis, "turn_axis", "", Range{-1e6, 1e6},
-                 "The box is turned about this axis through its middle; with dimensions: 2 about "
-                 "y.",
-                 false},
-        ShapeKey{&Box::turn_angle, "turn_angle", "degrees", Range{-360, 360},
-                 "By so much, counterclockwise seen from where the axis points.", false}};
+        KindKey{&Box::min, "min", "m", kCoordinate,
+                "Lower corner of the box before it is turned. In place of min and max the box may "
+                "have center, its middle, and size, its edges.",
+                true, FlatY::low, true},
+        KindKey{&Box::max, "max", "m", kCoordinate, "Upper corner of the box before it is turned.",
+                true, FlatY::high, true},
+        KindKey{&Box::turn_axis, "turn_axis", "", Range{-1e6, 1e6},
+                "The box is turned about this axis through its middle; with dimensions: 2 about "
+                "y.",
+                false},
+        KindKey{&Box::turn_angle, "turn_angle", "degrees", Range{-360, 360},
+                "By so much, counterclockwise seen from where the axis points.", false}};
   }
   void check(auto& rules) const {
     if (rules.good(min, max) && rules.above(min, max)) {

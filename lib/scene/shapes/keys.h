@@ -1,7 +1,7 @@
 // The parts of a shape of obstacles in scenes. A shape is a struct with its keys as members (m) and
 //   word                   its name in scenes
 //   Body                   its type in the kernels
-//   keys()                 its rows in the table of keys (ShapeKey), in the order of pages
+//   keys()                 its rows in the table of keys (KindKey), in the order of pages
 //   check(rules)           checks rules between its keys, by SceneRules
 //   middle(), axes()       position of the body, m, and its axes as rows
 //   make(h)                the body, with lengths divided by h
@@ -12,21 +12,9 @@
 #include "kernels/shapes/shapes.h"
 #include "lib/base/text.h"
 #include "lib/scene/body_axes.h"
-#include "lib/scene/key_traits.h"
+#include "lib/scene/kinds.h"
 
 namespace pbf::inline scene_module {
-
-/// A key. Shapes with keys of the same name share a row of the table.
-template <class Member, class Holder>
-struct ShapeKey {
-  Member Holder::*member;
-  const char *name, *unit;
-  Range range;
-  const char* help;
-  bool required = true;
-  FlatY flat = FlatY::none;
-  bool by_center = false;  ///< a corner of a box, which center and size may give as well
-};
 
 namespace obstacle_keys {
 
@@ -50,9 +38,9 @@ struct Tube {
 
   static auto keys_in(FlatY from, FlatY to) {
     return std::tuple{
-        ShapeKey{&Tube::radius, "radius", "m", kLength, kRadiusHelp},
-        ShapeKey{&Tube::from, "from", "m", kCoordinate, "One end of the axis.", true, from},
-        ShapeKey{&Tube::to, "to", "m", kCoordinate, "The other end.", true, to}};
+        KindKey{&Tube::radius, "radius", "m", kLength, kRadiusHelp},
+        KindKey{&Tube::from, "from", "m", kCoordinate, "One end of the axis.", true, from},
+        KindKey{&Tube::to, "to", "m", kCoordinate, "The other end.", true, to}};
   }
   /// `flat`: the error of the axis with dimensions: 2; null: none.
   void check_axis(auto& rules, const char* flat) const {

@@ -15,10 +15,10 @@ struct Plane {
 
   static auto keys() {
     return std::tuple{
-        ShapeKey{&Plane::point, "point", "m", kCoordinate, "A point of the plane's face.", true,
-                 FlatY::middle},
-        ShapeKey{&Plane::normal, "normal", "", Range{-1e6, 1e6},
-                 "At right angles to the face, away from the solid.", true, FlatY::zero}};
+        KindKey{&Plane::point, "point", "m", kCoordinate, "A point of the plane's face.", true,
+                FlatY::middle},
+        KindKey{&Plane::normal, "normal", "", Range{-1e6, 1e6},
+                "At right angles to the face, away from the solid.", true, FlatY::zero}};
   }
   void check(auto& rules) const {
     if (!rules.good(normal)) return;

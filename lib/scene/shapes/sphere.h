@@ -14,9 +14,9 @@ struct Sphere {
   bool operator==(const Sphere&) const = default;
 
   static auto keys() {
-    return std::tuple{ShapeKey{&Sphere::center, "center", "m", kCoordinate, "Centre of the sphere.",
-                               true, FlatY::middle},
-                      ShapeKey{&Sphere::radius, "radius", "m", kLength, kRadiusHelp}};
+    return std::tuple{KindKey{&Sphere::center, "center", "m", kCoordinate, "Centre of the sphere.",
+                              true, FlatY::middle},
+                      KindKey{&Sphere::radius, "radius", "m", kLength, kRadiusHelp}};
   }
   void check(auto& rules) const {
     if (rules.flat()) check_radius(rules, radius);

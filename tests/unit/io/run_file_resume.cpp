@@ -20,9 +20,10 @@ std::size_t count_of(std::int64_t frame) { return frame % 3 == 2 ? 30 : 40; }
 
 RunInfo info_with_gauges() {
   RunInfo info = sample_info(40);
-  info.gauges = {{"H", "level", "x = 0.5 m", "m", 1, "", ""},
-                 {"U", "velocity", "(1, 2, 3) m", "m/s", 3, "", ""},
-                 {"Q", "flow", "(1, 2, 3) m", "kg/s", 1, "total", "kg"}};
+  info.columns = {{"level", "H", "", "m", "x = 0.5 m", Join::now},
+                  {"velocity", "U", "", "m/s", "(1, 2, 3) m", Join::now, 3},
+                  {"flow", "Q", "", "kg/s", "(1, 2, 3) m", Join::mean},
+                  {"flow", "Q", "total", "kg", "(1, 2, 3) m", Join::total}};
   return info;
 }
 GaugeRow gauge_row(std::int64_t k) {

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "lib/program/levels.h"
+#include "lib/program/loads.h"
 #include "lib/program/plan.h"
-#include "lib/solver/gauge_readings.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_samples.h"
 
@@ -24,8 +24,9 @@ double area(const std::string& on, const std::string& at, double radius,
       plan_of("obstacles: [" + obstacles + "]\ngauges: [{name: p, kind: pressure, on: " + on +
                   ", at: " + at + ", radius: " + std::to_string(radius) + "}]\n",
               set);
-  REQUIRE(p.gauges.areas.size() == 1);
-  return p.gauges.areas[0];
+  REQUIRE(p.gauges.of<PatchTally>().sites.size() == 1);
+  // Pa per N
+  return load_grain(parse(kMinimal, set), p) / p.gauges.columns.at(0).grain.value;
 }
 /// Of a disc whose share falls from 1 at r - d to 0 at r + d.
 double disc(double r) { return kPi * (r * r + kSpacing * kSpacing / 3); }
@@ -62,8 +63,8 @@ TEST_CASE("gauges: the edges of a rectangle are level, then up") {
         plan_of("gauges: [{name: q, kind: flow, center: [0.5, 0.5, 0.5], normal: " + normal +
                     ", size: [" + (set.empty() ? "0.4, " : "") + "0.2]}]\n",
                 set);
-    REQUIRE(p.gauges.gates.size() == 1);
-    return p.gauges.gates[0];
+    REQUIRE(p.gauges.of<FlowTally>().sites.size() == 1);
+    return p.gauges.of<FlowTally>().sites[0];
   };
   const FlowGate x = gate("[2, 0, 0]"), z = gate("[0, 0, -1]");
   const Axes axes = plan_of("").axes;
@@ -95,23 +96,59 @@ TEST_CASE(
   CHECK(left_out(plan_of(""), "gauges") == "no key gauges");
   CHECK(left_out(plan_of(gauge), "gauges").empty());
   CHECK(left_out(plan_of(gauge), "loads on the walls").empty());
-  CHECK(plan_of("").gauges.places == 0);
+  CHECK(plan_of("").gauges.of<ProbeTally>().sums == 0);
 }
 
-TEST_CASE("gauges: the data of each says where it is and in which unit") {
-  const std::vector<GaugeData> all = gauge_data(parse(
-      kMinimal +
-      "gauges:\n"
-      "  - {name: H, kind: level, at: [0.5, 0.25]}\n"
-      "  - {name: Q, kind: flow, center: [0.5, 0.5, 0.1], normal: [1, 0, 0], size: [1, 0.2]}\n"
-      "  - {name: P, kind: pressure, on: x_max, at: [1, 0.5, 0.1], radius: 0.2}\n"));
-  REQUIRE(all.size() == 3);
+TEST_CASE("gauges: the columns of each say where it is, in which unit, and how they are read") {
+  const auto all =
+      plan_of(
+          "gauges:\n"
+          "  - {name: H, kind: level, at: [0.5, 0.25]}\n"
+          "  - {name: U, kind: velocity, at: [0.5, 0.25, 0.1]}\n"
+          "  - {name: Q, kind: flow, center: [0.5, 0.5, 0.1], normal: [1, 0, 0], size: [1, 0.2]}\n"
+          "  - {name: P, kind: pressure, on: x_max, at: [1, 0.5, 0.1], radius: 0.2}\n")
+          .columns;
+  REQUIRE(all.size() == 6);
   CHECK(all[0].place == "x = 0.5 m, y = 0.25 m");
-  CHECK(all[1].place == "(0.5, 0.5, 0.1) m, normal (1, 0, 0), 1 x 0.2 m");
-  CHECK(all[2].place == "x_max at (1, 0.5, 0.1) m, radius 0.2 m");
-  CHECK(all[1].kind == "flow");
-  CHECK(all[1].numbers() == 2);
-  CHECK(std::string(all[2].further_unit) == "Pa");
+  CHECK(all[1].place == "(0.5, 0.25, 0.1) m");
+  CHECK(all[2].place == "(0.5, 0.5, 0.1) m, normal (1, 0, 0), 1 x 0.2 m");
+  CHECK(all[4].place == "x_max at (1, 0.5, 0.1) m, radius 0.2 m");
+  const char* const names[] = {"H  m",    "U x m/s",    "U y m/s", "U z m/s",
+                               "Q  kg/s", "Q total kg", "P  Pa",   "P peak Pa"};
+  const Join joins[] = {Join::now,  Join::now,   Join::now,  Join::now,
+                        Join::mean, Join::total, Join::mean, Join::peak};
+  std::size_t numbers = 0;
+  for_each_number(all, Series::gauges, [&](const ReadingColumn& c, int component, std::size_t k) {
+    REQUIRE(k < std::size(names));
+    CHECK(c.of + " " + number_name(c, component) + " " + c.unit == names[k]);
+    CHECK(c.join == joins[k]);
+    ++numbers;
+  });
+  CHECK(numbers == std::size(names));
+}
+
+TEST_CASE("readings: closed walls and obstacles with loads have columns, others none") {
+  const auto columns = [](const std::vector<std::string>& set) {
+    std::vector<std::string> out;
+    const auto all =
+        plan_of(
+            "obstacles: [{name: a, shape: sphere, center: [0.5, 0.5, 0.5], radius: 0.25},\n"
+            "  {name: b, shape: plane, point: [0.2, 0, 0], normal: [1, 0, 0], loads: true}]\n",
+            set)
+            .columns;
+    for_each_number(all, Series::measures, [&](const ReadingColumn& c, int component, std::size_t) {
+      out.push_back(c.of + " " + number_name(c, component));
+    });
+    return out;
+  };
+  const std::vector<std::string> of_b = {"b force_x",  "b force_y",  "b force_z",   "b torque_x",
+                                         "b torque_y", "b torque_z", "b force_peak"};
+  CHECK(columns({}) == of_b);
+  CHECK(columns({"domain.loads=true"}).size() == 7 * 7);
+  CHECK(columns({"domain.loads=true", "domain.open=[z_max, x_min]"}).size() == 5 * 7);
+  CHECK(columns({"domain.loads=true", "obstacles=[]", "dimensions=2", "domain.max=[1, 0.1, 1]"})
+            .size() == 4 * 7);
+  CHECK(columns({"obstacles=[]"}).empty());
 }
 
 }  // namespace pbf

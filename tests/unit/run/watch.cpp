@@ -26,7 +26,7 @@ TEST_CASE("watch: a measure at every multiple of measure_every and at the end, e
   CHECK(s.watch.first().update == 0);
   CHECK(s.watch.last().update == 10);
   // The load at the end ends no interval: a run that goes on counts it once more.
-  CHECK(s.solver.loads(Interval::goes_on).at(0).force[2] == 2);
+  CHECK(s.solver.readings(Series::measures, Interval::goes_on).at(0) == 2);
   // Without a guard nothing is measured but that, and no state is kept.
   CHECK(s.solver.measured == UpdateNumbers{0, 4, 8, 10});
   CHECK(s.solver.kept() == 0);
@@ -39,7 +39,7 @@ TEST_CASE("watch: a run that is stopped between two measures has one more, with 
   s.run();
   CHECK(s.updates() == UpdateNumbers{0, 4, 6});
   CHECK(s.loads() == UpdateNumbers{0, 4, 2});
-  CHECK(s.solver.loads(Interval::goes_on).at(0).force[2] == 2);
+  CHECK(s.solver.readings(Series::measures, Interval::goes_on).at(0) == 2);
   WatchedSession at_a_measure(ten_updates());
   at_a_measure.behind.then = [](Session& session) {
     return session.update() == 4 ? Now::stop : Now::go_on;
@@ -150,7 +150,7 @@ TEST_CASE("watch: readings of gauges that are taken back come once, over their w
   s.run();
   CHECK(pairs(s.readings) == Readings{{0, 0}, {4, 4}, {8, 4}, {10, 2}});
   CHECK(s.readings[2].time == Approx(0.08));
-  CHECK(s.solver.gauges(Interval::goes_on).at(0) == 2);
+  CHECK(s.solver.readings(Series::gauges, Interval::goes_on).at(0) == 2);
 }
 
 TEST_CASE("watch: a run that goes on repeats no measure, and knows its start and its step") {

@@ -18,6 +18,10 @@ std::string gauge_error(const std::string& gauges, const std::vector<std::string
                          gauges + "]\n",
                      set);
 }
+/// The keys of the first gauge.
+gauge_keys::Level level_of(const Scene& s) {
+  return std::get<gauge_keys::Level>(s.gauges.at(0).kind);
+}
 const std::vector<std::string> kFlat = {"dimensions=2", "domain.max=[1, 0.1, 1]",
                                         "obstacles=[{name: box, shape: box, min: [0.2, 0, 0], "
                                         "max: [0.5, 0.1, 0.3]}]"};
@@ -37,10 +41,10 @@ TEST_CASE("gauges: every kind with its keys is read") {
                         "  - {name: P, kind: pressure, on: x_max, at: [1, 0.5, 0.1], radius: 0.2}\n"
                         "output: {gauges_every: 0.05}\n");
   REQUIRE(s.gauges.size() == 4);
-  CHECK(s.gauges[0].at == std::vector<double>{0.5, 0.25});
-  CHECK(s.gauges[1].kind == GaugeKind::velocity);
-  CHECK(s.gauges[2].size == std::vector<double>{1, 0.2});
-  CHECK(s.gauges[3].on == "x_max");
+  CHECK(level_of(s).at == std::vector<double>{0.5, 0.25});
+  CHECK(std::get<gauge_keys::Velocity>(s.gauges[1].kind).at == std::vector<double>{0.5, 0.5, 0.1});
+  CHECK(std::get<gauge_keys::Flow>(s.gauges[2].kind).size == std::vector<double>{1, 0.2});
+  CHECK(std::get<gauge_keys::Pressure>(s.gauges[3].kind).on == "x_max");
   CHECK(s.output->gauges_every == 0.05);
   CHECK(parse(kMinimal).gauges.empty());
   CHECK_FALSE(parse(kMinimal + "output: {}\n").output->gauges_every);
@@ -49,7 +53,7 @@ TEST_CASE("gauges: every kind with its keys is read") {
 
 TEST_CASE("gauges: a place in the list is changed from the command line") {
   const std::string text = kMinimal + "gauges: [{name: H, kind: level, at: [0.5, 0.25]}]\n";
-  CHECK(parse(text, {"gauges[0].at=[0.1, 0.2]"}).gauges[0].at == std::vector<double>{0.1, 0.2});
+  CHECK(level_of(parse(text, {"gauges[0].at=[0.1, 0.2]"})).at == std::vector<double>{0.1, 0.2});
   CHECK(contains(parse_error(text, {"gauges[0].att=[0.1, 0.2]"}), "did you mean gauges[0].at?"));
 }
 

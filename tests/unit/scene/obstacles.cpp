@@ -34,11 +34,11 @@ TEST_CASE("obstacles: shapes share a key only where they say the same of it") {
     return k;
   };
   std::vector<Key> rows;
-  add_shape_row(rows, row(1));
-  add_shape_row(rows, row(2));
+  add_kind_row(rows, row(1));
+  add_kind_row(rows, row(2));
   Key middle = row(3);
   middle.flat = FlatY::middle;
-  add_shape_row(rows, middle);
+  add_kind_row(rows, middle);
   REQUIRE(rows.size() == 1);
   CHECK(rows[0].kinds == 14);
   CHECK(rows[0].in_plane == 8);
@@ -52,10 +52,10 @@ TEST_CASE("obstacles: shapes share a key only where they say the same of it") {
   for (const auto change : changes) {
     Key other = row(4);
     change(other);
-    CHECK_THROWS_WITH(add_shape_row(rows, other), Catch::Contains("obstacles[].end: two shapes"));
+    CHECK_THROWS_WITH(add_kind_row(rows, other), Catch::Contains("obstacles[].end: two kinds"));
   }
   std::vector<Key> turned{middle};  // another order of the list of shapes
-  CHECK_THROWS_WITH(add_shape_row(turned, row(1)), Catch::Contains("differ"));
+  CHECK_THROWS_WITH(add_kind_row(turned, row(1)), Catch::Contains("differ"));
 }
 
 TEST_CASE("obstacles: every shape with its keys is read, what is not given has its default") {

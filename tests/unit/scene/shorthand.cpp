@@ -51,9 +51,10 @@ TEST_CASE("two dimensions: two numbers for vectors, and one spacing of thickness
   CHECK(s.obstacles[2].as<obstacle_keys::Capsule>().from == Double3{1.4, 0.025, 0.5});
   CHECK(s.obstacles[3].as<obstacle_keys::Plane>().normal == Double3{-1, 0, 1});
   CHECK(s.obstacles[4].as<obstacle_keys::Sphere>().center == Double3{0.7, 0.025, 0.8});
-  CHECK(s.gauges[0].at == std::vector<double>{0.3});
-  CHECK(s.gauges[1].at == std::vector<double>{0.3, 0.025, 0.2});
-  CHECK(s.gauges[2].normal == Double3{1, 0, 0});
+  CHECK(std::get<gauge_keys::Level>(s.gauges[0].kind).at == std::vector<double>{0.3});
+  CHECK(std::get<gauge_keys::Velocity>(s.gauges[1].kind).at ==
+        std::vector<double>{0.3, 0.025, 0.2});
+  CHECK(std::get<gauge_keys::Flow>(s.gauges[2].kind).normal == Double3{1, 0, 0});
   CHECK(parse(resolved_yaml(s)) == s);
   CHECK(contains(resolved_yaml(s), "max: [2, 0.05, 1]"));
 }

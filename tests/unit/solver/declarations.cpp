@@ -108,7 +108,7 @@ void run(const Scenario& of, Seen& seen) {
   solver->measure();
   solver->step(3, watching(of));    // passes joined
   solver->inspection()->trace({});  // pass by pass
-  solver->gauges(Interval::goes_on);
+  solver->readings(Series::gauges, Interval::goes_on);
   solver->step(1, without_time());
   solver->measure();
   seen.touches = made.touches;
@@ -131,9 +131,9 @@ struct Results {
   }
 };
 Results results(Solver& s) {
-  Results r{s.state(), s.gauges(Interval::goes_on)};
-  for (const WallLoad& load : s.loads(Interval::goes_on))
-    for (const LoadNumber& number : load_numbers()) r.numbers.push_back(number.value(load));
+  Results r{s.state(), s.readings(Series::gauges, Interval::goes_on)};
+  for (const double load : s.readings(Series::measures, Interval::goes_on))
+    r.numbers.push_back(load);
   const Diagnostics m = s.measure();
   for (const auto& d : diagnostics()) r.numbers.push_back(d.value(m));
   return r;

@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+
+#include "lib/program/column.h"
+#include "lib/program/loads.h"
+#include "lib/program/motion.h"
+#include "lib/program/plan.h"
+
+namespace pbf::inline program_module {
+namespace {
+
+/// The surfaces (surface_named()) whose loads are read.
+std::vector<int> loaded_surfaces(const Scene& s) {
+  std::vector<int> all;
+  for (int face = 0; s.domain.loads && face < int(kFaceNames.size()); ++face)
+    if (!s.domain.is_open(face / 2, face % 2 == 1) && !(s.dimensions == 2 && face / 2 == 1))
+      all.push_back(face);
+  for (std::size_t k = 0; k < s.obstacles.size(); ++k)
+    if (s.obstacles[k].loads) all.push_back(int(kFaceNames.size() + k));
+  return all;
+}
+
+}  // namespace
+
+double load_grain(const Scene& s, const Plan& plan) {
+  const double dt = s.time.step / plan.substeps;
+  const double bookings =
+      double(plan.particles) * (1 + 3 * s.solver.iterations * (1 + plan.repeats));
+  return plan.mass * s.h() / (dt * dt) * bookings / double(kLoadUnits);
+}
+
+std::vector<ReadingColumn> reading_columns(const Scene& s, const Plan& plan) {
+  using enum Join;
+  using enum Series;
+  std::vector<ReadingColumn> all;
+  const double grain = load_grain(s, plan);
+  double arm = 0;  // m; torques are about the domain's corner, in units of up to twice its edges
+  for (std::size_t k = 0; k < 3; ++k) arm = std::hypot(arm, s.domain.max[k] - s.domain.min[k]);
+  for (const int surface : loaded_surfaces(s)) {
+    const Obstacle* o = obstacle_of(s, surface);
+    const std::string of = o ? o->name : kFaceNames[std::size_t(surface)];
+    all.push_back({"load", of, "force", "N", "", mean, 3, measures, {grain}, 1});
+    all.push_back({"load", of, "torque", "N m", "", mean, 3, measures, {3 * arm * grain}, arm});
+    all.push_back({"load", of, "force_peak", "N", "", peak, 1, measures, {grain}, 1});
+  }
+  all.insert(all.end(), plan.gauges.columns.begin(), plan.gauges.columns.end());
+  for (const Obstacle& o : s.obstacles) {
+    if (!o.motion) continue;
+    all.push_back({"pose", o.name, "", "m", "", now, 3, poses});
+    all.push_back({"pose", o.name, "turn", "1", "", now, 9, poses});
+  }
+  return all;
+}
+
+std::vector<double> pose_readings(const Scene& s, double time) {
+  std::vector<double> out;
+  for (const Obstacle& o : s.obstacles) {
+    if (!o.motion) continue;
+    const Pose pose = pose_of(s, o, time);
+    const Double3 middle = pose.of(o.middle());
+    out.insert(out.end(), middle.begin(), middle.end());
+    for (const Double3& row : pose.turn) out.insert(out.end(), row.begin(), row.end());
+  }
+  return out;
+}
+
+std::string number_name(const ReadingColumn& column, int component) {
+  std::string name = column.name;
+  if (column.components == 1) return name;
+  if (!name.empty()) name += '_';
+  if (column.components == 9) name += "xyz"[component / 3];
+  return name += "xyz"[component % 3];
+}
+
+std::vector<double> load_readings(const std::vector<Load>& loads, const Scene& s,
+                                  const Plan& plan) {
+  std::vector<double> out;
+  const auto& of = plan.axes.of;
+  const double hand = plan.axes.handedness(), h = s.h();
+  for (const int surface : loaded_surfaces(s)) {
+    const Load& load = loads[std::size_t(load_row(surface, plan.axes))];
+    double middle[3] = {0, 0, 0};  // the moment of a moving obstacle is already about its middle
+    if (const Obstacle* o = obstacle_of(s, surface); !o)
+      for (int k = 0; k < 3; ++k) {
+        const auto a = std::size_t(of[k]);
+        const double extent = (s.domain.max[a] - s.domain.min[a]) / h;
+        middle[k] = of[k] != surface / 2 ? extent / 2 : surface % 2 ? extent : 0;
+      }
+    else if (!o->motion) {
+      const Vec3<double>& c = plan.solids[std::size_t(o - s.obstacles.data())].center;
+      middle[0] = c.x, middle[1] = c.y, middle[2] = c.z;
+    }
+    double force[3], torque[3];
+    const double unit = load.time > 0 ? plan.mass * h / load.time : 0;
+    for (int k = 0; k < 3; ++k) {
+      const int b = (k + 1) % 3, c = (k + 2) % 3;
+      force[of[k]] = unit * load.impulse[k];
+      // A cross product changes its sign if the axes have the other handedness.
+      torque[of[k]] = hand * unit * h *
+                      (load.moment[k] - middle[b] * load.impulse[c] + middle[c] * load.impulse[b]);
+    }
+    out.insert(out.end(), force, force + 3);
+    out.insert(out.end(), torque, torque + 3);
+    out.push_back(plan.mass * h * load.peak);
+  }
+  return out;
+}
+
+}  // namespace pbf::inline program_module
