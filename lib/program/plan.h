@@ -32,7 +32,9 @@ struct PlanFile {
 };
 
 struct Plan {
-  std::int64_t particles = 0;
+  std::int64_t particles = 0;  ///< at the start
+  /// Where particles appear or disappear during the run: the largest number of them. 0: elsewhere.
+  std::int64_t capacity = 0;
   StartNeighbors start;      ///< lib/run/start_neighbors.h
   double cell_edge = 1;      ///< in h, >= 1: larger only if the box would need too many cells
   Axes axes;                 ///< of the internal frame; lib/program/axes.h
@@ -59,6 +61,9 @@ struct Plan {
   std::vector<LeftOut> left_out;
   std::vector<PlanFile> files;
 
+  bool changes_rows() const { return capacity > 0; }
+  /// Rows of the largest frame or state, for files and for memory.
+  std::int64_t most_rows() const { return changes_rows() ? capacity : particles; }
   std::int64_t bytes() const { return memory.solver_bytes(); }
   UpdateShape shape() const;
 };

@@ -51,7 +51,8 @@ struct StepOptions {
   bool operator==(const StepOptions&) const = default;
 };
 
-/// The state to return: the present one, only its positions, or the copy that keep() made.
+/// The state to return: the present one, only its positions (with ids where particles appear and
+/// disappear), or the copy that keep() made.
 enum class Which { now, positions, kept };
 
 /// Whether the interval over which loads are averaged continues or ends with this reading.
@@ -78,8 +79,7 @@ class Solver {
   virtual std::vector<double> gauges(Interval interval) = 0;
   /// After set_state(), this or another solver of the same scene and precision continues with the
   /// same bits. A solver of float rounds the state of a solver of double. Throws Error(internal) if
-  /// the number of particles differs, if the ids are not a permutation of 0..n-1, or for
-  /// Which::kept without keep().
+  /// check_state() does, or for Which::kept without keep().
   virtual SolverState state(Which which = Which::now) = 0;
   virtual void set_state(const SolverState& state) = 0;
   /// Keeps a copy of the state in the memory of the solver and replaces the previous copy. Cheap
@@ -106,7 +106,8 @@ class Inspection {
   virtual void inject(const Fault& fault) = 0;
 };
 
-/// Throws Error(internal) for a state that does not fit a solver of n particles.
-void check_state(const SolverState& state, std::int64_t n);
+/// Throws Error(internal) for a state that does not fit (lib/solver/solver_state.h) a solver of n
+/// particles. changes_rows: of at most n, as Plan::changes_rows() says.
+void check_state(const SolverState& state, std::int64_t n, bool changes_rows = false);
 
 }  // namespace pbf::inline solver_module

@@ -131,7 +131,7 @@ void upload_state(C& c, const SolverState& s) {
   for (std::size_t k = 0; k < values.size(); ++k) upload(c, *c.plan.program.state[k], values[k]);
   upload(c, field::position, s.position);
   upload(c, field::velocity, s.velocity);
-  c.put(field::id, s.id);
+  c.put(field::id, std::vector<int>(s.id.begin(), s.id.end()));
 }
 
 }  // namespace pbf::inline PBF_VARIANT

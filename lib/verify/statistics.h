@@ -50,6 +50,7 @@ struct Resolution {
 std::vector<double> numbers_of(const FieldArray& f);
 
 struct FrameStatistics {
+  double particles = 0;  ///< without any, both lists are empty
   std::vector<Statistic> numbers;
   std::vector<Distribution> distributions;
 };
