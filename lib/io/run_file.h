@@ -47,7 +47,7 @@ struct RunInfo {
   Double3 domain_min{}, domain_max{};
   double spacing = 0, smoothing_length = 0, rest_density = 0;
   std::int64_t particles = 0;     ///< at the start
-  std::int64_t capacity = 0;      ///< Plan::capacity: the number changes, and is never larger
+  std::int64_t capacity = 0;      ///< at any time, where the number changes; 0: it does not
   std::int64_t first_update = 0;  ///< of this session
   std::vector<GaugeData> gauges;  ///< is not read back
 };

@@ -101,7 +101,7 @@ std::int64_t add_prestabilize(const Scene& s, const Plan& plan, const std::strin
 std::int64_t add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   const int scalars = downloaded_scalars(s);
   if (scalars == 0) return 0;
-  const std::int64_t n = plan.most_rows();
+  const std::int64_t n = plan.capacity;
   const bool on_device = about(s.backend).on_device;
   const std::string real = word(s.output ? s.output->precision : Precision::single);
   if (on_device) {
@@ -139,7 +139,7 @@ std::int64_t add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
 void add_checkpoint(const Scene& s, const Plan& plan, const std::string& real, MemoryPlan& memory) {
   if (!s.checkpoint) return;
   const Adder add{memory, false, Held::checkpoint};
-  const std::int64_t n = plan.most_rows();
+  const std::int64_t n = plan.capacity;
   add("state for a checkpoint", "double", 6, n);
   add("ids for a checkpoint", "int64", 1, n);
   add("chunk before and after its checksum", real, 3, 2 * std::min<std::int64_t>(n, 1 << 18));

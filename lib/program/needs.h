@@ -146,6 +146,8 @@ void Then<A, B>::list(const Scene& scene, std::vector<AccessInfo>& to) {
   }
 }
 
+inline bool changes_rows(const Scene& s) { return s.capacity > 0; }
+
 /// The flags that pass P declares for a field; 0: none.
 template <class P, class Field>
 constexpr unsigned how_of = P::Needs::template how_of<Field>();

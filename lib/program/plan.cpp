@@ -120,7 +120,7 @@ double table_bytes(double columns, double rows) {
 }
 
 void plan_files(Plan& plan, const Scene& s) {
-  const auto n = double(plan.most_rows());
+  const auto n = double(plan.capacity);
   const auto add = [&](const char* name, double number, double bytes,
                        const std::string& note = {}) {
     plan.files.push_back({name, std::int64_t(number), std::int64_t(bytes), note});
@@ -135,7 +135,7 @@ void plan_files(Plan& plan, const Scene& s) {
     double row = 3 * scalar;  // position
     for (const auto& f : s.output->fields) row += (f == "velocity" ? 3 : 1) * scalar;
     const double frames = double(schedule.frames_until(all));
-    if (plan.changes_rows()) row += 4;  // ids of each frame, and as many rows as there are at most
+    if (changes_rows(s)) row += 4;  // ids of each frame; every frame takes the space of the largest
     // Ids and vertex numbers are stored once. Large chunks of a frame fill whole pages. gzip makes
     // the data 1.45 times smaller (measured).
     const double bytes =
@@ -165,6 +165,7 @@ UpdateShape Plan::shape() const { return {substeps, lists_per_update, repeats}; 
 Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   Plan plan;
   plan.particles = particles;
+  plan.capacity = std::max(particles, s.capacity);
   plan.start = std::move(start);
   plan.mass = s.particle_mass();
   if (s.fluid.mass) {

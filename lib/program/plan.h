@@ -33,13 +33,12 @@ struct PlanFile {
 
 struct Plan {
   std::int64_t particles = 0;  ///< at the start
-  /// Where particles appear or disappear during the run: the largest number of them. 0: elsewhere.
-  std::int64_t capacity = 0;
-  StartNeighbors start;      ///< lib/run/start_neighbors.h
-  double cell_edge = 1;      ///< in h, >= 1: larger only if the box would need too many cells
-  Axes axes;                 ///< of the internal frame; lib/program/axes.h
-  int cells[3] = {1, 1, 1};  ///< of the grid, along the internal axes; half cells along x
-  double vol = 1;            ///< m/(rho0 h^3), in 2-D m/(rho0 h^2 thickness); calibrate.h
+  std::int64_t capacity = 0;   ///< at most; the arrays have so many rows
+  StartNeighbors start;        ///< lib/run/start_neighbors.h
+  double cell_edge = 1;        ///< in h, >= 1: larger only if the box would need too many cells
+  Axes axes;                   ///< of the internal frame; lib/program/axes.h
+  int cells[3] = {1, 1, 1};    ///< of the grid, along the internal axes; half cells along x
+  double vol = 1;              ///< m/(rho0 h^3), in 2-D m/(rho0 h^2 thickness); calibrate.h
   double wall_scale = 1, wall_range = 1;  ///< amplitude; range in h
   /// omega, the step length of the iterations: the key solver.sor, or a default that depends on h/d
   /// and on levels (kernels/README.md, "Step length").
@@ -61,9 +60,6 @@ struct Plan {
   std::vector<LeftOut> left_out;
   std::vector<PlanFile> files;
 
-  bool changes_rows() const { return capacity > 0; }
-  /// Rows of the largest frame or state, for files and for memory.
-  std::int64_t most_rows() const { return changes_rows() ? capacity : particles; }
   std::int64_t bytes() const { return memory.solver_bytes(); }
   UpdateShape shape() const;
 };

@@ -50,7 +50,7 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   info.smoothing_length = scene.h();
   info.rest_density = scene.fluid.rest_density;
   info.particles = run.plan.particles;
-  info.capacity = run.plan.capacity;
+  info.capacity = scene.capacity;
   info.first_update = run.from.update();
   info.gauges = gauge_data(scene);
   return info;

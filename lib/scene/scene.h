@@ -214,6 +214,8 @@ struct Scene {
   Backend backend = Backend::cpu;
   Precision precision = Precision::single;
   int threads = 0;  ///< CPU threads; 0: from the number of particles (lib/program/threads.h)
+  /// Most particles at a time where their number changes; 0: it does not.
+  std::int64_t capacity = 0;
 
   double h() const { return fluid.spacing * fluid.smoothing_ratio; }  ///< m, smoothing length
   /// y of the plane that holds all particles of a scene in two dimensions, m; empty in 3-D.

@@ -51,8 +51,7 @@ struct StepOptions {
   bool operator==(const StepOptions&) const = default;
 };
 
-/// The state to return: the present one, only its positions (with ids where particles appear and
-/// disappear), or the copy that keep() made.
+/// The state to return: the present one, only its positions, or the copy that keep() made.
 enum class Which { now, positions, kept };
 
 /// Whether the interval over which loads are averaged continues or ends with this reading.
@@ -106,8 +105,8 @@ class Inspection {
   virtual void inject(const Fault& fault) = 0;
 };
 
-/// Throws Error(internal) for a state that does not fit (lib/solver/solver_state.h) a solver of n
-/// particles. changes_rows: of at most n, as Plan::changes_rows() says.
-void check_state(const SolverState& state, std::int64_t n, bool changes_rows = false);
+/// Throws Error(internal) for a state that does not fit a solver of n particles, or of at most n if
+/// their number changes.
+void check_state(const SolverState& state, std::int64_t n, bool changes = false);
 
 }  // namespace pbf::inline solver_module

@@ -39,7 +39,7 @@ struct SolverState {
 };
 
 /// Whether places, velocities and ids of a state are those of n particles with the ids 0..n-1, in
-/// any order; with `changes_rows` of at most n, whose ids are unique and not negative.
-bool fits(const SolverState& state, std::int64_t n, bool changes_rows);
+/// any order; with `changes` of at most n, whose ids are unique and not negative.
+bool fits(const SolverState& state, std::int64_t n, bool changes);
 
 }  // namespace pbf::inline solver_module

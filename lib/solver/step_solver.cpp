@@ -6,9 +6,9 @@
 
 namespace pbf::inline solver_module {
 
-bool fits(const SolverState& s, std::int64_t n, bool changes_rows) {
+bool fits(const SolverState& s, std::int64_t n, bool changes) {
   const std::size_t most = std::size_t(n), count = s.id.size();
-  if (changes_rows ? count > most : count != most) return false;
+  if (changes ? count > most : count != most) return false;
   if (s.position.size() != 3 * count || s.velocity.size() != 3 * count) return false;
   std::vector<std::int64_t> sorted;  // a copy only where it is needed: solvers return them in order
   if (!std::is_sorted(s.id.begin(), s.id.end())) {
@@ -18,15 +18,15 @@ bool fits(const SolverState& s, std::int64_t n, bool changes_rows) {
   const std::vector<std::int64_t>& id = sorted.empty() ? s.id : sorted;
   if (id.empty()) return true;
   return id.front() >= 0 && std::adjacent_find(id.begin(), id.end()) == id.end() &&
-         (changes_rows || id.back() == n - 1);
+         (changes || id.back() == n - 1);
 }
 
-void check_state(const SolverState& s, std::int64_t n, bool changes_rows) {
-  if (!fits(s, n, changes_rows))
+void check_state(const SolverState& s, std::int64_t n, bool changes) {
+  if (!fits(s, n, changes))
     throw Error(ExitCode::internal, "a state of " + std::to_string(s.id.size()) +
                                         " particles does not fit a solver of " + std::to_string(n) +
-                                        (changes_rows ? ", or its ids are negative or not unique"
-                                                      : ", or its ids are not 0..n-1"));
+                                        (changes ? ", or its ids are negative or not unique"
+                                                 : ", or its ids are not 0..n-1"));
 }
 
 Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type, std::size_t n,

@@ -11,17 +11,12 @@
 namespace pbf::inline verify_module {
 namespace {
 
-SolverState positions(Solver& solver) { return solver.state(Which::positions); }
+/// In order of ids, h.
+std::vector<double> positions(Solver& solver) { return solver.state(Which::positions).position; }
 
-/// Of the particles that both states have, h. Infinite if a position is not finite, also on both
-/// sides. `alone`: raised to the number of particles that only one state has.
-Distance strict_distance(const SolverState& x, const SolverState& y, std::size_t& alone) {
-  const CommonRows rows = common_rows(x.id, y.id);
-  const auto minus = [](double a, double b) { return a - b; };
-  const Distance d =
-      rows.all() ? distance(x.position, y.position, minus)
-                 : distance(rows_of(x.position, rows.a, 3), rows_of(y.position, rows.b, 3), minus);
-  alone = std::max(alone, rows.only_a + rows.only_b);
+/// Infinite if a position is not finite, also on both sides.
+Distance strict_distance(const std::vector<double>& x, const std::vector<double>& y) {
+  const Distance d = distance(x, y, [](double a, double b) { return a - b; });
   return std::isnan(d.rms) ? Distance{HUGE_VAL, HUGE_VAL} : d;
 }
 
@@ -54,16 +49,7 @@ class Samples {
       r = of(*c_.reference);
       for (const auto& m : c_.members) members.push_back(of(*m));
     }
-    bool empty = a.particles == 0 || b.particles == 0;
-    double spread_of_particles = 0;
-    for (const auto& m : members) {
-      empty = empty || m.particles == 0 || r.particles == 0;
-      spread_of_particles = std::max(spread_of_particles, std::fabs(m.particles - r.particles));
-    }
-    if (c_.plan->changes_rows())
-      take("particles", "1", std::fabs(a.particles - b.particles),
-           std::max(a.particles, b.particles), spread_of_particles, 0);
-    for (std::size_t k = 0; !empty && k < a.numbers.size(); ++k) {
+    for (std::size_t k = 0; k < a.numbers.size(); ++k) {
       double spread = 0;
       for (const auto& m : members)
         spread = std::max(spread, std::fabs(m.numbers[k].value - r.numbers[k].value));
@@ -72,7 +58,7 @@ class Samples {
       take(a.numbers[k].name, a.numbers[k].unit, std::fabs(a.numbers[k].value - b.numbers[k].value),
            scale, spread, roundings * c_.u * scale);
     }
-    for (std::size_t k = 0; !empty && k < a.distributions.size(); ++k) {
+    for (std::size_t k = 0; k < a.distributions.size(); ++k) {
       double spread = 0;
       for (const auto& m : members)
         spread =
@@ -154,23 +140,21 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
   CompareRow row{"distance of a particle, rms", "h", 0, 0, 0, 0, 0, Verdict::same};
   const double apart = 0.1 / c.scene->fluid.smoothing_ratio;  // a tenth of the spacing, h
   double spread = 0, share = -1;
-  std::size_t alone = 0;
   first_failure = -1;
   const int updates = c.settings->updates, every = std::max(1, updates / 10);
   for (int t = 1; t <= updates; ++t) {
     advance(*c.a, 1);
     advance(*c.b, 1);
-    const Distance d = strict_distance(positions(*c.a), positions(*c.b), alone);
+    const Distance d = strict_distance(positions(*c.a), positions(*c.b));
     double now = 0;
     if (!c.same_bits) {
       advance(*c.reference, 1);
-      const SolverState r = positions(*c.reference);
-      std::size_t ignored = 0;
+      const std::vector<double> r = positions(*c.reference);
       for (std::size_t m = 0; m < c.members.size(); ++m) {
         // Different random rounding in every update.
         c.members[m]->inspection()->trace(
             {c.u, c.settings->seed + 1000 * std::uint64_t(t) + m, nullptr});
-        now = std::max(now, strict_distance(positions(*c.members[m]), r, ignored).rms);
+        now = std::max(now, strict_distance(positions(*c.members[m]), r).rms);
       }
       spread = std::max(spread, now);
     }
@@ -207,8 +191,6 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
     near.finding = fmt::format("identical for {} updates", updates);
   else
     near.finding = fmt::format("{:.2g} h apart (rms) after {} updates", last, updates);
-  if (alone > 0)
-    near.finding += fmt::format("; up to {} particles are on one side only at a time", alone);
   if (result.e_folding > 0)
     near.finding += fmt::format("; distances grow e-fold in {:.3g} updates", result.e_folding);
   if (result.horizon >= 0)

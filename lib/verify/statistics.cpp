@@ -45,7 +45,6 @@ std::vector<double> numbers_of(const FieldArray& f) {
 FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const Double3& gravity,
                                  double rest_density, const Resolution& resolution) {
   FrameStatistics out;
-  out.particles = double(s.count);
   if (s.count == 0) return out;
   const std::vector<double> x = numbers_of(s.fields[0]);
   const auto column = [&](const std::function<double(std::size_t)>& f) {

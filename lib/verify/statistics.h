@@ -50,7 +50,6 @@ struct Resolution {
 std::vector<double> numbers_of(const FieldArray& f);
 
 struct FrameStatistics {
-  double particles = 0;  ///< without any, both lists are empty
   std::vector<Statistic> numbers;
   std::vector<Distribution> distributions;
 };

@@ -181,15 +181,12 @@ TEST_CASE("a run in which particles appear and disappear goes on after a stop as
       if (id % 4 != 1 && u != 6) ids.push_back((std::int64_t{1} << 33) + id);
     return ids;
   };
-  const auto changing = [&](CountedRun& r) {
-    r.start.plan.capacity = 20;
-    r.solver.ids = alive;
-  };
   Scene scene = ten_updates();
   scene.precision = Precision::dbl;  // as the state of this solver
   scene.checkpoint.emplace();
+  scene.capacity = 20;
   CountedRun whole(scene), stopped(scene);
-  changing(whole), changing(stopped);
+  whole.solver.ids = stopped.solver.ids = alive;
   CHECK(whole.error() == "no error");
   stopped.stop_at(4);
   CHECK(stopped.error() == "no error");
@@ -198,11 +195,10 @@ TEST_CASE("a run in which particles appear and disappear goes on after a stop as
   CHECK(stopped.saved().value().particles == std::int64_t(alive(4).size()));
 
   stopped.folder.write_text(kResolvedScene, scene_record(stopped.run.scene, ""));
-  const auto found = [&] {
-    return find_resume_point(stopped.folder, stopped.run.scene, {}, stopped.start.plan,
-                             build_info().commit);
+  const auto resume_point = [&](const Scene& s) {
+    return find_resume_point(stopped.folder, s, {}, make_plan(s, 2), build_info().commit);
   };
-  const ResumePoint from = found();
+  const ResumePoint from = resume_point(scene);
   REQUIRE(from.saved);
   CHECK(from.frames == 2);  // the third is of the stop
   CountingSolver solver;
@@ -223,8 +219,8 @@ TEST_CASE("a run in which particles appear and disappear goes on after a stop as
   }
   CHECK(a.counts() == UpdateNumbers{1, 4, 0, 8, 9});
   // A scene whose particles stay has no such checkpoint.
-  stopped.start.plan.capacity = 0;
-  CHECK(contains(error_of([&] { found(); }), "checkpoint.h5: holds other particles"));
+  scene.capacity = 0;
+  CHECK(contains(error_of([&] { resume_point(scene); }), "checkpoint.h5: holds other particles"));
 }
 
 }  // namespace pbf::scene_test
