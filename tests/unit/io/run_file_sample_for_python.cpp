@@ -50,6 +50,9 @@ void write_sample(const std::string& path, bool varying, bool gzip, ScalarType r
 void write_changing(const std::string& path) {
   RunInfo info = test::sample_info(15);
   info.capacity = 15;
+  info.resolved_scene =  // holds the first of the particles
+      "domain: {min: [-1, -1, -1], max: [20, 3000, 3000]}\nfluid: {spacing: 0.5}\n"
+      "bodies: [{shape: block, min: [0, 0, 0], max: [1, 1, 1]}]\ntime: {step: 0.002, end: 1}\n";
   RunWriter writer(path, info, true);
   for (std::int64_t k = 0; k < 8; ++k) {
     std::vector<std::int64_t> ids;
