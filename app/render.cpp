@@ -54,8 +54,10 @@ std::string meaning(const View& view, std::array<double, 2> quantiles, const std
 
 /// Sets the range from the 1 % and 99 % quantiles of the frames.
 void take_quantiles(View& view, const RunReader& reader, const std::vector<std::int64_t>& frames,
-                    std::int64_t particles, Log& log) {
-  QuantileRange values(view, particles * static_cast<std::int64_t>(frames.size()));
+                    Log& log) {
+  std::int64_t particles = 0;
+  for (const std::int64_t k : frames) particles += reader.counts()[std::size_t(k)];
+  QuantileRange values(view, particles);
   for (const std::int64_t k : frames) values.add(reader.frame(k));
   const std::array<double, 2> quantiles = values.between(0.01, 0.99);
   const std::string taken =
@@ -95,7 +97,7 @@ int command_render(const RenderOptions& options) {
                                   "; choose another folder with --out");
   Log log(false);
   View view = view_of(scene, info.particles);
-  if (by_quantile(options)) take_quantiles(view, reader, frames, info.particles, log);
+  if (by_quantile(options)) take_quantiles(view, reader, frames, log);
   Renderer renderer(view);
   log.note(fmt::format("{} picture{} of {}x{} with {}", frames.size(),
                        frames.size() == 1 ? "" : "s", view.size[0], view.size[1],

@@ -166,7 +166,9 @@ void write_file(const std::string& path, const SavedRun& s) {
     const hid_t real = wide ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
     write_rows(file, "position", "h", real, 3, s.state.position);
     write_rows(file, "velocity", "h/s", real, 3, s.state.velocity);
-    write_rows(file, "id", "1", H5T_STD_I32LE, 1, s.state.id);
+    const auto largest = std::max_element(s.state.id.begin(), s.state.id.end());
+    const bool long_ids = largest != s.state.id.end() && *largest > 2147483647;
+    write_rows(file, "id", "1", long_ids ? H5T_STD_I64LE : H5T_STD_I32LE, 1, s.state.id);
     for (const StoredField& f : s.state.fields) write_field(file, f, real);
     h5::write_number(file, "format_version", kFormat);
     h5::write_text(file, "precision", word(s.state.precision));
@@ -218,12 +220,8 @@ SavedRun read_file(const std::string& path) {
     if (name != "position" && name != "velocity" && name != "id")
       s.state.fields.push_back(read_field(file, name));
   if (format == 2) s.state.fields.push_back(counts_of_format_2(file));
-  std::vector<bool> seen(s.state.id.size());
-  for (const std::int32_t id : s.state.id) {
-    if (id < 0 || id >= s.particles || seen[static_cast<std::size_t>(id)])
-      throw h5::Failure("dataset id does not hold every number from 0 on once");
-    seen[static_cast<std::size_t>(id)] = true;
-  }
+  if (!fits(s.state, s.particles, true))
+    throw h5::Failure("dataset id has negative numbers, or some of them twice");
   return s;
 }
 

@@ -21,7 +21,7 @@ struct SavedRun {
   std::optional<StepHistory> steps;     ///< with time.adaptive
   std::optional<double> released;       ///< J, Guard::released()
   std::int64_t compressed_updates = 0;  ///< RunWarnings::compressed_updates()
-  std::int64_t particles = 0;
+  std::int64_t particles = 0;           ///< of `state`
   std::string scene;  ///< resolved_yaml() of the run, and files_text() of the files that it names;
   std::string files;  ///< both empty in checkpoints of older versions
 };

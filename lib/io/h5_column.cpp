@@ -5,22 +5,21 @@
 namespace pbf::inline io_module::h5 {
 
 hid_t memory_type(ScalarType t) {
-  if (t == ScalarType::i32) return H5T_NATIVE_INT32;
+  if (is_whole(t)) return t == ScalarType::i64 ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
   return t == ScalarType::f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
 }
 
 hid_t file_type(ScalarType t) {
-  if (t == ScalarType::i32) return H5T_STD_I32LE;
+  if (is_whole(t)) return t == ScalarType::i64 ? H5T_STD_I64LE : H5T_STD_I32LE;
   return t == ScalarType::f64 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
 }
 
 ScalarType scalar_type(hid_t dataset, const std::string& path) {
   const Type type(H5Dget_type(dataset));
-  const bool real = H5Tget_class(type) == H5T_FLOAT;
+  const H5T_class_t kind = H5Tget_class(type);
   const std::size_t size = H5Tget_size(type);
-  if (real && size == 8) return ScalarType::f64;
-  if (real && size == 4) return ScalarType::f32;
-  if (!real && H5Tget_class(type) == H5T_INTEGER && size == 4) return ScalarType::i32;
+  for (const ScalarType t : {ScalarType::f32, ScalarType::f64, ScalarType::i32, ScalarType::i64})
+    if (size == size_of(t) && kind == (is_whole(t) ? H5T_INTEGER : H5T_FLOAT)) return t;
   throw Failure(path + " has a type that this program does not write");
 }
 

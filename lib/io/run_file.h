@@ -45,7 +45,8 @@ struct RunInfo {
   SolverInfo solver;
   Double3 domain_min{}, domain_max{};
   double spacing = 0, smoothing_length = 0, rest_density = 0;
-  std::int64_t particles = 0;
+  std::int64_t particles = 0;          ///< at the start
+  std::int64_t capacity = 0;           ///< at any time, where the number changes; 0: it does not
   std::int64_t first_update = 0;       ///< of this session
   std::vector<ReadingColumn> columns;  ///< of readings; is not read back
 };
@@ -90,8 +91,8 @@ class RunWriter {
   RunWriter(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
             const KeptRows& rows);
   ~RunWriter();
-  /// Queues a frame; blocks while more than 2 wait. A frame is durable (on the disk, readable after
-  /// kill -9 and after a power cut) once frames_written() counts it.
+  /// Queues a frame of any particles; blocks while more than 2 wait. A frame is durable (on the
+  /// disk, readable after kill -9 and after a power cut) once frames_written() counts it.
   void write(Snapshot&& snapshot);
   void log(const LogRow& row);
   void gauges(const GaugeRow& row);
@@ -118,8 +119,9 @@ class RunReader {
   explicit RunReader(const std::string& path);
   ~RunReader();
   std::int64_t frames() const;
-  std::vector<double> times() const;        ///< s
-  std::vector<std::string> fields() const;  ///< without position and id
+  std::vector<double> times() const;         ///< s
+  std::vector<std::int64_t> counts() const;  ///< particles of each frame
+  std::vector<std::string> fields() const;   ///< without position and id
   /// Frame k (0-based) with all its fields, "position" first; Error(bad_input) when out of range.
   Snapshot frame(std::int64_t k) const;
   RunInfo info() const;

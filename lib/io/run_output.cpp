@@ -52,7 +52,7 @@ RunOutput::~RunOutput() {
 void RunOutput::write_frame(const Snapshot& s) {
   check_fields(s);
   if (fields_.empty()) create_fields(s);
-  const hsize_t first = (end_row_ + chunk_rows_ - 1) / chunk_rows_ * chunk_rows_;
+  const hsize_t first = s.count == 0 ? end_row_ : whole_chunks(end_row_);  // never behind the end
   const auto start = static_cast<std::int64_t>(first);
   std::size_t k = 0;
   for (const FieldArray& f : s.fields) {
@@ -62,8 +62,7 @@ void RunOutput::write_frame(const Snapshot& s) {
     if (field.offsets.open()) field.offsets.append(start);
   }
   end_row_ = first + s.count;
-  grow_ids(s.count);
-  id_offsets_.append(std::int64_t{0});
+  id_offsets_.append(write_ids(s));
   const std::int64_t part = part_of(s.count);
   part_offsets_.append(part);
   part_counts_.append(std::int64_t{1});

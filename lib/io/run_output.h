@@ -57,7 +57,7 @@ class RunOutput {
                     hsize_t rows) const;
   h5::Column offsets(const std::string& field, hsize_t frames) const;
   void make_tables(hsize_t frames);
-  void make_ids(hsize_t frames, hsize_t rows);
+  void make_ids(ScalarType type, hsize_t frames, hsize_t ids, hsize_t rows);
   void make_log(hsize_t frames, hsize_t rows);
   void make_gauges(hsize_t rows);
   void write_gauges();
@@ -70,9 +70,14 @@ class RunOutput {
   void open_fields(std::int64_t frames);
   void open_further(hsize_t rows);
   void create_fields(const Snapshot& first);
+  /// The first row behind so many in a chunk of its own: what a frame has written no later one
+  /// touches.
+  hsize_t whole_chunks(hsize_t rows) const {
+    return (rows + chunk_rows_ - 1) / chunk_rows_ * chunk_rows_;
+  }
   void check_fields(const Snapshot& snapshot) const;
   std::int64_t part_of(std::size_t count);
-  void grow_ids(std::size_t count);
+  std::int64_t write_ids(const Snapshot& snapshot);
   void commit_frames(std::int64_t frames);
   void set_steps(std::int64_t frames);  // NSteps
   void write_log();
@@ -82,10 +87,11 @@ class RunOutput {
   h5::File file_;  // first: destroyed last
   bool gzip_, opening_ = false, closed_ = false;
   std::int64_t frames_ = 0, bytes_ = 0;
-  std::size_t expected_;  // particles, from RunInfo
+  std::size_t expected_;  // particles at most, from RunInfo
+  ScalarType id_type_ = ScalarType::i32;
   h5::Group vtk_, steps_, pbf_;
   std::vector<Field> fields_;
-  hsize_t chunk_rows_ = 1, end_row_ = 0;
+  hsize_t chunk_rows_ = 1, end_row_ = 0, numbered_ = 0;  // numbered_: rows of the ids 0, 1, 2 ...
   h5::Column ids_, id_offsets_, connectivity_, points_per_part_, updates_;
   std::array<Topology, 4> topologies_;
   std::vector<std::int64_t> parts_;  // particles of each part; frames of the same number share it

@@ -93,8 +93,6 @@ void RunOutput::open_fields(std::int64_t frames) {
   const auto n = static_cast<hsize_t>(frames);
   const auto starts = h5::read_all<std::int64_t>(steps_, "PointOffsets");
   const auto parts = h5::read_all<std::int64_t>(steps_, "PartOffsets");
-  std::int64_t most = 0;
-  for (const std::int64_t p : parts) most = std::max(most, parts_[static_cast<std::size_t>(p)]);
   end_row_ = static_cast<hsize_t>(starts.back() + parts_[static_cast<std::size_t>(parts.back())]);
   const auto open = [&](const std::string& name, const std::string& path) {
     const h5::Dataset d = h5::open_dataset(vtk_, path);
@@ -114,7 +112,18 @@ void RunOutput::open_fields(std::int64_t frames) {
   for (const char* name : {"velocity", "density"})
     if (h5::has_link(vtk_, std::string("PointData/") + name))
       fields_.push_back(open(name, std::string("PointData/") + name));
-  make_ids(n, static_cast<hsize_t>(most));
+  const auto ids = h5::read_all<std::int64_t>(steps_, "PointDataOffsets/id", n);
+  if (ids.size() < n) throw h5::Failure("a frame has no ids");
+  const h5::Dataset d = h5::open_dataset(vtk_, "PointData/id");
+  const hsize_t begun = h5::shape(d).at(0);
+  hsize_t most = numbered_ = std::min<hsize_t>(expected_, begun), end = most;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto count = static_cast<hsize_t>(parts_[static_cast<std::size_t>(parts[k])]);
+    most = std::max(most, count);
+    if (ids[k] == 0) numbered_ = std::max(numbered_, count);
+    end = std::max(end, static_cast<hsize_t>(ids[k]) + count);
+  }
+  make_ids(h5::scalar_type(d, "PointData/id"), n, end, most);
 }
 
 void RunOutput::open_further(hsize_t rows) {

@@ -17,7 +17,8 @@ constexpr hsize_t max_chunk_rows = hsize_t{1} << 22;  // 50 MB of float position
 
 RunOutput::RunOutput(const RunInfo& info, bool gzip)
     : gzip_(gzip),
-      expected_(static_cast<std::size_t>(std::max<std::int64_t>(0, info.particles))),
+      expected_(
+          static_cast<std::size_t>(std::max({std::int64_t{0}, info.particles, info.capacity}))),
       columns_(info.columns) {}
 
 h5::Column RunOutput::column(hid_t parent, const std::string& path, hid_t type,
@@ -55,9 +56,10 @@ h5::Column RunOutput::offsets(const std::string& field, hsize_t frames) const {
                 frames);
 }
 
-/// Row i is particle i in every frame, so ids and the vertices' points are stored once.
-void RunOutput::make_ids(hsize_t frames, hsize_t rows) {
-  ids_ = column(vtk_, "PointData/id", H5T_STD_I32LE, {chunk_rows_, 0, gzip_, "1"}, rows);
+/// The vertices' points, 0, 1, 2 ..., are stored once, `rows` so far; ids as write_ids() says.
+void RunOutput::make_ids(ScalarType type, hsize_t frames, hsize_t ids, hsize_t rows) {
+  id_type_ = type;
+  ids_ = column(vtk_, "PointData/id", h5::file_type(type), {chunk_rows_, 0, gzip_, "1"}, ids);
   id_offsets_ = offsets("id", frames);
   connectivity_ =
       column(vtk_, "Vertices/Connectivity", H5T_STD_I64LE, {chunk_rows_, 0, gzip_, ""}, rows);
@@ -84,6 +86,7 @@ void RunOutput::write_info(const RunInfo& info) {
   h5::write_number(pbf_, "threads", std::int64_t{info.solver.threads});
   h5::write_number(pbf_, "solver_bytes", std::uint64_t{info.solver.bytes});
   h5::write_number(pbf_, "particles", info.particles);
+  if (info.capacity > 0) h5::write_number(pbf_, "capacity", info.capacity);
   run_layout::for_each_quantity(info, [this](const char* name, const char* unit,
                                              std::span<const double> values) {
     const std::vector<hsize_t> shape(values.size() > 1 ? 1 : 0, values.size());
@@ -113,7 +116,7 @@ void RunOutput::create_fields(const Snapshot& first) {
                                   h5::file_type(f.type), {chunk_rows_, components, gzip_, f.unit}),
                        points ? h5::Column() : offsets(f.name, 0)});
   }
-  make_ids(0, 0);
+  make_ids(first.find("id")->type, 0, 0, 0);
 }
 
 void RunOutput::check_fields(const Snapshot& s) const {
@@ -122,6 +125,7 @@ void RunOutput::check_fields(const Snapshot& s) const {
   };
   if (s.fields.empty() || s.fields[0].name != "position" || s.fields[0].components != 3)
     fail("its first field is not position with 3 components");
+  if (!s.find("id")) fail("it has no ids");
   std::size_t k = 0;
   for (const FieldArray& f : s.fields) {
     const std::size_t values = s.count * static_cast<std::size_t>(f.components);
@@ -129,10 +133,11 @@ void RunOutput::check_fields(const Snapshot& s) const {
       fail("field " + f.name + " has " + std::to_string(f.bytes.size()) + " bytes for " +
            std::to_string(s.count) + " particles");
     if (f.name == "id") {
-      if (f.type != ScalarType::i32 || f.components != 1) fail("id is not one 32-bit integer");
-      const auto ids = f.as<std::int32_t>();
-      for (std::size_t i = 0; i < ids.size(); ++i)
-        if (ids[i] != static_cast<std::int32_t>(i)) fail("rows are not in id order");
+      if (!is_whole(f.type) || f.components != 1) fail("id is not one whole number");
+      if (!fields_.empty() && f.type != id_type_)
+        fail("ids are not of the type of the first frame");
+      for (std::size_t i = 0; i < s.count; ++i)
+        if (f.whole(i) <= (i > 0 ? f.whole(i - 1) : -1)) fail("rows are not in id order");
       continue;
     }
     if (!fields_.empty() && (k >= fields_.size() || f.name != fields_[k].name ||
@@ -160,13 +165,28 @@ std::int64_t RunOutput::part_of(std::size_t count) {
   return index;
 }
 
-void RunOutput::grow_ids(std::size_t count) {
-  const std::size_t have = ids_.rows();
-  if (count <= have) return;
-  std::vector<std::int64_t> next(count - have);
-  std::iota(next.begin(), next.end(), static_cast<std::int64_t>(have));
-  connectivity_.append(next);
-  ids_.append(next);
+/// The row at which the ids of a frame begin. The column begins with 0, 1, 2 ..., as far as a run
+/// has particles at most, for all frames that have these ids, and with them the vertices' points.
+/// Behind them lie the ids of each frame that has others.
+std::int64_t RunOutput::write_ids(const Snapshot& s) {
+  const auto numbers = [](hsize_t first, hsize_t end) {
+    std::vector<std::int64_t> list(end - first);
+    std::iota(list.begin(), list.end(), static_cast<std::int64_t>(first));
+    return list;
+  };
+  const hsize_t wanted = std::max<hsize_t>(s.count, numbered_ > 0 ? 0 : expected_);
+  if (const hsize_t have = connectivity_.rows(); wanted > have)
+    connectivity_.append(numbers(have, wanted));
+  if (wanted > numbered_ && ids_.rows() == numbered_) {
+    ids_.append(numbers(numbered_, wanted));
+    numbered_ = wanted;
+  }
+  const FieldArray& id = *s.find("id");
+  const bool counts_up = s.count == 0 || id.whole(s.count - 1) == std::int64_t(s.count) - 1;
+  if (counts_up && s.count <= numbered_) return 0;
+  const hsize_t first = whole_chunks(std::max<hsize_t>(ids_.rows(), 1));
+  ids_.write(first, s.count, h5::memory_type(id.type), id.bytes.data());
+  return static_cast<std::int64_t>(first);
 }
 
 }  // namespace pbf::inline io_module

@@ -75,6 +75,8 @@ RunInfo read_info(hid_t pbf) {
   info.solver.threads = static_cast<int>(h5::read_number<std::int64_t>(pbf, "threads"));
   info.solver.bytes = h5::read_number<std::uint64_t>(pbf, "solver_bytes");
   info.particles = h5::read_number<std::int64_t>(pbf, "particles");
+  if (h5::has_attribute(pbf, "capacity"))
+    info.capacity = h5::read_number<std::int64_t>(pbf, "capacity");
   run_layout::for_each_quantity(info, [&](const char* name, const char*, std::span<double> out) {
     const auto values = h5::read_all<double>(pbf, name);
     if (values.size() != out.size())
@@ -182,6 +184,7 @@ RunReader::~RunReader() = default;
 
 std::int64_t RunReader::frames() const { return static_cast<std::int64_t>(impl_->times.size()); }
 std::vector<double> RunReader::times() const { return impl_->times; }
+std::vector<std::int64_t> RunReader::counts() const { return impl_->counts; }
 
 std::vector<std::string> RunReader::fields() const {
   std::vector<std::string> names;

@@ -140,10 +140,10 @@ std::int64_t add_output(const Scene& s, const Plan& plan, MemoryPlan& memory) {
 void add_checkpoint(const Scene& s, const Plan& plan, const std::string& real, MemoryPlan& memory) {
   if (!s.checkpoint) return;
   const Adder add{memory, false, Held::checkpoint};
-  add("state for a checkpoint", "double", 6, plan.capacity);
-  add("ids for a checkpoint", "int32", 1, plan.capacity);
-  add("chunk before and after its checksum", real, 3,
-      2 * std::min<std::int64_t>(plan.capacity, 1 << 18));
+  const std::int64_t n = plan.capacity;
+  add("state for a checkpoint", "double", 6, n);
+  add("ids for a checkpoint", "int64", 1, n);
+  add("chunk before and after its checksum", real, 3, 2 * std::min<std::int64_t>(n, 1 << 18));
 }
 
 /// Measured: see tests/regression/lean_check and tests/regression/lean/README.md.

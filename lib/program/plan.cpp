@@ -121,7 +121,7 @@ double table_bytes(double columns, double rows) {
 }
 
 void plan_files(Plan& plan, const Scene& s) {
-  const auto n = double(plan.particles);
+  const auto n = double(plan.capacity);
   const auto add = [&](const char* name, double number, double bytes,
                        const std::string& note = {}) {
     plan.files.push_back({name, std::int64_t(number), std::int64_t(bytes), note});
@@ -136,6 +136,7 @@ void plan_files(Plan& plan, const Scene& s) {
     double row = 3 * scalar;  // position
     for (const auto& f : s.output->fields) row += (f == "velocity" ? 3 : 1) * scalar;
     const double frames = double(schedule.frames_until(all));
+    if (changes_rows(s)) row += 4;  // ids of each frame; every frame takes the space of the largest
     // Ids and vertex numbers are stored once. Large chunks of a frame fill whole pages. gzip makes
     // the data 1.45 times smaller (measured).
     const double bytes =

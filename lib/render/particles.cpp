@@ -15,7 +15,8 @@ double value(const FieldArray& field, std::size_t i) {
     case ScalarType::f64:
       return field.as<double>()[i];
     case ScalarType::i32:
-      return field.as<std::int32_t>()[i];
+    case ScalarType::i64:
+      return static_cast<double>(field.whole(i));
     case ScalarType::f32:
       break;
   }
@@ -61,26 +62,22 @@ double drawn_radius(const View& view) {
 void check_fields(const Snapshot& snapshot, ColorBy color) {
   check_field(snapshot, "position", 3, "a picture");
   const ColoringInfo& source = about(color);
-  if (source.components > 0)
-    check_field(snapshot, source.field, source.components,
-                std::string("a picture coloured by ") + source.word);
+  check_field(snapshot, source.field, source.components,
+              std::string("a picture coloured by ") + source.word);
 }
 
-double shown_value(const FieldArray* field, const View& view, std::size_t i) {
-  const int components = about(view.color).components;
-  if (components == 3) return length(vector(*field, i));
-  if (components == 0) return static_cast<double>(i);
-  const double density = value(*field, i);
-  if (view.color != ColorBy::compression) return density;
-  return std::max(density / view.rest_density - 1, 0.0);
+double shown_value(const FieldArray& field, const View& view, std::size_t i) {
+  if (about(view.color).components == 3) return length(vector(field, i));
+  const double stored = value(field, i);
+  if (view.color != ColorBy::compression) return stored;
+  return std::max(stored / view.rest_density - 1, 0.0);
 }
 
 void collect(const Snapshot& snapshot, const View& view, const Projection& projection,
              ParticleVertices& out) {
   check_fields(snapshot, view.color);
   const FieldArray& position = *snapshot.find("position");
-  const ColoringInfo& source = about(view.color);
-  const FieldArray* field = snapshot.find(source.field);
+  const FieldArray& field = *snapshot.find(about(view.color).field);
   out = {std::move(out.list)};
   out.list.clear();
   out.list.reserve(snapshot.count);

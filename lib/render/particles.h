@@ -38,7 +38,7 @@ void collect(const Snapshot& snapshot, const View& view, const Projection& proje
 /// Throws Error(bad_input) unless `snapshot` has what a picture coloured by `color` reads.
 void check_fields(const Snapshot& snapshot, ColorBy color);
 
-/// What colours particle i: `field` is the one of the view's colouring, checked; nullptr for none.
-double shown_value(const FieldArray* field, const View& view, std::size_t i);
+/// What colours the particle of row i: `field` is the one of the view's colouring, checked.
+double shown_value(const FieldArray& field, const View& view, std::size_t i);
 
 }  // namespace pbf::inline render_module

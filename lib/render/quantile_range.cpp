@@ -31,7 +31,7 @@ QuantileRange::QuantileRange(const View& view, std::int64_t total)
 
 void QuantileRange::add(const Snapshot& snapshot) {
   check_fields(snapshot, view_.color);
-  const FieldArray* field = snapshot.find(about(view_.color).field);
+  const FieldArray& field = *snapshot.find(about(view_.color).field);
   for (std::size_t i = 0; i < snapshot.count; ++i) {
     if (seen_++ % stride_ != 0) continue;
     if (const double value = shown_value(field, view_, i); std::isfinite(value))

@@ -226,10 +226,9 @@ Image Renderer::draw(const Snapshot& snapshot) {
     impl_->draw_scene(projection);
     image = impl_->read_back();
   }
-  const ColoringInfo& source = about(view.color);
-  const FieldArray* field = snapshot.find(source.field);
-  const bool relative = view.color == ColorBy::compression || !field || field->unit == "1";
-  draw_overlay(image, view, projection, relative ? "" : field->unit,
+  const std::string& unit = snapshot.find(about(view.color).field)->unit;
+  const bool relative = view.color == ColorBy::compression || unit == "1";
+  draw_overlay(image, view, projection, relative ? "" : unit,
                static_cast<std::int64_t>(snapshot.count), snapshot.time);
   return image;
 }

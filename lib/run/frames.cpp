@@ -8,11 +8,9 @@ namespace pbf::inline run_module {
 Frames::Frames(RunParts& run, Reporter& reporter) : run_(run), reporter_(reporter) {
   const Scene& scene = run.scene;
   if (scene.output) fields_ = scene.output->fields;
-  if (const std::string needed = scene.render ? about(scene.render->color).field : "";
-      !needed.empty()) {
-    if (std::find(fields_.begin(), fields_.end(), needed) == fields_.end())
-      fields_.push_back(needed), extra_ = needed;
-  }
+  const std::string needed = scene.render ? about(scene.render->color).field : "id";
+  if (needed != "id" && std::find(fields_.begin(), fields_.end(), needed) == fields_.end())
+    fields_.push_back(needed), extra_ = needed;
   if (!run.from.saved) return;
   last_ = run.from.update();
   run.pictures_drawn = run.schedule.pictures_until(last_);

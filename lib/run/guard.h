@@ -111,8 +111,9 @@ class Guard {
   std::optional<double> released_;
 };
 
-/// Positions and velocities of a state, SI units, in the order of ids: in a scene made of them row,
-/// and so id, are what they were. What rounding has put beyond a face of the domain is put on it.
+/// Positions and velocities of a state that a solver has returned, SI units, in the order of ids:
+/// in a scene made of them row, and so id, are what they were, but for gaps. What rounding has put
+/// beyond a face of the domain is put on it.
 Particles to_particles(const SolverState& state, const Scene& scene);
 
 }  // namespace pbf::inline run_module

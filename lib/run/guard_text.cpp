@@ -116,10 +116,9 @@ Particles to_particles(const SolverState& state, const Scene& s) {
   const double h = s.h();
   for (std::size_t i = 0; i < state.id.size(); ++i)
     for (std::size_t a = 0; a < 3; ++a) {
-      const auto id = std::size_t(state.id[i]);
-      p.position[id][a] = std::clamp(s.origin()[a] + h * state.position[3 * i + a], s.domain.min[a],
-                                     s.domain.max[a]);
-      p.velocity[id][a] = h * state.velocity[3 * i + a];
+      p.position[i][a] = std::clamp(s.origin()[a] + h * state.position[3 * i + a], s.domain.min[a],
+                                    s.domain.max[a]);
+      p.velocity[i][a] = h * state.velocity[3 * i + a];
     }
   return p;
 }

@@ -73,6 +73,7 @@ void Reporter::follow(const Diagnostics& m) {
 template <class Coordinate>
 void Reporter::count_outside(std::size_t n, const Coordinate& coordinate) {
   left_ = 0;
+  seen_ = std::int64_t(n);
   farthest_ = 0;
   std::vector<std::int64_t> through(run_.scene.domain.open.size());
   for (std::size_t i = 0; i < n; ++i) {
@@ -134,8 +135,7 @@ std::vector<Warning> Reporter::found(bool end) const {
         {"left",
          fmt::format("{} of {} particles ({:.2g} %) have left the domain through an open face "
                      "({}), the farthest {:.3g} m beyond it; they are simulated on",
-                     left_, run_.plan.particles,
-                     percent(double(left_), double(run_.plan.particles)), faces_, farthest_)});
+                     left_, seen_, percent(double(left_), double(seen_)), faces_, farthest_)});
   return list;
 }
 

@@ -43,7 +43,7 @@ class Finder {
         commit_(commit),
         schedule_(make_schedule(scene)) {}
 
-  ResumePoint find(std::int64_t particles) {
+  ResumePoint find(const Plan& plan) {
     if (!folder_.has(kResolvedScene)) {
       if (folder_.holds_other_files())
         bad("holds no run to resume, but other files; give another folder with --out");
@@ -79,7 +79,7 @@ class Finder {
     }
     point_.started = true;
     point_.saved = read_checkpoint(folder_.path(), point_.notes);
-    check_checkpoint(particles);
+    check_checkpoint(plan);
     if (point_.saved && point_.saved->state.updates > schedule_.updates) {
       leave_as_it_is();
       return point_;
@@ -156,7 +156,7 @@ class Finder {
            "; give a later time.end, or start again with --overwrite";
   }
 
-  void check_checkpoint(std::int64_t particles) {
+  void check_checkpoint(const Plan& plan) {
     if (!point_.saved) return;
     const SavedRun& s = *point_.saved;
     if (s.scene.empty())
@@ -164,10 +164,11 @@ class Finder {
                       "scene in it and whose results are others") +
           kOtherwise);
     refuse_other("checkpoint.h5", s.scene, s.files);
-    if (s.particles != particles || s.state.precision != scene_.precision)
+    if (!fits(s.state, plan.capacity, changes_rows(scene_)) ||
+        s.state.precision != scene_.precision)
       throw Error(ExitCode::io, folder_.path() +
-                                    "/checkpoint.h5: holds another number of particles or another "
-                                    "precision than the scene; remove it to start again");
+                                    "/checkpoint.h5: holds other particles or another precision "
+                                    "than the scene; remove it to start again");
   }
 
   void look_at_file(const Scene& before) {
@@ -253,9 +254,9 @@ class Finder {
 }  // namespace
 
 ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene,
-                              const std::vector<SceneFile>& files, std::int64_t particles,
+                              const std::vector<SceneFile>& files, const Plan& plan,
                               const std::string& commit) {
-  return Finder(folder, scene, files, commit).find(particles);
+  return Finder(folder, scene, files, commit).find(plan);
 }
 
 void prepare_resume(const RunFolder& folder, const ResumePoint& from) {

@@ -8,6 +8,7 @@
 
 #include "lib/io/checkpoint.h"
 #include "lib/io/run_file.h"
+#include "lib/program/plan.h"
 #include "lib/run/run_folder.h"
 #include "lib/scene/load.h"
 #include "lib/scene/scene.h"
@@ -39,7 +40,7 @@ struct ResumePoint {
 /// from those of the folder's run, its checkpoint or its run.vtkhdf (differences that
 /// physics_difference() ignores are allowed); Error(io) if a checkpoint cannot be read.
 ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene,
-                              const std::vector<SceneFile>& files, std::int64_t particles,
+                              const std::vector<SceneFile>& files, const Plan& plan,
                               const std::string& commit);
 
 /// Prepares the folder for the run: removes DONE, and renames a damaged run.vtkhdf.

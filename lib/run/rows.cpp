@@ -18,7 +18,6 @@ Rows::Rows(RunParts& run, Reporter& reporter) : run_(run), reporter_(reporter) {
   }
   due_.scene = resolved_yaml(run.scene);
   due_.files = run.start.loaded.files;
-  due_.particles = run.plan.particles;
 }
 
 void Rows::take(Diagnostics& m, double dt) {

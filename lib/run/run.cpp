@@ -50,6 +50,7 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   info.smoothing_length = scene.h();
   info.rest_density = scene.fluid.rest_density;
   info.particles = run.plan.particles;
+  info.capacity = scene.capacity;
   info.first_update = run.from.update();
   info.columns = run.plan.columns;
   return info;
@@ -205,7 +206,7 @@ RunResult run(Start start, const RunPlace& place, Control& control) {
   ResumePoint from;
   if (place.existing == ExistingFolder::resume && RunFolder::check(place.folder, place.existing)) {
     folder = std::make_unique<RunFolder>(place.folder, place.existing);
-    from = find_resume_point(*folder, start.scene(), start.particles.files, start.plan.particles,
+    from = find_resume_point(*folder, start.scene(), start.particles.files, start.plan,
                              build_info().commit);
     if (from.finished) {
       for (const std::string& note : from.notes) log.note("pbf: " + note);

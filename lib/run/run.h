@@ -73,7 +73,7 @@ class Reporter : public Observer {
   Progress progress_;
   std::map<std::string, std::string> told_;  // kind, text
   std::vector<Warning> all_;
-  std::int64_t compressed_ = 0, left_ = 0;
+  std::int64_t compressed_ = 0, left_ = 0, seen_ = 0;
   double farthest_ = 0;  // m
   std::string faces_;    // open faces through which particles left
 };

@@ -38,6 +38,7 @@ bool Saving::save() {
   SavedRun saved = rows_.due();
   saved.first = watch_.first();
   saved.state = watch_.goes_back() ? run_.solver.state(Which::kept) : run_.solver.state();
+  saved.particles = std::int64_t(saved.state.id.size());
   if (watch_.guard()) saved.released = watch_.guard()->released();
   saved.steps = watch_.steps();
   write_checkpoint(run_.folder.path(), saved);

@@ -10,14 +10,14 @@ enum class ColorBy { speed, density, compression, id };
 
 struct ColoringInfo {
   const char* word;   ///< in scenes and options, and above the color bar
-  const char* field;  ///< of a snapshot, which it reads; "": the row number
-  int components;     ///< of the field: 3 for the length of a vector, 0 without a field
+  const char* field;  ///< of a snapshot, which it reads
+  int components;     ///< of the field: 3 for the length of a vector
 };
 /// In the order of the enum.
 inline constexpr ColoringInfo kColorings[] = {{"speed", "velocity", 3},
                                               {"density", "density", 1},
                                               {"compression", "density", 1},
-                                              {"id", "", 0}};
+                                              {"id", "id", 1}};
 
 constexpr const ColoringInfo& about(ColorBy c) { return kColorings[static_cast<int>(c)]; }
 constexpr const auto& table_of(ColorBy) { return kColorings; }

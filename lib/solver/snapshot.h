@@ -10,11 +10,14 @@
 
 namespace pbf::inline solver_module {
 
-enum class ScalarType { f32, f64, i32 };
+enum class ScalarType { f32, f64, i32, i64 };
 
-inline std::size_t size_of(ScalarType t) { return t == ScalarType::f64 ? 8 : 4; }
+constexpr bool is_whole(ScalarType t) { return t == ScalarType::i32 || t == ScalarType::i64; }
+constexpr std::size_t size_of(ScalarType t) {
+  return t == ScalarType::f64 || t == ScalarType::i64 ? 8 : 4;
+}
 
-/// One array of a snapshot: `count` rows of `components` scalars, row-major, row i = particle id i.
+/// One array of a snapshot: `count` rows of `components` scalars, row-major, in the order of ids.
 struct FieldArray {
   std::string name;  ///< position, velocity, density, id
   std::string unit;  ///< m, m/s, kg/m^3, 1
@@ -30,9 +33,16 @@ struct FieldArray {
   std::span<T> as() {
     return {reinterpret_cast<T*>(bytes.data()), bytes.size() / sizeof(T)};
   }
+  /// Number k of a field of whole numbers.
+  std::int64_t whole(std::size_t k) const {
+    return type == ScalarType::i64 ? as<std::int64_t>()[k] : as<std::int32_t>()[k];
+  }
 };
 
-/// The state at one time. fields[0] is always "position" (3 components).
+/// The state at one time. fields[0] is always "position" (3 components). "id" names the particle of
+/// each row: whole numbers from 0 on that ascend. Where particles appear and disappear they have
+/// gaps, and `count` differs from snapshot to snapshot; otherwise row i is particle i. They are i32
+/// in runs that give out no more than 2^31 ids, which saves memory and disk, and i64 in others.
 struct Snapshot {
   std::int64_t update = 0;  ///< number of updates done
   double time = 0;          ///< s
@@ -45,5 +55,13 @@ struct Snapshot {
     return nullptr;
   }
 };
+
+/// The ids of its rows.
+inline std::vector<std::int64_t> ids_of(const Snapshot& s) {
+  const FieldArray& id = *s.find("id");
+  std::vector<std::int64_t> ids(s.count);
+  for (std::size_t i = 0; i < s.count; ++i) ids[i] = id.whole(i);
+  return ids;
+}
 
 }  // namespace pbf::inline solver_module

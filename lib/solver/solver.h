@@ -77,8 +77,7 @@ class Solver {
   virtual std::vector<double> readings(Series series, Interval interval) = 0;
   /// After set_state(), this or another solver of the same scene and precision continues with the
   /// same bits. A solver of float rounds the state of a solver of double. Throws Error(internal) if
-  /// the number of particles differs, if the ids are not a permutation of 0..n-1, or for
-  /// Which::kept without keep().
+  /// check_state() does, or for Which::kept without keep().
   virtual SolverState state(Which which = Which::now) = 0;
   virtual void set_state(const SolverState& state) = 0;
   /// Keeps a copy of the state in the memory of the solver and replaces the previous copy. Cheap

@@ -28,7 +28,7 @@ struct SolverState {
   std::int64_t steps = 0;                ///< done so far: above level 0 more than updates
   std::vector<double> position;          ///< 3n, h
   std::vector<double> velocity;          ///< 3n, h/s
-  std::vector<std::int32_t> id;          ///< n
+  std::vector<std::int64_t> id;          ///< n; unique, not negative
   std::vector<StoredField> fields{};     ///< of features, and the counts
 
   const StoredField* find(const std::string& name) const {
@@ -37,5 +37,9 @@ struct SolverState {
     return at == fields.end() ? nullptr : &*at;
   }
 };
+
+/// Whether places, velocities and ids of a state are those of n particles with the ids 0..n-1, in
+/// any order; with `changes` of at most n, whose ids are unique and not negative.
+bool fits(const SolverState& state, std::int64_t n, bool changes);
 
 }  // namespace pbf::inline solver_module

@@ -27,7 +27,7 @@ struct StageEvent {
   std::string stage;        ///< name of the pass
   std::string remedy;       ///< of PassInfo
   int iteration = 0;        ///< 1, 2, ... within the iterations, 0 outside them
-  int id = 0;
+  std::int64_t id = 0;
   double position[3] = {0, 0, 0}, velocity[3] = {0, 0, 0};
   double value = 0;  ///< speed, energy or number of neighbors; otherwise the non-finite value
 };
@@ -39,7 +39,7 @@ struct Fault {
   std::int64_t update = 1;
   std::string stage;
   int iteration = 0;  ///< 1, 2, ... for density, lambda and delta
-  int id = 0;
+  std::int64_t id = 0;
   double value = 0;  ///< h/s for a velocity
 };
 

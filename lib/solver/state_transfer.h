@@ -99,7 +99,8 @@ SolverState download_state(C& c, const std::vector<const char*>& from) {
   s.precision = C::precision;
   s.position = values(field::position);
   s.velocity = values(field::velocity);
-  s.id = c.ids_in_order(id, n);
+  const std::vector<int> ids = c.ids_in_order(id, n);
+  s.id.assign(ids.begin(), ids.end());
   for (const FieldInfo* f : state)
     if (!field::is_basic(*f))
       s.fields.push_back({f->name, f->type == Type::real, f->numbers, values(*f)});
@@ -137,7 +138,7 @@ void upload_state(C& c, const SolverState& s) {
   for (std::size_t k = 0; k < values.size(); ++k) upload(c, *c.plan.program.state[k], values[k]);
   upload(c, field::position, s.position);
   upload(c, field::velocity, s.velocity);
-  c.put(field::id, s.id);
+  c.put(field::id, std::vector<int>(s.id.begin(), s.id.end()));
 }
 
 }  // namespace pbf::inline PBF_VARIANT

@@ -6,27 +6,27 @@
 
 namespace pbf::inline solver_module {
 
-void check_state(const SolverState& s, std::int64_t n, bool changes) {
+bool fits(const SolverState& s, std::int64_t n, bool changes) {
   const std::size_t most = std::size_t(n), count = s.id.size();
-  bool good = (changes ? count <= most : count == most) && s.position.size() == 3 * count &&
-              s.velocity.size() == 3 * count;
-  std::vector<bool> seen(good ? count : 0, false);
-  for (std::size_t k = 0; good && !changes && k < count; ++k) {
-    const auto id = std::size_t(s.id[k]);
-    good = s.id[k] >= 0 && id < count && !seen[id];
-    if (good) seen[id] = true;
+  if (changes ? count > most : count != most) return false;
+  if (s.position.size() != 3 * count || s.velocity.size() != 3 * count) return false;
+  std::vector<std::int64_t> sorted;  // a copy only where it is needed: solvers return them in order
+  if (!std::is_sorted(s.id.begin(), s.id.end())) {
+    sorted = s.id;
+    std::sort(sorted.begin(), sorted.end());
   }
-  if (changes) {
-    std::vector<std::int32_t> id = s.id;
-    std::sort(id.begin(), id.end());
-    good =
-        good && (id.empty() || id[0] >= 0) && std::adjacent_find(id.begin(), id.end()) == id.end();
-  }
-  if (!good)
-    throw Error(ExitCode::internal,
-                "a state of " + std::to_string(s.id.size()) +
-                    " particles does not fit a solver of " + std::to_string(n) +
-                    (changes ? ", or its ids are not unique" : ", or its ids are not 0..n-1"));
+  const std::vector<std::int64_t>& id = sorted.empty() ? s.id : sorted;
+  if (id.empty()) return true;
+  return id.front() >= 0 && std::adjacent_find(id.begin(), id.end()) == id.end() &&
+         (changes || id.back() == n - 1);
+}
+
+void check_state(const SolverState& s, std::int64_t n, bool changes) {
+  if (!fits(s, n, changes))
+    throw Error(ExitCode::internal, "a state of " + std::to_string(s.id.size()) +
+                                        " particles does not fit a solver of " + std::to_string(n) +
+                                        (changes ? ", or its ids are negative or not unique"
+                                                 : ", or its ids are not 0..n-1"));
 }
 
 Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type, std::size_t n,

@@ -150,6 +150,7 @@ class Stepper {
   /// Sets a state with particles in any order. time: s since the start.
   void set_state(const SolverState& s, double time) {
     upload_state(c_, s);
+    c_.launched = int(s.id.size());
     c_.for_features([&](auto& memory) { memory.stand(c_, time); });
     forget();
     moved();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 
 #include "lib/base/error.h"
@@ -120,12 +121,16 @@ std::string ComparedRun::end_text() const {
 
 Snapshot ComparedRun::frame(std::int64_t k) const {
   Snapshot s = reader.frame(k);
-  const std::pair<const char*, int> known[] = {{"position", 3}, {"velocity", 3}, {"density", 1}};
+  const std::tuple<const char*, int, bool> known[] = {
+      {"position", 3, false}, {"velocity", 3, false}, {"density", 1, false}, {"id", 1, true}};
   for (const FieldArray& f : s.fields)
-    for (const auto& [name, components] : known)
-      if (f.name == name && (f.components != components || f.type == ScalarType::i32))
+    for (const auto& [name, components, whole] : known)
+      if (f.name == name && (f.components != components || is_whole(f.type) != whole))
         throw Error(ExitCode::io, path + ": frame " + std::to_string(k) + ": " + name +
                                       " has not the type and the columns that pbf writes");
+  const std::vector<std::int64_t> id = ids_of(s);
+  if (std::adjacent_find(id.begin(), id.end(), std::greater_equal<>()) != id.end())
+    throw Error(ExitCode::io, path + ": frame " + std::to_string(k) + ": ids do not ascend");
   return s;
 }
 

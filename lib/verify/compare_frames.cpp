@@ -43,8 +43,36 @@ bool same_numbers(const FieldArray& f, const FieldArray& g) {
 }
 bool same_numbers(const Snapshot& a, const Snapshot& b) {
   for (const FieldArray& f : a.fields)
-    if (const FieldArray* g = b.find(f.name); g && !same_numbers(f, *g)) return false;
+    if (const FieldArray* g = b.find(f.name); g && !is_whole(f.type) && !same_numbers(f, *g))
+      return false;
   return true;
+}
+
+/// Particles that only one of two files has.
+struct OneSided {
+  bool allowed;          ///< by chaos, for the number of particles changes
+  bool differs = false;  ///< some were there that are not allowed
+  std::size_t most = 0;  ///< in a frame
+  std::string where{};   ///< that frame; empty: none
+
+  void take(const CommonRows& rows, const Snapshot& x, const Snapshot& y) {
+    const std::size_t alone = rows.only_a + rows.only_b;
+    differs = differs || (alone > 0 && (!allowed || (x.update == 0 && y.update == 0)));
+    if (alone <= most) return;
+    most = alone;
+    where = fmt::format(
+        "A holds {} particles at {:g} s, B {}: {} are in A alone, {} in B alone; "
+        "of those in both: ",
+        x.count, x.time, y.count, rows.only_a, rows.only_b);
+  }
+};
+
+/// Particles that have come or gone since the first frame.
+double changed_since(std::optional<std::vector<std::int64_t>>& first,
+                     const std::vector<std::int64_t>& now) {
+  if (!first) first = now;
+  const CommonRows rows = common_rows(*first, now);
+  return double(rows.only_a + rows.only_b);
 }
 
 double unit_roundoff(bool single) {
@@ -111,7 +139,7 @@ void compare_not_finite(ComparePart& p, const Snapshot& a, const Snapshot& b) {
     return n;
   };
   for (const FieldArray& f : a.fields)
-    if (const FieldArray* g = b.find(f.name); g && f.type != ScalarType::i32) {
+    if (const FieldArray* g = b.find(f.name); g && !is_whole(f.type)) {
       const double x = count(f), y = count(*g);
       if (x > 0 || y > 0)
         note(p, "not finite: " + f.name, "values", std::fabs(x - y), std::max(x, y), 0);
@@ -135,32 +163,39 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
       kSigmas, kAlpha, kRoundings, kFront, kCluster);
   Curve rms{"A to B, rms", {}, {}}, worst{"A to B, largest", {}, {}};
   const double h = a.scene.h(), d = a.scene.fluid.spacing;
-  bool paired = true, bytes = true;
+  bool bytes = true;
   double last = 0;
+  OneSided one_sided{a.info.capacity > 0 && b.info.capacity > 0};
+  std::optional<std::vector<std::int64_t>> first_a, first_b;
   const Resolution own = computed(a, b);
   for (const auto& [i, k] : frames.common) {
     const Snapshot x = a.frame(i), y = b.frame(k);
     Resolution resolution = resolution_of(own, x, y, a.scene.fluid.rest_density);
-    if (paired && x.count != y.count) {
-      paired = false;
-      near.finding = fmt::format(
-          "A holds {} particles at {:g} s, B {}: no particle of one is one of the other", x.count,
-          x.time, y.count);
-    }
-    if (paired) {
-      const Distance e = distance(numbers_of(x.fields[0]), numbers_of(y.fields[0]));
-      bytes = bytes && same_numbers(x, y);
-      last = e.rms / h;
-      const double update = double(x.update);
-      rms.x.push_back(update), rms.y.push_back(e.rms / h);
-      worst.x.push_back(update), worst.y.push_back(e.worst / h);
-      if (result.horizon < 0 && e.rms > 0.1 * d) result.horizon = update;
-      if (x.update == 0 && y.update == 0)
-        note(near, "initial positions", "m", e.worst, largest_of(&x.fields[0]),
-             exact ? 0 : resolution.length);
-    }
+    const std::vector<std::int64_t> ids_a = ids_of(x), ids_b = ids_of(y);
+    const CommonRows rows = common_rows(ids_a, ids_b);
+    one_sided.take(rows, x, y);
+    const auto places = [&](const Snapshot& s, const std::vector<std::size_t>& common) {
+      const std::vector<double> all = numbers_of(s.fields[0]);
+      return rows.all() ? all : rows_of(all, common, 3);
+    };
+    const Distance e = distance(places(x, rows.a), places(y, rows.b));
+    bytes = bytes && rows.all() && same_numbers(x, y);
+    last = e.rms / h;
+    const double update = double(x.update);
+    rms.x.push_back(update), rms.y.push_back(e.rms / h);
+    worst.x.push_back(update), worst.y.push_back(e.worst / h);
+    if (result.horizon < 0 && e.rms > 0.1 * d) result.horizon = update;
+    if (x.update == 0 && y.update == 0)
+      note(near, "initial positions", "m", e.worst, largest_of(&x.fields[0]),
+           exact ? 0 : resolution.length);
     // Before the horizon both sides have the same particles; after it they are samples of a flow.
-    if (paired && result.horizon < 0) resolution.cluster = 0;
+    if (result.horizon < 0) resolution.cluster = 0;
+    const double changed =
+        one_sided.allowed ? std::max(changed_since(first_a, ids_a), changed_since(first_b, ids_b))
+                          : 0;
+    if (x.count != y.count)
+      note(far, "particles", "1", std::fabs(double(x.count) - double(y.count)),
+           double(std::max(x.count, y.count)), kSigmas * std::sqrt(changed));
     compare_not_finite(far, x, y);
     const auto statistics = [&](const ComparedRun& o, const Snapshot& s) {
       return frame_statistics(s, o.scene.domain.min, o.scene.gravity, o.scene.fluid.rest_density,
@@ -168,40 +203,41 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
     };
     compare_samples(far, statistics(a, x), statistics(b, y));
   }
-  if (!paired) {
-    near.verdict = Verdict::differs;
-    near.tolerance_source = "the numbers of particles must be the same";
+  result.e_folding = e_folding(rms.x, rms.y, 0.01);
+  near.finding =
+      bytes
+          ? fmt::format("the {} common frames are the same to the last byte", frames.common.size())
+          : one_sided.where + fmt::format("{:.2g} h apart (rms) at the last common frame", last);
+  if (result.e_folding > 0)
+    near.finding += fmt::format("; distances grow e-fold in {:.3g} updates", result.e_folding);
+  if (result.horizon >= 0)
+    near.finding += fmt::format("; not comparable from update {:g} on", result.horizon);
+  if (exact) {
+    near.tolerance_source = "0: both are the CPU in one precision and build, which promises it";
+    near.verdict = bytes ? Verdict::same : Verdict::differs;
   } else {
-    result.e_folding = e_folding(rms.x, rms.y, 0.01);
-    near.finding = bytes ? fmt::format("the {} common frames are the same to the last byte",
-                                       frames.common.size())
-                         : fmt::format("{:.2g} h apart (rms) at the last common frame", last);
-    if (result.e_folding > 0)
-      near.finding += fmt::format("; distances grow e-fold in {:.3g} updates", result.e_folding);
-    if (result.horizon >= 0)
-      near.finding += fmt::format("; not comparable from update {:g} on", result.horizon);
-    if (exact) {
-      near.tolerance_source = "0: both are the CPU in one precision and build, which promises it";
-      near.verdict = bytes ? Verdict::same : Verdict::differs;
-    } else {
-      near.tolerance_source = fmt::format(
-          "initial positions: {:g} roundings; later distances are not judged, since files hold no "
-          "ensemble (pbf compare SCENE --between makes one)",
-          kRoundings);
-      // Steps without time that separate overlaps amplify rounding, as all steps do.
-      const bool relieved = a.scene.solver.prestabilize && b.scene.solver.prestabilize;
-      if (near.verdict == Verdict::differs && relieved) {
-        near.verdict = near.rows[0].verdict = Verdict::not_judged;
-        near.finding +=
-            "; the start differs by more than rounding, which steps without time "
-            "(solver.prestabilize) may do: the samples judge it";
-      }
-      if (near.verdict != Verdict::differs)
-        near.verdict = bytes ? Verdict::same : Verdict::not_judged;
+    near.tolerance_source = fmt::format(
+        "initial positions: {:g} roundings; later distances are not judged, since files hold no "
+        "ensemble (pbf compare SCENE --between makes one)",
+        kRoundings);
+    // Steps without time that separate overlaps amplify rounding, as all steps do.
+    const bool relieved = a.scene.solver.prestabilize && b.scene.solver.prestabilize;
+    if (near.verdict == Verdict::differs && relieved) {
+      near.verdict = near.rows[0].verdict = Verdict::not_judged;
+      near.finding +=
+          "; the start differs by more than rounding, which steps without time "
+          "(solver.prestabilize) may do: the samples judge it";
     }
-    result.diagrams.push_back(
-        {"Distance of each particle in A and in B", "update", "h", {rms, worst}});
+    if (one_sided.differs) {
+      near.verdict = Verdict::differs;
+      near.tolerance_source += one_sided.allowed ? "; the particles of the start must be the same"
+                                                 : "; the particles must be the same";
+    }
+    if (near.verdict != Verdict::differs)
+      near.verdict = bytes ? Verdict::same : Verdict::not_judged;
   }
+  result.diagrams.push_back(
+      {"Distance of each particle in A and in B", "update", "h", {rms, worst}});
   far.finding = far.verdict == Verdict::same ? "no two samples can be told apart"
                                              : "samples that are not of one distribution";
   return {std::move(near), std::move(far)};

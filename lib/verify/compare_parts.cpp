@@ -46,6 +46,20 @@ Distance distance(const std::vector<double>& x, const std::vector<double>& y,
   return d;
 }
 
+CommonRows common_rows(const std::vector<std::int64_t>& a, const std::vector<std::int64_t>& b) {
+  CommonRows out;
+  if (a == b) return out;
+  for (std::size_t i = 0, k = 0; i < a.size() && k < b.size();) {
+    if (a[i] == b[k])
+      out.a.push_back(i++), out.b.push_back(k++);
+    else
+      ++(a[i] < b[k] ? i : k);
+  }
+  out.only_a = a.size() - out.a.size();
+  out.only_b = b.size() - out.b.size();
+  return out;
+}
+
 double share_of(double error, double tolerance) {
   return error == 0 ? 0 : tolerance > 0 ? error / tolerance : HUGE_VAL;
 }

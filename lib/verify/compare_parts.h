@@ -67,9 +67,29 @@ double scale_of(const Reading& a, const Reading& b);
 struct Distance {
   double rms = 0, worst = 0;  ///< m
 };
-/// Distance between particles at x and at y, both in order of ids.
+/// Distance between particles at x and at y, both in the order of the same ids.
 Distance distance(const std::vector<double>& x, const std::vector<double>& y,
                   double (*difference)(double, double) = apart);
+
+/// The rows of particles that two sides have both. Empty lists: all rows, which are the same
+/// particles in the same order.
+struct CommonRows {
+  std::vector<std::size_t> a, b;
+  std::size_t only_a = 0, only_b = 0;  ///< particles of one side alone
+  bool all() const { return only_a == 0 && only_b == 0; }
+};
+/// a, b: ids, ascending.
+CommonRows common_rows(const std::vector<std::int64_t>& a, const std::vector<std::int64_t>& b);
+/// The rows of `width` values each, one behind the other.
+template <class T>
+std::vector<T> rows_of(const std::vector<T>& values, const std::vector<std::size_t>& rows,
+                       std::size_t width) {
+  std::vector<T> out;
+  for (const std::size_t i : rows)
+    out.insert(out.end(), values.begin() + std::ptrdiff_t(width * i),
+               values.begin() + std::ptrdiff_t(width * (i + 1)));
+  return out;
+}
 
 /// Updates the row of this name (added if missing) to the largest error relative to its tolerance.
 /// `scale`: reference of the relative error; `u`: unit roundoff for units in the last place.

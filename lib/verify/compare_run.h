@@ -22,7 +22,8 @@ struct ComparedRun {
   std::string status;
   /// Throws Error(io) if the file cannot be read, Error(bad_input) if its scene cannot.
   explicit ComparedRun(const std::string& path);
-  /// Frame k. Throws Error(io) if its arrays do not have the shape of a frame.
+  /// Frame k. Throws Error(io) if its arrays do not have the shape of a frame, or ids do not
+  /// ascend.
   Snapshot frame(std::int64_t k) const;
   /// The status, with the reason if the session gives one.
   std::string end_text() const;

@@ -63,14 +63,14 @@ TEST_CASE("rows: new particles come behind the last, and those in the drain leav
   SolverState before = solver->state();
   std::int64_t next = std::int64_t(before.id.size()), gone = 0;
   for (int update = 0; update < 120; ++update) {
-    std::vector<int> expected;
+    std::vector<std::int64_t> expected;
     for (std::size_t k = 0; k < before.id.size(); ++k) {
       const double* x = &before.position[3 * k];
       const double edge = e.scene.precision == Precision::single ? double(float(0.3 / h)) : 0.3 / h;
       const bool in = x[0] < edge && x[1] < edge && x[2] < edge;
       in ? void(++gone) : expected.push_back(before.id[k]);
     }
-    for (int j = 0; j < shower::kPerSort; ++j) expected.push_back(int(next++));
+    for (int j = 0; j < shower::kPerSort; ++j) expected.push_back(next++);
     solver->step(1);
     before = solver->state();
     REQUIRE(before.id == expected);

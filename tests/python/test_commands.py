@@ -96,6 +96,35 @@ def test_csv_of_log_frames_and_track_reads_back_bit_for_bit(tools, minimal, tmp_
     assert np.array_equal(rows["velocity_z"].astype(np.float32), run["velocity"][:, 99, 2])
 
 
+def test_particles_that_appear_and_disappear_are_rows_of_their_frames(tools, samples, tmp_path):
+    changing = samples / "changing.h5"
+    run = pbf_tools.open(changing)
+    _, out, _ = tools("to-csv", changing, "--frames", "all", "--fields", "id,density")
+    rows = np.genfromtxt(io.StringIO(out), delimiter=",", names=True, dtype=None)
+    assert rows["id"].tolist() == np.concatenate([run.ids[k] for k in range(8)]).tolist()
+    assert set(rows["time"]) == set(run.times) - {run.times[5]}
+    _, out, _ = tools("to-csv", changing, "--frames", "all", "--xyz")
+    assert [n for n in out.splitlines() if " " not in n] == [str(n) for n in run.counts]
+    code, out, _ = tools("to-csv", changing, "--track", 200_000_000 * 16)
+    assert code == 0 and len(out.splitlines()) == 1 + 5
+    code, _, err = tools("to-csv", changing, "--track", 7)
+    assert code == 2 and "no particle with id 7 in any frame" in err
+    # In the last frame of another file the first particle has moved, and the last is another one.
+    other = shutil.copy(changing, tmp_path / "other.h5")
+    with h5py.File(other, "r+") as file:
+        first = file["VTKHDF/Steps/PointDataOffsets/id"][-1]
+        file["VTKHDF/PointData/id"][first + 14] += 1
+        file["VTKHDF/Points"][file["VTKHDF/Steps/PointOffsets"][-1]] += [0, 0.08, 0]  # 2 h
+    code, out, _ = tools("compare", changing, other, "--csv", tmp_path / "d.csv")
+    table = pbf_tools.read_csv(tmp_path / "d.csv")
+    assert code == 0 and "2 particles at most are in one run only" in out
+    assert table["particles"].tolist() == [15, 15, 15, 15, 15, 0, 15, 14]
+    assert table["unmatched"].tolist() == [0, 0, 0, 0, 0, 0, 0, 2]
+    assert np.allclose(table["max"], [0] * 7 + [2], atol=0.01)
+    assert tools("compare", changing, other, "--max-rms", 3)[0] == 6
+    assert tools("compare", changing, changing, "--max-rms", 0)[0] == 0
+
+
 def test_the_program_starts_from_a_frame_written_as_particles(tools, pbf, minimal, tmp_path):
     assert tools("to-csv", minimal, "--frames", 10, "--particles", "-o", tmp_path / "p.csv")[0] == 0
     (tmp_path / "s.yaml").write_text(

@@ -77,16 +77,38 @@ def test_a_track_follows_the_id_while_the_number_of_particles_varies(samples):
     for particle in (0, 731, 1200):
         track = run.track(particle, "velocity")
         for k, n in enumerate(sides):
-            if particle < n**3:
-                assert np.allclose(track["position"][k], block(k, n)[0][particle], atol=1e-7)
-                assert np.allclose(track["velocity"][k], block(k, n)[1][particle], atol=1e-6)
-            else:
-                assert np.all(np.isnan(track["position"][k]))
+            row = np.flatnonzero(track["time"] == run.times[k])
+            assert len(row) == (particle < n**3)
+            if len(row):
+                assert np.allclose(track["position"][row], block(k, n)[0][particle], atol=1e-7)
+                assert np.allclose(track["velocity"][row], block(k, n)[1][particle], atol=1e-6)
     with pytest.raises(pbf_tools.BadInput, match="one by one"):
         run["position"][:]
     for nobody in (-1, 5000):
         with pytest.raises(pbf_tools.BadInput, match=f"id {nobody}"):
             run.track(nobody)
+
+
+def test_particles_that_appear_and_disappear_are_found_by_their_ids(samples):
+    run = pbf_tools.open(samples / "changing.h5")
+    assert run.ids.dtype == np.int64 and len(run.ids) == 8 and run.ids.shape == (8, None)
+    for k in range(8):
+        j = np.arange(3 * k, 3 * k + 20)
+        ids = 200_000_000 * j[j % 4 != 1] if k != 5 else j[:0]
+        assert run.ids[k].tolist() == ids.tolist()
+        assert run.counts[k] == run.frames[k].count == len(ids)
+        assert run["position"][k].shape == (len(ids), 3) and run["density"][k].shape == (len(ids),)
+    particle = 200_000_000 * 16  # above 2^31; row 16 - 3k - as many as are left out before it
+    track = run.track(particle, "velocity", "density")
+    alive = [0, 1, 2, 3, 4]
+    rows = [run.ids[k].tolist().index(particle) for k in range(5) if particle in run.ids[k]]
+    assert track["time"].tolist() == run.times[alive].tolist() and len(track) == 5
+    assert track["position"][:, 0].tolist() == [k + 0.25 * row for k, row in zip(alive, rows)]
+    assert track["density"].shape == (5,) and track["velocity"].shape == (5, 3)
+    with pytest.raises(pbf_tools.BadInput, match="one by one, or one particle with run.track"):
+        run["position"][:]
+    with pytest.raises(pbf_tools.BadInput, match="no particle with id 200000000 in any frame"):
+        run.track(200_000_000)
 
 
 def test_a_track_finds_ids_that_are_not_row_numbers(samples, tmp_path):

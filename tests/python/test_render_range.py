@@ -39,6 +39,18 @@ def test_the_range_is_the_quantiles_of_the_frames_chosen(pbf, minimal, frames, t
     assert range_of(done) == pytest.approx(np.percentile(frames[0][index], [1, 99]), rel=1e-6)
 
 
+def test_frames_of_other_numbers_of_particles_are_drawn_and_coloured_by_their_ids(pbf, samples,
+                                                                                tmp_path):
+    changing = samples / "changing.h5"
+    done = render(pbf, changing, tmp_path, "--frames", "all", "--color", "id", "--range", "quantile")
+    with h5py.File(changing) as file:
+        n = file["VTKHDF/NumberOfPoints"][:][file["VTKHDF/Steps/PartOffsets"][:]]
+        first = file["VTKHDF/Steps/PointDataOffsets/id"][:]
+        ids = np.concatenate([file["VTKHDF/PointData/id"][f:f + m] for f, m in zip(first, n)])
+    assert 0 in n and range_of(done) == pytest.approx(np.percentile(ids, [1, 99]), rel=1e-6)
+    assert len(list(tmp_path.glob("frame_*.png"))) == 8
+
+
 def test_a_density_range_lies_about_the_rest_density(pbf, minimal, frames, tmp_path):
     low, high = np.percentile(frames[1][-5:], [1, 99])
     off = max(abs(low - 1000), abs(high - 1000))

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <future>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,8 +15,8 @@
 
 namespace pbf::test {
 
-/// Two particles at (steps, steps without time, row): a state tells how it came about. A load and a
-/// gauge read the updates since they were read last.
+/// Two particles, or those of `ids`, at (steps, steps without time, id): a state tells how it came
+/// about. A load and a gauge read the updates since they were read last.
 class CountingSolver : public Solver, public Inspection {
  public:
   static constexpr std::size_t particles = 2;
@@ -32,6 +33,8 @@ class CountingSolver : public Solver, public Inspection {
   std::function<void(Diagnostics&)> flow = [](Diagnostics&) {};
   std::function<void()> before_state = [] {};  ///< is called where a state is asked for
   std::int64_t fault = -1;                     ///< the update that step_checked() finds it in
+  /// The particles after an update, where they appear and disappear. Their ids then have 64 bits.
+  std::function<std::vector<std::int64_t>(std::int64_t update)> ids{};
 
   std::int64_t steps() const { return now_.steps; }
   std::int64_t steps_without_time() const { return now_.without_time; }
@@ -53,14 +56,14 @@ class CountingSolver : public Solver, public Inspection {
     s.updates = c.updates;
     s.steps = c.steps;
     s.fields = {{"sums", false, 3, {double(c.without_time), double(c.load), double(c.gauge)}}};
-    for (std::size_t k = 0; k < particles; ++k) {
-      s.position.insert(s.position.end(), {double(c.steps), double(c.without_time), double(k)});
-      s.id.push_back(std::int32_t(k));
-    }
-    s.velocity.resize(3 * particles);
+    s.id = particles_after(c.updates);
+    for (const std::int64_t id : s.id)
+      s.position.insert(s.position.end(), {double(c.steps), double(c.without_time), double(id)});
+    s.velocity.resize(3 * s.id.size());
     return s;
   }
   void set_state(const SolverState& s) override {
+    if (ids) CHECK(s.id == ids(s.updates));
     const StoredField* stored = s.find("sums");
     const std::vector<double> sums = stored ? stored->values : std::vector<double>(3);
     now_ = {s.updates, s.steps, std::int64_t(sums[0]), std::int64_t(sums[1]),
@@ -70,22 +73,25 @@ class CountingSolver : public Solver, public Inspection {
   std::int64_t updates() const override { return now_.updates; }
   std::future<Snapshot> download(const std::vector<std::string>& fields, ScalarType) override {
     REQUIRE_FALSE(std::exchange(copying_, true));  // one at a time
-    Snapshot s{now_.updates, double(now_.updates) * time_step, particles, {}};
+    const std::vector<std::int64_t> now = particles_after(now_.updates);
+    Snapshot s{now_.updates, double(now_.updates) * time_step, now.size(), {}};
     std::vector<std::string> names{"position"};
     names.insert(names.end(), fields.begin(), fields.end());
     for (const std::string& name : names) {
       const int components = name == "density" ? 1 : 3;
       FieldArray f{name, "1", ScalarType::f32, components, {}};
-      f.bytes.resize(4 * particles * std::size_t(components));
-      for (std::size_t k = 0; name == "position" && k < particles; ++k) {
+      f.bytes.resize(4 * s.count * std::size_t(components));
+      for (std::size_t k = 0; name == "position" && k < s.count; ++k) {
         f.as<float>()[3 * k] = float(now_.steps);
         f.as<float>()[3 * k + 1] = float(now_.without_time);
-        f.as<float>()[3 * k + 2] = float(k);
+        f.as<float>()[3 * k + 2] = float(now[k]);
       }
       s.fields.push_back(std::move(f));
     }
-    FieldArray id{"id", "1", ScalarType::i32, 1, std::vector<std::byte>(4 * particles)};
-    for (std::size_t k = 0; k < particles; ++k) id.as<std::int32_t>()[k] = std::int32_t(k);
+    const ScalarType whole = ids ? ScalarType::i64 : ScalarType::i32;
+    FieldArray id{"id", "1", whole, 1, std::vector<std::byte>(size_of(whole) * s.count)};
+    for (std::size_t k = 0; k < s.count; ++k)
+      ids ? id.as<std::int64_t>()[k] = now[k] : id.as<std::int32_t>()[k] = std::int32_t(now[k]);
     s.fields.push_back(std::move(id));
     return std::async(std::launch::deferred, [this, s = std::move(s)]() mutable {
       copying_ = false;
@@ -120,6 +126,12 @@ class CountingSolver : public Solver, public Inspection {
   };
   static double read(std::int64_t& count, Interval interval) {
     return double(interval == Interval::ends ? std::exchange(count, 0) : count);
+  }
+  std::vector<std::int64_t> particles_after(std::int64_t update) const {
+    if (ids) return ids(update);
+    std::vector<std::int64_t> all(particles);
+    std::iota(all.begin(), all.end(), 0);
+    return all;
   }
   Counts now_, kept_;
   bool copying_ = false;

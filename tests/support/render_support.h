@@ -58,7 +58,10 @@ pbf::Snapshot snapshot(const std::vector<pbf::Double3>& positions,
   for (double v : values) density.push_back(static_cast<T>(1 + v));
   pbf::Snapshot s;
   s.count = positions.size();
-  s.fields = {field("position", "m", 3, flat), field("density", "kg/m^3", 1, density)};
+  s.fields = {field("position", "m", 3, flat), field("density", "kg/m^3", 1, density),
+              pbf::FieldArray{"id", "1", pbf::ScalarType::i32, 1, {}}};
+  s.fields[2].bytes.resize(4 * s.count);
+  for (std::size_t i = 0; i < s.count; ++i) s.fields[2].as<std::int32_t>()[i] = int(i);
   return s;
 }
 

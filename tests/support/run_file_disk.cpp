@@ -137,11 +137,11 @@ std::vector<DiskOperation> WatchedDisk::operations() const {
 std::vector<DiskOperation> operations_of_a_run(const std::string& path, std::int64_t frames,
                                                bool gzip) {
   WatchedDisk disk(path);
-  RunWriter writer(path, sample_info(40), gzip);
+  RunWriter writer(path, changing_info(), gzip);
   disk.mark(0);
   for (std::int64_t k = 0; k < frames; ++k) {
     for (int row = 0; row < 10; ++row) writer.log(sample_row(10 * k + row));
-    writer.write(sample(k, count_of(k)));
+    writer.write(changing_sample(k));
     while (writer.frames_written() <= k) std::this_thread::yield();
     disk.mark(k + 1);
   }

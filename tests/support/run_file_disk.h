@@ -29,11 +29,8 @@ class WatchedDisk {
   std::int64_t refused() const;  ///< writes that found the disk full
 };
 
-/// Particles in a frame of the run below; not the same in all.
-inline std::size_t count_of(std::int64_t frame) { return frame % 20 == 7 ? 30 : 40; }
-
-/// What writing a run file of so many frames, sample(k, count_of(k)), with 10 rows of the log
-/// before each does to the disk. The mark k stands where the first k frames have been reported.
+/// What writing a run file of so many frames, changing_sample(k), with 10 rows of the log before
+/// each does to the disk. The mark k stands where the first k frames have been reported.
 std::vector<DiskOperation> operations_of_a_run(const std::string& path, std::int64_t frames,
                                                bool gzip);
 

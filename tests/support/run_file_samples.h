@@ -24,6 +24,7 @@ inline FieldArray sample_field(const std::string& name, const std::string& unit,
     if (type == ScalarType::f64) f.as<double>()[i] = v;
     if (type == ScalarType::f32) f.as<float>()[i] = static_cast<float>(v);
     if (type == ScalarType::i32) f.as<std::int32_t>()[i] = static_cast<std::int32_t>(row);
+    if (type == ScalarType::i64) f.as<std::int64_t>()[i] = static_cast<std::int64_t>(row);
   }
   return f;
 }
@@ -36,6 +37,28 @@ inline Snapshot sample(std::int64_t frame, std::size_t count, ScalarType real = 
   s.fields.push_back(sample_field("density", "kg/m^3", real, 1, 2, frame, count));
   s.fields.push_back(sample_field("id", "1", ScalarType::i32, 1, 3, frame, count));
   return s;
+}
+
+/// The particles of a frame have these ids.
+inline Snapshot with_ids(Snapshot s, const std::vector<std::int64_t>& ids,
+                         ScalarType type = ScalarType::i32) {
+  s.fields.back() = sample_field("id", "1", type, 1, 3, 0, ids.size());
+  for (std::size_t k = 0; k < ids.size(); ++k)
+    if (type == ScalarType::i64)
+      s.fields.back().as<std::int64_t>()[k] = ids[k];
+    else
+      s.fields.back().as<std::int32_t>()[k] = static_cast<std::int32_t>(ids[k]);
+  return s;
+}
+
+/// Frame k of a run in which particles appear and disappear: as many as at the start, fewer, none,
+/// and some whose ids have gaps.
+inline Snapshot changing_sample(std::int64_t k) {
+  if (k % 8 == 5) return sample(k, 0);
+  if (k % 4 != 3) return sample(k, k % 3 == 2 ? 30 : 40);
+  std::vector<std::int64_t> ids;
+  for (std::int64_t i = 0; i < 35; ++i) ids.push_back(k + i + i / 3);
+  return with_ids(sample(k, ids.size()), ids);
 }
 
 inline bool same(const Snapshot& a, const Snapshot& b) {
@@ -72,6 +95,12 @@ inline RunInfo sample_info(std::int64_t particles) {
   info.smoothing_length = 0.04;
   info.rest_density = 998;
   info.particles = particles;
+  return info;
+}
+
+inline RunInfo changing_info() {
+  RunInfo info = sample_info(40);
+  info.capacity = 44;
   return info;
 }
 

@@ -49,21 +49,22 @@ def matching(a: np.ndarray, b: np.ndarray) -> list[tuple[int, int]]:
 
 def distances(a: Run, b: Run) -> Table:
     """One row per common frame: time (s), common particles, particles that only one run has,
-    mean, rms and max distance (h), distance of the centres of mass (h)."""
+    mean, rms and max distance (h), distance of the centres of mass (h); 0 where there is no common
+    particle."""
     h = float(a.info["smoothing_length"])
     rows = []
     for i, j in matching(a.times, b.times):
         fa, fb = a.frames[i], b.frames[j]
         common, ia, ib = np.intersect1d(fa["id"], fb["id"], return_indices=True)
-        if not len(common):
-            raise BadInput(f"{a.path} and {b.path} have no particle in common at {fa.time:g} s")
-        xa, xb = fa["position"][ia].astype(float), fb["position"][ib].astype(float)
-        off = np.linalg.norm(xa - xb, axis=1) / h
-        centres = float(np.linalg.norm(xa.mean(axis=0) - xb.mean(axis=0)) / h)
-        rows.append((fa.time, len(common), fa.count + fb.count - 2 * len(common), off.mean(),
-                     np.sqrt(np.mean(off**2)), off.max(), centres))
+        n = len(common)
+        apart = (fb["position"][ib].astype(float) - fa["position"][ia]) / h if n else np.zeros((1, 3))
+        off = np.linalg.norm(apart, axis=1)
+        rows.append((fa.time, n, fa.count + fb.count - 2 * n, off.mean(), np.sqrt(np.mean(off**2)),
+                     off.max(), float(np.linalg.norm(apart.mean(axis=0)))))
     if not rows:
         raise BadInput(f"{a.path} and {b.path} have no frame at the same time")
+    if not any(row[1] for row in rows):
+        raise BadInput(f"{a.path} and {b.path} have no particle in common at any time")
     names = ("time", "particles", "unmatched", "mean", "rms", "max", "centers")
     units = dict(zip(names, ("s", "1", "1", "h", "h", "h", "h")))
     return Table({n: np.array(v) for n, v in zip(names, zip(*rows))}, units)

@@ -91,6 +91,15 @@ class Run:
         return self._index.counts
 
     @property
+    def ids(self) -> Field:
+        """Ids of the particles, ascending: `run.ids[k]` names the particle of each row of frame k.
+
+        0, 1, 2 ... in every frame, unless particles appear and disappear during the run: then ids
+        have gaps, and an id is never given twice.
+        """
+        return self["id"]
+
+    @property
     def frames(self) -> Frames:
         return Frames(self)
 
@@ -152,8 +161,7 @@ class Run:
     def track(self, particle: int, *fields: str) -> Table:
         """One particle by its id: time (s), position and the fields asked for (all by default).
 
-        One row per frame; nan in the frames that the particle is not in. BadInput for an id that
-        no frame has.
+        One row for each frame that the particle is in. BadInput for an id that no frame has.
 
         >>> track = open("run.vtkhdf").track(17, "velocity")
         >>> list(track), track["velocity"].shape, track.units["position"]
@@ -161,23 +169,18 @@ class Run:
         """
         names = ["position", *(fields or (f for f in self.fields if f not in ("position", "id")))]
         places = {name: self[name]._place for name in dict.fromkeys(names)}
-        columns = {name: np.full((len(self.times), p.components), np.nan,
-                                 np.result_type(p.dtype, np.float32))
-                   for name, p in places.items()}
 
-        def fill(file: h5py.File) -> bool:
-            found = False
-            for k in range(len(self.times)):
-                row = self._row(file, k, particle)
-                for name, p in places.items() if row is not None else ():
-                    columns[name][k] = file[p.path][p.offsets[k] + row]
-                    found = True
-            return found
+        def follow(file: h5py.File) -> dict[str, np.ndarray]:
+            rows = {k: row for k in range(len(self.times))
+                    if (row := self._row(file, k, particle)) is not None}
+            columns = {name: np.array([file[p.path][p.offsets[k] + row] for k, row in rows.items()])
+                       for name, p in places.items()}
+            return {"time": self.times[list(rows)], **columns}
 
-        if not self._read(fill, "cannot read a track"):
+        columns = self._read(follow, "cannot read a track")
+        if not len(columns["time"]):
             raise BadInput(f"{self.path}: no particle with id {particle} in any frame")
-        columns = {name: v if v.shape[1] > 1 else v[:, 0] for name, v in columns.items()}
-        return Table({"time": self.times, **columns}, {"time": "s", **self.units})
+        return Table(columns, {"time": "s", **self.units})
 
     def _row(self, file: h5py.File, k: int, particle: int) -> int | None:
         """Row of a particle in frame k; rows are in ascending order of ids."""

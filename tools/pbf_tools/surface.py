@@ -66,6 +66,9 @@ def run(args: argparse.Namespace) -> int:
         raise BadInput("--cube goes from 0.05 to 4 spacings, --smoothing from 0")
     r = read_run(args.run_file)
     for k in frame_range.parse(args.frames, len(r.frames)):
+        if not r.counts[k]:
+            raise BadInput(f"{r.path}: frame {k} has no particles, so no surface; choose others "
+                           "with --frames")
         vertices, triangles = reconstruct(r["position"][k], float(r.info["spacing"]), args.cube,
                                           args.smoothing)
         path = Path(args.out) / f"surface_{k:05d}.ply"

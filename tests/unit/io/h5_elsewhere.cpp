@@ -234,13 +234,13 @@ TEST_CASE("a checkpoint that is a link to itself, a pipe or a folder is an I/O e
   }
 }
 
-TEST_CASE("a checkpoint whose ids are not each particle once is damaged") {
+TEST_CASE("a checkpoint with a particle twice, or with a negative id, is damaged") {
   const TemporaryFolder folder;
   SavedRun saved;
   saved.particles = 2;
   saved.state.position = saved.state.velocity = {0, 0, 0, 1, 1, 1};
-  for (const std::vector<std::int32_t>& ids :
-       {std::vector<std::int32_t>{0, 0}, {0, 2}, {-1, 0}, {1, 2147483647}}) {
+  for (const std::vector<std::int64_t>& ids :
+       {std::vector<std::int64_t>{0, 0}, {-1, 0}, {1LL << 40, 1LL << 40}}) {
     saved.state.id = ids;
     std::filesystem::remove(folder / "checkpoint_prev.h5");
     std::filesystem::remove(folder / "checkpoint.h5");

@@ -71,7 +71,7 @@ TEST_CASE("after every single write to the disk all frames reported so far are r
       REQUIRE(reader.frames() >= sure);
       REQUIRE(values_within_steps(replica.path()));
       for (const std::int64_t k : {std::int64_t{0}, sure / 2, sure - 1})
-        REQUIRE(same(reader.frame(k), sample(k, count_of(k))));
+        REQUIRE(same(reader.frame(k), changing_sample(k)));
     }
   }
   REQUIRE(states > 1000);
@@ -86,11 +86,11 @@ TEST_CASE("kill -9 at any moment leaves every reported frame", "[run_file][many_
     const pid_t child = ::fork();
     REQUIRE(child >= 0);
     if (child == 0) {  // reports every frame it may count on, until it is killed
-      RunWriter writer(path, sample_info(40), false);
+      RunWriter writer(path, changing_info(), false);
       std::int64_t reported = 0;
       for (std::int64_t k = 0;; ++k) {
         writer.log(sample_row(k));
-        writer.write(sample(k, count_of(k)));
+        writer.write(changing_sample(k));
         for (const std::int64_t sure = writer.frames_written(); reported < sure; ++reported)
           if (::write(channel[1], "f", 1) != 1) ::_exit(1);
       }
@@ -112,6 +112,6 @@ TEST_CASE("kill -9 at any moment leaves every reported frame", "[run_file][many_
     CHECK(reader.status() == "running");
     REQUIRE(reader.frames() >= reported);
     for (std::int64_t k = 0; k < reader.frames(); ++k)
-      REQUIRE(same(reader.frame(k), sample(k, count_of(k))));
+      REQUIRE(same(reader.frame(k), changing_sample(k)));
   }
 }

@@ -16,10 +16,8 @@ using namespace pbf::test;
 
 namespace {
 
-std::size_t count_of(std::int64_t frame) { return frame % 3 == 2 ? 30 : 40; }
-
 RunInfo info_with_gauges() {
-  RunInfo info = sample_info(40);
+  RunInfo info = changing_info();
   info.columns = {{"level", "H", "", "m", "x = 0.5 m", Join::now},
                   {"velocity", "U", "", "m/s", "(1, 2, 3) m", Join::now, 3},
                   {"flow", "Q", "", "kg/s", "(1, 2, 3) m", Join::mean},
@@ -37,7 +35,7 @@ void write(RunWriter& writer, std::int64_t first, std::int64_t last) {
     writer.log(sample_row(2 * k));
     writer.log(sample_row(2 * k + 1));
     writer.gauges(gauge_row(k));
-    writer.write(sample(k, count_of(k)));
+    writer.write(changing_sample(k));
   }
 }
 
@@ -45,7 +43,7 @@ void check_whole(const std::string& path, std::int64_t frames) {
   const RunReader reader(path);
   REQUIRE(reader.status() == "finished");
   REQUIRE(reader.frames() == frames);
-  for (std::int64_t k = 0; k < frames; ++k) REQUIRE(same(reader.frame(k), sample(k, count_of(k))));
+  for (std::int64_t k = 0; k < frames; ++k) REQUIRE(same(reader.frame(k), changing_sample(k)));
   for (const char* name : {"update", "compression_mean", "stage/lambda"})
     REQUIRE(reader.log_column(name).size() == static_cast<std::size_t>(2 * frames));
   for (std::int64_t row = 0; row < 2 * frames; ++row)

@@ -172,14 +172,3 @@ TEST_CASE("a writer that goes away without finish leaves all its frames and stop
   CHECK(reader.frames() == 5);
   CHECK(reader.status() == "stopped");
 }
-
-TEST_CASE("a snapshot without ids gets them: row i is particle i", "[run_file]") {
-  const TemporaryFolder folder;
-  const std::string path = folder / "run.vtkhdf";
-  RunWriter writer(path, sample_info(50), false);
-  Snapshot s = sample(0, 50);
-  s.fields.pop_back();
-  writer.write(std::move(s));
-  writer.finish({"finished"});
-  CHECK(same(RunReader(path).frame(0), sample(0, 50)));
-}

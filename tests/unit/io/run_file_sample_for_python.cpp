@@ -46,6 +46,24 @@ void write_sample(const std::string& path, bool varying, bool gzip, ScalarType r
   writer.finish({"finished"});
 }
 
+/// In frame k the particles 2e8 j, j from 3k to 3k + 19 but for every fourth; none in frame 5.
+void write_changing(const std::string& path) {
+  RunInfo info = test::sample_info(15);
+  info.capacity = 15;
+  info.resolved_scene =  // holds the first of the particles
+      "domain: {min: [-1, -1, -1], max: [20, 3000, 3000]}\nfluid: {spacing: 0.5}\n"
+      "bodies: [{shape: block, min: [0, 0, 0], max: [1, 1, 1]}]\ntime: {step: 0.002, end: 1}\n";
+  RunWriter writer(path, info, true);
+  for (std::int64_t k = 0; k < 8; ++k) {
+    std::vector<std::int64_t> ids;
+    for (std::int64_t j = 3 * k; j < 3 * k + 20 && k != 5; ++j)
+      if (j % 4 != 1) ids.push_back(200000000 * j);
+    writer.log(test::sample_row(k));
+    writer.write(test::with_ids(test::sample(k, ids.size()), ids, ScalarType::i64));
+  }
+  writer.finish({"finished"});
+}
+
 }  // namespace
 
 TEST_CASE("run files for the Python checks", "[.][sample]") {
@@ -57,4 +75,5 @@ TEST_CASE("run files for the Python checks", "[.][sample]") {
   write_sample(path + "/constant.h5", false, false, ScalarType::f32);
   write_sample(path + "/varying.h5", true, false, ScalarType::f32);
   write_sample(path + "/gzip_double.h5", false, true, ScalarType::f64);
+  write_changing(path + "/changing.h5");
 }

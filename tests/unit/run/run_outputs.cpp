@@ -4,9 +4,14 @@
 #include <cmath>
 #include <optional>
 
+#include "lib/base/version.h"
+#include "lib/io/run_path.h"
+#include "lib/run/resume.h"
 #include "lib/run/run.h"
+#include "lib/run/run_record.h"
 #include "tests/support/catch.h"
 #include "tests/support/counted_run.h"
+#include "tests/support/run_file_samples.h"
 
 namespace pbf::scene_test {
 
@@ -167,6 +172,55 @@ TEST_CASE(
   CHECK(r.saved().value().state.updates == 4);
   CHECK(r.frames() == UpdateNumbers{0, 3, 4});
   CHECK(r.column("update") == std::vector<double>{0, 4});
+}
+
+TEST_CASE("a run in which particles appear and disappear goes on after a stop as if undisturbed") {
+  const auto alive = [](std::int64_t u) {
+    UpdateNumbers ids;
+    for (std::int64_t id = u; id < 2 * u + 2; ++id)
+      if (id % 4 != 1 && u != 6) ids.push_back((std::int64_t{1} << 33) + id);
+    return ids;
+  };
+  Scene scene = ten_updates();
+  scene.precision = Precision::dbl;  // as the state of this solver
+  scene.checkpoint.emplace();
+  scene.capacity = 20;
+  CountedRun whole(scene), stopped(scene);
+  whole.solver.ids = stopped.solver.ids = alive;
+  CHECK(whole.error() == "no error");
+  stopped.stop_at(4);
+  CHECK(stopped.error() == "no error");
+  REQUIRE(stopped.run.status == "stopped");
+  CHECK(stopped.saved().value().state.id == alive(4));
+  CHECK(stopped.saved().value().particles == std::int64_t(alive(4).size()));
+
+  stopped.folder.write_text(kResolvedScene, scene_record(stopped.run.scene, ""));
+  const auto resume_point = [&](const Scene& s) {
+    return find_resume_point(stopped.folder, s, {}, make_plan(s, 2), build_info().commit);
+  };
+  const ResumePoint from = resume_point(scene);
+  REQUIRE(from.saved);
+  CHECK(from.frames == 2);  // the third is of the stop
+  CountingSolver solver;
+  solver.ids = alive;
+  solver.set_state(from.saved->state);
+  stopped.control.max_walltime = 0;
+  RunParts again{stopped.start, solver, stopped.control, stopped.clock, stopped.folder, from};
+  {
+    const Silence silence;
+    open_files(again, "2026-01-01T00:00:00Z");
+    run_session(again);
+  }
+  const RunReader a(whole.folder.file(kRunFile)), b(stopped.folder.file(kRunFile));
+  REQUIRE(a.updates() == b.updates());
+  for (std::int64_t k = 0; k < a.frames(); ++k) {
+    CHECK(test::same(a.frame(k), b.frame(k)));
+    CHECK(ids_of(b.frame(k)) == alive(b.updates()[std::size_t(k)]));
+  }
+  CHECK(a.counts() == UpdateNumbers{1, 4, 0, 8, 9});
+  // A scene whose particles stay has no such checkpoint.
+  scene.capacity = 0;
+  CHECK(contains(error_of([&] { resume_point(scene); }), "checkpoint.h5: holds other particles"));
 }
 
 }  // namespace pbf::scene_test

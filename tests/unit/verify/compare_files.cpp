@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 
 #include "lib/base/error.h"
 #include "lib/scene/random.h"
@@ -21,6 +22,9 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 struct Made {
   std::string status = "finished", precision = "double", end = "0.08";
   std::size_t count = 600;
+  /// In place of so many: the particles of a frame, and the most that there may be.
+  std::function<std::vector<std::int64_t>(std::int64_t)> ids{};
+  std::int64_t capacity = 0;
   int frames = 5, rows = 9;
   double later = 0;  // s, added to the times of frames behind the first
   bool density = true;
@@ -29,13 +33,21 @@ struct Made {
 };
 
 Snapshot frame_of(const Made& m, std::int64_t k) {
-  Snapshot s{10 * k, 0.02 * double(k) + (k > 0 ? m.later : 0), m.count, {}};
-  SplitMix64 random(7 + std::uint64_t(k));
+  std::vector<std::int64_t> ids(m.count);
+  std::iota(ids.begin(), ids.end(), 0);
+  if (m.ids) ids = m.ids(k);
+  Snapshot s{10 * k, 0.02 * double(k) + (k > 0 ? m.later : 0), ids.size(), {}};
+  std::uint64_t seed = 7 + std::uint64_t(k);
   for (const auto& [name, unit, columns] :
        {std::tuple{"position", "m", 3}, {"velocity", "m/s", 3}, {"density", "kg/m^3", 1}}) {
     FieldArray f{name, unit, ScalarType::f64, columns, {}};
-    f.bytes.resize(8 * m.count * std::size_t(columns));
-    for (double& v : f.as<double>()) v = columns == 1 ? 1000 : random.uniform();
+    f.bytes.resize(8 * s.count * std::size_t(columns));
+    seed += 100;
+    for (std::size_t i = 0; i < s.count; ++i) {  // of each particle, whatever its row
+      SplitMix64 random(seed + 1000 * std::uint64_t(ids[i]));
+      for (std::size_t c = 0; c < std::size_t(columns); ++c)
+        f.as<double>()[std::size_t(columns) * i + c] = columns == 1 ? 1000 : random.uniform();
+    }
     if (m.change) m.change(f, k);
     if (m.type == ScalarType::f32) {
       FieldArray g{name, unit, m.type, columns, {}};
@@ -46,14 +58,15 @@ Snapshot frame_of(const Made& m, std::int64_t k) {
     }
     if (columns == 3 || m.density) s.fields.push_back(f);
   }
-  s.fields.push_back(sample_field("id", "1", ScalarType::i32, 1, 3, k, m.count));
-  return s;
+  s.fields.emplace_back();
+  return with_ids(std::move(s), ids, m.ids ? ScalarType::i64 : ScalarType::i32);
 }
 
 CompareResult compare(const Made& a, const Made& b) {
   const TemporaryFolder folder;
   for (const auto& [m, name] : {std::pair{&a, "a.h5"}, std::pair{&b, "b.h5"}}) {
     RunInfo info = sample_info(std::int64_t(m->count));
+    info.capacity = m->capacity;
     info.solver.precision = m->precision;
     info.resolved_scene =
         "domain: {min: [0, 0, 0], max: [1, 1, 1]}\nfluid: {spacing: 0.1}\n"
@@ -228,4 +241,64 @@ TEST_CASE("frames of other numbers of particles differ, empty ones on both sides
   CHECK_FALSE(r.same());
   CHECK(part(r, "particles").finding.find("600 particles at 0 s, B 599") != std::string::npos);
   CHECK_FALSE(compare(Made{}, none).same());
+}
+
+namespace {
+
+/// A run with a sink that takes 20 particles between frames, and an emitter of 10. One whose sink
+/// was `lucky` has more particles than others behind frame 1, and `lost` are missing in frame 4.
+Made with_sink(const Made& like, std::int64_t lucky = 0, std::int64_t lost = 0) {
+  Made m = like;
+  m.capacity = 600;
+  m.ids = [=](std::int64_t k) {
+    std::vector<std::int64_t> ids;
+    const std::int64_t gone = k > 1 ? 20 * k - lucky : 20 * k;
+    for (std::int64_t id = 0; id < 500 + 10 * k; ++id)
+      if (id / 2 >= gone && (k != 4 || id >= 500 || id < 500 - lost)) ids.push_back(2 * id);
+    return ids;
+  };
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("particles are matched by id where they appear and disappear", "[compare]") {
+  CHECK(compare(with_sink(Made{}), with_sink(Made{})).same());
+  CHECK(compare(with_sink(Made{}), with_sink(another())).same());
+  // Three ids that only one file has move all rows behind them.
+  const CompareResult r = compare(with_sink(Made{}), with_sink(another(), 3));
+  const ComparePart& particles = part(r, "particles");
+  CAPTURE(compare_text(r));
+  CHECK(r.same());
+  CHECK(particles.verdict == Verdict::not_judged);
+  CHECK(particles.finding.find("A holds 440 particles at 0.04 s, B 446: 0 are in A alone, 6 in B "
+                               "alone; of those in both: 0 h apart (rms)") == 0);
+  CHECK(r.horizon < 0);
+  CHECK(compare_text(r).find("particles ") != std::string::npos);
+}
+
+TEST_CASE("more particles that only one file has than chance makes are a difference", "[compare]") {
+  const auto verdict = [](const Made& a, const Made& b, const std::string& name) {
+    const CompareResult r = compare(a, b);
+    CAPTURE(compare_text(r));
+    CHECK(r.same() == (part(r, "particles").verdict != Verdict::differs &&
+                       part(r, "distributions").verdict != Verdict::differs));
+    return part(r, name).verdict;
+  };
+  // 200 particles have gone or come, and those that are lost: 82 are five standard errors.
+  CHECK(verdict(with_sink(Made{}), with_sink(another(), 0, 70), "distributions") == Verdict::same);
+  CHECK(verdict(with_sink(Made{}), with_sink(another(), 0, 90), "distributions") ==
+        Verdict::differs);
+  // Files that promise the same bits, and runs whose particles stay, have the same particles.
+  CHECK(verdict(with_sink(Made{}), with_sink(Made{}, 1), "particles") == Verdict::differs);
+  Made stays = with_sink(another(), 1);
+  stays.capacity = 0;
+  CHECK(verdict(with_sink(Made{}), stays, "particles") == Verdict::differs);
+  Made start = with_sink(another());
+  start.ids = [ids = start.ids](std::int64_t k) {
+    std::vector<std::int64_t> all = ids(k);
+    if (k == 0) all.back() = 5000;
+    return all;
+  };
+  CHECK(verdict(with_sink(Made{}), start, "particles") == Verdict::differs);
 }
