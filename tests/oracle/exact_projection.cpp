@@ -139,9 +139,9 @@ class Constraints {
       order_[std::size_t(now)] = old;
     };
     const OwnRows<const V4> rows(from.data());
-    exec_.sort_by_bin("grid", BinPass<double, dimensions_of(S)>{p_, rows, bin.data()},
-                      NothingListed{}, n_, bin_count(p_), row.data(), bin_order.data(),
-                      bin_start_.data(), gather);
+    exec_.template sort_by_bin<false>(
+        "grid", BinPass<double, dimensions_of(S)>{p_, rows, bin.data()}, NothingListed{}, n_,
+        bin_count(p_), row.data(), bin_order.data(), bin_start_.data(), gather);
     const Vector before = start_;
     for (Eigen::Index k = 0; k < n_; ++k)
       start_.segment<3>(3 * k) = before.segment<3>(3 * order_[std::size_t(k)]);
