@@ -2,6 +2,7 @@
 // for the few particles near them.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "kernels/boundary/far_box.h"
@@ -173,7 +174,9 @@ struct NearSolids {
     void forget(C& c) {
       if (!has_solids(c.scene)) return;
       const auto granted = c.template granted<FindNear>();
-      granted.items(AllNearPass<Real>{solids_of(granted).near, c.host_rows()});
+      const int n = c.host_rows();
+      granted.items(std::max(n, 1),
+                    AllNearPass<Real>{solids_of(granted).near, n});  // item 0 sets their number
     }
   };
 };

@@ -102,7 +102,7 @@ TEST_CASE("a file is cut to any of its frames and goes on with other particles",
   }
 }
 
-TEST_CASE("ids 0, 1, 2 ... are stored once, in 32 bits; others once a frame", "[run_file]") {
+TEST_CASE("ids 0, 1, 2 ... are stored once, in 32 bits, and others once a frame", "[run_file]") {
   const TemporaryFolder folder;
   const std::string path = folder / "run.vtkhdf";
   const auto written = [&](const std::vector<Ids>& all, std::int64_t capacity) {
