@@ -56,7 +56,7 @@ seeded_defect(lists_as_pass declarations lib/program/features/solids.h
 seeded_defect(state_as_pass declarations lib/program/features/loads.h
   [["loads", per_wall, Life::state]] [["loads", per_wall, Life::pass]])
 seeded_defect(state_as_update declarations lib/program/features/gauges.h
-  [["flows", per_gate, Life::state]] [["flows", per_gate, Life::update]])
+  [["flows", per_sum<FlowTally>, Life::state]] [["flows", per_sum<FlowTally>, Life::update]])
 seeded_defect(state_as_rows state_feature tests/unit/solver/state_feature.cpp
   [["temperature", per_padded_row, Life::state, true,]]
   [["temperature", per_padded_row, Life::rows, true,]])

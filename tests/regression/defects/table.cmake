@@ -28,8 +28,8 @@ seeded_defect(last_cell_off_by_one neighbors kernels/cell_index.h
   [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 1;]]
   [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 2;]])
 seeded_defect(stale_grid neighbors lib/solver/step_context.h
-  [[exec.build_lists(rows_, rows_, position(),]]
-  [[exec.build_lists(rows_, rows_, data(other<field::position>),]])
+  [[exec.build_lists(rows(), capacity(), position(),]]
+  [[exec.build_lists(rows(), capacity(), data(other<field::position>),]])
 seeded_defect(last_neighbour_skipped neighbors lib/exec/cpu/list_maker.h
   [[close_to(simd, c, x, i + l, out) - out);]]
   [[std::max<std::ptrdiff_t>(close_to(simd, c, x, i + l, out) - out, 1) - 1);]])
@@ -161,10 +161,10 @@ seeded_defect(solid_pose_of_next_step predict lib/solver/step_solver.h
   [[((updates_ << options_.level) + done) * n, steps * n,]]
   [[((updates_ << options_.level) + done) * n + 1, steps * n,]] solids)
 seeded_defect(load_of_clamp_missing loads kernels/boundary/surroundings.h
-  [[      move_by(6 + k, at - to);]] [[]] solids)
+  [[      move_by(load_row_of_solid(k), at - to);]] [[]] solids)
 seeded_defect(load_of_walls_share loads kernels/boundary/surroundings.h
-  [[s.loads.add(6 + k, i, x, (factor * left) * one.gradient);]]
-  [[s.loads.add(6 + k, i, x, factor * one.gradient);]] solids)
+  [[s.loads.add(load_row_of_solid(k), i, x, (factor * left) * one.gradient);]]
+  [[s.loads.add(load_row_of_solid(k), i, x, factor * one.gradient);]] solids)
 seeded_defect(load_of_far_rows loads lib/program/placed_solids.h
   [[reach = Real(1) / walls.inv_range + walls.margin + Real(kNearRoom),]]
   [[reach = Real(0.5) / walls.inv_range + walls.margin,]] solids)
