@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "kernels/axes.h"
 #include "lib/program/gauges.h"
 #include "lib/scene/surface.h"
 
