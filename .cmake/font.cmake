@@ -16,12 +16,12 @@ file(CONFIGURE OUTPUT ${PBF_FONT_SOURCE} @ONLY CONTENT
 "// lib/render/font/DejaVuSans-Latin1.ttf, made by .cmake/font.cmake.
 #include \"lib/render/font_data.h\"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 const unsigned char kFontData[] = {
 @bytes@};
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module
 ")
 
 function(pbf_embed_font target)

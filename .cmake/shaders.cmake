@@ -13,8 +13,8 @@ file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/pbf_shaders.h @ONLY CONTEN
 "// lib/render/shaders, made by .cmake/shaders.cmake.
 #pragma once
 
-namespace pbf::inline render_module::shaders {
+namespace pbf::render_module::shaders {
 
 @texts@
-}  // namespace pbf::inline render_module::shaders
+}  // namespace pbf::render_module::shaders
 ")

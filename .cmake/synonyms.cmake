@@ -8,10 +8,10 @@ file(CONFIGURE OUTPUT ${PBF_SYNONYM_SOURCE} @ONLY CONTENT
 "// lib/scene/synonyms.yaml, made by .cmake/synonyms.cmake.
 #include \"lib/scene/synonyms.h\"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 const char* const kSynonymText = R\"yaml(@text@)yaml\";
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module
 ")
 target_sources(pbf_lib PRIVATE ${PBF_SYNONYM_SOURCE})

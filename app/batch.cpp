@@ -26,7 +26,7 @@
 #include "lib/run/run_record.h"
 #include "lib/run/signals.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 namespace {
 
 struct BatchOptions : SceneOptions {
@@ -274,4 +274,4 @@ void add_batch(CLI::App& app, int& code) {
   add_quiet(c, o.quiet);
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

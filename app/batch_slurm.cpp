@@ -6,7 +6,7 @@
 
 #include "lib/base/error.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 namespace {
 
 constexpr long kLead = 120;  // s before the time limit, for saving
@@ -79,4 +79,4 @@ std::string slurm_script(const SlurmWishes& w) {
          "exit \"$code\"\n";
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

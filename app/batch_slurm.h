@@ -6,7 +6,7 @@
 
 #include "lib/campaign/batch_check.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 
 /// Requests of a job array.
 struct SlurmWishes {
@@ -25,4 +25,4 @@ long slurm_seconds(const std::string& text);
 /// collects the summary afterwards. A task that reaches its time limit returns to the queue.
 std::string slurm_script(const SlurmWishes& wishes);
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

@@ -15,7 +15,7 @@
 #include "lib/io/table.h"
 #include "lib/run/load_run.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 namespace {
 
 struct BenchOptions : SceneOptions {
@@ -193,4 +193,4 @@ void add_bench(CLI::App& app, int& code) {
   c->add_option("--json", o.json, "Write the table to this file, as a JSON array");
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

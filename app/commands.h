@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 
 /// Each function adds a command with its options to the command line. Parsing runs the given
 /// command and stores its exit code in `code`; errors are thrown as Error.
@@ -18,4 +18,4 @@ void add_batch(CLI::App& app, int& code);
 void add_stability(CLI::App& app, int& code);
 void add_info(CLI::App& app, int& code);
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

@@ -11,7 +11,7 @@
 #include "lib/io/run_path.h"
 #include "lib/run/load_run.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 namespace {
 
 struct CompareOptions : SceneOptions {
@@ -130,4 +130,4 @@ void add_compare(CLI::App& app, int& code) {
   add_quiet(c, o.quiet);
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

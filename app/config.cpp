@@ -8,7 +8,7 @@
 #include "lib/base/stages.h"
 #include "lib/scene/load.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 
 namespace {
 
@@ -61,4 +61,4 @@ void add_config(CLI::App& app, int& code) {
   one->require_option(0, 1);
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

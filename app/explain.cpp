@@ -6,7 +6,7 @@
 #include "lib/scene/file_kind.h"
 #include "lib/scene/suggest.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 namespace {
 
 std::vector<std::string> names(const std::vector<const CLI::App*>& commands) {
@@ -79,4 +79,4 @@ std::string explain(const CLI::App& app, const CLI::ParseError& e) {
   return message + "\nSee pbf --help";
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

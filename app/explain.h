@@ -4,10 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 
 /// CLI11's message, or a better one for unexpected arguments (unknown options and commands, a
 /// second scene, a setting without --set), with a suggestion and where to find help.
 std::string explain(const CLI::App& app, const CLI::ParseError& e);
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

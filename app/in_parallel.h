@@ -15,7 +15,7 @@
 #include "lib/base/stage_clock.h"
 #include "lib/base/text.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 
 /// Calls work(k) for all k < n on `jobs` threads, with a line of progress after each: "k of n WHAT,
 /// time" and name(row). work(k) returns std::optional<Row>; if it is empty, a signal has come and
@@ -59,4 +59,4 @@ std::vector<std::optional<Row>> in_parallel(std::size_t n, int jobs, Log& log, c
   return rows;
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

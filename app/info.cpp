@@ -9,7 +9,7 @@
 #include "lib/exec/cpu/simd.h"
 #include "lib/exec/devices.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 
 namespace {
 
@@ -42,4 +42,4 @@ void add_info(CLI::App& app, int& code) {
   c->footer("Example:\n  pbf info")->callback([&code] { code = command_info(); });
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

@@ -15,7 +15,7 @@
 #include "lib/base/version.h"
 #include "lib/run/signals.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 namespace {
 
 const char* const kExitCodes =
@@ -88,7 +88,7 @@ int guarded(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module
 
 int main(int argc, char** argv) {
   pbf::hold_standard_streams();

@@ -2,7 +2,7 @@
 
 #include "lib/solver/diagnostics.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 
 std::string diagnostics_text() {
   return "Diagnostics (formulas: lib/solver/DIAGNOSTICS.md; c = max(rho/rho0 - 1, 0) of a "
@@ -12,4 +12,4 @@ std::string diagnostics_text() {
          diagnostics_help();
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

@@ -12,7 +12,7 @@
 
 #include "lib/scene/number.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 
 /// Adds the command `name`; its options live as long as `app`. If the command is given, `code` is
 /// set to the result of `work`.
@@ -101,4 +101,4 @@ inline CLI::Validator number_from(double low, bool above, const std::string& uni
       what);
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

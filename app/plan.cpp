@@ -15,7 +15,7 @@
 #include "lib/run/load_run.h"
 #include "lib/run/start.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 namespace {
 
 struct PlanOptions : SceneOptions {
@@ -114,4 +114,4 @@ void add_plan(CLI::App& app, int& code) {
       ->excludes(as_json);
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

@@ -19,7 +19,7 @@
 #include "lib/render/renderer.h"
 #endif
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 
 namespace {
 
@@ -135,4 +135,4 @@ void add_render(CLI::App& app, int& code) {
       ->check(not_empty());
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

@@ -6,7 +6,7 @@
 #include "lib/base/error.h"
 #include "lib/scene/number.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 namespace {
 
 [[noreturn]] void bad(const std::string& option, const std::string& text, const std::string& want) {
@@ -122,4 +122,4 @@ void apply_render_options(const RenderOptions& o, Scene& scene) {
   if (!o.camera.empty()) read_camera(o.camera, render.camera);
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

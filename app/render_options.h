@@ -8,7 +8,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 
 struct RenderOptions {
   std::string run;                  ///< path of run.vtkhdf
@@ -30,4 +30,4 @@ bool by_quantile(const RenderOptions& options);
 /// color without a range gets the default range of its field.
 void apply_render_options(const RenderOptions& options, Scene& scene);
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

@@ -10,7 +10,7 @@
 #include "lib/run/signals.h"
 #include "lib/run/start.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 namespace fs = std::filesystem;
 namespace {
 
@@ -151,4 +151,4 @@ void add_run(CLI::App& app, int& code) {
       ->transform(number_from(0, true, "seconds"));
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

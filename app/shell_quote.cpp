@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 #include <algorithm>
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 
 std::string shell_quoted(const std::string& text) {
   const std::string safe =
@@ -25,4 +25,4 @@ std::string shell_quoted(const std::string& text) {
   return out + "'";
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

@@ -15,7 +15,7 @@
 #include "lib/campaign/stability_report.h"
 #include "lib/run/signals.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 namespace {
 
 struct StabilityCommandOptions : SceneOptions {
@@ -219,4 +219,4 @@ void add_stability(CLI::App& app, int& code) {
       ->needs(map);
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

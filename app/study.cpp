@@ -13,7 +13,7 @@
 #include "lib/campaign/study_table.h"
 #include "lib/run/signals.h"
 
-namespace pbf::inline app_module {
+namespace pbf::app_module {
 namespace {
 
 struct StudyOptions : SceneOptions {
@@ -196,4 +196,4 @@ void add_study(CLI::App& app, int& code) {
   add_quiet(c, o.quiet);
 }
 
-}  // namespace pbf::inline app_module
+}  // namespace pbf::app_module

@@ -5,7 +5,7 @@
 
 #include "kernels/hd.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 PBF_HD void add_whole(std::int64_t* sum, std::int64_t term) {
 #if defined(__CUDA_ARCH__)
@@ -52,4 +52,4 @@ PBF_HD int take_place(int* count) {
 #endif
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

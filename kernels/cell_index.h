@@ -4,7 +4,7 @@
 
 #include "kernels/params.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Cell coordinate of x along one axis; 0 for NaN. Beyond its ends the grid is mirrored repeatedly.
 /// The search stays exact for particles outside, because mirrored cells of neighbors are equal or
@@ -83,4 +83,4 @@ PBF_HD void for_each_run(Vec3<Real> x, const int* bin_start, const Params<Real>&
   for_each_run<D>(c.x, c.x, c.y, c.z, bin_start, p, f);
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

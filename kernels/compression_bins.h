@@ -8,7 +8,7 @@
 
 #include "kernels/hd.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// 32 bins per factor of 2, from 2^-24 (6e-8) to 2^8; larger values count in the last bin.
 constexpr int kCompressionBins = 1024;
@@ -41,4 +41,4 @@ struct CompressionBinPass {
   PBF_HD int operator()(int i) const { return compression_bin(double(density[i]) - 1); }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

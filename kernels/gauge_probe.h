@@ -39,7 +39,7 @@ struct ProbeTally {
 
 }  // namespace pbf
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 template <class Real>
 struct ProbePass {
@@ -99,4 +99,4 @@ ProbePass<Real> gauge_pass(const Probe* probe, int probes, const Vec4<Real>* pos
   return {probe, probes, position, velocity, update_dt, sums};
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -15,13 +15,6 @@
 // for these particles, inlined on the device, where a call would cost every thread registers. All
 // other functions are inlined into every pass.
 
-// All arithmetic on particles is in this inline namespace. A second compilation under another name,
-// for example with other floating-point options, can be linked beside the first, because its types
-// and functions are distinct.
-#ifndef PBF_VARIANT
-#define PBF_VARIANT plain
-#endif
-
 // The variant `pinned` (PBF_PINNED, compiled without contraction) gives the host's bits on the
 // device. Otherwise the device uses its fast root and fused products.
 #if defined(__CUDA_ARCH__) && !defined(PBF_PINNED)

@@ -10,7 +10,7 @@
 
 #include "kernels/pair_sum.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// W numbers; a plain number is converted to W equal ones.
 template <class Real, int W>
@@ -186,4 +186,4 @@ PBF_HD void sum_over_neighbors_by_lanes(const Pass& pass, int i, int end) {
   }
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

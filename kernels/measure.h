@@ -115,7 +115,7 @@ struct MeasureSums : MeasureCounts {
 
 }  // namespace pbf
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// One particle's maxima and counts, then its terms. A non-finite particle counts as such and
 /// nowhere else.
@@ -194,4 +194,4 @@ struct MeasurePass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -8,7 +8,7 @@
 #include "kernels/cell_index.h"
 #include "kernels/rows.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Neighbor lists of the CPU. `width` = 2^width_bits adjacent particles form a group, whose lists
 /// are interleaved: entry k of particle l of the group is at group[k width + l]. Shorter lists of a
@@ -45,4 +45,4 @@ struct ChunkedLists {
   PBF_HD int rounds(int i) const { return int(groups[i >> width_bits].rounds); }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

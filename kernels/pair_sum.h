@@ -16,7 +16,7 @@
 #include "kernels/neighbors.h"
 #include "kernels/smoothing.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// One particle on one thread: the sequential form, and the reference for the others.
 template <class Pass>
@@ -71,4 +71,4 @@ PBF_HD MovingOther<V> moving_other(const Vec4<V>& x, const Vec4<V>& v) {
   return {x, v};
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

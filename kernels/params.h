@@ -9,7 +9,7 @@
 #include "kernels/boundary/box.h"
 #include "kernels/vec3.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 template <class Real>
 struct Params {
@@ -38,4 +38,4 @@ struct Params {
   Real update_dt = 0;  ///< s, sum of all substeps; confinement acts once per update
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

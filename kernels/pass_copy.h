@@ -6,7 +6,7 @@
 
 #include "kernels/vec3.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Item i copies the i-th `unit` bytes of every array that has so many.
 struct CopyPass {
@@ -39,4 +39,4 @@ struct CopyPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

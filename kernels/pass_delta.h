@@ -6,7 +6,7 @@
 #include "kernels/pass_levels.h"
 #include "kernels/pass_predict.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// x^n for a small positive integer n, by squaring: the same operations on every backend.
 template <class Real>
@@ -146,4 +146,4 @@ struct DeltaPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -6,7 +6,7 @@
 #include "kernels/axes.h"
 #include "kernels/params.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Writes position (3), velocity (3) and density (1) to those pointers that are set.
 template <class Real, class Out>
@@ -37,4 +37,4 @@ struct ExportPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -38,7 +38,7 @@ struct FlowTally {
 
 }  // namespace pbf
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// One bit per particle and gate says on which side of the gate the particle is. The bits follow
 /// from positions alone, so they are not part of a state. With `count`, a particle counts if its
@@ -90,4 +90,4 @@ struct FlowPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

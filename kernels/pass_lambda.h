@@ -6,7 +6,7 @@
 #include "kernels/pair_sum.h"
 #include "kernels/relative_motion.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Density in units of rho0 at the present positions, walls included.
 template <class Real, class Lists, Smoothing S, class Boundary>
@@ -135,4 +135,4 @@ struct LambdaPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -10,7 +10,7 @@
 #include "kernels/cell_index.h"
 #include "kernels/levels.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Calls f(y, z, run) for the runs of a cell's particles; y, z: their row of the search grid.
 template <int D, class F>
@@ -224,4 +224,4 @@ struct LevelFactorPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

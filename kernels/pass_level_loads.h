@@ -4,7 +4,7 @@
 #include "kernels/boundary/loads.h"
 #include "kernels/pass_levels.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Over the nodes of level 0. The multiplier of a node, summed over all levels, pushes the cells on
 /// its two sides apart. On a wall there is only one side, and this push is the pressure on the
@@ -79,4 +79,4 @@ struct LevelLoadPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

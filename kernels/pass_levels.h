@@ -4,7 +4,7 @@
 
 #include "kernels/pass_level_cells.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Upper limit of C in the mean of a cell. Without it, a few particles in one place would push
 /// their whole neighborhood.
@@ -129,4 +129,4 @@ struct NoLevelMove {
   static constexpr bool on = false;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

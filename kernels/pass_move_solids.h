@@ -3,7 +3,7 @@
 
 #include "kernels/boundary/surroundings.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// The motion of a solid in a step.
 template <class Real>
@@ -39,4 +39,4 @@ struct MoveSolidsPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

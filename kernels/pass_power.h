@@ -4,7 +4,7 @@
 #include "kernels/boundary/moving.h"
 #include "kernels/measure.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Sums v . f over the particles. f (h/s^2) is the acceleration by the motion of the tank in
 /// addition to gravity, without the Coriolis term, which does no work. The sum is returned
@@ -40,4 +40,4 @@ struct PowerPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

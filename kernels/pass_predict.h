@@ -8,7 +8,7 @@
 #include "kernels/boundary/far_box.h"
 #include "kernels/step_counts.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 template <class Real>
 struct Moving {
@@ -207,4 +207,4 @@ struct GatherPass : Carried {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

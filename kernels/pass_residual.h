@@ -6,7 +6,7 @@
 
 #include "kernels/hd.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 constexpr double kResidualUnit = 0x1p-32;  ///< of one particle's compression
 constexpr double kResidualMax = 8;         ///< upper limit: 2^31 particles then fit 64 bits
@@ -29,4 +29,4 @@ PBF_HD std::uint64_t residual_limit(double tolerance, int n) {
   return limit < 0x1p63 ? std::uint64_t(limit) : std::uint64_t(1) << 63;
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

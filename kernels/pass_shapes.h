@@ -8,7 +8,7 @@
 
 #include "kernels/measure.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// p(i) for every item i.
 template <class P>
@@ -81,4 +81,4 @@ concept ReducePass = requires(const P p, int i, MeasureUnits unit) {
   { p.terms(i, unit) } -> std::same_as<MeasureTerms>;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

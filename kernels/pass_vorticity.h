@@ -4,7 +4,7 @@
 
 #include "kernels/pair_sum.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// grad W_ij vol/rho_j, in 1/h; zero for a coincident pair.
 template <int D, class Real, class V>
@@ -121,4 +121,4 @@ struct VorticityPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

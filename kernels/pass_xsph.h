@@ -5,7 +5,7 @@
 #include "kernels/pair_sum.h"
 #include "kernels/pass_predict.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Data of the particle itself; w = 1/density.
 template <class V, int dimensions>
@@ -60,4 +60,4 @@ struct XsphPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -4,7 +4,7 @@
 #include "kernels/neighbors.h"
 #include "kernels/step_counts.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// h: two balls of fluid that meet head on bounce off each other as long as they approach by no
 /// more than this in a step; from half a smoothing length on they pass through each other
@@ -30,4 +30,4 @@ PBF_HD void count_unresolved(int i, const Params<Real>& p, const Lists& lists,
   raise_to(&counts->way_squared, float(longest));
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

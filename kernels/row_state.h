@@ -30,7 +30,7 @@ struct CountedRows {
 
 }  // namespace pbf
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// After a sort, which has left out the rows with a negative id. kept: the number of the others.
 struct TakeRowsPass {
@@ -42,4 +42,4 @@ struct TakeRowsPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -5,7 +5,7 @@
 
 #include "kernels/hd.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// The row of another particle, from a neighbor list. An int does not convert to it.
 struct Neighbor {
@@ -34,4 +34,4 @@ class GatheredRows : public OwnRows<const T> {
   PBF_HD const T& operator[](Neighbor j) const { return this->rows()[j.row]; }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

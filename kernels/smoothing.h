@@ -6,7 +6,7 @@
 
 #include "kernels/vec3.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Which pair of functions a scene uses; a template argument of the pair loops.
 /// consistent: Spiky for the density and, as its derivative, for the gradient;
@@ -84,4 +84,4 @@ PBF_HD Vec3<Real> separation(int i, int j) {
   return i < j ? e : Real(-1) * e;
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -8,7 +8,7 @@
 
 #include "kernels/rows.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 template <class Real>
 struct Vec3 {
@@ -149,4 +149,4 @@ PBF_HD bool is_finite(Real x) {
   return x - x == Real(0);
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

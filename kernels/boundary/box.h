@@ -3,7 +3,7 @@
 
 #include "kernels/boundary/half_space.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 enum WallBit : unsigned { x_min = 1, x_max = 2, y_min = 4, y_max = 8, z_min = 16, z_max = 32 };
 
@@ -139,4 +139,4 @@ PBF_HD BoundaryTerm<Real> Box<Real>::term(Vec3<Real> x) const {
   return w;
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

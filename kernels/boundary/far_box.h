@@ -5,7 +5,7 @@
 #include "kernels/boundary/solids.h"
 #include "kernels/cell_index.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// The boundary of the first launch. Particles far from all solids meet plain walls only. For near
 /// rows, a pass only stores the sums over their neighbors.
@@ -86,4 +86,4 @@ struct AllNearPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -4,7 +4,7 @@
 
 #include "kernels/smoothing.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Density of the half space, as a fraction of rho0, and its gradient along the inward normal
 /// (negative: it decreases inward), both 0 for q >= 1. A particle on or behind the wall: q = 0.
@@ -70,4 +70,4 @@ PBF_HD HalfSpace<Real> density_half_space(Real q) {
   return half_space_poly6(q);
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

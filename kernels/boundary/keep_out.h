@@ -3,7 +3,7 @@
 
 #include "kernels/boundary/obstacle.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 template <class Real>
 struct PathEnd {
@@ -64,4 +64,4 @@ PBF_HD PathEnd<Real> keep_out(const Solid<Real>& o, Vec3<Real> from, Vec3<Real> 
   return keep_out<D>(o, o, from, to);
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

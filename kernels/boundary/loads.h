@@ -54,7 +54,7 @@ struct PatchTally {
 
 }  // namespace pbf
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Where loads are booked.
 template <class Real>
@@ -146,4 +146,4 @@ struct LoadPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

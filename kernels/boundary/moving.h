@@ -18,7 +18,7 @@ struct SolidVelocity {
 
 }  // namespace pbf
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// The change of a velocity in a step of a moving tank, apart from damping:
 ///   v + turn v + pull (x - pivot) + push.
@@ -46,4 +46,4 @@ struct FrameStep {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -4,7 +4,7 @@
 #include "kernels/atomics.h"
 #include "kernels/vec3.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// h: rows are found as near within the range of a solid plus this distance.
 constexpr double kNearRoom = 0.5;
@@ -42,4 +42,4 @@ struct Listed {
 };
 struct NothingListed {};
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

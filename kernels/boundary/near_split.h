@@ -4,7 +4,7 @@
 
 #include "kernels/hd.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// How many numbers a pass sums.
 template <class Sum>
@@ -85,4 +85,4 @@ struct NearHalf {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

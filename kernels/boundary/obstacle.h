@@ -3,7 +3,7 @@
 
 #include "kernels/shapes/shapes.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// The pose of a body. Lengths in h, in the internal frame.
 template <class Real>
@@ -94,4 +94,4 @@ PBF_HD bool is_bounded(const Solid<Real>& o) {
   });
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

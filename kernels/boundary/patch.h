@@ -20,7 +20,7 @@ struct Patch {
 
 }  // namespace pbf
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// 1 within the disc, 0 outside, by the distance from its middle.
 PBF_HD double patch_share(const Patch& p, double distance_squared) {
@@ -59,4 +59,4 @@ PBF_HD double patch_way(const Patch& p, Vec3<Real> x, Vec3<Real> way) {
   return away * patch_share(p, across);
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

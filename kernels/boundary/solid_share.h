@@ -4,7 +4,7 @@
 
 #include "kernels/boundary/half_space.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// A half space at signed distance q, and its derivative by q. `of_density`: with the kernel of the
 /// density, otherwise that of the gradient.
@@ -132,4 +132,4 @@ PBF_HD HalfSpace<Real> ball_share(Real c, Real radius) {
   return all;
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -3,7 +3,7 @@
 
 #include "kernels/boundary/obstacle.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// The contribution of the obstacle at x: 0 beyond the range, 1 deep inside. inv_range: h over the
 /// range of the walls. The gradient is the derivative of the share with the consistent kernels;
@@ -21,4 +21,4 @@ PBF_HD_APART SolidTerm<Real> solid_term(const Solid<Real>& o, Vec3<Real> x, Real
   return w;
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

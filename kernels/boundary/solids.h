@@ -4,7 +4,7 @@
 #include "kernels/boundary/near_rows.h"
 #include "kernels/boundary/surroundings.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// A box that also evaluates the surroundings where there are any.
 template <class Real>
@@ -70,4 +70,4 @@ PBF_HD bool may_meet_solids(const Boundary& b, Vec3<Real> from, Vec3<Real> to) {
   return (b.loaded && !b.clear.has(to)) || (b.obstacles && b.bounds.meets(from, to));
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

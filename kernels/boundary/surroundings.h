@@ -8,7 +8,7 @@
 #include "kernels/boundary/moving.h"
 #include "kernels/boundary/solid_term.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// An obstacle, and the distance up to which a particle counts as near.
 template <class Real>
@@ -160,4 +160,4 @@ PBF_HD_APART void book_push(const Surroundings<Real>& s, int i, Vec3<Real> x, Re
   }
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -3,7 +3,7 @@
 
 #include "kernels/shapes/faces.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 namespace shape {
 
 template <class Real>
@@ -77,4 +77,4 @@ struct Box {
 };
 
 }  // namespace shape
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

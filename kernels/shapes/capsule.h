@@ -3,7 +3,7 @@
 
 #include "kernels/shapes/round.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 namespace shape {
 
 /// A step from 0 to 1 where the tube of a capsule meets its end, over 0.44 ranges on either side;
@@ -91,4 +91,4 @@ struct Capsule {
 };
 
 }  // namespace shape
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -3,7 +3,7 @@
 
 #include "kernels/shapes/round.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 namespace shape {
 
 template <class Real>
@@ -82,4 +82,4 @@ struct Cylinder {
 };
 
 }  // namespace shape
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

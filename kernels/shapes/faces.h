@@ -3,7 +3,7 @@
 
 #include "kernels/shapes/shape.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// The ends of a body along an axis; +-kEndless where it continues. `through`: faces (bits as
 /// WallBit) behind which the solid continues, for example behind a wall of the domain.
@@ -85,4 +85,4 @@ PBF_HD void cut_stay(Stay<Real>& stay, Tangent<Real>& entry, Real at, Real way, 
   stay = both(stay, slab);
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -3,7 +3,7 @@
 
 #include "kernels/shapes/shape.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 namespace shape {
 
 template <class Real>
@@ -42,4 +42,4 @@ struct Plane {
 };
 
 }  // namespace shape
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

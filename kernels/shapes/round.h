@@ -3,7 +3,7 @@
 
 #include "kernels/shapes/faces.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// The part of the line a + t d within `radius` of the origin.
 template <class Real>
@@ -57,4 +57,4 @@ PBF_HD SolidTerm<Real> round_term(const RoundPlace<Real>& p, HalfSpace<Real> ben
   return w;
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -7,7 +7,7 @@
 
 #include "kernels/boundary/solid_share.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// h: the length of what has no end. Its square still fits a float.
 constexpr double kEndless = 1e9;
@@ -192,4 +192,4 @@ PBF_HD RoundSide<Real> round_of(const Shape& s, Vec3<Real> p) {
     return {};
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -10,7 +10,7 @@
 // clang-format on
 #include "kernels/shapes/list.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// One of these shapes: its index in the list, and its bytes.
 template <class... S>
@@ -62,4 +62,4 @@ using All = List<PBF_SHAPES>;
 template <class Real>
 using SomeShape = shape::All::Any<Real>;
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -3,7 +3,7 @@
 
 #include "kernels/shapes/round.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 namespace shape {
 
 template <class Real>
@@ -56,4 +56,4 @@ struct Sphere {
 };
 
 }  // namespace shape
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

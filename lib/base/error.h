@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// Exit codes of `pbf`, the same for every command (listed in the README and in `pbf --help`).
 enum class ExitCode : int {
@@ -33,4 +33,4 @@ class Error : public std::runtime_error {
   throw Error(ExitCode::bad_input, where + ": " + what);
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

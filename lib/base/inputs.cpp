@@ -5,7 +5,7 @@
 #include <mutex>
 #include <set>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 namespace {
 
 std::mutex mutex;
@@ -39,4 +39,4 @@ std::string input_at(const std::string& path) {
   return {};
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

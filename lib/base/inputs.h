@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// Call this for every file that the user named (on the command line or in another file) and that
 /// is read.
@@ -16,4 +16,4 @@ std::vector<std::string> inputs();
 /// devices never match: a command may read and write them.
 std::string input_at(const std::string& path);
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

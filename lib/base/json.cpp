@@ -4,7 +4,7 @@
 
 #include "lib/base/plain_text.h"
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 namespace {
 
 void only_utf8(Json& value) {
@@ -20,4 +20,4 @@ std::string json_text(Json value, int indent) {
   return value.dump(indent, ' ', true);
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 using Json = nlohmann::ordered_json;
 
@@ -14,4 +14,4 @@ using Json = nlohmann::ordered_json;
 /// JSON lacks, become null.
 std::string json_text(Json value, int indent = -1);
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

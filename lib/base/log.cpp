@@ -13,7 +13,7 @@
 #include "lib/base/plain_text.h"
 #include "lib/base/text.h"
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 namespace {
 
 int stdout_errno = 0;  // of the first failed write; stdio forgets it
@@ -145,4 +145,4 @@ void finish_stdout() {
                 std::string("standard output cannot be written: ") + std::strerror(stdout_errno));
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -9,7 +9,7 @@
 
 #include "lib/base/stage_clock.h"
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// Notes and progress go to stderr, results to stdout, and everything to the log file once it is
 /// open. Bytes that are not valid text are escaped (escaped() in plain_text.h). A closed pipe is no
@@ -95,4 +95,4 @@ void hold_standard_streams();
 /// a reader that has gone away (`pbf ... | head`) is no error.
 void finish_stdout();
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

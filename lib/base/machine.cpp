@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 namespace {
 
 /// First number in a file; false when there is none ("max" in a control group without a limit).
@@ -59,4 +59,4 @@ std::size_t available_memory() {
 
 std::size_t peak_memory() { return memory_line("/proc/self/status", "VmHWM:"); }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// Model name of the CPU, or "unknown CPU".
 std::string cpu_model();
@@ -20,4 +20,4 @@ std::size_t available_memory();
 /// counts the memory of the program that started this one.
 std::size_t peak_memory();
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

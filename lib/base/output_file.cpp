@@ -16,7 +16,7 @@
 #include "lib/base/error.h"
 #include "lib/base/output_target.h"
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 namespace fs = std::filesystem;
 namespace {
 
@@ -146,4 +146,4 @@ void check_outputs(const std::string& option, const std::string& path, const std
     throw Error(ExitCode::bad_input, option + " and " + other + " name one file: " + path);
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// Prefix of the names of unfinished files.
 inline constexpr const char* kTemporaryPrefix = ".pbf-";
@@ -66,4 +66,4 @@ bool same_output(const std::string& a, const std::string& b);
 void check_outputs(const std::string& option, const std::string& path, const std::string& other,
                    const std::string& other_path);
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

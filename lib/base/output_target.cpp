@@ -13,7 +13,7 @@
 #include "lib/base/own_file.h"
 #include "lib/base/regular_file.h"
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 namespace fs = std::filesystem;
 namespace {
 
@@ -113,4 +113,4 @@ int open_stream(const OutputTarget& target, const std::string& path) {
   return fd;
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

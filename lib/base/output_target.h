@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// The end of all links of a path. It need not exist yet.
 struct OutputTarget {
@@ -35,4 +35,4 @@ void require_writable(const OutputTarget& target, const std::string& path);
 /// `path`, as the user wrote it, begins the message.
 int open_stream(const OutputTarget& target, const std::string& path);
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -11,7 +11,7 @@
 #include "lib/base/error.h"
 #include "lib/base/regular_file.h"
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 namespace {
 
 [[noreturn]] void refuse_own(const std::string& path, mode_t mode) {
@@ -45,4 +45,4 @@ int open_own_file(const std::string& path, int flags) {
   refuse_own(path, there.st_mode);
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// Throws Error(io) if the path exists and is not a regular file. Links are refused because their
 /// target may lie outside of the folder.
@@ -13,4 +13,4 @@ void require_own_file(const std::string& path);
 /// The caller closes the descriptor. Throws Error(io).
 int open_own_file(const std::string& path, int flags);
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 #include <algorithm>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 namespace {
 
 bool is_control(long code) { return (code >= 0 && code < 0x20) || (code >= 0x7F && code < 0xA0); }
@@ -88,4 +88,4 @@ std::string one_line(std::string_view text, std::size_t most) {
 
 std::string utf8(std::string_view text) { return written(text, Form::utf8); }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// The first character of a text; `code` is -1 if the first byte does not begin a valid one.
 struct Character {
@@ -37,4 +37,4 @@ std::string one_line(std::string_view text, std::size_t most = 200);
 /// Escapes only the bytes that are not UTF-8 (\x9b). Pure.
 std::string utf8(std::string_view text);
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

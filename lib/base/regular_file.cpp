@@ -9,7 +9,7 @@
 
 #include "lib/base/error.h"
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 std::string file_kind(mode_t mode) {
   if (S_ISREG(mode)) return "a regular file";
   if (S_ISLNK(mode)) return "a link";
@@ -69,4 +69,4 @@ void RegularFile::rewind() {
     throw Error(ExitCode::io, path_ + ": reading failed: " + std::strerror(errno));
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

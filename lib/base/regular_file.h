@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// "a link", "a FIFO", "a folder" ..., from st_mode.
 std::string file_kind(mode_t mode);
@@ -39,4 +39,4 @@ class RegularFile {
   int fd_ = -1;
 };
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// Empties a vector and gives its memory back (`= {}` would keep it).
 template <class T>
@@ -10,4 +10,4 @@ void release(std::vector<T>& v) {
   std::vector<T>().swap(v);
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 namespace {
 
 // FIPS 180-4, 4.2.2: fractional parts of the cube roots of the first 64 primes.
@@ -75,4 +75,4 @@ std::string sha256(std::string_view bytes) {
   return hash.text();
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 class Sha256 {
  public:
@@ -26,4 +26,4 @@ class Sha256 {
 /// The hash of one text.
 std::string sha256(std::string_view bytes);
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 std::string shipped_file(const std::string& name) {
   namespace fs = std::filesystem;
@@ -16,4 +16,4 @@ std::string shipped_file(const std::string& name) {
   return name;
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// Measures seconds since its construction or last reset, on the monotonic clock.
 class Stopwatch {
@@ -67,4 +67,4 @@ class StageClock {
   std::vector<StageTime> entries_;  // a dozen: a linear search beats a map
 };
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

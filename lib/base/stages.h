@@ -3,7 +3,7 @@
 // tests compare that file and the table of app/README.md with this list.
 #pragma once
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// Groups of stages whose times the summary of a run adds up. An index of kStageGroups.
 enum class StageGroup { init, grid, density, lambda, delta, move, output };
@@ -42,4 +42,4 @@ inline constexpr Stage kStages[] = {{"init", StageGroup::init, false, "#000000"}
                                     {"write", StageGroup::output, false, "#666666"},
                                     {"render", StageGroup::output, false, "#444444"}};
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -7,7 +7,7 @@
 
 #include "lib/base/error.h"
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 void refuse_threads(int reason, int wanted) {
   throw Error(ExitCode::unavailable,
@@ -39,4 +39,4 @@ void require_threads(int threads) {
     refuse_threads(reason, threads);
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -5,7 +5,7 @@
 #include <thread>
 #include <utility>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// Throws Error(unavailable), which names the limit and the remedy. reason: an errno.
 [[noreturn]] void refuse_threads(int reason, int wanted);
@@ -27,4 +27,4 @@ int reason_against_threads(int threads);
 /// once. Call it before OpenMP starts a team: its runtime would end the program.
 void require_threads(int threads);
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -6,7 +6,7 @@
 
 #include "lib/base/plain_text.h"
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 std::string joined(const std::vector<std::string>& parts, const std::string& separator) {
   std::string text;
@@ -58,4 +58,4 @@ std::optional<double> utc_seconds(const std::string& text) {
   return static_cast<double>(::timegm(&parts));
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// "a, b, c" with ", " as the separator.
 std::string joined(const std::vector<std::string>& parts, const std::string& separator);
@@ -29,4 +29,4 @@ std::string utc_now();
 /// Such a text in seconds, for differences of times; nothing for a text of another form.
 std::optional<double> utc_seconds(const std::string& text);
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

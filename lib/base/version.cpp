@@ -2,7 +2,7 @@
 
 #include "pbf_build_info.h"  // included only here: a new commit recompiles only this file
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 BuildInfo build_info() {
   BuildInfo info{PBF_VERSION,  PBF_COMMIT, PBF_BUILD_TYPE, PBF_COMPILER, PBF_BUILD_FLAGS,
@@ -17,4 +17,4 @@ BuildInfo build_info() {
   return info;
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

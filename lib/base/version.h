@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 struct BuildInfo {
   std::string version;   ///< of the program, "0.1.0"
@@ -19,4 +19,4 @@ struct BuildInfo {
 
 BuildInfo build_info();
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

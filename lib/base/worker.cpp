@@ -4,7 +4,7 @@
 
 #include "lib/base/start_thread.h"
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 Worker::Worker(int most) : most_(most), thread_(start_thread([this] { work(); })) {}
 
@@ -59,4 +59,4 @@ std::exception_ptr Worker::failure() {
   return failure_;
 }
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

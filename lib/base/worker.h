@@ -8,7 +8,7 @@
 #include <mutex>
 #include <thread>
 
-namespace pbf::inline base_module {
+namespace pbf::base_module {
 
 /// Runs jobs in order on its own thread until one throws; later jobs are dropped. Its functions
 /// must not be called by several threads at a time.
@@ -41,4 +41,4 @@ class Worker {
   std::thread thread_;  // last: it uses the other members
 };
 
-}  // namespace pbf::inline base_module
+}  // namespace pbf::base_module

@@ -8,7 +8,7 @@
 #include "lib/run/load_run.h"
 #include "lib/run/start.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 constexpr std::size_t kMostTold = 10;
@@ -43,4 +43,4 @@ BatchNeeds check_members(const std::vector<BatchMember>& members,
                                  members.size(), text));
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -7,7 +7,7 @@
 
 #include "lib/campaign/batch_list.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 /// The needs of the most demanding run of a batch, as `pbf plan` forecasts them.
 struct BatchNeeds {
@@ -23,4 +23,4 @@ BatchNeeds check_members(const std::vector<BatchMember>& members,
                          const std::vector<std::string>& overrides, const std::string& base_folder,
                          bool here);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -15,7 +15,7 @@
 #include "lib/base/error.h"
 #include "lib/run/signals.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 /// The error message in the text that a child wrote to stderr.
@@ -119,4 +119,4 @@ void run_jobs(int jobs, std::size_t count,
   }
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 /// How a child ended.
 struct JobEnd {
@@ -24,4 +24,4 @@ void run_jobs(int jobs, std::size_t count,
               const std::function<bool()>& stop,
               const std::function<void(std::size_t, const JobEnd&)>& ended);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -17,7 +17,7 @@
 #include "lib/scene/file_kind.h"
 #include "lib/scene/scene_name.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 namespace fs = std::filesystem;
@@ -145,4 +145,4 @@ std::vector<BatchMember> batch_members(const std::string& input, std::vector<Gri
   return all;
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

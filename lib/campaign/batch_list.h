@@ -6,7 +6,7 @@
 
 #include "lib/campaign/grid.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 struct BatchMember {
   std::string name;                    ///< unique name of the run, its folder and its row
@@ -27,4 +27,4 @@ GridAxis parse_axis(const std::string& text);
 /// fastest. Throws Error(bad_input) with file and line.
 std::vector<BatchMember> batch_members(const std::string& input, std::vector<GridAxis> axes);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -14,7 +14,7 @@
 #include "lib/scene/number.h"
 #include "lib/solver/diagnostics.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 /// Columns of a run's log whose last values are in the summary.
@@ -140,4 +140,4 @@ std::string batch_summary(const std::vector<BatchMember>& members,
   return "# units: " + escaped(joined(with_unit, ", ")) + "\n" + table.csv();
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

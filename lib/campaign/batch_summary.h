@@ -8,7 +8,7 @@
 #include "lib/campaign/batch_jobs.h"
 #include "lib/campaign/batch_list.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 /// Why a run ended, from its exit code: finished, diverged, stopped, unavailable, ...; "waiting" if
 /// it has not started.
@@ -23,4 +23,4 @@ std::string exit_reason(int code);
 std::string batch_summary(const std::vector<BatchMember>& members,
                           const std::map<std::string, JobEnd>& ends, const std::string& out);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

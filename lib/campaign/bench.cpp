@@ -9,7 +9,7 @@
 #include "lib/run/session.h"
 #include "lib/run/start.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 std::string bench_scene_yaml() {
   return R"(name: bench
@@ -113,4 +113,4 @@ std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const Be
   return rows;
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -8,7 +8,7 @@
 #include "lib/scene/scene.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 struct BenchSettings {
   int warmup = 400;  ///< updates before timing, so that the state is disordered and flowing
@@ -44,4 +44,4 @@ Scene scaled_to(const Scene& scene, std::int64_t n, const std::string& dir);
 /// Runs the scene: one row for the first updates and one after the warm-up (none if warm-up is 0).
 std::vector<BenchRow> bench(const Scene& scene, const std::string& dir, const BenchSettings& s);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

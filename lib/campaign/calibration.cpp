@@ -17,7 +17,7 @@
 #include "lib/io/table.h"
 #include "lib/scene/number.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 const std::vector<std::string> kColumns{"backend",   "precision", "threads", "device",
@@ -206,4 +206,4 @@ std::optional<RunTime> run_time(const Plan& plan, const Scene& s,
   return out;
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

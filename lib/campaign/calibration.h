@@ -11,7 +11,7 @@
 #include "lib/campaign/bench.h"
 #include "lib/program/plan.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 /// One measured state: ms per pass of every stage.
 struct StageCosts {
@@ -70,4 +70,4 @@ std::optional<RunTime> run_time(const Plan& plan, const Scene& scene,
 /// factor of three on processors of the last ten years.
 inline constexpr double kRoughRate = 1.2e6;
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

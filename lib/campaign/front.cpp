@@ -10,7 +10,7 @@
 #include "lib/io/csv.h"
 #include "lib/scene/number.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 FrontData read_front_data(const std::string& path) {
   note_input(path);
   const std::vector<CsvRow> rows = read_csv(path);
@@ -67,4 +67,4 @@ double front_deviation(const FrontCurve& c, const FrontData& data, std::size_t* 
   return n ? std::sqrt(squares / double(n)) : std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

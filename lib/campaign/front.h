@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 /// A published front: Z over T.
 struct FrontData {
@@ -38,4 +38,4 @@ FrontCurve front_curve(const Front& front, double gravity, double spacing,
 double front_deviation(const FrontCurve& curve, const FrontData& data,
                        std::size_t* points = nullptr);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

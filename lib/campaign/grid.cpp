@@ -6,7 +6,7 @@
 #include "lib/base/error.h"
 #include "lib/scene/number.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 std::string setting_text(const Node& value) {
   if (value.kind == Node::Kind::scalar) return value.text;
   if (value.kind == Node::Kind::null) return "off";
@@ -135,4 +135,4 @@ std::vector<double> numbers_listed(const std::string& key, const std::string& te
   return values;
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -9,7 +9,7 @@
 
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 /// Keys of the scene with one value each.
 using Settings = std::vector<std::pair<std::string, Node>>;
@@ -59,4 +59,4 @@ std::vector<std::string> range_values(const std::string& where, const std::strin
 /// whole, the latter are rounded. Throws Error(bad_input), "values of KEY: ...".
 std::vector<double> numbers_listed(const std::string& key, const std::string& text, bool whole);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -11,7 +11,7 @@
 #include "lib/run/start.h"
 #include "lib/run/watch.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 /// Requirements of a case. In addition, unless an error or the guard must end the run: all
 /// particles are finite and inside, none is lost, and the guard does not stop the run.
@@ -119,4 +119,4 @@ std::optional<Course> run_course(Start start, const std::function<bool()>& stop 
 /// Least distance of two particles, in the unit of `x` (3 per particle); infinite for one particle.
 double nearest_distance(const std::vector<double>& x);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

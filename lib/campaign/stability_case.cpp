@@ -11,7 +11,7 @@
 #include "lib/scene/load.h"
 #include "lib/scene/overrides.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 Scene scene_of(const StabilityCase& c, const StabilityOptions& o, const std::string& dir) {
@@ -203,4 +203,4 @@ void judge_likeness(const std::vector<StabilityCase>& cases, std::vector<Stabili
   }
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -5,7 +5,7 @@
 
 #include "lib/campaign/stability.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 /// Largest sum since the start of any gauge: of flow, kg.
@@ -89,4 +89,4 @@ double nearest_distance(const std::vector<double>& x) {
   return best;
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -8,7 +8,7 @@
 #include "lib/scene/load.h"
 #include "lib/scene/number.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 class SuiteReader : StrictReader {
@@ -114,4 +114,4 @@ std::vector<StabilityCase> read_stability_suite(const std::string& path) {
   return SuiteReader(path).read();
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

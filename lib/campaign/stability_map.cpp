@@ -12,7 +12,7 @@
 #include "lib/scene/number.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 constexpr std::size_t kMostCells = 10000000;
@@ -119,4 +119,4 @@ std::optional<MapCell> run_map_cell(const StabilityMap& m, MapCell c) {
   return c;
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

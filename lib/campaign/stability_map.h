@@ -6,7 +6,7 @@
 
 #include "lib/campaign/stability.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 /// stable: ran to the end below the limit on compression; degraded: ran above it; stopped: by the
 /// guard.
@@ -45,4 +45,4 @@ std::vector<MapCell> map_cells(const StabilityMap& map);
 /// an invalid scene.
 std::optional<MapCell> run_map_cell(const StabilityMap& map, MapCell cell);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -4,7 +4,7 @@
 
 #include "lib/io/junit.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 std::string cut(const std::string& text, std::size_t width) {
@@ -80,4 +80,4 @@ std::string stability_junit(const std::vector<StabilityRow>& rows, const Stabili
   return junit_xml(suite);
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

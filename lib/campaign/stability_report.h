@@ -8,7 +8,7 @@
 #include "lib/campaign/stability_map.h"
 #include "lib/io/table.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 /// Two lines for users: the verdict, the requirements of the case, and what happened.
 std::string stability_text(const StabilityRow& r);
@@ -23,4 +23,4 @@ Table map_table(const std::vector<MapCell>& cells, const StabilityMap& map);
 std::string stability_junit(const std::vector<StabilityRow>& rows, const StabilityOptions& o,
                             double seconds);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -6,7 +6,7 @@
 #include "lib/base/text.h"
 #include "lib/scene/suggest.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 using Kind = Node::Kind;
 
 std::set<std::string> StrictReader::read_map(const Node& map, const std::string& block,
@@ -60,4 +60,4 @@ Settings StrictReader::settings(const Node& n, const std::string& key) {
   return out;
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -11,7 +11,7 @@
 #include "lib/scene/problems.h"
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 /// Collects problems, each with file, line, column and key.
 class StrictReader {
@@ -36,4 +36,4 @@ class StrictReader {
   Problems problems_;
 };
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -8,7 +8,7 @@
 #include "lib/campaign/front.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 /// One run of a study.
 struct StudyMember {
@@ -46,4 +46,4 @@ Study load_study(const std::string& path, const std::vector<std::string>& overri
 /// The measures that can be plotted against run time; `error` is one of them.
 std::vector<std::string> study_error_measures(const Study& study);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

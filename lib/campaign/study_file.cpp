@@ -8,7 +8,7 @@
 #include "lib/scene/load.h"
 #include "lib/scene/suggest.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace fs = std::filesystem;
 using Kind = Node::Kind;
 
@@ -111,4 +111,4 @@ Study load_study(const std::string& path, const std::vector<std::string>& overri
   return StudyReader(load_tree(path, "study"), path).read(overrides, base_folder);
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -6,7 +6,7 @@
 #include "lib/scene/load.h"
 #include "lib/scene/overrides.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 constexpr std::size_t kMostMembers = 10000;
@@ -123,4 +123,4 @@ void StudyReader::make_members(const Node& scene, const std::vector<std::string>
   }
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -11,7 +11,7 @@
 #include "lib/run/session.h"
 #include "lib/run/start.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 /// Seconds by the clock that the study selects.
@@ -123,4 +123,4 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
   return out;
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -9,7 +9,7 @@
 #include "lib/campaign/study.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 /// The stored result of a run. NaN is null in the file.
 struct MemberResult {
@@ -43,4 +43,4 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
 void write_member(const std::string& path, const MemberResult& result);
 std::optional<MemberResult> read_member(const std::string& path);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -10,7 +10,7 @@
 #include "lib/campaign/study.h"
 #include "lib/scene/number.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 class StudyReader : StrictReader {
  public:
@@ -51,4 +51,4 @@ class StudyReader : StrictReader {
   std::vector<GridAxis> axes_;
 };
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -20,7 +20,7 @@
 #include "lib/scene/load.h"
 #include "lib/scene/scene_files.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 /// Identifies the program: version and commit or, if these are not exact, a hash of its file.
@@ -137,4 +137,4 @@ std::optional<MemberResult> read_member(const std::string& path) {
   }
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

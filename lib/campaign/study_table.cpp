@@ -9,7 +9,7 @@
 #include "lib/scene/vector3.h"
 #include "lib/solver/diagnostics.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 /// The diagnostics that a study averages.
@@ -208,4 +208,4 @@ const StudyRow* cheapest(const Study& study, const std::vector<StudyRow>& rows, 
   return best;
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -7,7 +7,7 @@
 #include "lib/campaign/study_member.h"
 #include "lib/io/table.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 
 /// Status of a result. Only finished rows can be on the front or a cheapest setting.
 ///   finished     ran to its end, energy_rise within the limit
@@ -47,4 +47,4 @@ std::string study_text(const Study& study, const std::vector<StudyRow>& rows);
 /// Everything as one JSON object.
 std::string study_json(const Study& study, const std::vector<StudyRow>& rows);
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

@@ -7,7 +7,7 @@
 #include "lib/base/version.h"
 #include "lib/campaign/study_table.h"
 
-namespace pbf::inline campaign_module {
+namespace pbf::campaign_module {
 namespace {
 
 std::vector<std::string> variants_of(const std::vector<StudyRow>& rows) {
@@ -131,4 +131,4 @@ std::string study_json(const Study& study, const std::vector<StudyRow>& rows) {
   return json_text(out, 1) + "\n";
 }
 
-}  // namespace pbf::inline campaign_module
+}  // namespace pbf::campaign_module

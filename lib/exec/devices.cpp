@@ -1,9 +1,9 @@
 #include "lib/exec/devices.h"
 
-namespace pbf::inline exec_module {
+namespace pbf::exec_module {
 
 #ifndef PBF_HAS_CUDA
 std::string cuda_device_report() { return "CUDA is not compiled into this program"; }
 #endif
 
-}  // namespace pbf::inline exec_module
+}  // namespace pbf::exec_module

@@ -3,10 +3,10 @@
 
 #include <string>
 
-namespace pbf::inline exec_module {
+namespace pbf::exec_module {
 
 /// One line per CUDA device (name, memory, compute capability, driver), or one line that says why
 /// there is none: CUDA not compiled in, no driver, no device.
 std::string cuda_device_report();
 
-}  // namespace pbf::inline exec_module
+}  // namespace pbf::exec_module

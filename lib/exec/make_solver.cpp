@@ -11,7 +11,7 @@
 #include "lib/program/plan.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline exec_module {
+namespace pbf::exec_module {
 
 void refuse_if_too_large(const Scene& scene, const Plan& plan, std::size_t available) {
   const auto needed = double(plan.memory.host_peak());
@@ -34,4 +34,4 @@ std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Partic
 #endif
 }
 
-}  // namespace pbf::inline exec_module
+}  // namespace pbf::exec_module

@@ -9,7 +9,7 @@
 #include "lib/scene/scene.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline exec_module {
+namespace pbf::exec_module {
 
 /// Throws Error(unavailable) when the plan's peak of host memory is more than the bytes that are
 /// available, which are to be asked for before any particle is read, for the peak includes them (0:
@@ -22,4 +22,4 @@ void refuse_if_too_large(const Scene& scene, const Plan& plan, std::size_t avail
 /// its start calls solver_of() (lib/run/start.h).
 std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles);
 
-}  // namespace pbf::inline exec_module
+}  // namespace pbf::exec_module

@@ -16,7 +16,7 @@
 #include "lib/io/h5_trial.h"
 #include "lib/scene/scene_files.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 namespace {
 
 namespace fs = std::filesystem;
@@ -283,4 +283,4 @@ std::optional<SavedRun> read_checkpoint(const std::string& folder,
   throw Error(ExitCode::io, damaged + "; remove it to start again from the first update");
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -10,7 +10,7 @@
 #include "lib/solver/diagnostics.h"
 #include "lib/solver/solver_state.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 
 /// A run as it stands after some update.
 struct SavedRun {
@@ -35,4 +35,4 @@ void write_checkpoint(const std::string& folder, const SavedRun& saved);
 /// there.
 std::optional<SavedRun> read_checkpoint(const std::string& folder, std::vector<std::string>& notes);
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

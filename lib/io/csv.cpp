@@ -7,7 +7,7 @@
 #include "lib/base/error.h"
 #include "lib/base/plain_text.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 
 std::string_view trimmed(std::string_view s) {
   while (!s.empty() && (s.front() == ' ' || s.front() == '\t')) s.remove_prefix(1);
@@ -97,4 +97,4 @@ std::vector<CsvRow> read_csv(const std::string& path, const std::string& remedy,
   return rows;
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

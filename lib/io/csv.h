@@ -9,7 +9,7 @@
 #include "lib/base/regular_file.h"
 #include "lib/base/sha256.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 
 /// Without blanks at its ends, and without the carriage return of a Windows line.
 std::string_view trimmed(std::string_view text);
@@ -68,4 +68,4 @@ struct CsvRow {
 std::vector<CsvRow> read_csv(const std::string& path, const std::string& remedy = "",
                              std::string* sha256 = nullptr);
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -6,7 +6,7 @@
 #include "lib/base/plain_text.h"
 #include "lib/io/h5_read.h"
 
-namespace pbf::inline io_module::h5 {
+namespace pbf::io_module::h5 {
 namespace {
 
 std::mutex process_mutex;
@@ -235,4 +235,4 @@ std::vector<std::string> datasets_below(hid_t group, int groups) {
   return all;
 }
 
-}  // namespace pbf::inline io_module::h5
+}  // namespace pbf::io_module::h5

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace pbf::inline io_module::h5 {
+namespace pbf::io_module::h5 {
 
 /// Held around every use of HDF5: the distributions build the library without thread safety. Not
 /// recursive. check() and every handle below end with Error(internal) where a thread has forgotten
@@ -180,4 +180,4 @@ std::vector<std::string> children(hid_t group, H5O_type_t kind);
 /// Paths of the datasets in a group and in so many groups one in the other: "stage/lambda".
 std::vector<std::string> datasets_below(hid_t group, int groups);
 
-}  // namespace pbf::inline io_module::h5
+}  // namespace pbf::io_module::h5

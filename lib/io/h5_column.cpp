@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace pbf::inline io_module::h5 {
+namespace pbf::io_module::h5 {
 
 hid_t memory_type(ScalarType t) {
   if (is_whole(t)) return t == ScalarType::i64 ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
@@ -91,4 +91,4 @@ void Column::write(hsize_t first, hsize_t count, hid_t type, const void* values)
   check(H5Dwrite(dataset_, type, memory, file, H5P_DEFAULT, values));
 }
 
-}  // namespace pbf::inline io_module::h5
+}  // namespace pbf::io_module::h5

@@ -7,7 +7,7 @@
 #include "lib/io/h5.h"
 #include "lib/solver/snapshot.h"
 
-namespace pbf::inline io_module::h5 {
+namespace pbf::io_module::h5 {
 
 /// The types of a snapshot's numbers, in memory and in files.
 hid_t memory_type(ScalarType t);
@@ -60,4 +60,4 @@ class Column {
   int components_ = 0;
 };
 
-}  // namespace pbf::inline io_module::h5
+}  // namespace pbf::io_module::h5

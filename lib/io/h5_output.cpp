@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace pbf::inline io_module::h5 {
+namespace pbf::io_module::h5 {
 Properties writer_access() {
   Properties p = file_access();
   check(H5Pset_cache(p, 0, 0, 0, 0));
@@ -66,4 +66,4 @@ void abandon(hid_t file) noexcept {
   }
 }
 
-}  // namespace pbf::inline io_module::h5
+}  // namespace pbf::io_module::h5

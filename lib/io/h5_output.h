@@ -6,7 +6,7 @@
 
 #include "lib/io/h5.h"
 
-namespace pbf::inline io_module::h5 {
+namespace pbf::io_module::h5 {
 
 /// File access for writers. Rows go to the disk at once, so that a full disk is noticed before
 /// anything refers to them; what refers to them stays in memory until a flush, so that the file is
@@ -31,4 +31,4 @@ void sync_folder(const std::string& folder);
 /// file. All that may follow is closing.
 void abandon(hid_t file) noexcept;
 
-}  // namespace pbf::inline io_module::h5
+}  // namespace pbf::io_module::h5

@@ -2,7 +2,7 @@
 
 #include "lib/base/regular_file.h"
 
-namespace pbf::inline io_module::h5 {
+namespace pbf::io_module::h5 {
 namespace {
 
 constexpr int kMostSoftLinks = 16;  // HDF5's own limit, which ends a ring of them
@@ -102,4 +102,4 @@ Dataset open_dataset(hid_t parent, const std::string& path) {
   return d;
 }
 
-}  // namespace pbf::inline io_module::h5
+}  // namespace pbf::io_module::h5

@@ -5,7 +5,7 @@
 
 #include "lib/io/h5.h"
 
-namespace pbf::inline io_module::h5 {
+namespace pbf::io_module::h5 {
 
 /// A file open for reading, with the lock that every use of it needs: who has the file has the
 /// lock, so that neither can be forgotten. Failure with the reason when it cannot be opened or is
@@ -27,4 +27,4 @@ class Reading {
 /// whoever opens them.
 void stay_inside(hid_t parent, const std::string& path);
 
-}  // namespace pbf::inline io_module::h5
+}  // namespace pbf::io_module::h5

@@ -4,7 +4,7 @@
 #include <istream>
 #include <string_view>
 
-namespace pbf::inline io_module::h5 {
+namespace pbf::io_module::h5 {
 
 /// Whether the first 8 bytes of a file are HDF5's signature.
 inline bool is_signature(std::string_view head) { return head == "\x89HDF\r\n\x1a\n"; }
@@ -16,4 +16,4 @@ inline bool begins_as_hdf5(std::istream& in) {
   return is_signature({head, static_cast<std::size_t>(in.gcount())});
 }
 
-}  // namespace pbf::inline io_module::h5
+}  // namespace pbf::io_module::h5

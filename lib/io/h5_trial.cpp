@@ -12,7 +12,7 @@
 #include "lib/base/error.h"
 #include "lib/io/h5.h"
 
-namespace pbf::inline io_module::h5 {
+namespace pbf::io_module::h5 {
 
 void trial(const std::string& path, const std::function<void()>& action, unsigned seconds) {
   const pid_t parent = getpid(), child = [] {
@@ -49,4 +49,4 @@ void trial(const std::string& path, const std::function<void()>& action, unsigne
                                 "; copy or make it anew");
 }
 
-}  // namespace pbf::inline io_module::h5
+}  // namespace pbf::io_module::h5

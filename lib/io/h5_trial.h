@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-namespace pbf::inline io_module::h5 {
+namespace pbf::io_module::h5 {
 
 /// Lets a child process do `action` (which reads the file at `path`) first, so that a file on which
 /// HDF5 crashes, or goes on for more than `seconds` of CPU time, is an Error(io) here and not the
@@ -14,4 +14,4 @@ namespace pbf::inline io_module::h5 {
 /// called under a Lock.
 void trial(const std::string& path, const std::function<void()>& action, unsigned seconds = 60);
 
-}  // namespace pbf::inline io_module::h5
+}  // namespace pbf::io_module::h5

@@ -5,7 +5,7 @@
 
 #include "lib/base/plain_text.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 namespace {
 
 /// For attributes and text. Line breaks in an attribute are spaces to a parser unless they are
@@ -83,4 +83,4 @@ std::string junit_xml(const JunitSuite& s) {
   return out + "  </testsuite>\n</testsuites>\n";
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

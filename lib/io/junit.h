@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 
 struct JunitCase {
   std::string group, name;
@@ -26,4 +26,4 @@ struct JunitSuite {
 /// UTF-8) is written out, \u001b. Pure.
 std::string junit_xml(const JunitSuite& suite);
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -9,7 +9,7 @@
 #include "lib/base/error.h"
 #include "lib/io/csv.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 namespace {
 
 constexpr const char* kNames[] = {"x", "y", "z", "vx", "vy", "vz"};
@@ -83,4 +83,4 @@ Particles read_particle_csv(RegularFile& file, const std::string& path, Sha256* 
   return p;
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -15,7 +15,7 @@
 #include "lib/io/h5_trial.h"
 #include "lib/io/particle_csv.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 namespace {
 
 /// `room`: bytes of memory that are available.
@@ -115,4 +115,4 @@ Particles read_particle_file(const std::string& path, std::string* sha256) {
   return p;
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -6,7 +6,7 @@
 
 #include "lib/scene/particles.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 
 /// Reads positions (m) and velocities (m/s; zero when the file has none) of every particle.
 /// HDF5 (known by its signature): dataset `position` of shape (N, 3), optional `velocity` (N, 3),
@@ -21,4 +21,4 @@ namespace pbf::inline io_module {
 /// when the memory that is available does not hold an HDF5 file and its particles, or twice a CSV.
 Particles read_particle_file(const std::string& path, std::string* sha256 = nullptr);
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

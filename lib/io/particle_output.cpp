@@ -8,7 +8,7 @@
 #include "lib/base/own_file.h"
 #include "lib/io/h5.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 
 void write_particle_file(const std::string& path, const Particles& particles) {
   require_own_file(path);
@@ -28,4 +28,4 @@ void write_particle_file(const std::string& path, const Particles& particles) {
   }
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

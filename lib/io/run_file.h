@@ -12,7 +12,7 @@
 #include "lib/solver/snapshot.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 
 /// The run file in its folder: .vtkhdf is what ParaView knows.
 inline constexpr const char* kRunFile = "run.vtkhdf";
@@ -142,4 +142,4 @@ class RunReader {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -1,6 +1,6 @@
 #include "lib/io/run_layout.h"
 
-namespace pbf::inline io_module::run_layout {
+namespace pbf::io_module::run_layout {
 
 double LogColumn::value(const LogRow& r) const {
   if (diagnostic) return diagnostic->value(r.measures);
@@ -42,4 +42,4 @@ std::vector<FurtherNumber> further_numbers(const LogRow& row,
   return all;
 }
 
-}  // namespace pbf::inline io_module::run_layout
+}  // namespace pbf::io_module::run_layout

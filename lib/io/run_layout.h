@@ -8,7 +8,7 @@
 #include "lib/io/run_file.h"
 #include "lib/solver/diagnostics.h"
 
-namespace pbf::inline io_module::run_layout {
+namespace pbf::io_module::run_layout {
 
 /// Version of everything under /pbf. A reader refuses newer files.
 inline constexpr int format_version = 1;
@@ -115,4 +115,4 @@ void for_each_newer_text(Info& info, F&& f) {
   f("scene_bases", info.scene_bases);
 }
 
-}  // namespace pbf::inline io_module::run_layout
+}  // namespace pbf::io_module::run_layout

@@ -7,7 +7,7 @@
 #include "lib/io/h5_output.h"
 #include "lib/io/run_layout.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 namespace {
 
 using h5::check;
@@ -111,4 +111,4 @@ void RunOutput::close(const RunEnding& end) {
   closed_ = true;
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

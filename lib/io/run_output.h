@@ -12,7 +12,7 @@
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 
 /// A run file being written. Used, made and destroyed under an h5::Lock. Members throw h5::Failure
 /// when HDF5 or the disk fails and Error(internal) when a frame does not fit the ones before;
@@ -106,4 +106,4 @@ class RunOutput {
   std::map<std::string, h5::Column> log_, further_, sessions_;
 };
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -6,7 +6,7 @@
 #include "lib/io/run_layout.h"
 #include "lib/io/run_output.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 
 void RunOutput::make_gauges(hsize_t rows) {
   const auto make = [&](const std::string& path, hid_t type, const char* unit, int components) {
@@ -61,4 +61,4 @@ void RunOutput::write_gauges() {
   waiting_gauges_.clear();
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -4,7 +4,7 @@
 #include "lib/io/run_layout.h"
 #include "lib/io/run_output.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 namespace {
 
 using run_layout::log_rows;
@@ -62,4 +62,4 @@ void RunOutput::write_further() {
   }
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

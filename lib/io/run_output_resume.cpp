@@ -8,7 +8,7 @@
 #include "lib/io/run_layout.h"
 #include "lib/io/run_output.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 namespace {
 
 using h5::check;
@@ -173,4 +173,4 @@ void RunOutput::end_session(const std::string& reason, std::int64_t last_update)
   sessions_.at("last_update").write(row, 1, H5T_NATIVE_INT64, &last_update);
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -6,7 +6,7 @@
 #include "lib/io/run_layout.h"
 #include "lib/io/run_output.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 namespace {
 
 using run_layout::step_rows;
@@ -189,4 +189,4 @@ std::int64_t RunOutput::write_ids(const Snapshot& s) {
   return static_cast<std::int64_t>(first);
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

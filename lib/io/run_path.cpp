@@ -11,7 +11,7 @@
 #include "lib/io/run_file.h"
 #include "lib/scene/file_kind.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ std::string folder_of_run(const std::string& run_file) {
   return file.filename() == kRunFile && is_there(folder / kResolvedScene) ? folder.string() : "";
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 
 /// Beside the run file: the scene with every default.
 inline constexpr const char* kResolvedScene = "scene.resolved.yaml";
@@ -24,4 +24,4 @@ std::string only_run_path(const std::string& path);
 /// file by itself, a copy say.
 std::string folder_of_run(const std::string& run_file);
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -14,7 +14,7 @@
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 struct FieldPlace {
   std::string name, unit, path;  ///< path under /VTKHDF
   std::vector<std::int64_t> offsets;
@@ -294,4 +294,4 @@ std::vector<double> RunReader::log_column(const std::string& name) const {
       });
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -8,7 +8,7 @@
 #include "lib/io/run_file.h"
 #include "lib/io/run_output.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 
 struct RunWriter::Impl {
   static constexpr int max_snapshots = 2;
@@ -116,4 +116,4 @@ void RunWriter::finish(const RunEnding& ending) {
   impl_->rethrow();
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -12,7 +12,7 @@
 #include "lib/base/error.h"
 #include "lib/base/plain_text.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 namespace {
 
 std::string number(double v) {
@@ -115,4 +115,4 @@ std::string Table::text(const std::string& indent) const {
   return out;
 }
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -11,7 +11,7 @@
 #include "lib/base/json.h"
 #include "lib/base/output_file.h"
 
-namespace pbf::inline io_module {
+namespace pbf::io_module {
 
 /// A value of a table; monostate: missing.
 using Cell = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
@@ -75,4 +75,4 @@ class TableOf : public Table {
   std::vector<Column<Row>> values_;
 };
 
-}  // namespace pbf::inline io_module
+}  // namespace pbf::io_module

@@ -6,7 +6,7 @@
 #include "kernels/smoothing.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 // These call f with choices of the scene as types, so that pair loops need not test them.
 template <class F>
@@ -30,4 +30,4 @@ void with_bool(bool b, F&& f) {
   b ? f(std::true_type{}) : f(std::false_type{});
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

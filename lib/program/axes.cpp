@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 constexpr const char* kAxisNames[] = {"x", "y", "z"};
@@ -49,4 +49,4 @@ std::string axes_text(const Axes& axes) {
   return out;
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

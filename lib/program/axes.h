@@ -4,7 +4,7 @@
 #include "kernels/axes.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// Bins are numbered with internal x fastest and z slowest, so a slab of the grid along z is a
 /// range of rows. z is the longest edge of the box, x the longer one of the others. Among equal
@@ -19,4 +19,4 @@ Scene in_internal_axes(const Scene& scene, const Axes& axes);
 /// "x, z, y": the axes of the scene that become internal x, y, z.
 std::string axes_text(const Axes& axes);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

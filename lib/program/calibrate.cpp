@@ -4,7 +4,7 @@
 
 #include "kernels/boundary/box.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 template <Smoothing S>
@@ -39,4 +39,4 @@ Calibration calibrate(KernelMode mode, double ratio, int dimensions) {
   return paper ? calibrated<Smoothing::paper>(ratio) : calibrated<Smoothing::consistent>(ratio);
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -3,7 +3,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// vol = m/(rho0 h^3) (in two dimensions: over the thickness, m/(rho0 h^2)) such that a particle
 /// inside the rest lattice (cubic or square, spacing d = h/ratio) has density rho0 under the
@@ -18,4 +18,4 @@ struct Calibration {
 };
 Calibration calibrate(KernelMode kernels, double ratio, int dimensions = 3);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

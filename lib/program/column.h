@@ -7,7 +7,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 struct Plan;
 
@@ -58,4 +58,4 @@ std::vector<double> pose_readings(const Scene& scene, double time);
 /// "force_x", "total", "x", "turn_xy".
 std::string number_name(const ReadingColumn& column, int component);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

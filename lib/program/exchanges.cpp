@@ -6,7 +6,7 @@
 
 #include "lib/base/error.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 /// The fields that go along with the particles.
@@ -99,4 +99,4 @@ std::vector<Exchange> exchanges(const Program& program) {
   return out;
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// Steps of length dt (s), `count` of them from step `first` on, counted from the start of the run.
 struct StepRange {
@@ -46,4 +46,4 @@ struct NoMemory {
   void before_steps(C&, const StepRange&) {}
 };
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

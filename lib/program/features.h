@@ -14,7 +14,7 @@
 #include "lib/program/features/solids.h"
 #include "lib/program/features/viscosity.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// The memory of feature F in one solver.
 template <class F, class Real>
@@ -46,4 +46,4 @@ using Features = FeatureList<Motion, NearSolids, Constraint, Levels, Correction,
                              VorticityConfinement, Loads, Gauges>;
 using Passes = Features::Passes;
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -13,11 +13,11 @@
 #include "kernels/vec3.h"
 #include "lib/scene/backend.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 struct Scene;
 }
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 struct Plan;
 
@@ -203,4 +203,4 @@ inline std::string name_of(const FieldInfo& f) {
   return std::string(f.name) + (f.first ? "'" : "");
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

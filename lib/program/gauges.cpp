@@ -11,7 +11,7 @@
 #include "lib/scene/surface.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 /// What gauges are made from besides their keys. Places and directions are converted from SI units
@@ -254,4 +254,4 @@ std::vector<double> GaugePlan::finish(const GaugeSums& sums) const {
   return out;
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -10,7 +10,7 @@
 
 #include "lib/program/column.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// Number of the scene's gauges of a tally.
 template <class Tally>
@@ -51,4 +51,4 @@ struct GaugePlan {
 /// `plan`: with its axes, solids and mass.
 GaugePlan plan_gauges(const Scene& scene, const Plan& plan);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -10,7 +10,7 @@
 #include "kernels/gauge_probe.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// The interval between two sample points of a level gauge.
 struct LevelPiece {
@@ -83,4 +83,4 @@ inline double wet_part(double a, double b, const LevelPiece& free) {
   return std::max(std::min(to, free.to) - std::max(from, free.from), 0.0);
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

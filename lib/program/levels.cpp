@@ -7,7 +7,7 @@
 #include "lib/scene/body_box.h"
 #include "lib/scene/surface.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 constexpr double kDeep = 64;  ///< layers; also in a text of why_no_levels()
@@ -81,4 +81,4 @@ LevelPlan plan_levels(const Scene& s, double cell_edge, double vol) {
   return plan;
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

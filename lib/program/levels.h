@@ -4,7 +4,7 @@
 #include "kernels/levels.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 struct LevelPlan {
   LevelCells grid;
@@ -34,4 +34,4 @@ inline bool has_levels(const Scene& scene) { return why_no_levels(scene) == null
 /// cell_edge: edge of the search grid's cells, in h. The scene is in internal axes.
 LevelPlan plan_levels(const Scene& scene, double cell_edge, double vol);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

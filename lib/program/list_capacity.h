@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// Capacity of the neighbor lists on the device, in words of 4 entries.
 struct ListCapacity {
@@ -49,4 +49,4 @@ constexpr int reduce_blocks(std::int64_t n) { return int(n < 65536 ? (n + 127) /
 /// threads fit in 48 KiB of shared memory, which every device has.
 constexpr int kSortThreads = 1024, kSortParticles = 3000, kSortBins = 12 * 1024 - 64;
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

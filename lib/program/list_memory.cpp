@@ -9,7 +9,7 @@
 #include "lib/program/plan.h"
 #include "lib/program/threads.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 bool has_random_places(const Scene& s) {
@@ -116,4 +116,4 @@ std::string memory_remedy(const Scene& s, const Plan& plan) {
       crowd.neighbors, s.h(), rest_neighbors(s));
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

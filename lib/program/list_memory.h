@@ -6,7 +6,7 @@
 
 #include "lib/program/memory.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// Bytes of a component.
 inline std::int64_t size_of(const std::string& type) {
@@ -30,4 +30,4 @@ struct Adder {
 void add_cpu_lists(const Scene& scene, const Plan& plan, const Adder& add);
 void add_cuda_lists(const Scene& scene, const Plan& plan, std::int64_t bins, const Adder& add);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

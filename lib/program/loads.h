@@ -8,7 +8,7 @@
 #include "lib/program/gauges.h"
 #include "lib/scene/surface.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 inline bool has_pressure_gauges(const Scene& scene) { return gauges_of<PatchTally>(scene) > 0; }
 
@@ -66,4 +66,4 @@ double load_grain(const Scene& scene, const Plan& plan);
 std::vector<double> load_readings(const std::vector<Load>& loads, const Scene& scene,
                                   const Plan& plan);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -3,7 +3,7 @@
 
 #include "lib/program/program.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// The passes of a scene by their place in an update, and what is known of all passes.
 struct PassSet {
@@ -77,4 +77,4 @@ Program make_program_of(const Scene& scene, const UpdateShape& shape, bool witho
   return assembled(scene, shape, std::move(b), without_time);
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

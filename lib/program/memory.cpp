@@ -13,7 +13,7 @@
 #include "lib/program/plan.h"
 #include "lib/program/threads.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 std::int64_t sum(const MemoryPlan& m, bool on_device, Held held) {
@@ -243,4 +243,4 @@ std::vector<MemoryChoice> memory_choices(const Scene& scene, const Plan& plan) {
   return out;
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

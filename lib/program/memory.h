@@ -9,7 +9,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 struct Plan;
 
@@ -87,4 +87,4 @@ struct MemoryChoice {
 /// One for every backend and precision.
 std::vector<MemoryChoice> memory_choices(const Scene& scene, const Plan& plan);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

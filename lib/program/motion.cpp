@@ -8,7 +8,7 @@
 #include "lib/program/motion_times.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846, kRadians = kPi / 180;
@@ -197,4 +197,4 @@ double greatest_sway(const Scene& s, double from, double to) {
   return most;
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -10,7 +10,7 @@
 #include "lib/program/axes.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// The displacement of a body: x -> pivot + turn (x - pivot) + shift; m, along the scene's axes.
 struct Pose {
@@ -51,4 +51,4 @@ double greatest_pull(const Scene& scene, double from, double to);
 /// m/s^2: largest difference of this acceleration from gravity, in the middle of the domain.
 double greatest_sway(const Scene& scene, double from, double to);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 double slope_at(const MotionTable& table, std::size_t c, std::size_t k) {
@@ -92,4 +92,4 @@ double straight(const MotionTable& table, std::size_t c, double t) {
   return (1 - u) * table.values[k][c] + u * table.values[k + 1][c];
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

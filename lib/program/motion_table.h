@@ -7,7 +7,7 @@
 
 #include "lib/scene/motion.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// Column c at time t: cubic between rows, with slopes of second order; beyond the table straight.
 /// A slope times the longer interval beside its row is at most 1.5 times the larger change over the
@@ -33,4 +33,4 @@ CurvePiece curve_piece(const MotionTable& table, std::size_t c, std::size_t row)
 /// The row at which the piece of time t begins; beyond the table that of the first or last piece.
 std::size_t piece_at(const MotionTable& table, double t);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

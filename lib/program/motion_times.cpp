@@ -5,7 +5,7 @@
 
 #include "lib/program/motion_table.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 /// Collects times of a motion's own clock, which shows time.motion_begin at the start of the run.
@@ -93,4 +93,4 @@ std::vector<double> telling_times(const Scene& s, const TankMotion& m, double fr
   return times.all();
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -5,7 +5,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// Ascending times between `from` and `to` (s since the start), both included. The largest speed
 /// and acceleration at these times are within 1 % of those of the motion. The times are the rows of
@@ -15,4 +15,4 @@ std::vector<double> telling_times(const Scene& scene, const Motion& motion, doub
 std::vector<double> telling_times(const Scene& scene, const TankMotion& motion, double from,
                                   double to);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -8,7 +8,7 @@
 #include "lib/program/field.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// What a pass does with a field. A pass with several launches may combine these.
 enum How : unsigned {
@@ -152,4 +152,4 @@ inline bool changes_rows(const Scene& s) { return s.capacity > 0; }
 template <class P, class Field>
 constexpr unsigned how_of = P::Needs::template how_of<Field>();
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -13,7 +13,7 @@
 #include "lib/program/placed_solids.h"
 #include "lib/program/plan.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Number of steps in a table, or the number of steps of an update if that is larger.
 constexpr int kMotionRows = 256;
@@ -180,4 +180,4 @@ RunBounds<Real> bounds_of_run(const Scene& scene, const Plan& plan, const Box<Re
   return run;
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -6,7 +6,7 @@
 #include "lib/program/motion.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 /// Bits of the body's ends that lie on or behind walls. `ends`: half lengths in m; 0: no end.
@@ -76,4 +76,4 @@ std::vector<Solid<double>> solids_of(const Scene& scene, const Axes& axes, doubl
   return all;
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -7,7 +7,7 @@
 #include "lib/program/axes.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// Lengths in h from Scene::origin(), along the internal axes. A face of a box or an end of a
 /// cylinder that lies on or behind a wall of the domain is ignored: the solid continues there.
@@ -19,4 +19,4 @@ std::vector<Solid<double>> solids_of(const Scene& scene, double time = 0);
 /// m: at the start, particles in an obstacle or nearer to it than this are omitted.
 inline double least_distance(const Scene& scene) { return 0.4 * scene.fluid.spacing; }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

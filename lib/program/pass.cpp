@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 /// Adds what a trace shows of an array that a pass has written.
@@ -75,4 +75,4 @@ PassInfo described(const PassText& text, std::vector<AccessInfo> declared,
   return info;
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -13,7 +13,7 @@
 
 #include "lib/program/needs.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 struct PassText {
   const char* name;         ///< in `pbf plan`
@@ -118,4 +118,4 @@ struct Joined<PassList<As...>, PassList<Bs...>, Rest...> {
   using type = typename Joined<PassList<As..., Bs...>, Rest...>::type;
 };
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -9,7 +9,7 @@
 #include "kernels/cell_index.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// With a bounding box in h. Particles outside of it neither touch the solid nor feel its density.
 template <class Real>
@@ -115,4 +115,4 @@ std::vector<int> half_cells_near_solids(const Scene& scene,
   return cells;
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -13,7 +13,7 @@
 #include "lib/program/time_levels.h"
 #include "lib/scene/load.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 /// The edge of cells is h if their number is in proportion to the particles, and larger otherwise:
@@ -202,4 +202,4 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   return plan;
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

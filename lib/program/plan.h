@@ -16,7 +16,7 @@
 #include "lib/program/program.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// Neighbors of a sample of the initial particles, spread evenly over their ids.
 struct StartNeighbors {
@@ -99,4 +99,4 @@ std::string plan_text(const Plan& plan, const Scene& scene);
 /// The same as one JSON object; plan_json.cpp.
 Json plan_json(const Plan& plan, const Scene& scene);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

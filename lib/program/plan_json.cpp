@@ -6,7 +6,7 @@
 #include "lib/program/threads.h"
 #include "lib/scene/auto_step.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 /// One object per backend and precision, with its arrays.
@@ -85,4 +85,4 @@ Json plan_json(const Plan& plan, const Scene& s) {
           {"left_out", left}};
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -8,7 +8,7 @@
 #include "lib/program/threads.h"
 #include "lib/scene/auto_step.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 std::string time_line(const Plan& plan, const Scene& s, const PlanTotals& totals) {
@@ -64,4 +64,4 @@ std::string plan_summary(const Plan& plan, const Scene& s, const std::string& ru
   return out + "  disk      " + disk_line(plan, totals) + "\n";
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -8,7 +8,7 @@
 #include "lib/program/schedule.h"
 #include "lib/program/substep_lists.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 double mib(std::int64_t bytes) { return double(bytes) / 1048576; }
@@ -115,4 +115,4 @@ std::string plan_text(const Plan& plan, const Scene& s) {
   return plan_summary(plan, s, "") + plan_details(plan, s) + plan_arrays(plan, s);
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

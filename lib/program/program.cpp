@@ -8,7 +8,7 @@
 #include "lib/program/features.h"
 #include "lib/program/make_program.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 /// Fuses pass b with the last pass of `steps`. False if no pass does the work of both. If the last
@@ -272,4 +272,4 @@ std::string gathers_text(const PassInfo& pass) {
   });
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

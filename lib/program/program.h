@@ -8,7 +8,7 @@
 #include "lib/program/pass.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// A pass, or a repeated group of steps.
 struct ProgramStep {
@@ -75,4 +75,4 @@ std::string writes_text(const PassInfo& pass);
 /// "position lambda": the fields of which it reads the rows of neighbors.
 std::string gathers_text(const PassInfo& pass);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -6,7 +6,7 @@
 #include "lib/program/motion.h"
 #include "lib/program/plan.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 /// The surfaces (surface_named()) whose loads are read.
@@ -106,4 +106,4 @@ std::vector<double> load_readings(const std::vector<Load>& loads, const Scene& s
   return out;
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

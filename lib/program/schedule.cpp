@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 std::int64_t whole(double ratio) {
@@ -45,4 +45,4 @@ std::vector<std::string> rounded_times(const Scene& s) {
   return notes;
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -8,7 +8,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// The first multiple of `every` after u (u = -1: before the start).
 inline std::int64_t next_multiple(std::int64_t u, std::int64_t every) {
@@ -82,4 +82,4 @@ Schedule make_schedule(const Scene& scene);
 /// A sentence for each time that make_schedule() changes by rounding.
 std::vector<std::string> rounded_times(const Scene& scene);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -5,7 +5,7 @@
 
 #include "lib/program/motion.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 /// Limit of n (u n dt)/h; below 10 no run gained energy (kernels/README.md, "Substeps").
@@ -46,4 +46,4 @@ int lists_per_update(const Scene& s) {
   return int(std::clamp(lists, least, double(substeps)));
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

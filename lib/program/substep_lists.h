@@ -3,7 +3,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// m/s: largest speed after a fall through the domain; with open faces, after a fall until the end
 /// of the run in addition.
@@ -19,4 +19,4 @@ double way_per_update(const Scene& scene);
 /// velocities are not known here, at most 8 substeps share lists.
 int lists_per_update(const Scene& scene);
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -6,7 +6,7 @@
 
 #include "lib/base/machine.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 namespace {
 
 // lib/solver/README.md has the measurements behind kOneThreadBelow. Lists are made in pieces of
@@ -43,4 +43,4 @@ std::string threads_text(const Scene& scene, std::int64_t particles) {
          fmt::format(" (of {}: one for every {} particles)", usable, int(kParticlesPerThread));
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

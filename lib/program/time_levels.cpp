@@ -5,7 +5,7 @@
 
 #include "lib/scene/keys.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 int finest_level(const Scene& s) {
   if (!s.time.adaptive) return 0;
@@ -24,4 +24,4 @@ Scene scene_at_level(const Scene& scene, int level) {
   return s;
 }
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

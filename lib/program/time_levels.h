@@ -7,7 +7,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 
 /// The finest level that time.adaptive.step_min allows; 0 without time.adaptive.
 int finest_level(const Scene& scene);
@@ -36,4 +36,4 @@ struct StepHistory {
   bool operator==(const StepHistory&) const = default;
 };
 
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module

@@ -6,7 +6,7 @@
 
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 constexpr Rgb kEdge{92, 102, 116}, kFloor{218, 224, 230};
@@ -79,4 +79,4 @@ void add_floor(const View& view, const Projection& projection, std::vector<FlatV
   add_quad(quad, out);
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

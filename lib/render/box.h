@@ -7,7 +7,7 @@
 #include "lib/render/camera.h"
 #include "lib/render/colormap.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 struct FlatVertex {
   std::array<float, 3> place;  ///< view space: x, y, depth, m
@@ -34,4 +34,4 @@ bool sees_floor(const View& view, const Projection& projection);
 /// Appends the lowest face of the box, when the eye sees it.
 void add_floor(const View& view, const Projection& projection, std::vector<FlatVertex>& out);
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -9,7 +9,7 @@
 #include "lib/render/overlay.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -159,4 +159,4 @@ Projection projection_of(const View& view, double time) {
   return p;
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

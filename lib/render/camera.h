@@ -5,7 +5,7 @@
 
 #include "lib/render/renderer.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 /// A perspective camera. View space: x to the right, y up, z = depth away from the eye, in m.
 /// Pixels: x to the right, y down, (0, 0) at the outer corner of the first pixel.
@@ -50,4 +50,4 @@ Corners frame_of(const View& view);
 /// position on the target.
 Projection projection_of(const View& view, double time);
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 // Viridis (S. van der Walt, N. Smith, E. Firing, 2015; public domain, CC0) at 33 even places:
@@ -38,4 +38,4 @@ Rgb between(const std::array<Rgb, n>& map, double t) {
 Rgb viridis(double t) { return between(kViridis, t); }
 Rgb blue_to_red(double t) { return between(kBlueToRed, t); }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -6,7 +6,7 @@
 
 #include "lib/scene/coloring.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
@@ -25,4 +25,4 @@ inline ColorMap color_map(ColorBy color) {
   return color == ColorBy::density ? blue_to_red : viridis;
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

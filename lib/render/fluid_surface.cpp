@@ -7,7 +7,7 @@
 #include "lib/scene/vector3.h"
 #include "pbf_shaders.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 using Depth = gl::Target::Depth;
@@ -125,4 +125,4 @@ void FluidSurface::draw(const Lens& lens, const gl::Buffer& particles, std::size
   gl_.DrawArrays(gl::TRIANGLES, 0, 3);
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

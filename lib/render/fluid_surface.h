@@ -6,7 +6,7 @@
 #include "lib/render/light.h"
 #include "lib/render/shadow.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 /// Made and destroyed while its context is current.
 /// Method: W. van der Laan, S. Green, M. Sainz, "Screen space fluid rendering with curvature flow",
@@ -43,4 +43,4 @@ class FluidSurface {
   gl::Target depth_, between_, thickness_, scene_;
 };
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

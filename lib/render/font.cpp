@@ -12,7 +12,7 @@
 #define STB_TRUETYPE_IMPLEMENTATION
 #include <stb/stb_truetype.h>
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 constexpr char32_t kMissing = 0xfffd, kEllipsis = 0x2026;
@@ -110,4 +110,4 @@ std::string shortened(const std::string& text, double width, double size) {
   return text.substr(0, end) + "\u2026";
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -7,7 +7,7 @@
 #include "lib/render/colormap.h"
 #include "lib/render/renderer.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 inline constexpr double kCapitalHeight = 0.729;  ///< of a capital letter, in sizes of the font
 inline constexpr double kDescent = 0.236;        ///< how far a "g" or "ç" goes below the line
@@ -28,4 +28,4 @@ double text_width(const std::string& text, double size);
 /// "" where not even that fits.
 std::string shortened(const std::string& text, double width, double size);
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -7,7 +7,7 @@
 #include "lib/base/error.h"
 #include "lib/base/start_thread.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 // llvmpipe takes its number of threads from the environment when its screen is made, and nowhere
@@ -78,4 +78,4 @@ GlContext::GlContext(int threads, const GlLibraries& libraries) {
 
 GlContext::~GlContext() = default;
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

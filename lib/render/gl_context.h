@@ -8,7 +8,7 @@
 #include "lib/render/gl_platform.h"
 #include "lib/render/gl_table.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 /// Names that dlopen tries, in this order.
 struct GlLibraries {
@@ -50,4 +50,4 @@ class GlCurrent {
   GlContext& context_;
 };
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -8,7 +8,7 @@
 #include "lib/base/error.h"
 #include "lib/render/gl_platform.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 // Types and values of EGL/egl.h and EGL/eglext.h.
@@ -135,4 +135,4 @@ std::unique_ptr<GlPlatform> open_egl(const std::vector<std::string>& libraries, 
   return nullptr;
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -6,7 +6,7 @@
 #include "lib/base/error.h"
 #include "pbf_shaders.h"
 
-namespace pbf::inline render_module::gl {
+namespace pbf::render_module::gl {
 namespace {
 
 template <class GetInt, class GetLog>
@@ -126,4 +126,4 @@ void Target::draw_into() const {
   gl_.Viewport(0, 0, width_, height_);
 }
 
-}  // namespace pbf::inline render_module::gl
+}  // namespace pbf::render_module::gl

@@ -9,7 +9,7 @@
 
 #include "lib/render/gl_table.h"
 
-namespace pbf::inline render_module::gl {
+namespace pbf::render_module::gl {
 
 /// A linked program. Throws Error(unavailable) with the driver's message when it does not build.
 class Program {
@@ -109,4 +109,4 @@ class Target {
   std::optional<Texture> color_, depth_;
 };
 
-}  // namespace pbf::inline render_module::gl
+}  // namespace pbf::render_module::gl

@@ -6,7 +6,7 @@
 #include "lib/render/gl_platform.h"
 #include "lib/render/gl_table.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 // Values of GL/osmesa.h.
@@ -58,4 +58,4 @@ std::unique_ptr<GlPlatform> open_osmesa(const std::vector<std::string>& librarie
   throw NoPlatform("\n  OSMesa: the library gives no OpenGL 3.3 core context");
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

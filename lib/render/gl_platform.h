@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 /// A context of OpenGL 3.3 core with no surface of its own; we draw into our own framebuffer.
 class GlPlatform {
@@ -40,4 +40,4 @@ bool load(void* library, Function& function, const char* name) {
   return function != nullptr;
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

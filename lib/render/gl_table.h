@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace pbf::inline render_module::gl {
+namespace pbf::render_module::gl {
 
 using Enum = std::uint32_t;
 using Uint = std::uint32_t;
@@ -106,4 +106,4 @@ struct Table {
 #undef PBF_GL_MEMBER
 };
 
-}  // namespace pbf::inline render_module::gl
+}  // namespace pbf::render_module::gl

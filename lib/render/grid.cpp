@@ -7,7 +7,7 @@
 
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 constexpr Rgb kGridLine{188, 197, 207};
@@ -203,4 +203,4 @@ std::vector<EdgeLabels> length_labels(const View& view, const Projection& projec
   return out;
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -9,7 +9,7 @@
 #include "lib/render/box.h"
 #include "lib/render/camera.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 /// Distance of lines along sides of which the longest is `longest` (above 0): 1, 2 or 5 times a
 /// power of ten, so that 4 to 10 fit.
@@ -44,4 +44,4 @@ struct EdgeLabels {
 /// left out.
 std::vector<EdgeLabels> length_labels(const View& view, const Projection& projection);
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

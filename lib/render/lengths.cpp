@@ -9,7 +9,7 @@
 #include "lib/render/font.h"
 #include "lib/render/grid.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 /// Corners of the frame in the picture, in the order of a convex outline; empty where it cannot be
@@ -153,4 +153,4 @@ void draw_lengths(Image& image, Texts& texts, const View& view, const Projection
     if (!shown.empty()) put_name(texts, *edge, shown, outline, size);
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

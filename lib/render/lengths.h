@@ -4,7 +4,7 @@
 #include "lib/render/camera.h"
 #include "lib/render/texts.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 /// Draws the labels of length_labels() (lib/render/grid.h) beside the box: as many as keep a
 /// distance from each other, none of an edge on which fewer than two fit. `size`: of the text,
@@ -12,4 +12,4 @@ namespace pbf::inline render_module {
 void draw_lengths(Image& image, Texts& texts, const View& view, const Projection& projection,
                   double size);
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

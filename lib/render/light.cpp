@@ -2,7 +2,7 @@
 
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 Light light_of(const View& view) {
   const Projection camera = projection_of(view, 0);
@@ -21,4 +21,4 @@ void Lens::use(const gl::Program& program, int samples) const {
   program.set("u_depth", depth_a, depth_b);
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -4,7 +4,7 @@
 #include "lib/render/camera.h"
 #include "lib/render/gl_objects.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 /// Unit vectors along the scene's axes. The sky is above, the ground below; the sun is one
 /// direction, from which shadows fall.
@@ -27,4 +27,4 @@ struct Lens {
   void use(const gl::Program& program, int samples) const;
 };
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -8,7 +8,7 @@
 #include "lib/render/lengths.h"
 #include "lib/render/texts.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 constexpr double kLine = 1.4;    // from one line of text to the next, in sizes of the text
@@ -133,4 +133,4 @@ void draw_overlay(Image& image, const View& view, const Projection& projection,
   draw_lengths(image, texts, view, projection, size);
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

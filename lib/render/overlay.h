@@ -11,7 +11,7 @@
 #include "lib/render/colormap.h"
 #include "lib/render/texts.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 struct Tick {
   double value;
@@ -47,4 +47,4 @@ TextBox bar_place(std::array<int, 2> picture, const std::vector<Tick>& ticks);
 void draw_overlay(Image& image, const View& view, const Projection& projection,
                   const std::string& unit, std::int64_t particles, double time);
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -6,7 +6,7 @@
 #include "lib/base/error.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 /// Row i of a field in double, whatever its type.
@@ -117,4 +117,4 @@ void collect(const Snapshot& snapshot, const View& view, const Projection& proje
   }
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

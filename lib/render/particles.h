@@ -9,7 +9,7 @@
 #include "lib/render/colormap.h"
 #include "lib/render/renderer.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 struct ParticleVertex {
   /// Centre in view space (x, y, depth), m: subtracted and turned in double before rounding.
@@ -41,4 +41,4 @@ void check_fields(const Snapshot& snapshot, ColorBy color);
 /// What colours the particle of row i: `field` is the one of the view's colouring, checked.
 double shown_value(const FieldArray& field, const View& view, std::size_t i);
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

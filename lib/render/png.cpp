@@ -13,7 +13,7 @@
 #include "lib/base/output_file.h"
 #include "lib/render/renderer.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 /// False when libpng reports an error (a full disk, say). libpng leaves by longjmp, so nothing in
@@ -71,4 +71,4 @@ void write_png(const std::string& path, const Image& image) {
   out.finish(false);
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -9,7 +9,7 @@
 #include "lib/base/error.h"
 #include "lib/render/particles.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 constexpr std::int64_t kMostValues = 1 << 24;
@@ -64,4 +64,4 @@ BarRange bar_range(const View& view, std::array<double, 2> quantiles) {
   return bar;
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

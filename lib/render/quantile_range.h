@@ -8,7 +8,7 @@
 
 #include "lib/render/renderer.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 /// Collects what colours the particles of some frames. Of more than 2^24 values every second,
 /// third ... is taken, so that memory stays below 128 MiB.
@@ -41,4 +41,4 @@ struct BarRange {
 /// colour is the middle of the map.
 BarRange bar_range(const View& view, std::array<double, 2> quantiles);
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -9,7 +9,7 @@
 #include "lib/render/start_volume.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 constexpr double kUneven = 1.6;      // speeds over that of energy spread evenly
@@ -99,4 +99,4 @@ Reach reach_of(const Scene& scene, const Double3& up, std::int64_t particles) {
   return out;
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

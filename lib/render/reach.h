@@ -8,7 +8,7 @@
 #include "kernels/boundary/obstacle.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 /// What fluid and solids are estimated to do; nothing here bounds a single drop.
 struct Reach {
@@ -35,4 +35,4 @@ Reach reach_of(const Scene& scene, const Double3& up, std::int64_t particles);
 /// The obstacles at a time (s since the start), lengths in m along the scene's axes.
 std::vector<Solid<double>> solids_in_metres(const Scene& scene, double time);
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -11,7 +11,7 @@
 #include "lib/render/particles.h"
 #include "lib/render/renderer.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 constexpr int kWaiting = 2;  // pictures; each holds a copy of its particles
@@ -87,4 +87,4 @@ void RenderThread::finish() {
 
 double RenderThread::seconds() const { return impl_->seconds; }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

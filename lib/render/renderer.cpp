@@ -21,7 +21,7 @@
 #include "lib/scene/vector3.h"
 #include "pbf_shaders.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 /// What a shadow takes away of the floor's light, which is drawn as fully lit.
@@ -235,4 +235,4 @@ Image Renderer::draw(const Snapshot& snapshot) {
 
 std::string Renderer::backend() const { return impl_->context.backend(); }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

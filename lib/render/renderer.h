@@ -14,7 +14,7 @@
 #include "lib/scene/scene.h"
 #include "lib/solver/snapshot.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 /// 8-bit RGB, row-major, first row on top.
 struct Image {
@@ -97,4 +97,4 @@ class RenderThread {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

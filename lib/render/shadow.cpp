@@ -6,7 +6,7 @@
 #include "lib/scene/vector3.h"
 #include "pbf_shaders.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 constexpr double kSoft = 3;  // texels from the middle of a penumbra to its edge
@@ -91,4 +91,4 @@ void ShadowMap::use(const ShadowMap* map, const Lens& lens, const gl::Program& p
   program.set("u_soft", {reach / a[0].size, reach / a[1].size, reach / a[2].size}, 1);
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -8,7 +8,7 @@
 #include "lib/render/light.h"
 #include "lib/render/solids.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 /// Made and destroyed while its context is current. Its texels cover the domain, so that they stay
 /// where they are from picture to picture; what is outside of it casts no shadow.
@@ -41,4 +41,4 @@ class ShadowMap {
   gl::Target target_;
 };
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

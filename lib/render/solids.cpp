@@ -8,7 +8,7 @@
 #include "lib/render/zero_surface.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 constexpr int kAround = 64;  // corners of a circle, a multiple of 4
@@ -247,4 +247,4 @@ SolidSurfaces surfaces_of(const View& view, const Projection& projection, const 
   return out;
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -7,7 +7,7 @@
 #include "lib/render/box.h"
 #include "lib/render/camera.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 inline constexpr Rgb kCrease{118, 104, 90};  ///< colour of creases
 
@@ -32,4 +32,4 @@ struct SolidSurfaces {
 /// camera shows it. `sun`: unit vector towards it, along the scene's axes.
 SolidSurfaces surfaces_of(const View& view, const Projection& projection, const Double3& sun);
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -7,7 +7,7 @@
 #include "lib/scene/lattice.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 constexpr int kCells = 48, kFlatCells = 128;  // along an axis
@@ -173,4 +173,4 @@ Rest StartVolume::at_rest(double volume) const {
   return {held > 0 ? moment / held : low_, level};
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -7,7 +7,7 @@
 #include "kernels/boundary/obstacle.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 /// A body of fluid outside of the obstacles and within the domain. Heights: m along `up`.
 struct Parcel {
@@ -49,4 +49,4 @@ class StartVolume {
   double low_ = 0, high_ = 0;   ///< m, heights of the lowest and the highest corner
 };
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

@@ -4,7 +4,7 @@
 
 #include "lib/render/font.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 TextBox Texts::box_of(const std::string& text, double x, double y) const {
   return {x, y - 0.28 * size_, x + text_width(text, size_),
@@ -28,4 +28,4 @@ void Texts::put(const std::string& text, double x, double y, Rgb color) {
   draw_text(image_, text, x, y, size_, color);
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

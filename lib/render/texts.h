@@ -9,7 +9,7 @@
 #include "lib/render/colormap.h"
 #include "lib/render/renderer.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 inline constexpr Rgb kInk{42, 48, 58}, kFaintInk{92, 102, 116};
 
@@ -55,4 +55,4 @@ class Texts {
   std::vector<TextBox> taken_;
 };
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

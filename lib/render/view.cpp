@@ -9,7 +9,7 @@
 #include "lib/render/renderer.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 namespace {
 
 /// Cuts the frame at a height along `up`: below it lies no more of the box than is kept.
@@ -67,4 +67,4 @@ View view_of(const Scene& scene, std::int64_t particles) {
   return view;
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

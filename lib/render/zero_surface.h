@@ -6,7 +6,7 @@
 
 #include "kernels/shapes/shape.h"
 
-namespace pbf::inline render_module {
+namespace pbf::render_module {
 
 /// In body coordinates.
 using Triangle = std::array<Vec3<double>, 3>;
@@ -61,4 +61,4 @@ std::vector<Triangle> zero_surface(const auto& shape, int cells = 32) {
   return all;
 }
 
-}  // namespace pbf::inline render_module
+}  // namespace pbf::render_module

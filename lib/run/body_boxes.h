@@ -9,7 +9,7 @@
 
 #include "lib/scene/body_box.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// Calls f(i, j) once for every pair of boxes that meet(), until it returns true. Returns whether a
 /// call returned true.
@@ -43,4 +43,4 @@ inline bool any_near_bodies(const Scene& s, double margin) {
   return any_near_pair(boxes, margin, [](std::size_t, std::size_t) { return true; });
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

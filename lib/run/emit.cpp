@@ -10,7 +10,7 @@
 #include "lib/run/motion_files.h"
 #include "lib/scene/number.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 /// "scene.yaml:4:30: bodies[0]", for messages about the particles of this body.
@@ -187,4 +187,4 @@ Particles emit_particles(StartPoints points) {
   return all;
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -11,7 +11,7 @@
 #include "lib/scene/points.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// The particles of a scene in the order of their ids, before any check. The file of a body is
 /// opened only here, once, and its particles are kept, so that all users see the same particles.
@@ -71,4 +71,4 @@ inline Particles emit_particles(const Scene& scene, const std::string& scene_dir
   return emit_particles(StartPoints(scene, scene_dir));
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

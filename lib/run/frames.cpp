@@ -3,7 +3,7 @@
 
 #include "lib/run/run.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 Frames::Frames(RunParts& run, Reporter& reporter) : run_(run), reporter_(reporter) {
   const Scene& scene = run.scene;
@@ -76,4 +76,4 @@ void Frames::close() noexcept {
   run_.writer.reset();
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

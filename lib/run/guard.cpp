@@ -8,7 +8,7 @@
 #include "lib/program/time_levels.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 double mass_of(const Plan& plan) { return plan.mass * double(plan.particles); }
@@ -179,4 +179,4 @@ GuardEvent Guard::locate(Alarm alarm, const Diagnostics& m, const StepOptions& o
   return e;
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

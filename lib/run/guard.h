@@ -8,7 +8,7 @@
 #include "lib/program/plan.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// Mean compression (ratio) at or below which a compressed start counts as relaxed.
 inline constexpr double kApart = 0.01;
@@ -116,4 +116,4 @@ class Guard {
 /// beyond a face of the domain is put on it.
 Particles to_particles(const SolverState& state, const Scene& scene);
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

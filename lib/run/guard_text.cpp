@@ -9,7 +9,7 @@
 #include "lib/run/motion_files.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 /// Texts for each alarm: what is wrong, unit with a leading blank, key of the limit, remedy.
@@ -123,4 +123,4 @@ Particles to_particles(const SolverState& state, const Scene& s) {
   return p;
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -8,7 +8,7 @@
 #include "lib/run/emit.h"
 #include "lib/run/motion_files.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace fs = std::filesystem;
 
 std::string folder_of_files(const Scene& scene, const std::string& run_file,
@@ -86,4 +86,4 @@ void take_files(LoadedScene& loaded, const std::vector<SceneFile>& read,
   loaded.files = files_text(read);
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -7,7 +7,7 @@
 #include "lib/scene/load.h"
 #include "lib/scene/scene_files.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// For a scene file: load_scene(), with the same `base_folder`. For a run file (recognized by its
 /// first bytes) or its folder (lib/io/run_path.h): the stored scene, with the defaults of that time
@@ -29,4 +29,4 @@ std::string folder_of_files(const Scene& scene, const std::string& run_file,
 void take_files(LoadedScene& loaded, const std::vector<SceneFile>& read,
                 std::vector<std::string>& notes);
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -9,7 +9,7 @@
 #include "lib/io/csv.h"
 #include "lib/scene/number.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 namespace fs = std::filesystem;
@@ -134,4 +134,4 @@ void make_paths_absolute(Scene& scene) {
   for_each_file(scene, [](auto& m, const std::string&) { m.path = m.table.file; });
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

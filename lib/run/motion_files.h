@@ -7,7 +7,7 @@
 #include "lib/scene/scene.h"
 #include "lib/scene/scene_files.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// Reads the tables of the scene's motions. `dir` anchors relative paths. Throws Error(bad_input)
 /// with key, file and line for an invalid table, for times that do not increase, and for a table
@@ -30,4 +30,4 @@ std::vector<SceneFile> motion_files(const Scene& scene);
 /// Makes their paths absolute, as read_motions() found them, so that the scene may be moved.
 void make_paths_absolute(Scene& scene);
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -8,7 +8,7 @@
 #include "lib/scene/auto_step.h"
 #include "lib/scene/validate.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 /// The largest f(from, to) of a motion, over its ramp and one period, or over its table; s since
@@ -89,4 +89,4 @@ void choose_step_of_motions(Scene& scene) {
   problems.raise();
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -12,7 +12,7 @@
 #include "lib/scene/surface.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 // -------------------------------------------------------------------------------------- walls
@@ -240,4 +240,4 @@ void add_collisions(const Scene& s, const std::vector<Track>& tracks, std::vecto
                                      "or keep them apart"});
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -7,7 +7,7 @@
 #include "lib/run/obstacle_track.h"
 #include "lib/run/warnings.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// "obstacles[0] (gate)"
 std::string named(const Scene& scene, std::size_t obstacle);
@@ -30,4 +30,4 @@ void add_walls(const Scene& scene, const std::vector<Track>& tracks, std::vector
 void add_collisions(const Scene& scene, const std::vector<Track>& tracks,
                     std::vector<Warning>& list);
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

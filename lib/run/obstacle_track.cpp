@@ -9,7 +9,7 @@
 #include "lib/program/motion_times.h"
 #include "lib/program/obstacles.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 /// A scene with only this obstacle, enough to compute its pose.
@@ -186,4 +186,4 @@ double shared_thickness(const Scene& s, const Solid<double>& a, const Solid<doub
   return -2 * depth >= least ? -2 * depth : 0;
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -6,7 +6,7 @@
 #include "kernels/boundary/obstacle.h"
 #include "lib/scene/body_box.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// The extents of a solid along the axes of the scene, in h from its origin; infinite for a plane,
 /// and along y of a scene in two dimensions.
@@ -34,4 +34,4 @@ Solid<double> solid_at(const Scene& scene, const Obstacle& obstacle, double time
 double shared_thickness(const Scene& scene, const Solid<double>& a, const Solid<double>& b,
                         double least);
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -8,7 +8,7 @@
 
 #include "lib/run/body_boxes.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 constexpr std::int64_t kMostDistances = 200000000;
@@ -120,4 +120,4 @@ Overlap find_overlap(const StartPoints& points) {
   return found;
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -6,7 +6,7 @@
 
 #include "lib/run/emit.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// Overlaps in an initial state. Pairs within one random box are never counted: some random
 /// positions are always close.
@@ -23,4 +23,4 @@ struct Overlap {
 /// Examines only particles within half a spacing of another body's box, and those of files.
 Overlap find_overlap(const StartPoints& points);
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

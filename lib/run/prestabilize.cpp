@@ -9,7 +9,7 @@
 #include "lib/run/guard.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 constexpr int kRound = 8;              // steps of a round, at most
@@ -113,4 +113,4 @@ std::string prestabilized_text(const Prestabilized& p) {
   return text;
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

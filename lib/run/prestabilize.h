@@ -7,7 +7,7 @@
 #include "lib/program/plan.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// What prestabilize() did.
 struct Prestabilized {
@@ -35,4 +35,4 @@ Prestabilized prestabilize(Solver& solver, const Scene& scene, const Plan& plan,
 /// One line for the log; empty if there is nothing to report.
 std::string prestabilized_text(const Prestabilized& p);
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -5,7 +5,7 @@
 #include "lib/run/run.h"
 #include "lib/run/run_report.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 /// Any lively flow has splashes of a few particles.
@@ -139,4 +139,4 @@ std::vector<Warning> Reporter::found(bool end) const {
   return list;
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

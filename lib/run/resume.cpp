@@ -16,7 +16,7 @@
 #include "lib/run/run_record.h"
 #include "lib/scene/load.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 /// Runs of such scenes give the same bits with one version of the program on every machine.
@@ -268,4 +268,4 @@ void prepare_resume(const RunFolder& folder, const ResumePoint& from) {
   }
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

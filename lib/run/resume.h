@@ -14,7 +14,7 @@
 #include "lib/scene/scene.h"
 #include "lib/scene/scene_files.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// The earlier processes of a run.
 struct EarlierSessions {
@@ -46,4 +46,4 @@ ResumePoint find_resume_point(const RunFolder& folder, const Scene& scene,
 /// Prepares the folder for the run: removes DONE, and renames a damaged run.vtkhdf.
 void prepare_resume(const RunFolder& folder, const ResumePoint& from);
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -8,7 +8,7 @@
 #include "lib/run/run_report.h"
 #include "lib/scene/load.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 Rows::Rows(RunParts& run, Reporter& reporter) : run_(run), reporter_(reporter) {
   if (const auto& saved = run.from.saved) {
@@ -75,4 +75,4 @@ std::vector<StageTime> Rows::stages_since_last_row() {
   return since;
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

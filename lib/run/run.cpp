@@ -18,7 +18,7 @@
 #include "lib/run/prestabilize.h"
 #include "lib/run/run_record.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 RunInfo run_info(const RunParts& run, const std::string& started) {
@@ -242,4 +242,4 @@ RunResult run(Start start, const RunPlace& place, Control& control) {
   }
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -16,7 +16,7 @@
 #include "lib/render/renderer.h"
 #endif
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// A run: its parts, its output, and the findings of its observers.
 struct RunParts {
@@ -164,4 +164,4 @@ void run_session(RunParts& run);
 std::string run_summary(const RunParts& run, const Watch& watch,
                         const std::vector<StageTime>& stages);
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -24,7 +24,7 @@
 #include "lib/io/run_file.h"
 #include "lib/io/run_path.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace fs = std::filesystem;
 namespace {
 
@@ -283,4 +283,4 @@ void RunFolder::write_text(const std::string& name, const std::string& text) con
   write_text_file(file(name), text, Naming::own);
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

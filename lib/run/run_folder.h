@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// What to do with an existing folder.
 enum class ExistingFolder { refuse, overwrite, resume };
@@ -48,4 +48,4 @@ class RunFolder {
   int lock_ = -1;
 };
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -10,7 +10,7 @@
 #include "lib/program/schedule.h"
 #include "lib/scene/difference.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 std::string scene_record(const Scene& scene, const std::string& files) {
   std::string text = files.empty() ? "" : "# SHA-256 of its particle files:\n";
@@ -71,4 +71,4 @@ std::string why_not_finished(const std::string& folder, const Scene& scene) {
   return {};
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

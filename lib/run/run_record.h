@@ -8,7 +8,7 @@
 #include "lib/scene/scene.h"
 #include "lib/scene/scene_files.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// Contents of scene.resolved.yaml: the scene, and files_text() of the particle files that it
 /// names, so that a run is not resumed with other particles.
@@ -35,4 +35,4 @@ std::string difference_of_file(const std::string& folder, const Scene& scene);
 /// missing, unreadable, not finished, shorter. Empty if it is one, or if the scene writes none.
 std::string why_not_finished(const std::string& folder, const Scene& scene);
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

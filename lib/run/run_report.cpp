@@ -14,7 +14,7 @@
 #include "lib/scene/vector3.h"
 #include "lib/solver/diagnostics.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 constexpr double kAtRest = 1e-3;  // kinetic energy, as a share of a resting pool's energy
@@ -240,4 +240,4 @@ std::string measure_json(const Diagnostics& m, double wall, std::int64_t frames,
   return json_text(out);
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

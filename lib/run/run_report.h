@@ -8,7 +8,7 @@
 #include "lib/solver/diagnostics.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// Percentage of `part` in `whole`; 0 if `whole` is 0.
 inline double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
@@ -19,4 +19,4 @@ std::string measure_json(const Diagnostics& measures, double wall, std::int64_t 
                          const std::vector<StageTime>& stages,
                          const std::vector<ReadingColumn>& columns);
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

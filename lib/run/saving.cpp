@@ -1,6 +1,6 @@
 #include "lib/run/run.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 Now Saving::at(Session& session) {
   if (session.update() >= run_.schedule.updates) return Now::go_on;
@@ -63,4 +63,4 @@ void Saving::end(Session& session) {
   if (run_.status == "finished" && run_.scene.checkpoint) save();
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -12,7 +12,7 @@
 #include "lib/scene/auto_step.h"
 #include "lib/scene/surface.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 /// Ratio of a step to that of time.step: auto above which a warning is given.
@@ -255,4 +255,4 @@ std::string warning_lines(const std::vector<Warning>& warnings) {
   return text;
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -6,7 +6,7 @@
 
 #include "lib/base/stage_clock.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 void Session::run(std::int64_t end, std::int64_t seen) {
   struct Closing {
@@ -57,4 +57,4 @@ void Session::step(std::int64_t end) {
   per_update_ = wall / n;
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

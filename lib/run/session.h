@@ -9,7 +9,7 @@
 
 #include "lib/solver/solver.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 class Session;
 
@@ -92,4 +92,4 @@ inline void advance(Solver& solver, std::int64_t updates) {
   Session(solver).run(solver.updates() + updates);
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

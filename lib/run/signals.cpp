@@ -2,7 +2,7 @@
 
 #include <ctime>
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 constexpr int kStopping[] = {SIGTERM, SIGINT};
@@ -65,4 +65,4 @@ void see_failed_writes() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -5,7 +5,7 @@
 
 #include "lib/run/stop_token.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// From now on SIGTERM or SIGINT asks signal_token() to stop; a second one ends the program at
 /// once. A SIGTERM less than 3 s after the first signal is ignored, because Slurm and systemd
@@ -33,4 +33,4 @@ class HeldSignals {
 /// ending the program.
 void see_failed_writes();
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -10,7 +10,7 @@
 #include "lib/run/prestabilize.h"
 #include "lib/run/start_neighbors.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 std::vector<std::string> notes_of(const Particles& p, const Scene& scene) {
@@ -65,4 +65,4 @@ std::unique_ptr<Solver> solver_of(Start& start) {
   return solver;
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -17,7 +17,7 @@
 #include "lib/scene/particles.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// The work that prepare() does.
 struct PrepareOptions {
@@ -80,4 +80,4 @@ void refuse_pictures(const Scene& scene);
 /// Throws as run_session(), RunFolder, find_resume_point(), take_files() and make_solver() do.
 RunResult run(Start start, const RunPlace& place, Control& control);
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

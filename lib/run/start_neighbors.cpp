@@ -8,7 +8,7 @@
 #include "lib/run/body_boxes.h"
 #include "lib/scene/random.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 bool may_be_crowded(const Scene& s) {
@@ -110,4 +110,4 @@ StartNeighbors start_neighbors(const StartPoints& points, std::int64_t particles
   return out;
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

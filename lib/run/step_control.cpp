@@ -7,7 +7,7 @@
 
 #include "lib/program/motion.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 constexpr std::int64_t kEarly = 8, kLongestHold = std::int64_t(1) << 30;  // scheduled measurements
@@ -96,4 +96,4 @@ std::vector<std::int64_t> AdaptiveStep::updates_at_levels(std::int64_t update) c
   return all;
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -10,7 +10,7 @@
 #include "lib/scene/scene.h"
 #include "lib/solver/diagnostics.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// The longest step, s, for the largest speed (m/s) and acceleration (m/s^2):
 /// min(cfl h/v, force sqrt(h/a)), after Monaghan 1992, Smoothed particle hydrodynamics, ARAA 30.
@@ -53,4 +53,4 @@ class AdaptiveStep {
   StepHistory h_;
 };
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

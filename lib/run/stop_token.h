@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// Of one run. Several may share it to be stopped, but only one of them learns that it is to save.
 /// Any thread may call every function, a signal handler too.
@@ -28,4 +28,4 @@ class StopToken {
   std::atomic<bool> save_{false};
 };
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

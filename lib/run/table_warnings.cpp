@@ -9,7 +9,7 @@
 #include "lib/run/motion_warnings.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 struct Swinging {
@@ -120,4 +120,4 @@ void add_tables(const Scene& s, std::vector<Warning>& list) {
   if (!text.empty()) list.push_back({"table", text});
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -9,7 +9,7 @@
 #include "lib/run/warnings.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 namespace {
 
 constexpr double kStrong = 200, kWeak = 0.01;      // m/s^2
@@ -68,4 +68,4 @@ std::string units_text(const Scene& s) {
   return joined(found, "; ") + ": are the values in SI units (m, kg, s)?";
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -7,7 +7,7 @@
 
 #include "lib/run/emit.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// `kind`: units, step, speed, motion, table, obstacles, wall, collision, overlap, crowded, output
 /// (of a scene); compressed, passed_through, closed_in, left (of a run). A list has at most one
@@ -38,4 +38,4 @@ std::string units_text(const Scene& scene);
 /// proportional to the number of particles that may overlap.
 std::vector<Warning> scene_warnings(const StartPoints& points, std::int64_t particles);
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

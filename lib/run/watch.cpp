@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 Watch::Watch(const Scene& scene, const Plan& plan, Solver& solver, Take take,
              std::function<void(const std::string&)> note, StageClock* clock)
@@ -199,4 +199,4 @@ std::string Watch::prestabilize(int levels) {
                      100 * compression, 100 * m.compression_mean, steps);
 }
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

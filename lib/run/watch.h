@@ -14,7 +14,7 @@
 #include "lib/run/session.h"
 #include "lib/run/step_control.h"
 
-namespace pbf::inline run_module {
+namespace pbf::run_module {
 
 /// Measures when it is due. If the guard raises an alarm, the session goes back to the last good
 /// state and repeats the updates with half the step, or it ends; then the solver has gone back,
@@ -93,4 +93,4 @@ class Watch : public Observer {
   bool begun_ = false;
 };
 
-}  // namespace pbf::inline run_module
+}  // namespace pbf::run_module

@@ -7,7 +7,7 @@
 
 #include "lib/scene/number.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 /// Truncates to two digits: 0.00428 becomes 0.0042.
@@ -44,4 +44,4 @@ double fitted_step(const Scene& s, double longest) {
 
 double auto_step(const Scene& s) { return fitted_step(s, step_rule(s).longest()); }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -5,7 +5,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// The longest steps allowed by the rules, s, before the step is fitted to the frames.
 struct StepRule {
@@ -34,4 +34,4 @@ double fitted_step(const Scene& scene, double longest);
 /// motions, whose tables are read later, see choose_step_of_motions() (lib/run/motion_files.h).
 double auto_step(const Scene& scene);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

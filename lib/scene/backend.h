@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 enum class Precision { single, dbl };
 enum class Backend { cpu, cuda };
@@ -64,4 +64,4 @@ std::optional<E> named(const std::string& text) {
   return std::nullopt;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -11,7 +11,7 @@
 #include "lib/scene/lay_over.h"
 #include "lib/scene/scene_text.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,4 +162,4 @@ Node with_bases(Node root, const std::string& path, const std::string& base_fold
   return Chain(path, base_folder, read).build(std::move(root));
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

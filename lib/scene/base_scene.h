@@ -7,7 +7,7 @@
 #include "lib/scene/scene_files.h"
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Not a member of Scene: loading merges the base into the tree. The only definition of the key's
 /// name, and of its text for the pages of keys and the schema.
@@ -29,4 +29,4 @@ inline constexpr std::size_t kMostBases = 16;
 Node with_bases(Node root, const std::string& path, const std::string& base_folder,
                 std::vector<SceneFile>& read);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -5,7 +5,7 @@
 
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 using Matrix3 = std::array<Double3, 3>;  ///< rows
 inline constexpr Matrix3 kUnit3{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -43,4 +43,4 @@ inline Matrix3 frame_along(const Double3& axis) {
   return {cross(y, z), y, z};
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

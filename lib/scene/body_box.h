@@ -7,7 +7,7 @@
 #include "lib/scene/scene.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Edges parallel to the axes.
 struct BodyBox {
@@ -58,4 +58,4 @@ inline bool is_in(const Body& b, const Double3& x, double margin) {
          length(off - along * axis) <= b.radius + margin;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

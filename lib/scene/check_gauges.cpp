@@ -9,7 +9,7 @@
 #include "lib/scene/surface.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 /// Names of other members of /pbf/gauges: the columns of all, and those of the kinds.
@@ -171,4 +171,4 @@ void check_gauges(const PlacedScene& placed, Problems& problems) {
   GaugeChecker(placed, problems).run();
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -1,7 +1,7 @@
 // Rules for prescribed motions.
 #include "lib/scene/scene_rules.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 class MotionChecker : public SceneRules {
@@ -59,4 +59,4 @@ void check_motions(const PlacedScene& placed, Problems& problems) {
   MotionChecker(placed, problems).run();
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -5,7 +5,7 @@
 #include "lib/scene/rounding.h"
 #include "lib/scene/scene_rules.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 /// The interface for the checks of a shape.
@@ -57,4 +57,4 @@ void check_obstacles(const PlacedScene& placed, Problems& problems) {
   ObstacleChecker(placed, problems).run();
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

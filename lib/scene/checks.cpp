@@ -12,7 +12,7 @@
 #include "lib/scene/scene_rules.h"
 #include "lib/scene/surface.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 class Checker : public SceneRules {
@@ -242,4 +242,4 @@ class Checker : public SceneRules {
 
 void check_scene(const PlacedScene& placed, Problems& problems) { Checker(placed, problems).run(); }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

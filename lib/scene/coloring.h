@@ -4,7 +4,7 @@
 
 #include "lib/scene/backend.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 enum class ColorBy { speed, density, compression, id };
 
@@ -22,4 +22,4 @@ inline constexpr ColoringInfo kColorings[] = {{"speed", "velocity", 3},
 constexpr const ColoringInfo& about(ColorBy c) { return kColorings[static_cast<int>(c)]; }
 constexpr const auto& table_of(ColorBy) { return kColorings; }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -6,7 +6,7 @@
 #include "lib/base/text.h"
 #include "lib/scene/keys.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 /// Collects "key: this before, that now".
@@ -85,4 +85,4 @@ std::string physics_difference(const Scene& before, const Scene& now) {
                               now.time.adaptive ? Effect::adaptive : Effect::results));
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -7,7 +7,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// The keys in which two scenes differ, and how: "solver.iterations: 4 before, 8 now; viscosity:
 /// off before, on now", shortened by first_of(); empty if there is no difference. Keys that do not
@@ -17,4 +17,4 @@ std::string physics_difference(const Scene& before, const Scene& now);
 /// "a; b; c", or with more than `most` parts "a; b; ...; and 12 more", to keep messages short.
 std::string first_of(std::vector<std::string> parts, std::size_t most = 8);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

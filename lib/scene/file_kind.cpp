@@ -7,7 +7,7 @@
 
 #include "lib/scene/base_scene.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 struct FileKind {
@@ -76,4 +76,4 @@ std::string other_file(Node& root, const std::string& path, const std::string& w
   return "";
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -5,7 +5,7 @@
 
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Whether the ending is that of a scene (*.yaml, *.yml), or of a run file (*.vtkhdf; *.h5 in
 /// earlier versions).
@@ -19,4 +19,4 @@ std::string other_text(const std::string& text, const std::string& path, const s
 /// The same from its keys.
 std::string other_file(Node& root, const std::string& path, const std::string& wanted);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

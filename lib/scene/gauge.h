@@ -17,7 +17,7 @@
 #include "lib/scene/kinds.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// What a number of a reading is: the value at its update, the mean or the largest value of the
 /// updates since the last reading, or the sum since the start.
@@ -127,4 +127,4 @@ struct Gauge {
   bool operator==(const Gauge&) const = default;
 };
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

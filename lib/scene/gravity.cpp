@@ -7,7 +7,7 @@
 #include "lib/scene/validate.h"
 #include "lib/scene/value.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 /// In the order of kFaceNames.
@@ -103,4 +103,4 @@ bool write_out_gravity(Node& root, Problems& problems) {
   return true;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -6,7 +6,7 @@
 #include "lib/scene/keys.h"
 #include "lib/scene/load.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 /// Escapes bars, which would end the cell of a table.
@@ -65,4 +65,4 @@ std::string reference_markdown() {
   return out;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -9,7 +9,7 @@
 
 #include "lib/scene/keys.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// The first two arguments of a row, the path of a member and its accessor: MEMBER(Scene,
 /// output->every) has the path "output.every".
@@ -180,4 +180,4 @@ void add_kind_rows(std::vector<Key>& rows, const std::string& entry, Any Entry::
   });
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -4,7 +4,7 @@
 #include "lib/scene/number.h"
 #include "lib/scene/value.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 std::string unit_text(const Key& key) {
   return key.unit.empty() && is_numeric(key.field(key.standard)) ? "1" : key.unit;
 }
@@ -48,4 +48,4 @@ std::string Key::kinds_text(unsigned bits) const {
   return joined(words, ", ");
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Allowed values of every number of a key.
 struct Range {
@@ -33,4 +33,4 @@ enum class FlatY {
   zero,
 };
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

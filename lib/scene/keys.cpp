@@ -5,7 +5,7 @@
 #include "lib/base/error.h"
 #include "lib/scene/key_rows.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 // keys_*.cpp
 KeyRows start_rows();
@@ -173,4 +173,4 @@ const KeyTable& scene_table() {
   return table;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -15,7 +15,7 @@
 #include "lib/scene/key_traits.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Pointer to a struct whose members are keys: the scene, or an entry of one of its lists.
 using Object = std::any;
@@ -191,4 +191,4 @@ std::string schema_of(const KeyTable& table);
 std::vector<std::string> differences(const KeyTable& table, const Object& before, const Object& now,
                                      Effect least);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

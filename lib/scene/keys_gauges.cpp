@@ -1,7 +1,7 @@
 // Keys of gauges: those of every one, and those of their kinds.
 #include "lib/scene/key_rows.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 KeyRows gauge_rows() {
   std::string help = "What is read; decides which keys it has.";
@@ -20,4 +20,4 @@ KeyRows gauge_rows() {
   return all;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -2,7 +2,7 @@
 #include "lib/scene/key_rows.h"
 #include "lib/scene/shorthand.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 #define KEY(member) MEMBER(Scene, member)
 
@@ -119,4 +119,4 @@ KeyRows motion_rows() {
            "it adds no more energy than the flow loses.")}};
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -1,7 +1,7 @@
 // Keys of prescribed motions: of obstacles, and of the tank.
 #include "lib/scene/key_rows.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 #define KEY(member) MEMBER(Scene, member)
 #define OBSTACLE(member) MEMBER_OF(obstacles, Obstacle, member)
@@ -76,4 +76,4 @@ KeyRows moved_rows() {
            flat(FlatY::middle))}};
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

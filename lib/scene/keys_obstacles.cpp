@@ -1,7 +1,7 @@
 // Keys of obstacles: those of every one, and those of their shapes.
 #include "lib/scene/key_rows.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 #define KEY(member) MEMBER(Scene, member)
@@ -34,4 +34,4 @@ KeyRows obstacle_rows() {
   return all;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -1,7 +1,7 @@
 // Keys of a run: measurements, guard, files, pictures, machine.
 #include "lib/scene/key_rows.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 #define KEY(member) MEMBER(Scene, member)
 
@@ -91,4 +91,4 @@ KeyRows run_rows() {
            automatic, effect(Effect::none))}};
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

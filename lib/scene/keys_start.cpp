@@ -1,7 +1,7 @@
 // Keys of the initial state: box, fluid, bodies.
 #include "lib/scene/key_rows.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 #define KEY(member) MEMBER(Scene, member)
 #define BODY(member) MEMBER_OF(bodies, Body, member)
@@ -87,4 +87,4 @@ KeyRows start_rows() {
            "Initial velocity, added to every particle of the body.", flat(FlatY::zero))}};
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -7,7 +7,7 @@
 
 #include "lib/scene/key_traits.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// A key of one of the kinds. Kinds with keys of the same name share a row of the table.
 template <class Member, class Holder>
@@ -37,4 +37,4 @@ const void* address_of_word(const std::variant<Kind...>& kind) {
   return reinterpret_cast<const char*>(&kind) + 1;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

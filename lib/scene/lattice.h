@@ -8,7 +8,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Largest number of particles of a scene: ids are 32-bit and signed.
 inline constexpr double kMaxParticles = 2147483647.0;
@@ -81,4 +81,4 @@ inline double lattice_count(const Body& body, double d, std::optional<double> pl
   return sum * times;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

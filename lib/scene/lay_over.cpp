@@ -6,7 +6,7 @@
 #include "lib/scene/keys.h"
 #include "lib/scene/number.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 /// Largest number of keys in a block; the search for duplicates is quadratic.
@@ -118,4 +118,4 @@ void lay_over(Node& base, const Node& over) {
   lay(base, over, "");
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -3,7 +3,7 @@
 
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Mappings are merged key by key; every other value, also a list, replaces the previous one. If
 /// `over` changes the kind of a block that has kinds (tank_motion), the block is replaced as a
@@ -12,4 +12,4 @@ namespace pbf::inline scene_module {
 /// Error(bad_input) for a block over a list.
 void lay_over(Node& base, const Node& over);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -6,7 +6,7 @@
 
 #include "lib/base/plain_text.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
@@ -200,4 +200,4 @@ std::string layout_remedy(const std::string& text, int line, const std::string& 
   return indentation_remedy(lines);
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// For "step:0.002", which YAML reads as text: "; a space is missing behind step:".
 std::string missing_space(const std::string& text);
@@ -16,4 +16,4 @@ std::string missing_colon(const std::string& text);
 /// yaml-cpp. Examines the lines up to there.
 std::string layout_remedy(const std::string& text, int line, const std::string& reason = "");
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -13,7 +13,7 @@
 #include "lib/scene/validate.h"
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 Scene scene_with_overrides(Node root, const std::vector<std::string>& overrides,
@@ -140,4 +140,4 @@ LoadedScene load_scene(const std::string& path, const std::vector<std::string>& 
   return loaded;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -8,7 +8,7 @@
 #include "lib/scene/scene.h"
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// A scene and what was read for it, as needed for provenance.
 struct LoadedScene {
@@ -64,4 +64,4 @@ std::string reference_markdown();
 /// JSON Schema (draft 2020-12) of a scene file, from the table of keys.
 std::string json_schema();
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

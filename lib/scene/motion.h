@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 using Double3 = std::array<double, 3>;
 
@@ -63,4 +63,4 @@ struct TankMotion : Swing {
   bool operator==(const TankMotion&) const = default;
 };
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 bool names_non_finite(std::string s) {
@@ -92,4 +92,4 @@ std::string too_many_text(double count) {
          "eighth of the particles) or make the bodies smaller";
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

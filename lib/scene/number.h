@@ -6,7 +6,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Fewest digits that read back to the same double: 0.1, 1000, 1.0e-05. A number with an exponent
 /// always has a point, because YAML 1.1 readers take 1e-05 for text.
@@ -33,4 +33,4 @@ std::string count_text(double count);
 /// Message for a scene with more particles than ids.
 std::string too_many_text(double count);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

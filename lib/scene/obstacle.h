@@ -13,7 +13,7 @@
 // clang-format on
 #include "kernels/shapes/list.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 namespace obstacle_keys {
 /// The keys of a shape, in the order of the list.
@@ -46,4 +46,4 @@ struct Obstacle {
   }
 };
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

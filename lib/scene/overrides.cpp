@@ -4,7 +4,7 @@
 
 #include "lib/base/plain_text.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 /// Largest number of keys in a block that settings extend; searches are linear.
@@ -115,4 +115,4 @@ void set_value(Node& root, const std::string& path, const Node& value, Problems&
   if (is_path(path, value.place(), problems)) put(root, path, value, value.place(), problems);
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

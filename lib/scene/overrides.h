@@ -6,7 +6,7 @@
 #include "lib/scene/problems.h"
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Replaces or creates the value at the key's path: "solver.iterations=8", "bodies.0.count=10",
 /// "bodies[0].count=10", "viscosity=off". The value is YAML. Missing blocks are created. A path
@@ -16,4 +16,4 @@ void apply_override(Node& root, const std::string& argument, Problems& problems)
 /// The same with a value that was parsed before; messages name its place.
 void set_value(Node& root, const std::string& path, const Node& value, Problems& problems);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

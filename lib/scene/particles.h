@@ -7,7 +7,7 @@
 #include "lib/scene/scene.h"
 #include "lib/scene/scene_files.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Initial particles in id order, SI units.
 struct Particles {
@@ -20,4 +20,4 @@ struct Particles {
   std::size_t size() const { return position.size(); }
 };
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -12,7 +12,7 @@
 #include "lib/scene/random.h"
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Of a cylinder: two directions normal to its axis, and the axis. Parallel to the axes of the
 /// scene if the cylinder's axis is, so that its lattice is that of blocks.
@@ -82,4 +82,4 @@ void for_each_point(const Body& body, double d, std::optional<double> plane, Put
   }
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

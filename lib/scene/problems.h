@@ -8,7 +8,7 @@
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 class Problems {
  public:
@@ -38,4 +38,4 @@ class Problems {
   std::vector<std::string> lines_;  ///< the first ones, to be shown
 };
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

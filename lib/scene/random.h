@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// SplitMix64 (Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators").
 class SplitMix64 {
@@ -24,4 +24,4 @@ class SplitMix64 {
   std::uint64_t state_;
 };
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -3,7 +3,7 @@
 
 #include "lib/scene/backend.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 enum class RenderStyle { spheres, surface };
 
@@ -20,4 +20,4 @@ inline constexpr int kShadowTexels = 512;
 constexpr const RenderStyleInfo& about(RenderStyle s) { return kRenderStyles[static_cast<int>(s)]; }
 constexpr const auto& table_of(RenderStyle) { return kRenderStyles; }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 /// Distance between adjacent floating-point numbers near x, with `digits` fraction bits.
@@ -56,4 +56,4 @@ Rounding rounding_of(const Scene& s) {
   return worst;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -3,7 +3,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Effect of rounding on a free fall or, without gravity, on the motion of the bodies, along the
 /// axis where it is largest. Positions are relative to the domain's lower corner, so their spacing
@@ -32,4 +32,4 @@ constexpr double kLeastLoss = 0.001;           ///< h: negligible below
 /// Thinnest solid, in spacings of numbers: fluid passes through thinner ones.
 constexpr double kThinnestSolid = 8;
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

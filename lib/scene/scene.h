@@ -16,7 +16,7 @@
 #include "lib/scene/obstacle.h"
 #include "lib/scene/render_style.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 enum class Shape { block, sphere, random_box, file, cylinder };
 enum class KernelMode { consistent, paper };         ///< density kernel and gradient kernel
@@ -220,4 +220,4 @@ struct Scene {
   bool operator==(const Scene&) const = default;
 };
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -5,7 +5,7 @@
 #include "lib/base/sha256.h"
 #include "lib/scene/difference.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 /// As sha256sum does: special characters of the path are escaped, and a backslash precedes the
@@ -48,4 +48,4 @@ std::string files_difference(const std::string& before, const std::vector<SceneF
   return first_of(changed);
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

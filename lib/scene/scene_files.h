@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 struct SceneFile {
   std::string path;    ///< as written in the scene
@@ -22,4 +22,4 @@ std::string scene_digest(const std::string& resolved_scene, const std::string& f
 /// have changed: SHA-256 ... before, ... now"; empty if there is none.
 std::string files_difference(const std::string& before, const std::vector<SceneFile>& now);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <filesystem>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 std::string plain_name(const std::string& text) {
   std::string out;
@@ -34,4 +34,4 @@ bool name_by_file(Node& root, const std::string& path) {
   return true;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -5,7 +5,7 @@
 
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Keeps letters, digits and ".-=_", and replaces other characters by single "-", for names of
 /// folders on any system. At most 150 bytes; may be empty.
@@ -15,4 +15,4 @@ std::string plain_name(const std::string& text);
 /// did. Not for a pipe or another special file, and not if the name would be empty or hidden.
 bool name_by_file(Node& root, const std::string& path);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

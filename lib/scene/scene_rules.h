@@ -12,7 +12,7 @@
 #include "lib/scene/number.h"
 #include "lib/scene/validate.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 inline constexpr const char* kAxes[] = {"x", "y", "z"};
 
@@ -111,4 +111,4 @@ void check_obstacles(const PlacedScene& placed, Problems& problems);
 void check_motions(const PlacedScene& placed, Problems& problems);
 void check_gauges(const PlacedScene& placed, Problems& problems);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -15,7 +15,7 @@
 #include "lib/scene/file_kind.h"
 #include "lib/scene/suggest.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{4} << 20;     // of a scene or a study
@@ -104,4 +104,4 @@ Node tree_of_text(const std::string& text, const Origin& origin, const std::stri
                                                      : ""));
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -5,7 +5,7 @@
 
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// The text of a file. `what`: its kind, for messages and the limit of its size: "scene". Reads at
 /// most one byte more than the limit. Throws Error(bad_input) for an unreadable file or a folder.
@@ -15,4 +15,4 @@ std::string text_of_file(const Origin& file, const std::string& what);
 /// file (a study) or not YAML.
 Node tree_of_text(const std::string& text, const Origin& origin, const std::string& what);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -8,7 +8,7 @@
 #include "lib/scene/number.h"
 #include "lib/scene/value.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 Json enumeration(const std::vector<std::string>& words) { return {{"enum", words}}; }
@@ -200,4 +200,4 @@ std::string json_schema() {
   return json_text(out, 1) + "\n";
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

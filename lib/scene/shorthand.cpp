@@ -5,7 +5,7 @@
 #include "lib/scene/number.h"
 #include "lib/scene/value.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 double number_at(Node& root, const std::string& path, double otherwise) {
@@ -169,4 +169,4 @@ std::vector<std::string> write_out(Node& root, Problems& problems) {
   return bad;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -7,7 +7,7 @@
 #include "lib/scene/problems.h"
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Expands the short forms in a scene's tree. Errors are added to `problems`; the paths of their
 /// keys are returned. The tree then has valid but meaningless values there, so that the rest of the
@@ -27,4 +27,4 @@ bool is_flat(Node& root);
 /// A list of numbers with the place of `like`.
 Node list_node(const Node& like, const std::vector<double>& numbers);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

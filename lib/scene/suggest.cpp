@@ -7,7 +7,7 @@
 #include "lib/scene/keys.h"
 #include "lib/scene/synonyms.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 /// Normalizes spelling: "Time-Step", "timeStep" and "time_step" become "timestep".
@@ -148,4 +148,4 @@ Suggestion suggest_key(const KeyTable& table, const std::string& path) {
   return {preferred(elsewhere, in), ""};
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 struct KeyTable;
 
@@ -24,4 +24,4 @@ struct Suggestion {
 /// `path`: of the unknown key, in the form of the table: "bodies[].mni".
 Suggestion suggest_key(const KeyTable& table, const std::string& path);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -5,7 +5,7 @@
 
 #include "lib/scene/vector3.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 Solid<double> solid_in_metres(const Obstacle& o, const Scene& scene) {
   Double3 middle = o.middle();
   if (const auto plane = scene.plane()) middle[1] = *plane;
@@ -110,4 +110,4 @@ std::vector<int> axes_across_level(const Scene& scene) {
   return axes;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

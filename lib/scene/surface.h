@@ -7,7 +7,7 @@
 #include "kernels/boundary/obstacle.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// The point of a surface nearest to a given position. With dimensions: 2 it is in the plane.
 struct SurfacePlace {
@@ -45,4 +45,4 @@ int level_axis(const Scene& scene);
 /// The other axes in their order; a single one in two dimensions.
 std::vector<int> axes_across_level(const Scene& scene);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

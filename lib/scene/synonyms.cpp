@@ -2,7 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -27,4 +27,4 @@ const Synonyms& synonyms() {
   return all;
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

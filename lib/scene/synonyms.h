@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 struct KeySynonym {
   std::vector<std::string> written, keys;
@@ -28,4 +28,4 @@ const Synonyms& synonyms();
 
 extern const char* const kSynonymText;  ///< lib/scene/synonyms.yaml, made by .cmake/synonyms.cmake
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

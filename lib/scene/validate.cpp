@@ -9,7 +9,7 @@
 #include "lib/scene/suggest.h"
 #include "lib/scene/value.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 /// The parent of a path: "bodies[0].min" -> "bodies[0]" -> "bodies" -> "".
@@ -297,4 +297,4 @@ KeyPlaces read_tree(const KeyTable& table, const Node& root, const Object& objec
   return Validator(table, object, problems).run(root);
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -10,7 +10,7 @@
 #include "lib/scene/scene.h"
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// The places of keys in the input.
 struct KeyPlaces {
@@ -38,4 +38,4 @@ void use_new_names(const KeyTable& table, Node& node, const std::string& block =
 /// particles and cells within bounds. Skips keys that already have a problem.
 void check_scene(const PlacedScene& placed, Problems& problems);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

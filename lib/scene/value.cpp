@@ -8,7 +8,7 @@
 #include "lib/scene/suggest.h"
 #include "lib/scene/writing.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 std::string instead_of(const std::string& wanted, const Node& node) {
@@ -259,4 +259,4 @@ std::string yaml_text(const std::string& text) {
   return out + "\"";
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -6,7 +6,7 @@
 #include "lib/scene/keys.h"
 #include "lib/scene/yaml_tree.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// Whether the field is a number or a group of numbers.
 bool is_numeric(const Field& field);
@@ -27,4 +27,4 @@ std::string format_field(const Key& key, const Field& field);
 /// A YAML scalar that reads back as this text: plain if that is safe, otherwise in quotes.
 std::string yaml_text(const std::string& text);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -5,7 +5,7 @@
 
 #include "lib/scene/motion.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 inline Double3 operator+(const Double3& a, const Double3& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
@@ -30,4 +30,4 @@ inline Double3 turned(const Double3& v, const Double3& axis, double angle) {
   return turned(v, axis, std::cos(angle), std::sin(angle));
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -8,7 +8,7 @@
 #include "lib/scene/keys.h"
 #include "lib/scene/load.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 constexpr std::size_t kWidth = 100;
@@ -173,4 +173,4 @@ std::string reference_yaml() {
          yaml_of(scene_table(), object(example_scene()), true);
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -10,7 +10,7 @@
 #include "lib/base/text.h"
 #include "lib/scene/number.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 const char* const kDigits = "0123456789";
@@ -157,4 +157,4 @@ std::string list_remedy(const std::string& text, std::size_t numbers) {
   return all.size() == numbers ? "; write [" + joined(all, ", ") + "]" : "";
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

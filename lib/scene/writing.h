@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// For `text` instead of a number in `unit` (empty: none): "; leave the unit out, the key is in s:
 /// write 0.002".
@@ -16,4 +16,4 @@ std::string list_remedy(const std::string& text, std::size_t numbers);
 /// "-z" instead of a direction: "; write [0, 0, -1]"; else empty.
 std::string axis_remedy(const std::string& text);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

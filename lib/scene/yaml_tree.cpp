@@ -11,7 +11,7 @@
 #include "lib/base/plain_text.h"
 #include "lib/scene/layout.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace {
 
 struct Refused {
@@ -224,4 +224,4 @@ void visit(Node& at, const std::string& path, const std::function<void(Node&, No
     for (Node& item : child->items) visit(item, rest, f);
 }
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 /// The source of a tree.
 struct Origin {
@@ -69,4 +69,4 @@ Node parse_yaml(const std::string& text, const Origin& origin, bool lines);
 /// entry), also if part of the path is written in one word ("camera.fov").
 void visit(Node& at, const std::string& path, const std::function<void(Node&, Node&)>& f);
 
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -5,7 +5,7 @@
 
 #include "kernels/compression_bins.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// A compression that at least `count` of n particles do not exceed: the upper end of a bin of the
 /// histogram, thus at most 1/32 too large, and at most the maximum.
@@ -19,4 +19,4 @@ inline double compression_percentile(const std::vector<std::int64_t>& in_bin, st
   return 0;
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -9,7 +9,7 @@
 #include "lib/scene/vector3.h"
 #include "lib/solver/params.h"
 
-namespace pbf::inline solver_module {
+namespace pbf::solver_module {
 namespace {
 
 using M = const Diagnostics&;
@@ -175,4 +175,4 @@ std::string diagnostics_help() {
   return text;
 }
 
-}  // namespace pbf::inline solver_module
+}  // namespace pbf::solver_module

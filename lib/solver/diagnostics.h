@@ -12,7 +12,7 @@
 #include "kernels/measure.h"
 #include "lib/program/plan.h"
 
-namespace pbf::inline solver_module {
+namespace pbf::solver_module {
 
 /// SI units. Compression of a particle: c = max(rho/rho0 - 1, 0); rho includes the walls'
 /// contribution. NaN: not defined in this scene.
@@ -148,4 +148,4 @@ const std::vector<Diagnostic>& diagnostics();
 /// A line for each, with its unit.
 std::string diagnostics_help();
 
-}  // namespace pbf::inline solver_module
+}  // namespace pbf::solver_module

@@ -16,7 +16,7 @@
 #include "kernels/row_state.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Host memory for the rows of a download, and its size.
 struct CopyTarget {
@@ -155,4 +155,4 @@ concept Executor = requires(E e, const E c, int* ints, unsigned long long* count
   c.describe(info);  // device, driver, threads, launches
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -6,7 +6,7 @@
 #include "lib/program/pass.h"
 #include "lib/solver/step_context.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Running sums. Only passes of whole numbers get their address, to add to them.
 template <class T>
@@ -151,4 +151,4 @@ void launch_pass(int index, C& c) {
   }(Passes{});
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

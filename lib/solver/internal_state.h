@@ -10,7 +10,7 @@
 #include "lib/scene/particles.h"
 #include "lib/scene/scene.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Positions and velocities of a scene in the internal frame, in the order of ids.
 template <class Real>
@@ -47,4 +47,4 @@ InternalState<Real> to_internal(const Scene& s, const Axes& axes, Particles part
   return out;
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

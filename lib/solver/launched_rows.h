@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace pbf::inline solver_module {
+namespace pbf::solver_module {
 
 /// The next multiple of an eighth of a power of two, so that there are at most eight different
 /// launches, and recordings of them, until the number has doubled.
@@ -13,4 +13,4 @@ constexpr std::int64_t launched_rows(std::int64_t rows) {
   return (rows + unit - 1) / unit * unit;
 }
 
-}  // namespace pbf::inline solver_module
+}  // namespace pbf::solver_module

@@ -10,7 +10,7 @@
 #include "lib/program/axes.h"
 #include "lib/program/plan.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 template <class Real>
 Params<Real> make_params(const Scene& scene, const Plan& plan) {
@@ -81,4 +81,4 @@ Params<Real> without_time(Params<Real> p, double damping) {
   return p;
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -6,7 +6,7 @@
 #include "lib/solver/granted.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Rows first ... first + count - 1 of field::loads.
 template <class C>
@@ -55,4 +55,4 @@ std::vector<double> read_gauges(C& c, Interval interval) {
   return c.plan.gauges.finish(sums);
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

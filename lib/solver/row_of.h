@@ -5,7 +5,7 @@
 
 #include "lib/program/features.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 // Those of Objects stand beside their fields.
 template <class Real>
@@ -18,4 +18,4 @@ T row_of(const Plain<T, count, Word>&);
 template <class Field, class Real>
 using RowOf = decltype(row_of<Real>(std::declval<const Field&>()));
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

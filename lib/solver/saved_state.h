@@ -7,7 +7,7 @@
 #include "kernels/pass_copy.h"
 #include "lib/solver/step_context.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 template <class Exec>
 class SavedState {
@@ -63,4 +63,4 @@ class SavedState {
   std::vector<typename Exec::template Buffer<char>> copies_;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace pbf::inline solver_module {
+namespace pbf::solver_module {
 
 enum class ScalarType { f32, f64, i32, i64 };
 
@@ -64,4 +64,4 @@ inline std::vector<std::int64_t> ids_of(const Snapshot& s) {
   return ids;
 }
 
-}  // namespace pbf::inline solver_module
+}  // namespace pbf::solver_module

@@ -18,11 +18,11 @@
 #include "lib/solver/stage_event.h"
 #include "lib/solver/step_trace.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 struct Plan;
 }
 
-namespace pbf::inline solver_module {
+namespace pbf::solver_module {
 
 /// Properties of a solver and its machine, as stored in the run file.
 struct SolverInfo {
@@ -108,4 +108,4 @@ class Inspection {
 /// their number changes.
 void check_state(const SolverState& state, std::int64_t n, bool changes = false);
 
-}  // namespace pbf::inline solver_module
+}  // namespace pbf::solver_module

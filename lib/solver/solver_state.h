@@ -8,7 +8,7 @@
 
 #include "lib/scene/backend.h"
 
-namespace pbf::inline solver_module {
+namespace pbf::solver_module {
 
 /// A field of a state besides position, velocity and id.
 struct StoredField {
@@ -42,4 +42,4 @@ struct SolverState {
 /// any order; with `changes` of at most n, whose ids are unique and not negative.
 bool fits(const SolverState& state, std::int64_t n, bool changes);
 
-}  // namespace pbf::inline solver_module
+}  // namespace pbf::solver_module

@@ -13,7 +13,7 @@
 #include "lib/solver/step_context.h"
 #include "lib/solver/tracer.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Context: a StepContext.
 template <class Context>
@@ -135,4 +135,4 @@ class StageCheck {
   std::optional<StageEvent> event_;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-namespace pbf::inline solver_module {
+namespace pbf::solver_module {
 
 /// Why a run is stopped. Messages and suite files use the words of kAlarmNames.
 enum class Alarm { non_finite, outside, speed, energy, neighbors };
@@ -43,4 +43,4 @@ struct Fault {
   double value = 0;  ///< h/s for a velocity
 };
 
-}  // namespace pbf::inline solver_module
+}  // namespace pbf::solver_module

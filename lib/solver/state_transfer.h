@@ -10,7 +10,7 @@
 #include "lib/solver/solver_state.h"
 #include "lib/solver/step_context.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Moves the rows of one field between numbers on the host and a row in the field's own form.
 /// Vectors are along the scene's axes on the host.
@@ -141,4 +141,4 @@ void upload_state(C& c, const SolverState& s) {
   c.put(field::id, std::vector<int>(s.id.begin(), s.id.end()));
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -16,7 +16,7 @@
 #include "lib/scene/scene.h"
 #include "lib/solver/row_of.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// An array of a field; second: the second one of a pair.
 struct FieldMemory {
@@ -246,4 +246,4 @@ struct StepContext {
   typename FeatureSet::template Memory<Real> features_;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -4,7 +4,7 @@
 
 #include "lib/base/error.h"
 
-namespace pbf::inline solver_module {
+namespace pbf::solver_module {
 
 bool fits(const SolverState& s, std::int64_t n, bool changes) {
   const std::size_t most = std::size_t(n), count = s.id.size();
@@ -57,4 +57,4 @@ Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type,
   return s;
 }
 
-}  // namespace pbf::inline solver_module
+}  // namespace pbf::solver_module

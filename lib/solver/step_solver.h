@@ -18,16 +18,16 @@
 #include "lib/solver/solver.h"
 #include "lib/solver/stepper.h"
 
-namespace pbf::inline solver_module {
+namespace pbf::solver_module {
 
 /// A snapshot of n particles with allocated arrays and filled ids. It has position and id, and
 /// velocity and density if `fields` names them. Throws Error(bad_input) for another name.
 Snapshot empty_snapshot(const std::vector<std::string>& fields, ScalarType type, std::size_t n,
                         std::int64_t update, double time);
 
-}  // namespace pbf::inline solver_module
+}  // namespace pbf::solver_module
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Number of updates before the host first checks for lists that overflowed, on executors where
 /// lists can overflow. It is small at the start and after an overflow, because overflows often come
@@ -271,4 +271,4 @@ class StepSolver final : public Solver, public Inspection {
   std::int64_t updates_ = 0, steps_ = 0, kept_updates_ = 0, kept_steps_ = 0;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -7,7 +7,7 @@
 
 #include "lib/solver/solver_state.h"
 
-namespace pbf::inline solver_module {
+namespace pbf::solver_module {
 
 /// A result of a pass, along the scene's axes; row = particle id.
 struct TraceArray {
@@ -42,4 +42,4 @@ struct TraceOptions {
   const StepTrace* follow = nullptr;
 };
 
-}  // namespace pbf::inline solver_module
+}  // namespace pbf::solver_module

@@ -22,7 +22,7 @@
 #include "lib/solver/state_transfer.h"
 #include "lib/solver/tracer.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// What a measurement of the state touches.
 struct Measure {
@@ -294,4 +294,4 @@ class Stepper {
   bool density_is_current_ = false;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -15,7 +15,7 @@
 #include "lib/solver/step_context.h"
 #include "lib/solver/step_trace.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Number of neighbors of each particle.
 template <class Lists>
@@ -209,4 +209,4 @@ class Tracer {
   StepTrace trace_;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

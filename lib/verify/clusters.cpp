@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 
 Clusters::Clusters(const std::vector<double>& position, double edge) {
   if (!(edge > 0)) return;
@@ -51,4 +51,4 @@ double Clusters::design_effect_of_shares(const std::vector<double>& values,
   return largest;
 }
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -5,7 +5,7 @@
 
 #include "lib/scene/scene.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 
 /// Particles grouped by cells of a grid.
 class Clusters {
@@ -27,4 +27,4 @@ class Clusters {
   std::size_t cells_ = 0;
 };
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -10,7 +10,7 @@
 #include "lib/scene/scene.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 
 /// One side of a comparison: "cpu:double", "cuda:float", "cpu:float@2" (2 threads).
 struct CompareSide {
@@ -92,4 +92,4 @@ std::string compare_json(const CompareResult& result);
 /// One test case per part and per line of it. `seconds`: total time.
 std::string compare_junit(const CompareResult& result, double seconds);
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -17,7 +17,7 @@ std::unique_ptr<Solver> make_cpu_solver(const Scene&, const Plan&, Particles);
 }
 #endif
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 namespace {
 
 Scene on(const Scene& scene, const CompareSide& side) {
@@ -162,4 +162,4 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   return result;
 }
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -8,7 +8,7 @@
 #include "lib/verify/compare_parts.h"
 #include "lib/verify/statistics.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 namespace {
 
 /// In order of ids, h.
@@ -209,4 +209,4 @@ std::vector<ComparePart> compare_course(const Comparison& c, const SolverState& 
   return {near, samples.part()};
 }
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -5,7 +5,7 @@
 
 #include "lib/verify/compare_run.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 namespace {
 
 struct LogEnd {
@@ -79,4 +79,4 @@ ComparePart compare_extents(const ComparedRun& a, const ComparedRun& b, const Fr
   return p;
 }
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -12,7 +12,7 @@
 #include "lib/scene/yaml_tree.h"
 #include "lib/verify/compare_run.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 namespace {
 
 std::string side_of(const ComparedRun& o) {
@@ -180,4 +180,4 @@ CompareResult compare_files(const std::string& path_a, const std::string& path_b
   return result;
 }
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -8,7 +8,7 @@
 #include "lib/verify/compare_run.h"
 #include "lib/verify/statistics.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 namespace {
 
 constexpr double kAlpha = 1e-6;  // false alarm rate of one Kolmogorov-Smirnov test
@@ -243,4 +243,4 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
   return {std::move(near), std::move(far)};
 }
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 
 double ulp(double value, double u) {
   if (!(value > 0) || !std::isfinite(value)) return 0;
@@ -81,4 +81,4 @@ bool note(ComparePart& p, const std::string& what, const std::string& unit, doub
   return within;
 }
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

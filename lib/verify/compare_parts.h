@@ -6,7 +6,7 @@
 #include "lib/verify/compare.h"
 #include "lib/verify/compare_readings.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 
 /// A tolerance is kNoiseFactor times the largest change in the ensemble of randomly rounded
 /// references. The factor is needed because the ensemble rounds only stored values, while a real
@@ -103,4 +103,4 @@ double share_of(double error, double tolerance);
 /// Unit in the last place of `value` for a unit roundoff u.
 double ulp(double value, double u);
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 namespace {
 
 /// Reference for rounding: ReadingColumn::lever.
@@ -44,4 +44,4 @@ const Reading* find_reading(const std::vector<Reading>& readings, const std::str
   return r == readings.end() ? nullptr : &*r;
 }
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -7,7 +7,7 @@
 #include "lib/program/plan.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 
 struct Reading {
   std::string stage;  ///< "loads" or "gauges"
@@ -25,4 +25,4 @@ std::vector<Reading> take_readings(Solver& solver, const Scene& scene, const Pla
 /// The reading of this name; null if there is none.
 const Reading* find_reading(const std::vector<Reading>& readings, const std::string& what);
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -6,7 +6,7 @@
 #include "lib/io/table.h"
 #include "lib/verify/compare.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 namespace {
 
 /// `first`: name of the first column.
@@ -93,4 +93,4 @@ std::string compare_json(const CompareResult& r) {
   return json_text(out, 1) + "\n";
 }
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -10,7 +10,7 @@
 #include "lib/io/run_file.h"
 #include "lib/verify/compare.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 
 /// A run file with values that are needed several times.
 struct ComparedRun {
@@ -46,4 +46,4 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
                                         const FramePairs& frames, bool exact,
                                         CompareResult& result);
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

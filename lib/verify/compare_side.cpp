@@ -4,7 +4,7 @@
 #include "lib/scene/number.h"
 #include "lib/verify/compare.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 
 std::string CompareSide::name() const {
   std::string s = std::string(word(backend)) + (variant ? "+defect:" : ":") + word(precision);
@@ -56,4 +56,4 @@ bool CompareResult::same() const {
                       [](const ComparePart& p) { return p.verdict == Verdict::differs; });
 }
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -10,7 +10,7 @@
 
 #include "lib/verify/compare_parts.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 namespace {
 
 /// Size of the difference of two arrays; NaN against a number is infinite.
@@ -239,4 +239,4 @@ ComparePart compare_stages(const Comparison& c, const SolverState& start, Compar
   return part;
 }
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

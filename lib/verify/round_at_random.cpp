@@ -2,7 +2,7 @@
 #include "lib/scene/random.h"
 #include "lib/verify/compare_parts.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 namespace {
 
 /// Every key has its own random numbers, so that a new key does not change those of others.
@@ -46,4 +46,4 @@ void round_at_random(const KeyTable& table, const Object& object, double u, std:
   }
 }
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

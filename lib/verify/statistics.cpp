@@ -6,7 +6,7 @@
 
 #include "lib/verify/clusters.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 namespace {
 
 /// Sorts NaN last, so that the order is total.
@@ -161,4 +161,4 @@ double e_folding(const std::vector<double>& x, const std::vector<double>& y, dou
   return slope * (last - first) > 0.01 ? 1 / slope : 0;
 }
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

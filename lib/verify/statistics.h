@@ -7,7 +7,7 @@
 #include "lib/scene/scene.h"
 #include "lib/solver/snapshot.h"
 
-namespace pbf::inline verify_module {
+namespace pbf::verify_module {
 
 /// One number of a frame.
 struct Statistic {
@@ -73,4 +73,4 @@ double ks_critical(double alpha, double n, double m);
 /// than 3 points or less than 1 % of growth.
 double e_folding(const std::vector<double>& x, const std::vector<double>& y, double upper);
 
-}  // namespace pbf::inline verify_module
+}  // namespace pbf::verify_module

@@ -1,6 +1,6 @@
 // Under a fuzzer files are read in its own process.
 #include "lib/io/h5_trial.h"
 
-namespace pbf::inline io_module::h5 {
+namespace pbf::io_module::h5 {
 void trial(const std::string&, const std::function<void()>&, unsigned) {}
-}  // namespace pbf::inline io_module::h5
+}  // namespace pbf::io_module::h5

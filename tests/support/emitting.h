@@ -8,7 +8,7 @@
 #include "lib/program/features.h"
 #include "lib/solver/solver.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 namespace shower {
 constexpr int kPerSort = 3, kAcross = 6;  ///< particles; places along x and y
@@ -101,7 +101,7 @@ struct Shower {
 };
 using EmittingFeatures = Features::With<Shower>;
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT
 
 namespace pbf::test {
 

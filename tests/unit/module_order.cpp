@@ -104,8 +104,8 @@ TEST_CASE("every file of lib and app is in the namespace of its module") {
     bool own = false;
     for (std::sregex_iterator i(text.begin(), text.end(), opened), end; i != end; ++i) {
       const std::string name = (*i)[1];
-      own = own || name.rfind("pbf::inline " + module + "_module", 0) == 0 ||
-            name.rfind("pbf::inline PBF_VARIANT", 0) == 0 || name == "pbf::defect" ||
+      own = own || name.rfind("pbf::" + module + "_module", 0) == 0 ||
+            name.rfind("pbf::PBF_VARIANT", 0) == 0 || name == "pbf::defect" ||
             file.filename() == "cuda_variants.h";  // declares both variants by their names
     }
     if (file.filename() != "main.cpp" && text.find("\nnamespace ") != std::string::npos) CHECK(own);

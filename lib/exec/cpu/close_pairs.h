@@ -10,7 +10,7 @@
 #include <immintrin.h>
 #endif
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 constexpr float kCutoffSquared = 1;  ///< h^2
 
@@ -174,4 +174,4 @@ int* close_to(Simd simd, const Candidates<Real, D>& c, Vec3<Real> x, int self, i
   }
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

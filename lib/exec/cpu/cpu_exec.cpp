@@ -5,7 +5,7 @@
 
 #include "lib/base/machine.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 namespace {
 
@@ -97,4 +97,4 @@ std::size_t CpuExec::bytes() const {
   return sum;
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -19,7 +19,7 @@
 #include "lib/program/memory.h"
 #include "lib/solver/executor.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 class CpuExec {
  public:
@@ -269,4 +269,4 @@ class CpuExec {
   HostBuffer<ChunkedLists::Group> groups_;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

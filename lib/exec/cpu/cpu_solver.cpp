@@ -9,7 +9,7 @@
 #include "lib/program/threads.h"
 #include "lib/solver/step_solver.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan,
                                         Particles particles) try {
@@ -26,4 +26,4 @@ std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan,
                                          "with more memory (pbf plan says how much)");
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

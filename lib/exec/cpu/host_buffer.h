@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace pbf::inline exec_module {
+namespace pbf::exec_module {
 
 template <class T>
 class HostBuffer {
@@ -48,4 +48,4 @@ class HostBuffer {
   std::size_t size_ = 0;
 };
 
-}  // namespace pbf::inline exec_module
+}  // namespace pbf::exec_module

@@ -4,7 +4,7 @@
 #include "kernels/lanes.h"
 #include "lib/exec/cpu/simd.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Always inlined, so that it is compiled for the instructions of the function that calls it.
 template <int bytes, class Pass>
@@ -42,4 +42,4 @@ void sum_over_neighbors(Simd simd, const Pass& pass, int first, int last) {
   }
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -9,7 +9,7 @@
 #include "kernels/neighbors.h"
 #include "lib/exec/cpu/close_pairs.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Grows by a quarter more than asked for; never shrinks.
 template <class T>
@@ -103,4 +103,4 @@ std::size_t make_lists(Simd simd, const Vec4<Real>* position, const int* bin_sta
   return used;
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -5,7 +5,7 @@
 
 #include "lib/base/error.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 const char* simd_name(Simd simd) {
   constexpr const char* names[] = {"scalar", "baseline", "avx2", "avx512"};
@@ -44,4 +44,4 @@ Simd chosen_simd() {
                   "; unset it, or take one of " + names);
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -9,7 +9,7 @@
 
 #include "lib/exec/cuda/device_buffer.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 class BinCounts {
  public:
@@ -40,4 +40,4 @@ class BinCounts {
   std::vector<std::int64_t> result_;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -7,7 +7,7 @@
 
 #include "lib/base/error.h"
 
-namespace pbf::inline exec_module {
+namespace pbf::exec_module {
 
 /// Throws Error(unavailable) for a missing device or memory, Error(internal) for anything else.
 inline void cuda_check(cudaError_t e, const char* call, const char* file, int line) {
@@ -19,6 +19,6 @@ inline void cuda_check(cudaError_t e, const char* call, const char* file, int li
                   call + " at " + file + ":" + std::to_string(line));
 }
 
-}  // namespace pbf::inline exec_module
+}  // namespace pbf::exec_module
 
 #define PBF_CUDA_CHECK(call) ::pbf::cuda_check((call), #call, __FILE__, __LINE__)

@@ -6,7 +6,7 @@
 
 #include "lib/exec/devices.h"
 
-namespace pbf::inline exec_module {
+namespace pbf::exec_module {
 
 std::string cuda_device_report() {
   int driver = 0, runtime = 0, count = 0;
@@ -32,4 +32,4 @@ std::string cuda_device_report() {
   return out;
 }
 
-}  // namespace pbf::inline exec_module
+}  // namespace pbf::exec_module

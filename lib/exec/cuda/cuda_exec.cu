@@ -2,7 +2,7 @@
 
 #include <cub/device/device_radix_sort.cuh>
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 namespace {
 struct NumberPass {
@@ -178,4 +178,4 @@ void CudaExec::describe(SolverInfo& info) const {
   info.recordings = recorded_.recordings();
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

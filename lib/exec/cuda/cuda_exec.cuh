@@ -19,7 +19,7 @@
 #include "lib/exec/cuda/sort_kernels.cuh"
 #include "lib/solver/executor.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 class CudaExec {
  public:
@@ -285,4 +285,4 @@ class CudaExec {
   DeviceBuffer<RepeatState> repeat_;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -5,7 +5,7 @@
 #include "lib/exec/cuda/cuda_variants.h"
 #include "lib/solver/step_solver.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& plan,
                                              Particles particles, ListCapacity capacity) {
@@ -16,4 +16,4 @@ std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& pla
                                                        plan.capacity);
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -5,7 +5,7 @@
 
 #include "lib/solver/solver.h"
 
-namespace pbf::inline exec_module {
+namespace pbf::exec_module {
 
 /// Runs on the current device (CUDA_VISIBLE_DEVICES chooses). Throws Error(unavailable) where there
 /// is no driver, no device, or not enough memory on it (with required and available bytes).
@@ -16,4 +16,4 @@ std::unique_ptr<Solver> make_cuda_solver(const Scene& scene, const Plan& plan, P
 /// Whether a device can be used. `why`: what is missing.
 bool cuda_available(std::string* why = nullptr);
 
-}  // namespace pbf::inline exec_module
+}  // namespace pbf::exec_module

@@ -8,7 +8,7 @@
 
 namespace pbf {
 
-inline namespace plain {
+namespace plain {
 std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& plan,
                                              Particles particles, ListCapacity capacity);
 }

@@ -8,7 +8,7 @@
 
 #include "lib/exec/cuda/check.h"
 
-namespace pbf::inline exec_module {
+namespace pbf::exec_module {
 
 /// Contents undefined after resize. resize throws Error(unavailable) when memory is short.
 template <class T, bool pinned_host = false>
@@ -73,4 +73,4 @@ void with_scratch(DeviceBuffer<char>& scratch, const Call& call) {
   PBF_CUDA_CHECK(call(scratch.data(), bytes));
 }
 
-}  // namespace pbf::inline exec_module
+}  // namespace pbf::exec_module

@@ -6,7 +6,7 @@
 #include "lib/exec/cuda/device_buffer.h"
 #include "lib/exec/cuda/kernels.cuh"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// If a list is longer than its memory, making it records its length and writes nothing beyond;
 /// grow() then enlarges the memory.
@@ -67,4 +67,4 @@ class DeviceLists {
   PinnedBuffer<ListState> state_host_;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -7,7 +7,7 @@
 #include "lib/exec/cuda/device_buffer.h"
 #include "lib/solver/executor.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 class HostCopy {
  public:
@@ -62,4 +62,4 @@ class HostCopy {
   PinnedBuffer<char> host_;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -9,7 +9,7 @@
 #include "kernels/row_state.h"
 #include "lib/exec/cuda/check.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 constexpr int kBlock = 128;
 
@@ -56,4 +56,4 @@ struct Launcher {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -8,7 +8,7 @@
 #include "lib/exec/cuda/kernel_start.cuh"
 #include "lib/exec/cuda/list_pass.cuh"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Largest numbers of particles for which 16, 8, 4 and 2 threads share a neighbor sum, and for
 /// which several share the making of a list (which changes no bit). Measured on an H200
@@ -65,4 +65,4 @@ __global__ void __launch_bounds__(kBlock) list_lanes_kernel(Rows rows, ListPass<
   pass.by_lanes(blockIdx.x * kBlock + threadIdx.x, n);
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -7,7 +7,7 @@
 
 #include "lib/exec/cuda/transposed_lists.cuh"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Shifts `mask` left by one place and puts the sign bit of x into its lowest bit.
 __device__ __forceinline__ unsigned push_sign(float x, unsigned mask) {
@@ -181,4 +181,4 @@ struct ListPass {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

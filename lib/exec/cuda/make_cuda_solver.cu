@@ -6,7 +6,7 @@
 #include "lib/exec/cuda/cuda_variants.h"
 #include "lib/program/plan.h"
 
-namespace pbf::inline exec_module {
+namespace pbf::exec_module {
 namespace {
 
 /// Uses the plan's size of the arrays. The CUDA context is already allocated, so it is not counted.
@@ -46,4 +46,4 @@ std::unique_ptr<Solver> make_cuda_solver(const Scene& scene, const Plan& plan, P
              : plain::make_stepping_solver(scene, plan, std::move(particles), capacity);
 }
 
-}  // namespace pbf::inline exec_module
+}  // namespace pbf::exec_module

@@ -8,7 +8,7 @@
 
 #include "lib/exec/cuda/check.h"
 
-namespace pbf::inline exec_module {
+namespace pbf::exec_module {
 
 class RecordedUpdates {
  public:
@@ -64,4 +64,4 @@ class RecordedUpdates {
   int recordings_ = 0;
 };
 
-}  // namespace pbf::inline exec_module
+}  // namespace pbf::exec_module

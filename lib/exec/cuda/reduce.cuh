@@ -6,7 +6,7 @@
 #include "lib/exec/cuda/kernel_start.cuh"
 #include "lib/program/list_capacity.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 template <class Pass>
 struct CountsOf {
@@ -114,4 +114,4 @@ class MeasureSpace {
   DeviceBuffer<unsigned> blocks_done_;
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -9,7 +9,7 @@
 #include "kernels/pass_residual.h"
 #include "lib/exec/cuda/kernel_start.cuh"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 struct RepeatState {
   unsigned long long sum;
@@ -56,4 +56,4 @@ __global__ void __launch_bounds__(kBlock) repeat_kernel(Rows rows, Pass pass, Re
   if (r.in_graph) cudaGraphSetConditional(r.handle, go ? 1 : 0);
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -8,7 +8,7 @@
 
 #include "lib/exec/cuda/kernel_start.cuh"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 struct AddParts {
   template <class Part>
@@ -105,4 +105,4 @@ __global__ void __launch_bounds__(kTeam) team_kernel(const __grid_constant__ Pas
   if (mine_is_one && lane == 0) pass.finish(first + i, mine);
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

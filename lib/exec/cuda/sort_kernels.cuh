@@ -6,7 +6,7 @@
 #include "lib/exec/cuda/kernel_start.cuh"
 #include "lib/exec/cuda/list_pass.cuh"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Rows with a negative id leave: they get a bin behind all others.
 template <bool leave>
@@ -151,4 +151,4 @@ struct NothingFirst {
   __device__ void operator()(int) const {}
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -8,7 +8,7 @@
 #include "kernels/pair_sum.h"
 #include "lib/program/list_capacity.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Loads a word that is read once and by no pass soon, without displacing positions from the L1
 /// cache.
@@ -120,4 +120,4 @@ __device__ __forceinline__ void sum_in_order_by_lanes(const Pass& pass, int thre
   pass.finish(i, own, sum);
 }
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

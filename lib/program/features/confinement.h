@@ -6,14 +6,14 @@
 #include "lib/program/as_types.h"
 #include "lib/program/pass.h"
 
-namespace pbf::inline program_module::field {
+namespace pbf::program_module::field {
 /// x, y, z: curl times its gain, 1/s; w: magnitude of the curl without the gain.
 inline constexpr struct CurlRows : Vectors {
 } curl{{"curl", per_padded_row, Life::pass, false,
         Shown{.quantity = "curl times its gain", .unit = "1/s", .sum = true, .axial = true}}};
-}  // namespace pbf::inline program_module::field
+}  // namespace pbf::program_module::field
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 inline constexpr const char* kLessConfinement = "lower vorticity.epsilon";
 
@@ -54,4 +54,4 @@ struct VorticityConfinement {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

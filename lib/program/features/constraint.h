@@ -5,7 +5,7 @@
 #include "kernels/pass_residual.h"
 #include "lib/program/features/motion.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 struct Density {
   static constexpr PassText text{"density", "density"};
@@ -82,4 +82,4 @@ struct Constraint {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -6,7 +6,7 @@
 #include "lib/program/features/levels.h"
 #include "lib/program/features/motion.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// density: of the pass that leaves 1/density; null with moves_on.
 template <class G>
@@ -69,4 +69,4 @@ struct Correction {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

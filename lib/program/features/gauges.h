@@ -4,15 +4,15 @@
 
 #include "lib/program/features/loads.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 inline std::int64_t per_id(const Sizes& n) { return n.particles; }
 template <class Tally>
 std::int64_t per_sum(const Sizes& n) {
   return n.plan.gauges.of<Tally>().sums;
 }
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module
 
-namespace pbf::inline program_module::field {
+namespace pbf::program_module::field {
 /// In the order of ids, not of rows: bit k tells on which side of flow gauge k it is.
 inline constexpr struct FlowSides : Plain<int> {
 } flow_sides{{"flow sides", per_id, Life::run}};
@@ -24,9 +24,9 @@ template <class Tally>
 struct GaugeSums : Plain<typename Tally::Sums, 1, std::int64_t> {};
 template <class Tally>
 inline constexpr GaugeSums<Tally> gauge_sums{{Tally::sums, per_sum<Tally>, Life::run}};
-}  // namespace pbf::inline program_module::field
+}  // namespace pbf::program_module::field
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// Updates the sides of all particles; `count`: also counts the particles that changed sides.
 template <class G>
@@ -118,4 +118,4 @@ struct Gauges {
   };
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

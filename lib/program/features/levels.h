@@ -10,14 +10,14 @@
 #include "lib/program/levels.h"
 #include "lib/program/pass.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 inline std::int64_t per_cell(const Sizes& n) { return n.plan.levels.cells(); }
 inline std::int64_t per_run(const Sizes& n) { return n.plan.levels.runs(n.scene.dimensions); }
 inline std::int64_t per_brick(const Sizes& n) { return n.plan.levels.bricks(); }
 inline std::int64_t per_node(const Sizes& n) { return n.plan.levels.nodes(); }
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module
 
-namespace pbf::inline program_module::field {
+namespace pbf::program_module::field {
 /// Per particle: its cell when the lists were made.
 inline constexpr struct LevelHome : Plain<int> {
 } level_home{{"level home", per_particle, Life::lists, false, Shown{"level cell"}}};
@@ -50,9 +50,9 @@ inline constexpr struct LevelMoves : Vectors {
 } level_move{
     {"level move", per_cell, Life::pass, false,
      Shown{.quantity = "level displacement", .unit = "h", .row = &level_home, .grain = 4e-12}}};
-}  // namespace pbf::inline program_module::field
+}  // namespace pbf::program_module::field
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 inline bool has_open_faces(const Scene& s) { return !s.domain.open.empty(); }
 
@@ -176,4 +176,4 @@ struct Levels {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

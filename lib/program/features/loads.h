@@ -10,15 +10,15 @@
 #include "lib/program/features/poses.h"
 #include "lib/program/loads.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 inline std::int64_t per_wall(const Sizes& n) { return load_walls(n.scene); }
 template <class Tally>
 std::int64_t per_gauge(const Sizes& n) {
   return gauges_of<Tally>(n.scene);
 }
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module
 
-namespace pbf::inline program_module::field {
+namespace pbf::program_module::field {
 /// Per wall: kLoadParts times LoadSums; 0 between two updates.
 inline constexpr struct LoadRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 } load_sums{{"load sums", per_wall, Life::update}};
@@ -31,9 +31,9 @@ struct GaugeSites : Plain<typename Tally::Site> {};
 template <class Tally>
 inline constexpr GaugeSites<Tally> gauge_sites{{Tally::sites, per_gauge<Tally>, Life::run}};
 inline constexpr auto& patches = gauge_sites<PatchTally>;
-}  // namespace pbf::inline program_module::field
+}  // namespace pbf::program_module::field
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 /// h, a power of two above the longest edge: the unit of moments.
 template <class Real>
@@ -79,4 +79,4 @@ struct Loads {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

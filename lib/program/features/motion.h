@@ -9,14 +9,14 @@
 #include "lib/program/motion.h"
 #include "lib/program/pass.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 inline std::int64_t per_table_row(const Sizes& n) { return motion_table_rows(n.plan); }
 inline std::int64_t per_solid_step(const Sizes& n) {
   return motion_table_rows(n.plan) * moving_obstacles(n.scene);
 }
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module
 
-namespace pbf::inline program_module::field {
+namespace pbf::program_module::field {
 /// Prescribed motion: the present row of the tables, and the tables of the steps to come.
 inline constexpr struct StepRow : Plain<int> {
 } step_row{{"step row", one_row, Life::run}};
@@ -24,9 +24,9 @@ inline constexpr struct FrameSteps : Objects {
 } frame_steps{{kBytesOf<FrameStep>, "frame steps", per_table_row, Life::run}};
 inline constexpr struct SolidSteps : Objects {
 } solid_steps{{kBytesOf<SolidStep>, "solid steps", per_solid_step, Life::run}};
-}  // namespace pbf::inline program_module::field
+}  // namespace pbf::program_module::field
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 template <class Real>
 FrameStep<Real> row_of(const field::FrameSteps&);
@@ -225,4 +225,4 @@ struct Motion {
   };
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -6,13 +6,13 @@
 #include "lib/program/motion.h"
 #include "lib/program/pass.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 inline std::int64_t per_obstacle(const Sizes& n) { return std::int64_t(n.scene.obstacles.size()); }
 inline bool has_obstacles(const Scene& s) { return !s.obstacles.empty(); }
 inline bool has_tank_motion(const Scene& s) { return s.tank_motion.has_value(); }
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module
 
-namespace pbf::inline program_module::field {
+namespace pbf::program_module::field {
 /// At the end of the present step.
 inline constexpr struct SolidRows : Objects {
 } solids{{kBytesOf<PlacedSolid>, "solids", per_obstacle, Life::run}};
@@ -24,9 +24,9 @@ inline constexpr struct SolidVelocities : Plain<SolidVelocity> {
 /// The motion of the tank in the present step.
 inline constexpr struct Frame : Objects {
 } frame{{kBytesOf<FrameStep>, "frame", one_row, Life::run}};
-}  // namespace pbf::inline program_module::field
+}  // namespace pbf::program_module::field
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 template <class Real>
 PlacedSolid<Real> row_of(const field::SolidRows&);
@@ -35,4 +35,4 @@ Solid<Real> row_of(const field::SolidsBefore&);
 template <class Real>
 FrameStep<Real> row_of(const field::Frame&);
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

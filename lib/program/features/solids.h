@@ -10,15 +10,15 @@
 #include "lib/program/features/loads.h"
 #include "lib/program/obstacle_motion.h"
 
-namespace pbf::inline program_module {
+namespace pbf::program_module {
 inline bool has_solids_in_grid(const Scene& s) { return has_solids(s) && s.domain.open.empty(); }
 /// Enough for all half cells of the grid.
 inline std::int64_t per_half_cell(const Sizes& n) {
   return n.bins / bins_per_cell(n.scene.dimensions);
 }
-}  // namespace pbf::inline program_module
+}  // namespace pbf::program_module
 
-namespace pbf::inline program_module::field {
+namespace pbf::program_module::field {
 /// See kernels/boundary/near_rows.h.
 inline constexpr struct NearRoom : Numbers {
 } near_room{{"room", per_padded_row, Life::lists}};
@@ -31,9 +31,9 @@ inline constexpr struct HalfCells : Plain<int> {
 } near_half_cells{{"near half cells", per_half_cell, Life::run}};
 inline constexpr struct SurroundingsRow : Objects {
 } surroundings{{kBytesOf<Surroundings>, "surroundings", one_row, Life::run}};
-}  // namespace pbf::inline program_module::field
+}  // namespace pbf::program_module::field
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 template <class Real>
 Surroundings<Real> row_of(const field::SurroundingsRow&);
@@ -181,4 +181,4 @@ struct NearSolids {
   };
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -4,7 +4,7 @@
 #include "kernels/pass_xsph.h"
 #include "lib/program/features/motion.h"
 
-namespace pbf::inline PBF_VARIANT {
+namespace pbf::PBF_VARIANT {
 
 inline constexpr const char* kLessXsph = "lower viscosity.xsph";
 
@@ -63,4 +63,4 @@ struct XsphViscosity {
   }
 };
 
-}  // namespace pbf::inline PBF_VARIANT
+}  // namespace pbf::PBF_VARIANT

@@ -3,7 +3,7 @@
 
 #include "lib/scene/shapes/keys.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace obstacle_keys {
 
 struct Box {
@@ -50,4 +50,4 @@ struct Box {
 };
 
 }  // namespace obstacle_keys
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -3,7 +3,7 @@
 
 #include "lib/scene/shapes/keys.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace obstacle_keys {
 
 struct Capsule : Tube {
@@ -23,4 +23,4 @@ struct Capsule : Tube {
 };
 
 }  // namespace obstacle_keys
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -14,7 +14,7 @@
 #include "lib/scene/body_axes.h"
 #include "lib/scene/kinds.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 
 namespace obstacle_keys {
 
@@ -59,4 +59,4 @@ struct Tube {
 };
 
 }  // namespace obstacle_keys
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

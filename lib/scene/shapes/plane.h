@@ -3,7 +3,7 @@
 
 #include "lib/scene/shapes/keys.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace obstacle_keys {
 
 struct Plane {
@@ -35,4 +35,4 @@ struct Plane {
 };
 
 }  // namespace obstacle_keys
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

@@ -3,7 +3,7 @@
 
 #include "lib/scene/shapes/keys.h"
 
-namespace pbf::inline scene_module {
+namespace pbf::scene_module {
 namespace obstacle_keys {
 
 struct Sphere {
@@ -27,4 +27,4 @@ struct Sphere {
 };
 
 }  // namespace obstacle_keys
-}  // namespace pbf::inline scene_module
+}  // namespace pbf::scene_module

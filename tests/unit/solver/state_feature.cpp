@@ -9,14 +9,14 @@
 #include "tests/support/page_exec.h"
 #include "tests/support/run_file_samples.h"
 
-namespace pbf::inline program_module::field {
+namespace pbf::program_module::field {
 /// K
 inline constexpr struct Temperature : Numbers {
 } temperature{{"temperature", per_padded_row, Life::state, true, Shown{"temperature", "K"}}};
 /// Its id, negative. Goes with its particle, but is not saved: it follows from the state.
 inline constexpr struct Tag : Plain<int> {
 } tag{{"tag", per_particle, Life::rows, true}};
-}  // namespace pbf::inline program_module::field
+}  // namespace pbf::program_module::field
 
 using namespace pbf;
 
