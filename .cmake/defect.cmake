@@ -23,7 +23,7 @@ if(PBF_DEFECT)
   endif()
   file(GLOB sources RELATIVE ${PROJECT_SOURCE_DIR} kernels/*.h kernels/boundary/*.h
        kernels/shapes/*.h
-       lib/program/obstacle_motion.h lib/program/placed_solids.h
+       lib/program/obstacle_motion.h lib/program/posed_solids.h
        lib/program/features/*.h lib/exec/cpu/*.h lib/exec/cpu/*.cpp
        lib/solver/*.h lib/program/field.h tests/unit/solver/*.cpp)
   foreach(source IN LISTS sources)

@@ -6,7 +6,7 @@
 // are integers or bits, so it does not matter which thread adds which.
 #pragma once
 
-#include "kernels/boundary/surroundings.h"
+#include "kernels/boundary/solid_scene.h"
 #include "kernels/cell_index.h"
 #include "kernels/levels.h"
 
@@ -30,11 +30,11 @@ struct LevelHomePass : LevelBrickPass<D> {
   using LevelBrickPass<D>::grid;
   Params<Real> p;
   const int* bin_start;
-  const Vec4<Real>* position;        ///< null if no face is open; particles beyond are in no cell
-  const Surroundings<Real>* around;  ///< with the obstacles; null: there are none
-  int* run_start;                    ///< out, LevelCells::runs
-  int* home;                         ///< out; -1: in no cell
-  int* count;                        ///< out, of each cell
+  const Vec4<Real>* position;  ///< null if no face is open; particles beyond are in no cell
+  const SolidScene<Real>* solid_scene;  ///< with the obstacles; null: there are none
+  int* run_start;                       ///< out, LevelCells::runs
+  int* home;                            ///< out; -1: in no cell
+  int* count;                           ///< out, of each cell
   /// Out: the count in kCountUnit; -1 if less than half full, or if an obstacle may reach into it.
   std::int64_t* full;
 
@@ -63,7 +63,7 @@ struct LevelHomePass : LevelBrickPass<D> {
   PBF_HD std::int64_t finish(GridPlace cell, Part inside) const {
     const int c = grid.at(cell);
     count[c] = inside;
-    const bool off = inside < grid.half(cell) || (around && obstacle_reaches(cell));
+    const bool off = inside < grid.half(cell) || (solid_scene && obstacle_reaches(cell));
     return full[c] = off ? -1 : std::int64_t(inside) << 20;
   }
   PBF_HD void finish_corner(GridPlace brick, int which, const LevelPart& sum) const {
@@ -81,8 +81,8 @@ struct LevelHomePass : LevelBrickPass<D> {
       squares += half * half;
     }
     const Real radius = square_root(squares);
-    for (int k = 0; k < around->solids; ++k)
-      if (distance<D>(around->solid[k].solid, {middle[0], middle[1], middle[2]}) < radius)
+    for (int k = 0; k < solid_scene->solids; ++k)
+      if (distance<D>(solid_scene->solid[k].solid, {middle[0], middle[1], middle[2]}) < radius)
         return true;
     return false;
   }

@@ -1,17 +1,17 @@
 // The start of a step in which solids or the tank move: takes this step's row of the table.
 #pragma once
 
-#include "kernels/boundary/surroundings.h"
+#include "kernels/boundary/solid_scene.h"
 
 namespace pbf::PBF_VARIANT {
 
 /// The motion of a solid in a step.
 template <class Real>
-struct SolidStep {
-  int solid = 0;          ///< which one
-  PlacedSolid<Real> now;  ///< at the end of the step; its bounds cover the whole path
-  Solid<Real> before;     ///< at the start
-  SolidVelocity mean;     ///< of the update that the step is part of
+struct PoseStep {
+  int solid = 0;         ///< which one
+  PosedSolid<Real> now;  ///< at the end of the step; its bounds cover the whole path
+  Solid<Real> before;    ///< at the start
+  SolidVelocity mean;    ///< of the update that the step is part of
 };
 
 /// Copies row *row of the table and advances *row, so a recorded step needs no row number.
@@ -19,10 +19,10 @@ template <class Real>
 struct MoveSolidsPass {
   int* row;                                 ///< in/out
   const FrameStep<Real>* frames = nullptr;  ///< of each step; null: the tank is at rest
-  const SolidStep<Real>* steps = nullptr;   ///< `moving` rows for each step
+  const PoseStep<Real>* steps = nullptr;    ///< `moving` rows for each step
   int moving = 0;                           ///< number of moving solids
   FrameStep<Real>* frame = nullptr;         ///< out: of this step
-  PlacedSolid<Real>* placed = nullptr;      ///< out: of all solids
+  PosedSolid<Real>* placed = nullptr;       ///< out: of all solids
   Solid<Real>* before = nullptr;            ///< the same
   SolidVelocity* velocity = nullptr;        ///< the same
 
@@ -31,7 +31,7 @@ struct MoveSolidsPass {
     *row = now + 1;
     if (frames) *frame = frames[now];
     for (int k = 0; k < moving; ++k) {
-      const SolidStep<Real>& s = steps[now * moving + k];
+      const PoseStep<Real>& s = steps[now * moving + k];
       placed[s.solid] = s.now;
       before[s.solid] = s.before;
       velocity[s.solid] = s.mean;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "kernels/boundary/far_box.h"
+#include "kernels/boundary/far_boundary.h"
 #include "kernels/step_counts.h"
 
 namespace pbf::PBF_VARIANT {
@@ -114,7 +114,7 @@ struct PredictPass {
 template <class Real, int D>
 struct NearPredictPass {
   Params<Real> p;
-  Solids<Real> boundary;
+  SolidBoundary<Real> boundary;
   OwnRows<Vec4<Real>> position, velocity;  ///< in/out
   int* bin;                                ///< out
   StepCounts* counts;

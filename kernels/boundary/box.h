@@ -19,7 +19,7 @@ struct BoundaryTerm {
 template <class Real>
 struct Box {
   static constexpr bool books = false;     ///< whether loads are booked: solids.h
-  static constexpr bool far_only = false;  ///< whether it skips near rows: far_box.h
+  static constexpr bool far_only = false;  ///< whether it skips near rows: far_boundary.h
   Vec3<Real> extent;                       ///< h, of the domain
   Real margin = 0;                         ///< h, distance to a wall at which particles are clamped
   unsigned walls = 63;                     ///< WallBit mask of the faces that are walls

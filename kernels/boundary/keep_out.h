@@ -28,10 +28,10 @@ PBF_HD WayOut<Real> way_out(const Shape& s, const BodyFrame<Real>& frame, Vec3<R
   if (s.template distance<D>(a) < Real(0)) {
     face = tangent_of<D>(s, a);
   } else {
-    Stay<Real> stay;
-    if (dot(d, d) > Real(1e-30)) stay = stay_of<D>(s, a, d, face);
-    const bool meets = stay.enter < stay.leave && stay.leave > Real(0);
-    if (!(meets && stay.enter < Real(1))) {
+    LineSpan<Real> inside;
+    if (dot(d, d) > Real(1e-30)) inside = line_span_of<D>(s, a, d, face);
+    const bool meets = inside.enter < inside.leave && inside.leave > Real(0);
+    if (!(meets && inside.enter < Real(1))) {
       if (!(s.template distance<D>(b) < Real(0))) return {};
       if (!meets) face = tangent_of<D>(s, b);  // both ends are at the surface, to rounding
     }

@@ -35,7 +35,7 @@ PBF_HD typename Pass::Sum kept_sum(const Pass& pass, int i) {
   return sum;
 }
 
-/// The first launch; Pass has the boundary FarBox. A pass that moves rows has
+/// The first launch; Pass has the boundary FarBoundary. A pass that moves rows has
 ///   stays_far(i, own, sum)  whether row i, which was far, is still far afterwards
 ///   far_bound(own, sum)     upper bound of the square of its move, h^2; optional, for lanes
 template <class Pass>
@@ -74,7 +74,7 @@ struct FarHalf : Pass {
   }
 };
 
-/// The second launch, over the near rows; Pass has the boundary Solids.
+/// The second launch, over the near rows; Pass has the boundary SolidBoundary.
 template <class Pass>
 struct NearHalf {
   Pass pass;

@@ -46,12 +46,12 @@ struct Box {
     return face.best;
   }
   template <int D>
-  PBF_HD Stay<Real> stay(Vec3<Real> a, Vec3<Real> d, Tangent<Real>& entry) const {
+  PBF_HD LineSpan<Real> line_span(Vec3<Real> a, Vec3<Real> d, Tangent<Real>& entry) const {
     const Real at[3] = {a.x, a.y, a.z}, way[3] = {d.x, d.y, d.z};
-    Stay<Real> stay{Real(-1e30), Real(1e30)};
+    LineSpan<Real> inside{Real(-1e30), Real(1e30)};
     for (int axis = 0; axis < 3; ++axis)
-      if (D == 3 || axis != 1) cut_stay(stay, entry, at[axis], way[axis], span(axis), axis);
-    return stay;
+      if (D == 3 || axis != 1) cut_line_span(inside, entry, at[axis], way[axis], span(axis), axis);
+    return inside;
   }
 
   /// The product of its slabs; exact in front of faces, for plates of any thickness. Error outside

@@ -54,20 +54,21 @@ struct Capsule {
     return t;
   }
   template <int D>
-  PBF_HD Stay<Real> stay(Vec3<Real> a, Vec3<Real> way, Tangent<Real>& entry) const {
-    const Stay<Real> tube =
-        stay_near(Vec3<Real>{a.x, a.y, Real(0)}, {way.x, way.y, Real(0)}, radius);
+  PBF_HD LineSpan<Real> line_span(Vec3<Real> a, Vec3<Real> way, Tangent<Real>& entry) const {
+    const LineSpan<Real> tube =
+        line_span_in_radius(Vec3<Real>{a.x, a.y, Real(0)}, {way.x, way.y, Real(0)}, radius);
     if (!(tube.enter < tube.leave)) return {};
     // Beyond the ends of the axis, the surface is that of the ball at the end.
     const auto at_end = [&](Real t) {
       const Real z = a.z + t * way.z, end = on_axis(z);
-      return end == z ? Stay<Real>{t, t} : stay_near(Vec3<Real>{a.x, a.y, a.z - end}, way, radius);
+      return end == z ? LineSpan<Real>{t, t}
+                      : line_span_in_radius(Vec3<Real>{a.x, a.y, a.z - end}, way, radius);
     };
-    const Stay<Real> first = at_end(tube.enter), last = at_end(tube.leave);
+    const LineSpan<Real> first = at_end(tube.enter), last = at_end(tube.leave);
     if (first.enter > first.leave || last.enter > last.leave) return {};
-    const Stay<Real> stay{first.enter, last.leave};
-    entry = tangent<D>(a + stay.enter * way);
-    return stay;
+    const LineSpan<Real> inside{first.enter, last.leave};
+    entry = tangent<D>(a + inside.enter * way);
+    return inside;
   }
   template <Smoothing S, bool of_density>
   PBF_HD SolidTerm<Real> share(Vec3<Real> p, Real inv_range) const {

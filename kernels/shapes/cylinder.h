@@ -44,13 +44,14 @@ struct Cylinder {
     return face.best;
   }
   template <int D>
-  PBF_HD Stay<Real> stay(Vec3<Real> a, Vec3<Real> way, Tangent<Real>& entry) const {
-    Stay<Real> stay = stay_near(Vec3<Real>{a.x, a.y, Real(0)}, {way.x, way.y, Real(0)}, radius);
-    if (!(stay.enter < stay.leave)) return {};
-    entry = round_tangent(Vec3<Real>{a.x + stay.enter * way.x, a.y + stay.enter * way.y, Real(0)},
-                          radius);
-    if constexpr (D == 3) cut_stay(stay, entry, a.z, way.z, span(), 2);
-    return stay;
+  PBF_HD LineSpan<Real> line_span(Vec3<Real> a, Vec3<Real> way, Tangent<Real>& entry) const {
+    LineSpan<Real> inside =
+        line_span_in_radius(Vec3<Real>{a.x, a.y, Real(0)}, {way.x, way.y, Real(0)}, radius);
+    if (!(inside.enter < inside.leave)) return {};
+    entry = round_tangent(
+        Vec3<Real>{a.x + inside.enter * way.x, a.y + inside.enter * way.y, Real(0)}, radius);
+    if constexpr (D == 3) cut_line_span(inside, entry, a.z, way.z, span(), 2);
+    return inside;
   }
   template <Smoothing S, bool of_density>
   PBF_HD SolidTerm<Real> share(Vec3<Real> p, Real inv_range) const {

@@ -65,24 +65,24 @@ PBF_HD Tangent<Real> tangent_towards(Vec3<Real> p, Vec3<Real> d) {
 }
 
 template <class Real>
-PBF_HD Stay<Real> both(Stay<Real> a, Stay<Real> b) {
+PBF_HD LineSpan<Real> both(LineSpan<Real> a, LineSpan<Real> b) {
   return {max2(a.enter, b.enter), min2(a.leave, b.leave)};
 }
 /// The part of the line a + t d whose coordinate is inside a span.
 template <class Real>
-PBF_HD Stay<Real> stay_between(Real a, Real d, Span<Real> s) {
+PBF_HD LineSpan<Real> line_span_between(Real a, Real d, Span<Real> s) {
   constexpr Real ever(1e30);
-  if (d == Real(0)) return a > s.low && a < s.high ? Stay<Real>{-ever, ever} : Stay<Real>{};
+  if (d == Real(0)) return a > s.low && a < s.high ? LineSpan<Real>{-ever, ever} : LineSpan<Real>{};
   const Real t = (s.low - a) / d, u = (s.high - a) / d;
-  return t < u ? Stay<Real>{t, u} : Stay<Real>{u, t};
+  return t < u ? LineSpan<Real>{t, u} : LineSpan<Real>{u, t};
 }
-/// Intersects `stay` with the slab of an axis; `entry`: the face where the rest enters.
+/// Intersects `inside` with the slab of an axis; `entry`: the face where the rest enters.
 template <class Real>
-PBF_HD void cut_stay(Stay<Real>& stay, Tangent<Real>& entry, Real at, Real way, Span<Real> s,
-                     int axis) {
-  const Stay<Real> slab = stay_between(at, way, s);
-  if (slab.enter > stay.enter) entry = face_of(s, axis, way < Real(0));
-  stay = both(stay, slab);
+PBF_HD void cut_line_span(LineSpan<Real>& inside, Tangent<Real>& entry, Real at, Real way,
+                          Span<Real> s, int axis) {
+  const LineSpan<Real> slab = line_span_between(at, way, s);
+  if (slab.enter > inside.enter) entry = face_of(s, axis, way < Real(0));
+  inside = both(inside, slab);
 }
 
 }  // namespace pbf::PBF_VARIANT

@@ -23,7 +23,7 @@ struct Plane {
     return {Real(0), Real(0), Real(1)};
   }
   template <int D>
-  PBF_HD Stay<Real> stay(Vec3<Real> a, Vec3<Real> way, Tangent<Real>& entry) const {
+  PBF_HD LineSpan<Real> line_span(Vec3<Real> a, Vec3<Real> way, Tangent<Real>& entry) const {
     entry = {normal<D>(a), Real(0)};
     if (!(way.z < Real(0))) return {};
     return {a.z / -way.z, Real(1e30)};

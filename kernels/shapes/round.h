@@ -7,11 +7,11 @@ namespace pbf::PBF_VARIANT {
 
 /// The part of the line a + t d within `radius` of the origin.
 template <class Real>
-PBF_HD Stay<Real> stay_near(Vec3<Real> a, Vec3<Real> d, Real radius) {
+PBF_HD LineSpan<Real> line_span_in_radius(Vec3<Real> a, Vec3<Real> d, Real radius) {
   constexpr Real ever(1e30);
   const Real dd = dot(d, d);
   if (!(dd > Real(1e-30)))
-    return dot(a, a) < radius * radius ? Stay<Real>{-ever, ever} : Stay<Real>{};
+    return dot(a, a) < radius * radius ? LineSpan<Real>{-ever, ever} : LineSpan<Real>{};
   const Real middle = -dot(a, d) / dd;
   const Vec3<Real> p = a + middle * d;  // not b^2 - ac: that cancels on long paths
   const Real rest = radius * radius - dot(p, p);

@@ -1,6 +1,6 @@
 // What the kernels ask of a solid's shape, and what follows from its distance alone where a shape
-// does not give a closed form. stay_by_steps() and smooth_share() are for such shapes: the list has
-// none yet, and the tests use shapes of their own (tests/support/test_shapes.h).
+// does not give a closed form. line_span_by_steps() and smooth_share() are for such shapes: the
+// list has none yet, and the tests use shapes of their own (tests/support/test_shapes.h).
 #pragma once
 
 #include <concepts>
@@ -47,7 +47,7 @@ struct Tangent {
 
 /// The part of a line a + t way with enter < t < leave; empty where enter >= leave.
 template <class Real>
-struct Stay {
+struct LineSpan {
   Real enter = 1, leave = 0;
 };
 
@@ -57,7 +57,7 @@ struct Stay {
 ///   share<S, of_density>(p, 1/range) the kernel's share in it, as SolidTerm per range
 /// and where they are known in closed form:
 ///   tangent<D>(p)          the tangent plane at the place of the surface that is nearest to p
-///   stay<D>(a, way, entry) the part of a line that is inside, and the tangent plane where it
+///   line_span<D>(a, way, entry) the part of a line that is inside, and the tangent plane where it
 ///                          enters
 ///   reach(d)               how far it goes from its origin along a direction of length 1
 ///   size()                 how far it goes from its origin at most
@@ -98,8 +98,8 @@ constexpr Real kTouching = Real(sizeof(Real) == 4 ? 2e-6 : 1e-13);
 /// without passing the surface. For other bodies a step is the distance, and at least an eighth of
 /// the way: thinner parts may be passed. What comes inside goes back.
 template <int D, class Shape, class Real>
-PBF_HD Stay<Real> stay_by_steps(const Shape& s, Vec3<Real> a, Vec3<Real> way,
-                                Tangent<Real>& entry) {
+PBF_HD LineSpan<Real> line_span_by_steps(const Shape& s, Vec3<Real> a, Vec3<Real> way,
+                                         Tangent<Real>& entry) {
   constexpr Real touching = kTouching<Real>;
   const Real length = square_root(dot(way, way));
   Real t(0);
@@ -122,11 +122,12 @@ PBF_HD Stay<Real> stay_by_steps(const Shape& s, Vec3<Real> a, Vec3<Real> way,
   return {t, Real(1e30)};
 }
 template <int D, class Shape, class Real>
-PBF_HD Stay<Real> stay_of(const Shape& s, Vec3<Real> a, Vec3<Real> way, Tangent<Real>& entry) {
-  if constexpr (requires { s.template stay<D>(a, way, entry); })
-    return s.template stay<D>(a, way, entry);
+PBF_HD LineSpan<Real> line_span_of(const Shape& s, Vec3<Real> a, Vec3<Real> way,
+                                   Tangent<Real>& entry) {
+  if constexpr (requires { s.template line_span<D>(a, way, entry); })
+    return s.template line_span<D>(a, way, entry);
   else
-    return stay_by_steps<D>(s, a, way, entry);
+    return line_span_by_steps<D>(s, a, way, entry);
 }
 
 /// The share of a smooth body to first order in its mean curvature H (per range):

@@ -28,10 +28,10 @@ struct Sphere {
     return round_tangent(p, radius);
   }
   template <int D>
-  PBF_HD Stay<Real> stay(Vec3<Real> a, Vec3<Real> way, Tangent<Real>& entry) const {
-    const Stay<Real> stay = stay_near(a, way, radius);
-    entry = tangent<D>(a + stay.enter * way);
-    return stay;
+  PBF_HD LineSpan<Real> line_span(Vec3<Real> a, Vec3<Real> way, Tangent<Real>& entry) const {
+    const LineSpan<Real> inside = line_span_in_radius(a, way, radius);
+    entry = tangent<D>(a + inside.enter * way);
+    return inside;
   }
   template <Smoothing S, bool of_density>
   PBF_HD SolidTerm<Real> share(Vec3<Real> p, Real inv_range) const {

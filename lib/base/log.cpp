@@ -109,7 +109,7 @@ std::string progress_line(const ProgressState& s, double wall, double wall_since
 }
 
 void Progress::update(const ProgressState& state) {
-  const double wall = watch_.seconds();
+  const double wall = monitor_.seconds();
   if (log_.terminal() && wall - last_wall_ >= 0.5) {
     log_.transient(progress_line(state, wall, wall - last_wall_, state.update - last_update_));
     last_wall_ = wall;

@@ -82,7 +82,7 @@ class Progress {
 
  private:
   Log& log_;
-  Stopwatch watch_;
+  Stopwatch monitor_;
   double last_wall_ = 0, line_wall_ = 0;
   std::int64_t last_update_ = 0, line_update_ = 0;
 };

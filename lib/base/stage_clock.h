@@ -40,10 +40,10 @@ struct StageTime {
 class StageClock {
  public:
   /// Time before this call is not booked.
-  void begin() { watch_.reset(); }
+  void begin() { monitor_.reset(); }
 
   /// Books the time since begin() or the last mark to `stage`.
-  void mark(std::string_view stage) { add(stage, watch_.lap()); }
+  void mark(std::string_view stage) { add(stage, monitor_.lap()); }
 
   /// Books seconds measured elsewhere (a device, another thread).
   void add(std::string_view stage, double seconds, std::int64_t calls = 1) {
@@ -63,7 +63,7 @@ class StageClock {
   const std::vector<StageTime>& entries() const { return entries_; }
 
  private:
-  Stopwatch watch_;
+  Stopwatch monitor_;
   std::vector<StageTime> entries_;  // a dozen: a linear search beats a map
 };
 

@@ -13,7 +13,7 @@ struct StageGroupInfo {
 };
 
 inline constexpr StageGroupInfo kStageGroups[] = {
-    {"initialization", "#000000"}, {"gridding/neighbours", "#D55E00"},
+    {"initialization", "#000000"}, {"grid/neighbors", "#D55E00"},
     {"densities", "#009E73"},      {"lambdas", "#0072B2"},
     {"deltas", "#56B4E9"},         {"position/velocity updates", "#CC79A7"},
     {"post-processing", "#8A8A8A"}};

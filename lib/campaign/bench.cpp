@@ -81,7 +81,7 @@ void time_state(Session& session, const BenchSettings& s, BenchRow& row) {
   row.ms_min = ms.front();
   row.ms_max = ms.back();
   row.stages = per_update(before, solver.info().stages, double(s.updates) * s.repeats);
-  row.measures = solver.measure();
+  row.measures = solver.diagnose();
   row.solver = solver.info();
   row.peak_mb = double(peak_memory()) / (1 << 20);
 }

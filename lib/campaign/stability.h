@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "lib/campaign/grid.h"
+#include "lib/run/monitor.h"
 #include "lib/run/start.h"
-#include "lib/run/watch.h"
 
 namespace pbf::campaign_module {
 

@@ -29,7 +29,7 @@ std::optional<Course> run_course(Start start, const std::function<bool()>& stop,
   const auto solver = solver_of(start);
   std::vector<std::pair<double, double>> compression;
   double loads_since = 0;  // s
-  Watch watch(scene, plan, *solver, [&](const Diagnostics& m, double) {
+  Monitor monitor(scene, plan, *solver, [&](const Diagnostics& m, double) {
     if (compression.empty()) {
       c.first = m;
       c.scale = energy_scale(m, scene, plan);
@@ -53,21 +53,21 @@ std::optional<Course> run_course(Start start, const std::function<bool()>& stop,
   Callback stopping([](std::int64_t) { return kAlways; },
                     [&](Session&) {
                       stopped = stop && stop();
-                      return stopped ? Now::stop : Now::go_on;
+                      return stopped ? Next::stop : Next::go_on;
                     });
   // Calls of at most a second, so that a stop does not wait longer.
-  Session(*solver, {&watch, &watch.choosing(), &stopping}, 1).run(make_schedule(scene).updates);
+  Session(*solver, {&monitor, &monitor.choosing(), &stopping}, 1).run(make_schedule(scene).updates);
   if (stopped) return std::nullopt;
-  c.last = watch.last();
+  c.last = monitor.last();
   c.updates = c.last.update;
-  if (watch.event()) c.event = *watch.event();
-  c.steps = watch.steps(c.updates);
+  if (monitor.event()) c.event = *monitor.event();
+  c.steps = monitor.steps(c.updates);
   const std::size_t settled = std::max<std::size_t>(1, compression.size() / 4);
   for (std::size_t k = compression.size() - settled; k < compression.size(); ++k) {
     c.compression_mean += compression[k].first / double(settled);
     c.compression_max = std::max(c.compression_max, compression[k].second);
   }
-  if (c.event) c.guard_text = watch.guard()->text(*c.event);
+  if (c.event) c.guard_text = monitor.guard()->text(*c.event);
   if (done) done(*solver);
   return c;
 }

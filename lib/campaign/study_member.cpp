@@ -23,7 +23,7 @@ double seconds_of(const Session& session, const Study& study) {
 bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, WorkTrack& work,
              MemberResult& out) {
   LogRow row;
-  row.measures = solver.measure();
+  row.measures = solver.diagnose();
   row.measures.work = work.until(row.measures);
   if (has_motion(scene)) solver.readings(Series::measures, Interval::ends), work.take(row.measures);
   energy.follow(row.measures);
@@ -100,10 +100,10 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
       if (schedule.measures(u)) {
         const bool good = measure(*solver, scene, energy, work, out);
         if (u > 0) progress(double(u) / double(out.updates));
-        if (!good) return Now::stop;
+        if (!good) return Next::stop;
       }
       stopped = u < out.updates && stop();
-      return stopped ? Now::stop : Now::go_on;
+      return stopped ? Next::stop : Next::go_on;
     };
     Callback course(next, at);
     Session(*solver, {&course}).run(out.updates);

@@ -18,17 +18,17 @@
 namespace pbf::io_module {
 namespace {
 
-/// `room`: bytes of memory that are available.
-void must_fit(const std::string& what, std::size_t bytes, std::size_t room) {
-  if (bytes > room)
+/// `available`: bytes of memory that are available.
+void must_fit(const std::string& what, std::size_t bytes, std::size_t available) {
+  if (bytes > available)
     throw Error(ExitCode::unavailable, what + ": needs " + bytes_text(double(bytes)) +
-                                           " of memory, " + bytes_text(double(room)) +
+                                           " of memory, " + bytes_text(double(available)) +
                                            " are available; use a machine with more memory");
 }
 
 /// Rows of dataset `name`, which must be (N, 3) numbers.
 std::vector<Double3> read_rows(hid_t file, const std::string& path, const char* name,
-                               std::size_t room) {
+                               std::size_t available) {
   const std::string where = path + ": dataset " + name;
   const h5::Dataset data = h5::open_dataset(file, name);
   const h5::Type type(H5Dget_type(data));
@@ -41,7 +41,7 @@ std::vector<Double3> read_rows(hid_t file, const std::string& path, const char* 
   if (dims[0] > 2147483647u)
     bad_input(where, "has " + std::to_string(dims[0]) + " rows; at most 2147483647 particles fit");
   h5::claimed(data, dims, sizeof(double));
-  must_fit(where, 2 * dims[0] * sizeof(Double3), room);  // positions and velocities
+  must_fit(where, 2 * dims[0] * sizeof(Double3), available);  // positions and velocities
   std::vector<Double3> out(dims[0]);
   if (dims[0] > 0)
     h5::check(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()));
@@ -51,14 +51,14 @@ std::vector<Double3> read_rows(hid_t file, const std::string& path, const char* 
   return out;
 }
 
-Particles read_hdf5(const std::string& path, const std::string& bytes, std::size_t room) {
+Particles read_hdf5(const std::string& path, const std::string& bytes, std::size_t available) {
   try {
     const h5::Reading file(path, bytes);
     Particles p;
     if (!h5::has_link(file, "position"))
       bad_input(path + ": dataset position", "is missing; a particle file needs position (N, 3)");
-    p.position = read_rows(file, path, "position", room);
-    if (h5::has_link(file, "velocity")) p.velocity = read_rows(file, path, "velocity", room);
+    p.position = read_rows(file, path, "position", available);
+    if (h5::has_link(file, "velocity")) p.velocity = read_rows(file, path, "velocity", available);
     if (!h5::has_link(file, "velocity")) p.velocity.resize(p.size());
     if (p.velocity.size() != p.size())
       bad_input(path, "position has " + std::to_string(p.size()) + " rows, velocity " +
@@ -90,25 +90,27 @@ Particles read_particle_file(const std::string& path, std::string* sha256) {
                    "; paths of file bodies are relative to the folder of the scene file");
   const auto stamp = file.stamp();
   const std::size_t size = stamp.first, memory = available_memory();
-  const std::size_t room = memory > 0 ? memory : ~std::size_t{0};
+  const std::size_t available = memory > 0 ? memory : ~std::size_t{0};
   char head[8];
   const std::size_t n = file.read(head, sizeof head);
   file.rewind();
   Sha256 hash;
   Particles p;
   if (h5::is_signature({head, n})) {
-    must_fit(path, size, room);
+    must_fit(path, size, available);
     const std::string bytes = bytes_of(file, size);
     if (file.stamp() != stamp)
       throw Error(ExitCode::io, path +
                                     ": cannot be read as a particle file: it was written to while "
                                     "it was read; wait until it is whole");
     if (sha256) hash.add(bytes);
-    const auto read = [&] { return read_hdf5(path, bytes, room - std::min(room, bytes.size())); };
+    const auto read = [&] {
+      return read_hdf5(path, bytes, available - std::min(available, bytes.size()));
+    };
     h5::trial(path, read);
     p = read();
   } else {
-    must_fit(path, 2 * size, room);
+    must_fit(path, 2 * size, available);
     p = read_particle_csv(file, path, sha256 ? &hash : nullptr);
   }
   if (sha256) *sha256 = hash.text();

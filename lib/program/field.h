@@ -195,7 +195,7 @@ constexpr bool is_basic(const FieldInfo& f) {
   return &f == &position || &f == &velocity || &f == &id;
 }
 /// Whether sorts carry the field besides position, velocity and id.
-constexpr bool is_further(const FieldInfo& f) { return f.is_carried() && !is_basic(f); }
+constexpr bool is_carried_field(const FieldInfo& f) { return f.is_carried() && !is_basic(f); }
 }  // namespace field
 
 /// "position", or "position'" for the second array.

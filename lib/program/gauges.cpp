@@ -82,7 +82,7 @@ PlannedGauge<ProbeTally> planned(const gauge_keys::Level& g, const Frame& frame)
                               : level_line<3>(p, walls, frame.plan.solids),
                   h, weight, step = p.step](const ProbeSums* sums) -> std::vector<double> {
     const auto above = [&](std::size_t n) {
-      return weight * double(sums[n].weight) - 0.5 * line.room[n];
+      return weight * double(sums[n].weight) - 0.5 * line.free_share[n];
     };
     double wet = 0, here = above(0);
     for (std::size_t n = 0; n < line.pieces.size(); ++n) {

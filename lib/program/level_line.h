@@ -19,7 +19,7 @@ struct LevelPiece {
 
 /// Where fluid can be along a level gauge.
 struct LevelLine {
-  std::vector<double> room;        ///< at each point, the share of the kernel outside of solids
+  std::vector<double> free_share;  ///< at each point, the share of the kernel outside of solids
   std::vector<LevelPiece> pieces;  ///< between the points
 };
 
@@ -56,7 +56,7 @@ LevelLine level_line(const Probe& p, const Box<double>& walls,
   for (int n = 0; n < p.count; ++n) {
     double share = 0;
     for (const Solid<double>& o : solids) share += solid_term<poly6>(o, at(n), 1.0).share;
-    line.room.push_back((1 - walls.term<poly6>(at(n)).density) * std::max(1 - share, 0.0));
+    line.free_share.push_back((1 - walls.term<poly6>(at(n)).density) * std::max(1 - share, 0.0));
   }
   for (int n = 0; n + 1 < p.count; ++n) {
     const bool here = free(n), there = free(n + 1);

@@ -67,7 +67,7 @@ void add_cpu_lists(const Scene& s, const Plan& plan, const Adder& add) {
   add("lists", "int32", 1, std::int64_t(double(n) * std::max(double(entries), start.mean)));
   add("groups of lists", "int32", 2, chunks * 1024 / 8);
   add("table of lists", "int64", 3, chunks);
-  add("neighbours found by each thread", "int32", 1,
+  add("neighbors found by each thread", "int32", 1,
       std::min<std::int64_t>(threads, chunks) *
           std::max(cpu_scratch_entries(entries),  // grows with a reserve of a quarter
                    std::int64_t(1.25 * double(std::min<std::int64_t>(n, 1024)) * start.most)));
@@ -99,21 +99,21 @@ int cpu_list_entries(const Scene& s) {
   return std::clamp(int(std::ceil(entries)), 1, 1 << 20);
 }
 
-StartCrowd start_crowd(const Scene& s, const Plan& plan) {
-  StartCrowd crowd;
-  for (const int m : plan.start.count) crowd.neighbors += m / double(plan.start.count.size());
-  crowd.decides = start_entries(s, plan).mean > cpu_list_entries(s);
-  return crowd;
+DenseStart dense_start(const Scene& s, const Plan& plan) {
+  DenseStart dense;
+  for (const int m : plan.start.count) dense.neighbors += m / double(plan.start.count.size());
+  dense.decides = start_entries(s, plan).mean > cpu_list_entries(s);
+  return dense;
 }
 
 std::string memory_remedy(const Scene& s, const Plan& plan) {
-  const StartCrowd crowd = start_crowd(s, plan);
-  if (!crowd.decides) return "increase fluid.spacing";
+  const DenseStart dense = dense_start(s, plan);
+  if (!dense.decides) return "increase fluid.spacing";
   return fmt::format(
-      "its particles start so close that each has about {:.0f} neighbours within h = {:g} m, where "
+      "its particles start so close that each has about {:.0f} neighbors within h = {:g} m, where "
       "fluid at rest has {:.0f}, and each takes room in a list: spread the bodies (bodies[].min, "
       "max), give fewer particles (bodies[].count)",
-      crowd.neighbors, s.h(), rest_neighbors(s));
+      dense.neighbors, s.h(), rest_neighbors(s));
 }
 
 }  // namespace pbf::program_module

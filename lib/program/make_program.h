@@ -12,7 +12,7 @@ struct PassSet {
   std::vector<PassInfo> infos;
   int (*fused)(int a, int b) = nullptr;  ///< the pass that does the work of a and then b, or -1
   ProgramStep predict, sort, make_lists;
-  std::vector<Carried> further;
+  std::vector<CarriedField> carried_fields;
 };
 Program assembled(const Scene& scene, const UpdateShape& shape, PassSet passes, bool without_time);
 
@@ -73,7 +73,7 @@ Program make_program_of(const Scene& scene, const UpdateShape& shape, bool witho
   b.predict = b.template step_of<typename FeatureSet::Predict>();
   b.sort = b.template step_of<typename FeatureSet::Sort>();
   b.make_lists = b.template step_of<typename FeatureSet::MakeLists>();
-  b.further = Passes::further_fields();
+  b.carried_fields = Passes::carried_fields();
   return assembled(scene, shape, std::move(b), without_time);
 }
 

@@ -61,11 +61,11 @@ double rest_neighbors(const Scene& scene);
 int cpu_list_entries(const Scene& scene);
 /// The mean number of neighbors at the start, and whether it, rather than fluid at rest, determines
 /// the size of the lists. Denser fluid at later times is not considered.
-struct StartCrowd {
+struct DenseStart {
   double neighbors = 0;  ///< 0: not counted (Plan::start)
   bool decides = false;
 };
-StartCrowd start_crowd(const Scene& scene, const Plan& plan);
+DenseStart dense_start(const Scene& scene, const Plan& plan);
 /// The end of a message about insufficient memory: what to change in the scene.
 std::string memory_remedy(const Scene& scene, const Plan& plan);
 

@@ -38,7 +38,7 @@ struct AccessInfo {
 };
 
 /// The two arrays of a field that sorts carry along.
-struct Carried {
+struct CarriedField {
   const FieldInfo *first, *second;
 };
 
@@ -53,9 +53,9 @@ struct Access {
   static constexpr unsigned how_of() {
     return std::is_same_v<Asked, Field> ? how_ : 0;
   }
-  static constexpr bool further = field::is_further(F);
-  static void list_further(std::vector<Carried>& to) {
-    if constexpr (further) to.push_back({&F, &other<F>});
+  static constexpr bool carries_fields = field::is_carried_field(F);
+  static void list_carried(std::vector<CarriedField>& to) {
+    if constexpr (carries_fields) to.push_back({&F, &other<F>});
   }
 };
 template <auto& F, W w = W::any, When when = When::always>
@@ -84,8 +84,8 @@ struct Needs {
   static constexpr unsigned how_of() {
     return (0u | ... | As::template how_of<Asked>());
   }
-  static constexpr bool further = (false || ... || As::further);
-  static void list_further(std::vector<Carried>& to) { (As::list_further(to), ...); }
+  static constexpr bool carries_fields = (false || ... || As::carries_fields);
+  static void list_carried(std::vector<CarriedField>& to) { (As::list_carried(to), ...); }
 };
 /// Declarations for scenes for which on(scene) is true.
 template <bool (*on)(const Scene&), class... As>
@@ -97,8 +97,8 @@ struct If {
   static constexpr unsigned how_of() {
     return (0u | ... | As::template how_of<Asked>());
   }
-  static constexpr bool further = (false || ... || As::further);
-  static void list_further(std::vector<Carried>& to) { (As::list_further(to), ...); }
+  static constexpr bool carries_fields = (false || ... || As::carries_fields);
+  static void list_carried(std::vector<CarriedField>& to) { (As::list_carried(to), ...); }
 };
 /// Declarations of a fused pass, which does the work of A and then of B for each row. If A writes a
 /// row and B reads the same row, the fused pass need not read it.
@@ -112,8 +112,10 @@ struct Then {
                   "one launch writes a field and gathers it: its threads would race");
     return a | b;
   }
-  static constexpr bool further = A::further || B::further;
-  static void list_further(std::vector<Carried>& to) { A::list_further(to), B::list_further(to); }
+  static constexpr bool carries_fields = A::carries_fields || B::carries_fields;
+  static void list_carried(std::vector<CarriedField>& to) {
+    A::list_carried(to), B::list_carried(to);
+  }
 };
 
 /// The two arrays of these fields are swapped before the pass is launched.

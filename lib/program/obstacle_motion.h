@@ -10,8 +10,8 @@
 #include "lib/program/feature.h"
 #include "lib/program/motion.h"
 #include "lib/program/obstacles.h"
-#include "lib/program/placed_solids.h"
 #include "lib/program/plan.h"
+#include "lib/program/posed_solids.h"
 
 namespace pbf::PBF_VARIANT {
 
@@ -28,7 +28,7 @@ inline std::int64_t moving_obstacles(const Scene& scene) {
 template <class Real>
 struct MotionRows {
   std::vector<FrameStep<Real>> frames;
-  std::vector<SolidStep<Real>> steps;
+  std::vector<PoseStep<Real>> steps;
 };
 
 /// The velocity of a solid that moves from a to b in dt.
@@ -83,9 +83,9 @@ Bounds<Real> wider(const Bounds<Real>& b, double by) {
 }
 /// A solid before its step to `next`. Reach and bounds include its path: what it may meet is near.
 template <class Real>
-PlacedSolid<Real> placed_before(const Solid<double>& now, const Solid<double>& next,
-                                const Box<Real>& walls) {
-  PlacedSolid<Real> out = placed(now, walls);
+PosedSolid<Real> placed_before(const Solid<double>& now, const Solid<double>& next,
+                               const Box<Real>& walls) {
+  PosedSolid<Real> out = placed(now, walls);
   const double way = way_between(now, next, walls);
   out.reach = out.reach + Real(way);
   out.bounds = wider(out.bounds, way);
@@ -93,12 +93,12 @@ PlacedSolid<Real> placed_before(const Solid<double>& now, const Solid<double>& n
 }
 /// All solids before a step that begins at `time` (s since the start).
 template <class Real>
-std::vector<PlacedSolid<Real>> placed_at(const Scene& scene, const Plan& plan,
-                                         const Box<Real>& walls, double time) {
+std::vector<PosedSolid<Real>> placed_at(const Scene& scene, const Plan& plan,
+                                        const Box<Real>& walls, double time) {
   if (!has_moving_obstacles(scene)) return placed_solids(plan.solids, walls);
   const auto now = solids_of(scene, plan.axes, time);
   const auto next = solids_of(scene, plan.axes, time + scene.time.step / plan.substeps);
-  std::vector<PlacedSolid<Real>> all;
+  std::vector<PosedSolid<Real>> all;
   for (std::size_t k = 0; k < now.size(); ++k) all.push_back(placed_before(now[k], next[k], walls));
   return all;
 }
@@ -131,10 +131,10 @@ MotionRows<Real> motion_rows(const Scene& scene, const Plan& plan, const Box<Rea
     next = at(first + k + 2);
     for (std::size_t s = 0; s < to.size(); ++s) {
       if (!scene.obstacles[s].motion) continue;
-      SolidStep<Real> step;
+      PoseStep<Real> step;
       step.solid = int(s);
       step.now = placed_before(to[s], next[s], walls);
-      const PlacedSolid<Real> was = placed(from[s], walls);
+      const PosedSolid<Real> was = placed(from[s], walls);
       step.before = was.solid;
       // Points of a turning body leave their chord by less than radius (1 - cos(angle/2)).
       const double turn = chord(from[s], to[s]), bulge = turn * turn / 4;
@@ -158,7 +158,7 @@ struct RunBounds {
 template <class Real>
 RunBounds<Real> bounds_of_run(const Scene& scene, const Plan& plan, const Box<Real>& walls) {
   RunBounds<Real> run;
-  std::vector<PlacedSolid<Real>> all = placed_at(scene, plan, walls, 0);
+  std::vector<PosedSolid<Real>> all = placed_at(scene, plan, walls, 0);
   std::vector<std::size_t> moving;
   for (std::size_t k = 0; k < all.size(); ++k)
     scene.obstacles[k].motion ? moving.push_back(k) : run.standing.push_back(plan.solids[k]);

@@ -79,10 +79,10 @@ struct PassList {
   static std::vector<PassInfo> infos(const Scene& scene) { return {info_of<Ps>(scene)...}; }
   static constexpr std::array<PassText, sizeof...(Ps)> texts{Ps::text...};
   /// The carried fields of all passes besides position, velocity and id, in any scene.
-  static constexpr bool further = (false || ... || Ps::Needs::further);
-  static std::vector<Carried> further_fields() {
-    std::vector<Carried> all;
-    (Ps::Needs::list_further(all), ...);
+  static constexpr bool carries_fields = (false || ... || Ps::Needs::carries_fields);
+  static std::vector<CarriedField> carried_fields() {
+    std::vector<CarriedField> all;
+    (Ps::Needs::list_carried(all), ...);
     return all;
   }
   /// The index of the pass that does the work of passes a and b, or -1.

@@ -80,7 +80,7 @@ void plan_left_out(Plan& plan, const Scene& s) {
   out(s.domain.open.size() == 6, "walls: their density and the clamp", "domain.open names all six");
   out(plan.repeats == 0, "iterations until a tolerance is met", "solver.tolerance is 0");
   out(!plan.program.has_pairs(),
-      "sort and neighbour lists, but for a measure and for densities of a frame",
+      "sort and neighbor lists, but for a measure and for densities of a frame",
       "solver.iterations is 0; no keys viscosity, vorticity");
   out(!s.time.adaptive, "halving of the step", "no key time.adaptive");
   out(!s.guard, "the guard and its copy of the state", "guard is off");

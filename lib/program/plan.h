@@ -70,8 +70,8 @@ struct Plan {
 double run_file_datasets(const Plan& plan);
 
 /// Pure: touches no file and no device. `particles`: from count_particles(). `start`: from
-/// start_neighbors(), for the memory of a crowded start; without it, the start is planned as fluid
-/// at rest.
+/// start_neighbors(), for the memory of a over-dense start; without it, the start is planned as
+/// fluid at rest.
 Plan make_plan(const Scene& scene, std::int64_t particles, StartNeighbors start = {});
 
 /// The plan in a few numbers.

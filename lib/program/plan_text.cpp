@@ -58,7 +58,7 @@ std::string passes_part(const Plan& plan, const Scene& s) {
     const std::string gathers = gathers_text(*p);
     out += fmt::format("  {:22} x{:<3} stage {:10} reads {:34} writes {}", p->name, times, p->stage,
                        reads_text(*p), writes_text(*p)) +
-           (gathers.empty() ? "\n" : "; of neighbours " + gathers + "\n");
+           (gathers.empty() ? "\n" : "; of neighbors " + gathers + "\n");
   }
   if (plan.substeps > 1)
     out += fmt::format(
@@ -72,13 +72,13 @@ std::string grid_part(const Plan& plan, const Scene& s) {
   std::string out = fmt::format(
       "grid {} (half) x {} x {} cells of edge {:g} h; internal axes x, y, z: {} of the scene\n",
       plan.cells[0], plan.cells[1], plan.cells[2], plan.cell_edge, axes_text(plan.axes));
-  if (const StartCrowd crowd = start_crowd(s, plan); crowd.neighbors > 0)
-    out += fmt::format("start: about {:.0f} neighbours of a particle, at rest {:.0f}{}\n",
-                       crowd.neighbors, rest_neighbors(s),
-                       crowd.decides
-                           ? "; they decide the size of the lists, and fluid that crowds more "
-                             "later takes more"
-                           : "");
+  if (const DenseStart dense = dense_start(s, plan); dense.neighbors > 0)
+    out +=
+        fmt::format("start: about {:.0f} neighbors of a particle, at rest {:.0f}{}\n",
+                    dense.neighbors, rest_neighbors(s),
+                    dense.decides ? "; they decide the size of the lists, and fluid that is denser "
+                                    "later takes more"
+                                  : "");
   return out;
 }
 

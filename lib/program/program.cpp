@@ -70,13 +70,13 @@ void collect_fields(const Steps& steps, Program& p) {
 }
 
 /// Adds the further fields of the program to what the passes that reorder rows declare.
-void carry_further(const std::vector<Carried>& all, Program& p) {
-  for (const Carried& c : all) {
-    const auto is = [&](const Carried& o) { return o.first == c.first; };
+void carry_fields(const std::vector<CarriedField>& all, Program& p) {
+  for (const CarriedField& c : all) {
+    const auto is = [&](const CarriedField& o) { return o.first == c.first; };
     if (std::find(p.fields.begin(), p.fields.end(), c.first) == p.fields.end() ||
-        std::any_of(p.further.begin(), p.further.end(), is))
+        std::any_of(p.carried_fields.begin(), p.carried_fields.end(), is))
       continue;
-    p.further.push_back(c);
+    p.carried_fields.push_back(c);
     for (PassInfo& pass : p.passes) {
       if (!pass.reorders_rows()) continue;
       std::vector<AccessInfo> declared = std::move(pass.declared);
@@ -100,7 +100,7 @@ void check_state_fields(const Program& p) {
     if (f->life == Life::state && f->numbers == 0) wrong(*f, "a state needs its numbers (each())");
     if (f->bytes(Precision::single) % 4 != 0) wrong(*f, "a row is no multiple of 4 bytes");
   }
-  if (p.further.size() > std::size_t(CarriedRows::most))
+  if (p.carried_fields.size() > std::size_t(CarriedRows::most))
     throw Error(ExitCode::internal, "sorts carry too many fields");
 }
 
@@ -240,7 +240,7 @@ Program assembled(const Scene& scene, const UpdateShape& shape, PassSet b, bool 
   collect_fields(p.readings, p);
   for (const FieldInfo* f : p.fields)
     if (f->life == Life::state) p.state.push_back(f);
-  carry_further(b.further, p);
+  carry_fields(b.carried_fields, p);
   p.left_out = std::move(b.without);
   if (!b.before_sort.empty() && !p.has_pairs())
     throw Error(ExitCode::internal, "particles come or go in a program without a sort");

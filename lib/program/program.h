@@ -43,7 +43,8 @@ struct Program {
   /// All fields of the passes and those that every solver has; of a pair only the first array.
   std::vector<const FieldInfo*> fields;
   std::vector<const FieldInfo*> state;  ///< those of Life::state
-  std::vector<Carried> further;   ///< those that sorts carry besides position, velocity and id
+  std::vector<CarriedField>
+      carried_fields;             ///< those that sorts carry besides position, velocity and id
   std::vector<LeftOut> left_out;  ///< features that the scene does not use
 
   bool has_pairs() const { return !first.empty(); }  ///< otherwise particles move freely

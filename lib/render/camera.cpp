@@ -64,7 +64,7 @@ double fit(Projection& p, const std::vector<Projection>& axes, const View& view,
            const Double3& target) {
   const double half_x = p.tan_half * p.aspect(), half_y = p.tan_half;
   const Corners frame = frame_of(view);
-  const Room room = room_of(view);
+  const Margins margins = margins_of(view);
   const auto extent = [&](double distance) {
     Extent e;
     for (const auto& a : axes) e.add(a, frame, target, distance);
@@ -73,14 +73,14 @@ double fit(Projection& p, const std::vector<Projection>& axes, const View& view,
   double low = 0, high = length(frame[7] - frame[0]);
   const auto fits = [&](double distance) {
     const Extent e = extent(distance);
-    return e.x1 - e.x0 <= 2 * half_x * (1 - room.left - room.right) &&
-           e.y1 - e.y0 <= 2 * half_y * (1 - room.top - room.bottom);
+    return e.x1 - e.x0 <= 2 * half_x * (1 - margins.left - margins.right) &&
+           e.y1 - e.y0 <= 2 * half_y * (1 - margins.top - margins.bottom);
   };
   while (!fits(high)) low = high, high *= 2;  // ends: the extent falls with the distance
   for (int i = 0; i < 40; ++i) (fits(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
   const Extent e = extent(high);
-  p.shift = {room.right - room.left + 0.5 * (e.x0 + e.x1) / half_x,
-             room.top - room.bottom + 0.5 * (e.y0 + e.y1) / half_y};
+  p.shift = {margins.right - margins.left + 0.5 * (e.x0 + e.x1) / half_x,
+             margins.top - margins.bottom + 0.5 * (e.y0 + e.y1) / half_y};
   return high;
 }
 

@@ -109,16 +109,18 @@ TextBox bar_place(std::array<int, 2> picture, const std::vector<Tick>& ticks) {
           std::round(low)};
 }
 
-Room room_of(const View& view) {
+Margins margins_of(const View& view) {
   const double size = text_size(view.size), width = view.size[0], height = view.size[1];
   const TextBox bar = bar_place(view.size, ticks_of(view.range));
   const double column = std::max(width - bar.x0, text_width(about(view.color).word, size));
-  Room room{5.8 * size / width,  // there the numbers of an axis
-            (column + 4.2 * size) / width, (1.6 + 2 * kLine) * size / height, 2.6 * size / height};
+  Margins margins{5.8 * size / width,  // there the numbers of an axis
+                  (column + 4.2 * size) / width, (1.6 + 2 * kLine) * size / height,
+                  2.6 * size / height};
   // In a picture of a few letters' size the fluid comes first.
-  const double across = std::min(1.0, 0.5 / (room.left + room.right));
-  const double along = std::min(1.0, 0.5 / (room.top + room.bottom));
-  return {across * room.left, across * room.right, along * room.top, along * room.bottom};
+  const double across = std::min(1.0, 0.5 / (margins.left + margins.right));
+  const double along = std::min(1.0, 0.5 / (margins.top + margins.bottom));
+  return {across * margins.left, across * margins.right, along * margins.top,
+          along * margins.bottom};
 }
 
 void draw_overlay(Image& image, const View& view, const Projection& projection,

@@ -33,10 +33,10 @@ std::string particles_text(std::int64_t count);
 double text_size(std::array<int, 2> picture);
 
 /// Shares of the picture's width and height that the default camera leaves to the labels.
-struct Room {
+struct Margins {
   double left, right, top, bottom;
 };
-Room room_of(const View& view);
+Margins margins_of(const View& view);
 
 /// Where the colour bar lies.
 TextBox bar_place(std::array<int, 2> picture, const std::vector<Tick>& ticks);

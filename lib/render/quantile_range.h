@@ -21,7 +21,7 @@ class QuantileRange {
   std::int64_t stride() const { return stride_; }  ///< every so many values are taken
 
   /// The values with the shares `low` and `high` (0..1) of all below them, straight between
-  /// neighbours in their order, as numpy.quantile. Error(bad_input) where there is no value. Both
+  /// neighbors in their order, as numpy.quantile. Error(bad_input) where there is no value. Both
   /// are equal where all values are. Takes the values apart: call it once.
   std::array<double, 2> between(double low, double high);
 

@@ -16,9 +16,9 @@ Frames::Frames(RunParts& run, Reporter& reporter) : run_(run), reporter_(reporte
   run.pictures_drawn = run.schedule.pictures_until(last_);
 }
 
-Now Frames::at(Session& session) {
+Next Frames::at(Session& session) {
   start(session.update(), false);
-  return Now::go_on;
+  return Next::go_on;
 }
 
 void Frames::start(std::int64_t u, bool last) {

@@ -149,7 +149,7 @@ GuardEvent Guard::locate(Alarm alarm, const Diagnostics& m, const StepOptions& o
   const double energy = event_limit(m);
   // Stages do not know the work of motions, so it is added to their limit.
   const StageLimits limits{limits_.speed / h, (energy + m.work) * to_internal, limits_.neighbors};
-  e.last_good = solver_.state(Which::kept);
+  e.last_good = solver_.state(StateOf::kept);
   solver_.set_state(e.last_good);
   while (!e.stage && solver_.updates() < e.measure.update)
     e.stage = solver_.inspection()->step_checked(limits, options);

@@ -25,7 +25,7 @@ constexpr Words kWords[] = {
      "lower time.step, raise solver.iterations, or ask for solver.speed_limit"},
     {"is the fastest while the energy grows without a source", " J", "guard.energy",
      "lower time.step, raise solver.iterations, or lower solver.sor"},
-    {"has too many neighbours", "", "guard.neighbors",
+    {"has too many neighbors", "", "guard.neighbors",
      "raise solver.iterations, lower time.step, or spread the bodies"}};
 const Words& words(Alarm alarm) { return kWords[static_cast<int>(alarm)]; }
 

@@ -53,7 +53,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
                            const std::function<void(const std::string&)>& progress) {
   Prestabilized p;
   if (!s.solver.prestabilize || s.solver.iterations == 0) return p;
-  p.before = solver.measure();
+  p.before = solver.diagnose();
   const double dt = std::ldexp(s.time.step / plan.substeps, -finest_level(s));
   const double speed = s.h() / dt;  // m/s, for a move by h
   // Energy in J for a sum of squared displacements in h^2.
@@ -65,7 +65,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   // A step moves particles by about c h, with c the compression; twice that is an upper estimate.
   p.kick = energy(n * std::pow(2 * p.before.compression_rms, 2));
   if (p.relieved() || p.before.non_finite > 0) return p;
-  std::vector<double> from = solver.state(Which::positions).position;
+  std::vector<double> from = solver.state(StateOf::positions).position;
   std::vector<Point> course;
   const std::int64_t iterations = std::int64_t(s.solver.iterations) * plan.substeps;
   const std::int64_t most = std::max<std::int64_t>(kMostIterations / iterations, 32);
@@ -73,7 +73,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   for (int round = 1; p.steps < most; round = std::min(p.steps, kRound)) {
     solver.step(round, {.without_time = 1.0});
     p.steps += round;
-    std::vector<double> to = solver.state(Which::positions).position;
+    std::vector<double> to = solver.state(StateOf::positions).position;
     const Moves moves(from, to);
     from = std::move(to);
     p.moved += moves.farthest * s.fluid.smoothing_ratio;
@@ -88,7 +88,7 @@ Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
   }
   if (s.domain.open.empty())  // the sum over rounds may exceed any real displacement
     p.moved = std::min(p.moved, length(s.domain.max - s.domain.min) / s.fluid.spacing);
-  p.after = solver.measure();
+  p.after = solver.diagnose();
   return p;
 }
 

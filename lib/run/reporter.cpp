@@ -20,39 +20,39 @@ std::string passed_through_text(const Scene& s, const Diagnostics& m, double sha
                                                s.time.step * kResolvedWay / m.relative_way_max);
   return fmt::format(
       "fluid may have passed through fluid: {} times ({:.2g} % of particles times steps) a "
-      "particle moved by more than {:g} h relative to a neighbour in a step, by up to {:.3g} h; {}",
+      "particle moved by more than {:g} h relative to a neighbor in a step, by up to {:.3g} h; {}",
       m.unresolved, 100 * share, kResolvedWay, m.relative_way_max, remedy);
 }
 
 }  // namespace
 
-Reporter::Reporter(RunParts& run, const Watch& watch)
-    : run_(run), watch_(watch), progress_(run.control.log) {
+Reporter::Reporter(RunParts& run, const Monitor& monitor)
+    : run_(run), monitor_(monitor), progress_(run.control.log) {
   for (const Warning& w : run.start.warnings) told_.emplace(w.kind, w.text);
   if (run.from.saved) compressed_ = run.from.saved->compressed_updates;
   progress_.start_at(run.from.update());
 }
 
-Now Reporter::at(Session& session) {
+Next Reporter::at(Session& session) {
   const std::int64_t u = session.update(), updates = run_.schedule.updates;
   if (u < updates)
     for (const Warning& w : found(false))
       if (told_.emplace(w.kind, w.text).second) run_.control.log.warning(w.text);
-  const Diagnostics& m = watch_.last();
+  const Diagnostics& m = monitor_.last();
   progress_.update({u, updates, run_.plan.particles, double(u) * run_.scene.time.step,
                     m.compression_mean, m.compression_max, run_.from.update()});
-  return Now::go_on;
+  return Next::go_on;
 }
 
 void Reporter::end(Session& session) {
   if (!run_.scene.domain.open.empty()) {
-    const std::vector<double> x = run_.solver.state(Which::positions).position;
+    const std::vector<double> x = run_.solver.state(StateOf::positions).position;
     const Double3 origin = run_.scene.origin();
     const double h = run_.scene.h();
     count_outside(x.size() / 3, [&](std::size_t i, int a) { return origin[a] + h * x[3 * i + a]; });
   }
   all_ = run_.start.warnings;
-  const bool finished = !watch_.event() && session.update() == run_.schedule.updates;
+  const bool finished = !monitor_.event() && session.update() == run_.schedule.updates;
   for (const Warning& w : found(finished)) all_.push_back(w);
 }
 
@@ -107,7 +107,7 @@ void Reporter::look_outside(const Snapshot& s) {
 }
 
 std::vector<Warning> Reporter::found(bool end) const {
-  const Diagnostics& m = watch_.last();
+  const Diagnostics& m = monitor_.last();
   std::vector<Warning> list;
   const bool long_time = 10 * compressed_ >= run_.schedule.updates;
   const bool at_end = end && m.compression_mean > kNoLiquid;

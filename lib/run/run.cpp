@@ -75,9 +75,10 @@ void open_files(RunParts& run, const std::string& started) {
 namespace {
 
 /// Saves the last good state and a scene that continues from it, and ends the run with an error.
-[[noreturn]] void report_alarm(const Watch& watch, const Scene& scene, const RunFolder& folder) {
-  const GuardEvent& e = *watch.event();
-  const Guard& guard = *watch.guard();
+[[noreturn]] void report_alarm(const Monitor& monitor, const Scene& scene,
+                               const RunFolder& folder) {
+  const GuardEvent& e = *monitor.event();
+  const Guard& guard = *monitor.guard();
   write_particle_file(folder.file("guard_state.h5"), to_particles(e.last_good, scene));
   folder.write_text("guard_scene.yaml", resolved_yaml(guard.repeating_scene(e, "guard_state.h5")));
   throw Error(ExitCode::guard, fmt::format("{}. {} holds the run up to there, guard_state.h5 the "
@@ -154,33 +155,33 @@ RunResult simulate(RunParts& run) {
 
 void run_session(RunParts& run) {
   const Stopwatch loop;
-  std::optional<Rows> rows;
-  Watch watch(
+  std::optional<LogRows> rows;
+  Monitor monitor(
       run.scene, run.plan, run.solver, [&](Diagnostics& m, double dt) { rows->take(m, dt); },
       [&](const std::string& line) { run.control.log.note(line); }, &run.clock);
   if (run.schedule.gauge_every > 0 && run.writer)
-    watch.read_gauges([&](const GaugeRow& row) { run.writer->gauges(row); });
-  Reporter reporter(run, watch);
+    monitor.read_gauges([&](const GaugeRow& row) { run.writer->gauges(row); });
+  Reporter reporter(run, monitor);
   rows.emplace(run, reporter);
   Frames frames(run, reporter);
   Callback handing([](std::int64_t) { return kEveryCall; },
                    [&](Session&) {
                      frames.hand_over();
-                     return Now::go_on;
+                     return Next::go_on;
                    });
-  Saving saving(run, frames, *rows, watch, reporter);
+  Saving saving(run, frames, *rows, monitor, reporter);
   const auto& saved = run.from.saved;
-  if (saved) rows->follow(watch.go_on_from(*saved));
+  if (saved) rows->follow(monitor.go_on_from(*saved));
   // A signal waits for at most a quarter of a second, or for one update.
-  Session session(run.solver, {&handing, &watch, &frames, &watch.choosing(), &reporter, &saving},
-                  0.25);
-  session.use(watch.options());
+  Session session(run.solver,
+                  {&handing, &monitor, &frames, &monitor.choosing(), &reporter, &saving}, 0.25);
+  session.use(monitor.options());
   session.run(run.schedule.updates, saved ? run.from.update() : -1);
   run.loop_seconds = loop.seconds();
-  run.control.log.result(run_summary(run, watch, rows->stages()));
+  run.control.log.result(run_summary(run, monitor, rows->stages()));
   if (!run.control.strict)  // a strict run has all of them in its error
     for (const Warning& w : reporter.untold()) run.control.log.warning(w.text);
-  if (watch.event()) report_alarm(watch, run.scene, run.folder);
+  if (monitor.event()) report_alarm(monitor, run.scene, run.folder);
   if (run.control.strict && !reporter.warnings().empty())
     throw Error(ExitCode::difference,
                 fmt::format("--strict: {}\npbf: the files in {} hold the run up to update {} of "

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "lib/io/run_file.h"
+#include "lib/run/monitor.h"
 #include "lib/run/resume.h"
 #include "lib/run/start.h"
-#include "lib/run/watch.h"
 #ifdef PBF_HAS_RENDER
 #include "lib/render/renderer.h"
 #endif
@@ -46,10 +46,10 @@ struct RunParts {
 /// Reports progress, and warnings of a run when they arise.
 class Reporter : public Observer {
  public:
-  Reporter(RunParts& run, const Watch& watch);
+  Reporter(RunParts& run, const Monitor& monitor);
   std::int64_t next(std::int64_t /*u*/) const override { return kEveryCall; }
   /// Reports each kind of warning once; the end has the figures of the whole run.
-  Now at(Session& session) override;
+  Next at(Session& session) override;
   void end(Session& session) override;
   /// Must be given every scheduled measurement, in order.
   void follow(const Diagnostics& due);
@@ -69,7 +69,7 @@ class Reporter : public Observer {
   std::vector<Warning> found(bool end) const;
 
   RunParts& run_;
-  const Watch& watch_;
+  const Monitor& monitor_;
   Progress progress_;
   std::map<std::string, std::string> told_;  // kind, text
   std::vector<Warning> all_;
@@ -79,9 +79,9 @@ class Reporter : public Observer {
 };
 
 /// Records measurements: rows of the log, lines of JSON, contents of a checkpoint.
-class Rows {
+class LogRows {
  public:
-  Rows(RunParts& run, Reporter& reporter);
+  LogRows(RunParts& run, Reporter& reporter);
   /// Fills in the values from the energy track. Throws Error(io) if the JSON cannot be written.
   void take(Diagnostics& m, double dt);
   /// The same for a measurement that already has a row.
@@ -108,7 +108,7 @@ class Frames : public Observer {
  public:
   Frames(RunParts& run, Reporter& reporter);
   std::int64_t next(std::int64_t u) const override { return run_.schedule.next_output(u); }
-  Now at(Session& session) override;
+  Next at(Session& session) override;
   void end(Session& session) override;
   void close() noexcept override;
   /// Gives a pending copy to the writer and the pictures. On a device the copy runs in parallel
@@ -132,10 +132,11 @@ class Frames : public Observer {
 /// for a warning. Must be the last observer.
 class Saving : public Observer {
  public:
-  Saving(RunParts& run, Frames& frames, const Rows& rows, Watch& watch, const Reporter& reporter)
-      : run_(run), frames_(frames), rows_(rows), watch_(watch), reporter_(reporter) {}
+  Saving(RunParts& run, Frames& frames, const LogRows& rows, Monitor& monitor,
+         const Reporter& reporter)
+      : run_(run), frames_(frames), rows_(rows), monitor_(monitor), reporter_(reporter) {}
   std::int64_t next(std::int64_t /*u*/) const override { return kAlways; }
-  Now at(Session& session) override;
+  Next at(Session& session) override;
   void end(Session& session) override;
 
  private:
@@ -144,8 +145,8 @@ class Saving : public Observer {
 
   RunParts& run_;
   Frames& frames_;
-  const Rows& rows_;
-  Watch& watch_;
+  const LogRows& rows_;
+  Monitor& monitor_;
   const Reporter& reporter_;
   Stopwatch since_save_;
 };
@@ -161,7 +162,7 @@ void run_session(RunParts& run);
 
 /// The report at the end, in plain words: each number with its meaning and what is good; seconds
 /// per group of stages, in percent of the wall time. Time of no stage is "other".
-std::string run_summary(const RunParts& run, const Watch& watch,
+std::string run_summary(const RunParts& run, const Monitor& monitor,
                         const std::vector<StageTime>& stages);
 
 }  // namespace pbf::run_module

@@ -155,11 +155,11 @@ std::string progress_lines(const RunParts& run, double wall) {
 
 }  // namespace
 
-std::string run_summary(const RunParts& run, const Watch& watch,
+std::string run_summary(const RunParts& run, const Monitor& monitor,
                         const std::vector<StageTime>& stages) {
   const Scene& scene = run.scene;
   const Plan& plan = run.plan;
-  const Diagnostics &first = watch.first(), &last = watch.last();
+  const Diagnostics &first = monitor.first(), &last = monitor.last();
   const std::int64_t updates = run.solver.updates();
   const double wall = run.control.wall.seconds(), loop = run.loop_seconds;
   const auto own = double(updates - run.from.update());
@@ -183,11 +183,12 @@ std::string run_summary(const RunParts& run, const Watch& watch,
         scene.solver.iterations * (1 + plan.repeats), 100 * plan.tolerance);
   if (last.unresolved > 0)
     out += fmt::format(
-        "fast fluid          {} times a particle moved by more than {:g} h past a neighbour in one "
+        "fast fluid          {} times a particle moved by more than {:g} h past a neighbor in one "
         "step, at most by {:.3g} h;\n"
         "                    harmless while rare, else fluid may pass through fluid\n",
         last.unresolved, kResolvedWay, last.relative_way_max);
-  if (const auto steps = watch.steps(updates)) out += step_lines(*steps, scene.time.step, updates);
+  if (const auto steps = monitor.steps(updates))
+    out += step_lines(*steps, scene.time.step, updates);
   if (scene.solver.speed_limit > 0)
     out += fmt::format("speed limit         {} times a particle was slowed down to {:.4g} m/s\n",
                        last.fast, scene.solver.speed_limit * scene.h() / scene.time.step);

@@ -2,19 +2,19 @@
 
 namespace pbf::run_module {
 
-Now Saving::at(Session& session) {
-  if (session.update() >= run_.schedule.updates) return Now::go_on;
+Next Saving::at(Session& session) {
+  if (session.update() >= run_.schedule.updates) return Next::go_on;
   const auto& checkpoint = run_.scene.checkpoint;
   const bool due = checkpoint && since_save_.seconds() >= checkpoint->every;
-  if ((run_.control.stop.take_save() || due) && !save()) return Now::stop;
+  if ((run_.control.stop.take_save() || due) && !save()) return Next::stop;
   // A run that can go back continues to its first measurement or frame, to gain something.
-  const bool goes_back = watch_.goes_back();
-  if (goes_back && watch_.guard()->last_good().update <= run_.from.update()) return Now::go_on;
+  const bool goes_back = monitor_.goes_back();
+  if (goes_back && monitor_.guard()->last_good().update <= run_.from.update()) return Next::go_on;
   run_.stop_reason = why_stop();
-  if (run_.stop_reason.empty()) return Now::go_on;
-  if (goes_back) watch_.go_back();  // the files hold nothing after the last good state
+  if (run_.stop_reason.empty()) return Next::go_on;
+  if (goes_back) monitor_.go_back();  // the files hold nothing after the last good state
   save();
-  return Now::stop;
+  return Next::stop;
 }
 
 std::string Saving::why_stop() const {
@@ -29,18 +29,18 @@ std::string Saving::why_stop() const {
 /// the guard rejects the state, since no run could continue from it.
 bool Saving::save() {
   frames_.hand_over();
-  if (!watch_.state_is_good()) return false;
+  if (!monitor_.state_is_good()) return false;
   run_.clock.begin();
 #ifdef PBF_HAS_RENDER
   if (run_.pictures) run_.pictures->wait();
 #endif
   if (run_.writer) run_.writer->sync();
   SavedRun saved = rows_.due();
-  saved.first = watch_.first();
-  saved.state = watch_.goes_back() ? run_.solver.state(Which::kept) : run_.solver.state();
+  saved.first = monitor_.first();
+  saved.state = monitor_.goes_back() ? run_.solver.state(StateOf::kept) : run_.solver.state();
   saved.particles = std::int64_t(saved.state.id.size());
-  if (watch_.guard()) saved.released = watch_.guard()->released();
-  saved.steps = watch_.steps();
+  if (monitor_.guard()) saved.released = monitor_.guard()->released();
+  saved.steps = monitor_.steps();
   write_checkpoint(run_.folder.path(), saved);
   run_.clock.mark("write");
   since_save_.reset();
@@ -49,7 +49,7 @@ bool Saving::save() {
 
 void Saving::end(Session& session) {
   const std::int64_t u = session.update();
-  run_.status = watch_.event() ? "diverged" : u < run_.schedule.updates ? "stopped" : "finished";
+  run_.status = monitor_.event() ? "diverged" : u < run_.schedule.updates ? "stopped" : "finished";
   if (run_.writer) {
     run_.clock.begin();
     RunEnding ending{run_.status, run_.stop_reason, u, {}};

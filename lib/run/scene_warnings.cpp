@@ -166,7 +166,7 @@ void add_overlap(const StartPoints& points, std::vector<Warning>& list) {
   list.push_back({"overlap", text + then});
 }
 
-void add_crowded(const Scene& s, std::int64_t particles, std::vector<Warning>& list) {
+void add_over_dense(const Scene& s, std::int64_t particles, std::vector<Warning>& list) {
   constexpr double kTooMuch = 1.02;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const Body& body = s.bodies[b];
@@ -176,17 +176,18 @@ void add_crowded(const Scene& s, std::int64_t particles, std::vector<Warning>& l
     const double fill = volume(s, double(body.count)) / (room[0] * room[1] * room[2]);
     if (fill <= kTooMuch) continue;
     list.push_back(
-        {"crowded", fmt::format("bodies[{}] holds {:.3g} times the fluid that its box has room "
-                                "for; give count {:.0f} or less, or a larger box",
-                                b, fill, std::floor(body.count / fill * (1 + 1e-9)))});
+        {"over-dense", fmt::format("bodies[{}] holds {:.3g} times the fluid that its box has room "
+                                   "for; give count {:.0f} or less, or a larger box",
+                                   b, fill, std::floor(body.count / fill * (1 + 1e-9)))});
     return;
   }
   const Double3 box = s.domain.max - s.domain.min;
   const double fill = volume(s, double(particles)) / (box[0] * box[1] * box[2]);
   if (closed_box(s) && fill > kTooMuch)
-    list.push_back({"crowded", fmt::format("the bodies hold {:.3g} times the fluid that the closed "
-                                           "domain has room for; give fewer or smaller bodies",
-                                           fill)});
+    list.push_back(
+        {"over-dense", fmt::format("the bodies hold {:.3g} times the fluid that the closed "
+                                   "domain has room for; give fewer or smaller bodies",
+                                   fill)});
 }
 
 void add_output(const Scene& s, std::vector<Warning>& list) {
@@ -244,7 +245,7 @@ std::vector<Warning> scene_warnings(const StartPoints& points, std::int64_t part
   add_walls(scene, tracks, list);
   add_collisions(scene, tracks, list);
   add_overlap(points, list);
-  add_crowded(scene, particles, list);
+  add_over_dense(scene, particles, list);
   add_output(scene, list);
   return list;
 }

@@ -17,7 +17,7 @@ void Session::run(std::int64_t end, std::int64_t seen) {
   } closing{observers_};
   ask(seen);
   std::replace(next_.begin(), next_.end(), kEveryCall, kNever);
-  while (tell() && update() < end) {
+  while (notify_observers() && update() < end) {
     ask(update());
     step(end);
   }
@@ -35,9 +35,9 @@ void Session::ask(std::int64_t u) {
 }
 
 /// Returns whether the session continues.
-bool Session::tell() {
+bool Session::notify_observers() {
   for (std::size_t k = 0; k < observers_.size(); ++k)
-    if (next_[k] <= update() && observers_[k]->at(*this) == Now::stop) return false;
+    if (next_[k] <= update() && observers_[k]->at(*this) == Next::stop) return false;
   return true;
 }
 

@@ -14,7 +14,7 @@ namespace pbf::run_module {
 class Session;
 
 /// An observer's decision about the session.
-enum class Now { go_on, stop };
+enum class Next { go_on, stop };
 
 /// Special values of Observer::next().
 inline constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
@@ -30,7 +30,7 @@ class Observer {
   /// Called at Session::update(). May give the solver an earlier state: the updates since then are
   /// repeated, and the later observers of the list are not called if they wanted the later update.
   /// If an observer stops the session, later observers are not called.
-  virtual Now at(Session& session) = 0;
+  virtual Next at(Session& session) = 0;
   /// Called once, after the last update.
   virtual void end(Session& /*session*/) {}
   /// Called last in all cases, also after an exception.
@@ -40,14 +40,14 @@ class Observer {
 /// An observer made of two functions.
 class Callback : public Observer {
  public:
-  Callback(std::function<std::int64_t(std::int64_t)> next, std::function<Now(Session&)> at)
+  Callback(std::function<std::int64_t(std::int64_t)> next, std::function<Next(Session&)> at)
       : next_(std::move(next)), at_(std::move(at)) {}
   std::int64_t next(std::int64_t u) const override { return next_(u); }
-  Now at(Session& session) override { return at_(session); }
+  Next at(Session& session) override { return at_(session); }
 
  private:
   std::function<std::int64_t(std::int64_t)> next_;
-  std::function<Now(Session&)> at_;
+  std::function<Next(Session&)> at_;
 };
 
 /// Seconds in Solver::step(); cpu: of all threads of this process.
@@ -76,7 +76,7 @@ class Session {
 
  private:
   void ask(std::int64_t u);
-  bool tell();
+  bool notify_observers();
   void step(std::int64_t end);
 
   Solver& solver_;

@@ -11,7 +11,7 @@
 namespace pbf::run_module {
 namespace {
 
-bool may_be_crowded(const Scene& s) {
+bool may_be_over_dense(const Scene& s) {
   for (const Body& b : s.bodies)
     if (b.shape == Shape::random_box || b.shape == Shape::file) return true;
   return any_near_bodies(s, -1e-6 * s.fluid.spacing);  // by more than rounding
@@ -84,7 +84,7 @@ class Sample {
 
 StartNeighbors start_neighbors(const StartPoints& points, std::int64_t particles) {
   const Scene& s = points.scene();
-  if (!may_be_crowded(s)) return {};
+  if (!may_be_over_dense(s)) return {};
   // Fewer samples for many particles: in one clump every particle is tested with every sample.
   const std::int64_t wanted =
       std::min(particles, std::clamp<std::int64_t>(400000000 / particles, 256, 4096));

@@ -61,7 +61,7 @@ std::optional<std::string> AdaptiveStep::follow(const Diagnostics& m) {
   return fmt::format("update {}, {:.6g} s: ", m.update, m.time) + change(to, m.update, false) +
          fmt::format(": v_max dt {:.3g} h, dt sqrt(a/h) {:.3g} before", speed * before / h,
                      before * std::sqrt(acceleration / h)) +
-         (unresolved ? "; neighbours moved too far past each other" : "");
+         (unresolved ? "; neighbors moved too far past each other" : "");
 }
 
 std::optional<std::string> AdaptiveStep::refine(const std::string& alarm, const Diagnostics& m,

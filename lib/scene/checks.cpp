@@ -66,7 +66,7 @@ class Checker : public SceneRules {
     const double least = least_smoothing_ratio(s_.dimensions);
     if (s_.fluid.smoothing_ratio < least)
       add(s_.fluid.smoothing_ratio,
-          "is {}: with so few neighbours the density cannot tell the rest lattice from a closer "
+          "is {}: with so few neighbors the density cannot tell the rest lattice from a closer "
           "packing, and a pool loses volume; give at least {}{}, 2 is the default, or set "
           "fluid.mass",
           s_.fluid.smoothing_ratio, least, flat() ? "" : " (1.5 with dimensions: 2)");

@@ -53,7 +53,7 @@ KeyRows motion_rows() {
            "Largest number of iterations per substep with a tolerance; a multiple of "
            "solver.iterations."),
        key(KEY(solver.substeps), number("", {1, 1000}),
-           "Divides an update into this many time steps, which share the sort and the neighbour "
+           "Divides an update into this many time steps, which share the sort and the neighbor "
            "lists as long as little moves (pbf plan says how many lists an update makes). "
            "Viscosity and vorticity act once per update."),
        key(KEY(solver.levels), one_of({"off", "auto", "on"}),
@@ -80,7 +80,7 @@ KeyRows motion_rows() {
            "Factor omega on the position change of one iteration (successive over-relaxation; "
            "below "
            "1 it under-relaxes). auto: min(1, (2.5 d/h)^2), in two dimensions min(1, (3 "
-           "d/h)^(4/3)), since more neighbours need smaller steps, and less where the density is "
+           "d/h)^(4/3)), since more neighbors need smaller steps, and less where the density is "
            "above rest_density; with levels 2 and 2.4 in place of 2.5 and 3.",
            renamed("solver.step_length"), automatic),
        key(KEY(solver.boundary), one_of({"density", "clamp"}),
@@ -101,7 +101,7 @@ KeyRows motion_rows() {
            "before the first update, by steps that move particles and leave velocities alone. "
            "false: start as given, for a file that continues another run."),
        key(KEY(solver.fused), plain,
-           "Computes density and lambda in one loop over the neighbours. false: in two, for timing "
+           "Computes density and lambda in one loop over the neighbors. false: in two, for timing "
            "them apart."),
        key(KEY(solver.reproducible), plain,
            "Makes the GPU give the same bits as the CPU, more slowly. The CPU always gives these "
@@ -115,7 +115,7 @@ KeyRows motion_rows() {
        key(KEY(viscosity->xsph), number("", {0, 10}),
            "Factor c, not a viscosity in Pa s or m^2/s; stable up to 1.", scaled(linear)),
        key(KEY(vorticity->epsilon), number("1/s", {0, 1000}),
-           "Strength. The force is limited to twice the rate at which neighbours approach, so that "
+           "Strength. The force is limited to twice the rate at which neighbors approach, so that "
            "it adds no more energy than the flow loses.")}};
 }
 

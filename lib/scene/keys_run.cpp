@@ -34,7 +34,7 @@ KeyRows run_rows() {
            "compressed start expands.",
            automatic),
        key(KEY(guard->neighbors), number("", {0, 2147483647, true}),
-           "Neighbours of one particle allowed. auto: 4 times the most at the start, at least 16 "
+           "Neighbors of one particle allowed. auto: 4 times the most at the start, at least 16 "
            "times those at rest.",
            automatic),
        key(KEY(output->every), number("s", kSeconds),

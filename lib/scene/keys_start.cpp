@@ -43,11 +43,11 @@ KeyRows start_rows() {
        key(KEY(fluid.rest_density), number("kg/m^3", {1e-6, 1e9}), "Rest density rho0.",
            exact("the unit of densities")),
        key(KEY(fluid.spacing), number("m", kLength),
-           "Edge d of the rest lattice's cell: the distance of neighbouring particles at rest. "
+           "Edge d of the rest lattice's cell: the distance of neighboring particles at rest. "
            "Halving it makes 8 times the particles, 4 in two dimensions.",
            required, exact("the particles stand so far apart; h is rounded by smoothing_ratio")),
        key(KEY(fluid.smoothing_ratio), number("", {1, 10}),
-           "Smoothing length over spacing, h/d. 2 gives about 33 neighbours, 12 in two "
+           "Smoothing length over spacing, h/d. 2 gives about 33 neighbors, 12 in two "
            "dimensions. With fluid.mass: auto at least 1.6, in two dimensions 1.5: below, a pool "
            "packs itself into less than 0.97 of its volume."),
        key(KEY(fluid.mass), number("kg", {0, 1e30, true}),

@@ -156,7 +156,7 @@ const std::vector<Diagnostic>& diagnostics() {
        false, nullptr, [](M m) { return m.fast; }},
       {"iterations_done", "1", "over the constraints so far", none, false, nullptr,
        [](M m) { return m.iterations_done; }},
-      {"unresolved", "1", "particles x steps that moved by more than 0.4 h past a neighbour so far",
+      {"unresolved", "1", "particles x steps that moved by more than 0.4 h past a neighbor so far",
        none, false, nullptr, [](M m) { return m.unresolved; }},
       {"relative_way_max", "h", "longest such way in a step", none, false,
        [](M m) { return m.relative_way_max; }},

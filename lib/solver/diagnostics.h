@@ -53,7 +53,7 @@ struct Diagnostics {
   double power = 0;             ///< W, of the inertial forces by the tank's motion
   double solid_work = 0;        ///< J, of moving obstacles in the current interval of loads
   double work = 0;              ///< J, of obstacles and tank since the start; WorkTrack
-  /// Of Series::measures (lib/program/column.h), since the previous row. Watch fills them in.
+  /// Of Series::measures (lib/program/column.h), since the previous row. Monitor fills them in.
   std::vector<double> readings{};
 };
 

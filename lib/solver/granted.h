@@ -81,7 +81,7 @@ class Granted {
   }
   int* sort_order() const requires DeclaredBy<field::Order, P> { return c_.sort_order(); }
   auto carried() const requires reorders<P> {
-    if constexpr (C::Passes::further)
+    if constexpr (C::Passes::carries_fields)
       return c_.carried();
     else
       return NothingCarried{};
@@ -132,7 +132,7 @@ class Granted {
 template <class P, class C>
 void launch_one(C& c) {
   if constexpr (requires { typename P::Flips; }) P::Flips::flip(c);
-  if constexpr (C::Passes::further && reorders<P>) c.flip_carried();
+  if constexpr (C::Passes::carries_fields && reorders<P>) c.flip_carried();
   const auto launch = [&] { P::launch(Granted<C, P>(c)); };
   // Only the executor of a test watches the memory that a pass accesses.
   if constexpr (requires { c.exec.watched(P::text.name, c.arrays(), launch); })

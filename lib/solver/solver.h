@@ -53,7 +53,7 @@ struct StepOptions {
 };
 
 /// The state to return: the present one, only its positions, or the copy that keep() made.
-enum class Which { now, positions, kept };
+enum class StateOf { present, positions, kept };
 
 /// Whether the interval over which readings are averaged continues or ends with this reading.
 enum class Interval { goes_on, ends };
@@ -71,14 +71,14 @@ class Solver {
   /// only for the copy. At most one download at a time.
   virtual std::future<Snapshot> download(const std::vector<std::string>& fields,
                                          ScalarType type) = 0;
-  virtual Diagnostics measure() = 0;
+  virtual Diagnostics diagnose() = 0;
   /// The numbers of the columns of a series (lib/program/column.h). Means and peaks are those since
   /// the start or the last call for this series with Interval::ends.
   virtual std::vector<double> readings(Series series, Interval interval) = 0;
   /// After set_state(), this or another solver of the same scene and precision continues with the
   /// same bits. A solver of float rounds the state of a solver of double. Throws Error(internal) if
-  /// check_state() does, or for Which::kept without keep().
-  virtual SolverState state(Which which = Which::now) = 0;
+  /// check_state() does, or for StateOf::kept without keep().
+  virtual SolverState state(StateOf which = StateOf::present) = 0;
   virtual void set_state(const SolverState& state) = 0;
   /// Keeps a copy of the state in the memory of the solver and replaces the previous copy. Cheap
   /// enough for every measurement.

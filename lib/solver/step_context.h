@@ -138,7 +138,7 @@ struct StepContext {
   /// Swaps the two arrays of a field.
   void flip(const FieldInfo& f) { slot(f)->now ^= 1; }
   void flip_carried() {
-    for (const Carried& c : plan.program.further) flip(*c.first);
+    for (const CarriedField& c : plan.program.carried_fields) flip(*c.first);
   }
   Vec4<Real>* position() { return data(field::position); }
   Vec4<Real>* velocity() { return data(field::velocity); }
@@ -149,7 +149,7 @@ struct StepContext {
   /// What a sort copies besides position, velocity and id, after the flips.
   CarriedRows carried() {
     CarriedRows all;
-    for (const Carried& c : plan.program.further)
+    for (const CarriedField& c : plan.program.carried_fields)
       all.part[all.parts++] = {data<std::uint32_t>(*c.second), data<std::uint32_t>(*c.first),
                                c.first->bytes(precision) / 4};
     return all;

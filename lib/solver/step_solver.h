@@ -85,7 +85,7 @@ class StepSolver final : public Solver, public Inspection {
     });
   }
 
-  Diagnostics measure() override {
+  Diagnostics diagnose() override {
     find_pairs();
     const int n = stepper_->rows();
     const MeasureConstants given = measure_constants(scene_, plan_, n);
@@ -100,9 +100,9 @@ class StepSolver final : public Solver, public Inspection {
                                     : load_readings(stepper_->loads(interval), scene_, plan_);
   }
 
-  SolverState state(Which which) override {
-    if (which == Which::positions) return stepper_->positions();
-    const bool kept = which == Which::kept;
+  SolverState state(StateOf which) override {
+    if (which == StateOf::positions) return stepper_->positions();
+    const bool kept = which == StateOf::kept;
     if (kept && kept_.empty()) throw Error(ExitCode::internal, "no state was kept");
     SolverState s = kept ? stepper_->state(kept_) : stepper_->state();
     s.updates = kept ? kept_updates_ : updates_;

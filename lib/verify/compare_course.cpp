@@ -12,7 +12,7 @@ namespace pbf::verify_module {
 namespace {
 
 /// In order of ids, h.
-std::vector<double> positions(Solver& solver) { return solver.state(Which::positions).position; }
+std::vector<double> positions(Solver& solver) { return solver.state(StateOf::positions).position; }
 
 /// Infinite if a position is not finite, also on both sides.
 Distance strict_distance(const std::vector<double>& x, const std::vector<double>& y) {

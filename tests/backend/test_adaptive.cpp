@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "lib/base/error.h"
-#include "lib/run/watch.h"
+#include "lib/run/monitor.h"
 #include "tests/support/backend.h"
 #include "tests/support/catch.h"
 #include "tests/support/guard_check.h"
@@ -51,14 +51,14 @@ struct Course {
   std::int64_t repeats = 0;
 };
 
-/// A session under a Watch, measured every `every` updates.
+/// A session under a Monitor, measured every `every` updates.
 Course watched(const Case& c, pbf::Solver& solver, int updates, int every) {
   Course course;
   pbf::Scene scene = c.scene;
   scene.measure_every = every;
   scene.time.end = updates * scene.time.step;
   const pbf::Plan plan = pbf::make_plan(scene, std::int64_t(c.particles.size()));
-  pbf::Watch watch(
+  pbf::Monitor monitor(
       scene, plan, solver,
       [&](const pbf::Diagnostics& m, double dt) {
         if (m.update == 0) course.energy_start = pbf::total_energy(m);
@@ -66,10 +66,10 @@ Course watched(const Case& c, pbf::Solver& solver, int updates, int every) {
         course.shortest = std::min(course.shortest, dt);
       },
       [&](const std::string& line) { course.notes.push_back(line); });
-  pbf::Session(solver, {&watch, &watch.choosing()}).run(updates);
-  course.last = watch.last();
-  course.stopped = watch.event() != nullptr;
-  course.repeats = watch.steps()->repeats;
+  pbf::Session(solver, {&monitor, &monitor.choosing()}).run(updates);
+  course.last = monitor.last();
+  course.stopped = monitor.event() != nullptr;
+  course.repeats = monitor.steps()->repeats;
   return course;
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("an update at level k is 2^k updates of the scene with what goes with 
   }
   CHECK(coarse->updates() == 12);
   CHECK(coarse->state().steps == fine->state().steps);
-  CHECK(coarse->measure().iterations_done == fine->measure().iterations_done);
+  CHECK(coarse->diagnose().iterations_done == fine->diagnose().iterations_done);
 }
 
 TEST_CASE("levels that change in the middle: the bits of the pieces, in one solver or in several") {
@@ -140,10 +140,10 @@ TEST_CASE("steps without time part the particles, and velocities take the dampin
   c.scene.viscosity = pbf::Viscosity{0.3};
   c.scene.vorticity = pbf::Vorticity{5};
   auto s = make(c);
-  const double before = s->measure().compression_mean;
+  const double before = s->diagnose().compression_mean;
   const auto v = s->download({"velocity"}, pbf::ScalarType::f64).get();
   s->step(24, {.without_time = 1.0});
-  const pbf::Diagnostics m = s->measure();
+  const pbf::Diagnostics m = s->diagnose();
   CHECK(before > 0.1);
   CHECK(m.compression_mean < 0.1 * before);
   CHECK(m.outside == 0);
@@ -168,12 +168,12 @@ TEST_CASE("an alarm takes the run back, and with a shorter step it comes to its 
   const Case c = unstable_pool();
   const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
   auto fixed = make(c);
-  const pbf::Diagnostics first = fixed->measure();
+  const pbf::Diagnostics first = fixed->diagnose();
   pbf::Guard guard(c.scene, plan, *fixed, first, first);
   std::optional<pbf::GuardEvent> event;
   while (!event && fixed->updates() < 100) {
     fixed->step(5, guard.options());
-    event = check(guard, fixed->measure());
+    event = check(guard, fixed->diagnose());
   }
   REQUIRE(event);  // the guard stops it today
 
@@ -183,7 +183,7 @@ TEST_CASE("an alarm takes the run back, and with a shorter step it comes to its 
   CHECK(solver->updates() == 100);
   CHECK(course.repeats >= 1);
   REQUIRE(!course.notes.empty());
-  // Neighbours that move too far past each other may have halved the step before.
+  // Neighbors that move too far past each other may have halved the step before.
   const auto alarm = std::find_if(course.notes.begin(), course.notes.end(), [](const auto& note) {
     return note.find("alarm of the guard (energy), back to update ") != std::string::npos;
   });
@@ -212,9 +212,10 @@ TEST_CASE("what is wrong at the start is not tried again with a shorter step") {
   c.scene.guard->speed = 1e-3;
   auto solver = make(c);
   const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
-  pbf::Watch watch(c.scene, plan, *solver, [](const pbf::Diagnostics&, double) {});
-  pbf::Session(*solver, {&watch}).run(10);
+  pbf::Monitor monitor(c.scene, plan, *solver, [](const pbf::Diagnostics&, double) {});
+  pbf::Session(*solver, {&monitor}).run(10);
   CHECK(solver->updates() == 0);
-  REQUIRE(watch.event());
-  CHECK(watch.guard()->text(*watch.event()).find("before the first update") != std::string::npos);
+  REQUIRE(monitor.event());
+  CHECK(monitor.guard()->text(*monitor.event()).find("before the first update") !=
+        std::string::npos);
 }

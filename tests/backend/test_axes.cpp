@@ -101,7 +101,7 @@ TEST_CASE("a scene with its axes exchanged gives the same bits, exchanged back")
   first->step(20);
   const std::vector<std::string> fields{"velocity", "density"};
   const pbf::Snapshot snap = first->download(fields, pbf::ScalarType::f64).get();
-  const pbf::Diagnostics measures = first->measure();
+  const pbf::Diagnostics measures = first->diagnose();
   const pbf::SolverState state = first->state();
   const pbf::StepTrace trace = first->inspection()->trace();
   for (const Turn& t : kTurns) {
@@ -111,7 +111,7 @@ TEST_CASE("a scene with its axes exchanged gives the same bits, exchanged back")
     auto s = make(other);
     s->step(20);
     check_same_fields(snap, s->download(fields, pbf::ScalarType::f64).get(), t);
-    check_same_measures(measures, s->measure(), t);
+    check_same_measures(measures, s->diagnose(), t);
     const pbf::SolverState mine = s->state();
     CHECK(rows(state.position, t) == mine.position);
     CHECK(rows(state.velocity, t) == mine.velocity);
@@ -174,7 +174,7 @@ TEST_CASE("a thrown particle is where a hand calculation puts it, in any box, in
   auto s = make(c);
   s->step(n);
   const pbf::Snapshot snap = s->download({"velocity"}, pbf::ScalarType::f64).get();
-  const pbf::Diagnostics m = s->measure();
+  const pbf::Diagnostics m = s->diagnose();
   const pbf::SolverState state = s->state();
   double potential = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -192,11 +192,11 @@ TEST_CASE("a thrown particle is where a hand calculation puts it, in any box, in
   // The guard says where a particle is that a fault makes too fast along x.
   const pbf::Plan plan = pbf::make_plan(c.scene, 1);
   auto faulty = make(c);
-  const pbf::Diagnostics first = faulty->measure();
+  const pbf::Diagnostics first = faulty->diagnose();
   pbf::Guard guard(c.scene, plan, *faulty, first, first);
   faulty->inspection()->inject({1, "predict", 0, 0, 1e6});
   faulty->step(1, guard.options());
-  const auto e = check(guard, faulty->measure());
+  const auto e = check(guard, faulty->diagnose());
   REQUIRE(e);
   CHECK(e->velocity[0] == Approx(1e6 * h).epsilon(1e-6));
   for (std::size_t k = 1; k < 3; ++k)
@@ -233,7 +233,7 @@ TEST_CASE("a face is open or a wall by its name, in any box") {
   CHECK(x[axis] == Approx(0.5 + speed * 20 * c.scene.time.step));
   CHECK(x[3 + axis] >= 0);
   CHECK(x[3 + axis] <= c.scene.domain.max[axis]);
-  const pbf::Diagnostics m = s->measure();
+  const pbf::Diagnostics m = s->diagnose();
   CHECK(m.outside == 0);
   CHECK(m.front[axis] == Approx(std::max(x[axis], x[3 + axis])));
 }

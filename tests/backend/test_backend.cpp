@@ -34,7 +34,7 @@ Distance from_cpu(Case c, int updates) {
   a->step(updates);
   b->step(updates);
   const auto x = positions(*a), y = positions(*b);
-  Distance d{0, 0, a->measure(), b->measure()};
+  Distance d{0, 0, a->diagnose(), b->diagnose()};
   for (std::size_t k = 0; k < x.size(); ++k) {
     const double e = std::fabs(x[k] - y[k]) / c.scene.h();
     d.worst = std::max(d.worst, e);
@@ -71,7 +71,7 @@ TEST_CASE("one update equals the brute-force oracle, feature by feature", "[slow
   CHECK(d.velocity < (is_double() ? 3e-12 : 4e-5));
 }
 
-TEST_CASE("the density and the neighbour counts of a state equal brute force over all pairs") {
+TEST_CASE("the density and the neighbor counts of a state equal brute force over all pairs") {
   const bool flat = GENERATE(false, true);
   Case c = here(flat ? flat_block(24, 21, 0.4, 0) : jittered_block(9, 8, 7, 0.4, 0));
   int updates = 0;
@@ -103,7 +103,7 @@ TEST_CASE("the density and the neighbour counts of a state equal brute force ove
     pairs += mine;
     most = std::max(most, mine);
   }
-  const auto m = s->measure();
+  const auto m = s->diagnose();
   CHECK(m.neighbors_mean * double(snap.count) == Approx(double(pairs)).margin(is_double() ? 0 : 4));
   CHECK(m.neighbors_max == most);
 }
@@ -118,7 +118,7 @@ TEST_CASE("100 updates stay near the CPU in the measures that chaos does not tou
   auto b = make(c);
   a->step(100);
   b->step(100);
-  const auto m = a->measure(), r = b->measure();
+  const auto m = a->diagnose(), r = b->diagnose();
   const double energy = r.potential_energy + r.kinetic_energy;
   CHECK(std::fabs(m.potential_energy + m.kinetic_energy - energy) < 1e-3 * energy);
   for (int k = 0; k < 3; ++k)
@@ -150,7 +150,7 @@ TEST_CASE("few particles are sorted in a box of however many bins") {
 
 TEST_CASE("5 updates follow the CPU at every size that shares its sums among fewer threads",
           "[slow]") {
-  // A device shares neighbour sums among 8, 4, 2 and 1 threads at these edges of a cube (10648 to
+  // A device shares neighbor sums among 8, 4, 2 and 1 threads at these edges of a cube (10648 to
   // 125000 particles), among 4, 2 and 1 at those of a square (2809 to 60025), and lists among 2 and
   // 1; 16 share in the smaller cubes of other tests.
   const bool flat = GENERATE(false, true);
@@ -216,7 +216,7 @@ TEST_CASE("with solver.reproducible the CPU's bytes come out, on 1 thread or mor
   b->step(updates);
   CHECK(same_bytes(a->download({"velocity", "density"}, pbf::ScalarType::f64).get(),
                    b->download({"velocity", "density"}, pbf::ScalarType::f64).get()));
-  const auto m = a->measure(), r = b->measure();
+  const auto m = a->diagnose(), r = b->diagnose();
   CHECK(m.kinetic_energy == r.kinetic_energy);
   CHECK(m.potential_energy == r.potential_energy);
   CHECK(m.compression_mean == r.compression_mean);
@@ -254,7 +254,7 @@ TEST_CASE("degenerate states stay finite and inside") {
   c.particles.velocity.resize(c.particles.position.size());
   auto s = make(c);
   s->step(50);
-  const auto m = s->measure();
+  const auto m = s->diagnose();
   CHECK(m.non_finite == 0);
   CHECK(m.outside == 0);
 }

@@ -20,8 +20,8 @@ TEST_CASE("lists that outgrow their room grow, and the result is the same") {
   const auto plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
   auto roomy = pbf::make_cuda_solver(c.scene, plan, c.particles, 512);
   auto tight = pbf::make_cuda_solver(c.scene, plan, c.particles, 4);
-  CHECK(roomy->measure().neighbors_max == tight->measure().neighbors_max);
-  CHECK(tight->measure().neighbors_max > (flat ? 40 : 60));
+  CHECK(roomy->diagnose().neighbors_max == tight->diagnose().neighbors_max);
+  CHECK(tight->diagnose().neighbors_max > (flat ? 40 : 60));
   roomy->step(40);
   tight->step(40);
   CHECK(same_bytes(roomy->download({"velocity"}, pbf::ScalarType::f32).get(),
@@ -38,12 +38,12 @@ TEST_CASE("lists that outgrow their room in the middle of a run grow, and nothin
   const auto plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
   auto roomy = pbf::make_cuda_solver(c.scene, plan, c.particles, 1024);
   auto tight = pbf::make_cuda_solver(c.scene, plan, c.particles, 40);
-  const auto at_start = tight->measure().neighbors_max;
+  const auto at_start = tight->diagnose().neighbors_max;
   std::int64_t most = 0;
   for (int k = 0; k < 12; ++k) {
     roomy->step(5);
     tight->step(5);
-    most = std::max(most, roomy->measure().neighbors_max);
+    most = std::max(most, roomy->diagnose().neighbors_max);
   }
   CHECK(most > at_start);
   CHECK(same_bytes(roomy->download({"velocity"}, pbf::ScalarType::f32).get(),

@@ -44,7 +44,7 @@ TEST_CASE("cubes that meet by 2 h a step pass through each other, which is count
   auto solver = make(c);
   solver->step(6);
   CHECK(kept(*solver, 10) > 0.7);
-  const pbf::Diagnostics m = solver->measure();
+  const pbf::Diagnostics m = solver->diagnose();
   CHECK(m.unresolved > 100);
   CHECK(m.relative_way_max > 1.9);
 }
@@ -54,14 +54,14 @@ TEST_CASE("cubes that meet by 0.2 h a step bounce, and nothing is counted") {
   auto solver = make(c);
   solver->step(40);
   CHECK(kept(*solver, 10) < 0.2);
-  CHECK(solver->measure().unresolved == 0);
-  CHECK(solver->measure().relative_way_max == 0);
+  CHECK(solver->diagnose().unresolved == 0);
+  CHECK(solver->diagnose().relative_way_max == 0);
 }
 
 TEST_CASE("fluid that moves fast as a whole is resolved") {
   auto solver = make(cubes(0, 0.004, 50));
   solver->step(3);
-  CHECK(solver->measure().unresolved == 0);
+  CHECK(solver->diagnose().unresolved == 0);
 }
 
 TEST_CASE("the count is part of the state") {
@@ -69,11 +69,11 @@ TEST_CASE("the count is part of the state") {
   auto a = make(c), b = make(c);
   a->step(6);
   b->set_state(a->state());
-  CHECK(b->measure().unresolved == a->measure().unresolved);
-  CHECK(b->measure().relative_way_max == a->measure().relative_way_max);
+  CHECK(b->diagnose().unresolved == a->diagnose().unresolved);
+  CHECK(b->diagnose().relative_way_max == a->diagnose().relative_way_max);
 }
 
-TEST_CASE("an adaptive step is halved while neighbours move too far past each other") {
+TEST_CASE("an adaptive step is halved while neighbors move too far past each other") {
   Case c = here(cubes(0, 0.004));
   c.scene.time.adaptive = pbf::AdaptiveTime{};
   pbf::AdaptiveStep step(c.scene);

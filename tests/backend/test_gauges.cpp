@@ -283,7 +283,7 @@ TEST_CASE("pressure gauges of a tank at rest read what hydrostatics says, also i
   solver->readings(Series::gauges, pbf::Interval::ends);
   solver->step(800);
   const std::vector<double> r = readings(*solver);
-  const pbf::Diagnostics m = solver->measure();
+  const pbf::Diagnostics m = solver->diagnose();
   // The surface has sunk a little with the compression.
   const double level = 2 * (m.center_of_mass[up] - c.scene.domain.min[up]);
   CHECK(level == Approx(depth * std::pow(0.3 / 0.31, flat ? 1 : 2)).epsilon(0.01));
@@ -350,7 +350,7 @@ TEST_CASE("gauges do not depend on threads, pass-by-pass updates, or being hande
     b->readings(Series::gauges, pbf::Interval::ends);
     for (int k = 0; k < 20; ++k) b->inspection()->trace();
     readings(*b);
-    b->measure();
+    b->diagnose();
     for (int k = 0; k < 20; ++k) b->inspection()->step_checked({1e9, 1e9, 1 << 30});
     CHECK(same(readings(*b), expected));
   }
@@ -369,7 +369,7 @@ TEST_CASE("gauges do not depend on threads, pass-by-pass updates, or being hande
     b->readings(Series::gauges, pbf::Interval::ends);
     b->keep();
     b->step(17);
-    b->set_state(b->state(pbf::Which::kept));
+    b->set_state(b->state(pbf::StateOf::kept));
     const std::vector<double> there = readings(*b);
     const pbf::SolverState state = b->state();
     b->step(5, {.without_time = 1.0});
@@ -382,7 +382,7 @@ TEST_CASE("gauges do not depend on threads, pass-by-pass updates, or being hande
 }
 
 TEST_CASE("steps without time move particles through a rectangle without a count") {
-  Case c = jittered_block(8, 6, 8, 0.3, 0, 1, 0.7);  // crowded
+  Case c = jittered_block(8, 6, 8, 0.3, 0, 1, 0.7);  // over-dense
   c.scene.domain.max[0] += 0.2;
   add_flow(c.scene, {c.scene.domain.min[0] + 0.112, 0.36, -1.9}, {1, 0, 0}, {1, 1});
   c.scene.gravity = {};

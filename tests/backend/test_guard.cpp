@@ -28,11 +28,11 @@ pbf::Plan plan_of(const Case& c) {
 /// What the guard finds in `updates` updates with the fault in one of them.
 std::optional<pbf::GuardEvent> caught(const Case& c, const pbf::Fault& fault, int updates) {
   auto solver = make(c);
-  const pbf::Diagnostics first = solver->measure();
+  const pbf::Diagnostics first = solver->diagnose();
   pbf::Guard guard(c.scene, plan_of(c), *solver, first, first);
   solver->inspection()->inject(fault);
   solver->step(updates, guard.options());
-  return check(guard, solver->measure());
+  return check(guard, solver->diagnose());
 }
 
 bool same_state(const pbf::SolverState& a, const pbf::SolverState& b) {
@@ -72,11 +72,11 @@ TEST_CASE(
     "guard: a run without a fault raises no alarm, and looking at every stage changes no bit") {
   const Case c = all_stages();
   auto guarded = make(c), looked_at = make(c), bare = make(c);
-  const pbf::Diagnostics first = guarded->measure();
+  const pbf::Diagnostics first = guarded->diagnose();
   pbf::Guard guard(c.scene, plan_of(c), *guarded, first, first);
   for (int k = 0; k < 4; ++k) {
     guarded->step(5, guard.options());
-    REQUIRE_FALSE(check(guard, guarded->measure()));
+    REQUIRE_FALSE(check(guard, guarded->diagnose()));
     for (int u = 0; u < 5; ++u) REQUIRE_FALSE(looked_at->inspection()->step_checked({}));
   }
   bare->step(20);
@@ -89,17 +89,17 @@ TEST_CASE("guard: from the kept state the same updates give the same bits") {
   auto s = make(c);
   s->step(7);
   s->keep();
-  const pbf::SolverState kept = s->state(pbf::Which::kept);
+  const pbf::SolverState kept = s->state(pbf::StateOf::kept);
   CHECK(same_state(kept, s->state()));
   s->step(6);
   const pbf::SolverState first = s->state();
   s->set_state(kept);
-  s->measure();  // between two updates a measure may look
+  s->diagnose();  // between two updates a measure may look
   s->step(6);
   CHECK(same_state(first, s->state()));
 }
 
-TEST_CASE("guard: energy that grows without a source, and too many neighbours, name a particle") {
+TEST_CASE("guard: energy that grows without a source, and too many neighbors, name a particle") {
   Case c = here(jittered_block(6, 6, 6, 0.2, 0));
   SECTION("energy: artificial pressure a thousand times too strong") {
     c.scene.tensile = pbf::Tensile{10, 0.3, 4};
@@ -111,7 +111,7 @@ TEST_CASE("guard: energy that grows without a source, and too many neighbours, n
     CHECK(e->stage->update == 1);
     CHECK(e->value > e->limit);
   }
-  SECTION("neighbours: more than the scene allows") {
+  SECTION("neighbors: more than the scene allows") {
     c.scene.guard->neighbors = 20;
     const auto e = caught(c, {}, 1);
     REQUIRE(e);
@@ -135,13 +135,13 @@ TEST_CASE("speed limit: slows down the particles above it, counts them, and no o
   };
   auto free = make(c);
   free->step(3);
-  CHECK(free->measure().fast == 0);
+  CHECK(free->diagnose().fast == 0);
   CHECK(place(*free)[1] == Approx(5.24).epsilon(1e-5));
   c.scene.solver.speed_limit = 0.5;  // h in an update: 10 m/s
   auto limited = make(c);
   limited->step(3);
-  CHECK(limited->measure().fast == 1);  // once: after that it is slow
+  CHECK(limited->diagnose().fast == 1);  // once: after that it is slow
   CHECK(place(*limited)[0] == Approx(5 - 3 * 0.002 * 6).epsilon(1e-5));
   CHECK(place(*limited)[1] == Approx(5 + 3 * 0.002 * 8).epsilon(1e-5));
-  CHECK(limited->measure().speed_max == Approx(10).epsilon(1e-5));
+  CHECK(limited->diagnose().speed_max == Approx(10).epsilon(1e-5));
 }

@@ -168,28 +168,29 @@ TEST_CASE("levels keep the momentum of fluid that no wall holds, to rounding") {
   c.scene.gravity = {0, 0, 0};
   REQUIRE(reach_of_levels(c) > 1e-3);
   auto solver = make(c);
-  const auto before = solver->measure();
+  const auto before = solver->diagnose();
   solver->step(10);
-  const auto after = solver->measure();
+  const auto after = solver->diagnose();
   REQUIRE(before.compression_mean > 1e-2);
   const double speed = 1, all = speed * c.scene.particle_mass() * double(c.particles.size());
   for (std::size_t k = 0; k < 3; ++k)
     CHECK(std::fabs(after.momentum[k] - before.momentum[k]) < all * (is_double() ? 1e-13 : 1e-6));
 }
 
-TEST_CASE("levels count a crowd as compressed by a twentieth, as the brute-force oracle does") {
+TEST_CASE(
+    "levels count over-dense fluid as compressed by a twentieth, as the brute-force oracle does") {
   Case c = in_box(jittered_block(8, 7, 30, 0.05, 0, 3, 0.985), {8.4, 7.3, 30.6});
   const double d = c.scene.fluid.spacing;
-  int crowded = 0;
+  int dense = 0;
   for (auto& x : c.particles.position) {
     const bool near = std::fabs(x[2] - c.scene.domain.min[2] - 12 * d) < 3 * d;
-    crowded += near;
+    dense += near;
     for (std::size_t k = 0; near && k < 3; ++k) {
       const double middle = c.scene.domain.min[k] + d * (k == 2 ? 12 : 4);
       x[k] = middle + 0.8 * (x[k] - middle);  // twice the density
     }
   }
-  REQUIRE(crowded > 100);
+  REQUIRE(dense > 100);
   c.scene.solver.iterations = 1;
   check_against_oracle(c);
   CHECK(reach_of_levels(c) > 1e-3);

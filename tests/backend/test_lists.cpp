@@ -11,7 +11,7 @@ using backend_test::is_double;
 
 namespace {
 
-/// Mean compression and the most neighbours by all pairs, from what a download says.
+/// Mean compression and the most neighbors by all pairs, from what a download says.
 struct ByAllPairs {
   double mean = 0, max = 0;
   std::int64_t neighbors_max = 0;
@@ -40,7 +40,7 @@ ByAllPairs by_all_pairs(const Case& c, const pbf::Snapshot& s) {
 }
 
 void check_against_all_pairs(const Case& c, pbf::Solver& solver) {
-  const pbf::Diagnostics m = solver.measure();
+  const pbf::Diagnostics m = solver.diagnose();
   const auto snapshot = solver.download({"density"}, pbf::ScalarType::f64).get();
   const ByAllPairs e = by_all_pairs(c, snapshot);
   const double tolerance = is_double() ? 1e-9 : 1e-4;
@@ -100,11 +100,11 @@ TEST_CASE("a dam break gains no energy with however many substeps in an update")
   c.scene.time.step = step;
   c.scene.solver.substeps = substeps;
   auto solver = make(c);
-  const double start = solver->measure().energy;
+  const double start = solver->diagnose().energy;
   double highest = 0;
   for (double t = 0; t < 0.5; t += step) {
     solver->step(1);
-    const pbf::Diagnostics m = solver->measure();
+    const pbf::Diagnostics m = solver->diagnose();
     highest = std::max(highest, m.energy);
     REQUIRE(m.non_finite + m.outside == 0);
   }

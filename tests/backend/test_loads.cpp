@@ -42,9 +42,9 @@ Balance balance(const Case& c, int updates) {
   auto solver = make(c);
   const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
   const double mass = plan.mass * double(plan.particles), time = updates * c.scene.time.step;
-  const pbf::Diagnostics before = solver->measure();
+  const pbf::Diagnostics before = solver->diagnose();
   solver->step(updates, {});
-  const pbf::Diagnostics after = solver->measure();
+  const pbf::Diagnostics after = solver->diagnose();
   Balance b;
   double sum[3] = {0, 0, 0}, weight = 0;
   for (const WallLoad& l : loads_of(c, *solver)) {
@@ -186,7 +186,7 @@ TEST_CASE("loads do not depend on threads, pass-by-pass updates, or being handed
     b->step(10, {});
     b->keep();
     b->step(7, {});
-    b->set_state(b->state(pbf::Which::kept));
+    b->set_state(b->state(pbf::StateOf::kept));
     const pbf::SolverState there = b->state();
     b->step(5, {.without_time = 1.0});
     pbf::SolverState back = b->state();

@@ -40,7 +40,7 @@ Expected expected(const Case& c) {
 
 void check_compression(const Case& c) {
   const Expected e = expected(c);
-  const pbf::Diagnostics m = make(c)->measure();
+  const pbf::Diagnostics m = make(c)->diagnose();
   const double tolerance = is_double() ? 1e-10 : 3e-6;
   CHECK(m.compression_mean == Approx(e.mean).margin(tolerance));
   CHECK(m.compression_rms == Approx(e.rms).margin(tolerance));
@@ -89,7 +89,7 @@ double deviation(const Case& c, double depth) {
 }  // namespace
 
 TEST_CASE("a lattice is not compressed, neither free nor between walls away from edges") {
-  const pbf::Diagnostics free = make(free_lattice(12, 1))->measure();
+  const pbf::Diagnostics free = make(free_lattice(12, 1))->diagnose();
   const double rounding = is_double() ? 1e-13 : 1e-6;
   CHECK(free.compression_max < rounding);
   CHECK(free.compression_p99 < rounding);
@@ -112,15 +112,15 @@ TEST_CASE("a lattice compressed by 1 % in volume reads 0.774 %, the sum over its
   };
   const double inside = sum(scale) / sum(1) - 1;
   CHECK(inside == Approx(0.00774).epsilon(1e-3));
-  CHECK(make(c)->measure().compression_max == Approx(inside).epsilon(is_double() ? 1e-9 : 1e-3));
+  CHECK(make(c)->diagnose().compression_max == Approx(inside).epsilon(is_double() ? 1e-9 : 1e-3));
   check_compression(c);
 }
 
-TEST_CASE("one displaced particle compresses its neighbours as brute force says, and no other") {
+TEST_CASE("one displaced particle compresses its neighbors as brute force says, and no other") {
   Case c = free_lattice(12, 1);
   c.particles.position[5 * 144 + 5 * 12 + 5][0] += 0.4 * c.scene.fluid.spacing;
   check_compression(c);
-  const pbf::Diagnostics m = make(c)->measure();
+  const pbf::Diagnostics m = make(c)->diagnose();
   CHECK(m.compression_max > 0.01);
   CHECK(m.share_above_1 * 1728 < 34);
   CHECK(m.compression_p99 < m.compression_max);
@@ -135,12 +135,12 @@ TEST_CASE("a pool at rest keeps its height and its hydrostatic profile, a sunken
   const double rounding = is_double() ? 1e-12 : 1e-6;
   for (const int layers : {9, 16, 40}) {
     Case c = pool(layers);
-    const pbf::Diagnostics m = make(c)->measure();
+    const pbf::Diagnostics m = make(c)->diagnose();
     CHECK(m.height_kept == Approx(1).margin(rounding));
     CHECK(m.hydrostatic_deviation < rounding);
     const double depth = layers * c.scene.fluid.spacing, low = c.scene.domain.min[2];
     for (auto& p : c.particles.position) p[2] = low + 0.9 * (p[2] - low);
-    const pbf::Diagnostics sunken = make(c)->measure();
+    const pbf::Diagnostics sunken = make(c)->diagnose();
     CHECK(sunken.height_kept == Approx(0.9).margin(rounding));
     CHECK(sunken.hydrostatic_deviation == Approx(deviation(c, depth)).margin(10 * rounding));
     CHECK(sunken.hydrostatic_deviation > 0.04);
@@ -149,17 +149,17 @@ TEST_CASE("a pool at rest keeps its height and its hydrostatic profile, a sunken
 
 TEST_CASE("the pool may rest on any wall that gravity points at, and must have one") {
   Case c = pool(12);
-  const pbf::Diagnostics down = make(c)->measure();
+  const pbf::Diagnostics down = make(c)->diagnose();
   // Upside down: mirrored in z, gravity up.
   Case up = c;
   for (auto& p : up.particles.position) p[2] = c.scene.domain.min[2] + c.scene.domain.max[2] - p[2];
   up.scene.gravity = {0, 0, 9.81};
-  const pbf::Diagnostics mirrored = make(up)->measure();
+  const pbf::Diagnostics mirrored = make(up)->diagnose();
   CHECK(mirrored.height_kept == Approx(1).margin(2e-6));
   CHECK(mirrored.hydrostatic_deviation < 2e-6);
   CHECK(mirrored.energy == Approx(down.energy).epsilon(1e-5));
   const auto undefined = [](const Case& with) {
-    const pbf::Diagnostics m = make(with)->measure();
+    const pbf::Diagnostics m = make(with)->diagnose();
     return std::isnan(m.height_kept) && std::isnan(m.hydrostatic_deviation);
   };
   Case other = c;
@@ -187,7 +187,7 @@ TEST_CASE("the energy is M g z + K above the lowest corner of the box") {
         mass * (9.81 * (x[2] - c.scene.domain.min[2]) + 2 * (c.scene.domain.max[0] - x[0]) +
                 0.5 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
   }
-  CHECK(make(c)->measure().energy == Approx(expected_energy).epsilon(is_double() ? 1e-12 : 1e-5));
+  CHECK(make(c)->diagnose().energy == Approx(expected_energy).epsilon(is_double() ? 1e-12 : 1e-5));
 }
 
 TEST_CASE("penetration is the distance behind the clamp, whichever wall it is") {
@@ -200,12 +200,12 @@ TEST_CASE("penetration is the distance behind the clamp, whichever wall it is") 
   SECTION("behind the upper wall") {
     c.particles.position[7][axis] = c.scene.domain.max[axis] + 0.3 * d;
   }
-  CHECK(make(c)->measure().penetration == Approx(0.3 * d).epsilon(1e-4));
+  CHECK(make(c)->diagnose().penetration == Approx(0.3 * d).epsilon(1e-4));
   c.scene.solver.wall_margin = 0.2 * d;
-  CHECK(make(c)->measure().penetration == Approx(0.5 * d).epsilon(1e-4));
-  CHECK(make(c)->measure().outside == 1);
+  CHECK(make(c)->diagnose().penetration == Approx(0.5 * d).epsilon(1e-4));
+  CHECK(make(c)->diagnose().outside == 1);
   c.scene.domain.open = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
-  CHECK(make(c)->measure().penetration == 0);
+  CHECK(make(c)->diagnose().penetration == 0);
 }
 
 TEST_CASE(
@@ -218,7 +218,7 @@ TEST_CASE(
   const int updates = 100;
   for (int k = 0; k < updates; k += 4) {
     often->step(4);
-    often->measure();
+    often->diagnose();
     often->download({"density"}, pbf::ScalarType::f64).get();
   }
   never->step(updates);
@@ -240,9 +240,9 @@ TEST_CASE(
   }
   CHECK(worst < (is_double() ? 1e-12 : 5e-6));
   // The lattice has only moved: its density is what it was, and so are measures from new lists.
-  const pbf::Diagnostics m = often->measure();
-  CHECK(m.compression_mean == Approx(moved->measure().compression_mean).margin(1e-5));
-  CHECK(never->measure().compression_mean == m.compression_mean);
+  const pbf::Diagnostics m = often->diagnose();
+  CHECK(m.compression_mean == Approx(moved->diagnose().compression_mean).margin(1e-5));
+  CHECK(never->diagnose().compression_mean == m.compression_mean);
 }
 
 TEST_CASE("measures of positions and velocities have the same bits in any order of rows") {
@@ -264,7 +264,7 @@ TEST_CASE("measures of positions and velocities have the same bits in any order 
   }
   a->set_state(s);
   b->set_state(shuffled);
-  const pbf::Diagnostics x = a->measure(), y = b->measure();
+  const pbf::Diagnostics x = a->diagnose(), y = b->diagnose();
   for (int k = 0; k < 3; ++k) {
     CHECK(x.momentum[k] == y.momentum[k]);
     CHECK(x.center_of_mass[k] == y.center_of_mass[k]);
@@ -286,9 +286,9 @@ TEST_CASE("free fall gains m g t of momentum to rounding, and keeps what is leve
   for (std::size_t i = 0; i < c.particles.size(); ++i)
     c.particles.velocity[i] = {0.5 * (i % 3 ? 1 : -2), 0.25, -1};
   auto s = make(c);
-  const pbf::Diagnostics before = s->measure();
+  const pbf::Diagnostics before = s->diagnose();
   s->step(100);
-  const pbf::Diagnostics after = s->measure();
+  const pbf::Diagnostics after = s->diagnose();
   const double mass = 1000 * std::pow(c.scene.fluid.spacing, 3) * double(c.particles.size());
   // Every third of them goes the other way, twice as fast.
   CHECK(std::fabs(after.momentum[0]) < 1e-12 * mass);

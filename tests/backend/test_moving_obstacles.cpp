@@ -87,7 +87,7 @@ TEST_CASE("a wall that comes takes a particle along at its speed") {
   auto solver = make(c);
   const int met = 100;  // 2 h, 0.08 m, at 0.4 m/s
   solver->step(met - 10);
-  CHECK(solver->measure().speed_max == 0);
+  CHECK(solver->diagnose().speed_max == 0);
   solver->step(60);
   const auto snap = solver->download({"velocity"}, pbf::ScalarType::f64).get();
   const double exact = is_double() ? 1e-11 : 1e-4;
@@ -162,7 +162,7 @@ TEST_CASE("nothing gets into a stirrer in 10000 updates, or what it may gain is 
   for (int k = 0; k <= 500; ++k) {
     if (k > 0) solver->step(20);
     most = std::max(most, deepest_now(c, *solver));
-    m = solver->measure();
+    m = solver->diagnose();
     m.work = work.until(m);
     solver->readings(Series::measures, pbf::Interval::ends);
     work.take(m);
@@ -190,12 +190,12 @@ TEST_CASE(
   c = here(c);
   auto solver = make(c);
   const double mass = 0.02 * 0.02 * 0.02 * 1000 * double(c.particles.size());
-  const double before = solver->measure().center_of_mass[2] - s.domain.min[2];
+  const double before = solver->diagnose().center_of_mass[2] - s.domain.min[2];
   for (int k = 0; k < 10; ++k) {
-    const pbf::Diagnostics a = solver->measure();
+    const pbf::Diagnostics a = solver->diagnose();
     solver->readings(Series::measures, pbf::Interval::ends);
     solver->step(100);
-    const pbf::Diagnostics b = solver->measure();
+    const pbf::Diagnostics b = solver->diagnose();
     for (const int axis : {0, 2}) {
       double force = 0;
       for (const WallLoad& l : loads_of(c, *solver)) force += l.force[axis];
@@ -204,7 +204,7 @@ TEST_CASE(
       CHECK(force == Approx(want).margin((is_double() ? 1e-9 : 2e-4) * mass * 9.81));
     }
   }
-  const double after = solver->measure().center_of_mass[2] - s.domain.min[2];
+  const double after = solver->diagnose().center_of_mass[2] - s.domain.min[2];
   CHECK(after / before == Approx(0.6 / 0.5).epsilon(0.03));
   CHECK(deepest_now(c, *solver) < fine());
 }
@@ -221,19 +221,19 @@ TEST_CASE("obstacles in motion: the same bits by any batches, passes, threads an
   auto many = make(other);
   for (const int n : {1, 7, 90, 2}) {
     many->step(n, {.level = level});
-    many->measure();
+    many->diagnose();
   }
   auto fresh = make(c);
   fresh->set_state(many->state());
   fresh->step(100, {.level = level});
   fresh->keep();
   fresh->step(30, {.level = level});
-  fresh->set_state(fresh->state(pbf::Which::kept));  // back
+  fresh->set_state(fresh->state(pbf::StateOf::kept));  // back
   fresh->step(100, {.level = level});
   CHECK(same_particles(one->state(), fresh->state()));
   check_loads(*fresh, one->readings(Series::measures, pbf::Interval::goes_on));
-  CHECK(one->measure().solid_work == fresh->measure().solid_work);
-  CHECK(one->measure().solid_work != 0);
+  CHECK(one->diagnose().solid_work == fresh->diagnose().solid_work);
+  CHECK(one->diagnose().solid_work != 0);
   if (level > 0) return;
   fresh->inspection()->trace();
   fresh->inspection()->step_checked({1e30, 1e30, 1 << 30});
@@ -246,9 +246,9 @@ TEST_CASE("steps without time leave obstacles where they are, and do no work") {
   Case c = stirred(false);
   auto solver = make(c);
   solver->step(20);
-  const double work = solver->measure().solid_work;
+  const double work = solver->diagnose().solid_work;
   solver->step(5, {.without_time = 1.0});
-  CHECK(solver->measure().solid_work == work);
+  CHECK(solver->diagnose().solid_work == work);
   CHECK(deepest_now(c, *solver) < fine());
   solver->step(20);
   CHECK(deepest_now(c, *solver) < fine());
@@ -265,7 +265,7 @@ TEST_CASE("solids that close a gap over fluid: all of it stays finite and inside
   c = here(c);
   auto solver = make(c);
   solver->step(int(wide * s.h() / 0.4 / s.time.step * 0.6));  // they pass each other
-  const pbf::Diagnostics m = solver->measure();
+  const pbf::Diagnostics m = solver->diagnose();
   CHECK(m.non_finite == 0);
   CHECK(m.outside == 0);
   CHECK(m.penetration > 0.1 * s.h());  // there is no room outside: the measures say so

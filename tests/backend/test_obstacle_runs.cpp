@@ -54,9 +54,9 @@ void check_all_loads(const Case& c) {
   auto solver = make(c);
   const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
   const double mass = plan.mass * double(plan.particles), time = 100 * c.scene.time.step;
-  const pbf::Diagnostics before = solver->measure();
+  const pbf::Diagnostics before = solver->diagnose();
   solver->step(100);
-  const pbf::Diagnostics after = solver->measure();
+  const pbf::Diagnostics after = solver->diagnose();
   double sum[3] = {0, 0, 0}, weight = 0;
   for (const WallLoad& l : loads_of(c, *solver)) {
     for (int k = 0; k < 3; ++k) sum[k] += l.force[k];
@@ -81,7 +81,7 @@ void run_outside(const Case& c, pbf::Solver& s, int updates, int parts, int leve
   }
   CHECK(most < fine());
   CHECK(most > -0.5);  // they did meet it
-  const pbf::Diagnostics m = s.measure();
+  const pbf::Diagnostics m = s.diagnose();
   CHECK(m.outside == 0);
   CHECK(m.non_finite == 0);
   CHECK(m.penetration < fine());
@@ -124,7 +124,7 @@ TEST_CASE("with levels too loads are the weight less the change of momentum", "[
   const auto energy = [&] {
     auto solver = make(c);
     solver->step(100);
-    return solver->measure().kinetic_energy;
+    return solver->diagnose().kinetic_energy;
   };
   const double with = energy();
   c.scene.solver.levels = pbf::LevelsMode::off;

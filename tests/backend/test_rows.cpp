@@ -79,7 +79,7 @@ TEST_CASE("rows: new particles come behind the last, and those in the drain leav
     REQUIRE(number(before, 2) == double(gone));
   }
   CHECK(gone > 100);
-  CHECK(solver->measure().non_finite == 0);
+  CHECK(solver->diagnose().non_finite == 0);
 }
 
 TEST_CASE("rows: the bits do not depend on threads, on the backend, or on the size of a batch") {
@@ -107,7 +107,7 @@ TEST_CASE("rows: a state is kept, goes back, and is in a checkpoint, from which 
   a->step(50);
   const SolverState later = a->state();
   CHECK(later.id.size() != kept.id.size());
-  CHECK(same(a->state(Which::kept), kept));
+  CHECK(same(a->state(StateOf::kept), kept));
   a->set_state(kept);
   CHECK(same(a->state(), kept));
   a->step(50);
@@ -166,7 +166,7 @@ TEST_CASE("rows: particles for which there is no memory stop the run, with their
   const auto solver = e.here();
   try {
     for (int k = 0; k < 400; ++k) solver->step(4);
-    solver->measure();
+    solver->diagnose();
     FAIL("no error");
   } catch (const Error& error) {
     CHECK(error.code() == ExitCode::guard);
@@ -186,7 +186,7 @@ TEST_CASE("rows: all particles may leave, and others come later") {
   CHECK(solver->state().id.size() == std::size_t(shower::kPerSort));
   CHECK(solver->state().id[0] == int(first.id.size()));
   solver->step(40);
-  CHECK(solver->measure().non_finite == 0);
+  CHECK(solver->diagnose().non_finite == 0);
 }
 
 TEST_CASE("rows: the numbers of launched rows are few, and large enough") {

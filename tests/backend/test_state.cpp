@@ -51,7 +51,7 @@ TEST_CASE("a state put into a fresh solver continues to the last bit", "[slow]")
   SECTION("at once") { b->set_state(s); }
   SECTION("measured and downloaded in between") {
     b->set_state(s);
-    CHECK(b->measure().kinetic_energy == Approx(a->measure().kinetic_energy));
+    CHECK(b->diagnose().kinetic_energy == Approx(a->diagnose().kinetic_energy));
     b->download({"density"}, pbf::ScalarType::f32).get();
     CHECK(same(b->state(), s));
   }
@@ -106,12 +106,12 @@ TEST_CASE("how often a run is measured does not change its bytes", "[slow]") {
   for (const int k : {1, 2, 5, 70, 3}) {
     a->step(k);
     b->step(k);
-    b->measure();
+    b->diagnose();
     b->keep();
-    CHECK(same(a->state(), b->state(pbf::Which::kept)));
+    CHECK(same(a->state(), b->state(pbf::StateOf::kept)));
     b->download({"density"}, pbf::ScalarType::f32).get();
   }
-  b->measure();
+  b->diagnose();
   CHECK(same_bytes(*a, *b));
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("a trace ends with the state of the solver and lists the stages in ord
   CHECK(worst < 1e-14);
 }
 
-TEST_CASE("the traced neighbours are the pairs closer than h, by brute force") {
+TEST_CASE("the traced neighbors are the pairs closer than h, by brute force") {
   const Case c = here(jittered_block(7, 8, 6, 0.4, 0.2));
   auto s = make(c);
   const pbf::StepTrace t = s->inspection()->trace();

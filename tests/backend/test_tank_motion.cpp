@@ -4,7 +4,7 @@
 #include <map>
 
 #include "lib/program/motion.h"
-#include "lib/run/watch.h"
+#include "lib/run/monitor.h"
 #include "tests/support/backend.h"
 #include "tests/support/catch.h"
 #include "tests/support/quaternion.h"
@@ -94,13 +94,14 @@ std::optional<pbf::Alarm> run_to_end(const Case& c, double& rise) {
   const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
   auto solver = make(c);
   pbf::EnergyTrack energy;
-  pbf::Watch watch(c.scene, plan, *solver, [&](pbf::Diagnostics& m, double) { energy.follow(m); });
-  pbf::Session session(*solver, {&watch, &watch.choosing()}, 10);
-  session.use(watch.options());
+  pbf::Monitor monitor(c.scene, plan, *solver,
+                       [&](pbf::Diagnostics& m, double) { energy.follow(m); });
+  pbf::Session session(*solver, {&monitor, &monitor.choosing()}, 10);
+  session.use(monitor.options());
   session.run(std::llround(c.scene.time.end / c.scene.time.step));
-  rise = watch.last().energy_rise;
-  if (!watch.event()) return std::nullopt;
-  return watch.event()->alarm;
+  rise = monitor.last().energy_rise;
+  if (!monitor.event()) return std::nullopt;
+  return monitor.event()->alarm;
 }
 
 }  // namespace
@@ -209,7 +210,7 @@ TEST_CASE("a tank that turns steadily shows the parabola, and its fluid comes to
     return (t.x - x0) * (t.x - x0) + (t.y - y0) * (t.y - y0);
   });
   CHECK(k == Approx(rate * rate / (2 * 9.81)).epsilon(0.08));
-  const pbf::Diagnostics m = solver->measure();
+  const pbf::Diagnostics m = solver->diagnose();
   CHECK(std::sqrt(2 * m.kinetic_energy / (0.008 * double(c.particles.size()))) < 0.05);
 }
 

@@ -14,7 +14,7 @@ using backend_test::same_particles;
 namespace {
 
 /// Particles closer than at rest, at random places: a mean compression of some 10 %.
-Case crowded() {
+Case over_dense() {
   Case c = here(jittered_block(12, 11, 10, 0.3, 0.4));
   c.scene.solver.iterations = 1;
   c.scene.solver.max_iterations = 64;
@@ -37,7 +37,7 @@ std::vector<double> mean_compressions(const pbf::StepTrace& t) {
 }  // namespace
 
 TEST_CASE("iterations go on until the mean compression is within the tolerance, and no further") {
-  Case fixed = crowded();
+  Case fixed = over_dense();
   fixed.scene.solver.iterations = 24;
   const std::vector<double> all = mean_compressions(make(fixed)->inspection()->trace());
   REQUIRE(all.size() == 24);
@@ -46,12 +46,12 @@ TEST_CASE("iterations go on until the mean compression is within the tolerance, 
     // Between what iterations - 1 and what `iterations` found.
     const double before = all[std::size_t(iterations - 2)], now = all[std::size_t(iterations - 1)];
     REQUIRE(now < before);
-    Case c = crowded();
+    Case c = over_dense();
     c.scene.solver.tolerance = std::sqrt(before * now);
     auto solver = make(c);
     solver->step(1);
-    CHECK(solver->measure().iterations_done == iterations);
-    Case asked = crowded();
+    CHECK(solver->diagnose().iterations_done == iterations);
+    Case asked = over_dense();
     asked.scene.solver.iterations = iterations;
     auto expected = make(asked);
     expected->step(1);
@@ -60,22 +60,22 @@ TEST_CASE("iterations go on until the mean compression is within the tolerance, 
 }
 
 TEST_CASE("whole repeats of the iterations follow, and no more than max_iterations allows") {
-  Case c = crowded();
+  Case c = over_dense();
   c.scene.solver.iterations = 3;
   c.scene.solver.max_iterations = 8;
   c.scene.solver.tolerance = 1e-9;
   auto solver = make(c);
   solver->step(2);
-  CHECK(solver->measure().iterations_done == 2 * 6);
+  CHECK(solver->diagnose().iterations_done == 2 * 6);
   c.scene.solver.tolerance = 1;
   solver = make(c);
   solver->step(2);
-  CHECK(solver->measure().iterations_done == 2 * 3);
+  CHECK(solver->diagnose().iterations_done == 2 * 3);
 }
 
 TEST_CASE("a tolerance is met in the same iterations in one call, in many, and pass by pass",
           "[slow]") {
-  Case c = crowded();
+  Case c = over_dense();
   c.scene.solver.iterations = 2;
   c.scene.solver.substeps = 2;
   c.scene.solver.method = pbf::SolverMethod::chebyshev;
@@ -85,11 +85,11 @@ TEST_CASE("a tolerance is met in the same iterations in one call, in many, and p
   once->step(updates);
   for (int u = 0; u < updates; ++u) singly->step(1);
   for (int u = 0; u < updates; ++u) traced->inspection()->trace();
-  const auto iterations = once->measure().iterations_done;
+  const auto iterations = once->diagnose().iterations_done;
   CHECK(iterations > 4 * updates);
   CHECK(iterations < 4 * 16 * updates);
-  CHECK(singly->measure().iterations_done == iterations);
-  CHECK(traced->measure().iterations_done == iterations);
+  CHECK(singly->diagnose().iterations_done == iterations);
+  CHECK(traced->diagnose().iterations_done == iterations);
   CHECK(same_particles(once->state(), singly->state()));
   CHECK(same_particles(once->state(), traced->state()));
 }

@@ -77,7 +77,7 @@ double late_energy(const Case& c, int updates) {
   s->step(updates / 2);
   for (int k = 0; k < 10; ++k) {
     s->step(updates / 20);
-    sum += s->measure().kinetic_energy / 10;
+    sum += s->diagnose().kinetic_energy / 10;
   }
   return sum;
 }
@@ -92,16 +92,16 @@ double angular_momentum(pbf::Solver& s) {
 
 }  // namespace
 
-TEST_CASE("viscosity keeps the momentum of crowded, torn fluid to rounding") {
+TEST_CASE("viscosity keeps the momentum of over-dense, torn fluid to rounding") {
   const bool flat = GENERATE(false, true);
   Case c = here(flat ? flat_block(20, 20, 0.4, 0.5) : jittered_block(8, 8, 8, 0.4, 0.5));
   c.scene.solver.kernels = GENERATE(pbf::KernelMode::consistent, pbf::KernelMode::paper);
   c.scene.viscosity = pbf::Viscosity{0.3};
   set_free(c, 0.8);
   auto s = make(c);
-  const auto before = s->measure();
+  const auto before = s->diagnose();
   s->step(30);  // none gets to a wall
-  const auto after = s->measure();
+  const auto after = s->diagnose();
   const double scale =
       std::sqrt(2 * before.kinetic_energy * 1000 * std::pow(0.02, 3) * double(c.particles.size()));
   for (int k = 0; k < 3; ++k)
@@ -138,11 +138,11 @@ TEST_CASE("vorticity confinement gives a free ball no energy, whatever its epsil
   c.scene.fluid.smoothing_ratio = ratio;
   c.scene.vorticity = pbf::Vorticity{epsilon};
   auto s = make(c);
-  const double start = s->measure().kinetic_energy;
+  const double start = s->diagnose().kinetic_energy;
   double most = 0;
   for (int k = 0; k < 20; ++k) {
     s->step(5);  // 0.4 s in all
-    most = std::max(most, s->measure().kinetic_energy);
+    most = std::max(most, s->diagnose().kinetic_energy);
   }
   CAPTURE(epsilon, spin, noise, ratio);
   CHECK(most < 1.01 * start);
@@ -181,7 +181,7 @@ TEST_CASE("vorticity confinement does as much in an update of several substeps")
     auto b = make(c);
     a->step(1);
     b->step(1);
-    return b->measure().kinetic_energy - a->measure().kinetic_energy;
+    return b->diagnose().kinetic_energy - a->diagnose().kinetic_energy;
   };
   CHECK(gained(4) == Approx(gained(1)).epsilon(0.02));
   CHECK(gained(1) > 0);

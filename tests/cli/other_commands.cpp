@@ -44,7 +44,7 @@ TEST_CASE("config --stages prints the list of stages that the plots read") {
   const Outcome o = pbf::test::pbf({"config", "--stages"}, folder.path());
   CHECK(o.code == 0);
   CHECK(o.out == read_text(fs::path(PBF_SOURCE_DIR) / "tools/pbf_tools/data/stages.json"));
-  CHECK(has(o.out, "\"group\": \"gridding/neighbours\""));
+  CHECK(has(o.out, "\"group\": \"grid/neighbors\""));
 }
 
 TEST_CASE("info names version, libraries and devices") {
@@ -120,7 +120,7 @@ TEST_CASE("plan runs nothing, names what is left out, and prints a scene that re
 TEST_CASE("a scene too large for the memory of any machine exits 4 before anything is made") {
   const Scratch folder;
   const std::string scene = folder.write("tiny.yaml", tiny_scene());
-  // 2.1e9 particles can be numbered; with 4188 neighbours each they need 40 TB.
+  // 2.1e9 particles can be numbered; with 4188 neighbors each they need 40 TB.
   const Outcome o = pbf::test::pbf(
       {"run", scene, "--set", "fluid.spacing=0.00031", "--set", "fluid.smoothing_ratio=10"},
       folder.path());
@@ -240,7 +240,7 @@ TEST_CASE("run and render draw the same bytes: frame, range, name and moving sol
 }
 #endif
 
-TEST_CASE("a start too crowded for the memory of any machine exits 4 before anything is made",
+TEST_CASE("a start too dense for the memory of any machine exits 4 before anything is made",
           "[slow]") {
   const Scratch folder;
   const std::string scene = folder.write(
@@ -253,7 +253,7 @@ TEST_CASE("a start too crowded for the memory of any machine exits 4 before anyt
   const Outcome o = pbf::test::pbf({"run", scene}, folder.path());
   CAPTURE(o.err);
   CHECK(o.code == 4);
-  CHECK(has(o.err, "about 2000000 neighbours"));
+  CHECK(has(o.err, "about 2000000 neighbors"));
   CHECK_FALSE(fs::exists(folder / "out"));
   CHECK(has(pbf::test::pbf({"plan", scene}, folder.path()).out, "\nstart: about 2000000"));
 }

@@ -34,7 +34,7 @@ TEST_CASE("a run leaves its file, resolved scene, log and DONE, and says so") {
   CHECK(reader.log_column("update") == std::vector<double>{0, 10, 20});
   CHECK(reader.info().overrides == std::vector<std::string>{"threads=1"});
   for (const char* part : {"particles           64", "updates             20", "lambda",
-                           "particle-updates/s", "gridding/neighbours", "peak memory", "out/tiny"})
+                           "particle-updates/s", "grid/neighbors", "peak memory", "out/tiny"})
     CHECK(has(o.out, part));
   for (const char* part :
        {"updates             20 (0.1 s simulated)\n", "a mean below 1 % is good",
@@ -48,7 +48,7 @@ TEST_CASE("a run leaves its file, resolved scene, log and DONE, and says so") {
     REQUIRE(at != std::string::npos);
     return std::stod(o.out.substr(at + word.size()));
   };
-  CHECK(after("  gridding/neighbours ") ==
+  CHECK(after("  grid/neighbors ") ==
         Approx(after("  grid ") + after(", neighbors ")).margin(0.0011));
   CHECK(has(read_text(run / "log.txt"), o.out));  // the summary, word for word
   CHECK(has(read_text(run / "log.txt"), o.err));

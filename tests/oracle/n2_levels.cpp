@@ -176,7 +176,7 @@ std::vector<Sums> finest(const std::array<Axis, 3>& axes, const std::vector<Node
   return nodes;
 }
 
-/// |what all neighbours do to a particle whose multiplier's gradient is 1|, on the rest lattice.
+/// |what all neighbors do to a particle whose multiplier's gradient is 1|, on the rest lattice.
 Real lattice_answer(const Settings& c) {
   const int reach = int(std::ceil(c.h / c.spacing)), y_reach = c.dimensions == 2 ? 0 : reach;
   V sum{};

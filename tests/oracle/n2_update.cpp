@@ -240,7 +240,7 @@ void update(State& s, const Settings& c, LevelNodes* nodes) {
   }
   if (c.vorticity != 0) {
     std::vector<V> curl(n);
-    std::vector<Real> approach(n);  // rms rate at which neighbours come nearer, 1/s
+    std::vector<Real> approach(n);  // rms rate at which neighbors come nearer, 1/s
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j : pairs[i]) {
         const V d = sub(s.x[j], s.x[i]), dv = sub(s.v[j], s.v[i]);

@@ -36,7 +36,7 @@ TEST_CASE("the compression of a pool at rest is foretold within a factor of two"
     double mean = 0;
     for (int k = 0; k < 10; ++k) {
       solver->step(2);
-      mean += solver->measure().compression_mean / 10;
+      mean += solver->diagnose().compression_mean / 10;
     }
     const double foretold = pbf::compression_at_rest(s, std::int64_t(solver->state().id.size()));
     CAPTURE(mean, foretold);

@@ -1,4 +1,4 @@
-// Neighbour lists of the CPU executor against all pairs.
+// Neighbor lists of the CPU executor against all pairs.
 #include <algorithm>
 #include <numeric>
 #include <random>
@@ -82,8 +82,7 @@ std::vector<Vec4<Real>> random_points(int n, double lo, double hi) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("neighbour lists hold exactly the pairs closer than h", "[slow]", float,
-                   double) {
+TEMPLATE_TEST_CASE("neighbor lists hold exactly the pairs closer than h", "[slow]", float, double) {
   using R = TestType;
   SECTION("random points") { check_lists<R>(random_points<R>(3000, 0, 5), {5, 5, 5}, 6, 6, 6); }
   SECTION("random points, many more than one chunk and one cell") {

@@ -23,10 +23,10 @@ Case floating_block(int n) {
 TEST_CASE("the centre of mass of a free block follows the discrete parabola to 1e-12 in double") {
   Case c = floating_block(6);
   auto s = make(c);
-  const auto m0 = s->measure();
+  const auto m0 = s->diagnose();
   const int n = 200;
   s->step(n);
-  const auto m = s->measure();
+  const auto m = s->diagnose();
   const double dt = c.scene.time.step, mass = 1000 * std::pow(c.scene.fluid.spacing, 3) * 216;
   for (int k = 0; k < 3; ++k) {
     const double g = c.scene.gravity[std::size_t(k)];
@@ -44,9 +44,9 @@ TEST_CASE("without gravity and walls momentum is kept to rounding, with viscosit
   const auto after = [&](double xsph) {
     c.scene.viscosity = pbf::Viscosity{xsph};
     auto s = make(c);
-    const auto m0 = s->measure();
+    const auto m0 = s->diagnose();
     s->step(300);
-    const auto m = s->measure();
+    const auto m = s->diagnose();
     const double scale = 216 * 0.008 * 0.1;
     for (int k = 0; k < 3; ++k) CHECK(std::fabs(m.momentum[k] - m0.momentum[k]) < 1e-12 * scale);
     return m.kinetic_energy;
@@ -62,14 +62,14 @@ TEST_CASE(
                         c.scene.domain.min[2] + 0.6};
   c.scene.precision = pbf::Precision::single;
   auto s = make(c);
-  const double e0 = s->measure().potential_energy;
+  const double e0 = s->diagnose().potential_energy;
   double worst_energy = 0;
   for (int k = 0; k < 30; ++k) {
     s->step(25);
-    const auto m = s->measure();
+    const auto m = s->diagnose();
     worst_energy = std::max(worst_energy, m.kinetic_energy + m.potential_energy);
   }
-  const auto m = s->measure();
+  const auto m = s->diagnose();
   const double height = 2 * (m.center_of_mass[2] - c.scene.domain.min[2]) / (16 * 0.02);
   CHECK(height > 0.985);
   CHECK(height < 1.01);
@@ -92,7 +92,7 @@ TEST_CASE("a pool keeps 0.97 of its height with the smallest smoothing ratio tha
       c.scene.solver.kernels = kernels;
       auto s = make(c);
       s->step(1000);
-      const double height = s->measure().height_kept;
+      const double height = s->diagnose().height_kept;
       CHECK(height > 0.97);
       CHECK(height < 1.02);
     }
@@ -108,7 +108,7 @@ TEST_CASE(
     auto solver = make(c);
     double worst = 0;
     for (int k = 0; k < 40; ++k) {
-      const auto m = solver->measure();
+      const auto m = solver->diagnose();
       worst = std::max(worst, m.kinetic_energy + m.potential_energy);
       solver->step(10);
     }
@@ -137,5 +137,5 @@ TEST_CASE("coincident particles separate, and the same way every time") {
       nearest = std::min(nearest, std::hypot(x[3 * i] - x[3 * j], x[3 * i + 1] - x[3 * j + 1],
                                              x[3 * i + 2] - x[3 * j + 2]));
   CHECK(nearest > 0.1 * c.scene.h());
-  CHECK(a->measure().non_finite == 0);
+  CHECK(a->diagnose().non_finite == 0);
 }

@@ -160,9 +160,9 @@ TEST_CASE(
   c.scene.tensile = Tensile{};
   c.particles.position[5] = c.particles.position[6];  // a direction must be chosen
   auto s = make(c);
-  const auto before = s->measure();
+  const auto before = s->diagnose();
   s->step(60);
-  const auto m = s->measure();
+  const auto m = s->diagnose();
   const double scale = 0.4 * 24 * 24 * c.scene.particle_mass();
   for (int k = 0; k < 3; ++k) CHECK(std::fabs(m.momentum[k] - before.momentum[k]) < 1e-12 * scale);
   CHECK(m.momentum[1] == 0);
@@ -180,9 +180,9 @@ TEST_CASE("a pool at rest in two dimensions keeps 0.99 of its height and does no
     CAPTURE(int(kernels));
     const Case c = pool(20, 20, kernels);
     auto s = make(c);
-    const auto start = s->measure();
+    const auto start = s->diagnose();
     s->step(800);
-    const auto m = s->measure();
+    const auto m = s->diagnose();
     CHECK(m.height_kept > 0.99);
     CHECK(m.height_kept < 1.01);
     CHECK(m.compression_mean < 0.005);
@@ -214,7 +214,7 @@ TEST_CASE("in two dimensions 1 and 2 threads give the same bits, energies are th
   double energy = 0;  // of the start: rho0 d^2 times the thickness, d here
   for (const auto& v : c.particles.velocity)
     energy += 0.5 * 1000 * 0.02 * 0.02 * 0.02 * (v[0] * v[0] + v[2] * v[2]);
-  CHECK(a->measure().kinetic_energy == Approx(energy).epsilon(1e-6));
+  CHECK(a->diagnose().kinetic_energy == Approx(energy).epsilon(1e-6));
   a->step(15);
   b->step(15);
   const auto x = a->download({"velocity", "density"}, ScalarType::f64).get();

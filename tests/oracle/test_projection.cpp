@@ -200,7 +200,7 @@ TEST_CASE("nothing moves where every constraint holds") {
 TEST_CASE(
     "thousands of Jacobi iterations end half the way from the exact projection, small ones near "
     "it") {
-  // With whole steps neighbours push each other twice as far as they need to, and a one-sided
+  // With whole steps neighbors push each other twice as far as they need to, and a one-sided
   // constraint never pulls back: no number of iterations mends that.
   Case c = jittered_block(6, 6, 6, 0.05, 0, 5, 0.985);
   for (std::size_t k = 0; k < 3; ++k) c.scene.domain.min[k] -= 0.1, c.scene.domain.max[k] += 0.1;

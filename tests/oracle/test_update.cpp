@@ -115,7 +115,7 @@ TEST_CASE("1 and 2 threads give the same bits after 50 updates with every featur
   const auto sb = b->download({"velocity", "density"}, pbf::ScalarType::f64).get();
   for (std::size_t f = 0; f < sa.fields.size(); ++f)
     CHECK(sa.fields[f].bytes == sb.fields[f].bytes);
-  const auto ma = a->measure(), mb = b->measure();
+  const auto ma = a->diagnose(), mb = b->diagnose();
   CHECK(ma.kinetic_energy == mb.kinetic_energy);
   CHECK(ma.compression_mean == mb.compression_mean);
 }
@@ -126,7 +126,7 @@ TEST_CASE("measuring and downloading do not change the trajectory") {
   for (int k = 0; k < 20; ++k) {
     a->step(1);
     b->step(1);
-    b->measure();
+    b->diagnose();
     b->download({"density"}, pbf::ScalarType::f32).get();
   }
   CHECK(a->download({}, pbf::ScalarType::f64).get().fields[0].bytes ==

@@ -49,9 +49,9 @@ class CountingSolver : public Solver, public Inspection {
     now_.load += n;
     now_.gauge += n;
   }
-  SolverState state(Which which) override {
+  SolverState state(StateOf which) override {
     before_state();
-    const Counts& c = which == Which::kept ? kept_ : now_;
+    const Counts& c = which == StateOf::kept ? kept_ : now_;
     SolverState s;
     s.updates = c.updates;
     s.steps = c.steps;
@@ -98,7 +98,7 @@ class CountingSolver : public Solver, public Inspection {
       return std::move(s);
     });
   }
-  Diagnostics measure() override {
+  Diagnostics diagnose() override {
     measured.push_back(now_.updates);
     Diagnostics m;
     m.update = now_.updates;
@@ -145,13 +145,13 @@ class Recorder : public Observer {
  public:
   Recorder(std::string name, std::int64_t every, Told& told)
       : name_(std::move(name)), every_(every), told_(told) {}
-  std::function<Now(Session&)> then = [](Session&) { return Now::go_on; };
+  std::function<Next(Session&)> then = [](Session&) { return Next::go_on; };
   UpdateNumbers seen;
 
   std::int64_t next(std::int64_t u) const override {
     return every_ > 0 ? next_multiple(u, every_) : every_;
   }
-  Now at(Session& session) override {
+  Next at(Session& session) override {
     seen.push_back(session.update());
     told_.push_back(name_ + " " + std::to_string(session.update()));
     return then(session);

@@ -87,7 +87,7 @@ inline RunInfo sample_info(std::int64_t particles) {
   info.started = "2026-01-02T03:04:05Z";
   info.scene_files = std::string(64, 'a') + "  drop.csv\n";
   info.scene_sha256 = std::string(64, 'b');
-  info.plan = "predict grid neighbours";
+  info.plan = "predict grid neighbors";
   info.solver = {"cpu", "float", "a processor", "", 2, 0.125, 1.5, 123456};
   info.domain_min = {-1, 0, 0.5};
   info.domain_max = {1, 2, 3};

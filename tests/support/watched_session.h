@@ -1,11 +1,11 @@
-// A watch in a session, with a solver that only counts.
+// A monitor in a session, with a solver that only counts.
 #pragma once
 
 #include <array>
 #include <string>
 #include <vector>
 
-#include "lib/run/watch.h"
+#include "lib/run/monitor.h"
 #include "tests/support/counting_solver.h"
 #include "tests/support/scene_samples.h"
 
@@ -36,7 +36,7 @@ inline Scene with_shorter_steps(Scene s = with_guard()) {
   return s;
 }
 
-/// A watch in a session, between observers that only remember.
+/// A monitor in a session, between observers that only remember.
 struct WatchedSession {
   Scene scene;
   Plan plan = make_plan(scene, CountingSolver::particles);
@@ -46,18 +46,18 @@ struct WatchedSession {
   std::vector<double> steps{};  ///< s, given with the measures
   std::vector<GaugeRow> readings{};
   std::vector<std::string> notes{};
-  Watch watch{scene, plan, solver,
-              [this](Diagnostics& m, double dt) { taken.push_back(m), steps.push_back(dt); },
-              [this](const std::string& note) { notes.push_back(note); }};
+  Monitor monitor{scene, plan, solver,
+                  [this](Diagnostics& m, double dt) { taken.push_back(m), steps.push_back(dt); },
+                  [this](const std::string& note) { notes.push_back(note); }};
   Recorder before{"before", kEveryCall, told}, frames{"frames", 3, told},
       behind{"behind", kEveryCall, told};
 
   explicit WatchedSession(const Scene& s) : scene(s) {
-    watch.read_gauges([this](const GaugeRow& row) { readings.push_back(row); });
+    monitor.read_gauges([this](const GaugeRow& row) { readings.push_back(row); });
   }
   void run(std::int64_t end = 10, std::int64_t seen = -1) {
-    Session session(solver, {&before, &watch, &frames, &watch.choosing(), &behind});
-    session.use(watch.options());
+    Session session(solver, {&before, &monitor, &frames, &monitor.choosing(), &behind});
+    session.use(monitor.options());
     session.run(end, seen);
   }
   UpdateNumbers updates() const {

@@ -73,7 +73,7 @@ def grouped(stages: dict[str, float]) -> dict[str, float]:
     """The stages folded into groups.
 
     >>> grouped({"grid": 1.0, "neighbors": 2.0, "lambda": 3.0, "other": 0.5})
-    {'gridding/neighbours': 3.0, 'lambdas': 3.0, 'other': 0.5}
+    {'grid/neighbors': 3.0, 'lambdas': 3.0, 'other': 0.5}
     """
     out = {}
     for name, members in style.GROUPS.items():

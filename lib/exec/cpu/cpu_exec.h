@@ -29,7 +29,7 @@ class CpuExec {
   template <class T>
   using Buffer = HostBuffer<T>;
 
-  /// threads >= 1. list_entries: room per particle for its neighbors, at first
+  /// threads >= 1. list_entries: capacity per particle for its neighbors, at first
   /// (lib/program/memory.h); pages that stay empty are never touched.
   explicit CpuExec(int threads, int list_entries = 37, Simd simd = chosen_simd())
       : threads_(threads),
@@ -195,9 +195,9 @@ class CpuExec {
               : make_lists<3>(simd_, position, bin_start, p, first, last, far, groups, scratch);
       HostBuffer<int>& mine = chunks_[std::size_t(c)];
       // Grow with a reserve, shrink only if far too large: sizes change little between updates.
-      const std::size_t room = std::size_t(std::min(kChunk, n - c * kChunk) * list_entries_);
-      if (mine.size() < used || mine.size() > 2 * std::max(used, room))
-        mine.resize(used > room ? used + used / 16 : room);
+      const std::size_t capacity = std::size_t(std::min(kChunk, n - c * kChunk) * list_entries_);
+      if (mine.size() < used || mine.size() > 2 * std::max(used, capacity))
+        mine.resize(used > capacity ? used + used / 16 : capacity);
       std::copy_n(scratch.found.data(), used, mine.data());  // if used is 0, both may be null
       pointers_[std::size_t(c)] = mine.data();
     }

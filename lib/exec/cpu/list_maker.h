@@ -67,12 +67,12 @@ struct ListScratch {
   std::size_t bytes() const { return (single.capacity() + found.capacity()) * sizeof(int); }
 };
 
-/// Writes the lists of particles first..last-1 of one chunk to `room.found` and returns the number
-/// of entries, with padding. groups: those of the chunk's particles. D: dimensions.
+/// Writes the lists of particles first..last-1 of one chunk to `scratch.found` and returns the
+/// number of entries, with padding. groups: those of the chunk's particles. D: dimensions.
 template <int D, class Real>
 std::size_t make_lists(Simd simd, const Vec4<Real>* position, const int* bin_start,
                        const Params<Real>& p, int first, int last, int far,
-                       ChunkedLists::Group* groups, ListScratch& room) {
+                       ChunkedLists::Group* groups, ListScratch& scratch) {
   const int bits = lane_bits(simd, sizeof(Real)), width = 1 << bits;
   NearbyParticles<Real, D> nearby;
   std::size_t used = 0;
@@ -83,17 +83,17 @@ std::size_t make_lists(Simd simd, const Vec4<Real>* position, const int* bin_sta
       if (i + l >= last) continue;
       const Vec3<Real> x = xyz(position[i + l]);
       const Candidates<Real, D>& c = nearby.of(simd, x, position, bin_start, p, far);
-      make_room(room.single, at + std::size_t(c.count) + c.block);
-      int* out = room.single.data() + at;
+      make_room(scratch.single, at + std::size_t(c.count) + c.block);
+      int* out = scratch.single.data() + at;
       const std::size_t n = std::size_t(close_to(simd, c, x, i + l, out) - out);
       longest = std::max(longest, n);
       at = begin[l + 1] = at + n;
     }
     groups[(i - first) >> bits] = {std::uint32_t(used), std::uint32_t(longest)};
-    make_room(room.found, used + longest * std::size_t(width));
+    make_room(scratch.found, used + longest * std::size_t(width));
     for (int l = 0; l < width; ++l) {
-      int* to = room.found.data() + used + l;
-      const int* from = room.single.data() + begin[l];
+      int* to = scratch.found.data() + used + l;
+      const int* from = scratch.single.data() + begin[l];
       const std::size_t n = begin[l + 1] - begin[l];
       for (std::size_t k = 0; k < n; ++k) to[k << bits] = from[k];
       for (std::size_t k = n; k < longest; ++k) to[k << bits] = far;

@@ -97,7 +97,7 @@ struct LevelCellsAndNodes {
           c.p,
           c[field::bin_start],
           has_open_faces(c.scene) ? c[field::position].rows() : nullptr,
-          has_obstacles(c.scene) ? c[field::surroundings] : nullptr,
+          has_obstacles(c.scene) ? c[field::solid_scene] : nullptr,
           c[field::run_start],
           c[field::level_home],
           count,

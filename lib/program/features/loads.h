@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/boundary/solids.h"
+#include "kernels/boundary/solid_boundary.h"
 #include "kernels/params.h"
 #include "lib/program/features/poses.h"
 #include "lib/program/loads.h"

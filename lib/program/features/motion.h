@@ -11,7 +11,7 @@
 
 namespace pbf::program_module {
 inline std::int64_t per_table_row(const Sizes& n) { return motion_table_rows(n.plan); }
-inline std::int64_t per_solid_step(const Sizes& n) {
+inline std::int64_t per_pose_step(const Sizes& n) {
   return motion_table_rows(n.plan) * moving_obstacles(n.scene);
 }
 }  // namespace pbf::program_module
@@ -22,8 +22,8 @@ inline constexpr struct StepRow : Plain<int> {
 } step_row{{"step row", one_row, Life::run}};
 inline constexpr struct FrameSteps : Objects {
 } frame_steps{{kBytesOf<FrameStep>, "frame steps", per_table_row, Life::run}};
-inline constexpr struct SolidSteps : Objects {
-} solid_steps{{kBytesOf<SolidStep>, "solid steps", per_solid_step, Life::run}};
+inline constexpr struct PoseSteps : Objects {
+} pose_steps{{kBytesOf<PoseStep>, "pose steps", per_pose_step, Life::run}};
 }  // namespace pbf::program_module::field
 
 namespace pbf::PBF_VARIANT {
@@ -31,20 +31,19 @@ namespace pbf::PBF_VARIANT {
 template <class Real>
 FrameStep<Real> row_of(const field::FrameSteps&);
 template <class Real>
-SolidStep<Real> row_of(const field::SolidSteps&);
+PoseStep<Real> row_of(const field::PoseSteps&);
 
 /// Puts moving obstacles and the tank at their places for the step. Only in scenes with motion.
 struct MoveSolids {
   static constexpr PassText text{"motion", "predict"};
-  using Needs =
-      pbf::Needs<Looks<field::step_row>, Places<field::step_row>,
-                 If<has_tank_motion, Looks<field::frame_steps>, Places<field::frame>>,
-                 If<has_moving_obstacles, Looks<field::solid_steps>, Places<field::solids>,
-                    Places<field::solids_before>, Places<field::solid_velocity>>>;
+  using Needs = pbf::Needs<Looks<field::step_row>, Places<field::step_row>,
+                           If<has_tank_motion, Looks<field::frame_steps>, Places<field::frame>>,
+                           If<has_moving_obstacles, Looks<field::pose_steps>, Places<field::solids>,
+                              Places<field::solids_before>, Places<field::solid_velocity>>>;
   template <class G>
   static void launch(const G& c) {
     c.items(1, MoveSolidsPass<typename G::Real>{
-                   c[field::step_row], c[field::frame_steps], c[field::solid_steps],
+                   c[field::step_row], c[field::frame_steps], c[field::pose_steps],
                    int(moving_obstacles(c.scene)), c[field::frame], c[field::solids],
                    c[field::solids_before], c[field::solid_velocity]});
   }
@@ -110,7 +109,7 @@ void sort_predicted(const G& c, const char* stage, const First& first, Vectors* 
   const auto gather = gather_pass<true>(c, first.boundary, velocity, velocity_out, counts);
   if constexpr (First::leaves_rows)
     with_dimensions(c.p.dimensions, [&](auto d) {
-      const Solids<Real> solids = solids_of(c);
+      const SolidBoundary<Real> solids = solids_of(c);
       sort_rows(c, stage, first, gather,
                 Listed<NearPredictPass<Real, decltype(d)::value>>{
                     solids.near.way_left_squared ? solids.near.count : nullptr,
@@ -204,11 +203,11 @@ struct Motion {
     template <class C>
     void stand(C& c, double time) {
       if (!has_obstacles(c.scene)) return;
-      const std::vector<PlacedSolid<Real>> all = placed_at(c.scene, c.plan, c.p.boundary, time);
+      const std::vector<PosedSolid<Real>> all = placed_at(c.scene, c.plan, c.p.boundary, time);
       c.put(field::solids, all);
       if (!has_moving_obstacles(c.scene)) return;
       std::vector<Solid<Real>> solids;
-      for (const PlacedSolid<Real>& s : all) solids.push_back(s.solid);
+      for (const PosedSolid<Real>& s : all) solids.push_back(s.solid);
       c.put(field::solids_before, solids);
       c.put(field::solid_velocity, std::vector<SolidVelocity>(all.size()));
     }
@@ -220,7 +219,7 @@ struct Motion {
           motion_rows<Real>(c.scene, c.plan, c.p.boundary, steps, c.plan.substeps);
       c.put(field::step_row, std::vector<int>{0});
       if (has_tank_motion(c.scene)) c.put(field::frame_steps, rows.frames);
-      if (has_moving_obstacles(c.scene)) c.put(field::solid_steps, rows.steps);
+      if (has_moving_obstacles(c.scene)) c.put(field::pose_steps, rows.steps);
     }
   };
 };

@@ -1,7 +1,7 @@
 // Obstacles in the memory of a solver: where they are, and what moves them in a step.
 #pragma once
 
-#include "kernels/boundary/surroundings.h"
+#include "kernels/boundary/solid_scene.h"
 #include "lib/program/feature.h"
 #include "lib/program/motion.h"
 #include "lib/program/pass.h"
@@ -15,7 +15,7 @@ inline bool has_tank_motion(const Scene& s) { return s.tank_motion.has_value(); 
 namespace pbf::program_module::field {
 /// At the end of the present step.
 inline constexpr struct SolidRows : Objects {
-} solids{{kBytesOf<PlacedSolid>, "solids", per_obstacle, Life::run}};
+} solids{{kBytesOf<PosedSolid>, "solids", per_obstacle, Life::run}};
 /// The same at its start, and their velocities, if an obstacle moves.
 inline constexpr struct SolidsBefore : Objects {
 } solids_before{{kBytesOf<Solid>, "solids before", per_obstacle, Life::run}};
@@ -29,7 +29,7 @@ inline constexpr struct Frame : Objects {
 namespace pbf::PBF_VARIANT {
 
 template <class Real>
-PlacedSolid<Real> row_of(const field::SolidRows&);
+PosedSolid<Real> row_of(const field::SolidRows&);
 template <class Real>
 Solid<Real> row_of(const field::SolidsBefore&);
 template <class Real>

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "kernels/boundary/far_box.h"
+#include "kernels/boundary/far_boundary.h"
 #include "kernels/boundary/near_split.h"
 #include "lib/program/features/loads.h"
 #include "lib/program/obstacle_motion.h"
@@ -21,7 +21,7 @@ inline std::int64_t per_half_cell(const Sizes& n) {
 namespace pbf::program_module::field {
 /// See kernels/boundary/near_rows.h.
 inline constexpr struct NearRoom : Numbers {
-} near_room{{"room", per_padded_row, Life::lists}};
+} near_way_left{{"way left", per_padded_row, Life::lists}};
 inline constexpr struct NearRow : Plain<int> {
 } near_row{{"near rows", per_particle, Life::lists}};
 inline constexpr struct NearCount : Plain<int> {
@@ -29,26 +29,26 @@ inline constexpr struct NearCount : Plain<int> {
 /// The half cells in which particles can be near solids, in the order of bins.
 inline constexpr struct HalfCells : Plain<int> {
 } near_half_cells{{"near half cells", per_half_cell, Life::run}};
-inline constexpr struct SurroundingsRow : Objects {
-} surroundings{{kBytesOf<Surroundings>, "surroundings", one_row, Life::run}};
+inline constexpr struct SolidSceneRow : Objects {
+} solid_scene{{kBytesOf<SolidScene>, "solid scene", one_row, Life::run}};
 }  // namespace pbf::program_module::field
 
 namespace pbf::PBF_VARIANT {
 
 template <class Real>
-Surroundings<Real> row_of(const field::SurroundingsRow&);
+SolidScene<Real> row_of(const field::SolidSceneRow&);
 
 /// The needs of a pass that asks solids for their density or their distance.
-using SolidNeeds = If<has_obstacles, Looks<field::surroundings>, Looks<field::solids>>;
+using SolidNeeds = If<has_obstacles, Looks<field::solid_scene>, Looks<field::solids>>;
 /// The needs of a pass over neighbors that leaves near rows to a second launch. The sums of these
 /// rows are stored in the second array of velocities.
-using NearNeeds = Needs<
-    If<has_obstacles, Reads<field::near_room>, Looks<field::near_row>, Looks<field::near_count>>,
-    SolidNeeds>;
+using NearNeeds = Needs<If<has_obstacles, Reads<field::near_way_left>, Looks<field::near_row>,
+                           Looks<field::near_count>>,
+                        SolidNeeds>;
 using NearSumNeeds = If<has_obstacles, Places<other<field::velocity>>>;
 /// The needs of a pass that moves particles: rows may become near, and loads are booked.
-using MoveNeeds = Needs<If<has_solids, Updates<field::near_room>, Places<field::near_row>,
-                           Places<field::near_count>, Looks<field::surroundings>>,
+using MoveNeeds = Needs<If<has_solids, Updates<field::near_way_left>, Places<field::near_row>,
+                           Places<field::near_count>, Looks<field::solid_scene>>,
                         If<has_obstacles, Looks<field::solids>>, BookNeeds>;
 /// The needs of a pass in which particles begin a step. Those of a moving tank need the frame, too.
 using StepNeeds =
@@ -59,15 +59,15 @@ struct NearSolids;
 
 /// The boundary for one launch. It is not stored because flips and steps without time change it.
 template <class G>
-Solids<typename G::Real> solids_of(const G& c) {
+SolidBoundary<typename G::Real> solids_of(const G& c) {
   using Real = typename G::Real;
-  Solids<Real> solids = c.template memory<NearSolids>().solids;
+  SolidBoundary<Real> solids = c.template memory<NearSolids>().solids;
   static_cast<Box<Real>&>(solids) = c.p.boundary;
-  solids.around = c.declared(field::surroundings);
+  solids.solid_scene = c.declared(field::solid_scene);
   solids.booked = has_loads(c.scene) && c.p.dt > 0;
   solids.frame = c.p.dt > 0 ? c.declared(field::frame) : nullptr;
   NearRows<Real>& near = solids.near;
-  near.way_left_squared = c.declared(field::near_room);
+  near.way_left_squared = c.declared(field::near_way_left);
   near.row = c.declared(field::near_row);
   near.count = c.declared(field::near_count);
   near.sums = c.declared(other<field::velocity>);
@@ -87,7 +87,7 @@ void with_boundary(const G& c, F&& f) {
 /// The same for passes that leave particles near solids to a second launch.
 template <class G, class F>
 void with_far_boundary(const G& c, F&& f) {
-  c.template memory<NearSolids>().more_than_walls ? f(FarBox<typename G::Real>(solids_of(c)))
+  c.template memory<NearSolids>().more_than_walls ? f(FarBoundary<typename G::Real>(solids_of(c)))
                                                   : f(c.p.boundary);
 }
 
@@ -99,7 +99,7 @@ void each_then_near(const G& c, Make&& make) {
   const auto& memory = c.template memory<NearSolids>().solids;
   if (!memory.obstacles && !(moves && memory.loaded)) return c.pairs(make(c.p.boundary));
   const auto solids = solids_of(c);
-  const auto far = make(FarBox<typename G::Real>(solids));
+  const auto far = make(FarBoundary<typename G::Real>(solids));
   const auto near = make(solids);
   c.pairs(FarHalf<std::decay_t<decltype(far)>>{far});
   c.listed(solids.near.count, NearHalf<std::decay_t<decltype(near)>>{near});
@@ -108,14 +108,14 @@ void each_then_near(const G& c, Make&& make) {
 struct FindNear {
   static constexpr PassText text{"near solids", "neighbors"};
   using Needs =
-      pbf::Needs<Reads<field::position>, Looks<field::bin_start>, Places<field::near_room>,
+      pbf::Needs<Reads<field::position>, Looks<field::bin_start>, Places<field::near_way_left>,
                  Looks<field::near_row>, Places<field::near_row>, Looks<field::near_count>,
                  Places<field::near_count>, SolidNeeds,
                  If<has_solids_in_grid, Looks<field::near_half_cells>>>;
   template <class G>
   static void launch(const G& c) {
     using Real = typename G::Real;
-    const Solids<Real> solids = solids_of(c);
+    const SolidBoundary<Real> solids = solids_of(c);
     c.listed(solids.near.count, ForgetNearPass<Real>{solids.near});
     c.items(1, ClearNearPass<Real>{solids.near});
     if (const int cells = c.template memory<NearSolids>().half_cells; cells > 0)
@@ -137,7 +137,7 @@ struct NearSolids {
   template <class Real>
   struct Memory : NoMemory {
     bool more_than_walls = false;  ///< more than a box that stands still
-    Solids<Real> solids{};         ///< without addresses
+    SolidBoundary<Real> solids{};  ///< without addresses
     int half_cells = 0;            ///< 0: particles anywhere may be near
 
     template <class C>
@@ -145,14 +145,14 @@ struct NearSolids {
       const Scene& s = c.scene;
       more_than_walls = has_solids(s) || has_motion(s);
       if (!has_solids(s)) return;
-      Surroundings<Real> around;
-      around.walls = c.p.boundary;
-      around.solid = c.data(field::solids);
-      around.before = c.data(field::solids_before);
-      around.solids = int(s.obstacles.size());
-      around.flat = c.p.dimensions == 2;
-      around.loads = load_book(s, c.p.boundary, c.data(field::load_sums), c.data(field::patches));
-      c.put(field::surroundings, {around});
+      SolidScene<Real> scene;
+      scene.walls = c.p.boundary;
+      scene.solid = c.data(field::solids);
+      scene.before = c.data(field::solids_before);
+      scene.solids = int(s.obstacles.size());
+      scene.flat = c.p.dimensions == 2;
+      scene.loads = load_book(s, c.p.boundary, c.data(field::load_sums), c.data(field::patches));
+      c.put(field::solid_scene, {scene});
       const RunBounds<Real> run = bounds_of_run(s, c.plan, c.p.boundary);
       solids.obstacles = has_obstacles(s);
       solids.loaded = has_wall_loads(s);
@@ -163,7 +163,7 @@ struct NearSolids {
       const double move = 0.8 * kNearRoom / moves;
       solids.near.far_way_squared = Real(move * move);
       c.exec.to_device(std::vector<Real>(C::padding, solids.near.far_way_squared).data(),
-                       C::padding, c.data(field::near_room) + c.capacity());
+                       C::padding, c.data(field::near_way_left) + c.capacity());
       const std::vector<int> cells =
           half_cells_near_solids(s, run.standing, run.moving, c.p, solids.clear, solids.loaded);
       half_cells = int(cells.size());

@@ -17,7 +17,7 @@ void main() {
   vec2 sum = here, weight = vec2(1.0);
   int last_far = 0;
   for (int k = 0; k < 20; ++k) {
-    // The same whole pixels for all, so that neighbours see the same; wider ones count more.
+    // The same whole pixels for all, so that neighbors see the same; wider ones count more.
     int far = max(last_far + 1, int(1.22 * float(last_far) + 0.5)), gap = far - last_far;
     last_far = far;
     if (float(far) > reach) break;

@@ -16,7 +16,7 @@ seeded_defect(undeclared_gather_of_lambda declarations lib/program/features/cons
 seeded_defect(undeclared_lists declarations lib/program/features/viscosity.h
   [[Gathers<other<field::velocity>>, UsesLists,]] [[Gathers<other<field::velocity>>,]])
 seeded_defect(undeclared_behind_address declarations lib/program/features/solids.h
-  [[Looks<field::surroundings>, Looks<field::solids>>;]] [[Looks<field::surroundings>>;]])
+  [[Looks<field::solid_scene>, Looks<field::solids>>;]] [[Looks<field::solid_scene>>;]])
 seeded_defect(neighbor_of_own_row declarations lib/program/features/confinement.h
   [[Gathers<field::curl>,]] [[Reads<field::curl>,]])
 seeded_defect(write_to_what_is_read declarations lib/program/features/confinement.h
@@ -24,7 +24,7 @@ seeded_defect(write_to_what_is_read declarations lib/program/features/confinemen
 seeded_defect(read_of_running_sum declarations lib/program/features/loads.h
   [[Updates<field::load_sums>, Updates]] [[Adds<field::load_sums>, Updates]])
 seeded_defect(update_as_write declarations lib/program/features/solids.h
-  [[Updates<field::near_room>]] [[Writes<field::near_room>]])
+  [[Updates<field::near_way_left>]] [[Writes<field::near_way_left>]])
 seeded_defect(idle_declaration declarations lib/program/features/confinement.h
   [[UsesLists, Writes<field::curl>>;]] [[UsesLists, Reads<field::density>, Writes<field::curl>>;]])
 seeded_defect(fused_pass_gathers_what_it_writes declarations lib/program/features/correction.h
@@ -52,7 +52,7 @@ seeded_defect(if_without_memory declarations lib/program/features/loads.h
 seeded_defect(run_as_pass declarations lib/program/features/gauges.h
   [["flow sides", per_id, Life::run]] [["flow sides", per_id, Life::pass]])
 seeded_defect(lists_as_pass declarations lib/program/features/solids.h
-  [["room", per_padded_row, Life::lists]] [["room", per_padded_row, Life::pass]])
+  [["way left", per_padded_row, Life::lists]] [["way left", per_padded_row, Life::pass]])
 seeded_defect(state_as_pass declarations lib/program/features/loads.h
   [["loads", per_wall, Life::state]] [["loads", per_wall, Life::pass]])
 seeded_defect(state_as_update declarations lib/program/features/gauges.h

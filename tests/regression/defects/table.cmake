@@ -22,7 +22,7 @@ seeded_defect(gather_wrong_order grid kernels/pass_predict.h
   [[velocity_out[to] = with_w(m.v, Real(0));]] [[velocity_out[to] = with_w(xyz(velocity[to]), Real(0));]])
 
 # neighbors
-seeded_defect(missing_neighbour_cell neighbors kernels/cell_index.h
+seeded_defect(missing_neighbor_cell neighbors kernels/cell_index.h
   [[: y + 1 < p.cells_y ? y + 1 : p.cells_y - 1;]] [[: y;]])
 seeded_defect(last_cell_off_by_one neighbors kernels/cell_index.h
   [[x_high + 2 < p.cells_x ? x_high + 2 : p.cells_x - 1;]]
@@ -30,7 +30,7 @@ seeded_defect(last_cell_off_by_one neighbors kernels/cell_index.h
 seeded_defect(stale_grid neighbors lib/solver/step_context.h
   [[exec.build_lists(rows(), capacity(), position(),]]
   [[exec.build_lists(rows(), capacity(), data(other<field::position>),]])
-seeded_defect(last_neighbour_skipped neighbors lib/exec/cpu/list_maker.h
+seeded_defect(last_neighbor_skipped neighbors lib/exec/cpu/list_maker.h
   [[close_to(simd, c, x, i + l, out) - out);]]
   [[std::max<std::ptrdiff_t>(close_to(simd, c, x, i + l, out) - out, 1) - 1);]])
 seeded_defect(short_cutoff neighbors lib/exec/cpu/close_pairs.h
@@ -72,7 +72,7 @@ seeded_defect(wall_clamp_dropped delta kernels/pass_delta.h
   [[      inside = boundary.path_end(x, target);]] [[      inside = target;]])
 seeded_defect(velocity_not_updated delta kernels/pass_delta.h
   [[xyz(velocity[i]) + p.inv_dt * (free + (inside - target))]] [[xyz(velocity[i])]])
-seeded_defect(neighbours_lambda_missing delta kernels/pass_delta.h
+seeded_defect(neighbors_lambda_missing delta kernels/pass_delta.h
   [[V w = x.w + y.w;]] [[V w = x.w + x.w;]])
 seeded_defect(s_corr_exponent delta kernels/pass_delta.h
   [[x = x * x;
@@ -147,25 +147,25 @@ seeded_defect(solid_ball_slope_sign lambda kernels/shapes/sphere.h
   [[{g.density, (g.slope * at.inverse) * at.away}]] [[{g.density, (-g.slope * at.inverse) * at.away}]] solids)
 seeded_defect(solid_gradient_not_turned lambda kernels/boundary/solid_term.h
   [[inv_range * turned_back<D>(o, w.gradient);]] [[inv_range * w.gradient;]] solids)
-seeded_defect(solid_beside_wall_added density kernels/boundary/surroundings.h
+seeded_defect(solid_beside_wall_added density kernels/boundary/solid_scene.h
   [[w.density = s.walls.scale - left * free;]]
   [[w.density = w.density + s.walls.scale * o.share;]] solids)
-seeded_defect(solid_turn_transposed predict lib/program/placed_solids.h
+seeded_defect(solid_turn_transposed predict lib/program/posed_solids.h
   [[out.solid.turn[axis][k] = Real(s.turn[axis][k]);]]
   [[out.solid.turn[axis][k] = Real(s.turn[k][axis]);]] solids)
-seeded_defect(solid_reach_zero density lib/program/placed_solids.h
+seeded_defect(solid_reach_zero density lib/program/posed_solids.h
   [[out.reach = Real(range);]] [[out.reach = Real(0);]] solids)
-seeded_defect(solid_velocity_missing predict kernels/boundary/surroundings.h
+seeded_defect(solid_velocity_missing predict kernels/boundary/solid_scene.h
   [[start && s.before ? s.before[k] : placed.solid;]] [[placed.solid;]] solids)
 seeded_defect(solid_pose_of_next_step predict lib/solver/step_solver.h
   [[((updates_ << options_.level) + done) * n, steps * n,]]
   [[((updates_ << options_.level) + done) * n + 1, steps * n,]] solids)
-seeded_defect(load_of_clamp_missing loads kernels/boundary/surroundings.h
+seeded_defect(load_of_clamp_missing loads kernels/boundary/solid_scene.h
   [[      move_by(load_row_of_solid(k), at - to);]] [[]] solids)
-seeded_defect(load_of_walls_share loads kernels/boundary/surroundings.h
+seeded_defect(load_of_walls_share loads kernels/boundary/solid_scene.h
   [[s.loads.add(load_row_of_solid(k), i, x, (factor * left) * one.gradient);]]
   [[s.loads.add(load_row_of_solid(k), i, x, factor * one.gradient);]] solids)
-seeded_defect(load_of_far_rows loads lib/program/placed_solids.h
+seeded_defect(load_of_far_rows loads lib/program/posed_solids.h
   [[reach = Real(1) / walls.inv_range + walls.margin + Real(kNearRoom),]]
   [[reach = Real(0.5) / walls.inv_range + walls.margin,]] solids)
 seeded_defect(load_moment_sign loads kernels/boundary/loads.h

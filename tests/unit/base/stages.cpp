@@ -83,7 +83,7 @@ TEST_CASE("a solver books and a plan names listed stages only, and the list has 
     for (const PassCount& c : count_passes(plan.program)) CHECK(names.count(c.pass->stage) == 1);
     const auto solver = make_solver(scene, plan, std::move(particles));
     solver->step(3);
-    solver->measure();
+    solver->diagnose();
     solver->download({"velocity"}, ScalarType::f32).get();
     for (const StageTime& t : solver->info().stages) {
       CAPTURE(t.name);
@@ -116,7 +116,7 @@ TEST_CASE("what passes between the calls of a solver is booked to no stage") {
   };
   for (int k = 0; k < 3; ++k) {
     call([&] { solver->step(2); });
-    call([&] { solver->measure(); });
+    call([&] { solver->diagnose(); });
     call([&] { solver->download({"density"}, ScalarType::f32).get(); });
   }
   CHECK(booked() - before <= within);

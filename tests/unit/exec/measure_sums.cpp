@@ -14,7 +14,7 @@ using namespace pbf;
 
 namespace {
 
-/// Stands for neighbour lists, of which a measure takes the lengths alone.
+/// Stands for neighbor lists, of which a measure takes the lengths alone.
 struct Lengths {
   const int* length;
   int size(int i) const { return length[i]; }

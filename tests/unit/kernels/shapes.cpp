@@ -178,11 +178,11 @@ TEST_CASE("shapes: steps of the distance enter where closed forms do") {
       const V a{u(random), u(random), u(random)}, b{u(random), u(random), u(random)};
       if (s.template distance<3>(a) < 0 || s.template distance<3>(b) >= 0) continue;
       Tangent<double> entry, stepped;
-      const Stay<double> stay = stay_of<3>(s, a, b - a, entry);
-      const Stay<double> steps = stay_by_steps<3>(s, a, b - a, stepped);
+      const LineSpan<double> inside = line_span_of<3>(s, a, b - a, entry);
+      const LineSpan<double> steps = line_span_by_steps<3>(s, a, b - a, stepped);
       CAPTURE(name, i);
       REQUIRE(steps.enter < steps.leave);
-      REQUIRE(steps.enter == Approx(stay.enter).margin(1e-9));
+      REQUIRE(steps.enter == Approx(inside.enter).margin(1e-9));
       ++met;
     }
     CHECK(met > 50);

@@ -40,7 +40,7 @@ Made make(double spacing, const std::vector<std::string>& overrides, int updates
   m.plan = make_plan(m.scene, count_particles(m.scene, "."));
   m.solver = make_solver(m.scene, m.plan, emit_particles(m.scene, "."));
   m.solver->step(updates);
-  m.solver->measure();
+  m.solver->diagnose();
   if (m.scene.guard) m.solver->keep();
   return m;
 }
@@ -209,7 +209,7 @@ TEST_CASE(
       CHECK(plan.left_out[0].because == "dimensions is 2");
       const auto solver = make_solver(s, plan, emit_particles(s, "."));
       solver->step(2);
-      solver->measure();
+      solver->diagnose();
       solver->keep();
       CHECK(double(solver->info().bytes) == Approx(double(plan.bytes())).epsilon(0.05));
       CHECK(bytes_of(plan.memory, "bin_start") ==
@@ -233,7 +233,7 @@ TEST_CASE("a scene that cannot fit is refused before a particle is made") {
   CHECK(error_with(0) == "no error");  // the system does not tell
 }
 
-TEST_CASE("the plan says what each pass over pairs reads of the neighbours' rows") {
+TEST_CASE("the plan says what each pass over pairs reads of the neighbors' rows") {
   const Scene s = block(0.1, {"viscosity={}", "vorticity={}", "tensile={}"});
   const Plan plan = make_plan(s, 1000);
   std::vector<std::string> gathers;
@@ -244,7 +244,7 @@ TEST_CASE("the plan says what each pass over pairs reads of the neighbours' rows
                                             "xsph: position 1/density velocity",
                                             "vorticity: position 1/density velocity",
                                             "vorticity: position 1/density curl"});
-  CHECK(plan_text(plan, s).find("; of neighbours position lambda id\n") != std::string::npos);
+  CHECK(plan_text(plan, s).find("; of neighbors position lambda id\n") != std::string::npos);
   CHECK(json_text(plan_json(plan, s)).find("\"gathers\":\"position lambda id\"") !=
         std::string::npos);
 }

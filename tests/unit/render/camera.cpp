@@ -44,15 +44,15 @@ TEST_CASE("the default camera sees the whole box beside the colour bar at any sh
               x_range[0] = std::min(x_range[0], x), x_range[1] = std::max(x_range[1], x);
               y_range[0] = std::min(y_range[0], y), y_range[1] = std::max(y_range[1], y);
             }
-            const Room room = room_of(view);
-            CHECK(x_range[0] > room.left * pixels[0] - 1);
-            CHECK(x_range[1] < (1 - room.right) * pixels[0] + 1);
-            CHECK(y_range[0] > room.top * pixels[1] - 1);
-            CHECK(y_range[1] < (1 - room.bottom) * pixels[1] + 1);
+            const Margins margins = margins_of(view);
+            CHECK(x_range[0] > margins.left * pixels[0] - 1);
+            CHECK(x_range[1] < (1 - margins.right) * pixels[0] + 1);
+            CHECK(y_range[0] > margins.top * pixels[1] - 1);
+            CHECK(y_range[1] < (1 - margins.bottom) * pixels[1] + 1);
             if (orbit == 0) {  // and no smaller than it must be
-              const double fill =
-                  std::max((x_range[1] - x_range[0]) / ((1 - room.left - room.right) * pixels[0]),
-                           (y_range[1] - y_range[0]) / ((1 - room.top - room.bottom) * pixels[1]));
+              const double fill = std::max(
+                  (x_range[1] - x_range[0]) / ((1 - margins.left - margins.right) * pixels[0]),
+                  (y_range[1] - y_range[0]) / ((1 - margins.top - margins.bottom) * pixels[1]));
               CHECK(fill == Approx(1).margin(0.01));
             }
           }

@@ -104,7 +104,7 @@ TEST_CASE("the picture of a calm tank shows more than one hue", "[render]") {
   CHECK(seen >= 6);
 }
 
-TEST_CASE("quantiles of a range are those of all values, straight between neighbours", "[render]") {
+TEST_CASE("quantiles of a range are those of all values, straight between neighbors", "[render]") {
   View view = front_view();
   view.color = ColorBy::density;
   const auto range = [&](std::vector<double> values, double low, double high) {

@@ -62,7 +62,7 @@ TEST_CASE("cylinder: every particle is inside, as many as its volume has room fo
   }
   const double volume = 3.14159265 * 0.2 * 0.2 * length(to - from) / (0.02 * 0.02 * 0.02);
   CHECK(std::fabs(double(p.size()) / volume - 1) < 0.05);
-  // The nearest neighbours are a spacing apart.
+  // The nearest neighbors are a spacing apart.
   double least = 1;
   for (std::size_t i = 1; i < p.size(); ++i)
     least = std::min(least, length(p.position[i] - p.position[0]));

@@ -24,7 +24,7 @@ struct Watched {
       : scene(s),
         plan(make_plan(s, count_particles(s, "."))),
         solver(make_solver(s, plan, emit_particles(s, "."))),
-        first(solver->measure()) {}
+        first(solver->diagnose()) {}
   Guard guard(const Diagnostics& start) { return Guard(scene, plan, *solver, start, start); }
   double mass() const { return plan.mass * double(plan.particles); }
 };
@@ -161,7 +161,7 @@ TEST_CASE("guard: with gravity, a shorter step does not widen what the energy ma
     Watched w(shipped("tank_at_rest", {"fluid.spacing=0.04", std::string("time.step=") + step,
                                        "precision=double"}));
     Start start = prepare(w.scene, ".");
-    const Diagnostics apart = solver_of(start)->measure();
+    const Diagnostics apart = solver_of(start)->diagnose();
     return w.guard(apart).energy_limit(apart) - total_energy(apart);
   };
   CHECK(allowed("1e-6") == Approx(allowed("1e-4")).epsilon(0.01));

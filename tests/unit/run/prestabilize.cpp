@@ -184,7 +184,7 @@ TEST_CASE("prestabilize: whatever the scene asks of an update, the start is reli
     for (std::size_t k = 0; k < after.size(); ++k)
       most = std::max(most, std::fabs(after[k] - before[k]));
     CHECK(most < 5e-3);
-    CHECK(solver->measure().speed_max == 0);
+    CHECK(solver->diagnose().speed_max == 0);
   }
 }
 
@@ -205,7 +205,7 @@ TEST_CASE("prestabilize: an over-full box ends it, and the text says that there 
   CHECK(p.steps < 64);
   CHECK(lines > 0);
   CHECK(contains(prestabilized_text(p), "is there room for all of them?"));
-  const Diagnostics m = solver->measure();
+  const Diagnostics m = solver->diagnose();
   CHECK(m.outside == 0);
   CHECK(m.non_finite == 0);
   CHECK(m.kinetic_energy == 0);

@@ -87,7 +87,7 @@ TEST_CASE(
   r.solver.before_state = [] {};
   CHECK(saved.state.updates == 10);
   CHECK(saved.state.steps == 10);
-  CHECK(saved.state.position == r.solver.state(Which::now).position);
+  CHECK(saved.state.position == r.solver.state(StateOf::present).position);
   CHECK(saved.energy.first == 5);
   // What a longer run would not have is not in it: the measure at the end of this one.
   CHECK(saved.energy.time == Approx(0.08));
@@ -121,7 +121,7 @@ TEST_CASE("a run that is stopped saves the state that it leaves, with a frame an
   CHECK(r.solver.updates() == 4);
   CHECK(r.frames() == UpdateNumbers{0, 3, 4});
   CHECK(r.column("update") == std::vector<double>{0, 4});
-  CHECK(r.saved().value().state.position == r.solver.state(Which::now).position);
+  CHECK(r.saved().value().state.position == r.solver.state(StateOf::present).position);
   // At the last update there is nothing to stop.
   CountedRun late(ten_updates());
   late.stop_at(10);
@@ -153,20 +153,20 @@ TEST_CASE(
   const Silence silence;
   open_files(r.run, "2026-01-01T00:00:00Z");
   // As run_session() has them, and one that asks for the end at update 5.
-  std::optional<run_module::Rows> rows;
-  Watch watch(r.run.scene, r.run.plan, r.run.solver,
-              [&](Diagnostics& m, double dt) { rows->take(m, dt); });
-  Reporter reporter(r.run, watch);
+  std::optional<run_module::LogRows> rows;
+  Monitor monitor(r.run.scene, r.run.plan, r.run.solver,
+                  [&](Diagnostics& m, double dt) { rows->take(m, dt); });
+  Reporter reporter(r.run, monitor);
   rows.emplace(r.run, reporter);
   Frames frames(r.run, reporter);
   Told told;
   Recorder asks("asks", 5, told);
   asks.then = [&](Session& session) {
     if (session.update() == 5) r.control.max_walltime = 1e-9;
-    return Now::go_on;
+    return Next::go_on;
   };
-  Saving saving(r.run, frames, *rows, watch, reporter);
-  Session(r.solver, {&watch, &frames, &watch.choosing(), &reporter, &asks, &saving}).run(10);
+  Saving saving(r.run, frames, *rows, monitor, reporter);
+  Session(r.solver, {&monitor, &frames, &monitor.choosing(), &reporter, &asks, &saving}).run(10);
   CHECK(asks.seen == UpdateNumbers{0, 5});
   CHECK(r.solver.updates() == 4);
   CHECK(r.saved().value().state.updates == 4);

@@ -81,7 +81,7 @@ TEST_CASE("updates of more steps are fewer in a call from the next one on") {
   Recorder at_100("a", 100, told);
   at_100.then = [&](Session& s) {
     if (s.update() == 100) s.use({.level = 6});
-    return Now::go_on;
+    return Next::go_on;
   };
   Session(solver, {&at_100}, 0.01).run(200);
   std::int64_t done = 0;
@@ -99,10 +99,10 @@ TEST_CASE("an observer that goes back has the updates since repeated for all beh
   bool once = true;
   judge.then = [&](Session& s) {
     if (s.update() == 8 && std::exchange(once, false))
-      s.solver().set_state(s.solver().state(Which::kept));
+      s.solver().set_state(s.solver().state(StateOf::kept));
     else
       s.solver().keep();
-    return Now::go_on;
+    return Next::go_on;
   };
   Session(solver, {&judge, &row, &call}).run(12);
   CHECK(judge.seen == UpdateNumbers{0, 4, 8, 8, 12});
@@ -120,9 +120,9 @@ TEST_CASE("what stops a session is followed by nothing but the ends, at the upda
   const bool back = GENERATE(false, true);
   stop.then = [&](Session& s) {
     if (s.update() == 0) s.solver().keep();
-    if (s.update() == 0) return Now::go_on;
-    if (back) s.solver().set_state(s.solver().state(Which::kept));
-    return Now::stop;
+    if (s.update() == 0) return Next::go_on;
+    if (back) s.solver().set_state(s.solver().state(StateOf::kept));
+    return Next::stop;
   };
   Session(solver, {&frames, &stop, &behind}).run(100);
   const std::string at = back ? " ends 0" : " ends 6";
@@ -135,7 +135,7 @@ TEST_CASE("a session can be stopped before its first update") {
   CountingSolver solver;
   Told told;
   Recorder stop("stop", kAlways, told);
-  stop.then = [](Session&) { return Now::stop; };
+  stop.then = [](Session&) { return Next::stop; };
   Session(solver, {&stop}, 0.25).run(10);
   CHECK(solver.calls.empty());
   CHECK(told == Told{"stop 0", "stop ends 0", "stop closes"});
@@ -147,7 +147,7 @@ TEST_CASE("where an observer throws, all are closed in order and none is ended")
   Recorder a("a", 5, told), broken("broken", 5, told), c("c", 5, told);
   broken.then = [](Session& s) {
     if (s.update() == 5) throw std::runtime_error("the disk is full");
-    return Now::go_on;
+    return Next::go_on;
   };
   CHECK_THROWS_WITH(Session(solver, {&a, &broken, &c}).run(10), "the disk is full");
   CHECK(told ==

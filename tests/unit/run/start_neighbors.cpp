@@ -1,4 +1,4 @@
-// How many neighbours a start has, and the memory that crowded starts take.
+// How many neighbors a start has, and the memory that over-dense starts take.
 #include "lib/run/start_neighbors.h"
 
 #include <cmath>
@@ -15,7 +15,7 @@ using namespace pbf;
 namespace {
 
 /// Bodies in a box of 1 m with h = 0.1 m.
-Scene crowd(const std::string& bodies, const std::vector<std::string>& overrides = {}) {
+Scene dense(const std::string& bodies, const std::vector<std::string>& overrides = {}) {
   return scene_test::parse(
       "domain: {min: [0, 0, 0], max: [1, 1, 1]}\n"
       "fluid: {spacing: 0.05}\n"
@@ -37,14 +37,14 @@ const char* const kBlock = "{shape: block, min: [0, 0, 0], max: [0.4, 0.4, 0.4]}
 
 }  // namespace
 
-TEST_CASE("the neighbours of a start are those that a look at every pair finds") {
+TEST_CASE("the neighbors of a start are those that a look at every pair finds") {
   const std::string sphere = "{shape: sphere, center: [0.4, 0.4, 0.4], radius: 0.2}";
   for (const std::string& bodies :
        {random_box(900, 0.3), random_box(300, 0.02), kBlock + (", " + sphere),
         kBlock + (", " + random_box(200, 0.2, 0.1))})
     for (const int dimensions : {3, 2}) {
       CAPTURE(bodies, dimensions);
-      Scene s = crowd(bodies);
+      Scene s = dense(bodies);
       if (dimensions == 2) {  // the plane cuts the bodies
         s.dimensions = 2;
         s.domain.min[1] = 0.385;
@@ -60,7 +60,7 @@ TEST_CASE("the neighbours of a start are those that a look at every pair finds")
                        z = p.position[i][2] - p.position[j][2];
           expected[i] += std::sqrt(x * x + y * y + z * z) < s.h();
         }
-      // A neighbour of a lattice at a distance of exactly h may be rounded to either side.
+      // A neighbor of a lattice at a distance of exactly h may be rounded to either side.
       const std::vector<int> found = start_neighbors({s, "."}, std::int64_t(p.size())).count;
       REQUIRE(found.size() == expected.size());
       int differ = 0;
@@ -71,7 +71,7 @@ TEST_CASE("the neighbours of a start are those that a look at every pair finds")
 }
 
 TEST_CASE("a sample of a large start has the mean of all, and bodies side by side need none") {
-  const Scene s = crowd(random_box(20000, 0.3));
+  const Scene s = dense(random_box(20000, 0.3));
   const auto sample = start_neighbors({s, "."}, 20000).count;
   CHECK(sample.size() == 4096);
   double mean = 0;
@@ -86,32 +86,33 @@ TEST_CASE("a sample of a large start has the mean of all, and bodies side by sid
       all += (r2 < s.h() * s.h()) / 2000.0;
     }
   CHECK(mean == Approx(all).epsilon(0.02));
-  const Scene one = crowd(kBlock);
+  const Scene one = dense(kBlock);
   CHECK(start_neighbors({one, "."}, 512).empty());
   const Scene beside =
-      crowd(kBlock + std::string(", {shape: block, min: [0.4, 0, 0], max: [0.8, 0.4, 0.4]}"));
+      dense(kBlock + std::string(", {shape: block, min: [0.4, 0, 0], max: [0.8, 0.4, 0.4]}"));
   CHECK(start_neighbors({beside, "."}, 1024).empty());
 }
 
-TEST_CASE("the plan counts the bytes that the CPU solver holds for crowded starts too, to 12 %") {
+TEST_CASE(
+    "the plan counts the bytes that the CPU solver holds for over-dense starts too, to 12 %") {
   const std::string block = kBlock;
   for (const std::string& bodies :
        {random_box(3000, 0.02), random_box(4000, 0.2), random_box(3000, 0.3), random_box(8000, 0.6),
         block + ", " + block + ", " + block, block + ", " + random_box(4000, 0.03)})
     for (const bool dbl : {false, true}) {
       CAPTURE(bodies, dbl);
-      const Scene s = crowd(bodies, {std::string("precision=") + (dbl ? "double" : "float")});
+      const Scene s = dense(bodies, {std::string("precision=") + (dbl ? "double" : "float")});
       const std::int64_t n = count_particles(s, ".");
       const Plan plan = make_plan(s, n, start_neighbors({s, "."}, n));
       const auto solver = make_solver(s, plan, emit_particles(s, "."));
-      solver->measure();
+      solver->diagnose();
       solver->keep();
       CHECK(double(solver->info().bytes) == Approx(double(plan.bytes())).epsilon(0.12));
     }
 }
 
-TEST_CASE("a start too crowded for the memory is refused with the number of neighbours") {
-  const Scene s = crowd(random_box(3000000, 0.02));
+TEST_CASE("a start too dense for the memory is refused with the number of neighbors") {
+  const Scene s = dense(random_box(3000000, 0.02));
   constexpr std::size_t kAvailable = std::size_t{64} << 30;
   CHECK(scene_test::error_of([&] { refuse_if_too_large(s, make_plan(s, 3000000), kAvailable); }) ==
         "no error");
@@ -126,6 +127,6 @@ TEST_CASE("a start too crowded for the memory is refused with the number of neig
   const std::string error = scene_test::error_of([&] { refuse_if_too_large(s, plan, kAvailable); });
   CAPTURE(error);
   CHECK(error.rfind("4 ", 0) == 0);
-  for (const char* part : {"3000000 neighbours", "rest has 34", "bodies[].count"})
+  for (const char* part : {"3000000 neighbors", "rest has 34", "bodies[].count"})
     CHECK(scene_test::contains(error, part));
 }

@@ -223,15 +223,15 @@ TEST_CASE("a box that holds too much is named with what it has room for") {
   Scene s = pool();
   s.bodies[0].shape = Shape::random_box;
   s.bodies[0].count = 1000;
-  CHECK(holds(text_of("crowded", s),
+  CHECK(holds(text_of("over-dense", s),
               "1.3 times the fluid that its box has room for; give count 768"));
   Scene all = pool();
   all.domain.max = {0.4, 0.4, 0.6};
-  CHECK(text_of("crowded", all).empty());
+  CHECK(text_of("over-dense", all).empty());
   all.bodies.push_back(all.bodies[0]);
-  CHECK(holds(text_of("crowded", all), "2 times the fluid that the closed domain has room for"));
+  CHECK(holds(text_of("over-dense", all), "2 times the fluid that the closed domain has room for"));
   all.domain.open = {"z_max"};
-  CHECK(text_of("crowded", all).empty());
+  CHECK(text_of("over-dense", all).empty());
   Scene flat = pool();
   flat.dimensions = 2;
   flat.domain.max[1] = 0.05;
@@ -240,7 +240,7 @@ TEST_CASE("a box that holds too much is named with what it has room for") {
   flat.bodies[0].count = 96;
   CHECK(kinds(flat).empty());
   flat.bodies[0].count = 120;
-  CHECK(kinds(flat) == std::vector<std::string>{"crowded"});
+  CHECK(kinds(flat) == std::vector<std::string>{"over-dense"});
 }
 
 TEST_CASE("intervals beyond the end of a run are named, each of them") {

@@ -28,11 +28,11 @@ std::string falling(const std::string& step, const std::string& end, const std::
 double share_fallen(const Scene& s) {
   const std::int64_t n = count_particles(s, "");
   auto solver = make_solver(s, make_plan(s, n), emit_particles(s, ""));
-  const double start = solver->measure().center_of_mass[2];
+  const double start = solver->diagnose().center_of_mass[2];
   const int updates = int(std::lround(s.time.end / s.time.step));
   solver->step(updates);
   const double g = -s.gravity[2], dt = s.time.step;
-  return (start - solver->measure().center_of_mass[2]) /
+  return (start - solver->diagnose().center_of_mass[2]) /
          (g * dt * dt * updates * (updates + 1) / 2);
 }
 

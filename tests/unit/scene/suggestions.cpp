@@ -176,7 +176,7 @@ TEST_CASE("suggestions: in messages, with the entry of the list") {
   const std::vector<Suggested> cases{
       {"dt: 0.01\n", "6:1: dt: unknown key, did you mean time.step?"},
       {"particle_radius: 0.01\n",
-       "unknown key, did you mean fluid.spacing? It is the distance of neighbouring particles, a "
+       "unknown key, did you mean fluid.spacing? It is the distance of neighboring particles, a "
        "particle's diameter"},
       {"output: {dir: out}\n", "output.dir: unknown key"},
       {"out: here\n", "out: unknown key; the folder of a run is given on the command line"},

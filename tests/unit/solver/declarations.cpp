@@ -105,12 +105,12 @@ struct Seen {
 void run(const Scenario& of, Seen& seen) {
   Prepared made(of);
   const auto solver = made.watched();
-  solver->measure();
+  solver->diagnose();
   solver->step(3, watching(of));    // passes joined
   solver->inspection()->trace({});  // pass by pass
   solver->readings(Series::gauges, Interval::goes_on);
   solver->step(1, without_time());
-  solver->measure();
+  solver->diagnose();
   seen.touches = made.touches;
   for (const PassInfo& p : made.plan.program.passes)
     for (const AccessInfo& a : p.needs)
@@ -134,7 +134,7 @@ Results results(Solver& s) {
   Results r{s.state(), s.readings(Series::gauges, Interval::goes_on)};
   for (const double load : s.readings(Series::measures, Interval::goes_on))
     r.numbers.push_back(load);
-  const Diagnostics m = s.measure();
+  const Diagnostics m = s.diagnose();
   for (const auto& d : diagnostics()) r.numbers.push_back(d.value(m));
   return r;
 }
@@ -156,7 +156,7 @@ std::string first_difference(const Scenario& of, const std::string& forgets) {
   both("trace", [](Solver& s) { s.inspection()->trace({}); });
   both("update after a trace", [](Solver& s) { s.step(1); });
   both("keep", [](Solver& s) { s.keep(), s.step(2, without_time()); });
-  both("back", [](Solver& s) { s.set_state(s.state(Which::kept)), s.step(2); });
+  both("back", [](Solver& s) { s.set_state(s.state(StateOf::kept)), s.step(2); });
   return first;
 }
 
@@ -165,8 +165,8 @@ std::string first_difference(const Scenario& of, const std::string& forgets) {
 /// Fields that a pass may touch for some particles alone: fast ones, those at the same place, those
 /// near walls, solids or gauges.
 bool for_some(const std::string& field) {
-  static const std::set<std::string> all = {"counts",    "id",      "load sums",    "near count",
-                                            "near rows", "patches", "surroundings", "velocity"};
+  static const std::set<std::string> all = {"counts",    "id",      "load sums",   "near count",
+                                            "near rows", "patches", "solid scene", "velocity"};
   return all.contains(field);
 }
 

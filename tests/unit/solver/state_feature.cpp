@@ -145,11 +145,11 @@ TEST_CASE("a further field of the state is kept, goes back, and does not depend 
   two->step(10);
   CHECK(same(s->state(), two->state()));
   s->keep();
-  const SolverState kept = s->state(Which::kept);
+  const SolverState kept = s->state(StateOf::kept);
   s->step(5);
   const SolverState later = s->state();
   CHECK(temperatures(later) != temperatures(kept));
-  CHECK(same(s->state(Which::kept), kept));
+  CHECK(same(s->state(StateOf::kept), kept));
   s->set_state(kept);
   CHECK(same(s->state(), kept));
   s->inspection()->trace({});
@@ -210,7 +210,7 @@ TEST_CASE("a further field is in the plan, in the memory of the solver, and in a
   const Warm warmed({"precision=float", "guard={}"});
   const auto s = warmed.solver<float>();
   s->keep();
-  s->measure();
+  s->diagnose();
   std::size_t arrays = 0;
   for (const PlanArray& a : warmed.plan.memory.arrays)
     arrays += a.name == "temperature" || a.name == "temperature'" || a.name == "kept temperature";

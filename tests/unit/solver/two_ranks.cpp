@@ -40,7 +40,7 @@ using Bits = std::map<int, std::vector<float>>;
 SolverState on_one(const Made& m, int updates) {
   StepSolver<float, CpuExec> solver(m.scene, m.plan, m.particles, 1);
   solver.step(updates, {});
-  return solver.state(Which::now);
+  return solver.state(StateOf::present);
 }
 Bits bits_of(const SolverState& s, const Made& m) {
   Bits out;

@@ -1,4 +1,5 @@
-// Which starts are looked at for crowds: those with bodies that overlap, found pair by pair here.
+// Which starts are examined for dense fluid: those with bodies that overlap, found pair by pair
+// here.
 #include <random>
 
 #include "lib/run/start_neighbors.h"
@@ -10,7 +11,7 @@ namespace pbf::scene_test {
 TEST_CASE("a start of blocks is sampled exactly when two of them overlap, however they lie") {
   std::mt19937 gen(7);
   const auto grid = [&gen](int cells) { return 0.1 * double(gen() % unsigned(cells)); };
-  int crowded = 0;
+  int dense = 0;
   for (int repeat = 0; repeat < 400; ++repeat) {
     Scene s = parse(kMinimal);
     s.domain.max = {100, 100, 100};
@@ -33,10 +34,10 @@ TEST_CASE("a start of blocks is sampled exactly when two of them overlap, howeve
       }
     CAPTURE(repeat);
     REQUIRE(start_neighbors({s, ""}, 1000).count.empty() == !expected);
-    crowded += expected;
+    dense += expected;
   }
-  CHECK(crowded > 100);
-  CHECK(crowded < 350);
+  CHECK(dense > 100);
+  CHECK(dense < 350);
 }
 
 }  // namespace pbf::scene_test

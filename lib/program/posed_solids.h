@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "kernels/boundary/far_box.h"
+#include "kernels/boundary/far_boundary.h"
 #include "kernels/cell_index.h"
 #include "lib/scene/scene.h"
 
@@ -13,8 +13,8 @@ namespace pbf::PBF_VARIANT {
 
 /// With a bounding box in h. Particles outside of it neither touch the solid nor feel its density.
 template <class Real>
-PlacedSolid<Real> placed(const Solid<double>& s, const Box<Real>& walls) {
-  PlacedSolid<Real> out;
+PosedSolid<Real> placed(const Solid<double>& s, const Box<Real>& walls) {
+  PosedSolid<Real> out;
   out.solid.shape = s.shape.with(
       [](const auto& shape) { return SomeShape<Real>(shape.template scaled<Real>(1)); });
   out.solid.center = scaled<Real>(s.center, 1);
@@ -34,9 +34,9 @@ PlacedSolid<Real> placed(const Solid<double>& s, const Box<Real>& walls) {
 }
 
 template <class Real>
-std::vector<PlacedSolid<Real>> placed_solids(const std::vector<Solid<double>>& solids,
-                                             const Box<Real>& walls) {
-  std::vector<PlacedSolid<Real>> all;
+std::vector<PosedSolid<Real>> placed_solids(const std::vector<Solid<double>>& solids,
+                                            const Box<Real>& walls) {
+  std::vector<PosedSolid<Real>> all;
   for (const Solid<double>& s : solids) all.push_back(placed(s, walls));
   return all;
 }
@@ -60,7 +60,7 @@ Bounds<Real> around_both(const Bounds<Real>& a, const Bounds<Real>& b) {
 }
 /// The bounding box of all solids.
 template <class Real>
-Bounds<Real> bounds_of(const std::vector<PlacedSolid<Real>>& all) {
+Bounds<Real> bounds_of(const std::vector<PosedSolid<Real>>& all) {
   Bounds<Real> out;
   for (std::size_t k = 0; k < all.size(); ++k)
     out = k == 0 ? all[k].bounds : around_both(out, all[k].bounds);

@@ -10,7 +10,7 @@
 
 namespace pbf::run_module {
 
-Rows::Rows(RunParts& run, Reporter& reporter) : run_(run), reporter_(reporter) {
+LogRows::LogRows(RunParts& run, Reporter& reporter) : run_(run), reporter_(reporter) {
   if (const auto& saved = run.from.saved) {
     energy_ = EnergyTrack(due_.energy = saved->energy);
     due_.compression_max = run.compression_max = saved->compression_max;
@@ -20,7 +20,7 @@ Rows::Rows(RunParts& run, Reporter& reporter) : run_(run), reporter_(reporter) {
   due_.files = run.start.loaded.files;
 }
 
-void Rows::take(Diagnostics& m, double dt) {
+void LogRows::take(Diagnostics& m, double dt) {
   energy_.follow(m);
   double& most = run_.compression_max;
   most = std::max(most, m.compression_max);
@@ -50,7 +50,7 @@ void Rows::take(Diagnostics& m, double dt) {
   run_.clock.mark("write");
 }
 
-std::vector<StageTime> Rows::stages() const {
+std::vector<StageTime> LogRows::stages() const {
   const Scene& scene = run_.scene;
   StageClock sum;
   sum.entry("init");
@@ -66,7 +66,7 @@ std::vector<StageTime> Rows::stages() const {
   return sum.entries();
 }
 
-std::vector<StageTime> Rows::stages_since_last_row() {
+std::vector<StageTime> LogRows::stages_since_last_row() {
   std::vector<StageTime> now = stages(), since = now;
   for (auto& s : since)
     for (const auto& before : row_stages_)

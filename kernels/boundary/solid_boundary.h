@@ -2,15 +2,15 @@
 #pragma once
 
 #include "kernels/boundary/near_rows.h"
-#include "kernels/boundary/surroundings.h"
+#include "kernels/boundary/solid_scene.h"
 
 namespace pbf::PBF_VARIANT {
 
-/// A box that also evaluates the surroundings where there are any.
+/// A box that also evaluates the solids and loads of its scene.
 template <class Real>
-struct Solids : Box<Real> {
+struct SolidBoundary : Box<Real> {
   static constexpr bool books = true;
-  const Surroundings<Real>* around = nullptr;
+  const SolidScene<Real>* solid_scene = nullptr;
   Bounds<Real> bounds{};                   ///< of all obstacles
   Bounds<Real> clear{};                    ///< far from all walls
   bool obstacles = false;                  ///< whether there are any
@@ -21,7 +21,7 @@ struct Solids : Box<Real> {
 
   template <Smoothing S>
   PBF_HD BoundaryTerm<Real> term(Vec3<Real> x) const {
-    if (obstacles && bounds.has(x)) return surroundings_term<S>(*around, x);
+    if (obstacles && bounds.has(x)) return solid_scene_term<S>(*solid_scene, x);
     return Box<Real>::template term<S>(x);
   }
   /// The end of a path of particle i. `book`: loads of walls and solids are booked. `start`: the
@@ -30,7 +30,7 @@ struct Solids : Box<Real> {
     const Vec3<Real> in = Box<Real>::path_end(from, to);
     const bool free = in.x == to.x && in.y == to.y && in.z == to.z;
     if ((free || !book) && !(obstacles && bounds.meets(from, to))) return in;
-    return surroundings_path_end(*around, book, start, i, from, to);
+    return solid_scene_path_end(*solid_scene, book, start, i, from, to);
   }
   PBF_HD Vec3<Real> path_end_booked(int i, Vec3<Real> from, Vec3<Real> to) const {
     return path_end(booked, false, i, from, to);
@@ -40,11 +40,12 @@ struct Solids : Box<Real> {
   PBF_HD void book_push(int i, Vec3<Real> x, Real factor) const {
     if (!booked || factor == Real(0)) return;
     if ((loaded && this->near_wall(x)) || (obstacles && bounds.has(x)))
-      pbf::book_push<S>(*around, i, x, factor);
+      pbf::book_push<S>(*solid_scene, i, x, factor);
   }
   /// Whether x is near an obstacle, or near a wall if walls have loads.
   PBF_HD bool is_near(Vec3<Real> x) const {
-    return (loaded && !clear.has(x)) || (obstacles && bounds.has(x) && near_obstacle(*around, x));
+    return (loaded && !clear.has(x)) ||
+           (obstacles && bounds.has(x) && near_obstacle(*solid_scene, x));
   }
   /// Marks row i as near if x, its position after a move with the present lists, is near.
   PBF_HD void came_to(int i, Vec3<Real> x) const {
@@ -54,17 +55,17 @@ struct Solids : Box<Real> {
     double deepest = Box<Real>::penetration(x);
     const Vec3<Real> at{Real(x[0]), Real(x[1]), Real(x[2])};
     if (!obstacles || !bounds.has(at)) return deepest;
-    for (int k = 0; k < around->solids; ++k) {
-      const PlacedSolid<Real>& s = around->solid[k];
+    for (int k = 0; k < solid_scene->solids; ++k) {
+      const PosedSolid<Real>& s = solid_scene->solid[k];
       if (!s.bounds.has(at)) continue;
-      deepest = max2(deepest,
-                     -double(around->flat ? distance<2>(s.solid, at) : distance<3>(s.solid, at)));
+      deepest = max2(deepest, -double(solid_scene->flat ? distance<2>(s.solid, at)
+                                                        : distance<3>(s.solid, at)));
     }
     return deepest;
   }
 };
 
-/// Whether a path may meet a solid or end near one; for Solids and FarBox.
+/// Whether a path may meet a solid or end near one; for SolidBoundary and FarBoundary.
 template <class Boundary, class Real>
 PBF_HD bool may_meet_solids(const Boundary& b, Vec3<Real> from, Vec3<Real> to) {
   return (b.loaded && !b.clear.has(to)) || (b.obstacles && b.bounds.meets(from, to));

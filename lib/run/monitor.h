@@ -19,22 +19,24 @@ namespace pbf::run_module {
 /// Measures when it is due. If the guard raises an alarm, the session goes back to the last good
 /// state and repeats the updates with half the step, or it ends; then the solver has gone back,
 /// too.
-class Watch : public Observer {
+class Monitor : public Observer {
  public:
   /// Gets every measurement except those from which the session goes back; dt: preceding step, s.
-  using Take = std::function<void(Diagnostics& m, double dt)>;
+  using Record = std::function<void(Diagnostics& m, double dt)>;
   /// `note` gets a line per change of the step; `clock` gets the time of the guard, as "guard".
-  Watch(
-      const Scene& scene, const Plan& plan, Solver& solver, Take take,
+  Monitor(
+      const Scene& scene, const Plan& plan, Solver& solver, Record record,
       std::function<void(const std::string&)> note = [](const std::string&) {},
       StageClock* clock = nullptr);
-  /// `take` gets every gauge reading except those from which the session goes back.
-  void read_gauges(std::function<void(const GaugeRow&)> take) { take_gauges_ = std::move(take); }
+  /// `record` gets every gauge reading except those from which the session goes back.
+  void read_gauges(std::function<void(const GaugeRow&)> record) {
+    record_gauges_ = std::move(record);
+  }
   /// Call before the session, with the state in the solver. Returns last(), to be completed.
   Diagnostics& go_on_from(const SavedRun& saved);
 
   std::int64_t next(std::int64_t u) const override;
-  Now at(Session& session) override;
+  Next at(Session& session) override;
   void end(Session& session) override;
   /// Chooses the step of the following updates, after the observers that need the measured state. A
   /// measurement only for the end of a run chooses nothing: a longer run would lack it.
@@ -63,23 +65,23 @@ class Watch : public Observer {
 
  private:
   std::int64_t next_choice(std::int64_t u) const;
-  Now choose(Session& session);
+  Next choose(Session& session);
   void begin(const Diagnostics& now, const StepHistory& before, std::optional<double> released);
-  Diagnostics measured();
-  bool measure(bool judged);
+  Diagnostics diagnose();
+  bool measure(bool checked);
   std::optional<GaugeRow> gauges();
-  bool look(const Diagnostics& m);
-  bool judge(const Diagnostics& m);
-  void take(const std::string& change, int level_before);
+  bool check(const Diagnostics& m);
+  bool verdict(const Diagnostics& m);
+  void apply_level(const std::string& change, int level_before);
   std::string prestabilize(int levels);
-  void booked(const std::function<void()>& action);
+  void timed(const std::function<void()>& action);
 
   const Scene& scene_;
   const Plan& plan_;
   Solver& solver_;
-  Take take_;
+  Record record_;
   std::function<void(const std::string&)> note_;
-  std::function<void(const GaugeRow&)> take_gauges_;
+  std::function<void(const GaugeRow&)> record_gauges_;
   StageClock* clock_;
   Schedule schedule_;
   Callback choosing_{[this](std::int64_t u) { return next_choice(u); },
@@ -89,7 +91,7 @@ class Watch : public Observer {
   std::optional<GuardEvent> event_;
   Diagnostics first_, last_;
   WorkTrack work_;
-  std::int64_t taken_ = -1;  // update of the last recorded measurement
+  std::int64_t recorded_ = -1;  // update of the last recorded measurement
   bool begun_ = false;
 };
 

@@ -1,13 +1,13 @@
-// The step that a watch chooses, with a solver that only counts.
+// The step that a monitor chooses, with a solver that only counts.
 #include <cmath>
 
-#include "lib/run/watch.h"
+#include "lib/run/monitor.h"
 #include "tests/support/catch.h"
 #include "tests/support/watched_session.h"
 
 namespace pbf::scene_test {
 
-TEST_CASE("watch: a new step is chosen behind what needs the state as it was measured") {
+TEST_CASE("monitor: a new step is chosen behind what needs the state as it was measured") {
   WatchedSession s(with_shorter_steps());
   // 0.8 h in an update from 4 on. Compressed by 10 %, half of it after each 4 steps without time,
   // which lift the fluid by 1 J.
@@ -21,7 +21,7 @@ TEST_CASE("watch: a new step is chosen behind what needs the state as it was mea
   const auto at_4 = [&](std::int64_t without_time) {
     return [&s, without_time](Session& session) {
       if (session.update() == 4) CHECK(s.solver.steps_without_time() == without_time);
-      return Now::go_on;
+      return Next::go_on;
     };
   };
   s.frames.then = at_4(0);
@@ -43,26 +43,26 @@ TEST_CASE("watch: a new step is chosen behind what needs the state as it was mea
   CHECK(without_time[2].second == Approx(std::sqrt(0.5)));
 }
 
-TEST_CASE("watch: the state relieved for a shorter step is the one to go back to") {
+TEST_CASE("monitor: the state relieved for a shorter step is the one to go back to") {
   WatchedSession s(with_shorter_steps());
   s.solver.flow = [&](Diagnostics& m) {
     if (m.update == 4) m.speed_max = 16;
     if (m.update == 4) m.compression_mean = s.solver.steps_without_time() > 0 ? 1e-5 : 0.1;
-    m.non_finite = m.update == 6 && s.watch.options().level == 1;
+    m.non_finite = m.update == 6 && s.monitor.options().level == 1;
   };
   s.run();
-  CHECK(s.watch.steps()->repeats == 1);
+  CHECK(s.monitor.steps()->repeats == 1);
   int reliefs = 0;
   for (const auto& c : s.solver.calls) reliefs += c.options.without_time.has_value();
   CHECK(reliefs == 1);
   CHECK(s.updates() == UpdateNumbers{0, 4, 8, 10});
 }
 
-TEST_CASE("watch: a measure at the end of a run alone chooses no step") {
+TEST_CASE("monitor: a measure at the end of a run alone chooses no step") {
   WatchedSession s(with_shorter_steps());
   s.solver.flow = [](Diagnostics& m) { m.speed_max = m.update == 10 ? 16 : 0; };
   s.run();
-  CHECK(s.watch.options().level == 0);
+  CHECK(s.monitor.options().level == 0);
   CHECK(s.notes.empty());
 }
 

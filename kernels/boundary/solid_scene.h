@@ -12,7 +12,7 @@ namespace pbf::PBF_VARIANT {
 
 /// An obstacle, and the distance up to which a particle counts as near.
 template <class Real>
-struct PlacedSolid {
+struct PosedSolid {
   Solid<Real> solid;
   Real reach = 0;       ///< h, from the surface
   Bounds<Real> bounds;  ///< of all points within `reach`
@@ -21,20 +21,20 @@ struct PlacedSolid {
 /// In the same memory as the particles. Loads 0 to 5 are those of the walls, in the order of
 /// WallBit; from 6 on those of the obstacles.
 template <class Real>
-struct Surroundings {
+struct SolidScene {
   Box<Real> walls;
-  const PlacedSolid<Real>* solid = nullptr;
+  const PosedSolid<Real>* solid = nullptr;
   const Solid<Real>* before = nullptr;  ///< poses at the start of the step; null: as `solid`
   int solids = 0;
   bool flat = false;  ///< two dimensions
   LoadBook<Real> loads{};
 };
 
-/// `start`: the path begins with the step, when moving solids were at Surroundings::before.
+/// `start`: the path begins with the step, when moving solids were at SolidScene::before.
 template <class Real>
-PBF_HD PathEnd<Real> keep_out(const Surroundings<Real>& s, bool start, int k, Vec3<Real> from,
+PBF_HD PathEnd<Real> keep_out(const SolidScene<Real>& s, bool start, int k, Vec3<Real> from,
                               Vec3<Real> to) {
-  const PlacedSolid<Real>& placed = s.solid[k];
+  const PosedSolid<Real>& placed = s.solid[k];
   if (!placed.bounds.meets(from, to)) return {to};
   const Solid<Real>& before = start && s.before ? s.before[k] : placed.solid;
   return s.flat ? keep_out<2>(before, placed.solid, from, to)
@@ -43,7 +43,7 @@ PBF_HD PathEnd<Real> keep_out(const Surroundings<Real>& s, bool start, int k, Ve
 
 /// Where solid k carries the point `from`, clamped to the walls.
 template <class Real>
-PBF_HD Vec3<Real> carried(const Surroundings<Real>& s, int k, Vec3<Real> from) {
+PBF_HD Vec3<Real> carried(const SolidScene<Real>& s, int k, Vec3<Real> from) {
   const Solid<Real>& o = s.solid[k].solid;
   const Vec3<Real> x = s.flat ? o.center + turned_back<2>(o, body_point<2>(s.before[k], from))
                               : o.center + turned_back<3>(o, body_point<3>(s.before[k], from));
@@ -52,9 +52,9 @@ PBF_HD Vec3<Real> carried(const Surroundings<Real>& s, int k, Vec3<Real> from) {
 
 /// Whether x is within the reach of an obstacle.
 template <class Real>
-PBF_HD_APART bool near_obstacle(const Surroundings<Real>& s, Vec3<Real> x) {
+PBF_HD_APART bool near_obstacle(const SolidScene<Real>& s, Vec3<Real> x) {
   for (int k = 0; k < s.solids; ++k) {
-    const PlacedSolid<Real>& o = s.solid[k];
+    const PosedSolid<Real>& o = s.solid[k];
     if (!o.bounds.has(x)) continue;
     if ((s.flat ? distance<2>(o.solid, x) : distance<3>(o.solid, x)) < o.reach) return true;
   }
@@ -75,7 +75,7 @@ PBF_HD bool within_rounding(Vec3<Real> way, Vec3<Real> x, Vec3<Real> center) {
 
 /// Calls f(k, solid_term) for the obstacles near x.
 template <Smoothing S, class Real, class F>
-PBF_HD void for_solids_at(const Surroundings<Real>& s, Vec3<Real> x, F&& f) {
+PBF_HD void for_solids_at(const SolidScene<Real>& s, Vec3<Real> x, F&& f) {
   for (int k = 0; k < s.solids; ++k)
     if (s.solid[k].bounds.has(x)) f(k, solid_term<S>(s.solid[k].solid, x, s.walls.inv_range));
 }
@@ -83,7 +83,7 @@ PBF_HD void for_solids_at(const Surroundings<Real>& s, Vec3<Real> x, F&& f) {
 /// Solids are combined with the walls by inclusion and exclusion and do not overlap each other:
 /// A [1 - (1 - w/A)(1 - sum o_k)].
 template <Smoothing S, class Real>
-PBF_HD_APART BoundaryTerm<Real> surroundings_term(const Surroundings<Real>& s, Vec3<Real> x) {
+PBF_HD_APART BoundaryTerm<Real> solid_scene_term(const SolidScene<Real>& s, Vec3<Real> x) {
   BoundaryTerm<Real> w = s.walls.template term<S>(x);
   if (!s.walls.adds_density) return w;
   SolidTerm<Real> o;
@@ -103,8 +103,8 @@ PBF_HD_APART BoundaryTerm<Real> surroundings_term(const Surroundings<Real>& s, V
 /// The end of a path of particle i. `booked`: displacements by walls and obstacles become loads.
 /// `start`: see keep_out().
 template <class Real>
-PBF_HD_APART Vec3<Real> surroundings_path_end(const Surroundings<Real>& s, bool booked, bool start,
-                                              int i, Vec3<Real> from, Vec3<Real> to) {
+PBF_HD_APART Vec3<Real> solid_scene_path_end(const SolidScene<Real>& s, bool booked, bool start,
+                                             int i, Vec3<Real> from, Vec3<Real> to) {
   const Vec3<Real> target = to;
   const auto move_by = [&](int wall, Vec3<Real> way) {
     if (booked) s.loads.add(wall, i, target, way);
@@ -138,9 +138,9 @@ PBF_HD_APART Vec3<Real> surroundings_path_end(const Surroundings<Real>& s, bool 
   return to;
 }
 
-/// Books that particle i, at x, was moved by factor * the gradient of surroundings_term().
+/// Books that particle i, at x, was moved by factor * the gradient of solid_scene_term().
 template <Smoothing S, class Real>
-PBF_HD_APART void book_push(const Surroundings<Real>& s, int i, Vec3<Real> x, Real factor) {
+PBF_HD_APART void book_push(const SolidScene<Real>& s, int i, Vec3<Real> x, Real factor) {
   Real of_wall[6], share(0);
   if (!s.walls.adds_density) return;
   const bool at_wall = s.loads.of_walls() && s.walls.template slopes<S>(x, of_wall);

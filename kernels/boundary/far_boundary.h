@@ -2,7 +2,7 @@
 // second launch.
 #pragma once
 
-#include "kernels/boundary/solids.h"
+#include "kernels/boundary/solid_boundary.h"
 #include "kernels/cell_index.h"
 
 namespace pbf::PBF_VARIANT {
@@ -10,14 +10,14 @@ namespace pbf::PBF_VARIANT {
 /// The boundary of the first launch. Particles far from all solids meet plain walls only. For near
 /// rows, a pass only stores the sums over their neighbors.
 template <class Real>
-struct FarBox : Box<Real> {
+struct FarBoundary : Box<Real> {
   static constexpr bool far_only = true;
-  Bounds<Real> bounds{}, clear{};  ///< as in Solids
+  Bounds<Real> bounds{}, clear{};  ///< as in SolidBoundary
   bool obstacles = false, loaded = false;
   const FrameStep<Real>* frame = nullptr;
   NearRows<Real> near{};
 
-  explicit FarBox(const Solids<Real>& s)
+  explicit FarBoundary(const SolidBoundary<Real>& s)
       : Box<Real>(s),
         bounds(s.bounds),
         clear(s.clear),
@@ -51,7 +51,7 @@ struct FarBox : Box<Real> {
 /// cells where this is possible. All rows are far before.
 template <class Real>
 struct FindNearPass {
-  Solids<Real> solids;
+  SolidBoundary<Real> solids;
   const Vec4<Real>* position;
   const int* half_cell = nullptr;  ///< null: the pass is for rows
   const int* bin_start = nullptr;
