@@ -131,6 +131,14 @@ template <class Real, int W>
 PBF_HD Vec4<Lanes<Real, W>> load(GatheredRows<Vec4<Real>> a, Scattered<W> i) {
   return transposed<Real, W>(a.rows(), i);
 }
+/// One number for each of W particles.
+template <class Real, int W, template <int> class Index>
+requires std::is_floating_point_v<Real> PBF_HD Lanes<Real, W> load(OwnRows<const Real> a,
+                                                                   Index<W> i) {
+  Lanes<Real, W> r;
+  for (int l = 0; l < W; ++l) r.v[l] = a.rows()[i[l]];
+  return r;
+}
 
 /// The numbers of W adjacent rows; the array must contain all of them.
 template <class Real, int W>

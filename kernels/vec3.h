@@ -134,6 +134,8 @@ PBF_HD Vec4<Real> load(const Vec4<Real>* a, int i) {
   return a[i];
 #endif
 }
+template <class Real>
+requires std::is_floating_point_v<Real> PBF_HD Real load(const Real* a, int i) { return a[i]; }
 template <class T>
 PBF_HD auto load(OwnRows<T> a, int i) {
   return load(a.rows(), i);

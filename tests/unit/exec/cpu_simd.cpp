@@ -94,6 +94,13 @@ void check_loads() {
     CHECK(is(a, 3 + l));
     CHECK(is(s, index[l]));
   }
+  std::vector<Real> numbers;
+  for (int i = 0; i < W + 3; ++i) numbers.push_back(Real(5 * i + 1));
+  const GatheredRows<Real> one(numbers.data());
+  const auto b = load(one, Adjacent<W>{3}), t = load(one, Scattered<W>{index});
+  for (int l = 0; l < W; ++l) CHECK((b.v[l] == 5 * (3 + l) + 1 && t.v[l] == 5 * index[l] + 1));
+  CHECK(load(one, 2) == 11);
+  CHECK(load(one, Neighbor{1}) == 6);
 }
 
 }  // namespace
@@ -141,7 +148,8 @@ TEST_CASE("lanes of every width give the bits of one particle at a time, pass by
   check_same_bits(c);
 }
 
-TEST_CASE("a load of lanes brings each component of each row to its lane", "[simd]") {
+TEST_CASE("a load of lanes brings each component of each row, or its one number, to its lane",
+          "[simd]") {
   check_loads<float, 4>();
   check_loads<float, 8>();
   check_loads<float, 16>();
