@@ -3,8 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <barrier>
 #include <cstring>
+#include <functional>
 #include <map>
+#include <thread>
 #include <vector>
 
 #include "kernels/cell_index.h"
@@ -18,6 +21,9 @@
 
 namespace pbf::test {
 
+/// Layers of cells in a brick of the levels: 4 cells of 2 x 2 x 2 cells of the search grid.
+inline constexpr int kBrickLayers = 8;
+
 /// Passes over particles run for the rank's own rows, sorts and lists for all.
 class RankExec : public CpuExec {
  public:
@@ -25,7 +31,9 @@ class RankExec : public CpuExec {
     int first, last, all;
   };
   RankExec() : CpuExec(1, 37, Simd::scalar) {}
-  int first = 0, last = 0;  ///< own rows
+  int first = 0, last = 0;              ///< own rows
+  int first_layer = 0, last_layer = 0;  ///< of cells along the slowest axis; the last excluded
+  std::function<void()> add_sums;       ///< over both ranks, between the launches of a pass
 
   Rows counted(const RowState* state, int) const { return {first, last, int(state->rows)}; }
   using CpuExec::items;
@@ -45,6 +53,15 @@ class RankExec : public CpuExec {
         if (pass.row(k) < first || pass.row(k) >= last) continue;
       pass(k);
     }
+  }
+  /// The bricks of its layers, and then the sums over all bricks.
+  template <BrickPass Pass>
+  void bricks(const Pass& pass) {
+    const int row = pass.grid.bricks(0) * pass.grid.bricks(1);
+    for (int n = 0; n < pass.grid.bricks(); ++n)
+      if (n / row * kBrickLayers >= first_layer && n / row * kBrickLayers < last_layer)
+        of_brick(pass, n);
+    add_sums();
   }
   template <bool leave, class First, class Near, class Gather>
   void sort_by_bin(const char* stage, const First& of, const Near& near, const Rows& rows, int bins,
@@ -86,6 +103,10 @@ class TwoRanks {
     std::nth_element(places.begin(), places.begin() + std::ptrdiff_t(places.size() / 2),
                      places.end(), [](const auto& x, const auto& y) { return x.z < y.z; });
     cut_ = std::max(1, layer_of(places[places.size() / 2]));
+    if (plan.levels.all.count > 0)  // no brick is cut
+      cut_ = std::max(1, (cut_ + kBrickLayers / 2) / kBrickLayers) * kBrickLayers;
+    exec_[0].last_layer = exec_[1].first_layer = cut_;
+    exec_[1].last_layer = a_.p.layers + kBrickLayers;
     exec_[0].last = int(all.id.size());
     for (Context* c : both()) {
       for (int k = 0; k < scene.solver.iterations; ++k)
@@ -152,21 +173,36 @@ class TwoRanks {
   void launch(int index, bool first) {
     const PassInfo& pass = plan_.program.passes[std::size_t(index)];
     const Exchange e = state_.before(pass, first, plan_.program);
-    if (!e.sums_within.empty())
-      throw Error(ExitCode::internal, "a pass that adds and reads in one is not for two ranks");
     for (const FieldInfo* f : e.sums) add_up(*f);
     flip(pass);  // fields are named as they are after the flips
     for (const FieldInfo* f : e.ghosts)
       if (std::string(f->name) != forget_) copy_ghosts(*f);
     flip(pass);
     if (!e.rows.empty()) send_rows(e.rows);
-    for (Context* c : both())
-      if (c == &a_ || !e.on_one_rank) launch_pass<typename Context::Passes>(index, *c);
+    if (!e.sums_within.empty())
+      launch_at_once(index, e.sums_within);
+    else
+      for (Context* c : both())
+        if (c == &a_ || !e.on_one_rank) launch_pass<typename Context::Passes>(index, *c);
     if (!e.rows.empty()) take_slabs(e.rows);
     for (const AccessInfo& a : pass.declared)
       if ((a.how & (kWrites | kPlaces)) &&
           std::find(e.rows.begin(), e.rows.end(), a.field) == e.rows.end())
         poison(*a.field);
+  }
+  /// A pass of several launches: both ranks wait for each other where the sums are added up.
+  void launch_at_once(int index, const Fields& sums) {
+    for (const FieldInfo* f : sums)
+      for (Context* c : both())
+        std::memset(c->bytes_of(*f), 0, std::size_t(c->rows_of(*f)) * row_bytes(*f));
+    std::barrier<std::function<void()>> both_are_here(2, [&]() {
+      for (const FieldInfo* f : sums)
+        if (std::string(f->name) != forget_) add_up(*f);
+    });
+    for (Context* c : both()) c->exec.add_sums = [&] { both_are_here.arrive_and_wait(); };
+    std::thread second([&] { launch_pass<typename Context::Passes>(index, b_); });
+    launch_pass<typename Context::Passes>(index, a_);
+    second.join();
   }
   void flip(const PassInfo& pass) {
     for (const FieldInfo* f : pass.flips)
@@ -243,10 +279,15 @@ class TwoRanks {
     }
   }
   void add_up(const FieldInfo& f) {
-    if (f.type != Type::int64) throw Error(ExitCode::internal, "only whole numbers add up");
-    auto* mine = reinterpret_cast<std::int64_t*>(a_.bytes_of(f));
-    auto* theirs = reinterpret_cast<std::int64_t*>(b_.bytes_of(f));
-    for (std::size_t k = 0; k < std::size_t(a_.rows_of(f)) * row_bytes(f) / 8; ++k)
+    if (f.type == Type::int64) return add_up<std::int64_t>(f);
+    if (f.type == Type::int32) return add_up<std::int32_t>(f);
+    throw Error(ExitCode::internal, "only whole numbers add up");
+  }
+  template <class Whole>
+  void add_up(const FieldInfo& f) {
+    auto* mine = reinterpret_cast<Whole*>(a_.bytes_of(f));
+    auto* theirs = reinterpret_cast<Whole*>(b_.bytes_of(f));
+    for (std::size_t k = 0; k < std::size_t(a_.rows_of(f)) * row_bytes(f) / sizeof(Whole); ++k)
       mine[k] = theirs[k] = mine[k] + theirs[k];
   }
   template <class F>

@@ -209,22 +209,7 @@ class CpuExec {
 
   std::size_t bytes() const;
 
- private:
-  /// Calls f(first, last) for pieces of 0..n-1; an item is as much work as `share` particles.
-  /// Dynamic scheduling: particles at the surface have fewer neighbors, and another program may
-  /// occupy a core for a while.
-  template <int share, class F>
-  void in_pieces(int n, const F& f) {
-    constexpr int piece = kPiece / share;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (n > kChunk / share)
-    for (int first = 0; first < n; first += piece) f(first, std::min(n - first, piece) + first);
-  }
-  template <class Pass>
-  void wholes(int n, const Pass& pass) {
-    in_pieces<kShare>(n, [&](int first, int last) {
-      for (int i = first; i < last; ++i) pass.finish(i, pass.part(i, 0, 1));
-    });
-  }
+ protected:
   /// See LevelBrickPass.
   template <class Pass>
   static void of_brick(const Pass& pass, int n) {
@@ -240,6 +225,23 @@ class CpuExec {
         if (found[k] != 0) sum += pass.share(which, k, found[k]);
       pass.finish_corner(brick, which, sum);
     }
+  }
+
+ private:
+  /// Calls f(first, last) for pieces of 0..n-1; an item is as much work as `share` particles.
+  /// Dynamic scheduling: particles at the surface have fewer neighbors, and another program may
+  /// occupy a core for a while.
+  template <int share, class F>
+  void in_pieces(int n, const F& f) {
+    constexpr int piece = kPiece / share;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (n > kChunk / share)
+    for (int first = 0; first < n; first += piece) f(first, std::min(n - first, piece) + first);
+  }
+  template <class Pass>
+  void wholes(int n, const Pass& pass) {
+    in_pieces<kShare>(n, [&](int first, int last) {
+      for (int i = first; i < last; ++i) pass.finish(i, pass.part(i, 0, 1));
+    });
   }
   /// The sum of term(i), which does not depend on the order of terms.
   template <class Sum, class Term>
