@@ -14,7 +14,7 @@ namespace {
 
 /// The diagnostics that a study averages.
 std::vector<Diagnostic> study_diagnostics() {
-  std::vector<Diagnostic> all = diagnostics();
+  std::vector<Diagnostic> all(diagnostics().begin(), diagnostics().end());
   std::erase_if(all, [](const Diagnostic& d) { return d.over == Over::none; });
   return all;
 }

@@ -11,6 +11,10 @@ namespace pbf::program_module {
 
 struct Plan;
 
+/// Diagnostics in the log. Their table is diagnostics() (lib/solver/diagnostics.cpp), which must
+/// have so many rows.
+inline constexpr int kDiagnosticColumns = 32;
+
 /// When columns are read: with the measures (the log), or every output.gauges_every. Poses are
 /// known without a solver, and are in the log too.
 enum class Series { measures, gauges, poses };

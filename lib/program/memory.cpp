@@ -158,7 +158,7 @@ void add_fixed(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   if (s.output || s.checkpoint) memory.fixed.push_back({"HDF5", mb(4.5), false, true});
   if (s.output)  // per dataset two nodes with keys, and HDF5's data about each
     memory.fixed.push_back(
-        {"indices of the run file", mb(0.068 * run_file_datasets(plan)), false, true});
+        {"indices of the run file", mb(0.068 * run_file_datasets(plan, s)), false, true});
   if (s.output && s.output->compression == Compression::gzip)
     memory.fixed.push_back({"zlib", mb(0.8), false, true});
   if (s.render) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "kernels/smoothing.h"
@@ -99,9 +101,21 @@ void plan_left_out(Plan& plan, const Scene& s) {
 
 constexpr double kOtherDatasets = 48;  // of run.vtkhdf, without the columns of log and gauges
 
-/// Columns of the log: diagnostics and stages; loads on walls and obstacles; poses of moving ones.
-double log_columns(const Plan& plan) {
-  double columns = 46;
+/// Stages of a run with times in the log.
+double stages_of(const Plan& plan, const Scene& s) {
+  std::set<std::string_view> names{"init", "measure"};
+  for (const PassInfo& pass : plan.program.passes) names.insert(pass.stage);
+  if (s.guard) names.insert("guard");
+  if (s.output || s.render) names.insert("download");
+  if (s.output) names.insert("write");
+  if (s.render) names.insert("render");
+  return double(names.size());
+}
+
+/// Columns of the log: time, dt, update and iterations; diagnostics; stages; loads on walls and
+/// obstacles; poses of moving ones.
+double log_columns(const Plan& plan, const Scene& s) {
+  double columns = 4 + kDiagnosticColumns + stages_of(plan, s);
   for (const ReadingColumn& c : plan.columns)
     if (c.series != Series::gauges) columns += c.components;
   return columns;
@@ -142,7 +156,7 @@ void plan_files(Plan& plan, const Scene& s) {
     const double bytes =
         (frames * row + 12) * n / (s.output->compression == Compression::gzip ? 1.45 : 1) +
         frames * std::min(5 * n, 9e3) + table_bytes(kOtherDatasets, 0) +
-        table_bytes(log_columns(plan), double(schedule.measures_until(all))) +
+        table_bytes(log_columns(plan, s), double(schedule.measures_until(all))) +
         table_bytes(gauge_columns(plan), double(schedule.gauges_until(all)));
     add("run.vtkhdf", 1, bytes, std::to_string(std::int64_t(frames)) + " frames");
   }
@@ -157,8 +171,8 @@ void plan_files(Plan& plan, const Scene& s) {
 
 }  // namespace
 
-double run_file_datasets(const Plan& plan) {
-  return kOtherDatasets + log_columns(plan) + gauge_columns(plan);
+double run_file_datasets(const Plan& plan, const Scene& scene) {
+  return kOtherDatasets + log_columns(plan, scene) + gauge_columns(plan);
 }
 
 UpdateShape Plan::shape() const { return {substeps, lists_per_update, repeats}; }

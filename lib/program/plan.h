@@ -67,7 +67,7 @@ struct Plan {
 };
 
 /// Number of datasets of run.vtkhdf, including the columns of log and gauges. Each has an index.
-double run_file_datasets(const Plan& plan);
+double run_file_datasets(const Plan& plan, const Scene& scene);
 
 /// Pure: touches no file and no device. `particles`: from count_particles(). `start`: from
 /// start_neighbors(), for the memory of a over-dense start; without it, the start is planned as

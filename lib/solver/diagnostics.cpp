@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -106,8 +107,8 @@ Diagnostics to_diagnostics(const MeasureSums& s, std::int64_t particles,
   return m;
 }
 
-const std::vector<Diagnostic>& diagnostics() {
-  static const std::vector<Diagnostic> table = {
+std::span<const Diagnostic> diagnostics() {
+  static const auto table = std::to_array<Diagnostic>({
       {"compression_mean", "1", "sum of c/N", mean, true, [](M m) { return m.compression_mean; }},
       {"compression_rms", "1", "sqrt(sum of c^2/N)", rms, false,
        [](M m) { return m.compression_rms; }},
@@ -160,7 +161,8 @@ const std::vector<Diagnostic>& diagnostics() {
        none, false, nullptr, [](M m) { return m.unresolved; }},
       {"relative_way_max", "h", "longest such way in a step", none, false,
        [](M m) { return m.relative_way_max; }},
-  };
+  });
+  static_assert(std::tuple_size_v<std::remove_cv_t<decltype(table)>> == kDiagnosticColumns);
   return table;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -143,7 +144,7 @@ struct Diagnostic {
 };
 
 /// In the order of the log's columns.
-const std::vector<Diagnostic>& diagnostics();
+std::span<const Diagnostic> diagnostics();
 
 /// A line for each, with its unit.
 std::string diagnostics_help();

@@ -90,7 +90,7 @@ TEST_CASE("the plan knows the datasets of a run file to six, whatever is read") 
   const pbf::Scene scene = pbf::parse_stored_scene(info.resolved_scene, "s", {});
   const pbf::h5::Reading file(path);
   CHECK(double(pbf::h5::datasets_below(file, 4).size()) ==
-        Approx(pbf::run_file_datasets(pbf::make_plan(scene, info.particles))).margin(6));
+        Approx(pbf::run_file_datasets(pbf::make_plan(scene, info.particles), scene)).margin(6));
 }
 
 TEST_CASE("gauges are read with the measures by default, and at the end") {
