@@ -14,7 +14,7 @@ string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
 set(PBF_FONT_SOURCE ${PROJECT_BINARY_DIR}/generated/font_data.cpp)
 file(CONFIGURE OUTPUT ${PBF_FONT_SOURCE} @ONLY CONTENT
 "// lib/render/font/DejaVuSans-Latin1.ttf, made by .cmake/font.cmake.
-#include \"lib/render/font_data.h\"
+#include \"lib/render/font.h\"
 
 namespace pbf::render_module {
 

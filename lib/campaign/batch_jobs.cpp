@@ -10,6 +10,8 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <thread>
 
 #include "lib/base/error.h"
@@ -20,14 +22,8 @@ namespace {
 
 /// The error message in the text that a child wrote to stderr.
 std::string error_line(int fd) {
-  std::string text;
-  char block[4096];
-  for (off_t at = 0;;) {
-    const ssize_t n = ::pread(fd, block, sizeof block, at);
-    if (n <= 0) break;
-    text.append(block, static_cast<std::size_t>(n));
-    at += n;
-  }
+  std::ifstream in("/proc/self/fd/" + std::to_string(fd));  // from its first byte
+  const std::string text(std::istreambuf_iterator<char>(in), {});
   const std::string mark = "pbf: error: ";
   const std::size_t at = text.rfind(mark);
   if (at == std::string::npos) return {};

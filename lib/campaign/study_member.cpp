@@ -29,14 +29,7 @@ bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, WorkTrack&
   energy.follow(row.measures);
   row.iterations = scene.solver.iterations;
   row.dt = scene.time.step;
-  std::size_t k = 0;
-  for (const auto& c : run_layout::log_columns()) {
-    if (out.columns.size() <= k) {
-      out.names.push_back(c.name);
-      out.columns.emplace_back();
-    }
-    out.columns[k++].push_back(c.value(row));
-  }
+  for (const auto& c : run_layout::log_columns()) out.log[c.name].push_back(c.value(row));
   const Diagnostics& m = row.measures;
   if (m.non_finite == 0 && m.outside == 0) return true;
   out.status = "diverged";
@@ -48,8 +41,7 @@ bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, WorkTrack&
 }  // namespace
 
 const std::vector<double>& MemberResult::series(const std::string& name) const {
-  for (std::size_t k = 0; k < names.size(); ++k)
-    if (names[k] == name) return columns[k];
+  if (const auto column = log.find(name); column != log.end()) return column->second;
   throw Error(ExitCode::internal, "study: no column " + name + " in the log of a run");
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,9 +20,7 @@ struct MemberResult {
   std::int64_t threads = 0, particles = 0, updates = 0;
   double seconds = 0;          ///< s, of all updates, without measurements and the start
   std::vector<double> ratios;  ///< of short repeats: time relative to the same updates of the run
-  /// The log of measurements, with the column names of run.vtkhdf.
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> columns;
+  std::map<std::string, std::vector<double>> log;  ///< of measurements, as that of run.vtkhdf
 
   const std::vector<double>& series(const std::string& name) const;
   double seconds_median() const;  ///< s

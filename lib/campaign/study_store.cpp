@@ -1,5 +1,4 @@
 // Stores results of members: the key that identifies a run, and JSON in both directions.
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -76,15 +75,12 @@ void read(const Json& value, const std::string& key, std::vector<double>& out) {
 /// Checks that the log has all columns of run_member(), of equal length, and at least one row.
 void check_log(const MemberResult& r) {
   for (const auto& c : run_layout::log_columns())
-    if (std::find(r.names.begin(), r.names.end(), c.name) == r.names.end())
-      bad(std::string("log has no column ") + c.name);
-  for (std::size_t k = 0; k < r.names.size(); ++k) {
-    const std::size_t n = r.columns[k].size();
-    if (n == 0 || n != r.columns[0].size())
-      bad("log: column " + r.names[k] + " has " + std::to_string(n) + " rows, " + r.names[0] +
-          " has " + std::to_string(r.columns[0].size()) +
-          (n == 0 ? "; a run has one at least" : ""));
-  }
+    if (!r.log.contains(c.name)) bad(std::string("log has no column ") + c.name);
+  const std::size_t rows = r.series("time").size();
+  for (const auto& [name, column] : r.log)
+    if (column.empty() || column.size() != rows)
+      bad("log: column " + name + " has " + std::to_string(column.size()) + " rows, time has " +
+          std::to_string(rows) + (column.empty() ? "; a run has one at least" : ""));
 }
 
 }  // namespace
@@ -109,8 +105,7 @@ void write_member(const std::string& path, const MemberResult& r) {
   Json object;
   for_each_member(r, [&](const char* name, const auto& value) { object[name] = value; });
   object["ratios"] = r.ratios;
-  Json& log = object["log"];
-  for (std::size_t k = 0; k < r.names.size(); ++k) log[r.names[k]] = r.columns[k];
+  object["log"] = r.log;
   write_text_file(path, json_text(object) + "\n", Naming::own);
 }
 
@@ -126,10 +121,8 @@ std::optional<MemberResult> read_member(const std::string& path) {
       bad("status: \"" + r.status + "\" is neither finished nor diverged");
     if (!(r.seconds >= 0)) bad("seconds: not a time");
     read(root.at("ratios"), "ratios", r.ratios);
-    for (const auto& [name, values] : root.at("log").items()) {
-      r.names.push_back(name);
-      read(values, "log." + name, r.columns.emplace_back());
-    }
+    for (const auto& [name, values] : root.at("log").items())
+      read(values, "log." + name, r.log[name]);
     check_log(r);
     return r;
   } catch (const std::exception& e) {  // of the library, and those above

@@ -115,7 +115,7 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
   row.status = result.status;
   row.message = result.message;
   const auto names = study_error_measures(study);
-  if (result.columns.empty()) {  // it never ran
+  if (result.log.empty()) {  // it never ran
     row.measures.assign(names.size(), NAN);
     row.result.seconds = NAN;
     return row;

@@ -13,7 +13,6 @@
 #include "lib/base/regular_file.h"
 #include "lib/io/h5_output.h"
 #include "lib/io/h5_read.h"
-#include "lib/io/h5_trial.h"
 #include "lib/scene/scene_files.h"
 
 namespace pbf::io_module {
@@ -41,13 +40,9 @@ void write_rows(hid_t file, const char* name, const char* unit, hid_t type, hsiz
 template <class T>
 void read_rows(hid_t file, const char* name, std::int64_t n, std::size_t components,
                std::vector<T>& values) {
-  const h5::Dataset d = h5::open_dataset(file, name);
-  const std::vector<hsize_t> size = h5::shape(d);
-  if (size != std::vector<hsize_t>{static_cast<hsize_t>(n), components})
+  if (h5::shape(h5::open_dataset(file, name)) != std::vector{hsize_t(n), hsize_t(components)})
     throw h5::Failure(std::string("dataset ") + name + " has the wrong size");
-  values.resize(h5::claimed(d, size, sizeof(T)));
-  if (!values.empty())
-    check(H5Dread(d, h5::native<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+  values = h5::read_all<T>(file, name);
 }
 
 /// f(attribute name, number, older files lack it) of the members that are numbers: one list for
@@ -121,7 +116,7 @@ void write_steps(hid_t file, const StepHistory& s) {
 StepHistory read_steps(hid_t file) {
   StepHistory s;
   for_each_step(s, reading(file));
-  s.updates = h5::read_integers(file, "step_updates");
+  s.updates = h5::read_numbers<std::int64_t>(file, "step_updates");
   if (s.level < 0 || s.level >= std::int64_t(s.updates.size()))
     throw h5::Failure("a level of the step that cannot be");
   return s;

@@ -75,34 +75,33 @@ Group make_group(hid_t parent, const char* name) {
   return Group(H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
 }
 
+Attribute make_attribute(hid_t object, const char* name, hid_t type, std::optional<hsize_t> count) {
+  const Space space(count ? H5Screate_simple(1, &*count, nullptr) : H5Screate(H5S_SCALAR));
+  return Attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
+}
+
 void write_text(hid_t object, const char* name, const std::string& value) {
   const std::string plain = escaped(value);  // a path may hold anything; readers refuse it
   const Type type = string_type();
-  const Space space(H5Screate(H5S_SCALAR));
-  const Attribute a(H5Aexists(object, name) > 0
-                        ? H5Aopen(object, name, H5P_DEFAULT)
-                        : H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
+  const Attribute a = has_attribute(object, name) ? Attribute(H5Aopen(object, name, H5P_DEFAULT))
+                                                  : make_attribute(object, name, type);
   const char* text = plain.c_str();
   check(H5Awrite(a, type, &text));
 }
 
 void write_texts(hid_t object, const char* name, const std::vector<std::string>& values) {
   const Type type = string_type();
-  const hsize_t count = values.size();
-  const Space space(H5Screate_simple(1, &count, nullptr));
-  const Attribute a(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
+  const Attribute a = make_attribute(object, name, type, values.size());
   std::vector<const char*> texts;
   for (const auto& v : values) texts.push_back(v.c_str());
-  if (count) check(H5Awrite(a, type, texts.data()));
+  if (!texts.empty()) check(H5Awrite(a, type, texts.data()));
 }
 
 void write_ascii(hid_t object, const char* name, const std::string& value) {
   const Type type(H5Tcopy(H5T_C_S1));
   check(H5Tset_size(type, value.size()));
   check(H5Tset_strpad(type, H5T_STR_NULLPAD));
-  const Space space(H5Screate(H5S_SCALAR));
-  const Attribute a(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
-  check(H5Awrite(a, type, value.data()));
+  check(H5Awrite(make_attribute(object, name, type), type, value.data()));
 }
 
 void write_dataset(hid_t parent, const char* name, hid_t type, const std::vector<hsize_t>& shape,
@@ -172,16 +171,6 @@ std::string read_text(hid_t object, const char* name) {
   const auto values = read_texts(object, name);
   if (values.size() != 1) throw Failure(std::string("attribute ") + name + " is not one string");
   return values[0];
-}
-
-std::vector<std::int64_t> read_integers(hid_t object, const char* name) {
-  const Attribute a(H5Aopen(object, name, H5P_DEFAULT));
-  const Space space(H5Aget_space(a));
-  const auto count = check(H5Sget_simple_extent_npoints(space));
-  if (count > 64) throw Failure(std::string("attribute ") + name + " has too many numbers");
-  std::vector<std::int64_t> values(static_cast<std::size_t>(count));
-  if (!values.empty()) check(H5Aread(a, native<std::int64_t>(), values.data()));
-  return values;
 }
 
 std::vector<hsize_t> shape(hid_t dataset) {

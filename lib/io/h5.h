@@ -109,12 +109,14 @@ void write_texts(hid_t object, const char* name, const std::vector<std::string>&
 /// A fixed-length ASCII attribute, for readers that accept nothing else (VTK).
 void write_ascii(hid_t object, const char* name, const std::string& value);
 
+/// A new attribute of `count` values, or of one (none).
+Attribute make_attribute(hid_t object, const char* name, hid_t type,
+                         std::optional<hsize_t> count = {});
 /// Writes `values` as a scalar (count 0) or one-dimensional attribute; replaces nothing.
 template <class T>
 void write_numbers(hid_t object, const char* name, const T* values, hsize_t count = 0) {
-  const Space space(count ? H5Screate_simple(1, &count, nullptr) : H5Screate(H5S_SCALAR));
-  const Attribute a(H5Acreate2(object, name, native<T>(), space, H5P_DEFAULT, H5P_DEFAULT));
-  check(H5Awrite(a, native<T>(), values));
+  const auto size = count ? std::optional(count) : std::nullopt;
+  check(H5Awrite(make_attribute(object, name, native<T>(), size), native<T>(), values));
 }
 
 template <class T>
@@ -135,19 +137,22 @@ bool has_link(hid_t group, const std::string& path);  ///< every part of the pat
 std::vector<std::string> read_fixed_texts(hid_t group, const std::string& path, std::size_t size);
 std::string read_text(hid_t object, const char* name);
 std::vector<std::string> read_texts(hid_t object, const char* name);
-/// The number in an attribute, converted to T.
+/// The numbers in an attribute of at most 64, converted to T.
+template <class T>
+std::vector<T> read_numbers(hid_t object, const char* name) {
+  const Attribute a(H5Aopen(object, name, H5P_DEFAULT));
+  const auto count = check(H5Sget_simple_extent_npoints(Space(H5Aget_space(a))));
+  if (count > 64) throw Failure(std::string("attribute ") + name + " has too many numbers");
+  std::vector<T> values(static_cast<std::size_t>(count));
+  if (!values.empty()) check(H5Aread(a, native<T>(), values.data()));
+  return values;
+}
 template <class T>
 T read_number(hid_t object, const char* name) {
-  const Attribute a(H5Aopen(object, name, H5P_DEFAULT));
-  const Space space(H5Aget_space(a));
-  if (check(H5Sget_simple_extent_npoints(space)) != 1)
-    throw Failure(std::string("attribute ") + name + " is not one number");
-  T value{};
-  check(H5Aread(a, native<T>(), &value));
-  return value;
+  const auto values = read_numbers<T>(object, name);
+  if (values.size() != 1) throw Failure(std::string("attribute ") + name + " is not one number");
+  return values[0];
 }
-/// The numbers in a one-dimensional attribute of at most 64.
-std::vector<std::int64_t> read_integers(hid_t object, const char* name);
 /// A group, or a dataset, of an open file by its path. Both follow hard links and soft links within
 /// the file. Failure for what leads out of it: external and user-defined links, external storage
 /// and virtual datasets, which let a file from elsewhere take in any file of this machine. A

@@ -4,10 +4,12 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
 namespace pbf::io_module::h5 {
+
 Properties writer_access() {
   Properties p = file_access();
   check(H5Pset_cache(p, 0, 0, 0, 0));
@@ -64,6 +66,93 @@ void abandon(hid_t file) noexcept {
   } catch (const Failure&) {
     // no descriptor: nothing to turn away
   }
+}
+
+hid_t memory_type(ScalarType t) {
+  if (is_whole(t)) return t == ScalarType::i64 ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
+  return t == ScalarType::f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
+}
+
+hid_t file_type(ScalarType t) {
+  if (is_whole(t)) return t == ScalarType::i64 ? H5T_STD_I64LE : H5T_STD_I32LE;
+  return t == ScalarType::f64 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+}
+
+ScalarType scalar_type(hid_t dataset, const std::string& path) {
+  const Type type(H5Dget_type(dataset));
+  const H5T_class_t kind = H5Tget_class(type);
+  const std::size_t size = H5Tget_size(type);
+  for (const ScalarType t : {ScalarType::f32, ScalarType::f64, ScalarType::i32, ScalarType::i64})
+    if (size == size_of(t) && kind == (is_whole(t) ? H5T_INTEGER : H5T_FLOAT)) return t;
+  throw Failure(path + " has a type that this program does not write");
+}
+
+Column::Column(hid_t parent, const std::string& path, hid_t type, const Layout& layout)
+    : chunk_rows_(std::max<hsize_t>(1, layout.chunk_rows)), components_(layout.components) {
+  const int rank = components_ ? 2 : 1;
+  const auto width = static_cast<hsize_t>(components_);
+  const hsize_t none[2] = {0, width}, unlimited[2] = {H5S_UNLIMITED, width};
+  const hsize_t chunk[2] = {chunk_rows_, width};
+  const Space space(H5Screate_simple(rank, none, unlimited));
+  const Properties create(H5Pcreate(H5P_DATASET_CREATE)), link(H5Pcreate(H5P_LINK_CREATE));
+  check(H5Pset_create_intermediate_group(link, 1));
+  check(H5Pset_chunk(create, rank, chunk));
+  check(H5Pset_fill_time(create, H5D_FILL_TIME_NEVER));  // else every write copies a whole chunk
+  if (layout.gzip) {
+    check(H5Pset_shuffle(create));
+    check(H5Pset_deflate(create, 1));
+  }
+  dataset_ = Dataset(H5Dcreate2(parent, path.c_str(), type, space, link, create, H5P_DEFAULT));
+  if (!layout.unit.empty()) write_text(dataset_, "units", layout.unit);
+}
+
+Column Column::existing(hid_t parent, const std::string& path) {
+  Column c;
+  c.dataset_ = open_dataset(parent, path);
+  const auto dims = shape(c.dataset_);
+  hsize_t chunk[2] = {1, 1};
+  const Properties create(H5Dget_create_plist(c.dataset_));
+  if (dims.empty() || dims.size() > 2 || (dims.size() == 2 && dims[1] > 64) ||
+      H5Pget_layout(create) != H5D_CHUNKED || H5Pget_chunk(create, 2, chunk) < 1)
+    throw Failure(path + " has a shape that this program does not write");
+  c.rows_ = dims[0];
+  c.chunk_rows_ = chunk[0];
+  c.components_ = dims.size() == 2 ? static_cast<int>(dims[1]) : 0;
+  return c;
+}
+
+void Column::truncate(hsize_t rows) {
+  if (rows > rows_) throw Failure("a dataset ends before what the file says it holds");
+  if (rows == rows_) return;
+  grow(rows);
+}
+
+void Column::write_ahead(const std::vector<double>& chunk) {
+  const hsize_t first = rows_ / chunk_rows_ * chunk_rows_;
+  if (chunk.size() != chunk_rows_) throw Failure("not the rows of a chunk");
+  if (rows_ == 0) {  // HDF5 makes the index with the first row
+    write(0, 1, H5T_NATIVE_DOUBLE, chunk.data());
+    grow(0);
+  }
+  check(H5Dwrite_chunk(dataset_, H5P_DEFAULT, 0, &first, chunk.size() * 8, chunk.data()));
+}
+
+void Column::grow(hsize_t rows) {
+  const hsize_t size[2] = {rows, static_cast<hsize_t>(components_)};
+  check(H5Dset_extent(dataset_, size));
+  rows_ = rows;
+}
+
+void Column::write(hsize_t first, hsize_t count, hid_t type, const void* values) {
+  if (!count) return;
+  const int rank = components_ ? 2 : 1;
+  const auto width = static_cast<hsize_t>(components_);
+  if (first + count > rows_) grow(first + count);
+  const Space file(H5Dget_space(dataset_));
+  const hsize_t start[2] = {first, 0}, block[2] = {count, width};
+  check(H5Sselect_hyperslab(file, H5S_SELECT_SET, start, nullptr, block, nullptr));
+  const Space memory(H5Screate_simple(rank, block, nullptr));
+  check(H5Dwrite(dataset_, type, memory, file, H5P_DEFAULT, values));
 }
 
 }  // namespace pbf::io_module::h5

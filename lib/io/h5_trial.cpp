@@ -1,5 +1,4 @@
-#include "lib/io/h5_trial.h"
-
+// trial() of h5_read.h. A fuzzer has one of its own.
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -10,7 +9,7 @@
 #include <cstring>
 
 #include "lib/base/error.h"
-#include "lib/io/h5.h"
+#include "lib/io/h5_read.h"
 
 namespace pbf::io_module::h5 {
 

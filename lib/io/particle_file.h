@@ -1,4 +1,4 @@
-// Reads particles from files, for bodies of shape `file`.
+// Particle files, which bodies of shape `file` are read from.
 #pragma once
 
 #include <cstdint>
@@ -20,5 +20,9 @@ namespace pbf::io_module {
 /// dataset and row (HDF5) when it cannot be understood or a value is not finite; Error(unavailable)
 /// when the memory that is available does not hold an HDF5 file and its particles, or twice a CSV.
 Particles read_particle_file(const std::string& path, std::string* sha256 = nullptr);
+
+/// Writes position (N, 3) in m and velocity (N, 3) in m/s as doubles into a new HDF5 file; row k is
+/// particle k. Throws Error(io) with the path and the reason.
+void write_particle_file(const std::string& path, const Particles& particles);
 
 }  // namespace pbf::io_module

@@ -113,21 +113,33 @@ class RunWriter {
 /// crashes or does not come to an end. For files from elsewhere, before a RunReader.
 void try_run_file(const std::string& path);
 
+/// Where the frames of a run file are.
+struct FrameTable {
+  struct Field {
+    std::string name, unit, path;  ///< path under /VTKHDF
+    std::vector<std::int64_t> offsets{};
+    ScalarType type = ScalarType::f32;
+    int components = 1;
+  };
+  std::vector<double> times{};
+  std::vector<std::int64_t> counts{}, updates{};
+  std::vector<Field> fields{};  ///< position first; those of PointData
+};
+
 /// Reads a run file, also one still being written or cut off. Throws Error(io) with the reason.
 class RunReader {
  public:
   explicit RunReader(const std::string& path);
-  ~RunReader();
-  std::int64_t frames() const;
-  std::vector<double> times() const;         ///< s
-  std::vector<std::int64_t> counts() const;  ///< particles of each frame
-  std::vector<std::string> fields() const;   ///< without position and id
+  std::int64_t frames() const { return std::int64_t(in_.times.size()); }
+  std::vector<double> times() const { return in_.times; }            ///< s
+  std::vector<std::int64_t> counts() const { return in_.counts; }    ///< particles of each frame
+  std::vector<std::int64_t> updates() const { return in_.updates; }  ///< of each frame
+  std::vector<std::string> fields() const;                           ///< without position and id
   /// Frame k (0-based) with all its fields, "position" first; Error(bad_input) when out of range.
   Snapshot frame(std::int64_t k) const;
   RunInfo info() const;
-  std::string status() const;                 ///< running, finished, stopped, diverged
-  std::vector<std::int64_t> updates() const;  ///< of each frame
-  std::vector<RunSession> sessions() const;   ///< empty in files of older versions
+  std::string status() const;                ///< running, finished, stopped, diverged
+  std::vector<RunSession> sessions() const;  ///< empty in files of older versions
   /// One column of the log ("compression_mean", "stage/lambda", ...); empty when not there.
   std::vector<double> log_column(const std::string& name) const;
   std::vector<std::string> log_columns() const;
@@ -138,8 +150,8 @@ class RunReader {
   std::vector<double> gauge(const std::string& name) const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::string path_;
+  FrameTable in_;
 };
 
 }  // namespace pbf::io_module

@@ -2,25 +2,17 @@
 
 namespace pbf::io_module::run_layout {
 
-double LogColumn::value(const LogRow& r) const {
-  if (diagnostic) return diagnostic->value(r.measures);
-  return number ? number(r) : double(integer(r));
-}
-
-std::int64_t LogColumn::whole(const LogRow& r) const {
-  return diagnostic ? diagnostic->integer(r.measures) : integer(r);
-}
-
 const std::vector<LogColumn>& log_columns() {
   using Row = const LogRow&;
   static const std::vector<LogColumn> columns = [] {
     std::vector<LogColumn> all = {
         {"time", "s", true, [](Row r) { return r.measures.time; }},
         {"dt", "s", true, [](Row r) { return r.dt; }},
-        {"update", "1", false, nullptr, [](Row r) { return r.measures.update; }},
-        {"iterations", "1", false, nullptr, [](Row r) { return std::int64_t{r.iterations}; }}};
+        {"update", "1", false, [](Row r) { return double(r.measures.update); }},
+        {"iterations", "1", false, [](Row r) { return double(r.iterations); }}};
     for (const Diagnostic& d : diagnostics())
-      all.push_back({d.name, d.unit, d.number != nullptr, nullptr, nullptr, &d});
+      all.push_back(
+          {d.name, d.unit, d.number != nullptr, [&d](Row r) { return d.value(r.measures); }});
     return all;
   }();
   return columns;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -32,13 +33,8 @@ inline constexpr const char* topologies[4] = {"Vertices", "Lines", "Polygons", "
 struct LogColumn {
   const char* name;
   const char* unit;
-  bool real;                        ///< float64
-  double (*number)(const LogRow&);  ///< of those that are no diagnostic
-  std::int64_t (*integer)(const LogRow&) = nullptr;
-  const Diagnostic* diagnostic = nullptr;
-
-  double value(const LogRow& row) const;
-  std::int64_t whole(const LogRow& row) const;  ///< where it is not real
+  bool real;                                   ///< float64
+  std::function<double(const LogRow&)> value;  ///< whole where it is not real
 };
 
 /// The columns of every run, in the order of their creation: what a row has besides measures,
@@ -75,10 +71,11 @@ void for_each_integer(RunSession& s, F&& f) {
   f("last_update", s.last_update);
 }
 
-/// f(attribute name, text) for every text of a RunInfo (const or not): one list for both
-/// directions.
+/// f(attribute name, text, older files lack it) for every text of a RunInfo (const or not): one
+/// list for both directions.
 template <class Info, class F>
 void for_each_text(Info& info, F&& f) {
+  constexpr bool newer = true;
   f("scene_path", info.scene_path);
   f("scene_text", info.scene_text);
   f("resolved_scene", info.resolved_scene);
@@ -93,6 +90,9 @@ void for_each_text(Info& info, F&& f) {
   f("precision", info.solver.precision);
   f("device", info.solver.device);
   f("driver", info.solver.driver);
+  f("scene_sha256", info.scene_sha256, newer);
+  f("scene_files", info.scene_files, newer);
+  f("scene_bases", info.scene_bases, newer);
 }
 
 /// f(dataset name, unit, values) for every quantity of a RunInfo (const or not).
@@ -105,14 +105,6 @@ void for_each_quantity(Info& info, F&& f) {
   f("rest_density", "kg/m^3", std::span(&info.rest_density, 1));
   f("particle_weight", "1", std::span(&info.solver.vol, 1));
   f("wall_scale", "1", std::span(&info.solver.wall_scale, 1));
-}
-
-/// The same for those that older files lack.
-template <class Info, class F>
-void for_each_newer_text(Info& info, F&& f) {
-  f("scene_sha256", info.scene_sha256);
-  f("scene_files", info.scene_files);
-  f("scene_bases", info.scene_bases);
 }
 
 }  // namespace pbf::io_module::run_layout

@@ -91,18 +91,18 @@ void RunOutput::set_steps(std::int64_t frames) {
   check(H5Awrite(count, H5T_NATIVE_INT64, &frames));
 }
 
-void RunOutput::flush() { bytes_ = h5::flush_reserved(file_); }
-
-void RunOutput::sync() {
+void RunOutput::flush() {
   write_log();
   write_gauges();
+  bytes_ = h5::flush_reserved(file_);
+}
+
+void RunOutput::sync() {
   flush();
   h5::sync(file_);
 }
 
 void RunOutput::close(const RunEnding& end) {
-  write_log();
-  write_gauges();
   flush();
   end_session(end.reason.empty() ? end.status : end.reason, end.last_update);
   write_warnings(end.warnings);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lib/base/stage_clock.h"
-#include "lib/io/h5_column.h"
+#include "lib/io/h5_output.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
 
@@ -19,9 +19,8 @@ namespace pbf::io_module {
 /// after either the object may only be destroyed, which leaves the file as the last commit left it.
 class RunOutput {
  public:
-  /// Creates the file; fails if it exists. gzip: shuffle + deflate level 1.
+  /// As those of RunWriter.
   RunOutput(const std::string& path, const RunInfo& info, bool gzip);
-  /// Goes on in a file that another RunOutput, ended or not, has left; see RunWriter.
   RunOutput(const std::string& path, const RunInfo& info, bool gzip, std::int64_t frames,
             const KeptRows& rows);
   ~RunOutput();
@@ -29,7 +28,6 @@ class RunOutput {
   void write_frame(const Snapshot& snapshot);
   /// Keeps the row until the next commit: a frame, close, or enough rows or seconds gathered.
   void log(const LogRow& row);
-  /// The same with readings of the gauges.
   void gauges(const GaugeRow& row);
   /// Writes what waits and waits until the disk has stored it.
   void sync();
@@ -47,6 +45,18 @@ class RunOutput {
     int components;
     h5::Column data;     // /VTKHDF/Points or /VTKHDF/PointData/<name>
     h5::Column offsets;  // /VTKHDF/Steps/PointDataOffsets/<name>; closed for Points
+  };
+  /// Rows that are written together.
+  template <class Row>
+  struct Waiting {
+    std::vector<Row> rows{};
+    Stopwatch since{};
+    bool add(Row row) {  // whether they are many, or have waited long
+      if (rows.empty()) since.reset();
+      rows.push_back(std::move(row));
+      return rows.size() >= run_layout::waiting_rows ||
+             since.seconds() > run_layout::waiting_seconds;
+    }
   };
   struct Topology {  // one of Vertices, Lines, Polygons, Strips
     h5::Column cells, ids, ends;
@@ -99,10 +109,8 @@ class RunOutput {
   h5::Column times_, part_offsets_, part_counts_, point_offsets_, cell_offsets_, id_starts_;
   const std::vector<ReadingColumn> columns_;  ///< of readings
   std::vector<h5::Column> gauges_;            ///< time, update, then those of the gauges
-  std::vector<GaugeRow> waiting_gauges_;
-  Stopwatch since_gauges_;
-  std::vector<LogRow> waiting_;
-  Stopwatch since_log_;
+  Waiting<std::vector<double>> waiting_gauges_;
+  Waiting<LogRow> waiting_;
   std::map<std::string, h5::Column> log_, further_, sessions_;
 };
 

@@ -63,8 +63,10 @@ RunOutput::RunOutput(const std::string& path, const RunInfo& info, bool gzip, st
     h5::write_text(pbf_, "plan", info.plan);
   }
   // Always: an older version had none, and a process may have been killed between the two.
-  run_layout::for_each_newer_text(
-      info, [&](const char* name, const std::string& text) { h5::write_text(pbf_, name, text); });
+  run_layout::for_each_text(info,
+                            [&](const char* name, const std::string& text, bool newer = false) {
+                              if (newer) h5::write_text(pbf_, name, text);
+                            });
   make_sessions();
   begin_session(info);
   flush();

@@ -76,11 +76,10 @@ void RunOutput::make_log(hsize_t frames, hsize_t rows) {
 void RunOutput::write_info(const RunInfo& info) {
   h5::write_text(pbf_, "status", "running");
   h5::write_number(pbf_, "format_version", run_layout::format_version);
-  const auto write = [&](const char* name, const std::string& text) {
+  const auto write = [&](const char* name, const std::string& text, bool = false) {
     h5::write_text(pbf_, name, text);
   };
   run_layout::for_each_text(info, write);
-  run_layout::for_each_newer_text(info, write);
   h5::write_texts(pbf_, "overrides", info.overrides);
   write_warnings(info.warnings);
   h5::write_number(pbf_, "threads", std::int64_t{info.solver.threads});

@@ -7,7 +7,7 @@
 
 #include "lib/base/error.h"
 #include "lib/base/text.h"
-#include "lib/io/h5_signature.h"
+#include "lib/io/h5_read.h"
 #include "lib/io/run_file.h"
 #include "lib/scene/file_kind.h"
 
@@ -85,8 +85,9 @@ std::string run_path(const std::string& path) {
 bool is_hdf5_file(const std::string& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return false;
+  std::string head(8, '\0');
   std::ifstream in(path, std::ios::binary);
-  return h5::begins_as_hdf5(in);
+  return in.read(head.data(), std::ssize(head)) && h5::is_signature(head);
 }
 
 std::string only_run_path(const std::string& path) {

@@ -8,28 +8,21 @@
 
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
-#include "lib/io/h5_column.h"
+#include "lib/io/h5_output.h"
 #include "lib/io/h5_read.h"
-#include "lib/io/h5_trial.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_layout.h"
 
 namespace pbf::io_module {
-struct FieldPlace {
-  std::string name, unit, path;  ///< path under /VTKHDF
-  std::vector<std::int64_t> offsets;
-  ScalarType type = ScalarType::f32;
-  int components = 1;
-};
-
 namespace {
 
 using h5::check;
 
 const std::string kGauges = std::string("pbf/gauges");
 
-FieldPlace describe(hid_t vtk, const std::string& name, const std::string& path, std::size_t n) {
-  FieldPlace f{name, "", path, {}};
+FrameTable::Field describe(hid_t vtk, const std::string& name, const std::string& path,
+                           std::size_t n) {
+  FrameTable::Field f{name, "", path};
   const h5::Dataset d = h5::open_dataset(vtk, path);
   f.type = h5::scalar_type(d, path);
   const auto dims = h5::shape(d);
@@ -42,7 +35,8 @@ FieldPlace describe(hid_t vtk, const std::string& name, const std::string& path,
   return f;
 }
 
-FieldArray read_rows(hid_t vtk, const FieldPlace& place, std::size_t frame, std::size_t count) {
+FieldArray read_rows(hid_t vtk, const FrameTable::Field& place, std::size_t frame,
+                     std::size_t count) {
   FieldArray f{place.name, place.unit, place.type, place.components, {}};
   const h5::Dataset d = h5::open_dataset(vtk, place.path);
   const auto dims = h5::shape(d);
@@ -62,10 +56,8 @@ FieldArray read_rows(hid_t vtk, const FieldPlace& place, std::size_t frame, std:
 
 RunInfo read_info(hid_t pbf) {
   RunInfo info;
-  run_layout::for_each_text(
-      info, [&](const char* name, std::string& text) { text = h5::read_text(pbf, name); });
-  run_layout::for_each_newer_text(info, [&](const char* name, std::string& text) {
-    if (h5::has_attribute(pbf, name)) text = h5::read_text(pbf, name);
+  run_layout::for_each_text(info, [&](const char* name, std::string& text, bool newer = false) {
+    if (!newer || h5::has_attribute(pbf, name)) text = h5::read_text(pbf, name);
   });
   info.overrides = h5::read_texts(pbf, "overrides");
   if (h5::has_attribute(pbf, "warnings")) {  // older files have none
@@ -86,42 +78,7 @@ RunInfo read_info(hid_t pbf) {
   return info;
 }
 
-}  // namespace
-
-struct RunReader::Impl {
-  std::string path;
-  std::vector<double> times;
-  std::vector<std::int64_t> counts, updates;  // per frame
-  std::vector<FieldPlace> fields;             // position first; those of PointData
-
-  /// Opens the file and runs `action(file)`. What a live file shows while its writer is in the
-  /// middle of a commit may not fit together, so a failure is final only when it repeats.
-  template <class Action>
-  auto with_file(const char* what, Action action) const {
-    for (int attempt = 1;; ++attempt) {
-      try {
-        const h5::Reading file(path);
-        return action(file);
-      } catch (const h5::Failure& f) {
-        if (attempt == 3 || !alive())
-          throw Error(ExitCode::io, path + ": " + what + ": " + f.what());
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-  }
-
-  /// Whether somebody may be writing the file: the last write was a short while ago.
-  bool alive() const {
-    namespace fs = std::filesystem;
-    std::error_code error;
-    const auto written = fs::last_write_time(path, error);
-    return !error && fs::file_time_type::clock::now() - written < std::chrono::minutes(1);
-  }
-
-  void scan(hid_t file);
-};
-
-void RunReader::Impl::scan(hid_t file) {
+FrameTable scan(hid_t file) {
   if (!h5::has_link(file, "pbf") || !h5::has_link(file, "VTKHDF/Steps"))
     throw h5::Failure("an HDF5 file, but not one that pbf wrote (no /pbf or no /VTKHDF/Steps)");
   const h5::Group pbf = h5::open_group(file, "pbf");
@@ -136,29 +93,55 @@ void RunReader::Impl::scan(hid_t file) {
   // What lies beyond the NSteps committed rows may be half written: it is not looked at.
   auto n = static_cast<std::size_t>(
       std::max<std::int64_t>(0, h5::read_number<std::int64_t>(steps, "NSteps")));
-  times = h5::read_all<double>(steps, "Values", n);
-  updates = h5::read_all<std::int64_t>(pbf, "frames/update", n);
+  FrameTable in;
+  in.times = h5::read_all<double>(steps, "Values", n);
+  in.updates = h5::read_all<std::int64_t>(pbf, "frames/update", n);
   const auto parts = h5::read_all<std::int64_t>(steps, "PartOffsets", n);
   const auto points = h5::read_all<std::int64_t>(vtk, "NumberOfPoints");
-  n = std::min({n, times.size(), updates.size(), parts.size()});
-  fields.clear();
+  n = std::min({n, in.times.size(), in.updates.size(), parts.size()});
   if (n > 0) {
-    fields.push_back(describe(vtk, "position", "Points", n));
+    in.fields.push_back(describe(vtk, "position", "Points", n));
     const h5::Group data = h5::open_group(vtk, "PointData");
     for (const auto& name : h5::children(data, H5O_TYPE_DATASET))
-      fields.push_back(describe(vtk, name, "PointData/" + name, n));
+      in.fields.push_back(describe(vtk, name, "PointData/" + name, n));
   }
-  for (const auto& f : fields) n = std::min(n, f.offsets.size());
-  times.resize(n);
-  updates.resize(n);
-  counts.clear();
+  for (const auto& f : in.fields) n = std::min(n, f.offsets.size());
+  in.times.resize(n);
+  in.updates.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
     if (parts[k] < 0 || static_cast<std::size_t>(parts[k]) >= points.size() ||
         points[static_cast<std::size_t>(parts[k])] < 0)
       throw h5::Failure("frame " + std::to_string(k) + " has no number of points");
-    counts.push_back(points[static_cast<std::size_t>(parts[k])]);
+    in.counts.push_back(points[static_cast<std::size_t>(parts[k])]);
+  }
+  return in;
+}
+
+/// Whether somebody may be writing the file: the last write was a short while ago.
+bool alive(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const auto written = fs::last_write_time(path, error);
+  return !error && fs::file_time_type::clock::now() - written < std::chrono::minutes(1);
+}
+
+/// Opens the file and runs `action(file)`. What a live file shows while its writer is in the
+/// middle of a commit may not fit together, so a failure is final only when it repeats.
+template <class Action>
+auto with_file(const std::string& path, const std::string& what, Action action) {
+  for (int attempt = 1;; ++attempt) {
+    try {
+      const h5::Reading file(path);
+      return action(file);
+    } catch (const h5::Failure& f) {
+      if (attempt == 3 || !alive(path))
+        throw Error(ExitCode::io, path + ": " + what + ": " + f.what());
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 }
+
+}  // namespace
 
 void try_run_file(const std::string& path) {
   h5::trial(path, [&path] {
@@ -175,20 +158,15 @@ void try_run_file(const std::string& path) {
   });
 }
 
-RunReader::RunReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
-  impl_->path = path;
+RunReader::RunReader(const std::string& path) : path_(path) {
   note_input(path);
-  impl_->with_file("cannot read the run file", [&](const h5::Reading& file) { impl_->scan(file); });
+  in_ = with_file(path, "cannot read the run file",
+                  [](const h5::Reading& file) { return scan(file); });
 }
-RunReader::~RunReader() = default;
-
-std::int64_t RunReader::frames() const { return static_cast<std::int64_t>(impl_->times.size()); }
-std::vector<double> RunReader::times() const { return impl_->times; }
-std::vector<std::int64_t> RunReader::counts() const { return impl_->counts; }
 
 std::vector<std::string> RunReader::fields() const {
   std::vector<std::string> names;
-  for (const auto& f : impl_->fields)
+  for (const auto& f : in_.fields)
     if (f.name != "position" && f.name != "id") names.push_back(f.name);
   return names;
 }
@@ -196,36 +174,32 @@ std::vector<std::string> RunReader::fields() const {
 Snapshot RunReader::frame(std::int64_t k) const {
   if (k < 0 || k >= frames())
     throw Error(ExitCode::bad_input,
-                impl_->path + ": there is no frame " + std::to_string(k) +
+                path_ + ": there is no frame " + std::to_string(k) +
                     (frames() ? "; the frames are 0.." + std::to_string(frames() - 1)
                               : std::string("; the file has no frames yet")));
   const auto at = static_cast<std::size_t>(k);
-  const auto count = static_cast<std::size_t>(impl_->counts[at]);
-  const std::string what = "cannot read frame " + std::to_string(k);
-  return impl_->with_file(what.c_str(), [&](const h5::Reading& file) {
+  const auto count = static_cast<std::size_t>(in_.counts[at]);
+  return with_file(path_, "cannot read frame " + std::to_string(k), [&](const h5::Reading& file) {
     const h5::Group vtk = h5::open_group(file, "VTKHDF");
-    Snapshot s{impl_->updates[at], impl_->times[at], count, {}};
-    for (const auto& f : impl_->fields) s.fields.push_back(read_rows(vtk, f, at, count));
+    Snapshot s{in_.updates[at], in_.times[at], count, {}};
+    for (const auto& f : in_.fields) s.fields.push_back(read_rows(vtk, f, at, count));
     return s;
   });
 }
 
 RunInfo RunReader::info() const {
-  return impl_->with_file("cannot read what the run was", [](const h5::Reading& file) {
-    return read_info(h5::open_group(file, "pbf"));
-  });
+  return with_file(path_, "cannot read what the run was",
+                   [](const h5::Reading& file) { return read_info(h5::open_group(file, "pbf")); });
 }
 
 std::string RunReader::status() const {
-  return impl_->with_file("cannot read the status", [](const h5::Reading& file) {
+  return with_file(path_, "cannot read the status", [](const h5::Reading& file) {
     return h5::read_text(h5::open_group(file, "pbf"), "status");
   });
 }
 
-std::vector<std::int64_t> RunReader::updates() const { return impl_->updates; }
-
 std::vector<RunSession> RunReader::sessions() const {
-  return impl_->with_file("cannot read the sessions", [](const h5::Reading& file) {
+  return with_file(path_, "cannot read the sessions", [](const h5::Reading& file) {
     std::vector<RunSession> all;
     if (!h5::has_link(file, "pbf/sessions")) return all;
     const h5::Group group = h5::open_group(file, "pbf/sessions");
@@ -245,13 +219,13 @@ std::vector<RunSession> RunReader::sessions() const {
 }
 
 std::vector<std::string> RunReader::log_columns() const {
-  return impl_->with_file("cannot read the log", [](const h5::Reading& file) {
+  return with_file(path_, "cannot read the log", [](const h5::Reading& file) {
     return h5::datasets_below(h5::open_group(file, "pbf/log"), run_layout::log_groups);
   });
 }
 
 std::vector<std::string> RunReader::gauges() const {
-  return impl_->with_file("cannot read the gauges", [](const h5::Reading& file) {
+  return with_file(path_, "cannot read the gauges", [](const h5::Reading& file) {
     if (!h5::has_link(file, kGauges)) return std::vector<std::string>{};
     return h5::datasets_below(h5::open_group(file, kGauges), 1);
   });
@@ -260,38 +234,32 @@ std::vector<std::string> RunReader::gauges() const {
 std::vector<double> RunReader::gauge(const std::string& name) const {
   const std::vector<std::string> all = gauges();
   if (std::find(all.begin(), all.end(), name) == all.end()) return {};
-  return impl_->with_file("cannot read the gauges", [&](const h5::Reading& file) {
+  return with_file(path_, "cannot read the gauges", [&](const h5::Reading& file) {
     const h5::Group group = h5::open_group(file, kGauges);
     hsize_t rows = std::numeric_limits<hsize_t>::max();
     // A process killed while it wrote them may leave columns of different lengths.
     for (const std::string& each : all)
       rows = std::min(rows, h5::shape(h5::open_dataset(group, each)).at(0));
-    const h5::Dataset d = h5::open_dataset(group, name);
-    const auto shape = h5::shape(d);
-    if (shape.size() > 2) throw h5::Failure(name + " has a shape that this program does not write");
-    const hsize_t components = shape.size() == 2 ? shape[1] : 1;
-    std::vector<double> values(h5::claimed(d, {shape[0], components}, sizeof(double)));
-    if (!values.empty())
-      check(H5Dread(d, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
-    values.resize(std::min<std::size_t>(values.size(), rows * components));
-    return values;
+    return h5::read_all<double>(group, name, rows);
   });
 }
 
 std::vector<double> RunReader::log_column(const std::string& name) const {
-  return impl_->with_file(
-      "cannot read the log", [&](const h5::Reading& file) -> std::vector<double> {
-        const h5::Group log = h5::open_group(file, "pbf/log");
-        if (name.empty() || !h5::has_link(log, name)) return {};
-        auto values = h5::read_all<double>(log, name);
-        // A process killed while it wrote the log may leave columns of different lengths.
-        for (const auto& c : run_layout::log_columns()) {
-          if (!h5::has_link(log, c.name)) continue;  // of a later version than the file's
-          const h5::Dataset d = h5::open_dataset(log, c.name);
-          values.resize(std::min<std::size_t>(values.size(), h5::shape(d).at(0)));
-        }
-        return values;
-      });
+  return with_file(path_, "cannot read the log",
+                   [&](const h5::Reading& file) -> std::vector<double> {
+                     const h5::Group log = h5::open_group(file, "pbf/log");
+                     if (name.empty() || !h5::has_link(log, name)) return {};
+                     auto values = h5::read_all<double>(log, name);
+                     // A process killed while it wrote the log may leave columns of different
+                     // lengths.
+                     for (const auto& c : run_layout::log_columns()) {
+                       if (!h5::has_link(log, c.name))
+                         continue;  // of a later version than the file's
+                       const h5::Dataset d = h5::open_dataset(log, c.name);
+                       values.resize(std::min<std::size_t>(values.size(), h5::shape(d).at(0)));
+                     }
+                     return values;
+                   });
 }
 
 }  // namespace pbf::io_module

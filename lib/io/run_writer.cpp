@@ -29,26 +29,10 @@ struct RunWriter::Impl {
     throw Error(ExitCode::internal, path_ + ": written to after its end");
   }
 
-  void write(Snapshot&& snapshot) {
-    push(
-        [this, s = std::move(snapshot)] {
-          on_file("cannot write frame " + std::to_string(frames_), [&] { out_->write_frame(s); });
-        },
-        true);
-  }
-
-  void log(const LogRow& row) {
-    push([this, row] { on_file("cannot write the log", [&] { out_->log(row); }); });
-  }
-
-  void gauges(const GaugeRow& row) {
-    push([this, row] { on_file("cannot write the gauges", [&] { out_->gauges(row); }); });
-  }
-
-  void sync() {
-    push([this] { on_file("cannot write the log", [&] { out_->sync(); }); });
-    worker_.wait();
-    rethrow();
+  /// action(the file) on the worker's thread.
+  template <class Action>
+  void later(const char* what, Action action) {
+    push([=, this] { on_file(what, [&] { action(*out_); }); });
   }
 
   void end(const RunEnding& ending) {
@@ -66,9 +50,6 @@ struct RunWriter::Impl {
     if (const std::exception_ptr failure = worker_.failure()) std::rethrow_exception(failure);
   }
 
-  std::atomic<std::int64_t> frames_{0}, bytes_{0};
-
- private:
   /// Runs `action` on the file; a failure ends the file and is thrown as an Error that says what
   /// was tried, why it failed and what is kept.
   template <class Action>
@@ -90,6 +71,7 @@ struct RunWriter::Impl {
     }
   }
 
+  std::atomic<std::int64_t> frames_{0}, bytes_{0};
   const std::string path_;
   std::unique_ptr<RunOutput> out_;  // the worker's
   Worker worker_;                   // last: its jobs use the rest
@@ -105,12 +87,27 @@ RunWriter::RunWriter(const std::string& path, const RunInfo& info, bool gzip, st
         return std::make_unique<RunOutput>(path, info, gzip, frames, rows);
       })) {}
 RunWriter::~RunWriter() = default;
-void RunWriter::write(Snapshot&& snapshot) { impl_->write(std::move(snapshot)); }
-void RunWriter::log(const LogRow& row) { impl_->log(row); }
-void RunWriter::gauges(const GaugeRow& row) { impl_->gauges(row); }
+void RunWriter::write(Snapshot&& snapshot) {
+  impl_->push(
+      [i = impl_.get(), s = std::move(snapshot)] {
+        i->on_file("cannot write frame " + std::to_string(i->frames_),
+                   [&] { i->out_->write_frame(s); });
+      },
+      true);
+}
+void RunWriter::log(const LogRow& row) {
+  impl_->later("cannot write the log", [row](RunOutput& out) { out.log(row); });
+}
+void RunWriter::gauges(const GaugeRow& row) {
+  impl_->later("cannot write the gauges", [row](RunOutput& out) { out.gauges(row); });
+}
+void RunWriter::sync() {
+  impl_->later("cannot write the log", [](RunOutput& out) { out.sync(); });
+  impl_->worker_.wait();
+  impl_->rethrow();
+}
 std::int64_t RunWriter::frames_written() const { return impl_->frames_; }
 std::int64_t RunWriter::bytes_written() const { return impl_->bytes_; }
-void RunWriter::sync() { impl_->sync(); }
 void RunWriter::finish(const RunEnding& ending) {
   impl_->end(ending);
   impl_->rethrow();

@@ -4,7 +4,6 @@
 #include <cstddef>
 
 #include "lib/render/light.h"
-#include "lib/render/shadow.h"
 
 namespace pbf::render_module {
 

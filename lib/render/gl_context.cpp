@@ -1,7 +1,5 @@
 #include "lib/render/gl_context.h"
 
-#include <dlfcn.h>
-
 #include <cstdlib>
 
 #include "lib/base/error.h"

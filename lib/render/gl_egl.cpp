@@ -6,7 +6,7 @@
 #include <string>
 
 #include "lib/base/error.h"
-#include "lib/render/gl_platform.h"
+#include "lib/render/gl_context.h"
 
 namespace pbf::render_module {
 namespace {

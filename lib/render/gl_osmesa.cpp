@@ -3,8 +3,7 @@
 #include <cstdint>
 
 #include "lib/base/error.h"
-#include "lib/render/gl_platform.h"
-#include "lib/render/gl_table.h"
+#include "lib/render/gl_context.h"
 
 namespace pbf::render_module {
 namespace {

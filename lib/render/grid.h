@@ -8,6 +8,7 @@
 
 #include "lib/render/box.h"
 #include "lib/render/camera.h"
+#include "lib/render/font.h"
 
 namespace pbf::render_module {
 
@@ -43,5 +44,10 @@ struct EdgeLabels {
 /// dimensions of the lower and the left one. None where no floor is seen. Places behind the eye are
 /// left out.
 std::vector<EdgeLabels> length_labels(const View& view, const Projection& projection);
+
+/// Draws these labels beside the box: as many as keep a distance from each other, none of an edge
+/// on which fewer than two fit. `size`: of the text, pixels per em.
+void draw_lengths(Image& image, Texts& texts, const View& view, const Projection& projection,
+                  double size);
 
 }  // namespace pbf::render_module

@@ -1,12 +1,10 @@
-#include "lib/render/lengths.h"
-
+// The labels of lengths on a picture.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "lib/render/font.h"
 #include "lib/render/grid.h"
 
 namespace pbf::render_module {

@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/render/font.h"
-#include "lib/render/lengths.h"
-#include "lib/render/texts.h"
+#include "lib/render/grid.h"
 
 namespace pbf::render_module {
 namespace {

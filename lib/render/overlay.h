@@ -9,7 +9,7 @@
 
 #include "lib/render/camera.h"
 #include "lib/render/colormap.h"
-#include "lib/render/texts.h"
+#include "lib/render/font.h"
 
 namespace pbf::render_module {
 

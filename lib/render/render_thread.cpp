@@ -1,13 +1,11 @@
 // Pictures drawn beside the solver.
 #include <fmt/core.h>
-#include <atomic>
 #include <exception>
 #include <filesystem>
 #include <utility>
 
 #include "lib/base/error.h"
 #include "lib/base/stage_clock.h"
-#include "lib/base/worker.h"
 #include "lib/render/particles.h"
 #include "lib/render/renderer.h"
 
@@ -31,30 +29,8 @@ Snapshot needed_part(const Snapshot& snapshot, ColorBy color) {
 
 }  // namespace
 
-struct RenderThread::Impl {
-  std::string dir;
-  ColorBy color;
-  Renderer renderer;  // opened by the caller's thread, so that its errors come at once
-  std::atomic<double> seconds = 0;
-  bool told = false;            // of an error
-  Worker worker{kWaiting + 1};  // last: its jobs use the rest
-
-  explicit Impl(const View& view) : color(view.color), renderer(view, 1) {}
-
-  void draw(const Snapshot& snapshot, std::int64_t index) {
-    const Stopwatch watch;
-    write_png(frame_path(dir, index), renderer.draw(snapshot));
-    seconds = seconds + watch.seconds();
-  }
-
-  /// Throws what the thread has caught, once.
-  void rethrow() {
-    const std::exception_ptr failure = worker.failure();
-    if (failure && !std::exchange(told, true)) std::rethrow_exception(failure);
-  }
-};
-
-RenderThread::RenderThread(const View& view) : impl_(std::make_unique<Impl>(view)) {}
+RenderThread::RenderThread(const View& view)
+    : color_(view.color), renderer_(view, 1), worker_(kWaiting + 1) {}
 
 void RenderThread::into(const std::string& dir) {
   std::error_code error;
@@ -62,29 +38,34 @@ void RenderThread::into(const std::string& dir) {
   if (error)
     throw Error(ExitCode::io,
                 dir + ": the folder of the pictures cannot be made: " + error.message());
-  impl_->dir = dir;
+  dir_ = dir;
 }
 
-RenderThread::~RenderThread() = default;
-
 void RenderThread::draw(const Snapshot& snapshot, std::int64_t index) {
-  Impl& i = *impl_;
-  auto job = [&i, index, part = needed_part(snapshot, i.color)] { i.draw(part, index); };
-  const bool taken = !i.worker.ended() && i.worker.push(std::move(job), true);
-  i.rethrow();
-  if (!taken && !i.told) throw Error(ExitCode::internal, "RenderThread::draw after finish");
+  auto job = [this, index, part = needed_part(snapshot, color_)] {
+    const Stopwatch watch;
+    write_png(frame_path(dir_, index), renderer_.draw(part));
+    seconds_ = seconds_ + watch.seconds();
+  };
+  const bool taken = !worker_.ended() && worker_.push(std::move(job), true);
+  rethrow();
+  if (!taken && !told_) throw Error(ExitCode::internal, "RenderThread::draw after finish");
 }
 
 void RenderThread::wait() {
-  impl_->worker.wait();
-  impl_->rethrow();
+  worker_.wait();
+  rethrow();
 }
 
 void RenderThread::finish() {
-  impl_->worker.join();
-  impl_->rethrow();
+  worker_.join();
+  rethrow();
 }
 
-double RenderThread::seconds() const { return impl_->seconds; }
+/// Throws what the thread has caught, once.
+void RenderThread::rethrow() {
+  const std::exception_ptr failure = worker_.failure();
+  if (failure && !std::exchange(told_, true)) std::rethrow_exception(failure);
+}
 
 }  // namespace pbf::render_module

@@ -16,7 +16,6 @@
 #include "lib/render/light.h"
 #include "lib/render/overlay.h"
 #include "lib/render/particles.h"
-#include "lib/render/shadow.h"
 #include "lib/render/solids.h"
 #include "lib/scene/vector3.h"
 #include "pbf_shaders.h"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "kernels/boundary/obstacle.h"
+#include "lib/base/worker.h"
 #include "lib/scene/scene.h"
 #include "lib/solver/snapshot.h"
 
@@ -53,11 +55,8 @@ View view_of(const Scene& scene, std::int64_t particles);
 /// shadow, but not in two dimensions.
 class Renderer {
  public:
-  /// Opens OSMesa, else EGL surfaceless, else an EGL device; the environment variable PBF_GL
-  /// (osmesa, egl, egl-device) asks for one of them. `threads`: cores that a software rasteriser
-  /// may take, 0 for all; LP_NUM_THREADS in the environment wins, and the first Renderer of a
-  /// process decides. Throws Error(unavailable) naming what was tried, Error(bad_input) for a view
-  /// that cannot be drawn.
+  /// Opens a GlContext (lib/render/gl_context.h), which says what `threads` are and what it throws.
+  /// Throws Error(bad_input) also for a view that cannot be drawn.
   explicit Renderer(const View& view, int threads = 0);
   ~Renderer();
   /// From any thread, one at a time. Particles with a non-finite position are left out, those with
@@ -71,10 +70,11 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// PNG, level 1, SUB filter; an OutputFile. Throws Error(io).
+/// PNG; an OutputFile. Throws Error(io).
 void write_png(const std::string& path, const Image& image);
 
 /// Draws on a thread of its own and writes DIR/frame_000123.png (number = index of the picture).
+/// The end draws what is queued; an error that finish() would have thrown is lost.
 /// A software rasteriser draws on that thread too and starts none of its own, so that a CPU solver
 /// beside it is not stalled (LP_NUM_THREADS in the environment wins).
 class RenderThread {
@@ -83,18 +83,22 @@ class RenderThread {
   explicit RenderThread(const View& view);
   /// Makes the folder of the pictures. Throws Error(io).
   void into(const std::string& dir);
-  /// Draws what is queued; an error that finish() would have thrown is lost.
-  ~RenderThread();
   /// Queues a copy of the fields that the picture needs; blocks while 2 wait. An error of the
   /// thread is thrown by the next draw() or by finish(), once; later pictures are dropped.
   void draw(const Snapshot& snapshot, std::int64_t index);
-  void wait();             ///< until all queued pictures are written; throws as draw() does
-  void finish();           ///< waits until all queued pictures are written
-  double seconds() const;  ///< spent drawing and writing
+  void wait();    ///< until all queued pictures are written; throws as draw() does
+  void finish();  ///< waits until all queued pictures are written
+  double seconds() const { return seconds_; }  ///< spent drawing and writing
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  void rethrow();
+
+  const ColorBy color_;
+  Renderer renderer_;  // opened by the caller's thread, so that its errors come at once
+  std::string dir_;
+  std::atomic<double> seconds_ = 0;
+  bool told_ = false;  // of an error
+  Worker worker_;      // last: its jobs use the rest
 };
 
 }  // namespace pbf::render_module

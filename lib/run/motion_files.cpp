@@ -7,7 +7,10 @@
 
 #include "lib/base/error.h"
 #include "lib/io/csv.h"
+#include "lib/program/motion.h"
+#include "lib/scene/auto_step.h"
 #include "lib/scene/number.h"
+#include "lib/scene/validate.h"
 
 namespace pbf::run_module {
 namespace {
@@ -97,6 +100,52 @@ class Reader {
   std::string key_, file_;
 };
 
+// ------------------------------------------------------------ time.step: auto, with motions
+
+/// The largest f(scene, from, to) of a motion, over its ramp and one period, or over its table; s
+/// since the start. The scene has a time step that is short enough to sample speeds and
+/// accelerations: an oscillation averages out over a long step.
+template <class AnyMotion, class F>
+double largest(Scene s, const AnyMotion& m, F&& f) {
+  using Kind = decltype(m.kind);
+  const bool swings = m.kind == Kind::sine;
+  const double begin = s.time.motion_begin;
+  double step = s.time.step, end = 0;
+  if (swings) step = std::min(step, m.period / 256), end = std::max(0.0, m.ramp - begin) + m.period;
+  if (swings && m.ramp > 0) step = std::min(step, m.ramp / 256);
+  for (std::size_t k = 1; k < m.table.time.size(); ++k)
+    step = std::min(step, (m.table.time[k] - m.table.time[k - 1]) / 16);
+  if (!m.table.time.empty()) end = std::max(0.0, m.table.time.back() - begin);
+  s.time.step = std::max(step, 1e-4 * s.time.step);  // below this, differences are rounding
+  return f(s, 0.0, end);
+}
+
+/// Greatest speed of an obstacle at any time, m/s.
+double fastest_ever(const Scene& s) {
+  double most = 0;
+  Scene one = s;  // obstacles have different periods
+  for (const Obstacle& o : s.obstacles) {
+    if (!o.motion) continue;
+    one.obstacles = {o};
+    most = std::max(most, largest(one, *o.motion, fastest_obstacle));
+  }
+  return most;
+}
+
+/// Greatest acceleration that a particle at rest feels in the tank at any time, m/s^2.
+double greatest_pull_ever(const Scene& s) {
+  return s.tank_motion ? largest(s, *s.tank_motion, greatest_pull) : greatest_pull(s, 0, 0);
+}
+
+double longest_of(const Scene& s) {
+  double longest = step_rule(s).longest();
+  if (const double pull = greatest_pull_ever(s); pull > 0)
+    longest = std::min(longest, kSafeStep * std::sqrt(s.h() / pull));
+  if (const double speed = fastest_ever(s); speed > 0)
+    longest = std::min(longest, kSafeWay * s.h() / speed);
+  return longest;
+}
+
 }  // namespace
 
 void read_motions(Scene& scene, const std::string& dir, bool auto_step) {
@@ -132,6 +181,26 @@ std::vector<SceneFile> motion_files(const Scene& scene) {
 
 void make_paths_absolute(Scene& scene) {
   for_each_file(scene, [](auto& m, const std::string&) { m.path = m.table.file; });
+}
+
+void choose_step_of_motions(Scene& scene) {
+  if (!has_motion(scene)) return;
+  // Speeds and accelerations are means over a step, so a shorter step may show larger ones.
+  for (int k = 0; k < 8; ++k) {
+    const double before = scene.time.step, step = fitted_step(scene, longest_of(scene));
+    if (step == 0)
+      bad_input("time.step",
+                "auto goes by gravity, the velocities of bodies and motions, and nothing moves; "
+                "give a number");
+    scene.time.step = step;
+    if (k > 0 && step >= before) break;
+  }
+  PlacedScene placed;
+  placed.scene = scene;
+  placed.places[""] = "time.step: auto";
+  Problems problems;
+  check_scene(placed, problems);
+  problems.raise();
 }
 
 }  // namespace pbf::run_module

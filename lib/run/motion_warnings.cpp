@@ -8,7 +8,6 @@
 
 #include "lib/base/text.h"
 #include "lib/program/motion.h"
-#include "lib/run/obstacle_track.h"
 #include "lib/scene/surface.h"
 #include "lib/scene/vector3.h"
 
@@ -205,26 +204,26 @@ std::string listed(const std::vector<std::string>& texts) {
          (texts.size() > kShown ? fmt::format("; and {} more", texts.size() - kShown) : "");
 }
 
-void add_walls(const Scene& s, const std::vector<Track>& tracks, std::vector<Warning>& list) {
+std::string walls_text(const Scene& s, const std::vector<Track>& tracks) {
   std::vector<std::string> texts;
   for (std::size_t k = 0; k < s.obstacles.size(); ++k)
     if (s.obstacles[k].motion && is_bounded(tracks[k].solid[0]))
       texts.push_back(wall_text(s, k, tracks[k]));
   std::erase(texts, "");
-  if (!texts.empty()) list.push_back({"wall", listed(texts)});
+  return listed(texts);
 }
 
-void add_collisions(const Scene& s, const std::vector<Track>& tracks, std::vector<Warning>& list) {
+std::string collisions_text(const Scene& s, const std::vector<Track>& tracks) {
   const std::size_t n = s.obstacles.size();
   const Meetings meetings(s, tracks);
-  std::vector<std::string> at_start, later;
+  std::vector<std::string> texts, later;
   for (std::size_t a = 0; a < n; ++a)
     for (std::size_t b = a + 1; b < n; ++b) {
       const std::optional<Meeting> m = meetings.of(a, b);
       if (!m) continue;
       const std::string both = named(s, a) + " and " + named(s, b);
       if (m->at_start)
-        at_start.push_back(both + fmt::format(" overlap by {:.2g} m at the start", m->thickness));
+        texts.push_back(both + fmt::format(" overlap by {:.2g} m at the start", m->thickness));
       else
         later.push_back(
             both +
@@ -232,12 +231,10 @@ void add_collisions(const Scene& s, const std::vector<Track>& tracks, std::vecto
                 " run into each other at {:.4g} s and overlap by up to {:.2g} m (at {:.4g} s)",
                 m->from, m->thickness, m->worst));
     }
-  std::vector<std::string> texts = at_start;
   texts.insert(texts.end(), later.begin(), later.end());
-  if (!texts.empty())
-    list.push_back({"collision", listed(texts) +
-                                     "; fluid beside the place feels both of them: let them touch, "
-                                     "or keep them apart"});
+  if (texts.empty()) return "";
+  return listed(texts) +
+         "; fluid beside the place feels both of them: let them touch, or keep them apart";
 }
 
 }  // namespace pbf::run_module

@@ -1,5 +1,4 @@
-#include "lib/run/obstacle_track.h"
-
+// Tracks of obstacles, and how far two of them overlap.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 #include "lib/program/motion_table.h"
 #include "lib/program/motion_times.h"
 #include "lib/program/obstacles.h"
+#include "lib/run/motion_warnings.h"
 
 namespace pbf::run_module {
 namespace {

@@ -3,7 +3,6 @@
 
 #include "kernels/relative_motion.h"
 #include "lib/run/run.h"
-#include "lib/run/run_report.h"
 
 namespace pbf::run_module {
 namespace {

@@ -11,7 +11,7 @@
 #include "lib/base/text.h"
 #include "lib/base/version.h"
 #include "lib/exec/make_solver.h"
-#include "lib/io/particle_output.h"
+#include "lib/io/particle_file.h"
 #include "lib/io/run_path.h"
 #include "lib/program/threads.h"
 #include "lib/run/load_run.h"

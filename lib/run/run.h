@@ -165,4 +165,13 @@ void run_session(RunParts& run);
 std::string run_summary(const RunParts& run, const Monitor& monitor,
                         const std::vector<StageTime>& stages);
 
+/// One JSON object on one line: measurements, wall-clock seconds, frames that are safely on disk,
+/// seconds per stage. `columns`: of the run's readings.
+std::string measure_json(const Diagnostics& measures, double wall, std::int64_t frames,
+                         const std::vector<StageTime>& stages,
+                         const std::vector<ReadingColumn>& columns);
+
+/// Percentage of `part` in `whole`; 0 if `whole` is 0.
+inline double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+
 }  // namespace pbf::run_module

@@ -55,6 +55,15 @@ bool own_file(const std::string& name) {
          std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
 }
 
+/// What is in a folder and has such a name, in alphabetical order.
+std::set<fs::path> named_in(const fs::path& folder, bool (*own)(const std::string&),
+                            std::error_code& error) {
+  std::set<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (own(entry.path().filename().string())) found.insert(entry.path());
+  return found;
+}
+
 /// The first letters of a regular file; empty for a link, a folder or a missing file.
 std::optional<std::string> start_of(const fs::path& path) {
   std::error_code error;
@@ -73,14 +82,12 @@ std::optional<fs::path> others_file(const fs::path& folder) {
   if (log && *log == "pbf") return {};  // the log of a run begins with the name of the program
   if (log && !log->empty()) return folder / "log.txt";
   const auto all_in = [](const fs::path& where, bool (*own)(const std::string&)) {
-    std::set<fs::path> found;
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(where, error)) {
-      const std::string name = entry.path().filename().string();
-      if (own(name) && !name.starts_with(kTemporaryPrefix) &&
-          start_of(entry.path()).value_or("") != "")
-        found.insert(entry.path());
-    }
+    std::set<fs::path> found = named_in(where, own, error);
+    std::erase_if(found, [](const fs::path& file) {
+      return file.filename().string().starts_with(kTemporaryPrefix) ||
+             start_of(file).value_or("").empty();
+    });
     return found;
   };
   const std::set<fs::path> found = all_in(folder, own_file);
@@ -229,9 +236,7 @@ bool RunFolder::owns(const std::string& folder, const std::string& path) {
 /// others. The folder itself may be reached through a link.
 void RunFolder::refuse_special_files() const {
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(path_, error)) {
-    if (own_file(entry.path().filename().string())) require_own_file(entry.path().string());
-  }
+  for (const fs::path& file : named_in(path_, own_file, error)) require_own_file(file.string());
   if (error) fail(path_, "cannot be read", error.message());
   if (!fs::is_directory(fs::symlink_status(path_ / kPictures, error)))
     require_own_file((path_ / kPictures).string());
@@ -244,11 +249,10 @@ bool RunFolder::has(const std::string& name) const {
 
 bool RunFolder::holds_other_files() const {
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(path_, error)) {
-    const std::string name = entry.path().filename().string();
-    if (!own_file(name) && name != ".lock" && name != kPictures) return true;
-  }
-  return false;
+  const auto other = [](const std::string& name) {
+    return !own_file(name) && name != ".lock" && name != kPictures;
+  };
+  return !named_in(path_, other, error).empty();
 }
 
 void RunFolder::remove(const std::string& name) const {
@@ -265,9 +269,7 @@ void RunFolder::remove_own_files() const {
   };
   remove(path_ / "DONE");  // first: a folder that is half removed is not a finished run
   const auto remove_in = [&](const fs::path& folder, bool (*own)(const std::string&)) {
-    std::vector<fs::path> found;
-    for (const auto& entry : fs::directory_iterator(folder, error))
-      if (own(entry.path().filename().string())) found.push_back(entry.path());
+    const std::set<fs::path> found = named_in(folder, own, error);
     if (error) fail(folder, "cannot be read", error.message());
     for (const auto& p : found) remove(p);
   };

@@ -1,5 +1,4 @@
-#include "lib/run/run_report.h"
-
+// The reports of a run: its summary, and one line of JSON per measurement.
 #include <fmt/core.h>
 #include <cmath>
 #include <cstdlib>
@@ -153,6 +152,11 @@ std::string progress_lines(const RunParts& run, double wall) {
   return out + "\n";
 }
 
+/// Nine digits, which distinguish any two floats.
+double short_number(double value) {
+  return std::strtod(fmt::format("{:.9g}", value).c_str(), nullptr);
+}
+
 }  // namespace
 
 std::string run_summary(const RunParts& run, const Monitor& monitor,
@@ -206,15 +210,6 @@ std::string run_summary(const RunParts& run, const Monitor& monitor,
     out += fmt::format("\n  frames/           {} pictures", run.pictures_drawn);
   return out;
 }
-
-namespace {
-
-/// Nine digits, which distinguish any two floats.
-double short_number(double value) {
-  return std::strtod(fmt::format("{:.9g}", value).c_str(), nullptr);
-}
-
-}  // namespace
 
 std::string measure_json(const Diagnostics& m, double wall, std::int64_t frames,
                          const std::vector<StageTime>& stages,

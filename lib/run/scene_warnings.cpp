@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "kernels/relative_motion.h"
+#include "lib/base/text.h"
 #include "lib/program/motion.h"
 #include "lib/run/motion_warnings.h"
-#include "lib/run/obstacle_track.h"
-#include "lib/run/overlap.h"
+#include "lib/run/start_neighbors.h"
 #include "lib/run/warnings.h"
 #include "lib/scene/auto_step.h"
 #include "lib/scene/surface.h"
@@ -42,21 +42,20 @@ double volume(const Scene& s, double particles) {
 }
 
 /// For fluid that is too shallow for its compression at rest to reveal a long step.
-void add_coarse_step(const Scene& s, std::vector<Warning>& list) {
+std::string coarse_step_text(const Scene& s) {
   // Compression is proportional to dt^2 / iterations; the rule assumes the default number.
   const double far = kFarAbove * std::sqrt(std::max(1.0, most_iterations(s) / 4.0));
   const double safe = step_rule(s).gravity, times = longest_step(s) / safe;
-  if (s.time.adaptive || !(times > far)) return;
-  list.push_back(
-      {"step",
-       fmt::format("time.step {:g} makes steps of {:.2g} times 0.03 sqrt(h/g) ({:.2g} s), which is "
-                   "safe: what falls moves far before it is stopped; give {:.2g} or less, or auto",
-                   s.time.step, times, safe, s.time.step * far / times)});
+  if (s.time.adaptive || !(times > far)) return "";
+  return fmt::format(
+      "time.step {:g} makes steps of {:.2g} times 0.03 sqrt(h/g) ({:.2g} s), which is safe: what "
+      "falls moves far before it is stopped; give {:.2g} or less, or auto",
+      s.time.step, times, safe, s.time.step * far / times);
 }
 
-void add_step(const Scene& s, std::int64_t particles, std::vector<Warning>& list) {
+std::string step_text(const Scene& s, std::int64_t particles) {
   const double c = compression_at_rest(s, particles);
-  if (c <= kNoLiquid) return c > 0 ? add_coarse_step(s, list) : void();
+  if (c <= kNoLiquid) return c > 0 ? coarse_step_text(s) : "";
   const double times = std::sqrt(c / kNoLiquid);
   const bool by_force = adaptive_step(s) < s.time.step;
   const double value = by_force ? s.time.adaptive->force : s.time.step;
@@ -70,11 +69,11 @@ void add_step(const Scene& s, std::int64_t particles, std::vector<Warning>& list
   if (s.solver.tolerance == 0)
     text += fmt::format(", or solver.iterations {:.0f}",
                         std::ceil(s.solver.iterations * times * times));
-  list.push_back({"step", text});
+  return text;
 }
 
-void add_speed(const Scene& s, std::vector<Warning>& list) {
-  if (s.time.adaptive) return;  // it adapts to speeds
+std::string passing_text(const Scene& s) {
+  if (s.time.adaptive) return "";  // it adapts to speeds
   // Two velocities differ by at most the sum of their deviations from the mean. Sorted by
   // deviation, only a few pairs need to be examined.
   Double3 mean{};
@@ -96,24 +95,21 @@ void add_speed(const Scene& s, std::vector<Warning>& list) {
         second = std::max(off[i].second, off[j].second);
       }
   const double way = fastest * longest_step(s) / s.h();
-  if (way <= kResolvedWay) return;
-  list.push_back(
-      {"speed",
-       fmt::format(
-           "bodies[{}] and bodies[{}] move past each other by {:.3g} h in a step, more than {:g} "
-           "h: fluid may pass through fluid; give time.step {:.2g} or less, or time.adaptive",
-           first, second, way, kResolvedWay, s.time.step * kResolvedWay / way)});
+  if (way <= kResolvedWay) return "";
+  return fmt::format(
+      "bodies[{}] and bodies[{}] move past each other by {:.3g} h in a step, more than {:g} h: "
+      "fluid may pass through fluid; give time.step {:.2g} or less, or time.adaptive",
+      first, second, way, kResolvedWay, s.time.step * kResolvedWay / way);
 }
 
-void add_motion(const Scene& s, std::vector<Warning>& list) {
-  if (s.time.adaptive) return;  // it adapts to motions
+std::string motion_text(const Scene& s) {
+  if (s.time.adaptive) return "";  // it adapts to motions
   const double way = fastest_obstacle(s, 0, s.time.end) * longest_step(s) / s.h();
-  if (way <= kResolvedWay) return;
-  list.push_back(
-      {"motion",
-       fmt::format("an obstacle moves by {:.3g} h in a step, more than {:g} h: what it pushes may "
-                   "pass through fluid; give time.step {:.2g} or less, or time.adaptive",
-                   way, kResolvedWay, s.time.step * kResolvedWay / way)});
+  if (way <= kResolvedWay) return "";
+  return fmt::format(
+      "an obstacle moves by {:.3g} h in a step, more than {:g} h: what it pushes may pass through "
+      "fluid; give time.step {:.2g} or less, or time.adaptive",
+      way, kResolvedWay, s.time.step * kResolvedWay / way);
 }
 
 /// Whether it lies outside the domain, farther than walls and obstacles act.
@@ -129,22 +125,18 @@ bool out_of_reach(const Scene& s, const Solid<double>& o) {
   return !extents_of(s).meets(extents_of(s, o), 1);
 }
 
-void add_obstacles(const Scene& s, const std::vector<Track>& tracks, std::vector<Warning>& list) {
-  if (!closed_box(s)) return;  // fluid can leave the domain
+std::string obstacles_text(const Scene& s, const std::vector<Track>& tracks) {
+  if (!closed_box(s)) return "";  // fluid can leave the domain
   for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
-    if (!std::ranges::all_of(tracks[k].solid, [&](const auto& o) { return out_of_reach(s, o); }))
-      continue;
-    list.push_back(
-        {"obstacles",
-         fmt::format("obstacles[{}] ({}) {}: no fluid will meet it; move it or remove it", k,
-                     s.obstacles[k].name,
-                     s.obstacles[k].motion ? "stays outside the domain all the time"
-                                           : "lies outside the domain")});
-    return;
+    if (std::ranges::all_of(tracks[k].solid, [&](const auto& o) { return out_of_reach(s, o); }))
+      return fmt::format("{} {}: no fluid will meet it; move it or remove it", named(s, k),
+                         s.obstacles[k].motion ? "stays outside the domain all the time"
+                                               : "lies outside the domain");
   }
+  return "";
 }
 
-void add_overlap(const StartPoints& points, std::vector<Warning>& list) {
+std::string overlap_text(const StartPoints& points) {
   const Overlap o = find_overlap(points);
   const char* least = o.more ? "at least " : "";
   std::string text;
@@ -157,16 +149,14 @@ void add_overlap(const StartPoints& points, std::vector<Warning>& list) {
     text = fmt::format(
         "bodies[{}]: {}{} pairs of the file's particles are closer than half of fluid.spacing; ",
         o.file, least, o.within);
-  if (text.empty()) return;
-  const char* then = points.scene().solver.prestabilize
-                         ? "steps without time part them, so the fluid takes more "
-                           "room than the bodies do; move the bodies apart"
-                         : "they burst; move the bodies apart, or leave "
-                           "solver.prestabilize on";
-  list.push_back({"overlap", text + then});
+  if (text.empty()) return "";
+  return text + (points.scene().solver.prestabilize
+                     ? "steps without time part them, so the fluid takes more room than the bodies "
+                       "do; move the bodies apart"
+                     : "they burst; move the bodies apart, or leave solver.prestabilize on");
 }
 
-void add_over_dense(const Scene& s, std::int64_t particles, std::vector<Warning>& list) {
+std::string over_dense_text(const Scene& s, std::int64_t particles) {
   constexpr double kTooMuch = 1.02;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const Body& body = s.bodies[b];
@@ -174,30 +164,28 @@ void add_over_dense(const Scene& s, std::int64_t particles, std::vector<Warning>
     Double3 room = body.max - body.min;
     if (s.plane()) room[1] = s.domain.max[1] - s.domain.min[1];
     const double fill = volume(s, double(body.count)) / (room[0] * room[1] * room[2]);
-    if (fill <= kTooMuch) continue;
-    list.push_back(
-        {"over-dense", fmt::format("bodies[{}] holds {:.3g} times the fluid that its box has room "
-                                   "for; give count {:.0f} or less, or a larger box",
-                                   b, fill, std::floor(body.count / fill * (1 + 1e-9)))});
-    return;
+    if (fill > kTooMuch)
+      return fmt::format(
+          "bodies[{}] holds {:.3g} times the fluid that its box has room for; give count {:.0f} or "
+          "less, or a larger box",
+          b, fill, std::floor(body.count / fill * (1 + 1e-9)));
   }
   const Double3 box = s.domain.max - s.domain.min;
   const double fill = volume(s, double(particles)) / (box[0] * box[1] * box[2]);
-  if (closed_box(s) && fill > kTooMuch)
-    list.push_back(
-        {"over-dense", fmt::format("the bodies hold {:.3g} times the fluid that the closed "
-                                   "domain has room for; give fewer or smaller bodies",
-                                   fill)});
+  if (!closed_box(s) || fill <= kTooMuch) return "";
+  return fmt::format(
+      "the bodies hold {:.3g} times the fluid that the closed domain has room for; give fewer or "
+      "smaller bodies",
+      fill);
 }
 
-void add_output(const Scene& s, std::vector<Warning>& list) {
+std::string output_text(const Scene& s) {
   const double run = s.time.end * (1 + 1e-9);
-  std::string text;
+  std::vector<std::string> texts;
   const auto add = [&](const char* key, double every, const std::string& what) {
-    if (every <= run) return;
-    text += (text.empty() ? "" : "; ") +
-            fmt::format("{} {:g} s is longer than the run (time.end {:g} s): {}", key, every,
-                        s.time.end, what);
+    if (every > run)
+      texts.push_back(fmt::format("{} {:g} s is longer than the run (time.end {:g} s): {}", key,
+                                  every, s.time.end, what));
   };
   if (s.output)
     add("output.every", s.output->every, "run.vtkhdf gets the first and the last frame");
@@ -206,11 +194,10 @@ void add_output(const Scene& s, std::vector<Warning>& list) {
     add("measure_every", s.measure_every * s.time.step,
         "the guard looks at the start and the end alone");
   if (!s.output && !s.gauges.empty())
-    text += (text.empty() ? "" : "; ") +
-            std::string(
-                "gauges are written to run.vtkhdf, and there is no key output: nothing is "
-                "kept of them; give output");
-  if (!text.empty()) list.push_back({"output", text});
+    texts.push_back(
+        "gauges are written to run.vtkhdf, and there is no key output: nothing is kept of them; "
+        "give output");
+  return joined(texts, "; ");
 }
 
 }  // namespace
@@ -234,19 +221,15 @@ double compression_at_rest(const Scene& s, std::int64_t particles) {
 
 std::vector<Warning> scene_warnings(const StartPoints& points, std::int64_t particles) {
   const Scene& scene = points.scene();
-  std::vector<Warning> list;
-  if (const std::string text = units_text(scene); !text.empty()) list.push_back({"units", text});
-  add_step(scene, particles, list);
-  add_speed(scene, list);
-  add_motion(scene, list);
-  add_tables(scene, list);
   const std::vector<Track> tracks = tracks_of(scene);
-  add_obstacles(scene, tracks, list);
-  add_walls(scene, tracks, list);
-  add_collisions(scene, tracks, list);
-  add_overlap(points, list);
-  add_over_dense(scene, particles, list);
-  add_output(scene, list);
+  std::vector<Warning> list{
+      {"units", units_text(scene)},        {"step", step_text(scene, particles)},
+      {"speed", passing_text(scene)},      {"motion", motion_text(scene)},
+      {"table", tables_text(scene)},       {"obstacles", obstacles_text(scene, tracks)},
+      {"wall", walls_text(scene, tracks)}, {"collision", collisions_text(scene, tracks)},
+      {"overlap", overlap_text(points)},   {"over-dense", over_dense_text(scene, particles)},
+      {"output", output_text(scene)}};
+  std::erase_if(list, [](const Warning& w) { return w.text.empty(); });
   return list;
 }
 

@@ -92,7 +92,7 @@ std::string table_text(const std::string& who, const MotionTable& table,
 
 }  // namespace
 
-void add_tables(const Scene& s, std::vector<Warning>& list) {
+std::string tables_text(const Scene& s) {
   constexpr double kDegree = 3.14159265358979323846 / 180;
   std::vector<std::string> texts, displaced;
   for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
@@ -117,7 +117,7 @@ void add_tables(const Scene& s, std::vector<Warning>& list) {
     text += (text.empty() ? "" : "; ") + listed(texts) +
             "; give more rows: every few steps, and a second one just after a stop and just before "
             "a start";
-  if (!text.empty()) list.push_back({"table", text});
+  return text;
 }
 
 }  // namespace pbf::run_module

@@ -8,6 +8,7 @@
 #include "lib/run/session.h"
 #include "lib/run/start.h"
 #include "lib/scene/keys.h"
+#include "lib/scene/number.h"
 #include "lib/scene/random.h"
 #include "lib/verify/compare_parts.h"
 
@@ -53,6 +54,32 @@ void round_to_float(SolverState& s) {
   for_each_real(s, [](double& x) { x = double(float(x)); });
 }
 
+/// Every key has its own random numbers, so that a new key does not change those of others.
+SplitMix64 random_of(const Key& key, std::uint64_t seed) {
+  for (const char c : key.path) seed = SplitMix64(seed + static_cast<unsigned char>(c)).next();
+  return SplitMix64(seed);
+}
+
+/// Rounds the real numbers of a field, if present.
+struct Round {
+  double off;
+  double u;
+  SplitMix64& random;
+  void operator()(double* x) const {
+    if (*x != off) *x *= 1 + u * (2 * random.uniform() - 1);
+  }
+  template <std::ranges::range List>
+  void operator()(List* values) const {
+    if constexpr (std::is_same_v<std::ranges::range_value_t<List>, double>)
+      for (double& x : *values) (*this)(&x);
+  }
+  template <class T>
+  void operator()(std::optional<T>* value) const {
+    if (*value) (*this)(&**value);
+  }
+  void operator()(const auto&) const {}
+};
+
 /// The scene with randomly rounded constants: an error that is the same for all particles and does
 /// not average out.
 Scene rounded(const Scene& scene, double u, std::uint64_t seed) {
@@ -85,6 +112,58 @@ void note_one_sided(const Comparison& c, CompareResult& result) {
 }
 
 }  // namespace
+
+std::string CompareSide::name() const {
+  std::string s = std::string(word(backend)) + (variant ? "+defect:" : ":") + word(precision);
+  return threads > 0 ? s + "@" + std::to_string(threads) : s;
+}
+
+CompareSide parse_side(const std::string& text) {
+  const auto fail = [&](const std::string& what) {
+    throw Error(ExitCode::bad_input, "--between: \"" + text + "\": " + what +
+                                         "; a side is BACKEND:PRECISION or "
+                                         "BACKEND:PRECISION@THREADS, e.g. cpu:double, cuda:float, "
+                                         "cpu:float@2");
+  };
+  CompareSide side;
+  const auto colon = text.find(':'), at = text.find('@');
+  if (colon == std::string::npos || (at != std::string::npos && at < colon)) fail("no precision");
+  std::string backend = text.substr(0, colon);
+  if (backend == "cpu+defect") {
+    side.variant = true;
+#ifndef PBF_HAS_DEFECT
+    fail("this build has no second CPU solver (configure with -DPBF_DEFECT=NAME)");
+#endif
+    backend = "cpu";
+  }
+  const std::optional<Backend> found = named<Backend>(backend);
+  if (!found) fail("no backend \"" + backend + "\"");
+  side.backend = *found;
+  const std::string precision =
+      text.substr(colon + 1, at == std::string::npos ? at : at - colon - 1);
+  const std::optional<Precision> numbers = named<Precision>(precision);
+  if (!numbers) fail("no precision \"" + precision + "\"");
+  side.precision = *numbers;
+  if (at != std::string::npos) {
+    std::int64_t n = 0;
+    if (read_number(text.substr(at + 1), n) != NumberError::none || n < 1 || n > 4096)
+      fail("the number of threads is not a whole number from 1 to 4096");
+    if (about(side.backend).on_device) fail("threads are the CPU's alone");
+    side.threads = int(n);
+  }
+  return side;
+}
+
+void round_at_random(const KeyTable& table, const Object& object, double u, std::uint64_t seed) {
+  for (const Key& key : table.keys) {
+    const Block& block = *key.block;
+    if (key.effect != Effect::results || key.exact || !block.is_present(object)) continue;
+    SplitMix64 random = random_of(key, seed);
+    for (std::size_t i = 0; i < block.size(object); ++i)
+      if (const Object holder = block.entry(object, i); key.kinds & block.kind_of(holder))
+        std::visit(Round{key.off, u, random}, key.field(holder));
+  }
+}
 
 SolverState rounded(const SolverState& s, double u, std::uint64_t seed) {
   SplitMix64 random(seed);

@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "lib/verify/compare_parts.h"
-#include "lib/verify/compare_run.h"
 #include "lib/verify/statistics.h"
 
 namespace pbf::verify_module {

@@ -1,10 +1,17 @@
-// The three parts of a comparison of two solvers, and the code that they share.
+// The parts of a comparison of two solvers and of one of two run files, and the code that they
+// share.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lib/io/run_file.h"
 #include "lib/program/plan.h"
 #include "lib/scene/keys.h"
 #include "lib/verify/compare.h"
-#include "lib/verify/compare_readings.h"
 
 namespace pbf::verify_module {
 
@@ -17,6 +24,23 @@ inline constexpr double kNoiseFactor = 4;
 /// The same for the statistics of the third part. They are single numbers, not maxima over
 /// thousands of particles, so the largest change over a few members is a poorer estimate.
 inline constexpr double kSpreadFactor = 8;
+
+/// A load on a wall or an obstacle, or a reading of a gauge, as a number to compare.
+struct Reading {
+  std::string stage;  ///< "loads" or "gauges"
+  std::string what, unit;
+  double value = 0;
+  double scale = 0;  ///< reference for rounding if it is more than |value|
+  double grain = 0;  ///< ReadingColumn::grain, of this interval
+};
+
+/// Readings of the last `updates` updates, since the last call or since a state with empty sums was
+/// set. Empty if the scene has neither loads nor gauges.
+std::vector<Reading> take_readings(Solver& solver, const Scene& scene, const Plan& plan,
+                                   int updates);
+
+/// The reading of this name; null if there is none.
+const Reading* find_reading(const std::vector<Reading>& readings, const std::string& what);
 
 struct Comparison {
   const CompareSettings* settings;
@@ -102,5 +126,37 @@ double share_of(double error, double tolerance);
 
 /// Unit in the last place of `value` for a unit roundoff u.
 double ulp(double value, double u);
+
+// ------------------------------------------------------------------------------ two run files
+
+/// A run file with values that are needed several times.
+struct ComparedRun {
+  std::string path;
+  RunReader reader;
+  RunInfo info;
+  Scene scene;
+  std::vector<double> times;  ///< of frames, s
+  std::string status;
+  /// Throws Error(io) if the file cannot be read, Error(bad_input) if its scene cannot.
+  explicit ComparedRun(const std::string& path);
+  /// Frame k. Throws Error(io) if its arrays do not have the shape of a frame, or ids do not
+  /// ascend.
+  Snapshot frame(std::int64_t k) const;
+  /// The status, with the reason if the session gives one.
+  std::string end_text() const;
+};
+
+/// Frames of A and B at the same time, within half an update, and the unpaired ones.
+struct FramePairs {
+  std::vector<std::pair<std::int64_t, std::int64_t>> common;
+  std::vector<double> only_a, only_b;  ///< s
+};
+FramePairs pair_frames(const ComparedRun& a, const ComparedRun& b);
+
+/// Parts "particles" and "distributions" over the common frames. `exact`: both sides promise
+/// identical bits.
+std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun& b,
+                                        const FramePairs& frames, bool exact,
+                                        CompareResult& result);
 
 }  // namespace pbf::verify_module

@@ -1,5 +1,6 @@
 // A comparison as text, JSON and JUnit XML.
 #include <fmt/core.h>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "lib/io/junit.h"
@@ -31,6 +32,15 @@ std::string conclusion(const CompareResult& r) {
 }
 
 }  // namespace
+
+const char* verdict_name(Verdict v) {
+  return v == Verdict::same ? "same" : v == Verdict::differs ? "DIFFERS" : "not judged";
+}
+
+bool CompareResult::same() const {
+  return std::none_of(parts.begin(), parts.end(),
+                      [](const ComparePart& p) { return p.verdict == Verdict::differs; });
+}
 
 std::string compare_text(const CompareResult& r) {
   std::string out = "A  " + r.a + "\nB  " + r.b + "\n";

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "lib/io/particle_output.h"
+#include "lib/io/particle_file.h"
 #include "tests/support/catch.h"
 #include "tests/support/process.h"
 

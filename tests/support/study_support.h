@@ -27,16 +27,12 @@ inline MemberResult result_of(double seconds, const std::vector<double>& time) {
   r.backend = "cpu", r.precision = "float", r.device = "none";
   r.threads = 1, r.particles = 64, r.updates = 20;
   r.seconds = seconds;
-  for (const auto& c : run_layout::log_columns()) {
-    r.names.push_back(c.name);
-    r.columns.emplace_back(time.size(), 0.0);
-  }
-  r.columns[0] = time;
+  for (const auto& c : run_layout::log_columns()) r.log[c.name].resize(time.size());
+  r.log["time"] = time;
   return r;
 }
 inline void set(MemberResult& r, const std::string& name, const std::vector<double>& values) {
-  for (std::size_t k = 0; k < r.names.size(); ++k)
-    if (r.names[k] == name) r.columns[k] = values;
+  r.log.at(name) = values;
 }
 
 }  // namespace pbf::test

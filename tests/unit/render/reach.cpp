@@ -1,7 +1,6 @@
 // How fast and how high fluid may get: closed forms, and the same answer for the same physics.
 #include "lib/render/reach.h"
 
-#include "lib/render/start_volume.h"
 #include "lib/scene/vector3.h"
 #include "tests/support/render_support.h"
 

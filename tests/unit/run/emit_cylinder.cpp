@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "lib/run/emit.h"
-#include "lib/run/overlap.h"
+#include "lib/run/start_neighbors.h"
 #include "lib/run/warnings.h"
 #include "lib/scene/auto_step.h"
 #include "lib/scene/body_box.h"

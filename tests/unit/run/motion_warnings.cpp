@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "lib/run/load_run.h"
-#include "lib/run/obstacle_track.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_samples.h"
 
@@ -35,25 +34,8 @@ Scene by_table(MotionTable table, const std::string& obstacle = kBall) {
   return s;
 }
 
-std::string only_text(const std::vector<Warning>& list) {
-  CHECK(list.size() <= 1);
-  return list.empty() ? "" : list[0].text;
-}
-std::string tables(const Scene& s) {
-  std::vector<Warning> list;
-  add_tables(s, list);
-  return only_text(list);
-}
-std::string walls(const Scene& s) {
-  std::vector<Warning> list;
-  add_walls(s, tracks_of(s), list);
-  return only_text(list);
-}
-std::string collisions(const Scene& s) {
-  std::vector<Warning> list;
-  add_collisions(s, tracks_of(s), list);
-  return only_text(list);
-}
+std::string walls(const Scene& s) { return walls_text(s, tracks_of(s)); }
+std::string collisions(const Scene& s) { return collisions_text(s, tracks_of(s)); }
 
 /// A sine of amplitude 0.2 m at so many rows of each of two periods of 1 s.
 MotionTable sampled(int rows_of_period, double shift) {
@@ -70,9 +52,9 @@ MotionTable sampled(int rows_of_period, double shift) {
 }  // namespace
 
 TEST_CASE("tables: a curve that swings beyond a stop is told with rows, lines and by how much") {
-  const std::string text =
-      tables(by_table(rows({0, 0.1, 0.2, 0.26, 10},
-                           {{}, {0, 0, -0.049}, {0, 0, -0.196}, {0, 0, -0.33}, {0, 0, -0.33}})));
+  const std::string text = tables_text(
+      by_table(rows({0, 0.1, 0.2, 0.26, 10},
+                    {{}, {0, 0, -0.049}, {0, 0, -0.196}, {0, 0, -0.33}, {0, 0, -0.33}})));
   CHECK(contains(text,
                  "obstacles[0] (ball): its smooth curve swings beyond the rows of the table: "
                  "z goes to -0.3"));
@@ -82,26 +64,26 @@ TEST_CASE("tables: a curve that swings beyond a stop is told with rows, lines an
 }
 
 TEST_CASE("tables: the remedy works, a second row just after the stop and just before a start") {
-  CHECK(tables(by_table(rows({0, 0.1, 0.2, 0.29, 0.3, 0.301, 10}, {{},
-                                                                   {0, 0, -0.049},
-                                                                   {0, 0, -0.196},
-                                                                   {0, 0, -0.4125},
-                                                                   {0, 0, -0.4415},
-                                                                   {0, 0, -0.4415},
-                                                                   {0, 0, -0.4415}}))) == "");
+  CHECK(tables_text(by_table(rows({0, 0.1, 0.2, 0.29, 0.3, 0.301, 10}, {{},
+                                                                        {0, 0, -0.049},
+                                                                        {0, 0, -0.196},
+                                                                        {0, 0, -0.4125},
+                                                                        {0, 0, -0.4415},
+                                                                        {0, 0, -0.4415},
+                                                                        {0, 0, -0.4415}}))) == "");
   // A gate that would go down before it rises.
-  CHECK(contains(tables(by_table(rows({0, 0.5, 0.6, 0.601, 9},
-                                      {{}, {}, {0, 0, 0.3}, {0, 0, 0.3}, {0, 0, 0.3}}))),
+  CHECK(contains(tables_text(by_table(rows({0, 0.5, 0.6, 0.601, 9},
+                                           {{}, {}, {0, 0, 0.3}, {0, 0, 0.3}, {0, 0, 0.3}}))),
                  "beyond the 0 of the rows at 0 and 0.5 s"));
-  CHECK(tables(by_table(rows({0, 0.499, 0.5, 0.6, 0.601, 9},
-                             {{}, {}, {}, {0, 0, 0.3}, {0, 0, 0.3}, {0, 0, 0.3}}))) == "");
+  CHECK(tables_text(by_table(rows({0, 0.499, 0.5, 0.6, 0.601, 9},
+                                  {{}, {}, {}, {0, 0, 0.3}, {0, 0, 0.3}, {0, 0, 0.3}}))) == "");
 }
 
 TEST_CASE("tables: crests of a smooth motion are no mistake, however its rows lie in them") {
   for (const int n : {8, 12, 20, 100})
     for (const double shift : {0.0, 0.01, 0.03, 0.05, 0.0625}) {
       CAPTURE(n, shift);
-      CHECK(tables(by_table(sampled(n, shift))) == "");
+      CHECK(tables_text(by_table(sampled(n, shift))) == "");
     }
 }
 
@@ -110,40 +92,40 @@ TEST_CASE("tables: what the run does not reach, and what is small, is not told")
     return rows({0, 0.9, 1.2, 10}, {{}, {}, {way, 0, 0}, {way, 0, 0}});
   };
   Scene s = by_table(stop(0.5));
-  CHECK(contains(tables(s), "at 0 and 0.9 s"));  // the stop comes after the end
+  CHECK(contains(tables_text(s), "at 0 and 0.9 s"));  // the stop comes after the end
   s.time.end = 5;
-  CHECK(contains(tables(s), "at 1.2 and 10 s"));
+  CHECK(contains(tables_text(s), "at 1.2 and 10 s"));
   s.time.end = 0.05;
-  CHECK(tables(s) == "");
-  CHECK(tables(by_table(stop(0.04))) == "");
+  CHECK(tables_text(s) == "");
+  CHECK(tables_text(by_table(stop(0.04))) == "");
   s.time.end = 0.5, s.time.motion_begin = 3;
-  CHECK(contains(tables(s), "at 1.2 and 10 s"));
+  CHECK(contains(tables_text(s), "at 1.2 and 10 s"));
 }
 
 TEST_CASE("tables: places that were given for displacements are told") {
   const MotionTable places = rows({0, 1}, {{0.5, 0.5, 0.6}, {0.5, 0.5, 0.5}});
-  CHECK(contains(tables(by_table(places)),
+  CHECK(contains(tables_text(by_table(places)),
                  "obstacles[0] (ball) is 0.927 m away from its place in the scene at the first row "
                  "of its table (fall.csv): x, y, z there count from that place; begin with 0,0,0"));
-  CHECK(tables(by_table(rows({0, 1}, {{0.05}, {0.05}}))) == "");
+  CHECK(tables_text(by_table(rows({0, 1}, {{0.05}, {0.05}}))) == "");
   Scene goes_on = by_table(places);  // from a state of another run
   goes_on.time.motion_begin = 0.5, goes_on.time.end = 0.4;
-  CHECK(tables(goes_on) == "");
+  CHECK(tables_text(goes_on) == "");
 }
 
 TEST_CASE("tables: rotations count by how far they move the obstacle, the tank's by its size") {
   MotionTable t = rows({0, 0.1, 5}, {{}, {0, 0, 0, 0, 30, 0}, {0, 0, 0, 0, 30, 0}});
   t.columns = 6;
-  CHECK(contains(tables(by_table(t)), "ry goes to 3"));
-  CHECK(contains(tables(by_table(t)), " degrees beyond the 30 of the rows"));
+  CHECK(contains(tables_text(by_table(t)), "ry goes to 3"));
+  CHECK(contains(tables_text(by_table(t)), " degrees beyond the 30 of the rows"));
   t.values[1][4] = t.values[2][4] = 0.5;
-  CHECK(tables(by_table(t)) == "");
+  CHECK(tables_text(by_table(t)) == "");
   Scene tank = parse(kMinimal + "tank_motion: {kind: file, path: t.csv, axis: [0, 1, 0]}\n");
   tank.tank_motion->table = rows({0, 0.1, 5}, {{}, {20}, {20}});
   tank.tank_motion->table.columns = 1;
-  CHECK(contains(tables(tank), "tank_motion: its smooth curve swings beyond"));
+  CHECK(contains(tables_text(tank), "tank_motion: its smooth curve swings beyond"));
   tank.tank_motion->table.columns = 3;  // accelerations are straight between rows
-  CHECK(tables(tank) == "");
+  CHECK(tables_text(tank) == "");
 }
 
 TEST_CASE("walls: a motion through a wall is told with its name, time and depth") {
@@ -297,7 +279,7 @@ TEST_CASE("the scenes that come with the program say nothing of the ways of thei
       continue;
     CAPTURE(path);
     const Scene s = load_scene_or_run(path, {}).scene;
-    CHECK(tables(s) + walls(s) + collisions(s) == "");
+    CHECK(tables_text(s) + walls(s) + collisions(s) == "");
   }
 }
 

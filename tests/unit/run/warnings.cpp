@@ -5,7 +5,7 @@
 #include <random>
 
 #include "lib/run/emit.h"
-#include "lib/run/overlap.h"
+#include "lib/run/start_neighbors.h"
 #include "lib/run/warnings.h"
 #include "lib/scene/load.h"
 #include "tests/support/catch.h"

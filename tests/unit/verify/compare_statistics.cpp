@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "lib/scene/random.h"
-#include "lib/verify/clusters.h"
 #include "lib/verify/statistics.h"
 #include "tests/support/catch.h"
 #include "tests/support/run_file_samples.h"
