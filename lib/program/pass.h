@@ -1,7 +1,7 @@
 // The description of a pass, and lists of passes as types. A pass is a struct with
 //   static constexpr PassText text{name, stage, remedy};
 //   using Needs = pbf::Needs<...>;                       // needs.h
-//   template <class G> static void launch(const G& c);   // c: granted.h
+//   static void launch(const auto& c);                   // c: granted.h
 // A pass that swaps the two arrays of a pair before its launch also has
 // `using Flips = pbf::Flips<...>`; its Needs name the arrays as they are after the swap. A pass
 // that does the work of two successive ones has `using Fuses = Pair<First, Second>`.
