@@ -64,7 +64,12 @@ template <class P>
 constexpr bool reorders = (how_of<P, field::Id> & kPlaces) != 0;
 
 template <class First, class Second>
-struct Pair {};
+struct Pair {
+  template <class Passes>
+  static bool is(int a, int b) {
+    return Passes::template index_of<First>() == a && Passes::template index_of<Second>() == b;
+  }
+};
 
 template <class... Ps>
 struct PassList {
@@ -88,21 +93,12 @@ struct PassList {
   /// The index of the pass that does the work of passes a and b, or -1.
   static int fused(int a, int b) {
     int found = -1;
-    ((fuses<Ps>(a, b) ? void(found = index_of<Ps>()) : void()), ...);
+    const auto look = [&]<class P>(PassList<P>) {
+      if constexpr (requires { typename P::Fuses; })
+        if (P::Fuses::template is<PassList>(a, b)) found = index_of<P>();
+    };
+    (look(PassList<Ps>()), ...);
     return found;
-  }
-
- private:
-  template <class A, class B>
-  static bool is(Pair<A, B>, int a, int b) {
-    return index_of<A>() == a && index_of<B>() == b;
-  }
-  template <class P>
-  static bool fuses(int a, int b) {
-    if constexpr (requires { typename P::Fuses; })
-      return is(typename P::Fuses{}, a, b);
-    else
-      return false;
   }
 };
 
