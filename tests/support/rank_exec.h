@@ -12,12 +12,12 @@
 
 #include "kernels/cell_index.h"
 #include "lib/exec/cpu/cpu_exec.h"
-#include "lib/program/exchanges.h"
 #include "lib/program/make_program.h"
 #include "lib/solver/granted.h"
 #include "lib/solver/internal_state.h"
 #include "lib/solver/params.h"
 #include "lib/solver/state_transfer.h"
+#include "tests/support/exchanges.h"
 
 namespace pbf::test {
 
