@@ -6,7 +6,7 @@ file(READ ${PBF_SYNONYMS} text)
 set(PBF_SYNONYM_SOURCE ${PROJECT_BINARY_DIR}/generated/synonym_text.cpp)
 file(CONFIGURE OUTPUT ${PBF_SYNONYM_SOURCE} @ONLY CONTENT
 "// lib/scene/synonyms.yaml, made by .cmake/synonyms.cmake.
-#include \"lib/scene/synonyms.h\"
+#include \"lib/scene/suggest.h\"
 
 namespace pbf::scene_module {
 

@@ -8,7 +8,6 @@
 #include "app/batch_slurm.h"
 #include "app/commands.h"
 #include "app/options.h"
-#include "app/shell_quote.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
 #include "lib/base/machine.h"
@@ -57,16 +56,23 @@ const char* const kBatchHelp =
 
 namespace fs = std::filesystem;
 
+/// The options that a batch hands on to each run.
+std::vector<std::string> options_of_runs(const BatchOptions& o) {
+  std::vector<std::string> words;
+  for (const std::string& s : o.overrides) words.insert(words.end(), {"--set", s});
+  if (!o.base_folder.empty())
+    words.insert(words.end(), {"--base-folder", fs::absolute(o.base_folder).string()});
+  if (o.strict) words.push_back("--strict");
+  return words;
+}
+
 /// The command on one line, with absolute paths, for a script that runs elsewhere.
 std::string command_text(const BatchOptions& o, const std::string& out) {
   std::string text = shell_quoted(fs::read_symlink("/proc/self/exe").string()) + " batch " +
                      shell_quoted(fs::absolute(o.input).string()) + " --out " +
                      shell_quoted(fs::absolute(out).string());
   for (const std::string& g : o.grid) text += " --grid " + shell_quoted(g);
-  for (const std::string& s : o.overrides) text += " --set " + shell_quoted(s);
-  if (!o.base_folder.empty())
-    text += " --base-folder " + shell_quoted(fs::absolute(o.base_folder).string());
-  if (o.strict) text += " --strict";
+  for (const std::string& word : options_of_runs(o)) text += " " + shell_quoted(word);
   return text;
 }
 
@@ -170,10 +176,8 @@ class Batch {
   std::vector<std::string> arguments(const BatchMember& m) const {
     std::vector<std::string> args{"run",     m.scene,   "--out", out_ + "/" + m.name,
                                   "--quiet", "--resume"};
-    for (const std::string& s : o_.overrides) args.insert(args.end(), {"--set", s});
+    for (const std::string& word : options_of_runs(o_)) args.push_back(word);
     for (const std::string& s : m.overrides) args.insert(args.end(), {"--set", s});
-    if (!o_.base_folder.empty()) args.insert(args.end(), {"--base-folder", o_.base_folder});
-    if (o_.strict) args.push_back("--strict");
     if (threads_ > 0) args.insert(args.end(), {"--threads", std::to_string(threads_)});
     if (o_.max_walltime > 0)
       args.insert(args.end(),
@@ -225,9 +229,7 @@ int command_batch(const BatchOptions& o) {
     if (const int n = threads_of_run(o)) overrides.push_back("threads=" + std::to_string(n));
     check_members(members, overrides, o.base_folder, true);
   }
-  std::error_code error;
-  fs::create_directories(out, error);
-  if (error) throw Error(ExitCode::io, out + ": the folder cannot be made: " + error.message());
+  make_folder(out);
   require_own_file(out + "/summary.csv");
   check_output("--out", out + "/summary.csv");
   watch_signals();

@@ -21,6 +21,10 @@ struct SlurmWishes {
 /// for other texts and for less than a minute.
 long slurm_seconds(const std::string& text);
 
+/// `text` as one word of bash on one line: unquoted if that is safe, else in single quotes or, with
+/// control characters (a line break would end a comment), in $'...' with escapes.
+std::string shell_quoted(const std::string& text);
+
 /// A script for bash and sbatch: run by bash, it submits itself as an array, and as a job that
 /// collects the summary afterwards. A task that reaches its time limit returns to the queue.
 std::string slurm_script(const SlurmWishes& wishes);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
 
 namespace pbf::app_module {
 
@@ -17,5 +18,10 @@ void add_study(CLI::App& app, int& code);
 void add_batch(CLI::App& app, int& code);
 void add_stability(CLI::App& app, int& code);
 void add_info(CLI::App& app, int& code);
+
+/// For a command line that CLI11 rejects: its message, or a better one for unexpected arguments
+/// (unknown options and commands, a second scene, a setting without --set), with a suggestion and
+/// where to find help.
+std::string explain(const CLI::App& app, const CLI::ParseError& e);
 
 }  // namespace pbf::app_module

@@ -1,8 +1,8 @@
-#include "app/explain.h"
-
+// Messages for a command line that CLI11 rejects.
 #include <algorithm>
 #include <vector>
 
+#include "app/commands.h"
 #include "lib/scene/file_kind.h"
 #include "lib/scene/suggest.h"
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "app/commands.h"
-#include "app/explain.h"
 #include "lib/base/error.h"
 #include "lib/base/log.h"
 #include "lib/base/plain_text.h"

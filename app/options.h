@@ -4,12 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "lib/base/error.h"
 #include "lib/scene/number.h"
 
 namespace pbf::app_module {
@@ -24,6 +26,15 @@ std::pair<CLI::App*, Options&> add_command(CLI::App& app, int& code, int (*work)
   CLI::App* command = app.add_subcommand(name, help)->footer(footer);
   command->callback([options, work, &code] { code = work(*options); });
   return {command, *options};
+}
+
+/// The folder of the results of a command.
+inline void make_folder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error)
+    throw Error(ExitCode::io, path + ": the folder cannot be made: " + error.message() +
+                                  "; choose another one with --out");
 }
 
 /// An option that can be given several times, with one value each.
@@ -67,9 +78,6 @@ inline CLI::Validator not_empty() {
       [](std::string& text) { return text.empty() ? "is empty; give a name" : std::string(); },
       "NAME");
 }
-
-/// The measures of a run, one per line, for help texts.
-std::string diagnostics_text();
 
 /// For Option::transform: a whole number from `low` to `high`, converted to plain digits.
 inline CLI::Validator whole_number(std::int64_t low,

@@ -124,7 +124,7 @@ int command_run(const RunOptions& options) {
 void add_run(CLI::App& app, int& code) {
   const auto [c, o] = add_command(app, code, command_run, "run",
                                   "Simulate a scene: run.vtkhdf and pictures in one folder",
-                                  std::string(kRunHelp) + diagnostics_text());
+                                  std::string(kRunHelp) + diagnostics_help());
   c->add_option("SCENE", o.scene,
                 "Scene file (YAML), or a run to repeat: its run file or its folder")
       ->required();

@@ -1,15 +1,22 @@
 // pbf stability: the suite of stiff and extreme cases, and maps over two scene keys.
 #include <fmt/core.h>
 #include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <system_error>
+#include <thread>
 
 #include "app/commands.h"
-#include "app/in_parallel.h"
 #include "app/options.h"
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
 #include "lib/base/log.h"
 #include "lib/base/machine.h"
 #include "lib/base/shipped_file.h"
+#include "lib/base/stage_clock.h"
+#include "lib/base/text.h"
 #include "lib/campaign/stability.h"
 #include "lib/campaign/stability_map.h"
 #include "lib/campaign/stability_report.h"
@@ -76,18 +83,54 @@ std::vector<StabilityCase> chosen(const StabilityCommandOptions& o) {
   return out;
 }
 
-/// Keeps finished rows. If some are missing, reports it and sets the exit code of an early stop.
+/// Calls work(k) for all k < n on `jobs` threads, with a line of progress after each: "k of n WHAT,
+/// time" and name(row). work(k) returns std::optional<Row>; if it is empty, a signal has come: no
+/// further work is started, and `code` is that of an early stop. Returns the rows that are done.
+/// The first exception is thrown at the end.
 template <class Row>
-std::vector<Row> finished(std::vector<std::optional<Row>> rows, const char* what, Log& log,
-                          int& code) {
+std::vector<Row> in_parallel(std::size_t n, int jobs, Log& log, const char* what, int& code,
+                             const auto& work, const auto& name) {
+  const Stopwatch watch;
+  std::vector<std::optional<Row>> rows(n);
+  std::size_t done = 0;
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr failed;
+  std::mutex mutex;
+  const auto loop = [&] {
+    for (std::size_t k = next++; k < n; k = next++) {
+      try {
+        std::optional<Row> row = work(k);
+        const std::lock_guard lock(mutex);
+        if (!row) {
+          next = n;
+          return;
+        }
+        log.progress(fmt::format("{} of {} {}, {}{}", ++done, n, what,
+                                 duration_text(watch.seconds()), name(*row)));
+        rows[k] = std::move(row);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!failed) failed = std::current_exception();
+        next = n;
+      }
+    }
+  };
+  std::vector<std::thread> threads;
+  try {
+    for (int j = 1; j < jobs; ++j) threads.emplace_back(loop);
+  } catch (const std::system_error&) {  // no more threads available: continue with those there are
+  }
+  loop();
+  for (std::thread& t : threads) t.join();
+  if (failed) std::rethrow_exception(failed);
   std::vector<Row> out;
   for (auto& row : rows)
     if (row) out.push_back(*std::move(row));
-  if (out.size() == rows.size()) return out;
+  if (out.size() == n) return out;
   code = static_cast<int>(ExitCode::resumable);
   log.note(
       fmt::format("pbf: stopped early by {} with {} of {} {} done; the same command starts anew",
-                  signal_token().why(), out.size(), rows.size(), what));
+                  signal_token().why(), out.size(), n, what));
   return out;
 }
 
@@ -98,11 +141,10 @@ int run_suite(const StabilityCommandOptions& o, const StabilityOptions& run, int
   check_outputs("--csv", o.csv, "--junit", o.junit);
   const Stopwatch watch;
   int code = static_cast<int>(ExitCode::done);
-  auto rows = finished(in_parallel<StabilityRow>(
-                           cases.size(), jobs, log, "cases",
-                           [&](std::size_t k) { return run_stability_case(cases[k], run); },
-                           [](const StabilityRow& r) { return ": " + r.name; }),
-                       "cases", log, code);
+  auto rows = in_parallel<StabilityRow>(
+      cases.size(), jobs, log, "cases", code,
+      [&](std::size_t k) { return run_stability_case(cases[k], run); },
+      [](const StabilityRow& r) { return ": " + r.name; });
   judge_likeness(cases, rows);
   std::int64_t failed = 0;
   std::string group;
@@ -142,11 +184,10 @@ int run_map(const StabilityCommandOptions& o, const StabilityOptions& run, int j
                        map.iterations.size()));
   const Stopwatch watch;
   int code = static_cast<int>(ExitCode::done);
-  const auto cells = finished(
-      in_parallel<MapCell>(
-          grid.size(), jobs, log, "runs", [&](std::size_t k) { return run_map_cell(map, grid[k]); },
-          [](const MapCell&) { return std::string(); }),
-      "runs", log, code);
+  const auto cells = in_parallel<MapCell>(
+      grid.size(), jobs, log, "runs", code,
+      [&](std::size_t k) { return run_map_cell(map, grid[k]); },
+      [](const MapCell&) { return std::string(); });
   std::int64_t count[3] = {0, 0, 0};
   for (const MapCell& c : cells) ++count[static_cast<int>(c.verdict)];
   const std::string csv = map_table(cells, map).csv();

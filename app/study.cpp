@@ -1,7 +1,5 @@
 // pbf study: many runs with some keys varied, error against run time.
 #include <fmt/core.h>
-#include <filesystem>
-#include <system_error>
 
 #include "app/commands.h"
 #include "app/options.h"
@@ -55,16 +53,6 @@ const char* const kStudyMeasures =
     "  front_rms_<data>       RMS of Z - Z published [1]; all fronts in OUT/front.csv\n\n"
     "Example:\n"
     "  pbf study configs/study/dam_break.yaml --out out/study --set threads=2";
-
-namespace fs = std::filesystem;
-
-void make_folder(const std::string& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error)
-    throw Error(ExitCode::io, path + ": the folder cannot be made: " + error.message() +
-                                  "; choose another one with --out");
-}
 
 /// The result of a run, called `name` in messages: stored in the folder, or simulated now. Empty
 /// after a signal. Throws Error(unavailable) if it cannot run here.
@@ -182,7 +170,7 @@ int command_study(const StudyOptions& o) {
 void add_study(CLI::App& app, int& code) {
   const auto [c, o] = add_command(app, code, command_study, "study",
                                   "Error against run time over a grid of settings",
-                                  std::string(kStudyHelp) + diagnostics_text() + kStudyMeasures);
+                                  std::string(kStudyHelp) + diagnostics_help() + kStudyMeasures);
   c->add_option("STUDY", o.study, "Study file (YAML)")->required();
   c->add_option("--out", o.out, "Folder of the tables; out/study_<name> when not given")
       ->check(not_empty());

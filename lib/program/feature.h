@@ -27,23 +27,16 @@ struct NoMemory {
     return std::numeric_limits<std::int64_t>::max();
   }
   /// Sets the first contents of the feature's fields: c.put(field, rows).
-  template <class C>
-  void make(C&) {}
+  void make(auto&) {}
   /// The state is now that of `time` (s since the start): at the start, and after a state was set.
-  template <class C>
-  void stand(C&, double) {}
+  void stand(auto&, double) {}
   /// What follows from earlier steps no longer holds: positions were set or went back, or the
   /// length of steps has changed.
-  template <class C>
-  void forget(C&) {}
+  void forget(auto&) {}
   /// The most particles that these steps may add, for features with `changes_rows`.
-  template <class C>
-  std::int64_t new_rows(C&, const StepRange&) {
-    return 0;
-  }
+  std::int64_t new_rows(auto&, const StepRange&) { return 0; }
   /// Tables of the steps to come. Called before each batch, also before a repeated one.
-  template <class C>
-  void before_steps(C&, const StepRange&) {}
+  void before_steps(auto&, const StepRange&) {}
 };
 
 }  // namespace pbf::program_module

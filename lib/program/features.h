@@ -30,10 +30,7 @@ struct FeatureList {
   using Predict = pbf::Predict;
   using Sort = pbf::Sort;
   using MakeLists = pbf::MakeLists;
-  template <class B>
-  static void add(const Scene& scene, B& b) {
-    (Fs::add(scene, b), ...);
-  }
+  static void add(const Scene& scene, auto& b) { (Fs::add(scene, b), ...); }
   /// Whether passes may add or remove particles (kernels/row_state.h).
   static constexpr bool changes_rows = (false || ... || requires { Fs::changes_rows; });
   template <class Real>

@@ -140,7 +140,7 @@ struct Plain : FieldInfo {
   }
 };
 /// Rows of a type T<Real>. Its header says which: T<Real> row_of<Real>(const F&)
-/// (lib/solver/row_of.h).
+/// (lib/solver/step_context.h).
 struct Objects : FieldInfo {
   template <class... Args>
   constexpr Objects(std::array<int, 2> bytes, Args... args) : FieldInfo{args...} {

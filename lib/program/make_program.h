@@ -20,45 +20,26 @@ Program assembled(const Scene& scene, const UpdateShape& shape, PassSet passes, 
 template <class Passes>
 struct Builder : PassSet {
   template <class P>
-  static ProgramStep step_of() {
+  static ProgramStep step_of(P) {
     return {ProgramStep::pass, Passes::template index_of<P>()};
   }
   /// The pass runs before each substep.
-  template <class P>
-  void start() {
-    at_start.push_back(step_of<P>());
-  }
+  void start(auto pass) { at_start.push_back(step_of(pass)); }
   /// The pass runs before each sort of an update. It may add rows behind the last one, and mark
   /// rows that leave (kernels/row_state.h). Rows near solids: NearRows::mark_near() for each new
   /// row.
-  template <class P>
-  void rows() {
-    before_sort.push_back(step_of<P>());
-  }
+  void rows(auto pass) { before_sort.push_back(step_of(pass)); }
   /// The pass runs whenever lists are made; with `updates_alone` not for a measurement.
-  template <class P>
-  void lists(bool updates_alone = false) {
-    with_lists.push_back(step_of<P>());
-    if (!updates_alone) with_all_lists.push_back(step_of<P>());
+  void lists(auto pass, bool updates_alone = false) {
+    with_lists.push_back(step_of(pass));
+    if (!updates_alone) with_all_lists.push_back(step_of(pass));
   }
-  template <class P>
-  void iteration() {
-    in_iteration.push_back(step_of<P>());
-  }
-  template <class P>
-  void after() {
-    behind.push_back(step_of<P>());
-  }
+  void iteration(auto pass) { in_iteration.push_back(step_of(pass)); }
+  void after(auto pass) { behind.push_back(step_of(pass)); }
   /// The pass runs after all others, with or without lists.
-  template <class P>
-  void end() {
-    at_end.push_back(step_of<P>());
-  }
+  void end(auto pass) { at_end.push_back(step_of(pass)); }
   /// The feature launches the pass itself when it is read.
-  template <class P>
-  void reading() {
-    at_reading.push_back(step_of<P>());
-  }
+  void reading(auto pass) { at_reading.push_back(step_of(pass)); }
   void left_out(const char* what, const char* because) { without.push_back({what, because}); }
 };
 
@@ -70,9 +51,9 @@ Program make_program_of(const Scene& scene, const UpdateShape& shape, bool witho
   FeatureSet::add(scene, b);
   b.infos = Passes::infos(scene);
   b.fused = &Passes::fused;
-  b.predict = b.template step_of<typename FeatureSet::Predict>();
-  b.sort = b.template step_of<typename FeatureSet::Sort>();
-  b.make_lists = b.template step_of<typename FeatureSet::MakeLists>();
+  b.predict = b.step_of(typename FeatureSet::Predict());
+  b.sort = b.step_of(typename FeatureSet::Sort());
+  b.make_lists = b.step_of(typename FeatureSet::MakeLists());
   b.carried_fields = Passes::carried_fields();
   return assembled(scene, shape, std::move(b), without_time);
 }

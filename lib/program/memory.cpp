@@ -179,20 +179,6 @@ void add_fixed(const Scene& s, const Plan& plan, MemoryPlan& memory) {
 
 }  // namespace
 
-const char* held_name(Held held) {
-  switch (held) {
-    case Held::start:
-      return "start";
-    case Held::solver:
-      return "solver";
-    case Held::output:
-      return "output";
-    case Held::checkpoint:
-      return "checkpoint";
-  }
-  return "";
-}
-
 std::int64_t MemoryPlan::solver_bytes() const {
   const std::int64_t device = sum(*this, true, Held::solver);
   return device > 0 ? device : sum(*this, false, Held::solver);

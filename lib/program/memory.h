@@ -16,7 +16,7 @@ struct Plan;
 /// Lifetime of an array: while the solver is created, as long as the solver, while a frame or
 /// picture is written, while a checkpoint is written.
 enum class Held { start, solver, output, checkpoint };
-const char* held_name(Held held);
+constexpr const char* kHeldNames[] = {"start", "solver", "output", "checkpoint"};
 
 /// One array, or all arrays of a kind if each thread or frame has one.
 struct PlanArray {

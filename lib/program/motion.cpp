@@ -51,9 +51,8 @@ void must_be_read(const MotionTable& table, const std::string& path) {
 
 Double3 Pose::of(const Double3& x) const { return pivot + times(turn, x - pivot) + shift; }
 
-bool has_moving_obstacles(const Scene& s) {
-  return std::any_of(s.obstacles.begin(), s.obstacles.end(),
-                     [](const Obstacle& o) { return o.motion.has_value(); });
+std::int64_t moving_obstacles(const Scene& s) {
+  return std::ranges::count_if(s.obstacles, [](const Obstacle& o) { return o.motion.has_value(); });
 }
 
 double size_of(const Scene& s, const Obstacle& o) {

@@ -19,8 +19,9 @@ struct Pose {
   Double3 of(const Double3& x) const;
 };
 
-/// Whether an obstacle of the scene moves.
-bool has_moving_obstacles(const Scene& scene);
+/// How many obstacles of the scene move, and whether one does.
+std::int64_t moving_obstacles(const Scene& scene);
+inline bool has_moving_obstacles(const Scene& scene) { return moving_obstacles(scene) > 0; }
 /// Whether an obstacle or the tank moves.
 inline bool has_motion(const Scene& scene) {
   return scene.tank_motion || has_moving_obstacles(scene);

@@ -69,25 +69,20 @@ CurvePiece curve_piece(const MotionTable& table, std::size_t c, std::size_t row)
 }
 
 double cubic(const MotionTable& table, std::size_t c, double t) {
-  const std::vector<double>& at = table.time;
-  const std::size_t n = at.size();
-  if (n == 1) return table.values[0][c];
-  const auto y = [&](std::size_t k) { return table.values[k][c]; };
-  const auto slope = [&](std::size_t k) { return slope_at(table, c, k); };
-  if (t <= at[0]) return y(0) + slope(0) * (t - at[0]);
-  if (t >= at[n - 1]) return y(n - 1) + slope(n - 1) * (t - at[n - 1]);
-  const auto k = std::size_t(std::upper_bound(at.begin(), at.end(), t) - at.begin()) - 1;
-  const double width = at[k + 1] - at[k], u = (t - at[k]) / width, w = 1 - u;
-  return w * w * (1 + 2 * u) * y(k) + u * u * (1 + 2 * w) * y(k + 1) +
-         width * u * w * (w * slope(k) - u * slope(k + 1));
+  if (table.time.size() == 1) return table.values[0][c];
+  const CurvePiece p = curve_piece(table, c, piece_at(table, t));
+  if (t <= p.begin) return p.y0 + p.slope0 * (t - p.begin);
+  if (t >= table.time.back()) return p.y1 + p.slope1 * (t - table.time.back());
+  const double u = (t - p.begin) / p.width, w = 1 - u;
+  return w * w * (1 + 2 * u) * p.y0 + u * u * (1 + 2 * w) * p.y1 +
+         p.width * u * w * (w * p.slope0 - u * p.slope1);
 }
 
 double straight(const MotionTable& table, std::size_t c, double t) {
   const std::vector<double>& at = table.time;
-  const std::size_t n = at.size();
-  if (t <= at[0] || n == 1) return table.values[0][c];
-  if (t >= at[n - 1]) return table.values[n - 1][c];
-  const auto k = std::size_t(std::upper_bound(at.begin(), at.end(), t) - at.begin()) - 1;
+  if (t <= at.front() || at.size() == 1) return table.values.front()[c];
+  if (t >= at.back()) return table.values.back()[c];
+  const std::size_t k = piece_at(table, t);
   const double u = (t - at[k]) / (at[k + 1] - at[k]);
   return (1 - u) * table.values[k][c] + u * table.values[k + 1][c];
 }

@@ -89,21 +89,15 @@ struct Needs {
 };
 /// Declarations for scenes for which on(scene) is true.
 template <bool (*on)(const Scene&), class... As>
-struct If {
+struct If : Needs<As...> {
   static void list(const Scene& scene, std::vector<AccessInfo>& to) {
-    if (on(scene)) (As::list(scene, to), ...);
+    if (on(scene)) Needs<As...>::list(scene, to);
   }
-  template <class Asked>
-  static constexpr unsigned how_of() {
-    return (0u | ... | As::template how_of<Asked>());
-  }
-  static constexpr bool carries_fields = (false || ... || As::carries_fields);
-  static void list_carried(std::vector<CarriedField>& to) { (As::list_carried(to), ...); }
 };
 /// Declarations of a fused pass, which does the work of A and then of B for each row. If A writes a
 /// row and B reads the same row, the fused pass need not read it.
 template <class A, class B>
-struct Then {
+struct Then : Needs<A, B> {
   static void list(const Scene& scene, std::vector<AccessInfo>& to);
   template <class Asked>
   static constexpr unsigned how_of() {
@@ -111,10 +105,6 @@ struct Then {
     static_assert(!((a & (kWrites | kPlaces)) && (b & (kGathers | kLooks))),
                   "one launch writes a field and gathers it: its threads would race");
     return a | b;
-  }
-  static constexpr bool carries_fields = A::carries_fields || B::carries_fields;
-  static void list_carried(std::vector<CarriedField>& to) {
-    A::list_carried(to), B::list_carried(to);
   }
 };
 

@@ -20,10 +20,6 @@ constexpr int kMotionRows = 256;
 inline std::int64_t motion_table_rows(const Plan& plan) {
   return std::max(kMotionRows, plan.substeps);
 }
-inline std::int64_t moving_obstacles(const Scene& scene) {
-  return std::count_if(scene.obstacles.begin(), scene.obstacles.end(),
-                       [](const Obstacle& o) { return o.motion.has_value(); });
-}
 
 template <class Real>
 struct MotionRows {
@@ -109,9 +105,6 @@ MotionRows<Real> motion_rows(const Scene& scene, const Plan& plan, const Box<Rea
                              const StepRange& steps, int steps_per_update) {
   const auto [first, count, dt] = steps;
   MotionRows<Real> rows;
-  const auto real = [](const Vec3<double>& v) {
-    return Vec3<Real>{Real(v.x), Real(v.y), Real(v.z)};
-  };
   const auto time = [&](std::int64_t step) { return double(step) * dt; };
   if (scene.tank_motion)
     for (int k = 0; k < count; ++k) {
@@ -120,8 +113,8 @@ MotionRows<Real> motion_rows(const Scene& scene, const Plan& plan, const Box<Rea
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
           out.turn[i][j] = Real(f.turn[i][j]), out.pull[i][j] = Real(f.pull[i][j]);
-      out.pivot = real(f.pivot);
-      out.push = real(f.push);
+      out.pivot = scaled<Real>(f.pivot, 1);
+      out.push = scaled<Real>(f.push, 1);
     }
   if (!has_moving_obstacles(scene)) return rows;
   const auto at = [&](std::int64_t step) { return solids_of(scene, plan.axes, time(step)); };

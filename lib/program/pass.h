@@ -1,7 +1,7 @@
 // The description of a pass, and lists of passes as types. A pass is a struct with
 //   static constexpr PassText text{name, stage, remedy};
 //   using Needs = pbf::Needs<...>;                       // needs.h
-//   template <class G> static void launch(const G& c);   // c: granted.h
+//   static void launch(const auto& c);                   // c: granted.h
 // A pass that swaps the two arrays of a pair before its launch also has
 // `using Flips = pbf::Flips<...>`; its Needs name the arrays as they are after the swap. A pass
 // that does the work of two successive ones has `using Fuses = Pair<First, Second>`.
@@ -64,7 +64,12 @@ template <class P>
 constexpr bool reorders = (how_of<P, field::Id> & kPlaces) != 0;
 
 template <class First, class Second>
-struct Pair {};
+struct Pair {
+  template <class Passes>
+  static bool is(int a, int b) {
+    return Passes::template index_of<First>() == a && Passes::template index_of<Second>() == b;
+  }
+};
 
 template <class... Ps>
 struct PassList {
@@ -88,21 +93,12 @@ struct PassList {
   /// The index of the pass that does the work of passes a and b, or -1.
   static int fused(int a, int b) {
     int found = -1;
-    ((fuses<Ps>(a, b) ? void(found = index_of<Ps>()) : void()), ...);
+    const auto look = [&]<class P>(PassList<P>) {
+      if constexpr (requires { typename P::Fuses; })
+        if (P::Fuses::template is<PassList>(a, b)) found = index_of<P>();
+    };
+    (look(PassList<Ps>()), ...);
     return found;
-  }
-
- private:
-  template <class A, class B>
-  static bool is(Pair<A, B>, int a, int b) {
-    return index_of<A>() == a && index_of<B>() == b;
-  }
-  template <class P>
-  static bool fuses(int a, int b) {
-    if constexpr (requires { typename P::Fuses; })
-      return is(typename P::Fuses{}, a, b);
-    else
-      return false;
   }
 };
 

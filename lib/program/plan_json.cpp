@@ -24,7 +24,7 @@ Json memory_json(const Plan& plan, const Scene& scene) {
                         {"components", a.components},
                         {"elements", a.elements},
                         {"bytes", a.bytes},
-                        {"held", held_name(a.held)},
+                        {"held", kHeldNames[int(a.held)]},
                         {"place", place(a.on_device)}});
     out.push_back({{"backend", word(c.backend)},
                    {"precision", word(c.precision)},

@@ -84,9 +84,7 @@ std::vector<int> half_cells_near_solids(const Scene& scene,
   const double half[3] = {edge / 4, flat ? 0 : edge / 2, edge / 2};
   const double reach = 1 / double(p.boundary.inv_range) + kNearRoom + rounding +
                        std::hypot(half[0], half[1], half[2]);
-  const auto cast = [](const Vec3<double>& v) {
-    return Vec3<Real>{Real(v.x), Real(v.y), Real(v.z)};
-  };
+  const Vec3<double> around{half[0] + rounding, half[1] + rounding, half[2] + rounding};
   const auto near = [&](const Vec3<double>& m) {
     const auto beyond = [&](double x, double h, double low, double high) {
       return x - h < low + rounding || x + h > high - rounding;
@@ -96,10 +94,7 @@ std::vector<int> half_cells_near_solids(const Scene& scene,
                    beyond(m.z, half[2], double(clear.low.z), double(clear.high.z))))
       return true;
     for (const Bounds<Real>& b : swept)
-      if (b.meets(
-              cast(m - Vec3<double>{half[0] + rounding, half[1] + rounding, half[2] + rounding}),
-              cast(m + Vec3<double>{half[0] + rounding, half[1] + rounding, half[2] + rounding})))
-        return true;
+      if (b.meets(scaled<Real>(m - around, 1), scaled<Real>(m + around, 1))) return true;
     return std::any_of(solids.begin(), solids.end(), [&](const Solid<double>& s) {
       return (flat ? distance<2>(s, m) : distance<3>(s, m)) < reach;
     });

@@ -8,7 +8,6 @@
 #include "lib/base/regular_file.h"
 #include "lib/base/sha256.h"
 #include "lib/scene/keys.h"
-#include "lib/scene/lay_over.h"
 #include "lib/scene/scene_text.h"
 
 namespace pbf::scene_module {

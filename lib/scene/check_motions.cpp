@@ -37,8 +37,7 @@ class MotionChecker : public SceneRules {
   void check_swing(const Swing& m, const auto& kind, bool swings) {
     if (!good(m.axis) || (swings && !good(m.direction))) return;
     if (swings && bool(m.direction) == bool(m.axis)) {
-      const std::string path = name(kind);
-      add_at(path.substr(0, path.rfind('.')), "a sine needs {}",
+      add_at(block_of(name(kind)), "a sine needs {}",
              m.axis ? "direction or axis, not both; remove one"
                     : "direction (amplitude in m) or axis (degrees); give one");
       return;

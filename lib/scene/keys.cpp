@@ -24,12 +24,6 @@ const Row* find(const std::vector<Row>& rows, std::string Row::*text, const std:
   return nullptr;
 }
 
-std::string before_last_dot(const std::string& path) {
-  const std::size_t dot = path.rfind('.');
-  return dot == std::string::npos ? "" : path.substr(0, dot);
-}
-std::string after_last_dot(const std::string& path) { return path.substr(path.rfind('.') + 1); }
-
 }  // namespace
 
 std::string path_of(std::string member) {
@@ -58,10 +52,15 @@ void add_kind_row(std::vector<Key>& rows, Key row) {
 std::string join(const std::string& block, const std::string& leaf) {
   return block.empty() ? leaf : block + "." + leaf;
 }
+std::string block_of(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  return dot == std::string::npos ? "" : path.substr(0, dot);
+}
+std::string leaf_of(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
-std::string Key::leaf() const { return after_last_dot(path); }
+std::string Key::leaf() const { return leaf_of(path); }
 std::string Block::leaf() const {
-  const std::string last = after_last_dot(path);
+  const std::string last = leaf_of(path);
   return list ? last.substr(0, last.find('[')) : last;
 }
 
@@ -108,11 +107,11 @@ KeyTable::KeyTable(const std::vector<KeyRows>& parts, const Object& defaults) {
   }
   for (Block& block : blocks)
     if (!block.path.empty()) {
-      block.parent = find_block(before_last_dot(block.path));
+      block.parent = find_block(block_of(block.path));
       if (block.exact == nullptr) block.exact = block.parent->exact;
     }
   for (Key& key : keys) {
-    Block& block = const_cast<Block&>(*find_block(before_last_dot(key.path)));
+    Block& block = const_cast<Block&>(*find_block(block_of(key.path)));
     block.keys.push_back(&key);
     if (key.is_kind) block.kind = &key;
     key.block = &block;

@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "lib/scene/key_traits.h"
+#include "lib/scene/kinds.h"
 #include "lib/scene/scene.h"
 
 namespace pbf::scene_module {
@@ -179,6 +179,9 @@ std::string value_text(const Key& key, const Object& holder);
 std::string default_text(const Key& key);
 /// "fluid", "spacing" -> "fluid.spacing"; at the top level just the leaf.
 std::string join(const std::string& block, const std::string& leaf);
+/// The two parts of such a path.
+std::string block_of(const std::string& path);
+std::string leaf_of(const std::string& path);
 
 // The functions of load.h and difference.h, for any struct with a table of keys.
 

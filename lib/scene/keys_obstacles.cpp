@@ -1,13 +1,10 @@
-// Keys of obstacles: those of every one, and those of their shapes.
+// Keys of obstacles and gauges: those of every one, and those of their shapes and kinds.
 #include "lib/scene/key_rows.h"
 
 namespace pbf::scene_module {
-namespace {
 
 #define KEY(member) MEMBER(Scene, member)
 #define OBSTACLE(member) MEMBER_OF(obstacles, Obstacle, member)
-
-}  // namespace
 
 KeyRows obstacle_rows() {
   KeyRows all{
@@ -31,6 +28,23 @@ KeyRows obstacle_rows() {
   all.keys.push_back(key(OBSTACLE(loads), plain,
                          "Sums the force and the torque of the fluid on it; columns "
                          "load/NAME/force_x and so on of the log."));
+  return all;
+}
+
+KeyRows gauge_rows() {
+  std::string help = "What is read; decides which keys it has.";
+  for_each_kind<gauge_keys::Any>([&](const auto& kind) {
+    help.append(" ").append(kind.word).append(": ").append(kind.about).append(".");
+  });
+  KeyRows all{{list_block(KEY(gauges), "Gauges, read every output.gauges_every",
+                          {.entry_name = "gauge",
+                           .remark = "in /pbf/gauges of run.vtkhdf",
+                           .example = "{name: H1, kind: level, at: [0.5, 0.5]}",
+                           .further = "{name: H1, kind: level, at: [0.5, 0.2]}"},
+                          exact("all solvers of a comparison have the same gauges"))},
+              {key(MEMBER_OF(gauges, Gauge, name), plain, "Name, in the run file.", required),
+               kind_row("gauges[].kind", help, &Gauge::kind)}};
+  add_kind_rows(all.keys, "gauges[]", &Gauge::kind, [](const auto&) { return true; });
   return all;
 }
 

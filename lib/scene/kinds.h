@@ -1,13 +1,40 @@
-// The kinds of the entries of a list: structs in a std::variant, each with a word and keys of its
-// own (shapes of obstacles, kinds of gauges). key_rows.h makes their rows.
+// Properties of a key's numbers, and the kinds of the entries of a list: structs in a std::variant,
+// each with a word and keys of its own (shapes of obstacles, kinds of gauges). key_rows.h makes
+// their rows.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <variant>
 
-#include "lib/scene/key_traits.h"
-
 namespace pbf::scene_module {
+
+/// Allowed values of every number of a key.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool above_min = false;  ///< min itself is not allowed
+  bool below_max = false;  ///< max itself is not allowed
+  bool operator==(const Range&) const = default;
+};
+
+// Bounds that only prevent overflow in float arithmetic: boxes from 1e-6 m to 1e6 m, up to a
+// million box lengths from the origin.
+inline constexpr Range kCoordinate{-1e12, 1e12};
+inline constexpr Range kLength{1e-9, 1e9};
+inline constexpr Range kSeconds{1e-12, 1e9};
+inline constexpr Range kRate{-1e12, 1e12};
+
+/// The y of a vector that is given by x and z only (`dimensions: 2`).
+enum class FlatY {
+  none,    ///< three numbers are required
+  bottom,  ///< defines the lower y of the domain: 0
+  top,     ///< defines its upper y: a spacing above the lower
+  low,     ///< the domain's lower y
+  high,    ///< the domain's upper y
+  middle,  ///< the plane
+  zero,
+};
 
 /// A key of one of the kinds. Kinds with keys of the same name share a row of the table.
 template <class Member, class Holder>

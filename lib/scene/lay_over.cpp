@@ -1,8 +1,8 @@
-#include "lib/scene/lay_over.h"
-
+// Merges the keys of one scene over those of another.
 #include <set>
 
 #include "lib/base/error.h"
+#include "lib/scene/base_scene.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/number.h"
 

@@ -1,7 +1,8 @@
-#include "lib/scene/layout.h"
+#include "lib/scene/remedies.h"
 
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 #include <vector>
 
 #include "lib/base/plain_text.h"
@@ -48,11 +49,9 @@ std::size_t visit_plain(const std::string& line, F f) {
 /// The unchanged lines up to line `last`.
 std::vector<std::string> raw_lines(const std::string& text, int last) {
   std::vector<std::string> lines;
-  for (std::size_t start = 0; start < text.size() && int(lines.size()) <= last;) {
-    const std::size_t end = std::min(text.find('\n', start), text.size());
-    lines.push_back(text.substr(start, end - start));
-    start = end + 1;
-  }
+  std::istringstream in(text);
+  for (std::string line; int(lines.size()) <= last && std::getline(in, line);)
+    lines.push_back(line);
   return lines;
 }
 

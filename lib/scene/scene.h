@@ -14,7 +14,6 @@
 #include "lib/scene/gauge.h"
 #include "lib/scene/motion.h"
 #include "lib/scene/obstacle.h"
-#include "lib/scene/render_style.h"
 
 namespace pbf::scene_module {
 

@@ -1,14 +1,30 @@
 #include "lib/scene/suggest.h"
 
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 #include <cctype>
 
 #include "lib/scene/base_scene.h"
 #include "lib/scene/keys.h"
-#include "lib/scene/synonyms.h"
 
 namespace pbf::scene_module {
 namespace {
+
+using Words = std::vector<std::string>;
+
+Synonyms read_synonyms() {
+  const YAML::Node root = YAML::Load(kSynonymText);
+  Synonyms all;
+  for (const YAML::Node& n : root["keys"])
+    all.keys.push_back({n["words"].as<Words>(), n["keys"].as<Words>(Words{}),
+                        n["note"].as<std::string>(""), n["own_block"].as<bool>(false),
+                        n["in"].as<std::string>("")});
+  for (const auto& meant : root["words"])
+    for (const std::string& written : meant.second.as<Words>())
+      all.words.push_back({written, meant.first.as<std::string>()});
+  return all;
+}
 
 /// Normalizes spelling: "Time-Step", "timeStep" and "time_step" become "timestep".
 std::string bare(const std::string& word) {
@@ -52,12 +68,6 @@ bool is_near(const std::string& a, const std::string& b, std::size_t mistakes) {
   return letters > 3 || a.size() != b.size() || same_letters || a.back() == b.back();
 }
 
-std::string leaf_of(const std::string& path) { return path.substr(path.rfind('.') + 1); }
-std::string block_of(const std::string& path) {
-  const std::size_t dot = path.rfind('.');
-  return dot == std::string::npos ? "" : path.substr(0, dot);
-}
-
 /// The `paths` in the block; if there are none, all, unless they are too many for a hint.
 std::vector<std::string> preferred(const std::vector<std::string>& paths,
                                    const std::string& block) {
@@ -76,6 +86,11 @@ bool is_around(const std::string& name, const std::string& block) {
 }
 
 }  // namespace
+
+const Synonyms& synonyms() {
+  static const Synonyms all = read_synonyms();
+  return all;
+}
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& words) {
   std::string best;

@@ -4,8 +4,8 @@
 
 #include "lib/base/text.h"
 #include "lib/scene/keys.h"
-#include "lib/scene/layout.h"
 #include "lib/scene/number.h"
+#include "lib/scene/remedies.h"
 #include "lib/scene/suggest.h"
 #include "lib/scene/value.h"
 

@@ -5,8 +5,8 @@
 
 #include "lib/base/text.h"
 #include "lib/scene/number.h"
+#include "lib/scene/remedies.h"
 #include "lib/scene/suggest.h"
-#include "lib/scene/writing.h"
 
 namespace pbf::scene_module {
 namespace {

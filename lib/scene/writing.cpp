@@ -1,4 +1,4 @@
-#include "lib/scene/writing.h"
+#include "lib/scene/remedies.h"
 
 #include <fmt/core.h>
 #include <algorithm>

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "lib/base/plain_text.h"
-#include "lib/scene/layout.h"
+#include "lib/scene/remedies.h"
 
 namespace pbf::scene_module {
 namespace {

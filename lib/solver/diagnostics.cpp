@@ -167,7 +167,9 @@ std::span<const Diagnostic> diagnostics() {
 }
 
 std::string diagnostics_help() {
-  std::string text;
+  std::string text =
+      "Diagnostics (formulas: lib/solver/DIAGNOSTICS.md; c = max(rho/rho0 - 1, 0) of a particle, "
+      "walls\nincluded; H0 = volume of the fluid / area of the floor):\n";
   for (const Diagnostic& d : diagnostics()) {
     if (*d.help == '\0') continue;  // second and third component of a vector
     std::string name = d.name;

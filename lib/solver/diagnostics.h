@@ -146,7 +146,7 @@ struct Diagnostic {
 /// In the order of the log's columns.
 std::span<const Diagnostic> diagnostics();
 
-/// A line for each, with its unit.
+/// For help texts: a line for each, with its unit.
 std::string diagnostics_help();
 
 }  // namespace pbf::solver_module

@@ -88,40 +88,15 @@ class Granted {
   }
 
   // Launches by the shape of a pass (kernels/pass_shapes.h), over all rows or n items.
-  template <class Pass>
-  void items(const Pass& pass) const {
-    exec.items(rows(), pass);
-  }
-  template <class Pass>
-  void items(int n, const Pass& pass) const {
-    exec.items(n, pass);
-  }
-  template <class Pass>
-  void pairs(const Pass& pass) const {
-    exec.pairs(rows(), pass);
-  }
-  template <class Pass>
-  void shared(int n, const Pass& pass) const {
-    exec.shared(n, pass);
-  }
-  template <class Pass>
-  void teams(const Pass& pass) const {
-    exec.teams(pass);
-  }
-  template <class Pass>
-  void bricks(const Pass& pass) const {
-    exec.bricks(pass);
-  }
-  template <class Pass>
-  void listed(const int* count, const Pass& pass) const {
-    exec.listed(count, capacity(), pass);
-  }
-  template <class Pass>
-  MeasureSums reduce(const Pass& pass) const {
-    return exec.reduce(c_.host_rows(), pass);
-  }
-  template <class F>
-  void with_smoothing(F&& f) const {
+  void items(const auto& pass) const { exec.items(rows(), pass); }
+  void items(int n, const auto& pass) const { exec.items(n, pass); }
+  void pairs(const auto& pass) const { exec.pairs(rows(), pass); }
+  void shared(int n, const auto& pass) const { exec.shared(n, pass); }
+  void teams(const auto& pass) const { exec.teams(pass); }
+  void bricks(const auto& pass) const { exec.bricks(pass); }
+  void listed(const int* count, const auto& pass) const { exec.listed(count, capacity(), pass); }
+  MeasureSums reduce(const auto& pass) const { return exec.reduce(c_.host_rows(), pass); }
+  void with_smoothing(auto&& f) const {
     pbf::with_smoothing(scene.solver.kernels, scene.dimensions, f);
   }
 

@@ -6,11 +6,16 @@
 
 #include "kernels/axes.h"
 #include "kernels/vec3.h"
-#include "lib/base/release.h"
 #include "lib/scene/particles.h"
 #include "lib/scene/scene.h"
 
 namespace pbf::PBF_VARIANT {
+
+/// Empties a vector and gives its memory back (`= {}` would keep it).
+template <class T>
+void release(std::vector<T>& v) {
+  std::vector<T>().swap(v);
+}
 
 /// Positions and velocities of a scene in the internal frame, in the order of ids.
 template <class Real>

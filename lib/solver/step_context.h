@@ -9,14 +9,22 @@
 #include <vector>
 
 #include "kernels/cell_index.h"
-#include "kernels/params.h"
 #include "lib/base/error.h"
-#include "lib/base/release.h"
-#include "lib/program/plan.h"
-#include "lib/scene/scene.h"
-#include "lib/solver/row_of.h"
+#include "lib/program/features.h"
+#include "lib/solver/internal_state.h"
+#include "lib/solver/params.h"
 
 namespace pbf::PBF_VARIANT {
+
+/// The type of a row of a field in a precision. For Objects, row_of() stands beside the field.
+template <class Real>
+Vec4<Real> row_of(const Vectors&);
+template <class Real>
+Real row_of(const Numbers&);
+template <class Real, class T, int count, class Word>
+T row_of(const Plain<T, count, Word>&);
+template <class Field, class Real>
+using RowOf = decltype(row_of<Real>(std::declval<const Field&>()));
 
 /// An array of a field; second: the second one of a pair.
 struct FieldMemory {
@@ -32,7 +40,6 @@ class Granted;
 template <class RealType, class Exec, class FeatureSet>
 struct StepContext {
   using Real = RealType;
-  using Features = FeatureSet;
   using Passes = typename FeatureSet::Passes;
   using Lists = typename Exec::Lists;
   template <class T>
@@ -42,8 +49,12 @@ struct StepContext {
 
   static constexpr bool changes_rows = FeatureSet::changes_rows;
 
-  StepContext(Exec& executor, const Scene& of, const Plan& planned, const Params<Real>& parameters)
-      : exec(executor), plan(planned), scene(of), p(parameters) {}
+  StepContext(Exec& executor, const Scene& of, const Plan& planned)
+      : exec(executor), plan(planned), scene(of), p(make_params<Real>(of, planned)) {
+    for (int k = 0; k < of.solver.iterations; ++k)
+      factors.push_back(
+          Real(plan.sor * (plan.sor_factors.empty() ? 1 : plan.sor_factors[std::size_t(k)])));
+  }
 
   Exec& exec;
   const Plan& plan;
@@ -179,19 +190,18 @@ struct StepContext {
     return bits;
   }
 
-  /// Creates the arrays and uploads the state of the first particles. Frees the vectors.
-  void make(std::vector<Vec4<Real>>& first_position, std::vector<Vec4<Real>>& first_velocity,
-            std::vector<int>& first_id) {
-    const auto n = std::int64_t(first_position.size());
+  /// Creates the arrays and uploads the state of the first particles. Frees its vectors.
+  void make(InternalState<Real>& first) {
+    const auto n = std::int64_t(first.id.size());
     for (const FieldInfo* f : plan.program.fields)
       if (f != &field::order || !order_in_place) add(*f, n);
     const auto upload = [&](const auto& f, auto& rows) {
       put(f, rows);
       release(rows);  // before lists are made, which need memory
     };
-    upload(field::position, first_position);
-    upload(field::velocity, first_velocity);
-    upload(field::id, first_id);
+    upload(field::position, first.position);
+    upload(field::velocity, first.velocity);
+    upload(field::id, first.id);
     if (slot(field::row_state)) put(field::row_state, {RowState{n, n}});
     for_features([&](auto& memory) { memory.make(*this); });
     for_features([&](auto& memory) { memory.stand(*this, 0); });

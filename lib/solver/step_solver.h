@@ -7,14 +7,11 @@
 #include <utility>
 
 #include "lib/base/error.h"
-#include "lib/base/release.h"
 #include "lib/base/stage_clock.h"
 #include "lib/program/make_program.h"
 #include "lib/program/time_levels.h"
 #include "lib/solver/diagnostics.h"
 #include "lib/solver/executor.h"
-#include "lib/solver/internal_state.h"
-#include "lib/solver/params.h"
 #include "lib/solver/solver.h"
 #include "lib/solver/stepper.h"
 
@@ -50,8 +47,7 @@ class StepSolver final : public Solver, public Inspection {
                                           " particles for " + std::to_string(particles.size()));
     const Stopwatch watch;
     InternalState<Real> s = to_internal<Real>(scene, plan.axes, std::move(particles));
-    stepper_ = std::make_unique<Stepping>(exec_, scene_, plan_, std::move(s.position),
-                                          std::move(s.velocity), std::move(s.id));
+    stepper_ = std::make_unique<Stepping>(exec_, scene_, plan_, std::move(s));
     while (exec_.grow_lists(stepper_->capacity())) stepper_->relist();
     exec_.forget_stages();  // sorting the initial state belongs to init, not to the updates
     init_seconds_ = watch.seconds();
@@ -253,8 +249,7 @@ class StepSolver final : public Solver, public Inspection {
   void start_export(Snapshot& s) {
     const bool velocity = s.find("velocity"), density = s.find("density");
     exec_.template start_copy<Out>(targets(s), [&](const std::vector<Out*>& to) {
-      stepper_->export_to(scene_.h(), scene_.fluid.rest_density, scene_.origin(), to[0],
-                          velocity ? to[1] : nullptr, density ? to.back() : nullptr);
+      stepper_->export_to(to[0], velocity ? to[1] : nullptr, density ? to.back() : nullptr);
     });
   }
 

@@ -11,13 +11,10 @@
 #include "kernels/pass_export.h"
 #include "kernels/pass_power.h"
 #include "lib/program/plan.h"
-#include "lib/solver/compression_percentile.h"
 #include "lib/solver/executor.h"
 #include "lib/solver/granted.h"
 #include "lib/solver/launched_rows.h"
-#include "lib/solver/params.h"
 #include "lib/solver/read_sums.h"
-#include "lib/solver/saved_state.h"
 #include "lib/solver/stage_check.h"
 #include "lib/solver/state_transfer.h"
 #include "lib/solver/tracer.h"
@@ -38,18 +35,11 @@ class Stepper {
   using Context = StepContext<Real, Exec, Features>;
   using Passes = typename Features::Passes;
 
-  /// The initial positions and velocities are in the internal frame, in the order of ids 0..n-1.
   /// States and traces that the stepper returns are along the scene's axes.
-  Stepper(Exec& exec, const Scene& scene, const Plan& plan, std::vector<Vec4<Real>> position,
-          std::vector<Vec4<Real>> velocity, std::vector<int> id)
-      : plan_(plan),
-        c_(exec, scene, plan, make_params<Real>(scene, plan)),
-        program_(&plan.program) {
-    for (int k = 0; k < scene.solver.iterations; ++k)
-      c_.factors.push_back(
-          Real(plan.sor * (plan.sor_factors.empty() ? 1 : plan.sor_factors[std::size_t(k)])));
-    c_.launched = int(position.size());
-    c_.make(position, velocity, id);
+  Stepper(Exec& exec, const Scene& scene, const Plan& plan, InternalState<Real> first)
+      : plan_(plan), c_(exec, scene, plan), program_(&plan.program) {
+    c_.launched = int(first.id.size());
+    c_.make(first);
     find_pairs();
     sum_density();
   }
@@ -203,15 +193,15 @@ class Stepper {
   /// Writes fields in SI units, along the scene's axes and in the order of ids to memory of the
   /// executor; null: not wanted. Densities need find_pairs() first.
   template <class Out>
-  void export_to(double h, double rest_density, const Double3& origin, Out* position, Out* velocity,
-                 Out* density) {
+  void export_to(Out* position, Out* velocity, Out* density) {
     c_.exec.begin();
     if (density) sum_density();
+    const Double3 origin = c_.scene.origin();
     const auto from = [&](int k) { return origin[std::size_t(plan_.axes.of[k])]; };
     const int n = rows();
     const int* place = c_.order_of_ids(c_.ids(), n);
-    c_.exec.items(n, ExportPass<Real, Out>{h,
-                                           rest_density,
+    c_.exec.items(n, ExportPass<Real, Out>{c_.scene.h(),
+                                           c_.scene.fluid.rest_density,
                                            {from(0), from(1), from(2)},
                                            plan_.axes,
                                            c_.position(),

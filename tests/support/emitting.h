@@ -86,10 +86,9 @@ struct Emit {
 struct Shower {
   static constexpr bool changes_rows = true;
   using Passes = PassList<Drain, Emit>;
-  template <class B>
-  static void add(const Scene&, B& b) {
-    b.template rows<Drain>();
-    b.template rows<Emit>();
+  static void add(const Scene&, auto& b) {
+    b.rows(Drain());
+    b.rows(Emit());
   }
   template <class Real>
   struct Memory : NoMemory {

@@ -12,12 +12,10 @@
 
 #include "kernels/cell_index.h"
 #include "lib/exec/cpu/cpu_exec.h"
-#include "lib/program/exchanges.h"
 #include "lib/program/make_program.h"
 #include "lib/solver/granted.h"
-#include "lib/solver/internal_state.h"
-#include "lib/solver/params.h"
 #include "lib/solver/state_transfer.h"
+#include "tests/support/exchanges.h"
 
 namespace pbf::test {
 
@@ -95,8 +93,8 @@ class TwoRanks {
       : scene_(scene),
         plan_(plan),
         forget_(std::move(forget)),
-        a_(exec_[0], scene_, plan_, make_params<Real>(scene, plan)),
-        b_(exec_[1], scene_, plan_, make_params<Real>(scene, plan)) {
+        a_(exec_[0], scene_, plan_),
+        b_(exec_[1], scene_, plan_) {
     // Half of the particles begin in each slab.
     InternalState<Real> all = to_internal<Real>(scene, plan.axes, std::move(particles)), none;
     std::vector<Vec4<Real>> places = all.position;
@@ -108,13 +106,7 @@ class TwoRanks {
     exec_[0].last_layer = exec_[1].first_layer = cut_;
     exec_[1].last_layer = a_.p.layers + kBrickLayers;
     exec_[0].last = int(all.id.size());
-    for (Context* c : both()) {
-      for (int k = 0; k < scene.solver.iterations; ++k)
-        c->factors.push_back(
-            Real(plan.sor * (plan.sor_factors.empty() ? 1 : plan.sor_factors[std::size_t(k)])));
-      InternalState<Real>& mine = c == &a_ ? all : none;
-      c->make(mine.position, mine.velocity, mine.id);
-    }
+    for (Context* c : both()) c->make(c == &a_ ? all : none);
   }
 
   void step() {

@@ -45,12 +45,11 @@ struct Confine {
 
 struct VorticityConfinement {
   using Passes = PassList<Curl, Confine>;
-  template <class B>
-  static void add(const Scene& s, B& b) {
+  static void add(const Scene& s, auto& b) {
     if (!s.vorticity || s.vorticity->epsilon == 0)
       return b.left_out("curl and confinement passes, curl array", "no key vorticity");
-    b.template after<Curl>();
-    b.template after<Confine>();
+    b.after(Curl());
+    b.after(Confine());
   }
 };
 

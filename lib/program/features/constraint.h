@@ -51,33 +51,26 @@ void launch_lambda(const G& c) {
 struct Lambda {
   static constexpr PassText text{"lambda", "lambda"};
   using Needs = pbf::Needs<Reads<field::density>, LambdaNeeds>;
-  template <class G>
-  static void launch(const G& c) {
-    launch_lambda<false>(c);
-  }
+  static void launch(const auto& c) { launch_lambda<false>(c); }
 };
 
 struct DensityLambda {
   static constexpr PassText text{"density+lambda", "lambda"};
   using Needs = pbf::Needs<Writes<field::density>, LambdaNeeds>;
-  template <class G>
-  static void launch(const G& c) {
-    launch_lambda<true>(c);
-  }
+  static void launch(const auto& c) { launch_lambda<true>(c); }
 };
 
 struct Constraint {
   using Passes = PassList<Density, Lambda, DensityLambda>;
-  template <class B>
-  static void add(const Scene& s, B& b) {
+  static void add(const Scene& s, auto& b) {
     if (s.solver.iterations == 0)
       return b.left_out("lambda and delta passes", "solver.iterations is 0");
     if (s.solver.fused) {
-      b.template iteration<DensityLambda>();
+      b.iteration(DensityLambda());
       b.left_out("density pass of its own", "solver.fused is true");
     } else {
-      b.template iteration<Density>();
-      b.template iteration<Lambda>();
+      b.iteration(Density());
+      b.iteration(Lambda());
     }
   }
 };

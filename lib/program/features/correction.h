@@ -38,10 +38,7 @@ struct Delta {
   static constexpr PassText text{"delta", "delta"};
   using Needs =
       pbf::Needs<Writes<field::position, W::inverse_density>, Reads<field::density>, DeltaNeeds>;
-  template <class G>
-  static void launch(const G& c) {
-    launch_delta(c, c[field::density], nullptr);
-  }
+  static void launch(const auto& c) { launch_delta(c, c[field::density], nullptr); }
 };
 
 /// Delta and the prediction of the next substep: the same arithmetic with one launch less. Never
@@ -60,10 +57,9 @@ struct DeltaPredict {
 
 struct Correction {
   using Passes = PassList<Delta, DeltaPredict>;
-  template <class B>
-  static void add(const Scene& s, B& b) {
+  static void add(const Scene& s, auto& b) {
     if (s.solver.iterations == 0) return;
-    b.template iteration<Delta>();
+    b.iteration(Delta());
     if (!s.tensile || s.tensile->k == 0)
       b.left_out("artificial pressure in the delta loop", "no key tensile");
   }

@@ -41,10 +41,7 @@ struct CountFlow {
   using Needs = pbf::Needs<Reads<field::position>, Reads<field::id>, Looks<field::gates>,
                            Looks<field::flow_sides>, Places<field::flow_sides>, Looks<field::flows>,
                            Adds<field::flows>>;
-  template <class G>
-  static void launch(const G& c) {
-    take_sides(c, true);
-  }
+  static void launch(const auto& c) { take_sides(c, true); }
 };
 
 struct Gauges;
@@ -57,8 +54,7 @@ struct ReadGauges {
       pbf::Needs<Reads<field::position>,
                  std::conditional_t<Tally::reads_velocity, Reads<field::velocity>, pbf::Needs<>>,
                  Looks<field::gauge_sites<Tally>>, Adds<field::gauge_sums<Tally>>>;
-  template <class G>
-  static void launch(const G& c) {
+  static void launch(const auto& c) {
     c.items(gauge_pass(c[field::gauge_sites<Tally>], gauges_of<Tally>(c.scene),
                        c[field::position].rows(), c.declared(field::velocity),
                        c.template memory<Gauges>().update_dt, c[field::gauge_sums<Tally>].sums()));
@@ -77,13 +73,12 @@ gauge_passes(const std::tuple<TalliedGauges<Tally>...>&);
 
 struct Gauges {
   using Passes = decltype(gauge_passes(std::declval<gauge_keys::EachTally<TalliedGauges>>()));
-  template <class B>
-  static void add(const Scene& s, B& b) {
+  static void add(const Scene& s, auto& b) {
     if (s.gauges.empty()) return b.left_out("gauges", "no key gauges");
-    if (gauges_of<FlowTally>(s) > 0) b.template end<CountFlow>();
+    if (gauges_of<FlowTally>(s) > 0) b.end(CountFlow());
     const auto add_pass = [&]<class Tally>(const TalliedGauges<Tally>&) {
       if constexpr (is_read_by_pass<Tally>)
-        if (gauges_of<Tally>(s) > 0) b.template reading<ReadGauges<Tally>>();
+        if (gauges_of<Tally>(s) > 0) b.reading(ReadGauges<Tally>());
     };
     std::apply([&](const auto&... tally) { (add_pass(tally), ...); },
                gauge_keys::EachTally<TalliedGauges>());
@@ -94,8 +89,7 @@ struct Gauges {
     bool sides_are_current = false;  ///< of particles at flow gauges
     double update_dt = 0;            ///< s
 
-    template <class C>
-    void make(C& c) {
+    void make(auto& c) {
       update_dt = c.scene.time.step;
       std::apply(
           [&]<class... Tally>(const TalliedGauges<Tally>&... of) {
@@ -103,13 +97,9 @@ struct Gauges {
           },
           c.plan.gauges.tallies);
     }
-    template <class C>
-    void forget(C&) {
-      sides_are_current = false;
-    }
+    void forget(auto&) { sides_are_current = false; }
     /// Computes the sides from which flow gauges count. Steps without time are not counted.
-    template <class C>
-    void before_steps(C& c, const StepRange&) {
+    void before_steps(auto& c, const StepRange&) {
       if (gauges_of<FlowTally>(c.scene) == 0) return;
       const bool timed = c.p.dt > 0;
       if (timed && !sides_are_current) take_sides(c.template granted<CountFlow>(), false);

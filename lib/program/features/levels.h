@@ -167,12 +167,11 @@ struct BookLevels {
 
 struct Levels {
   using Passes = PassList<LevelCellsAndNodes, LevelMultipliers, BookLevels>;
-  template <class B>
-  static void add(const Scene& s, B& b) {
+  static void add(const Scene& s, auto& b) {
     if (const char* why = why_no_levels(s)) return b.left_out("levels: grids coarser than h", why);
-    b.template lists<LevelCellsAndNodes>(true);
-    b.template iteration<LevelMultipliers>();
-    if (has_wall_loads(s)) b.template iteration<BookLevels>();
+    b.lists(LevelCellsAndNodes(), true);
+    b.iteration(LevelMultipliers());
+    if (has_wall_loads(s)) b.iteration(BookLevels());
   }
 };
 

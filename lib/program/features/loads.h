@@ -59,8 +59,7 @@ struct SumLoads {
   static constexpr PassText text{"loads", "measure"};
   using Needs = pbf::Needs<Updates<field::load_sums>, Updates<field::loads>,
                            If<has_moving_obstacles, Looks<field::solid_velocity>>>;
-  template <class G>
-  static void launch(const G& c) {
+  static void launch(const auto& c) {
     c.items(int(load_walls(c.scene)),
             LoadPass{c[field::load_sums].rows(), c[field::loads].rows(), double(c.p.inv_dt),
                      double(c.p.update_dt), moment_unit(c.p.boundary), c[field::solid_velocity],
@@ -70,12 +69,11 @@ struct SumLoads {
 
 struct Loads {
   using Passes = PassList<SumLoads>;
-  template <class B>
-  static void add(const Scene& s, B& b) {
+  static void add(const Scene& s, auto& b) {
     if (!has_loads(s))
       return b.left_out("loads on the walls",
                         "domain.loads is false, and no obstacle has loads or motion");
-    b.template end<SumLoads>();
+    b.end(SumLoads());
   }
 };
 

@@ -176,18 +176,14 @@ struct PredictSort {
 struct MakeLists {
   static constexpr PassText text{"lists", "neighbors"};
   using Needs = pbf::Needs<Gathers<field::position>, Looks<field::bin_start>, MakesLists>;
-  template <class G>
-  static void launch(const G& c) {
-    c.make_lists();
-  }
+  static void launch(const auto& c) { c.make_lists(); }
 };
 
 /// make_program() (program.cpp) itself adds Predict, Sort and MakeLists to an update.
 struct Motion {
   using Passes = PassList<MoveSolids, Predict, Sort, PredictSort, MakeLists>;
-  template <class B>
-  static void add(const Scene& s, B& b) {
-    if (has_motion(s)) b.template start<MoveSolids>();
+  static void add(const Scene& s, auto& b) {
+    if (has_motion(s)) b.start(MoveSolids());
     if (!s.obstacles.empty() && !has_moving_obstacles(s))
       b.left_out("motion of obstacles", "no obstacle has motion");
     if (!s.tank_motion) b.left_out("motion of the tank", "no key tank_motion");
@@ -200,8 +196,7 @@ struct Motion {
                            : NoMemory::most_steps(s, plan);
     }
     /// Puts the obstacles at their places at `time`, until a step moves them.
-    template <class C>
-    void stand(C& c, double time) {
+    void stand(auto& c, double time) {
       if (!has_obstacles(c.scene)) return;
       const std::vector<PosedSolid<Real>> all = placed_at(c.scene, c.plan, c.p.boundary, time);
       c.put(field::solids, all);
@@ -212,8 +207,7 @@ struct Motion {
       c.put(field::solid_velocity, std::vector<SolidVelocity>(all.size()));
     }
     /// The table of the steps to come.
-    template <class C>
-    void before_steps(C& c, const StepRange& steps) {
+    void before_steps(auto& c, const StepRange& steps) {
       if (!has_motion(c.scene) || !(c.p.dt > 0)) return;
       const MotionRows<Real> rows =
           motion_rows<Real>(c.scene, c.plan, c.p.boundary, steps, c.plan.substeps);

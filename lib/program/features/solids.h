@@ -129,9 +129,8 @@ struct FindNear {
 
 struct NearSolids {
   using Passes = PassList<FindNear>;
-  template <class B>
-  static void add(const Scene& s, B& b) {
-    if (has_solids(s)) b.template lists<FindNear>();
+  static void add(const Scene& s, auto& b) {
+    if (has_solids(s)) b.lists(FindNear());
   }
 
   template <class Real>
@@ -170,8 +169,7 @@ struct NearSolids {
       if (half_cells > 0) c.put(field::near_half_cells, cells);
     }
     /// All rows count as near until lists are made.
-    template <class C>
-    void forget(C& c) {
+    void forget(auto& c) {
       if (!has_solids(c.scene)) return;
       const auto granted = c.template granted<FindNear>();
       const int n = c.host_rows();

@@ -27,8 +27,7 @@ struct Xsph {
   using Flips = pbf::Flips<field::velocity>;
   using Needs = pbf::Needs<Gathers<field::position, W::inverse_density>,
                            Gathers<other<field::velocity>>, UsesLists, Writes<field::velocity>>;
-  template <class G>
-  static void launch(const G& c) {
+  static void launch(const auto& c) {
     with_xsph(c, c[field::position], c[other<field::velocity>], c[field::velocity], nullptr,
               [&](const auto& pass) { c.pairs(pass); });
   }
@@ -54,10 +53,9 @@ struct XsphPredictSort {
 
 struct XsphViscosity {
   using Passes = PassList<Xsph, XsphPredictSort>;
-  template <class B>
-  static void add(const Scene& s, B& b) {
+  static void add(const Scene& s, auto& b) {
     if (s.viscosity && s.viscosity->xsph != 0)
-      b.template after<Xsph>();
+      b.after(Xsph());
     else
       b.left_out("xsph pass", "no key viscosity");
   }

@@ -11,8 +11,8 @@
 
 #include "kernels/shapes/shapes.h"
 #include "lib/base/text.h"
-#include "lib/scene/body_axes.h"
 #include "lib/scene/kinds.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::scene_module {
 

@@ -190,7 +190,7 @@ seeded_defect(tank_euler_missing predict lib/program/obstacle_motion.h
   [[out.pull[i][j] = Real(f.pull[i][j]);]]
   [[out.pull[i][j] = Real((f.pull[i][j] + f.pull[j][i]) / 2);]] tank)
 seeded_defect(tank_pivot_missing predict lib/program/obstacle_motion.h
-  [[out.pivot = real(f.pivot);]] [[out.pivot = {};]] tank)
+  [[out.pivot = scaled<Real>(f.pivot, 1);]] [[out.pivot = {};]] tank)
 
 # Other arithmetic, as another backend may have it.
 seeded_defect(clean_reverse_sums none kernels/lanes.h

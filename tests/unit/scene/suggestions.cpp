@@ -5,7 +5,6 @@
 
 #include "lib/scene/keys.h"
 #include "lib/scene/shorthand.h"
-#include "lib/scene/synonyms.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_samples.h"
 

@@ -1,6 +1,5 @@
 // Mistakes of writing are called by their name: units, commas, spaces, indentation, other files.
-#include "lib/scene/writing.h"
-#include "lib/scene/layout.h"
+#include "lib/scene/remedies.h"
 
 #include "lib/scene/file_kind.h"
 #include "tests/support/catch.h"

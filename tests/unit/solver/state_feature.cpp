@@ -64,10 +64,7 @@ struct SetTags {
 
 struct Heat {
   using Passes = PassList<Spread>;
-  template <class B>
-  static void add(const Scene&, B& b) {
-    b.template after<Spread>();
-  }
+  static void add(const Scene&, auto& b) { b.after(Spread()); }
   template <class Real>
   struct Memory : NoMemory {
     template <class C>

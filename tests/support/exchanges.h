@@ -8,7 +8,7 @@
 
 #include "lib/program/program.h"
 
-namespace pbf::program_module {
+namespace pbf::test {
 
 /// The exchanges for one launch of a pass. A rank makes lists for its own particles. Ghosts are its
 /// copies of the particles of other ranks within one cell of them.
@@ -55,4 +55,4 @@ std::vector<Exchange> exchanges(const Program& program, const Steps& steps, Rank
 /// The same for an update in the middle of a run: program.next and program.rest.
 std::vector<Exchange> exchanges(const Program& program);
 
-}  // namespace pbf::program_module
+}  // namespace pbf::test

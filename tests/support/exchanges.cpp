@@ -1,4 +1,4 @@
-#include "lib/program/exchanges.h"
+#include "tests/support/exchanges.h"
 
 #include <fmt/core.h>
 
@@ -6,7 +6,7 @@
 
 #include "lib/base/error.h"
 
-namespace pbf::program_module {
+namespace pbf::test {
 namespace {
 
 /// The fields that go along with the particles.
@@ -99,4 +99,4 @@ std::vector<Exchange> exchanges(const Program& program) {
   return out;
 }
 
-}  // namespace pbf::program_module
+}  // namespace pbf::test
