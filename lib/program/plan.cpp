@@ -99,7 +99,9 @@ void plan_left_out(Plan& plan, const Scene& s) {
       "solver.reproducible is false");
 }
 
-constexpr double kOtherDatasets = 48;  // of run.vtkhdf, without the columns of log and gauges
+/// Datasets of run.vtkhdf without the columns of log and gauges. About 6 more than there are: the
+/// sizes of a dataset in file and memory were fitted to this number.
+constexpr double kOtherDatasets = 47;
 
 /// Stages of a run with times in the log.
 double stages_of(const Plan& plan, const Scene& s) {
