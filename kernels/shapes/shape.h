@@ -1,6 +1,6 @@
 // What the kernels ask of a solid's shape, and what follows from its distance alone where a shape
-// does not give a closed form. line_span_by_steps() and smooth_share() are for such shapes: the
-// list has none yet, and the tests use shapes of their own (tests/support/test_shapes.h).
+// does not give a closed form: line_span_by_steps() and smooth_share().
+// tests/support/test_shapes.h has such shapes.
 #pragma once
 
 #include <concepts>

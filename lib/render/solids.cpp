@@ -66,6 +66,7 @@ struct Body {
   Solid<double> solid;
   double size;  ///< m, longer than anything that is seen
   bool flat;
+  bool by_distance = false;  ///< the shape has no faces of its own
   std::vector<Face> faces{};
 
   Double3 turned(const Double3& d) const {
@@ -149,9 +150,9 @@ void add_faces(Body& body, const shape::Cylinder<double>& s) {
 void add_faces(Body& body, const shape::Capsule<double>& s) {
   body.add_capsule(s.radius, body.half(2, s.half));
 }
-/// Of a shape without faces of its own, of which the list has none yet: where its distance is 0, in
-/// the tetrahedra of a lattice.
+/// Of a shape without faces of its own: where its distance is 0, in the tetrahedra of a lattice.
 void add_faces(Body& body, const auto& shape) {
+  body.by_distance = true;
   for (const Triangle& t : zero_surface(shape)) {
     Polygon polygon;
     for (const Vec3<double>& p : t) {
@@ -186,6 +187,35 @@ Bounds bounds_of(const View& view, const Solid<double>& solid) {
   return b;
 }
 
+/// The part of a side of the bounds that is in a body known by its distance; faces: the whole
+/// surface.
+std::vector<Polygon> section_of(const Body& body, const std::vector<Face>& faces,
+                                const Bounds& bounds, std::size_t axis, int side) {
+  const std::size_t u = (axis + 1) % 3, w = (axis + 2) % 3;
+  Double3 low = bounds.min, along_u{}, along_w{}, normal{};
+  normal[axis] = side;
+  low[axis] = (side < 0 ? bounds.min : bounds.max)[axis];
+  const auto span = [&](std::size_t k) {  // of the body within the bounds
+    double least = bounds.max[k], most = bounds.min[k];
+    for (const Face& face : faces)
+      for (const Corner& c : face.polygon)
+        least = std::min(least, c.place[k]), most = std::max(most, c.place[k]);
+    low[k] = std::max(bounds.min[k], least);
+    return std::max(std::min(bounds.max[k], most) - low[k], 0.0);
+  };
+  along_u[u] = span(u), along_w[w] = span(w);
+  const auto vec = [](const Double3& v) { return Vec3<double>{v[0], v[1], v[2]}; };
+  const auto away = [&](const Vec3<double>& x) {
+    return body.flat ? distance<2>(body.solid, x) : distance<3>(body.solid, x);
+  };
+  std::vector<Polygon> all;
+  for (const auto& part : zero_section(away, vec(low), vec(along_u), vec(along_w))) {
+    all.emplace_back();
+    for (const auto& [x, edge] : part) all.back().push_back({{x.x, x.y, x.z}, normal, edge});
+  }
+  return all;
+}
+
 std::vector<Face> faces_of(const View& view, const Solid<double>& solid) {
   const Bounds bounds = bounds_of(view, solid);
   const double size = length(view.domain_max - view.domain_min);
@@ -213,6 +243,11 @@ std::vector<Face> faces_of(const View& view, const Solid<double>& solid) {
           });
       if (!crosses) continue;
       for (Face& face : body.faces) clip(face.polygon, keep);
+      if (body.by_distance) {
+        for (Polygon& part : section_of(body, whole, bounds, axis, side))
+          body.faces.push_back({std::move(part), keep});
+        continue;
+      }
       Polygon cut = rectangle(axis, side, bounds.min, bounds.max);
       for (const Face& face : whole) clip(cut, face.inside);
       body.faces.push_back({std::move(cut), keep});

@@ -61,4 +61,48 @@ std::vector<Triangle> zero_surface(const auto& shape, int cells = 32) {
   return all;
 }
 
+/// edge: the way to the next corner is on the surface.
+struct SectionCorner {
+  Vec3<double> place;
+  bool edge;
+};
+
+/// The part of the parallelogram corner + s u + t w, s and t from 0 to 1, in which distance(x) is
+/// below 0: polygons in the triangles of a lattice, two to a cell.
+std::vector<std::vector<SectionCorner>> zero_section(const auto& distance,
+                                                     const Vec3<double>& corner,
+                                                     const Vec3<double>& u, const Vec3<double>& w,
+                                                     int cells = 64) {
+  struct Node {
+    Vec3<double> x;
+    double d;
+  };
+  std::vector<Node> nodes;
+  for (int j = 0; j <= cells; ++j)
+    for (int i = 0; i <= cells; ++i) {
+      const Vec3<double> x = corner + double(i) / cells * u + double(j) / cells * w;
+      nodes.push_back({x, distance(x)});
+    }
+  std::vector<std::vector<SectionCorner>> all;
+  const auto add = [&](const std::array<Node, 3>& corners) {
+    std::vector<SectionCorner> part;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Node &a = corners[k], &b = corners[(k + 1) % 3];
+      if (a.d <= 0) part.push_back({a.x, false});
+      if ((a.d <= 0) != (b.d <= 0))
+        part.push_back({a.x + a.d / (a.d - b.d) * (b.x - a.x), a.d <= 0});
+    }
+    if (!part.empty()) all.push_back(std::move(part));
+  };
+  for (int j = 0; j < cells; ++j)
+    for (int i = 0; i < cells; ++i) {
+      const auto node = [&](int right, int up) {
+        return nodes[std::size_t((j + up) * (cells + 1) + i + right)];
+      };
+      add({node(0, 0), node(1, 0), node(1, 1)});
+      add({node(0, 0), node(1, 1), node(0, 1)});
+    }
+  return all;
+}
+
 }  // namespace pbf::render_module

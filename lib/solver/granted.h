@@ -104,16 +104,21 @@ class Granted {
   C& c_;
 };
 
+template <class RealType, class Exec, class FeatureSet>
+template <class P>
+void StepContext<RealType, Exec, FeatureSet>::as_pass(const auto& launch) {
+  const auto granted = [&] { launch(Granted<StepContext, P>(*this)); };
+  // Only the executor of a test watches the memory that a pass accesses.
+  if constexpr (requires { exec.watched(info_of<P>(scene), arrays(), granted); })
+    exec.watched(info_of<P>(scene), arrays(), granted);
+  else
+    granted();
+}
 template <class P, class C>
 void launch_one(C& c) {
   if constexpr (requires { typename P::Flips; }) P::Flips::flip(c);
   if constexpr (C::Passes::carries_fields && reorders<P>) c.flip_carried();
-  const auto launch = [&] { P::launch(Granted<C, P>(c)); };
-  // Only the executor of a test watches the memory that a pass accesses.
-  if constexpr (requires { c.exec.watched(P::text.name, c.arrays(), launch); })
-    c.exec.watched(P::text.name, c.arrays(), launch);
-  else
-    launch();
+  c.template as_pass<P>([](const auto& granted) { P::launch(granted); });
   if constexpr (C::changes_rows && (how_of<P, field::RowNumber> & kWriting) != 0)
     c.exec.rows_changed();
 }

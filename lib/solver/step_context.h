@@ -166,11 +166,10 @@ struct StepContext {
     return all;
   }
 
-  /// For the hooks of features (lib/program/feature.h): the fields as pass P declares them.
+  /// Calls launch(c) with the fields as pass P declares them. The hooks of features
+  /// (lib/program/feature.h) launch their passes so.
   template <class P>
-  Granted<StepContext, P> granted() {
-    return Granted<StepContext, P>(*this);
-  }
+  void as_pass(const auto& launch);
   template <class F>
   auto& memory() {
     return std::get<MemoryOf<F, Real>>(features_);

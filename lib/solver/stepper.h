@@ -23,6 +23,7 @@ namespace pbf::PBF_VARIANT {
 
 /// What a measurement of the state touches.
 struct Measure {
+  static constexpr PassText text{"measure", "measure"};
   using Needs = pbf::Needs<Reads<field::position>, Reads<field::velocity>, Reads<field::density>,
                            Reads<field::counts>, SolidNeeds, UsesLists>;
 };
@@ -177,11 +178,12 @@ class Stepper {
     sum_density();
     const int n = rows();
     MeasureSums sums;
-    const auto c = c_.template granted<Measure>();
-    with_boundary(c, [&](const auto& boundary) {
-      sums = c.reduce(MeasurePass<Real, Lists, std::decay_t<decltype(boundary)>>{
-          c.p, boundary, c.lists(), c[field::position].rows(), c[field::velocity].rows(),
-          c[field::density].rows(), c[field::counts].rows(), given});
+    c_.template as_pass<Measure>([&](const auto& c) {
+      with_boundary(c, [&](const auto& boundary) {
+        sums = c.reduce(MeasurePass<Real, Lists, std::decay_t<decltype(boundary)>>{
+            c.p, boundary, c.lists(), c[field::position].rows(), c[field::velocity].rows(),
+            c[field::density].rows(), c[field::counts].rows(), given});
+      });
     });
     sums.compression_p99 = compression_percentile(
         c_.exec.count_in_bins(n, kCompressionBins, CompressionBinPass<Real>{c_.density()}),

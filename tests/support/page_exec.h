@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -72,10 +73,11 @@ class PageBuffer {
   std::size_t size_ = 0, mapped_ = 0;
 };
 
-/// How a pass has touched an array, in the order of first touches. What is read after it has been
-/// written is not seen.
+/// How a pass has touched an array, in the order of first touches, and what it declares (enum How).
+/// What is read after it has been written is not seen.
 struct Touch {
   bool read = false, written = false;
+  unsigned declared = 0;
 };
 /// By name of pass and of field ("position'": the second array).
 using Touches = std::map<std::string, std::map<std::string, Touch>>;
@@ -100,13 +102,23 @@ class PageExec : public CpuExec {
       if (a.field->life == Life::pass || a.second) forget(a);
   }
 
-  /// Called around every pass of a program (lib/solver/granted.h).
+  /// Called around every pass, also those of hooks (lib/solver/granted.h).
   template <class Launch>
-  void watched(const char* pass, const std::vector<FieldMemory>& arrays, const Launch& launch) {
+  void watched(const PassInfo& given, const std::vector<FieldMemory>& arrays,
+               const Launch& launch) {
+    // A program adds to a sort what it carries.
+    const std::vector<PassInfo>& all = plan_.program.passes;
+    const auto known = std::find_if(all.begin(), all.end(), [&](const PassInfo& p) {
+      return p.name == std::string_view(given.name);
+    });
+    const PassInfo& pass = known == all.end() ? given : *known;
     State& s = state();
-    s = {pass, &touches_[pass], arrays};
+    s = {pass.name, &touches_[pass.name], arrays};
     arrays_ = arrays;
+    for (const AccessInfo& need : pass.needs)
+      if (need.field->rows) (*s.touched)[name_of(*need.field)].declared |= need.how;
     forget_what_is_replaced(pass);
+    const std::vector<Hidden> hidden = hide_fourth_numbers(pass);
     struct sigaction now {
     }, before{};
     now.sa_sigaction = &fault;
@@ -116,11 +128,13 @@ class PageExec : public CpuExec {
     const struct Opened {  // also when the launch throws
       const std::vector<FieldMemory>& arrays;
       const struct sigaction& before;
+      const std::vector<Hidden>& hidden;
       ~Opened() {
         for (const FieldMemory& a : arrays) mprotect(a.begin, a.bytes, PROT_READ | PROT_WRITE);
         sigaction(SIGSEGV, &before, nullptr);
+        for (const Hidden& h : hidden) *h.at = h.value;
       }
-    } opened{arrays, before};
+    } opened{arrays, before, hidden};
     launch();
   }
 
@@ -154,15 +168,45 @@ class PageExec : public CpuExec {
   }
 
   /// The former contents of what the pass writes completely, or places without reading it.
-  void forget_what_is_replaced(const std::string& pass) const {
-    for (const PassInfo& p : plan_.program.passes)
-      for (const AccessInfo& need : p.needs) {
-        const FieldInfo& f = *need.field;
-        const bool places = f.life == Life::pass && (need.how & kPlaces) && !(need.how & kReading);
-        if (p.name != pass || !(need.how == kWrites || places)) continue;
-        for (const FieldMemory& a : arrays_)
-          if (a.field == &f.primary() && a.second == (f.first != nullptr)) forget(a);
+  void forget_what_is_replaced(const PassInfo& pass) const {
+    for (const AccessInfo& need : pass.needs) {
+      const FieldInfo& f = *need.field;
+      const bool places = f.life == Life::pass && (need.how & kPlaces) && !(need.how & kReading);
+      if (need.how != kWrites && !places) continue;
+      for (const FieldMemory& a : arrays_)
+        if (is(a, f)) forget(a);
+    }
+  }
+  static bool is(const FieldMemory& a, const FieldInfo& f) {
+    return a.field == &f.primary() && a.second == (f.first != nullptr);
+  }
+  /// The fourth numbers of positions, which a pass that only reads them may read if it says what
+  /// they are. Without that, they are nonsense during the pass.
+  struct Hidden {
+    float* at;
+    float value;
+  };
+  static bool may_read_fourth(const PassInfo& pass, const FieldInfo* position) {
+    return std::any_of(pass.declared.begin(), pass.declared.end(), [&](const AccessInfo& a) {
+      const bool carries =  // from one array of positions to the other (lib/program/program.cpp)
+          &a.field->primary() == &field::position && (a.how & kPlaces) && a.w == W::any;
+      return carries || (a.field == position && a.w != W::any);
+    });
+  }
+  std::vector<Hidden> hide_fourth_numbers(const PassInfo& pass) const {
+    std::vector<Hidden> hidden;
+    for (const AccessInfo& need : pass.needs)
+      for (const FieldMemory& a : arrays_) {
+        if (&need.field->primary() != &field::position || !is(a, *need.field)) continue;
+        if ((need.how & kWriting) || may_read_fourth(pass, need.field)) continue;
+        if (!forgets_.empty() && forgets_ != a.field->name) continue;
+        auto* number = reinterpret_cast<float*>(a.begin) + 3;
+        for (std::int64_t i = 0; i < plan_.particles; ++i, number += 4) {
+          hidden.push_back({number, *number});
+          *number = std::numeric_limits<float>::quiet_NaN();
+        }
       }
+    return hidden;
   }
   /// Not the rows after the last particle: they keep their contents from the start.
   void forget(const FieldMemory& a) const {

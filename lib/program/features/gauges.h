@@ -102,7 +102,8 @@ struct Gauges {
     void before_steps(auto& c, const StepRange&) {
       if (gauges_of<FlowTally>(c.scene) == 0) return;
       const bool timed = c.p.dt > 0;
-      if (timed && !sides_are_current) take_sides(c.template granted<CountFlow>(), false);
+      if (timed && !sides_are_current)
+        c.template as_pass<CountFlow>([](const auto& pass) { take_sides(pass, false); });
       sides_are_current = timed;
     }
   };

@@ -171,10 +171,11 @@ struct NearSolids {
     /// All rows count as near until lists are made.
     void forget(auto& c) {
       if (!has_solids(c.scene)) return;
-      const auto granted = c.template granted<FindNear>();
       const int n = c.host_rows();
-      granted.items(std::max(n, 1),
-                    AllNearPass<Real>{solids_of(granted).near, n});  // item 0 sets their number
+      c.template as_pass<FindNear>([&](const auto& pass) {
+        pass.items(std::max(n, 1),
+                   AllNearPass<Real>{solids_of(pass).near, n});  // item 0 sets their number
+      });
     }
   };
 };

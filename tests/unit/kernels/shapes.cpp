@@ -305,3 +305,29 @@ TEST_CASE("shapes: what is drawn of a distance lies on the surface and closes ar
   }
   CHECK(volume == Approx(4 * std::acos(-1.0) / 3 * 1.2 * 0.9 * 0.7).epsilon(0.005));
 }
+
+TEST_CASE("shapes: a section has the area of the shape in its plane, also of one with a waist") {
+  const auto area = [](const auto& distance, const V& corner, const V& u, const V& w) {
+    double sum = 0;
+    for (const auto& polygon : zero_section(distance, corner, u, w))
+      for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
+        const V a =
+            cross(polygon[k].place - polygon[0].place, polygon[k + 1].place - polygon[0].place);
+        sum += std::sqrt(dot(a, a)) / 2;
+      }
+    return sum;
+  };
+  const double pi = std::acos(-1.0);
+  // An ellipsoid where y is 0.3: half axes less by a factor, along both.
+  const Ellipsoid<double> e{{1.2, 0.9, 0.7}};
+  const auto of_ellipsoid = [&](const V& x) { return e.distance<3>(x); };
+  CHECK(area(of_ellipsoid, {-1.3, 0.3, -0.8}, {2.6, 0, 0}, {0, 0, 1.6}) ==
+        Approx(pi * 1.2 * 0.7 * (1 - 0.3 * 0.3 / (0.9 * 0.9))).epsilon(0.003));
+  CHECK(area(of_ellipsoid, {-0.1, 0.3, -0.1}, {0.2, 0, 0}, {0, 0, 0.2}) == Approx(0.04));
+  CHECK(area(of_ellipsoid, {-1.3, 0.95, -0.8}, {2.6, 0, 0}, {0, 0, 1.6}) == 0);
+  // Two balls, of radius 1 and 1.6 apart: two circles less what they have in common.
+  const TwoBalls<double> two{1, 1.6};
+  CHECK(area([&](const V& x) { return two.distance<3>(x); }, {-1.9, -1.1, 0}, {3.8, 0, 0},
+             {0, 2.2, 0}) ==
+        Approx(2 * pi - (2 * std::acos(0.8) - 0.8 * std::sqrt(4 - 1.6 * 1.6))).epsilon(0.003));
+}

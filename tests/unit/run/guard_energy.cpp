@@ -1,4 +1,5 @@
 // What the guard allows a run's energy, and what it advises.
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -45,8 +46,9 @@ std::string advice(const Scene& s, const Diagnostics* start, Alarm alarm,
   e.alarm = alarm;
   e.measure = w.first;
   e.stage = StageEvent{alarm, 3, stage, "", 0, 5, {}, {}, 1};
-  for (const PassText& pass : pass_texts())
-    if (pass.stage == stage) e.stage->remedy = pass.remedy;
+  const auto passes = pass_texts();
+  const auto of_stage = [&](const PassText& pass) { return pass.stage == stage; };
+  e.stage->remedy = std::find_if(passes.begin(), passes.end(), of_stage)->remedy;
   const std::string text = guard.text(e);
   return text.substr(text.find("To help: "));
 }
