@@ -15,7 +15,6 @@
 #include <set>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
