@@ -14,7 +14,6 @@
 #include "lib/base/output_file.h"
 #include "lib/base/own_file.h"
 #include "lib/base/stage_clock.h"
-#include "lib/campaign/batch_check.h"
 #include "lib/campaign/batch_jobs.h"
 #include "lib/campaign/batch_list.h"
 #include "lib/campaign/batch_summary.h"

@@ -1,4 +1,4 @@
-#include "lib/campaign/study_member.h"
+#include "lib/campaign/study.h"
 
 #include <fmt/core.h>
 #include <algorithm>
