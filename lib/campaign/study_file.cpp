@@ -95,21 +95,6 @@ class StudyReader : StrictReader {
   }
 
  private:
-  /// Reads a number from `low` to `high`.
-  template <class T>
-  Read number(const std::string& key, T low, T high, T& out) {
-    return [=, this, &out](const Node& n) {
-      std::conditional_t<std::is_integral_v<T>, std::int64_t, double> v = 0;
-      const NumberError e =
-          n.kind == Node::Kind::scalar ? read_number(n.text, v) : NumberError::not_a_number;
-      if (e != NumberError::none)
-        bad(n, key, n.shown() + " " + describe(e));
-      else if (v < low || v > high)
-        bad(n, key, n.shown() + " is out of range, " + to_text(low) + " .. " + to_text(high));
-      else
-        out = T(v);
-    };
-  }
   void numbers(const Node& n, const std::string& key, double low, std::vector<double>& out) {
     if (n.kind != Kind::list || n.items.empty())
       return bad(n, key, "is " + n.shown() + ", expected a list of numbers");
@@ -197,9 +182,7 @@ class StudyReader : StrictReader {
       read_map(entry, "variants",
                {{"name", [&](const Node& at) { text(at, "variants.name", v.name); }},
                 {"set", [&](const Node& at) { v.settings = settings(at, "variants.set"); }},
-                {"energy_limit", [&](const Node& at) {
-                   number("variants.energy_limit", 0., 1e9, limit.emplace())(at);
-                 }}});
+                {"energy_limit", number("variants.energy_limit", 0., 1e9, limit)}});
       if (v.name.empty()) bad(entry, "variants", "has an entry without a name");
       for (const GridStep& other : variants_)
         if (other.name == v.name) bad(entry, "variants", "has two entries named " + v.name);

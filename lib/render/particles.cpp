@@ -9,22 +9,8 @@
 namespace pbf::render_module {
 namespace {
 
-/// Row i of a field in double, whatever its type.
-double value(const FieldArray& field, std::size_t i) {
-  switch (field.type) {
-    case ScalarType::f64:
-      return field.as<double>()[i];
-    case ScalarType::i32:
-    case ScalarType::i64:
-      return static_cast<double>(field.whole(i));
-    case ScalarType::f32:
-      break;
-  }
-  return static_cast<double>(field.as<float>()[i]);
-}
-
 Double3 vector(const FieldArray& field, std::size_t i) {
-  return {value(field, 3 * i), value(field, 3 * i + 1), value(field, 3 * i + 2)};
+  return {field.number(3 * i), field.number(3 * i + 1), field.number(3 * i + 2)};
 }
 
 std::uint8_t share_of(double place) {
@@ -68,7 +54,7 @@ void check_fields(const Snapshot& snapshot, ColorBy color) {
 
 double shown_value(const FieldArray& field, const View& view, std::size_t i) {
   if (about(view.color).components == 3) return length(vector(field, i));
-  const double stored = value(field, i);
+  const double stored = field.number(i);
   if (view.color != ColorBy::compression) return stored;
   return std::max(stored / view.rest_density - 1, 0.0);
 }

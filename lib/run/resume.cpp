@@ -50,9 +50,10 @@ class Finder {
     }
     const LoadedScene record = load_stored_scene(folder_.file(kResolvedScene));
     const Scene& before = record.scene;
-    if (const std::string other = difference_of_record(record, scene_, files_); !other.empty())
+    const std::string files = recorded_files(record.text);
+    if (const std::string other = difference_of_runs(before, files, scene_, files_); !other.empty())
       refuse("", other);
-    if (recorded_files(record.text).empty() && !files_.empty())
+    if (files.empty() && !files_.empty())
       point_.notes.push_back(folder_.path() +
                              ": begun by an earlier version, which kept no SHA-256 "
                              "of its particle files: they are taken as they are");
