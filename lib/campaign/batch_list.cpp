@@ -42,7 +42,7 @@ std::vector<BatchMember> of_folder(const std::string& path) {
                         " --grid KEY=V1,V2 runs its scene with other settings");
   }
   if (all.empty()) bad_input(path, "holds no scene (*.yaml)");
-  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.scene < b.scene; });
+  std::ranges::sort(all, {}, &BatchMember::scene);
   return all;
 }
 

@@ -150,7 +150,7 @@ std::optional<TimeEstimate> estimate_time(const Plan& plan, const Scene& s,
     for (const auto& [stage, ms] : row.ms) measured[stage].push_back({double(row.particles), ms});
   }
   if (measured.empty()) return std::nullopt;
-  for (auto& [stage, sizes] : measured) std::sort(sizes.begin(), sizes.end());
+  for (auto& [stage, sizes] : measured) std::ranges::sort(sizes);
   Scene reference;  // of the calibration: h = 2 d
   const double neighbors = rest_neighbors(s) / rest_neighbors(reference);
   std::map<std::string, int> passes;  // per stage; sort and gather are timed together

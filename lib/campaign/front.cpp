@@ -18,8 +18,8 @@ FrontData read_front_data(const std::string& path) {
   FrontData data;
   data.name = std::filesystem::path(path).stem().string();
   const std::vector<std::string>& head = rows[0].cells;
-  const auto t = std::size_t(std::find(head.begin(), head.end(), "T") - head.begin());
-  const auto z = std::size_t(std::find(head.begin(), head.end(), "Z") - head.begin());
+  const auto t = std::size_t(std::ranges::find(head, "T") - head.begin());
+  const auto z = std::size_t(std::ranges::find(head, "Z") - head.begin());
   if (t == head.size() || z == head.size())
     throw Error(ExitCode::bad_input,
                 rows[0].where + ": expected a header with the columns T and Z");

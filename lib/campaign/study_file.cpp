@@ -78,7 +78,7 @@ class StudyReader : StrictReader {
     study_.scene_dir = fs::path(scene_path_).parent_path().string();
     make_members(load_scene_tree(scene_path_, base_folder), overrides);
     const auto known = study_error_measures(study_);
-    if (std::find(known.begin(), known.end(), study_.error) == known.end()) {
+    if (std::ranges::find(known, study_.error) == known.end()) {
       const std::string near = nearest_word(study_.error, known);
       problems_.add(root_.find("error")->place(), "error",
                     "\"" + study_.error + "\" is no measure of this study" +
@@ -141,7 +141,7 @@ class StudyReader : StrictReader {
                    "has " + std::to_string(values.items.size()) + " values, " +
                        axis[0].settings[0].first + " beside it " + std::to_string(axis.size()) +
                        "; keys of one entry vary together");
-      if (std::find(study_.keys.begin(), study_.keys.end(), key) != study_.keys.end())
+      if (std::ranges::find(study_.keys, key) != study_.keys.end())
         return bad(values, "grid." + key, "is given twice");
       study_.keys.push_back(key);
       axis.resize(values.items.size());

@@ -48,7 +48,7 @@ const std::vector<double>& MemberResult::series(const std::string& name) const {
 double MemberResult::seconds_median() const {
   std::vector<double> all = ratios;
   all.push_back(1);
-  std::sort(all.begin(), all.end());
+  std::ranges::sort(all);
   const std::size_t n = all.size();
   return seconds * 0.5 * (all[(n - 1) / 2] + all[n / 2]);
 }

@@ -150,7 +150,7 @@ void write_file(const std::string& path, const SavedRun& s) {
     const hid_t real = wide ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
     write_rows(file, "position", "h", real, 3, s.state.position);
     write_rows(file, "velocity", "h/s", real, 3, s.state.velocity);
-    const auto largest = std::max_element(s.state.id.begin(), s.state.id.end());
+    const auto largest = std::ranges::max_element(s.state.id);
     const bool long_ids = largest != s.state.id.end() && *largest > 2147483647;
     write_rows(file, "id", "1", long_ids ? H5T_STD_I64LE : H5T_STD_I32LE, 1, s.state.id);
     for (const StoredField& f : s.state.fields)

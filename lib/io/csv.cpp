@@ -27,8 +27,7 @@ std::string wrong_header(const std::string& header) {
     return "the header is \"" + header + "\"" + separator_remedy(header);
   if (header.find_first_not_of("0123456789+-.eE,; \t") == std::string::npos)
     return "the first line holds numbers, no header";
-  return "the first line is no header (" +
-         std::to_string(1 + std::count(header.begin(), header.end(), ',')) +
+  return "the first line is no header (" + std::to_string(1 + std::ranges::count(header, ',')) +
          " columns; not shown, for the file may be anything)";
 }
 

@@ -227,7 +227,7 @@ std::vector<std::string> RunReader::gauges() const {
 
 std::vector<double> RunReader::gauge(const std::string& name) const {
   const std::vector<std::string> all = gauges();
-  if (std::find(all.begin(), all.end(), name) == all.end()) return {};
+  if (std::ranges::find(all, name) == all.end()) return {};
   return with_file(path_, "cannot read the gauges", [&](const h5::Reading& file) {
     const h5::Group group = h5::open_group(file, kGauges);
     hsize_t rows = std::numeric_limits<hsize_t>::max();

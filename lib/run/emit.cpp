@@ -97,7 +97,7 @@ class FreePlaces {
     if (plane_) x[1] = *plane_;
     const Vec3<double> at{(x[0] - origin_[0]) / h_, (x[1] - origin_[1]) / h_,
                           (x[2] - origin_[2]) / h_};
-    return std::none_of(solids_.begin(), solids_.end(), [&](const Solid<double>& s) {
+    return std::ranges::none_of(solids_, [&](const Solid<double>& s) {
       return (plane_ ? distance<2>(s, at) : distance<3>(s, at)) < least_;
     });
   }

@@ -220,7 +220,7 @@ class Finder {
   void refuse_older_log(const RunReader& file, const RunInfo& info) const {
     const std::vector<std::string> there = file.log_columns();
     for (const auto& column : run_layout::log_columns())
-      if (std::find(there.begin(), there.end(), column.name) == there.end())
+      if (std::ranges::find(there, column.name) == there.end())
         bad("cannot resume: run.vtkhdf was written by pbf " + info.program_version + " (" +
             info.commit + "), whose log has no column " + column.name +
             " and whose results are others" + kOtherwise);

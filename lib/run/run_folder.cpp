@@ -50,8 +50,7 @@ bool own_file(const std::string& name) {
                                        "checkpoint.h5.tmp",
                                        "guard_state.h5",
                                        "guard_scene.yaml"};
-  return name.starts_with(kTemporaryPrefix) ||
-         std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
+  return name.starts_with(kTemporaryPrefix) || std::ranges::find(kNames, name) != std::end(kNames);
 }
 
 /// What is in a folder and has such a name, in alphabetical order.

@@ -83,7 +83,7 @@ std::vector<std::string> missing(const std::vector<std::string>& x,
                                  const std::vector<std::string>& y) {
   std::vector<std::string> out;
   for (const std::string& name : x)
-    if (std::find(y.begin(), y.end(), name) == y.end()) out.push_back(name);
+    if (std::ranges::find(y, name) == y.end()) out.push_back(name);
   return out;
 }
 
@@ -130,8 +130,7 @@ ComparePart compare_extents(const ComparedRun& a, const ComparedRun& b, const Fr
 void note_fields(CompareResult& result, const ComparedRun& a, const ComparedRun& b) {
   const auto x = a.reader.fields(), y = b.reader.fields();
   for (const char* name : {"velocity", "density"})
-    if (std::find(x.begin(), x.end(), name) == x.end() &&
-        std::find(y.begin(), y.end(), name) == y.end())
+    if (std::ranges::find(x, name) == x.end() && std::ranges::find(y, name) == y.end())
       result.notes.push_back(std::string("neither file has the field ") + name +
                              ": what needs it is not compared (output.fields writes it)");
 }
@@ -164,7 +163,7 @@ Snapshot ComparedRun::frame(std::int64_t k) const {
         throw Error(ExitCode::io, path + ": frame " + std::to_string(k) + ": " + name +
                                       " has not the type and the columns that pbf writes");
   const std::vector<std::int64_t> id = ids_of(s);
-  if (std::adjacent_find(id.begin(), id.end(), std::greater_equal<>()) != id.end())
+  if (std::ranges::adjacent_find(id, std::greater_equal<>()) != id.end())
     throw Error(ExitCode::io, path + ": frame " + std::to_string(k) + ": ids do not ascend");
   return s;
 }
