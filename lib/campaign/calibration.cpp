@@ -107,12 +107,11 @@ std::vector<StageCosts> read_calibration(const std::string& path) {
   const std::string remedy = "; remove the file and run pbf bench --calibrate again";
   const std::vector<CsvRow> lines = read_csv(path, remedy);
   if (!lines.empty() && lines[0].cells != kColumns)
-    throw Error(ExitCode::bad_input, lines[0].where + ": the columns are " +
-                                         joined(lines[0].cells, ",") + ", expected " +
-                                         joined(kColumns, ",") + remedy);
+    bad_input(lines[0].where, "the columns are " + joined(lines[0].cells, ",") + ", expected " +
+                                  joined(kColumns, ",") + remedy);
   for (std::size_t k = 1; k < lines.size(); ++k)
     if (!add_line(lines[k].cells, rows))
-      throw Error(ExitCode::bad_input, lines[k].where + ": not a line of a calibration" + remedy);
+      bad_input(lines[k].where, "not a line of a calibration" + remedy);
   return rows;
 }
 

@@ -88,9 +88,9 @@ class StudyReader : StrictReader {
     problems_.raise();
     for (const StudyMember& m : study_.members)
       if (study_.from >= m.scene.time.end)
-        throw Error(ExitCode::bad_input, root_.find("from")->place() + ": from: " +
-                                             to_text(study_.from) + " s is not before time.end (" +
-                                             to_text(m.scene.time.end) + " s) of " + m.label);
+        bad_input(root_.find("from")->place() + ": from",
+                  to_text(study_.from) + " s is not before time.end (" + to_text(m.scene.time.end) +
+                      " s) of " + m.label);
     return study_;
   }
 

@@ -106,7 +106,7 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
     if (stop()) return std::nullopt;
     start = prepare(scene, study.scene_dir, {.fits = false});  // it did
     const std::string changed = files_difference(files, start.particles.files);
-    if (!changed.empty()) throw Error(ExitCode::bad_input, "study: while it ran, " + changed);
+    if (!changed.empty()) bad_input("study", "while it ran, " + changed);
     const std::unique_ptr<Solver> solver = solver_of(start);
     Session again(*solver);
     again.run(early);

@@ -167,10 +167,9 @@ std::vector<std::string> RunReader::fields() const {
 
 Snapshot RunReader::frame(std::int64_t k) const {
   if (k < 0 || k >= frames())
-    throw Error(ExitCode::bad_input,
-                path_ + ": there is no frame " + std::to_string(k) +
-                    (frames() ? "; the frames are 0.." + std::to_string(frames() - 1)
-                              : std::string("; the file has no frames yet")));
+    bad_input(path_, "there is no frame " + std::to_string(k) +
+                         (frames() ? "; the frames are 0.." + std::to_string(frames() - 1)
+                                   : "; the file has no frames yet"));
   const auto at = static_cast<std::size_t>(k);
   const auto count = static_cast<std::size_t>(in_.counts[at]);
   return with_file(path_, "cannot read frame " + std::to_string(k), [&](const h5::Reading& file) {

@@ -1,5 +1,6 @@
 #include "lib/render/particles.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 
@@ -25,18 +26,18 @@ void check_field(const Snapshot& snapshot, const std::string& name, int componen
     std::string has;
     for (const auto& f : snapshot.fields) has += (has.empty() ? "" : ", ") + f.name;
     throw Error(ExitCode::bad_input,
-                what + " needs the field " + name +
-                    ", but the snapshot has only: " + (has.empty() ? "nothing" : has) + "; add " +
-                    name + " to output.fields or choose another render.color");
+                fmt::format("{} needs the field {}, but the snapshot has only: {}; add {} to "
+                            "output.fields or choose another render.color",
+                            what, name, has.empty() ? "nothing" : has, name));
   }
   if (field->components != components ||
       field->bytes.size() !=
           snapshot.count * static_cast<std::size_t>(components) * size_of(field->type))
-    throw Error(ExitCode::bad_input, "the field " + name + " has " +
-                                         std::to_string(field->components) + " components and " +
-                                         std::to_string(field->bytes.size()) + " bytes; " +
-                                         std::to_string(snapshot.count) + " particles with " +
-                                         std::to_string(components) + " components were expected");
+    throw Error(
+        ExitCode::bad_input,
+        fmt::format("the field {} has {} components and {} bytes; {} particles with {} "
+                    "components were expected",
+                    name, field->components, field->bytes.size(), snapshot.count, components));
 }
 
 }  // namespace

@@ -96,9 +96,7 @@ class Finder {
   }
 
  private:
-  [[noreturn]] void bad(const std::string& what) const {
-    throw Error(ExitCode::bad_input, folder_.path() + ": " + what);
-  }
+  [[noreturn]] void bad(const std::string& what) const { bad_input(folder_.path(), what); }
   /// Refuses a file of the folder that belongs to another scene or to other files.
   void refuse_other(const std::string& name, const std::string& scene,
                     const std::string& files) const {
@@ -107,9 +105,9 @@ class Finder {
     if (!difference.empty()) refuse(name, difference);
   }
   [[noreturn]] void refuse(const std::string& name, const std::string& difference) const {
-    throw Error(ExitCode::bad_input,
-                (name.empty() ? folder_.path() : folder_.file(name)) + ": cannot resume: " +
-                    (name.empty() ? "" : "it is of another scene: ") + difference + kSame);
+    bad_input(name.empty() ? folder_.path() : folder_.file(name),
+              (name.empty() ? "cannot resume: " : "cannot resume: it is of another scene: ") +
+                  difference + kSame);
   }
   /// Note on the work that is lost without a checkpoint.
   std::string from_the_start(const Scene& before, std::int64_t done) const {
@@ -166,8 +164,8 @@ class Finder {
     refuse_other("checkpoint.h5", s.scene, s.files);
     if (!fits(s.state, plan.capacity, changes_rows(scene_)) ||
         s.state.precision != scene_.precision)
-      throw Error(ExitCode::io, folder_.path() +
-                                    "/checkpoint.h5: holds other particles or another precision "
+      throw Error(ExitCode::io, folder_.file("checkpoint.h5") +
+                                    ": holds other particles or another precision "
                                     "than the scene; remove it to start again");
   }
 
