@@ -14,7 +14,6 @@
 #include "lib/base/output_file.h"
 #include "lib/base/own_file.h"
 #include "lib/base/stage_clock.h"
-#include "lib/campaign/batch_check.h"
 #include "lib/campaign/batch_jobs.h"
 #include "lib/campaign/batch_list.h"
 #include "lib/campaign/batch_summary.h"
@@ -151,7 +150,8 @@ class Batch {
       const LoadedScene loaded = load_scene_or_run(m.scene, overrides, o_.base_folder);
       const LoadedScene record = load_stored_scene(folder + "/" + kResolvedScene);
       const StartPoints points(loaded.scene, loaded.folder);
-      const std::string other = difference_of_record(record, loaded.scene, points.files());
+      const std::string other = difference_of_runs(record.scene, recorded_files(record.text),
+                                                   loaded.scene, points.files());
       if (!other.empty())
         throw Error(ExitCode::bad_input, folder + " is of another scene: " + other + kOther);
       const std::string file = difference_of_file(folder, loaded.scene);

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "lib/campaign/batch_check.h"
+#include "lib/campaign/batch_list.h"
 
 namespace pbf::app_module {
 

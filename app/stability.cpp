@@ -19,7 +19,6 @@
 #include "lib/base/text.h"
 #include "lib/campaign/stability.h"
 #include "lib/campaign/stability_map.h"
-#include "lib/campaign/stability_report.h"
 #include "lib/run/signals.h"
 
 namespace pbf::app_module {

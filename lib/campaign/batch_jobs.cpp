@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -28,9 +29,8 @@ std::string error_line(int fd) {
   const std::size_t at = text.rfind(mark);
   if (at == std::string::npos) return {};
   std::string line = text.substr(at + mark.size());
-  while (!line.empty() && line.back() == '\n') line.pop_back();
-  for (char& c : line)
-    if (c == '\n') c = ' ';
+  line.erase(line.find_last_not_of('\n') + 1);
+  std::ranges::replace(line, '\n', ' ');
   return line;
 }
 

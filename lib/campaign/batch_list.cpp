@@ -1,11 +1,13 @@
 #include "lib/campaign/batch_list.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -14,6 +16,8 @@
 #include "lib/base/plain_text.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_path.h"
+#include "lib/run/load_run.h"
+#include "lib/run/start.h"
 #include "lib/scene/file_kind.h"
 #include "lib/scene/scene_name.h"
 
@@ -22,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostRuns = 100000;
+constexpr std::size_t kMostRuns = 100000, kMostTold = 10;
 
 std::vector<BatchMember> of_folder(const std::string& path) {
   std::vector<BatchMember> all;
@@ -38,7 +42,7 @@ std::vector<BatchMember> of_folder(const std::string& path) {
                         " --grid KEY=V1,V2 runs its scene with other settings");
   }
   if (all.empty()) bad_input(path, "holds no scene (*.yaml)");
-  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.scene < b.scene; });
+  std::ranges::sort(all, {}, &BatchMember::scene);
   return all;
 }
 
@@ -101,6 +105,15 @@ void name_all(std::vector<BatchMember>& all) {
   }
 }
 
+void add_needs(const BatchMember& m, std::vector<std::string> overrides,
+               const std::string& base_folder, bool here, BatchNeeds& needs) {
+  overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
+  const Start start = prepare(load_scene_or_run(m.scene, overrides, base_folder),
+                              {.fits = here, .particles = false});
+  needs.host_bytes = std::max(needs.host_bytes, start.plan.memory.host_peak());
+  needs.device |= about(start.scene().backend).on_device;
+}
+
 }  // namespace
 
 std::string batch_stem(const std::string& input) {
@@ -143,6 +156,25 @@ std::vector<BatchMember> batch_members(const std::string& input, std::vector<Gri
   }
   name_all(all);
   return all;
+}
+
+BatchNeeds check_members(const std::vector<BatchMember>& members,
+                         const std::vector<std::string>& overrides, const std::string& base_folder,
+                         bool here) {
+  BatchNeeds needs;
+  std::optional<ExitCode> code;
+  std::size_t bad = 0;
+  std::string text;
+  for (const BatchMember& m : members) try {
+      add_needs(m, overrides, base_folder, here, needs);
+    } catch (const Error& e) {
+      if (!code) code = e.code();
+      if (++bad <= kMostTold) text += "\n  " + m.name + ": " + e.what();
+    }
+  if (!code) return needs;
+  if (bad > kMostTold) text += fmt::format("\n  and {} more", bad - kMostTold);
+  throw Error(*code, fmt::format("batch: {} of {} runs cannot start, and none was started:{}", bad,
+                                 members.size(), text));
 }
 
 }  // namespace pbf::campaign_module

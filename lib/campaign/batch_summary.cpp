@@ -118,7 +118,7 @@ std::string batch_summary(const std::vector<BatchMember>& members,
   std::map<std::string, std::string> units = units_of_results();
   std::vector<std::string> of_keys;
   for (const std::string& key : keys) {
-    const bool taken = std::find(columns.begin(), columns.end(), key) != columns.end();
+    const bool taken = std::ranges::find(columns, key) != columns.end();
     of_keys.push_back((taken ? "set." : "") + key);
     units[of_keys.back()] = unit_of_key(key);
   }

@@ -52,8 +52,7 @@ std::vector<StageTime> per_update(const std::vector<StageTime>& before,
                                   const std::vector<StageTime>& after, double updates) {
   std::vector<StageTime> out;
   for (const StageTime& a : after) {
-    const auto* stage = std::find_if(std::begin(kStages), std::end(kStages),
-                                     [&](const Stage& s) { return a.name == s.name; });
+    const auto* stage = std::ranges::find(kStages, a.name, &Stage::name);
     if (stage == std::end(kStages) || !stage->of_update) continue;
     double seconds = a.seconds;
     for (const StageTime& b : before)
@@ -74,8 +73,8 @@ void time_state(Session& session, const BenchSettings& s, BenchRow& row) {
     ms.push_back((session.seconds().wall - start.wall) * 1e3 / s.updates);
     cpu_ms.push_back((session.seconds().cpu - start.cpu) * 1e3 / s.updates);
   }
-  std::sort(ms.begin(), ms.end());
-  std::sort(cpu_ms.begin(), cpu_ms.end());
+  std::ranges::sort(ms);
+  std::ranges::sort(cpu_ms);
   row.cpu_ms_median = cpu_ms[cpu_ms.size() / 2];
   row.ms_median = ms[ms.size() / 2];
   row.ms_min = ms.front();

@@ -1,14 +1,14 @@
 #include "lib/campaign/calibration.h"
 
-#include <fcntl.h>
 #include <fmt/core.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <tuple>
 
 #include "lib/base/error.h"
@@ -24,21 +24,12 @@ const std::vector<std::string> kColumns{"backend",   "precision", "threads", "de
                                         "particles", "stage",     "ms"};
 
 /// Only one program at a time changes the folder. Does nothing on file systems without locks.
-class FolderLock {
- public:
-  explicit FolderLock(const std::string& folder)
-      : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (fd_ >= 0) ::flock(fd_, LOCK_EX);
-  }
-  ~FolderLock() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int fd_;
-};
+std::unique_ptr<std::FILE, int (*)(std::FILE*)> locked(const std::string& folder) {
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(folder.c_str(), "re"),
+                                                       std::fclose);
+  if (file) ::flock(::fileno(file.get()), LOCK_EX);
+  return file;
+}
 
 /// The key of a measured state.
 auto case_of(const StageCosts& c) {
@@ -116,12 +107,11 @@ std::vector<StageCosts> read_calibration(const std::string& path) {
   const std::string remedy = "; remove the file and run pbf bench --calibrate again";
   const std::vector<CsvRow> lines = read_csv(path, remedy);
   if (!lines.empty() && lines[0].cells != kColumns)
-    throw Error(ExitCode::bad_input, lines[0].where + ": the columns are " +
-                                         joined(lines[0].cells, ",") + ", expected " +
-                                         joined(kColumns, ",") + remedy);
+    bad_input(lines[0].where, "the columns are " + joined(lines[0].cells, ",") + ", expected " +
+                                  joined(kColumns, ",") + remedy);
   for (std::size_t k = 1; k < lines.size(); ++k)
     if (!add_line(lines[k].cells, rows))
-      throw Error(ExitCode::bad_input, lines[k].where + ": not a line of a calibration" + remedy);
+      bad_input(lines[k].where, "not a line of a calibration" + remedy);
   return rows;
 }
 
@@ -132,7 +122,7 @@ void store_calibration(const std::string& path, const std::vector<StageCosts>& r
   if (error)
     throw Error(ExitCode::io, folder.string() + ": the folder of the calibration cannot be made: " +
                                   error.message());
-  const FolderLock lock(folder.empty() ? "." : folder.string());
+  const auto lock = locked(folder.empty() ? "." : folder.string());
   std::vector<StageCosts> all = read_calibration(path);
   for (const StageCosts& row : rows)
     std::erase_if(all, [&](const StageCosts& old) { return case_of(old) == case_of(row); });
@@ -159,7 +149,7 @@ std::optional<TimeEstimate> estimate_time(const Plan& plan, const Scene& s,
     for (const auto& [stage, ms] : row.ms) measured[stage].push_back({double(row.particles), ms});
   }
   if (measured.empty()) return std::nullopt;
-  for (auto& [stage, sizes] : measured) std::sort(sizes.begin(), sizes.end());
+  for (auto& [stage, sizes] : measured) std::ranges::sort(sizes);
   Scene reference;  // of the calibration: h = 2 d
   const double neighbors = rest_neighbors(s) / rest_neighbors(reference);
   std::map<std::string, int> passes;  // per stage; sort and gather are timed together

@@ -14,27 +14,25 @@ namespace pbf::campaign_module {
 FrontData read_front_data(const std::string& path) {
   note_input(path);
   const std::vector<CsvRow> rows = read_csv(path);
-  if (rows.size() < 2) throw Error(ExitCode::bad_input, path + ": holds no data");
+  if (rows.size() < 2) bad_input(path, "holds no data");
   FrontData data;
   data.name = std::filesystem::path(path).stem().string();
   const std::vector<std::string>& head = rows[0].cells;
-  const auto t = std::size_t(std::find(head.begin(), head.end(), "T") - head.begin());
-  const auto z = std::size_t(std::find(head.begin(), head.end(), "Z") - head.begin());
+  const auto t = std::size_t(std::ranges::find(head, "T") - head.begin());
+  const auto z = std::size_t(std::ranges::find(head, "Z") - head.begin());
   if (t == head.size() || z == head.size())
-    throw Error(ExitCode::bad_input,
-                rows[0].where + ": expected a header with the columns T and Z");
+    bad_input(rows[0].where, "expected a header with the columns T and Z");
   for (std::size_t k = 1; k < rows.size(); ++k) {
     const auto number = [&](std::size_t column) {
       double value = 0;
       const std::string& text = rows[k].cells[column];
       if (const NumberError e = read_number(text, value);
           e != NumberError::none && e != NumberError::too_small)
-        throw Error(ExitCode::bad_input, rows[k].where + ": \"" + text + "\" " + describe(e));
+        bad_input(rows[k].where, "\"" + text + "\" " + describe(e));
       return value;
     };
     const double at = number(t);
-    if (!data.T.empty() && at < data.T.back())
-      throw Error(ExitCode::bad_input, rows[k].where + ": T must not decrease");
+    if (!data.T.empty() && at < data.T.back()) bad_input(rows[k].where, "T must not decrease");
     data.T.push_back(at);
     data.Z.push_back(number(z));
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lib/campaign/grid.h"
+#include "lib/io/table.h"
 #include "lib/run/monitor.h"
 #include "lib/run/start.h"
 
@@ -118,5 +119,15 @@ std::optional<Course> run_course(Start start, const std::function<bool()>& stop 
 
 /// Least distance of two particles, in the unit of `x` (3 per particle); infinite for one particle.
 double nearest_distance(const std::vector<double>& x);
+
+/// Two lines for users: the verdict, the requirements of the case, and what happened.
+std::string stability_text(const StabilityRow& r);
+
+/// One row per case.
+Table stability_table(const std::vector<StabilityRow>& rows, const StabilityOptions& o);
+
+/// JUnit XML with a test case per case. seconds: of the whole suite, wall time.
+std::string stability_junit(const std::vector<StabilityRow>& rows, const StabilityOptions& o,
+                            double seconds);
 
 }  // namespace pbf::campaign_module

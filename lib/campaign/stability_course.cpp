@@ -76,8 +76,7 @@ double nearest_distance(const std::vector<double>& x) {
   const std::size_t n = x.size() / 3;
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return x[3 * a] < x[3 * b]; });
+  std::ranges::sort(order, {}, [&](std::size_t i) { return x[3 * i]; });
   double best = std::numeric_limits<double>::infinity();
   // Sorted by x, only particles within the best distance along x can be closer.
   for (std::size_t i = 0; i < n; ++i)

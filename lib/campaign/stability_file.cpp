@@ -6,7 +6,6 @@
 #include "lib/campaign/stability.h"
 #include "lib/campaign/strict_reader.h"
 #include "lib/scene/load.h"
-#include "lib/scene/number.h"
 
 namespace pbf::campaign_module {
 namespace {
@@ -33,25 +32,7 @@ class SuiteReader : StrictReader {
     return [this, &out](const Node& n) { text(n, "", out); };
   }
   /// Reads a number that is not negative into a double or an optional.
-  template <class Out>
-  Read number(Out& out) {
-    return [this, &out](const Node& n) {
-      double v = 0;
-      if (n.kind != Node::Kind::scalar || read_number(n.text, v) != NumberError::none || v < 0)
-        return bad(n, "", "expected a number not below 0, got " + n.shown());
-      out = v;
-    };
-  }
-  /// Reads an exit code.
-  Read exit_code(std::optional<int>& out) {
-    return [this, &out](const Node& n) {
-      std::int64_t v = 0;
-      if (n.kind != Node::Kind::scalar || read_number(n.text, v) != NumberError::none || v < 0 ||
-          v > 255)
-        return bad(n, "", "expected an exit code, 0 to 255, got " + n.shown());
-      out = int(v);
-    };
-  }
+  Read number(auto& out) { return StrictReader::number("", 0., 1e9, out); }
   Read keys(Settings& out) {
     return [this, &out](const Node& n) { out = settings(n, ""); };
   }
@@ -80,7 +61,7 @@ class SuiteReader : StrictReader {
                                              {"through", number(m.through)},
                                              {"loads", number(m.loads)},
                                              {"like", word(m.like)},
-                                             {"error", exit_code(m.error)},
+                                             {"error", StrictReader::number("", 0, 255, m.error)},
                                              {"says", word(m.says)},
                                              {"warns", word(m.warns)},
                                              {"guard", word(m.guard)}});

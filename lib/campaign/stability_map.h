@@ -45,4 +45,7 @@ std::vector<MapCell> map_cells(const StabilityMap& map);
 /// an invalid scene.
 std::optional<MapCell> run_map_cell(const StabilityMap& map, MapCell cell);
 
+/// One row per run of a map.
+Table map_table(const std::vector<MapCell>& cells, const StabilityMap& map);
+
 }  // namespace pbf::campaign_module

@@ -1,7 +1,7 @@
-#include "lib/campaign/stability_report.h"
-
+// Results of the stability suite and of stability maps as text, tables and JUnit XML.
 #include <fmt/core.h>
 
+#include "lib/campaign/stability_map.h"
 #include "lib/io/junit.h"
 
 namespace pbf::campaign_module {

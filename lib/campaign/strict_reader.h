@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lib/campaign/grid.h"
+#include "lib/scene/number.h"
 #include "lib/scene/problems.h"
 #include "lib/scene/yaml_tree.h"
 
@@ -31,6 +32,21 @@ class StrictReader {
   /// A path relative to the folder of the file that is read.
   std::string file(const Node& n, const std::string& key);
   Settings settings(const Node& n, const std::string& key);
+  /// Reads a number from `low` to `high` into a number or an optional.
+  template <class T>
+  Read number(const std::string& key, T low, T high, auto& out) {
+    return [=, this, &out](const Node& n) {
+      std::conditional_t<std::is_integral_v<T>, std::int64_t, double> v = 0;
+      const NumberError e =
+          n.kind == Node::Kind::scalar ? read_number(n.text, v) : NumberError::not_a_number;
+      if (e != NumberError::none)
+        bad(n, key, n.shown() + " " + describe(e));
+      else if (v < low || v > high)
+        bad(n, key, n.shown() + " is out of range, " + to_text(low) + " .. " + to_text(high));
+      else
+        out = T(v);
+    };
+  }
 
   std::string path_;
   Problems problems_;

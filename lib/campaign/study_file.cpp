@@ -78,7 +78,7 @@ class StudyReader : StrictReader {
     study_.scene_dir = fs::path(scene_path_).parent_path().string();
     make_members(load_scene_tree(scene_path_, base_folder), overrides);
     const auto known = study_error_measures(study_);
-    if (std::find(known.begin(), known.end(), study_.error) == known.end()) {
+    if (std::ranges::find(known, study_.error) == known.end()) {
       const std::string near = nearest_word(study_.error, known);
       problems_.add(root_.find("error")->place(), "error",
                     "\"" + study_.error + "\" is no measure of this study" +
@@ -88,28 +88,13 @@ class StudyReader : StrictReader {
     problems_.raise();
     for (const StudyMember& m : study_.members)
       if (study_.from >= m.scene.time.end)
-        throw Error(ExitCode::bad_input, root_.find("from")->place() + ": from: " +
-                                             to_text(study_.from) + " s is not before time.end (" +
-                                             to_text(m.scene.time.end) + " s) of " + m.label);
+        bad_input(root_.find("from")->place() + ": from",
+                  to_text(study_.from) + " s is not before time.end (" + to_text(m.scene.time.end) +
+                      " s) of " + m.label);
     return study_;
   }
 
  private:
-  /// Reads a number from `low` to `high`.
-  template <class T>
-  Read number(const std::string& key, T low, T high, T& out) {
-    return [=, this, &out](const Node& n) {
-      std::conditional_t<std::is_integral_v<T>, std::int64_t, double> v = 0;
-      const NumberError e =
-          n.kind == Node::Kind::scalar ? read_number(n.text, v) : NumberError::not_a_number;
-      if (e != NumberError::none)
-        bad(n, key, n.shown() + " " + describe(e));
-      else if (v < low || v > high)
-        bad(n, key, n.shown() + " is out of range, " + to_text(low) + " .. " + to_text(high));
-      else
-        out = T(v);
-    };
-  }
   void numbers(const Node& n, const std::string& key, double low, std::vector<double>& out) {
     if (n.kind != Kind::list || n.items.empty())
       return bad(n, key, "is " + n.shown() + ", expected a list of numbers");
@@ -156,7 +141,7 @@ class StudyReader : StrictReader {
                    "has " + std::to_string(values.items.size()) + " values, " +
                        axis[0].settings[0].first + " beside it " + std::to_string(axis.size()) +
                        "; keys of one entry vary together");
-      if (std::find(study_.keys.begin(), study_.keys.end(), key) != study_.keys.end())
+      if (std::ranges::find(study_.keys, key) != study_.keys.end())
         return bad(values, "grid." + key, "is given twice");
       study_.keys.push_back(key);
       axis.resize(values.items.size());
@@ -197,9 +182,7 @@ class StudyReader : StrictReader {
       read_map(entry, "variants",
                {{"name", [&](const Node& at) { text(at, "variants.name", v.name); }},
                 {"set", [&](const Node& at) { v.settings = settings(at, "variants.set"); }},
-                {"energy_limit", [&](const Node& at) {
-                   number("variants.energy_limit", 0., 1e9, limit.emplace())(at);
-                 }}});
+                {"energy_limit", number("variants.energy_limit", 0., 1e9, limit)}});
       if (v.name.empty()) bad(entry, "variants", "has an entry without a name");
       for (const GridStep& other : variants_)
         if (other.name == v.name) bad(entry, "variants", "has two entries named " + v.name);

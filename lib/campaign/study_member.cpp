@@ -1,4 +1,4 @@
-#include "lib/campaign/study_member.h"
+#include "lib/campaign/study.h"
 
 #include <fmt/core.h>
 #include <algorithm>
@@ -48,7 +48,7 @@ const std::vector<double>& MemberResult::series(const std::string& name) const {
 double MemberResult::seconds_median() const {
   std::vector<double> all = ratios;
   all.push_back(1);
-  std::sort(all.begin(), all.end());
+  std::ranges::sort(all);
   const std::size_t n = all.size();
   return seconds * 0.5 * (all[(n - 1) / 2] + all[n / 2]);
 }
@@ -106,7 +106,7 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
     if (stop()) return std::nullopt;
     start = prepare(scene, study.scene_dir, {.fits = false});  // it did
     const std::string changed = files_difference(files, start.particles.files);
-    if (!changed.empty()) throw Error(ExitCode::bad_input, "study: while it ran, " + changed);
+    if (!changed.empty()) bad_input("study", "while it ran, " + changed);
     const std::unique_ptr<Solver> solver = solver_of(start);
     Session again(*solver);
     again.run(early);

@@ -11,7 +11,7 @@
 #include "lib/base/output_file.h"
 #include "lib/base/sha256.h"
 #include "lib/base/version.h"
-#include "lib/campaign/study_member.h"
+#include "lib/campaign/study.h"
 #include "lib/exec/devices.h"
 #include "lib/io/run_layout.h"
 #include "lib/run/emit.h"

@@ -60,7 +60,7 @@ double reference_distance(const MemberResult& r, const MemberResult& reference, 
 
 std::size_t index_of(const Study& study, const std::string& name) {
   const auto names = study_error_measures(study);
-  return std::size_t(std::find(names.begin(), names.end(), name) - names.begin());
+  return std::size_t(std::ranges::find(names, name) - names.begin());
 }
 
 /// A value as written in the study file; a number if it is one.

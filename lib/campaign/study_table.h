@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lib/campaign/study_member.h"
+#include "lib/campaign/study.h"
 #include "lib/io/table.h"
 
 namespace pbf::campaign_module {

@@ -13,7 +13,7 @@ namespace {
 std::vector<std::string> variants_of(const std::vector<StudyRow>& rows) {
   std::vector<std::string> names;
   for (const StudyRow& row : rows)
-    if (std::find(names.begin(), names.end(), row.member->variant) == names.end())
+    if (std::ranges::find(names, row.member->variant) == names.end())
       names.push_back(row.member->variant);
   return names;
 }

@@ -108,11 +108,6 @@ auto reading(hid_t file) {
   };
 }
 
-void write_steps(hid_t file, const StepHistory& s) {
-  for_each_step(s, writing(file));
-  h5::write_numbers(file, "step_updates", s.updates.data(), s.updates.size());
-}
-
 StepHistory read_steps(hid_t file) {
   StepHistory s;
   for_each_step(s, reading(file));
@@ -120,12 +115,6 @@ StepHistory read_steps(hid_t file) {
   if (s.level < 0 || s.level >= std::int64_t(s.updates.size()))
     throw h5::Failure("a level of the step that cannot be");
   return s;
-}
-
-/// Numbers of the precision if the solver's are, otherwise of 8 bytes.
-void write_field(hid_t file, const StoredField& f, hid_t real) {
-  write_rows(file, f.name.c_str(), "1", f.real ? real : H5T_IEEE_F64LE, hsize_t(f.numbers),
-             f.values);
 }
 
 /// The rows of a field of the state besides the particles' places.
@@ -161,15 +150,20 @@ void write_file(const std::string& path, const SavedRun& s) {
     const hid_t real = wide ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
     write_rows(file, "position", "h", real, 3, s.state.position);
     write_rows(file, "velocity", "h/s", real, 3, s.state.velocity);
-    const auto largest = std::max_element(s.state.id.begin(), s.state.id.end());
+    const auto largest = std::ranges::max_element(s.state.id);
     const bool long_ids = largest != s.state.id.end() && *largest > 2147483647;
     write_rows(file, "id", "1", long_ids ? H5T_STD_I64LE : H5T_STD_I32LE, 1, s.state.id);
-    for (const StoredField& f : s.state.fields) write_field(file, f, real);
+    for (const StoredField& f : s.state.fields)
+      write_rows(file, f.name.c_str(), "1", f.real ? real : H5T_IEEE_F64LE, hsize_t(f.numbers),
+                 f.values);
     h5::write_number(file, "format_version", kFormat);
     h5::write_text(file, "precision", word(s.state.precision));
     for_each_number(s, writing(file));
     if (s.released) h5::write_number(file, "released_energy", *s.released);
-    if (s.steps) write_steps(file, *s.steps);
+    if (s.steps) {
+      for_each_step(*s.steps, writing(file));
+      h5::write_numbers(file, "step_updates", s.steps->updates.data(), s.steps->updates.size());
+    }
     h5::write_text(file, "resolved_scene", s.scene);
     h5::write_text(file, "scene_files", s.files);
     h5::write_text(file, "scene_sha256", scene_digest(s.scene, s.files));

@@ -27,8 +27,7 @@ std::string wrong_header(const std::string& header) {
     return "the header is \"" + header + "\"" + separator_remedy(header);
   if (header.find_first_not_of("0123456789+-.eE,; \t") == std::string::npos)
     return "the first line holds numbers, no header";
-  return "the first line is no header (" +
-         std::to_string(1 + std::count(header.begin(), header.end(), ',')) +
+  return "the first line is no header (" + std::to_string(1 + std::ranges::count(header, ',')) +
          " columns; not shown, for the file may be anything)";
 }
 
@@ -56,9 +55,8 @@ bool CsvLines::next(std::string& line) {
     const void* end = std::memchr(begin, '\n', size_ - at_);
     const std::size_t n = end ? std::size_t(static_cast<const char*>(end) - begin) : size_ - at_;
     if (line.size() + n > options_.longest)
-      throw Error(ExitCode::bad_input, where(number_ + 1) + ": the line is longer than " +
-                                           std::to_string(options_.longest) + " bytes, " +
-                                           options_.expected);
+      bad_input(where(number_ + 1), "the line is longer than " + std::to_string(options_.longest) +
+                                        " bytes, " + options_.expected);
     line.append(begin, n);
     at_ += n + (end ? 1 : 0);
     if (!end) continue;
@@ -74,9 +72,7 @@ std::vector<CsvRow> read_csv(const std::string& path, const std::string& remedy,
   CsvLines lines(file, path, {.hash = sha256 ? &hash : nullptr});
   std::vector<CsvRow> rows;
   for (std::string line; lines.next(line);) {
-    const auto fail = [&](const std::string& what) {
-      throw Error(ExitCode::bad_input, lines.where() + ": " + what + remedy);
-    };
+    const auto fail = [&](const std::string& what) { bad_input(lines.where(), what + remedy); };
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (const auto found = find_bad_text(line)) fail(found->what + "; " + found->remedy);
     if (lines.number() == 1) line = std::string(without_mark(line));

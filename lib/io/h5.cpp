@@ -196,6 +196,18 @@ std::size_t claimed(hid_t dataset, const std::vector<hsize_t>& block, std::size_
   return values;
 }
 
+void read_block(hid_t dataset, hsize_t first, const std::vector<hsize_t>& block, hid_t type,
+                void* values) {
+  const Space file(H5Dget_space(dataset));
+  const Space memory(H5Screate_simple(int(block.size()), block.data(), nullptr));
+  std::vector<hsize_t> start(block.size());
+  if (!block.empty()) {
+    start[0] = first;
+    check(H5Sselect_hyperslab(file, H5S_SELECT_SET, start.data(), nullptr, block.data(), nullptr));
+  }
+  check(H5Dread(dataset, type, memory, file, H5P_DEFAULT, values));
+}
+
 std::vector<std::string> children(hid_t group, H5O_type_t kind) {
   std::vector<std::string> all;
   const auto add = [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {

@@ -57,11 +57,8 @@ class Handle {
   Handle() = default;
   explicit Handle(hid_t id) : id_(check(id)) {}  // takes the result of H5Xopen or H5Xcreate
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)) {}
-  Handle& operator=(Handle&& other) noexcept {
-    if (this != &other) {
-      reset();
-      id_ = std::exchange(other.id_, -1);
-    }
+  Handle& operator=(Handle other) noexcept {
+    std::swap(id_, other.id_);
     return *this;
   }
   ~Handle() { reset(); }
@@ -163,20 +160,17 @@ std::vector<hsize_t> shape(hid_t dataset);
 /// Number of values in a block of a dataset, `size` bytes each in memory. Failure, before memory is
 /// taken for them, when they are more than the file can hold: deflate makes 1 byte of at most 1032.
 std::size_t claimed(hid_t dataset, const std::vector<hsize_t>& block, std::size_t size);
+/// Reads a block that begins at row `first` into memory of type `type`.
+void read_block(hid_t dataset, hsize_t first, const std::vector<hsize_t>& block, hid_t type,
+                void* values);
 /// The first rows (all, or at most `rows`) of a dataset, converted to T, row by row.
 template <class T>
 std::vector<T> read_all(hid_t group, const std::string& path, hsize_t rows = ~hsize_t{0}) {
   const Dataset d = open_dataset(group, path);
   std::vector<hsize_t> count = shape(d);
-  const std::vector<hsize_t> start(count.size(), 0);
   if (!count.empty() && rows < count[0]) count[0] = rows;
   std::vector<T> values(claimed(d, count, sizeof(T)));
-  if (values.empty()) return values;
-  const Space file(H5Dget_space(d));
-  const Space memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr));
-  if (!count.empty())
-    check(H5Sselect_hyperslab(file, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
-  check(H5Dread(d, native<T>(), memory, file, H5P_DEFAULT, values.data()));
+  if (!values.empty()) read_block(d, 0, count, native<T>(), values.data());
   return values;
 }
 

@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 
 #include "lib/base/error.h"
 #include "lib/io/h5_read.h"

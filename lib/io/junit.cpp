@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 #include <algorithm>
+#include <map>
 
 #include "lib/base/plain_text.h"
 
@@ -11,6 +12,8 @@ namespace {
 /// For attributes and text. Line breaks in an attribute are spaces to a parser unless they are
 /// written out.
 std::string xml_text(const std::string& text, bool attribute) {
+  static const std::map<char, const char*> kNamed{
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
   const std::string plain = escaped(text);
   std::string out;
   for (std::size_t i = 0; i < plain.size(); ++i) {
@@ -20,14 +23,8 @@ std::string xml_text(const std::string& text, bool attribute) {
         (plain[i + 2] == '\xBE' || plain[i + 2] == '\xBF')) {
       out += plain[i + 2] == '\xBE' ? "\\ufffe" : "\\uffff";
       i += 2;
-    } else if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else if (c == '"') {
-      out += "&quot;";
+    } else if (const auto named = kNamed.find(c); named != kNamed.end()) {
+      out += named->second;
     } else if (c == '\r' || (attribute && (c == '\n' || c == '\t'))) {
       out += fmt::format("&#{};", int(c));
     } else {
@@ -62,16 +59,13 @@ std::string xml_of(const JunitCase& c) {
 std::string junit_xml(const JunitSuite& s) {
   const auto failures =
       std::ranges::count_if(s.cases, [](const JunitCase& c) { return !c.failure.empty(); });
-  const std::string counts = attribute_text("tests", std::to_string(s.cases.size())) +
-                             attribute_text("failures", std::to_string(failures)) +
-                             attribute_text("errors", "0");
-  std::string out =
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + attribute_text("name", s.name) +
-      counts + attribute_text("time", seconds_text(s.seconds)) + ">\n  <testsuite" +
-      attribute_text("name", s.name) + counts +
-      attribute_text("skipped",
-                     std::to_string(std::ranges::count(s.cases, true, &JunitCase::skipped))) +
-      attribute_text("time", seconds_text(s.seconds)) + ">\n";
+  std::string out = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<testsuites{0} tests=\"{1}\" failures=\"{2}\" errors=\"0\"{4}>\n"
+      "  <testsuite{0} tests=\"{1}\" failures=\"{2}\" errors=\"0\" skipped=\"{3}\"{4}>\n",
+      attribute_text("name", s.name), s.cases.size(), failures,
+      std::ranges::count(s.cases, true, &JunitCase::skipped),
+      attribute_text("time", seconds_text(s.seconds)));
   if (!s.properties.empty()) {
     out += "    <properties>\n";
     for (const auto& [name, value] : s.properties)

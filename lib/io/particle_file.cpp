@@ -90,7 +90,7 @@ constexpr std::size_t kLongestLine = 4096;  // bytes; six numbers need a few hun
 constexpr const char* kExpected = "expected x,y,z or x,y,z,vx,vy,vz";
 
 bool printable(std::string_view s) {
-  return std::all_of(s.begin(), s.end(), [](char c) { return c >= ' ' && c <= '~'; });
+  return std::ranges::all_of(s, [](char c) { return c >= ' ' && c <= '~'; });
 }
 
 /// The header without blanks; tells how many columns follow.

@@ -1,7 +1,6 @@
 // Particle files, which bodies of shape `file` are read from.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "lib/scene/particles.h"

@@ -1,7 +1,6 @@
 // Definitions shared by writer and reader of run.vtkhdf: names, versions, the columns of the log.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>

@@ -1,6 +1,5 @@
 // RunOutput: the log and the readings of gauges, one column per number or vector, written in
 // batches.
-#include "lib/io/h5_read.h"
 #include "lib/io/run_layout.h"
 #include "lib/io/run_output.h"
 

@@ -150,7 +150,7 @@ void RunOutput::check_fields(const Snapshot& s) const {
 /// The row of the tables of parts for frames of `count` particles, made when there is none.
 std::int64_t RunOutput::part_of(std::size_t count) {
   const auto n = static_cast<std::int64_t>(count);
-  const auto found = std::find(parts_.begin(), parts_.end(), n);
+  const auto found = std::ranges::find(parts_, n);
   const std::int64_t index = found - parts_.begin();
   if (found != parts_.end()) return index;
   points_per_part_.append(n);

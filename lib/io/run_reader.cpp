@@ -16,8 +16,6 @@
 namespace pbf::io_module {
 namespace {
 
-using h5::check;
-
 const std::string kGauges = std::string("pbf/gauges");
 
 FrameTable::Field describe(hid_t vtk, const std::string& name, const std::string& path,
@@ -43,14 +41,10 @@ FieldArray read_rows(hid_t vtk, const FrameTable::Field& place, std::size_t fram
   const auto first = static_cast<hsize_t>(place.offsets[frame]);
   if (place.offsets[frame] < 0 || first > dims[0] || count > dims[0] - first)
     throw h5::Failure(place.path + " ends before the frame does");
-  f.bytes.resize(h5::claimed(d, {count, static_cast<hsize_t>(f.components)}, size_of(f.type)) *
-                 size_of(f.type));
-  if (!count) return f;
-  const hsize_t start[2] = {first, 0}, block[2] = {count, static_cast<hsize_t>(f.components)};
-  const h5::Space file(H5Dget_space(d));
-  check(H5Sselect_hyperslab(file, H5S_SELECT_SET, start, nullptr, block, nullptr));
-  const h5::Space memory(H5Screate_simple(static_cast<int>(dims.size()), block, nullptr));
-  check(H5Dread(d, h5::memory_type(f.type), memory, file, H5P_DEFAULT, f.bytes.data()));
+  std::vector<hsize_t> block = dims;
+  block[0] = count;
+  f.bytes.resize(h5::claimed(d, block, size_of(f.type)) * size_of(f.type));
+  if (count) h5::read_block(d, first, block, h5::memory_type(f.type), f.bytes.data());
   return f;
 }
 
@@ -173,10 +167,9 @@ std::vector<std::string> RunReader::fields() const {
 
 Snapshot RunReader::frame(std::int64_t k) const {
   if (k < 0 || k >= frames())
-    throw Error(ExitCode::bad_input,
-                path_ + ": there is no frame " + std::to_string(k) +
-                    (frames() ? "; the frames are 0.." + std::to_string(frames() - 1)
-                              : std::string("; the file has no frames yet")));
+    bad_input(path_, "there is no frame " + std::to_string(k) +
+                         (frames() ? "; the frames are 0.." + std::to_string(frames() - 1)
+                                   : "; the file has no frames yet"));
   const auto at = static_cast<std::size_t>(k);
   const auto count = static_cast<std::size_t>(in_.counts[at]);
   return with_file(path_, "cannot read frame " + std::to_string(k), [&](const h5::Reading& file) {
@@ -233,7 +226,7 @@ std::vector<std::string> RunReader::gauges() const {
 
 std::vector<double> RunReader::gauge(const std::string& name) const {
   const std::vector<std::string> all = gauges();
-  if (std::find(all.begin(), all.end(), name) == all.end()) return {};
+  if (std::ranges::find(all, name) == all.end()) return {};
   return with_file(path_, "cannot read the gauges", [&](const h5::Reading& file) {
     const h5::Group group = h5::open_group(file, kGauges);
     hsize_t rows = std::numeric_limits<hsize_t>::max();

@@ -64,11 +64,10 @@ class TableOf : public Table {
     for (const Column<Row>& c : values_) columns_.push_back({c.name, c.width, c.number});
     for (const Row& row : rows) add(row);
   }
-  void add(const Row& row) { Table::add(cells(row)); }
-  std::vector<Cell> cells(const Row& row) const {
-    std::vector<Cell> out;
-    for (const Column<Row>& c : values_) out.push_back(c.value(row));
-    return out;
+  void add(const Row& row) {
+    std::vector<Cell> cells;
+    for (const Column<Row>& c : values_) cells.push_back(c.value(row));
+    Table::add(std::move(cells));
   }
 
  private:

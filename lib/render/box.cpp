@@ -1,6 +1,5 @@
 #include "lib/render/box.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

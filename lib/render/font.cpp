@@ -118,7 +118,7 @@ TextBox Texts::box_of(const std::string& text, double x, double y) const {
 bool Texts::fits(const TextBox& box) const {
   const double r = rim();
   return box.x0 >= r && box.y0 >= 0 && box.x1 <= image_.width - r && box.y1 <= image_.height &&
-         std::none_of(taken_.begin(), taken_.end(), [&](const TextBox& b) { return b.meets(box); });
+         std::ranges::none_of(taken_, [&](const TextBox& b) { return b.meets(box); });
 }
 
 void Texts::put(const std::string& text, double x, double y, Rgb color) {

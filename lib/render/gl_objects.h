@@ -4,8 +4,6 @@
 #include <array>
 #include <initializer_list>
 #include <optional>
-#include <string>
-#include <utility>
 
 #include "lib/render/gl_table.h"
 

@@ -81,8 +81,7 @@ std::optional<Edge> upright_edge(const View& view, const Projection& projection)
                       {vertical, corner},
                       view.open[u][i & 1] || view.open[w][i >> 1]});
   }
-  const auto [left, right] = std::minmax_element(
-      places.begin(), places.end(), [](const Place& a, const Place& b) { return a.x < b.x; });
+  const auto [left, right] = std::ranges::minmax_element(places, {}, &Place::x);
   if (!left->open) return left->edge;
   if (!right->open) return right->edge;
   return {};

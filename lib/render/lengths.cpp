@@ -20,7 +20,7 @@ Outline outline_of(const View& view, const Projection& projection) {
     if (projection.to_view(corner)[2] <= 0) return {};
     corners.push_back(projection.to_pixel(corner));
   }
-  std::sort(corners.begin(), corners.end());
+  std::ranges::sort(corners);
   Outline hull;  // Andrew's monotone chain
   for (int pass = 0; pass < 2; ++pass) {
     const std::size_t start = hull.size();
@@ -33,7 +33,7 @@ Outline outline_of(const View& view, const Projection& projection) {
       hull.push_back(p);
     }
     hull.pop_back();
-    std::reverse(corners.begin(), corners.end());
+    std::ranges::reverse(corners);
   }
   return hull;
 }

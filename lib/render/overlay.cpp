@@ -82,13 +82,9 @@ std::string time_text(double seconds) {
 }
 
 std::string particles_text(std::int64_t count) {
-  const std::string digits = std::to_string(count);
-  std::string out;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) out += ' ';
-    out += digits[i];
-  }
-  return out + (count == 1 ? " particle" : " particles");
+  std::string digits = std::to_string(count);
+  for (auto i = std::ssize(digits) - 3; i > 0; i -= 3) digits.insert(std::size_t(i), 1, ' ');
+  return digits + (count == 1 ? " particle" : " particles");
 }
 
 double text_size(std::array<int, 2> picture) {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "lib/render/camera.h"
-#include "lib/render/colormap.h"
 #include "lib/render/font.h"
 
 namespace pbf::render_module {

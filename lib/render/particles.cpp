@@ -1,5 +1,6 @@
 #include "lib/render/particles.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 
@@ -9,22 +10,8 @@
 namespace pbf::render_module {
 namespace {
 
-/// Row i of a field in double, whatever its type.
-double value(const FieldArray& field, std::size_t i) {
-  switch (field.type) {
-    case ScalarType::f64:
-      return field.as<double>()[i];
-    case ScalarType::i32:
-    case ScalarType::i64:
-      return static_cast<double>(field.whole(i));
-    case ScalarType::f32:
-      break;
-  }
-  return static_cast<double>(field.as<float>()[i]);
-}
-
 Double3 vector(const FieldArray& field, std::size_t i) {
-  return {value(field, 3 * i), value(field, 3 * i + 1), value(field, 3 * i + 2)};
+  return {field.number(3 * i), field.number(3 * i + 1), field.number(3 * i + 2)};
 }
 
 std::uint8_t share_of(double place) {
@@ -39,18 +26,18 @@ void check_field(const Snapshot& snapshot, const std::string& name, int componen
     std::string has;
     for (const auto& f : snapshot.fields) has += (has.empty() ? "" : ", ") + f.name;
     throw Error(ExitCode::bad_input,
-                what + " needs the field " + name +
-                    ", but the snapshot has only: " + (has.empty() ? "nothing" : has) + "; add " +
-                    name + " to output.fields or choose another render.color");
+                fmt::format("{} needs the field {}, but the snapshot has only: {}; add {} to "
+                            "output.fields or choose another render.color",
+                            what, name, has.empty() ? "nothing" : has, name));
   }
   if (field->components != components ||
       field->bytes.size() !=
           snapshot.count * static_cast<std::size_t>(components) * size_of(field->type))
-    throw Error(ExitCode::bad_input, "the field " + name + " has " +
-                                         std::to_string(field->components) + " components and " +
-                                         std::to_string(field->bytes.size()) + " bytes; " +
-                                         std::to_string(snapshot.count) + " particles with " +
-                                         std::to_string(components) + " components were expected");
+    throw Error(
+        ExitCode::bad_input,
+        fmt::format("the field {} has {} components and {} bytes; {} particles with {} "
+                    "components were expected",
+                    name, field->components, field->bytes.size(), snapshot.count, components));
 }
 
 }  // namespace
@@ -68,7 +55,7 @@ void check_fields(const Snapshot& snapshot, ColorBy color) {
 
 double shown_value(const FieldArray& field, const View& view, std::size_t i) {
   if (about(view.color).components == 3) return length(vector(field, i));
-  const double stored = value(field, i);
+  const double stored = field.number(i);
   if (view.color != ColorBy::compression) return stored;
   return std::max(stored / view.rest_density - 1, 0.0);
 }

@@ -41,9 +41,9 @@ void QuantileRange::add(const Snapshot& snapshot) {
 
 std::array<double, 2> QuantileRange::between(double low, double high) {
   if (values_.empty())
-    throw Error(ExitCode::bad_input, "--range quantile: no particle of the frames chosen has a " +
-                                         std::string(about(view_.color).word) +
-                                         "; choose other --frames, or give --range LOW,HIGH");
+    bad_input("--range quantile", fmt::format("no particle of the frames chosen has a {}; choose "
+                                              "other --frames, or give --range LOW,HIGH",
+                                              about(view_.color).word));
   return {quantile_of(values_, low), quantile_of(values_, high)};
 }
 

@@ -99,7 +99,7 @@ Double3 StartVolume::corner(const std::array<int, 3>& cell) const {
 
 bool StartVolume::is_open(const Double3& place) const {
   const Vec3<double> x{place[0], place[1], place[2]};
-  return std::all_of(solids_.begin(), solids_.end(), [&](const Solid<double>& s) {
+  return std::ranges::all_of(solids_, [&](const Solid<double>& s) {
     return (scene_.dimensions == 2 ? distance<2>(s, x) : distance<3>(s, x)) > 0;
   });
 }

@@ -1,5 +1,6 @@
 #include "lib/render/renderer.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -27,16 +28,16 @@ namespace {
 constexpr double kFloorInShadow = 0.3;
 
 void check_view(const View& view) {
-  const auto bad = [](const std::string& what) { throw Error(ExitCode::bad_input, what); };
   if (view.size[0] < 16 || view.size[1] < 16)
-    bad("render.size: " + std::to_string(view.size[0]) + " x " + std::to_string(view.size[1]) +
-        " is too small; give at least 16 x 16 pixels");
+    bad_input("render.size", fmt::format("{} x {} is too small; give at least 16 x 16 pixels",
+                                         view.size[0], view.size[1]));
   if (!(view.range[0] < view.range[1]) || !std::isfinite(view.range[1] - view.range[0]))
-    bad("render.range: " + std::to_string(view.range[0]) + " to " + std::to_string(view.range[1]) +
-        " is not a range; give two finite numbers, the smaller one first");
+    bad_input("render.range", fmt::format("{:f} to {:f} is not a range; give two finite numbers, "
+                                          "the smaller one first",
+                                          view.range[0], view.range[1]));
   if (!(view.radius > 0) || !std::isfinite(view.radius))
-    bad("render.radius: " + std::to_string(view.radius) +
-        " is not a radius; give a length above 0");
+    bad_input("render.radius",
+              fmt::format("{:f} is not a radius; give a length above 0", view.radius));
   projection_of(view, 0);  // throws for a camera that cannot look
 }
 
@@ -48,10 +49,9 @@ int samples_per_edge(const gl::Table& gl, std::array<int, 2> size) {
   gl.GetIntegerv(gl::MAX_VIEWPORT_DIMS, viewport.data());
   const int wide = std::min(texture, viewport[0]), high = std::min(texture, viewport[1]);
   if (size[0] > wide || size[1] > high)
-    throw Error(ExitCode::bad_input, "render.size: " + std::to_string(size[0]) + " x " +
-                                         std::to_string(size[1]) + " is more than the " +
-                                         std::to_string(wide) + " x " + std::to_string(high) +
-                                         " pixels of this OpenGL driver");
+    bad_input("render.size",
+              fmt::format("{} x {} is more than the {} x {} pixels of this OpenGL driver", size[0],
+                          size[1], wide, high));
   return 2 * size[0] <= wide && 2 * size[1] <= high ? 2 : 1;
 }
 

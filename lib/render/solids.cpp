@@ -236,11 +236,10 @@ std::vector<Face> faces_of(const View& view, const Solid<double>& solid) {
     for (const int side : {-1, 1}) {
       HalfSpace keep{{}, side < 0 ? -bounds.min[axis] : bounds.max[axis]};
       keep.normal[axis] = side;
-      const bool crosses =
-          !bounded || std::any_of(whole.begin(), whole.end(), [&](const Face& face) {
-            return std::any_of(face.polygon.begin(), face.polygon.end(),
-                               [&](const Corner& c) { return keep.beyond(c.place) > 1e-9 * size; });
-          });
+      const bool crosses = !bounded || std::ranges::any_of(whole, [&](const Face& face) {
+        return std::ranges::any_of(
+            face.polygon, [&](const Corner& c) { return keep.beyond(c.place) > 1e-9 * size; });
+      });
       if (!crosses) continue;
       for (Face& face : body.faces) clip(face.polygon, keep);
       if (body.by_distance) {

@@ -1,6 +1,5 @@
 // The view that a scene asks for.
 #include <algorithm>
-#include <cmath>
 
 #include "lib/program/motion.h"
 #include "lib/render/box.h"

@@ -30,13 +30,13 @@ void hold_inside(const Scene& scene, std::size_t body, std::size_t first, std::v
     for (int a = 0; a < 3; ++a) {
       const double slack = 1e-9 * (domain.max[a] - domain.min[a]);
       if (!(x[i][a] >= domain.min[a] - slack && x[i][a] <= domain.max[a] + slack))
-        throw Error(ExitCode::bad_input,
-                    name_of(scene, body) + ": particle " + std::to_string(i - first) + " at " +
-                        to_text(x[i]) + " is outside the domain along " + "xyz"[a] + " (" +
-                        to_text(domain.min[a]) + " .. " + to_text(domain.max[a]) + " m); " +
-                        (plane && a == 1 ? "with dimensions: 2 that is the slab which holds all "
-                                           "particles; give them such a y"
-                                         : "move the body or enlarge the domain"));
+        bad_input(name_of(scene, body),
+                  "particle " + std::to_string(i - first) + " at " + to_text(x[i]) +
+                      " is outside the domain along " + "xyz"[a] + " (" + to_text(domain.min[a]) +
+                      " .. " + to_text(domain.max[a]) + " m); " +
+                      (plane && a == 1 ? "with dimensions: 2 that is the slab which holds all "
+                                         "particles; give them such a y"
+                                       : "move the body or enlarge the domain"));
       x[i][a] = std::clamp(x[i][a], domain.min[a], domain.max[a]);
     }
     if (plane) x[i][1] = *plane;
@@ -65,22 +65,21 @@ void hold_off_walls(const Scene& s, std::size_t body, std::size_t first, Particl
   }
   all.farthest_put = std::max(all.farthest_put, farthest);
   if (too_far == 0) return;
-  throw Error(ExitCode::bad_input,
-              name_of(s, body) + ": " + std::to_string(too_far) +
-                  " particles are nearer to a wall than solver.wall_margin (" + to_text(margin) +
-                  " m) by more than half of fluid.spacing, the farthest by " + to_text(farthest) +
-                  " m; move the body away from the walls or lower solver.wall_margin");
+  bad_input(name_of(s, body),
+            std::to_string(too_far) + " particles are nearer to a wall than solver.wall_margin (" +
+                to_text(margin) + " m) by more than half of fluid.spacing, the farthest by " +
+                to_text(farthest) +
+                " m; move the body away from the walls or lower solver.wall_margin");
 }
 
 /// In two dimensions the y of a velocity must be 0. body.velocity is checked with the scene.
 void refuse_velocity_along_y(const Scene& scene, std::size_t body, const std::vector<Double3>& v) {
   for (std::size_t i = 0; i < v.size(); ++i)
     if (v[i][1] != 0)
-      throw Error(ExitCode::bad_input,
-                  name_of(scene, body) + ": particle " + std::to_string(i) + " has velocity " +
-                      to_text(v[i]) +
-                      "; with dimensions: 2 its y component must be 0: set it so in the file, or "
-                      "give dimensions: 3");
+      bad_input(name_of(scene, body),
+                "particle " + std::to_string(i) + " has velocity " + to_text(v[i]) +
+                    "; with dimensions: 2 its y component must be 0: set it so in the file, or "
+                    "give dimensions: 3");
 }
 
 /// Positions that obstacles leave free: at least 0.4 spacings away from every obstacle.
@@ -97,7 +96,7 @@ class FreePlaces {
     if (plane_) x[1] = *plane_;
     const Vec3<double> at{(x[0] - origin_[0]) / h_, (x[1] - origin_[1]) / h_,
                           (x[2] - origin_[2]) / h_};
-    return std::none_of(solids_.begin(), solids_.end(), [&](const Solid<double>& s) {
+    return std::ranges::none_of(solids_, [&](const Solid<double>& s) {
       return (plane_ ? distance<2>(s, at) : distance<3>(s, at)) < least_;
     });
   }
@@ -149,11 +148,11 @@ std::int64_t count_particles(const StartPoints& points) {
                ? double(points.of_file(b).size())
                : lattice_count(scene.bodies[b], scene.fluid.spacing, scene.plane());
   if (sum < 1)
-    throw Error(ExitCode::bad_input,
-                std::string("bodies: the scene has 0 particles") +
-                    (free.all() ? "; add a body or lower fluid.spacing"
-                                : " outside the obstacles; move the bodies or the obstacles"));
-  if (sum > kMaxParticles) throw Error(ExitCode::bad_input, "bodies: " + too_many_text(sum));
+    bad_input("bodies", std::string("the scene has 0 particles") +
+                            (free.all() ? "; add a body or lower fluid.spacing"
+                                        : " outside the obstacles; move the bodies or the "
+                                          "obstacles"));
+  if (sum > kMaxParticles) bad_input("bodies", too_many_text(sum));
   return static_cast<std::int64_t>(sum);
 }
 

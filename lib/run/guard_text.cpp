@@ -1,7 +1,6 @@
 // Texts of the guard, and the scene that repeats an alarm.
 #include <fmt/core.h>
 #include <algorithm>
-#include <cmath>
 
 #include "lib/program/motion.h"
 #include "lib/program/time_levels.h"

@@ -27,11 +27,10 @@ std::string folder_of_files(const Scene& scene, const std::string& run_file,
   if (file.empty()) return then;
   if (missing(beside).empty()) return beside;
   const auto name = [](const std::string& folder) { return folder.empty() ? "." : folder; };
-  throw Error(ExitCode::bad_input,
-              run_file + ": its file " + file + " is neither in " + name(then) +
-                  ", the folder of its scene file, nor in " + name(beside) +
-                  ", its own; put it into one of them, or name it with --set bodies.0.path=PATH "
-                  "(0: the number of the body)");
+  bad_input(run_file, "its file " + file + " is neither in " + name(then) +
+                          ", the folder of its scene file, nor in " + name(beside) +
+                          ", its own; put it into one of them, or name it with --set "
+                          "bodies.0.path=PATH (0: the number of the body)");
 }
 
 LoadedScene load_scene_or_run(const std::string& given, const std::vector<std::string>& overrides,
@@ -48,11 +47,11 @@ LoadedScene load_scene_or_run(const std::string& given, const std::vector<std::s
   const RunInfo info = RunReader(path).info();
   if (!info.scene_sha256.empty() &&
       info.scene_sha256 != scene_digest(info.resolved_scene, info.scene_files))
-    throw Error(ExitCode::bad_input,
-                path +
-                    ": the scene in it (/pbf resolved_scene, scene_files) has been changed since "
-                    "the run: its SHA-256 is not /pbf scene_sha256; give the scene file itself, "
-                    "or the run file as it was");
+    bad_input(
+        path,
+        "the scene in it (/pbf resolved_scene, scene_files) has been changed since the run: "
+        "its SHA-256 is not /pbf scene_sha256; give the scene file itself, or the run file as "
+        "it was");
   LoadedScene loaded;
   loaded.scene = parse_stored_scene(info.resolved_scene, path + ": its scene", overrides);
   loaded.path = info.scene_path;
@@ -77,11 +76,11 @@ void take_files(LoadedScene& loaded, const std::vector<SceneFile>& read,
                       "they are taken as they are");
     const std::string difference = files_difference(loaded.files, read);
     if (!difference.empty())
-      throw Error(ExitCode::bad_input,
-                  loaded.run_file + ": cannot run again: " + difference +
-                      " (read from the folder " + (loaded.folder.empty() ? "." : loaded.folder) +
-                      "); put the file of the run there, or give the scene file itself to run with "
-                      "the new one");
+      bad_input(loaded.run_file,
+                "cannot run again: " + difference + " (read from the folder " +
+                    (loaded.folder.empty() ? "." : loaded.folder) +
+                    "); put the file of the run there, or give the scene file itself to run with "
+                    "the new one");
   }
   loaded.files = files_text(read);
 }

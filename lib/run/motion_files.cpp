@@ -40,7 +40,7 @@ class Reader {
     std::string header;
     if (!rows.empty())
       for (const std::string& cell : rows[0].cells) header += (header.empty() ? "" : ",") + cell;
-    if (std::find(headers.begin(), headers.end(), header) == headers.end())
+    if (std::ranges::find(headers, header) == headers.end())
       fail(rows.empty() ? file_ : rows[0].where,
            (rows.empty() ? "is empty" : wrong_header(header)) + ", expected the header " +
                headers[0] + " or " + headers[1]);

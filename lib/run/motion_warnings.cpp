@@ -2,12 +2,11 @@
 
 #include <fmt/core.h>
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <iterator>
 #include <optional>
 
-#include "lib/base/text.h"
 #include "lib/program/motion.h"
+#include "lib/scene/difference.h"
 #include "lib/scene/surface.h"
 #include "lib/scene/vector3.h"
 
@@ -167,10 +166,8 @@ class Meetings {
 
  private:
   std::vector<double> times(std::size_t a, std::size_t b) const {
-    std::vector<double> all = tracks_[a].time;
-    all.insert(all.end(), tracks_[b].time.begin(), tracks_[b].time.end());
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
+    std::vector<double> all;
+    std::ranges::set_union(tracks_[a].time, tracks_[b].time, std::back_inserter(all));
     return all;
   }
   Solid<double> at(std::size_t k, double time) const {
@@ -196,21 +193,13 @@ std::string named(const Scene& s, std::size_t k) {
   return fmt::format("obstacles[{}] ({})", k, s.obstacles[k].name);
 }
 
-std::string listed(const std::vector<std::string>& texts) {
-  constexpr std::size_t kShown = 3;
-  const std::vector<std::string> shown(
-      texts.begin(), texts.begin() + std::ptrdiff_t(std::min(kShown, texts.size())));
-  return joined(shown, "; ") +
-         (texts.size() > kShown ? fmt::format("; and {} more", texts.size() - kShown) : "");
-}
-
 std::string walls_text(const Scene& s, const std::vector<Track>& tracks) {
   std::vector<std::string> texts;
   for (std::size_t k = 0; k < s.obstacles.size(); ++k)
     if (s.obstacles[k].motion && is_bounded(tracks[k].solid[0]))
       texts.push_back(wall_text(s, k, tracks[k]));
   std::erase(texts, "");
-  return listed(texts);
+  return first_of(texts, kShown);
 }
 
 std::string collisions_text(const Scene& s, const std::vector<Track>& tracks) {
@@ -233,7 +222,7 @@ std::string collisions_text(const Scene& s, const std::vector<Track>& tracks) {
     }
   texts.insert(texts.end(), later.begin(), later.end());
   if (texts.empty()) return "";
-  return listed(texts) +
+  return first_of(texts, kShown) +
          "; fluid beside the place feels both of them: let them touch, or keep them apart";
 }
 

@@ -38,8 +38,8 @@ double shared_thickness(const Scene& scene, const Solid<double>& a, const Solid<
 
 /// "obstacles[0] (gate)"
 std::string named(const Scene& scene, std::size_t obstacle);
-/// The first three texts, and the number of the others.
-std::string listed(const std::vector<std::string>& texts);
+/// Texts of one kind that are told one by one; of the others only the number.
+inline constexpr std::size_t kShown = 3;
 
 /// Kind "table": the curve of a table overshoots the rows on both sides by more than a tenth of a
 /// spacing where no smooth motion turns back; or its first row displaces the obstacle, as in a

@@ -33,7 +33,7 @@ std::vector<double> times_of(const Scene& s, const Motion& m) {
     for (int c = 0; c < m.table.columns; ++c)
       for (const double t : curve_piece(m.table, std::size_t(c), k).turns())
         if (t > begin && t < begin + s.time.end) times.push_back(t - begin);
-  std::sort(times.begin(), times.end());
+  std::ranges::sort(times);
   return times;
 }
 

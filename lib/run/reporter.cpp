@@ -99,10 +99,7 @@ void Reporter::count_outside(std::size_t n, const Coordinate& coordinate) {
 void Reporter::look_outside(const Snapshot& s) {
   const FieldArray* x = s.find("position");
   if (run_.scene.domain.open.empty() || !x) return;
-  const bool wide = x->type == ScalarType::f64;
-  count_outside(s.count, [&](std::size_t i, int a) {
-    return wide ? x->as<double>()[3 * i + a] : double(x->as<float>()[3 * i + a]);
-  });
+  count_outside(s.count, [&](std::size_t i, int a) { return x->number(3 * i + a); });
 }
 
 std::vector<Warning> Reporter::found(bool end) const {

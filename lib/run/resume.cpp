@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 
 #include "lib/base/error.h"
 #include "lib/base/text.h"
@@ -51,9 +50,10 @@ class Finder {
     }
     const LoadedScene record = load_stored_scene(folder_.file(kResolvedScene));
     const Scene& before = record.scene;
-    if (const std::string other = difference_of_record(record, scene_, files_); !other.empty())
+    const std::string files = recorded_files(record.text);
+    if (const std::string other = difference_of_runs(before, files, scene_, files_); !other.empty())
       refuse("", other);
-    if (recorded_files(record.text).empty() && !files_.empty())
+    if (files.empty() && !files_.empty())
       point_.notes.push_back(folder_.path() +
                              ": begun by an earlier version, which kept no SHA-256 "
                              "of its particle files: they are taken as they are");
@@ -96,9 +96,7 @@ class Finder {
   }
 
  private:
-  [[noreturn]] void bad(const std::string& what) const {
-    throw Error(ExitCode::bad_input, folder_.path() + ": " + what);
-  }
+  [[noreturn]] void bad(const std::string& what) const { bad_input(folder_.path(), what); }
   /// Refuses a file of the folder that belongs to another scene or to other files.
   void refuse_other(const std::string& name, const std::string& scene,
                     const std::string& files) const {
@@ -107,9 +105,9 @@ class Finder {
     if (!difference.empty()) refuse(name, difference);
   }
   [[noreturn]] void refuse(const std::string& name, const std::string& difference) const {
-    throw Error(ExitCode::bad_input,
-                (name.empty() ? folder_.path() : folder_.file(name)) + ": cannot resume: " +
-                    (name.empty() ? "" : "it is of another scene: ") + difference + kSame);
+    bad_input(name.empty() ? folder_.path() : folder_.file(name),
+              (name.empty() ? "cannot resume: " : "cannot resume: it is of another scene: ") +
+                  difference + kSame);
   }
   /// Note on the work that is lost without a checkpoint.
   std::string from_the_start(const Scene& before, std::int64_t done) const {
@@ -166,8 +164,8 @@ class Finder {
     refuse_other("checkpoint.h5", s.scene, s.files);
     if (!fits(s.state, plan.capacity, changes_rows(scene_)) ||
         s.state.precision != scene_.precision)
-      throw Error(ExitCode::io, folder_.path() +
-                                    "/checkpoint.h5: holds other particles or another precision "
+      throw Error(ExitCode::io, folder_.file("checkpoint.h5") +
+                                    ": holds other particles or another precision "
                                     "than the scene; remove it to start again");
   }
 
@@ -220,7 +218,7 @@ class Finder {
   void refuse_older_log(const RunReader& file, const RunInfo& info) const {
     const std::vector<std::string> there = file.log_columns();
     for (const auto& column : run_layout::log_columns())
-      if (std::find(there.begin(), there.end(), column.name) == there.end())
+      if (std::ranges::find(there, column.name) == there.end())
         bad("cannot resume: run.vtkhdf was written by pbf " + info.program_version + " (" +
             info.commit + "), whose log has no column " + column.name +
             " and whose results are others" + kOtherwise);

@@ -10,7 +10,6 @@
 #include "lib/io/run_file.h"
 #include "lib/program/plan.h"
 #include "lib/run/run_folder.h"
-#include "lib/scene/load.h"
 #include "lib/scene/scene.h"
 #include "lib/scene/scene_files.h"
 

@@ -15,7 +15,6 @@
 #include <set>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
@@ -51,8 +50,7 @@ bool own_file(const std::string& name) {
                                        "checkpoint.h5.tmp",
                                        "guard_state.h5",
                                        "guard_scene.yaml"};
-  return name.starts_with(kTemporaryPrefix) ||
-         std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
+  return name.starts_with(kTemporaryPrefix) || std::ranges::find(kNames, name) != std::end(kNames);
 }
 
 /// What is in a folder and has such a name, in alphabetical order.
@@ -124,18 +122,15 @@ bool RunFolder::check(const std::string& path, ExistingFolder existing) {
   if (!fs::is_directory(status))
     fail(folder, "the output folder cannot be used", "it is not a folder");
   if (existing == ExistingFolder::refuse)
-    throw Error(ExitCode::bad_input,
-                path + (fs::exists(folder / kResolvedScene, error)
-                            ? ": the output folder exists; give --overwrite to replace the run in "
-                              "it, --resume to go on with it, or another folder with --out"
-                            : ": the output folder exists, without a run in it; give --overwrite "
-                              "to write into it beside what is there, or another folder with "
-                              "--out"));
+    bad_input(path, fs::exists(folder / kResolvedScene, error)
+                        ? "the output folder exists; give --overwrite to replace the run in it, "
+                          "--resume to go on with it, or another folder with --out"
+                        : "the output folder exists, without a run in it; give --overwrite to "
+                          "write into it beside what is there, or another folder with --out");
   if (const auto file = others_file(folder))
-    throw Error(ExitCode::bad_input,
-                file->string() +
-                    ": a run would replace this file, which is of no run of pbf; move it away, or "
-                    "give another folder with --out");
+    bad_input(file->string(),
+              "a run would replace this file, which is of no run of pbf; move it away, or give "
+              "another folder with --out");
   return true;
 }
 
@@ -151,7 +146,7 @@ RunFolder::RunFolder(const std::string& path, ExistingFolder existing) : path_(p
   const bool made = fs::create_directory(path_, error);
   if (error) fail(path_, "the output folder cannot be made", error.message());
   if (!made && existing == ExistingFolder::refuse)
-    throw Error(ExitCode::bad_input, path_.string() + ": another run has just taken this folder");
+    bad_input(path_.string(), "another run has just taken this folder");
   if (access(path_.c_str(), W_OK | X_OK) != 0)
     fail(path_, "the output folder cannot be written", std::strerror(errno));
   lock();
@@ -188,10 +183,9 @@ void RunFolder::lock() {
       ::close(std::exchange(lock_, -1));
       if (reason != EWOULDBLOCK)
         fail(path_ / ".lock", "this file system has no locks (flock)", std::strerror(reason));
-      throw Error(ExitCode::bad_input,
-                  path_.string() + ": another run writes here" +
-                      (size > 0 ? " (" + std::string(who) + ")" : std::string()) +
-                      "; wait for its end, stop it, or give another folder with --out");
+      bad_input(path_.string(),
+                "another run writes here" + (size > 0 ? " (" + std::string(who) + ")" : "") +
+                    "; wait for its end, stop it, or give another folder with --out");
     }
     // Another run may have unlinked the file between our open and our lock.
     struct stat mine {
@@ -216,9 +210,8 @@ void RunFolder::refuse_overwrite(const std::string& path) {
   for (const std::string& input : inputs()) {
     const fs::path file = fs::canonical(input, error);
     if (!error && file.parent_path() == folder && own_file(file.filename().string()))
-      throw Error(ExitCode::bad_input, path + ": --overwrite would remove " + input +
-                                           ", which this run reads; give another folder with "
-                                           "--out");
+      bad_input(path, "--overwrite would remove " + input +
+                          ", which this run reads; give another folder with --out");
   }
 }
 

@@ -6,9 +6,9 @@
 
 #include "lib/base/error.h"
 #include "lib/io/run_file.h"
-#include "lib/io/run_layout.h"
 #include "lib/program/schedule.h"
 #include "lib/scene/difference.h"
+#include "lib/scene/load.h"
 
 namespace pbf::run_module {
 
@@ -32,11 +32,6 @@ std::string difference_of_runs(const Scene& before, const std::string& files_bef
   const std::string keys = physics_difference(before, now),
                     contents = files_difference(files_before, files);
   return keys + (keys.empty() || contents.empty() ? "" : "; ") + contents;
-}
-
-std::string difference_of_record(const LoadedScene& record, const Scene& scene,
-                                 const std::vector<SceneFile>& files) {
-  return difference_of_runs(record.scene, recorded_files(record.text), scene, files);
 }
 
 std::string difference_of_file(const std::string& folder, const Scene& scene) {

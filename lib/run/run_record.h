@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "lib/scene/load.h"
 #include "lib/scene/scene.h"
 #include "lib/scene/scene_files.h"
 
@@ -21,11 +20,6 @@ std::string recorded_files(const std::string& record);
 /// difference matters. `files_before`: a files_text().
 std::string difference_of_runs(const Scene& before, const std::string& files_before,
                                const Scene& now, const std::vector<SceneFile>& files);
-
-/// The difference between the scene and particle files of a record (scene.resolved.yaml) and
-/// `scene` and its files as they are now; empty if no difference matters.
-std::string difference_of_record(const LoadedScene& record, const Scene& scene,
-                                 const std::vector<SceneFile>& files);
 
 /// The key in which the run of a folder's run.vtkhdf differs from that of `scene`; empty if no
 /// difference matters (physics_difference()), and if there is no readable file.

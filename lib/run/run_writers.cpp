@@ -79,7 +79,7 @@ Frames::Frames(RunParts& run, Reporter& reporter) : run_(run), reporter_(reporte
   const Scene& scene = run.scene;
   if (scene.output) fields_ = scene.output->fields;
   const std::string needed = scene.render ? about(scene.render->color).field : "id";
-  if (needed != "id" && std::find(fields_.begin(), fields_.end(), needed) == fields_.end())
+  if (needed != "id" && std::ranges::find(fields_, needed) == fields_.end())
     fields_.push_back(needed), extra_ = needed;
   if (!run.from.saved) return;
   last_ = run.from.update();

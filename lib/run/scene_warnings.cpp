@@ -81,8 +81,7 @@ std::string passing_text(const Scene& s) {
   std::vector<std::pair<double, std::size_t>> off;  // deviation from the mean, and body
   for (std::size_t i = 0; i < s.bodies.size(); ++i)
     off.push_back({length(s.bodies[i].velocity - mean), i});
-  std::stable_sort(off.begin(), off.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::ranges::stable_sort(off, [](const auto& a, const auto& b) { return a.first > b.first; });
   double fastest = 0;
   std::size_t first = 0, second = 0;
   for (std::size_t i = 1; i < off.size() && off[i].first + off[0].first > fastest; ++i)

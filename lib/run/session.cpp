@@ -16,7 +16,7 @@ void Session::run(std::int64_t end, std::int64_t seen) {
     }
   } closing{observers_};
   ask(seen);
-  std::replace(next_.begin(), next_.end(), kEveryCall, kNever);
+  std::ranges::replace(next_, kEveryCall, kNever);
   while (notify_observers() && update() < end) {
     ask(update());
     step(end);

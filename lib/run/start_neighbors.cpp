@@ -24,11 +24,10 @@ bool any_near_pair(const std::vector<BodyBox>& boxes, double margin, F&& f) {
     for (std::size_t a = 0; a < 3; ++a)
       extent[a] = std::max(extent[a], std::fabs(b.low[a] - boxes[0].low[a]));
   // Sorted along the axis of largest extent, a box can be near only to the next few boxes.
-  const auto axis = std::size_t(std::max_element(extent.begin(), extent.end()) - extent.begin());
+  const auto axis = std::size_t(std::ranges::max_element(extent) - extent.begin());
   std::vector<std::size_t> order(boxes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t i, std::size_t j) { return boxes[i].low[axis] < boxes[j].low[axis]; });
+  std::ranges::sort(order, {}, [&](std::size_t i) { return boxes[i].low[axis]; });
   for (std::size_t i = 0; i < order.size(); ++i) {
     const BodyBox& a = boxes[order[i]];
     for (std::size_t j = i + 1; j < order.size(); ++j) {
@@ -153,14 +152,13 @@ std::vector<Candidate> candidates(const Scene& s, const StartPoints& points,
                                   double reach) {
   std::vector<Candidate> out;
   points.for_each([&](std::size_t b, const Double3& x) {
-    const bool near = s.bodies[b].shape == Shape::file ||
-                      std::any_of(others[b].begin(), others[b].end(),
-                                  [&](std::size_t k) { return boxes[k].holds(x, reach); });
+    const bool near =
+        s.bodies[b].shape == Shape::file ||
+        std::ranges::any_of(others[b], [&](std::size_t k) { return boxes[k].holds(x, reach); });
     if (!near) return;
     out.push_back({cell_of(x - s.domain.min, reach), b, x});
   });
-  std::sort(out.begin(), out.end(),
-            [](const Candidate& a, const Candidate& b) { return a.cell < b.cell; });
+  std::ranges::sort(out, {}, &Candidate::cell);
   return out;
 }
 
@@ -197,8 +195,7 @@ StartNeighbors start_neighbors(const StartPoints& points, std::int64_t particles
 Overlap find_overlap(const StartPoints& points) {
   const Scene& s = points.scene();
   Overlap found;
-  const bool file = std::any_of(s.bodies.begin(), s.bodies.end(),
-                                [](const Body& b) { return b.shape == Shape::file; });
+  const bool file = std::ranges::count(s.bodies, Shape::file, &Body::shape) > 0;
   if (s.bodies.size() < 2 && !file) return found;
   // Less by more than rounding: bodies that touch on one lattice are a full spacing apart.
   const double reach = 0.5 * s.fluid.spacing * (1 - 1e-6);
@@ -236,8 +233,7 @@ Overlap find_overlap(const StartPoints& points) {
   };
   // Visits the own cell from this particle on and half of the adjacent ones: each pair once.
   const auto first_in = [&](const Cell& c) {
-    return std::lower_bound(list.begin(), list.end(), c,
-                            [](const Candidate& a, const Cell& cell) { return a.cell < cell; });
+    return std::ranges::lower_bound(list, c, {}, &Candidate::cell);
   };
   for (auto i = list.begin(); i != list.end(); ++i)
     for (int dx = 0; dx <= 1; ++dx)

@@ -7,6 +7,7 @@
 #include "lib/program/motion.h"
 #include "lib/program/motion_table.h"
 #include "lib/run/motion_warnings.h"
+#include "lib/scene/difference.h"
 #include "lib/scene/vector3.h"
 
 namespace pbf::run_module {
@@ -112,9 +113,9 @@ std::string tables_text(const Scene& s) {
                                {kDegree * length(s.domain.max - s.domain.min)}, s));
   std::erase(texts, "");
   std::erase(displaced, "");
-  std::string text = listed(displaced);
+  std::string text = first_of(displaced, kShown);
   if (!texts.empty())
-    text += (text.empty() ? "" : "; ") + listed(texts) +
+    text += (text.empty() ? "" : "; ") + first_of(texts, kShown) +
             "; give more rows: every few steps, and a second one just after a stop and just before "
             "a start";
   return text;

@@ -12,8 +12,10 @@ namespace {
 /// Collects "key: this before, that now".
 class Changes {
  public:
+  explicit Changes(std::pair<const char*, const char*> sides) : sides_(sides) {}
   void add(const std::string& path, const std::string& before, const std::string& now) {
-    if (before != now) all_.push_back(path + ": " + before + " before, " + now + " now");
+    if (before != now)
+      all_.push_back(path + ": " + before + " " + sides_.first + ", " + now + " " + sides_.second);
   }
   void add_switch(const std::string& path, bool before, bool now) {
     add(path, before ? "on" : "off", now ? "on" : "off");
@@ -21,6 +23,7 @@ class Changes {
   std::vector<std::string> take() { return std::move(all_); }
 
  private:
+  std::pair<const char*, const char*> sides_;
   std::vector<std::string> all_;
 };
 
@@ -50,8 +53,8 @@ void add_entries(const Block& block, const Object& before, const Object& now, Ef
 }  // namespace
 
 std::vector<std::string> differences(const KeyTable& table, const Object& before, const Object& now,
-                                     Effect least) {
-  Changes out;
+                                     Effect least, std::pair<const char*, const char*> sides) {
+  Changes out(sides);
   const auto in_both = [&](const Block& b) { return b.is_present(before) && b.is_present(now); };
   for (const Block& block : table.blocks)
     if (block.optional && !block.list_around() && block.effect >= least &&

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -190,8 +191,10 @@ std::string yaml_of(const KeyTable& table, const Object& object, bool comments);
 /// JSON Schema of the struct's mapping, without the document around it.
 std::string schema_of(const KeyTable& table);
 /// "solver.iterations: 4 before, 8 now" for each difference. Ignores keys and blocks with less
-/// effect than `least`, and the keys of a block that only one of the objects has.
+/// effect than `least`, and the keys of a block that only one of the objects has. `sides`: words
+/// for the two objects.
 std::vector<std::string> differences(const KeyTable& table, const Object& before, const Object& now,
-                                     Effect least);
+                                     Effect least,
+                                     std::pair<const char*, const char*> sides = {"before", "now"});
 
 }  // namespace pbf::scene_module

@@ -37,6 +37,11 @@ struct FieldArray {
   std::int64_t whole(std::size_t k) const {
     return type == ScalarType::i64 ? as<std::int64_t>()[k] : as<std::int32_t>()[k];
   }
+  /// Number k of any field.
+  double number(std::size_t k) const {
+    if (is_whole(type)) return double(whole(k));
+    return type == ScalarType::f64 ? as<double>()[k] : double(as<float>()[k]);
+  }
 };
 
 /// The state at one time. fields[0] is always "position" (3 components). "id" names the particle of

@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 #include <algorithm>
-#include <cmath>
 
 #include "lib/base/error.h"
 #include "lib/exec/make_solver.h"
@@ -120,10 +119,10 @@ std::string CompareSide::name() const {
 
 CompareSide parse_side(const std::string& text) {
   const auto fail = [&](const std::string& what) {
-    throw Error(ExitCode::bad_input, "--between: \"" + text + "\": " + what +
-                                         "; a side is BACKEND:PRECISION or "
-                                         "BACKEND:PRECISION@THREADS, e.g. cpu:double, cuda:float, "
-                                         "cpu:float@2");
+    bad_input("--between: \"" + text + "\"",
+              what +
+                  "; a side is BACKEND:PRECISION or BACKEND:PRECISION@THREADS, e.g. cpu:double, "
+                  "cuda:float, cpu:float@2");
   };
   CompareSide side;
   const auto colon = text.find(':'), at = text.find('@');
@@ -178,10 +177,10 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
   if (scene_a.bodies != scene_b.bodies || scene_a.fluid.spacing != scene_b.fluid.spacing ||
       scene_a.fluid.smoothing_ratio != scene_b.fluid.smoothing_ratio ||
       scene_a.domain.min != scene_b.domain.min)
-    throw Error(ExitCode::bad_input,
-                "--set-b: both sides start from the same particles, so bodies, fluid.spacing, "
-                "fluid.smoothing_ratio and domain.min must stay; give these to both with --set, or "
-                "compare two run files");
+    bad_input("--set-b",
+              "both sides start from the same particles, so bodies, fluid.spacing, "
+              "fluid.smoothing_ratio and domain.min must stay; give these to both with --set, or "
+              "compare two run files");
   const Start start_a = prepare(on(scene_a, settings.a), dir);
   const auto plan_of = [&](const Scene& s) {
     return make_plan(s, start_a.plan.particles, start_a.plan.start);

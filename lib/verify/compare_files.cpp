@@ -4,12 +4,10 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <map>
 
 #include "lib/base/error.h"
 #include "lib/base/text.h"
 #include "lib/scene/load.h"
-#include "lib/scene/yaml_tree.h"
 #include "lib/verify/compare_parts.h"
 
 namespace pbf::verify_module {
@@ -37,51 +35,17 @@ Scene physics_of(Scene s) {
   return s;
 }
 
-bool is_nested(const Node& n) { return n.kind == Node::Kind::map || n.kind == Node::Kind::list; }
-
-/// Paths and values: "solver.iterations: 4", "bodies[0].min: [0, 0, 0]".
-void flatten(const Node& node, const std::string& path, std::map<std::string, std::string>& out) {
-  if (node.kind == Node::Kind::map) {
-    for (std::size_t k = 0; k < node.items.size(); ++k)
-      flatten(node.items[k], (path.empty() ? "" : path + ".") + node.keys[k].text, out);
-  } else if (std::any_of(node.items.begin(), node.items.end(), is_nested)) {
-    for (std::size_t k = 0; k < node.items.size(); ++k)
-      flatten(node.items[k], path + "[" + std::to_string(k) + "]", out);
-  } else if (node.kind == Node::Kind::list) {
-    std::vector<std::string> values;
-    for (const Node& item : node.items) values.push_back(item.text);
-    out[path] = "[" + joined(values, ", ") + "]";
-  } else {
-    out[path] = node.text;
-  }
-}
-
-/// The paths whose values differ, or that only one scene has.
-std::string key_differences(const Scene& a, const Scene& b) {
-  const auto keys = [](const Scene& s) {
-    std::map<std::string, std::string> out;
-    flatten(parse_yaml(resolved_yaml(s), "the scene", false), "", out);
-    return out;
-  };
-  const std::map<std::string, std::string> x = keys(a), y = keys(b);
-  std::vector<std::string> out;
-  for (const auto& [key, value] : x)
-    if (const auto other = y.find(key); other == y.end())
-      out.push_back(key + " is " + value + " in A alone");
-    else if (value != other->second)
-      out.push_back(key + " is " + value + " in A, " + other->second + " in B");
-  for (const auto& [key, value] : y)
-    if (!x.contains(key)) out.push_back(key + " is " + value + " in B alone");
-  return out.empty() ? "values that are written alike" : joined(out, "; ");
-}
-
 ComparePart compare_scenes(const ComparedRun& a, const ComparedRun& b) {
   ComparePart p;
   p.name = "scene";
   p.tolerance_source = "every key that the physics depends on must be the same";
   const Scene x = physics_of(a.scene), y = physics_of(b.scene);
   p.verdict = x == y ? Verdict::same : Verdict::differs;
-  p.finding = x == y ? "the same physics" : key_differences(x, y);
+  const std::vector<std::string> found =
+      differences(scene_table(), object(x), object(y), Effect::none, {"in A", "in B"});
+  p.finding = x == y          ? "the same physics"
+              : found.empty() ? "values that are written alike"
+                              : joined(found, "; ");
   return p;
 }
 
@@ -119,7 +83,7 @@ std::vector<std::string> missing(const std::vector<std::string>& x,
                                  const std::vector<std::string>& y) {
   std::vector<std::string> out;
   for (const std::string& name : x)
-    if (std::find(y.begin(), y.end(), name) == y.end()) out.push_back(name);
+    if (std::ranges::find(y, name) == y.end()) out.push_back(name);
   return out;
 }
 
@@ -166,8 +130,7 @@ ComparePart compare_extents(const ComparedRun& a, const ComparedRun& b, const Fr
 void note_fields(CompareResult& result, const ComparedRun& a, const ComparedRun& b) {
   const auto x = a.reader.fields(), y = b.reader.fields();
   for (const char* name : {"velocity", "density"})
-    if (std::find(x.begin(), x.end(), name) == x.end() &&
-        std::find(y.begin(), y.end(), name) == y.end())
+    if (std::ranges::find(x, name) == x.end() && std::ranges::find(y, name) == y.end())
       result.notes.push_back(std::string("neither file has the field ") + name +
                              ": what needs it is not compared (output.fields writes it)");
 }
@@ -200,7 +163,7 @@ Snapshot ComparedRun::frame(std::int64_t k) const {
         throw Error(ExitCode::io, path + ": frame " + std::to_string(k) + ": " + name +
                                       " has not the type and the columns that pbf writes");
   const std::vector<std::int64_t> id = ids_of(s);
-  if (std::adjacent_find(id.begin(), id.end(), std::greater_equal<>()) != id.end())
+  if (std::ranges::adjacent_find(id, std::greater_equal<>()) != id.end())
     throw Error(ExitCode::io, path + ": frame " + std::to_string(k) + ": ids do not ascend");
   return s;
 }

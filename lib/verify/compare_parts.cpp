@@ -39,8 +39,7 @@ std::vector<Reading> take_readings(Solver& solver, const Scene& scene, const Pla
 }
 
 const Reading* find_reading(const std::vector<Reading>& readings, const std::string& what) {
-  const auto r = std::find_if(readings.begin(), readings.end(),
-                              [&](const Reading& one) { return one.what == what; });
+  const auto r = std::ranges::find(readings, what, &Reading::what);
   return r == readings.end() ? nullptr : &*r;
 }
 
@@ -105,8 +104,7 @@ double share_of(double error, double tolerance) {
 
 bool note(ComparePart& p, const std::string& what, const std::string& unit, double error,
           double scale, double tolerance, double u) {
-  auto r = std::find_if(p.rows.begin(), p.rows.end(),
-                        [&](const CompareRow& row) { return row.what == what; });
+  auto r = std::ranges::find(p.rows, what, &CompareRow::what);
   const bool fresh = r == p.rows.end();
   if (fresh) r = p.rows.insert(r, {what, unit, 0, 0, 0, 0, 0, Verdict::same});
   if (fresh || !(share_of(error, tolerance) <= share_of(r->error, r->tolerance))) {

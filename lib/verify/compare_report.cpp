@@ -38,8 +38,7 @@ const char* verdict_name(Verdict v) {
 }
 
 bool CompareResult::same() const {
-  return std::none_of(parts.begin(), parts.end(),
-                      [](const ComparePart& p) { return p.verdict == Verdict::differs; });
+  return std::ranges::count(parts, Verdict::differs, &ComparePart::verdict) == 0;
 }
 
 std::string compare_text(const CompareResult& r) {

@@ -99,7 +99,7 @@ FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const
   const auto distribute = [&](const char* name, const char* unit, std::vector<double> v,
                               double resolution_of_it, const Clusters* together = nullptr) {
     std::vector<double> sorted = v;
-    std::sort(sorted.begin(), sorted.end(), before);
+    std::ranges::sort(sorted, before);
     const double effect = together ? together->design_effect_of_shares(v, sorted) : 1;
     out.distributions.push_back(
         {name, unit, std::move(sorted), resolution_of_it, double(v.size()) / effect});
