@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernels/smoothing.h"
 #include "lib/scene/body_box.h"
@@ -11,23 +12,6 @@ namespace pbf::program_module {
 namespace {
 
 constexpr double kDeep = 64;  ///< layers; also in a text of why_no_levels()
-
-/// Depth of the bodies' common bounding box along gravity, in layers, without bodies from files.
-double layers(const Scene& s) {
-  double deepest = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (s.gravity[k] == 0) continue;
-    double low = s.domain.max[k], high = s.domain.min[k];
-    for (const Body& b : s.bodies) {
-      if (b.shape == Shape::file) continue;
-      const BodyBox box = body_box(b);
-      low = std::min(low, box.low[k]);
-      high = std::max(high, box.high[k]);
-    }
-    deepest = std::max(deepest, (high - low) / s.fluid.spacing);
-  }
-  return deepest;
-}
 
 double lattice_gamma(double ratio, double vol, int dimensions) {
   const int reach = int(std::ceil(ratio)), y_reach = dimensions == 2 ? 0 : reach;
@@ -45,16 +29,31 @@ double lattice_gamma(double ratio, double vol, int dimensions) {
 
 }  // namespace
 
+double fluid_layers(const Scene& s, const BodyBox& of_files) {
+  BodyBox all = of_files;
+  for (const Body& b : s.bodies)
+    if (b.shape != Shape::file) all.add(body_box(b));
+  double deepest = length(s.gravity) == 0 ? std::numeric_limits<double>::infinity() : 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (s.gravity[k] != 0)
+      deepest = std::max(deepest, (all.high[k] - all.low[k]) / s.fluid.spacing);
+  return deepest;
+}
+
+namespace {
+bool deep_enough(const Scene& s) { return length(s.gravity) > 0 && fluid_layers(s) >= kDeep; }
+}  // namespace
+
 const char* why_no_levels(const Scene& s) {
   if (s.solver.iterations == 0) return "solver.iterations is 0";
   if (s.solver.levels == LevelsMode::off) return "solver.levels is off";
   if (has_pressure_on_wall(s)) return "the scene has a pressure gauge on a wall";
-  if (s.solver.levels == LevelsMode::automatic && layers(s) < kDeep)
+  if (s.solver.levels == LevelsMode::automatic && !deep_enough(s))
     return "solver.levels is auto, the fluid less than 64 layers deep";
   return nullptr;
 }
 
-LevelPlan plan_levels(const Scene& s, double cell_edge, double vol) {
+LevelPlan plan_levels(const Scene& s, double cell_edge, double vol, double layers) {
   LevelPlan plan;
   const double ratio = s.fluid.smoothing_ratio, edge = 2 * cell_edge;
   LevelShape level;
@@ -70,7 +69,8 @@ LevelPlan plan_levels(const Scene& s, double cell_edge, double vol) {
   }
   for (;;) {
     plan.all.level[plan.all.count++] = level;
-    if (*std::max_element(level.nodes, level.nodes + 3) <= 2) break;
+    const bool fits = (2 << plan.all.count) * (edge * ratio) <= layers;
+    if (*std::max_element(level.nodes, level.nodes + 3) <= 2 || !fits) break;
     level.first += level.size();
     for (int k = 0; k < 3; ++k) {
       const int intervals = level.nodes[k] - 1;

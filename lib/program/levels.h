@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/levels.h"
-#include "lib/scene/scene.h"
+#include "lib/scene/body_box.h"
 
 namespace pbf::program_module {
 
@@ -31,7 +31,13 @@ struct LevelPlan {
 const char* why_no_levels(const Scene& scene);
 inline bool has_levels(const Scene& scene) { return why_no_levels(scene) == nullptr; }
 
-/// cell_edge: edge of the search grid's cells, in h. The scene is in internal axes.
-LevelPlan plan_levels(const Scene& scene, double cell_edge, double vol);
+/// Depth of the common box of bodies and `of_files` along gravity, in layers; without gravity
+/// infinity.
+double fluid_layers(const Scene& scene, const BodyBox& of_files = kNoBox);
+
+/// cell_edge: edge of the search grid's cells, in h. The scene is in internal axes. The coarsest
+/// level fits twice into the depth of the fluid (layers, at the start): coarser ones would have
+/// nodes on the floor alone, which take the energy out of waves (kernels/README.md, "Levels").
+LevelPlan plan_levels(const Scene& scene, double cell_edge, double vol, double layers);
 
 }  // namespace pbf::program_module

@@ -10,6 +10,7 @@
 #include "lib/base/error.h"
 #include "lib/program/axes.h"
 #include "lib/program/calibrate.h"
+#include "lib/program/relaxation.h"
 #include "lib/program/schedule.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/time_levels.h"
@@ -56,14 +57,6 @@ std::vector<double> chebyshev_factors(int iterations) {
     if (low >= 0) out.push_back(rising[std::size_t(low--)]);
   }
   return out;
-}
-
-/// See Plan::sor.
-double default_sor(const Scene& s) {
-  const double ratio = s.fluid.smoothing_ratio, stable = has_levels(s) ? 0.8 : 1;
-  if (s.dimensions == 2) return std::min(1.0, std::pow(3 * stable / ratio, 4.0 / 3.0));
-  const double root = 2.5 * stable / ratio;
-  return std::min(1.0, root * root);
 }
 
 void plan_left_out(Plan& plan, const Scene& s) {
@@ -210,7 +203,8 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   plan.gauges = plan_gauges(s, plan);
   plan.columns = reading_columns(s, plan);
   if (has_levels(s))
-    plan.levels = plan_levels(in_internal_axes(s, plan.axes), plan.cell_edge, plan.vol);
+    plan.levels = plan_levels(in_internal_axes(s, plan.axes), plan.cell_edge, plan.vol,
+                              fluid_layers(s, plan.start.of_files));
   plan.memory = plan_memory(s, plan);
   plan_left_out(plan, s);
   plan_files(plan, s);

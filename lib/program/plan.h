@@ -18,11 +18,13 @@
 
 namespace pbf::program_module {
 
-/// Neighbors of a sample of the initial particles, spread evenly over their ids.
+/// What a start says that the scene alone does not: neighbors of a sample of the particles, spread
+/// evenly over their ids, and where the particles of files are.
 struct StartNeighbors {
   std::vector<int> count;       ///< particles within h, the particle itself included
   std::vector<double> scatter;  ///< standard deviation of the counts nearby; 0: sample too small
-  bool empty() const { return count.empty(); }
+  BodyBox of_files = kNoBox;
+  bool empty() const { return count.empty(); }  ///< no place can be denser than fluid at rest
 };
 
 /// Output files of one kind, with their estimated size.

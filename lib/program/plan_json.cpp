@@ -3,6 +3,7 @@
 
 #include "lib/base/json.h"
 #include "lib/program/plan.h"
+#include "lib/program/relaxation.h"
 #include "lib/program/threads.h"
 #include "lib/scene/auto_step.h"
 
@@ -71,6 +72,8 @@ Json plan_json(const Plan& plan, const Scene& s) {
           {"bytes", plan.bytes()},
           {"cells", {plan.cells[0], plan.cells[1], plan.cells[2]}},
           {"cell_edge_h", plan.cell_edge},
+          {"sor", plan.sor},
+          {"sor_limit", sor_limit(s)},
           {"vol", plan.vol},
           {"wall_scale", plan.wall_scale},
           {"wall_range_h", plan.wall_range},

@@ -5,6 +5,7 @@
 #include "lib/base/text.h"
 #include "lib/program/axes.h"
 #include "lib/program/plan.h"
+#include "lib/program/relaxation.h"
 #include "lib/program/schedule.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/threads.h"
@@ -92,6 +93,10 @@ std::string passes_part(const Plan& plan, const Scene& s) {
                        reads_text(*p), writes_text(*p)) +
            (gathers.empty() ? "\n" : "; of neighbors " + gathers + "\n");
   }
+  if (s.solver.iterations > 0)
+    out += fmt::format(
+        "  omega {:.3g} in each iteration{}; safe up to {:.3g} with {} in a substep\n", plan.sor,
+        s.solver.sor ? "" : " (solver.sor: auto)", sor_limit(s), s.solver.iterations);
   if (plan.substeps > 1)
     out += fmt::format(
         "  {} substeps of {:.4g} s on {} list{}: at most {:.3g} h of way on one list\n",

@@ -115,6 +115,13 @@ std::vector<Warning> Reporter::found(bool end) const {
                      "more solver.iterations",
                      100 * kNoLiquid, percent(double(compressed_), double(run_.schedule.updates)),
                      100 * m.compression_mean, end ? "the end" : "present")});
+  if (m.energy_rise > kAddsEnergy)
+    list.push_back(
+        {"energy",
+         fmt::format("the fluid has gained {:.3g} % of its energy at the start, more than "
+                     "{:g} %: the method adds it; give a shorter time.step, more "
+                     "solver.iterations or a smaller solver.sor (here {:.3g})",
+                     100 * m.energy_rise, 100 * kAddsEnergy, run_.plan.sor)});
   const double share =
       double(m.unresolved) /
       (double(run_.plan.particles) * double(run_.schedule.updates) * run_.scene.solver.substeps);

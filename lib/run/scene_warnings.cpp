@@ -6,6 +6,7 @@
 #include "kernels/relative_motion.h"
 #include "lib/base/text.h"
 #include "lib/program/motion.h"
+#include "lib/program/relaxation.h"
 #include "lib/run/motion_warnings.h"
 #include "lib/run/start_neighbors.h"
 #include "lib/run/warnings.h"
@@ -227,7 +228,7 @@ std::vector<Warning> scene_warnings(const StartPoints& points, std::int64_t part
       {"table", tables_text(scene)},       {"obstacles", obstacles_text(scene, tracks)},
       {"wall", walls_text(scene, tracks)}, {"collision", collisions_text(scene, tracks)},
       {"overlap", overlap_text(points)},   {"over-dense", over_dense_text(scene, particles)},
-      {"output", output_text(scene)}};
+      {"relaxation", sor_text(scene)},     {"output", output_text(scene)}};
   std::erase_if(list, [](const Warning& w) { return w.text.empty(); });
   return list;
 }

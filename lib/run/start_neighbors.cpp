@@ -166,7 +166,10 @@ std::vector<Candidate> candidates(const Scene& s, const StartPoints& points,
 
 StartNeighbors start_neighbors(const StartPoints& points, std::int64_t particles) {
   const Scene& s = points.scene();
-  if (!may_be_over_dense(s)) return {};
+  StartNeighbors out;
+  if (!may_be_over_dense(s)) return out;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b)
+    for (const Double3& x : points.of_file(b).position) out.of_files.add({x, x});
   // Fewer samples for many particles: in one clump every particle is tested with every sample.
   const std::int64_t wanted =
       std::min(particles, std::clamp<std::int64_t>(400000000 / particles, 256, 4096));
@@ -185,7 +188,6 @@ StartNeighbors start_neighbors(const StartPoints& points, std::int64_t particles
     sample.add(x);
     if (++k < wanted) next = draw(k);
   });
-  StartNeighbors out;
   out.count.resize(sample.size());
   points.for_each([&](std::size_t, const Double3& x) { sample.count(x, out.count); });
   out.scatter = sample.scatter(out.count);

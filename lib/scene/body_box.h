@@ -28,6 +28,9 @@ struct BodyBox {
   }
 };
 
+/// Holds nothing; add() makes it the other one.
+inline constexpr BodyBox kNoBox{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
+
 /// m. Of a block, random box, sphere or cylinder; a file has none before it is read.
 inline BodyBox body_box(const Body& b) {
   BodyBox box{b.min, b.max};

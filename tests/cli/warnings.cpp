@@ -57,17 +57,20 @@ TEST_CASE("a warning is on stderr, also with --quiet, in log.txt and in the run 
   const Outcome o = run(folder, {"s.yaml", "--out", "a", "--quiet"});
   CHECK(o.code == 0);
   const std::vector<std::string> told = warnings_in(o.err);
-  REQUIRE(told.size() == 5);  // the step; two kinds on the way, and both again at the end
+  // The step; three kinds on the way, and two of them, with other figures, again at the end.
+  REQUIRE(told.size() == 6);
   CHECK(has(told[0], "times the longest that is safe"));
   CHECK(has(o.err, "pbf: warning: the fluid is compressed as no liquid is"));
+  CHECK(has(o.err, "pbf: warning: the fluid has gained "));
   CHECK(warnings_in(read_text(folder / "a/log.txt")) == told);
   CHECK(has(o.out, "warning") == false);  // stdout is for results
   const std::vector<std::string> list = kept(folder / "a/run.vtkhdf");
-  REQUIRE(list.size() == 3);  // each kind once, with the figures of the whole run
+  REQUIRE(list.size() == 4);  // each kind once, with the figures of the whole run
   CHECK(has(list[0], "times the longest that is safe"));
   CHECK(has(list[1], "at the end"));
-  CHECK(has(list[2], "fluid may have passed through fluid"));
-  CHECK(list[2] == told.back());
+  CHECK(has(list[2], "more than 1 %: the method adds it"));
+  CHECK(has(list[3], "fluid may have passed through fluid"));
+  CHECK(list[3] == told.back());
 }
 
 TEST_CASE("a sound run warns of nothing") {
@@ -150,7 +153,7 @@ TEST_CASE("a stopped run counts what it has warned of on from its checkpoint") {
   REQUIRE(run(folder, {"s.yaml", "--out", "a", "--resume"}).code == 0);
   REQUIRE(run(folder, {"s.yaml", "--out", "b"}).code == 0);
   CHECK(kept(folder / "a/run.vtkhdf") == kept(folder / "b/run.vtkhdf"));
-  CHECK(kept(folder / "a/run.vtkhdf").size() == 3);
+  CHECK(kept(folder / "a/run.vtkhdf").size() == 4);
 }
 
 TEST_CASE("summary.csv counts the warnings of each run, and --strict makes them failures") {
@@ -168,7 +171,7 @@ TEST_CASE("summary.csv counts the warnings of each run, and --strict makes them 
     return std::stoi(row.substr(row.rfind(',') + 1));
   };
   CHECK(warnings(sound) == 0);
-  CHECK(warnings(bad) == 3);
+  CHECK(warnings(bad) == 4);
   Args strict = base;
   strict.insert(strict.end(), {"--strict", "--out", "strict"});
   const Outcome o = pbf::test::pbf(strict, folder.path());

@@ -56,7 +56,9 @@ inline Case flat_block(int nx, int nz, double jitter, double speed, std::uint32_
 }
 
 inline std::unique_ptr<pbf::Solver> make(const Case& c) {
-  const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()));
+  pbf::StartNeighbors start;
+  start.of_files = {{-1e6, -1e6, -1e6}, {1e6, 1e6, 1e6}};  // no depth limits the levels
+  const pbf::Plan plan = pbf::make_plan(c.scene, std::int64_t(c.particles.size()), start);
   return pbf::make_solver(c.scene, plan, c.particles);
 }
 

@@ -22,6 +22,7 @@ LevelPlan boxes(int x, int y, int z) {
                         "]}\n"
                         "fluid: {spacing: 0.1}\n"
                         "bodies: [{shape: block, min: [0, 0, 0], max: [0.4, 0.1, 0.4]}]\n"
+                        "gravity: [0, 0, 0]\n"  // no depth limits the levels
                         "time: {step: 0.002, end: 1}\n"
                         "solver: {levels: on}\n" +
                         (flat ? "dimensions: 2\n" : ""));

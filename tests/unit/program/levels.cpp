@@ -66,8 +66,8 @@ TEST_CASE(
   const Plan plan = plan_of(s);
   CHECK(has_stage(plan));
   CHECK(why_without(plan) == "there");
-  // Intervals 5 5 24; 3 3 12; 2 2 6; 1 1 3; - - 2; - - 1.
-  const int nodes = 6 * 6 * 25 + 4 * 4 * 13 + 3 * 3 * 7 + 2 * 2 * 4 + 3 + 2;
+  // Intervals 5 5 24; 3 3 12; 2 2 6; 1 1 3: hats of 16 cells, as high as the fluid.
+  const int nodes = 6 * 6 * 25 + 4 * 4 * 13 + 3 * 3 * 7 + 2 * 2 * 4;
   CHECK(plan.levels.nodes() == nodes);
   const std::int64_t cells = 5 * 5 * 24, particles = 1000;
   CHECK(bytes_of(plan, "level home") == particles * 4);
@@ -109,4 +109,33 @@ TEST_CASE("levels auto: on from 64 layers of fluid along gravity on, of all bodi
   CHECK(bodies(pool + ", {shape: sphere, center: [0.2, 0.2, 1.2], radius: 0.1}"));
   CHECK_FALSE(bodies(pool + ", {shape: sphere, center: [0.2, 0.2, 1.1], radius: 0.1}"));
   CHECK_FALSE(bodies("{shape: file, path: deep.csv}"));  // not known before it is read
+}
+
+TEST_CASE("levels go on as long as they fit twice into the depth of the fluid") {
+  const auto levels = [](const Scene& s, const BodyBox& of_files = kNoBox) {
+    StartNeighbors start;
+    start.of_files = of_files;
+    return make_plan(s, 8000000, start).levels.all.count;
+  };
+  // A cell is four layers high: level l fits twice into 4 * 2^(l + 1) layers.
+  const auto block = [](double layers) {
+    return scene_test::parse(
+        "domain: {min: [0, 0, 0], max: [4, 4, 4]}\n"
+        "fluid: {spacing: 0.02}\n"
+        "bodies: [{shape: block, min: [0, 0, 0], max: [4, 4, " +
+            std::to_string(layers * 0.02) + "]}]\n" + "time: {step: 0.002, end: 1}\n",
+        {"solver.levels=on"});
+  };
+  CHECK(levels(block(6)) == 1);
+  CHECK(levels(block(15)) == 1);
+  CHECK(levels(block(17)) == 2);
+  CHECK(levels(block(31)) == 2);
+  CHECK(levels(block(33)) == 3);
+  CHECK(levels(block(190)) == 5);
+  Scene weightless = block(6);
+  weightless.gravity = {0, 0, 0};
+  CHECK(levels(weightless) > 5);  // without gravity there is no depth
+  // Particles of files count with the bodies.
+  CHECK(levels(block(6), {{0, 0, 0}, {4, 4, 34 * 0.02}}) == 3);
+  CHECK(levels(block(6), {{0, 0, 2}, {4, 4, 2.01}}) == 4);
 }

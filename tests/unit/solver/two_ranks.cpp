@@ -22,10 +22,12 @@ struct Made {
     read_motions(scene, folder);
     particles = emit_particles(scene, folder);
     const auto n = std::int64_t(particles.size());
-    plan = make_plan(scene, n);
+    StartNeighbors start;
+    start.of_files = {{-1e6, -1e6, -1e6}, {1e6, 1e6, 1e6}};  // no depth limits the levels
+    plan = make_plan(scene, n, start);
     Scene counted = scene;
     counted.capacity = 2 * n;
-    of_ranks = make_plan(counted, n);
+    of_ranks = make_plan(counted, n, start);
     of_ranks.program = make_program_of<test::RankFeatures>(counted, of_ranks.shape());
   }
   Scene of_rank() const {
