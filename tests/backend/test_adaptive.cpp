@@ -40,7 +40,7 @@ Case unstable_pool() {
   c.scene.time = {0.02, 2, pbf::AdaptiveTime{}};
   c.scene.time.adaptive->cfl = c.scene.time.adaptive->force = 100;  // alarms alone
   c.scene.solver.iterations = 1;
-  c.scene.solver.sor = 0.95;  // more than is stable
+  c.scene.solver.sor = 0.84;  // more than is stable at that step
   return c;
 }
 
