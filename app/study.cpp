@@ -1,5 +1,6 @@
 // pbf study: many runs with some keys varied, error against run time.
 #include <fmt/core.h>
+#include <algorithm>
 
 #include "app/commands.h"
 #include "app/options.h"
@@ -63,7 +64,7 @@ std::optional<MemberResult> result_of(const Study& study, const StudyMember& mem
   const std::string path = folder + "/members/" + member_key(study, member) + ".json";
   require_own_file(path);
   try {
-    if (auto kept = read_member(path)) {
+    if (auto kept = read_member(path, member.scene)) {
       log.note(name + ": kept from before");
       return kept;
     }
@@ -99,8 +100,9 @@ void write_tables(const Study& study, const std::vector<StudyRow>& rows, const s
 
 std::string list_text(const Study& study) {
   std::string out = fmt::format("{}: {} runs", study.name, study.members.size());
-  if (study.reference) out += " and the reference";
-  for (const StudyMember& m : study.members) out += "\n  " + m.label;
+  if (study.reference && !study.reference_member) out += " and the reference";
+  for (std::size_t k = 0; k < study.members.size(); ++k)
+    out += "\n  " + study.members[k].label + (study.reference_member == k ? " (reference)" : "");
   return out;
 }
 
@@ -119,7 +121,8 @@ int command_study(const StudyOptions& o) {
     check_output("--out", out + "/" + name);
   }
   watch_signals();
-  const std::size_t n = study.members.size() + (study.reference ? 1 : 0);
+  const bool own_run = study.reference && !study.reference_member;
+  const std::size_t n = study.members.size() + (own_run ? 1 : 0);
   const auto stopped = [&](std::size_t done) {
     log.note(fmt::format(
         "pbf: stopped early by {} with {} of {} runs done; the same command goes on from there",
@@ -131,9 +134,12 @@ int command_study(const StudyOptions& o) {
   };
   std::size_t k = 0;
   std::optional<MemberResult> reference;
-  if (study.reference) {
-    reference = result_of(study, *study.reference, out, name_of(*study.reference, ++k), log);
-    if (!reference) return stopped(k - 1);
+  if (study.reference) {  // first, because nothing can be told without it
+    const std::size_t number = own_run ? ++k : *study.reference_member + 1;
+    const std::string name = name_of(*study.reference, number);
+    reference = result_of(study, *study.reference, out, own_run ? name : name + ", reference", log);
+    if (!reference) return stopped(0);
+    check_reference(study, *reference);
   }
   std::vector<StudyRow> rows;
   std::size_t unavailable = 0;
@@ -141,7 +147,8 @@ int command_study(const StudyOptions& o) {
     const std::string name = name_of(member, ++k);
     std::optional<MemberResult> result;
     try {
-      result = result_of(study, member, out, name, log);
+      const bool is_reference = study.reference_member == rows.size();
+      result = is_reference ? reference : result_of(study, member, out, name, log);
       if (!result) return stopped(k - 1);
     } catch (const Error& e) {
       if (e.code() != ExitCode::unavailable) throw;
@@ -155,6 +162,7 @@ int command_study(const StudyOptions& o) {
     }
     rows.push_back(study_row(study, member, *result, reference ? &*reference : nullptr));
     mark_front(study, rows);
+    find_orders(study, rows);
     write_tables(study, rows, out);  // after every run, for early inspection
   }
   log.result(study_text(study, rows));
@@ -163,6 +171,15 @@ int command_study(const StudyOptions& o) {
     throw Error(
         ExitCode::unavailable,
         fmt::format("{} of {} runs could not run here: their rows say why", unavailable, n));
+  const auto apart = std::ranges::count_if(rows, [](const StudyRow& row) {
+    return row.status == "finished" && !std::ranges::all_of(row.motion, [](const MotionResult& m) {
+             return m.difference.has_value();
+           });
+  });
+  if (apart > 0)
+    bad_input(o.study, fmt::format("{} of {} runs could not be compared with the reference: the "
+                                   "column message says why; remove the error from the study",
+                                   apart, n));
   return 0;
 }
 

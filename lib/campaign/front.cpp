@@ -9,6 +9,7 @@
 #include "lib/base/inputs.h"
 #include "lib/io/csv.h"
 #include "lib/scene/number.h"
+#include "lib/verify/compare_data.h"
 
 namespace pbf::campaign_module {
 FrontData read_front_data(const std::string& path) {
@@ -53,11 +54,8 @@ double front_deviation(const FrontCurve& c, const FrontData& data, std::size_t* 
   double squares = 0;
   std::size_t n = 0;
   for (std::size_t k = 0; k < data.T.size(); ++k) {
-    const auto next = std::lower_bound(c.T.begin(), c.T.end(), data.T[k]);
-    if (next == c.T.end() || (next == c.T.begin() && *next > data.T[k])) continue;
-    const auto i = std::size_t(next - c.T.begin());
-    double z = c.Z[i];
-    if (i > 0) z += (c.Z[i - 1] - z) * (c.T[i] - data.T[k]) / (c.T[i] - c.T[i - 1]);
+    const double z = value_at({c.T, c.Z}, data.T[k]);
+    if (std::isnan(z)) continue;
     squares += (z - data.Z[k]) * (z - data.Z[k]);
     ++n;
   }

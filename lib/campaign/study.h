@@ -23,6 +23,17 @@ struct StudyMember {
   std::string label;
 };
 
+/// A quantity of motion, as a column of MemberResult::log. Its error is the difference from the
+/// reference over time.
+struct MotionError {
+  std::string column;  ///< "energy", "gauge/H2", "gauge/U/x"
+  std::string unit;    ///< as in the log: "J"
+
+  std::string rms() const;       ///< of its columns in the table: "energy_rms_J"
+  std::string relative() const;  ///< "energy_rms_relative"
+  std::string order() const;     ///< "energy_order"
+};
+
 /// A study file with the checked scene of every member.
 struct Study {
   std::string name, path;
@@ -30,13 +41,17 @@ struct Study {
   std::vector<std::string> keys;  ///< varied by the grid
   bool has_variants = false;
   std::vector<StudyMember> members;
-  std::optional<StudyMember> reference;      ///< whose center of mass is the reference
-  std::string error = "compression_mean";    ///< the measure plotted against run time
-  std::vector<double> targets{0.01, 0.001};  ///< of the error
-  double from = 0;                           ///< s, earlier measurements are ignored
-  double energy_limit = 0.01;                ///< for members whose variant has no own limit
-  int repeats = 3;                           ///< of the timing; the whole run is the first
-  bool cpu_clock = false;                    ///< seconds are CPU time of the process, not wall time
+  std::optional<StudyMember> reference;         ///< the run that motion is compared with
+  std::optional<std::size_t> reference_member;  ///< its number, if it is one of the members
+  std::string reference_key;                    ///< "study.yaml:9:12: reference", for messages
+  std::vector<std::string> errors{"compression_mean"};  ///< measures; the first one's front is
+                                                        ///< marked
+  std::vector<MotionError> motion;                      ///< compared with the reference
+  std::vector<double> targets{0.01, 0.001};             ///< of the errors
+  double from = 0;                                      ///< s, earlier measurements are ignored
+  double energy_limit = 0.01;  ///< for members whose variant has no own limit
+  int repeats = 3;             ///< of the timing; the whole run is the first
+  bool cpu_clock = false;      ///< seconds are CPU time of the process, not wall time
   std::optional<Front> front;
 };
 
@@ -46,8 +61,16 @@ struct Study {
 Study load_study(const std::string& path, const std::vector<std::string>& overrides,
                  const std::string& base_folder = {});
 
-/// The measures that can be plotted against run time; `error` is one of them.
+/// The measures that can be plotted against run time; `errors` are some of them.
 std::vector<std::string> study_error_measures(const Study& study);
+
+/// The columns of MemberResult::log that not every run has: the numbers of gauges, and `work` where
+/// something moves.
+struct FurtherColumn {
+  std::string name;  ///< "gauge/H2", "gauge/U/x", "work"
+  const char* unit;
+};
+std::vector<FurtherColumn> further_columns(const Scene& scene);
 
 /// The stored result of a run. NaN is null in the file.
 struct MemberResult {
@@ -57,7 +80,9 @@ struct MemberResult {
   std::int64_t threads = 0, particles = 0, updates = 0;
   double seconds = 0;          ///< s, of all updates, without measurements and the start
   std::vector<double> ratios;  ///< of short repeats: time relative to the same updates of the run
-  std::map<std::string, std::vector<double>> log;  ///< of measurements, as that of run.vtkhdf
+  /// Of measurements, as that of run.vtkhdf, with further_columns(): gauges are read when the run
+  /// is measured.
+  std::map<std::string, std::vector<double>> log;
 
   const std::vector<double>& series(const std::string& name) const;
   double seconds_median() const;  ///< s
@@ -75,8 +100,8 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
                                        const std::function<void(double)>& progress);
 
 /// Write and read the result as JSON. write throws Error(io). read is empty if there is no file,
-/// and throws Error(bad_input) for an invalid one.
+/// and throws Error(bad_input) for an invalid one, or one without a column of a run of `scene`.
 void write_member(const std::string& path, const MemberResult& result);
-std::optional<MemberResult> read_member(const std::string& path);
+std::optional<MemberResult> read_member(const std::string& path, const Scene& scene = {});
 
 }  // namespace pbf::campaign_module

@@ -19,9 +19,23 @@ double seconds_of(const Session& session, const Study& study) {
   return study.cpu_clock ? session.seconds().cpu : session.seconds().wall;
 }
 
-/// Adds a row to the columns; returns whether the run may continue.
-bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, WorkTrack& work,
-             MemberResult& out) {
+/// "gauge/U/x"; `number`: of number_name().
+std::string gauge_column(const std::string& gauge, const std::string& number) {
+  return "gauge/" + gauge + (number.empty() ? "" : "/" + number);
+}
+
+/// Adds a row to the columns; returns whether the run may continue. `regular`: a longer run would
+/// measure here, too.
+bool measure(Solver& solver, const Scene& scene, const Plan& plan, bool regular,
+             EnergyTrack& energy, WorkTrack& work, MemberResult& out) {
+  if (!scene.gauges.empty()) {
+    const std::vector<double> numbers =
+        solver.readings(Series::gauges, regular ? Interval::ends : Interval::goes_on);
+    for_each_number(
+        plan.columns, Series::gauges, [&](const ReadingColumn& c, int component, std::size_t k) {
+          out.log[gauge_column(c.of, number_name(c, component))].push_back(numbers.at(k));
+        });
+  }
   LogRow row;
   row.measures = solver.diagnose();
   row.measures.work = work.until(row.measures);
@@ -30,6 +44,7 @@ bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, WorkTrack&
   row.iterations = scene.solver.iterations;
   row.dt = scene.time.step;
   for (const auto& c : run_layout::log_columns()) out.log[c.name].push_back(c.value(row));
+  if (has_motion(scene)) out.log["work"].push_back(row.measures.work);
   const Diagnostics& m = row.measures;
   if (m.non_finite == 0 && m.outside == 0) return true;
   out.status = "diverged";
@@ -39,6 +54,22 @@ bool measure(Solver& solver, const Scene& scene, EnergyTrack& energy, WorkTrack&
 }
 
 }  // namespace
+
+std::vector<FurtherColumn> further_columns(const Scene& scene) {
+  std::vector<FurtherColumn> all;
+  for (const Gauge& g : scene.gauges)
+    std::visit(
+        [&](const auto& kind) {
+          for (const GaugeColumn& c : kind.columns) {
+            const ReadingColumn column{kind.word, g.name, c.name, c.unit, "", c.join, c.components};
+            for (int k = 0; k < c.components; ++k)
+              all.push_back({gauge_column(g.name, number_name(column, k)), c.unit});
+          }
+        },
+        g.kind);
+  if (has_motion(scene)) all.push_back({"work", "J"});
+  return all;
+}
 
 const std::vector<double>& MemberResult::series(const std::string& name) const {
   if (const auto column = log.find(name); column != log.end()) return column->second;
@@ -90,7 +121,8 @@ std::optional<MemberResult> run_member(const Study& study, const StudyMember& me
       if (u > 0) out.seconds = seconds * double(out.updates) / double(u);
       if (u <= early) early_seconds = seconds;
       if (schedule.measures(u)) {
-        const bool good = measure(*solver, scene, energy, work, out);
+        const bool regular = u % schedule.measure_every == 0;
+        const bool good = measure(*solver, scene, start.plan, regular, energy, work, out);
         if (u > 0) progress(double(u) / double(out.updates));
         if (!good) return Next::stop;
       }

@@ -73,9 +73,12 @@ void read(const Json& value, const std::string& key, std::vector<double>& out) {
 }
 
 /// Checks that the log has all columns of run_member(), of equal length, and at least one row.
-void check_log(const MemberResult& r) {
-  for (const auto& c : run_layout::log_columns())
-    if (!r.log.contains(c.name)) bad(std::string("log has no column ") + c.name);
+void check_log(const MemberResult& r, const Scene& scene) {
+  const auto need = [&](const std::string& name) {
+    if (!r.log.contains(name)) bad("log has no column " + name);
+  };
+  for (const auto& c : run_layout::log_columns()) need(c.name);
+  for (const FurtherColumn& c : further_columns(scene)) need(c.name);
   const std::size_t rows = r.series("time").size();
   for (const auto& [name, column] : r.log)
     if (column.empty() || column.size() != rows)
@@ -90,7 +93,7 @@ std::string member_key(const Study& study, const StudyMember& m) {
   Scene scene = m.scene;
   scene.name.clear();
   read_motions(scene, study.scene_dir);
-  const Json key{"2",  // version of the format below
+  const Json key{"3",  // version of the format below
                  program,
                  about(m.scene.backend).on_device ? cuda_device_report() : cpu_model(),
                  usable_threads(),
@@ -109,7 +112,7 @@ void write_member(const std::string& path, const MemberResult& r) {
   write_text_file(path, json_text(object) + "\n", Naming::own);
 }
 
-std::optional<MemberResult> read_member(const std::string& path) {
+std::optional<MemberResult> read_member(const std::string& path, const Scene& scene) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return std::nullopt;
   try {
@@ -123,7 +126,7 @@ std::optional<MemberResult> read_member(const std::string& path) {
     read(root.at("ratios"), "ratios", r.ratios);
     for (const auto& [name, values] : root.at("log").items())
       read(values, "log." + name, r.log[name]);
-    check_log(r);
+    check_log(r, scene);
     return r;
   } catch (const std::exception& e) {  // of the library, and those above
     bad(path + ": " + e.what());

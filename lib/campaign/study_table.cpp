@@ -36,23 +36,13 @@ double over_window(const MemberResult& r, const Diagnostic& m, double from) {
   return values.back();
 }
 
-/// Linear interpolation in time; NaN after the last sample.
-double at_time(const std::vector<double>& time, const std::vector<double>& values, double t) {
-  const auto next = std::lower_bound(time.begin(), time.end(), t - 1e-9 * std::fabs(t));
-  if (next == time.end()) return NAN;
-  const auto i = std::size_t(next - time.begin());
-  if (i == 0 || time[i] <= t) return values[i];
-  const double part = (t - time[i - 1]) / (time[i] - time[i - 1]);
-  return values[i - 1] + part * (values[i] - values[i - 1]);
-}
-
 /// RMS over time of the distance between the centers of mass, in units of `length` (m).
 double reference_distance(const MemberResult& r, const MemberResult& reference, double length) {
   double squares = 0;
   const auto &time = r.series("time"), &there = reference.series("time");
   for (const char* name : {"center_of_mass_x", "center_of_mass_y", "center_of_mass_z"})
     for (std::size_t k = 0; k < time.size(); ++k) {
-      const double e = r.series(name)[k] - at_time(there, reference.series(name), time[k]);
+      const double e = r.series(name)[k] - value_at({there, reference.series(name)}, time[k]);
       squares += e * e;
     }
   return std::sqrt(squares / double(time.size())) / length;
@@ -91,8 +81,13 @@ std::vector<Column<StudyRow>> setting_columns(const Study& study) {
   return columns;
 }
 
-bool counts(const Study& study, const StudyRow& row) {
-  return row.status == "finished" && std::isfinite(measure_of(study, row, study.error));
+bool counts(const Study& study, const StudyRow& row, const std::string& measure) {
+  const bool of_reference = measure == "reference_distance" ||
+                            std::ranges::any_of(study.motion, [&](const MotionError& e) {
+                              return measure == e.rms() || measure == e.relative();
+                            });
+  return row.status == "finished" && std::isfinite(measure_of(study, row, measure)) &&
+         !(row.is_reference && of_reference);
 }
 
 }  // namespace
@@ -104,6 +99,7 @@ std::vector<std::string> study_error_measures(const Study& study) {
   if (study.reference) names.push_back("reference_distance");
   if (study.front)
     for (const FrontData& d : study.front->data) names.push_back("front_rms_" + d.name);
+  for (const MotionError& e : study.motion) names.push_back(e.rms()), names.push_back(e.relative());
   return names;
 }
 
@@ -114,6 +110,7 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
   row.result = result;
   row.status = result.status;
   row.message = result.message;
+  compare_motion(study, reference, row);
   const auto names = study_error_measures(study);
   if (result.log.empty()) {  // it never ran
     row.measures.assign(names.size(), NAN);
@@ -138,6 +135,10 @@ StudyRow study_row(const Study& study, const StudyMember& member, const MemberRe
     for (const FrontData& d : study.front->data)
       row.measures.push_back(front_deviation(row.front[0], d));
   }
+  for (const MotionResult& m : row.motion) {
+    row.measures.push_back(m.difference ? m.difference->rms : NAN);
+    row.measures.push_back(m.difference ? m.difference->rms_relative.value_or(NAN) : NAN);
+  }
   const double rise = measure_of(study, row, "energy_rise");
   if (row.status == "finished" && !(rise <= member.energy_limit)) {
     row.status = "energy_rose";
@@ -152,16 +153,25 @@ double measure_of(const Study& study, const StudyRow& row, const std::string& na
   return k < row.measures.size() ? row.measures[k] : NAN;
 }
 
-void mark_front(const Study& study, std::vector<StudyRow>& rows) {
-  for (StudyRow& row : rows) {
-    row.pareto = counts(study, row);
-    const double seconds = row.result.seconds_median(), error = measure_of(study, row, study.error);
+std::vector<bool> pareto_front(const Study& study, const std::vector<StudyRow>& rows,
+                               const std::string& measure) {
+  std::vector<bool> front;
+  for (const StudyRow& row : rows) {
+    bool best = counts(study, row, measure);
+    const double seconds = row.result.seconds_median(), error = measure_of(study, row, measure);
     for (const StudyRow& other : rows) {
-      if (!row.pareto || !counts(study, other)) continue;
-      const double s = other.result.seconds_median(), e = measure_of(study, other, study.error);
-      if (s <= seconds && e <= error && (s < seconds || e < error)) row.pareto = false;
+      if (!best || !counts(study, other, measure)) continue;
+      const double s = other.result.seconds_median(), e = measure_of(study, other, measure);
+      if (s <= seconds && e <= error && (s < seconds || e < error)) best = false;
     }
+    front.push_back(best);
   }
+  return front;
+}
+
+void mark_front(const Study& study, std::vector<StudyRow>& rows) {
+  const std::vector<bool> front = pareto_front(study, rows, study.errors[0]);
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k].pareto = front[k];
 }
 
 Table study_table(const Study& study, const std::vector<StudyRow>& rows) {
@@ -173,9 +183,13 @@ Table study_table(const Study& study, const std::vector<StudyRow>& rows) {
   const auto names = study_error_measures(study);
   for (std::size_t k = 0; k < names.size(); ++k)
     columns.push_back({names[k], [k](R r) { return known(r.measures[k]); }});
+  for (std::size_t k = 0; k < study.motion.size(); ++k)
+    columns.push_back(
+        {study.motion[k].order(), [k](R r) { return known(r.motion[k].order.value_or(NAN)); }});
   columns.push_back({"device", [](R r) { return r.result.device; }});
   columns.push_back({"status", [](R r) { return r.status; }});
   columns.push_back({"message", [](R r) { return r.message; }});
+  columns.push_back({"error", [&study](R) { return study.errors[0]; }});
   columns.push_back({"pareto", [](R r) { return r.pareto; }});
   return TableOf<StudyRow>(columns, rows);
 }
@@ -197,12 +211,12 @@ Table front_table(const Study& study, const std::vector<StudyRow>& rows) {
   return table;
 }
 
-const StudyRow* cheapest(const Study& study, const std::vector<StudyRow>& rows, double target,
-                         const std::string& variant) {
+const StudyRow* cheapest(const Study& study, const std::vector<StudyRow>& rows,
+                         const std::string& measure, double target, const std::string& variant) {
   const StudyRow* best = nullptr;
   for (const StudyRow& row : rows) {
     if (!variant.empty() && row.member->variant != variant) continue;
-    if (!counts(study, row) || !(measure_of(study, row, study.error) <= target)) continue;
+    if (!counts(study, row, measure) || !(measure_of(study, row, measure) <= target)) continue;
     if (!best || row.result.seconds_median() < best->result.seconds_median()) best = &row;
   }
   return best;

@@ -73,7 +73,7 @@ TEST_CASE("without grid and variants a study is one run") {
   const Study s = folder.study("name: alone\n");
   REQUIRE(s.members.size() == 1);
   CHECK(s.members[0].label == "alone");
-  CHECK(s.error == "compression_mean");
+  CHECK(s.errors == std::vector<std::string>{"compression_mean"});
   CHECK(s.repeats == 3);
 }
 

@@ -52,9 +52,9 @@ TEST_CASE("a run that made energy, diverged or never ran is neither on the front
   const bool on_front[] = {true, true, false, true, false, false, false};
   for (std::size_t k = 0; k < 7; ++k) CHECK(rows[k].pareto == on_front[k]);
   CHECK(rows[4].status == "energy_rose");
-  CHECK(cheapest(study, rows, 0.01, "") == &rows[1]);
-  CHECK(cheapest(study, rows, 0.001, "") == &rows[3]);
-  CHECK(cheapest(study, rows, 0.0001, "") == nullptr);
+  CHECK(cheapest(study, rows, "compression_mean", 0.01, "") == &rows[1]);
+  CHECK(cheapest(study, rows, "compression_mean", 0.001, "") == &rows[3]);
+  CHECK(cheapest(study, rows, "compression_mean", 0.0001, "") == nullptr);
   const std::string text = study_text(study, rows);
   for (const char* part :
        {"* solver.iterations=2", "  solver.iterations=3", "energy_rose by 50 %", "unavailable",

@@ -1,0 +1,101 @@
+#include "lib/verify/compare_data.h"
+
+#include <fmt/core.h>
+#include <algorithm>
+#include <cmath>
+
+#include "lib/base/error.h"
+
+namespace pbf::verify_module {
+namespace {
+
+struct CommonReadings {
+  std::vector<double> own, reference;
+  std::size_t times = 0, interpolated = 0;  ///< of the reference; without an own reading
+  double low = HUGE_VAL, high = -HUGE_VAL;
+};
+
+/// Times are products of whole numbers and a step, which round differently.
+double rounding(double t) { return 1e-9 * std::fabs(t); }
+
+/// The first reading that is not before t, and whether it is at t.
+struct Place {
+  std::size_t index = 0;
+  bool at = false;
+};
+Place place_of(const TimeSeries& s, double t) {
+  const auto next = std::ranges::lower_bound(s.time, t - rounding(t));
+  return {std::size_t(next - s.time.begin()), next != s.time.end() && *next <= t + rounding(t)};
+}
+
+CommonReadings common_readings(const TimeSeries& own, const TimeSeries& reference, double from) {
+  CommonReadings out;
+  for (std::size_t k = 0; k < reference.time.size(); ++k) {
+    const double t = reference.time[k], there = reference.value[k];
+    if (t < from - rounding(from) || !std::isfinite(there)) continue;
+    ++out.times;
+    out.low = std::min(out.low, there), out.high = std::max(out.high, there);
+    const double here = value_at(own, t);
+    if (!std::isfinite(here)) continue;
+    if (!place_of(own, t).at) ++out.interpolated;
+    out.own.push_back(here), out.reference.push_back(there);
+  }
+  return out;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / double(values.size());
+}
+
+std::optional<double> correlation_of(const std::vector<double>& a, const std::vector<double>& b) {
+  const double mean_a = mean_of(a), mean_b = mean_of(b);
+  double aa = 0, bb = 0, ab = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const double x = a[k] - mean_a, y = b[k] - mean_b;
+    aa += x * x, bb += y * y, ab += x * y;
+  }
+  if (!(aa > 0 && bb > 0)) return std::nullopt;
+  return std::clamp(ab / (std::sqrt(aa) * std::sqrt(bb)), -1.0, 1.0);
+}
+
+}  // namespace
+
+double value_at(const TimeSeries& s, double t) {
+  const auto [i, at] = place_of(s, t);
+  if (at) return s.value[i];
+  if (i == 0 || i == s.time.size()) return NAN;
+  const double part = (t - s.time[i - 1]) / (s.time[i] - s.time[i - 1]);
+  return s.value[i - 1] + part * (s.value[i] - s.value[i - 1]);
+}
+
+CommonTimes common_times(const TimeSeries& own, const TimeSeries& reference, double from) {
+  const CommonReadings both = common_readings(own, reference, from);
+  return {both.times, both.own.size()};
+}
+
+SeriesDifference compare_series(const TimeSeries& own, const TimeSeries& reference, double from) {
+  const CommonReadings both = common_readings(own, reference, from);
+  SeriesDifference out;
+  out.points = both.own.size();
+  out.interpolated = both.interpolated;
+  if (!enough_points(out.points, both.times))
+    throw Error(ExitCode::bad_input,
+                fmt::format("{} of the reference's {} readings can be compared; at least {} and "
+                            "half of them are needed",
+                            out.points, both.times, kFewestPoints));
+  double squares = 0;
+  for (std::size_t k = 0; k < out.points; ++k) {
+    const double e = both.own[k] - both.reference[k];
+    squares += e * e;
+    out.bias += e / double(out.points);
+  }
+  out.rms = std::sqrt(squares / double(out.points));
+  out.range = both.high - both.low;
+  if (out.range > 0) out.rms_relative = out.rms / out.range;
+  out.correlation = correlation_of(both.own, both.reference);
+  return out;
+}
+
+}  // namespace pbf::verify_module
