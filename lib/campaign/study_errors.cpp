@@ -227,24 +227,26 @@ void StudyReader::make_reference(const Node& base) {
 }
 
 /// A gauge, or the work, must be recorded by every run; other columns are.
-void StudyReader::check_column(MotionError& e, const StudyMember& m) {
+bool StudyReader::check_column(MotionError& e, const StudyMember& m) {
   const bool gauge = e.column.rfind(kGauge, 0) == 0;
-  if (!gauge && e.column != "work") return;
+  if (!gauge && e.column != "work") return true;
   std::vector<std::string> gauges;
   for (const FurtherColumn& c : further_columns(m.scene)) {
     if (c.name == e.column) e.unit = c.unit;
-    if (c.name == e.column) return;
+    if (c.name == e.column) return true;
     if (c.name.rfind(kGauge, 0) == 0) gauges.push_back(c.name.substr(6));
   }
+  const std::string name = gauge ? e.column.substr(6) : e.column;
   if (!gauge)
-    return problems_.add(place("error"), "error.log",
-                         "work is not in the log of " + m.label +
-                             ", where nothing moves; remove it, or give the scene a motion");
-  const std::string name = e.column.substr(6);
-  problems_.add(place("error"), "error.gauge",
-                "\"" + name + "\" is no gauge of " + m.label +
-                    (gauges.empty() ? ", which has none; add it to the scene under gauges"
-                                    : meant(name, gauges)));
+    problems_.add(place("error"), "error.log",
+                  name + " is not in the log of " + m.label +
+                      ", where nothing moves; remove it, or give the scene a motion");
+  else
+    problems_.add(place("error"), "error.gauge",
+                  "\"" + name + "\" is no gauge of " + m.label +
+                      (gauges.empty() ? ", which has none; add it to the scene under gauges"
+                                      : meant(name, gauges)));
+  return false;
 }
 
 /// Said before hours of runs, not after them.
@@ -252,6 +254,13 @@ void StudyReader::check_times(const StudyMember& m) {
   const auto own = measured_times(m.scene), there = measured_times(study_.reference->scene);
   const auto [times, common] = common_times({own, own}, {there, there}, study_.from);
   if (enough_points(common, times)) return;
+  if (times < kFewestPoints)
+    return problems_.add(
+        place("reference"), "reference",
+        fmt::format("{} is measured at {} times from {} s on, and a difference over time needs {}: "
+                    "lower {}measure_every or `from`",
+                    study_.reference_member ? study_.reference->label : "this run", times,
+                    to_text(study_.from), kFewestPoints, study_.reference_member ? "" : "its "));
   problems_.add(place("error"), "error",
                 fmt::format("{} can be compared at {} of the {} times from {} s on at which the "
                             "reference is measured; at least {} and half of them are needed: "
@@ -260,9 +269,9 @@ void StudyReader::check_times(const StudyMember& m) {
 }
 
 void StudyReader::check_errors() {
-  for (MotionError& e : study_.motion)
-    for (const StudyMember& m : study_.members) check_column(e, m);
-  for (MotionError& e : study_.motion) check_column(e, *study_.reference);
+  for (MotionError& e : study_.motion)  // one run that lacks a column is enough to say
+    if (std::ranges::all_of(study_.members, [&](auto& m) { return check_column(e, m); }))
+      check_column(e, *study_.reference);
   if (!study_.motion.empty())
     for (const StudyMember& m : study_.members) check_times(m);
   const auto known = study_error_measures(study_);

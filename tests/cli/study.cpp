@@ -128,3 +128,86 @@ TEST_CASE("a backend that is not here is a row that says so, and exit code 4") {
   CHECK(has(csv, ",unavailable,"));
   CHECK(has(o.err, "1 of 2 runs could not run here"));
 }
+
+namespace {
+
+/// 51 readings, at the same times for every step.
+const char* const kMotion =
+    "repeats: 1\nset:\n  gauges: [{name: H, kind: level, at: [0.1, 0.1]}]\n"
+    "grid:\n  - {time.step: [0.004, 0.002, 0.001], measure_every: [1, 2, 4]}\n"
+    "error:\n  - compression_mean\n  - {log: center_of_mass_x}\n  - {gauge: H}\n";
+
+/// A study in which these errors are told, of a scene and a grid of three steps.
+struct MotionFolder : Scratch {
+  explicit MotionFolder(const std::string& study = kMotion) {
+    write("tiny.yaml", tiny_scene());
+    write("study.yaml", "scene: tiny.yaml\n" + study);
+  }
+  Outcome run(std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"study", "study.yaml", "--out", "o", "--set", "output=off", "--set",
+                               "threads=1", "--set", "time.end=0.2"});
+    return pbf::test::pbf(more, path());
+  }
+};
+
+}  // namespace
+
+TEST_CASE("errors of motion have units and orders, and a study that goes on tells the same") {
+  const MotionFolder folder;
+  const Outcome list = folder.run({"--list"});
+  CHECK(has(list.out, "time.step=0.001 (reference)"));
+  CHECK(has(list.out, "3 runs\n"));
+  const Outcome first = folder.run();
+  CAPTURE(first.out, first.err);
+  REQUIRE(first.code == 0);
+  CHECK(has(first.err, "[3/3] time.step=0.001, reference"));
+  CHECK(first.err.find("[3/3]") < first.err.find("[1/3]"));
+  CHECK(count(first.err, "[3/3]") == count(first.err, "[3/3] time.step=0.001, reference"));
+  for (const char* part :
+       {"center_of_mass_x: difference from time.step=0.001, from 0 s on; range", " m, 51 points",
+        "gauge/H: difference", "RMS, m", "the reference", "no order: no run with a longer step",
+        "order 1 would show as 1.58, 2 as 2.32",
+        "cheapest setting for gauge/H_rms_relative <= 1 %"})
+    CHECK(has(first.out, part));
+  const std::string csv = read_text(folder / "o/study.csv");
+  CHECK(has(csv, ",center_of_mass_x_rms_m,center_of_mass_x_rms_relative,gauge/H_rms_m,"));
+  CHECK(has(csv, ",center_of_mass_x_order,gauge/H_order,device,"));
+  CHECK(has(read_text(folder / "o/study.json"), "\"note\": \"the reference\""));
+
+  const Outcome again = folder.run();
+  CHECK(again.out == first.out);
+  CHECK(count(again.err, "kept from before") == 3);
+  CHECK(read_text(folder / "o/study.csv") == csv);
+  // Other errors are told of the same runs, those of a gauge too.
+  folder.write("study.yaml", "scene: tiny.yaml\n" + std::string(kMotion) + "  - {log: energy}\n");
+  const Outcome more = folder.run();
+  CHECK(more.code == 0);
+  CHECK(count(more.err, "kept from before") == 3);
+  CHECK(has(more.out, "energy: difference"));
+}
+
+TEST_CASE("a reference that fails ends the study before its other runs, by name") {
+  const MotionFolder folder(
+      "repeats: 1\nset: {domain.open: [z_min], gravity: [0, 0, -1e12], time.step: 5e7}\n"
+      "grid: {solver.iterations: [1, 2]}\nerror: {log: energy}\n");
+  const Outcome o = folder.run({"--set", "time.end=1e9", "--set", "measure_every=1"});
+  CAPTURE(o.err);
+  CHECK(o.code == 2);
+  CHECK(has(o.err, "study.yaml: reference: solver.iterations=2 diverged at update "));
+  CHECK(has(o.err, "name another run"));
+  CHECK_FALSE(has(o.err, "[1/2]"));
+}
+
+TEST_CASE("runs that cannot be compared keep their row with the reason, and the study exits 2") {
+  const MotionFolder folder(
+      "repeats: 1\nset:\n  domain.open: [z_max]\n"
+      "  gauges: [{name: dry, kind: velocity, at: [0.8, 0.1, 0.38]}]\n"
+      "grid:\n  - {time.step: [0.004, 0.002], measure_every: [1, 2]}\nerror: {gauge: dry/x}\n");
+  const Outcome o = folder.run();
+  CAPTURE(o.out, o.err);
+  CHECK(o.code == 2);
+  CHECK(has(o.err, "study.yaml: 2 of 2 runs could not be compared with the reference"));
+  const std::string csv = read_text(folder / "o/study.csv");
+  CHECK(count(csv, ",finished,gauge/dry/x: 0 of the reference's 0 readings can be compared") == 2);
+  CHECK(count(o.out, "nan") == 0);
+}

@@ -9,6 +9,7 @@ drawn side by side, on the same scale of errors.
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from pathlib import Path
 
@@ -19,10 +20,14 @@ from .errors import BadInput, FileError
 from .table import Table, need, read_csvs
 
 EXAMPLE = """example:
-  python -m pbf_tools plot-study study.csv --y compression_mean -o study.png"""
+  python -m pbf_tools plot-study study.csv --y compression_mean -o study.png
+  python -m pbf_tools plot-study out/study_motion --y center_of_mass_x_rms_m -o motion.png"""
 
 
 TABLE = "study.csv"  # of pbf study, in its folder
+COMPRESSION = "compression_mean"
+UNITS = {"_" + re.sub("[ /]", "_", unit.replace("^", "")): unit for unit in
+         ("s", "m", "h", "J", "N", "N m", "Pa", "kg", "m/s", "kg/s", "kg m/s")}
 PANEL = " panel"  # a column that no table has: which panel, counted from 0, shows a row
 
 
@@ -45,15 +50,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--x-spread", default="seconds_spread", metavar="COLUMN",
                         help="longest minus shortest time of the repeats, s: the length of the bar "
                              "at the median (default %(default)s; no bar without this column)")
-    parser.add_argument("--y", default="compression_mean", metavar="COLUMN",
-                        help="error (default %(default)s)")
+    parser.add_argument("--y", metavar="COLUMN",
+                        help="error, of compression or of motion: energy_rms_relative, front_x_rms_m "
+                             "(default: the first error of the study)")
     parser.add_argument("--series", default="variant,method,backend,precision", metavar="COLUMNS",
                         help="columns that distinguish the curves (default %(default)s)")
-    parser.add_argument("--pareto", default="pareto", metavar="COLUMN",
-                        help="1 where a setting is on the front (default %(default)s); computed "
-                             "from --x and --y without this column or with --pareto compute")
+    parser.add_argument("--pareto", metavar="COLUMN",
+                        help="1 where a setting is on the front (default pareto for the first error "
+                             "of the study); computed from --x and --y without this column, for "
+                             "another --y or with --pareto compute")
     parser.add_argument("--percent", action=argparse.BooleanOptionalAction, default=None,
-                        help="draw the error in percent (default: for compression columns)")
+                        help="draw the error in percent (default: for compression and relative "
+                             "columns)")
     parser.add_argument("--panels", nargs="+", metavar="NAME", default=[],
                         help="a name for each CSV; tables with the same name share a panel")
     parser.add_argument("--goal", nargs="+", metavar="TIME:ERROR", type=_goal, default=[],
@@ -74,6 +82,16 @@ def _goal(text: str) -> tuple[float, float]:
     if not (0 < time < np.inf and 0 < error < np.inf):
         raise argparse.ArgumentTypeError(f"{text!r}: a logarithmic axis shows what is above 0")
     return time, error
+
+
+def unit_of(column: str) -> str:
+    """The unit that the name of a column ends in, "1" where it has none.
+
+    >>> unit_of("front_x_rms_m"), unit_of("momentum_x_rms_kg_m_s"), unit_of("compression_mean")
+    ('m', 'kg m/s', '1')
+    """
+    found = re.search(r"_rms(_\w+)$", column)
+    return UNITS.get(found[1], "1") if found else "1"
 
 
 def front(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -97,8 +115,14 @@ def run(args: argparse.Namespace) -> int:
     if args.goal and len(args.goal) != len(titles):
         raise BadInput(f"--goal: {len(args.goal)} goals for {len(titles)} panels; give one for "
                        "each")
-    whole = _rows(args)
-    percent = args.y.startswith("compression") if args.percent is None else args.percent
+    table = read_csvs(args.csv)
+    first = _first_error(table)
+    args.y = args.y or first
+    args.pareto = args.pareto or ("pareto" if args.y == first else "compute")
+    whole = _rows(args, table)
+    percent = args.percent
+    if percent is None:
+        percent = args.y.startswith("compression") or args.y.endswith("_relative")
     keys = [c for c in args.series.split(",") if c in whole.columns]
     names = np.array([", ".join(_text(whole[c][i]) for c in keys) for i in range(len(whole))])
     looks = _looks(whole, keys, names)
@@ -113,7 +137,7 @@ def run(args: argparse.Namespace) -> int:
             axes.plot(*args.goal[k], "*", markersize=15, markerfacecolor="white", zorder=1.5,
                       markeredgecolor="black", linestyle="", label="goal")
         axes.set(xscale="log", yscale="log", xlabel=_label(args.x, "s"),
-                 ylabel="" if k else _label(args.y, "%" if percent else "1"))
+                 ylabel="" if k else _label(args.y, "%" if percent else unit_of(args.y)))
         style.title(axes, title or args.title or "Error against run time",
                     _detail(whole.where(own)))
     style.side_legend(grid[0][-1])
@@ -124,9 +148,14 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _rows(args: argparse.Namespace) -> Table:
+def _first_error(table: Table) -> str:
+    """The error that the column pareto is about."""
+    names = set(table["error"].tolist()) - {""} if "error" in table.columns and len(table) else set()
+    return names.pop() if len(names) == 1 else COMPRESSION
+
+
+def _rows(args: argparse.Namespace, table: Table) -> Table:
     """The rows that can be drawn, each with its panel; what is left out is said on stderr."""
-    table = read_csvs(args.csv)
     need(table, [args.x, args.y], ", ".join(args.csv))
     for name in (args.x, args.y):
         if table[name].dtype.kind != "f":
@@ -164,7 +193,8 @@ def _panel(axes, args: argparse.Namespace, table: Table, percent: bool, names: n
         _series(axes, x, y, spread, np.flatnonzero(names == name), name, look, line)
     axes.plot(x[at], y[at], "o", markersize=11, markerfacecolor="none", markeredgecolor="black",
               markeredgewidth=0.9, zorder=4)
-    return [f"{x[i]:10.4g} s  {args.y} {y[i]:.3g}{' %' if percent else ''}  {names[i]}" for i in at]
+    unit = " %" if percent else "" if unit_of(args.y) == "1" else " " + unit_of(args.y)
+    return [f"{x[i]:10.4g} s  {args.y} {y[i]:.3g}{unit}  {names[i]}" for i in at]
 
 
 def _looks(table: Table, keys: list[str],
@@ -217,6 +247,8 @@ def _text(value: object) -> str:
 
 def _label(column: str, unit: str) -> str:
     name = "run time, median" if column == "seconds_median" else column.replace("_", " ")
+    if unit_of(column) != "1":
+        name = column[:column.rindex("_rms")].replace("_", " ") + " RMS"
     return f"{name} ({unit})"
 
 
