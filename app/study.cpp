@@ -33,20 +33,19 @@ const char* const kStudyHelp =
     "  grid:                              # every combination of these entries;\n"
     "    - {solver.iterations: [1, 4]}    # keys of one entry vary together\n"
     "    - {time.step: [0.002, 0.001], measure_every: [10, 20]}\n"
-    "  error: compression_mean            # set against the run time [default]; or a list\n"
-    "    - compression_mean               # the first one's front is marked\n"
-    "    - {log: center_of_mass_x}        # motion: RMS over time of the difference from\n"
-    "    - {gauge: H2}                    # the reference; U/x, Q/total: other numbers\n"
+    "  error: compression_mean            # set against the run time [default]; or a list,\n"
+    "                                     # [compression_mean, {log: energy}, {gauge: H2}]:\n"
+    "                                     # motion is compared with the reference over\n"
+    "                                     # time; U/x, Q/total: other numbers of gauges\n"
     "  targets: [0.01, 0.001]             # of the errors, of motion relative [default]\n"
     "  from: 0.1                          # s, measures count from here [0]\n"
     "  repeats: 3                         # of the timing [default]\n"
     "  clock: wall                        # or cpu, of all threads: on busy machines\n"
     "  energy_limit: 0.01                 # larger energy_rise: no verdict [default];\n"
     "                                     # a variant may have its own\n"
-    "  reference: finest                  # of the runs [default with errors of motion]\n"
-    "  reference: {variant: paper, time.step: 0.001}\n"
-    "                                     # or the run with these values; if the grid\n"
-    "                                     # has none, one of its own with these keys\n"
+    "  reference: finest                  # of the runs [default with errors of motion]; or\n"
+    "                                     # {variant: paper, time.step: 0.001}: the run with\n"
+    "                                     # these values, else one of its own\n"
     "  front: {axis: x, length: 0.1, factor: 2, data: [front.csv]}\n"
     "                                     # T = t sqrt(factor g/length), Z = x/length\n"
     "Results are kept per run in OUT/members: the same command goes on where a killed\n"
@@ -151,7 +150,13 @@ int command_study(const StudyOptions& o) {
   if (study.reference) {  // first, because nothing can be told without it
     const std::size_t number = own_run ? ++k : *study.reference_member + 1;
     const std::string name = name_of(*study.reference, number);
-    reference = result_of(study, *study.reference, out, own_run ? name : name + ", reference", log);
+    try {
+      reference =
+          result_of(study, *study.reference, out, own_run ? name : name + ", reference", log);
+    } catch (const Error& e) {
+      if (e.code() != ExitCode::unavailable) throw;
+      throw Error(ExitCode::unavailable, study.reference_key + ": cannot run here: " + e.what());
+    }
     if (!reference) return stopped(0);
     check_reference(study, *reference);
   }

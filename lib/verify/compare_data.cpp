@@ -19,11 +19,11 @@ struct CommonReadings {
 double rounding(double t) { return 1e-9 * std::fabs(t); }
 
 /// The first reading that is not before t, and whether it is at t.
-struct Place {
+struct NextReading {
   std::size_t index = 0;
   bool at = false;
 };
-Place place_of(const TimeSeries& s, double t) {
+NextReading next_reading(const TimeSeries& s, double t) {
   const auto next = std::ranges::lower_bound(s.time, t - rounding(t));
   return {std::size_t(next - s.time.begin()), next != s.time.end() && *next <= t + rounding(t)};
 }
@@ -37,7 +37,7 @@ CommonReadings common_readings(const TimeSeries& own, const TimeSeries& referenc
     out.low = std::min(out.low, there), out.high = std::max(out.high, there);
     const double here = value_at(own, t);
     if (!std::isfinite(here)) continue;
-    if (!place_of(own, t).at) ++out.interpolated;
+    if (!next_reading(own, t).at) ++out.interpolated;
     out.own.push_back(here), out.reference.push_back(there);
   }
   return out;
@@ -63,7 +63,7 @@ std::optional<double> correlation_of(const std::vector<double>& a, const std::ve
 }  // namespace
 
 double value_at(const TimeSeries& s, double t) {
-  const auto [i, at] = place_of(s, t);
+  const auto [i, at] = next_reading(s, t);
   if (at) return s.value[i];
   if (i == 0 || i == s.time.size()) return NAN;
   const double part = (t - s.time[i - 1]) / (s.time[i] - s.time[i - 1]);

@@ -127,6 +127,11 @@ TEST_CASE("a backend that is not here is a row that says so, and exit code 4") {
   CHECK(has(csv, "cuda,float,0,0,0,,"));
   CHECK(has(csv, ",unavailable,"));
   CHECK(has(o.err, "1 of 2 runs could not run here"));
+  const Folder other(
+      "repeats: 1\ngrid: {precision: [float, double]}\nreference: {backend: cuda}\n");
+  const Outcome without = other.run();
+  CHECK(without.code == 4);
+  CHECK(has(without.err, "study.yaml:5:12: reference: cannot run here: "));
 }
 
 namespace {
