@@ -1,8 +1,10 @@
 // Studies for tests: a small scene, and results made by hand.
 #pragma once
 
+#include "lib/base/error.h"
 #include "lib/campaign/study_table.h"
 #include "lib/io/run_layout.h"
+#include "tests/support/catch.h"
 #include "tests/support/folder.h"
 
 namespace pbf::test {
@@ -20,6 +22,21 @@ struct StudyFolder : TemporaryFolder {
     return load_study(write("study.yaml", "scene: scene.yaml\n" + text), {});
   }
 };
+
+/// Halved steps, 21 readings each, at the same times.
+inline const char* const kHalvedSteps =
+    "grid:\n  - {time.step: [0.002, 0.001, 0.0005, 0.00025], measure_every: [1, 2, 4, 8]}\n";
+
+/// What the Error(bad_input) of f() says; "accepted" without one.
+inline std::string message_of(const auto& f) {
+  try {
+    f();
+  } catch (const Error& e) {
+    CHECK(e.code() == ExitCode::bad_input);
+    return e.what();
+  }
+  return "accepted";
+}
 
 /// A finished run of `seconds` with a log of these times; every other column 0.
 inline MemberResult result_of(double seconds, const std::vector<double>& time) {

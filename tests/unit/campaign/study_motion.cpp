@@ -1,4 +1,4 @@
-// Errors of motion: what a study file may ask for, and the numbers on results made by hand.
+// Errors of motion and their orders, on results made by hand.
 #include <cmath>
 
 #include "lib/base/error.h"
@@ -6,15 +6,13 @@
 #include "tests/support/study_support.h"
 
 using namespace pbf;
+using pbf::test::kHalvedSteps;
+using pbf::test::message_of;
 using pbf::test::result_of;
 using pbf::test::set;
 using pbf::test::StudyFolder;
 
 namespace {
-
-/// Halved steps, 21 readings each, at the same times.
-const char* const kHalved =
-    "grid:\n  - {time.step: [0.002, 0.001, 0.0005, 0.00025], measure_every: [1, 2, 4, 8]}\n";
 
 /// A result whose energy is off by `error` at all of the 21 readings of a line from 0 to 20 J.
 MemberResult off_by(double error, double seconds = 1) {
@@ -37,23 +35,13 @@ std::vector<StudyRow> rows_of(const Study& study, const std::vector<double>& err
   return rows;
 }
 
-std::string message_of(const auto& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    CHECK(e.code() == ExitCode::bad_input);
-    return e.what();
-  }
-  return "accepted";
-}
-
 }  // namespace
 
 TEST_CASE(
     "an error that falls with the square of the step has order 2, in every row that can tell") {
   const StudyFolder folder;
   const Study study = folder.study(
-      kHalved +
+      kHalvedSteps +
       std::string("error: {log: energy}\nreference: {solver.iterations: 64, measure_every: 1}\n"));
   CHECK(study.errors == std::vector<std::string>{"energy_rms_relative"});
   CHECK_FALSE(study.reference_member);
@@ -74,7 +62,7 @@ TEST_CASE(
 
 TEST_CASE("a reference of the same steps makes orders too high, by as much as the note says") {
   const StudyFolder folder;
-  const Study study = folder.study(kHalved + std::string("error: {log: energy}\n"));
+  const Study study = folder.study(kHalvedSteps + std::string("error: {log: energy}\n"));
   REQUIRE(study.reference_member == 3);  // the finest, if no other is named
   for (const double p : {1, 2}) {
     std::vector<double> errors;
@@ -100,7 +88,7 @@ TEST_CASE("where an order cannot be told, the reason is") {
     CHECK_FALSE(rows[k].motion[0].order);
     return rows[k].motion[0].note;
   };
-  const Study study = folder.study(kHalved + errors);
+  const Study study = folder.study(kHalvedSteps + errors);
   std::vector<StudyRow> rows = rows_of(study, {4, 5, 5, 0});
   CHECK(note(rows, 1) == "no order: not less than with the longer step");
   CHECK(note(rows, 2) == "no order: not less than with the longer step");
@@ -132,8 +120,8 @@ TEST_CASE("where an order cannot be told, the reason is") {
       errors);
   rows = rows_of(together, {4, 2});
   CHECK(note(rows, 1) == "no order: no run with a longer step");
-  const Study long_one =
-      folder.study(kHalved + std::string("error: {log: energy}\nreference: {time.step: 0.001}\n"));
+  const Study long_one = folder.study(
+      kHalvedSteps + std::string("error: {log: energy}\nreference: {time.step: 0.001}\n"));
   rows = rows_of(long_one, {4, 0, 1, 2});
   CHECK(note(rows, 2) == "no order: the reference has no shorter step");
 }
@@ -174,7 +162,7 @@ TEST_CASE("every variant has its own order, and the reference is on no front of 
 
 TEST_CASE("a finished run that cannot be compared has no number but a reason") {
   const StudyFolder folder;
-  const Study study = folder.study(kHalved + std::string("error: [{log: height_kept}]\n"));
+  const Study study = folder.study(kHalvedSteps + std::string("error: [{log: height_kept}]\n"));
   MemberResult r = off_by(0);
   set(r, "height_kept", std::vector<double>(21, NAN));
   StudyRow row = study_row(study, study.members[0], r, &r);
@@ -191,7 +179,7 @@ TEST_CASE("a finished run that cannot be compared has no number but a reason") {
 
 TEST_CASE("a reference that did not finish, or made energy, is refused by place and name") {
   const StudyFolder folder;
-  const Study study = folder.study(kHalved + std::string("error: {log: energy}\n"));
+  const Study study = folder.study(kHalvedSteps + std::string("error: {log: energy}\n"));
   MemberResult r = off_by(0);
   CHECK_NOTHROW(check_reference(study, r));
   set(r, "energy_rise", std::vector<double>(21, 0.5));
@@ -202,100 +190,6 @@ TEST_CASE("a reference that did not finish, or made energy, is refused by place 
   const std::string blown = message_of([&] { check_reference(study, r); });
   CHECK(blown.find("time.step=0.00025 diverged at update 3; nothing can be compared with it: name "
                    "another run") != std::string::npos);
-}
-
-TEST_CASE("the reference is the finest run, the run that is named, or one of its own") {
-  const StudyFolder folder;
-  const std::string head =
-      "variants: [{name: a}, {name: b, set: {solver.method: chebyshev}, energy_limit: 0.2}]\n"
-      "grid:\n  - {solver.iterations: [2, 4]}\n"
-      "  - {time.step: [0.002, 0.001], measure_every: [1, 2]}\nerror: {log: energy}\n";
-  const auto member = [&](const std::string& text) { return folder.study(text).reference_member; };
-  CHECK(member(head + "reference: {variant: b, solver.iterations: 4.0, time.step: 1e-3}\n") == 7);
-  CHECK(member(head + "reference: {variant: a, solver.iterations: 2, measure_every: 2}\n") == 1);
-  CHECK(member("variants: [{name: a}, {name: b, set: {solver.substeps: 2}}]\n" +
-               head.substr(head.find("grid")) + "reference: finest\n") == 7);
-  // Finer in space comes first.
-  CHECK(member("set: {time.end: 0.1}\ngrid:\n  - {fluid.spacing: [0.02, 0.04], time.step: [0.002, "
-               "0.001], measure_every: [1, 2]}\nerror: {log: energy}\n") == 0);
-  const Study own = folder.study(head + "reference: {variant: b, time.step: 5e-4}\n");
-  CHECK_FALSE(own.reference_member);
-  CHECK(own.reference->scene.time.step == 5e-4);
-  CHECK(own.reference->scene.solver.method == SolverMethod::chebyshev);
-  CHECK(own.reference->energy_limit == 0.2);
-  CHECK_FALSE(folder.study("grid: {solver.iterations: [1, 2]}\n").reference);
-}
-
-TEST_CASE("the names of errors end in their unit") {
-  const StudyFolder folder;
-  const Study study = folder.study(
-      kHalved +
-      std::string("set:\n  gauges:\n    - {name: H, kind: level, at: [0.2, 0.1]}\n"
-                  "    - {name: U, kind: velocity, at: [0.2, 0.1, 0.1]}\n"
-                  "    - {name: Q, kind: flow, center: [0.2, 0.1, 0.2], normal: [1, 0, 0], size: "
-                  "[0.2, 0.4]}\n"
-                  "error: [{log: momentum_x}, {log: front_x}, {log: height_kept}, {gauge: H}, "
-                  "{gauge: U/x}, {gauge: Q}, {gauge: Q/total}]\n"));
-  std::vector<std::string> names;
-  for (const MotionError& e : study.motion) names.push_back(e.rms());
-  CHECK(names == std::vector<std::string>{"momentum_x_rms_kg_m_s", "front_x_rms_m",
-                                          "height_kept_rms", "gauge/H_rms_m", "gauge/U/x_rms_m_s",
-                                          "gauge/Q_rms_kg_s", "gauge/Q/total_rms_kg"});
-}
-
-TEST_CASE("what is wrong with an error or a reference is said with its place and a remedy") {
-  const StudyFolder folder;
-  const std::string grid = kHalved;  // 2 lines, after the scene's
-  const std::string two = "variants: [{name: a}, {name: b, set: {solver.method: chebyshev}}]\n";
-  const std::vector<std::pair<std::string, std::string>> cases{
-      {grid + "error: {log: energi}",
-       "study.yaml:4:8: error.log: \"energi\" is no column for errors, did you mean energy?"},
-      {grid + "error: {log: qqqqqqqqq}", "is no column for errors; there are compression_mean "},
-      {grid + "error: [{lag: energy}]", ":4:10: error.lag: unknown key, did you mean log?"},
-      {grid + "error: [{log: energy, gauge: H}]", ":4:9: error: needs one of log and gauge"},
-      {grid + "error: [{}]", "needs one of log and gauge in an entry"},
-      {grid + "error: {log: [a]}", "error.log: is a list of 1"},
-      {grid + "error: []", "error: is an empty list; name a measure"},
-      {grid + "error: [[energy]]", "error: is a list of 1"},
-      {grid + "error: [{log: energy}, {log: energy}]", ":4:24: error: energy is given twice"},
-      {grid + "error: [compression_mean, compression_mean]", "compression_mean is given twice"},
-      {grid + "error: [compression_mean, front_x_rms_m]", "is no measure of this study"},
-      {grid + "error: {log: work}",
-       ":4:8: error.log: work is not in the log of time.step=0.002, where nothing moves"},
-      {grid + "error: {gauge: H}", "\"H\" is no gauge of time.step=0.002, which has none; add it"},
-      {grid + "set: {gauges: [{name: H2, kind: level, at: [0.2, 0.1]}]}\nerror: {gauge: H3}",
-       ":5:8: error.gauge: \"H3\" is no gauge of time.step=0.002; there are H2"},
-      {"error: {log: energy}", ": reference: is the finest run, and there is only one; give its"},
-      {two + "error: {log: energy}",
-       ": reference: the finest is not one run but 2 runs: a, b; name"},
-      {two + grid + "error: {log: energy}\nreference: {time.step: 0.001}",
-       ":6:12: reference: these values are those of 2 runs: a time.step=0.001, b time.step=0.001; "
-       "name one by its values, such as {time.step: 0.001} and its variant: NAME"},
-      {two + grid + "reference: {variant: c, time.step: 1}",
-       ":5:22: reference.variant: \"c\" is no variant of this study"},
-      {grid + "reference: {variant: c}", "\"c\" is no variant of this study"},
-      {grid + "reference: coarsest", ":4:12: reference: is \"coarsest\", expected finest, or keys"},
-      {grid + "reference: [finest]", "expected finest, or keys of the scene"},
-      {grid + "reference: {time.stp: 1}", "time.stp: unknown key, did you mean time.step?"},
-      {"grid: {time.step: [0.002, 0.001]}\nerror: {log: energy}",
-       "study.yaml: reference: time.step=0.001 is measured at 9 times from 0 s on, and a "
-       "difference "
-       "over time needs 10: lower measure_every or `from`"},
-      {grid + "error: {log: energy}\nreference: {solver.iterations: 64}",
-       ":5:12: reference: this run is measured at 5 times from 0 s on, and a difference over time "
-       "needs 10: lower its measure_every"},
-      {"grid: {time.end: [0.04, 0.1]}\nset: {measure_every: 1}\nerror: {log: energy}\n"
-       "reference: {time.end: 0.1}",
-       "time.end=0.04 can be compared at 21 of the 51 times"},
-      {"grid: {time.adaptive: [on, off]}\nerror: {log: energy}", "time.adaptive: a study compares"},
-      {grid + "from: 0.03\nerror: {log: energy}", "is measured at 6 times from 0.03 s on"}};
-  for (const auto& [text, message] : cases) {
-    CAPTURE(text, message);
-    const std::string said = message_of([&] { folder.study(text + "\n"); });
-    CAPTURE(said);
-    CHECK(said.find(message) != std::string::npos);
-    CHECK(said.find("study.yaml:") != std::string::npos);
-  }
 }
 
 TEST_CASE("a run keeps its gauges and the work of its motion, and differs from itself by nothing") {
