@@ -87,7 +87,7 @@ void StudyReader::front(const Node& n) {
             {"length", number("front.length", 1e-9, 1e9, front.length)},
             {"factor", number("front.factor", 1e-9, 1e9, front.factor)},
             {"data", [&](const Node& at) {
-               if (at.kind != Kind::list)
+               if (at.kind != Node::Kind::list)
                  return bad(at, "front.data", "is " + at.shown() + ", expected a list of files");
                for (const Node& item : at.items) {
                  try {
