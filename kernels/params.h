@@ -15,6 +15,8 @@ template <class Real>
 struct Params {
   int dimensions = 3;               ///< 2: y and v_y are 0
   Real dt = 0, inv_dt = 0;          ///< s, 1/s
+  Real back = 0;                    ///< s, how long before x* the corrections take their direction
+  Real carry = 0;                   ///< share of the last step's push in the prediction
   Vec3<Real> gravity;               ///< h/s^2
   Real damping = 1;                 ///< factor on the velocity, once per update
   Real speed_squared = Real(1e30);  ///< (h/s)^2, faster particles are counted ...

@@ -75,9 +75,11 @@ struct LambdaPass {
   Boundary boundary;
   Lists lists;
   GatheredRows<Vec4<Real>> position;
-  OwnRows<Vec4<Real>> position_out;  ///< out: the same position with w = lambda
+  /// out: where the corrections take their directions, x* - back v (x* in first order), and
+  /// w = lambda
+  OwnRows<Vec4<Real>> position_out;
   OwnRows<std::conditional_t<with_density, Real, const Real>> density;  ///< out, or in
-  GatheredRows<Vec4<Real>> velocity;  ///< for count_unresolved() alone
+  GatheredRows<Vec4<Real>> velocity;  ///< in first order for count_unresolved() alone
   StepCounts* counts;
 
   static constexpr int D = dimensions_of(S);
@@ -129,7 +131,11 @@ struct LambdaPass {
     // The denominator is 0 without neighbors, walls and cfm.
     const Real lambda =
         denominator > Real(0) ? -c / (under_relaxation(rho, p) * denominator) : Real(0);
-    position_out[i] = with_w(in_space(x), lambda);
+    // v holds every displacement of the step so far, so x* - dt v is where the step began: between
+    // two places in the box, which is convex.
+    const Vec3<Real> place =
+        p.back > Real(0) ? in_space(x) - p.back * xyz(load(velocity, i)) : in_space(x);
+    position_out[i] = with_w(place, lambda);
     // At the end, where few registers are in use.
     if (load(position, i).w < Real(0)) count_unresolved(i, p, lists, velocity, counts);
   }

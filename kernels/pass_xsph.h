@@ -29,7 +29,8 @@ struct XsphPass {
   GatheredRows<Vec4<Real>> position;  ///< w = 1/density
   GatheredRows<Vec4<Real>> velocity;  ///< h/s
   OwnRows<Vec4<Real>> velocity_out;
-  int* bin;  ///< out; null: no update follows
+  Vec4<Real>* free;  ///< in/out: viscosity is no push of the constraints; null in first order
+  int* bin;          ///< out; null: no update follows
 
   static constexpr int D = dimensions_of(S);
   static constexpr bool leaves_rows = Boundary::far_only;
@@ -56,7 +57,8 @@ struct XsphPass {
     const Vec3<Real> v =
         in_space(a.v + (Real(0.5) * p.xsph * p.vol * density_norm<Real, S>()) * s.v);
     velocity_out[i] = with_w(v, Real(0));
-    if (bin) bin[i] = predicted_bin<D>(i, in_space(a.x), v, p, boundary);
+    if (free) free[i] = with_w(xyz(free[i]) + (v - in_space(a.v)), Real(0));
+    if (bin) bin[i] = predicted_bin<D>(i, in_space(a.x), v, free, p, boundary);
   }
 };
 

@@ -14,6 +14,27 @@ struct BoundaryTerm {
   Vec3<Real> gradient;
 };
 
+/// The step of a particle so far.
+template <class Real>
+struct StepWay {
+  Vec3<Real> way;  ///< h, from where the step began to x*
+  Real back = 0;   ///< how far back along it corrections take their direction: 0 at x*, 1 where it
+                   ///< began
+};
+/// Where a wall pushes a particle at x* from: `back` of its way before x*, if that is little. From
+/// 0.4 h on it is x*, because a particle that comes so fast is elsewhere in the wall's density.
+/// kernels/README.md, "Second order in time".
+template <class Real>
+PBF_HD Vec3<Real> push_place(Vec3<Real> x, const StepWay<Real>& step) {
+  constexpr Real most(0.4);
+  const Vec3<Real> w = step.back * step.way;
+  const Real left = Real(1) - dot(w, w) * (Real(1) / (most * most));
+  return left > Real(0) ? x - left * w : x;
+}
+/// h, the largest distance of push_place() from x*: w (1 - w^2/0.4^2) has its maximum at
+/// w = 0.4/sqrt(3).
+constexpr double kPushPlaceAway = 0.154;
+
 /// A boundary gives passes three things: its contribution to the density and the gradient, the end
 /// of a path within a step, and the distance of a particle behind it.
 template <class Real>
@@ -33,6 +54,12 @@ struct Box {
   /// With `paper`, the density uses D of Poly6 and the gradient D of Spiky, as for particles.
   template <Smoothing S>
   PBF_HD BoundaryTerm<Real> term(Vec3<Real> x) const;
+
+  /// The gradient of term() where the particle at x is pushed from.
+  template <Smoothing S>
+  PBF_HD Vec3<Real> push_gradient(Vec3<Real> x, const StepWay<Real>& step) const {
+    return term<S>(push_place(x, step)).gradient;
+  }
 
   /// Whether a wall may be within range.
   PBF_HD bool near_wall(Vec3<Real> x) const {

@@ -8,6 +8,7 @@
 #include "lib/program/features/solids.h"
 #include "lib/program/motion.h"
 #include "lib/program/pass.h"
+#include "lib/program/time_order.h"
 
 namespace pbf::program_module {
 inline std::int64_t per_table_row(const Sizes& n) { return motion_table_rows(n.plan); }
@@ -52,22 +53,26 @@ struct MoveSolids {
 /// Computes x* and the predicted velocity, in place.
 struct Predict {
   static constexpr PassText text{"predict", "predict"};
-  using Needs = pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>, StepNeeds,
-                           FrameNeeds>;
+  using Needs =
+      pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>,
+                 If<is_second_order, Updates<field::free_velocity>>, StepNeeds, FrameNeeds>;
   template <class G>
   static void launch(const G& c) {
     with_boundary(c, [&](const auto& boundary) {
       c.items(MovePass<typename G::Real, std::decay_t<decltype(boundary)>>{
-          c.p, boundary, c[field::position], c[field::velocity], c[field::counts].sums()});
+          c.p, boundary, c[field::position], c[field::velocity], c.declared(field::free_velocity),
+          c[field::counts].sums()});
     });
   }
 };
 
 /// The needs of a sort apart from positions. The second arrays hold the rows before the sort. The
 /// executor decides which array holds the order.
-using GatherNeeds = Needs<Writes<field::bin>, Places<field::order>, Places<field::bin_start>,
-                          Looks<other<field::id>>, Places<field::id>, Places<field::velocity>,
-                          If<changes_rows, Looks<field::row_state>, Places<field::row_state>>>;
+using GatherNeeds =
+    Needs<Writes<field::bin>, Places<field::order>, Places<field::bin_start>,
+          Looks<other<field::id>>, Places<field::id>, Places<field::velocity>,
+          If<is_second_order, Looks<other<field::free_velocity>>, Places<field::free_velocity>>,
+          If<changes_rows, Looks<field::row_state>, Places<field::row_state>>>;
 
 /// Runs `first`, which computes the bin of each particle, and `listed`, which does it for particles
 /// that `first` leaves out. Then `gather` puts the particles into the order of bins.
@@ -93,9 +98,11 @@ auto gather_pass(const G& c, const Boundary& boundary, const Vectors* velocity,
       boundary,
       c[other<field::position>],
       velocity,
+      c[other<field::free_velocity>],
       c[other<field::id>],
       c[field::position],
       velocity_out,
+      c[field::free_velocity],
       c[field::id],
       counts};
 }
@@ -114,7 +121,7 @@ void sort_predicted(const G& c, const char* stage, const First& first, Vectors* 
                 Listed<NearPredictPass<Real, decltype(d)::value>>{
                     solids.near.way_left_squared ? solids.near.count : nullptr,
                     {c.p, solids, Rows(c[other<field::position>]), Rows(velocity),
-                     c[field::bin].rows(), counts}});
+                     c.declared(other<field::free_velocity>), c[field::bin].rows(), counts}});
     });
   else
     sort_rows(c, stage, first, gather, NothingListed{});
@@ -123,7 +130,7 @@ void sort_predicted(const G& c, const char* stage, const First& first, Vectors* 
 /// Sorts by the bins of the present positions.
 struct Sort {
   static constexpr PassText text{"sort", "grid"};
-  using Flips = pbf::Flips<field::position, field::velocity, field::id>;
+  using Flips = pbf::Flips<field::position, field::velocity, field::free_velocity, field::id>;
   using Needs = pbf::Needs<Looks<other<field::position>>, Looks<other<field::velocity>>,
                            Writes<field::bin>, Places<field::position>, GatherNeeds>;
   template <class G>
@@ -142,11 +149,11 @@ struct Sort {
 };
 
 /// Rows near solids are predicted in place, before the others.
-using SortPredictedNeeds =
-    Needs<Looks<other<field::position>>,
-          If<has_solids, Looks<field::near_row>, Looks<field::near_count>,
-             Places<other<field::position>>>,
-          Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, StepNeeds, FrameNeeds>;
+using SortPredictedNeeds = Needs<
+    Looks<other<field::position>>,
+    If<has_solids, Looks<field::near_row>, Looks<field::near_count>, Places<other<field::position>>,
+       If<is_second_order, Places<other<field::free_velocity>>>>,
+    Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, StepNeeds, FrameNeeds>;
 
 /// Computes x* twice, for the bin and when the particles are gathered. This is cheaper than storing
 /// x* and reading it again.
@@ -166,7 +173,7 @@ struct PredictSort {
         sort_predicted(c, "predict",
                        PredictPass<Real, std::decay_t<decltype(boundary)>, decltype(d)::value>{
                            c.p, boundary, Rows(c[other<field::position>]), Rows(velocity),
-                           c[field::bin].rows()},
+                           c.declared(other<field::free_velocity>), c[field::bin].rows()},
                        velocity, c[field::velocity]);
       });
     });

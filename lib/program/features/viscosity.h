@@ -8,16 +8,16 @@ namespace pbf::PBF_VARIANT {
 
 inline constexpr const char* kLessXsph = "lower viscosity.xsph";
 
-/// Calls use() with the pass that reads `velocity` and writes `velocity_out`. bin: array for the
-/// particles' bins in the next update, or null.
+/// Calls use() with the pass that reads `velocity` and writes `velocity_out`. free: the free
+/// velocities, or null. bin: array for the particles' bins in the next update, or null.
 template <class G, class Rows, class Use>
 void with_xsph(const G& c, GatheredRows<Rows> position, GatheredRows<Rows> velocity,
-               OwnRows<Rows> velocity_out, int* bin, const Use& use) {
+               OwnRows<Rows> velocity_out, Rows* free, int* bin, const Use& use) {
   c.with_smoothing([&](auto s) {
     with_far_boundary(c, [&](const auto& boundary) {
       use(XsphPass<typename G::Real, typename G::Lists, decltype(s)::value,
                    std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists(), position, velocity,
-                                                     velocity_out, bin});
+                                                     velocity_out, free, bin});
     });
   });
 }
@@ -26,10 +26,11 @@ struct Xsph {
   static constexpr PassText text{"xsph", "xsph", kLessXsph};
   using Flips = pbf::Flips<field::velocity>;
   using Needs = pbf::Needs<Gathers<field::position, W::inverse_density>,
-                           Gathers<other<field::velocity>>, UsesLists, Writes<field::velocity>>;
+                           Gathers<other<field::velocity>>, UsesLists, Writes<field::velocity>,
+                           If<is_second_order, Updates<field::free_velocity>>>;
   static void launch(const auto& c) {
-    with_xsph(c, c[field::position], c[other<field::velocity>], c[field::velocity], nullptr,
-              [&](const auto& pass) { c.pairs(pass); });
+    with_xsph(c, c[field::position], c[other<field::velocity>], c[field::velocity],
+              c.declared(field::free_velocity), nullptr, [&](const auto& pass) { c.pairs(pass); });
   }
 };
 
@@ -37,16 +38,17 @@ struct Xsph {
 struct XsphPredictSort {
   using Fuses = Pair<Xsph, PredictSort>;
   static constexpr PassText text{"xsph+predict+sort", "grid", kLessXsph};
-  using Flips = pbf::Flips<field::position, field::id>;
+  using Flips = pbf::Flips<field::position, field::free_velocity, field::id>;
   using Needs = pbf::Needs<Gathers<other<field::position>, W::inverse_density>, SortPredictedNeeds,
-                           Gathers<field::velocity>, UsesLists, Places<other<field::velocity>>>;
+                           Gathers<field::velocity>, UsesLists, Places<other<field::velocity>>,
+                           If<is_second_order, Places<other<field::free_velocity>>>>;
   template <class G>
   static void launch(const G& c) {
     using Rows = Vec4<typename G::Real>;
     Rows *position = c[other<field::position>], *from = c[field::velocity],
          *to = c[other<field::velocity>];
     with_xsph(c, GatheredRows<Rows>(position), GatheredRows<Rows>(from), OwnRows<Rows>(to),
-              c[field::bin].rows(),
+              c.declared(other<field::free_velocity>), c[field::bin].rows(),
               [&](const auto& pass) { sort_predicted(c, "xsph", pass, to, from); });
   }
 };
