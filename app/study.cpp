@@ -10,6 +10,7 @@
 #include "lib/base/text.h"
 #include "lib/campaign/study_table.h"
 #include "lib/run/signals.h"
+#include "lib/solver/diagnostics.h"
 
 namespace pbf::app_module {
 namespace {

@@ -40,15 +40,12 @@ double fluid_layers(const Scene& s, const BodyBox& of_files) {
   return deepest;
 }
 
-namespace {
-bool deep_enough(const Scene& s) { return length(s.gravity) > 0 && fluid_layers(s) >= kDeep; }
-}  // namespace
-
 const char* why_no_levels(const Scene& s) {
   if (s.solver.iterations == 0) return "solver.iterations is 0";
   if (s.solver.levels == LevelsMode::off) return "solver.levels is off";
   if (has_pressure_on_wall(s)) return "the scene has a pressure gauge on a wall";
-  if (s.solver.levels == LevelsMode::automatic && !deep_enough(s))
+  if (s.solver.levels == LevelsMode::automatic &&
+      !(length(s.gravity) > 0 && fluid_layers(s) >= kDeep))
     return "solver.levels is auto, the fluid less than 64 layers deep";
   return nullptr;
 }

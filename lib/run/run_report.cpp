@@ -122,9 +122,9 @@ std::string energy_lines(const Diagnostics& first, const Diagnostics& last, cons
   std::string out = fmt::format(
       "energy              {:.6g} J at the start, {:.6g} J at the end ({:.3g} J of it kinetic)\n"
       "  drift             {:+.3g} % from start to end{}\n"
-      "  largest rise      {:.3g} % at any time: 0 is good, above 1 % the method adds energy\n",
+      "  largest rise      {:.3g} % at any time: 0 is good, above {:g} % the method adds energy\n",
       first.energy, last.energy, last.kinetic_energy, 100 * last.energy_drift,
-      losses(scene, last.energy_drift), 100 * last.energy_rise);
+      losses(scene, last.energy_drift), 100 * last.energy_rise, 100 * kAddsEnergy);
   if (last.moved)
     out += fmt::format(
         "  work              {:.6g} J of what moves by itself; drift and rise are without it\n",

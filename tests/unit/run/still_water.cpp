@@ -6,10 +6,10 @@
 #include "lib/exec/make_solver.h"
 #include "lib/program/relaxation.h"
 #include "lib/run/emit.h"
-#include "lib/run/warnings.h"
 #include "lib/scene/load.h"
 #include "tests/support/catch.h"
 #include "tests/support/scene_samples.h"
+#include "tests/support/warning_text.h"
 
 using namespace pbf;
 
@@ -40,12 +40,6 @@ double fastest(const Scene& s) {
   return speed;
 }
 
-std::string told(const std::string& kind, const Scene& s) {
-  for (const Warning& w : scene_warnings({s, "."}, count_particles(s, ".")))
-    if (w.kind == kind) return w.text;
-  return {};
-}
-
 }  // namespace
 
 TEST_CASE("still water does not burst with one iteration in a substep, however large h is") {
@@ -55,20 +49,20 @@ TEST_CASE("still water does not burst with one iteration in a substep, however l
                             std::string("solver.substeps=") + substeps});
       CAPTURE(ratio, substeps, default_sor(s));
       CHECK(fastest(s) < 2.5 * std::sqrt(9.81 * s.fluid.spacing));
-      CHECK(told("relaxation", s).empty());
+      CHECK(text_of("relaxation", s).empty());
     }
 }
 
 TEST_CASE("a step length with which still water bursts is named with the one that is safe") {
   const Scene wild = pool({"solver.iterations=1", "solver.substeps=4", "solver.sor=1"});
-  CHECK(told("relaxation", wild) ==
+  CHECK(text_of("relaxation", wild) ==
         "solver.sor 1 is above 0.886, up to which still water stays still with 1 iteration in a "
         "substep and h = 2 spacings: the fluid may gain energy and burst; leave it out (0.805), or "
         "give 4 iterations");
-  CHECK(told("relaxation", pool({"solver.iterations=1", "solver.sor=0.88"})).empty());
-  CHECK(told("relaxation", pool({"solver.iterations=4", "solver.sor=1.2"})).empty());
-  CHECK_FALSE(told("relaxation", pool({"solver.iterations=4", "solver.sor=1.3"})).empty());
-  CHECK(told("relaxation", pool({"solver.iterations=0", "solver.sor=1.9"})).empty());
+  CHECK(text_of("relaxation", pool({"solver.iterations=1", "solver.sor=0.88"})).empty());
+  CHECK(text_of("relaxation", pool({"solver.iterations=4", "solver.sor=1.2"})).empty());
+  CHECK_FALSE(text_of("relaxation", pool({"solver.iterations=4", "solver.sor=1.3"})).empty());
+  CHECK(text_of("relaxation", pool({"solver.iterations=0", "solver.sor=1.9"})).empty());
   // What is named does burst.
   CHECK(fastest(pool({"solver.iterations=1", "solver.substeps=4", "solver.sor=1",
                       "fluid.smoothing_ratio=2.5"})) > 3);

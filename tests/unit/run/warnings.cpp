@@ -10,6 +10,7 @@
 #include "lib/scene/load.h"
 #include "tests/support/catch.h"
 #include "tests/support/obstacle_shapes.h"
+#include "tests/support/warning_text.h"
 
 using namespace pbf;
 
@@ -24,13 +25,6 @@ Scene pool() {
   s.bodies[0].max = {0.4, 0.4, 0.6};
   s.time = {0.002, 1, {}};
   return s;
-}
-
-/// The text of the only warning's kind; empty when there is none of it.
-std::string text_of(const std::string& kind, const Scene& s) {
-  for (const Warning& w : scene_warnings({s, "."}, count_particles(s, ".")))
-    if (w.kind == kind) return w.text;
-  return {};
 }
 
 std::vector<std::string> kinds(const Scene& s, const std::string& dir = ".") {
