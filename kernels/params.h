@@ -35,7 +35,7 @@ struct Params {
   Real tensile_k = 0;                         ///< h^2
   Real tensile_scale = 0;                     ///< 1/shape(delta_q)
   int tensile_n = 4;
-  Real xsph = 0;       ///< c
+  Real xsph = 0;       ///< c, times 1 - carry
   Real vorticity = 0;  ///< 1/s, epsilon
   Real update_dt = 0;  ///< s, sum of all substeps; confinement acts once per update
 };

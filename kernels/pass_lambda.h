@@ -69,7 +69,7 @@ PBF_HD Real under_relaxation(Real density, const Params<Real>& p) {
 
 /// lambda_i = -C_i / (sum_k |grad_k C_i|^2 + eps^) / under_relaxation(rho_i), in h^2. with_density:
 /// the density is summed in the same loop (fused); otherwise it is read.
-template <class Real, class Lists, Smoothing S, bool with_density, class Boundary>
+template <class Real, class Lists, Smoothing S, bool with_density, class Order, class Boundary>
 struct LambdaPass {
   Params<Real> p;
   Boundary boundary;
@@ -131,10 +131,9 @@ struct LambdaPass {
     // The denominator is 0 without neighbors, walls and cfm.
     const Real lambda =
         denominator > Real(0) ? -c / (under_relaxation(rho, p) * denominator) : Real(0);
-    // v holds every displacement of the step so far, so x* - dt v is where the step began: between
-    // two places in the box, which is convex.
-    const Vec3<Real> place =
-        p.back > Real(0) ? in_space(x) - p.back * xyz(load(velocity, i)) : in_space(x);
+    Vec3<Real> place = in_space(x);
+    // x* - dt v is where the step began, since v takes part in every displacement.
+    if constexpr (Order::second) place = place - p.back * xyz(load(velocity, i));
     position_out[i] = with_w(place, lambda);
     // At the end, where few registers are in use.
     if (load(position, i).w < Real(0)) count_unresolved(i, p, lists, velocity, counts);

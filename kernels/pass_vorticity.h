@@ -94,7 +94,6 @@ struct VorticityPass {
   GatheredRows<Vec4<Real>> position;  ///< w = 1/density
   GatheredRows<Vec4<Real>> curl;      ///< times its gain; w = |omega|
   OwnRows<Vec4<Real>> velocity;       ///< in/out
-  Vec4<Real>* free;                   ///< in/out, the same; null in first order
 
   static constexpr int D = dimensions;
   using Own = CurlOwn<Real>;
@@ -118,9 +117,7 @@ struct VorticityPass {
     if (a.x.w > Real(1)) return;
     const Real size = square_root(dot(s.v, s.v)) + Real(0.1) * a.curl.w + Real(1e-20);
     const Vec3<Real> push = cross(in_space(s.v), xyz(a.curl));
-    const Vec3<Real> gain = Real(1) / size * push;
-    velocity[i] = with_w(xyz(velocity[i]) + gain, Real(0));
-    if (free) free[i] = with_w(xyz(free[i]) + gain, Real(0));
+    velocity[i] = with_w(xyz(velocity[i]) + (Real(1) - p.carry) / size * push, Real(0));
   }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/boundary/half_space.h"
+#include "kernels/time_order.h"
 
 namespace pbf::PBF_VARIANT {
 
@@ -13,27 +14,6 @@ struct BoundaryTerm {
   Real density = 0;
   Vec3<Real> gradient;
 };
-
-/// The step of a particle so far.
-template <class Real>
-struct StepWay {
-  Vec3<Real> way;  ///< h, from where the step began to x*
-  Real back = 0;   ///< how far back along it corrections take their direction: 0 at x*, 1 where it
-                   ///< began
-};
-/// Where a wall pushes a particle at x* from: `back` of its way before x*, if that is little. From
-/// 0.4 h on it is x*, because a particle that comes so fast is elsewhere in the wall's density.
-/// kernels/README.md, "Second order in time".
-template <class Real>
-PBF_HD Vec3<Real> push_place(Vec3<Real> x, const StepWay<Real>& step) {
-  constexpr Real most(0.4);
-  const Vec3<Real> w = step.back * step.way;
-  const Real left = Real(1) - dot(w, w) * (Real(1) / (most * most));
-  return left > Real(0) ? x - left * w : x;
-}
-/// h, the largest distance of push_place() from x*: w (1 - w^2/0.4^2) has its maximum at
-/// w = 0.4/sqrt(3).
-constexpr double kPushPlaceAway = 0.154;
 
 /// A boundary gives passes three things: its contribution to the density and the gradient, the end
 /// of a path within a step, and the distance of a particle behind it.
@@ -58,7 +38,12 @@ struct Box {
   /// The gradient of term() where the particle at x is pushed from.
   template <Smoothing S>
   PBF_HD Vec3<Real> push_gradient(Vec3<Real> x, const StepWay<Real>& step) const {
+    if (far_from_walls<dimensions_of(S)>(x, Real(1 + kPushPlaceAway))) return {};
     return term<S>(push_place(x, step)).gradient;
+  }
+  template <Smoothing S>
+  PBF_HD Vec3<Real> push_gradient(Vec3<Real> x, AnyWay) const {
+    return term<S>(x).gradient;
   }
 
   /// Whether a wall may be within range.
@@ -101,6 +86,12 @@ struct Box {
   }
 
  private:
+  /// Whether all faces are at least `range` away. 2-D: no wall along y.
+  template <int D>
+  PBF_HD bool far_from_walls(Vec3<Real> x, Real range) const {
+    return x.x >= range && (D == 2 || x.y >= range) && x.z >= range && x.x <= extent.x - range &&
+           (D == 2 || x.y <= extent.y - range) && x.z <= extent.z - range;
+  }
   PBF_HD Real clamped(Real x, Real high, unsigned low_wall) const {
     const Real low = margin;
     if (walls & low_wall && x < low) x = low;
@@ -139,10 +130,8 @@ PBF_HD BoundaryTerm<Real> Box<Real>::term(Vec3<Real> x) const {
   BoundaryTerm<Real> w;
   if (!adds_density) return w;
   const Real one(1);
-  constexpr bool flat = dimensions_of(S) == 2;  // no wall along y
-  if (x.x >= one && (flat || x.y >= one) && x.z >= one && x.x <= extent.x - one &&
-      (flat || x.y <= extent.y - one) && x.z <= extent.z - one)
-    return w;
+  constexpr bool flat = dimensions_of(S) == 2;
+  if (far_from_walls<dimensions_of(S)>(x, one)) return w;
   const Real distance[6] = {x.x, extent.x - x.x, x.y, extent.y - x.y, x.z, extent.z - x.z};
   Real keep_density = one, keep[3] = {one, one, one}, slope[3] = {0, 0, 0};
   for (int axis = 0; axis < 3; axis += flat ? 2 : 1)

@@ -24,8 +24,8 @@ struct SolidBoundary : Box<Real> {
     if (obstacles && bounds.has(x)) return solid_scene_term<S>(*solid_scene, x);
     return Box<Real>::template term<S>(x);
   }
-  template <Smoothing S>
-  PBF_HD Vec3<Real> push_gradient(Vec3<Real> x, const StepWay<Real>& step) const {
+  template <Smoothing S, class Step>
+  PBF_HD Vec3<Real> push_gradient(Vec3<Real> x, const Step& step) const {
     if (obstacles && bounds.has(x)) return solid_scene_term<S>(*solid_scene, x, step).gradient;
     return Box<Real>::template push_gradient<S>(x, step);
   }
@@ -41,8 +41,8 @@ struct SolidBoundary : Box<Real> {
     return path_end(booked, false, i, from, to);
   }
   /// Books that particle i, at x, was moved by factor * push_gradient().
-  template <Smoothing S>
-  PBF_HD void book_push(int i, Vec3<Real> x, const StepWay<Real>& step, Real factor) const {
+  template <Smoothing S, class Step>
+  PBF_HD void book_push(int i, Vec3<Real> x, const Step& step, Real factor) const {
     if (!booked || factor == Real(0)) return;
     if ((loaded && this->near_wall(x)) || (obstacles && bounds.has(x)))
       pbf::book_push<S>(*solid_scene, i, x, step, factor);

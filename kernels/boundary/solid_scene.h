@@ -52,8 +52,13 @@ PBF_HD Vec3<Real> carried(const SolidScene<Real>& s, int k, Vec3<Real> from) {
 template <class Real>
 PBF_HD Vec3<Real> push_place(const SolidScene<Real>& s, int k, Vec3<Real> x,
                              const StepWay<Real>& step) {
-  if (!(step.back > Real(0)) || !s.before) return push_place(x, step);
+  if (!s.before) return push_place(x, step);
   return push_place(x, {x - carried(s, k, x - step.way), step.back});
+}
+
+template <class Real>
+PBF_HD Vec3<Real> push_place(const SolidScene<Real>&, int, Vec3<Real> x, AnyWay) {
+  return x;
 }
 
 /// Whether x is within the reach of an obstacle.
@@ -80,9 +85,8 @@ PBF_HD bool within_rounding(Vec3<Real> way, Vec3<Real> x, Vec3<Real> center) {
 }
 
 /// Calls f(k, solid_term) for the obstacles near x. step: of a particle that they push.
-template <Smoothing S, class Real, class F>
-PBF_HD void for_solids_at(const SolidScene<Real>& s, Vec3<Real> x, const StepWay<Real>& step,
-                          F&& f) {
+template <Smoothing S, class Real, class Step, class F>
+PBF_HD void for_solids_at(const SolidScene<Real>& s, Vec3<Real> x, const Step& step, F&& f) {
   for (int k = 0; k < s.solids; ++k)
     if (s.solid[k].bounds.has(x))
       f(k, solid_term<S>(s.solid[k].solid, push_place(s, k, x, step), s.walls.inv_range));
@@ -91,9 +95,9 @@ PBF_HD void for_solids_at(const SolidScene<Real>& s, Vec3<Real> x, const StepWay
 /// Solids are combined with the walls by inclusion and exclusion and do not overlap each other:
 /// A [1 - (1 - w/A)(1 - sum o_k)].
 /// step: of a particle at x that is pushed; none for the term at x.
-template <Smoothing S, class Real>
+template <Smoothing S, class Real, class Step = AnyWay>
 PBF_HD_APART BoundaryTerm<Real> solid_scene_term(const SolidScene<Real>& s, Vec3<Real> x,
-                                                 const StepWay<Real>& step = {}) {
+                                                 const Step& step = {}) {
   BoundaryTerm<Real> w = s.walls.template term<S>(push_place(x, step));
   if (!s.walls.adds_density) return w;
   SolidTerm<Real> o;
@@ -151,9 +155,9 @@ PBF_HD_APART Vec3<Real> solid_scene_path_end(const SolidScene<Real>& s, bool boo
 }
 
 /// Books that particle i, at x, was moved by factor * the gradient of solid_scene_term().
-template <Smoothing S, class Real>
-PBF_HD_APART void book_push(const SolidScene<Real>& s, int i, Vec3<Real> x,
-                            const StepWay<Real>& step, Real factor) {
+template <Smoothing S, class Real, class Step>
+PBF_HD_APART void book_push(const SolidScene<Real>& s, int i, Vec3<Real> x, const Step& step,
+                            Real factor) {
   Real of_wall[6], share(0);
   if (!s.walls.adds_density) return;
   const Vec3<Real> place = push_place(x, step);

@@ -41,7 +41,7 @@ struct FeatureList {
 };
 
 using Features = FeatureList<Motion, NearSolids, Constraint, Levels, Correction, XsphViscosity,
-                             VorticityConfinement, Loads, Gauges, SecondOrder>;
+                             VorticityConfinement, Loads, Gauges, StepLengths>;
 using Passes = Features::Passes;
 
 }  // namespace pbf::PBF_VARIANT

@@ -11,6 +11,6 @@ inline bool is_second_order(const Scene& s) { return s.time.order == TimeOrder::
 /// kCarriedPush of the last step's push. The force of a step then acts on average where the step
 /// begins, as in Verlet's scheme, if kCarriedPush = (1 - kDirectionsBack)/(2 - kDirectionsBack).
 /// Why these: kernels/README.md, "Second order in time".
-inline constexpr double kDirectionsBack = 0.5, kCarriedPush = 1.0 / 3;
+inline constexpr double kDirectionsBack = 1.0 / 3, kCarriedPush = 0.4;
 
 }  // namespace pbf::program_module

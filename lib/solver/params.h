@@ -67,7 +67,8 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
         Real(1 / (s.solver.kernels == KernelMode::paper ? Poly6<double>::shape(q * q) : t * t * t));
     p.tensile_n = s.tensile->n;
   }
-  if (s.viscosity) p.xsph = Real(s.viscosity->xsph);
+  // Predictions take over a share of the viscosity, too, and a share of that share.
+  if (s.viscosity) p.xsph = Real(s.viscosity->xsph * (is_second_order(s) ? 1 - kCarriedPush : 1));
   if (s.vorticity) p.vorticity = Real(s.vorticity->epsilon);
   p.update_dt = Real(s.time.step);
   return p;

@@ -5,7 +5,6 @@
 #include "kernels/pass_vorticity.h"
 #include "lib/program/as_types.h"
 #include "lib/program/pass.h"
-#include "lib/program/time_order.h"
 
 namespace pbf::program_module::field {
 /// x, y, z: curl times its gain, 1/s; w: magnitude of the curl without the gain.
@@ -33,15 +32,13 @@ struct Curl {
 
 struct Confine {
   static constexpr PassText text{"confinement", "vorticity", kLessConfinement};
-  using Needs =
-      pbf::Needs<Gathers<field::position, W::inverse_density>, Gathers<field::curl>, UsesLists,
-                 Updates<field::velocity>, If<is_second_order, Updates<field::free_velocity>>>;
+  using Needs = pbf::Needs<Gathers<field::position, W::inverse_density>, Gathers<field::curl>,
+                           UsesLists, Updates<field::velocity>>;
   template <class G>
   static void launch(const G& c) {
     with_dimensions(c.p.dimensions, [&](auto d) {
       c.pairs(VorticityPass<typename G::Real, typename G::Lists, decltype(d)::value>{
-          c.p, c.lists(), c[field::position], c[field::curl], c[field::velocity],
-          c.declared(field::free_velocity)});
+          c.p, c.lists(), c[field::position], c[field::curl], c[field::velocity]});
     });
   }
 };

@@ -33,17 +33,21 @@ using LambdaNeeds = Needs<Gathers<field::position>, UsesLists,
 
 template <bool with_density, class G>
 void launch_lambda(const G& c) {
+  using Real = typename G::Real;
   c.with_smoothing([&](auto s) {
-    each_then_near<false>(c, [&](const auto& boundary) {
-      return LambdaPass<typename G::Real, typename G::Lists, decltype(s)::value, with_density,
-                        std::decay_t<decltype(boundary)>>{c.p,
-                                                          boundary,
-                                                          c.lists(),
-                                                          c[field::position],
-                                                          c[other<field::position>],
-                                                          c[field::density],
-                                                          c[field::velocity],
-                                                          c[field::counts].sums()};
+    with_order<decltype(s)::value, Real>(c.scene, nullptr, [&](auto order) {
+      each_then_near<false>(c, [&](const auto& boundary) {
+        return LambdaPass<Real, typename G::Lists, decltype(s)::value, with_density,
+                          decltype(order), std::decay_t<decltype(boundary)>>{
+            c.p,
+            boundary,
+            c.lists(),
+            c[field::position],
+            c[other<field::position>],
+            c[field::density],
+            c[field::velocity],
+            c[field::counts].sums()};
+      });
     });
   });
 }

@@ -8,29 +8,34 @@
 
 namespace pbf::PBF_VARIANT {
 
-/// density: of the pass that leaves 1/density; null with moves_on. free: with moves_on.
+/// density: of the pass that leaves 1/density; null with moves_on. free: with moves_on in second
+/// order.
 template <class G>
 void launch_delta(const G& c, OwnRows<const typename G::Real> density, Vec4<typename G::Real>* free,
                   StepCounts* moves_on) {
+  using Real = typename G::Real;
   auto p = c.p;
   p.sor = c.sor();
   c.with_smoothing([&](auto s) {
+    constexpr Smoothing S = decltype(s)::value;
     with_bool(c.scene.tensile && c.scene.tensile->k != 0, [&](auto tensile) {
       with_level_move(c, [&](const auto& coarse) {
-        each_then_near<true>(c, [&](const auto& boundary) {
-          return DeltaPass<typename G::Real, typename G::Lists, decltype(s)::value,
-                           decltype(tensile)::value, std::decay_t<decltype(coarse)>,
-                           std::decay_t<decltype(boundary)>>{p,
-                                                             boundary,
-                                                             c.lists(),
-                                                             c[other<field::position>],
-                                                             density,
-                                                             c[field::id],
-                                                             c[field::position],
-                                                             c[field::velocity],
-                                                             free,
-                                                             moves_on,
-                                                             coarse};
+        with_order<S, Real>(c.scene, free, [&](const auto& order) {
+          each_then_near<true>(c, [&](const auto& boundary) {
+            return DeltaPass<Real, typename G::Lists, S, decltype(tensile)::value,
+                             std::decay_t<decltype(coarse)>, std::decay_t<decltype(order)>,
+                             std::decay_t<decltype(boundary)>>{p,
+                                                               boundary,
+                                                               c.lists(),
+                                                               c[other<field::position>],
+                                                               density,
+                                                               c[field::id],
+                                                               c[field::position],
+                                                               c[field::velocity],
+                                                               moves_on,
+                                                               coarse,
+                                                               order};
+          });
         });
       });
     });
@@ -50,8 +55,8 @@ using DeltaNeeds = Needs<Gathers<other<field::position>, W::lambda>, UsesLists, 
 
 struct Delta {
   static constexpr PassText text{"delta", "delta"};
-  using Needs = pbf::Needs<Writes<field::position, W::inverse_density>, Reads<field::density>,
-                           If<is_second_order, Reads<field::position>>, DeltaNeeds>;
+  using Needs =
+      pbf::Needs<Writes<field::position, W::inverse_density>, Reads<field::density>, DeltaNeeds>;
   static void launch(const auto& c) { launch_delta(c, c[field::density], nullptr, nullptr); }
 };
 
@@ -60,10 +65,9 @@ struct Delta {
 struct DeltaPredict {
   using Fuses = Pair<Delta, Predict>;
   static constexpr PassText text{"delta+predict", "delta"};
-  using Needs = Then<
-      pbf::Needs<Writes<field::position>, If<is_second_order, Reads<field::position>>, DeltaNeeds>,
-      pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>,
-                 If<is_second_order, Updates<field::free_velocity>>, StepNeeds>>;
+  using Needs = Then<pbf::Needs<Writes<field::position>, DeltaNeeds>,
+                     pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>,
+                                If<is_second_order, Updates<field::free_velocity>>, StepNeeds>>;
   template <class G>
   static void launch(const G& c) {
     launch_delta(c, OwnRows<const typename G::Real>(), c.declared(field::free_velocity),

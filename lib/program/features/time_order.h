@@ -38,7 +38,7 @@ struct ChangeStep {
   }
 };
 
-struct SecondOrder {
+struct StepLengths {
   using Passes = PassList<ChangeStep>;
   static void add(const Scene& s, auto& b) {
     if (is_second_order(s))

@@ -8,16 +8,20 @@ namespace pbf::PBF_VARIANT {
 
 inline constexpr const char* kLessXsph = "lower viscosity.xsph";
 
-/// Calls use() with the pass that reads `velocity` and writes `velocity_out`. free: the free
-/// velocities, or null. bin: array for the particles' bins in the next update, or null.
+/// Calls use() with the pass that reads `velocity` and writes `velocity_out`. bin: array for
+/// the particles' bins in the next update, or null. free: field::free_velocity, with bin.
 template <class G, class Rows, class Use>
 void with_xsph(const G& c, GatheredRows<Rows> position, GatheredRows<Rows> velocity,
-               OwnRows<Rows> velocity_out, Rows* free, int* bin, const Use& use) {
+               OwnRows<Rows> velocity_out, std::type_identity_t<Rows>* free, int* bin,
+               const Use& use) {
+  using Real = typename G::Real;
   c.with_smoothing([&](auto s) {
-    with_far_boundary(c, [&](const auto& boundary) {
-      use(XsphPass<typename G::Real, typename G::Lists, decltype(s)::value,
-                   std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists(), position, velocity,
-                                                     velocity_out, free, bin});
+    with_order<decltype(s)::value, Real>(c.scene, free, [&](const auto& order) {
+      with_far_boundary(c, [&](const auto& boundary) {
+        use(XsphPass<Real, typename G::Lists, decltype(s)::value, std::decay_t<decltype(order)>,
+                     std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists(), position, velocity,
+                                                       velocity_out, bin, order});
+      });
     });
   });
 }
@@ -26,11 +30,10 @@ struct Xsph {
   static constexpr PassText text{"xsph", "xsph", kLessXsph};
   using Flips = pbf::Flips<field::velocity>;
   using Needs = pbf::Needs<Gathers<field::position, W::inverse_density>,
-                           Gathers<other<field::velocity>>, UsesLists, Writes<field::velocity>,
-                           If<is_second_order, Updates<field::free_velocity>>>;
+                           Gathers<other<field::velocity>>, UsesLists, Writes<field::velocity>>;
   static void launch(const auto& c) {
-    with_xsph(c, c[field::position], c[other<field::velocity>], c[field::velocity],
-              c.declared(field::free_velocity), nullptr, [&](const auto& pass) { c.pairs(pass); });
+    with_xsph(c, c[field::position], c[other<field::velocity>], c[field::velocity], nullptr,
+              nullptr, [&](const auto& pass) { c.pairs(pass); });
   }
 };
 
@@ -40,8 +43,7 @@ struct XsphPredictSort {
   static constexpr PassText text{"xsph+predict+sort", "grid", kLessXsph};
   using Flips = pbf::Flips<field::position, field::free_velocity, field::id>;
   using Needs = pbf::Needs<Gathers<other<field::position>, W::inverse_density>, SortPredictedNeeds,
-                           Gathers<field::velocity>, UsesLists, Places<other<field::velocity>>,
-                           If<is_second_order, Places<other<field::free_velocity>>>>;
+                           Gathers<field::velocity>, UsesLists, Places<other<field::velocity>>>;
   template <class G>
   static void launch(const G& c) {
     using Rows = Vec4<typename G::Real>;
