@@ -6,7 +6,7 @@ set(lie_tests declarations state_feature)
 
 # what a pass does with a field
 seeded_defect(undeclared_read declarations lib/program/features/correction.h
-  [[W::inverse_density>, Reads<field::density>,]] [[W::inverse_density>,]])
+  [[Reads<field::density>, DeltaNeeds>;]] [[DeltaNeeds>;]])
 seeded_defect(undeclared_write declarations lib/program/features/confinement.h
   [[UsesLists, Writes<field::curl>>;]] [[UsesLists>;]])
 seeded_defect(undeclared_gather declarations lib/program/features/confinement.h
@@ -20,7 +20,7 @@ seeded_defect(undeclared_behind_address declarations lib/program/features/solids
 seeded_defect(neighbor_of_own_row declarations lib/program/features/confinement.h
   [[Gathers<field::curl>,]] [[Reads<field::curl>,]])
 seeded_defect(write_to_what_is_read declarations lib/program/features/confinement.h
-  [[Updates<field::velocity>, If<is_second]] [[Reads<field::velocity>, If<is_second]])
+  [[Updates<field::velocity>>;]] [[Reads<field::velocity>>;]])
 seeded_defect(read_of_running_sum declarations lib/program/features/loads.h
   [[Updates<field::load_sums>, Updates<field::loads>]]
   [[Adds<field::load_sums>, Updates<field::loads>]])

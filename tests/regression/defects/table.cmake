@@ -130,7 +130,7 @@ seeded_defect(xsph_sign xsph kernels/pass_xsph.h [[(point<D>(b.v) - a.v)]] [[(a.
 seeded_defect(curl_sign vorticity kernels/pass_vorticity.h
   [[root.inverse) * d, v);]] [[root.inverse) * d, a.v - point<D>(b.v));]])
 seeded_defect(vorticity_sign vorticity kernels/pass_vorticity.h
-  [[gain = Real(1) / size * push]] [[gain = Real(-1) / size * push]])
+  [[+ (Real(1) - p.carry) / size * push]] [[- (Real(1) - p.carry) / size * push]])
 seeded_defect(vorticity_at_surface vorticity kernels/pass_vorticity.h
   [[a.x.w > Real(1)]] [[a.x.w * Real(0.5) > Real(1)]])
 seeded_defect(vorticity_unbounded vorticity kernels/pass_vorticity.h
