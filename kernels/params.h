@@ -15,6 +15,8 @@ template <class Real>
 struct Params {
   int dimensions = 3;               ///< 2: y and v_y are 0
   Real dt = 0, inv_dt = 0;          ///< s, 1/s
+  Real back = 0;                    ///< s, how long before x* the corrections take their direction
+  Real carry = 0;                   ///< share of the last step's push in the prediction
   Vec3<Real> gravity;               ///< h/s^2
   Real damping = 1;                 ///< factor on the velocity, once per update
   Real speed_squared = Real(1e30);  ///< (h/s)^2, faster particles are counted ...
@@ -33,7 +35,7 @@ struct Params {
   Real tensile_k = 0;                         ///< h^2
   Real tensile_scale = 0;                     ///< 1/shape(delta_q)
   int tensile_n = 4;
-  Real xsph = 0;       ///< c
+  Real xsph = 0;       ///< c, times 1 - carry
   Real vorticity = 0;  ///< 1/s, epsilon
   Real update_dt = 0;  ///< s, sum of all substeps; confinement acts once per update
 };

@@ -26,18 +26,20 @@ PBF_HD Real power(Real x, int n) {
 /// dx_i = omega [ sum_j (lambda_i + lambda_j + s_corr) grad W_ij vol + lambda_i grad wall ].
 /// dx/dt is added to the velocity at once. After the last iteration the velocity equals
 /// (x* - x)/dt, without the cancellation of that difference.
-template <class Real, class Lists, Smoothing S, bool tensile, class Coarse, class Boundary>
+template <class Real, class Lists, Smoothing S, bool tensile, class Coarse, class Order,
+          class Boundary>
 struct DeltaPass {
   Params<Real> p;
   Boundary boundary;
   Lists lists;
-  GatheredRows<Vec4<Real>> position;  ///< w = lambda
+  GatheredRows<Vec4<Real>> position;  ///< of LambdaPass, where directions are taken; w = lambda
   OwnRows<const Real> density;
   GatheredRows<int> id;                   ///< of each row
-  OwnRows<Vec4<Real>> position_out;       ///< out; w = 1/density
+  OwnRows<Vec4<Real>> position_out;       ///< out: x*; w: 1/density
   OwnRows<Vec4<Real>> velocity;           ///< in/out, h/s
   StepCounts* moves_on;                   ///< not null: this pass also predicts the next substep
   [[no_unique_address]] Coarse coarse{};  ///< LevelMove or NoLevelMove
+  [[no_unique_address]] Order order{};    ///< with moves_on: in/out
 
   static constexpr int D = dimensions_of(S);
   using Own = Vec4<Real>;
@@ -81,11 +83,12 @@ struct DeltaPass {
   }
   /// For the first launch (boundary/near_split.h).
   PBF_HD bool stays_far(int i, const Own& own, const Sum& s) const {
-    const Vec3<Real> x = xyz(own), free = free_move(i, own, s);
-    if (boundary.leaves(i, x, free)) return false;
+    const Vec3<Real> x = place(i, own), move = free_move(i, x, own, s);
+    if (boundary.leaves(i, x, move)) return false;
     if (!moves_on) return true;
-    const Vec3<Real> target = x + free, inside = boundary.path_end(x, target);
-    const Vec3<Real> next = predict(inside, new_velocity(i, free, target, inside), p, boundary).x;
+    const Vec3<Real> target = x + move, inside = boundary.path_end(x, target);
+    const Vec3<Real> v = new_velocity(i, move, target, inside);
+    const Vec3<Real> next = predict(inside, v, carried_push(order, i, v, p), p, boundary).x;
     return !boundary.comes_near(inside, next);
   }
   /// Larger than any allowed move if no bound is known. There is no bound with levels.
@@ -96,32 +99,45 @@ struct DeltaPass {
     const V w = wall * own.w, bound = twice * (pairs * pairs * dot(s.move, s.move) + w * w);
     return max2(s.closeness - V(coincident()), bound);
   }
-  PBF_HD Vec3<Real> new_velocity(int i, Vec3<Real> free, Vec3<Real> target,
+  PBF_HD Vec3<Real> new_velocity(int i, Vec3<Real> move, Vec3<Real> target,
                                  Vec3<Real> inside) const {
-    return xyz(velocity[i]) + p.inv_dt * (free + (inside - target));
+    return xyz(velocity[i]) + p.inv_dt * (move + (inside - target));
+  }
+  /// x*
+  PBF_HD Vec3<Real> place(int i, const Own& own) const {
+    if constexpr (Order::second)
+      return xyz(own) + p.back * xyz(velocity[i]);
+    else
+      return xyz(own);
+  }
+  PBF_HD auto step(int i) const {
+    if constexpr (Order::second)
+      return StepWay<Real>{p.dt * xyz(velocity[i]), p.back * p.inv_dt};
+    else
+      return AnyWay{};
   }
   /// dx_i before walls and solids limit it.
-  PBF_HD Vec3<Real> free_move(int i, const Own& own, const Sum& s) const {
+  PBF_HD Vec3<Real> free_move(int i, Vec3<Real> x, const Own& own, const Sum& s) const {
     const Vec3<Real> pairs = in_space(s.move);
     const Vec3<Real> move = s.closeness > coincident() ? pairs + separate(i, own) : pairs;
-    const Vec3<Real> wall = own.w * boundary.template term<S>(xyz(own)).gradient;
-    const Vec3<Real> free = p.sor * (pair_factor() * move + wall);
-    if constexpr (Coarse::on) return free + coarse(i);
-    return free;
+    const Vec3<Real> wall = own.w * boundary.template push_gradient<S>(x, step(i));
+    const Vec3<Real> all = p.sor * (pair_factor() * move + wall);
+    if constexpr (Coarse::on) return all + coarse(i);
+    return all;
   }
   PBF_HD void finish(int i, const Own& own, const Sum& s) const {
-    const Vec3<Real> x = xyz(own), free = free_move(i, own, s);
-    const Vec3<Real> target = x + free;
+    const Vec3<Real> x = place(i, own), move = free_move(i, x, own, s);
+    const Vec3<Real> target = x + move;
     Vec3<Real> inside;
     if constexpr (Boundary::books) {
-      boundary.template book_push<S>(i, x, p.sor * own.w);
+      boundary.template book_push<S>(i, x, step(i), p.sor * own.w);
       inside = boundary.path_end_booked(i, x, target);
     } else {
       inside = boundary.path_end(x, target);
     }
-    const Vec3<Real> v = new_velocity(i, free, target, inside);
+    const Vec3<Real> v = new_velocity(i, move, target, inside);
     if (moves_on) {
-      move_on(i, inside, v, p, boundary, position_out, velocity, moves_on);
+      move_on(i, inside, v, p, boundary, position_out, velocity, order, moves_on);
       return;
     }
     position_out[i] = with_w(inside, Real(1) / density[i]);

@@ -69,15 +69,17 @@ PBF_HD Real under_relaxation(Real density, const Params<Real>& p) {
 
 /// lambda_i = -C_i / (sum_k |grad_k C_i|^2 + eps^) / under_relaxation(rho_i), in h^2. with_density:
 /// the density is summed in the same loop (fused); otherwise it is read.
-template <class Real, class Lists, Smoothing S, bool with_density, class Boundary>
+template <class Real, class Lists, Smoothing S, bool with_density, class Order, class Boundary>
 struct LambdaPass {
   Params<Real> p;
   Boundary boundary;
   Lists lists;
   GatheredRows<Vec4<Real>> position;
-  OwnRows<Vec4<Real>> position_out;  ///< out: the same position with w = lambda
+  /// out: where the corrections take their directions, x* - back v (x* in first order), and
+  /// w = lambda
+  OwnRows<Vec4<Real>> position_out;
   OwnRows<std::conditional_t<with_density, Real, const Real>> density;  ///< out, or in
-  GatheredRows<Vec4<Real>> velocity;  ///< for count_unresolved() alone
+  GatheredRows<Vec4<Real>> velocity;  ///< in first order for count_unresolved() alone
   StepCounts* counts;
 
   static constexpr int D = dimensions_of(S);
@@ -129,7 +131,10 @@ struct LambdaPass {
     // The denominator is 0 without neighbors, walls and cfm.
     const Real lambda =
         denominator > Real(0) ? -c / (under_relaxation(rho, p) * denominator) : Real(0);
-    position_out[i] = with_w(in_space(x), lambda);
+    Vec3<Real> place = in_space(x);
+    // x* - dt v is where the step began, since v takes part in every displacement.
+    if constexpr (Order::second) place = place - p.back * xyz(load(velocity, i));
+    position_out[i] = with_w(place, lambda);
     // At the end, where few registers are in use.
     if (load(position, i).w < Real(0)) count_unresolved(i, p, lists, velocity, counts);
   }

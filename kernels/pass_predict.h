@@ -1,5 +1,6 @@
 // predict: v += dt g, x* = x + dt v, and the bin of x*. Macklin & Mueller 2013, algorithm 1,
-// lines 1-4.
+// lines 1-4. In time steps of second order a share of the last step's push is added to v
+// (kernels/README.md, "Second order in time").
 #pragma once
 
 #include <cstdint>
@@ -7,15 +8,39 @@
 
 #include "kernels/boundary/far_boundary.h"
 #include "kernels/step_counts.h"
+#include "kernels/time_order.h"
 
 namespace pbf::PBF_VARIANT {
 
 template <class Real>
 struct Moving {
-  Vec3<Real> x, v;  ///< h, h/s
-  bool fast;        ///< above Params::speed_squared, before it was limited
-  Real mark = 1;    ///< -1: so fast that it may pass a neighbor (relative_motion.h), else 1
+  Vec3<Real> x, v;     ///< h, h/s
+  bool fast;           ///< above Params::speed_squared, before it was limited
+  Real mark = 1;       ///< -1: so fast that it may pass a neighbor (relative_motion.h), else 1
+  Vec3<Real> aimed{};  ///< h/s, the velocity before walls and solids changed it
 };
+
+/// No push is taken over from the last step.
+struct NoPush {};
+/// The share of the last step's push that the prediction of particle i takes over, h/s; in a step
+/// without time the whole push, which stays as it is. v: velocity at the end of the last step.
+template <class Real, class Order>
+PBF_HD auto carried_push(const Order& order, int i, Vec3<Real> v, const Params<Real>& p) {
+  if constexpr (Order::second) {
+    const Vec3<Real> push = v - xyz(order.free[i]);
+    return p.dt > Real(0) ? p.carry * push : push;
+  } else {
+    return NoPush{};
+  }
+}
+template <class Real>
+PBF_HD Vec3<Real> pushed(Vec3<Real> v, NoPush, const Params<Real>&) {
+  return v;
+}
+template <class Real>
+PBF_HD Vec3<Real> pushed(Vec3<Real> v, Vec3<Real> push, const Params<Real>& p) {
+  return p.dt > Real(0) ? v + push : v;
+}
 
 /// The velocity after gravity, or the tank's motion, and damping of a step.
 template <class Real, class Boundary>
@@ -29,9 +54,11 @@ PBF_HD Vec3<Real> accelerated(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
 
 /// v: already accelerated. The position is clamped to the walls, and the velocity follows the
 /// clamp, so that no particle is behind a wall after `predict`, with or without iterations.
-/// path_end(from, to): that of the boundary.
-template <class Real, class End>
-PBF_HD Moving<Real> predicted(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p, End&& path_end) {
+/// push: carried_push(). path_end(from, to): that of the boundary.
+template <class Real, class Push, class End>
+PBF_HD Moving<Real> predicted(Vec3<Real> x, Vec3<Real> v, const Push& push, const Params<Real>& p,
+                              End&& path_end) {
+  v = pushed(v, push, p);
   const Real speed_squared = dot(v, v);
   const bool fast = speed_squared > p.speed_squared;
   if (p.limit_speed && fast) v = square_root(p.speed_squared / speed_squared) * v;
@@ -39,109 +66,127 @@ PBF_HD Moving<Real> predicted(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
   x = path_end(x, free);
   // Only a clamped coordinate changes v: elsewhere x - free is exactly 0.
   const Real mark = speed_squared > p.passing_squared ? Real(-1) : Real(1);
-  return {x, mul_add(p.inv_dt, x - free, v), fast, mark};
+  return {x, mul_add(p.inv_dt, x - free, v), fast, mark, v};
 }
 /// The same with plain walls only.
-template <class Real, class Boundary>
-PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
+template <class Real, class Push, class Boundary>
+PBF_HD Moving<Real> predict(Vec3<Real> x, Vec3<Real> v, const Push& push, const Params<Real>& p,
                             const Boundary& boundary) {
   const Box<Real>& walls = boundary;
-  return predicted(x, accelerated(x, v, p, boundary), p,
+  return predicted(x, accelerated(x, v, p, boundary), push, p,
                    [&](auto from, auto to) { return walls.path_end(from, to); });
 }
 /// The same for particle i with solids; books loads of walls and solids.
-template <class Real, class Boundary>
-PBF_HD_APART Moving<Real> predict_at_solids(int i, Vec3<Real> x, Vec3<Real> v,
+template <class Real, class Push, class Boundary>
+PBF_HD_APART Moving<Real> predict_at_solids(int i, Vec3<Real> x, Vec3<Real> v, const Push& push,
                                             const Params<Real>& p, const Boundary& boundary) {
-  return predicted(x, accelerated(x, v, p, boundary), p, [&](auto from, auto to) {
+  return predicted(x, accelerated(x, v, p, boundary), push, p, [&](auto from, auto to) {
     return boundary.path_end(boundary.booked, true, i, from, to);
   });
 }
 /// The same for particle i, wherever it has moved since the last sort; books loads.
-template <class Real, class Boundary>
-PBF_HD Moving<Real> predict_anywhere(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
-                                     const Boundary& boundary) {
+template <class Real, class Push, class Boundary>
+PBF_HD Moving<Real> predict_anywhere(int i, Vec3<Real> x, Vec3<Real> v, const Push& push,
+                                     const Params<Real>& p, const Boundary& boundary) {
   if constexpr (Boundary::books)
-    return predict_at_solids(i, x, v, p, boundary);
+    return predict_at_solids(i, x, v, push, p, boundary);
   else
-    return predict(x, v, p, boundary);
+    return predict(x, v, push, p, boundary);
 }
 
-/// Writes x* of particle i and the matching velocity.
+/// Writes the velocity of particle i without any push of the constraints in this step.
 template <class Real>
-PBF_HD void put(int i, const Moving<Real>& m, OwnRows<Vec4<Real>> position,
-                OwnRows<Vec4<Real>> velocity, StepCounts* counts) {
+PBF_HD void put_free(FirstOrder, int, const Moving<Real>&, NoPush) {}
+template <class Real>
+PBF_HD void put_free(const SecondOrder<Real>& order, int i, const Moving<Real>& m,
+                     Vec3<Real> push) {
+  order.free[i] = with_w(m.aimed - push, Real(0));
+}
+/// Writes x* of particle i and the matching velocities.
+template <class Real, class Push, class Order>
+PBF_HD void put(int i, const Moving<Real>& m, const Push& push, OwnRows<Vec4<Real>> position,
+                OwnRows<Vec4<Real>> velocity, const Order& order, StepCounts* counts) {
   if (m.fast) count_one(&counts->fast);
   position[i] = with_w(m.x, m.mark);
   velocity[i] = with_w(m.v, Real(0));
+  put_free(order, i, m, push);
 }
 /// The same for particle i at x with velocity v.
-template <class Real, class Boundary>
+template <class Real, class Order, class Boundary>
 PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
                     const Boundary& boundary, OwnRows<Vec4<Real>> position,
-                    OwnRows<Vec4<Real>> velocity, StepCounts* counts) {
-  const Moving<Real> m = predict_anywhere(i, x, v, p, boundary);
+                    OwnRows<Vec4<Real>> velocity, const Order& order, StepCounts* counts) {
+  const auto push = carried_push(order, i, v, p);
+  const Moving<Real> m = predict_anywhere(i, x, v, push, p, boundary);
   if constexpr (Boundary::books) boundary.came_to(i, m.x);
-  put(i, m, position, velocity, counts);
+  put(i, m, push, position, velocity, order, counts);
 }
 
 /// The bin of x* of row i, or -1 if NearPredictPass computes it.
-template <int D, class Real, class Boundary>
-PBF_HD int predicted_bin(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
-                         const Boundary& boundary) {
+template <int D, class Real, class Order, class Boundary>
+PBF_HD int predicted_bin(int i, Vec3<Real> x, Vec3<Real> v, const Order& order,
+                         const Params<Real>& p, const Boundary& boundary) {
+  const auto push = carried_push(order, i, v, p);
   if constexpr (Boundary::far_only) {
-    const Vec3<Real> faster = accelerated(x, v, p, boundary);
+    const Vec3<Real> faster = pushed(accelerated(x, v, p, boundary), push, p);
     if (!boundary.stays_far(i, dot(faster, faster))) return -1;
   }
-  return bin_of<D>(predict(x, v, p, boundary).x, p);
+  return bin_of<D>(predict(x, v, push, p, boundary).x, p);
 }
 
 /// The bin of x*. x* itself is computed once more where the particles are gathered, which is
 /// cheaper than writing and reading it.
-template <class Real, class Boundary, int D>
+template <class Real, class Boundary, int D, class Order>
 struct PredictPass {
   static constexpr bool leaves_rows = Boundary::far_only;  ///< to NearPredictPass
   Params<Real> p;
   Boundary boundary;
   OwnRows<const Vec4<Real>> position, velocity;
   int* bin;  ///< out
+  [[no_unique_address]] Order order{};
   PBF_HD void operator()(int i) const {
-    bin[i] = predicted_bin<D>(i, xyz(position[i]), xyz(velocity[i]), p, boundary);
+    bin[i] = predicted_bin<D>(i, xyz(position[i]), xyz(velocity[i]), order, p, boundary);
   }
 };
 
 /// Predicts the near rows in place: x* with the mark, the matching velocity, and the bin.
-template <class Real, int D>
+template <class Real, int D, class Order>
 struct NearPredictPass {
   Params<Real> p;
   SolidBoundary<Real> boundary;
   OwnRows<Vec4<Real>> position, velocity;  ///< in/out
   int* bin;                                ///< out
   StepCounts* counts;
+  [[no_unique_address]] Order order{};  ///< in/out
   PBF_HD int row(int k) const { return boundary.near.row[k]; }
   PBF_HD void operator()(int k) const {
     const int i = row(k);
-    const Moving<Real> m = predict_at_solids(i, xyz(position[i]), xyz(velocity[i]), p, boundary);
-    put(i, m, position, velocity, counts);
+    const Vec3<Real> v = xyz(velocity[i]);
+    const auto push = carried_push(order, i, v, p);
+    const Moving<Real> m = predict_at_solids(i, xyz(position[i]), v, push, p, boundary);
+    put(i, m, push, position, velocity, order, counts);
     bin[i] = bin_of<D>(m.x, p);
   }
 };
 
 /// x* and the matching velocity, in place: for further substeps, and for examining this step alone.
-template <class Real, class Boundary>
+template <class Real, class Boundary, class Order>
 struct MovePass {
   Params<Real> p;
   Boundary boundary;
   OwnRows<Vec4<Real>> position, velocity;  ///< in/out
   StepCounts* counts;
+  [[no_unique_address]] Order order{};  ///< in/out
   PBF_HD void operator()(int i) const {
     const Vec3<Real> x = xyz(position[i]), v = xyz(velocity[i]);
     if constexpr (Boundary::books) {
       // Most paths meet at most plain walls; solids are evaluated for the others alone.
-      const Moving<Real> m = predict(x, v, p, boundary);
-      if (!may_meet_solids(boundary, x, m.x)) return put(i, m, position, velocity, counts);
+      const auto push = carried_push(order, i, v, p);
+      const Moving<Real> m = predict(x, v, push, p, boundary);
+      if (!may_meet_solids(boundary, x, m.x))
+        return put(i, m, push, position, velocity, order, counts);
     }
-    move_on(i, x, v, p, boundary, position, velocity, counts);
+    move_on(i, x, v, p, boundary, position, velocity, order, counts);
   }
 };
 
@@ -178,7 +223,7 @@ struct NothingCarried {
 /// Copies the particles into the order of bins. With `moving` they are predicted; w of the position
 /// is then 1 (1/density, until an iteration replaces it), or -1 as a mark for the first iteration.
 /// Otherwise w is copied.
-template <class Real, class Boundary, bool moving, class Carried>
+template <class Real, class Boundary, bool moving, class Carried, class Order>
 struct GatherPass : Carried {
   Params<Real> p;
   Boundary boundary;
@@ -187,13 +232,18 @@ struct GatherPass : Carried {
   Vec4<Real>*position_out, *velocity_out;
   int* id_out;
   StepCounts* counts;
+  [[no_unique_address]] Order order{}, order_out{};
   PBF_HD void operator()(int from, int to) const {
     const Vec4<Real> at = position[from];
     Moving<Real> m{xyz(at), xyz(velocity[from]), false};
-    if (!moving || is_predicted(from))
+    if (!moving || is_predicted(from)) {
       m.mark = at.w;
-    else
-      m = predict(m.x, m.v, p, boundary);
+      if constexpr (Order::second) order_out.free[to] = order.free[from];
+    } else {
+      const auto push = carried_push(order, from, m.v, p);
+      m = predict(m.x, m.v, push, p, boundary);
+      put_free(order_out, to, m, push);
+    }
     if (m.fast) count_one(&counts->fast);
     position_out[to] = with_w(m.x, m.mark);
     velocity_out[to] = with_w(m.v, Real(0));

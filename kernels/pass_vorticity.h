@@ -117,7 +117,7 @@ struct VorticityPass {
     if (a.x.w > Real(1)) return;
     const Real size = square_root(dot(s.v, s.v)) + Real(0.1) * a.curl.w + Real(1e-20);
     const Vec3<Real> push = cross(in_space(s.v), xyz(a.curl));
-    velocity[i] = with_w(xyz(velocity[i]) + Real(1) / size * push, Real(0));
+    velocity[i] = with_w(xyz(velocity[i]) + (Real(1) - p.carry) / size * push, Real(0));
   }
 };
 

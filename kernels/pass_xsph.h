@@ -21,7 +21,7 @@ PBF_HD XsphOwn<V, dimensions> xsph_own(const Vec4<V>& x, const Vec4<V>& v) {
 /// v_i += c sum_j (m/rho_i + m/rho_j)/2 (v_j - v_i) W_ij, with the density of the last iteration.
 /// The weight is symmetric, so momentum is kept to rounding. If an update follows, this pass also
 /// computes the particle's bin for it, in place of that update's `predict`.
-template <class Real, class Lists, Smoothing S, class Boundary>
+template <class Real, class Lists, Smoothing S, class Order, class Boundary>
 struct XsphPass {
   Params<Real> p;
   Boundary boundary;
@@ -29,7 +29,8 @@ struct XsphPass {
   GatheredRows<Vec4<Real>> position;  ///< w = 1/density
   GatheredRows<Vec4<Real>> velocity;  ///< h/s
   OwnRows<Vec4<Real>> velocity_out;
-  int* bin;  ///< out; null: no update follows
+  int* bin;                             ///< out; null: no update follows
+  [[no_unique_address]] Order order{};  ///< for bin
 
   static constexpr int D = dimensions_of(S);
   static constexpr bool leaves_rows = Boundary::far_only;
@@ -56,7 +57,7 @@ struct XsphPass {
     const Vec3<Real> v =
         in_space(a.v + (Real(0.5) * p.xsph * p.vol * density_norm<Real, S>()) * s.v);
     velocity_out[i] = with_w(v, Real(0));
-    if (bin) bin[i] = predicted_bin<D>(i, in_space(a.x), v, p, boundary);
+    if (bin) bin[i] = predicted_bin<D>(i, in_space(a.x), v, order, p, boundary);
   }
 };
 

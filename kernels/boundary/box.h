@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/boundary/half_space.h"
+#include "kernels/time_order.h"
 
 namespace pbf::PBF_VARIANT {
 
@@ -33,6 +34,17 @@ struct Box {
   /// With `paper`, the density uses D of Poly6 and the gradient D of Spiky, as for particles.
   template <Smoothing S>
   PBF_HD BoundaryTerm<Real> term(Vec3<Real> x) const;
+
+  /// The gradient of term() where the particle at x is pushed from.
+  template <Smoothing S>
+  PBF_HD Vec3<Real> push_gradient(Vec3<Real> x, const StepWay<Real>& step) const {
+    if (far_from_walls<dimensions_of(S)>(x, Real(1 + kPushPlaceAway))) return {};
+    return term<S>(push_place(x, step)).gradient;
+  }
+  template <Smoothing S>
+  PBF_HD Vec3<Real> push_gradient(Vec3<Real> x, AnyWay) const {
+    return term<S>(x).gradient;
+  }
 
   /// Whether a wall may be within range.
   PBF_HD bool near_wall(Vec3<Real> x) const {
@@ -74,6 +86,12 @@ struct Box {
   }
 
  private:
+  /// Whether all faces are at least `range` away. 2-D: no wall along y.
+  template <int D>
+  PBF_HD bool far_from_walls(Vec3<Real> x, Real range) const {
+    return x.x >= range && (D == 2 || x.y >= range) && x.z >= range && x.x <= extent.x - range &&
+           (D == 2 || x.y <= extent.y - range) && x.z <= extent.z - range;
+  }
   PBF_HD Real clamped(Real x, Real high, unsigned low_wall) const {
     const Real low = margin;
     if (walls & low_wall && x < low) x = low;
@@ -112,10 +130,8 @@ PBF_HD BoundaryTerm<Real> Box<Real>::term(Vec3<Real> x) const {
   BoundaryTerm<Real> w;
   if (!adds_density) return w;
   const Real one(1);
-  constexpr bool flat = dimensions_of(S) == 2;  // no wall along y
-  if (x.x >= one && (flat || x.y >= one) && x.z >= one && x.x <= extent.x - one &&
-      (flat || x.y <= extent.y - one) && x.z <= extent.z - one)
-    return w;
+  constexpr bool flat = dimensions_of(S) == 2;
+  if (far_from_walls<dimensions_of(S)>(x, one)) return w;
   const Real distance[6] = {x.x, extent.x - x.x, x.y, extent.y - x.y, x.z, extent.z - x.z};
   Real keep_density = one, keep[3] = {one, one, one}, slope[3] = {0, 0, 0};
   for (int axis = 0; axis < 3; axis += flat ? 2 : 1)

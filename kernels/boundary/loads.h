@@ -45,6 +45,20 @@ struct Load {
   }
 };
 
+/// What a wall gave to particles in the last substep, in units as in LoadSums. Only with time steps
+/// of second order, whose predictions give particles a share of it once more.
+struct WallPush {
+  double way[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
+  /// The sums before the present substep; 0 between two updates.
+  double way_before[3] = {0, 0, 0}, moment_before[3] = {0, 0, 0};
+
+  template <class Self, class F>
+  static constexpr void each(Self& s, F&& f) {
+    for (auto& x : s.way) f(x);
+    for (auto& x : s.moment) f(x);
+  }
+};
+
 /// A tally (kernels/gauge_probe.h) that is made with the loads of walls.
 struct PatchTally {
   using Site = Patch;
@@ -102,6 +116,45 @@ struct LoadBook {
   }
 };
 
+/// The sums of a wall over all parts.
+PBF_HD LoadSums all_parts(const LoadSums* sums, int wall) {
+  LoadSums all;
+  for (int part = 0; part < kLoadParts; ++part) {
+    const LoadSums& one = sums[wall * kLoadParts + part];
+    for (int k = 0; k < 3; ++k) {
+      all.way[k] += one.way[k];
+      all.moment[k] += one.moment[k];
+    }
+  }
+  return all;
+}
+
+/// At the start of a substep: books the share of the last push of each wall that the predictions
+/// of this substep take over.
+struct CarryLoadsPass {
+  LoadSums* sums;
+  WallPush* push;  ///< in/out
+  double carry;
+
+  PBF_HD void operator()(int wall) const {
+    const LoadSums all = all_parts(sums, wall);
+    LoadSums& to = sums[wall * kLoadParts];
+    WallPush& p = push[wall];
+    for (int k = 0; k < 3; ++k) {
+      const double way = p.way[k] + (double(all.way[k]) - p.way_before[k]);
+      const double moment = p.moment[k] + (double(all.moment[k]) - p.moment_before[k]);
+      to.way[k] += whole(carry * way);
+      to.moment[k] += whole(carry * moment);
+      p.way[k] = p.moment[k] = 0;
+      p.way_before[k] = double(all.way[k]);
+      p.moment_before[k] = double(all.moment[k]);
+    }
+  }
+
+ private:
+  PBF_HD static std::int64_t whole(double x) { return std::int64_t(x + (x < 0 ? -0.5 : 0.5)); }
+};
+
 /// At the end of an update: adds the booked sums to the load of each wall and clears them.
 struct LoadPass {
   LoadSums* sums;
@@ -109,16 +162,18 @@ struct LoadPass {
   double inv_dt, update_dt, moment_unit;    ///< 1/s of a substep, s, h
   const SolidVelocity* velocity = nullptr;  ///< of each obstacle; null: none moves
   int obstacles = 0;
+  WallPush* push = nullptr;  ///< out; null in first order
 
   PBF_HD void operator()(int wall) const {
-    LoadSums all;
-    for (int part = 0; part < kLoadParts; ++part) {
-      LoadSums& one = sums[wall * kLoadParts + part];
+    const LoadSums all = all_parts(sums, wall);
+    for (int part = 0; part < kLoadParts; ++part) sums[wall * kLoadParts + part] = {};
+    if (push) {
+      WallPush& p = push[wall];
       for (int k = 0; k < 3; ++k) {
-        all.way[k] += one.way[k];
-        all.moment[k] += one.moment[k];
+        p.way[k] = double(all.way[k]) - p.way_before[k];
+        p.moment[k] = double(all.moment[k]) - p.moment_before[k];
+        p.way_before[k] = p.moment_before[k] = 0;
       }
-      one = {};
     }
     Load& to = load[wall];
     const double unit = inv_dt / double(kLoadUnits);

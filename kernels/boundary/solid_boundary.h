@@ -24,6 +24,11 @@ struct SolidBoundary : Box<Real> {
     if (obstacles && bounds.has(x)) return solid_scene_term<S>(*solid_scene, x);
     return Box<Real>::template term<S>(x);
   }
+  template <Smoothing S, class Step>
+  PBF_HD Vec3<Real> push_gradient(Vec3<Real> x, const Step& step) const {
+    if (obstacles && bounds.has(x)) return solid_scene_term<S>(*solid_scene, x, step).gradient;
+    return Box<Real>::template push_gradient<S>(x, step);
+  }
   /// The end of a path of particle i. `book`: loads of walls and solids are booked. `start`: the
   /// path begins with the step.
   PBF_HD Vec3<Real> path_end(bool book, bool start, int i, Vec3<Real> from, Vec3<Real> to) const {
@@ -35,12 +40,12 @@ struct SolidBoundary : Box<Real> {
   PBF_HD Vec3<Real> path_end_booked(int i, Vec3<Real> from, Vec3<Real> to) const {
     return path_end(booked, false, i, from, to);
   }
-  /// Books that particle i, at x, was moved by factor * the gradient of term().
-  template <Smoothing S>
-  PBF_HD void book_push(int i, Vec3<Real> x, Real factor) const {
+  /// Books that particle i, at x, was moved by factor * push_gradient().
+  template <Smoothing S, class Step>
+  PBF_HD void book_push(int i, Vec3<Real> x, const Step& step, Real factor) const {
     if (!booked || factor == Real(0)) return;
     if ((loaded && this->near_wall(x)) || (obstacles && bounds.has(x)))
-      pbf::book_push<S>(*solid_scene, i, x, factor);
+      pbf::book_push<S>(*solid_scene, i, x, step, factor);
   }
   /// Whether x is near an obstacle, or near a wall if walls have loads.
   PBF_HD bool is_near(Vec3<Real> x) const {

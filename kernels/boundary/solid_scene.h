@@ -41,13 +41,24 @@ PBF_HD PathEnd<Real> keep_out(const SolidScene<Real>& s, bool start, int k, Vec3
                 : keep_out<3>(before, placed.solid, from, to);
 }
 
-/// Where solid k carries the point `from`, clamped to the walls.
+/// Where solid k carries the point `from` in a step.
 template <class Real>
 PBF_HD Vec3<Real> carried(const SolidScene<Real>& s, int k, Vec3<Real> from) {
   const Solid<Real>& o = s.solid[k].solid;
-  const Vec3<Real> x = s.flat ? o.center + turned_back<2>(o, body_point<2>(s.before[k], from))
-                              : o.center + turned_back<3>(o, body_point<3>(s.before[k], from));
-  return s.walls.path_end(from, x);
+  return s.flat ? o.center + turned_back<2>(o, body_point<2>(s.before[k], from))
+                : o.center + turned_back<3>(o, body_point<3>(s.before[k], from));
+}
+/// push_place() for solid k, in its own frame if it moves.
+template <class Real>
+PBF_HD Vec3<Real> push_place(const SolidScene<Real>& s, int k, Vec3<Real> x,
+                             const StepWay<Real>& step) {
+  if (!s.before) return push_place(x, step);
+  return push_place(x, {x - carried(s, k, x - step.way), step.back});
+}
+
+template <class Real>
+PBF_HD Vec3<Real> push_place(const SolidScene<Real>&, int, Vec3<Real> x, AnyWay) {
+  return x;
 }
 
 /// Whether x is within the reach of an obstacle.
@@ -73,21 +84,24 @@ PBF_HD bool within_rounding(Vec3<Real> way, Vec3<Real> x, Vec3<Real> center) {
   return dot(way, way) <= most * most;
 }
 
-/// Calls f(k, solid_term) for the obstacles near x.
-template <Smoothing S, class Real, class F>
-PBF_HD void for_solids_at(const SolidScene<Real>& s, Vec3<Real> x, F&& f) {
+/// Calls f(k, solid_term) for the obstacles near x. step: of a particle that they push.
+template <Smoothing S, class Real, class Step, class F>
+PBF_HD void for_solids_at(const SolidScene<Real>& s, Vec3<Real> x, const Step& step, F&& f) {
   for (int k = 0; k < s.solids; ++k)
-    if (s.solid[k].bounds.has(x)) f(k, solid_term<S>(s.solid[k].solid, x, s.walls.inv_range));
+    if (s.solid[k].bounds.has(x))
+      f(k, solid_term<S>(s.solid[k].solid, push_place(s, k, x, step), s.walls.inv_range));
 }
 
 /// Solids are combined with the walls by inclusion and exclusion and do not overlap each other:
 /// A [1 - (1 - w/A)(1 - sum o_k)].
-template <Smoothing S, class Real>
-PBF_HD_APART BoundaryTerm<Real> solid_scene_term(const SolidScene<Real>& s, Vec3<Real> x) {
-  BoundaryTerm<Real> w = s.walls.template term<S>(x);
+/// step: of a particle at x that is pushed; none for the term at x.
+template <Smoothing S, class Real, class Step = AnyWay>
+PBF_HD_APART BoundaryTerm<Real> solid_scene_term(const SolidScene<Real>& s, Vec3<Real> x,
+                                                 const Step& step = {}) {
+  BoundaryTerm<Real> w = s.walls.template term<S>(push_place(x, step));
   if (!s.walls.adds_density) return w;
   SolidTerm<Real> o;
-  for_solids_at<S>(s, x, [&](int, const SolidTerm<Real>& one) {
+  for_solids_at<S>(s, x, step, [&](int, const SolidTerm<Real>& one) {
     o.share += one.share;
     o.gradient = o.gradient + one.gradient;
   });
@@ -127,7 +141,9 @@ PBF_HD_APART Vec3<Real> solid_scene_path_end(const SolidScene<Real>& s, bool boo
       if (!end.hit) continue;
       const bool wedged = end.again || !within_rounding(end.x - to, to, s.solid[k].solid.center);
       const bool last = round == rounds && wedged;
-      const Vec3<Real> at = !last ? end.x : start && s.before ? carried(s, k, from) : from;
+      const Vec3<Real> at = !last               ? end.x
+                            : start && s.before ? s.walls.path_end(from, carried(s, k, from))
+                                                : from;
       move_by(load_row_of_solid(k), at - to);
       if (last) return at;
       to = inside_walls(at);
@@ -139,15 +155,17 @@ PBF_HD_APART Vec3<Real> solid_scene_path_end(const SolidScene<Real>& s, bool boo
 }
 
 /// Books that particle i, at x, was moved by factor * the gradient of solid_scene_term().
-template <Smoothing S, class Real>
-PBF_HD_APART void book_push(const SolidScene<Real>& s, int i, Vec3<Real> x, Real factor) {
+template <Smoothing S, class Real, class Step>
+PBF_HD_APART void book_push(const SolidScene<Real>& s, int i, Vec3<Real> x, const Step& step,
+                            Real factor) {
   Real of_wall[6], share(0);
   if (!s.walls.adds_density) return;
-  const bool at_wall = s.loads.of_walls() && s.walls.template slopes<S>(x, of_wall);
-  for_solids_at<S>(s, x, [&](int, const SolidTerm<Real>& one) { share += one.share; });
+  const Vec3<Real> place = push_place(x, step);
+  const bool at_wall = s.loads.of_walls() && s.walls.template slopes<S>(place, of_wall);
+  for_solids_at<S>(s, x, step, [&](int, const SolidTerm<Real>& one) { share += one.share; });
   if (share > Real(0) && share < Real(1)) {
-    const Real left = s.walls.scale - s.walls.template term<S>(x).density;
-    for_solids_at<S>(s, x, [&](int k, const SolidTerm<Real>& one) {
+    const Real left = s.walls.scale - s.walls.template term<S>(place).density;
+    for_solids_at<S>(s, x, step, [&](int k, const SolidTerm<Real>& one) {
       s.loads.add(load_row_of_solid(k), i, x, (factor * left) * one.gradient);
     });
   }

@@ -4,6 +4,8 @@
 #include <type_traits>
 
 #include "kernels/smoothing.h"
+#include "kernels/time_order.h"
+#include "lib/program/time_order.h"
 #include "lib/scene/scene.h"
 
 namespace pbf::PBF_VARIANT {
@@ -24,6 +26,19 @@ void with_smoothing(KernelMode mode, int dimensions, F&& f) {
   else
     choose(std::integral_constant<Smoothing, Smoothing::consistent>{},
            std::integral_constant<Smoothing, Smoothing::consistent_2d>{});
+}
+/// FirstOrder, or SecondOrder with `free`.
+template <class Real, class F>
+void with_order(const Scene& s, Vec4<Real>* free, F&& f) {
+  is_second_order(s) ? f(SecondOrder<Real>{free}) : f(FirstOrder{});
+}
+/// The same in loops over pairs; the paper's kernels are of first order.
+template <Smoothing S, class Real, class F>
+void with_order(const Scene& s, Vec4<Real>* free, F&& f) {
+  if constexpr (is_paper(S))
+    f(FirstOrder{});
+  else
+    with_order<Real>(s, free, f);
 }
 template <class F>
 void with_bool(bool b, F&& f) {

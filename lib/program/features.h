@@ -12,6 +12,7 @@
 #include "lib/program/features/loads.h"
 #include "lib/program/features/motion.h"
 #include "lib/program/features/solids.h"
+#include "lib/program/features/time_order.h"
 #include "lib/program/features/viscosity.h"
 
 namespace pbf::PBF_VARIANT {
@@ -40,7 +41,7 @@ struct FeatureList {
 };
 
 using Features = FeatureList<Motion, NearSolids, Constraint, Levels, Correction, XsphViscosity,
-                             VorticityConfinement, Loads, Gauges>;
+                             VorticityConfinement, Loads, Gauges, StepLengths>;
 using Passes = Features::Passes;
 
 }  // namespace pbf::PBF_VARIANT

@@ -171,6 +171,11 @@ inline constexpr struct Position : Vectors {
 } position{{"position", per_padded_row, Life::state, true, Shown{"position", "h"}}};
 inline constexpr struct Velocity : Vectors {
 } velocity{{"velocity", per_padded_row, Life::state, true, Shown{"velocity", "h/s"}}};
+/// Velocity without the push of the constraints in the last step, h/s. Only with time steps of
+/// second order. Sorts move it as they move velocities.
+inline constexpr struct FreeVelocity : Vectors {
+} free_velocity{
+    {"free velocity", per_padded_row, Life::state, true, Shown{"velocity without pushes", "h/s"}}};
 inline constexpr struct Density : Numbers {
 } density{{"density", per_particle, Life::pass, false, Shown{"density", "rho0", "density", true}}};
 inline constexpr struct Id : Plain<int> {
@@ -194,8 +199,10 @@ inline constexpr struct NeighborLists : FieldInfo {
 constexpr bool is_basic(const FieldInfo& f) {
   return &f == &position || &f == &velocity || &f == &id;
 }
-/// Whether sorts carry the field besides position, velocity and id.
-constexpr bool is_carried_field(const FieldInfo& f) { return f.is_carried() && !is_basic(f); }
+/// Whether sorts carry the field besides those that their pass moves itself.
+constexpr bool is_carried_field(const FieldInfo& f) {
+  return f.is_carried() && !is_basic(f) && &f != &free_velocity;
+}
 }  // namespace field
 
 /// "position", or "position'" for the second array.

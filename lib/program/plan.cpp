@@ -14,6 +14,7 @@
 #include "lib/program/schedule.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/time_levels.h"
+#include "lib/program/time_order.h"
 #include "lib/scene/load.h"
 
 namespace pbf::program_module {
@@ -160,7 +161,8 @@ void plan_files(Plan& plan, const Scene& s) {
     add("frames/frame_*.png", pictures, pictures * 0.43 * pixels, "0.43 bytes a pixel, 0.3 to 0.5");
   }
   if (s.checkpoint)
-    add("checkpoint.h5, checkpoint_prev.h5", 2, 2 * (6 * (about(s.precision).bytes) + 4) * n + 2e4);
+    add("checkpoint.h5, checkpoint_prev.h5", 2,
+        2 * ((is_second_order(s) ? 9 : 6) * about(s.precision).bytes + 4) * n + 2e4);
 }
 
 }  // namespace

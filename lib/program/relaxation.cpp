@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lib/program/levels.h"
+#include "lib/program/time_order.h"
 
 namespace pbf::program_module {
 namespace {
@@ -17,15 +18,18 @@ struct Rule {
 
 Rule rule(const Scene& s) {
   const int iterations = s.solver.iterations;
+  const bool second = is_second_order(s);
   if (s.dimensions == 2) {
     if (has_levels(s)) return {2.4};
-    return iterations == 1 ? Rule{1.7, 0.85} : iterations == 2 ? Rule{2.7} : Rule{3};
+    if (iterations == 1) return second ? Rule{1.55, 0.75} : Rule{1.7, 0.85};
+    if (iterations == 2) return second ? Rule{2.4} : Rule{2.7};
+    return second ? Rule{2.7} : Rule{3};
   }
   if (has_levels(s)) return iterations == 1 ? Rule{1.9} : Rule{2};
-  return iterations == 1   ? Rule{1.8, 0.85}
-         : iterations == 2 ? Rule{2.2}
-         : iterations == 3 ? Rule{2.3}
-                           : Rule{2.5};
+  if (iterations == 1) return second ? Rule{1.6, 0.75} : Rule{1.8, 0.85};
+  if (iterations == 2) return second ? Rule{1.95} : Rule{2.2};
+  if (iterations == 3) return second ? Rule{2.2} : Rule{2.3};
+  return second ? Rule{2.3} : Rule{2.5};
 }
 
 }  // namespace

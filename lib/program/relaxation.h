@@ -9,7 +9,8 @@ namespace pbf::program_module {
 
 /// omega without the key solver.sor: the largest with which still water stays still. It falls with
 /// the number of neighbors. With one or two iterations in a substep it is smaller, because the
-/// velocity then takes part in the iteration. kernels/README.md, "Step length".
+/// velocity then takes part in the iteration, and smaller in time steps of second order.
+/// kernels/README.md, "Step length".
 double default_sor(const Scene& scene);
 
 /// The largest omega that is known to be safe.

@@ -74,6 +74,11 @@ class Checker : public SceneRules {
 
   void check_solver() {
     const SolverSettings& v = s_.solver;
+    if (good(s_.time.order, v.kernels) && s_.time.order == TimeOrder::second &&
+        v.kernels == KernelMode::paper)
+      add(s_.time.order,
+          "the paper's method (solver.kernels: paper) is of first order; give 1, or "
+          "solver.kernels: consistent");
     if (good(v.levels) && v.levels == LevelsMode::on && has_pressure_on_wall(s_))
       add(v.levels,
           "pressure gauges on walls do not see what the levels push; give off or auto, or put them "

@@ -25,6 +25,9 @@ enum class SolverMethod { jacobi, chebyshev };       ///< omega: constant, or a 
 /// Corrections over grids coarser than h (kernels/README.md, "Levels"); automatic: in deep fluid.
 enum class LevelsMode { off, automatic, on };
 enum class Compression { none, gzip };
+/// Order of accuracy of the time steps (kernels/README.md, "Second order in time"); automatic:
+/// first.
+enum class TimeOrder { automatic, first, second };
 
 /// A body of fluid. `shape` decides which members are used; the loader refuses the others.
 struct Body {
@@ -85,6 +88,7 @@ struct Time {
   double end = 1;                        ///< s, rounded to whole updates
   std::optional<AdaptiveTime> adaptive;  ///< absent: an update is one step
   double motion_begin = 0;               ///< s, time of the motions when the run starts
+  TimeOrder order = TimeOrder::automatic;
   bool operator==(const Time&) const = default;
 };
 

@@ -65,8 +65,8 @@ MeasureConstants measure_constants(const Scene& scene, const Plan& plan, std::in
 }
 
 Diagnostics to_diagnostics(const MeasureSums& s, std::int64_t particles,
-                           const MeasureConstants& given, const Scene& scene, const Plan& plan,
-                           std::int64_t update, std::int64_t steps) {
+                           const MeasureConstants& given, double lag, const Scene& scene,
+                           const Plan& plan, std::int64_t update, std::int64_t steps) {
   const double h = scene.h(), n = double(particles > 0 ? particles : 1), mass = plan.mass;
   const Double3 origin = scene.origin();
   const double counted = double(particles - s.non_finite);
@@ -85,7 +85,7 @@ Diagnostics to_diagnostics(const MeasureSums& s, std::int64_t particles,
   m.kinetic_energy = 0.5 * mass * h * h * s.speed_squared;
   for (int k = 0; k < 3; ++k) {
     const auto axis = std::size_t(plan.axes.of[k]);
-    m.potential_energy -= mass * scene.gravity[axis] * h * s.x[k];
+    m.potential_energy -= mass * scene.gravity[axis] * h * (s.x[k] - lag * s.v[k]);
     // The reference of the energy is the lowest corner of the box, into which gravity points.
     const double extent = scene.domain.max[axis] - scene.domain.min[axis];
     m.energy += mass * std::max(scene.gravity[axis], 0.0) * extent * counted;

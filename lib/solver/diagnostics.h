@@ -123,10 +123,11 @@ class EnergyTrack {
 MeasureConstants measure_constants(const Scene& scene, const Plan& plan, std::int64_t particles);
 
 /// Converts sums over the particles in the internal frame to diagnostics in SI units along the
-/// scene's axes (DIAGNOSTICS.md). update, steps: done so far.
+/// scene's axes (DIAGNOSTICS.md). lag: s, by how much the velocities are earlier than the
+/// positions. update, steps: done so far.
 Diagnostics to_diagnostics(const MeasureSums& sums, std::int64_t particles,
-                           const MeasureConstants& given, const Scene& scene, const Plan& plan,
-                           std::int64_t update, std::int64_t steps);
+                           const MeasureConstants& given, double lag, const Scene& scene,
+                           const Plan& plan, std::int64_t update, std::int64_t steps);
 
 /// How a study combines the measurements of its window into one value.
 enum class Over { none, mean, rms, max, last };

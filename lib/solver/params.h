@@ -9,6 +9,7 @@
 #include "kernels/smoothing.h"
 #include "lib/program/axes.h"
 #include "lib/program/plan.h"
+#include "lib/program/time_order.h"
 
 namespace pbf::PBF_VARIANT {
 
@@ -21,6 +22,10 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   const double dt = s.time.step / plan.substeps;
   p.dt = Real(dt);
   p.inv_dt = Real(1 / dt);
+  if (is_second_order(scene)) {
+    p.back = Real(kDirectionsBack * dt);
+    p.carry = Real(kCarriedPush);
+  }
   p.gravity = {Real(s.gravity[0] / h), Real(s.gravity[1] / h), Real(s.gravity[2] / h)};
   p.damping = Real(plan.substeps == 1 ? s.solver.velocity_damping
                                       : std::pow(s.solver.velocity_damping, 1.0 / plan.substeps));
@@ -62,7 +67,8 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
         Real(1 / (s.solver.kernels == KernelMode::paper ? Poly6<double>::shape(q * q) : t * t * t));
     p.tensile_n = s.tensile->n;
   }
-  if (s.viscosity) p.xsph = Real(s.viscosity->xsph);
+  // Predictions take over a share of the viscosity, too, and a share of that share.
+  if (s.viscosity) p.xsph = Real(s.viscosity->xsph * (is_second_order(s) ? 1 - kCarriedPush : 1));
   if (s.vorticity) p.vorticity = Real(s.vorticity->epsilon);
   p.update_dt = Real(s.time.step);
   return p;
@@ -73,7 +79,7 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
 /// overlap, and attraction without artificial pressure would form clusters.
 template <class Real>
 Params<Real> without_time(Params<Real> p, double damping) {
-  p.dt = p.inv_dt = 0;
+  p.dt = p.inv_dt = p.back = p.carry = 0;
   p.damping = Real(damping);
   p.limit_speed = p.two_sided = false;
   p.speed_squared = p.passing_squared = Real(1e30);

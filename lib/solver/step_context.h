@@ -147,7 +147,9 @@ struct StepContext {
     return all;
   }
   /// Swaps the two arrays of a field.
-  void flip(const FieldInfo& f) { slot(f)->now ^= 1; }
+  void flip(const FieldInfo& f) {
+    if (Slot* s = slot(f)) s->now ^= 1;  // a scene may lack the field
+  }
   void flip_carried() {
     for (const CarriedField& c : plan.program.carried_fields) flip(*c.first);
   }

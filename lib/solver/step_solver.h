@@ -85,8 +85,8 @@ class StepSolver final : public Solver, public Inspection {
     find_pairs();
     const int n = stepper_->rows();
     const MeasureConstants given = measure_constants(scene_, plan_, n);
-    Diagnostics m =
-        to_diagnostics(stepper_->measure(given), n, given, scene_, plan_, updates_, steps_);
+    Diagnostics m = to_diagnostics(stepper_->measure(given), n, given, stepper_->velocity_lag(),
+                                   scene_, plan_, updates_, steps_);
     measure_motion(m);
     return m;
   }

@@ -106,6 +106,15 @@ class Stepper {
     return most;
   }
 
+  /// s, by how much the velocities are earlier than the positions, as far as the scheme knows: half
+  /// of the last step in second order.
+  double velocity_lag() {
+    if (!is_second_order(c_.scene)) return 0;
+    StepLength last;
+    c_.exec.to_host(c_.data(field::step_length), 1, &last);
+    return last.dt / 2;
+  }
+
   /// h^2/s^3: power, per particle mass, of the inertial forces by the tank's motion.
   double power(const FrameStep<double>& frame, double dt) {
     const Vec3<Real>& g = c_.p.gravity;

@@ -16,6 +16,7 @@ Case everything() {
   c.scene.tensile = pbf::Tensile{};
   c.scene.viscosity = pbf::Viscosity{};
   c.scene.vorticity = pbf::Vorticity{};
+  c.scene.time.order = GENERATE(pbf::TimeOrder::first, pbf::TimeOrder::second);
   return c;
 }
 

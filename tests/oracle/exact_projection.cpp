@@ -251,7 +251,7 @@ std::vector<double> predicted_positions(const Scene& scene, const Plan& plan,
   Vector x = to_frame(scene, plan, position, scene.origin());
   const Vector v = to_frame(scene, plan, velocity, {});
   for (Eigen::Index i = 0; 3 * i < x.size(); ++i) {
-    const V3 to = predict(point(x, i), point(v, i), p, p.boundary).x;
+    const V3 to = predict(point(x, i), point(v, i), V3{}, p, p.boundary).x;
     x.segment<3>(3 * i) << to.x, to.y, to.z;
   }
   return to_si(scene, plan, x);

@@ -22,11 +22,13 @@ struct Settings {
   Real tensile_k = 0, tensile_q = 0.3L;  // k in h^2
   int tensile_n = 4;
   Real xsph = 0, vorticity = 0;  // 1, 1/s
+  int order = 1;                 // of the time steps
   std::vector<Solid> solids;
 };
 
 struct State {
   std::vector<V> x, v;
+  std::vector<V> free;  ///< in second order: v without the push of the last step; empty: no step
   std::vector<Real> density;  ///< kg/m^3, of the last iteration
 };
 

@@ -92,9 +92,10 @@ inline oracle::Settings settings_of(const Case& c) {
   for (std::size_t f = 0; f < 6; ++f)
     o.open[f] = std::count(s.domain.open.begin(), s.domain.open.end(), faces[f]) > 0;
   o.damping = s.solver.velocity_damping;
+  o.paper = s.solver.kernels == pbf::KernelMode::paper;
   o.margin = s.solver.wall_margin;
   o.iterations = s.solver.iterations;
-  o.paper = s.solver.kernels == pbf::KernelMode::paper;
+  o.order = s.time.order == pbf::TimeOrder::second ? 2 : 1;
   o.two_sided = s.solver.constraint == pbf::ConstraintMode::two_sided;
   o.wall_density = s.solver.boundary == pbf::BoundaryMode::density;
   for (int k = 0; k < 3; ++k) {
@@ -118,8 +119,8 @@ struct Difference {
   oracle::LevelNodes nodes;
 };
 
-/// Largest difference after one update from the same state.
-inline Difference against_oracle(const Case& c) {
+/// Largest difference after some updates from the same state.
+inline Difference against_oracle(const Case& c, int updates = 1) {
   const oracle::Settings o = settings_of(c);
   oracle::State s;
   for (std::size_t i = 0; i < c.particles.size(); ++i) {
@@ -128,9 +129,9 @@ inline Difference against_oracle(const Case& c) {
     s.v.push_back({v[0], v[1], v[2]});
   }
   Difference d;
-  oracle::update(s, o, &d.nodes);
+  for (int u = 0; u < updates; ++u) oracle::update(s, o, &d.nodes);
   auto solver = make(c);
-  solver->step(1);
+  solver->step(updates);
   const pbf::Snapshot snap = solver->download({"velocity"}, pbf::ScalarType::f64).get();
   const auto x = snap.fields[0].as<double>(), v = snap.find("velocity")->as<double>();
   for (std::size_t i = 0; i < s.x.size(); ++i)

@@ -25,25 +25,29 @@ struct Density {
 
 /// Velocities of neighbors are needed for marked particles, which the first iteration counts before
 /// it moves anything.
-using LambdaNeeds =
-    Needs<Gathers<field::position>, UsesLists,
-          Reads<field::position, W::mark, When::first_iteration>,
-          Gathers<field::velocity, W::any, When::first_iteration>, NearNeeds, NearSumNeeds,
-          Writes<other<field::position>, W::lambda>, Adds<field::counts>>;
+using LambdaNeeds = Needs<Gathers<field::position>, UsesLists,
+                          Reads<field::position, W::mark, When::first_iteration>,
+                          Gathers<field::velocity, W::any, When::first_iteration>,
+                          If<is_second_order, Reads<field::velocity>>, NearNeeds, NearSumNeeds,
+                          Writes<other<field::position>, W::lambda>, Adds<field::counts>>;
 
 template <bool with_density, class G>
 void launch_lambda(const G& c) {
+  using Real = typename G::Real;
   c.with_smoothing([&](auto s) {
-    each_then_near<false>(c, [&](const auto& boundary) {
-      return LambdaPass<typename G::Real, typename G::Lists, decltype(s)::value, with_density,
-                        std::decay_t<decltype(boundary)>>{c.p,
-                                                          boundary,
-                                                          c.lists(),
-                                                          c[field::position],
-                                                          c[other<field::position>],
-                                                          c[field::density],
-                                                          c[field::velocity],
-                                                          c[field::counts].sums()};
+    with_order<decltype(s)::value, Real>(c.scene, nullptr, [&](auto order) {
+      each_then_near<false>(c, [&](const auto& boundary) {
+        return LambdaPass<Real, typename G::Lists, decltype(s)::value, with_density,
+                          decltype(order), std::decay_t<decltype(boundary)>>{
+            c.p,
+            boundary,
+            c.lists(),
+            c[field::position],
+            c[other<field::position>],
+            c[field::density],
+            c[field::velocity],
+            c[field::counts].sums()};
+      });
     });
   });
 }

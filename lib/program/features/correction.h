@@ -8,37 +8,56 @@
 
 namespace pbf::PBF_VARIANT {
 
-/// density: of the pass that leaves 1/density; null with moves_on.
+/// density: of the pass that leaves 1/density; null with moves_on. free: with moves_on in second
+/// order.
 template <class G>
-void launch_delta(const G& c, OwnRows<const typename G::Real> density, StepCounts* moves_on) {
+void launch_delta(const G& c, OwnRows<const typename G::Real> density, Vec4<typename G::Real>* free,
+                  StepCounts* moves_on) {
+  using Real = typename G::Real;
   auto p = c.p;
   p.sor = c.sor();
   c.with_smoothing([&](auto s) {
+    constexpr Smoothing S = decltype(s)::value;
     with_bool(c.scene.tensile && c.scene.tensile->k != 0, [&](auto tensile) {
       with_level_move(c, [&](const auto& coarse) {
-        each_then_near<true>(c, [&](const auto& boundary) {
-          return DeltaPass<typename G::Real, typename G::Lists, decltype(s)::value,
-                           decltype(tensile)::value, std::decay_t<decltype(coarse)>,
-                           std::decay_t<decltype(boundary)>>{
-              p,        boundary,     c.lists(),          c[other<field::position>],
-              density,  c[field::id], c[field::position], c[field::velocity],
-              moves_on, coarse};
+        with_order<S, Real>(c.scene, free, [&](const auto& order) {
+          each_then_near<true>(c, [&](const auto& boundary) {
+            return DeltaPass<Real, typename G::Lists, S, decltype(tensile)::value,
+                             std::decay_t<decltype(coarse)>, std::decay_t<decltype(order)>,
+                             std::decay_t<decltype(boundary)>>{p,
+                                                               boundary,
+                                                               c.lists(),
+                                                               c[other<field::position>],
+                                                               density,
+                                                               c[field::id],
+                                                               c[field::position],
+                                                               c[field::velocity],
+                                                               moves_on,
+                                                               coarse,
+                                                               order};
+          });
         });
       });
     });
   });
 }
 
+/// Moving obstacles push from where the step has taken a particle in their own frame.
+inline bool pushes_in_moving_frames(const Scene& s) {
+  return is_second_order(s) && has_moving_obstacles(s);
+}
+
 using DeltaNeeds = Needs<Gathers<other<field::position>, W::lambda>, UsesLists, Gathers<field::id>,
                          Updates<field::velocity>, If<has_levels, LevelMoveNeeds>, MoveNeeds,
                          If<has_solids, Looks<field::near_row>, Looks<field::near_count>,
-                            Places<other<field::velocity>>>>;
+                            Places<other<field::velocity>>>,
+                         If<pushes_in_moving_frames, Looks<field::solids_before>>>;
 
 struct Delta {
   static constexpr PassText text{"delta", "delta"};
   using Needs =
       pbf::Needs<Writes<field::position, W::inverse_density>, Reads<field::density>, DeltaNeeds>;
-  static void launch(const auto& c) { launch_delta(c, c[field::density], nullptr); }
+  static void launch(const auto& c) { launch_delta(c, c[field::density], nullptr, nullptr); }
 };
 
 /// Delta and the prediction of the next substep: the same arithmetic with one launch less. Never
@@ -46,12 +65,13 @@ struct Delta {
 struct DeltaPredict {
   using Fuses = Pair<Delta, Predict>;
   static constexpr PassText text{"delta+predict", "delta"};
-  using Needs =
-      Then<pbf::Needs<Writes<field::position>, DeltaNeeds>,
-           pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>, StepNeeds>>;
+  using Needs = Then<pbf::Needs<Writes<field::position>, DeltaNeeds>,
+                     pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>,
+                                If<is_second_order, Updates<field::free_velocity>>, StepNeeds>>;
   template <class G>
   static void launch(const G& c) {
-    launch_delta(c, OwnRows<const typename G::Real>(), c[field::counts].sums());
+    launch_delta(c, OwnRows<const typename G::Real>(), c.declared(field::free_velocity),
+                 c[field::counts].sums());
   }
 };
 

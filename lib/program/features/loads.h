@@ -9,6 +9,7 @@
 #include "kernels/params.h"
 #include "lib/program/features/poses.h"
 #include "lib/program/loads.h"
+#include "lib/program/time_order.h"
 
 namespace pbf::program_module {
 inline std::int64_t per_wall(const Sizes& n) { return load_walls(n.scene); }
@@ -25,6 +26,8 @@ inline constexpr struct LoadRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 /// Since the last reading; the rows are those of program/loads.h.
 inline constexpr struct WallLoads : Plain<Load> {
 } loads{{"loads", per_wall, Life::state}};
+inline constexpr struct WallPushes : Plain<WallPush> {
+} wall_pushes{{"wall pushes", per_wall, Life::state}};
 /// What the kernels know of the gauges of a tally.
 template <class Tally>
 struct GaugeSites : Plain<typename Tally::Site> {};
@@ -55,24 +58,38 @@ LoadBook<Real> load_book(const Scene& scene, const Box<Real>& box, LoadSums* sum
           summed_walls(scene)};
 }
 
+inline bool carries_loads(const Scene& s) { return has_loads(s) && is_second_order(s); }
+
+struct CarryLoads {
+  static constexpr PassText text{"carried loads", "predict"};
+  using Needs = pbf::Needs<Updates<field::load_sums>, Updates<field::wall_pushes>>;
+  template <class G>
+  static void launch(const G& c) {
+    c.items(int(load_walls(c.scene)),
+            CarryLoadsPass{c[field::load_sums].rows(), c[field::wall_pushes].rows(), kCarriedPush});
+  }
+};
+
 struct SumLoads {
   static constexpr PassText text{"loads", "measure"};
   using Needs = pbf::Needs<Updates<field::load_sums>, Updates<field::loads>,
+                           If<carries_loads, Updates<field::wall_pushes>>,
                            If<has_moving_obstacles, Looks<field::solid_velocity>>>;
   static void launch(const auto& c) {
     c.items(int(load_walls(c.scene)),
             LoadPass{c[field::load_sums].rows(), c[field::loads].rows(), double(c.p.inv_dt),
                      double(c.p.update_dt), moment_unit(c.p.boundary), c[field::solid_velocity],
-                     int(c.scene.obstacles.size())});
+                     int(c.scene.obstacles.size()), c[field::wall_pushes].rows()});
   }
 };
 
 struct Loads {
-  using Passes = PassList<SumLoads>;
+  using Passes = PassList<CarryLoads, SumLoads>;
   static void add(const Scene& s, auto& b) {
     if (!has_loads(s))
       return b.left_out("loads on the walls",
                         "domain.loads is false, and no obstacle has loads or motion");
+    if (carries_loads(s)) b.start(CarryLoads());
     b.end(SumLoads());
   }
 };

@@ -8,6 +8,7 @@
 #include "lib/program/features/solids.h"
 #include "lib/program/motion.h"
 #include "lib/program/pass.h"
+#include "lib/program/time_order.h"
 
 namespace pbf::program_module {
 inline std::int64_t per_table_row(const Sizes& n) { return motion_table_rows(n.plan); }
@@ -52,22 +53,28 @@ struct MoveSolids {
 /// Computes x* and the predicted velocity, in place.
 struct Predict {
   static constexpr PassText text{"predict", "predict"};
-  using Needs = pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>, StepNeeds,
-                           FrameNeeds>;
+  using Needs =
+      pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>,
+                 If<is_second_order, Updates<field::free_velocity>>, StepNeeds, FrameNeeds>;
   template <class G>
   static void launch(const G& c) {
-    with_boundary(c, [&](const auto& boundary) {
-      c.items(MovePass<typename G::Real, std::decay_t<decltype(boundary)>>{
-          c.p, boundary, c[field::position], c[field::velocity], c[field::counts].sums()});
+    using Real = typename G::Real;
+    with_order<Real>(c.scene, c.declared(field::free_velocity), [&](const auto& order) {
+      with_boundary(c, [&](const auto& boundary) {
+        c.items(MovePass<Real, std::decay_t<decltype(boundary)>, std::decay_t<decltype(order)>>{
+            c.p, boundary, c[field::position], c[field::velocity], c[field::counts].sums(), order});
+      });
     });
   }
 };
 
 /// The needs of a sort apart from positions. The second arrays hold the rows before the sort. The
 /// executor decides which array holds the order.
-using GatherNeeds = Needs<Writes<field::bin>, Places<field::order>, Places<field::bin_start>,
-                          Looks<other<field::id>>, Places<field::id>, Places<field::velocity>,
-                          If<changes_rows, Looks<field::row_state>, Places<field::row_state>>>;
+using GatherNeeds =
+    Needs<Writes<field::bin>, Places<field::order>, Places<field::bin_start>,
+          Looks<other<field::id>>, Places<field::id>, Places<field::velocity>,
+          If<is_second_order, Looks<other<field::free_velocity>>, Places<field::free_velocity>>,
+          If<changes_rows, Looks<field::row_state>, Places<field::row_state>>>;
 
 /// Runs `first`, which computes the bin of each particle, and `listed`, which does it for particles
 /// that `first` leaves out. Then `gather` puts the particles into the order of bins.
@@ -82,12 +89,14 @@ void sort_rows(const G& c, const char* stage, const First& first, const Gather& 
       c.items(1, TakeRowsPass{c[field::bin_start] + bin_count(c.p), c[field::row_state]});
 }
 /// velocity, velocity_out: the arrays from which and into which the pass gathers. counts: null if
-/// particles do not move.
-template <bool moving, class G, class Boundary, class Vectors>
+/// particles do not move. order: of the rows before the sort.
+template <bool moving, class G, class Boundary, class Vectors, class Order>
 auto gather_pass(const G& c, const Boundary& boundary, const Vectors* velocity,
-                 Vectors* velocity_out, StepCounts* counts) {
+                 Vectors* velocity_out, StepCounts* counts, const Order& order) {
   const auto carried = c.carried();
-  return GatherPass<typename G::Real, Boundary, moving, std::decay_t<decltype(carried)>>{
+  Order sorted = order;
+  if constexpr (Order::second) sorted.free = c[field::free_velocity];
+  return GatherPass<typename G::Real, Boundary, moving, std::decay_t<decltype(carried)>, Order>{
       carried,
       c.p,
       boundary,
@@ -97,7 +106,9 @@ auto gather_pass(const G& c, const Boundary& boundary, const Vectors* velocity,
       c[field::position],
       velocity_out,
       c[field::id],
-      counts};
+      counts,
+      order,
+      sorted};
 }
 /// Predicts the particles and sorts them by the bins of x*.
 template <class G, class First, class Vectors>
@@ -106,15 +117,17 @@ void sort_predicted(const G& c, const char* stage, const First& first, Vectors* 
   using Real = typename G::Real;
   using Rows = OwnRows<Vec4<Real>>;
   StepCounts* counts = c[field::counts].sums();
-  const auto gather = gather_pass<true>(c, first.boundary, velocity, velocity_out, counts);
+  const auto gather =
+      gather_pass<true>(c, first.boundary, velocity, velocity_out, counts, first.order);
   if constexpr (First::leaves_rows)
     with_dimensions(c.p.dimensions, [&](auto d) {
       const SolidBoundary<Real> solids = solids_of(c);
-      sort_rows(c, stage, first, gather,
-                Listed<NearPredictPass<Real, decltype(d)::value>>{
-                    solids.near.way_left_squared ? solids.near.count : nullptr,
-                    {c.p, solids, Rows(c[other<field::position>]), Rows(velocity),
-                     c[field::bin].rows(), counts}});
+      sort_rows(
+          c, stage, first, gather,
+          Listed<NearPredictPass<Real, decltype(d)::value, std::decay_t<decltype(first.order)>>>{
+              solids.near.way_left_squared ? solids.near.count : nullptr,
+              {c.p, solids, Rows(c[other<field::position>]), Rows(velocity), c[field::bin].rows(),
+               counts, first.order}});
     });
   else
     sort_rows(c, stage, first, gather, NothingListed{});
@@ -123,30 +136,32 @@ void sort_predicted(const G& c, const char* stage, const First& first, Vectors* 
 /// Sorts by the bins of the present positions.
 struct Sort {
   static constexpr PassText text{"sort", "grid"};
-  using Flips = pbf::Flips<field::position, field::velocity, field::id>;
+  using Flips = pbf::Flips<field::position, field::velocity, field::free_velocity, field::id>;
   using Needs = pbf::Needs<Looks<other<field::position>>, Looks<other<field::velocity>>,
                            Writes<field::bin>, Places<field::position>, GatherNeeds>;
   template <class G>
   static void launch(const G& c) {
     using Real = typename G::Real;
-    with_dimensions(c.p.dimensions, [&](auto d) {
-      sort_rows(
-          c, "predict",
-          BinPass<Real, decltype(d)::value>{
-              c.p, OwnRows<const Vec4<Real>>(c[other<field::position>]), c[field::bin].rows()},
-          gather_pass<false>(c, c.p.boundary, c[other<field::velocity>], c[field::velocity],
-                             nullptr),
-          NothingListed{});
+    with_order<Real>(c.scene, c.declared(other<field::free_velocity>), [&](const auto& order) {
+      with_dimensions(c.p.dimensions, [&](auto d) {
+        sort_rows(
+            c, "predict",
+            BinPass<Real, decltype(d)::value>{
+                c.p, OwnRows<const Vec4<Real>>(c[other<field::position>]), c[field::bin].rows()},
+            gather_pass<false>(c, c.p.boundary, c[other<field::velocity>], c[field::velocity],
+                               nullptr, order),
+            NothingListed{});
+      });
     });
   }
 };
 
 /// Rows near solids are predicted in place, before the others.
-using SortPredictedNeeds =
-    Needs<Looks<other<field::position>>,
-          If<has_solids, Looks<field::near_row>, Looks<field::near_count>,
-             Places<other<field::position>>>,
-          Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, StepNeeds, FrameNeeds>;
+using SortPredictedNeeds = Needs<
+    Looks<other<field::position>>,
+    If<has_solids, Looks<field::near_row>, Looks<field::near_count>, Places<other<field::position>>,
+       If<is_second_order, Places<other<field::free_velocity>>>>,
+    Writes<field::bin>, Places<field::position, W::mark>, GatherNeeds, StepNeeds, FrameNeeds>;
 
 /// Computes x* twice, for the bin and when the particles are gathered. This is cheaper than storing
 /// x* and reading it again.
@@ -160,14 +175,17 @@ struct PredictSort {
   static void launch(const G& c) {
     using Real = typename G::Real;
     using Rows = OwnRows<const Vec4<Real>>;
-    with_dimensions(c.p.dimensions, [&](auto d) {
-      with_far_boundary(c, [&](const auto& boundary) {
-        Vec4<Real>* velocity = c[other<field::velocity>];
-        sort_predicted(c, "predict",
-                       PredictPass<Real, std::decay_t<decltype(boundary)>, decltype(d)::value>{
-                           c.p, boundary, Rows(c[other<field::position>]), Rows(velocity),
-                           c[field::bin].rows()},
-                       velocity, c[field::velocity]);
+    with_order<Real>(c.scene, c.declared(other<field::free_velocity>), [&](const auto& order) {
+      with_dimensions(c.p.dimensions, [&](auto d) {
+        with_far_boundary(c, [&](const auto& boundary) {
+          Vec4<Real>* velocity = c[other<field::velocity>];
+          sort_predicted(c, "predict",
+                         PredictPass<Real, std::decay_t<decltype(boundary)>, decltype(d)::value,
+                                     std::decay_t<decltype(order)>>{
+                             c.p, boundary, Rows(c[other<field::position>]), Rows(velocity),
+                             c[field::bin].rows(), order},
+                         velocity, c[field::velocity]);
+        });
       });
     });
   }

@@ -9,6 +9,7 @@
 #include "kernels/boundary/near_split.h"
 #include "lib/program/features/loads.h"
 #include "lib/program/obstacle_motion.h"
+#include "lib/program/time_order.h"
 
 namespace pbf::program_module {
 inline bool has_solids_in_grid(const Scene& s) { return has_solids(s) && s.domain.open.empty(); }
@@ -159,7 +160,8 @@ struct NearSolids {
       solids.clear = clear_of(c.p.boundary);
       // The way that a row may make in an iteration of its lists.
       const int moves = std::max(s.solver.iterations, 1) * (1 + c.plan.shape().repeats);
-      const double move = 0.8 * kNearRoom / moves;
+      const double room = kNearRoom - (is_second_order(s) ? kPushPlaceAway : 0);
+      const double move = 0.8 * room / moves;
       solids.near.far_way_squared = Real(move * move);
       c.exec.to_device(std::vector<Real>(C::padding, solids.near.far_way_squared).data(),
                        C::padding, c.data(field::near_way_left) + c.capacity());

@@ -8,16 +8,20 @@ namespace pbf::PBF_VARIANT {
 
 inline constexpr const char* kLessXsph = "lower viscosity.xsph";
 
-/// Calls use() with the pass that reads `velocity` and writes `velocity_out`. bin: array for the
-/// particles' bins in the next update, or null.
+/// Calls use() with the pass that reads `velocity` and writes `velocity_out`. bin: array for
+/// the particles' bins in the next update, or null. free: field::free_velocity, with bin.
 template <class G, class Rows, class Use>
 void with_xsph(const G& c, GatheredRows<Rows> position, GatheredRows<Rows> velocity,
-               OwnRows<Rows> velocity_out, int* bin, const Use& use) {
+               OwnRows<Rows> velocity_out, std::type_identity_t<Rows>* free, int* bin,
+               const Use& use) {
+  using Real = typename G::Real;
   c.with_smoothing([&](auto s) {
-    with_far_boundary(c, [&](const auto& boundary) {
-      use(XsphPass<typename G::Real, typename G::Lists, decltype(s)::value,
-                   std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists(), position, velocity,
-                                                     velocity_out, bin});
+    with_order<decltype(s)::value, Real>(c.scene, free, [&](const auto& order) {
+      with_far_boundary(c, [&](const auto& boundary) {
+        use(XsphPass<Real, typename G::Lists, decltype(s)::value, std::decay_t<decltype(order)>,
+                     std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists(), position, velocity,
+                                                       velocity_out, bin, order});
+      });
     });
   });
 }
@@ -29,7 +33,7 @@ struct Xsph {
                            Gathers<other<field::velocity>>, UsesLists, Writes<field::velocity>>;
   static void launch(const auto& c) {
     with_xsph(c, c[field::position], c[other<field::velocity>], c[field::velocity], nullptr,
-              [&](const auto& pass) { c.pairs(pass); });
+              nullptr, [&](const auto& pass) { c.pairs(pass); });
   }
 };
 
@@ -37,7 +41,7 @@ struct Xsph {
 struct XsphPredictSort {
   using Fuses = Pair<Xsph, PredictSort>;
   static constexpr PassText text{"xsph+predict+sort", "grid", kLessXsph};
-  using Flips = pbf::Flips<field::position, field::id>;
+  using Flips = pbf::Flips<field::position, field::free_velocity, field::id>;
   using Needs = pbf::Needs<Gathers<other<field::position>, W::inverse_density>, SortPredictedNeeds,
                            Gathers<field::velocity>, UsesLists, Places<other<field::velocity>>>;
   template <class G>
@@ -46,7 +50,7 @@ struct XsphPredictSort {
     Rows *position = c[other<field::position>], *from = c[field::velocity],
          *to = c[other<field::velocity>];
     with_xsph(c, GatheredRows<Rows>(position), GatheredRows<Rows>(from), OwnRows<Rows>(to),
-              c[field::bin].rows(),
+              c.declared(other<field::free_velocity>), c[field::bin].rows(),
               [&](const auto& pass) { sort_predicted(c, "xsph", pass, to, from); });
   }
 };

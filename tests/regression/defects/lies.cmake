@@ -12,7 +12,7 @@ seeded_defect(undeclared_write declarations lib/program/features/confinement.h
 seeded_defect(undeclared_gather declarations lib/program/features/confinement.h
   [[W::inverse_density>, Gathers<field::velocity>,]] [[W::inverse_density>,]])
 seeded_defect(undeclared_gather_of_lambda declarations lib/program/features/constraint.h
-  [[Gathers<field::velocity, W::any, When::first_iteration>, NearNeeds]] [[NearNeeds]])
+  [[Gathers<field::velocity, W::any, When::first_iteration>,]] [[]])
 seeded_defect(undeclared_lists declarations lib/program/features/viscosity.h
   [[Gathers<other<field::velocity>>, UsesLists,]] [[Gathers<other<field::velocity>>,]])
 seeded_defect(undeclared_behind_address declarations lib/program/features/solids.h
@@ -22,7 +22,8 @@ seeded_defect(neighbor_of_own_row declarations lib/program/features/confinement.
 seeded_defect(write_to_what_is_read declarations lib/program/features/confinement.h
   [[Updates<field::velocity>>;]] [[Reads<field::velocity>>;]])
 seeded_defect(read_of_running_sum declarations lib/program/features/loads.h
-  [[Updates<field::load_sums>, Updates]] [[Adds<field::load_sums>, Updates]])
+  [[Updates<field::load_sums>, Updates<field::loads>]]
+  [[Adds<field::load_sums>, Updates<field::loads>]])
 seeded_defect(update_as_write declarations lib/program/features/solids.h
   [[Updates<field::near_way_left>]] [[Writes<field::near_way_left>]])
 seeded_defect(idle_declaration declarations lib/program/features/confinement.h

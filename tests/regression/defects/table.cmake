@@ -71,7 +71,7 @@ seeded_defect(frozen_particle delta kernels/pass_delta.h
 seeded_defect(wall_clamp_dropped delta kernels/pass_delta.h
   [[      inside = boundary.path_end(x, target);]] [[      inside = target;]])
 seeded_defect(velocity_not_updated delta kernels/pass_delta.h
-  [[xyz(velocity[i]) + p.inv_dt * (free + (inside - target))]] [[xyz(velocity[i])]])
+  [[xyz(velocity[i]) + p.inv_dt * (move + (inside - target))]] [[xyz(velocity[i])]])
 seeded_defect(neighbors_lambda_missing delta kernels/pass_delta.h
   [[V w = x.w + y.w;]] [[V w = x.w + x.w;]])
 seeded_defect(s_corr_exponent delta kernels/pass_delta.h
@@ -122,7 +122,7 @@ seeded_defect(level_momentum_missing levels kernels/pass_level_cells.h
 seeded_defect(level_momentum_at_walls levels kernels/pass_level_cells.h
   [[found >> 2 * k & 3 ? 1]] [[found > 64 ? 1]] levels)
 seeded_defect(level_displacement_sign delta kernels/pass_delta.h
-  [[free + coarse(i);]] [[free - coarse(i);]] levels)
+  [[all + coarse(i);]] [[all - coarse(i);]] levels)
 
 # xsph, vorticity
 seeded_defect(xsph_without_density xsph kernels/pass_xsph.h [[(shape * (a.w + b.x.w))]] [[(shape + shape)]])
@@ -130,7 +130,7 @@ seeded_defect(xsph_sign xsph kernels/pass_xsph.h [[(point<D>(b.v) - a.v)]] [[(a.
 seeded_defect(curl_sign vorticity kernels/pass_vorticity.h
   [[root.inverse) * d, v);]] [[root.inverse) * d, a.v - point<D>(b.v));]])
 seeded_defect(vorticity_sign vorticity kernels/pass_vorticity.h
-  [[+ Real(1) / size * push]] [[- Real(1) / size * push]])
+  [[+ (Real(1) - p.carry) / size * push]] [[- (Real(1) - p.carry) / size * push]])
 seeded_defect(vorticity_at_surface vorticity kernels/pass_vorticity.h
   [[a.x.w > Real(1)]] [[a.x.w * Real(0.5) > Real(1)]])
 seeded_defect(vorticity_unbounded vorticity kernels/pass_vorticity.h
@@ -173,7 +173,8 @@ seeded_defect(load_moment_sign loads kernels/boundary/loads.h
 seeded_defect(load_moment_of_moving loads kernels/boundary/loads.h
   [[v.middle[b] * impulse[c] - v.middle[c] * impulse[b];]] [[v.middle[b] * impulse[c];]] solids)
 seeded_defect(load_part_left_out loads kernels/boundary/loads.h
-  [[for (int part = 0; part < kLoadParts;]] [[for (int part = 1; part < kLoadParts;]] solids)
+  [[for (int part = 0; part < kLoadParts; ++part) {]]
+  [[for (int part = 1; part < kLoadParts; ++part) {]] solids)
 seeded_defect(patch_too_small gauges kernels/boundary/patch.h
   [[most = p.radius + p.soft;]] [[most = p.radius;]] solids)
 seeded_defect(flow_one_way gauges kernels/pass_flow.h

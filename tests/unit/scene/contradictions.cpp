@@ -12,6 +12,12 @@ TEST_CASE("scene: values that contradict each other are refused") {
   CHECK(contains(error({"fluid.spacing=-0.1"}), "\"-0.1\" is out of range"));
   CHECK(contains(error({"fluid.spacing=0.0001"}), "the scene would have 5e+11 particles"));
   CHECK(contains(error({"fluid.spacing=0.6"}), "bodies[0]: makes no particle"));
+  CHECK(
+      contains(error({"time.order=2", "solver.kernels=paper"}),
+               "time.order: the paper's method (solver.kernels: paper) is of first order; give 1, "
+               "or solver.kernels: consistent"));
+  CHECK(error({"time.order=2"}) == "no error");
+  CHECK(error({"time.order=1", "solver.kernels=paper"}) == "no error");
   CHECK(contains(error({"fluid.smoothing_ratio=0.5"}), "out of range, allowed: 1 .. 10"));
 }
 

@@ -74,6 +74,7 @@ Scene unlike_default() {
   s.obstacles = {plane, box, ball, cylinder, capsule};
   s.gravity = {1.0 / 3, 0, 5e-300};
   s.time = {1.0 / 60, 500.0 / 60, AdaptiveTime{1e-4, 0.3, 0.2}, -1.0 / 7};
+  s.time.order = TimeOrder::first;
   s.tank_motion.emplace();
   s.tank_motion->direction = Double3{-1.0 / 3, 0, 1e5};
   s.tank_motion->amplitude = 1.0 / 7;

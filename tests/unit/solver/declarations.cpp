@@ -58,6 +58,20 @@ const std::vector<Scenario> kScenarios = {
     {"tests/regression/frozen/motions", {}, 60},
     {"tests/regression/frozen/motions", {"solver.substeps=3", "viscosity.xsph=0.1"}, 20},
     {"tests/regression/frozen/motions", {"tank_motion=off"}},
+    {"configs/minimal", {"fluid.spacing=0.05", "time.order=2"}},
+    {"configs/minimal",
+     {"fluid.spacing=0.05", "time.order=2", "solver.substeps=3", "vorticity.epsilon=1"}},
+    {"configs/minimal", {"fluid.spacing=0.05", "time.order=2", "solver.fused=false"}, 20},
+    {"configs/dam_break_2d",
+     {"fluid.spacing=0.02", "time.order=2", "solver.levels=on", "domain.loads=true",
+      "viscosity.xsph=0.1"}},
+    {"configs/minimal",
+     {"fluid.spacing=0.05", "time.order=2", "time.adaptive={}", "domain.loads=true"}},
+    {"tests/regression/frozen/obstacles", {"time.order=2"}},
+    {"tests/regression/frozen/motions", {"time.order=2"}, 60},
+    {"tests/regression/frozen/motions",
+     {"time.order=2", "solver.substeps=3", "viscosity.xsph=0.1"},
+     20},
     {"configs/sloshing_tank", {"fluid.spacing=0.04"}},
     {"tests/regression/frozen/obstacles_2d", {"solver.kernels=paper"}},
 };
@@ -102,7 +116,8 @@ Touches run(const Scenario& of) {
   Prepared made(of);
   const auto solver = made.watched();
   solver->diagnose();
-  solver->step(3, watching(of));    // passes joined
+  solver->step(3, watching(of));  // passes joined
+  if (made.scene.time.adaptive) solver->step(1, {.level = 1});
   solver->inspection()->trace({});  // pass by pass
   solver->readings(Series::gauges, Interval::goes_on);
   solver->step(1, without_time());
