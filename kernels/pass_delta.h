@@ -39,7 +39,7 @@ struct DeltaPass {
   OwnRows<Vec4<Real>> velocity;           ///< in/out, h/s
   StepCounts* moves_on;                   ///< not null: this pass also predicts the next substep
   [[no_unique_address]] Coarse coarse{};  ///< LevelMove or NoLevelMove
-  [[no_unique_address]] Order order{};    ///< with moves_on: in/out
+  Order order{};                          ///< with moves_on: in/out
 
   static constexpr int D = dimensions_of(S);
   using Own = Vec4<Real>;

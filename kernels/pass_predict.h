@@ -143,7 +143,7 @@ struct PredictPass {
   Boundary boundary;
   OwnRows<const Vec4<Real>> position, velocity;
   int* bin;  ///< out
-  [[no_unique_address]] Order order{};
+  Order order{};
   PBF_HD void operator()(int i) const {
     bin[i] = predicted_bin<D>(i, xyz(position[i]), xyz(velocity[i]), order, p, boundary);
   }
@@ -157,7 +157,7 @@ struct NearPredictPass {
   OwnRows<Vec4<Real>> position, velocity;  ///< in/out
   int* bin;                                ///< out
   StepCounts* counts;
-  [[no_unique_address]] Order order{};  ///< in/out
+  Order order{};  ///< in/out
   PBF_HD int row(int k) const { return boundary.near.row[k]; }
   PBF_HD void operator()(int k) const {
     const int i = row(k);
@@ -176,7 +176,7 @@ struct MovePass {
   Boundary boundary;
   OwnRows<Vec4<Real>> position, velocity;  ///< in/out
   StepCounts* counts;
-  [[no_unique_address]] Order order{};  ///< in/out
+  Order order{};  ///< in/out
   PBF_HD void operator()(int i) const {
     const Vec3<Real> x = xyz(position[i]), v = xyz(velocity[i]);
     if constexpr (Boundary::books) {
@@ -232,7 +232,7 @@ struct GatherPass : Carried {
   Vec4<Real>*position_out, *velocity_out;
   int* id_out;
   StepCounts* counts;
-  [[no_unique_address]] Order order{}, order_out{};
+  Order order{}, order_out{};
   PBF_HD void operator()(int from, int to) const {
     const Vec4<Real> at = position[from];
     Moving<Real> m{xyz(at), xyz(velocity[from]), false};

@@ -29,8 +29,8 @@ struct XsphPass {
   GatheredRows<Vec4<Real>> position;  ///< w = 1/density
   GatheredRows<Vec4<Real>> velocity;  ///< h/s
   OwnRows<Vec4<Real>> velocity_out;
-  int* bin;                             ///< out; null: no update follows
-  [[no_unique_address]] Order order{};  ///< for bin
+  int* bin;       ///< out; null: no update follows
+  Order order{};  ///< for bin
 
   static constexpr int D = dimensions_of(S);
   static constexpr bool leaves_rows = Boundary::far_only;

@@ -1,5 +1,6 @@
 // The orders of accuracy of time steps as types, so that passes of first order do not pay for the
-// second. kernels/README.md, "Second order in time".
+// second. kernels/README.md, "Second order in time". Passes hold them as plain members: with
+// [[no_unique_address]], the compilers for host and device place two empty members differently.
 #pragma once
 
 #include "kernels/vec3.h"
