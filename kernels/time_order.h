@@ -9,6 +9,7 @@ namespace pbf::PBF_VARIANT {
 
 struct FirstOrder {
   static constexpr bool second = false;
+  char nothing = 0;  ///< copies of an empty struct make GCC 12 warn of uninitialized memory
 };
 template <class Real>
 struct SecondOrder {

@@ -9,6 +9,7 @@
 #include "lib/base/machine.h"
 #include "lib/base/stages.h"
 #include "lib/base/text.h"
+#include "lib/program/energy_at_rest.h"
 #include "lib/run/run.h"
 #include "lib/scene/vector3.h"
 #include "lib/solver/diagnostics.h"
@@ -107,8 +108,7 @@ std::string error_lines(const Diagnostics& last, double max_of_run) {
 }
 
 /// Possible causes of a loss of energy. Walls and obstacles have no friction.
-std::string losses(const Scene& s, double drift) {
-  if (drift >= 0) return "";
+std::string losses(const Scene& s) {
   std::vector<std::string> more;
   if (s.viscosity) more.push_back("viscosity");
   if (s.solver.velocity_damping < 1) more.push_back("velocity_damping");
@@ -118,18 +118,41 @@ std::string losses(const Scene& s, double drift) {
                              (more.size() == 1 ? " takes some" : " take some"));
 }
 
-std::string energy_lines(const Diagnostics& first, const Diagnostics& last, const Scene& scene) {
+/// Below this share of the energy at rest, the packing of the particles says as much about what is
+/// above it as the motion does.
+constexpr double kAboveRest = 0.01;
+
+/// How much of the energy above rest, and of the work put in, is left. at_rest: energy_at_rest().
+/// Empty where there is none.
+std::string kept_line(const Diagnostics& first, const Diagnostics& last, double at_rest,
+                      const Scene& scene) {
+  const double given = first.energy - at_rest + last.work, left = last.energy - at_rest;
+  if (!(given > kAboveRest * at_rest)) return {};
+  return fmt::format("  kept              {:.3g} % of {:.4g} J above the energy at rest{}{}\n",
+                     100 * left / given, given, last.moved ? ", work included" : "",
+                     left < given ? losses(scene) : "");
+}
+
+std::string energy_lines(const Diagnostics& first, const Diagnostics& last, const Scene& scene,
+                         double at_rest) {
   std::string out = fmt::format(
-      "energy              {:.6g} J at the start, {:.6g} J at the end ({:.3g} J of it kinetic)\n"
-      "  drift             {:+.3g} % from start to end{}\n"
-      "  largest rise      {:.3g} % at any time: 0 is good, above {:g} % the method adds energy\n",
-      first.energy, last.energy, last.kinetic_energy, 100 * last.energy_drift,
-      losses(scene, last.energy_drift), 100 * last.energy_rise, 100 * kAddsEnergy);
+      "energy              {:.6g} J at the start, {:.6g} J at the end ({:.3g} J of it kinetic)",
+      first.energy, last.energy, last.kinetic_energy);
+  if (std::isfinite(at_rest)) out += fmt::format(", {:.6g} J at rest on the floor", at_rest);
+  out += "\n";
   if (last.moved)
-    out += fmt::format(
-        "  work              {:.6g} J of what moves by itself; drift and rise are without it\n",
-        last.work);
-  return out;
+    out += fmt::format("  work              {:.6g} J of what moves by itself\n", last.work);
+  const std::string kept = kept_line(first, last, at_rest, scene);
+  out += kept;
+  // Relative to the start's energy, the loss of a driven tank says nothing.
+  if (kept.empty() || !last.moved)
+    out +=
+        fmt::format("  drift             {:+.3g} % from start to end{}\n", 100 * last.energy_drift,
+                    kept.empty() && last.energy_drift < 0 ? losses(scene) : "");
+  return out + fmt::format(
+                   "  largest rise      {:.3g} % at any time: 0 is good, above {:g} % the "
+                   "method adds energy\n",
+                   100 * last.energy_rise, 100 * kAddsEnergy);
 }
 
 /// Updates and wall time: of the run and, if it was resumed, of this session.
@@ -172,7 +195,8 @@ std::string run_summary(const RunParts& run, const Monitor& monitor,
   out += fmt::format("speed               {} particle-updates/s in these {}\n",
                      si_number(loop > 0 ? double(plan.particles) * own / loop : 0),
                      duration_text(loop));
-  out += error_lines(last, run.compression_max) + energy_lines(first, last, scene);
+  out += error_lines(last, run.compression_max) +
+         energy_lines(first, last, scene, energy_at_rest(scene, plan));
   out += "peak memory         " + bytes_text(double(peak_memory())) + " on the host\n";
   out += pool_line(last, scene, plan.mass * double(plan.particles));
   if (last.non_finite > 0)
