@@ -10,6 +10,9 @@
 namespace pbf::program_module {
 namespace {
 
+/// Cells of the sampling grid along an axis: 0.26 MB in all.
+int cells_along(int dimensions) { return dimensions == 2 ? 180 : 32; }
+
 /// The box in the internal frame, seen from its lowest corner: h.
 struct Vessel {
   int dimensions = 3;
@@ -46,7 +49,7 @@ struct Filled {
 Filled filled(const Vessel& v, const double (&part)[3], const std::vector<Solid<double>>& solids,
               double volume) {
   const bool flat = v.dimensions == 2;
-  const int cells = flat ? 512 : 64;
+  const int cells = cells_along(v.dimensions);
   const int n[3] = {cells, flat ? 1 : cells, cells};
   double edge[3];
   for (int k = 0; k < 3; ++k) edge[k] = part[k] / n[k];
@@ -93,7 +96,7 @@ double energy_at_rest(const Scene& scene, const Plan& plan) {
   double part[3] = {v.extent[0], v.extent[1], v.extent[2]};
   Filled all = filled(v, part, plan.solids, volume);
   for (int k = 0; k < 3; ++k) {
-    const double cell = v.extent[k] / (v.dimensions == 2 ? 512 : 64);
+    const double cell = v.extent[k] / cells_along(v.dimensions);
     if (v.pull[k] > 0) part[k] = std::min(part[k], all.height / v.pull[k] + 2 * cell);
   }
   return mass * h * filled(v, part, plan.solids, volume).energy;
