@@ -38,7 +38,8 @@ TEST_CASE("a run leaves its file, resolved scene, log and DONE, and says so") {
     CHECK(has(o.out, part));
   for (const char* part :
        {"updates             20 (0.1 s simulated)\n", "a mean below 1 % is good",
-        "  largest rise      ", "J at rest on the floor", "0 is good, above 1 % the method adds energy",
+        "  largest rise      ", "J at rest on the floor",
+        "0 is good, above 1 % the method adds energy",
         "  densities                    0.000    0.0 %  in lambda, in one loop\n",
         "of the wall time"})
     CHECK(has(o.out, part));
