@@ -35,9 +35,11 @@ struct Params {
   Real tensile_k = 0;                         ///< h^2
   Real tensile_scale = 0;                     ///< 1/shape(delta_q)
   int tensile_n = 4;
-  Real xsph = 0;       ///< c, times 1 - carry
-  Real vorticity = 0;  ///< 1/s, epsilon
-  Real update_dt = 0;  ///< s, sum of all substeps; confinement acts once per update
+  Real xsph = 0;            ///< c, times 1 - carry
+  Real vorticity = 0;       ///< 1/s, epsilon
+  Real hyperviscosity = 0;  ///< c of HyperviscosityPass, times 1 - carry
+  Real calm = 0;            ///< 1/v0^2 of VelocityLaplacianPass, (s/h)^2
+  Real update_dt = 0;       ///< s, sum of all substeps; confinement acts once per update
 };
 
 }  // namespace pbf::PBF_VARIANT

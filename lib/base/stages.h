@@ -36,6 +36,7 @@ inline constexpr Stage kStages[] = {{"init", StageGroup::init, false, "#000000"}
                                     {"residual", StageGroup::lambda, true, "#1B3A5C"},
                                     {"xsph", StageGroup::move, true, "#CC79A7"},
                                     {"vorticity", StageGroup::move, true, "#7A3E9D"},
+                                    {"hyperviscosity", StageGroup::move, true, "#B387C9"},
                                     {"measure", StageGroup::output, false, "#B0B0B0"},
                                     {"guard", StageGroup::output, false, "#C4B08B"},
                                     {"download", StageGroup::output, false, "#8A8A8A"},

@@ -8,6 +8,7 @@
 #include "lib/program/features/constraint.h"
 #include "lib/program/features/correction.h"
 #include "lib/program/features/gauges.h"
+#include "lib/program/features/hyperviscosity.h"
 #include "lib/program/features/levels.h"
 #include "lib/program/features/loads.h"
 #include "lib/program/features/motion.h"
@@ -41,7 +42,7 @@ struct FeatureList {
 };
 
 using Features = FeatureList<Motion, NearSolids, Constraint, Levels, Correction, XsphViscosity,
-                             VorticityConfinement, Loads, Gauges, StepLengths>;
+                             VorticityConfinement, Loads, Gauges, StepLengths, Hyperviscosities>;
 using Passes = Features::Passes;
 
 }  // namespace pbf::PBF_VARIANT

@@ -8,6 +8,8 @@ namespace pbf::program_module {
 /// The passes of a scene by their place in an update, and what is known of all passes.
 struct PassSet {
   Steps at_start, before_sort, with_lists, with_all_lists, in_iteration, behind, at_end, at_reading;
+  Steps between;          ///< behind an update ...
+  int between_every = 0;  ///< ... whose number is a multiple of this
   std::vector<LeftOut> without;
   std::vector<PassInfo> infos;
   int (*fused)(int a, int b) = nullptr;  ///< the pass that does the work of a and then b, or -1
@@ -38,6 +40,12 @@ struct Builder : PassSet {
   void after(auto pass) { behind.push_back(step_of(pass)); }
   /// The pass runs after all others, with or without lists.
   void end(auto pass) { at_end.push_back(step_of(pass)); }
+  /// The pass runs with the lists of an update behind it, if the number of the update is a multiple
+  /// of `updates`: the same number for all features.
+  void every(int updates, auto pass) {
+    between.push_back(step_of(pass));
+    between_every = updates;
+  }
   /// The feature launches the pass itself when it is read.
   void reading(auto pass) { at_reading.push_back(step_of(pass)); }
   void left_out(const char* what, const char* because) { without.push_back({what, because}); }

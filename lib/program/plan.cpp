@@ -192,6 +192,7 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   plan.sor = s.solver.sor.value_or(default_sor(s));
   if (s.solver.method == SolverMethod::chebyshev)
     plan.sor_factors = chebyshev_factors(s.solver.iterations);
+  plan.hyperviscosity = hyperviscosity_of(s);
   plan.substeps = s.solver.substeps;
   plan.lists_per_update = lists_per_update(s);
   plan.finest_level = finest_level(s);

@@ -10,6 +10,7 @@
 #include "lib/base/json.h"
 #include "lib/program/column.h"
 #include "lib/program/gauges.h"
+#include "lib/program/hyperviscosity.h"
 #include "lib/program/levels.h"
 #include "lib/program/memory.h"
 #include "lib/program/obstacles.h"
@@ -46,6 +47,7 @@ struct Plan {
   /// omega, the step length of the iterations: the key solver.sor, or a default that depends on h/d
   /// and on levels (kernels/README.md, "Step length").
   double sor = 1;
+  Hyperviscosity hyperviscosity;
   /// Factors on omega, one per iteration of a substep; empty: all are 1 (solver.method: jacobi).
   std::vector<double> sor_factors;
   int substeps = 1;

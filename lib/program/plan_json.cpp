@@ -74,6 +74,8 @@ Json plan_json(const Plan& plan, const Scene& s) {
           {"cell_edge_h", plan.cell_edge},
           {"sor", plan.sor},
           {"sor_limit", sor_limit(s)},
+          {"hyperviscosity",
+           {{"every_updates", plan.hyperviscosity.every}, {"factor", plan.hyperviscosity.factor}}},
           {"vol", plan.vol},
           {"wall_scale", plan.wall_scale},
           {"wall_range_h", plan.wall_range},

@@ -87,11 +87,20 @@ std::string passes_part(const Plan& plan, const Scene& s) {
           ? "passes of one update\n"
           : fmt::format("passes of one step; 2^k of them in an update at level k = 0 ... {}\n",
                         plan.finest_level);
-  for (const auto& [p, times] : count_passes(plan.program)) {
-    const std::string gathers = gathers_text(*p);
-    out += fmt::format("  {:22} x{:<3} stage {:10} reads {:34} writes {}", p->name, times, p->stage,
-                       reads_text(*p), writes_text(*p)) +
-           (gathers.empty() ? "\n" : "; of neighbors " + gathers + "\n");
+  const auto add = [&](const std::vector<PassCount>& passes) {
+    for (const auto& [p, times] : passes) {
+      const std::string gathers = gathers_text(*p);
+      out += fmt::format("  {:22} x{:<3} stage {:10} reads {:34} writes {}", p->name, times,
+                         p->stage, reads_text(*p), writes_text(*p)) +
+             (gathers.empty() ? "\n" : "; of neighbors " + gathers + "\n");
+    }
+  };
+  add(count_passes(plan.program));
+  if (plan.program.between_every > 0) {
+    out += plan.program.between_every == 1
+               ? "passes between updates\n"
+               : fmt::format("passes after every {} updates\n", plan.program.between_every);
+    add(count_passes(plan.program, plan.program.between));
   }
   if (s.solver.iterations > 0)
     out += fmt::format(

@@ -204,7 +204,9 @@ Program make_program(const Scene& scene, const UpdateShape& shape, bool without_
 Program assembled(const Scene& scene, const UpdateShape& shape, PassSet b, bool without_time) {
   Program p;
   p.has_iterations = !b.in_iteration.empty();
-  if (without_time) b.at_start.clear(), b.before_sort.clear(), b.behind.clear(), b.at_end.clear();
+  if (without_time)
+    b.at_start.clear(), b.before_sort.clear(), b.behind.clear(), b.at_end.clear(),
+        b.between.clear();
   Steps middle;
   if (b.in_iteration.empty() && b.behind.empty()) {  // no pairs: particles only move
     for (int s = 0; s < shape.substeps; ++s) {
@@ -231,11 +233,14 @@ Program assembled(const Scene& scene, const UpdateShape& shape, PassSet b, bool 
   p.next = joined(end + head, b);
   p.last = joined(end, b);
   p.lists = Steps{b.sort, b.make_lists} + b.with_all_lists;
+  p.between = std::move(b.between);
+  p.between_every = p.between.empty() ? 0 : b.between_every;
   p.readings = b.at_reading;
   p.passes = std::move(b.infos);
   p.fields = {&field::position, &field::velocity, &field::density, &field::id,
               &field::counts,   &field::bin,      &field::order,   &field::bin_start};
   collect_fields(p.update, p);
+  collect_fields(p.between, p);
   collect_fields(p.lists, p);  // a measure makes lists in any case
   collect_fields(p.readings, p);
   for (const FieldInfo* f : p.fields)

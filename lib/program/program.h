@@ -36,7 +36,10 @@ struct Program {
   Steps first, rest, next, last;
   /// Makes lists at the present positions, for a measurement.
   Steps lists;
-  Steps readings;  ///< passes that features launch for their readings alone
+  /// Passes behind every update whose number is a multiple of `between_every`.
+  Steps between;
+  int between_every = 0;  ///< 0: there are none
+  Steps readings;         ///< passes that features launch for their readings alone
   bool has_iterations = false;
   /// The declarations of all passes in this scene, by index in Passes.
   std::vector<PassInfo> passes;

@@ -101,6 +101,13 @@ KeyRows motion_rows() {
            "moved; if that takes more than half of fluid.spacing, the scene is refused."),
        key(KEY(solver.velocity_damping), number("", {0, 1}),
            "Factor on every velocity, once per update. 1: no damping.", scaled(root), off_at(1)),
+       key(KEY(solver.hyperviscosity), number("sqrt(g/h)", {0, 10}),
+           "Rate at which a viscosity of fourth order (biharmonic) damps differences of velocity "
+           "between neighbors up to 0.05 sqrt(g h), those of fluid that comes to rest; the flow "
+           "hardly changes. It acts about every 0.5 sqrt(h/g). 0: none. auto: 1 with "
+           "time.order 2, where nothing else calms the particles of fluid at rest, otherwise 0. "
+           "Without gravity it is 0.",
+           automatic, off_at(0)),
        key(KEY(solver.speed_limit), number("h per update", {0, 1e6}),
            "Particles that would move farther than this in time.step (however many steps "
            "time.adaptive makes of it) are slowed down. The run counts and reports them. 0: no "

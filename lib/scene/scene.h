@@ -108,9 +108,11 @@ struct SolverSettings {
   double wall_margin = 0;       ///< m, distance to a wall at which particles are clamped
   double velocity_damping = 1;  ///< factor on the velocity, once per update
   double speed_limit = 0;       ///< h per time.step, limit for particles; 0: none
-  bool prestabilize = true;     ///< remove compression from the start, lib/run/prestabilize.h
-  bool fused = true;            ///< density and lambda in one loop over the neighbors
-  bool reproducible = false;    ///< cuda: the bits of the CPU, slower (kernels/README.md, "Bits")
+  /// Rate of a viscosity of fourth order, sqrt(g/h); absent: lib/program/hyperviscosity.h
+  std::optional<double> hyperviscosity;
+  bool prestabilize = true;   ///< remove compression from the start, lib/run/prestabilize.h
+  bool fused = true;          ///< density and lambda in one loop over the neighbors
+  bool reproducible = false;  ///< cuda: the bits of the CPU, slower (kernels/README.md, "Bits")
   bool operator==(const SolverSettings&) const = default;
 };
 

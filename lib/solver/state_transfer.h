@@ -197,4 +197,14 @@ class SavedState {
   std::vector<typename Exec::template Buffer<char>> copies_;
 };
 
+/// s, by how much the velocities are earlier than the positions, as far as the scheme knows: half
+/// of the last step in second order.
+template <class Context>
+double velocity_lag(Context& c) {
+  if (!is_second_order(c.scene)) return 0;
+  StepLength last;
+  c.exec.to_host(c.data(field::step_length), 1, &last);
+  return last.dt / 2;
+}
+
 }  // namespace pbf::PBF_VARIANT

@@ -138,6 +138,7 @@ class StepSolver final : public Solver, public Inspection {
         [&] {
           before_steps(0, 1);
           t = stepper_->trace(options);
+          between(1);
         },
         [] {});
     count(1);
@@ -161,7 +162,7 @@ class StepSolver final : public Solver, public Inspection {
       until_lists_fit(
           [&] {
             before_steps(done, batch);
-            exec_.repeat(batch, *stepper_);
+            repeat(done, batch);
           },
           [&] { batch = batch_ = std::min(batch, kFirstBatch); });
       left -= batch;
@@ -169,6 +170,24 @@ class StepSolver final : public Solver, public Inspection {
       batch_ = int(std::min<std::int64_t>(2 * std::int64_t(batch_),
                                           exec_.largest_batch(stepper_->capacity())));
     }
+  }
+  /// `steps` steps from the one behind `done` on, and what comes between updates.
+  void repeat(std::int64_t done, int steps) {
+    for (int part = 0; steps > 0; steps -= part, done += part) {
+      part = int(std::min<std::int64_t>(steps, until_between(done)));
+      exec_.repeat(part, *stepper_);
+      between(done + part);
+    }
+  }
+  /// The number of steps until passes come between updates, the next time after `done` steps.
+  std::int64_t until_between(std::int64_t done) const {
+    const std::int64_t every = std::int64_t(stepper_->program().between_every) << options_.level;
+    return every == 0 ? std::numeric_limits<std::int64_t>::max()
+                      : every - ((updates_ << options_.level) + done) % every;
+  }
+  void between(std::int64_t done) {
+    const std::int64_t every = std::int64_t(stepper_->program().between_every) << options_.level;
+    if (every != 0 && ((updates_ << options_.level) + done) % every == 0) stepper_->between();
   }
   /// Runs `work`. While a list did not fit, restores the state before it, enlarges the lists, calls
   /// again() and repeats `work`.
@@ -226,6 +245,7 @@ class StepSolver final : public Solver, public Inspection {
           [&] {
             before_steps(s, 1);
             event = stepper_->step_checked(updates_ + 1, limits, fault_ ? &*fault_ : nullptr);
+            between(s + 1);
           },
           [] {});
       if (!first) first = event;

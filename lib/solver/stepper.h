@@ -60,6 +60,13 @@ class Stepper {
     moved();
   }
 
+  /// The passes behind some updates (Program::between), with the lists of the update before.
+  void between() {
+    c_.exec.begin();
+    run(program_->between);
+  }
+  const Program& program() const { return *program_; }
+
   /// One update with the results of each stage.
   StepTrace trace(const TraceOptions& options) {
     Tracer<Context> t(c_, plan_.axes, options);
@@ -106,14 +113,8 @@ class Stepper {
     return most;
   }
 
-  /// s, by how much the velocities are earlier than the positions, as far as the scheme knows: half
-  /// of the last step in second order.
-  double velocity_lag() {
-    if (!is_second_order(c_.scene)) return 0;
-    StepLength last;
-    c_.exec.to_host(c_.data(field::step_length), 1, &last);
-    return last.dt / 2;
-  }
+  /// s, see lib/solver/state_transfer.h.
+  double velocity_lag() { return pbf::velocity_lag(c_); }
 
   /// h^2/s^3: power, per particle mass, of the inertial forces by the tank's motion.
   double power(const FrameStep<double>& frame, double dt) {

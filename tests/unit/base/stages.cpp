@@ -73,7 +73,8 @@ TEST_CASE("a solver books and a plan names listed stages only, and the list has 
   for (const std::vector<std::string>& keys :
        {std::vector<std::string>{"solver.tolerance=1e-6", "viscosity.xsph=0.1",
                                  "vorticity.epsilon=0.1"},
-        std::vector<std::string>{"solver.fused=false", "solver.substeps=2", "solver.levels=on"}}) {
+        std::vector<std::string>{"solver.fused=false", "solver.substeps=2", "solver.levels=on",
+                                 "solver.hyperviscosity=0.4", "time.step=0.05"}}) {
     std::vector<std::string> overrides = keys;
     overrides.emplace_back("fluid.spacing=0.05");
     const Scene scene =

@@ -146,12 +146,14 @@ TEST_CASE("exchanges: in every program two ranks read what is current, and no ex
             if (has & 2) s.viscosity.emplace();
             if (has & 4) s.vorticity.emplace();
             s.domain.loads = has & 8;
+            if (has & 2) s.time.order = TimeOrder::second;  // hyperviscosity, too
             s.solver.levels = has & 16 ? LevelsMode::on : LevelsMode::off;
             const Program p = make_program(s, shape, without_time);
             for (const int rounds : {0, 1, 2}) {
               RanksRun run{p, rounds};
-              for (const Steps* steps : {&p.first, &p.rest, &p.next, &p.rest, &p.next, &p.rest,
-                                         &p.last, &p.lists, &p.update, &p.update})
+              for (const Steps* steps :
+                   {&p.first, &p.rest, &p.next, &p.rest, &p.next, &p.rest, &p.last, &p.between,
+                    &p.first, &p.rest, &p.last, &p.lists, &p.update, &p.update, &p.between})
                 run.run(*steps);
               ++programs;
               if (run.wrong.empty()) continue;

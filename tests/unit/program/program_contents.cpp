@@ -35,6 +35,7 @@ TEST_CASE("program: what a scene does without is named with the reason, in the f
   const std::string obstacles = "motion of obstacles: no obstacle has motion",
                     tank = "motion of the tank: no key tank_motion",
                     order = "velocities without the last push: time.order is 1",
+                    calm = "passes of hyperviscosity, its array: time.order is 1",
                     iterations = "lambda and delta passes: solver.iterations is 0",
                     density = "density pass of its own: solver.fused is true",
                     levels = "levels: grids coarser than h: solver.levels is off",
@@ -46,21 +47,21 @@ TEST_CASE("program: what a scene does without is named with the reason, in the f
                         "or motion",
                     gauges = "gauges: no key gauges";
   CHECK(left_out("", {}) ==
-        Lines{tank, density, levels, pressure, xsph, curl, loads, gauges, order});
+        Lines{tank, density, levels, pressure, xsph, curl, loads, gauges, order, calm});
   CHECK(left_out("", {"solver.fused=false"}) ==
-        Lines{tank, levels, pressure, xsph, curl, loads, gauges, order});
+        Lines{tank, levels, pressure, xsph, curl, loads, gauges, order, calm});
   CHECK(left_out("", {"solver.iterations=0"}) ==
         Lines{tank, iterations, "levels: grids coarser than h: solver.iterations is 0", xsph, curl,
-              loads, gauges, order});
+              loads, gauges, order, "passes of hyperviscosity, its array: solver.iterations is 0"});
   CHECK(left_out("", {"viscosity.xsph=0", "vorticity.epsilon=0", "tensile.k=0"}) ==
-        Lines{tank, density, levels, pressure, xsph, curl, loads, gauges, order});
+        Lines{tank, density, levels, pressure, xsph, curl, loads, gauges, order, calm});
   CHECK(left_out(kStanding, {"viscosity.xsph=0.1"}) ==
-        Lines{obstacles, tank, density, levels, pressure, curl, loads, gauges, order});
+        Lines{obstacles, tank, density, levels, pressure, curl, loads, gauges, order, calm});
   CHECK(left_out(kWaveMaker, {"vorticity.epsilon=0.1"}) ==
-        Lines{tank, density, levels, pressure, xsph, gauges, order});
+        Lines{tank, density, levels, pressure, xsph, gauges, order, calm});
   CHECK(left_out(kTank + kLevelGauge,
                  {"solver.levels=on", "tensile.k=0.01", "solver.fused=false", "viscosity.xsph=0.1",
-                  "vorticity.epsilon=0.1", "domain.loads=true"}) == Lines{order});
+                  "vorticity.epsilon=0.1", "domain.loads=true"}) == Lines{order, calm});
 }
 
 TEST_CASE("program: passes are counted as often as they run at most, with what tests a tolerance") {
@@ -103,7 +104,7 @@ TEST_CASE("program: the arrays are those of its passes, each once, and those of 
         Row{"load sums", "", {"domain.loads=true"}},
         Row{"load sums", "", {"domain.loads=true", "solver.iterations=0"}},
         Row{"flow sides", kFlow, {}}, Row{"level home", "", {"solver.levels=on"}},
-        Row{"free velocity", "", {"time.order=2"}},
+        Row{"free velocity", "", {"time.order=2"}}, Row{"velocity laplacian", "", {"time.order=2"}},
         Row{"wall pushes", "", {"time.order=2", "domain.loads=true"}},
         Row{"level multiplier", "", {"solver.levels=on"}}}) {
     CAPTURE(row.field, row.set);

@@ -88,6 +88,7 @@ Scene unlike_default() {
   s.solver.constraint = ConstraintMode::two_sided;
   s.solver.cfm = 100.0 / 3;
   s.solver.sor = 0.7;
+  s.solver.hyperviscosity = 0.2;
   s.solver.boundary = BoundaryMode::clamp;
   s.solver.wall_margin = 0.01;
   s.solver.velocity_damping = 0.999;

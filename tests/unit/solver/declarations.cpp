@@ -59,6 +59,7 @@ const std::vector<Scenario> kScenarios = {
     {"tests/regression/frozen/motions", {"solver.substeps=3", "viscosity.xsph=0.1"}, 20},
     {"tests/regression/frozen/motions", {"tank_motion=off"}},
     {"configs/minimal", {"fluid.spacing=0.05", "time.order=2"}},
+    {"configs/minimal", {"fluid.spacing=0.05", "time.order=2", "time.step=0.05"}},
     {"configs/minimal",
      {"fluid.spacing=0.05", "time.order=2", "solver.substeps=3", "vorticity.epsilon=1"}},
     {"configs/minimal", {"fluid.spacing=0.05", "time.order=2", "solver.fused=false"}, 20},

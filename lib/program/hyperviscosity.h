@@ -1,0 +1,40 @@
+// How often and how strongly hyperviscosity acts (kernels/README.md, "Second order in time").
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/program/time_order.h"
+#include "lib/scene/vector3.h"
+
+namespace pbf::program_module {
+
+/// The default rate in second order: where it is, fluid at rest is about as calm as in first order.
+inline constexpr double kHyperviscosity = 1;
+/// v0 in units of sqrt(g h): differences that are larger than in fluid that comes to rest are left.
+inline constexpr double kCalmSpeed = 0.05;
+
+/// The rate in units of sqrt(g/h), 0 where there is none. Without gravity nothing is at rest under
+/// pressure.
+inline double hyperviscosity_rate(const Scene& s) {
+  if (s.solver.iterations == 0 || length(s.gravity) == 0) return 0;
+  return s.solver.hyperviscosity.value_or(is_second_order(s) ? kHyperviscosity : 0);
+}
+
+/// It acts every `every` updates with the factor that makes up for the pause: what it damps changes
+/// little within sqrt(h/g), and the two passes over pairs then cost little.
+struct Hyperviscosity {
+  int every = 0;      ///< updates; a power of two. 0: it never acts
+  double factor = 0;  ///< c of HyperviscosityPass, at most 1
+};
+inline Hyperviscosity hyperviscosity_of(const Scene& s) {
+  constexpr double pause = 0.5;  // sqrt(h/g), about
+  const double rate = hyperviscosity_rate(s);
+  if (!(rate > 0)) return {};
+  const double step = s.time.step * std::sqrt(length(s.gravity) / s.h());
+  const double power = std::round(std::log2(pause / step));
+  const int every = 1 << int(std::clamp(power, 0.0, 20.0));
+  return {every, std::min(rate * every * step, 1.0)};
+}
+
+}  // namespace pbf::program_module
