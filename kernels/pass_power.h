@@ -14,6 +14,7 @@ struct PowerPass {
   FrameStep<double> frame;  ///< of a step of `dt`
   double inv_dt;
   Vec3<double> gravity;  ///< h/s^2, as the scene has it
+  double lag;            ///< s, by how much velocities are earlier than positions
   const Vec4<Real>*position, *velocity;
 
   PBF_HD MeasureCounts counts(int i) const {
@@ -33,7 +34,8 @@ struct PowerPass {
     const Vec4<Real>&x = position[i], &v = velocity[i];
     const Vec3<double> u{double(v.x), double(v.y), double(v.z)};
     const Vec3<double> f =
-        inv_dt * frame.accelerated({double(x.x), double(x.y), double(x.z)}, Vec3<double>{}) -
+        inv_dt * frame.accelerated(Vec3<double>{double(x.x), double(x.y), double(x.z)} - lag * u,
+                                   Vec3<double>{}) -
         gravity;
     const double p = dot(u, f);
     return is_finite(p) ? p : 0;

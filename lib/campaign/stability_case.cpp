@@ -78,8 +78,10 @@ double momentum_drift(const Course& c, double mass) {
 double load_imbalance(const Course& c, const Scene& s, double mass) {
   double off = 0, weight = 0;
   for (std::size_t a = 0; a < 3; ++a) {
-    const double change = (c.last.momentum[a] - c.first.momentum[a]) / c.last.time;
-    off += std::pow(c.impulse[a] / c.last.time - mass * s.gravity[a] + change, 2);
+    // Gravity has acted until the time of the last velocities.
+    const double given = mass * s.gravity[a] * (c.last.time - c.last.velocity_lag);
+    const double change = c.last.momentum[a] - c.first.momentum[a];
+    off += std::pow((c.impulse[a] - given + change) / c.last.time, 2);
     weight += std::pow(mass * s.gravity[a], 2);
   }
   return std::sqrt(off / weight);

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "lib/program/time_order.h"
-#include "lib/scene/vector3.h"
 
 namespace pbf::program_module {
 
@@ -14,10 +14,18 @@ inline constexpr double kHyperviscosity = 1;
 /// v0 in units of sqrt(g h): differences that are larger than in fluid that comes to rest are left.
 inline constexpr double kCalmSpeed = 0.05;
 
+/// m/s^2, with the same bits for any order of the axes.
+inline double gravity_of(const Scene& s) {
+  std::array g{s.gravity[0] * s.gravity[0], s.gravity[1] * s.gravity[1],
+               s.gravity[2] * s.gravity[2]};
+  std::ranges::sort(g);
+  return std::sqrt(g[0] + g[1] + g[2]);
+}
+
 /// The rate in units of sqrt(g/h), 0 where there is none. Without gravity nothing is at rest under
 /// pressure.
 inline double hyperviscosity_rate(const Scene& s) {
-  if (s.solver.iterations == 0 || length(s.gravity) == 0) return 0;
+  if (s.solver.iterations == 0 || gravity_of(s) == 0) return 0;
   return s.solver.hyperviscosity.value_or(is_second_order(s) ? kHyperviscosity : 0);
 }
 
@@ -31,7 +39,7 @@ inline Hyperviscosity hyperviscosity_of(const Scene& s) {
   constexpr double pause = 0.5;  // sqrt(h/g), about
   const double rate = hyperviscosity_rate(s);
   if (!(rate > 0)) return {};
-  const double step = s.time.step * std::sqrt(length(s.gravity) / s.h());
+  const double step = s.time.step * std::sqrt(gravity_of(s) / s.h());
   const double power = std::round(std::log2(pause / step));
   const int every = 1 << int(std::clamp(power, 0.0, 20.0));
   return {every, std::min(rate * every * step, 1.0)};

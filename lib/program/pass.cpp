@@ -57,6 +57,11 @@ std::vector<AccessInfo> joined(const std::vector<AccessInfo>& all) {
   return out;
 }
 
+bool PassInfo::leaves(W w) const {
+  return std::ranges::any_of(needs, [&](const AccessInfo& a) {
+    return &a.field->primary() == &field::position && (a.how & kWrites) && a.w == w;
+  });
+}
 bool PassInfo::makes_lists() const { return touches(needs, field::lists, kWriting); }
 bool PassInfo::reorders_rows() const { return touches(needs, field::id, kPlaces); }
 bool PassInfo::over_pairs() const { return touches(needs, field::lists, kReading); }

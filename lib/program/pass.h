@@ -40,6 +40,7 @@ struct PassInfo : PassText {
   int stored = -1;  ///< index in `written`: where tests inject a non-finite value; -1: velocity
 
   bool makes_lists() const;
+  bool leaves(W w) const;   ///< writes this into w of positions
   bool over_pairs() const;  ///< uses the lists
   bool reorders_rows() const;
 };

@@ -73,6 +73,7 @@ Diagnostics to_diagnostics(const MeasureSums& s, std::int64_t particles,
   Diagnostics m;
   m.time = double(update) * scene.time.step;
   m.update = update;
+  m.velocity_lag = lag;
   m.compression_mean = s.compression / n;
   m.compression_rms = std::sqrt(s.compression_squared / n);
   m.compression_p99 = s.compression_p99;

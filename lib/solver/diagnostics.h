@@ -50,6 +50,7 @@ struct Diagnostics {
   /// neighbor in a step (kernels/relative_motion.h), so that fluid may pass through fluid.
   std::int64_t unresolved = 0;
   double relative_way_max = 0;  ///< h, the longest such displacement in a step; 0: none
+  double velocity_lag = 0;      ///< s, by how much momenta are earlier than `time`
   bool moved = false;           ///< obstacles or the tank have a prescribed motion
   double power = 0;             ///< W, of the inertial forces by the tank's motion
   double solid_work = 0;        ///< J, of moving obstacles in the current interval of loads
@@ -62,7 +63,7 @@ struct Diagnostics {
 struct EnergyHistory {
   bool started = false;
   double first = 0, lowest = 0, largest = 0, rise = 0;
-  double work = 0, power = 0, time = 0;  ///< at the last measurement: WorkTrack; s
+  double work = 0, power = 0, time = 0;  ///< of the last energies: WorkTrack; s
 };
 
 /// Follows the work of prescribed motions. Updates book the work of obstacles; the power of the
@@ -73,13 +74,13 @@ class WorkTrack {
       : work_(before.work), power_(before.power), time_(before.time) {}
   /// J, the work up to measurement m.
   double until(const Diagnostics& m) const {
-    return work_ + m.solid_work + 0.5 * (power_ + m.power) * (m.time - time_);
+    return work_ + m.solid_work + 0.5 * (power_ + m.power) * (m.time - m.velocity_lag - time_);
   }
   /// To be called with each measurement at which the interval of the loads ends.
   void take(const Diagnostics& m) {
     work_ = until(m);
     power_ = m.power;
-    time_ = m.time;
+    time_ = m.time - m.velocity_lag;
   }
 
  private:
@@ -108,7 +109,7 @@ class EnergyTrack {
     m.energy_rise = h_.rise;
     h_.work = m.work;
     h_.power = m.power;
-    h_.time = m.time;
+    h_.time = m.time - m.velocity_lag;
   }
   const EnergyHistory& history() const { return h_; }
 

@@ -70,8 +70,7 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
   // Predictions take over a share of the viscosity, too, and a share of that share.
   if (s.viscosity) p.xsph = Real(s.viscosity->xsph * (is_second_order(s) ? 1 - kCarriedPush : 1));
   p.hyperviscosity = Real(plan.hyperviscosity.factor * (is_second_order(s) ? 1 - kCarriedPush : 1));
-  if (plan.hyperviscosity.every > 0)
-    p.calm = Real(h / (length(s.gravity) * kCalmSpeed * kCalmSpeed));
+  if (plan.hyperviscosity.every > 0) p.calm = Real(h / (gravity_of(s) * kCalmSpeed * kCalmSpeed));
   if (s.vorticity) p.vorticity = Real(s.vorticity->epsilon);
   p.update_dt = Real(s.time.step);
   return p;

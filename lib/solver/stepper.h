@@ -123,6 +123,7 @@ class Stepper {
         .reduce(rows(), PowerPass<Real>{frame,
                                         1 / dt,
                                         {double(g.x), double(g.y), double(g.z)},
+                                        velocity_lag(),
                                         c_.position(),
                                         c_.velocity()})
         .x[0];

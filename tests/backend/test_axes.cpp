@@ -132,6 +132,8 @@ TEST_CASE("a scene with its axes exchanged gives the same bits, exchanged back")
     pbf::SolverState in = state;
     in.position = rows(state.position, t);
     in.velocity = rows(state.velocity, t);
+    for (pbf::StoredField& f : in.fields)
+      if (f.name == "free velocity") f.values = rows(f.values, t);
     s->set_state(in);
     auto again = make(c);
     again->set_state(state);
@@ -157,6 +159,7 @@ TEST_CASE("an update in a box with any longest edge is that of brute force") {
 TEST_CASE("a thrown particle is where a hand calculation puts it, in any box, in every output") {
   const std::size_t longest = GENERATE(0u, 1u, 2u);
   Case c = here(jittered_block(1, 1, 1, 0, 0));
+  c.scene.time.order = pbf::TimeOrder::first;
   c.scene.domain.min = {1, 2, 3};
   c.scene.domain.max = {2, 3.25, 4.5};
   c.scene.domain.max[longest] += 1;
@@ -220,6 +223,7 @@ TEST_CASE("a face is open or a wall by its name, in any box") {
   Case c = here(jittered_block(1, 1, 1, 0, 0));
   c.scene.domain = {{0, 0, 0}, {1, 1, 1}, {names[face]}};
   c.scene.domain.max[longest] = 2;
+  c.scene.time.order = pbf::TimeOrder::first;
   c.scene.gravity = {0, 0, 0};
   const double speed = face % 2 ? 100 : -100;
   c.particles.position = {{0.5, 0.5, 0.5}, {0.4, 0.4, 0.4}};

@@ -259,6 +259,7 @@ TEST_CASE("pressure gauges of a tank at rest read what hydrostatics says, also i
   size[up] = 0.5;
   Case c = tank(size, depth, up, flat);
   c.scene.viscosity = pbf::Viscosity{0.05};
+  c.scene.time.order = pbf::TimeOrder::first;  // peaks are lower, for waves are damped more
   const std::size_t side = up == 0 ? 2 : 0, other = 3 - up - side;
   const std::string wall = std::string(1, "xyz"[side]) + "_max";
   const auto place = [&](double height, double along) {

@@ -211,6 +211,7 @@ TEST_CASE("penetration is the distance behind the clamp, whichever wall it is") 
 TEST_CASE(
     "without iterations, viscosity and vorticity particles fall freely, measured often or never") {
   Case c = free_lattice(9, 0.9);
+  c.scene.time.order = pbf::TimeOrder::first;
   c.scene.solver.iterations = 0;
   c.scene.solver.substeps = GENERATE(1, 2);
   c.scene.time.step = 0.001;
@@ -294,6 +295,7 @@ TEST_CASE("free fall gains m g t of momentum to rounding, and keeps what is leve
   CHECK(std::fabs(after.momentum[0]) < 1e-12 * mass);
   CHECK(after.momentum[1] == before.momentum[1]);
   CHECK(after.momentum[1] == Approx(0.25 * mass).epsilon(is_double() ? 1e-15 : 1e-7));
-  CHECK(after.momentum[2] - before.momentum[2] ==
-        Approx(-9.81 * mass * after.time).epsilon(is_double() ? 1e-13 : 1e-5));
+  CHECK(
+      after.momentum[2] - before.momentum[2] ==
+      Approx(-9.81 * mass * (after.time - after.velocity_lag)).epsilon(is_double() ? 1e-13 : 1e-5));
 }

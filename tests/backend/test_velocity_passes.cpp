@@ -113,6 +113,7 @@ TEST_CASE("viscosity brakes a rigid rotation at its surface alone, by 0.13 c (h/
   Case c = ball(d, 12, 5, 0, 0.1);
   c.scene.viscosity = pbf::Viscosity{c_factor};
   c.scene.solver.iterations = 0;
+  c.scene.time.order = pbf::TimeOrder::first;
   auto s = make(c);
   const double before = angular_momentum(*s);
   s->step(1);
@@ -137,6 +138,8 @@ TEST_CASE("vorticity confinement gives a free ball no energy, whatever its epsil
   Case c = ball(0.05, 6, spin, noise, 0.4);
   c.scene.fluid.smoothing_ratio = ratio;
   c.scene.vorticity = pbf::Vorticity{epsilon};
+  c.scene.time.order =
+      pbf::TimeOrder::first;  // the second releases more of the start's compression
   auto s = make(c);
   const double start = s->diagnose().kinetic_energy;
   double most = 0;

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <thread>
 
+#include "lib/io/h5.h"
 #include "lib/io/run_file.h"
 #include "tests/support/catch.h"
 #include "tests/support/process.h"
@@ -33,6 +34,18 @@ std::string write_scene(const Scratch& folder) {
 
 std::string difference(const Scratch& folder, const std::string& a, const std::string& b) {
   return run_difference(folder / (a + "/run.vtkhdf"), folder / (b + "/run.vtkhdf"));
+}
+
+/// Where the middle of a data set of one chunk is in its file, bytes.
+std::size_t middle_of(const fs::path& file, const char* name) {
+  const pbf::h5::Lock lock;
+  const pbf::h5::File opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, pbf::h5::file_access()));
+  const pbf::h5::Dataset data = pbf::h5::open_dataset(opened, name);
+  haddr_t begin = 0;
+  hsize_t bytes = 0;
+  const hsize_t first[2] = {0, 0};
+  pbf::h5::check(H5Dget_chunk_info_by_coord(data, first, nullptr, &begin, &bytes));
+  return std::size_t(begin + bytes / 2);
 }
 
 /// Starts a run and sends it a signal when it has at least so many frames, and `file` (if any) is
@@ -258,8 +271,8 @@ TEST_CASE("a damaged checkpoint is told and the one before it is taken", "[slow]
   REQUIRE(fs::exists(folder / "b/checkpoint_prev.h5"));
   const fs::path newest = folder / "b/checkpoint.h5";
   std::string bytes = read_text(newest);
-  const std::string one(bytes, bytes.size() / 4, 1);  // in the middle of the positions
-  bytes[bytes.size() / 4] = char(one[0] ^ 16);
+  const std::size_t place = middle_of(newest, "position");
+  bytes[place] = char(bytes[place] ^ 16);
   folder.write("b/checkpoint.h5", bytes);
   const Outcome o =
       pbf::test::pbf({"run", "s.yaml", "--out", "b", "--threads", "1", "--resume"}, folder.path());

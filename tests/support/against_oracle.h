@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/program/time_order.h"
 #include "tests/oracle/n2_levels.h"
 #include "tests/support/states.h"
 
@@ -95,7 +96,7 @@ inline oracle::Settings settings_of(const Case& c) {
   o.paper = s.solver.kernels == pbf::KernelMode::paper;
   o.margin = s.solver.wall_margin;
   o.iterations = s.solver.iterations;
-  o.order = s.time.order == pbf::TimeOrder::second ? 2 : 1;
+  o.order = pbf::is_second_order(s) ? 2 : 1;
   o.two_sided = s.solver.constraint == pbf::ConstraintMode::two_sided;
   o.wall_density = s.solver.boundary == pbf::BoundaryMode::density;
   for (int k = 0; k < 3; ++k) {

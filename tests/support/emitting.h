@@ -6,6 +6,7 @@
 
 #include "kernels/row_state.h"
 #include "lib/program/features.h"
+#include "lib/program/time_order.h"
 #include "lib/solver/solver.h"
 
 namespace pbf::PBF_VARIANT {
@@ -47,6 +48,7 @@ template <class Real>
 struct EmitPass {
   const RowState* state;
   OwnRows<Vec4<Real>> position, velocity;
+  Vec4<Real>* free;  ///< velocity without a push, which new particles have not had; null: none
   OwnRows<int> id;
   Real width, top, speed;  ///< h, h/s
   int capacity;
@@ -56,6 +58,7 @@ struct EmitPass {
     id[row] = int(state->next_id) + j;
     position[row] = shower::place_of<Real>(id[row], width, top);
     velocity[row] = {Real(0), Real(0), -speed, Real(0)};
+    if (free) free[row] = velocity[row];
   }
 };
 struct CountNewPass {
@@ -71,14 +74,16 @@ struct CountNewPass {
 struct Emit {
   static constexpr PassText text{"emit", "predict"};
   using Needs = pbf::Needs<Looks<field::row_state>, Places<field::row_state>,
-                           Writes<field::position>, Writes<field::velocity>, Writes<field::id>>;
+                           Writes<field::position>, Writes<field::velocity>, Writes<field::id>,
+                           If<is_second_order, Writes<field::free_velocity>>>;
   template <class G>
   static void launch(const G& c) {
     using Real = typename G::Real;
     const Real h = Real(c.scene.h());
     c.items(shower::kPerSort,
             EmitPass<Real>{c[field::row_state], c[field::position], c[field::velocity],
-                           c[field::id], 1 / h, Real(0.9) / h, 2 / h, c.capacity()});
+                           c.declared(field::free_velocity), c[field::id], 1 / h, Real(0.9) / h,
+                           2 / h, c.capacity()});
     c.items(1, CountNewPass{c[field::row_state], shower::kPerSort, c.capacity()});
   }
 };

@@ -91,7 +91,7 @@ inline const std::string kLevelGauge = "gauges: [{name: l, kind: level, at: [0.5
 /// Of kMinimal with three iterations and without levels, unless `set` says otherwise.
 inline Program program_of(const std::string& more, std::vector<std::string> set = {},
                           const UpdateShape& shape = {}, bool without_time = false) {
-  std::vector<std::string> all{"solver.iterations=3", "solver.levels=off"};
+  std::vector<std::string> all{"solver.iterations=3", "solver.levels=off", "time.order=1"};
   all.insert(all.end(), set.begin(), set.end());
   return make_program(parse(kMinimal + more, all), shape, without_time);
 }

@@ -116,7 +116,8 @@ class TwoRanks {
         memory.before_steps(*c, {updates_ * plan_.substeps, plan_.substeps, dt});
       });
     run(plan_.program.update, true);
-    ++updates_;
+    const int every = plan_.program.between_every;
+    if (++updates_; every > 0 && updates_ % every == 0) run(plan_.program.between, true);
   }
 
   /// Position and velocity of each particle, by id.

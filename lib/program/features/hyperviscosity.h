@@ -49,7 +49,7 @@ struct Hyperviscosities {
     if (h.every == 0)
       return b.left_out("passes of hyperviscosity, its array",
                         s.solver.iterations == 0  ? "solver.iterations is 0"
-                        : length(s.gravity) == 0  ? "gravity is 0"
+                        : gravity_of(s) == 0      ? "gravity is 0"
                         : s.solver.hyperviscosity ? "solver.hyperviscosity is 0"
                                                   : "time.order is 1");
     b.every(h.every, VelocityLaplacian());

@@ -39,6 +39,7 @@ Scene scene_of(const Choice& c) {
       "tank_motion: {kind: sine, direction: [1, 0, 0], amplitude: 0.1, period: 1}\ngauges: [{name: "
       "q, kind: flow, center: [0.5, 0.5, 0.5], normal: [1, 0, 0], size: [1, 1]}]\n");
   Scene s = moving;
+  s.time.order = TimeOrder::first;
   if (!c.is(moves)) s.tank_motion.reset();
   if (!c.is(flow)) s.gauges.clear();
   s.domain.loads = c.is(loads);

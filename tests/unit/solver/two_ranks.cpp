@@ -72,9 +72,12 @@ TEST_CASE("two ranks give the bits of one, with what declarations say they excha
            {"configs/minimal", {"fluid.spacing=0.04", "solver.tolerance=1e-3", "threads=1"}},
            {"configs/dam_break_2d", {"fluid.spacing=0.016", "vorticity.epsilon=1"}},
            {"tests/regression/frozen/obstacles", {}},
+           {"tests/regression/frozen/obstacles", {"time.order=1"}},
            {"tests/regression/frozen/motions", {"viscosity.xsph=0.1"}},
+           {"tests/regression/frozen/motions", {"viscosity.xsph=0.1", "time.order=1"}},
            // Ranks meet at bricks of 16 h here, and the sums of all cells are exchanged.
-           {"configs/minimal", {"fluid.spacing=0.02", "solver.levels=on", "domain.loads=true"}},
+           {"configs/minimal",
+            {"fluid.spacing=0.02", "solver.levels=on", "domain.loads=true", "time.order=1"}},
            {"configs/dam_break_2d",
             {"fluid.spacing=0.008", "solver.levels=on", "solver.iterations=2",
              "domain.open=[x_max]"}},
@@ -87,11 +90,13 @@ TEST_CASE("two ranks give the bits of one, with what declarations say they excha
     const SolverState one = on_one(m, updates);
     CHECK(ranks.state() == bits_of(one, m));
     CHECK(ranks.moved > 0);
+    CHECK(ranks.ghosts_at_most > 20);
+    CHECK(ranks.own_at_least > 20);
+    // In second order, ranks would have to book the share of the last push together.
+    if (is_second_order(m.scene)) continue;
     const StoredField* loads = one.find("loads");
     for (const int rank : {0, 1})
       CHECK(ranks.loads(rank) == (loads ? loads->values : std::vector<double>{}));
-    CHECK(ranks.ghosts_at_most > 20);
-    CHECK(ranks.own_at_least > 20);
   }
 }
 
@@ -102,7 +107,7 @@ TEST_CASE("without any one of their exchanges two ranks give other bits") {
   for (const Case& of : std::vector<Case>{
            {{"fluid.spacing=0.05", "viscosity.xsph=0.1", "vorticity.epsilon=1", "tensile={}"},
             {"position", "velocity", "curl"}},
-           {{"fluid.spacing=0.02", "solver.levels=on", "domain.loads=true",
+           {{"fluid.spacing=0.02", "solver.levels=on", "domain.loads=true", "time.order=1",
              R"(bodies=[{"shape":"block","min":[0,0,0],"max":[1.2,0.4,0.4]}])"},
             {"level cell count", "level cell sum", "level corner sum"}}}) {
     const Made m("configs/minimal", of.set);
