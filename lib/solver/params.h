@@ -67,9 +67,10 @@ Params<Real> make_params(const Scene& scene, const Plan& plan) {
         Real(1 / (s.solver.kernels == KernelMode::paper ? Poly6<double>::shape(q * q) : t * t * t));
     p.tensile_n = s.tensile->n;
   }
-  // Predictions take over a share of the viscosity, too, and a share of that share.
-  if (s.viscosity) p.xsph = Real(s.viscosity->xsph * (is_second_order(s) ? 1 - kCarriedPush : 1));
-  p.hyperviscosity = Real(plan.hyperviscosity.factor * (is_second_order(s) ? 1 - kCarriedPush : 1));
+  // Predictions take over a share of viscosities, too, and a share of that share.
+  const double now = is_second_order(s) ? 1 - kCarriedPush : 1;
+  if (s.viscosity) p.xsph = Real(s.viscosity->xsph * now);
+  p.hyperviscosity = Real(plan.hyperviscosity.factor * now);
   if (plan.hyperviscosity.every > 0) p.calm = Real(h / (gravity_of(s) * kCalmSpeed * kCalmSpeed));
   if (s.vorticity) p.vorticity = Real(s.vorticity->epsilon);
   p.update_dt = Real(s.time.step);

@@ -173,22 +173,24 @@ class StepSolver final : public Solver, public Inspection {
   }
   /// `steps` steps from the one behind `done` on, and what comes between updates.
   void repeat(std::int64_t done, int steps) {
-    for (int part = 0; steps > 0; steps -= part, done += part) {
-      part = int(std::min<std::int64_t>(steps, until_between(done)));
+    const std::int64_t every = steps_between();
+    for (int part = steps; steps > 0; steps -= part, done += part) {
+      part = every == 0 ? steps : int(std::min<std::int64_t>(steps, every - at(done) % every));
       exec_.repeat(part, *stepper_);
       between(done + part);
     }
   }
-  /// The number of steps until passes come between updates, the next time after `done` steps.
-  std::int64_t until_between(std::int64_t done) const {
-    const std::int64_t every = std::int64_t(stepper_->program().between_every) << options_.level;
-    return every == 0 ? std::numeric_limits<std::int64_t>::max()
-                      : every - ((updates_ << options_.level) + done) % every;
-  }
+  /// The passes between updates, if they come behind this step.
   void between(std::int64_t done) {
-    const std::int64_t every = std::int64_t(stepper_->program().between_every) << options_.level;
-    if (every != 0 && ((updates_ << options_.level) + done) % every == 0) stepper_->between();
+    if (const std::int64_t every = steps_between(); every != 0 && at(done) % every == 0)
+      stepper_->between();
   }
+  /// From one time of these passes to the next; 0: there are none.
+  std::int64_t steps_between() const {
+    return std::int64_t(stepper_->program().between_every) << options_.level;
+  }
+  /// The number of a step of the present length. done: steps since the last counted update.
+  std::int64_t at(std::int64_t done) const { return (updates_ << options_.level) + done; }
   /// Runs `work`. While a list did not fit, restores the state before it, enlarges the lists, calls
   /// again() and repeats `work`.
   template <class Work, class Again>
@@ -205,8 +207,8 @@ class StepSolver final : public Solver, public Inspection {
   /// done: steps since the last counted update.
   void before_steps(std::int64_t done, int steps) {
     const int n = plan_.substeps;
-    stepper_->before_steps({((updates_ << options_.level) + done) * n, steps * n,
-                            scene_.time.step / double(std::int64_t(n) << options_.level)});
+    stepper_->before_steps(
+        {at(done) * n, steps * n, scene_.time.step / double(std::int64_t(n) << options_.level)});
   }
   void measure_motion(Diagnostics& m) {
     m.moved = has_motion(scene_);
@@ -214,7 +216,7 @@ class StepSolver final : public Solver, public Inspection {
     if (scene_.tank_motion)
       m.power = unit * stepper_->power(frame_step(scene_, plan_.axes, m.time - m.velocity_lag,
                                                   scene_.time.step),
-                                       scene_.time.step);
+                                       m.velocity_lag, scene_.time.step);
     if (has_moving_obstacles(scene_))
       for (const Load& l : stepper_->loads(Interval::goes_on)) m.solid_work += unit * l.work;
   }

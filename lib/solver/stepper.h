@@ -116,14 +116,14 @@ class Stepper {
   /// s, see lib/solver/state_transfer.h.
   double velocity_lag() { return pbf::velocity_lag(c_); }
 
-  /// h^2/s^3: power, per particle mass, of the inertial forces by the tank's motion.
-  double power(const FrameStep<double>& frame, double dt) {
+  /// h^2/s^3: power per particle mass of the tank's inertial forces. lag: velocity_lag().
+  double power(const FrameStep<double>& frame, double lag, double dt) {
     const Vec3<Real>& g = c_.p.gravity;
     return c_.exec
         .reduce(rows(), PowerPass<Real>{frame,
                                         1 / dt,
                                         {double(g.x), double(g.y), double(g.z)},
-                                        velocity_lag(),
+                                        lag,
                                         c_.position(),
                                         c_.velocity()})
         .x[0];
