@@ -158,8 +158,9 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
       "two samples: {:g} standard errors of means and quantiles, Kolmogorov-Smirnov at {:g}, where "
       "values up to {:g} roundings apart are equal, fronts up to {:g} spacings; once particles are "
       "not comparable, of as many samples as velocity and density are independent in cells of {:g} "
-      "h; the worst frame counts",
-      kSigmas, kAlpha, kRoundings, kFront, kCluster);
+      "to "
+      "{:g} h; the worst frame counts",
+      kSigmas, kAlpha, kRoundings, kFront, kCluster, 4 * kCluster);
   Curve rms{"A to B, rms", {}, {}}, worst{"A to B, largest", {}, {}};
   const double h = a.scene.h(), d = a.scene.fluid.spacing;
   bool bytes = true;

@@ -38,37 +38,37 @@ Statistic quantile(const std::string& name, const std::string& unit, const std::
 }  // namespace
 
 Clusters::Clusters(const std::vector<double>& position, double edge) {
-  if (!(edge > 0)) return;
-  std::map<std::array<double, 3>, std::size_t> number;
-  cell_.resize(position.size() / 3);
-  for (std::size_t i = 0; i < cell_.size(); ++i) {
-    std::array<double, 3> at{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      at[k] = std::floor(position[3 * i + k] / edge);
-      if (std::isnan(at[k])) at[k] = HUGE_VAL;  // NaN has no order
+  for (double e = edge; e > 0 && e <= 4 * edge; e *= 2) {
+    std::map<std::array<double, 3>, std::size_t> number;
+    Grid grid;
+    grid.cell.resize(position.size() / 3);
+    for (std::size_t i = 0; i < grid.cell.size(); ++i) {
+      std::array<double, 3> at{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        at[k] = std::floor(position[3 * i + k] / e);
+        if (std::isnan(at[k])) at[k] = HUGE_VAL;  // NaN has no order
+      }
+      grid.cell[i] = number.try_emplace(at, number.size()).first->second;
     }
-    cell_[i] = number.try_emplace(at, number.size()).first->second;
+    grid.cells = number.size();
+    grids_.push_back(std::move(grid));
   }
-  cells_ = number.size();
 }
-
 double Clusters::design_effect(const std::vector<double>& values) const {
-  if (cell_.empty()) return 1;
-  double sum = 0;
+  double sum = 0, alone = 0, most = 1;
   for (const double v : values) sum += v;
   const double mean = sum / double(values.size());
-  std::vector<double> of_cell(cells_, 0.0);
-  double alone = 0, together = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double r = values[i] - mean;
-    alone += r * r;
-    of_cell[cell_[i]] += r;
+  for (const double v : values) alone += (v - mean) * (v - mean);
+  for (const Grid& grid : grids_) {
+    std::vector<double> of_cell(grid.cells, 0.0);
+    for (std::size_t i = 0; i < values.size(); ++i) of_cell[grid.cell[i]] += values[i] - mean;
+    double together = 0;
+    for (const double s : of_cell) together += s * s;
+    const double effect = together / alone;
+    if (std::isfinite(effect)) most = std::max(most, effect);
   }
-  for (const double s : of_cell) together += s * s;
-  const double effect = together / alone;
-  return effect > 1 && std::isfinite(effect) ? effect : 1;
+  return most;
 }
-
 double Clusters::design_effect_of_shares(const std::vector<double>& values,
                                          const std::vector<double>& sorted) const {
   double largest = 1;

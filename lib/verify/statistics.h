@@ -73,15 +73,18 @@ double ks_critical(double alpha, double n, double m);
 /// than 3 points or less than 1 % of growth.
 double e_folding(const std::vector<double>& x, const std::vector<double>& y, double upper);
 
-/// Particles grouped by cells of a grid, for the effective number of independent samples of
-/// particles that move together.
+/// Particles grouped by the cells of three grids, for the effective number of independent samples
+/// of particles that move together: in small groups, or in waves of the tank.
 class Clusters {
  public:
-  /// `position`: 3 coordinates per particle, m; `edge` of a cell, m; 0: all particles independent.
+  /// `position`: 3 coordinates per particle, m; `edge` of a cell of the finest grid, m, twice and
+  /// four times as long in the others; 0: all particles independent.
   Clusters(const std::vector<double>& position, double edge);
 
   /// Ratio of the variance of a mean to that for independent particles (Kish's design effect): sum
-  /// over cells of (sum of r)^2 over sum of r^2, with r = value - mean; at least 1.
+  /// over cells of (sum of r)^2 over sum of r^2, with r = value - mean; the largest of the grids,
+  /// at least 1. In too small cells it would be too small, as neighboring cells move together
+  /// (Flyvbjerg & Petersen 1989, Error estimates on averages of correlated data).
   double design_effect(const std::vector<double>& values) const;
 
   /// The largest design effect of the fractions of particles below five quantiles of `values`;
@@ -90,8 +93,11 @@ class Clusters {
                                  const std::vector<double>& sorted) const;
 
  private:
-  std::vector<std::size_t> cell_;  // per particle; empty: all particles independent
-  std::size_t cells_ = 0;
+  struct Grid {
+    std::vector<std::size_t> cell;  // per particle
+    std::size_t cells = 0;
+  };
+  std::vector<Grid> grids_;  // empty: all particles independent
 };
 
 }  // namespace pbf::verify_module
