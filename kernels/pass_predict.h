@@ -14,10 +14,9 @@ namespace pbf::PBF_VARIANT {
 
 template <class Real>
 struct Moving {
-  Vec3<Real> x, v;     ///< h, h/s
-  bool fast;           ///< above Params::speed_squared, before it was limited
-  Real mark = 1;       ///< -1: so fast that it may pass a neighbor (relative_motion.h), else 1
-  Vec3<Real> aimed{};  ///< h/s, the velocity before walls and solids changed it
+  Vec3<Real> x, v;  ///< h, h/s
+  bool fast;        ///< above Params::speed_squared, before it was limited
+  Real mark = 1;    ///< -1: so fast that it may pass a neighbor (relative_motion.h), else 1
 };
 
 /// No push is taken over from the last step.
@@ -66,7 +65,7 @@ PBF_HD Moving<Real> predicted(Vec3<Real> x, Vec3<Real> v, const Push& push, cons
   x = path_end(x, free);
   // Only a clamped coordinate changes v: elsewhere x - free is exactly 0.
   const Real mark = speed_squared > p.passing_squared ? Real(-1) : Real(1);
-  return {x, mul_add(p.inv_dt, x - free, v), fast, mark, v};
+  return {x, mul_add(p.inv_dt, x - free, v), fast, mark};
 }
 /// The same with plain walls only.
 template <class Real, class Push, class Boundary>
@@ -94,13 +93,15 @@ PBF_HD Moving<Real> predict_anywhere(int i, Vec3<Real> x, Vec3<Real> v, const Pu
     return predict(x, v, push, p, boundary);
 }
 
-/// Writes the velocity of particle i without any push of the constraints in this step.
+/// Writes the velocity of particle i without any push of the constraints in this step. What a wall
+/// or solid stopped in the prediction stays stopped: it is no push, or the next step would take a
+/// share of it over, and a particle would rebound.
 template <class Real>
 PBF_HD void put_free(FirstOrder, int, const Moving<Real>&, NoPush) {}
 template <class Real>
 PBF_HD void put_free(const SecondOrder<Real>& order, int i, const Moving<Real>& m,
                      Vec3<Real> push) {
-  order.free[i] = with_w(m.aimed - push, Real(0));
+  order.free[i] = with_w(m.v - push, Real(0));
 }
 /// Writes x* of particle i and the matching velocities.
 template <class Real, class Push, class Order>

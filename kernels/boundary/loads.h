@@ -45,8 +45,8 @@ struct Load {
   }
 };
 
-/// What a wall gave to particles in the last substep, in units as in LoadSums. Only with time steps
-/// of second order, whose predictions give particles a share of it once more.
+/// What a wall gave to particles in the iterations of the last substep, in units as in LoadSums.
+/// Only with time steps of second order, whose predictions give particles a share of it once more.
 struct WallPush {
   double way[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
   /// The sums before the present substep; 0 between two updates.
@@ -74,6 +74,7 @@ namespace pbf::PBF_VARIANT {
 template <class Real>
 struct LoadBook {
   LoadSums* sums = nullptr;      ///< kLoadParts for each wall; null: there are none
+  LoadSums* clamps = nullptr;    ///< the same for predictions; null: these are among `sums`
   Real moment_scale = 1;         ///< 2^-e, 2^e above the longest edge of the box, h
   const Patch* patch = nullptr;  ///< pressure gauges
   int patches = 0;
@@ -83,15 +84,17 @@ struct LoadBook {
   /// Whether loads of the domain's walls are needed, for their own sums or for gauges.
   PBF_HD bool of_walls() const { return (summed & 63) != 0 || patches > 0; }
 
-  /// Books that wall `wall` has moved particle i, which is at x, by `way` (h).
-  PBF_HD void add(int wall, int i, Vec3<Real> x, Vec3<Real> way) const {
+  /// Books that wall `wall` has moved particle i, which is at x, by `way` (h). start: at the start
+  /// of a step, in the prediction.
+  PBF_HD void add(int wall, int i, Vec3<Real> x, Vec3<Real> way, bool start = false) const {
+    LoadSums* const rows = start && clamps ? clamps : sums;
 #if defined(__CUDA_ARCH__)
     const int part = i % kLoadParts;  // adjacent threads write to different parts
 #else
     const int part = (i >> 8) % kLoadParts;  // a thread has about 256 adjacent particles
 #endif
     if (wall > 63 || summed >> wall & 1) {
-      LoadSums& to = sums[wall * kLoadParts + part];
+      LoadSums& to = rows[wall * kLoadParts + part];
       const Vec3<Real> moment = moment_scale * cross(x, way);
       add_units(&to.way[0], way.x), add_units(&to.moment[0], moment.x);
       add_units(&to.way[1], way.y), add_units(&to.moment[1], moment.y);
@@ -99,7 +102,7 @@ struct LoadBook {
     }
     for (int k = 0; k < patches; ++k)
       if (patch[k].wall == wall)
-        add_units(&sums[patch[k].row * kLoadParts + part].way[0],
+        add_units(&rows[patch[k].row * kLoadParts + part].way[0],
                   Real(-patch_way(patch[k], x, way)));
   }
 
@@ -116,9 +119,8 @@ struct LoadBook {
   }
 };
 
-/// The sums of a wall over all parts.
-PBF_HD LoadSums all_parts(const LoadSums* sums, int wall) {
-  LoadSums all;
+/// Adds the sums of a wall over all parts to `all`.
+PBF_HD LoadSums all_parts(const LoadSums* sums, int wall, LoadSums all = {}) {
   for (int part = 0; part < kLoadParts; ++part) {
     const LoadSums& one = sums[wall * kLoadParts + part];
     for (int k = 0; k < 3; ++k) {
@@ -162,11 +164,12 @@ struct LoadPass {
   double inv_dt, update_dt, moment_unit;    ///< 1/s of a substep, s, h
   const SolidVelocity* velocity = nullptr;  ///< of each obstacle; null: none moves
   int obstacles = 0;
-  WallPush* push = nullptr;  ///< out; null in first order
+  WallPush* push = nullptr;    ///< out; null in first order
+  LoadSums* clamps = nullptr;  ///< LoadBook::clamps
 
   PBF_HD void operator()(int wall) const {
-    const LoadSums all = all_parts(sums, wall);
-    for (int part = 0; part < kLoadParts; ++part) sums[wall * kLoadParts + part] = {};
+    LoadSums all = all_parts(sums, wall);
+    clear(sums, wall);
     if (push) {
       WallPush& p = push[wall];
       for (int k = 0; k < 3; ++k) {
@@ -174,6 +177,8 @@ struct LoadPass {
         p.moment[k] = double(all.moment[k]) - p.moment_before[k];
         p.way_before[k] = p.moment_before[k] = 0;
       }
+      all = all_parts(clamps, wall, all);
+      clear(clamps, wall);
     }
     Load& to = load[wall];
     const double unit = inv_dt / double(kLoadUnits);
@@ -198,6 +203,11 @@ struct LoadPass {
     }
     to.peak = max2(to.peak, square_root(squares) / update_dt);
     to.time += update_dt;
+  }
+
+ private:
+  PBF_HD static void clear(LoadSums* sums, int wall) {
+    for (int part = 0; part < kLoadParts; ++part) sums[wall * kLoadParts + part] = {};
   }
 };
 

@@ -121,7 +121,7 @@ PBF_HD_APART Vec3<Real> solid_scene_path_end(const SolidScene<Real>& s, bool boo
                                              int i, Vec3<Real> from, Vec3<Real> to) {
   const Vec3<Real> target = to;
   const auto move_by = [&](int wall, Vec3<Real> way) {
-    if (booked) s.loads.add(wall, i, target, way);
+    if (booked) s.loads.add(wall, i, target, way, start);
   };
   const auto inside_walls = [&](Vec3<Real> x) {
     const Vec3<Real> in = s.walls.path_end(from, x), way = in - x;
@@ -141,9 +141,9 @@ PBF_HD_APART Vec3<Real> solid_scene_path_end(const SolidScene<Real>& s, bool boo
       if (!end.hit) continue;
       const bool wedged = end.again || !within_rounding(end.x - to, to, s.solid[k].solid.center);
       const bool last = round == rounds && wedged;
-      const Vec3<Real> at = !last               ? end.x
-                            : start && s.before ? s.walls.path_end(from, carried(s, k, from))
-                                                : from;
+      // `from` may be beyond a wall by rounding: DeltaPass::place().
+      const Vec3<Real> stay = start && s.before ? carried(s, k, from) : from;
+      const Vec3<Real> at = last ? s.walls.path_end(from, stay) : end.x;
       move_by(load_row_of_solid(k), at - to);
       if (last) return at;
       to = inside_walls(at);

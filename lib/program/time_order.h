@@ -13,4 +13,7 @@ inline bool is_second_order(const Scene& s) { return s.time.order == TimeOrder::
 /// Why these: kernels/README.md, "Second order in time".
 inline constexpr double kDirectionsBack = 1.0 / 3, kCarriedPush = 0.4;
 
+/// Name of the field with the length of the last step.
+inline constexpr const char* kStepLengthField = "step length";
+
 }  // namespace pbf::program_module

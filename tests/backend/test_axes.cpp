@@ -223,7 +223,6 @@ TEST_CASE("a face is open or a wall by its name, in any box") {
   Case c = here(jittered_block(1, 1, 1, 0, 0));
   c.scene.domain = {{0, 0, 0}, {1, 1, 1}, {names[face]}};
   c.scene.domain.max[longest] = 2;
-  c.scene.time.order = pbf::TimeOrder::first;
   c.scene.gravity = {0, 0, 0};
   const double speed = face % 2 ? 100 : -100;
   c.particles.position = {{0.5, 0.5, 0.5}, {0.4, 0.4, 0.4}};

@@ -50,6 +50,12 @@ TEST_CASE("one update equals the brute-force oracle, feature by feature", "[slow
   const bool flat = GENERATE(false, true);
   Case c = here(flat ? flat_block(15, 14, 0.3, 0.4) : jittered_block(6, 5, 7, 0.3, 0.4));
   SECTION("defaults") {}
+  SECTION("first order") { c.scene.time.order = pbf::TimeOrder::first; }
+  SECTION("first order, artificial pressure, viscosity") {
+    c.scene.time.order = pbf::TimeOrder::first;
+    c.scene.tensile = pbf::Tensile{0.01, 0.25, 4};
+    c.scene.viscosity = pbf::Viscosity{0.3};
+  }
   SECTION("the paper's kernels") { c.scene.solver.kernels = pbf::KernelMode::paper; }
   SECTION("two-sided, walls that only clamp, a margin") {
     c.scene.solver.constraint = pbf::ConstraintMode::two_sided;

@@ -77,7 +77,6 @@ TEST_CASE("a wall that comes takes a particle along at its speed") {
   const bool flat = GENERATE(false, true);
   Case c = flat ? flat_block(1, 1, 0, 0) : jittered_block(1, 1, 1, 0, 0);
   c.scene.gravity = {};
-  c.scene.time.order = pbf::TimeOrder::first;
   for (std::size_t k = 0; k < 3; ++k)
     if (!flat || k != 1) c.scene.domain.max[k] = c.scene.domain.min[k] + 0.8;
   Placing put(c.scene);

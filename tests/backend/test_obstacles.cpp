@@ -78,6 +78,7 @@ TEST_CASE("one update among obstacles of every shape equals the brute-force orac
     CHECK(near > 120);
     CHECK(meet > (c.scene.dimensions == 2 ? 3 : 12));
   }
+  SECTION("first order") { c.scene.time.order = pbf::TimeOrder::first; }
   SECTION("the paper's kernels") { c.scene.solver.kernels = pbf::KernelMode::paper; }
   SECTION("substeps, viscosity, tensile, vorticity") {
     c.scene.solver.substeps = 3;

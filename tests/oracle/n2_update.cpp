@@ -168,13 +168,15 @@ void update(State& s, const Settings& c, LevelNodes* nodes) {
     for (std::size_t i = 0; i < n; ++i) {
       const V before = s.v[i];
       for (int k = 0; k < 3; ++k) s.v[i][k] = damping * s.v[i][k] + dt * c.gravity[k];
+      V carried{};
       if (c.order == 2) {
-        const V push = sub(before, s.free[i]);
-        s.free[i] = s.v[i];
-        axpy(s.v[i], 2 / Real(5), push);
+        axpy(carried, 2 / Real(5), sub(before, s.free[i]));
+        axpy(s.v[i], 1, carried);
       }
       axpy(s.x[i], dt, s.v[i]);
       hold(old[i], s.x[i], c);
+      if (c.order == 2)  // what a wall stops here is no push
+        for (int k = 0; k < 3; ++k) s.free[i][k] = (s.x[i][k] - old[i][k]) / dt - carried[k];
     }
   };
   const auto end_substep = [&] {

@@ -61,13 +61,14 @@ struct Delta {
 };
 
 /// Delta and the prediction of the next substep: the same arithmetic with one launch less. Never
-/// with motion, whose pass runs between the two.
+/// with motion or carried loads, whose passes run between the two.
 struct DeltaPredict {
   using Fuses = Pair<Delta, Predict>;
   static constexpr PassText text{"delta+predict", "delta"};
   using Needs = Then<pbf::Needs<Writes<field::position>, DeltaNeeds>,
                      pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>,
-                                If<is_second_order, Updates<field::free_velocity>>, StepNeeds>>;
+                                If<is_second_order, Updates<field::free_velocity>>, MoveNeeds,
+                                Adds<field::counts>>>;
   template <class G>
   static void launch(const G& c) {
     launch_delta(c, OwnRows<const typename G::Real>(), c.declared(field::free_velocity),

@@ -158,10 +158,10 @@ struct BookLevels {
     if (!(c.p.dt > 0)) return;
     const LevelPlan& l = c.plan.levels;
     c.items(l.all.level[0].size(),
-            LevelLoadPass<Real>{
-                l.all, l.grid, c[field::multiplier], c[field::cell_factor], c[field::cell_count],
-                c.p.boundary.extent,
-                load_book(c.scene, c.p.boundary, c[field::load_sums].sums(), c[field::patches])});
+            LevelLoadPass<Real>{l.all, l.grid, c[field::multiplier], c[field::cell_factor],
+                                c[field::cell_count], c.p.boundary.extent,
+                                load_book(c.scene, c.p.boundary, c[field::load_sums].sums(),
+                                          nullptr, c[field::patches])});
   }
 };
 

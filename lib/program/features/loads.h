@@ -23,6 +23,9 @@ namespace pbf::program_module::field {
 /// Per wall: kLoadParts times LoadSums; 0 between two updates.
 inline constexpr struct LoadRows : Plain<LoadSums, kLoadParts, std::int64_t> {
 } load_sums{{"load sums", per_wall, Life::update}};
+/// The same of predictions, in time steps of second order: no share of it is taken over.
+inline constexpr struct ClampRows : Plain<LoadSums, kLoadParts, std::int64_t> {
+} clamp_sums{{"clamp sums", per_wall, Life::update}};
 /// Since the last reading; the rows are those of program/loads.h.
 inline constexpr struct WallLoads : Plain<Load> {
 } loads{{"loads", per_wall, Life::state}};
@@ -46,19 +49,29 @@ double moment_unit(const Box<Real>& box) {
   return std::exp2(std::ceil(std::log2(longest)));
 }
 
-/// The needs of a pass that books loads.
+/// Whether the next steps take over a share of what walls give to particles.
+inline bool carries_loads(const Scene& s) { return has_loads(s) && is_second_order(s); }
+inline bool carries_no_loads(const Scene& s) { return has_loads(s) && !is_second_order(s); }
+
+/// The needs of a pass that books loads; of one that books those of predictions.
 using BookNeeds =
     Needs<If<has_loads, Adds<field::load_sums>>, If<has_pressure_gauges, Looks<field::patches>>>;
+using StartBookNeeds =
+    Needs<If<carries_loads, Adds<field::clamp_sums>>, If<carries_no_loads, Adds<field::load_sums>>,
+          If<has_pressure_gauges, Looks<field::patches>>>;
 
-/// sums: the rows of field::load_sums, or null; patch: those of field::patches.
+/// sums: the rows of field::load_sums, or null; clamps: those of field::clamp_sums, or null; patch:
+/// those of field::patches.
 template <class Real>
-LoadBook<Real> load_book(const Scene& scene, const Box<Real>& box, LoadSums* sums,
+LoadBook<Real> load_book(const Scene& scene, const Box<Real>& box, LoadSums* sums, LoadSums* clamps,
                          const Patch* patch) {
-  return {sums, Real(1 / moment_unit(box)), patch, gauges_of<PatchTally>(scene),
+  return {sums,
+          clamps,
+          Real(1 / moment_unit(box)),
+          patch,
+          gauges_of<PatchTally>(scene),
           summed_walls(scene)};
 }
-
-inline bool carries_loads(const Scene& s) { return has_loads(s) && is_second_order(s); }
 
 struct CarryLoads {
   static constexpr PassText text{"carried loads", "predict"};
@@ -72,14 +85,16 @@ struct CarryLoads {
 
 struct SumLoads {
   static constexpr PassText text{"loads", "measure"};
-  using Needs = pbf::Needs<Updates<field::load_sums>, Updates<field::loads>,
-                           If<carries_loads, Updates<field::wall_pushes>>,
-                           If<has_moving_obstacles, Looks<field::solid_velocity>>>;
+  using Needs =
+      pbf::Needs<Updates<field::load_sums>, Updates<field::loads>,
+                 If<carries_loads, Updates<field::wall_pushes>, Updates<field::clamp_sums>>,
+                 If<has_moving_obstacles, Looks<field::solid_velocity>>>;
   static void launch(const auto& c) {
     c.items(int(load_walls(c.scene)),
             LoadPass{c[field::load_sums].rows(), c[field::loads].rows(), double(c.p.inv_dt),
                      double(c.p.update_dt), moment_unit(c.p.boundary), c[field::solid_velocity],
-                     int(c.scene.obstacles.size()), c[field::wall_pushes].rows()});
+                     int(c.scene.obstacles.size()), c[field::wall_pushes].rows(),
+                     c[field::clamp_sums].rows()});
   }
 };
 

@@ -48,12 +48,13 @@ using NearNeeds = Needs<If<has_obstacles, Reads<field::near_way_left>, Looks<fie
                         SolidNeeds>;
 using NearSumNeeds = If<has_obstacles, Places<other<field::velocity>>>;
 /// The needs of a pass that moves particles: rows may become near, and loads are booked.
-using MoveNeeds = Needs<If<has_solids, Updates<field::near_way_left>, Places<field::near_row>,
-                           Places<field::near_count>, Looks<field::solid_scene>>,
-                        If<has_obstacles, Looks<field::solids>>, BookNeeds>;
+using ComeNearNeeds = Needs<If<has_solids, Updates<field::near_way_left>, Places<field::near_row>,
+                               Places<field::near_count>, Looks<field::solid_scene>>,
+                            If<has_obstacles, Looks<field::solids>>>;
+using MoveNeeds = Needs<ComeNearNeeds, BookNeeds>;
 /// The needs of a pass in which particles begin a step. Those of a moving tank need the frame, too.
-using StepNeeds =
-    Needs<MoveNeeds, If<has_moving_obstacles, Looks<field::solids_before>>, Adds<field::counts>>;
+using StepNeeds = Needs<ComeNearNeeds, StartBookNeeds,
+                        If<has_moving_obstacles, Looks<field::solids_before>>, Adds<field::counts>>;
 using FrameNeeds = If<has_tank_motion, Looks<field::frame>>;
 
 struct NearSolids;
@@ -151,7 +152,8 @@ struct NearSolids {
       scene.before = c.data(field::solids_before);
       scene.solids = int(s.obstacles.size());
       scene.flat = c.p.dimensions == 2;
-      scene.loads = load_book(s, c.p.boundary, c.data(field::load_sums), c.data(field::patches));
+      scene.loads = load_book(s, c.p.boundary, c.data(field::load_sums), c.data(field::clamp_sums),
+                              c.data(field::patches));
       c.put(field::solid_scene, {scene});
       const RunBounds<Real> run = bounds_of_run(s, c.plan, c.p.boundary);
       solids.obstacles = has_obstacles(s);

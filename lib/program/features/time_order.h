@@ -10,7 +10,7 @@
 
 namespace pbf::program_module::field {
 inline constexpr struct StepLengthRow : Plain<StepLength> {
-} step_length{{"step length", one_row, Life::state}};
+} step_length{{kStepLengthField, one_row, Life::state}};
 }  // namespace pbf::program_module::field
 
 namespace pbf::PBF_VARIANT {
