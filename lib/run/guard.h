@@ -111,7 +111,8 @@ class Guard {
   std::optional<double> released_;
 };
 
-/// Positions and velocities of a state that a solver has returned, SI units, in the order of ids:
+/// Positions and velocities of a state that a solver has returned, SI units, in the order of ids,
+/// from which a run that starts with them makes the same prediction for its first step:
 /// in a scene made of them row, and so id, are what they were, but for gaps. What rounding has put
 /// beyond a face of the domain is put on it.
 Particles to_particles(const SolverState& state, const Scene& scene);

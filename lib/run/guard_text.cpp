@@ -1,9 +1,12 @@
 // Texts of the guard, and the scene that repeats an alarm.
 #include <fmt/core.h>
 #include <algorithm>
+#include <cmath>
 
+#include "lib/program/field.h"
 #include "lib/program/motion.h"
 #include "lib/program/time_levels.h"
+#include "lib/program/time_order.h"
 #include "lib/run/guard.h"
 #include "lib/run/motion_files.h"
 #include "lib/scene/vector3.h"
@@ -108,6 +111,40 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
   return s;
 }
 
+namespace {
+
+/// Velocities of a state of second order, h/s, which are those of half a step earlier, become those
+/// from which a run that starts anew makes the prediction that the state would make: half of the
+/// next step's acceleration is added, which a start subtracts, and the share of the last push.
+void start_anew(const SolverState& state, const Scene& s, std::vector<Double3>& velocity) {
+  const StoredField *free = state.find(field::free_velocity.name),
+                    *last = state.find(kStepLengthField);
+  if (!free || !last || !(last->values[0] > 0)) return;
+  const Scene next = scene_at_level(s, finest_level(s));
+  const double dt = next.time.step / next.solver.substeps, ratio = dt / last->values[0];
+  const FrameStep<double> step = frame_step(s, {}, double(state.updates) * s.time.step, dt);
+  const auto row = [](const std::vector<double>& all, std::size_t i) {
+    return Vec3<double>{all[3 * i], all[3 * i + 1], all[3 * i + 2]};
+  };
+  const double damping = std::pow(next.solver.velocity_damping, 1.0 / next.solver.substeps);
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    const Vec3<double> x = row(state.position, i), v = row(state.velocity, i);
+    const auto gain = [&](const Vec3<double>& u) { return step.accelerated(x, u) - u; };
+    // The change of the step length first, as ChangeStepPass makes it.
+    const Vec3<double> push = ratio * (v - row(free->values, i)),
+                       now = v - 0.5 * (1 - 1 / ratio) * (gain(v) + push),
+                       predicted = step.accelerated(x, damping * now) + kCarriedPush * push;
+    // In a tank that turns, the acceleration depends a little on the velocity.
+    Vec3<double> u = now, start = now;
+    for (int k = 0; k < 40; ++k) u = predicted - gain(u);
+    if (damping > 0) u = (1 / damping) * u;
+    for (int k = 0; k < 40; ++k) start = u + 0.5 * gain(start);
+    velocity[i] = {start.x, start.y, start.z};
+  }
+}
+
+}  // namespace
+
 Particles to_particles(const SolverState& state, const Scene& s) {
   Particles p;
   p.position.resize(state.id.size());
@@ -117,8 +154,10 @@ Particles to_particles(const SolverState& state, const Scene& s) {
     for (std::size_t a = 0; a < 3; ++a) {
       p.position[i][a] = std::clamp(s.origin()[a] + h * state.position[3 * i + a], s.domain.min[a],
                                     s.domain.max[a]);
-      p.velocity[i][a] = h * state.velocity[3 * i + a];
+      p.velocity[i][a] = state.velocity[3 * i + a];
     }
+  start_anew(state, s, p.velocity);
+  for (Double3& v : p.velocity) v = h * v;
   return p;
 }
 

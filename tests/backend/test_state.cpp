@@ -1,12 +1,15 @@
 // A state taken out of a solver and put into another, and an update with every pass on view.
 #include <algorithm>
+#include <cmath>
 
 #include "lib/base/error.h"
+#include "lib/run/guard.h"
 #include "tests/support/backend.h"
 #include "tests/support/catch.h"
 
 using namespace oracle_test;
 using backend_test::here;
+using backend_test::is_double;
 
 namespace {
 
@@ -230,4 +233,37 @@ TEST_CASE("coincident particles part by their ids, whatever the order of rows") 
   a->step(1);
   b->step(1);
   CHECK(same_bytes(*a, *b));
+}
+
+TEST_CASE("what the guard keeps of a state makes the same next step in a run of its own") {
+  Case c = here(jittered_block(8, 7, 6, 0.2, 0.3));
+  c.scene.domain.max[0] += 0.2;
+  c.scene.time.order = GENERATE(pbf::TimeOrder::first, pbf::TimeOrder::second);
+  if (GENERATE(false, true)) {
+    c.scene.tank_motion = pbf::TankMotion{};
+    c.scene.tank_motion->axis = pbf::Double3{1, 2, 0.5};
+    c.scene.tank_motion->amplitude = 30;
+    c.scene.tank_motion->period = 0.4;
+  }
+  CAPTURE(int(c.scene.time.order), c.scene.tank_motion.has_value());
+  auto whole = make(c);
+  whole->step(23);
+  Case again = c;
+  again.particles = pbf::to_particles(whole->state(), c.scene);
+  again.scene.time.motion_begin += 23 * c.scene.time.step;
+  auto alone = make(again);
+  const double before = alone->diagnose().speed_max;
+  whole->step(1), alone->step(1);
+  const auto x = whole->download({"velocity"}, pbf::ScalarType::f64).get();
+  const auto y = alone->download({"velocity"}, pbf::ScalarType::f64).get();
+  double farthest = 0, fastest = 0;
+  for (std::size_t k = 0; k < 3 * x.count; ++k) {
+    farthest =
+        std::max(farthest, std::abs(x.fields[0].as<double>()[k] - y.fields[0].as<double>()[k]));
+    fastest = std::max(fastest, std::abs(x.find("velocity")->as<double>()[k] -
+                                         y.find("velocity")->as<double>()[k]));
+  }
+  CHECK(before > 0.1);
+  CHECK(farthest < (is_double() ? 1e-12 : 1e-5) * c.scene.h());
+  CHECK(fastest < (is_double() ? 1e-9 : 1e-2) * c.scene.h());
 }
