@@ -92,8 +92,11 @@ Resolution computed(const ComparedRun& a, const ComparedRun& b) {
     for (const double dt : o->reader.log_column("dt"))
       if (dt > 0) step = std::min(step, dt);
   }
-  return {u * extent, u * extent / step, u * (1 + extent / std::min(a.scene.h(), b.scene.h())),
+  return {u * extent,
+          u * extent / step,
+          u * (1 + extent / std::min(a.scene.h(), b.scene.h())),
           kFront * std::min(a.scene.fluid.spacing, b.scene.fluid.spacing),
+          kCluster * std::max(a.scene.h(), b.scene.h()),
           kCluster * std::max(a.scene.h(), b.scene.h())};
 }
 
@@ -109,8 +112,10 @@ Resolution resolution_of(const Resolution& computed, const Snapshot& x, const Sn
   };
   return {kRoundings * (computed.length + stored("position")),
           kRoundings * (computed.speed + stored("velocity")),
-          kRoundings * (computed.density + stored("density") / rest_density), computed.front,
-          computed.cluster};
+          kRoundings * (computed.density + stored("density") / rest_density),
+          computed.front,
+          computed.cluster,
+          computed.beside};
 }
 
 void compare_samples(ComparePart& p, const FrameStatistics& a, const FrameStatistics& b) {

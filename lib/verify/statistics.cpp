@@ -69,6 +69,10 @@ double Clusters::design_effect(const std::vector<double>& values) const {
   }
   return most;
 }
+double Clusters::mean_size() const {
+  if (grids_.empty() || grids_[0].cells == 0) return 1;
+  return double(grids_[0].cell.size()) / double(grids_[0].cells);
+}
 double Clusters::design_effect_of_shares(const std::vector<double>& values,
                                          const std::vector<double>& sorted) const {
   double largest = 1;
@@ -105,8 +109,10 @@ FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const
         {name, unit, std::move(sorted), resolution_of_it, double(v.size()) / effect});
     return &out.distributions.back();
   };
-  // Positions need no correction: particles are spread more evenly than a random sample.
+  // Means of positions need no correction: particles are spread more evenly than a random sample.
+  // The particles at a front move together.
   const Clusters together(x, resolution.cluster);
+  const double at_front = Clusters(x, resolution.beside).mean_size();
   const auto add = [&](Statistic number, double resolution_of_it) {
     number.resolution = resolution_of_it;
     out.numbers.push_back(std::move(number));
@@ -124,7 +130,7 @@ FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const
     auto v = column([&](std::size_t i) { return x[3 * i + k] - origin[k]; });
     add(mean("centre of mass " + axis, "m", v), resolution.length);
     add(quantile("front " + axis + " (99.9 %)", "m",
-                 distribute(axes[k], "m", v, resolution.length)->values, 0.999),
+                 distribute(axes[k], "m", v, resolution.length)->values, 0.999, at_front),
         resolution.length + resolution.front);
   }
   if (const FieldArray* f = s.find("velocity")) {

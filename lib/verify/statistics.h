@@ -44,6 +44,7 @@ struct Resolution {
   /// m: particles closer than this share velocity and density; they count as one sample if the
   /// frame shows that they do (Clusters); 0: all are independent.
   double cluster = 0;
+  double beside = 0;  ///< m: particles closer than this are at a front together
 };
 
 /// Values of a floating-point field.
@@ -86,6 +87,9 @@ class Clusters {
   /// at least 1. In too small cells it would be too small, as neighboring cells move together
   /// (Flyvbjerg & Petersen 1989, Error estimates on averages of correlated data).
   double design_effect(const std::vector<double>& values) const;
+
+  /// Mean number of particles in the cells of the finest grid that hold any; 1 without cells.
+  double mean_size() const;
 
   /// The largest design effect of the fractions of particles below five quantiles of `values`;
   /// `sorted`: the same values sorted, NaN last.

@@ -163,6 +163,8 @@ TEST_CASE("particles that move as one count as one sample, independent ones as m
     CHECK(effect < 50);
   }
   CHECK(cells.design_effect(wave) >= Approx(4 * 2 * 25));
+  CHECK(cells.mean_size() == Approx(25));
+  CHECK(alone.mean_size() == 1);
   CHECK(cells.design_effect(own) < 1.5);
   CHECK(cells.design_effect_of_shares(own, sorted(own)) < 1.5);
   CHECK(alone.design_effect(shared) == 1);
