@@ -5,12 +5,14 @@
 #include <array>
 #include <cmath>
 
+#include "lib/program/levels.h"
 #include "lib/program/time_order.h"
 
 namespace pbf::program_module {
 
-/// The default rate in second order: where it is, fluid at rest is about as calm as in first order.
-inline constexpr double kHyperviscosity = 1;
+/// The default rates in second order: with them, fluid at rest is about as calm as in first order.
+/// Levels move all particles of a cell alike, so from cell to cell they stir the particles.
+inline constexpr double kHyperviscosity = 1, kHyperviscosityWithLevels = 4;
 /// v0 in units of sqrt(g h): differences that are larger than in fluid that comes to rest are left.
 inline constexpr double kCalmSpeed = 0.05;
 
@@ -26,11 +28,14 @@ inline double gravity_of(const Scene& s) {
 /// pressure.
 inline double hyperviscosity_rate(const Scene& s) {
   if (s.solver.iterations == 0 || gravity_of(s) == 0) return 0;
-  return s.solver.hyperviscosity.value_or(is_second_order(s) ? kHyperviscosity : 0);
+  return s.solver.hyperviscosity.value_or(!is_second_order(s) ? 0
+                                          : has_levels(s)     ? kHyperviscosityWithLevels
+                                                              : kHyperviscosity);
 }
 
 /// It acts every `every` updates with the factor that makes up for the pause: what it damps changes
-/// little within sqrt(h/g), and the two passes over pairs then cost little.
+/// little within sqrt(h/g), and the two passes over pairs then cost little. Rates above 1 make the
+/// pause shorter.
 struct Hyperviscosity {
   int every = 0;      ///< updates; a power of two. 0: it never acts
   double factor = 0;  ///< c of HyperviscosityPass, at most 1
@@ -40,7 +45,7 @@ inline Hyperviscosity hyperviscosity_of(const Scene& s) {
   const double rate = hyperviscosity_rate(s);
   if (!(rate > 0)) return {};
   const double step = s.time.step * std::sqrt(gravity_of(s) / s.h());
-  const double power = std::round(std::log2(pause / step));
+  const double power = std::round(std::log2(pause / (step * std::max(rate, 1.0))));
   const int every = 1 << int(std::clamp(power, 0.0, 20.0));
   return {every, std::min(rate * every * step, 1.0)};
 }

@@ -20,12 +20,13 @@ Rule rule(const Scene& s) {
   const int iterations = s.solver.iterations;
   const bool second = is_second_order(s);
   if (s.dimensions == 2) {
-    if (has_levels(s)) return {2.4};
+    if (has_levels(s)) return second && iterations == 1 ? Rule{1.85, 0.8} : Rule{2.4};
     if (iterations == 1) return second ? Rule{1.55, 0.75} : Rule{1.7, 0.85};
     if (iterations == 2) return second ? Rule{2.4} : Rule{2.7};
     return second ? Rule{2.7} : Rule{3};
   }
-  if (has_levels(s)) return iterations == 1 ? Rule{1.9} : Rule{2};
+  if (has_levels(s) && iterations > 1) return {2};
+  if (has_levels(s) && !second) return {1.9};
   if (iterations == 1) return second ? Rule{1.6, 0.75} : Rule{1.8, 0.85};
   if (iterations == 2) return second ? Rule{1.95} : Rule{2.2};
   if (iterations == 3) return second ? Rule{2.2} : Rule{2.3};

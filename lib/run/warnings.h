@@ -10,8 +10,8 @@
 namespace pbf::run_module {
 
 /// `kind`: units, step, speed, motion, table, obstacles, wall, collision, overlap, over-dense,
-/// relaxation, output (of a scene); compressed, energy, passed_through, closed_in, left (of a run).
-/// A list has at most one warning of each kind.
+/// relaxation, output (of a scene); compressed, energy, stirred, passed_through, closed_in, left
+/// (of a run). A list has at most one warning of each kind.
 struct Warning {
   std::string kind, text;
 };
@@ -24,6 +24,8 @@ constexpr double kNoLiquid = 0.05;
 
 /// energy_rise from which the method is said to add energy (ratio).
 constexpr double kAddsEnergy = 0.01;
+/// energy_drift from which levels are said to stir a fluid that nothing moves (ratio).
+constexpr double kStirred = 0.001;
 
 /// Mean compression of the fluid at rest in its box, from time.step and the iterations: 2/3 (g
 /// dt^2/h) (H/h) / iterations, with dt of a substep and the depth H of the fluid spread over the

@@ -17,7 +17,7 @@ std::string squeezed(const std::string& more = "") {
          "domain: {min: [0, 0, 0], max: [0.4, 0.4, 0.8]}\n"
          "fluid: {spacing: 0.05}\n"
          "bodies: [{shape: block, min: [0, 0, 0], max: [0.4, 0.4, 0.4]}]\n"
-         "time: {step: 0.04, end: 4}\n"
+         "time: {step: 0.04, end: 4, order: 1}\n"
          "measure_every: 5\n"
          "output: {every: 0.4}\n" +
          more;
@@ -82,6 +82,22 @@ TEST_CASE("a sound run warns of nothing") {
   CHECK(warnings_in(o.err).empty());
   CHECK(kept(folder / "a/run.vtkhdf").empty());
   CHECK(fs::exists(folder / "a/DONE"));
+}
+
+TEST_CASE("levels that stir still water are named with what calms it", "[slow]") {
+  const Scratch folder;
+  const std::string tank = std::string(PBF_SOURCE_DIR) + "/configs/stiff/tank.yaml";
+  Args args{tank, "--quiet", "--out", "a", "--set", "domain.max=[0.5,0.01,0.4]"};
+  for (const char* set : {"bodies[0].max=[0.5,0.01,0.2]", "solver.iterations=8", "solver.levels=on",
+                          "solver.hyperviscosity=0", "time.end=1.5"})
+    args.insert(args.end(), {"--set", set});
+  const Outcome o = run(folder, args);
+  CHECK(o.code == 0);
+  CHECK(has(o.err, "pbf: warning: solver.levels stir the fluid: its energy is "));
+  CHECK(has(o.err, "a larger solver.hyperviscosity"));
+  args[3] = "b";
+  args.insert(args.end(), {"--set", "solver.levels=off", "--strict"});
+  CHECK(run(folder, args).code == 0);
 }
 
 TEST_CASE("pbf plan tells the warnings of a scene, as text and as JSON") {

@@ -148,6 +148,18 @@ TEST_CASE("hyperviscosity: how often and how strongly it acts follows from the s
     const double pause = h.every * step * unit;
     CHECK((h.every == 1 || (pause > 0.35 && pause < 0.71)));
   }
+  // Above 1 it acts more often instead: c is at most 1. Levels have 4.
+  for (const double rate : {2.0, 4.0, 10.0}) {
+    const Hyperviscosity h =
+        of({"time.step=0.001", "solver.hyperviscosity=" + std::to_string(rate)});
+    CAPTURE(rate, h.every, h.factor);
+    CHECK(h.factor == Approx(std::min(rate * h.every * 0.001 * unit, 1.0)));
+    CHECK(h.factor > 0.35);
+    CHECK(h.every * rate * 0.001 * unit < 0.71);
+  }
+  CHECK(of({"solver.levels=on", "time.step=0.001"}).every ==
+        of({"solver.hyperviscosity=4", "time.step=0.001"}).every);
+  CHECK(of({"solver.levels=on", "time.order=1"}).every == 0);
   CHECK(of({"solver.hyperviscosity=0.1", "time.order=1"}).every == 4);
   CHECK(of({"solver.hyperviscosity=0.1"}).factor == Approx(0.1 * 4 * 0.02 * unit));
   for (const char* none :
