@@ -94,7 +94,7 @@ void without_files(Scene& scene, const StabilityOptions& o);
 std::optional<StabilityRow> run_stability_case(const StabilityCase& c, const StabilityOptions& o);
 
 /// Largest distance of two centers of mass that count as alike, h.
-constexpr double kLikeness = 0.05;
+constexpr double kLikeness = 0.1;
 
 /// Judges `like` of every row against the row of the named case.
 void judge_likeness(const std::vector<StabilityCase>& cases, std::vector<StabilityRow>& rows);

@@ -154,10 +154,10 @@ TEST_CASE("stability case: likeness compares centres of mass in h") {
   rows[0].name = std::string("a");
   rows[1].name = std::string("b");
   rows[1].good = true;
-  rows[1].center = {0.04, 0, 0};
+  rows[1].center = {0.09, 0, 0};
   judge_likeness({a, b}, rows);
   CHECK(rows[1].good);
-  rows[1].center = {0.06, 0, 0};
+  rows[1].center = {0.11, 0, 0};
   judge_likeness({a, b}, rows);
   CHECK_FALSE(rows[1].good);
 }
