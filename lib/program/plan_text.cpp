@@ -96,12 +96,6 @@ std::string passes_part(const Plan& plan, const Scene& s) {
     }
   };
   add(count_passes(plan.program));
-  if (plan.program.between_every > 0) {
-    out += plan.program.between_every == 1
-               ? "passes between updates\n"
-               : fmt::format("passes after every {} updates\n", plan.program.between_every);
-    add(count_passes(plan.program, plan.program.between));
-  }
   if (s.solver.iterations > 0)
     out += fmt::format(
         "  omega {:.3g} in each iteration{}; safe up to {:.3g} with {} in a substep\n", plan.sor,
@@ -111,6 +105,12 @@ std::string passes_part(const Plan& plan, const Scene& s) {
         "  {} substeps of {:.4g} s on {} list{}: at most {:.3g} h of way on one list\n",
         plan.substeps, s.time.step / plan.substeps, plan.lists_per_update,
         plan.lists_per_update == 1 ? "" : "s", way_per_update(s) / plan.lists_per_update);
+  if (plan.program.between_every > 0) {
+    out += plan.program.between_every == 1
+               ? "passes between updates\n"
+               : fmt::format("passes after every {} updates\n", plan.program.between_every);
+    add(count_passes(plan.program, plan.program.between));
+  }
   return out;
 }
 

@@ -5,7 +5,11 @@
 
 namespace pbf::program_module {
 
-inline bool is_second_order(const Scene& s) { return s.time.order == TimeOrder::second; }
+/// The default is the second order, and for the paper's formulation the first.
+inline bool is_second_order(const Scene& s) {
+  return s.time.order == TimeOrder::automatic ? s.solver.kernels != KernelMode::paper
+                                              : s.time.order == TimeOrder::second;
+}
 
 /// Directions of corrections are those of x* - kDirectionsBack dt v, and the prediction takes over
 /// kCarriedPush of the last step's push. The force of a step then acts on average where the step

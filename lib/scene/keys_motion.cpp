@@ -41,7 +41,7 @@ KeyRows motion_rows() {
            "every "
            "motion under pressure, the more the longer the step. 2: pushes act on average where a "
            "step begins, so that far less energy is lost; velocities are then those of half a step "
-           "earlier. auto: 1."),
+           "earlier. auto: 2, and 1 with solver.kernels: paper."),
        key(KEY(time.adaptive->step_min), number("s", {0, 1e9, true}),
            "Shortest step allowed; at least time.step/1048576. auto: time.step/64.", automatic),
        key(KEY(time.adaptive->cfl), number("", {0, 1000, true}),
@@ -90,8 +90,8 @@ KeyRows motion_rows() {
            "above rest_density. With 1, 2 and 3 iterations 1.8 (at most 0.85), 2.2 and 2.3 take "
            "the place of 2.5, in two dimensions 1.7 (at most 0.85) and 2.7 that of 3; with levels "
            "2 and 2.4, in three dimensions with 1 iteration 1.9. With time.order 2 the numbers are "
-           "up "
-           "to an eighth smaller.",
+           "up to an eighth smaller, and with levels and 1 iteration 1.6 (at most 0.75), in two "
+           "dimensions 1.85 (at most 0.8).",
            renamed("solver.step_length"), automatic),
        key(KEY(solver.boundary), one_of({"density", "clamp"}),
            "density: walls count in the density like fluid behind them. clamp: particles are "
@@ -104,9 +104,9 @@ KeyRows motion_rows() {
        key(KEY(solver.hyperviscosity), number("sqrt(g/h)", {0, 10}),
            "Rate at which a viscosity of fourth order (biharmonic) damps differences of velocity "
            "between neighbors up to 0.05 sqrt(g h), those of fluid that comes to rest; the flow "
-           "hardly changes. It acts about every 0.5 sqrt(h/g). 0: none. auto: 1 with "
-           "time.order 2, where nothing else calms the particles of fluid at rest, otherwise 0. "
-           "Without gravity it is 0.",
+           "hardly changes. It acts about every 0.5 sqrt(h/g), above 1 more often. 0: none. auto: "
+           "1 with time.order 2, where nothing else calms the particles of fluid at rest, 4 there "
+           "with levels, which stir them, otherwise 0. Without gravity it is 0.",
            automatic, off_at(0)),
        key(KEY(solver.speed_limit), number("h per update", {0, 1e6}),
            "Particles that would move farther than this in time.step (however many steps "

@@ -60,15 +60,16 @@ struct Delta {
   static void launch(const auto& c) { launch_delta(c, c[field::density], nullptr, nullptr); }
 };
 
-/// Delta and the prediction of the next substep: the same arithmetic with one launch less. Never
-/// with motion or carried loads, whose passes run between the two.
+/// Delta and the prediction of the next substep: the same arithmetic with one launch less. Not
+/// where a pass runs between the two, as with carried loads.
 struct DeltaPredict {
   using Fuses = Pair<Delta, Predict>;
   static constexpr PassText text{"delta+predict", "delta"};
-  using Needs = Then<pbf::Needs<Writes<field::position>, DeltaNeeds>,
-                     pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>,
-                                If<is_second_order, Updates<field::free_velocity>>, MoveNeeds,
-                                Adds<field::counts>>>;
+  using Needs =
+      Then<pbf::Needs<Writes<field::position>, DeltaNeeds>,
+           pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>,
+                      If<is_second_order, Updates<field::free_velocity>>, MoveNeeds,
+                      If<has_moving_obstacles, Looks<field::solids_before>>, Adds<field::counts>>>;
   template <class G>
   static void launch(const G& c) {
     launch_delta(c, OwnRows<const typename G::Real>(), c.declared(field::free_velocity),
