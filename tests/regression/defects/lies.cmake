@@ -46,8 +46,8 @@ seeded_defect(if_too_wide declarations lib/program/features/solids.h
 seeded_defect(if_too_narrow declarations lib/program/features/solids.h
   [[NearSumNeeds = If<has_obstacles,]] [[NearSumNeeds = If<has_moving_obstacles,]])
 seeded_defect(if_without_memory declarations lib/program/features/loads.h
-  [[If<has_pressure_gauges, Looks<field::patches>>>;]]
-  [[If<has_tank_motion, Looks<field::patches>>>;]])
+  [[Adds<field::load_sums>>, If<has_pressure_gauges, Looks<field::patches>>>;]]
+  [[Adds<field::load_sums>>, If<has_tank_motion, Looks<field::patches>>>;]])
 
 # how long contents count
 seeded_defect(run_as_pass declarations lib/program/features/gauges.h

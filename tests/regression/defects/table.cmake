@@ -158,8 +158,8 @@ seeded_defect(solid_reach_zero density lib/program/posed_solids.h
 seeded_defect(solid_velocity_missing predict kernels/boundary/solid_scene.h
   [[start && s.before ? s.before[k] : placed.solid;]] [[placed.solid;]] solids)
 seeded_defect(solid_pose_of_next_step predict lib/solver/step_solver.h
-  [[((updates_ << options_.level) + done) * n, steps * n,]]
-  [[((updates_ << options_.level) + done) * n + 1, steps * n,]] solids)
+  [[{at(done) * n, steps * n,]]
+  [[{at(done) * n + 1, steps * n,]] solids)
 seeded_defect(load_of_clamp_missing loads kernels/boundary/solid_scene.h
   [[      move_by(load_row_of_solid(k), at - to);]] [[]] solids)
 seeded_defect(load_of_walls_share loads kernels/boundary/solid_scene.h
@@ -192,6 +192,23 @@ seeded_defect(tank_euler_missing predict lib/program/obstacle_motion.h
   [[out.pull[i][j] = Real((f.pull[i][j] + f.pull[j][i]) / 2);]] tank)
 seeded_defect(tank_pivot_missing predict lib/program/obstacle_motion.h
   [[out.pivot = scaled<Real>(f.pivot, 1);]] [[out.pivot = {};]] tank)
+
+# second order in time
+seeded_defect(second_directions_ahead delta kernels/pass_lambda.h
+  [[place = place - p.back * xyz(load(velocity, i))]]
+  [[place = place + p.back * xyz(load(velocity, i))]] second)
+seeded_defect(second_kick_of_wrong_step predict kernels/pass_predict.h
+  [[with_w(m.v - push, Real(0))]] [[with_w(m.v, Real(0))]] second)
+seeded_defect(second_push_taken_whole predict kernels/pass_predict.h
+  [[? p.carry * push : push;]] [[? push : push;]] second)
+seeded_defect(second_half_step_at_resume predict kernels/pass_change_step.h
+  [[const Real old = Real(last->dt), half(0.5);]] [[const Real old(0), half(0.5);]] second)
+seeded_defect(second_walls_at_y delta kernels/time_order.h
+  [[left > Real(0) ? x - left * w : x;]] [[x - w;]] second)
+seeded_defect(second_walls_at_x delta kernels/time_order.h
+  [[left > Real(0) ? x - left * w : x;]] [[x;]] second)
+seeded_defect(second_load_not_carried loads kernels/boundary/loads.h
+  [[to.way[k] += whole(carry * way);]] [[]] second_solids)
 
 # Other arithmetic, as another backend may have it.
 seeded_defect(clean_reverse_sums none kernels/lanes.h
