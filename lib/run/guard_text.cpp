@@ -126,6 +126,15 @@ void start_anew(const SolverState& state, const Scene& s, std::vector<Double3>& 
   const auto row = [](const std::vector<double>& all, std::size_t i) {
     return Vec3<double>{all[3 * i], all[3 * i + 1], all[3 * i + 2]};
   };
+  // u = f(u), for an f that changes little with u or not at all.
+  const auto solved = [](const auto& f, Vec3<double> u) {
+    for (int k = 0; k < 40; ++k) {
+      const Vec3<double> next = f(u);
+      if (next.x == u.x && next.y == u.y && next.z == u.z) break;
+      u = next;
+    }
+    return u;
+  };
   const double damping = std::pow(next.solver.velocity_damping, 1.0 / next.solver.substeps);
   for (std::size_t i = 0; i < velocity.size(); ++i) {
     const Vec3<double> x = row(state.position, i), v = row(state.velocity, i);
@@ -135,10 +144,9 @@ void start_anew(const SolverState& state, const Scene& s, std::vector<Double3>& 
                        now = v - 0.5 * (1 - 1 / ratio) * (gain(v) + push),
                        predicted = step.accelerated(x, damping * now) + kCarriedPush * push;
     // In a tank that turns, the acceleration depends a little on the velocity.
-    Vec3<double> u = now, start = now;
-    for (int k = 0; k < 40; ++k) u = predicted - gain(u);
+    Vec3<double> u = solved([&](const auto& w) { return predicted - gain(w); }, now);
     if (damping > 0) u = (1 / damping) * u;
-    for (int k = 0; k < 40; ++k) start = u + 0.5 * gain(start);
+    const Vec3<double> start = solved([&](const auto& w) { return u + 0.5 * gain(w); }, now);
     velocity[i] = {start.x, start.y, start.z};
   }
 }

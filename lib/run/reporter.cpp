@@ -122,8 +122,7 @@ std::vector<Warning> Reporter::found(bool end) const {
                      "{:g} %: the method adds it; give a shorter time.step, more "
                      "solver.iterations or a smaller solver.sor (here {:.3g})",
                      100 * m.energy_rise, 100 * kAddsEnergy, run_.plan.sor)});
-  const Scene& s = run_.scene;
-  if (m.energy_drift > kStirred && has_levels(s) && !has_motion(s) && m.energy_rise <= kAddsEnergy)
+  else if (m.energy_drift > kStirred && has_levels(run_.scene) && !has_motion(run_.scene))
     list.push_back(
         {"stirred",
          fmt::format("solver.levels stir the fluid: its energy is {:.2g} % above that of the "

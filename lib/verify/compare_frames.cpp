@@ -92,11 +92,8 @@ Resolution computed(const ComparedRun& a, const ComparedRun& b) {
     for (const double dt : o->reader.log_column("dt"))
       if (dt > 0) step = std::min(step, dt);
   }
-  return {u * extent,
-          u * extent / step,
-          u * (1 + extent / std::min(a.scene.h(), b.scene.h())),
+  return {u * extent, u * extent / step, u * (1 + extent / std::min(a.scene.h(), b.scene.h())),
           kFront * std::min(a.scene.fluid.spacing, b.scene.fluid.spacing),
-          kCluster * std::max(a.scene.h(), b.scene.h()),
           kCluster * std::max(a.scene.h(), b.scene.h())};
 }
 
@@ -112,10 +109,8 @@ Resolution resolution_of(const Resolution& computed, const Snapshot& x, const Sn
   };
   return {kRoundings * (computed.length + stored("position")),
           kRoundings * (computed.speed + stored("velocity")),
-          kRoundings * (computed.density + stored("density") / rest_density),
-          computed.front,
-          computed.cluster,
-          computed.beside};
+          kRoundings * (computed.density + stored("density") / rest_density), computed.front,
+          computed.cluster};
 }
 
 void compare_samples(ComparePart& p, const FrameStatistics& a, const FrameStatistics& b) {
@@ -163,8 +158,7 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
       "two samples: {:g} standard errors of means and quantiles, Kolmogorov-Smirnov at {:g}, where "
       "values up to {:g} roundings apart are equal, fronts up to {:g} spacings; once particles are "
       "not comparable, of as many samples as velocity and density are independent in cells of {:g} "
-      "to "
-      "{:g} h; the worst frame counts",
+      "to {:g} h; the worst frame counts",
       kSigmas, kAlpha, kRoundings, kFront, kCluster, 4 * kCluster);
   Curve rms{"A to B, rms", {}, {}}, worst{"A to B, largest", {}, {}};
   const double h = a.scene.h(), d = a.scene.fluid.spacing;
@@ -194,7 +188,7 @@ std::vector<ComparePart> compare_frames(const ComparedRun& a, const ComparedRun&
       note(near, "initial positions", "m", e.worst, largest_of(&x.fields[0]),
            exact ? 0 : resolution.length);
     // Before the horizon both sides have the same particles; after it they are samples of a flow.
-    if (result.horizon < 0) resolution.cluster = 0;
+    resolution.mixed = result.horizon >= 0;
     const double changed =
         one_sided.allowed ? std::max(changed_since(first_a, ids_a), changed_since(first_b, ids_b))
                           : 0;

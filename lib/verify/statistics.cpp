@@ -111,8 +111,8 @@ FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const
   };
   // Means of positions need no correction: particles are spread more evenly than a random sample.
   // The particles at a front move together.
-  const Clusters together(x, resolution.cluster);
-  const double at_front = Clusters(x, resolution.beside).mean_size();
+  const Clusters cells(x, resolution.cluster), alone(x, 0);
+  const Clusters& together = resolution.mixed ? cells : alone;
   const auto add = [&](Statistic number, double resolution_of_it) {
     number.resolution = resolution_of_it;
     out.numbers.push_back(std::move(number));
@@ -130,7 +130,7 @@ FrameStatistics frame_statistics(const Snapshot& s, const Double3& origin, const
     auto v = column([&](std::size_t i) { return x[3 * i + k] - origin[k]; });
     add(mean("centre of mass " + axis, "m", v), resolution.length);
     add(quantile("front " + axis + " (99.9 %)", "m",
-                 distribute(axes[k], "m", v, resolution.length)->values, 0.999, at_front),
+                 distribute(axes[k], "m", v, resolution.length)->values, 0.999, cells.mean_size()),
         resolution.length + resolution.front);
   }
   if (const FieldArray* f = s.find("velocity")) {

@@ -41,10 +41,12 @@ struct Resolution {
   double speed = 0;    ///< m/s, for a component of the velocity
   double density = 0;  ///< for rho/rho0
   double front = 0;    ///< m, added for a front, which is the position of one particle
-  /// m: particles closer than this share velocity and density; they count as one sample if the
-  /// frame shows that they do (Clusters); 0: all are independent.
+  /// m: particles closer than this are at a front together and share velocity and density; 0: all
+  /// are independent.
   double cluster = 0;
-  double beside = 0;  ///< m: particles closer than this are at a front together
+  /// Chaos has mixed the particles: those that share a velocity or density, if the frame shows that
+  /// they do (Clusters), count as one sample.
+  bool mixed = true;
 };
 
 /// Values of a floating-point field.

@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A dam break with one iteration and a step that the guard stops (in second order only with an sor
-/// above its default, 0.64); frames between the measures.
-/// Alarms and criteria change the step on the way.
+/// above its default, 0.64); frames between the measures. Alarms and criteria change the step on
+/// the way.
 std::string write_adaptive(const Scratch& folder, const std::string& adaptive) {
   return folder.write("s.yaml",
                       "name: s\n"

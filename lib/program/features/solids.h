@@ -47,10 +47,11 @@ using NearNeeds = Needs<If<has_obstacles, Reads<field::near_way_left>, Looks<fie
                            Looks<field::near_count>>,
                         SolidNeeds>;
 using NearSumNeeds = If<has_obstacles, Places<other<field::velocity>>>;
-/// The needs of a pass that moves particles: rows may become near, and loads are booked.
+/// The needs of a pass after which rows may have become near.
 using ComeNearNeeds = Needs<If<has_solids, Updates<field::near_way_left>, Places<field::near_row>,
                                Places<field::near_count>, Looks<field::solid_scene>>,
                             If<has_obstacles, Looks<field::solids>>>;
+/// The needs of a pass that moves particles: loads are booked, too.
 using MoveNeeds = Needs<ComeNearNeeds, BookNeeds>;
 /// The needs of a pass in which particles begin a step. Those of a moving tank need the frame, too.
 using StepNeeds = Needs<ComeNearNeeds, StartBookNeeds,
