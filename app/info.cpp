@@ -6,8 +6,8 @@
 #include "lib/base/machine.h"
 #include "lib/base/text.h"
 #include "lib/base/version.h"
-#include "lib/exec/cpu/simd.h"
 #include "lib/exec/devices.h"
+#include "lib/program/simd.h"
 
 namespace pbf::app_module {
 

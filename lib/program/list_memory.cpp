@@ -7,6 +7,7 @@
 #include "kernels/smoothing.h"
 #include "lib/program/list_capacity.h"
 #include "lib/program/plan.h"
+#include "lib/program/simd.h"
 #include "lib/program/threads.h"
 
 namespace pbf::program_module {
@@ -17,8 +18,12 @@ bool has_random_places(const Scene& s) {
                      [](const Body& b) { return b.shape == Shape::random_box; });
 }
 
-/// Mean of the largest of 8 or 16 normally distributed numbers, in standard deviations.
-double deviations_of_longest(const Scene& s) { return s.precision == Precision::dbl ? 1.42 : 1.77; }
+/// Lists are as long as the longest of the particles of a vector: the mean of the largest of 1, 2,
+/// 4, 8 or 16 normally distributed numbers, in standard deviations.
+double deviations_of_longest(const Scene& s) {
+  constexpr double of[] = {0, 0.56, 1.03, 1.42, 1.77};
+  return of[lane_bits(chosen_simd(), std::size_t(size_of(word(s.precision))))];
+}
 
 /// Entries of one list, including padding to the longest of its group: mean and maximum. 0 if the
 /// start was not counted.

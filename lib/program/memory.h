@@ -54,10 +54,11 @@ struct MemoryPlan {
 /// of particles of spacing d in a ball of radius h; in two dimensions pi (h/d)^2.
 double rest_neighbors(const Scene& scene);
 
-/// Entries planned for one list on the CPU: `rest_neighbors` plus the padding of a group of up to
-/// 16 lists to its longest. The padding is a tenth, or more if particles start at random positions,
-/// because their numbers of neighbors have a Poisson distribution. Lists of 1024 particles share
-/// memory, so only the mean matters. The executor allocates more where the fluid is denser.
+/// Entries planned for one list on the CPU: `rest_neighbors` plus the padding of the lists of a
+/// vector (lib/program/simd.h) to the longest. The padding is a tenth, or more if particles start
+/// at random positions, because their numbers of neighbors have a Poisson distribution. Lists of
+/// 1024 particles share memory, so only the mean matters. The executor allocates more where the
+/// fluid is denser.
 int cpu_list_entries(const Scene& scene);
 /// The mean number of neighbors at the start, and whether it, rather than fluid at rest, determines
 /// the size of the lists. Denser fluid at later times is not considered.
@@ -75,7 +76,8 @@ constexpr std::int64_t cpu_scratch_entries(int list_entries) {
 }
 
 /// For the scene's backend and precision (for others, change them in a copy). Pure, except that the
-/// number of CPU threads depends on this machine if the scene does not set it.
+/// number of CPU threads depends on this machine if the scene does not set it, and the padding of
+/// lists on the length of its vectors.
 MemoryPlan plan_memory(const Scene& scene, const Plan& plan);
 
 /// The memory of the scene on a backend, in a precision.

@@ -29,7 +29,7 @@ struct SolverInfo {
   std::string backend;    ///< cpu, cuda
   std::string precision;  ///< float, double
   std::string device;     ///< CPU model or GPU name
-  std::string driver;     ///< GPU driver; on the CPU the vector instructions (lib/exec/cpu/simd.h)
+  std::string driver;     ///< GPU driver; on the CPU the vector instructions (lib/program/simd.h)
   int threads = 0;
   double vol = 0;         ///< m/(rho0 h^3) with the calibrated mass: the weight of one particle
   double wall_scale = 0;  ///< factor on the walls' density, from the calibration

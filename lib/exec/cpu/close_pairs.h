@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "kernels/lanes.h"
-#include "lib/exec/cpu/simd.h"
+#include "lib/program/simd.h"
 #ifdef PBF_HAS_AVX
 #include <immintrin.h>
 #endif

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/lanes.h"
-#include "lib/exec/cpu/simd.h"
+#include "lib/program/simd.h"
 
 namespace pbf::PBF_VARIANT {
 

@@ -11,10 +11,12 @@
 
 namespace pbf::PBF_VARIANT {
 
-/// Grows by a quarter more than asked for; never shrinks.
+/// Grows by a quarter more than asked for; never shrinks. resize() alone may double the memory.
 template <class T>
 void make_room(std::vector<T>& v, std::size_t n) {
-  if (v.size() < n) v.resize(n + n / 4);
+  if (v.size() >= n) return;
+  v.reserve(n + n / 4);
+  v.resize(n + n / 4);
 }
 
 /// The particles around a half cell, copied to adjacent memory: the candidates of its particles.

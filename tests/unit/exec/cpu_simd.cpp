@@ -5,7 +5,7 @@
 
 #include "kernels/lanes.h"
 #include "lib/base/error.h"
-#include "lib/exec/cpu/simd.h"
+#include "lib/program/simd.h"
 #include "tests/support/catch.h"
 #include "tests/support/states.h"
 

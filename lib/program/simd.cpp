@@ -1,11 +1,11 @@
-#include "lib/exec/cpu/simd.h"
+#include "lib/program/simd.h"
 
 #include <algorithm>
 #include <cstdlib>
 
 #include "lib/base/error.h"
 
-namespace pbf::PBF_VARIANT {
+namespace pbf::program_module {
 
 const char* simd_name(Simd simd) {
   constexpr const char* names[] = {"scalar", "baseline", "avx2", "avx512"};
@@ -44,4 +44,4 @@ Simd chosen_simd() {
                   "; unset it, or take one of " + names);
 }
 
-}  // namespace pbf::PBF_VARIANT
+}  // namespace pbf::program_module

@@ -15,7 +15,7 @@
 #define PBF_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw,popcnt")))
 #endif
 
-namespace pbf::PBF_VARIANT {
+namespace pbf::program_module {
 
 /// scalar: one particle at a time. baseline: vectors of 16 bytes, SSE2 on x86-64, elsewhere
 /// whatever the compiler generates.
@@ -36,4 +36,4 @@ constexpr int lane_bits(Simd simd, std::size_t bytes) {
   return (bytes == 4 ? 2 : 1) + int(simd) - int(Simd::baseline);
 }
 
-}  // namespace pbf::PBF_VARIANT
+}  // namespace pbf::program_module
