@@ -174,7 +174,8 @@ std::string RunTime::text() const {
 
 std::optional<RunTime> run_time(const Plan& plan, const Scene& s,
                                 const std::optional<TimeEstimate>& measured, int threads) {
-  const auto updates = double(plan_totals(plan, s).updates);
+  const PlanTotals totals = plan_totals(plan, s);
+  const auto updates = double(totals.updates + totals.settling);
   RunTime out;
   out.least = plan.finest_level > 0 || plan.repeats > 0;
   if (measured) {

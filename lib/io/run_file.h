@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -45,6 +46,8 @@ struct RunInfo {
   SolverInfo solver;
   Double3 domain_min{}, domain_max{};
   double spacing = 0, smoothing_length = 0, rest_density = 0;
+  /// J, of the fluid at rest on the floor (lib/program/energy_at_rest.h); NaN: nothing holds it.
+  double energy_at_rest = std::numeric_limits<double>::quiet_NaN();
   std::int64_t particles = 0;          ///< at the start
   std::int64_t capacity = 0;           ///< at any time, where the number changes; 0: it does not
   std::int64_t first_update = 0;       ///< of this session

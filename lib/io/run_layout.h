@@ -94,16 +94,18 @@ void for_each_text(Info& info, F&& f) {
   f("scene_bases", info.scene_bases, newer);
 }
 
-/// f(dataset name, unit, values) for every quantity of a RunInfo (const or not).
+/// f(dataset name, unit, values, older files lack it) for every quantity of a RunInfo (const or
+/// not).
 template <class Info, class F>
 void for_each_quantity(Info& info, F&& f) {
-  f("domain_min", "m", info.domain_min);
-  f("domain_max", "m", info.domain_max);
-  f("spacing", "m", std::span(&info.spacing, 1));
-  f("smoothing_length", "m", std::span(&info.smoothing_length, 1));
-  f("rest_density", "kg/m^3", std::span(&info.rest_density, 1));
-  f("particle_weight", "1", std::span(&info.solver.vol, 1));
-  f("wall_scale", "1", std::span(&info.solver.wall_scale, 1));
+  f("domain_min", "m", info.domain_min, false);
+  f("domain_max", "m", info.domain_max, false);
+  f("spacing", "m", std::span(&info.spacing, 1), false);
+  f("smoothing_length", "m", std::span(&info.smoothing_length, 1), false);
+  f("rest_density", "kg/m^3", std::span(&info.rest_density, 1), false);
+  f("energy_at_rest", "J", std::span(&info.energy_at_rest, 1), true);
+  f("particle_weight", "1", std::span(&info.solver.vol, 1), false);
+  f("wall_scale", "1", std::span(&info.solver.wall_scale, 1), false);
 }
 
 }  // namespace pbf::io_module::run_layout

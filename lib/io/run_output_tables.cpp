@@ -87,7 +87,7 @@ void RunOutput::write_info(const RunInfo& info) {
   h5::write_number(pbf_, "particles", info.particles);
   if (info.capacity > 0) h5::write_number(pbf_, "capacity", info.capacity);
   run_layout::for_each_quantity(info, [this](const char* name, const char* unit,
-                                             std::span<const double> values) {
+                                             std::span<const double> values, bool) {
     const std::vector<hsize_t> shape(values.size() > 1 ? 1 : 0, values.size());
     h5::write_dataset(pbf_, name, H5T_IEEE_F64LE, shape, H5T_NATIVE_DOUBLE, values.data(), unit);
   });

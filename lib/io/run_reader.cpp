@@ -63,12 +63,14 @@ RunInfo read_info(hid_t pbf) {
   info.particles = h5::read_number<std::int64_t>(pbf, "particles");
   if (h5::has_attribute(pbf, "capacity"))
     info.capacity = h5::read_number<std::int64_t>(pbf, "capacity");
-  run_layout::for_each_quantity(info, [&](const char* name, const char*, std::span<double> out) {
-    const auto values = h5::read_all<double>(pbf, name);
-    if (values.size() != out.size())
-      throw h5::Failure(std::string("/pbf/") + name + " has the wrong size");
-    std::copy(values.begin(), values.end(), out.begin());
-  });
+  run_layout::for_each_quantity(
+      info, [&](const char* name, const char*, std::span<double> out, bool newer) {
+        if (newer && !h5::has_link(pbf, name)) return;
+        const auto values = h5::read_all<double>(pbf, name);
+        if (values.size() != out.size())
+          throw h5::Failure(std::string("/pbf/") + name + " has the wrong size");
+        std::copy(values.begin(), values.end(), out.begin());
+      });
   return info;
 }
 

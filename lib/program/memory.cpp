@@ -82,18 +82,26 @@ std::int64_t add_start(const Scene& s, const Plan& plan, const std::string& real
   std::int64_t peak = n * std::max(48 + 4 * r, 24 + 8 * r + 4);
   for (const Body& b : s.bodies)
     if (b.shape == Shape::file) peak = n * 96;  // particles of the file and of all bodies
-  return peak;
+  return s.settle ? peak + 48 * n : peak;
 }
 
-/// Additional memory beside the solver while the start is relieved of compression
-/// (lib/run/prestabilize.h). The solver has no kept state yet.
+/// Additional memory beside the solver while the start settles (lib/run/settle.h) or is relieved of
+/// compression (lib/run/prestabilize.h). The solver has no kept state yet.
 std::int64_t add_prestabilize(const Scene& s, const Plan& plan, const std::string& real,
                               MemoryPlan& memory) {
-  if (!s.solver.prestabilize || s.solver.iterations == 0) return 0;
+  const Adder add{memory, false, Held::start};
+  std::int64_t start = 0;
+  if (s.settle) {  // the solver that settles is gone before that of the run is made
+    add("particles while the start settles", "double", 6, plan.capacity);
+    add("positions of the settled start", "double", 3, plan.capacity);
+    start = 72 * plan.capacity;
+  }
+  if (!s.solver.prestabilize || s.solver.iterations == 0) return start;
   // A single body on its lattice has no compression.
-  if (plan.start.empty() && s.bodies.size() == 1 && s.obstacles.empty()) return 0;
+  if (plan.start.empty() && s.bodies.size() == 1 && s.obstacles.empty()) return start;
   const std::int64_t n = plan.capacity, kept = n * (8 * size_of(real) + 4);
-  Adder{memory, false, Held::start}("positions around steps without time", "double", 3, 2 * n);
+  add("positions around steps without time", "double", 3, 2 * n);
+  if (s.settle) return std::max(start, 96 * n);
   return 48 * n - (s.guard && !about(s.backend).on_device ? kept : 0);
 }
 
@@ -150,11 +158,13 @@ void add_checkpoint(const Scene& s, const Plan& plan, const std::string& real, M
 void add_fixed(const Scene& s, const Plan& plan, MemoryPlan& memory) {
   const auto mb = [](double x) { return std::int64_t(x * 1e6); };
 #ifdef PBF_HAS_CUDA
-  const double program = 16.5;  // the device's code is mapped, and read only by a run on a device
+  const double program = 17.4;  // the device's code is mapped, and read only by a run on a device
 #else
-  const double program = 15.6;
+  const double program = 16.2;
 #endif
   memory.fixed.push_back({"program and libraries", mb(program)});
+  if (has_solids(s) && s.backend == Backend::cpu)
+    memory.fixed.push_back({"code of walls with loads and obstacles", mb(0.5)});
   if (s.output || s.checkpoint) memory.fixed.push_back({"HDF5", mb(4.5), false, true});
   if (s.output)  // per dataset two nodes with keys, and HDF5's data about each
     memory.fixed.push_back(

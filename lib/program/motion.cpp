@@ -65,7 +65,7 @@ Pose pose_of(const Scene& s, const Obstacle& o, double time) {
   Pose p;
   if (!o.motion) return p;
   const Motion& m = *o.motion;
-  const double t = s.time.motion_begin + time;
+  const double t = s.time.motion_begin + (m.waits ? 0 : time);
   p.pivot = m.pivot.value_or(o.middle());
   switch (m.kind) {
     case MotionKind::sine:

@@ -179,6 +179,7 @@ Plan make_plan(const Scene& s, std::int64_t particles, StartNeighbors start) {
   plan.capacity = std::max(particles, s.capacity);
   plan.start = std::move(start);
   plan.mass = s.particle_mass();
+  plan.dissipation_unit = 1 / (s.time.step * s.time.step);
   if (s.fluid.mass) {
     const double h = s.h(), third = s.dimensions == 2 ? s.domain.max[1] - s.domain.min[1] : h;
     plan.vol = plan.mass / (s.fluid.rest_density * h * h * third);

@@ -57,6 +57,7 @@ struct Plan {
       0;            ///< mean compression above which the iterations are repeated; 0: they are not
   int repeats = 0;  ///< maximum number of these repetitions
   double mass = 0;  ///< kg, of one particle
+  double dissipation_unit = 1;  ///< h^2/s^2 (kernels/dissipation.h); the same for all steps
   LevelPlan levels;
   std::vector<Solid<double>> solids;  ///< of obstacles, in internal axes; lib/program/obstacles.h
   GaugePlan gauges;
@@ -81,7 +82,8 @@ Plan make_plan(const Scene& scene, std::int64_t particles, StartNeighbors start 
 /// The plan in a few numbers.
 struct PlanTotals {
   std::int64_t updates = 0;
-  double end = 0;  ///< s, simulated: whole updates
+  std::int64_t settling = 0;  ///< updates before time 0, not among `updates`
+  double end = 0;             ///< s, simulated: whole updates
   /// Peak memory of the run, including program and libraries; device: 0 on the CPU.
   std::int64_t host_bytes = 0, device_bytes = 0;
   std::int64_t disk_bytes = 0;  ///< of all files

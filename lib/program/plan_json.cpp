@@ -65,6 +65,7 @@ Json plan_json(const Plan& plan, const Scene& s) {
           {"end_s", totals.end},
           {"step_s", s.time.step},
           {"updates", totals.updates},
+          {"settling_updates", totals.settling},
           {"relative_step", relative_step(s)},
           {"host_bytes", totals.host_bytes},
           {"device_bytes", totals.device_bytes},

@@ -7,6 +7,7 @@
 #include "lib/program/plan.h"
 #include "lib/program/relaxation.h"
 #include "lib/program/schedule.h"
+#include "lib/program/settling.h"
 #include "lib/program/substep_lists.h"
 #include "lib/program/threads.h"
 #include "lib/scene/auto_step.h"
@@ -23,6 +24,8 @@ std::string backend_text(Backend backend, Precision precision) {
 std::string time_line(const Plan& plan, const Scene& s, const PlanTotals& totals) {
   std::string out =
       fmt::format("{:.6g} s in {} updates of {:.6g} s", totals.end, totals.updates, s.time.step);
+  if (totals.settling > 0)
+    out += fmt::format(" after {} updates in which the start settles", totals.settling);
   if (plan.finest_level > 0) out += fmt::format(", each of 1 to {} steps", 1 << plan.finest_level);
   if (const double step = relative_step(s); step > 0)
     out += fmt::format("; dt sqrt(g/h) = {:.3g} (time.step: auto takes {:g} at most)", step,
@@ -133,6 +136,7 @@ std::string grid_part(const Plan& plan, const Scene& s) {
 PlanTotals plan_totals(const Plan& plan, const Scene& s) {
   PlanTotals out;
   out.updates = make_schedule(s).updates;
+  out.settling = settling_updates(s);
   out.end = double(out.updates) * s.time.step;
   out.host_bytes = plan.memory.host_peak();
   out.device_bytes = plan.memory.device_peak();

@@ -86,6 +86,7 @@ Scene Guard::repeating_scene(const GuardEvent& e, const std::string& path) const
   Scene s = scene_at_level(scene_, level);
   s.time.adaptive.reset();
   s.solver.prestabilize = false;  // it starts from a state of the run
+  s.settle.reset();
   s.name += "_event";
   Body body;
   body.shape = Shape::file;
@@ -129,9 +130,9 @@ void start_anew(const SolverState& state, const Scene& s, std::vector<Double3>& 
   // u = f(u), for an f that changes little with u or not at all.
   const auto solved = [](const auto& f, Vec3<double> u) {
     for (int k = 0; k < 40; ++k) {
-      const Vec3<double> next = f(u);
-      if (next.x == u.x && next.y == u.y && next.z == u.z) break;
-      u = next;
+      const Vec3<double> found = f(u);
+      if (found.x == u.x && found.y == u.y && found.z == u.z) break;
+      u = found;
     }
     return u;
   };

@@ -52,7 +52,7 @@ bool hopeless(const std::vector<Point>& course) {
 Prestabilized prestabilize(Solver& solver, const Scene& s, const Plan& plan,
                            const std::function<void(const std::string&)>& progress) {
   Prestabilized p;
-  if (!s.solver.prestabilize || s.solver.iterations == 0) return p;
+  if (!s.solver.prestabilize || s.solver.iterations == 0 || s.settle) return p;
   p.before = solver.diagnose();
   const double dt = std::ldexp(s.time.step / plan.substeps, -finest_level(s));
   const double speed = s.h() / dt;  // m/s, for a move by h

@@ -26,9 +26,9 @@ struct Prestabilized {
 /// energy_scale() or below the effect of rounding; or until doubling the steps reduces it by less
 /// than a quarter (an over-full box); in at most 2048 iterations. dt is a substep at the finest
 /// level of time.adaptive. Velocities do not change. Does nothing if solver.prestabilize is false
-/// or there are no iterations, and only measures if the compression is harmless. The bits do not
-/// depend on the number of threads. Call it before the first measurement, never for a resumed
-/// state. `progress` gets a line after every round.
+/// or there are no iterations, and after settle(), which has relieved the start. Only measures if
+/// the compression is harmless. The bits do not depend on the number of threads. Call it before the
+/// first measurement, never for a resumed state. `progress` gets a line after every round.
 Prestabilized prestabilize(Solver& solver, const Scene& scene, const Plan& plan,
                            const std::function<void(const std::string&)>& progress = {});
 

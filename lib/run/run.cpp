@@ -13,10 +13,12 @@
 #include "lib/exec/make_solver.h"
 #include "lib/io/particle_file.h"
 #include "lib/io/run_path.h"
+#include "lib/program/energy_at_rest.h"
 #include "lib/program/threads.h"
 #include "lib/run/load_run.h"
 #include "lib/run/prestabilize.h"
 #include "lib/run/run_record.h"
+#include "lib/run/settle.h"
 
 namespace pbf::run_module {
 namespace {
@@ -49,6 +51,7 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   info.spacing = scene.fluid.spacing;
   info.smoothing_length = scene.h();
   info.rest_density = scene.fluid.rest_density;
+  info.energy_at_rest = energy_at_rest(scene, run.plan);
   info.particles = run.plan.particles;
   info.capacity = scene.capacity;
   info.first_update = run.from.update();
@@ -215,6 +218,12 @@ RunResult run(Start start, const RunPlace& place, Control& control) {
     }
   }
   take_files(start.loaded, start.particles.files, from.notes);
+  const auto show = [&log](const std::string& line) { log.progress("pbf: " + line); };
+  if (!from.saved && !settle(start, show, [&] { return !control.why_stop().empty(); })) {
+    log.note("pbf: stopped early by " + control.why_stop() +
+             " while the start settled; nothing is saved, the same command begins again");
+    return {control.why_stop(), 0};
+  }
   const auto solver = make_solver(start.scene(), start.plan, std::move(start.particles));
   double solver_init = 0;  // the solver reports its own part of "init"
   for (const StageTime& s : solver->info().stages) solver_init += s.name == "init" ? s.seconds : 0;

@@ -162,11 +162,8 @@ Next Saving::at(Session& session) {
 }
 
 std::string Saving::why_stop() const {
-  const Control& control = run_.control;
-  if (const char* why = control.stop.why()) return why;
-  if (control.max_walltime > 0 && control.wall.seconds() >= control.max_walltime)
-    return "--max-walltime";
-  return control.strict && reporter_.has_told() ? "--strict" : "";
+  const std::string why = run_.control.why_stop();
+  return why.empty() && run_.control.strict && reporter_.has_told() ? "--strict" : why;
 }
 
 /// Writes all earlier output to disk before the checkpoint. Returns false, and saves nothing, if

@@ -8,6 +8,7 @@
 #include "lib/exec/make_solver.h"
 #include "lib/run/emit.h"
 #include "lib/run/prestabilize.h"
+#include "lib/run/settle.h"
 #include "lib/run/start_neighbors.h"
 
 namespace pbf::run_module {
@@ -60,6 +61,7 @@ Start prepare(const Scene& scene, const std::string& folder, const PrepareOption
 }
 
 std::unique_ptr<Solver> solver_of(Start& start) {
+  settle(start);
   auto solver = make_solver(start.scene(), start.plan, std::move(start.particles));
   prestabilize(*solver, start.scene(), start.plan);
   return solver;

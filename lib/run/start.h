@@ -45,7 +45,8 @@ Start prepare(LoadedScene loaded, const PrepareOptions& options = {});
 /// The same for a scene without a file; `folder` anchors relative paths.
 Start prepare(const Scene& scene, const std::string& folder, const PrepareOptions& options = {});
 
-/// A solver before its first update, after prestabilize(). The particles are moved into it.
+/// A solver before its first update, after settle() and prestabilize(). The particles are moved
+/// into it.
 std::unique_ptr<Solver> solver_of(Start& start);
 
 /// The output folder of a run.
@@ -62,6 +63,12 @@ struct Control {
   double max_walltime = 0;  ///< s, 0: none
   bool strict = false;      ///< a warning ends it
   Stopwatch wall{};         ///< since this was made
+
+  /// Why the run has to stop; empty: it goes on.
+  std::string why_stop() const {
+    if (const char* why = stop.why()) return why;
+    return max_walltime > 0 && wall.seconds() >= max_walltime ? "--max-walltime" : "";
+  }
 };
 
 /// How a run ended, if nothing was thrown.

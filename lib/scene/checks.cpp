@@ -11,6 +11,7 @@
 #include "lib/scene/rounding.h"
 #include "lib/scene/scene_rules.h"
 #include "lib/scene/surface.h"
+#include "lib/scene/vector3.h"
 
 namespace pbf::scene_module {
 namespace {
@@ -58,6 +59,8 @@ class Checker : public SceneRules {
           add(s_.domain.open, "{}: with dimensions: 2 there is no wall along y; remove it", face);
     constexpr const char* kInSpace = ", or dimensions: 3";
     must_lie_flat(s_.gravity, s_.gravity, kInSpace);
+    if (s_.settle && s_.settle->gravity)
+      must_lie_flat(s_.settle->gravity, *s_.settle->gravity, kInSpace);
     for (const Body& body : s_.bodies) must_lie_flat(body.velocity, body.velocity, kInSpace);
   }
 
@@ -217,6 +220,14 @@ class Checker : public SceneRules {
       else if (std::ldexp(floor, 20) < time.step)
         add(time.adaptive->step_min, "is {}, less than time.step/1048576 ({} s); raise it", floor,
             std::ldexp(time.step, -20));
+    }
+    if (s_.settle && good(s_.settle->duration)) {
+      if (s_.settle->duration < time.step)
+        add_below(s_.settle->duration, time.step, "; raise it, 1 to 2 s are useful");
+      if (good(s_.gravity, s_.settle->gravity) &&
+          length(s_.settle->gravity.value_or(s_.gravity)) == 0)
+        add(s_.settle->duration,
+            "without gravity nothing settles; give settle.gravity, or remove settle");
     }
     const auto must_last_a_step = [&](const auto& member, double every) {
       if (good(member) && every < time.step * (1 - 1e-9))

@@ -14,6 +14,13 @@ KeyRows motion_rows() {
                       "the limits below hold. Where the guard would stop the run, the run goes "
                       "back to the last good state and continues with half the step.",
                       exact("a comparison makes an update one step")),
+       optional_block(
+           KEY(settle),
+           "Lets the fluid come to rest before time 0. The run then begins with the packing and "
+           "the "
+           "level of fluid at rest, without the waves of a start that was put together; motions of "
+           "obstacles and tank begin with the run. Velocities are damped meanwhile, and are those "
+           "of the bodies when the run begins."),
        {"solver", "The constraint solver."},
        optional_block(KEY(tensile), "Artificial pressure against clusters (s_corr)."),
        optional_block(KEY(viscosity), "XSPH viscosity."),
@@ -23,6 +30,15 @@ KeyRows motion_rows() {
            "{magnitude: 9.81, tilt: 5, toward: x_max} is tilted by so many degrees toward that "
            "face.",
            flat(FlatY::zero), form(gravity_table)),
+       key(KEY(settle->duration), number("s", kSeconds),
+           "How long. Waves fall to less than 1 % if it is longer than a period of the longest of "
+           "them; a lattice needs 1 to 2 s to become a packing at rest."),
+       key(KEY(settle->gravity), number("m/s^2", kRate),
+           "Gravity meanwhile, as a vector. One that is tilted leaves a level that is tilted when "
+           "the run begins: a standing wave. auto: that of the run, in a tank that begins tilted "
+           "as "
+           "it is there.",
+           automatic, flat(FlatY::zero)),
        key(KEY(time.step), number("s", kSeconds),
            "Time of one update, dt. About 0.03 sqrt(h/g) is safe. auto: the longest up to that, "
            "and up to 0.2 h of way of the fastest body or obstacle, of which output.every is a "

@@ -51,6 +51,7 @@ struct Motion : Swing {
   std::string path;               ///< file: CSV t,x,y,z or t,x,y,z,rx,ry,rz
   Place place;                    ///< of the path
   MotionTable table;
+  bool waits = false;  ///< stays where the run begins; not a key (lib/program/settling.h)
   bool operator==(const Motion&) const = default;
 };
 

@@ -136,6 +136,13 @@ struct Vorticity {
   bool operator==(const Vorticity&) const = default;
 };
 
+/// The fluid comes to rest before the run begins: lib/run/settle.h.
+struct Settle {
+  double duration = 2;             ///< s
+  std::optional<Double3> gravity;  ///< m/s^2; absent: that of the run when it begins
+  bool operator==(const Settle&) const = default;
+};
+
 /// Limits at which a run is stopped early; lib/run/guard.h describes them.
 struct GuardSettings {
   std::optional<double> speed;   ///< m/s; absent: from the scene and the start
@@ -190,6 +197,7 @@ struct Scene {
   std::vector<Gauge> gauges;
   Double3 gravity{0, 0, -9.81};  ///< m/s^2
   std::optional<TankMotion> tank_motion;
+  std::optional<Settle> settle;
   Time time;
   SolverSettings solver;
   std::optional<Tensile> tensile;

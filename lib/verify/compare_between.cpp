@@ -5,6 +5,7 @@
 #include "lib/exec/make_solver.h"
 #include "lib/run/prestabilize.h"
 #include "lib/run/session.h"
+#include "lib/run/settle.h"
 #include "lib/run/start.h"
 #include "lib/scene/keys.h"
 #include "lib/scene/number.h"
@@ -181,7 +182,8 @@ CompareResult compare_between(const Scene& scene_a, const Scene& scene_b, const 
               "both sides start from the same particles, so bodies, fluid.spacing, "
               "fluid.smoothing_ratio and domain.min must stay; give these to both with --set, or "
               "compare two run files");
-  const Start start_a = prepare(on(scene_a, settings.a), dir);
+  Start start_a = prepare(on(scene_a, settings.a), dir);
+  settle(start_a, progress);
   const auto plan_of = [&](const Scene& s) {
     return make_plan(s, start_a.plan.particles, start_a.plan.start);
   };

@@ -99,6 +99,7 @@ Scene unlike_default() {
   s.tensile = Tensile{0.01, 0.2, 6};
   s.viscosity = Viscosity{0.125};
   s.vorticity = Vorticity{2.5};
+  s.settle = Settle{1.0 / 7, Double3{1.0 / 3, 0, -1e5}};
   s.measure_every = 17;
   s.guard = GuardSettings{1000.5, 0.25, 999};
   s.output = Output{1.0 / 30, 0.0375, {"density"}, Precision::dbl, Compression::gzip};

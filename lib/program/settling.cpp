@@ -1,0 +1,57 @@
+#include "lib/program/settling.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/program/motion.h"
+#include "lib/program/schedule.h"
+#include "lib/program/time_levels.h"
+#include "lib/scene/vector3.h"
+
+namespace pbf::program_module {
+namespace {
+
+/// Gravity in the frame of the tank when the run begins.
+Double3 gravity_at_begin(const Scene& s) {
+  if (!s.tank_motion || !s.tank_motion->axis) return s.gravity;
+  return turned(s.gravity, unit(*s.tank_motion->axis), -tank_pose(s, 0).angle);
+}
+
+/// The first level whose step time.adaptive allows under this gravity.
+int level_under(const Scene& s, double g) {
+  if (!s.time.adaptive || g == 0) return 0;
+  const double longest = s.time.adaptive->force * std::sqrt(s.h() / g);
+  int level = 0;
+  while (level < finest_level(s) && std::ldexp(s.time.step, -level) > longest) ++level;
+  return level;
+}
+
+}  // namespace
+
+Scene settling_scene(const Scene& scene) {
+  const Double3 g = scene.settle->gravity.value_or(gravity_at_begin(scene));
+  Scene s = scene_at_level(scene, level_under(scene, length(g)));
+  s.gravity = g;
+  s.time.end = std::max(scene.settle->duration, s.time.step);
+  s.time.adaptive.reset();
+  s.solver.velocity_damping *= std::exp(-kSettlingDamping * s.time.step / s.time.end);
+  s.tank_motion.reset();
+  for (Obstacle& o : s.obstacles) {
+    o.loads = false;
+    if (o.motion) o.motion->waits = true;
+  }
+  s.domain.loads = false;
+  s.gauges.clear();
+  s.settle.reset();
+  s.guard.reset();
+  s.output.reset();
+  s.checkpoint.reset();
+  s.render.reset();
+  return s;
+}
+
+std::int64_t settling_updates(const Scene& scene) {
+  return scene.settle ? make_schedule(settling_scene(scene)).updates : 0;
+}
+
+}  // namespace pbf::program_module
