@@ -2,6 +2,7 @@
 // between neighbors and leaves the flow. kernels/README.md, "Second order in time".
 #pragma once
 
+#include "kernels/dissipation.h"
 #include "kernels/pair_sum.h"
 
 namespace pbf::PBF_VARIANT {
@@ -57,8 +58,11 @@ template <class Real, class Lists, Smoothing S>
 struct HyperviscosityPass : VectorLaplacian<Real, Lists, S> {
   using Base = VectorLaplacian<Real, Lists, S>;
   OwnRows<Vec4<Real>> velocity;  ///< in/out, h/s
+  DissipationBook book;
   PBF_HD void finish(int i, const typename Base::Own&, const typename Base::Sum& s) const {
-    velocity[i] = with_w(xyz(velocity[i]) - this->p.hyperviscosity * this->laplacian(s), Real(0));
+    const Vec3<Real> v = xyz(velocity[i]), now = v - this->p.hyperviscosity * this->laplacian(s);
+    velocity[i] = with_w(now, Real(0));
+    book.add(i, energy_taken(v, now));
   }
 };
 

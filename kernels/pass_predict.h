@@ -103,11 +103,13 @@ PBF_HD void put_free(const SecondOrder<Real>& order, int i, const Moving<Real>& 
                      Vec3<Real> push) {
   order.free[i] = with_w(m.v - push, Real(0));
 }
-/// Writes x* of particle i and the matching velocities.
+/// Writes x* of particle i, which had velocity v, and the matching velocities.
 template <class Real, class Push, class Order>
-PBF_HD void put(int i, const Moving<Real>& m, const Push& push, OwnRows<Vec4<Real>> position,
-                OwnRows<Vec4<Real>> velocity, const Order& order, StepCounts* counts) {
+PBF_HD void put(int i, Vec3<Real> v, const Moving<Real>& m, const Push& push,
+                OwnRows<Vec4<Real>> position, OwnRows<Vec4<Real>> velocity, const Order& order,
+                StepCounts* counts) {
   if (m.fast) count_one(&counts->fast);
+  order.damping.add(i, double(dot(v, v)));
   position[i] = with_w(m.x, m.mark);
   velocity[i] = with_w(m.v, Real(0));
   put_free(order, i, m, push);
@@ -120,7 +122,7 @@ PBF_HD void move_on(int i, Vec3<Real> x, Vec3<Real> v, const Params<Real>& p,
   const auto push = carried_push(order, i, v, p);
   const Moving<Real> m = predict_anywhere(i, x, v, push, p, boundary);
   if constexpr (Boundary::books) boundary.came_to(i, m.x);
-  put(i, m, push, position, velocity, order, counts);
+  put(i, v, m, push, position, velocity, order, counts);
 }
 
 /// The bin of x* of row i, or -1 if NearPredictPass computes it.
@@ -165,7 +167,7 @@ struct NearPredictPass {
     const Vec3<Real> v = xyz(velocity[i]);
     const auto push = carried_push(order, i, v, p);
     const Moving<Real> m = predict_at_solids(i, xyz(position[i]), v, push, p, boundary);
-    put(i, m, push, position, velocity, order, counts);
+    put(i, v, m, push, position, velocity, order, counts);
     bin[i] = bin_of<D>(m.x, p);
   }
 };
@@ -185,7 +187,7 @@ struct MovePass {
       const auto push = carried_push(order, i, v, p);
       const Moving<Real> m = predict(x, v, push, p, boundary);
       if (!may_meet_solids(boundary, x, m.x))
-        return put(i, m, push, position, velocity, order, counts);
+        return put(i, v, m, push, position, velocity, order, counts);
     }
     move_on(i, x, v, p, boundary, position, velocity, order, counts);
   }
@@ -241,9 +243,11 @@ struct GatherPass : Carried {
       m.mark = at.w;
       if constexpr (Order::second) order_out.free[to] = order.free[from];
     } else {
-      const auto push = carried_push(order, from, m.v, p);
-      m = predict(m.x, m.v, push, p, boundary);
+      const Vec3<Real> v = m.v;
+      const auto push = carried_push(order, from, v, p);
+      m = predict(m.x, v, push, p, boundary);
       put_free(order_out, to, m, push);
+      order.damping.add(from, double(dot(v, v)));
     }
     if (m.fast) count_one(&counts->fast);
     position_out[to] = with_w(m.x, m.mark);

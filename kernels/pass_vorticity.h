@@ -2,6 +2,7 @@
 // Macklin & Mueller 2013, eq. 15 and 16, in the form of kernels/README.md (13).
 #pragma once
 
+#include "kernels/dissipation.h"
 #include "kernels/pair_sum.h"
 
 namespace pbf::PBF_VARIANT {
@@ -94,6 +95,7 @@ struct VorticityPass {
   GatheredRows<Vec4<Real>> position;  ///< w = 1/density
   GatheredRows<Vec4<Real>> curl;      ///< times its gain; w = |omega|
   OwnRows<Vec4<Real>> velocity;       ///< in/out
+  DissipationBook book;
 
   static constexpr int D = dimensions;
   using Own = CurlOwn<Real>;
@@ -117,7 +119,9 @@ struct VorticityPass {
     if (a.x.w > Real(1)) return;
     const Real size = square_root(dot(s.v, s.v)) + Real(0.1) * a.curl.w + Real(1e-20);
     const Vec3<Real> push = cross(in_space(s.v), xyz(a.curl));
-    velocity[i] = with_w(xyz(velocity[i]) + (Real(1) - p.carry) / size * push, Real(0));
+    const Vec3<Real> v = xyz(velocity[i]), now = v + (Real(1) - p.carry) / size * push;
+    velocity[i] = with_w(now, Real(0));
+    book.add(i, energy_taken(v, now));
   }
 };
 

@@ -29,7 +29,8 @@ struct XsphPass {
   GatheredRows<Vec4<Real>> position;  ///< w = 1/density
   GatheredRows<Vec4<Real>> velocity;  ///< h/s
   OwnRows<Vec4<Real>> velocity_out;
-  int* bin;       ///< out; null: no update follows
+  int* bin;  ///< out; null: no update follows
+  DissipationBook book;
   Order order{};  ///< for bin
 
   static constexpr int D = dimensions_of(S);
@@ -57,6 +58,7 @@ struct XsphPass {
     const Vec3<Real> v =
         in_space(a.v + (Real(0.5) * p.xsph * p.vol * density_norm<Real, S>()) * s.v);
     velocity_out[i] = with_w(v, Real(0));
+    book.add(i, energy_taken(in_space(a.v), v));
     if (bin) bin[i] = predicted_bin<D>(i, in_space(a.x), v, order, p, boundary);
   }
 };

@@ -3,13 +3,14 @@
 // [[no_unique_address]], the compilers for host and device place two empty members differently.
 #pragma once
 
+#include "kernels/dissipation.h"
 #include "kernels/vec3.h"
 
 namespace pbf::PBF_VARIANT {
 
 struct FirstOrder {
   static constexpr bool second = false;
-  char nothing = 0;  ///< copies of an empty struct make GCC 12 warn of uninitialized memory
+  DissipationBook damping{};  ///< of predictions
 };
 template <class Real>
 struct SecondOrder {
@@ -17,6 +18,7 @@ struct SecondOrder {
   /// h/s, the velocity of each particle without the pushes of the last step. Null in passes that
   /// predict nothing.
   Vec4<Real>* free = nullptr;
+  DissipationBook damping{};  ///< of predictions
 };
 
 /// The step of a particle so far, for what pushes it. In first order that does not matter.

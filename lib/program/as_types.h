@@ -27,18 +27,18 @@ void with_smoothing(KernelMode mode, int dimensions, F&& f) {
     choose(std::integral_constant<Smoothing, Smoothing::consistent>{},
            std::integral_constant<Smoothing, Smoothing::consistent_2d>{});
 }
-/// FirstOrder, or SecondOrder with `free`.
+/// FirstOrder, or SecondOrder with `free`. damping: in passes that predict.
 template <class Real, class F>
-void with_order(const Scene& s, Vec4<Real>* free, F&& f) {
-  is_second_order(s) ? f(SecondOrder<Real>{free}) : f(FirstOrder{});
+void with_order(const Scene& s, Vec4<Real>* free, const DissipationBook& damping, F&& f) {
+  is_second_order(s) ? f(SecondOrder<Real>{free, damping}) : f(FirstOrder{damping});
 }
 /// The same in loops over pairs; the paper's kernels are of first order.
 template <Smoothing S, class Real, class F>
-void with_order(const Scene& s, Vec4<Real>* free, F&& f) {
+void with_order(const Scene& s, Vec4<Real>* free, const DissipationBook& damping, F&& f) {
   if constexpr (is_paper(S))
-    f(FirstOrder{});
+    f(FirstOrder{damping});
   else
-    with_order<Real>(s, free, f);
+    with_order<Real>(s, free, damping, f);
 }
 template <class F>
 void with_bool(bool b, F&& f) {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "lib/program/column.h"
+#include "lib/program/dissipation.h"
 #include "lib/program/loads.h"
 #include "lib/program/motion.h"
 #include "lib/program/plan.h"
@@ -42,6 +43,18 @@ std::vector<ReadingColumn> reading_columns(const Scene& s, const Plan& plan) {
     all.push_back({"load", of, "force", "N", "", mean, 3, measures, {grain}, 1});
     all.push_back({"load", of, "torque", "N m", "", mean, 3, measures, {3 * arm * grain}, arm});
     all.push_back({"load", of, "force_peak", "N", "", peak, 1, measures, {grain}, 1});
+  }
+  for (const Dissipation by : dissipations(s)) {
+    const double bit = plan.mass * s.h() * s.h() * plan.dissipation_unit / kDissipationUnits;
+    all.push_back({"dissipation",
+                   kDissipationNames[std::size_t(by)],
+                   "energy",
+                   "J",
+                   "",
+                   total,
+                   1,
+                   measures,
+                   {bit * double(plan.particles)}});
   }
   all.insert(all.end(), plan.gauges.columns.begin(), plan.gauges.columns.end());
   for (const Obstacle& o : s.obstacles) {

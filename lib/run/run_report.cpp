@@ -107,15 +107,28 @@ std::string error_lines(const Diagnostics& last, double max_of_run) {
       100 * max_of_run);
 }
 
-/// Possible causes of a loss of energy. Walls and obstacles have no friction.
-std::string losses(const Scene& s) {
-  std::vector<std::string> more;
-  if (s.viscosity) more.push_back("viscosity");
-  if (s.solver.velocity_damping < 1) more.push_back("velocity_damping");
-  return ": the method loses energy in splashes, more with longer steps" +
-         (more.empty() ? std::string()
-                       : ", and " + joined(more, " and ") +
-                             (more.size() == 1 ? " takes some" : " take some"));
+/// Below this share of the energy, a loss is rounding.
+constexpr double kRounding = 1e-6;
+
+/// What took the energy that is gone, in shares of it. Empty if none is gone.
+std::string lost_line(const Diagnostics& first, const Diagnostics& last,
+                      const std::vector<ReadingColumn>& columns) {
+  const double lost = first.energy + last.work - last.energy;
+  if (!(lost > kRounding * (std::fabs(first.energy) + std::fabs(last.work)))) return {};
+  std::string parts;
+  double rest = lost;
+  if (last.readings.empty() && !columns.empty()) return {};  // resumed, and nothing was left to do
+  for_each_number(columns, Series::measures, [&](const ReadingColumn& c, int, std::size_t k) {
+    if (c.kind != std::string_view("dissipation")) return;
+    const double taken = last.readings[k];
+    rest -= taken;
+    parts += fmt::format("{:.3g} % by {}, ", 100 * taken / lost, c.of);
+  });
+  const std::string others =
+      rest >= 0
+          ? fmt::format("{:.3g} % in splashes and by the length of the steps", 100 * rest / lost)
+          : fmt::format("less {:.3g} % that the method has added", -100 * rest / lost);
+  return fmt::format("  lost              {:.4g} J: {}{}\n", lost, parts, others);
 }
 
 /// Below this share of the energy at rest, the packing of the particles says as much about what is
@@ -124,16 +137,14 @@ constexpr double kAboveRest = 0.01;
 
 /// How much of the energy above rest, and of the work put in, is left. at_rest: energy_at_rest().
 /// Empty where there is none.
-std::string kept_line(const Diagnostics& first, const Diagnostics& last, double at_rest,
-                      const Scene& scene) {
+std::string kept_line(const Diagnostics& first, const Diagnostics& last, double at_rest) {
   const double given = first.energy - at_rest + last.work, left = last.energy - at_rest;
   if (!(given > kAboveRest * at_rest)) return {};
-  return fmt::format("  kept              {:.3g} % of {:.4g} J above the energy at rest{}{}\n",
-                     100 * left / given, given, last.moved ? ", work included" : "",
-                     left < given ? losses(scene) : "");
+  return fmt::format("  kept              {:.3g} % of {:.4g} J above the energy at rest{}\n",
+                     100 * left / given, given, last.moved ? ", work included" : "");
 }
 
-std::string energy_lines(const Diagnostics& first, const Diagnostics& last, const Scene& scene,
+std::string energy_lines(const Diagnostics& first, const Diagnostics& last, const Plan& plan,
                          double at_rest) {
   std::string out = fmt::format(
       "energy              {:.6g} J at the start, {:.6g} J at the end ({:.3g} J of it kinetic)",
@@ -142,17 +153,17 @@ std::string energy_lines(const Diagnostics& first, const Diagnostics& last, cons
   out += "\n";
   if (last.moved)
     out += fmt::format("  work              {:.6g} J of what moves by itself\n", last.work);
-  const std::string kept = kept_line(first, last, at_rest, scene);
+  const std::string kept = kept_line(first, last, at_rest);
   out += kept;
   // Relative to the start's energy, the loss of a driven tank says nothing.
   if (kept.empty() || !last.moved)
     out +=
-        fmt::format("  drift             {:+.3g} % from start to end{}\n", 100 * last.energy_drift,
-                    kept.empty() && last.energy_drift < 0 ? losses(scene) : "");
-  return out + fmt::format(
-                   "  largest rise      {:.3g} % at any time: 0 is good, above {:g} % the "
-                   "method adds energy\n",
-                   100 * last.energy_rise, 100 * kAddsEnergy);
+        fmt::format("  drift             {:+.3g} % from start to end\n", 100 * last.energy_drift);
+  return out + lost_line(first, last, plan.columns) +
+         fmt::format(
+             "  largest rise      {:.3g} % at any time: 0 is good, above {:g} % the "
+             "method adds energy\n",
+             100 * last.energy_rise, 100 * kAddsEnergy);
 }
 
 /// Updates and wall time: of the run and, if it was resumed, of this session.
@@ -196,7 +207,7 @@ std::string run_summary(const RunParts& run, const Monitor& monitor,
                      si_number(loop > 0 ? double(plan.particles) * own / loop : 0),
                      duration_text(loop));
   out += error_lines(last, run.compression_max) +
-         energy_lines(first, last, scene, energy_at_rest(scene, plan));
+         energy_lines(first, last, plan, energy_at_rest(scene, plan));
   out += "peak memory         " + bytes_text(double(peak_memory())) + " on the host\n";
   out += pool_line(last, scene, plan.mass * double(plan.particles));
   if (last.non_finite > 0)

@@ -27,6 +27,14 @@ std::vector<Load> read_loads(C& c, Interval interval) {
   return read_loads(c, 0, load_walls(c.scene) - gauges_of<PatchTally>(c.scene), interval);
 }
 
+/// What took energy from the motion, since the start.
+template <class C>
+std::vector<DissipationSum> read_dissipation(C& c) {
+  std::vector<DissipationSum> sums(c.kept_rows(field::dissipation));
+  if (!sums.empty()) c.exec.to_host(c.data(field::dissipation), sums.size(), sums.data());
+  return sums;
+}
+
 /// The sums of the gauges of a tally.
 template <class C, class Tally>
 void read_sums(C& c, std::vector<typename Tally::Sums>& rows, Interval interval) {

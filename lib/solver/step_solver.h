@@ -92,8 +92,10 @@ class StepSolver final : public Solver, public Inspection {
   }
 
   std::vector<double> readings(Series series, Interval interval) override {
-    return series == Series::gauges ? stepper_->gauges(interval)
-                                    : load_readings(stepper_->loads(interval), scene_, plan_);
+    if (series == Series::gauges) return stepper_->gauges(interval);
+    std::vector<double> all = load_readings(stepper_->loads(interval), scene_, plan_);
+    for (const double e : dissipated(stepper_->dissipation(), scene_, plan_)) all.push_back(e);
+    return all;
   }
 
   SolverState state(StateOf which) override {

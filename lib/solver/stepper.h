@@ -66,7 +66,6 @@ class Stepper {
     run(program_->between);
   }
   const Program& program() const { return *program_; }
-
   /// One update with the results of each stage.
   StepTrace trace(const TraceOptions& options) {
     Tracer<Context> t(c_, plan_.axes, options);
@@ -115,7 +114,6 @@ class Stepper {
 
   /// s, see lib/solver/state_transfer.h.
   double velocity_lag() { return pbf::velocity_lag(c_); }
-
   /// h^2/s^3: power per particle mass of the tank's inertial forces. lag: velocity_lag().
   double power(const FrameStep<double>& frame, double lag, double dt) {
     const Vec3<Real>& g = c_.p.gravity;
@@ -131,6 +129,8 @@ class Stepper {
 
   /// The load of each wall since the last call with Interval::ends.
   std::vector<Load> loads(Interval interval) { return read_loads(c_, interval); }
+  /// What took energy from the motion since the start: sums for dissipated().
+  std::vector<DissipationSum> dissipation() { return read_dissipation(c_); }
   /// Readings of the gauges; means since the last call with Interval::ends.
   std::vector<double> gauges(Interval interval) { return read_gauges(c_, interval); }
 

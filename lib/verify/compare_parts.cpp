@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/program/dissipation.h"
+
 namespace pbf::verify_module {
 namespace {
 
@@ -18,20 +20,29 @@ double scale_of(const ReadingColumn& c, const std::vector<ReadingColumn>& column
   return c.lever > 0 ? c.lever * peak : length;
 }
 
+/// J. What a pass takes is a difference of kinetic energies, and has their rounding.
+double kinetic_energy(Solver& solver, const Scene& scene, const Plan& plan) {
+  double squares = 0;
+  for (const double v : solver.state().velocity) squares += v * v;
+  return 0.5 * plan.mass * scene.h() * scene.h() * squares;
+}
+
 }  // namespace
 
 std::vector<Reading> take_readings(Solver& solver, const Scene& scene, const Plan& plan,
                                    int updates) {
   std::vector<Reading> out;
   const double time = scene.time.step * updates;
+  const double kinetic = dissipations(scene).empty() ? 0 : kinetic_energy(solver, scene, plan);
   for (const Series series : {Series::measures, Series::gauges}) {
     const std::vector<double> values = solver.readings(series, Interval::ends);
     for_each_number(
         plan.columns, series, [&](const ReadingColumn& c, int component, std::size_t k) {
           const std::string stage = series == Series::gauges ? "gauges" : std::string(c.kind) + "s";
           const std::string name = number_name(c, component);
+          const bool taken = c.kind == std::string_view("dissipation");
           out.push_back({stage, stage + ": " + c.of + (name.empty() ? "" : " ") + name, c.unit,
-                         values[k], scale_of(c, plan.columns, values),
+                         values[k], taken ? kinetic : scale_of(c, plan.columns, values),
                          c.grain.value + c.grain.of_sum / time});
         });
   }

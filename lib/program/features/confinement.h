@@ -4,6 +4,7 @@
 
 #include "kernels/pass_vorticity.h"
 #include "lib/program/as_types.h"
+#include "lib/program/features/dissipation.h"
 #include "lib/program/pass.h"
 
 namespace pbf::program_module::field {
@@ -33,12 +34,13 @@ struct Curl {
 struct Confine {
   static constexpr PassText text{"confinement", "vorticity", kLessConfinement};
   using Needs = pbf::Needs<Gathers<field::position, W::inverse_density>, Gathers<field::curl>,
-                           UsesLists, Updates<field::velocity>>;
+                           UsesLists, Updates<field::velocity>, Adds<field::dissipation>>;
   template <class G>
   static void launch(const G& c) {
     with_dimensions(c.p.dimensions, [&](auto d) {
       c.pairs(VorticityPass<typename G::Real, typename G::Lists, decltype(d)::value>{
-          c.p, c.lists(), c[field::position], c[field::curl], c[field::velocity]});
+          c.p, c.lists(), c[field::position], c[field::curl], c[field::velocity],
+          viscous_book<Dissipation::confinement>(c)});
     });
   }
 };

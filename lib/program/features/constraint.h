@@ -35,7 +35,7 @@ template <bool with_density, class G>
 void launch_lambda(const G& c) {
   using Real = typename G::Real;
   c.with_smoothing([&](auto s) {
-    with_order<decltype(s)::value, Real>(c.scene, nullptr, [&](auto order) {
+    with_order<decltype(s)::value, Real>(c.scene, nullptr, {}, [&](auto order) {
       each_then_near<false>(c, [&](const auto& boundary) {
         return LambdaPass<Real, typename G::Lists, decltype(s)::value, with_density,
                           decltype(order), std::decay_t<decltype(boundary)>>{

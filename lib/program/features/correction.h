@@ -20,7 +20,8 @@ void launch_delta(const G& c, OwnRows<const typename G::Real> density, Vec4<type
     constexpr Smoothing S = decltype(s)::value;
     with_bool(c.scene.tensile && c.scene.tensile->k != 0, [&](auto tensile) {
       with_level_move(c, [&](const auto& coarse) {
-        with_order<S, Real>(c.scene, free, [&](const auto& order) {
+        const DissipationBook damping = moves_on ? damping_book(c) : DissipationBook{};
+        with_order<S, Real>(c.scene, free, damping, [&](const auto& order) {
           each_then_near<true>(c, [&](const auto& boundary) {
             return DeltaPass<Real, typename G::Lists, S, decltype(tensile)::value,
                              std::decay_t<decltype(coarse)>, std::decay_t<decltype(order)>,
@@ -65,11 +66,11 @@ struct Delta {
 struct DeltaPredict {
   using Fuses = Pair<Delta, Predict>;
   static constexpr PassText text{"delta+predict", "delta"};
-  using Needs =
-      Then<pbf::Needs<Writes<field::position>, DeltaNeeds>,
-           pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>,
-                      If<is_second_order, Updates<field::free_velocity>>, MoveNeeds,
-                      If<has_moving_obstacles, Looks<field::solids_before>>, Adds<field::counts>>>;
+  using Needs = Then<pbf::Needs<Writes<field::position>, DeltaNeeds>,
+                     pbf::Needs<Updates<field::position, W::mark>, Updates<field::velocity>,
+                                If<is_second_order, Updates<field::free_velocity>>, MoveNeeds,
+                                If<has_moving_obstacles, Looks<field::solids_before>>,
+                                Adds<field::counts>, If<is_damped, Adds<field::dissipation>>>>;
   template <class G>
   static void launch(const G& c) {
     launch_delta(c, OwnRows<const typename G::Real>(), c.declared(field::free_velocity),

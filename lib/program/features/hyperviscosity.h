@@ -3,6 +3,7 @@
 
 #include "kernels/pass_hyperviscosity.h"
 #include "lib/program/as_types.h"
+#include "lib/program/features/dissipation.h"
 #include "lib/program/hyperviscosity.h"
 #include "lib/program/pass.h"
 
@@ -32,12 +33,14 @@ struct VelocityLaplacian {
 struct Hyperviscous {
   static constexpr PassText text{"hyperviscosity", "hyperviscosity", kLessHyperviscosity};
   using Needs = pbf::Needs<Gathers<field::position>, Gathers<field::velocity_laplacian>, UsesLists,
-                           Updates<field::velocity>>;
+                           Updates<field::velocity>, Adds<field::dissipation>>;
   template <class G>
   static void launch(const G& c) {
     c.with_smoothing([&](auto s) {
       c.pairs(HyperviscosityPass<typename G::Real, typename G::Lists, decltype(s)::value>{
-          {c.p, c.lists(), c[field::position], c[field::velocity_laplacian]}, c[field::velocity]});
+          {c.p, c.lists(), c[field::position], c[field::velocity_laplacian]},
+          c[field::velocity],
+          viscous_book<Dissipation::hyperviscosity>(c)});
     });
   }
 };

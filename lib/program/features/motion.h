@@ -59,12 +59,14 @@ struct Predict {
   template <class G>
   static void launch(const G& c) {
     using Real = typename G::Real;
-    with_order<Real>(c.scene, c.declared(field::free_velocity), [&](const auto& order) {
-      with_boundary(c, [&](const auto& boundary) {
-        c.items(MovePass<Real, std::decay_t<decltype(boundary)>, std::decay_t<decltype(order)>>{
-            c.p, boundary, c[field::position], c[field::velocity], c[field::counts].sums(), order});
-      });
-    });
+    with_order<Real>(
+        c.scene, c.declared(field::free_velocity), damping_book(c), [&](const auto& order) {
+          with_boundary(c, [&](const auto& boundary) {
+            c.items(MovePass<Real, std::decay_t<decltype(boundary)>, std::decay_t<decltype(order)>>{
+                c.p, boundary, c[field::position], c[field::velocity], c[field::counts].sums(),
+                order});
+          });
+        });
   }
 };
 
@@ -142,7 +144,7 @@ struct Sort {
   template <class G>
   static void launch(const G& c) {
     using Real = typename G::Real;
-    with_order<Real>(c.scene, c.declared(other<field::free_velocity>), [&](const auto& order) {
+    with_order<Real>(c.scene, c.declared(other<field::free_velocity>), {}, [&](const auto& order) {
       with_dimensions(c.p.dimensions, [&](auto d) {
         sort_rows(
             c, "predict",
@@ -175,19 +177,20 @@ struct PredictSort {
   static void launch(const G& c) {
     using Real = typename G::Real;
     using Rows = OwnRows<const Vec4<Real>>;
-    with_order<Real>(c.scene, c.declared(other<field::free_velocity>), [&](const auto& order) {
-      with_dimensions(c.p.dimensions, [&](auto d) {
-        with_far_boundary(c, [&](const auto& boundary) {
-          Vec4<Real>* velocity = c[other<field::velocity>];
-          sort_predicted(c, "predict",
-                         PredictPass<Real, std::decay_t<decltype(boundary)>, decltype(d)::value,
-                                     std::decay_t<decltype(order)>>{
-                             c.p, boundary, Rows(c[other<field::position>]), Rows(velocity),
-                             c[field::bin].rows(), order},
-                         velocity, c[field::velocity]);
+    with_order<Real>(
+        c.scene, c.declared(other<field::free_velocity>), damping_book(c), [&](const auto& order) {
+          with_dimensions(c.p.dimensions, [&](auto d) {
+            with_far_boundary(c, [&](const auto& boundary) {
+              Vec4<Real>* velocity = c[other<field::velocity>];
+              sort_predicted(c, "predict",
+                             PredictPass<Real, std::decay_t<decltype(boundary)>, decltype(d)::value,
+                                         std::decay_t<decltype(order)>>{
+                                 c.p, boundary, Rows(c[other<field::position>]), Rows(velocity),
+                                 c[field::bin].rows(), order},
+                             velocity, c[field::velocity]);
+            });
+          });
         });
-      });
-    });
   }
 };
 

@@ -7,6 +7,7 @@
 
 #include "kernels/boundary/far_boundary.h"
 #include "kernels/boundary/near_split.h"
+#include "lib/program/features/dissipation.h"
 #include "lib/program/features/loads.h"
 #include "lib/program/obstacle_motion.h"
 #include "lib/program/time_order.h"
@@ -54,8 +55,9 @@ using ComeNearNeeds = Needs<If<has_solids, Updates<field::near_way_left>, Places
 /// The needs of a pass that moves particles: loads are booked, too.
 using MoveNeeds = Needs<ComeNearNeeds, BookNeeds>;
 /// The needs of a pass in which particles begin a step. Those of a moving tank need the frame, too.
-using StepNeeds = Needs<ComeNearNeeds, StartBookNeeds,
-                        If<has_moving_obstacles, Looks<field::solids_before>>, Adds<field::counts>>;
+using StepNeeds =
+    Needs<ComeNearNeeds, StartBookNeeds, If<has_moving_obstacles, Looks<field::solids_before>>,
+          Adds<field::counts>, If<is_damped, Adds<field::dissipation>>>;
 using FrameNeeds = If<has_tank_motion, Looks<field::frame>>;
 
 struct NearSolids;

@@ -16,11 +16,13 @@ void with_xsph(const G& c, GatheredRows<Rows> position, GatheredRows<Rows> veloc
                const Use& use) {
   using Real = typename G::Real;
   c.with_smoothing([&](auto s) {
-    with_order<decltype(s)::value, Real>(c.scene, free, [&](const auto& order) {
+    const DissipationBook damping = bin ? damping_book(c) : DissipationBook{};
+    with_order<decltype(s)::value, Real>(c.scene, free, damping, [&](const auto& order) {
       with_far_boundary(c, [&](const auto& boundary) {
         use(XsphPass<Real, typename G::Lists, decltype(s)::value, std::decay_t<decltype(order)>,
-                     std::decay_t<decltype(boundary)>>{c.p, boundary, c.lists(), position, velocity,
-                                                       velocity_out, bin, order});
+                     std::decay_t<decltype(boundary)>>{
+            c.p, boundary, c.lists(), position, velocity, velocity_out, bin,
+            viscous_book<Dissipation::viscosity>(c), order});
       });
     });
   });
@@ -29,8 +31,9 @@ void with_xsph(const G& c, GatheredRows<Rows> position, GatheredRows<Rows> veloc
 struct Xsph {
   static constexpr PassText text{"xsph", "xsph", kLessXsph};
   using Flips = pbf::Flips<field::velocity>;
-  using Needs = pbf::Needs<Gathers<field::position, W::inverse_density>,
-                           Gathers<other<field::velocity>>, UsesLists, Writes<field::velocity>>;
+  using Needs =
+      pbf::Needs<Gathers<field::position, W::inverse_density>, Gathers<other<field::velocity>>,
+                 UsesLists, Writes<field::velocity>, Adds<field::dissipation>>;
   static void launch(const auto& c) {
     with_xsph(c, c[field::position], c[other<field::velocity>], c[field::velocity], nullptr,
               nullptr, [&](const auto& pass) { c.pairs(pass); });
@@ -43,7 +46,8 @@ struct XsphPredictSort {
   static constexpr PassText text{"xsph+predict+sort", "grid", kLessXsph};
   using Flips = pbf::Flips<field::position, field::free_velocity, field::id>;
   using Needs = pbf::Needs<Gathers<other<field::position>, W::inverse_density>, SortPredictedNeeds,
-                           Gathers<field::velocity>, UsesLists, Places<other<field::velocity>>>;
+                           Gathers<field::velocity>, UsesLists, Places<other<field::velocity>>,
+                           Adds<field::dissipation>>;
   template <class G>
   static void launch(const G& c) {
     using Rows = Vec4<typename G::Real>;

@@ -14,13 +14,13 @@ seeded_defect(undeclared_gather declarations lib/program/features/confinement.h
 seeded_defect(undeclared_gather_of_lambda declarations lib/program/features/constraint.h
   [[Gathers<field::velocity, W::any, When::first_iteration>,]] [[]])
 seeded_defect(undeclared_lists declarations lib/program/features/viscosity.h
-  [[Gathers<other<field::velocity>>, UsesLists,]] [[Gathers<other<field::velocity>>,]])
+  [[UsesLists, Writes<field::velocity>, Adds]] [[Writes<field::velocity>, Adds]])
 seeded_defect(undeclared_behind_address declarations lib/program/features/solids.h
   [[Looks<field::solid_scene>, Looks<field::solids>>;]] [[Looks<field::solid_scene>>;]])
 seeded_defect(neighbor_of_own_row declarations lib/program/features/confinement.h
   [[Gathers<field::curl>,]] [[Reads<field::curl>,]])
 seeded_defect(write_to_what_is_read declarations lib/program/features/confinement.h
-  [[Updates<field::velocity>>;]] [[Reads<field::velocity>>;]])
+  [[Updates<field::velocity>, Adds]] [[Reads<field::velocity>, Adds]])
 seeded_defect(read_of_running_sum declarations lib/program/features/loads.h
   [[Updates<field::load_sums>, Updates<field::loads>]]
   [[Adds<field::load_sums>, Updates<field::loads>]])

@@ -106,7 +106,8 @@ TEST_CASE("gauges: the columns of each say where it is, in which unit, and how t
           "  - {name: H, kind: level, at: [0.5, 0.25]}\n"
           "  - {name: U, kind: velocity, at: [0.5, 0.25, 0.1]}\n"
           "  - {name: Q, kind: flow, center: [0.5, 0.5, 0.1], normal: [1, 0, 0], size: [1, 0.2]}\n"
-          "  - {name: P, kind: pressure, on: x_max, at: [1, 0.5, 0.1], radius: 0.2}\n")
+          "  - {name: P, kind: pressure, on: x_max, at: [1, 0.5, 0.1], radius: 0.2}\n",
+          {"solver.hyperviscosity=0"})
           .columns;
   REQUIRE(all.size() == 6);
   CHECK(all[0].place == "x = 0.5 m, y = 0.25 m");
@@ -128,7 +129,8 @@ TEST_CASE("gauges: the columns of each say where it is, in which unit, and how t
 }
 
 TEST_CASE("readings: closed walls and obstacles with loads have columns, others none") {
-  const auto columns = [](const std::vector<std::string>& set) {
+  const auto columns = [](std::vector<std::string> set) {
+    set.push_back("solver.hyperviscosity=0");
     std::vector<std::string> out;
     const auto all =
         plan_of(
@@ -149,6 +151,26 @@ TEST_CASE("readings: closed walls and obstacles with loads have columns, others 
   CHECK(columns({"domain.loads=true", "obstacles=[]", "dimensions=2", "domain.max=[1, 0.1, 1]"})
             .size() == 4 * 7);
   CHECK(columns({"obstacles=[]"}).empty());
+}
+
+TEST_CASE("readings: what takes energy has a column where the scene has it") {
+  const auto columns = [](const std::vector<std::string>& set) {
+    std::string out;
+    const auto all = plan_of("", set).columns;
+    for_each_number(all, Series::measures, [&](const ReadingColumn& c, int component, std::size_t) {
+      CHECK(c.kind == std::string("dissipation"));
+      CHECK(c.join == Join::total);
+      out += c.of + "/" + number_name(c, component) + " " + c.unit + "; ";
+    });
+    return out;
+  };
+  CHECK(columns({}) == "hyperviscosity/energy J; ");
+  CHECK(columns({"time.order=1"}) == "");
+  CHECK(columns({"gravity=0", "time.step=0.01"}) == "");
+  CHECK(columns({"time.order=1", "viscosity={}", "vorticity={}"}) ==
+        "viscosity/energy J; confinement/energy J; ");
+  CHECK(columns({"time.order=1", "viscosity.xsph=0", "solver.velocity_damping=0.9"}) ==
+        "damping/energy J; ");
 }
 
 }  // namespace pbf
