@@ -187,7 +187,13 @@ def test_panels_show_the_tables_of_one_name_and_a_series_looks_the_same_in_all(t
     together = tools(*call)[1]
     assert len([line for line in together.splitlines() if "stored" in line]) == 4
     assert tools(*call, "--panels", "same", "same")[1] == together
+    code, out, _ = tools(*call, "--panels", "shallow", "deep", "--y", "compression_mean",
+                         "compression_p99")  # an error of its own in each panel
+    lines_of = [line for line in out.splitlines() if " s  compression_" in line]
+    assert code == 0 and lines_of[:4] == front[:4]
+    assert len(lines_of) == 5 and "compression_p99 10 %" in lines_of[4]
     for words, said in ((("--panels", "one"), "1 names for 2 tables"),
+                        (("--panels", "a", "b", "--y", "x", "y", "z"), "3 columns for 2 panels"),
                         (("--panels", "a", "b", "--goal", "1:2"), "1 goals for 2 panels"),
                         (("--goal", "1"), "'1' is not TIME:ERROR"),
                         (("--goal", "0:1"), "shows what is above 0")):

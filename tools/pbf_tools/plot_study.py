@@ -3,7 +3,7 @@
 Each series (method, backend, precision) has one curve through its best settings; its other settings
 are faint points. A thick grey line joins the Pareto front, the settings that no other beats in both
 time and error. Bars show the spread of the repeats. With --panels, tables with different names are
-drawn side by side, on the same scale of errors.
+drawn side by side, on the same scale of errors if they show the same error.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ TABLE = "study.csv"  # of pbf study, in its folder
 COMPRESSION = "compression_mean"
 UNITS = {"_" + re.sub("[ /]", "_", unit.replace("^", "")): unit for unit in
          ("s", "m", "h", "J", "N", "N m", "Pa", "kg", "m/s", "kg/s", "kg m/s")}
-PANEL = " panel"  # a column that no table has: which panel, counted from 0, shows a row
+# Columns that no table has: which panel, counted from 0, shows a row, and its error there.
+PANEL, ERROR = " panel", " error"
 
 
 def _table_of(path: str) -> str:
@@ -50,9 +51,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--x-spread", default="seconds_spread", metavar="COLUMN",
                         help="longest minus shortest time of the repeats, s: the length of the bar "
                              "at the median (default %(default)s; no bar without this column)")
-    parser.add_argument("--y", metavar="COLUMN",
+    parser.add_argument("--y", nargs="+", metavar="COLUMN", default=[],
                         help="error, of compression or of motion: energy_rms_relative, front_x_rms_m "
-                             "(default: the first error of the study)")
+                             "(default: the first error of the study); one, or one for each panel")
     parser.add_argument("--series", default="variant,method,backend,precision", metavar="COLUMNS",
                         help="columns that distinguish the curves (default %(default)s)")
     parser.add_argument("--pareto", metavar="COLUMN",
@@ -115,29 +116,36 @@ def run(args: argparse.Namespace) -> int:
     if args.goal and len(args.goal) != len(titles):
         raise BadInput(f"--goal: {len(args.goal)} goals for {len(titles)} panels; give one for "
                        "each")
+    if len(args.y) > 1 and len(args.y) != len(titles):
+        raise BadInput(f"--y: {len(args.y)} columns for {len(titles)} panels; give one, or one for "
+                       "each")
     table = read_csvs(args.csv)
     first = _first_error(table)
-    args.y = args.y or first
-    args.pareto = args.pareto or ("pareto" if args.y == first else "compute")
-    whole = _rows(args, table)
-    percent = args.percent
-    if percent is None:
-        percent = args.y.startswith("compression") or args.y.endswith("_relative")
+    errors = args.y or [first]
+    if len(errors) == 1:
+        errors *= len(titles)
+    args.pareto = args.pareto or ("pareto" if set(errors) == {first} else "compute")
+    whole = _rows(args, table, errors)
     keys = [c for c in args.series.split(",") if c in whole.columns]
     names = np.array([", ".join(_text(whole[c][i]) for c in keys) for i in range(len(whole))])
     looks = _looks(whole, keys, names)
-    fig, grid = style.figure(1, len(titles), size=(2.8 + 4.2 * len(titles), 4.8), sharey=True)
+    same = len(set(errors)) == 1
+    fig, grid = style.figure(1, len(titles), size=(2.8 + 4.2 * len(titles), 4.8), sharey=same)
     lines = []
-    for k, (axes, title) in enumerate(zip(grid[0], titles)):
+    for k, (axes, title, error) in enumerate(zip(grid[0], titles, errors)):
         own = whole[PANEL] == k
         if not own.any():
-            raise BadInput(f"panel {title}: no row that finished has both {args.x} and {args.y}")
-        lines += _panel(axes, args, whole.where(own), percent, names[own], looks)
+            raise BadInput(f"panel {title}: no row that finished has both {args.x} and {error}")
+        percent = args.percent
+        if percent is None:
+            percent = error.startswith("compression") or error.endswith("_relative")
+        lines += _panel(axes, args, whole.where(own), error, percent, names[own], looks)
         if args.goal:
             axes.plot(*args.goal[k], "*", markersize=15, markerfacecolor="white", zorder=1.5,
                       markeredgecolor="black", linestyle="", label="goal")
         axes.set(xscale="log", yscale="log", xlabel=_label(args.x, "s"),
-                 ylabel="" if k else _label(args.y, "%" if percent else unit_of(args.y)))
+                 ylabel="" if k and same else _label(error, "%" if percent else unit_of(error)))
+        _plain_times(axes)
         style.title(axes, title or args.title or "Error against run time",
                     _detail(whole.where(own)))
     style.side_legend(grid[0][-1])
@@ -148,28 +156,38 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
+def _plain_times(axes) -> None:
+    """Times at 1, 2 and 5 of each decade, written out: a panel may span less than a decade."""
+    from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.xaxis.set_major_formatter(FormatStrFormatter("%g"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+
+
 def _first_error(table: Table) -> str:
     """The error that the column pareto is about."""
     names = set(table["error"].tolist()) - {""} if "error" in table.columns and len(table) else set()
     return names.pop() if len(names) == 1 else COMPRESSION
 
 
-def _rows(args: argparse.Namespace, table: Table) -> Table:
-    """The rows that can be drawn, each with its panel; what is left out is said on stderr."""
-    need(table, [args.x, args.y], ", ".join(args.csv))
-    for name in (args.x, args.y):
+def _rows(args: argparse.Namespace, table: Table, errors: list[str]) -> Table:
+    """The rows that can be drawn, each with its panel and its error; what is left out is said on
+    stderr."""
+    need(table, [args.x, *errors], ", ".join(args.csv))
+    for name in (args.x, *errors):
         if table[name].dtype.kind != "f":
             raise BadInput(f"column {name} is not one of numbers")
     titles = list(dict.fromkeys(args.panels))
     panel = np.repeat([titles.index(name) for name in args.panels] or [0] * len(args.csv),
                       [len(read_csvs([path])) for path in args.csv])
-    table = Table({**table.columns, PANEL: panel})
-    good = np.isfinite(table[args.x]) & (table[args.x] > 0) & (table[args.y] > 0) \
-        & np.isfinite(table[args.y])
+    y = np.choose(panel, [table[name] for name in errors])
+    table = Table({**table.columns, PANEL: panel, ERROR: y})
+    good = np.isfinite(table[args.x]) & (table[args.x] > 0) & (y > 0) & np.isfinite(y)
+    wanted = " or ".join(dict.fromkeys(errors))
     if not good.any():
-        raise BadInput(f"no row has both {args.x} and {args.y} above 0")
+        raise BadInput(f"no row has both {args.x} and {wanted} above 0")
     if not good.all():
-        print(f"left out: {np.count_nonzero(~good)} rows whose {args.x} or {args.y} is missing or "
+        print(f"left out: {np.count_nonzero(~good)} rows whose {args.x} or {wanted} is missing or "
               "not above 0, which a logarithmic axis cannot show", file=sys.stderr)
     table = table.where(good)
     status = table.columns.get("status")
@@ -180,10 +198,10 @@ def _rows(args: argparse.Namespace, table: Table) -> Table:
     return table
 
 
-def _panel(axes, args: argparse.Namespace, table: Table, percent: bool, names: np.ndarray,
-           looks: dict[str, tuple[dict[str, object], str]]) -> list[str]:
+def _panel(axes, args: argparse.Namespace, table: Table, error: str, percent: bool,
+           names: np.ndarray, looks: dict[str, tuple[dict[str, object], str]]) -> list[str]:
     """Draws a table; the settings on its front, one line of text each."""
-    x, y = table[args.x], table[args.y] * (100 if percent else 1)
+    x, y = table[args.x], table[ERROR] * (100 if percent else 1)
     spread = table.columns.get(args.x_spread)
     best = _pareto(table, args.pareto, x, y)
     at = np.flatnonzero(best)[np.argsort(x[best])]
@@ -193,8 +211,8 @@ def _panel(axes, args: argparse.Namespace, table: Table, percent: bool, names: n
         _series(axes, x, y, spread, np.flatnonzero(names == name), name, look, line)
     axes.plot(x[at], y[at], "o", markersize=11, markerfacecolor="none", markeredgecolor="black",
               markeredgewidth=0.9, zorder=4)
-    unit = " %" if percent else "" if unit_of(args.y) == "1" else " " + unit_of(args.y)
-    return [f"{x[i]:10.4g} s  {args.y} {y[i]:.3g}{unit}  {names[i]}" for i in at]
+    unit = " %" if percent else "" if unit_of(error) == "1" else " " + unit_of(error)
+    return [f"{x[i]:10.4g} s  {error} {y[i]:.3g}{unit}  {names[i]}" for i in at]
 
 
 def _looks(table: Table, keys: list[str],
