@@ -1,6 +1,6 @@
 #include "lib/program/dissipation.h"
 
-#include <cmath>
+#include <iterator>
 
 #include "lib/program/hyperviscosity.h"
 #include "lib/program/plan.h"
@@ -22,18 +22,20 @@ bool dissipates(const Scene& s, Dissipation by) {
 }
 
 std::vector<Dissipation> dissipations(const Scene& s) {
-  using enum Dissipation;
   std::vector<Dissipation> all;
-  for (const Dissipation by : {viscosity, hyperviscosity, confinement, damping})
-    if (dissipates(s, by)) all.push_back(by);
+  for (int k = 0; k < int(std::size(kDissipationNames)); ++k)
+    if (const auto by = static_cast<Dissipation>(k); dissipates(s, by)) all.push_back(by);
   return all;
+}
+
+double dissipation_unit(const Scene& s, const Plan& plan) {
+  return plan.mass * s.h() * s.h() * plan.dissipation_unit / kDissipationUnits;
 }
 
 std::vector<double> dissipated(const std::vector<DissipationSum>& sums, const Scene& s,
                                const Plan& plan) {
   __extension__ typedef __int128 Wide;
-  // J for a particle, of the unit of the sums.
-  const double unit = plan.mass * s.h() * s.h() * plan.dissipation_unit / kDissipationUnits;
+  const double unit = dissipation_unit(s, plan);
   const std::size_t causes = dissipations(s).size(), each = causes > 0 ? sums.size() / causes : 0;
   std::vector<double> out;
   for (std::size_t k = 0; k < causes; ++k) {

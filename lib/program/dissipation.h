@@ -23,6 +23,8 @@ inline bool is_damped(const Scene& s) { return dissipates(s, Dissipation::dampin
 /// Those that the scene has, in their order.
 std::vector<Dissipation> dissipations(const Scene& scene);
 
+/// J, the unit of the sums, for a particle.
+double dissipation_unit(const Scene& scene, const Plan& plan);
 /// J, what each of them has taken since the start. sums: the same number for each.
 std::vector<double> dissipated(const std::vector<DissipationSum>& sums, const Scene& scene,
                                const Plan& plan);

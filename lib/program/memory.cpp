@@ -87,8 +87,8 @@ std::int64_t add_start(const Scene& s, const Plan& plan, const std::string& real
 
 /// Additional memory beside the solver while the start settles (lib/run/settle.h) or is relieved of
 /// compression (lib/run/prestabilize.h). The solver has no kept state yet.
-std::int64_t add_prestabilize(const Scene& s, const Plan& plan, const std::string& real,
-                              MemoryPlan& memory) {
+std::int64_t add_before_run(const Scene& s, const Plan& plan, const std::string& real,
+                            MemoryPlan& memory) {
   const Adder add{memory, false, Held::start};
   std::int64_t start = 0;
   if (s.settle) {  // the solver that settles is gone before that of the run is made
@@ -215,7 +215,7 @@ MemoryPlan plan_memory(const Scene& s, const Plan& plan) {
   const std::int64_t stays = add_output(s, plan, memory);
   add_checkpoint(s, plan, real, memory);
   const std::int64_t start = add_start(s, plan, real, memory);
-  const std::int64_t relieved = add_prestabilize(s, plan, real, memory);
+  const std::int64_t relieved = add_before_run(s, plan, real, memory);
   add_fixed(s, plan, memory);
   std::int64_t later = 0;
   for (const FixedMemory& f : memory.fixed) later += f.after_start ? f.bytes : 0;

@@ -45,7 +45,7 @@ std::vector<ReadingColumn> reading_columns(const Scene& s, const Plan& plan) {
     all.push_back({"load", of, "force_peak", "N", "", peak, 1, measures, {grain}, 1});
   }
   for (const Dissipation by : dissipations(s)) {
-    const double bit = plan.mass * s.h() * s.h() * plan.dissipation_unit / kDissipationUnits;
+    const double unit = dissipation_unit(s, plan);
     all.push_back({"dissipation",
                    kDissipationNames[std::size_t(by)],
                    "energy",
@@ -54,7 +54,7 @@ std::vector<ReadingColumn> reading_columns(const Scene& s, const Plan& plan) {
                    total,
                    1,
                    measures,
-                   {bit * double(plan.particles)}});
+                   {unit * double(plan.particles)}});
   }
   all.insert(all.end(), plan.gauges.columns.begin(), plan.gauges.columns.end());
   for (const Obstacle& o : s.obstacles) {

@@ -17,20 +17,13 @@ Double3 gravity_at_begin(const Scene& s) {
   return turned(s.gravity, unit(*s.tank_motion->axis), -tank_pose(s, 0).angle);
 }
 
-/// The first level whose step time.adaptive allows under this gravity.
-int level_under(const Scene& s, double g) {
-  if (!s.time.adaptive || g == 0) return 0;
-  const double longest = s.time.adaptive->force * std::sqrt(s.h() / g);
-  int level = 0;
-  while (level < finest_level(s) && std::ldexp(s.time.step, -level) > longest) ++level;
-  return level;
-}
-
 }  // namespace
 
 Scene settling_scene(const Scene& scene) {
   const Double3 g = scene.settle->gravity.value_or(gravity_at_begin(scene));
-  Scene s = scene_at_level(scene, level_under(scene, length(g)));
+  const int level =
+      scene.time.adaptive ? next_level(scene, 0, longest_step(scene, 0, length(g)), false) : 0;
+  Scene s = scene_at_level(scene, level);
   s.gravity = g;
   s.time.end = std::max(scene.settle->duration, s.time.step);
   s.time.adaptive.reset();

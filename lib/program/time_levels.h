@@ -12,6 +12,15 @@ namespace pbf::program_module {
 /// The finest level that time.adaptive.step_min allows; 0 without time.adaptive.
 int finest_level(const Scene& scene);
 
+/// The longest step, s, for the largest speed (m/s) and acceleration (m/s^2):
+/// min(cfl h/v, force sqrt(h/a)), after Monaghan 1992, Smoothed particle hydrodynamics, ARAA 30.
+/// Infinite if neither limits it. Needs time.adaptive.
+double longest_step(const Scene& scene, double speed, double acceleration);
+
+/// The level after `level`: finer at once, until the step is at most `longest` (or at the finest
+/// level); coarser by one if `may_coarsen` and twice the coarser step is at most `longest`.
+int next_level(const Scene& scene, int level, double longest, bool may_coarsen);
+
 /// A scene of which 2^level updates give the bits of one update at this level. A step then has the
 /// 2^level-th root of the damping and the XSPH coefficient c/2^level: to first order in c, the
 /// smoothing per update is the same. A displacement in a step of dt acts like a force over dt^2, so

@@ -13,7 +13,6 @@
 #include "lib/exec/make_solver.h"
 #include "lib/io/particle_file.h"
 #include "lib/io/run_path.h"
-#include "lib/program/energy_at_rest.h"
 #include "lib/program/threads.h"
 #include "lib/run/load_run.h"
 #include "lib/run/prestabilize.h"
@@ -51,7 +50,7 @@ RunInfo run_info(const RunParts& run, const std::string& started) {
   info.spacing = scene.fluid.spacing;
   info.smoothing_length = scene.h();
   info.rest_density = scene.fluid.rest_density;
-  info.energy_at_rest = energy_at_rest(scene, run.plan);
+  info.energy_at_rest = run.at_rest;
   info.particles = run.plan.particles;
   info.capacity = scene.capacity;
   info.first_update = run.from.update();
@@ -113,6 +112,10 @@ File open_json(const std::string& path, bool append) {
   return file;
 }
 
+std::function<void(const std::string&)> progress_in(Log& log) {
+  return [&log](const std::string& line) { log.progress("pbf: " + line); };
+}
+
 /// Everything after the folder is made, so that log.txt also gets the error that ends the run.
 RunResult simulate(RunParts& run) {
   const ResumePoint& from = run.from;
@@ -134,9 +137,8 @@ RunResult simulate(RunParts& run) {
     note(fmt::format("goes on from the checkpoint of update {}", from.update()));
   } else {
     run.clock.mark("init");
-    const std::string done = prestabilized_text(
-        prestabilize(run.solver, run.scene, run.plan,
-                     [&log](const std::string& line) { log.progress("pbf: " + line); }));
+    const std::string done =
+        prestabilized_text(prestabilize(run.solver, run.scene, run.plan, progress_in(log)));
     if (!done.empty()) note(done);
     run.clock.begin();  // the solver has recorded its own steps
   }
@@ -218,8 +220,8 @@ RunResult run(Start start, const RunPlace& place, Control& control) {
     }
   }
   take_files(start.loaded, start.particles.files, from.notes);
-  const auto show = [&log](const std::string& line) { log.progress("pbf: " + line); };
-  if (!from.saved && !settle(start, show, [&] { return !control.why_stop().empty(); })) {
+  if (!from.saved &&
+      !settle(start, progress_in(log), [&] { return !control.why_stop().empty(); })) {
     log.note("pbf: stopped early by " + control.why_stop() +
              " while the start settled; nothing is saved, the same command begins again");
     return {control.why_stop(), 0};

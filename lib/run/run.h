@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lib/io/run_file.h"
+#include "lib/program/energy_at_rest.h"
 #include "lib/run/monitor.h"
 #include "lib/run/resume.h"
 #include "lib/run/start.h"
@@ -34,6 +35,7 @@ struct RunParts {
   const Scene& scene = start.scene();
   const Plan& plan = start.plan;
   Schedule schedule = make_schedule(scene);
+  double at_rest = energy_at_rest(scene, plan);  ///< J
 
   double loop_seconds = 0;     ///< s, updates with their output
   double drawing_seconds = 0;  ///< s, spent drawing in parallel with the run

@@ -9,7 +9,6 @@
 #include "lib/base/machine.h"
 #include "lib/base/stages.h"
 #include "lib/base/text.h"
-#include "lib/program/energy_at_rest.h"
 #include "lib/run/run.h"
 #include "lib/scene/vector3.h"
 #include "lib/solver/diagnostics.h"
@@ -206,8 +205,7 @@ std::string run_summary(const RunParts& run, const Monitor& monitor,
   out += fmt::format("speed               {} particle-updates/s in these {}\n",
                      si_number(loop > 0 ? double(plan.particles) * own / loop : 0),
                      duration_text(loop));
-  out += error_lines(last, run.compression_max) +
-         energy_lines(first, last, plan, energy_at_rest(scene, plan));
+  out += error_lines(last, run.compression_max) + energy_lines(first, last, plan, run.at_rest);
   out += "peak memory         " + bytes_text(double(peak_memory())) + " on the host\n";
   out += pool_line(last, scene, plan.mass * double(plan.particles));
   if (last.non_finite > 0)

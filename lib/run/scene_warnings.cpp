@@ -2,11 +2,13 @@
 #include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernels/relative_motion.h"
 #include "lib/base/text.h"
 #include "lib/program/motion.h"
 #include "lib/program/relaxation.h"
+#include "lib/program/time_levels.h"
 #include "lib/run/motion_warnings.h"
 #include "lib/run/start_neighbors.h"
 #include "lib/run/warnings.h"
@@ -19,10 +21,10 @@ namespace {
 /// Ratio of a step to that of time.step: auto above which a warning is given.
 constexpr double kFarAbove = 10;
 
-/// The longest step that time.adaptive allows for gravity, s; above time.step if it has no limit.
+/// The longest step that time.adaptive allows for gravity, s; infinite without a limit.
 double adaptive_step(const Scene& s) {
-  const double g = length(s.gravity);
-  return s.time.adaptive && g > 0 ? s.time.adaptive->force * std::sqrt(s.h() / g) : 2 * s.time.step;
+  return s.time.adaptive ? longest_step(s, 0, length(s.gravity))
+                         : std::numeric_limits<double>::infinity();
 }
 
 /// The longest substep of the scene, s.

@@ -59,7 +59,8 @@ bool settle(Start& start, const std::function<void(const std::string&)>& progres
   const std::unique_ptr<Solver> solver = make_solver(s, plan, std::move(resting));
   prestabilize(*solver, s, plan, progress);
   const double scale = energy_scale(solver->diagnose(), s, plan);
-  if (!advance(*solver, make_schedule(s).updates, progress, stop)) return false;
+  const std::int64_t updates = make_schedule(s).updates;
+  if (!advance(*solver, updates, progress, stop)) return false;
   const Diagnostics m = solver->diagnose();
   if (m.non_finite > 0)
     throw Error(ExitCode::guard,
@@ -71,7 +72,7 @@ bool settle(Start& start, const std::function<void(const std::string&)>& progres
   start.notes.push_back(fmt::format(
       "start: settled for {:g} s before time 0, in {} updates; its particles moved by up to {:.3g} "
       "m, and had {:.2g} J of kinetic energy and a mean compression of {:.2g} % at the end",
-      s.time.end, make_schedule(s).updates, way, m.kinetic_energy, 100 * m.compression_mean));
+      s.time.end, updates, way, m.kinetic_energy, 100 * m.compression_mean));
   if (scale > 0 && m.kinetic_energy > kSettled * scale)
     start.warnings.push_back(
         {"unsettled",

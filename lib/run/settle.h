@@ -16,7 +16,7 @@ inline constexpr double kSettled = 1e-3;
 /// settling_scene() (lib/program/settling.h), with their velocities as they were, and tells in
 /// start.notes and start.warnings how calm they were. Nothing to do without the key. The bits do
 /// not depend on threads, nor with solver.reproducible on the backend. `progress` gets a line now
-/// and then; stop() is asked as often. Returns false if it has stopped: start.particles are gone
+/// and then; stop() is asked as often. Returns false if it has stopped; `start` is as it was
 /// then. Throws Error(guard) if the fluid is not finite, and as make_solver() does.
 bool settle(Start& start, const std::function<void(const std::string&)>& progress = {},
             const std::function<bool()>& stop = {});

@@ -14,21 +14,6 @@ constexpr std::int64_t kEarly = 8, kLongestHold = std::int64_t(1) << 30;  // sch
 
 }  // namespace
 
-double longest_step(const Scene& s, double speed, double acceleration) {
-  const double none = std::numeric_limits<double>::infinity(), h = s.h();
-  const AdaptiveTime& a = *s.time.adaptive;
-  return std::min(speed > 0 ? a.cfl * h / speed : none,
-                  acceleration > 0 ? a.force * std::sqrt(h / acceleration) : none);
-}
-
-int next_level(const Scene& s, int level, double longest, bool may_coarsen) {
-  const int finest = finest_level(s);
-  int k = level;
-  while (k < finest && std::ldexp(s.time.step, -k) > longest) ++k;
-  const double coarser = std::ldexp(s.time.step, 1 - k);
-  return k == level && k > 0 && may_coarsen && 2 * coarser <= longest ? k - 1 : k;
-}
-
 AdaptiveStep::AdaptiveStep(const Scene& scene, const StepHistory& before)
     : scene_(scene), finest_(finest_level(scene)), h_(before) {
   h_.updates.resize(std::size_t(finest_) + 1);

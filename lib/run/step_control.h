@@ -12,14 +12,6 @@
 
 namespace pbf::run_module {
 
-/// The longest step, s, for the largest speed (m/s) and acceleration (m/s^2):
-/// min(cfl h/v, force sqrt(h/a)), after Monaghan 1992, Smoothed particle hydrodynamics, ARAA 30.
-double longest_step(const Scene& scene, double speed, double acceleration);
-
-/// The level after `level`: finer at once, until the step is at most `longest` (or at the finest
-/// level); coarser by one if `may_coarsen` and twice the coarser step is at most `longest`.
-int next_level(const Scene& scene, int level, double longest, bool may_coarsen);
-
 /// The time level of a run. Every change returns a line for the log.
 class AdaptiveStep {
  public:

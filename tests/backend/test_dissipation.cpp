@@ -14,8 +14,6 @@ using pbf::TimeOrder;
 
 namespace {
 
-double random_part(std::mt19937& gen) { return double(gen()) / 4294967295.0 * 2 - 1; }
-
 /// 9 x 9 x 9 particles of a lattice of `apart` spacings, far from walls, with random velocities.
 Case cloud(double apart, double speed, TimeOrder order) {
   Case c = here({});
@@ -32,7 +30,7 @@ Case cloud(double apart, double speed, TimeOrder order) {
     const double d = apart * c.scene.fluid.spacing;
     c.particles.position.push_back({d * (k % 9 - 4), d * (k / 9 % 9 - 4), d * (k / 81 - 4)});
     pbf::Double3 v;
-    for (double& x : v) x = speed * random_part(gen);
+    for (double& x : v) x = speed * random_number(gen);
     c.particles.velocity.push_back(v);
   }
   return c;

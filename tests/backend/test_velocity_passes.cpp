@@ -12,8 +12,6 @@ using pbf::Double3;
 
 namespace {
 
-double random_number(std::mt19937& gen) { return double(gen()) / 4294967295.0 * 2 - 1; }
-
 /// No walls within reach, no gravity.
 void set_free(Case& c, double room) {
   c.scene.gravity = {0, 0, 0};

@@ -11,6 +11,9 @@
 
 namespace oracle_test {
 
+/// From -1 to 1; the integers of the generator are fixed by the standard.
+inline double random_number(std::mt19937& gen) { return double(gen()) / 4294967295.0 * 2 - 1; }
+
 /// A box of `extent` cells of the spacing, a lattice block in its lower corner (so it touches
 /// walls, edges and corners), every particle displaced by up to `jitter` spacings, random
 /// velocities.
@@ -29,8 +32,8 @@ inline Case jittered_block(int nx, int ny, int nz, double jitter, double speed,
   c.scene.time = {0.002, 1, {}};
   c.scene.precision = pbf::Precision::dbl;
   c.scene.threads = 1;
-  std::mt19937 gen(seed);  // its integers are fixed by the standard
-  auto random = [&] { return double(gen()) / 4294967295.0 * 2 - 1; };
+  std::mt19937 gen(seed);
+  const auto random = [&] { return random_number(gen); };
   const auto &lo = c.scene.domain.min, &hi = c.scene.domain.max;
   for (int z = 0; z < nz; ++z)
     for (int y = 0; y < ny; ++y)

@@ -48,7 +48,7 @@ struct Confine {
 struct VorticityConfinement {
   using Passes = PassList<Curl, Confine>;
   static void add(const Scene& s, auto& b) {
-    if (!s.vorticity || s.vorticity->epsilon == 0)
+    if (!dissipates(s, Dissipation::confinement))
       return b.left_out("curl and confinement passes, curl array", "no key vorticity");
     b.after(Curl());
     b.after(Confine());

@@ -62,7 +62,7 @@ struct XsphPredictSort {
 struct XsphViscosity {
   using Passes = PassList<Xsph, XsphPredictSort>;
   static void add(const Scene& s, auto& b) {
-    if (s.viscosity && s.viscosity->xsph != 0)
+    if (dissipates(s, Dissipation::viscosity))
       b.after(Xsph());
     else
       b.left_out("xsph pass", "no key viscosity");
