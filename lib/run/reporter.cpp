@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "kernels/relative_motion.h"
+#include "lib/program/motion.h"
 #include "lib/run/run.h"
 
 namespace pbf::run_module {
