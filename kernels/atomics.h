@@ -15,23 +15,6 @@ PBF_HD void add_whole(std::int64_t* sum, std::int64_t term) {
 #endif
 }
 
-/// On a device, if all 32 threads of a warp are here with one `place`: the sum of their terms for
-/// the first of them, 0 for the others. Else the term. What is then added to the places is the
-/// same. Many threads that add to one number wait for each other.
-PBF_HD std::int64_t sum_of_warp([[maybe_unused]] const void* place, std::int64_t term) {
-#if defined(__CUDA_ARCH__)
-  constexpr unsigned all = 0xffffffffu;
-  if (__activemask() != all) return term;
-  int same = 0;
-  __match_all_sync(all, reinterpret_cast<unsigned long long>(place), &same);
-  if (!same) return term;
-  for (int k = 16; k > 0; k /= 2) term += __shfl_down_sync(all, term, k);
-  return threadIdx.x % 32 == 0 ? term : 0;
-#else
-  return term;
-#endif
-}
-
 PBF_HD void count_one(unsigned long long* count) {
 #if defined(__CUDA_ARCH__)
   atomicAdd(count, 1ull);
