@@ -12,6 +12,8 @@
 #include "lib/base/log.h"
 #include "lib/base/plain_text.h"
 #include "lib/base/version.h"
+#include "lib/exec/ranks/mpi_ranks.h"
+#include "lib/exec/ranks/world.h"
 #include "lib/run/signals.h"
 
 namespace pbf::app_module {
@@ -86,11 +88,35 @@ int guarded(int argc, char** argv) {
   }
 }
 
+/// Started by mpirun or srun on several ranks: rank 0 does what the command says, the others serve
+/// its solvers.
+int on_ranks(int argc, char** argv) {
+  if (argc < 2 || std::string_view(argv[1]) != "run") {
+    const ExitCode code = ExitCode::bad_input;
+    if (launched_rank() != 0) return static_cast<int>(code);
+    return fail(code,
+                "of the commands, only run works on several ranks; start the others without mpirun "
+                "or srun");
+  }
+  try {
+    open_world();
+    if (world()->rank() != 0) {
+      ignore_signals();
+      return serve_world();
+    }
+  } catch (const Error& e) {
+    return fail(e.code(), e.what());
+  }
+  const int code = guarded(argc, argv);
+  end_world(code);
+  return code;
+}
+
 }  // namespace
 }  // namespace pbf::app_module
 
 int main(int argc, char** argv) {
   pbf::hold_standard_streams();
   pbf::see_failed_writes();
-  return pbf::guarded(argc, argv);
+  return pbf::launched_ranks() > 1 ? pbf::on_ranks(argc, argv) : pbf::guarded(argc, argv);
 }

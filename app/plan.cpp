@@ -11,6 +11,7 @@
 #include "lib/base/machine.h"
 #include "lib/base/text.h"
 #include "lib/campaign/calibration.h"
+#include "lib/program/rank_plan.h"
 #include "lib/program/threads.h"
 #include "lib/run/load_run.h"
 #include "lib/run/start.h"
@@ -21,6 +22,7 @@ namespace {
 struct PlanOptions : SceneOptions {
   std::string scene;
   int threads = 0;  ///< 0: as the scene says
+  int ranks = 1;
   bool resolved = false, json = false, arrays = false;
 };
 
@@ -85,6 +87,7 @@ int command_plan(const PlanOptions& options) {
   } else {
     text = plan_summary(plan, scene, run_time_text(all)) + warnings_text(start.warnings) +
            plan_details(plan, scene);
+    if (options.ranks > 1) text += rank_text(plan_ranks(plan, scene, options.ranks));
     text += options.arrays ? plan_arrays(plan, scene)
                            : "--arrays lists every array; --json has it all\n";
   }
@@ -104,6 +107,8 @@ void add_plan(CLI::App& app, int& code) {
       ->required();
   c->add_option("--threads", o.threads, "CPU threads of the run, which its memory depends on")
       ->transform(whole_number(1, 4096));
+  c->add_option("--ranks", o.ranks, "Ranks of the run (mpirun -n): what they send to each other")
+      ->transform(whole_number(1, 65536));
   add_scene_options(c, o);
   CLI::Option* resolved =
       c->add_flag("--resolved", o.resolved, "Print the scene with every default filled in");

@@ -8,6 +8,7 @@
 #include "lib/exec/cuda/cuda_solver.h"
 #endif
 #include "lib/exec/make_solver.h"
+#include "lib/exec/ranks/world.h"
 #include "lib/program/plan.h"
 #include "lib/solver/solver.h"
 
@@ -24,6 +25,7 @@ void refuse_if_too_large(const Scene& scene, const Plan& plan, std::size_t avail
 }
 
 std::unique_ptr<Solver> make_solver(const Scene& scene, const Plan& plan, Particles particles) {
+  if (world()) return make_ranked_solver(scene, plan, std::move(particles));
   if (scene.backend == Backend::cpu) return make_cpu_solver(scene, plan, std::move(particles));
 #ifdef PBF_HAS_CUDA
   return make_cuda_solver(scene, plan, std::move(particles));

@@ -5,7 +5,7 @@
 namespace pbf::run_module {
 namespace {
 
-constexpr int kStopping[] = {SIGTERM, SIGINT};
+constexpr int kStopping[] = {SIGTERM, SIGINT, SIGUSR2};
 constexpr std::sig_atomic_t kOneStop = 3;  // s
 volatile std::sig_atomic_t seen_at = 0;
 constinit StopToken token;
@@ -17,7 +17,7 @@ extern "C" void pbf_on_stop(int number) {
   const auto second = static_cast<std::sig_atomic_t>(now.tv_sec);
   if (seen_at == 0) {  // somebody else may have asked the token
     seen_at = second;
-    token.ask(number == SIGTERM ? "SIGTERM" : "SIGINT");
+    token.ask(number == SIGTERM ? "SIGTERM" : number == SIGINT ? "SIGINT" : "SIGUSR2");
     std::signal(SIGINT, SIG_DFL);
   } else if (second - seen_at >= kOneStop) {
     std::signal(number, SIG_DFL);
@@ -49,6 +49,11 @@ void watch_signals() {
   watch(SIGUSR1, pbf_on_save);
   const sigset_t set = watched();
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
+void ignore_signals() {
+  for (const int s : kStopping) std::signal(s, SIG_IGN);
+  std::signal(SIGUSR1, SIG_IGN);
 }
 
 HeldSignals::HeldSignals() {

@@ -1,4 +1,5 @@
-// Signals ask a token to stop (SIGTERM, SIGINT) or to save (SIGUSR1, as sent by Slurm's --signal).
+// Signals ask a token to stop (SIGTERM, SIGINT; SIGUSR2, which mpirun passes on without ending the
+// ranks soon after) or to save (SIGUSR1, as sent by Slurm's --signal).
 #pragma once
 
 #include <csignal>
@@ -7,16 +8,19 @@
 
 namespace pbf::run_module {
 
-/// From now on SIGTERM or SIGINT asks signal_token() to stop; a second one ends the program at
-/// once. A SIGTERM less than 3 s after the first signal is ignored, because Slurm and systemd
-/// signal every process and a batch forwards the signal to its runs. SIGUSR1 asks it to save.
-/// Signals that HeldSignals blocked arrive now.
+/// From now on SIGTERM, SIGINT or SIGUSR2 asks signal_token() to stop; a second one ends the
+/// program at once. A SIGTERM less than 3 s after the first signal is ignored, because Slurm and
+/// systemd signal every process and a batch forwards the signal to its runs. SIGUSR1 asks it to
+/// save. Signals that HeldSignals blocked arrive now.
 void watch_signals();
 
 /// The token of the process; signals are per process.
 StopToken& signal_token();
 
-/// Blocks SIGTERM, SIGINT and SIGUSR1 during its lifetime, also in processes started then, until
+/// Of a process that only serves another: it gets that one's signals, too.
+void ignore_signals();
+
+/// Blocks these signals during its lifetime, also in processes started then, until
 /// these call watch_signals(): no signal kills a run before its handlers are installed.
 class HeldSignals {
  public:

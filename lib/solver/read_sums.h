@@ -31,7 +31,7 @@ std::vector<Load> read_loads(C& c, Interval interval) {
 template <class C>
 std::vector<DissipationSum> read_dissipation(C& c) {
   std::vector<DissipationSum> sums(c.kept_rows(field::dissipation));
-  if (!sums.empty()) c.exec.to_host(c.data(field::dissipation), sums.size(), sums.data());
+  if (!sums.empty()) c.sums_to_host(c.data(field::dissipation), sums);
   return sums;
 }
 
@@ -50,7 +50,7 @@ void read_sums(C& c, std::vector<typename Tally::Sums>& rows, Interval interval)
   } else {
     c.put(field::gauge_sums<Tally>, rows);
     launch_one<ReadGauges<Tally>>(c);
-    c.exec.to_host(c.data(field::gauge_sums<Tally>), rows.size(), rows.data());
+    c.sums_to_host(c.data(field::gauge_sums<Tally>), rows);
   }
 }
 

@@ -89,6 +89,12 @@ struct StepContext {
                                        std::to_string(capacity()) + " at a time");
     return int(now.rows);
   }
+  /// Integers that passes have added up, over all ranks.
+  template <class Sums>
+  void sums_to_host(const Sums* from, std::vector<Sums>& to) {
+    exec.to_host(from, to.size(), to.data());
+    if constexpr (requires { exec.add_up(to); }) exec.add_up(to);
+  }
   /// The place of each of n rows in the order of ids, in the memory of the executor.
   const int* order_of_ids(const int* id, int n) {
     if (!pbf::changes_rows(scene)) return id;  // they are 0 ... n - 1

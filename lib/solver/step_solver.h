@@ -68,12 +68,14 @@ class StepSolver final : public Solver, public Inspection {
   }
 
   std::future<Snapshot> download(const std::vector<std::string>& fields, ScalarType type) override {
+    const bool density = std::ranges::find(fields, "density") != fields.end();
+    if (density) find_pairs();
+    stepper_->ready_to_export(density);
     auto snapshot =
         std::make_shared<Snapshot>(empty_snapshot(fields, type, std::size_t(stepper_->rows()),
                                                   updates_, double(updates_) * scene_.time.step));
     if (changes_rows(scene_))
       std::ranges::copy(stepper_->ids(), snapshot->fields.back().as<std::int32_t>().begin());
-    if (snapshot->find("density")) find_pairs();
     type == ScalarType::f64 ? start_export<double>(*snapshot) : start_export<float>(*snapshot);
     return std::async(std::launch::deferred, [this, snapshot] {
       exec_.finish_copy(targets(*snapshot));
@@ -83,7 +85,7 @@ class StepSolver final : public Solver, public Inspection {
 
   Diagnostics diagnose() override {
     find_pairs();
-    const int n = stepper_->rows();
+    const int n = stepper_->particles();
     const MeasureConstants given = measure_constants(scene_, plan_, n);
     Diagnostics m = to_diagnostics(stepper_->measure(given), n, given, stepper_->velocity_lag(),
                                    scene_, plan_, updates_, steps_);

@@ -7,26 +7,17 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/measure.h"
-#include "kernels/pass_export.h"
-#include "kernels/pass_power.h"
 #include "lib/program/plan.h"
 #include "lib/solver/executor.h"
 #include "lib/solver/granted.h"
 #include "lib/solver/launched_rows.h"
 #include "lib/solver/read_sums.h"
+#include "lib/solver/results.h"
 #include "lib/solver/stage_check.h"
 #include "lib/solver/state_transfer.h"
 #include "lib/solver/tracer.h"
 
 namespace pbf::PBF_VARIANT {
-
-/// What a measurement of the state touches.
-struct Measure {
-  static constexpr PassText text{"measure", "measure"};
-  using Needs = pbf::Needs<Reads<field::position>, Reads<field::velocity>, Reads<field::density>,
-                           Reads<field::counts>, SolidNeeds, UsesLists>;
-};
 
 template <class Real, Executor Exec, class Features>
 class Stepper {
@@ -39,6 +30,8 @@ class Stepper {
   /// States and traces that the stepper returns are along the scene's axes.
   Stepper(Exec& exec, const Scene& scene, const Plan& plan, InternalState<Real> first)
       : plan_(plan), c_(exec, scene, plan), program_(&plan.program) {
+    if constexpr (has_ranks)
+      if (auto* rows = c_.exec.rows()) rows->take_own(first, c_.p, plan);
     c_.launched = int(first.id.size());
     c_.make(first);
     find_pairs();
@@ -50,6 +43,11 @@ class Stepper {
   void step(int updates) {
     if (updates <= 0) return;
     c_.exec.begin();
+    if constexpr (has_ranks)
+      if (c_.exec.rows()) {  // particles change ranks between the prediction and the sort
+        for (int k = 0; k < updates; ++k) run(program_->update);
+        return moved();
+      }
     run(program_->first);
     run(program_->rest);
     for (int k = 1; k < updates; ++k) {
@@ -85,6 +83,12 @@ class Stepper {
   int capacity() const { return c_.capacity(); }
   /// The present number of particles, for which the host waits if it changes.
   int rows() { return c_.host_rows(); }
+  /// The same over all ranks.
+  int particles() {
+    if constexpr (has_ranks)
+      if (auto* rows = c_.exec.rows()) return rows->particles();
+    return rows();
+  }
   /// What the addresses and numbers of launches follow from: recorded updates are valid for it.
   std::pair<int, int> launch() const { return {c_.placement(), c_.launched}; }
 
@@ -116,15 +120,7 @@ class Stepper {
   double velocity_lag() { return pbf::velocity_lag(c_); }
   /// h^2/s^3: power per particle mass of the tank's inertial forces. lag: velocity_lag().
   double power(const FrameStep<double>& frame, double lag, double dt) {
-    const Vec3<Real>& g = c_.p.gravity;
-    return c_.exec
-        .reduce(rows(), PowerPass<Real>{frame,
-                                        1 / dt,
-                                        {double(g.x), double(g.y), double(g.z)},
-                                        lag,
-                                        c_.position(),
-                                        c_.velocity()})
-        .x[0];
+    return motion_power(c_, rows(), frame, lag, dt);
   }
 
   /// The load of each wall since the last call with Interval::ends.
@@ -134,16 +130,32 @@ class Stepper {
   /// Readings of the gauges; means since the last call with Interval::ends.
   std::vector<double> gauges(Interval interval) { return read_gauges(c_, interval); }
 
+  /// Leaves the rows of this rank alone, before its state is read or kept. Updates go on with the
+  /// same bits.
+  void drop_ghosts() {
+    if constexpr (has_ranks)
+      if (auto* rows = c_.exec.rows(); rows && rows->drop_ghosts(c_)) {
+        forget();
+        moved();
+      }
+  }
   std::vector<int> ids() { return c_.ids_in_order(c_.ids(), rows()); }
   /// A state with positions only.
   SolverState positions() {
+    drop_ghosts();
     SolverState s;
     const int n = rows();
     s.position = downloaded(c_, field::position, c_.bytes_of(field::position), std::size_t(n),
                             c_.order_of_ids(c_.ids(), n));
+    if constexpr (has_ranks)
+      if (c_.exec.rows()) {  // not all particles
+        const std::vector<int> own = ids();
+        s.id.assign(own.begin(), own.end());
+      }
     return s;
   }
   SolverState state() {
+    drop_ghosts();
     std::vector<const char*> present;
     for (const FieldInfo* f : plan_.program.state) present.push_back(c_.bytes_of(*f));
     return download_state(c_, present);
@@ -153,13 +165,18 @@ class Stepper {
   void set_state(const SolverState& s, double time) {
     upload_state(c_, s);
     c_.launched = int(s.id.size());
+    all_own(c_.launched);
     c_.for_features([&](auto& memory) { memory.stand(c_, time); });
     forget();
     moved();
   }
-  void save(Saved& s) { s.save(c_); }
+  void save(Saved& s) {
+    drop_ghosts();
+    s.save(c_);
+  }
   void restore(Saved& s) {
     s.restore(c_);
+    all_own(rows());
     forget();
     moved();
   }
@@ -187,44 +204,20 @@ class Stepper {
   MeasureSums measure(const MeasureConstants& given) {
     c_.exec.begin();
     sum_density();
-    const int n = rows();
-    MeasureSums sums;
-    c_.template as_pass<Measure>([&](const auto& c) {
-      with_boundary(c, [&](const auto& boundary) {
-        sums = c.reduce(MeasurePass<Real, Lists, std::decay_t<decltype(boundary)>>{
-            c.p, boundary, c.lists(), c[field::position].rows(), c[field::velocity].rows(),
-            c[field::density].rows(), c[field::counts].rows(), given});
-      });
-    });
-    sums.compression_p99 = compression_percentile(
-        c_.exec.count_in_bins(n, kCompressionBins, CompressionBinPass<Real>{c_.density()}),
-        n - n / 100, n, sums.compression_max);
-    c_.exec.mark("measure");
-    return sums;
+    return measure_state(c_, particles(), given);
   }
 
-  /// Writes fields in SI units, along the scene's axes and in the order of ids to memory of the
-  /// executor; null: not wanted. Densities need find_pairs() first.
-  template <class Out>
-  void export_to(Out* position, Out* velocity, Out* density) {
+  /// Densities need find_pairs() first.
+  void ready_to_export(bool density) {
     c_.exec.begin();
     if (density) sum_density();
-    const Double3 origin = c_.scene.origin();
-    const auto from = [&](int k) { return origin[std::size_t(plan_.axes.of[k])]; };
-    const int n = rows();
-    const int* place = c_.order_of_ids(c_.ids(), n);
-    c_.exec.items(n, ExportPass<Real, Out>{c_.scene.h(),
-                                           c_.scene.fluid.rest_density,
-                                           {from(0), from(1), from(2)},
-                                           plan_.axes,
-                                           c_.position(),
-                                           c_.velocity(),
-                                           c_.density(),
-                                           place,
-                                           position,
-                                           velocity,
-                                           density});
-    c_.exec.mark("download");
+    drop_ghosts();
+  }
+  /// Writes fields in SI units, along the scene's axes and in the order of ids to memory of the
+  /// executor; null: not wanted. Call ready_to_export() first.
+  template <class Out>
+  void export_to(Out* position, Out* velocity, Out* density) {
+    export_state(c_, rows(), position, velocity, density);
   }
 
   /// To be called after particles have moved, also by recorded updates (an even number of them):
@@ -234,6 +227,12 @@ class Stepper {
   std::size_t bytes() const { return c_.bytes() + c_.exec.bytes(); }
 
  private:
+  static constexpr bool has_ranks = requires(Exec & e) { e.rows(); };
+  /// After rows 0 ... n - 1 were set: without ghosts.
+  void all_own([[maybe_unused]] int n) {
+    if constexpr (has_ranks)
+      if (auto* rows = c_.exec.rows()) rows->all_own(c_, n);
+  }
   void forget() {
     c_.for_features([&](auto& memory) { memory.forget(c_); });
   }

@@ -12,10 +12,10 @@
 
 #include "kernels/cell_index.h"
 #include "lib/exec/cpu/cpu_exec.h"
+#include "lib/program/exchanges.h"
 #include "lib/program/make_program.h"
 #include "lib/solver/granted.h"
 #include "lib/solver/state_transfer.h"
-#include "tests/support/exchanges.h"
 
 namespace pbf::test {
 
@@ -167,6 +167,9 @@ class TwoRanks {
     const PassInfo& pass = plan_.program.passes[std::size_t(index)];
     const Exchange e = state_.before(pass, first, plan_.program);
     for (const FieldInfo* f : e.sums) add_up(*f);
+    for (const FieldInfo* f : e.from_zero)
+      if (char* at = b_.bytes_of(*f))
+        std::memset(at, 0, std::size_t(b_.rows_of(*f)) * row_bytes(*f));
     flip(pass);  // fields are named as they are after the flips
     for (const FieldInfo* f : e.ghosts)
       if (std::string(f->name) != forget_) copy_ghosts(*f);

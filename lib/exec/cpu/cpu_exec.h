@@ -174,17 +174,17 @@ class CpuExec {
   void sort(const int* bin, const int* id, int n, int bins, int* order, int* start);
 
   /// Lists of exactly the pairs of n particles closer than h. Memory grows as needed (throws
-  /// std::bad_alloc). far: the row that pads lists.
+  /// std::bad_alloc). far: the row that pads lists. from: rows before it need no lists.
   template <class Real>
   Lists build_lists(int n, int far, const Vec4<Real>* position, const int* bin_start,
-                    const Params<Real>& p) {
+                    const Params<Real>& p, int from = 0) {
     const int chunks = (n + kChunk - 1) / kChunk;
     const int bits = lane_bits(simd_, sizeof(Real)), groups_per_chunk = kChunk >> bits;
     chunks_.resize(std::size_t(chunks));
     pointers_.resize(std::size_t(chunks));
     groups_.resize(std::size_t(chunks) * std::size_t(groups_per_chunk));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (chunks > 1)
-    for (int c = 0; c < chunks; ++c) {
+    for (int c = from / kChunk; c < chunks; ++c) {
       ListScratch& scratch = scratch_[std::size_t(omp_get_thread_num())];
       scratch.reserve(list_entries_);
       const int first = c * kChunk, last = std::min(n - first, kChunk) + first;
@@ -227,15 +227,15 @@ class CpuExec {
     }
   }
 
- private:
   /// Calls f(first, last) for pieces of 0..n-1; an item is as much work as `share` particles.
   /// Dynamic scheduling: particles at the surface have fewer neighbors, and another program may
-  /// occupy a core for a while.
+  /// occupy a core for a while. from: the first item, in the middle of a piece.
   template <int share, class F>
-  void in_pieces(int n, const F& f) {
+  void in_pieces(int n, const F& f, int from = 0) {
     constexpr int piece = kPiece / share;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (n > kChunk / share)
-    for (int first = 0; first < n; first += piece) f(first, std::min(n - first, piece) + first);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (n - from > kChunk / share)
+    for (int first = from / piece * piece; first < n; first += piece)
+      f(std::max(first, from), std::min(n - first, piece) + first);
   }
   template <class Pass>
   void wholes(int n, const Pass& pass) {
@@ -257,7 +257,9 @@ class CpuExec {
     }
     return total;
   }
+  Simd simd() const { return simd_; }
 
+ private:
   static constexpr int kChunk = 1 << ChunkedLists::chunk_bits;
   static constexpr int kShare = 16;   ///< work of an item that threads may share, in particles
   static constexpr int kPiece = 256;  ///< of a pass: whole groups of lists, a few microseconds

@@ -5,21 +5,33 @@
 
 #include "lib/base/error.h"
 #include "lib/base/start_thread.h"
-#include "lib/exec/cpu/cpu_exec.h"
+#include "lib/exec/ranks/rank_exec.h"
 #include "lib/program/threads.h"
 #include "lib/solver/step_solver.h"
 
 namespace pbf::PBF_VARIANT {
+namespace {
 
-std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan,
-                                        Particles particles) try {
+/// The number of a rank's rows changes.
+struct CountsRows {
+  static constexpr bool changes_rows = true;
+  using Passes = PassList<>;
+  static void add(const Scene&, auto&) {}
+};
+template <class Real>
+using CpuSolver = StepSolver<Real, RankExec, Features::With<CountsRows>>;
+
+}  // namespace
+
+std::unique_ptr<Solver> make_cpu_solver(const Scene& scene, const Plan& plan, Particles particles,
+                                        Communicator* ranks) try {
   const int threads = solver_threads(scene, plan.particles), entries = cpu_list_entries(scene);
   require_threads(threads);
   if (scene.precision == Precision::dbl)
-    return std::make_unique<StepSolver<double, CpuExec>>(scene, plan, std::move(particles), threads,
-                                                         entries);
-  return std::make_unique<StepSolver<float, CpuExec>>(scene, plan, std::move(particles), threads,
-                                                      entries);
+    return std::make_unique<CpuSolver<double>>(scene, plan, std::move(particles), ranks, threads,
+                                               entries);
+  return std::make_unique<CpuSolver<float>>(scene, plan, std::move(particles), ranks, threads,
+                                            entries);
 } catch (const std::bad_alloc&) {
   throw Error(ExitCode::unavailable, "not enough memory for " + std::to_string(plan.particles) +
                                          " particles; increase fluid.spacing, or use a machine "

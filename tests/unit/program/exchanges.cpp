@@ -1,5 +1,5 @@
 // What ranks exchange. The expected lists are written by hand from kernels/README.md ("The step").
-#include "tests/support/exchanges.h"
+#include "lib/program/exchanges.h"
 
 #include <array>
 
@@ -9,8 +9,6 @@
 
 namespace pbf::scene_test {
 namespace {
-
-using test::Exchange, test::exchanges, test::RankState, test::row_bytes;
 
 std::string fields_text(const Exchange::Fields& fields) {
   std::string out;

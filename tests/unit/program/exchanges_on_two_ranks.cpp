@@ -4,15 +4,13 @@
 #include <array>
 #include <map>
 
+#include "lib/program/exchanges.h"
 #include "tests/support/catch.h"
-#include "tests/support/exchanges.h"
 #include "tests/support/program_steps.h"
 #include "tests/support/scene_samples.h"
 
 namespace pbf::scene_test {
 namespace {
-
-using test::Exchange, test::exchanges, test::RankState;
 
 /// Two ranks. Arrays carry the time at which they were written, sums are numbers.
 class TwoRanks {

@@ -6,9 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include "lib/program/program.h"
+#include "lib/program/plan.h"
 
-namespace pbf::test {
+namespace pbf::program_module {
+
+/// Layers of cells along the slowest axis that ranks do not cut apart: with levels those of a
+/// brick, 4 cells of 2 x 2 x 2 cells of the search grid.
+inline int layers_per_unit(const Plan& plan) { return plan.levels.all.count > 0 ? 8 : 1; }
 
 /// The exchanges for one launch of a pass. A rank makes lists for its own particles. Ghosts are its
 /// copies of the particles of other ranks within one cell of them.
@@ -25,6 +29,9 @@ struct Exchange {
   Fields rows;
   Fields sums;         ///< before the launch: these become their sums over all ranks
   Fields sums_within;  ///< the same between two launches of the pass itself
+  /// Before the launch: the pass adds to these, and all ranks have the same in them, so all but one
+  /// begin from 0.
+  Fields from_zero;
   /// The pass adds to sums but reads no particles, so all ranks would add the same: only one may.
   bool on_one_rank = false;
 };
@@ -55,4 +62,4 @@ std::vector<Exchange> exchanges(const Program& program, const Steps& steps, Rank
 /// The same for an update in the middle of a run: program.next and program.rest.
 std::vector<Exchange> exchanges(const Program& program);
 
-}  // namespace pbf::test
+}  // namespace pbf::program_module

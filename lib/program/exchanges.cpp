@@ -1,4 +1,4 @@
-#include "tests/support/exchanges.h"
+#include "lib/program/exchanges.h"
 
 #include <fmt/core.h>
 
@@ -6,7 +6,7 @@
 
 #include "lib/base/error.h"
 
-namespace pbf::test {
+namespace pbf::program_module {
 namespace {
 
 /// The fields that go along with the particles.
@@ -76,7 +76,7 @@ Exchange RankState::before(const PassInfo& pass, bool first_iteration, const Pro
       throw Error(ExitCode::internal,
                   fmt::format("pass '{}' adds to {}, which was read and not set anew", pass.name,
                               name_of(*a.field)));
-    if (a.how == kAdds) parts_.insert(array(a));
+    if (a.how == kAdds && parts_.insert(array(a)).second) e.from_zero.push_back(a.field);
   }
   if (e.rows.empty()) return e;
   fresh_.clear();
@@ -99,4 +99,4 @@ std::vector<Exchange> exchanges(const Program& program) {
   return out;
 }
 
-}  // namespace pbf::test
+}  // namespace pbf::program_module

@@ -1,0 +1,67 @@
+// What the ranks of a run say to each other: messages between two of them, and operations in which
+// all take part. Every rank makes the same calls in the same order.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace pbf::exec_module {
+
+/// Bytes for another rank.
+struct Outgoing {
+  int to;
+  const void* data;
+  std::size_t bytes;
+};
+/// Bytes from another rank: as many as it sends.
+struct Incoming {
+  int from;
+  void* data;
+  std::size_t bytes;
+};
+/// Bytes of which only the sender knows the number.
+struct Parcel {
+  int rank;  ///< to or from which it goes
+  std::vector<char> bytes{};
+};
+
+/// Messages and bytes that a rank has sent to others so far, apart from sums and commands.
+struct Traffic {
+  std::int64_t messages = 0, bytes = 0;
+  bool operator==(const Traffic&) const = default;
+};
+
+/// One per rank. A call throws Error(unavailable) if another rank has failed, and does not return
+/// if the ranks are processes: then all of them end.
+class Communicator {
+ public:
+  virtual ~Communicator() = default;
+  virtual int rank() const = 0;
+  virtual int size() const = 0;  ///< number of ranks
+  /// For `pbf info` and the run file: "Open MPI v4.1.4", "threads".
+  virtual std::string describe() const = 0;
+
+  /// Sends and receives at the same time, at most one message for each ordered pair of ranks.
+  /// Returns when all has arrived and what was sent may change.
+  virtual void exchange(std::span<const Outgoing> out, std::span<const Incoming> in) = 0;
+  /// The same; the bytes of `in` are replaced.
+  virtual void exchange(const std::vector<Parcel>& out, std::vector<Parcel>& in) = 0;
+  /// The bytes of all ranks, equally many of each, in the order of ranks.
+  virtual std::vector<char> all_gather(const void* mine, std::size_t bytes) = 0;
+  /// Each value becomes its sum over all ranks, modulo 2^64.
+  virtual void sum(std::span<std::int64_t> values) = 0;
+  /// The bytes of every rank on rank 0, in the order of ranks; nothing on the others.
+  virtual std::vector<std::vector<char>> gather(std::vector<char> mine) = 0;
+  /// The bytes of rank 0 on all ranks. A rank that waits for it leaves its core to others.
+  virtual void broadcast(std::vector<char>& bytes) = 0;
+  /// Tells the other ranks that this one has failed, so that none waits for it. code: with which
+  /// processes end.
+  virtual void fail(const std::string& why, int code) noexcept = 0;
+
+  Traffic sent{};
+};
+
+}  // namespace pbf::exec_module

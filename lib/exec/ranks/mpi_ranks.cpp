@@ -1,0 +1,151 @@
+#include "lib/exec/ranks/mpi_ranks.h"
+
+#include <dlfcn.h>
+#include <fmt/core.h>
+#include <unistd.h>
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "lib/base/error.h"
+#include "lib/base/shipped_file.h"
+#include "lib/exec/ranks/pbf_mpi.h"
+
+namespace pbf::exec_module {
+namespace {
+
+class Mpi final : public MpiRanks {
+ public:
+  explicit Mpi(const pbf_mpi& mpi) : mpi_(mpi) { check(mpi_.start(&rank_, &size_), "MPI_Init"); }
+  int rank() const override { return rank_; }
+  int size() const override { return size_; }
+  std::string describe() const override {
+    char text[256] = "";
+    mpi_.describe(text, int(sizeof text));
+    return text;
+  }
+
+  void exchange(std::span<const Outgoing> out, std::span<const Incoming> in) override {
+    std::vector<pbf_mpi_message> to, from;
+    for (const Outgoing& o : out) to.push_back({o.to, const_cast<void*>(o.data), o.bytes});
+    for (const Incoming& i : in) from.push_back({i.from, i.data, i.bytes});
+    count(to);
+    check(mpi_.exchange(to.data(), int(to.size()), from.data(), int(from.size())), "exchange");
+  }
+  void exchange(const std::vector<Parcel>& out, std::vector<Parcel>& in) override {
+    std::vector<pbf_mpi_message> to;
+    for (const Parcel& p : out)
+      to.push_back({p.rank, const_cast<char*>(p.bytes.data()), p.bytes.size()});
+    count(to);
+    check(mpi_.send(to.data(), int(to.size())), "MPI_Isend");
+    for (Parcel& p : in) {
+      std::size_t bytes = 0;
+      check(mpi_.await(p.rank, &bytes), "MPI_Probe");
+      p.bytes.resize(bytes);
+      const pbf_mpi_message from{p.rank, p.bytes.data(), bytes};
+      check(mpi_.receive(&from), "MPI_Recv");
+    }
+    check(mpi_.finish_send(), "MPI_Waitall");
+  }
+  std::vector<char> all_gather(const void* mine, std::size_t bytes) override {
+    std::vector<char> all(bytes * std::size_t(size_));
+    check(mpi_.all_gather(mine, bytes, all.data()), "MPI_Allgather");
+    return all;
+  }
+  void sum(std::span<std::int64_t> values) override {
+    check(mpi_.sum(values.data(), values.size()), "MPI_Allreduce");
+  }
+  std::vector<std::vector<char>> gather(std::vector<char> mine) override {
+    const std::uint64_t bytes = mine.size();
+    const std::vector<char> sizes = all_gather(&bytes, sizeof bytes);
+    if (rank_ != 0) {
+      const pbf_mpi_message to{0, mine.data(), mine.size()};
+      check(mpi_.exchange(&to, 1, nullptr, 0), "gather");
+      return {};
+    }
+    std::vector<std::vector<char>> all(static_cast<std::size_t>(size_));
+    all[0] = std::move(mine);
+    for (int r = 1; r < size_; ++r) {
+      std::uint64_t n = 0;
+      std::memcpy(&n, sizes.data() + std::size_t(r) * sizeof n, sizeof n);
+      std::vector<char>& part = all[std::size_t(r)];
+      part.resize(n);
+      const pbf_mpi_message from{r, part.data(), part.size()};
+      check(mpi_.exchange(nullptr, 0, &from, 1), "gather");
+    }
+    return all;
+  }
+  void broadcast(std::vector<char>& bytes) override {
+    std::uint64_t n = bytes.size();
+    check(mpi_.broadcast(&n, sizeof n, 1), "MPI_Ibcast");
+    bytes.resize(n);
+    check(mpi_.broadcast(bytes.data(), n, 0), "MPI_Ibcast");
+  }
+  void fail(const std::string& why, int code) noexcept override {
+    failed_ = true;
+    if (rank_ == 0) return;  // tells it and ends the others
+    char host[256] = "";
+    gethostname(host, sizeof host - 1);
+    std::fprintf(stderr, "pbf: error: rank %d on %s: %s\n", rank_, host, why.c_str());
+    mpi_.abort(code);
+  }
+  bool failed() const override { return failed_; }
+  void end(int code) override {
+    if (failed_) mpi_.abort(code);
+    mpi_.finish();
+  }
+
+ private:
+  void count(const std::vector<pbf_mpi_message>& out) {
+    sent.messages += std::int64_t(out.size());
+    for (const pbf_mpi_message& m : out) sent.bytes += std::int64_t(m.bytes);
+  }
+  static void check(int error, const char* call) {
+    if (error != 0)
+      throw Error(ExitCode::unavailable, fmt::format("{} failed, MPI error {}", call, error));
+  }
+  const pbf_mpi& mpi_;
+  int rank_ = 0, size_ = 1;
+  bool failed_ = false;
+};
+
+/// A number of the environment; 0: there is none.
+int number_of(const char* name) {
+  const char* text = std::getenv(name);
+  return text ? std::atoi(text) : 0;
+}
+
+}  // namespace
+
+int launched_ranks() {
+  int ranks = std::max(number_of("OMPI_COMM_WORLD_SIZE"), number_of("PMI_SIZE"));
+  if (std::getenv("PMIX_RANK")) ranks = std::max(ranks, number_of("SLURM_STEP_NUM_TASKS"));
+  return std::max(ranks, 1);
+}
+
+int launched_rank() {
+  return std::max(
+      {number_of("OMPI_COMM_WORLD_RANK"), number_of("PMI_RANK"), number_of("PMIX_RANK")});
+}
+
+std::unique_ptr<MpiRanks> open_mpi_ranks() {
+  const char* named = std::getenv("PBF_MPI");
+  const std::string path = named ? named : shipped_file("libpbf_mpi.so");
+  // MPI opens parts of itself, which look for its names among those of the program.
+  void* module = dlopen(path.find('/') == std::string::npos ? ("./" + path).c_str() : path.c_str(),
+                        RTLD_NOW | RTLD_GLOBAL);
+  const auto table =
+      module ? reinterpret_cast<const pbf_mpi* (*)()>(dlsym(module, "pbf_mpi_table")) : nullptr;
+  if (!table || table()->table != PBF_MPI_TABLE)
+    throw Error(ExitCode::unavailable,
+                fmt::format("started on {} ranks, but the module for MPI does not fit: {}; make it "
+                            "with the compiler of your MPI: mpicc -O2 -shared -fPIC -o "
+                            "libpbf_mpi.so {}, and put it beside pbf or name it in PBF_MPI",
+                            launched_ranks(),
+                            module ? path + " is of another version" : std::string(dlerror()),
+                            shipped_file("lib/exec/ranks/pbf_mpi.c")));
+  return std::make_unique<Mpi>(*table());
+}
+
+}  // namespace pbf::exec_module

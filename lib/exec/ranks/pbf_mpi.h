@@ -1,0 +1,45 @@
+/* The functions of MPI that the program uses, as a table. The module pbf_mpi.c, compiled for the
+   MPI of a machine, returns it; the program opens the module at run time and is not linked with
+   MPI. Functions return 0, or an error code of MPI. */
+#ifndef PBF_MPI_H
+#define PBF_MPI_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { PBF_MPI_TABLE = 1 }; /* changes with the table */
+
+struct pbf_mpi_message {
+  int rank; /* to or from which it goes */
+  void* data;
+  size_t bytes;
+};
+
+struct pbf_mpi {
+  int table;
+  int (*start)(int* rank, int* size);
+  int (*describe)(char* text, int bytes); /* "Open MPI v4.1.4" */
+  /* All at once. Receives exactly the bytes that `in` says. */
+  int (*exchange)(const struct pbf_mpi_message* out, int outs, const struct pbf_mpi_message* in,
+                  int ins);
+  /* Messages of which only the sender knows the size, at most 1 GiB. They are sent, then for each
+     expected one await() tells its size and receive() takes it. */
+  int (*send)(const struct pbf_mpi_message* out, int outs);
+  int (*await)(int from, size_t* bytes);
+  int (*receive)(const struct pbf_mpi_message* in);
+  int (*finish_send)(void);
+  int (*all_gather)(const void* mine, size_t bytes, void* all);
+  int (*sum)(int64_t* values, size_t n);
+  /* Leaves the core to others while it waits. */
+  int (*broadcast)(void* data, size_t bytes, int patient);
+  void (*abort)(int code);
+  int (*finish)(void);
+};
+
+#ifdef __cplusplus
+extern "C"
+#endif
+    const struct pbf_mpi*
+    pbf_mpi_table(void);
+
+#endif

@@ -1,0 +1,33 @@
+// Which layers of cells each rank has.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace pbf::exec_module {
+
+/// Slabs of layers, in the order of ranks, each of a layer at least.
+class Slabs {
+ public:
+  Slabs() = default;
+  /// in_layer: particles in each layer. Cuts are at multiples of `unit` layers. Throws
+  /// Error(bad_input) if there are fewer units than ranks.
+  Slabs(const std::vector<std::int64_t>& in_layer, int ranks, int unit);
+  /// New cuts if a rank has more than 1.05 times its share of the particles, and would have fewer.
+  void balance(const std::vector<std::int64_t>& in_layer);
+
+  int low(int rank) const { return cut_[std::size_t(rank)]; }
+  int high(int rank) const { return cut_[std::size_t(rank) + 1]; }  ///< excluded
+  int first_unit(int rank) const { return (cut_[std::size_t(rank)] + unit_ - 1) / unit_; }
+  int owner(int layer) const { return owner_[std::size_t(layer)]; }
+  bool operator==(const Slabs&) const = default;
+
+ private:
+  void cut(const std::vector<std::int64_t>& in_layer);
+  std::int64_t most(const std::vector<std::int64_t>& in_layer) const;
+
+  int ranks_ = 1, unit_ = 1;
+  std::vector<int> cut_, owner_;
+};
+
+}  // namespace pbf::exec_module

@@ -1,0 +1,28 @@
+// What several ranks of a run would send to each other.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "lib/program/plan.h"
+
+namespace pbf::program_module {
+
+struct RankPlan {
+  int ranks = 1;
+  int layers = 1;     ///< of cells along the longest edge, in units that are not cut
+  int exchanges = 0;  ///< of ghosts, per update and adjacent rank: a message each
+  int sorts = 0;      ///< per update and adjacent rank: a message each, of rows
+  /// Bytes of a ghost in all messages of an update, its row in the sorts included.
+  std::int64_t bytes_per_ghost = 0;
+  std::int64_t ghosts =
+      0;  ///< of a rank on one side, in fluid at rest that fills the cross-section
+
+  int messages() const { return exchanges + sorts; }
+};
+
+/// Without solver.tolerance, which repeats exchanges, and without the passes between updates.
+RankPlan plan_ranks(const Plan& plan, const Scene& scene, int ranks);
+std::string rank_text(const RankPlan& plan);
+
+}  // namespace pbf::program_module

@@ -1,0 +1,243 @@
+// Ranks as threads of one process: several of them make the bits of one.
+#include <cmath>
+
+#include "lib/exec/cpu/cpu_solver.h"
+#include "lib/exec/ranks/ranked_solver.h"
+#include "lib/exec/ranks/slabs.h"
+#include "lib/exec/ranks/thread_ranks.h"
+#include "lib/program/dissipation.h"
+#include "lib/program/rank_plan.h"
+#include "lib/run/emit.h"
+#include "lib/run/motion_files.h"
+#include "lib/run/start_neighbors.h"
+#include "lib/scene/load.h"
+#include "tests/support/catch.h"
+
+namespace pbf::ranks_test {
+namespace {
+
+struct RankScene {
+  Scene scene;
+  Particles particles;
+  Plan plan;
+  RankScene(const std::string& name, std::vector<std::string> set) {
+    set.insert(set.end(), {"output=off", "render=off", "threads=1"});
+    const std::string file = std::string(PBF_SOURCE_DIR) + "/" + name + ".yaml";
+    const std::string folder = file.substr(0, file.rfind('/'));
+    scene = load_scene(file, set).scene;
+    read_motions(scene, folder);
+    StartPoints points(scene, folder);
+    const std::int64_t n = count_particles(points);
+    plan = make_plan(scene, n, start_neighbors(points, n));
+    particles = emit_particles(std::move(points));
+  }
+};
+
+/// All that a run asks of a solver.
+struct Seen {
+  SolverState state, positions;
+  Snapshot snapshot;
+  std::vector<double> loads, gauges;
+  Diagnostics measured;
+};
+Seen look(Solver& s) {
+  Seen seen;
+  seen.measured = s.diagnose();
+  seen.loads = s.readings(Series::measures, Interval::ends);
+  seen.gauges = s.readings(Series::gauges, Interval::ends);
+  seen.snapshot = s.download({"velocity", "density"}, ScalarType::f32).get();
+  seen.state = s.state();
+  seen.positions = s.state(StateOf::positions);
+  return seen;
+}
+/// Updates, looks, goes back and forth.
+std::vector<Seen> course(Solver& s, int updates) {
+  std::vector<Seen> all;
+  s.step(2, {.without_time = 0.5});
+  s.step(updates / 2);
+  all.push_back(look(s));
+  s.keep();
+  const SolverState kept = s.state(StateOf::kept);
+  s.step(updates / 2);
+  all.push_back(look(s));
+  s.set_state(kept);
+  s.step(3);
+  all.push_back(look(s));
+  return all;
+}
+std::vector<Seen> on_one(const RankScene& m, int updates) {
+  return course(*make_cpu_solver(m.scene, m.plan, m.particles), updates);
+}
+std::vector<Seen> on_ranks(const RankScene& m, int ranks, int updates) {
+  std::vector<Seen> all;
+  run_thread_ranks(ranks, [&](Communicator& c) {
+    RankedSolver s(c, m.scene, m.plan, m.particles);
+    c.rank() == 0 ? void(all = course(s, updates)) : s.serve();
+  });
+  return all;
+}
+bool same_bits(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+/// The sums over a cause's numbers; its first sum holds all on ranks.
+std::vector<double> totals(const StoredField& f, std::size_t causes) {
+  std::vector<double> all(causes);
+  for (std::size_t k = 0; k < f.values.size(); k += 2)
+    all[k / (f.values.size() / causes)] += f.values[k] * 0x1p27 + f.values[k + 1];
+  return all;
+}
+void check_same(const Seen& a, const Seen& b, const Scene& scene) {
+  const std::size_t causes = dissipations(scene).size();
+  CHECK(a.state.position == b.state.position);
+  CHECK(a.state.velocity == b.state.velocity);
+  CHECK(a.state.id == b.state.id);
+  REQUIRE(a.state.fields.size() == b.state.fields.size());
+  for (std::size_t k = 0; k < a.state.fields.size(); ++k) {
+    CAPTURE(a.state.fields[k].name);
+    if (a.state.fields[k].name == std::string("dissipation"))
+      CHECK(totals(a.state.fields[k], causes) == totals(b.state.fields[k], causes));
+    else
+      CHECK(a.state.fields[k] == b.state.fields[k]);
+  }
+  CHECK(a.positions.position == b.positions.position);
+  CHECK(a.positions.id == b.positions.id);
+  CHECK(a.loads == b.loads);
+  CHECK(a.gauges == b.gauges);
+  for (std::size_t k = 0; k < a.snapshot.fields.size(); ++k)
+    CHECK(a.snapshot.fields[k].bytes == b.snapshot.fields[k].bytes);
+  for (const Diagnostic& c : diagnostics()) {
+    CAPTURE(c.name);
+    CHECK(same_bits(c.value(a.measured), c.value(b.measured)));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("several ranks give the bits of one: state, readings, measurements, snapshots",
+          "[slow]") {
+  struct Case {
+    const char* scene;
+    std::vector<std::string> set;
+  };
+  for (const Case& of : std::vector<Case>{
+           {"configs/minimal", {"fluid.spacing=0.04"}},
+           {"configs/minimal",
+            {"fluid.spacing=0.04", "viscosity.xsph=0.1", "vorticity.epsilon=1", "tensile={}",
+             "precision=double"}},
+           {"configs/minimal", {"fluid.spacing=0.04", "solver.substeps=3", "viscosity.xsph=0.1"}},
+           {"configs/minimal", {"fluid.spacing=0.04", "solver.kernels=paper"}},
+           {"configs/minimal", {"fluid.spacing=0.04", "solver.tolerance=1e-3"}},
+           {"configs/dam_break_2d", {"fluid.spacing=0.016", "vorticity.epsilon=1"}},
+           {"tests/regression/frozen/obstacles", {}},
+           {"tests/regression/frozen/obstacles", {"time.order=1"}},
+           {"tests/regression/frozen/motions", {"viscosity.xsph=0.1", "gauges=[]"}},
+       }) {
+    const RankScene m(of.scene, of.set);
+    const std::vector<Seen> one = on_one(m, 60);
+    for (const int ranks : {2, 3, 5}) {
+      CAPTURE(of.scene, of.set, ranks);
+      const std::vector<Seen> all = on_ranks(m, ranks, 60);
+      for (std::size_t k = 0; k < one.size(); ++k) {
+        CAPTURE(k);
+        check_same(one[k], all[k], m.scene);
+      }
+    }
+  }
+}
+
+TEST_CASE("several ranks name the update and the stage of a fault as one does", "[slow]") {
+  const RankScene m("configs/minimal", {"fluid.spacing=0.04"});
+  const StageLimits limits{0.5 / m.scene.h(), 1e300, 1000};
+  const auto found = [&](Solver& s) {
+    std::optional<StageEvent> event;
+    s.step(5);
+    while (!event && s.updates() < 200) event = s.inspection()->step_checked(limits);
+    return std::pair(s.state(), event);
+  };
+  const auto one = found(*make_cpu_solver(m.scene, m.plan, m.particles));
+  REQUIRE(one.second);
+  run_thread_ranks(3, [&](Communicator& c) {
+    RankedSolver s(c, m.scene, m.plan, m.particles);
+    if (c.rank() != 0) return s.serve();
+    const auto all = found(s);
+    REQUIRE(all.second);
+    CHECK(all.second->update == one.second->update);
+    CHECK(all.second->stage == one.second->stage);
+    CHECK(all.second->id == one.second->id);
+    CHECK(all.first.position == one.first.position);
+    CHECK(all.first.velocity == one.first.velocity);
+  });
+}
+
+TEST_CASE("several ranks with levels give the bits of one", "[slow]") {
+  for (const auto& [scene, set] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {"configs/minimal", {"fluid.spacing=0.02", "solver.levels=on", "domain.loads=true"}},
+           {"configs/dam_break_2d",
+            {"fluid.spacing=0.008", "solver.levels=on", "solver.iterations=2",
+             "domain.open=[x_max]"}}}) {
+    const RankScene m(scene, set);
+    CAPTURE(scene);
+    const std::vector<Seen> one = on_one(m, 20), two = on_ranks(m, 2, 20);
+    for (std::size_t k = 0; k < one.size(); ++k) check_same(one[k], two[k], m.scene);
+  }
+}
+
+TEST_CASE("ranks send as many messages as the plan says, and no more bytes") {
+  for (const std::vector<std::string>& set : std::vector<std::vector<std::string>>{
+           {}, {"viscosity.xsph=0.1"}, {"solver.iterations=2", "solver.substeps=3"}}) {
+    CAPTURE(set);
+    std::vector<std::string> all = set;
+    all.insert(all.end(), {"fluid.spacing=0.04", "solver.hyperviscosity=0"});
+    const RankScene m("configs/minimal", all);
+    const RankPlan plan = plan_ranks(m.plan, m.scene, 2);
+    run_thread_ranks(2, [&](Communicator& c) {
+      RankedSolver s(c, m.scene, m.plan, m.particles);
+      if (c.rank() != 0) return s.serve();
+      s.step(10);
+      const Traffic before = c.sent;
+      s.step(20);
+      CHECK(c.sent.messages - before.messages == 20 * plan.messages());
+      const std::int64_t bytes = c.sent.bytes - before.bytes;
+      CHECK(bytes > 0);
+      // Rows that change ranks are sent whole, and few of the particles do.
+      CHECK(double(bytes) < 1.2 * 20 * double(plan.bytes_per_ghost * plan.ghosts));
+    });
+  }
+}
+
+TEST_CASE("the plan of ranks: one message per exchange, as counted by hand for 4 iterations") {
+  const RankScene m("configs/minimal", {"solver.hyperviscosity=0", "time.order=1"});
+  const RankPlan plan = plan_ranks(m.plan, m.scene, 8);
+  // 4 times (x, lambda) for delta, and 3 times x* for lambda. Positions come with the rows.
+  CHECK(plan.exchanges == 4 + 3);
+  CHECK(plan.sorts == 1);
+  CHECK(plan.bytes_per_ghost == 7 * 16 + 16 + 16 + 4);
+}
+
+TEST_CASE("slabs: particles are shared equally, and every rank has a layer") {
+  std::vector<std::int64_t> in_layer(20, 100);
+  const Slabs four(in_layer, 4, 1);
+  for (int r = 0; r < 4; ++r) CHECK(four.high(r) - four.low(r) == 5);
+  CHECK(four.owner(0) == 0);
+  CHECK(four.owner(19) == 3);
+  std::fill(in_layer.begin() + 1, in_layer.end(), 0);  // all in one layer
+  Slabs moved = four;
+  moved.balance(in_layer);
+  CHECK(moved == four);  // no cut makes the largest share smaller
+  const Slabs one(in_layer, 20, 1);
+  for (int r = 0; r < 20; ++r) CHECK(one.low(r) == r);
+  CHECK_THROWS_WITH(Slabs(in_layer, 21, 1), Catch::Contains("start at most 20 ranks"));
+  const Slabs bricks(std::vector<std::int64_t>(20, 1), 2, 8);
+  CHECK(bricks.high(0) % 8 == 0);
+  CHECK(bricks.high(1) == 20);
+}
+
+TEST_CASE("an error of one rank ends all, and is told with its rank") {
+  CHECK_THROWS_WITH(run_thread_ranks(3,
+                                     [](Communicator& c) {
+                                       if (c.rank() == 2) throw std::runtime_error("no memory");
+                                       std::vector<std::int64_t> one(1);
+                                       for (;;) c.sum(one);
+                                     }),
+                    Catch::Contains("no memory"));
+}
+
+}  // namespace pbf::ranks_test
