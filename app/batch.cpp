@@ -17,6 +17,7 @@
 #include "lib/campaign/batch_jobs.h"
 #include "lib/campaign/batch_list.h"
 #include "lib/campaign/batch_summary.h"
+#include "lib/exec/ranks/mpi_ranks.h"
 #include "lib/io/run_path.h"
 #include "lib/program/schedule.h"
 #include "lib/run/emit.h"
@@ -32,6 +33,7 @@ struct BatchOptions : SceneOptions {
   std::string out;                ///< folder of the runs; empty: out/batch_<name>
   std::vector<std::string> grid;  ///< key=v1,v2
   int jobs = 1, threads = 0;      ///< at a time; CPU threads per run, 0: all / jobs
+  int ranks = 1;                  ///< per run of the Slurm script
   std::int64_t only = -1;         ///< index of the only run, from 0; -1: all
   double max_walltime = 0;        ///< s, 0: none
   std::string time = "1:00:00";   ///< per task of the Slurm script
@@ -51,7 +53,8 @@ const char* const kBatchHelp =
     "  pbf batch configs/dam_break.yaml --grid solver.iterations=2,4,8 \\\n"
     "      --grid time.step=0.001:0.002:3 --jobs 2\n"
     "  pbf batch scenes/ --out out/scenes --set checkpoint.every=60\n"
-    "  pbf batch scenes/ --out out/scenes --slurm --time 4:00:00 > job.sh; bash job.sh";
+    "  pbf batch scenes/ --out out/scenes --slurm --time 4:00:00 > job.sh; bash job.sh\n"
+    "  pbf batch large.yaml --slurm --ranks 16 --threads 8 > job.sh; bash job.sh";
 
 namespace fs = std::filesystem;
 
@@ -81,11 +84,12 @@ std::string script(const BatchOptions& o, const std::string& out,
   wishes.command = command_text(o, out);
   wishes.runs = members.size();
   if (o.threads > 0) wishes.threads = o.threads;
+  wishes.ranks = o.ranks;
   wishes.time = o.time;
   slurm_seconds(o.time);  // reports errors before the runs are checked
   std::vector<std::string> overrides = o.overrides;
   overrides.push_back("threads=" + std::to_string(wishes.threads));
-  wishes.needs = check_members(members, overrides, o.base_folder, false);
+  wishes.needs = check_members(members, overrides, o.base_folder, false, o.ranks);
   return slurm_script(wishes);
 }
 
@@ -211,7 +215,7 @@ int command_batch(const BatchOptions& o) {
   for (const std::string& g : o.grid) axes.push_back(parse_axis(g));
   std::vector<BatchMember> members = batch_members(o.input, axes);
   const std::string out = o.out.empty() ? "out/batch_" + batch_stem(o.input) : o.out;
-  Log log(o.quiet);
+  Log log(o.quiet || launched_rank() > 0);
   if (o.list) {
     log.result(list_text(members));
     return 0;
@@ -272,6 +276,11 @@ void add_batch(CLI::App& app, int& code) {
   CLI::Option* slurm = c->add_flag("--slurm", o.slurm, "Print a Slurm array script and do nothing");
   c->add_option("--time", o.time,
                 "Of a task of the Slurm script, e.g. 30, 4:00:00 or 1-12; 1:00:00")
+      ->needs(slurm);
+  c->add_option("--ranks", o.ranks,
+                "Ranks of each run of the Slurm script, which srun starts with --mpi=pmix; "
+                "--threads is for each of them")
+      ->transform(whole_number(1, 65536))
       ->needs(slurm);
   add_quiet(c, o.quiet);
 }

@@ -11,9 +11,13 @@ namespace {
 
 constexpr long kLead = 120;  // s before the time limit, for saving
 
-/// Memory to request, MiB: the forecast plus a quarter, and that of the batch itself.
-long memory(const BatchNeeds& needs) {
-  return long(1.25 * double(needs.host_bytes) / (1024 * 1024)) + 64;
+/// Memory to request: the forecast plus a quarter, and that of the batch itself. Which node a rank
+/// comes to is not known, so ranks request theirs by CPU, as much as rank 0 each.
+std::string memory(const SlurmWishes& w) {
+  const long mib = long(1.25 * double(w.needs.host_bytes) / (1024 * 1024)) + 64;
+  if (w.ranks == 1) return fmt::format("#SBATCH --mem={}M\n", mib);
+  return fmt::format("#SBATCH --ntasks={}\n#SBATCH --mem-per-cpu={}M\n", w.ranks,
+                     (mib + w.threads - 1) / w.threads);
 }
 
 }  // namespace
@@ -63,14 +67,17 @@ std::string slurm_script(const SlurmWishes& w) {
              "#SBATCH --job-name=pbf\n"
              "#SBATCH --array=0-{}\n"
              "#SBATCH --cpus-per-task={}\n"
-             "#SBATCH --mem={}M\n"
+             "{}"
              "#SBATCH --time={}\n"
              "{}"
              "#SBATCH --signal=TERM@{}\n"
              "#SBATCH --requeue\n"
              "#SBATCH --open-mode=append\n",
-             w.runs - 1, w.threads, memory(w.needs), w.time,
-             w.needs.device ? "#SBATCH --gres=gpu:1\n" : "", lead) +
+             w.runs - 1, w.threads, memory(w), w.time,
+             !w.needs.device ? ""
+             : w.ranks > 1   ? "#SBATCH --gpus-per-task=1\n"
+                             : "#SBATCH --gres=gpu:1\n",
+             lead) +
          "# Add what your cluster needs (--partition, --account), then: bash FILE\n"
          "# It submits the array, and a job that writes the summary when all tasks have ended.\n"
          "# A task whose time is up saves its run and goes back into the queue.\n"
@@ -85,12 +92,13 @@ std::string slurm_script(const SlurmWishes& w) {
          "  exec sbatch --dependency=afterany:\"${array%%;*}\" --job-name=pbf-collect --array=0 "
          "\\\n"
          "    --cpus-per-task=1 --time=10" +
-         (w.needs.device ? " --gres=none" : "") +
+         (w.ranks > 1 ? " --ntasks=1" : "") +
+         (w.needs.device && w.ranks == 1 ? " --gres=none" : "") +
          " \"$0\" collect\n"
          "fi\n"
          "export SRUN_CPUS_PER_TASK=\"${SLURM_CPUS_PER_TASK:-1}\"  # Slurm >= 22.05\n"
          "srun " +
-         w.command +
+         (w.ranks > 1 ? "--mpi=pmix " : "") + w.command +
          " --only \"$SLURM_ARRAY_TASK_ID\" --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n"
          "code=$?\n"
          "if [ \"$code\" -eq 75 ]; then\n"

@@ -12,7 +12,8 @@ namespace pbf::app_module {
 struct SlurmWishes {
   std::string command;   ///< the batch on one line, quoted, without --only and --collect
   std::size_t runs = 1;  ///< tasks
-  int threads = 4;       ///< CPUs per task
+  int ranks = 1;         ///< of each run
+  int threads = 4;       ///< CPUs per rank
   std::string time;      ///< time limit per task, in one of Slurm's forms
   BatchNeeds needs;      ///< of the most demanding run
 };

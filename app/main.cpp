@@ -91,12 +91,17 @@ int guarded(int argc, char** argv) {
 /// Started by mpirun or srun on several ranks: rank 0 does what the command says, the others serve
 /// its solvers.
 int on_ranks(int argc, char** argv) {
-  if (argc < 2 || std::string_view(argv[1]) != "run") {
+  const std::vector<std::string_view> words(argv + 1, argv + argc);
+  // The run that a batch starts inherits the rank.
+  if (!words.empty() && words[0] == "batch" && std::ranges::find(words, "--only") != words.end())
+    return guarded(argc, argv);
+  if (words.empty() || words[0] != "run") {
     const ExitCode code = ExitCode::bad_input;
     if (launched_rank() != 0) return static_cast<int>(code);
-    return fail(code,
-                "of the commands, only run works on several ranks; start the others without mpirun "
-                "or srun");
+    return fail(
+        code,
+        "of the commands, only run and batch --only work on several ranks; start the others "
+        "without mpirun or srun");
   }
   try {
     open_world();
@@ -105,6 +110,8 @@ int on_ranks(int argc, char** argv) {
       return serve_world();
     }
   } catch (const Error& e) {
+    // What is wrong for all of them is told once.
+    if (e.code() == ExitCode::bad_input && launched_rank() != 0) return static_cast<int>(e.code());
     return fail(e.code(), e.what());
   }
   const int code = guarded(argc, argv);

@@ -48,7 +48,8 @@ std::string warnings_text(const std::vector<Warning>& warnings) {
 }
 
 std::string json(const Plan& plan, const Scene& scene, const std::optional<TimeEstimate>& update,
-                 const std::optional<RunTime>& all, const std::vector<Warning>& warnings) {
+                 const std::optional<RunTime>& all, const std::vector<Warning>& warnings,
+                 int ranks) {
   Json out = plan_json(plan, scene);
   out["run_time_s"] = nullptr;
   if (all) {
@@ -63,6 +64,7 @@ std::string json(const Plan& plan, const Scene& scene, const std::optional<TimeE
   }
   Json& list = out["warnings"] = Json::array();
   for (const Warning& w : warnings) list.push_back({{"kind", w.kind}, {"text", w.text}});
+  if (ranks > 1) out["ranks"] = rank_json(plan_ranks(plan, scene, ranks));
   return json_text(out);
 }
 
@@ -83,7 +85,7 @@ int command_plan(const PlanOptions& options) {
   if (options.resolved) {
     text = resolved_yaml(scene);
   } else if (options.json) {
-    text = json(plan, scene, update, all, start.warnings);
+    text = json(plan, scene, update, all, start.warnings, options.ranks);
   } else {
     text = plan_summary(plan, scene, run_time_text(all)) + warnings_text(start.warnings) +
            plan_details(plan, scene);
@@ -107,7 +109,8 @@ void add_plan(CLI::App& app, int& code) {
       ->required();
   c->add_option("--threads", o.threads, "CPU threads of the run, which its memory depends on")
       ->transform(whole_number(1, 4096));
-  c->add_option("--ranks", o.ranks, "Ranks of the run (mpirun -n): what they send to each other")
+  c->add_option("--ranks", o.ranks,
+                "Ranks of the run (mpirun -n): what they send to each other, their memory")
       ->transform(whole_number(1, 65536));
   add_scene_options(c, o);
   CLI::Option* resolved =

@@ -22,6 +22,11 @@ struct RowState {
   }
 };
 
+/// Rows first ... last - 1.
+struct RowRange {
+  int first, last;
+};
+
 /// A number of rows that is in the memory of the executor; at most `most`.
 struct CountedRows {
   const RowState* state;

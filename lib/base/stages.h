@@ -6,17 +6,20 @@
 namespace pbf::base_module {
 
 /// Groups of stages whose times the summary of a run adds up. An index of kStageGroups.
-enum class StageGroup { init, grid, density, lambda, delta, move, output };
+enum class StageGroup { init, grid, density, lambda, delta, move, exchange, output };
 
 struct StageGroupInfo {
   const char *name, *color;  ///< color: of plots, #rrggbb
 };
 
-inline constexpr StageGroupInfo kStageGroups[] = {
-    {"initialization", "#000000"}, {"grid/neighbors", "#D55E00"},
-    {"densities", "#009E73"},      {"lambdas", "#0072B2"},
-    {"deltas", "#56B4E9"},         {"position/velocity updates", "#CC79A7"},
-    {"post-processing", "#8A8A8A"}};
+inline constexpr StageGroupInfo kStageGroups[] = {{"initialization", "#000000"},
+                                                  {"grid/neighbors", "#D55E00"},
+                                                  {"densities", "#009E73"},
+                                                  {"lambdas", "#0072B2"},
+                                                  {"deltas", "#56B4E9"},
+                                                  {"position/velocity updates", "#CC79A7"},
+                                                  {"exchange between ranks", "#7F4F24"},
+                                                  {"post-processing", "#8A8A8A"}};
 
 struct Stage {
   const char* name;
@@ -37,6 +40,7 @@ inline constexpr Stage kStages[] = {{"init", StageGroup::init, false, "#000000"}
                                     {"xsph", StageGroup::move, true, "#CC79A7"},
                                     {"vorticity", StageGroup::move, true, "#7A3E9D"},
                                     {"hyperviscosity", StageGroup::move, true, "#B387C9"},
+                                    {"exchange", StageGroup::exchange, false, "#7F4F24"},
                                     {"measure", StageGroup::output, false, "#B0B0B0"},
                                     {"guard", StageGroup::output, false, "#C4B08B"},
                                     {"download", StageGroup::output, false, "#8A8A8A"},

@@ -14,8 +14,10 @@
 #include "lib/base/error.h"
 #include "lib/base/inputs.h"
 #include "lib/base/plain_text.h"
+#include "lib/exec/ranks/ranked_solver.h"
 #include "lib/io/run_file.h"
 #include "lib/io/run_path.h"
+#include "lib/program/rank_plan.h"
 #include "lib/run/load_run.h"
 #include "lib/run/start.h"
 #include "lib/scene/file_kind.h"
@@ -106,11 +108,16 @@ void name_all(std::vector<BatchMember>& all) {
 }
 
 void add_needs(const BatchMember& m, std::vector<std::string> overrides,
-               const std::string& base_folder, bool here, BatchNeeds& needs) {
+               const std::string& base_folder, bool here, int ranks, BatchNeeds& needs) {
   overrides.insert(overrides.end(), m.overrides.begin(), m.overrides.end());
   const Start start = prepare(load_scene_or_run(m.scene, overrides, base_folder),
                               {.fits = here, .particles = false});
-  needs.host_bytes = std::max(needs.host_bytes, start.plan.memory.host_peak());
+  std::int64_t host_bytes = start.plan.memory.host_peak();
+  if (ranks > 1) {
+    require_ranks(start.scene(), start.plan, ranks);
+    host_bytes = plan_ranks(start.plan, start.scene(), ranks).first_bytes;
+  }
+  needs.host_bytes = std::max(needs.host_bytes, host_bytes);
   needs.device |= about(start.scene().backend).on_device;
 }
 
@@ -160,13 +167,13 @@ std::vector<BatchMember> batch_members(const std::string& input, std::vector<Gri
 
 BatchNeeds check_members(const std::vector<BatchMember>& members,
                          const std::vector<std::string>& overrides, const std::string& base_folder,
-                         bool here) {
+                         bool here, int ranks) {
   BatchNeeds needs;
   std::optional<ExitCode> code;
   std::size_t bad = 0;
   std::string text;
   for (const BatchMember& m : members) try {
-      add_needs(m, overrides, base_folder, here, needs);
+      add_needs(m, overrides, base_folder, here, ranks, needs);
     } catch (const Error& e) {
       if (!code) code = e.code();
       if (++bad <= kMostTold) text += "\n  " + m.name + ": " + e.what();

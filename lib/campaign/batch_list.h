@@ -31,16 +31,16 @@ std::vector<BatchMember> batch_members(const std::string& input, std::vector<Gri
 
 /// The needs of the most demanding run of a batch, as `pbf plan` forecasts them.
 struct BatchNeeds {
-  std::int64_t host_bytes = 0;  ///< peak of one run
+  std::int64_t host_bytes = 0;  ///< peak of one run; of several ranks that of rank 0
   bool device = false;          ///< whether a run uses a device
 };
 
 /// Reads and plans every run, with `overrides` (key.path=value) applied before its own;
-/// `base_folder` as in load_scene(). `here`: every run must fit into the memory of this machine. If
-/// runs cannot run, throws Error with the code of the first, naming up to ten of them with their
-/// messages.
+/// `base_folder` as in load_scene(). `here`: every run must fit into the memory of this machine.
+/// ranks: of each run. If runs cannot run, throws Error with the code of the first, naming up to
+/// ten of them with their messages.
 BatchNeeds check_members(const std::vector<BatchMember>& members,
                          const std::vector<std::string>& overrides, const std::string& base_folder,
-                         bool here);
+                         bool here, int ranks = 1);
 
 }  // namespace pbf::campaign_module

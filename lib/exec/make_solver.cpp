@@ -10,12 +10,15 @@
 #include "lib/exec/make_solver.h"
 #include "lib/exec/ranks/world.h"
 #include "lib/program/plan.h"
+#include "lib/program/rank_plan.h"
 #include "lib/solver/solver.h"
 
 namespace pbf::exec_module {
 
 void refuse_if_too_large(const Scene& scene, const Plan& plan, std::size_t available) {
-  const auto needed = double(plan.memory.host_peak());
+  // Of several ranks this is the one with most; where the others are is not known.
+  const auto needed = double(world() ? plan_ranks(plan, scene, world()->size()).first_bytes
+                                     : plan.memory.host_peak());
   if (available > 0 && needed > double(available))
     throw Error(ExitCode::unavailable,
                 fmt::format("scene {} needs about {} of memory for {} particles, {} are available; "

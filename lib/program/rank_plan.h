@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "lib/base/json.h"
 #include "lib/program/plan.h"
 
 namespace pbf::program_module {
@@ -15,8 +16,12 @@ struct RankPlan {
   int sorts = 0;      ///< per update and adjacent rank: a message each, of rows
   /// Bytes of a ghost in all messages of an update, its row in the sorts included.
   std::int64_t bytes_per_ghost = 0;
-  std::int64_t ghosts =
-      0;  ///< of a rank on one side, in fluid at rest that fills the cross-section
+  /// Of a rank on one side, in fluid at rest that fills the cross-section.
+  std::int64_t ghosts = 0;
+  std::int64_t capacity = 0;  ///< rows of the arrays of a rank
+  /// Peak memory of a rank on the host, and of rank 0, which has all particles at the start, in
+  /// frames and in checkpoints; and of a rank on its device.
+  std::int64_t bytes = 0, first_bytes = 0, device_bytes = 0;
 
   int messages() const { return exchanges + sorts; }
 };
@@ -24,5 +29,6 @@ struct RankPlan {
 /// Without solver.tolerance, which repeats exchanges, and without the passes between updates.
 RankPlan plan_ranks(const Plan& plan, const Scene& scene, int ranks);
 std::string rank_text(const RankPlan& plan);
+Json rank_json(const RankPlan& plan);
 
 }  // namespace pbf::program_module

@@ -84,6 +84,7 @@ std::string time_table(const std::vector<StageTime>& stages, double wall, bool f
     double sum = 0;
     std::string of = stages_of(group, stages, sum);
     if (fused && group == StageGroup::density) of = "in lambda, in one loop";
+    if (group == StageGroup::exchange && sum == 0) continue;  // on one rank
     row(kStageGroups[g].name, sum, of);
     rest -= sum;
   }

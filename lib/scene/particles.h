@@ -13,6 +13,7 @@ namespace pbf::scene_module {
 struct Particles {
   std::vector<Double3> position;            ///< m
   std::vector<Double3> velocity;            ///< m/s
+  std::vector<int> ids{};                   ///< empty: 0, 1, 2, ...
   std::size_t put_on_margin = 0;            ///< moved to solver.wall_margin from a wall
   double farthest_put = 0;                  ///< m, the longest of these moves
   std::vector<std::size_t> in_obstacles{};  ///< removed per body; empty: no obstacles

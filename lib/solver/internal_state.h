@@ -2,6 +2,7 @@
 #pragma once
 
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "kernels/axes.h"
@@ -47,6 +48,8 @@ InternalState<Real> to_internal(const Scene& s, const Axes& axes, Particles part
     out.velocity[i] = {Real(v[a[0]] / h), Real(v[a[1]] / h), Real(v[a[2]] / h), Real(0)};
   }
   release(particles.velocity);
+  out.id = std::move(particles.ids);
+  if (!out.id.empty()) return out;
   out.id.resize(n);
   std::iota(out.id.begin(), out.id.end(), 0);
   return out;

@@ -253,6 +253,8 @@ struct StepContext {
     }
   }
   void clear(char* begin, std::size_t bytes) {
+    if constexpr (requires { exec.clear_pages(begin, bytes); })
+      return exec.clear_pages(begin, bytes);
     const std::vector<char> zeros(std::min<std::size_t>(bytes, 1 << 20));
     for (std::size_t done = 0; done < bytes; done += zeros.size())
       exec.to_device(zeros.data(), std::min(zeros.size(), bytes - done), begin + done);

@@ -31,7 +31,7 @@ class Stepper {
   Stepper(Exec& exec, const Scene& scene, const Plan& plan, InternalState<Real> first)
       : plan_(plan), c_(exec, scene, plan), program_(&plan.program) {
     if constexpr (has_ranks)
-      if (auto* rows = c_.exec.rows()) rows->take_own(first, c_.p, plan);
+      if (auto* rows = c_.exec.rows()) rows->begin(first, c_.p, plan);
     c_.launched = int(first.id.size());
     c_.make(first);
     find_pairs();

@@ -107,6 +107,32 @@ TEST_CASE("the Slurm script asks for the CPUs, the time, the memory and the GPU 
   CHECK(has(bad.err, "1 of 2 runs cannot start"));
 }
 
+TEST_CASE("the Slurm script of runs on ranks starts them with srun, which gives each its CPUs") {
+  const Scratch folder;
+  folder.write("tiny.yaml", tiny_scene());
+  const auto script = [&](const char* ranks) {
+    return pbf::test::pbf({"batch", "tiny.yaml", "--slurm", "--threads", "2", "--ranks", ranks},
+                          folder.path());
+  };
+  const Outcome two = script("2");
+  CHECK(has(two.out, "#SBATCH --cpus-per-task=2\n#SBATCH --ntasks=2\n#SBATCH --mem-per-cpu="));
+  CHECK_FALSE(has(two.out, "--mem="));
+  CHECK(has(two.out, "\nsrun --mpi=pmix "));
+  CHECK(has(two.out, "--time=10 --ntasks=1 \"$0\" collect"));
+  folder.write("tiny.yaml", tiny_scene("backend: cuda\n"));
+  const Outcome gpus = script("2");
+  CHECK(has(gpus.out, "#SBATCH --gpus-per-task=1\n"));
+  CHECK_FALSE(has(gpus.out, "gres"));
+  folder.write("tiny.yaml", tiny_scene());
+  const Outcome one = script("1");
+  CHECK(has(one.out, "#SBATCH --mem="));
+  CHECK(has(one.out, "\nsrun /"));
+  const Outcome many = script("999");
+  CHECK(many.code == 2);
+  CHECK(has(many.err, "too few for 999 ranks"));
+  CHECK(many.out.empty());
+}
+
 TEST_CASE("whatever is in its words, the Slurm script runs one command and nothing else",
           "[slow]") {
   const Scratch folder;

@@ -4,15 +4,13 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <csignal>
-#include <cstdlib>
 #include <random>
 #include <sstream>
 #include <thread>
 
 #include "lib/io/run_file.h"
 #include "tests/support/catch.h"
-#include "tests/support/process.h"
+#include "tests/support/mpirun.h"
 #include "tests/support/same_run.h"
 
 using namespace pbf::test;
@@ -63,11 +61,8 @@ bool opens_in_h5py(const fs::path& file, std::int64_t frames) {
   return std::system(command.c_str()) == 0;
 }
 
-}  // namespace
-
-TEST_CASE("runs killed at random moments lose no reported frame and end in the same bytes",
-          "[slow]") {
-  const int kills = number("PBF_KILLS", 6);
+/// most_ranks: a random rank of 2 to so many is killed, and others go on; 1: without ranks.
+void kill_and_resume(int kills, int most_ranks) {
   const unsigned seed = static_cast<unsigned>(number("PBF_SEED", 1));
   std::mt19937 random(seed);
   const Scratch folder;
@@ -87,12 +82,18 @@ TEST_CASE("runs killed at random moments lose no reported frame and end in the s
   int done = 0, rounds = 0, hit = 0;
   while (done < kills) {
     // A run that was killed often enough is finished, compared, and a new one is begun.
-    Process p(killed, folder.path());
+    const int ranks = std::uniform_int_distribution<>(std::min(2, most_ranks), most_ranks)(random);
+    const int victim = std::uniform_int_distribution<>(0, ranks - 1)(random);
+    Process p = ranks > 1 ? start_ranks(ranks, killed, folder) : Process(killed, folder.path());
+    if (ranks > 1) wait_until([&] { return process_of_rank(victim, folder) > 0; });
     const double wait = std::uniform_real_distribution<>(0.01, 0.6 * seconds)(random);
     std::this_thread::sleep_for(std::chrono::duration<double>(wait));
-    p.send(SIGKILL);
+    if (ranks == 1)
+      p.send(SIGKILL);
+    else if (const pid_t one = process_of_rank(victim, folder); one > 0)
+      kill(one, SIGKILL);
     const auto [code, out, err] = p.wait();
-    CAPTURE(seed, done, wait, err);
+    CAPTURE(seed, done, wait, err, ranks, victim);
     REQUIRE((code == 128 + SIGKILL || code == 0));
     if (code != 0) ++done;
     const std::int64_t safe = reported(folder / "b.json");
@@ -114,4 +115,19 @@ TEST_CASE("runs killed at random moments lose no reported frame and end in the s
   WARN(done << " kills, " << hit << " files with reported frames looked at, " << rounds
             << " resumed runs ended in the bytes of the undisturbed run");
   CHECK(hit > 0);
+}
+
+}  // namespace
+
+TEST_CASE("runs killed at random moments lose no reported frame and end in the same bytes",
+          "[slow]") {
+  kill_and_resume(number("PBF_KILLS", 6), 1);
+}
+
+TEST_CASE(
+    "runs of which a random rank is killed lose no reported frame, and another number of "
+    "ranks goes on to the same bytes",
+    "[slow]") {
+  if (!has_mpi()) PBF_SKIP("no mpirun, or no module for MPI");
+  kill_and_resume(number("PBF_KILLS", 3), 4);
 }

@@ -1,8 +1,7 @@
 // `mpirun -n P pbf run`: processes as ranks.
-#include <csignal>
 #include <filesystem>
 
-#include "tests/support/process.h"
+#include "tests/support/mpirun.h"
 #include "tests/support/same_run.h"
 
 namespace fs = std::filesystem;
@@ -10,22 +9,6 @@ using namespace pbf::test;
 
 namespace {
 
-bool has_mpi() {
-  return fs::exists(fs::path(PBF_BINARY).parent_path() / "libpbf_mpi.so") &&
-         std::system("mpirun --version > /dev/null 2>&1") == 0;
-}
-/// mpirun of Open MPI; root in a container, more ranks than cores, and none waits on a core.
-const Args kAsRoot = {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
-                      "OMPI_MCA_mpi_yield_when_idle=1", "OMPI_MCA_rmaps_base_oversubscribe=1",
-                      "OMPI_MCA_btl_vader_single_copy_mechanism=none"};
-Process start_ranks(int ranks, const Args& args, const Scratch& folder) {
-  Args words = {"/usr/bin/env", "mpirun", "-n", std::to_string(ranks), PBF_BINARY};
-  words.insert(words.end(), args.begin(), args.end());
-  return Process::program(words, folder.path(), kAsRoot);
-}
-Outcome on_ranks(int ranks, const Args& args, const Scratch& folder) {
-  return start_ranks(ranks, args, folder).wait();
-}
 std::string sloshing(const Scratch& folder) {
   return folder.write("s.yaml", R"(
 domain: {min: [0, 0, 0], max: [0.8, 0.2, 0.4], loads: true}
@@ -93,7 +76,28 @@ TEST_CASE("on several ranks an error is told once, and ends them with its code")
   CHECK(count(many.err, "start at most 21 ranks") == 1);
   const Outcome plan = on_ranks(2, {"plan", scene}, folder);
   CHECK(plan.code == 2);
-  CHECK(count(plan.err, "only run works on several ranks") == 1);
+  CHECK(count(plan.err, "only run and batch --only work on several ranks") == 1);
+}
+
+TEST_CASE("a rank that hangs is named, and ends the others with 4") {
+  if (!has_mpi()) PBF_SKIP("no mpirun, or no module for MPI");
+  const Scratch folder;
+  const std::string scene = sloshing(folder);
+  for (const int hangs : {0, 2}) {
+    const std::string out = "out" + std::to_string(hangs);
+    Process ranks = start_ranks(3, {"run", scene, "--out", out, "--set", "time.end=100"}, folder,
+                                {"PBF_RANK_DEADLINE=0.5"});
+    wait_until([&] { return fs::exists(folder / (out + "/run.vtkhdf")); });
+    kill(process_of_rank(hangs, folder), SIGSTOP);
+    const Outcome o = ranks.wait();
+    CAPTURE(o.out, o.err);
+    CHECK(o.code == 4);
+    CHECK(count(o.err, "rank " + std::to_string(hangs) + " on ") == 1);
+    CHECK(has(o.err, "it hangs, or its machine is gone"));
+  }
+  const Outcome o = start_ranks(2, {"run", scene}, folder, {"PBF_RANK_DEADLINE=soon"}).wait();
+  CHECK(o.code == 2);
+  CHECK(count(o.err, "PBF_RANK_DEADLINE is \"soon\"") == 1);
 }
 
 TEST_CASE("several ranks without the module for MPI: the error has the command that makes it") {

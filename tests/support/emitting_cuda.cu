@@ -9,9 +9,9 @@ std::unique_ptr<Solver> emitting_on_cuda(const Scene& scene, const Plan& plan, P
   const ListCapacity lists = first_list_capacity(rest_neighbors(scene), plan.capacity);
   if (scene.precision == Precision::dbl)
     return std::make_unique<StepSolver<double, CudaExec, EmittingFeatures>>(
-        scene, plan, std::move(all), lists, plan.capacity);
+        scene, plan, std::move(all), lists, plan.capacity, plan.capacity);
   return std::make_unique<StepSolver<float, CudaExec, EmittingFeatures>>(
-      scene, plan, std::move(all), lists, plan.capacity);
+      scene, plan, std::move(all), lists, plan.capacity, plan.capacity);
 }
 
 }  // namespace pbf::test

@@ -6,6 +6,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "kernels/neighbors.h"
 #include "kernels/pass_residual.h"
 #include "lib/base/stage_clock.h"
+#include "lib/exec/cpu/cpu_rows.h"
+#include "lib/exec/cpu/cpu_threads.h"
 #include "lib/exec/cpu/host_buffer.h"
 #include "lib/exec/cpu/lane_sums.h"
 #include "lib/exec/cpu/list_maker.h"
@@ -21,8 +24,9 @@
 
 namespace pbf::PBF_VARIANT {
 
-class CpuExec {
+class CpuExec : public CpuRows, protected CpuThreads {
  public:
+  using CpuThreads::count_in_bins, CpuThreads::sum_of;
   using Lists = ChunkedLists;
   static constexpr Backend backend = Backend::cpu;
   static constexpr bool lists_overflow = false;  ///< they grow as they are made
@@ -32,7 +36,7 @@ class CpuExec {
   /// threads >= 1. list_entries: capacity per particle for its neighbors, at first
   /// (lib/program/memory.h); pages that stay empty are never touched.
   explicit CpuExec(int threads, int list_entries = 37, Simd simd = chosen_simd())
-      : threads_(threads),
+      : CpuThreads(threads),
         list_entries_(list_entries),
         simd_(simd),
         scratch_(std::size_t(threads)) {}
@@ -74,6 +78,7 @@ class CpuExec {
 
   /// The present number of particles, for launches.
   int counted(const RowState* state, int) const { return int(state->rows); }
+  static int rows_now(const RowState& state) { return int(state.rows); }
   void rows_changed() {}
 
   // Passes by their shapes (kernels/pass_shapes.h). Here one thread computes a whole item.
@@ -83,9 +88,33 @@ class CpuExec {
       for (int i = first; i < last; ++i) pass(i);
     });
   }
+  template <ItemPass Pass>
+  void items(const RowRange& rows, const Pass& pass) {
+    in_pieces<1>(
+        rows.last,
+        [&](int first, int last) {
+          for (int i = first; i < last; ++i) pass(i);
+        },
+        rows.first);
+  }
   template <PairPass Pass>
   void pairs(int n, const Pass& pass) {
-    in_pieces<1>(n, [&](int first, int last) { sum_over_neighbors(simd_, pass, first, last); });
+    pairs(RowRange{0, n}, pass);
+  }
+  template <PairPass Pass>
+  void pairs(const RowRange& rows, const Pass& pass) {
+    using Real = std::remove_cvref_t<decltype(pass.p.dt)>;
+    const int width = 1 << lane_bits(simd_, sizeof(Real));
+    in_pieces<1>(
+        rows.last,
+        [&](int first, int last) {
+          // The lists of a group are read together, so the rows before the first whole group go
+          // one by one. The bits are the same.
+          const int whole = std::min((first + width - 1) / width * width, last);
+          for (int i = first; i < whole; ++i) sum_over_neighbors(pass, i);
+          sum_over_neighbors(simd_, pass, whole, last);
+        },
+        rows.first);
   }
   template <SharedPass Pass>
   void shared(int n, const Pass& pass) {
@@ -97,9 +126,17 @@ class CpuExec {
   }
   template <BrickPass Pass>
   void bricks(const Pass& pass) {
-    in_pieces<kShare>(pass.grid.bricks(), [&](int first, int last) {
-      for (int n = first; n < last; ++n) of_brick(pass, n);
-    });
+    bricks(pass, 0, pass.grid.bricks());
+  }
+  /// The bricks begin ... end - 1.
+  template <BrickPass Pass>
+  void bricks(const Pass& pass, int begin, int end) {
+    in_pieces<kShare>(
+        end,
+        [&](int first, int last) {
+          for (int n = first; n < last; ++n) of_brick(pass, n);
+        },
+        begin);
   }
   /// The items 0..*count-1; at most `most`.
   template <ItemPass Pass>
@@ -110,9 +147,17 @@ class CpuExec {
   /// A measurement: maxima and counts, then the sums in units that follow from the maxima.
   template <ReducePass Pass>
   MeasureSums reduce(int n, const Pass& pass) {
-    const auto counts = sum<MeasureCounts>(n, [&](int i) { return pass.counts(i); });
+    return reduce(n, pass, [](auto&) {});
+  }
+  /// join(sums): adds those of other ranks.
+  template <ReducePass Pass, class Join>
+  MeasureSums reduce(int n, const Pass& pass, const Join& join) {
+    auto counts = sum<MeasureCounts>(n, [&](int i) { return pass.counts(i); });
+    join(counts);
     const MeasureUnits unit(counts);
-    return {counts, sum<MeasureTerms>(n, [&](int i) { return pass.terms(i, unit); })};
+    auto terms = sum<MeasureTerms>(n, [&](int i) { return pass.terms(i, unit); });
+    join(terms);
+    return {counts, terms};
   }
 
   /// Calls body() while the mean of pass(i) is above `tolerance`, at most `times` times, and counts
@@ -122,31 +167,14 @@ class CpuExec {
                     unsigned long long* repeats, const Body& body) {
     const std::uint64_t limit = residual_limit(tolerance, n);
     for (int k = 0; k < times; ++k) {
-      std::uint64_t sum = 0;
-#pragma omp parallel for schedule(static) reduction(+ : sum) num_threads(threads_) if (n > 4096)
-      for (int i = 0; i < n; ++i) sum += pass(i);
+      const std::uint64_t sum = sum_of(n, pass);
       mark(stage);
       if (sum <= limit) return;
-      ++*repeats;
+      add_one(repeats);
       body();
     }
   }
-
-  /// The number of particles that pass(i) puts into each of `bins` bins; none if it is negative.
-  template <class Pass>
-  const std::vector<std::int64_t>& count_in_bins(int n, int bins, const Pass& pass) {
-    in_bins_.assign(std::size_t(bins), 0);
-#pragma omp parallel num_threads(threads_) if (n > kChunk)
-    {
-      std::vector<std::int64_t> mine(std::size_t(bins), 0);
-#pragma omp for schedule(static) nowait
-      for (int i = 0; i < n; ++i)
-        if (const int b = pass(i); b >= 0) ++mine[std::size_t(b)];
-#pragma omp critical(pbf_count_in_bins)
-      for (std::size_t b = 0; b < mine.size(); ++b) in_bins_[b] += mine[b];
-    }
-    return in_bins_;
-  }
+  void add_one(unsigned long long* count) { ++*count; }
 
   /// Calls first(i) for every particle, which writes first.bin[i] or leaves this to `near`; sorts
   /// by bin and, within a bin, by id (start[b] = first place of bin b, start[bins] = n); calls
@@ -174,17 +202,23 @@ class CpuExec {
   void sort(const int* bin, const int* id, int n, int bins, int* order, int* start);
 
   /// Lists of exactly the pairs of n particles closer than h. Memory grows as needed (throws
-  /// std::bad_alloc). far: the row that pads lists. from: rows before it need no lists.
+  /// std::bad_alloc). far: the row that pads lists.
   template <class Real>
   Lists build_lists(int n, int far, const Vec4<Real>* position, const int* bin_start,
-                    const Params<Real>& p, int from = 0) {
+                    const Params<Real>& p) {
+    return build_lists(RowRange{0, n}, far, position, bin_start, p);
+  }
+  template <class Real>
+  Lists build_lists(const RowRange& rows, int far, const Vec4<Real>* position, const int* bin_start,
+                    const Params<Real>& p) {
+    const int n = rows.last;
     const int chunks = (n + kChunk - 1) / kChunk;
     const int bits = lane_bits(simd_, sizeof(Real)), groups_per_chunk = kChunk >> bits;
     chunks_.resize(std::size_t(chunks));
     pointers_.resize(std::size_t(chunks));
     groups_.resize(std::size_t(chunks) * std::size_t(groups_per_chunk));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (chunks > 1)
-    for (int c = from / kChunk; c < chunks; ++c) {
+    for (int c = rows.first / kChunk; c < chunks; ++c) {
       ListScratch& scratch = scratch_[std::size_t(omp_get_thread_num())];
       scratch.reserve(list_entries_);
       const int first = c * kChunk, last = std::min(n - first, kChunk) + first;
@@ -202,6 +236,11 @@ class CpuExec {
       pointers_[std::size_t(c)] = mine.data();
     }
     return {pointers_.data(), groups_.data(), bits, far};
+  }
+
+  template <class Updates>
+  void repeat_unrecorded(int updates, Updates& u) {
+    u.step(updates);
   }
 
   /// place[i]: how many of the n different numbers, none negative, are smaller than id[i].
@@ -227,46 +266,19 @@ class CpuExec {
     }
   }
 
-  /// Calls f(first, last) for pieces of 0..n-1; an item is as much work as `share` particles.
-  /// Dynamic scheduling: particles at the surface have fewer neighbors, and another program may
-  /// occupy a core for a while. from: the first item, in the middle of a piece.
-  template <int share, class F>
-  void in_pieces(int n, const F& f, int from = 0) {
-    constexpr int piece = kPiece / share;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (n - from > kChunk / share)
-    for (int first = from / piece * piece; first < n; first += piece)
-      f(std::max(first, from), std::min(n - first, piece) + first);
-  }
   template <class Pass>
   void wholes(int n, const Pass& pass) {
     in_pieces<kShare>(n, [&](int first, int last) {
       for (int i = first; i < last; ++i) pass.finish(i, pass.part(i, 0, 1));
     });
   }
-  /// The sum of term(i), which does not depend on the order of terms.
-  template <class Sum, class Term>
-  Sum sum(int n, const Term& term) {
-    Sum total;
-#pragma omp parallel num_threads(threads_) if (n > kChunk)
-    {
-      Sum mine;
-#pragma omp for schedule(static) nowait
-      for (int i = 0; i < n; ++i) mine.add(term(i));
-#pragma omp critical(pbf_sum)
-      total.add(mine);
-    }
-    return total;
-  }
   Simd simd() const { return simd_; }
 
  private:
-  static constexpr int kChunk = 1 << ChunkedLists::chunk_bits;
-  static constexpr int kShare = 16;   ///< work of an item that threads may share, in particles
-  static constexpr int kPiece = 256;  ///< of a pass: whole groups of lists, a few microseconds
-  int threads_, list_entries_;
+  static constexpr int kShare = 16;  ///< work of an item that threads may share, in particles
+  int list_entries_;
   Simd simd_;
   StageClock clock_;
-  std::vector<std::int64_t> in_bins_;
   std::vector<ListScratch> scratch_;  ///< per thread
   std::vector<HostBuffer<int>> chunks_;
   std::vector<const int*> pointers_;

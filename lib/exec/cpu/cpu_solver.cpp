@@ -5,6 +5,7 @@
 
 #include "lib/base/error.h"
 #include "lib/base/start_thread.h"
+#include "lib/exec/cpu/cpu_exec.h"
 #include "lib/exec/ranks/rank_exec.h"
 #include "lib/program/threads.h"
 #include "lib/solver/step_solver.h"
@@ -12,14 +13,8 @@
 namespace pbf::PBF_VARIANT {
 namespace {
 
-/// The number of a rank's rows changes.
-struct CountsRows {
-  static constexpr bool changes_rows = true;
-  using Passes = PassList<>;
-  static void add(const Scene&, auto&) {}
-};
 template <class Real>
-using CpuSolver = StepSolver<Real, RankExec, Features::With<CountsRows>>;
+using CpuSolver = StepSolver<Real, RankExec<CpuExec>, RankFeatures>;
 
 }  // namespace
 

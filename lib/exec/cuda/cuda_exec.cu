@@ -9,6 +9,10 @@ struct NumberPass {
   int* row;
   PBF_HD void operator()(int i) const { row[i] = i; }
 };
+struct AddOnePass {
+  unsigned long long* count;
+  PBF_HD void operator()(int) const { ++*count; }
+};
 struct InversePass {
   const int* from;
   int* place;
@@ -38,7 +42,8 @@ bool DeviceLists::grow(int n, cudaStream_t stream) {
   return true;
 }
 
-CudaExec::CudaExec(ListCapacity capacity, std::int64_t total) : lists_(capacity), total_(total) {
+CudaExec::CudaExec(ListCapacity capacity, std::int64_t total, std::int64_t rows)
+    : CudaSums(total, rows), lists_(capacity) {
   int device = 0, driver = 0;
   cudaDeviceProp p{};
   PBF_CUDA_CHECK(cudaGetDevice(&device));
@@ -106,6 +111,30 @@ void CudaExec::rank(int n, const int* id, int* place) {
   items(n, InversePass{by_id.data(), place});
   synchronize();
 }
+
+void CudaExec::connect(Communicator& ranks) {
+  link_ = make_device_link(ranks);
+  driver_ += ", " + link_->name();
+}
+
+void CudaRows::move_down(char* begin, std::size_t by, std::size_t bytes) {
+  if (by == 0 || bytes == 0) return;
+  const std::size_t piece = std::min<std::size_t>(bytes, 64 << 20);
+  DeviceBuffer<char> between;  // pieces may overlap with what they move to
+  if (by < piece) between.resize(piece);
+  for (std::size_t done = 0; done < bytes; done += piece) {
+    const std::size_t n = std::min(piece, bytes - done);
+    const char* from = begin + by + done;
+    if (by < piece) {
+      copy(from, between.data(), n);
+      from = between.data();
+    }
+    copy(from, begin + done, n);
+  }
+  synchronize();
+}
+
+void CudaExec::add_one(unsigned long long* count) { items(1, AddOnePass{count}); }
 
 bool CudaExec::new_condition(cudaGraphConditionalHandle& handle) {
   cudaStreamCaptureStatus status;

@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "lib/base/stage_clock.h"
-#include "lib/exec/cuda/bin_counts.cuh"
+#include "lib/exec/cuda/cuda_sums.cuh"
 #include "lib/exec/cuda/device_lists.cuh"
 #include "lib/exec/cuda/host_copy.cuh"
 #include "lib/exec/cuda/kernels.cuh"
 #include "lib/exec/cuda/recorded.cuh"
-#include "lib/exec/cuda/reduce.cuh"
 #include "lib/exec/cuda/repeat.cuh"
 #include "lib/exec/cuda/shared_pass.cuh"
 #include "lib/exec/cuda/sort_kernels.cuh"
@@ -21,7 +20,7 @@
 
 namespace pbf::PBF_VARIANT {
 
-class CudaExec {
+class CudaExec : public CudaSums {
  public:
   using Lists = TransposedLists;
   static constexpr Backend backend = Backend::cuda;
@@ -30,13 +29,11 @@ class CudaExec {
   using Buffer = DeviceBuffer<T>;
 
   /// capacity: of the lists at first; grow_lists() enlarges it. total: most particles of the whole
-  /// scene, from which the number of threads of a sum follows.
-  CudaExec(ListCapacity capacity, std::int64_t total);
+  /// scene, from which the number of threads of a sum follows. rows: most rows here.
+  CudaExec(ListCapacity capacity, std::int64_t total, std::int64_t rows);
   ~CudaExec();
   CudaExec(const CudaExec&) = delete;
   CudaExec& operator=(const CudaExec&) = delete;
-
-  void synchronize() { PBF_CUDA_CHECK(cudaStreamSynchronize(launcher_.stream)); }
 
   // Stage times of sampled updates, from events on the stream.
   void begin();
@@ -74,20 +71,10 @@ class CudaExec {
   int largest_batch(int n) const { return n < 20000 ? 256 : n < 500000 ? 64 : 16; }
   bool grow_lists(int n);
 
-  template <class T>
-  void to_device(const T* host, std::size_t n, T* to) {
-    PBF_CUDA_CHECK(
-        cudaMemcpyAsync(to, host, n * sizeof(T), cudaMemcpyHostToDevice, launcher_.stream));
-    synchronize();
-  }
-  template <class T>
-  void to_host(const T* from, std::size_t n, T* host) {
-    PBF_CUDA_CHECK(
-        cudaMemcpyAsync(host, from, n * sizeof(T), cudaMemcpyDeviceToHost, launcher_.stream));
-    synchronize();
-  }
-
   CountedRows counted(const RowState* state, int most) const { return {state, most}; }
+  static int rows_now(const RowState&) {
+    throw Error(ExitCode::internal, "the number of rows is on the device");
+  }
   /// The next kernel starts after the last one has ended, so it sees the new number.
   void rows_changed() { launcher_.alone = true; }
 
@@ -119,31 +106,17 @@ class CudaExec {
   }
   template <BrickPass Pass>
   void bricks(const Pass& pass) {
-    launch(brick_kernel<Pass>, pass.grid.bricks() * kBrickBlock<Pass>, kBrickBlock<Pass>, 0, pass);
+    bricks(pass, 0, pass.grid.bricks());
+  }
+  template <BrickPass Pass>
+  void bricks(const Pass& pass, int begin, int end) {
+    launch(brick_kernel<Pass>, (end - begin) * kBrickBlock<Pass>, kBrickBlock<Pass>, 0, begin,
+           pass);
   }
   /// See CpuExec. Their number is known on the device alone.
   template <ItemPass Pass>
   void listed(const int* count, int at_most, const Pass& pass) {
     launch(listed_kernel<Pass>, std::min(at_most, kBlock * kListedBlocks), kBlock, 0, count, pass);
-  }
-
-  /// See CpuExec. The maxima stay on the device for the sums, so the host waits once.
-  template <ReducePass Pass>
-  MeasureSums reduce(int n, const Pass& pass) {
-    if (n == 0) return {};
-    measure_.make(std::max<std::int64_t>(n, total_), launcher_.stream);
-    const int threads = kBlock * reduce_blocks(n);
-    launch(reduce_kernel<CountsOf<Pass>>, threads, kBlock, 0, n, CountsOf<Pass>{pass},
-           measure_.counts());
-    launch(reduce_kernel<TermsOf<Pass>>, threads, kBlock, 0, n,
-           TermsOf<Pass>{pass, measure_.counts().total, {}}, measure_.terms());
-    return measure_.result(launcher_.stream);
-  }
-
-  /// See CpuExec.
-  template <class Pass>
-  const std::vector<std::int64_t>& count_in_bins(int n, int bins, const Pass& pass) {
-    return bin_counts_.of(n, bins, pass, launcher_.stream);
   }
 
   /// See CpuExec. If a graph is captured, the body becomes part of it, and the device repeats it
@@ -179,7 +152,7 @@ class CudaExec {
   void sort_by_bin(const char* stage, const First& first, const Listed& near, const Rows& n,
                    int bins, const int* id, int* order, int* start, const Gather& gather) {
     constexpr bool leaves_rows = requires { near.pass; };
-    const auto all = int(total_);
+    const auto all = int(rows_);
     slot_.resize(std::size_t(all));
     const OrderPass<leave, Gather> in_order{first.bin, id, start, slot_.data(), bins, gather};
     if (all <= kSortParticles && bins <= kSortBins) {
@@ -226,9 +199,24 @@ class CudaExec {
   /// See CpuExec.
   void rank(int n, const int* id, int* place);
 
+  void connect(Communicator& ranks);
+  void add_one(unsigned long long* count);
+  /// repeat() without graphs: the host takes part in every update.
+  template <class Updates>
+  void repeat_unrecorded(int updates, Updates& u) {
+    for (; updates > 0; --updates, --since_profile_) {
+      profiling_ = since_profile_ <= 0;
+      u.step(1);
+      if (!profiling_) continue;
+      book(64);
+      profiling_ = false;
+      since_profile_ = 64;
+    }
+  }
+
   std::size_t bytes() const {
-    return lists_.bytes() + counts_.bytes() + slot_.bytes() + scan_.bytes() + measure_.bytes() +
-           bin_counts_.bytes() + repeat_.bytes() + copy_.bytes();
+    return lists_.bytes() + counts_.bytes() + slot_.bytes() + scan_.bytes() + repeat_.bytes() +
+           copy_.bytes() + CudaSums::bytes();
   }
 
  private:
@@ -238,10 +226,6 @@ class CudaExec {
       pairs(n, pass);
     else
       items(n, pass);
-  }
-  template <class... P, class... A>
-  void launch(void (*kernel)(P...), int threads, int block, std::size_t shared, const A&... args) {
-    launcher_.start(kernel, threads, block, shared, args...);
   }
   /// Launches `lanes` threads per particle if the scene has at most `largest`; returns whether it
   /// did.
@@ -266,11 +250,9 @@ class CudaExec {
   /// Exclusive sums of the counts.
   void scan(int n, int* start);
 
-  std::string device_, driver_;  ///< names
-  Launcher launcher_;
+  std::string device_, driver_;          ///< names
   cudaStream_t other_stream_ = nullptr;  ///< while a repeated body is captured: that of the graph
   DeviceLists lists_;
-  std::int64_t total_;
   bool profiling_ = false;
   int since_profile_ = 0;
   RecordedUpdates recorded_;
@@ -278,8 +260,6 @@ class CudaExec {
   StageClock clock_;
   std::vector<cudaEvent_t> events_;
   std::vector<const char*> stages_;  ///< of the marks since begin()
-  MeasureSpace measure_;
-  BinCounts bin_counts_;
   DeviceBuffer<int> counts_, slot_;
   DeviceBuffer<char> scan_;  ///< separate, because recorded updates hold its address
   DeviceBuffer<RepeatState> repeat_;

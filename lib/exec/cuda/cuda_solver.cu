@@ -3,17 +3,26 @@
 
 #include "lib/exec/cuda/cuda_exec.cuh"
 #include "lib/exec/cuda/cuda_variants.h"
+#include "lib/exec/ranks/rank_exec.h"
 #include "lib/solver/step_solver.h"
 
 namespace pbf::PBF_VARIANT {
+namespace {
+
+template <class Real>
+using CudaSolver = StepSolver<Real, RankExec<CudaExec>, RankFeatures>;
+
+}  // namespace
 
 std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& plan,
-                                             Particles particles, ListCapacity capacity) {
+                                             Particles particles, ListCapacity capacity,
+                                             Communicator* ranks) {
+  const std::int64_t total = ranks ? plan.particles : plan.capacity;
   if (scene.precision == Precision::dbl)
-    return std::make_unique<StepSolver<double, CudaExec>>(scene, plan, std::move(particles),
-                                                          capacity, plan.capacity);
-  return std::make_unique<StepSolver<float, CudaExec>>(scene, plan, std::move(particles), capacity,
-                                                       plan.capacity);
+    return std::make_unique<CudaSolver<double>>(scene, plan, std::move(particles), ranks, capacity,
+                                                total, plan.capacity);
+  return std::make_unique<CudaSolver<float>>(scene, plan, std::move(particles), ranks, capacity,
+                                             total, plan.capacity);
 }
 
 }  // namespace pbf::PBF_VARIANT

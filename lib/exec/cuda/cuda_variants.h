@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "lib/exec/ranks/communicator.h"
 #include "lib/program/list_capacity.h"
 #include "lib/solver/solver.h"
 
@@ -10,11 +11,13 @@ namespace pbf {
 
 namespace plain {
 std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& plan,
-                                             Particles particles, ListCapacity capacity);
+                                             Particles particles, ListCapacity capacity,
+                                             Communicator* ranks);
 }
 namespace pinned {
 std::unique_ptr<Solver> make_stepping_solver(const Scene& scene, const Plan& plan,
-                                             Particles particles, ListCapacity capacity);
+                                             Particles particles, ListCapacity capacity,
+                                             Communicator* ranks);
 }
 
 }  // namespace pbf

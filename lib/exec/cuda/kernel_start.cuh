@@ -13,14 +13,20 @@ namespace pbf::PBF_VARIANT {
 
 constexpr int kBlock = 128;
 
-/// The number of particles, as the host or the device knows it: at most, and in a kernel. A kernel
-/// asks before wait_for_previous(), which hides the load: see CudaExec::rows_changed().
+/// The rows of a launch, whose number the host or the device knows: for how many threads to launch,
+/// and in a kernel the first row and the end. A kernel asks before wait_for_previous(), which hides
+/// the load: see CudaExec::rows_changed().
 inline int most(int n) { return n; }
 inline int most(const CountedRows& rows) { return rows.most; }
-__device__ __forceinline__ int count_of(int n) { return n; }
-__device__ __forceinline__ int count_of(const CountedRows& rows) { return int(rows.state->rows); }
+inline int most(const RowRange& rows) { return rows.last - rows.first; }
+__device__ __forceinline__ int first_of(int) { return 0; }
+__device__ __forceinline__ int first_of(const CountedRows&) { return 0; }
+__device__ __forceinline__ int first_of(const RowRange& rows) { return rows.first; }
+__device__ __forceinline__ int end_of(int n) { return n; }
+__device__ __forceinline__ int end_of(const CountedRows& rows) { return int(rows.state->rows); }
+__device__ __forceinline__ int end_of(const RowRange& rows) { return rows.last; }
 
-/// First statement of every kernel, but for count_of(). A kernel is set up while the previous one
+/// First statement of every kernel, but for end_of(). A kernel is set up while the previous one
 /// ends, and waits here until that one is done (programmatic dependent launch, from sm_90 on). An
 /// explicit early trigger is slower: its blocks would occupy places that blocks of the previous
 /// kernel need (kernels/PERFORMANCE.md).

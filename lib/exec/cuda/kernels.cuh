@@ -24,17 +24,17 @@ constexpr int kListedBlocks = 1024;
 
 template <class Rows, class Pass>
 __global__ void __launch_bounds__(kBlock) item_kernel(Rows rows, Pass pass) {
-  const int n = count_of(rows);
+  const int n = end_of(rows);
   wait_for_previous();
-  const int i = blockIdx.x * kBlock + threadIdx.x;
+  const int i = first_of(rows) + blockIdx.x * kBlock + threadIdx.x;
   if (i < n) pass(i);
 }
 
 template <class Rows, class Pass>
 __global__ void __launch_bounds__(kBlock) pair_kernel(Rows rows, Pass pass) {
-  const int n = count_of(rows);
+  const int n = end_of(rows);
   wait_for_previous();
-  const int i = blockIdx.x * kBlock + threadIdx.x;
+  const int i = first_of(rows) + blockIdx.x * kBlock + threadIdx.x;
   if (i < n) sum_over_neighbors(pass, i);
 }
 
@@ -50,19 +50,20 @@ __global__ void __launch_bounds__(kBlock)
 /// A neighbor sum by several threads per particle.
 template <int lanes, class Rows, class Pass>
 __global__ void __launch_bounds__(kBlock) lanes_kernel(Rows rows, Pass pass) {
-  const int n = count_of(rows);
+  const int n = end_of(rows);
   wait_for_previous();
+  const int thread = lanes * first_of(rows) + blockIdx.x * kBlock + threadIdx.x;
 #ifdef PBF_PINNED
-  sum_in_order_by_lanes<lanes, kBlock>(pass, blockIdx.x * kBlock + threadIdx.x, n);
+  sum_in_order_by_lanes<lanes, kBlock>(pass, thread, n);
 #else
-  sum_over_neighbors_by_lanes<lanes>(pass, blockIdx.x * kBlock + threadIdx.x, n);
+  sum_over_neighbors_by_lanes<lanes>(pass, thread, n);
 #endif
 }
 template <class Rows, class Real, int D>
 __global__ void __launch_bounds__(kBlock) list_lanes_kernel(Rows rows, ListPass<Real, D> pass) {
-  const int n = count_of(rows);
+  const int n = end_of(rows);
   wait_for_previous();
-  pass.by_lanes(blockIdx.x * kBlock + threadIdx.x, n);
+  pass.by_lanes(pass.lanes * first_of(rows) + blockIdx.x * kBlock + threadIdx.x, n);
 }
 
 }  // namespace pbf::PBF_VARIANT

@@ -4,6 +4,7 @@
 #include "lib/exec/cuda/check.h"
 #include "lib/exec/cuda/cuda_solver.h"
 #include "lib/exec/cuda/cuda_variants.h"
+#include "lib/exec/cuda/device_link.h"
 #include "lib/program/plan.h"
 
 namespace pbf::exec_module {
@@ -32,18 +33,19 @@ bool cuda_available(std::string* why) {
 }
 
 std::unique_ptr<Solver> make_cuda_solver(const Scene& scene, const Plan& plan, Particles particles,
-                                         int first_entries) {
+                                         int first_entries, Communicator* ranks) {
   std::string why;
   if (!cuda_available(&why))
     throw Error(ExitCode::unavailable,
                 "backend cuda: no usable GPU here (" + why +
                     "); run with --backend cpu, or where `nvidia-smi` lists a device");
+  if (ranks) use_device_of_rank(*ranks);
   refuse_if_device_too_small(scene, plan);
   const ListCapacity capacity =
       first_list_capacity(rest_neighbors(scene), plan.capacity, first_entries);
   return scene.solver.reproducible
-             ? pinned::make_stepping_solver(scene, plan, std::move(particles), capacity)
-             : plain::make_stepping_solver(scene, plan, std::move(particles), capacity);
+             ? pinned::make_stepping_solver(scene, plan, std::move(particles), capacity, ranks)
+             : plain::make_stepping_solver(scene, plan, std::move(particles), capacity, ranks);
 }
 
 }  // namespace pbf::exec_module

@@ -31,7 +31,7 @@ struct Repetition {
 /// Sums pass(i) of all particles; the block that is done last decides.
 template <class Rows, class Pass>
 __global__ void __launch_bounds__(kBlock) repeat_kernel(Rows rows, Pass pass, Repetition r) {
-  const int n = count_of(rows);
+  const int n = end_of(rows);
   wait_for_previous();
   unsigned long long sum = 0;
   for (std::int64_t i = blockIdx.x * kBlock + threadIdx.x; i < n;

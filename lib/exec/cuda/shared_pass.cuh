@@ -43,10 +43,10 @@ template <class Pass>
 constexpr int kBrickBlock = Pass::brick_cells* Pass::lanes;
 template <class Pass>
 __global__ void __launch_bounds__(kBrickBlock<Pass>)
-    brick_kernel(const __grid_constant__ Pass pass) {
+    brick_kernel(int first, const __grid_constant__ Pass pass) {
   __shared__ std::int64_t found[Pass::brick_cells];
   wait_for_previous();
-  const GridPlace brick = pass.brick(blockIdx.x);
+  const GridPlace brick = pass.brick(first + blockIdx.x);
   const int k = threadIdx.x / Pass::lanes, lane = threadIdx.x % Pass::lanes;
   const GridPlace c = pass.cell(brick, k);
   const bool there = pass.grid.has(c);

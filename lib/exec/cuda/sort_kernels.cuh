@@ -61,7 +61,7 @@ struct PlacePass {
 };
 template <class Rows>
 __global__ void __launch_bounds__(kBlock) place_kernel(Rows rows, PlacePass pass) {
-  const int n = count_of(rows);
+  const int n = end_of(rows);
   wait_for_previous();
   pass(blockIdx.x * kBlock + threadIdx.x, n);
 }
@@ -92,7 +92,7 @@ template <bool leave, class Rows, class First, class Gather>
 __global__ void __launch_bounds__(kSortThreads)
     small_sort_kernel(Rows rows, First first_pass, int bins, int* arrival, int* slot, int* start,
                       ListState* lists, OrderPass<leave, Gather> place) {
-  const int n = count_of(rows);
+  const int n = end_of(rows);
   wait_for_previous();
   extern __shared__ int count[];  // bins, and one for rows that leave
   __shared__ int warp_sum[32];

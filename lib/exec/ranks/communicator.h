@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ struct Parcel {
   std::vector<char> bytes{};
 };
 
+using TakePart = std::function<void(const std::vector<char>&)>;
+
 /// Messages and bytes that a rank has sent to others so far, apart from sums and commands.
 struct Traffic {
   std::int64_t messages = 0, bytes = 0;
@@ -41,6 +44,8 @@ class Communicator {
   virtual ~Communicator() = default;
   virtual int rank() const = 0;
   virtual int size() const = 0;  ///< number of ranks
+  /// Number of this rank among those of its machine; -1: they are threads of one process.
+  virtual int local_rank() const = 0;
   /// For `pbf info` and the run file: "Open MPI v4.1.4", "threads".
   virtual std::string describe() const = 0;
 
@@ -53,8 +58,8 @@ class Communicator {
   virtual std::vector<char> all_gather(const void* mine, std::size_t bytes) = 0;
   /// Each value becomes its sum over all ranks, modulo 2^64.
   virtual void sum(std::span<std::int64_t> values) = 0;
-  /// The bytes of every rank on rank 0, in the order of ranks; nothing on the others.
-  virtual std::vector<std::vector<char>> gather(std::vector<char> mine) = 0;
+  /// Calls take(bytes) on rank 0 for the bytes of every rank, in the order of ranks.
+  virtual void gather(std::vector<char> mine, const TakePart& take) = 0;
   /// The bytes of rank 0 on all ranks. A rank that waits for it leaves its core to others.
   virtual void broadcast(std::vector<char>& bytes) = 0;
   /// Tells the other ranks that this one has failed, so that none waits for it. code: with which
@@ -63,5 +68,8 @@ class Communicator {
 
   Traffic sent{};
 };
+
+/// On each rank the bytes part(rank) of rank 0, which makes them one after the other.
+std::vector<char> scatter(Communicator& ranks, const std::function<std::vector<char>(int)>& part);
 
 }  // namespace pbf::exec_module

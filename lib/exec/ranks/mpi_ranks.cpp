@@ -17,9 +17,12 @@ namespace {
 
 class Mpi final : public MpiRanks {
  public:
-  explicit Mpi(const pbf_mpi& mpi) : mpi_(mpi) { check(mpi_.start(&rank_, &size_), "MPI_Init"); }
+  Mpi(const pbf_mpi& mpi, double deadline) : mpi_(mpi) {
+    check(mpi_.start(deadline, &rank_, &size_), "MPI_Init");
+  }
   int rank() const override { return rank_; }
   int size() const override { return size_; }
+  int local_rank() const override { return launched_local_rank(); }
   std::string describe() const override {
     char text[256] = "";
     mpi_.describe(text, int(sizeof text));
@@ -56,25 +59,22 @@ class Mpi final : public MpiRanks {
   void sum(std::span<std::int64_t> values) override {
     check(mpi_.sum(values.data(), values.size()), "MPI_Allreduce");
   }
-  std::vector<std::vector<char>> gather(std::vector<char> mine) override {
+  void gather(std::vector<char> mine, const TakePart& take) override {
     const std::uint64_t bytes = mine.size();
     const std::vector<char> sizes = all_gather(&bytes, sizeof bytes);
     if (rank_ != 0) {
       const pbf_mpi_message to{0, mine.data(), mine.size()};
-      check(mpi_.exchange(&to, 1, nullptr, 0), "gather");
-      return {};
+      return check(mpi_.exchange(&to, 1, nullptr, 0), "gather");
     }
-    std::vector<std::vector<char>> all(static_cast<std::size_t>(size_));
-    all[0] = std::move(mine);
+    take(mine);
     for (int r = 1; r < size_; ++r) {
       std::uint64_t n = 0;
       std::memcpy(&n, sizes.data() + std::size_t(r) * sizeof n, sizeof n);
-      std::vector<char>& part = all[std::size_t(r)];
-      part.resize(n);
-      const pbf_mpi_message from{r, part.data(), part.size()};
+      mine.resize(n);
+      const pbf_mpi_message from{r, mine.data(), mine.size()};
       check(mpi_.exchange(nullptr, 0, &from, 1), "gather");
+      take(mine);
     }
-    return all;
   }
   void broadcast(std::vector<char>& bytes) override {
     std::uint64_t n = bytes.size();
@@ -101,7 +101,8 @@ class Mpi final : public MpiRanks {
     sent.messages += std::int64_t(out.size());
     for (const pbf_mpi_message& m : out) sent.bytes += std::int64_t(m.bytes);
   }
-  static void check(int error, const char* call) {
+  void check(int error, const char* call) const {
+    if (error == PBF_MPI_SILENT) throw Error(ExitCode::unavailable, mpi_.trouble());
     if (error != 0)
       throw Error(ExitCode::unavailable, fmt::format("{} failed, MPI error {}", call, error));
   }
@@ -116,6 +117,20 @@ int number_of(const char* name) {
   return text ? std::atoi(text) : 0;
 }
 
+/// s after which a rank that waits for others asks whether they live; 0: never.
+double deadline() {
+  const char* text = std::getenv("PBF_RANK_DEADLINE");
+  if (!text) return 300;
+  char* end = nullptr;
+  const double seconds = std::strtod(text, &end);
+  if (end == text || *end != 0 || !(seconds >= 0 && seconds < 1e9))
+    throw Error(ExitCode::bad_input,
+                fmt::format("the environment variable PBF_RANK_DEADLINE is \"{}\", expected "
+                            "seconds, or 0 for no end",
+                            text));
+  return seconds;
+}
+
 }  // namespace
 
 int launched_ranks() {
@@ -127,6 +142,11 @@ int launched_ranks() {
 int launched_rank() {
   return std::max(
       {number_of("OMPI_COMM_WORLD_RANK"), number_of("PMI_RANK"), number_of("PMIX_RANK")});
+}
+
+int launched_local_rank() {
+  return std::max({number_of("OMPI_COMM_WORLD_LOCAL_RANK"), number_of("MPI_LOCALRANKID"),
+                   std::getenv("PMIX_RANK") ? number_of("SLURM_LOCALID") : 0});
 }
 
 std::unique_ptr<MpiRanks> open_mpi_ranks() {
@@ -145,7 +165,7 @@ std::unique_ptr<MpiRanks> open_mpi_ranks() {
                             launched_ranks(),
                             module ? path + " is of another version" : std::string(dlerror()),
                             shipped_file("lib/exec/ranks/pbf_mpi.c")));
-  return std::make_unique<Mpi>(*table());
+  return std::make_unique<Mpi>(*table(), deadline());
 }
 
 }  // namespace pbf::exec_module

@@ -12,6 +12,8 @@ namespace pbf::exec_module {
 int launched_ranks();
 /// The rank of this process among them, as far as the environment says.
 int launched_rank();
+/// Its number among those on this machine.
+int launched_local_rank();
 
 class MpiRanks : public Communicator {
  public:

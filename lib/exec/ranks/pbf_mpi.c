@@ -1,16 +1,21 @@
 /* MPI for pbf, compiled on the machine on which it runs:
      mpicc -O2 -shared -fPIC -o libpbf_mpi.so pbf_mpi.c
    The program opens it when it is started on several ranks. */
-#define _POSIX_C_SOURCE 199309L /* nanosleep() */
+#define _POSIX_C_SOURCE 200112L /* nanosleep(), gethostname() */
 
 #include "pbf_mpi.h"
 
 #include <mpi.h>
+#include <sched.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
-enum { most_piece = 1 << 30, tag = 7 }; /* counts of MPI are int */
+enum { most_piece = 1 << 30 }; /* counts of MPI are int */
+enum { tag = 7, tag_ask, tag_answer };
+enum { host_bytes = 64, no_source = -1 };
 
 #define TRY(call)                             \
   do {                                        \
@@ -46,18 +51,126 @@ static int begin(const struct pbf_mpi_message* m, int send) {
   } while (done < m->bytes);
   return MPI_SUCCESS;
 }
+
+/* A rank that waits for too long asks all others whether they live. Those that wait answer. */
+static double deadline = 0; /* s; 0: none */
+static int me = 0, ranks = 1, question = 0;
+static char* hosts = NULL; /* host_bytes for each rank */
+static char* heard = NULL; /* whether each rank has answered */
+static char why[512] = "";
+
+static double seconds(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+static int answer_others(void) {
+  for (;;) {
+    int there = 0, number = 0;
+    MPI_Status s;
+    TRY(MPI_Iprobe(MPI_ANY_SOURCE, tag_ask, MPI_COMM_WORLD, &there, &s));
+    if (!there) return MPI_SUCCESS;
+    TRY(MPI_Recv(&number, 1, MPI_INT, s.MPI_SOURCE, tag_ask, MPI_COMM_WORLD, &s));
+    TRY(MPI_Send(&number, 1, MPI_INT, s.MPI_SOURCE, tag_answer, MPI_COMM_WORLD));
+  }
+}
+static int hear_answers(void) {
+  for (;;) {
+    int there = 0, number = 0;
+    MPI_Status s;
+    TRY(MPI_Iprobe(MPI_ANY_SOURCE, tag_answer, MPI_COMM_WORLD, &there, &s));
+    if (!there) return MPI_SUCCESS;
+    TRY(MPI_Recv(&number, 1, MPI_INT, s.MPI_SOURCE, tag_answer, MPI_COMM_WORLD, &s));
+    if (number == question) heard[s.MPI_SOURCE] = 1;
+  }
+}
+static int ask_others(void) {
+  ++question;
+  memset(heard, 0, (size_t)ranks);
+  heard[me] = 1;
+  static int numbers[1024]; /* stay as they are while they are sent */
+  int* number = &numbers[question % 1024];
+  *number = question;
+  for (int r = 0; r < ranks; ++r) {
+    if (r == me) continue;
+    MPI_Request sent; /* a rank that hangs takes nothing: do not wait for it */
+    TRY(MPI_Isend(number, 1, MPI_INT, r, tag_ask, MPI_COMM_WORLD, &sent));
+    TRY(MPI_Request_free(&sent));
+  }
+  return MPI_SUCCESS;
+}
+/* What is awaited: the requests, or a message from a rank. */
+static int arrived(int source, int* there, MPI_Status* status) {
+  if (source == no_source) return MPI_Testall(used, requests, there, MPI_STATUSES_IGNORE);
+  return MPI_Iprobe(source, tag, MPI_COMM_WORLD, there, status);
+}
+/* After the deadline: waits for answers for a while, also for what is awaited. */
+static int find_silent(int source, int* there, MPI_Status* status) {
+  const double begun = seconds(), most = deadline < 10 ? deadline : 10;
+  const struct timespec nap = {0, 100000}; /* 0.1 ms */
+  int silent = 0, reporter = 0;
+  TRY(ask_others());
+  while (seconds() - begun < most) {
+    TRY(arrived(source, there, status));
+    if (*there) return MPI_SUCCESS;
+    TRY(answer_others());
+    TRY(hear_answers());
+    nanosleep(&nap, NULL);
+  }
+  while (silent < ranks && heard[silent]) ++silent;
+  if (silent == ranks) return MPI_SUCCESS; /* all live; wait on */
+  snprintf(why, sizeof why,
+           "rank %d on %s has not answered for %.0f s: it hangs, or its machine is gone (the "
+           "environment variable PBF_RANK_DEADLINE sets the seconds, 0 for no end)",
+           silent, hosts + (size_t)silent * host_bytes, deadline + most);
+  while (!heard[reporter]) ++reporter;
+  while (reporter != me && seconds() - begun < most + 5) { /* one tells it */
+    TRY(answer_others());
+    nanosleep(&nap, NULL);
+  }
+  return PBF_MPI_SILENT;
+}
+/* patient: leaves the core to others, and waits ten times as long: rank 0 may be writing files. */
+static int await_arrival(int source, MPI_Status* status, int patient) {
+  const struct timespec nap = {0, 100000}; /* 0.1 ms */
+  double begun = 0;
+  for (long tries = 0;; ++tries) {
+    int there = 0;
+    TRY(arrived(source, &there, status));
+    if (there) return MPI_SUCCESS;
+    if (tries < 1000) continue;
+    if (tries == 1000) begun = seconds();
+    patient ? (void)nanosleep(&nap, NULL) : (void)sched_yield();
+    if (tries % 64 != 0) continue;
+    TRY(answer_others());
+    if (deadline <= 0 || seconds() - begun < deadline * (patient ? 10 : 1)) continue;
+    TRY(find_silent(source, &there, status));
+    if (there) return MPI_SUCCESS;
+    begun = seconds();
+  }
+}
 static int wait_for_all(void) {
-  const int n = used;
+  TRY(await_arrival(no_source, NULL, 0));
   used = 0;
-  return n ? MPI_Waitall(n, requests, MPI_STATUSES_IGNORE) : MPI_SUCCESS;
+  return MPI_SUCCESS;
 }
 
-static int start(int* rank, int* size) {
+static int start(double most_wait, int* rank, int* size) {
   int given = 0;
   TRY(MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &given));
   TRY(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN));
-  TRY(MPI_Comm_rank(MPI_COMM_WORLD, rank));
-  return MPI_Comm_size(MPI_COMM_WORLD, size);
+  TRY(MPI_Comm_rank(MPI_COMM_WORLD, &me));
+  TRY(MPI_Comm_size(MPI_COMM_WORLD, &ranks));
+  *rank = me;
+  *size = ranks;
+  deadline = most_wait;
+  hosts = calloc((size_t)ranks, host_bytes);
+  heard = calloc((size_t)ranks, 1);
+  if (!hosts || !heard) return MPI_ERR_NO_MEM;
+  char* mine = hosts + (size_t)me * host_bytes;
+  gethostname(mine, host_bytes - 1);
+  return MPI_Allgather(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, hosts, host_bytes, MPI_CHAR,
+                       MPI_COMM_WORLD);
 }
 static int describe(char* text, int bytes) {
   char all[MPI_MAX_LIBRARY_VERSION_STRING];
@@ -85,23 +198,27 @@ static int send(const struct pbf_mpi_message* out, int outs) {
 static int await(int from, size_t* bytes) {
   MPI_Status status;
   int n = 0;
-  TRY(MPI_Probe(from, tag, MPI_COMM_WORLD, &status));
+  TRY(await_arrival(from, &status, 0));
   TRY(MPI_Get_count(&status, MPI_BYTE, &n));
   *bytes = (size_t)n;
   return MPI_SUCCESS;
 }
-static int receive(const struct pbf_mpi_message* in) {
-  return MPI_Recv(in->data, (int)in->bytes, MPI_BYTE, in->rank, tag, MPI_COMM_WORLD,
-                  MPI_STATUS_IGNORE);
-}
+/* Between send() and finish_send(): the requests of what was sent stay. */
+static int receive(const struct pbf_mpi_message* in) { return begin(in, 0); }
 static int all_gather(const void* mine, size_t bytes, void* all) {
-  return MPI_Allgather(mine, (int)bytes, MPI_BYTE, all, (int)bytes, MPI_BYTE, MPI_COMM_WORLD);
+  MPI_Request* r = NULL;
+  TRY(next_request(&r));
+  TRY(MPI_Iallgather(mine, (int)bytes, MPI_BYTE, all, (int)bytes, MPI_BYTE, MPI_COMM_WORLD, r));
+  return wait_for_all();
 }
 static int sum(int64_t* values, size_t n) {
   for (size_t done = 0; done < n;) {
     const size_t left = n - done, piece = left < most_piece / 8 ? left : most_piece / 8;
-    TRY(MPI_Allreduce(MPI_IN_PLACE, values + done, (int)piece, MPI_INT64_T, MPI_SUM,
-                      MPI_COMM_WORLD));
+    MPI_Request* r = NULL;
+    TRY(next_request(&r));
+    TRY(MPI_Iallreduce(MPI_IN_PLACE, values + done, (int)piece, MPI_INT64_T, MPI_SUM,
+                       MPI_COMM_WORLD, r));
+    TRY(wait_for_all());
     done += piece;
   }
   return MPI_SUCCESS;
@@ -110,25 +227,22 @@ static int broadcast(void* data, size_t bytes, int patient) {
   size_t done = 0;
   do {
     const size_t left = bytes - done, piece = left < most_piece ? left : most_piece;
-    MPI_Request r;
-    TRY(MPI_Ibcast((char*)data + done, (int)piece, MPI_BYTE, 0, MPI_COMM_WORLD, &r));
-    int there = 0;
-    for (long asked = 0; !there; ++asked) {
-      TRY(MPI_Test(&r, &there, MPI_STATUS_IGNORE));
-      if (there || !patient || asked < 1000) continue;
-      const struct timespec nap = {0, 100000}; /* 0.1 ms */
-      nanosleep(&nap, NULL);
-    }
+    MPI_Request* r = NULL;
+    TRY(next_request(&r));
+    TRY(MPI_Ibcast((char*)data + done, (int)piece, MPI_BYTE, 0, MPI_COMM_WORLD, r));
+    TRY(await_arrival(no_source, NULL, patient));
+    used = 0;
     done += piece;
   } while (done < bytes);
   return MPI_SUCCESS;
 }
+static const char* trouble(void) { return why; }
 static void abort_all(int code) { MPI_Abort(MPI_COMM_WORLD, code); }
 static int finish(void) { return MPI_Finalize(); }
 
 const struct pbf_mpi* pbf_mpi_table(void) {
-  static const struct pbf_mpi table = {PBF_MPI_TABLE, start,     describe,     exchange,   send,
-                                       await,         receive,   wait_for_all, all_gather, sum,
-                                       broadcast,     abort_all, finish};
+  static const struct pbf_mpi table = {PBF_MPI_TABLE, start,   describe,     exchange,   send,
+                                       await,         receive, wait_for_all, all_gather, sum,
+                                       broadcast,     trouble, abort_all,    finish};
   return &table;
 }

@@ -1,13 +1,14 @@
 /* The functions of MPI that the program uses, as a table. The module pbf_mpi.c, compiled for the
    MPI of a machine, returns it; the program opens the module at run time and is not linked with
-   MPI. Functions return 0, or an error code of MPI. */
+   MPI. Functions return 0, an error code of MPI, or PBF_MPI_SILENT if another rank hangs. */
 #ifndef PBF_MPI_H
 #define PBF_MPI_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-enum { PBF_MPI_TABLE = 1 }; /* changes with the table */
+enum { PBF_MPI_TABLE = 2 }; /* changes with the table */
+enum { PBF_MPI_SILENT = -1 };
 
 struct pbf_mpi_message {
   int rank; /* to or from which it goes */
@@ -17,21 +18,23 @@ struct pbf_mpi_message {
 
 struct pbf_mpi {
   int table;
-  int (*start)(int* rank, int* size);
+  /* deadline: seconds after which a rank that waits asks the others whether they live; 0: never. */
+  int (*start)(double deadline, int* rank, int* size);
   int (*describe)(char* text, int bytes); /* "Open MPI v4.1.4" */
   /* All at once. Receives exactly the bytes that `in` says. */
   int (*exchange)(const struct pbf_mpi_message* out, int outs, const struct pbf_mpi_message* in,
                   int ins);
   /* Messages of which only the sender knows the size, at most 1 GiB. They are sent, then for each
-     expected one await() tells its size and receive() takes it. */
+     expected one await() tells its size and receive() takes it; all is done after finish_send(). */
   int (*send)(const struct pbf_mpi_message* out, int outs);
   int (*await)(int from, size_t* bytes);
   int (*receive)(const struct pbf_mpi_message* in);
   int (*finish_send)(void);
   int (*all_gather)(const void* mine, size_t bytes, void* all);
   int (*sum)(int64_t* values, size_t n);
-  /* Leaves the core to others while it waits. */
+  /* patient: leaves the core to others while it waits. */
   int (*broadcast)(void* data, size_t bytes, int patient);
+  const char* (*trouble)(void); /* after PBF_MPI_SILENT: which rank */
   void (*abort)(int code);
   int (*finish)(void);
 };

@@ -1,152 +1,192 @@
-// The CPU executor of a rank: passes run for its own rows (rank_rows.h). Without other ranks it is
-// the executor of a whole scene.
+// The executor of a rank: passes run for its own rows (rank_rows.h). Without other ranks it is the
+// executor of a whole scene. Base: the executor of the backend.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <memory>
+#include <utility>
 #include <vector>
 
-#include "lib/exec/cpu/cpu_exec.h"
 #include "lib/exec/ranks/rank_rows.h"
+#include "lib/program/features.h"
 
 namespace pbf::PBF_VARIANT {
 
-class RankExec : public CpuExec {
+/// A pass over the rows from `first` on, as items 0, 1, ...
+template <class Pass>
+struct From {
+  Pass pass;
+  int first;
+  PBF_HD auto operator()(int i) const { return pass(first + i); }
+  PBF_HD auto counts(int i) const { return pass.counts(first + i); }
+  PBF_HD auto terms(int i, const MeasureUnits& unit) const { return pass.terms(first + i, unit); }
+};
+/// A pass over listed rows, without those that are not own rows.
+template <class Pass>
+struct OwnOf {
+  Pass pass;
+  RowRange own;
+  PBF_HD void operator()(int k) const {
+    if (const int i = pass.row(k); i >= own.first && i < own.last) pass(k);
+  }
+};
+
+/// The number of a rank's rows changes.
+struct CountsRows {
+  static constexpr bool changes_rows = true;
+  using Passes = PassList<>;
+  static void add(const Scene&, auto&) {}
+};
+using RankFeatures = Features::With<CountsRows>;
+
+template <class Base>
+class RankExec : public Base {
  public:
+  using typename Base::Lists;
   /// The rows for which passes run, and all rows. counted: their number may change.
   struct Rows {
     int first, last, all;
     bool counted;
+    operator RowRange() const { return {first, last}; }
   };
-  /// ranks: null if there is one alone. The others as for CpuExec.
-  explicit RankExec(Communicator* ranks, int threads, int list_entries = 37,
-                    Simd simd = chosen_simd())
-      : CpuExec(threads, list_entries, simd),
+  /// ranks: null if there is one alone. The others as for Base.
+  template <class... Args>
+  explicit RankExec(Communicator* ranks, Args&&... of_base)
+      : Base(std::forward<Args>(of_base)...),
         ranks_(ranks),
-        rows_(ranks ? std::make_unique<RankRows>(*ranks) : nullptr) {}
-
-  Rows counted(const RowState* state, int launched) const {
-    const int all = state ? int(state->rows) : launched;
-    return ranks_ ? Rows{rows_->first(), rows_->last(), all, true}
-                  : Rows{0, all, all, state != nullptr};
+        rows_(ranks ? std::make_unique<RankRows<Base>>(*ranks) : nullptr) {
+    if (ranks) this->connect(*ranks);
   }
 
-  using CpuExec::build_lists, CpuExec::items, CpuExec::pairs, CpuExec::repeat_while;
+  /// launched: the rows, if their number does not change.
+  Rows counted(const RowState* state, int launched) const {
+    if (rows_) return {rows_->first(), rows_->last(), rows_->all(), true};
+    const int all = state ? Base::rows_now(*state) : launched;
+    return {0, all, all, state != nullptr};
+  }
+
+  using Base::items, Base::pairs, Base::repeat_while;
   template <ItemPass Pass>
   void items(const Rows& rows, const Pass& pass) {
-    in_pieces<1>(
-        rows.last,
-        [&](int first, int last) {
-          for (int i = first; i < last; ++i) pass(i);
-        },
-        rows.first);
+    Base::items(RowRange(rows), pass);
   }
   template <PairPass Pass>
   void pairs(const Rows& rows, const Pass& pass) {
-    using Real = std::remove_cvref_t<decltype(pass.p.dt)>;
-    const int width = 1 << lane_bits(simd(), sizeof(Real));
-    in_pieces<1>(
-        rows.last,
-        [&](int first, int last) {
-          // The lists of a group are read together, so the rows before the first whole group go
-          // one by one. The bits are the same.
-          const int whole = std::min((first + width - 1) / width * width, last);
-          for (int i = first; i < whole; ++i) sum_over_neighbors(pass, i);
-          sum_over_neighbors(simd(), pass, whole, last);
-        },
-        rows.first);
+    Base::pairs(RowRange(rows), pass);
   }
   /// Rows near solids are listed with those of ghosts.
   template <ItemPass Pass>
   void listed(const int* count, int most, const Pass& pass) {
     if constexpr (requires { pass.row(0); })
-      if (ranks_)
-        return CpuExec::listed(count, most, OwnOf<Pass>{pass, rows_->first(), rows_->last()});
-    CpuExec::listed(count, most, pass);
+      if (rows_)
+        return Base::listed(count, most, OwnOf<Pass>{pass, {rows_->first(), rows_->last()}});
+    Base::listed(count, most, pass);
+  }
+  template <ItemPass Pass>
+  void all_listed(const int* count, int most, const Pass& pass) {
+    Base::listed(count, most, pass);
   }
   /// The bricks of the slab, and then the sums over all bricks.
   template <BrickPass Pass>
   void bricks(const Pass& pass) {
-    if (!ranks_) return CpuExec::bricks(pass);
+    if (!rows_) return Base::bricks(pass);
     const int row = pass.grid.bricks(0) * pass.grid.bricks(1), most = pass.grid.bricks();
     const int low = rows_->slabs().first_unit(ranks_->rank()),
               high = rows_->slabs().first_unit(ranks_->rank() + 1);
-    in_pieces<16>(
-        std::min(high * row, most),
-        [&](int first, int last) {
-          for (int n = first; n < last; ++n) of_brick(pass, n);
-        },
-        low * row);
+    Base::bricks(pass, low * row, std::min(high * row, most));
     rows_->add_within();
   }
 
   template <ReducePass Pass>
   MeasureSums reduce(int n, const Pass& pass) {
-    if (!ranks_) return CpuExec::reduce(n, pass);
-    MeasureCounts counts;
+    if (!rows_) return Base::reduce(n, From<Pass>{pass, 0});
+    MeasureCounts steps;
     Pass of_rows = pass;
     if constexpr (requires { pass.step_counts; }) {  // a rank has its own, whatever its rows
-      counts = of_steps(*pass.step_counts);
-      of_rows.step_counts = &kNoSteps;
+      StepCounts mine;
+      this->to_host(pass.step_counts, 1, &mine);
+      steps = of_steps(mine);
+      of_rows.step_counts = no_steps();
     }
     const int first = rows_->first(), own = rows_->last() - first;
-    counts.add(sum<MeasureCounts>(own, [&](int i) { return of_rows.counts(first + i); }));
-    counts = over_ranks(counts);
-    const MeasureUnits unit(counts);
-    return {counts, over_ranks(sum<MeasureTerms>(
-                        own, [&](int i) { return of_rows.terms(first + i, unit); }))};
+    return Base::reduce(own, From<Pass>{of_rows, first}, [&](auto& sums) {
+      if constexpr (requires { sums.add(steps); }) sums.add(steps);
+      sums = over_ranks(sums);
+    });
   }
   template <class Pass>
   std::vector<std::int64_t> count_in_bins(int n, int bins, const Pass& pass) {
-    if (!ranks_) return CpuExec::count_in_bins(n, bins, pass);
-    std::vector<std::int64_t> all = CpuExec::count_in_bins(
-        rows_->last() - rows_->first(), bins, [&](int i) { return pass(rows_->first() + i); });
+    if (!rows_) return Base::count_in_bins(n, bins, pass);
+    std::vector<std::int64_t> all = own_in_bins(bins, pass);
     ranks_->sum(all);
     return all;
+  }
+  template <class Pass>
+  std::vector<std::int64_t> own_in_bins(int bins, const Pass& pass) {
+    return Base::count_in_bins(rows_->last() - rows_->first(), bins,
+                               From<Pass>{pass, rows_->first()});
   }
   template <class Pass, class Body>
   void repeat_while(const char* stage, const Rows& rows, int times, const Pass& pass,
                     double tolerance, unsigned long long* repeats, const Body& body) {
-    if (!ranks_)
-      return CpuExec::repeat_while(stage, rows.all, times, pass, tolerance, repeats, body);
+    if (!rows_) return Base::repeat_while(stage, rows.all, times, pass, tolerance, repeats, body);
     const std::uint64_t limit = residual_limit(tolerance, rows_->particles());
     for (int k = 0; k < times; ++k) {
-      Residual mine = sum<Residual>(rows.last - rows.first,
-                                    [&](int i) { return Residual{pass(rows.first + i)}; });
-      ranks_->sum({&mine.sum, 1});
-      mark(stage);
-      if (std::uint64_t(mine.sum) <= limit) return;
-      if (ranks_->rank() == 0) ++*repeats;
+      auto sum = std::int64_t(Base::sum_of(rows.last - rows.first, From<Pass>{pass, rows.first}));
+      ranks_->sum({&sum, 1});
+      this->mark(stage);
+      if (std::uint64_t(sum) <= limit) return;
+      if (ranks_->rank() == 0) Base::add_one(repeats);
       body();
     }
   }
   template <bool leave, class First, class Near, class Gather>
   void sort_by_bin(const char* stage, const First& of, const Near& near, int n, int bins,
                    const int* id, int* order, int* start, const Gather& gather) {
-    CpuExec::sort_by_bin<leave>(stage, of, near, n, bins, id, order, start, gather);
+    Base::template sort_by_bin<leave>(stage, of, near, n, bins, id, order, start, gather);
   }
   template <bool leave, class First, class Near, class Gather>
   void sort_by_bin(const char* stage, const First& of, const Near& near, const Rows& rows, int bins,
                    const int* id, int* order, int* start, const Gather& gather) {
     if (rows.counted)
-      CpuExec::sort_by_bin<leave>(stage, of, near, rows.all, bins, id, order, start, gather);
+      Base::template sort_by_bin<leave>(stage, of, near, rows.all, bins, id, order, start, gather);
     else
-      CpuExec::sort_by_bin<false>(stage, of, near, rows.all, bins, id, order, start, gather);
+      Base::template sort_by_bin<false>(stage, of, near, rows.all, bins, id, order, start, gather);
   }
+  using Base::build_lists;
   template <class Real>
   Lists build_lists(const Rows& rows, int far, const Vec4<Real>* position, const int* bin_start,
                     const Params<Real>& p) {
-    return CpuExec::build_lists(rows.last, far, position, bin_start, p, rows.first);
+    return Base::build_lists(RowRange(rows), far, position, bin_start, p);
+  }
+  /// Lists that have too little memory on one rank are made again on all.
+  bool grow_lists(int n) {
+    const bool grown = Base::grow_lists(n);
+    if (!rows_ || !Base::lists_overflow) return grown;
+    std::int64_t all = grown;
+    ranks_->sum({&all, 1});
+    return all > 0;
+  }
+  template <class Updates>
+  void repeat(int updates, Updates& u) {
+    if (rows_)
+      Base::repeat_unrecorded(updates, u);
+    else
+      Base::repeat(updates, u);
   }
 
   // What the solver calls on every rank; see RankRows.
 
   /// Null if there are no other ranks.
-  RankRows* rows() { return rows_.get(); }
+  RankRows<Base>* rows() { return rows_.get(); }
   template <class P, class C>
   bool before(C& c) {
-    return !rows_ || rows_->before<P>(c);
+    if (!rows_) return true;
+    const bool launches = rows_->template before<P>(c);
+    if (rows_->exchanged()) this->mark("exchange");
+    return launches;
   }
   template <class C>
   void after(C& c) {
@@ -158,22 +198,15 @@ class RankExec : public CpuExec {
   }
 
  private:
-  static constexpr StepCounts kNoSteps{};
-
-  template <class Pass>
-  struct OwnOf {
-    const Pass& pass;
-    int first, last;
-    void operator()(int k) const {
-      if (const int i = pass.row(k); i >= first && i < last) pass(k);
+  /// Steps that count nothing, in the memory of the executor.
+  const StepCounts* no_steps() {
+    if (no_steps_.size() == 0) {
+      no_steps_.resize(1);
+      const StepCounts none{};
+      this->to_device(&none, 1, no_steps_.data());
     }
-  };
-  struct Residual {
-    std::int64_t sum = 0;
-    Residual() = default;
-    explicit Residual(std::uint64_t one) : sum(std::int64_t(one)) {}
-    void add(const Residual& o) { sum += o.sum; }
-  };
+    return no_steps_.data();
+  }
   static MeasureCounts of_steps(const StepCounts& c) {
     MeasureCounts m;
     m.fast = std::int64_t(c.fast), m.repeats = std::int64_t(c.repeats);
@@ -193,7 +226,8 @@ class RankExec : public CpuExec {
   }
 
   Communicator* ranks_;
-  std::unique_ptr<RankRows> rows_;
+  std::unique_ptr<RankRows<Base>> rows_;
+  typename Base::template Buffer<StepCounts> no_steps_;
 };
 
 }  // namespace pbf::PBF_VARIANT

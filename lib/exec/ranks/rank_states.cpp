@@ -3,6 +3,8 @@
 #include <numeric>
 
 #include "lib/exec/ranks/packing.h"
+#include "lib/exec/ranks/slabs.h"
+#include "lib/program/exchanges.h"
 #include "lib/program/features/dissipation.h"
 
 namespace pbf::exec_module {
@@ -68,62 +70,106 @@ SolverState state_of(const std::vector<char>& packed) {
   return s;
 }
 
-SolverState whole_state(const SolverState& rank_0, const std::vector<std::vector<char>>& parts,
-                        const Scene& scene, const Plan& plan) {
-  SolverState all = rank_0;
-  const auto n = std::size_t(plan.particles);
-  const bool only_positions = rank_0.velocity.empty();
-  all.position.assign(3 * n, 0), all.velocity.assign(only_positions ? 0 : 3 * n, 0);
-  all.id.resize(only_positions ? 0 : n);  // as a solver alone returns them
-  std::iota(all.id.begin(), all.id.end(), 0);
-  std::erase_if(all.fields, [](const StoredField& f) { return f.name == field::row_state.name; });
-  bool first = true;
-  for (const std::vector<char>& part : parts) {
-    const SolverState s = state_of(part);
-    place_rows(s.position, s.id, 3, all.position);
-    if (!only_positions) place_rows(s.velocity, s.id, 3, all.velocity);
-    for (StoredField& f : all.fields) {
-      const FieldInfo& info = *field_of(plan, f.name);
-      const StoredField& other = *s.find(f.name);
-      if (info.is_per_particle()) {
-        if (first) f.values.assign(n * std::size_t(f.numbers), 0);
-        place_rows(other.values, s.id, std::size_t(f.numbers), f.values);
-      } else if (is_part(info, plan) && !first) {
-        add_values(info, other.values, f.values);
-      }
+void WholeState::add(const SolverState& part) {
+  const auto n = std::size_t(plan_.particles);
+  if (empty_) {
+    all_ = part;
+    all_.position.assign(3 * n, 0), all_.velocity.assign(only_positions_ ? 0 : 3 * n, 0);
+    all_.id.resize(only_positions_ ? 0 : n);  // as a solver alone returns them
+    std::iota(all_.id.begin(), all_.id.end(), 0);
+    std::erase_if(all_.fields,
+                  [](const StoredField& f) { return f.name == field::row_state.name; });
+  }
+  place_rows(part.position, part.id, 3, all_.position);
+  if (!only_positions_) place_rows(part.velocity, part.id, 3, all_.velocity);
+  for (StoredField& f : all_.fields) {
+    const FieldInfo& info = *field_of(plan_, f.name);
+    const StoredField& other = *part.find(f.name);
+    if (info.is_per_particle()) {
+      if (empty_) f.values.assign(n * std::size_t(f.numbers), 0);
+      place_rows(other.values, part.id, std::size_t(f.numbers), f.values);
+    } else if (is_part(info, plan_) && !empty_) {
+      add_values(info, other.values, f.values);
     }
-    first = false;
   }
-  for (StoredField& f : all.fields) {
-    gather_sums(f, scene, plan.particles);
-    normalize(*field_of(plan, f.name), f.values);
+  empty_ = false;
+}
+SolverState WholeState::result() && {
+  for (StoredField& f : all_.fields) {
+    gather_sums(f, scene_, plan_.particles);
+    normalize(*field_of(plan_, f.name), f.values);
   }
-  return all;
+  return std::move(all_);
 }
 
-SolverState part_of_state(const SolverState& all, const Scene& scene, const Plan& plan, int rank,
-                          int ranks) {
-  const auto n = std::int64_t(all.id.size());
-  const std::int64_t low = n * rank / ranks, high = n * (rank + 1) / ranks;
+namespace {
+
+/// at(i): in h, along the slowest axis of the grid.
+template <class At>
+IdsOfRanks by_layer(std::size_t n, const At& at, const Plan& plan, int ranks) {
+  const int layers = plan.cells[2];
+  std::vector<int> layer(n);
+  std::vector<std::int64_t> in_layer(static_cast<std::size_t>(layers));
+  for (std::size_t i = 0; i < n; ++i) {
+    layer[i] = int(std::clamp(at(i) / plan.cell_edge, 0.0, layers - 1.0));
+    ++in_layer[std::size_t(layer[i])];
+  }
+  const Slabs slabs(in_layer, ranks, layers_per_unit(plan));
+  IdsOfRanks ids(static_cast<std::size_t>(ranks));
+  for (std::size_t i = 0; i < n; ++i) ids[std::size_t(slabs.owner(layer[i]))].push_back(int(i));
+  return ids;
+}
+
+template <class T>
+void pick(std::vector<T>& rows, const std::vector<int>& ids, std::size_t numbers) {
+  std::vector<T> part;
+  part.reserve(ids.size() * numbers);
+  for (const int i : ids) {
+    const auto row = rows.begin() + std::ptrdiff_t(std::size_t(i) * numbers);
+    part.insert(part.end(), row, row + std::ptrdiff_t(numbers));
+  }
+  rows = std::move(part);
+}
+
+}  // namespace
+
+IdsOfRanks ids_of_ranks(const Particles& all, const Scene& scene, const Plan& plan, int ranks) {
+  const auto axis = std::size_t(plan.axes.of[2]);
+  const double origin = scene.origin()[axis], h = scene.h();
+  return by_layer(
+      all.size(), [&](std::size_t i) { return (all.position[i][axis] - origin) / h; }, plan, ranks);
+}
+IdsOfRanks ids_of_ranks(const SolverState& all, const Plan& plan, int ranks) {
+  const auto axis = std::size_t(plan.axes.of[2]);
+  return by_layer(
+      all.id.size(), [&](std::size_t i) { return all.position[3 * i + axis]; }, plan, ranks);
+}
+
+Particles part_of(const Particles& all, const std::vector<int>& ids) {
+  Particles part;
+  part.ids = ids;
+  for (const int i : ids) {
+    part.position.push_back(all.position[std::size_t(i)]);
+    part.velocity.push_back(all.velocity[std::size_t(i)]);
+  }
+  return part;
+}
+SolverState part_of(const SolverState& all, const std::vector<int>& ids, const Scene& scene,
+                    const Plan& plan, int rank) {
   SolverState s = all;
-  const auto cut = [&](std::vector<double>& rows, std::size_t numbers) {
-    rows = {rows.begin() + std::ptrdiff_t(std::size_t(low) * numbers),
-            rows.begin() + std::ptrdiff_t(std::size_t(high) * numbers)};
-  };
-  cut(s.position, 3), cut(s.velocity, 3);
-  s.id = {all.id.begin() + low, all.id.begin() + high};
+  pick(s.position, ids, 3), pick(s.velocity, ids, 3), pick(s.id, ids, 1);
   for (StoredField& f : s.fields) {
     const FieldInfo* info = field_of(plan, f.name);
     gather_sums(f, scene, plan.capacity);
     if (info && info->is_per_particle())
-      cut(f.values, std::size_t(f.numbers));
+      pick(f.values, ids, std::size_t(f.numbers));
     else if (info && is_part(*info, plan) && rank != 0)
       std::ranges::fill(f.values, 0);
   }
   s.fields.push_back({field::row_state.name,
                       false,
                       field::row_state.numbers,
-                      {double(high - low), double(n), 0, 0}});
+                      {double(ids.size()), double(all.id.size()), 0, 0}});
   return s;
 }
 

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "lib/program/plan.h"
-#include "lib/solver/solver_state.h"
+#include "lib/scene/particles.h"
+#include "lib/solver/solver.h"
 
 namespace pbf::exec_module {
 
@@ -14,14 +15,32 @@ SolverState state_of(const std::vector<char>& packed);
 
 /// The state of all particles, with the bits that a solver alone would return; only what took
 /// energy is not spread over the sums of each cause (kernels/dissipation.h), of which the first
-/// holds all. scene, plan: those of a rank. first: that of rank
-/// 0; parts: packed(), of all ranks.
-SolverState whole_state(const SolverState& first, const std::vector<std::vector<char>>& parts,
-                        const Scene& scene, const Plan& plan);
-/// What a rank gets of it: a range of ids. The next sort brings particles to the rank of their
-/// place.
-SolverState part_of_state(const SolverState& all, const Scene& scene, const Plan& plan, int rank,
-                          int ranks);
+/// holds all. Made of the states of ranks, one after the other. scene, plan: those of a rank.
+class WholeState {
+ public:
+  WholeState(StateOf which, const Scene& scene, const Plan& plan)
+      : only_positions_(which == StateOf::positions), scene_(scene), plan_(plan) {}
+  /// The first is that of rank 0.
+  void add(const SolverState& part);
+  SolverState result() &&;
+
+ private:
+  const bool only_positions_;
+  const Scene& scene_;
+  const Plan& plan_;
+  SolverState all_{};
+  bool empty_ = true;
+};
+
+/// The ids of the particles with which each rank begins: those in its layers, as nearly as this can
+/// be said before positions have the solver's precision. The first sort moves the others.
+using IdsOfRanks = std::vector<std::vector<int>>;
+IdsOfRanks ids_of_ranks(const Particles& all, const Scene& scene, const Plan& plan, int ranks);
+IdsOfRanks ids_of_ranks(const SolverState& all, const Plan& plan, int ranks);
+/// What a rank gets. scene, plan: those of a rank.
+Particles part_of(const Particles& all, const std::vector<int>& ids);
+SolverState part_of(const SolverState& all, const std::vector<int>& ids, const Scene& scene,
+                    const Plan& plan, int rank);
 
 /// Copies row k of `from` to row places[k] of `to`.
 template <class T>

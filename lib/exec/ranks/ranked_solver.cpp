@@ -6,25 +6,38 @@
 
 #include "lib/base/error.h"
 #include "lib/exec/cpu/cpu_solver.h"
+#ifdef PBF_HAS_CUDA
+#include "lib/exec/cuda/cuda_solver.h"
+#endif
 #include "lib/exec/ranks/rank_states.h"
 #include "lib/exec/ranks/slabs.h"
 #include "lib/program/exchanges.h"
+#include "lib/program/rank_plan.h"
 #include "lib/solver/step_solver.h"
 
 namespace pbf::exec_module {
 namespace {
 
-/// A rank's own rows are known to its passes as rows of a number that changes. It has room for all
-/// of them twice: an array takes memory as its pages are written.
-Scene of_rank(Scene scene, std::int64_t particles) {
-  scene.capacity = 2 * particles;
+/// A rank's own rows are known to its passes as rows of a number that changes.
+Scene of_rank(Scene scene, const Plan& plan, int ranks) {
+  scene.capacity = plan_ranks(plan, scene, ranks).capacity;
   return scene;
 }
 
-}  // namespace
+/// ranks: null: alone.
+std::unique_ptr<Solver> make_local(const Scene& scene, const Plan& plan, Particles particles,
+                                   Communicator* ranks) {
+#ifdef PBF_HAS_CUDA
+  if (scene.backend == Backend::cuda)
+    return make_cuda_solver(scene, plan, std::move(particles), 0, ranks);
+#endif
+  if (scene.backend == Backend::cuda)
+    throw Error(ExitCode::unavailable, "this build has no CUDA backend; run with --backend cpu");
+  return make_cpu_solver(scene, plan, std::move(particles), ranks);
+}
 
+/// Why a scene cannot run on several ranks; null: it can.
 const char* why_one_rank(const Scene& s) {
-  if (s.backend != Backend::cpu) return "the CUDA backend runs on one rank; use --backend cpu";
   if (changes_rows(s)) return "the number of its particles changes";
   for (const Gauge& g : s.gauges)
     if (std::holds_alternative<gauge_keys::Flow>(g.kind))
@@ -32,7 +45,12 @@ const char* why_one_rank(const Scene& s) {
   return nullptr;
 }
 
-void require_layers(const Plan& plan, int ranks) {
+}  // namespace
+
+void require_ranks(const Scene& scene, const Plan& plan, int ranks) {
+  if (const char* why = why_one_rank(scene))
+    throw Error(ExitCode::bad_input,
+                "scene " + scene.name + " cannot run on several ranks: " + why);
   Slabs(std::vector<std::int64_t>(std::size_t(plan.cells[2])), ranks, layers_per_unit(plan));
 }
 
@@ -40,13 +58,11 @@ RankedSolver::RankedSolver(Communicator& ranks, const Scene& scene, const Plan& 
                            Particles particles)
     : ranks_(ranks),
       whole_scene_(scene),
-      scene_(of_rank(scene, plan.particles)),
+      scene_(of_rank(scene, plan, ranks.size())),
       whole_plan_(plan),
       plan_(make_plan(scene_, plan.particles, plan.start)) {
-  if (const char* why = why_one_rank(scene))
-    throw Error(ExitCode::bad_input,
-                "scene " + scene.name + " cannot run on several ranks: " + why);
-  on_all([&] { local_ = make_cpu_solver(scene_, plan_, std::move(particles), &ranks_); });
+  require_ranks(scene, plan, ranks.size());
+  on_all([&] { local_ = make_local(scene_, plan_, std::move(particles), &ranks_); });
 }
 RankedSolver::~RankedSolver() {
   if (ranks_.rank() == 0 && !ended_) try {
@@ -102,12 +118,13 @@ void RankedSolver::serve() {
           local_->readings(series, from.take<Interval>());
           break;
         }
-        case What::state:
-          whole(local_->state(from.take<StateOf>()));
+        case What::state: {
+          const auto which = from.take<StateOf>();
+          whole(local_->state(which), which);
           break;
+        }
         case What::set_state:
-          local_->set_state(part_of_state(state_of(from.take<std::vector<char>>()), scene_, plan_,
-                                          ranks_.rank(), ranks_.size()));
+          local_->set_state(state_of(scatter(ranks_, {})));
           break;
         case What::keep:
           local_->keep();
@@ -132,16 +149,15 @@ std::future<Snapshot> RankedSolver::download(const std::vector<std::string>& fie
   done.set_value(std::move(all));
   return done.get_future();
 }
-/// On rank 0 the particles of all ranks, in the order of ids; `mine` on the others.
-Snapshot RankedSolver::whole(Snapshot mine, const std::vector<std::string>& fields,
+/// On rank 0 the particles of all ranks, in the order of ids; nothing on the others.
+Snapshot RankedSolver::whole(const Snapshot& mine, const std::vector<std::string>& fields,
                              ScalarType type) {
   Packer p;
   p.add(ids_of(mine)).add(mine.fields.size());
   for (const FieldArray& f : mine.fields) p.add(f.bytes);
-  const std::vector<std::vector<char>> parts = ranks_.gather(std::move(p.bytes));
-  if (ranks_.rank() != 0) return mine;
-  Snapshot all = empty_snapshot(fields, type, std::size_t(plan_.particles), mine.update, mine.time);
-  for (const std::vector<char>& part : parts) {
+  Snapshot all = empty_snapshot(fields, type, ranks_.rank() == 0 ? std::size_t(plan_.particles) : 0,
+                                mine.update, mine.time);
+  ranks_.gather(std::move(p.bytes), [&](const std::vector<char>& part) {
     Unpacker from(part);
     const auto ids = from.take<std::vector<std::int64_t>>();
     const auto arrays = from.take<std::size_t>();
@@ -151,7 +167,7 @@ Snapshot RankedSolver::whole(Snapshot mine, const std::vector<std::string>& fiel
       if (f.name != "id")
         place_rows(rows, ids, std::size_t(f.components) * size_of(f.type), f.bytes);
     }
-  }
+  });
   return all;
 }
 
@@ -164,19 +180,26 @@ std::vector<double> RankedSolver::readings(Series series, Interval interval) {
   return on_all([&] { return local_->readings(series, interval); });
 }
 
-SolverState RankedSolver::whole(const SolverState& mine) {
-  const std::vector<std::vector<char>> parts = ranks_.gather(packed(mine));
-  return ranks_.rank() == 0 ? whole_state(mine, parts, scene_, plan_) : mine;
+/// On rank 0 that of all particles; nothing on the others.
+SolverState RankedSolver::whole(const SolverState& mine, StateOf which) {
+  WholeState all(which, scene_, plan_);
+  ranks_.gather(packed(mine), [&](const std::vector<char>& part) { all.add(state_of(part)); });
+  return ranks_.rank() == 0 ? std::move(all).result() : SolverState();
 }
 
 SolverState RankedSolver::state(StateOf which) {
   say(What::state, Packer().add(which));
-  return on_all([&] { return whole(local_->state(which)); });
+  return on_all([&] { return whole(local_->state(which), which); });
 }
 void RankedSolver::set_state(const SolverState& s) {
   check_state(s, plan_.particles);
-  say(What::set_state, Packer().add(packed(s)));
-  on_all([&] { local_->set_state(part_of_state(s, scene_, plan_, ranks_.rank(), ranks_.size())); });
+  say(What::set_state, {});
+  on_all([&] {
+    const IdsOfRanks ids = ids_of_ranks(s, plan_, ranks_.size());
+    local_->set_state(state_of(scatter(ranks_, [&](int rank) {
+      return packed(part_of(s, ids[std::size_t(rank)], scene_, plan_, rank));
+    })));
+  });
 }
 void RankedSolver::keep() {
   say(What::keep, {});
@@ -194,7 +217,7 @@ Inspection& RankedSolver::alone() {
       all.position.push_back({o[0] + h * x[0], o[1] + h * x[1], o[2] + h * x[2]});
     }
     all.velocity.resize(now.id.size());
-    alone_ = make_cpu_solver(whole_scene_, whole_plan_, std::move(all));
+    alone_ = make_local(whole_scene_, whole_plan_, std::move(all), nullptr);
   }
   alone_->set_state(now);
   return *alone_->inspection();

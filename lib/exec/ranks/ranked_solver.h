@@ -11,18 +11,17 @@
 
 namespace pbf::exec_module {
 
-/// Why a scene cannot run on several ranks; null: it can.
-const char* why_one_rank(const Scene& scene);
+/// Throws Error(bad_input) if a scene cannot run on so many ranks: for what is in it, or because
+/// the grid has too few layers.
+void require_ranks(const Scene& scene, const Plan& plan, int ranks);
 
-/// Throws Error(bad_input) if the grid has too few layers for so many ranks.
-void require_layers(const Plan& plan, int ranks);
-
-/// Made on every rank at the same time, with the same arguments: all particles of the start. The
+/// Made on every rank at the same time, with the same scene and plan. The
 /// results have the bits of a solver on one rank. Rank 0 calls the functions of Solver, the others
 /// serve(). An error on any rank is thrown on all of them.
 class RankedSolver final : public Solver, public Inspection {
  public:
-  /// Throws Error(bad_input) if why_one_rank() says so, or if the grid is too small for the ranks.
+  /// particles: those of ids_of_ranks() (rank_states.h). Throws Error(bad_input) as
+  /// require_ranks().
   RankedSolver(Communicator& ranks, const Scene& scene, const Plan& plan, Particles particles);
   ~RankedSolver() override;
   /// Not on rank 0: does what rank 0 calls, until the solver of rank 0 ends.
@@ -52,8 +51,8 @@ class RankedSolver final : public Solver, public Inspection {
   /// f() takes part in the same exchanges on all ranks.
   template <class F>
   auto on_all(const F& f) -> decltype(f());
-  Snapshot whole(Snapshot mine, const std::vector<std::string>& fields, ScalarType type);
-  SolverState whole(const SolverState& mine);
+  Snapshot whole(const Snapshot& mine, const std::vector<std::string>& fields, ScalarType type);
+  SolverState whole(const SolverState& mine, StateOf which);
 
   Inspection& alone();
 

@@ -20,6 +20,7 @@ class Slabs {
   int high(int rank) const { return cut_[std::size_t(rank) + 1]; }  ///< excluded
   int first_unit(int rank) const { return (cut_[std::size_t(rank)] + unit_ - 1) / unit_; }
   int owner(int layer) const { return owner_[std::size_t(layer)]; }
+  const std::vector<int>& owners() const { return owner_; }  ///< rank of each layer
   bool operator==(const Slabs&) const = default;
 
  private:

@@ -59,6 +59,7 @@ class ThreadRank final : public Communicator {
   ThreadRank(Exchange& exchange, int rank) : exchange_(exchange), rank_(rank) {}
   int rank() const override { return rank_; }
   int size() const override { return exchange_.ranks(); }
+  int local_rank() const override { return -1; }
   std::string describe() const override { return "threads"; }
 
   void exchange(std::span<const Outgoing> out, std::span<const Incoming> in) override {
@@ -93,14 +94,10 @@ class ThreadRank final : public Communicator {
     }
     std::memcpy(values.data(), sums.data(), values.size_bytes());
   }
-  std::vector<std::vector<char>> gather(std::vector<char> mine) override {
-    if (rank_ != 0) {
-      exchange_.put(rank_, 0, std::move(mine));
-      return {};
-    }
-    std::vector<std::vector<char>> all{std::move(mine)};
-    for (int r = 1; r < size(); ++r) all.push_back(exchange_.take(r, 0));
-    return all;
+  void gather(std::vector<char> mine, const TakePart& take) override {
+    if (rank_ != 0) return exchange_.put(rank_, 0, std::move(mine));
+    take(mine);
+    for (int r = 1; r < size(); ++r) take(exchange_.take(r, 0));
   }
   void broadcast(std::vector<char>& bytes) override {
     if (rank_ == 0)

@@ -5,6 +5,7 @@
 #include "lib/base/error.h"
 #include "lib/exec/ranks/mpi_ranks.h"
 #include "lib/exec/ranks/packing.h"
+#include "lib/exec/ranks/rank_states.h"
 #include "lib/exec/ranks/ranked_solver.h"
 #include "lib/scene/load.h"
 
@@ -42,6 +43,18 @@ Scene take_scene(Unpacker& from) {
   return s;
 }
 
+/// What this rank gets of the particles, which rank 0 has.
+Particles part_of_start(Particles all, const IdsOfRanks& ids) {
+  const std::vector<char> bytes = scatter(*ranks, [&](int rank) {
+    const Particles part = part_of(all, ids[std::size_t(rank)]);
+    return std::move(Packer().add(part.position).add(part.velocity).add(part.ids).bytes);
+  });
+  all = {};
+  Unpacker from(bytes);
+  from.take(all.position), from.take(all.velocity), from.take(all.ids);
+  return all;
+}
+
 }  // namespace
 
 Communicator* world() { return ranks.get(); }
@@ -51,22 +64,19 @@ void open_world() {
 
 std::unique_ptr<Solver> make_ranked_solver(const Scene& scene, const Plan& plan,
                                            Particles particles) {
-  if (const char* why = why_one_rank(scene))
-    throw Error(ExitCode::bad_input,
-                "scene " + scene.name + " cannot run on several ranks: " + why);
-  require_layers(plan, ranks->size());
+  require_ranks(scene, plan, ranks->size());
   Packer p;
   p.add(Order::solver);
   add(p, scene);
   p.add(plan.particles).add(plan.start.count).add(plan.start.scatter).add(plan.start.of_files);
-  p.add(particles.position).add(particles.velocity);
   Unpacker back(p.bytes);
   back.take<Order>();
   if (!(take_scene(back) == scene))
     throw Error(ExitCode::internal, "the scene for the other ranks is not that of rank 0");
   ranks->broadcast(p.bytes);
-  p.bytes = {};
-  return std::make_unique<RankedSolver>(*ranks, scene, plan, std::move(particles));
+  const IdsOfRanks ids = ids_of_ranks(particles, scene, plan, ranks->size());
+  return std::make_unique<RankedSolver>(*ranks, scene, plan,
+                                        part_of_start(std::move(particles), ids));
 }
 
 int serve_world() {
@@ -83,10 +93,7 @@ int serve_world() {
     const auto n = from.take<std::int64_t>();
     StartNeighbors start;
     from.take(start.count), from.take(start.scatter), from.take(start.of_files);
-    Particles particles;
-    from.take(particles.position), from.take(particles.velocity);
-    bytes = {};
-    RankedSolver(*ranks, scene, make_plan(scene, n, std::move(start)), std::move(particles))
+    RankedSolver(*ranks, scene, make_plan(scene, n, std::move(start)), part_of_start({}, {}))
         .serve();
   }
 }

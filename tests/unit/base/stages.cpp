@@ -69,6 +69,7 @@ TEST_CASE("app/README.md's table of stages has every stage of the program in its
 
 TEST_CASE("a solver books and a plan names listed stages only, and the list has no dead ones") {
   std::set<std::string> names, seen{"init", "guard", "write", "render"};  // those of the program
+  seen.insert("exchange");                                                // of several ranks
   for (const Stage& s : kStages) names.insert(s.name);
   for (const std::vector<std::string>& keys :
        {std::vector<std::string>{"solver.tolerance=1e-6", "viscosity.xsph=0.1",

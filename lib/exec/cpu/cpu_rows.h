@@ -1,0 +1,43 @@
+// Memory of the host for the rows of ranks (lib/exec/ranks/rank_rows.h).
+#pragma once
+
+#include <array>
+#include <cstring>
+#include <vector>
+
+#include "kernels/hd.h"
+#include "lib/exec/ranks/pieces.h"
+
+namespace pbf::PBF_VARIANT {
+
+class CpuRows {
+ public:
+  void connect(Communicator& ranks) { ranks_ = &ranks; }
+  /// Sends and receives memory; several pieces between two ranks are one message.
+  void exchange(const std::vector<Outgoing>& out, const std::vector<Incoming>& in) {
+    const auto take = [&](const char* from, std::size_t bytes, char* to) { copy(from, to, bytes); };
+    exchange_joined(*ranks_, out, in, take, take);
+  }
+  void clear(char* at, std::size_t bytes) { std::memset(at, 0, bytes); }
+  /// The same for memory of which much may stay unused: it gives pages back to the system, which
+  /// are 0 when they are touched.
+  void clear_pages(char* at, std::size_t bytes);
+  void copy(const char* from, char* to, std::size_t bytes) {
+    if (bytes) std::memcpy(to, from, bytes);
+  }
+  /// Moves bytes from begin + by to `begin`.
+  void move_down(char* begin, std::size_t by, std::size_t bytes) {
+    std::memmove(begin, begin + by, bytes);
+  }
+  template <std::size_t n>
+  std::array<int, n> values(const int* from, const std::array<int, n>& at) {
+    std::array<int, n> out;
+    for (std::size_t k = 0; k < n; ++k) out[k] = from[at[k]];
+    return out;
+  }
+
+ private:
+  Communicator* ranks_ = nullptr;
+};
+
+}  // namespace pbf::PBF_VARIANT
